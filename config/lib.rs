@@ -1,7 +1,8 @@
-//! The tables and styles that come with Corniche, as texts in TOML: each file of this folder with its name.
+//! The built-in tables and styles of Corniche, as TOML texts: each file of this folder with its
+//! name.
 //!
-//! `presets` and `styles` read them; examples and tests take them from here too. This crate never reads, checks or
-//! changes a text, and depends on nothing.
+//! `presets` and `styles` parse them; examples and tests use them, too. This crate never reads,
+//! checks or changes a text, and has no dependencies.
 
 /// Tables from `highway=*` to the functional road class, the default one first.
 pub const FRC_TABLES: &[(&str, &str)] = &[
@@ -14,6 +15,13 @@ pub const FRC_TABLES: &[(&str, &str)] = &[
 
 /// Tables from tags to the classes of areas, the default one first.
 pub const AREA_TABLES: &[(&str, &str)] = &[("default", include_str!("areas/default.toml"))];
+
+/// Layers of the map: which objects of an extract they contain, in which classes.
+pub const LAYERS: &[(&str, &str)] = &[
+    ("areas", include_str!("layers/areas.toml")),
+    ("boundaries", include_str!("layers/boundaries.toml")),
+    ("railways", include_str!("layers/railways.toml")),
+];
 
 /// Styles of the map, the default one first.
 pub const STYLES: &[(&str, &str)] = &[

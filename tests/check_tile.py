@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks decoded tiles of a package from outside, with numpy and shapely and none of our own geometry.
+"""Checks decoded tiles of a package independently, with numpy and shapely and without our own geometry code.
 
 Reads `corniche info PACKAGE --json` (key `tiles`) and `corniche tile PACKAGE Z/X/Y --json` and checks that
 
@@ -45,7 +45,7 @@ class Findings:
         self.checked = Counter()
 
     def add(self, kind, tile, text):
-        """One violation."""
+        """Records a violation."""
         self.counts[kind] += 1
         if self.counts[kind] <= 5:
             self.examples.append(f"{kind}: {tile}: {text}")
@@ -66,7 +66,8 @@ class Tile:
         self.vertices = np.array(tin["vertices"], dtype=np.float64).reshape(-1, 3)
         self.triangles = np.array(tin["triangles"], dtype=np.int64).reshape(-1, 3)
         self.geo, self.sv = record["roads_geo"], record["roads_sv"]
-        # Positions relative to a corner: differences of large coordinates are exact, their products are not.
+        # Positions relative to a corner: differences of large coordinates are exact, their products
+        # are not.
         self.local = self.vertices - [self.bounds[0], self.bounds[1], 0.0]
 
     @property
@@ -82,7 +83,7 @@ def signed_areas(tile):
 
 
 def check_tin(tile, found):
-    """Triangles cover the tile's ground exactly once. Returns the ground as a polygon and its outline."""
+    """Checks that triangles cover the tile's ground exactly once. Returns the ground as a polygon and its outline."""
     if len(tile.triangles) == 0:
         return Polygon(), []
     areas = signed_areas(tile)
@@ -138,7 +139,7 @@ def border(tile, outline, side):
 
 
 def check_seam(one, other, first, second, found):
-    """Where both tiles have ground along their common border, its vertices are the same."""
+    """Checks that both tiles have the same vertices where they have ground along their common border."""
 
     def runs(segments):
         merged = []
@@ -165,7 +166,7 @@ def check_seam(one, other, first, second, found):
 
 
 class Locator:
-    """The triangle that holds an edge, by a grid of buckets."""
+    """The triangle that contains an edge, by a grid of buckets."""
 
     BUCKETS = 48
 
@@ -184,7 +185,7 @@ class Locator:
                     self.table.setdefault((c, r), []).append(k)
 
     def gap(self, p, q):
-        """(how far outside the best triangle, how far off its plane) for the edge p–q, in metres."""
+        """(distance outside the best triangle, distance from its plane) for the edge p–q, in metres."""
         middle = 0.5 * (p + q)
         key = tuple(int(np.floor(middle[k] / self.step[k])) for k in (0, 1))
         near = self.table.get(key)
@@ -236,7 +237,7 @@ def by_way(roads, tile):
 
 
 def check_roads(tile, ground, found):
-    """GEO lies on the TIN, in order, above its SV line, and all of it."""
+    """Checks that GEO roads are on the TIN, in order, above their SV lines, and complete."""
     for name, roads in (("roads_geo", tile.geo), ("roads_sv", tile.sv)):
         classes = [road["frc"] for road in roads]
         if classes != sorted(classes):
@@ -294,7 +295,7 @@ def check_tiles(tiles):
 
 
 def ask(command):
-    """What a command prints as JSON."""
+    """The JSON that a command prints."""
     done = subprocess.run(command, capture_output=True, text=True, encoding="utf-8")
     if done.returncode != 0:
         sys.stderr.write(f"{' '.join(command)} failed: {done.stderr}\n")
@@ -307,7 +308,7 @@ def ask(command):
 
 
 def wanted_levels(text, listed):
-    """Levels named by `--levels`: `all`, or numbers and ranges such as 0,2-4."""
+    """The levels in `--levels`: `all`, or numbers and ranges such as 0,2-4."""
     if text == "all":
         return set(listed)
     levels = set()

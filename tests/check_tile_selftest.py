@@ -1,4 +1,4 @@
-"""Broken tiles, made by hand, and the proof that `check_tile` sees each of them."""
+"""Hand-made broken tiles, which `check_tile` must all detect."""
 
 import copy
 
@@ -10,7 +10,7 @@ X0, Y0 = 534005.0, 5199995.0
 
 
 def height(i, j):
-    """A ground that is flat nowhere."""
+    """A ground without any flat part."""
     return 900.0 + 3.0 * i - 2.0 * j + 0.75 * i * j
 
 
@@ -49,7 +49,7 @@ def made(x, void=None):
 
 
 def parent():
-    """Tile 0/0/0 over both, coarse and without roads."""
+    """Tile 0/0/0 over both tiles, coarse and without roads."""
     size = 2 * SIDE
     corners = [[X0 + CELL_EAST_M * i, Y0 + CELL_NORTH_M * j, height(i, j)] for i, j in ((0, 0), (size, 0), (size, size), (0, size))]
     return {
@@ -84,7 +84,8 @@ def move_border_up(tiles):
 
 
 def move_inner(tiles):
-    # In plan only: its own triangles follow, so the area stays; the road's edges no longer fit them.
+    # In plan only: its own triangles follow, so the area is unchanged, but the road's edges no
+    # longer fit them.
     vertex = next(v for v in tiles[0]["tin"]["vertices"] if v[:2] == [X0 + 2 * CELL_EAST_M, Y0 + CELL_NORTH_M])
     vertex[1] += 0.4
 
@@ -145,9 +146,9 @@ def check(records):
 
 
 def run():
-    """0 when sound tiles pass and every broken one is caught."""
+    """Returns 0 when valid tiles pass and every broken one is detected."""
     failed = 0
-    # The tile beside it may lack ground at the border where this one has it: that is no crack.
+    # The adjacent tile may lack ground at the border where this one has it: that is not a crack.
     for name, records in (
         ("sound tiles", [made(0), made(1), parent()]),
         ("a void inside", [made(0), made(1, void=(5, 3)), parent()]),

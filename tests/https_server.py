@@ -1,4 +1,4 @@
-"""Serves a folder on 127.0.0.1 by https, with ranges of bytes as GDAL asks for them: python3 https_server.py FOLDER PORT CERTIFICATE KEY."""
+"""Serves a folder on 127.0.0.1 over https, with range requests as GDAL uses them: python3 https_server.py FOLDER PORT CERTIFICATE KEY."""
 
 import http.server
 import os
@@ -8,7 +8,7 @@ import sys
 
 
 class Files(http.server.BaseHTTPRequestHandler):
-    """Answers GET and HEAD, whole or in one range."""
+    """Answers GET and HEAD, for the whole file or a single range."""
 
     protocol_version = "HTTP/1.1"
 

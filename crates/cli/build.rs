@@ -1,4 +1,5 @@
-//! Puts the page of the viewer into the program: the files in `page`, which `scripts/web --update` makes.
+//! Embeds the page of the viewer into the program: the files in `page`, which `scripts/web
+//! --update` creates.
 
 #[path = "src/serve/page_files.rs"]
 mod page_files;

@@ -1,4 +1,5 @@
-//! Links the PROJ that GDAL works with: where pkg-config says it is, or else where the linker finds it.
+//! Links the PROJ that GDAL works with: where pkg-config says it is, or else where the linker finds
+//! it.
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");

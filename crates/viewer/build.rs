@@ -1,4 +1,5 @@
-//! Copies the shaders without their comments, which a program need not carry: in the module of a page every kilobyte counts. Lines keep their numbers.
+//! Copies the shaders without their comments, which the program does not need: in the WebAssembly
+//! module of a web page every kilobyte counts. Line numbers stay the same.
 
 use std::{env, error::Error, fs, path::Path};
 
@@ -15,7 +16,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// WGSL has no texts in quotes, so `//` always begins a comment.
+/// Removes comments. WGSL has no string literals, so `//` always begins a comment.
 fn without_comments(text: &str) -> String {
     let code = |line: &str| line.split("//").next().unwrap_or_default().trim_end().to_owned();
     text.lines().map(|line| code(line) + "\n").collect()

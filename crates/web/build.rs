@@ -1,5 +1,5 @@
-//! Reads what comes with the program as TOML, so that the module of the page needs no reader of TOML: styles, and what the classes of the FRC tables are
-//! called.
+//! Reads the bundled TOML files, so that the module of the page needs no TOML parser: styles, and
+//! the names of the classes in the FRC tables.
 
 use std::{env, error::Error, fs, path::PathBuf};
 

@@ -6,9 +6,9 @@ import zlib from "node:zlib";
 const [folder] = process.argv.slice(2);
 const brotli = (bytes) =>
   zlib.brotliCompressSync(bytes, { params: { [zlib.constants.BROTLI_PARAM_QUALITY]: 11, [zlib.constants.BROTLI_PARAM_SIZE_HINT]: bytes.length } });
-/** What a page fetches only when it is needed. */
+/** Files that a page fetches only when they are needed. */
 const LATER = new Map([
-  ["only with an own style", ["style_reader.js", "corniche_web_styles_bg.wasm"]],
+  ["only with a custom style", ["style_reader.js", "corniche_web_styles_bg.wasm"]],
   ["only where a flight is played", ["toml_reader.js"]],
 ]);
 const row = (name, sizes) => console.log(name.padEnd(32), ...sizes.map((size) => size.toLocaleString("en").padStart(11)));
@@ -30,8 +30,8 @@ const names = fs
   .sort()
   .filter((name) => fs.statSync(path.join(folder, name)).isFile() && !name.endsWith(".d.ts") && /\.(js|css|wasm|html)$/.test(name));
 const later = [...LATER.values()].flat();
-list("every map", names.filter((name) => !later.includes(name)), "all of it");
+list("every map", names.filter((name) => !later.includes(name)), "total");
 for (const [when, files] of LATER) {
   console.log();
-  list(when, files, "all of it");
+  list(when, files, "total");
 }

@@ -24,7 +24,8 @@ CELL_M = 10.0
 EXTENT_M = SIDE * CELL_M
 NODATA = -9999.0
 
-# The main valley runs along the north and leaves in the west: x, y, height of the floor, half width.
+# The main valley runs along the north and leaves in the west: x, y, height of the floor, half
+# width.
 MAIN_VALLEY = catmull_rom(
     [
         (10400, 2150, 968, 330),

@@ -1,18 +1,22 @@
 #!/usr/bin/env bash
-# A build on Kubernetes without any other engine: one Indexed Job for each round of parts.
+# Builds a package on Kubernetes without any other engine: one Indexed Job for each round of parts.
 #
-#   SLOTS=16 VOLUME=/mnt/build examples/clusters/kubernetes.sh --dem /build/dem.tif --osm /build/roads.osm.pbf
+#   SLOTS=16 VOLUME=/mnt/build examples/clusters/kubernetes.sh \
+#       --dem /build/dem.tif --osm /build/roads.osm.pbf
 #
-#   SLOTS     pods at once
-#   VOLUME    where this machine sees the volume that pods mount at /build (claim corniche-work, ReadWriteMany): plan and lists are written there
-#   STORE     the store, as pods see it [default: /build/store], or s3://BUCKET/PREFIX
-#   PACKAGE   the package, as pods see it [default: /build/out.pmtiles]
-#   MEMORY    memory of each process [default: 1792M, for pods of 2Gi]
-#   LEAST     no part is made smaller than this without need, in estimated seconds on one core [default: what corniche jobs chooses]
+#   SLOTS    number of pods at once
+#   VOLUME   path on this machine of the volume that pods mount at /build (claim corniche-work,
+#            ReadWriteMany); plan and lists are written there
+#   STORE    the store, as pods see it [default: /build/store], or s3://BUCKET/PREFIX
+#   PACKAGE  the package, as pods see it [default: /build/out.pmtiles]
+#   MEMORY   memory of each process [default: 1792M, for pods of 2Gi]
+#   LEAST    smallest useful part, in estimated seconds on one core [default: that of
+#            `corniche jobs`]
 #
-# All other options are those of `corniche plan`, with paths as pods see them: run this in a pod with the same volume, or see to it that this machine
-# sees it at the same path. Change image, volume and resources in kubernetes-round.yaml. The same command goes on after anything was stopped.
-# Needs corniche, jq, sed and kubectl.
+# All other options are those of `corniche plan`, with paths as pods see them: run this in a pod
+# with the same volume, or mount the volume at the same path on this machine. Change image, volume
+# and resources in kubernetes-round.yaml. Repeat the command to resume a stopped build. Needs
+# corniche, jq, sed and kubectl.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 # shellcheck source=examples/clusters/rounds.sh
@@ -36,7 +40,7 @@ while next_round "$VOLUME/parts" "$VOLUME/round.json"; do
         state=$(kubectl get job "corniche-round-$number" -o 'jsonpath={.status.conditions[?(@.status=="True")].type}') || state=''
         case " $state " in
         *" Complete "*) break ;;
-        *" Failed "*) echo "round $number failed; kubectl logs job/corniche-round-$number tells why" >&2 && exit 1 ;;
+        *" Failed "*) echo "round $number failed; kubectl logs job/corniche-round-$number says why" >&2 && exit 1 ;;
         esac
         sleep 10
     done

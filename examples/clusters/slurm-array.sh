@@ -1,19 +1,24 @@
 #!/usr/bin/env bash
-# A build on Slurm without any other engine: one job array for each round of parts, each waiting for the one before.
+# Builds a package on Slurm without any other engine: one job array for each round of parts, each
+# waiting for the array before it.
 #
 #   SLOTS=200 STORE=/scratch/me/build PACKAGE=/scratch/me/out.pmtiles FOLDER=/scratch/me/jobs \
 #       examples/clusters/slurm-array.sh --dem /data/dem/*.tif --osm /data/roads.osm.pbf
 #
-#   SLOTS     parts that are made at once
-#   STORE     a folder on a file system that all nodes see, or s3://BUCKET/PREFIX
-#   PACKAGE   the package to write
-#   FOLDER    plan, lists of parts and logs; all nodes see it
-#   MEMORY    memory of each part, in MiB [default: 2048]; THREADS: processors of each [default: 1]; HOURS: time limit of each [default: 4]
-#   LEAST     no part is made smaller than this without need, in estimated seconds on one core [default: what corniche jobs chooses]
-#   SBATCH    more options for sbatch, such as "--partition long --account geo"
+#   SLOTS    number of parts that are built at once
+#   STORE    a folder on a file system that all nodes see, or s3://BUCKET/PREFIX
+#   PACKAGE  the package to write
+#   FOLDER   a folder that all nodes see, for the plan, lists of parts, and logs
+#   MEMORY   memory of each part, in MiB [default: 2048]
+#   THREADS  processors of each part [default: 1]
+#   HOURS    time limit of each part [default: 4]
+#   LEAST    smallest useful part, in estimated seconds on one core [default: that of
+#            `corniche jobs`]
+#   SBATCH   more options for sbatch, such as "--partition long --account geo"
 #
-# Run it on a login node. All other options are those of `corniche plan`. If a part fails, the rounds after it stay in the queue and never begin:
-# cancel them (scancel), and run the same script again; parts that are made already end at once. Needs jq.
+# Run it on a login node. All other options are those of `corniche plan`. If a part fails, the
+# rounds after it stay in the queue and never begin: cancel them (scancel), and run the same script
+# again; parts that are complete end at once. Needs jq.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 # shellcheck source=examples/clusters/rounds.sh
@@ -25,7 +30,7 @@ mkdir -p "$FOLDER"
 plan=$FOLDER/plan.json
 corniche plan "$@" -o "$plan" -O
 corniche jobs "$plan" --slots "$SLOTS" ${LEAST:+--least-work "$LEAST"} >"$FOLDER/parts"
-# A sixteenth of the memory is for what Slurm counts beside the process.
+# A sixteenth of the memory is for what Slurm counts in addition to the process.
 options=(--threads "$threads" --memory "$((memory - memory / 16))M" --quiet --store "$STORE")
 # Arrays have a largest size; a longer round is several arrays.
 largest=$(scontrol show config | awk '/^MaxArraySize/ { print $3 - 1 }')

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# One task of an array of slurm-array.sh: runs the line of a list that belongs to it.
+# One task of an array of slurm-array.sh: runs its line of the list.
 #   slurm-part.sh LIST LINES-BEFORE
 set -euo pipefail
 command=$(sed -n "$((SLURM_ARRAY_TASK_ID + $2))p" "$1")

@@ -1,7 +1,7 @@
-// What the pages have in common.
+// Code that the pages share.
 
 /**
- * What the address asks for: ?tileset=URL, with ?roads=URL for roads as a second tileset, or ?terrain=URL, and for pictures
+ * The query of the address: ?tileset=URL, with ?roads=URL for roads as a second tileset, or ?terrain=URL, and for images
  * ?view=lon,lat,height,heading,pitch, ?background=COLOUR and ?sun=azimuth,elevation.
  */
 export function options() {
@@ -16,7 +16,7 @@ export function options() {
   };
 }
 
-/** Whose data it is. Everyone who shows the tiles has to say it. */
+/** The attribution of the data, which must be displayed with the tiles. */
 export async function attribution(tilesetUrl) {
   const { asset } = await (await fetch(tilesetUrl)).json();
   return asset.copyright ?? "";

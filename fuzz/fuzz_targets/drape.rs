@@ -1,4 +1,4 @@
-//! libFuzzer's way into [`corniche_fuzz::drape`].
+//! The libFuzzer entry point of [`corniche_fuzz::drape`].
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|data: &[u8]| corniche_fuzz::drape(data));

@@ -1,4 +1,4 @@
-//! libFuzzer's way into [`corniche_fuzz::payload`].
+//! The libFuzzer entry point of [`corniche_fuzz::payload`].
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|data: &[u8]| corniche_fuzz::payload(data));

@@ -1,4 +1,4 @@
-//! libFuzzer's way into [`corniche_fuzz::settings`].
+//! The libFuzzer entry point of [`corniche_fuzz::settings`].
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|data: &[u8]| corniche_fuzz::settings(data));

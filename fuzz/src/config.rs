@@ -1,12 +1,14 @@
-//! Texts in TOML are read or refused, whatever their bytes are: settings files, tables of roads and of areas, styles.
+//! TOML texts of any bytes are read or rejected: settings files, tables of roads and of areas,
+//! styles.
 
 use corniche_presets::{Config, class_filter, parse_area_table, parse_frc_table};
 use corniche_styles::parse_style;
 
-/// A settings file and a table of roads or of areas of these bytes are read or refused; what is read keeps its own promises.
+/// Reads or rejects these bytes as a settings file, and as a table of roads or of areas; whatever
+/// is read is valid.
 ///
 /// # Panics
-/// When a promise is broken.
+/// When a reader breaks a promise.
 pub fn settings(data: &[u8]) {
     let Ok(text) = std::str::from_utf8(data) else { return };
     match Config::parse(text) {
@@ -14,7 +16,7 @@ pub fn settings(data: &[u8]) {
             if let Some(cells) = &config.roads.class_max_cell
                 && let Ok(filter) = class_filter(cells)
             {
-                // A filter is monotonic: the coarsest cell never grows from a class to the next.
+                // A filter is monotonic: the coarsest cell never grows from one class to the next.
                 let cells = filter.class_max_cell_m().map(|cell_m| cell_m.unwrap_or(f64::INFINITY));
                 assert!(cells.is_sorted_by(|a, b| a >= b), "{cells:?}");
             }
@@ -24,7 +26,7 @@ pub fn settings(data: &[u8]) {
     match parse_frc_table(text) {
         Ok(table) => {
             let again = corniche_roads::Classified::NotARoad(corniche_roads::NotARoad::NoHighway);
-            assert_eq!(table.classify(&[]), again, "no tag, no road");
+            assert_eq!(table.classify(&[]), again, "a way without tags is not a road");
             assert!(!table.name().is_empty() && !table.canonical_text().is_empty());
         }
         Err(error) => assert!(!error.to_string().is_empty()),
@@ -34,10 +36,10 @@ pub fn settings(data: &[u8]) {
     }
 }
 
-/// A style of these bytes is read or refused, and has no number that a shader cannot use.
+/// Reads or rejects these bytes as a style; a style has no number that a shader cannot use.
 ///
 /// # Panics
-/// When a promise is broken.
+/// When a reader breaks a promise.
 pub fn styles(data: &[u8]) {
     let Ok(text) = std::str::from_utf8(data) else { return };
     match parse_style(text) {

@@ -1,4 +1,5 @@
-//! Lines of any bytes are laid on ground of any bytes, and the result keeps every promise of draping.
+//! Lines from any bytes are draped on ground from any bytes, and the result keeps every promise of
+//! draping.
 
 use arbitrary::{Result, Unstructured};
 use corniche_drape::{
@@ -9,18 +10,20 @@ use corniche_geom::{HeightGrid, LatticeBounds, LatticePoint, Polyline};
 use corniche_testing::check_tin;
 use corniche_tin::{Placement, Surface, TinSpec, triangulate};
 
-/// How much of a length rounding in f64 may add to it or take away.
+/// Relative error of a length by rounding in f64.
 const ROUNDING: f64 = 1e-9;
 
-/// Lines made from these bytes are laid on ground made from these bytes: on the TIN, in order, without repeated or lost parts.
+/// Drapes lines from these bytes on ground from these bytes. The result must be on the TIN, in
+/// order, without repeated or lost parts.
 ///
-/// What a line should become is told by plain means: positions in f64, and the ground under a segment as the union
-/// of its parts in each triangle. Most coordinates are those of nodes or halves between them.
+/// The expected result is computed by simple means: positions in f64, and the ground under a
+/// segment as the union of its parts in each triangle. Most coordinates are those of nodes or
+/// halves between them.
 ///
 /// # Panics
-/// When a promise is broken.
+/// When draping breaks a promise.
 pub fn drape(data: &[u8]) {
-    // Missing bytes count as zeros. Bytes that make no ground or no line are not a case.
+    // Missing bytes count as zeros. Bytes that give no ground or no line are not a case.
     let _ = case(&mut Unstructured::new(data));
 }
 
@@ -45,7 +48,7 @@ fn case(bytes: &mut Unstructured<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Meshed from a few heights and gaps; `None` where there is no ground.
+/// A mesh of a few heights and gaps; `None` if there is no ground.
 fn surface(bytes: &mut Unstructured<'_>, node_steps: i64) -> Result<Option<Surface>> {
     let (columns, rows) = (bytes.int_in_range(4..=9)?, bytes.int_in_range(4..=9)?);
     let max_error_m = *bytes.choose(&[0.5, 4.0, 40.0])?;
@@ -91,12 +94,13 @@ fn check_drape(line: &Polyline, surface: &Surface) {
             Err(error) => panic!("{error}"),
         };
         on_steps += at.windows(2).map(|pair| distance(pair[0], pair[1])).sum::<f64>();
-        // Its source points, those beyond its ends included, are a stretch of the line's, in order.
+        // The source points of a part, including those beyond its ends, are consecutive points of
+        // the line, in order.
         let own = part.vertices.iter().filter_map(source);
         let own: Vec<_> = part.lead_in.into_iter().chain(own).chain(part.lead_out).collect();
         let stretch = line.points()[from..].windows(own.len()).position(|points| points == own);
         let Some(first) = stretch else { panic!("{own:?} is not in {:?}", &line.points()[from..]) };
-        // The next part may begin on the segment that this one leaves.
+        // The next part may start on the segment on which this one ends.
         from += first + own.len() - 1 - usize::from(part.lead_out.is_some());
     }
     let length_of =
@@ -137,7 +141,8 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     (b[0] - a[0]).hypot(b[1] - a[1])
 }
 
-/// Length of p → q over ground: the union of its parts in each triangle, their ends as fractions in f64.
+/// Length of p → q over ground: the union of its parts in each triangle, with their ends as
+/// fractions in f64.
 fn over_ground([p, q]: [LatticePoint; 2], surface: &Surface) -> f64 {
     let area = |a: LatticePoint, b: LatticePoint, c: LatticePoint| {
         let wide = |x: i64, y: i64| i128::from(y) - i128::from(x);
@@ -171,13 +176,13 @@ fn over_ground([p, q]: [LatticePoint; 2], surface: &Surface) -> f64 {
     covered * p.distance_steps(q)
 }
 
-/// Which of 16 stretches of a border have ground on the one and on the other side.
+/// Which of 16 stretches of a border have ground on one side and on the other.
 fn owned_borders(bytes: &mut Unstructured<'_>) -> Result<[OwnedBorders; 2]> {
     let (west, east) = (bytes.arbitrary::<u16>()?, bytes.arbitrary::<u16>()?);
     let there = |cells: u16, row: i64| cells >> (row.clamp(0, 255) / 16) & 1 == 1;
     let tile = |neighbour_east, inner, outer, at: i64| {
         OwnedBorders::among(Neighbours { east: neighbour_east, south: false }).where_ground(
-            // Beyond the borders that are not shared there is no ground, within the tile there is.
+            // Outside the borders that are not shared there is no ground, inside the tile there is.
             move |column, row| match column {
                 _ if column == at => there(inner, row),
                 -1 | 256 => there(outer, row) && (column == 256) == (at == 255),
@@ -188,9 +193,9 @@ fn owned_borders(bytes: &mut Unstructured<'_>) -> Result<[OwnedBorders; 2]> {
     Ok([tile(true, west, east, 255), tile(false, east, west, 0)])
 }
 
-/// Two tiles side by side: everything in their union is in one of them, once.
+/// Two adjacent tiles: everything in their union is in exactly one of them.
 fn check_clip(line: &Polyline, surface: &Surface, owned: [OwnedBorders; 2]) {
-    let Some(all) = LatticeBounds::of(surface.points()) else { return };
+    let Some(all) = LatticeBounds::around(surface.points()) else { return };
     let middle = all.min.u.midpoint(all.max.u);
     if middle == all.min.u || line.points().iter().any(|p| p.u.abs().max(p.v.abs()) > 1 << 30) {
         return;
@@ -205,7 +210,8 @@ fn check_clip(line: &Polyline, surface: &Surface, owned: [OwnedBorders; 2]) {
         }
     }
     let whole_steps: f64 = clip_closed(line, &all).iter().map(corniche_testing::length_steps).sum();
-    // Cuts are rounded to the lattice: by half a step on each side of at most five borders a segment.
+    // Cuts are rounded to the lattice: by half a step on each side of at most five borders per
+    // segment.
     let slack = 5.0 * line.points().len() as f64;
     assert!(
         (kept_steps - whole_steps).abs() <= slack,
@@ -213,7 +219,7 @@ fn check_clip(line: &Polyline, surface: &Surface, owned: [OwnedBorders; 2]) {
     );
 }
 
-/// Ranges hold the ground under the segment's own vertices.
+/// Checks that ranges include the ground under the segment's own vertices.
 fn check_extrude(line: &Polyline, surface: &Surface, margin_steps: i64) {
     for sv in extrude(line, surface, margin_steps) {
         assert_eq!(sv.points.len(), sv.ground_range_m.len() + 1);

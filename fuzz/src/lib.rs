@@ -1,4 +1,5 @@
-//! One function per reader of foreign bytes. It panics if an input breaks a promise of the reader.
+//! One function for each reader of foreign bytes. It panics if an input makes the reader break a
+//! promise.
 //!
 //! ```text
 //!  corpus/NAME, regressions/NAME ──► tests/it/replay.rs ──┐
@@ -6,7 +7,7 @@
 //!  libFuzzer ──► fuzz_targets/NAME.rs ─────────────────┘
 //! ```
 //!
-//! This crate never reads a file of a user, and is part of no binary.
+//! This crate never reads a user's file, and is not part of any binary.
 
 mod config;
 mod drape;

@@ -1,9 +1,9 @@
-//! Extracts of any bytes are read or refused, and every way is accounted for.
+//! Extracts of any bytes are read or rejected, and every way is accounted for.
 
 use std::{cell::LazyCell, collections::BTreeSet, io::Cursor, path::Path};
 
 use corniche_geom::LatticePoint;
-use corniche_osm::{Defect, ReadOsmError, ReadRequest};
+use corniche_osm::{ExtractDefect, ReadOsmError, ReadRequest};
 use corniche_presets::parse_frc_table;
 use corniche_roads::FrcTable;
 use corniche_testing::MemoryScratch;
@@ -14,13 +14,15 @@ use roads::{check_summary, is_loss_of_way, read_roads_from};
 #[path = "../../crates/osm/tests/it/common/roads.rs"]
 mod roads;
 
-/// An extract of these bytes is read or refused, and every way with a `highway` tag is a road or counted under one reason.
+/// Reads or rejects these bytes as an extract; every way with a `highway` tag is a road or counted
+/// under one reason.
 ///
-/// Bytes that begin with two zeros, as every extract does, are a file. Other bytes are one uncompressed block, so that a
-/// change in them is not refused because of a size or a checksum that no longer fits.
+/// Bytes that start with two zeros, as every extract does, are a file. Other bytes are one
+/// uncompressed block, so that a change in them is not rejected because of a size or a checksum
+/// that no longer matches.
 ///
 /// # Panics
-/// When a promise is broken.
+/// When the reader breaks a promise.
 pub fn osm(data: &[u8]) {
     match data {
         [0, 0, ..] => check(data),
@@ -43,22 +45,22 @@ thread_local! {
     };
     static TABLE: LazyCell<FrcTable> = const {
         LazyCell::new(|| {
-            parse_frc_table(corniche_presets::frc_preset("default").expect("it is there")).expect("a preset is right")
+            parse_frc_table(corniche_presets::frc_preset("default").expect("the preset exists")).expect("a preset is valid")
         })
     };
 }
 
 fn check(file: &[u8]) {
-    // Once with all in memory, once with next to nothing in it: the same roads, defects and refusals.
+    // Once with unlimited memory, once with very little: the same roads, defects and errors.
     let [large, small] = [u64::MAX, 2048].map(|memory_bytes| read(file, memory_bytes));
     assert_eq!(large, small);
 }
 
-/// The roads' ids and numbers of points, the defects, and the refusal or the summary in words.
-type Found = (Vec<(i64, usize)>, Vec<Defect>, String);
+/// The roads' ids and numbers of points, the defects, and the error or the summary in words.
+type Found = (Vec<(i64, usize)>, Vec<ExtractDefect>, String);
 
 fn read(file: &[u8], memory_bytes: u64) -> Found {
-    // Beyond 170 degrees east this projection has no place.
+    // East of 170 degrees this projection is undefined.
     let place = |positions_deg: &[[f64; 2]]| {
         let round = |deg: f64| (deg * 1e7).round() as i64;
         let place = |&[lon, lat]: &[f64; 2]| {
@@ -93,7 +95,7 @@ fn read(file: &[u8], memory_bytes: u64) -> Found {
                     is_shorter |= points < 2;
                     roads.push((road.way_id, points));
                 },
-                &mut |defect: Defect| {
+                &mut |defect: ExtractDefect| {
                     lost += u64::from(is_loss_of_way(&defect));
                     assert!(!defect.reason().is_empty());
                     defects.push(defect);
@@ -114,7 +116,7 @@ fn read(file: &[u8], memory_bytes: u64) -> Found {
             format!("{summary:?}")
         }
         Err(ReadOsmError::Place { .. } | ReadOsmError::Stopped { .. }) => {
-            panic!("nobody stopped it, and every position has its answer")
+            panic!("the run was not stopped, and every position was projected")
         }
         Err(ReadOsmError::Scratch { source, .. }) => panic!("memory does not fail: {source}"),
         Err(error) => {

@@ -1,14 +1,14 @@
-//! Vector files of any bytes give lines or polygons, or are refused.
+//! Vector files of any bytes give lines or polygons, or are rejected.
 
 use std::{fs, path::PathBuf, sync::LazyLock};
 
-use corniche_gis::Polygon;
+use corniche_gis::RegionPolygons;
 use corniche_overlay::{LineFile, SavedLine, place, read};
 use corniche_testing::package;
 use corniche_tileset::Manifest;
 use tempfile::TempDir;
 
-/// The small package, in a system that PROJ knows.
+/// The manifest of the small package, in a CRS that PROJ knows.
 static MANIFEST: LazyLock<Manifest> = LazyLock::new(|| {
     let mut manifest = package::manifest();
     "EPSG:32632".clone_into(&mut manifest.crs_wkt);
@@ -19,7 +19,8 @@ thread_local! {
     static FOLDER: TempDir = tempfile::tempdir().unwrap_or_else(|error| panic!("no temporary folder: {error}"));
 }
 
-/// A file of these bytes; the first byte chooses its ending, by which some programs know what it is.
+/// Writes these bytes to a file; the first byte selects its extension, by which some programs
+/// recognise the format.
 fn file(data: &[u8]) -> Option<PathBuf> {
     let (&first, content) = data.split_first()?;
     let ending = ["geojson", "gpx", "kml", "csv"][usize::from(first % 4)];
@@ -28,10 +29,11 @@ fn file(data: &[u8]) -> Option<PathBuf> {
     Some(path)
 }
 
-/// A file of these bytes is read as lines and placed on a package, or refused; as a file that a person draws it is saved as it was read.
+/// Reads or rejects these bytes as lines and places them on a package; a file of drawn lines is
+/// saved as it was read.
 ///
 /// # Panics
-/// When a promise is broken.
+/// When a reader or the writer breaks a promise.
 pub fn overlay(data: &[u8]) {
     let Some(path) = file(data) else { return };
     match read(&path, true) {
@@ -60,19 +62,19 @@ pub fn overlay(data: &[u8]) {
     let text = drawn.text_with(&lines.iter().map(saved).collect::<Vec<_>>());
     if fs::write(&path, text).is_ok() {
         let again = LineFile::read(&path).map(|again| again.lines());
-        assert!(again.is_ok_and(|again| again == lines), "what was saved is another file");
+        assert!(again.is_ok_and(|again| again == lines), "the saved file differs");
     }
 }
 
-/// A file of these bytes is read as polygons, always as the same ones, or refused.
+/// Reads or rejects these bytes as polygons; the same bytes always give the same polygons.
 ///
 /// # Panics
-/// When a promise is broken.
+/// When a reader breaks a promise.
 pub fn polygon(data: &[u8]) {
     let Some(path) = file(data) else { return };
-    match Polygon::read(&path) {
+    match RegionPolygons::read(&path) {
         Ok(polygon) => {
-            let again = Polygon::read(&path).map(|again| again.canonical_bytes().to_vec());
+            let again = RegionPolygons::read(&path).map(|again| again.canonical_bytes().to_vec());
             assert!(!polygon.canonical_bytes().is_empty());
             assert!(again.is_ok_and(|again| again == polygon.canonical_bytes()), "another polygon");
         }

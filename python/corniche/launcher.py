@@ -1,5 +1,6 @@
 #!python
-# The command `corniche` of a platform wheel: becomes the program that lies in the package, without importing the package, which would take longer.
+# The command `corniche` of a platform wheel: executes the program in the package, without importing
+# the package, which would take longer.
 import os
 import sys
 from importlib.util import find_spec

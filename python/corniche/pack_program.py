@@ -1,12 +1,12 @@
-"""Packs the program into the wheel: a folder as ``scripts/release`` lays it out, which ``CORNICHE_RELEASE`` names, and the sample.
+"""Packs the program into the wheel: the folder that ``scripts/release`` creates and ``CORNICHE_RELEASE`` names, and the sample data.
 
-Without such a folder the wheel is pure Python, and runs a program that is installed otherwise.
+Without this folder the wheel is pure Python, and runs a program that is installed separately.
 
     corniche/released/bin/corniche       the program
-    corniche/released/lib/…              its libraries and tables, found from the program on
+    corniche/released/lib/…              its libraries and tables, which the program finds relative to itself
     corniche/released/share/corniche/…   licences
-    corniche/sample/…                    a made-up mountain pass
-    NAME.data/scripts/corniche           the command on the path, which becomes the program
+    corniche/sample/…                    an invented mountain pass
+    NAME.data/scripts/corniche           the command on the path, which executes the program
     NAME.data/data/share/…               manual pages and completions
 """
 
@@ -18,17 +18,18 @@ from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
-#: Names the folder.
+#: The environment variable that names the folder.
 FOLDER = "CORNICHE_RELEASE"
-#: Names the platform of the wheel. ``scripts/wheel`` puts the one that auditwheel finds in its place.
+# : The platform tag of the wheel. ``scripts/wheel`` replaces it with the one that auditwheel
+# determines.
 PLATFORM = "linux_x86_64"
-#: What shells and ``man`` look for in the environment, and not in the package.
+#: Folders that shells and ``man`` search in the environment, not in the package.
 SHARED = ("man", "bash-completion", "zsh", "fish")
 SAMPLE = ("pass-dem.tif", "pass.osm.pbf")
 
 
 class PackProgram(BuildHookInterface):  # type: ignore[type-arg]
-    """Adds the files to what hatchling packs."""
+    """Adds the files to the wheel that hatchling packs."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Called by hatchling before it packs."""
@@ -37,7 +38,7 @@ class PackProgram(BuildHookInterface):  # type: ignore[type-arg]
             return
         folder = Path(named).resolve()
         if not os.access(folder / "bin" / "corniche", os.X_OK):
-            raise FileNotFoundError(f"{FOLDER}: {folder} has no program bin/corniche; scripts/release lays such a folder out")
+            raise FileNotFoundError(f"{FOLDER}: {folder} has no program bin/corniche; create the folder with scripts/release")
         build_data["pure_python"] = False
         build_data["tag"] = f"py3-none-{PLATFORM}"
         packed: dict[str, str] = build_data["force_include"]

@@ -1,15 +1,16 @@
-# Sourced by scripts/test: what a run of cargo test came to.
+# Sourced by scripts/test: the summary of a run of cargo test.
 # shellcheck shell=bash
 
-# count_tests OUTPUT SKIPPED TIER: sums up what cargo test printed, and shows why tests were skipped: those that said so (lines
-# `binary test: reason` in the file SKIPPED) and those left out of the quick tier as slow.
+# count_tests OUTPUT SKIPPED TIER: sums up the output of cargo test, and prints why tests were
+# skipped: those that reported a reason (lines `binary test: reason` in the file SKIPPED) and those
+# that are too slow for the quick tier.
 count_tests() {
     local passed failed slow skipped
     read -r passed failed slow < <(awk '
         /^test result:/ { passed += $4; failed += $6; slow += $8 }
         END { print passed + 0, failed + 0, slow + 0 }' "$1")
     if ! grep -q '^test result:' "$1"; then say "no test ran: they do not compile, see above"; fi
-    # A test may say several times that a part of it is skipped; it is one test.
+    # A test may report several times that a part of it is skipped; it counts as one test.
     skipped=$(sed 's/: .*//' "$2" | sort -u | wc -l | tr -d ' ')
     if [ "$failed" -gt 0 ]; then
         say ""
@@ -19,7 +20,8 @@ count_tests() {
     if [ "$skipped" -gt 0 ]; then
         say ""
         say "skipped, or a part of them, and why:"
-        # The reason follows the first `: `; names of tests hold `::` alone. A test counts once for each of its reasons.
+        # The reason follows the first `: `; names of tests only contain `::`. A test counts once
+        # for each of its reasons.
         say "$(sort -u "$2" | sed 's/^[^:]*\(::[^:]*\)*: //' | sort | uniq -c | sort -rn | awk '{
             number = $1
             $1 = number == 1 ? "  1 test" : "  " number " tests"

@@ -1,12 +1,13 @@
 #!/bin/sh
-# The root folder of the container's image: the archive that scripts/release made, and of the system only what it needs. Run in a Debian with zstd and
-# ca-certificates, by the Dockerfile and by scripts/test-release --image.
+# Creates the root folder of the container's image: the archive that scripts/release built, and only
+# the necessary files of the system. The Dockerfile and scripts/test-release --image run it in a
+# Debian with zstd and ca-certificates.
 #
 #   image-root.sh ARCHIVE FOLDER
 set -eu
 
 if [ $# -ne 2 ] || [ ! -f "$1" ]; then
-    echo "error: there must be one archive and one folder to make, not: $*; leave one corniche-*-x86_64-linux.tar.zst in target/release-archive" >&2
+    echo "error: give one archive and one folder to create, not: $*; keep only one corniche-*-x86_64-linux.tar.zst in target/release-archive" >&2
     exit 2
 fi
 archive=$1 root=$2
@@ -14,7 +15,7 @@ mkdir -p "$root/opt" "$root/bin" "$root/etc/ssl/certs" "$root/lib64" "$root/proc
 zstd -dc --long=27 "$archive" | tar -C "$root/opt" -xf -
 mv "$root"/opt/corniche-* "$root/opt/corniche"
 ln -s ../opt/corniche/bin/corniche "$root/bin/corniche"
-# The C library, its loader and what looks up names of servers; the library of C++.
+# The C library, its loader and the modules that resolve host names; the C++ library.
 for name in libc.so.6 libm.so.6 libpthread.so.0 libdl.so.2 librt.so.1 libresolv.so.2 libnss_dns.so.2 libnss_files.so.2 libstdc++.so.6 libgcc_s.so.1; do
     file=$(find /lib/x86_64-linux-gnu/ /usr/lib/x86_64-linux-gnu/ -name "$name" | head -n 1)
     mkdir -p "$root/lib/x86_64-linux-gnu"

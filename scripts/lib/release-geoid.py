@@ -1,4 +1,4 @@
-"""Makes the geoid EGM2008, 2.5 minutes, a grid as PROJ reads it: whole centimetres, from -180 to 180 degrees.
+"""Writes the geoid EGM2008, 2.5 minutes, as a grid for PROJ: whole centimetres, from -180 to 180 degrees.
 
 The model itself is off by decimetres, and half a centimetre of rounding makes the file a sixth of its size.
 
@@ -12,7 +12,8 @@ import rasterio
 from rasterio.transform import Affine
 
 STEP_M = 0.01
-# Known undulations at nodes of the grid (NGA's test points; tide-free), as latitude, longitude, metres.
+# Known undulations at nodes of the grid (NGA's test points; tide-free), as latitude, longitude,
+# metres.
 KNOWN = [(37.0, 241.0, -26.151), (90.0, 0.0, 14.899), (-90.0, 0.0, -30.150)]
 ROWS, COLUMNS = 4321, 8640
 
@@ -25,7 +26,7 @@ for lat, lon, known_m in KNOWN:
     found_m = float(heights[round((90 - lat) * 24), round(lon * 24)])
     if abs(found_m - known_m) > 0.001:
         sys.exit(f"the geoid at {lat}, {lon} is {found_m} m, and should be {known_m} m")
-# The source begins at Greenwich, and its last column is its first one.
+# The source begins at Greenwich, and its last column repeats the first one.
 heights = numpy.roll(heights[:, :COLUMNS], COLUMNS // 2, axis=1)
 steps = numpy.rint(heights / STEP_M).astype("int16")
 form = dict(driver="GTiff", width=COLUMNS, height=ROWS, count=1, dtype="int16", crs="EPSG:4326", tiled=True)

@@ -1,8 +1,8 @@
-"""Writes the licences of everything that we pass on, from cargo's lists and those below. It fails where a text is missing.
+"""Writes the licences of everything that we distribute, from cargo's lists and those below. Fails if a text is missing.
 
-usage: release-licences.py archive FOLDER    of an archive: a list, share/corniche/licences/THIRD-PARTY.md, and the texts beside it
-       release-licences.py npm FOLDER        of the package of npm: THIRD-PARTY.md, with the texts in it
-       release-licences.py crates            writes nothing: whether each crate of the program and of the page has a text
+usage: release-licences.py archive FOLDER    for an archive: the list share/corniche/licences/THIRD-PARTY.md, and the texts next to it
+       release-licences.py npm FOLDER        for the npm package: THIRD-PARTY.md, which includes the texts
+       release-licences.py crates            writes nothing: checks that each crate of the program and of the page has a text
 """
 
 import hashlib
@@ -15,7 +15,8 @@ import sys
 
 TEXTS = pathlib.Path(__file__).parent / "licences"
 ROOT = pathlib.Path(__file__).parents[2]
-# Libraries by the beginning of their names: what they are, under which licence, whose text it is where it is not their own.
+# Libraries by the beginning of their names: their title, their licence, and the library with the
+# licence's text if it is another one.
 LIBRARIES = {
     "libgdal": ("GDAL", "MIT and others", None),
     "libproj": ("PROJ", "MIT", None),
@@ -62,7 +63,7 @@ DATA = """
 | `CHENYX06_etrs.gsb` | Federal Office of Topography swisstopo; free to use, with the source named |
 | other files of `share/proj` and `share/gdal` | as PROJ and GDAL |
 """
-# What compilers put into the program and into the page's modules: licence, text.
+# Code that compilers add to the program and to the page's modules: licence, text.
 RUNTIME = {
     "the standard library of Rust": ("MIT or Apache-2.0, and others", "rust-std"),
 }
@@ -71,15 +72,16 @@ RUNTIME_OF_PROGRAM = {
     "the compiler's library of Zig": ("MIT", "zig"),
     "the beginning of programs, of glibc": ("LGPL-2.1-or-later, with leave to link it to anything", "LGPL-2.1"),
 }
-# Packages of npm in the page's scripts: licence, text.
+# npm packages in the page's scripts: licence, text.
 SCRIPTS = {"smol-toml": ("BSD-3-Clause", "smol-toml")}
-OF_CRATES = "A crate without a text of its own has that of a crate of the same authors, or of the licence that it names, with its authors."
-# Which crates are in what.
+OF_CRATES = "A crate without a licence text is listed with the text of a crate of the same authors, or with the text of the licence that it declares and its authors."
+# The targets and root crates of the program and of the page.
 PROGRAM = ("x86_64-unknown-linux-gnu", ["corniche-cli"])
 PAGE = ("wasm32-unknown-unknown", ["corniche-web", "corniche-web-styles"])
-# Crates without a text of their own: the crate of the same authors and licence that has it.
+# Crates without a licence text: the crate of the same authors and licence that has the text.
 TEXT_OF = {"alloc-stdlib": "alloc-no-stdlib"}
-# Crates that compile C: files with its licence, or a header that ends with it. "" is for C of the crate's own authors.
+# Crates that compile C: files with its licence, or a header that ends with it. "" is for C of the
+# crate's own authors.
 COMPILED = {
     "meshopt": "vendor/src/meshoptimizer.h",
     "ring": "LICENSE-BoringSSL",
@@ -90,7 +92,7 @@ COMPILED = {
 
 
 def crates(target, roots):
-    """The crates of other people in a program, by cargo's own list."""
+    """The third-party crates in a program, from cargo's list."""
     command = ["cargo", "tree", "--locked", "--prefix", "none", "--edges", "normal,no-proc-macro", "--target", target, "--format", "{p}"]
     told = ran(*command, *(f"--package={root}" for root in roots))
     wanted = {tuple(line.split()[:2]) for line in told.splitlines() if line.strip()}
@@ -104,11 +106,12 @@ def ran(*command):
 
 def texts_of(package, others):
     """
-    Title and text of each licence of a crate: of its files, of those of what it has from others, or, where it has none, that of a sister or of the licence that it names.
-    `others` are the folders of all crates beside it.
+    Title and text of each licence of a crate: from its files and from those of the foreign code in it. If it has none, the text is that of a
+    related crate or of the licence that it declares. `others` are the folders of all crates.
     """
     folder = pathlib.Path(package["manifest_path"]).parent
-    # Also fonts have some, and C libraries. Pictures and what tests use are not in the program.
+    # Fonts and C libraries have licence files, too. Pictures and files of tests are not in the
+    # program.
     named = re.compile(r"(licen[cs]e|copying|notice|unlicense|ofl|ufl)", re.IGNORECASE)
     left_out = {"assets", "tests", "test", "examples", "benches"}
     found = [file for file in sorted(folder.rglob("*")) if file.is_file() and named.match(file.name) and file.suffix not in {".rs", ".c", ".h", ".toml"}]
@@ -120,21 +123,21 @@ def texts_of(package, others):
     if compiles:
         name = COMPILED.get(package["name"])
         if name is None:
-            sys.exit(f"{package['name']} compiles C; say in COMPILED of scripts/lib/release-licences.py where its licence is")
+            sys.exit(f"{package['name']} compiles C; add the place of its licence to COMPILED in scripts/lib/release-licences.py")
         if name.endswith(".h"):
             texts.append((pathlib.Path(name).stem, end_of_header(folder / name)))
         elif name and name not in [title for title, _ in texts]:
-            sys.exit(f"{package['name']} has no {name}, the licence of the C in it")
+            sys.exit(f"{package['name']} has no {name}, the licence of its C code")
     return texts
 
 
 def stand_in(package, others):
-    """The text of the licence that a crate names, with its authors, where it has no file with it."""
+    """The text of the licence that a crate declares, with its authors, if the crate has no licence file."""
     names = package["license"] or ""
     if package["name"] in TEXT_OF:
         beside = TEXT_OF[package["name"]]
         if not (beside in others and (others[beside] / "LICENSE").is_file()):
-            sys.exit(f"{package['name']} has the text of {beside}, by TEXT_OF of scripts/lib/release-licences.py, and that has no LICENSE")
+            sys.exit(f"{package['name']} uses the text of {beside}, according to TEXT_OF in scripts/lib/release-licences.py, but {beside} has no LICENSE")
         return beside, (others[beside] / "LICENSE").read_text()
     if re.search(r"\bMIT\b", names):
         authors = ", ".join(author.partition(" <")[0] for author in package["authors"]) or f"the authors of {package['name']}"
@@ -142,7 +145,7 @@ def stand_in(package, others):
         return "MIT", text.replace("COPYRIGHT", f"Copyright (c) {authors} ({package['repository']})")
     if re.search(r"\bApache-2.0\b", names):
         return "Apache-2.0", (TEXTS / "Apache-2.0.txt").read_text()
-    sys.exit(f"{package['name']} has no text of its licence ({names}); add one to scripts/lib/licences, and the rule to stand_in of scripts/lib/release-licences.py")
+    sys.exit(f"{package['name']} has no text of its licence ({names}); add one to scripts/lib/licences, and a rule to stand_in in scripts/lib/release-licences.py")
 
 
 def end_of_header(file):
@@ -154,29 +157,29 @@ def end_of_header(file):
 
 
 def scripts_of_page():
-    """The packages of npm that the page's scripts take in, with their versions."""
+    """The npm packages that the page's scripts import, with their versions."""
     files = [*(ROOT / "crates/web/package").glob("*.js"), *(ROOT / "crates/web/site").glob("*.js")]
     taken = {name for file in files for name in re.findall(r"""\bfrom ["']([^."'/][^"']*)""", file.read_text())}
     if taken != set(SCRIPTS):
-        sys.exit(f"the page's scripts take in {', '.join(sorted(taken))}; name their licences in SCRIPTS of scripts/lib/release-licences.py")
+        sys.exit(f"the page's scripts import {', '.join(sorted(taken))}; list exactly their licences in SCRIPTS in scripts/lib/release-licences.py")
     locked = json.loads((ROOT / "crates/web/build.package-lock.json").read_text())["packages"]
     return [(name, locked[f"node_modules/{name}"]["version"]) for name in sorted(taken)]
 
 
 class Texts:
-    """Each text once, under a name."""
+    """Stores each text once, under a name."""
 
     def __init__(self):
         self.names = {}
 
     def add(self, title, text):
-        """The name of a text."""
+        """Adds a text and returns its name."""
         digest = hashlib.sha256(text.encode()).hexdigest()[:8]
         return self.names.setdefault(text, f"{pathlib.PurePath(title).stem}-{digest}")
 
 
 def table_of_crates(places, texts, link):
-    """Rows for the crates of several places, each with where it is and its texts."""
+    """Rows for the crates of several programs, each with the programs that contain it, and its texts."""
     found = {}
     for place, of in places.items():
         for package in crates(*of):
@@ -201,21 +204,21 @@ def of_archive(folder):
         shutil.copyfile(TEXTS / f"{name}.txt", out / f"{name}.txt")
         return f"[{name}.txt]({name}.txt)"
 
-    lines = ["# Licences of what this archive holds", "", "Corniche itself: MIT or Apache-2.0, as you choose (LICENSE-MIT, LICENSE-APACHE).", ""]
+    lines = ["# Licences of the contents of this archive", "", "Corniche itself: MIT or Apache-2.0, as you choose (LICENSE-MIT, LICENSE-APACHE).", ""]
     lines += ["## Libraries in lib/corniche/lib", "", "| file | what | licence | text |", "|---|---|---|---|"]
     for file in sorted((folder / "lib/corniche/lib").iterdir()):
         stem = re.match(r"(.*?)(-[0-9a-f]{8}|-corniche)?\.so", file.name)[1]
         if stem not in LIBRARIES:
-            sys.exit(f"{file.name}: scripts/lib/release-licences.py knows no licence of it")
+            sys.exit(f"{file.name} has no licence in scripts/lib/release-licences.py")
         what, licence, text = LIBRARIES[stem]
         lines.append(f"| {file.name} | {what} | {licence} | {text_named(text or stem)} |")
     for name in ("Apache-2.0", "LGPL-2.1"):
         text_named(name)
     lines += ["", "The drivers in `lib/corniche/gdalplugins` are GDAL's.", DATA]
-    lines += ["## What compilers put into the program and the page", "", "| what | licence | text |", "|---|---|---|"]
+    lines += ["## Code that compilers add to the program and the page", "", "| what | licence | text |", "|---|---|---|"]
     for what, (licence, text) in {**RUNTIME, **RUNTIME_OF_PROGRAM}.items():
         lines.append(f"| {what} | {licence} | {text_named(text)} |")
-    lines += ["", "## Scripts in the page", "", "| package of npm | licence | text |", "|---|---|---|"]
+    lines += ["", "## Scripts in the page", "", "| npm package | licence | text |", "|---|---|---|"]
     for name, version in scripts_of_page():
         licence, text = SCRIPTS[name]
         lines.append(f"| {name} {version} | {licence} | {text_named(text)} |")
@@ -233,7 +236,7 @@ def of_npm(folder):
     def text_named(name):
         return f"[{name}](#{texts.add(name, (TEXTS / f'{name}.txt').read_text()).lower()})"
 
-    lines = ["# Licences of what this package holds", "", "Corniche itself: MIT or Apache-2.0, as you choose (LICENSE-MIT, LICENSE-APACHE).", ""]
+    lines = ["# Licences of the contents of this package", "", "Corniche itself: MIT or Apache-2.0, as you choose (LICENSE-MIT, LICENSE-APACHE).", ""]
     lines += ["| what | licence | text |", "|---|---|---|"]
     lines += [f"| {what} | {licence} | {text_named(text)} |" for what, (licence, text) in RUNTIME.items()]
     lines += [f"| {name} {version} (npm) | {SCRIPTS[name][0]} | {text_named(SCRIPTS[name][1])} |" for name, version in scripts_of_page()]

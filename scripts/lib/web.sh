@@ -1,10 +1,12 @@
-# Sourced by scripts/web, scripts/test-web, scripts/test-npm and scripts/test-wheel: a compiler for WebAssembly, and what the tests of the page need.
+# Sourced by scripts/web, scripts/test-web, scripts/test-npm and scripts/test-wheel: finds a
+# compiler for WebAssembly, and the packages for tests of the page.
 # shellcheck shell=bash
 
 WASM=wasm32-unknown-unknown
 
-# Sets `web_cargo` to the command that builds for browsers. rustup's standard library is taken where there is one or it can be added, else Debian's
-# compiler for browsers, which builds its own from source. Fails, and says why, where neither can be had.
+# Sets `web_cargo` to the command that builds for browsers. It uses rustup's standard library if it
+# is installed or can be added, otherwise Debian's compiler for browsers, which builds its own
+# standard library from source. Fails with a message if neither is available.
 find_web_cargo() {
     if [ -d "$(rustc --print sysroot)/lib/rustlib/$WASM" ] || { command -v rustup >/dev/null && rustup target add "$WASM" >&2; }; then
         web_cargo=(cargo build --locked --target "$WASM")
@@ -14,12 +16,13 @@ find_web_cargo() {
         say "neither rustup's standard library for $WASM nor Debian's rustc-web can be installed here"
         return 1
     fi
-    # Building the standard library is not stable yet; this is how Debian's compiler is told to do it all the same.
+    # Building the standard library is not stable yet; RUSTC_BOOTSTRAP allows it with Debian's
+    # compiler.
     web_cargo=(env RUSTC=/usr/bin/rustc RUSTC_BOOTSTRAP=1 CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER=wasm-ld
         /usr/bin/cargo build --locked --target "$WASM" -Zbuild-std=std,panic_abort)
 }
 
-# The compiler of `web_cargo`, in a line.
+# Prints the version of the compiler of `web_cargo`, in one line.
 web_compiler() {
     case ${web_cargo[0]} in
     env) /usr/bin/rustc --version ;;
@@ -36,11 +39,12 @@ missing_for_debian_web() {
 
 missing_for_page_tests() {
     command -v chromium >/dev/null || echo chromium
-    # Both draw: the page in Chromium, and the program to compare with.
+    # Both the page in Chromium and the program that it is compared with draw with Vulkan.
     has_library libvulkan.so.1 || echo libvulkan1
 }
 
-# make_page_tests FOLDER: a folder with the modules of tests/web and what they need, and Chromium. Fails, and says why, where they cannot be had.
+# make_page_tests FOLDER: creates a folder with the modules of tests/web and their dependencies, and
+# installs Chromium. Fails with a message if they cannot be installed.
 make_page_tests() {
     npm_folder "$1" tests/web/package.json && (install_missing missing_for_page_tests) || return 1
     cp tests/web/*.mjs "$1"

@@ -1,6 +1,6 @@
 // Opens the example pages in Chromium: node browse.mjs FOLDER NAME PACKAGE SITE PICTURES
 //
-// FOLDER has the exports NAME-none and NAME-meshopt and NAME.json, what `corniche info` says.
+// FOLDER has the exports NAME-none and NAME-meshopt and NAME.json, the output of `corniche info`.
 import { execFileSync } from "node:child_process";
 import fs from "node:fs";
 import path from "node:path";
@@ -9,19 +9,19 @@ import { extentOf, hideTexts, holes, picture, startBrowser } from "./browser.mjs
 import { fail, filesOf } from "./files.mjs";
 
 const [folder, name, packagePath, site, pictures] = process.argv.slice(2);
-/** Others take longer, and show the same. */
+/** Other packages take longer, and show the same. */
 const ALL_VIEWS = process.env.CORNICHE_ALL_VIEWS === "1";
 const isSample = name === "pass";
 const SIZE = { width: 1000, height: 700 };
 
 const { manifest, at, high, across } = extentOf(folder, name);
-/** Where there is no ground, none can be asked of pictures. */
+/** Where there is no ground, images have nothing to check. */
 const hasVoids = manifest.counts.samples.void > 0;
 const { open, close } = await startBrowser(folder, site, SIZE);
 const kept = (file) => path.join(pictures, file);
 const tileset = `/data/${name}-meshopt/tileset.json`;
 
-/** Longitude, latitude and height of the eye, heading and pitch. Packages that are not the sample are looked at where Liechtenstein is. */
+/** Longitude, latitude and height of the camera, heading and pitch. Packages other than the sample are viewed at Liechtenstein. */
 const all = {
   far: isSample ? [...at(0.5, -0.35), high + across * 0.5, 0, -30] : [9.55, 47.02, 14000, 5, -25],
   near: isSample ? [...at(0.47, 0.66), 1700, 15, -25] : [9.515, 47.1, 1400, 15, -12],
@@ -38,7 +38,7 @@ function check(client, view, png, triangles) {
 
 const PICKS = 10;
 
-/** Roads that CesiumJS finds at some pixels in the middle of lines of a mask: an edge may be that of what is beside it. */
+/** Roads that CesiumJS finds at some pixels in the middle of lines of a mask; a pixel at an edge may belong to a neighbour. */
 async function roadsAt(page, mask) {
   const isMiddle = (k) => [0, 1, -1, SIZE.width, -SIZE.width].every((beside) => mask[k + beside]);
   const pixels = [...mask.keys()].filter(isMiddle);
@@ -72,7 +72,7 @@ for (const [view, numbers] of views) {
   const found = check("CesiumJS", view, png, statistics.triangles);
   console.log("CesiumJS", name, view, { ms: Date.now() - begin, holes: found, ...statistics });
   if (view === "near") {
-    // Only roads have strong colours. To ask all pixels takes minutes.
+    // Only roads have strong colours. Checking all pixels takes minutes.
     const strong = Uint8Array.from({ length: SIZE.width * SIZE.height }, (_, k) => {
       const [red, green, blue] = png.data.subarray(4 * k, 4 * k + 3);
       return Math.max(red, green, blue) - Math.min(red, green, blue) > 120 && blue < 150 ? 1 : 0;
@@ -84,13 +84,13 @@ for (const [view, numbers] of views) {
   await page.close();
 }
 
-// three.js from the same places.
+// three.js from the same positions.
 for (const [view, numbers] of ALL_VIEWS ? views : []) {
   const page = await open(`three.html?tileset=${tileset}&view=${numbers}&background=magenta`);
   await hideTexts(page);
   await page.evaluate(() => {
     const { camera, tiles, renderer } = window.corniche;
-    // Cesium's angle, which is that of the longer side.
+    // Cesium's angle, which applies to the longer side.
     camera.fov = (2 * Math.atan(Math.tan(Math.PI / 6) / camera.aspect) * 180) / Math.PI;
     camera.updateProjectionMatrix();
     tiles.setResolutionFromRenderer(camera, renderer);
@@ -110,7 +110,7 @@ for (const [view, numbers] of ALL_VIEWS ? views : []) {
   await page.close();
 }
 
-/** Where two pictures differ. */
+/** The differences between two images. */
 const isDifferent = (one, other, at) => [0, 1, 2].some((k) => Math.abs(one.data[at + k] - other.data[at + k]) > 12);
 function mask(one, other) {
   const found = new Uint8Array(one.width * one.height);
@@ -118,7 +118,8 @@ function mask(one, other) {
   return found;
 }
 
-// Roads as vector content, which only CesiumJS knows: they are drawn, in the style's colours, and can be picked.
+// Roads as vector content, which only CesiumJS supports: they are drawn in the style's colours, and
+// can be picked.
 {
   const page = await open(`cesium.html?tileset=/data/${name}-vector/tileset.json&roads=/data/${name}-vector/roads/tileset.json&view=${all.near}&background=magenta`);
   await hideTexts(page);
@@ -128,7 +129,7 @@ function mask(one, other) {
     roads.show = areShown;
     let idle = 0;
     const stop = viewer.scene.postRender.addEventListener(() => {
-      // What is hidden is not loaded either.
+      // Hidden content is not loaded either.
       idle = tileset.tilesLoaded && (roads.tilesLoaded || !areShown) ? idle + 1 : 0;
       if (idle < 6) return;
       stop();
@@ -147,12 +148,13 @@ function mask(one, other) {
   await page.close();
 }
 
-// Road pixels against `corniche render` from the same eye: where a picture with roads differs from one without.
+// Road pixels compared with `corniche render` from the same camera: where an image with roads
+// differs from one without.
 const LEAST_IOU = 0.85;
-/** Flatter views, counted from straight down, show mostly roads thinner than a pixel: corniche widens some and leaves out others, as its style says. */
+/** Flatter views, measured from straight down, show mostly roads thinner than a pixel: corniche widens some and omits others, according to its style. */
 const FLATTEST_DEG = 45;
 const zone = /^EPSG:32[67](\d\d)$/.exec(manifest.crs);
-/** Whose north is that of a grid of UTM. */
+/** Packages whose north is that of a UTM grid. */
 const meridian = zone ? 6 * Number(zone[1]) - 183 : null;
 const looks = isSample ? [[9.47, 46.938, 1000, 2500, 10], [9.47, 46.938, 1000, 2500, 35]] : [[9.5215, 47.139, 460, 1500, 30], [9.5215, 47.139, 460, 2500, 60]];
 for (const [number, [lon, lat, height, distance, pitch]] of (ALL_VIEWS ? looks : looks.slice(1)).entries()) {
@@ -171,7 +173,7 @@ for (const [number, [lon, lat, height, distance, pitch]] of (ALL_VIEWS ? looks :
     await page.evaluate(([lon, lat, height, heading, distance, pitch, aspect]) => new Promise((done) => {
       const { viewer, tileset } = window.corniche;
       const frustum = viewer.camera.frustum;
-      // corniche's pictures are 45 degrees high; Cesium's angle is that of the longer side.
+      // corniche's images cover 45 degrees vertically; Cesium's angle applies to the longer side.
       frustum.fov = 2 * Math.atan(Math.tan(Math.PI / 8) * aspect);
       viewer.camera.lookAt(Cesium.Cartesian3.fromDegrees(lon, lat, height),
         new Cesium.HeadingPitchRange(Cesium.Math.toRadians(heading), Cesium.Math.toRadians(pitch - 90), distance));
@@ -193,14 +195,15 @@ for (const [number, [lon, lat, height, distance, pitch]] of (ALL_VIEWS ? looks :
   }
   const iou = both / either;
   console.log("CesiumJS against corniche render", name, { distance, pitch, roadPixels: either, iou: Number(iou.toFixed(4)) });
-  // Degrees are true to scale on one parallel only, so that elsewhere corniche's own picture is stretched, by 1 % in Liechtenstein.
+  // Degrees are true to scale on one parallel only, so elsewhere corniche's own image is stretched,
+  // by 1 % in Liechtenstein.
   if (zone && pitch <= FLATTEST_DEG && !(iou > LEAST_IOU)) fail(`roads of Cesium and of corniche differ: ${iou}`);
 }
 
-// three.js, with a plugin that checks that boxes hold what they should.
+// three.js, with a plugin that checks that boxes contain their contents.
 {
   const page = await open(`three.html?tileset=${tileset}&background=magenta`, async (page) => {
-    // No tile comes before the plugin is there.
+    // No tile is loaded before the plugin is registered.
     let release;
     const isReleased = new Promise((done) => { release = done; });
     await page.exposeFunction("releaseTiles", release);
@@ -219,7 +222,8 @@ for (const [number, [lon, lat, height, distance, pitch]] of (ALL_VIEWS ? looks :
       }
     }
     tiles.registerPlugin(new Counting());
-    // Every tile is loaded, down to the finest, and nothing is drawn meanwhile, which takes long without a GPU. From afar all are in view.
+    // Every tile is loaded, down to the finest, and nothing is drawn meanwhile, because drawing is
+    // slow without a GPU. From afar all tiles are in view.
     tiles.errorTarget = 0;
     tiles.lruCache.maxBytesSize = Infinity;
     let isMoved = false;

@@ -1,4 +1,4 @@
-// Chromium on a plain server of files, and what is done with its pictures.
+// Chromium on a plain file server, and functions for its images.
 import fs from "node:fs";
 import http from "node:http";
 import path from "node:path";
@@ -9,13 +9,13 @@ import { fail } from "./files.mjs";
 
 const here = path.dirname(fileURLToPath(import.meta.url));
 const TYPES = { ".html": "text/html", ".js": "text/javascript", ".mjs": "text/javascript", ".json": "application/json", ".css": "text/css" };
-/** Behind everything: where it is seen below the horizon, there is a hole. */
+/** The background: where it is visible below the horizon, there is a hole. */
 const MAGENTA = [255, 0, 255];
 const BOTTOM_ROWS = 30;
 
-/** A server of the pages of SITE, with FOLDER below /data/, and a browser of one size. Where it does not start, the program ends and says so. */
+/** A server for the pages of SITE, with FOLDER below /data/, and a browser of one size. If it does not start, the program ends with the reason. */
 export async function startBrowser(folder, site, size) {
-  // As any static host is.
+  // Like any static host.
   const places = [["/node_modules/", path.join(here, "node_modules")], ["/data/", folder], ["/", site]];
   const server = http.createServer((request, answer) => {
     const asked = decodeURIComponent(new URL(request.url, "http://local").pathname);
@@ -35,7 +35,7 @@ export async function startBrowser(folder, site, size) {
     process.exit(0);
   });
 
-  /** Opens a page, once `prepare` is done with it; failed and foreign requests and errors of scripts are faults. */
+  /** Opens a page after `prepare`; failed and foreign requests and script errors are faults. */
   async function open(address, prepare = async () => {}) {
     const page = await browser.newPage({ viewport: size });
     await prepare(page);
@@ -56,7 +56,7 @@ export async function startBrowser(folder, site, size) {
   return { open, close };
 }
 
-/** Texts of pages are in the way of pictures. */
+/** Hides the texts of pages, which would cover the images. */
 export const hideTexts = (page) =>
   page.addStyleTag({ content: "#said, #credit, .cesium-viewer-bottom, .cesium-viewer-toolbar { display: none !important; }" });
 
@@ -66,7 +66,7 @@ export async function picture(page, file) {
 
 const isNear = (data, at, color, within = 2) => color.every((channel, k) => Math.abs(data[at + k] - channel) <= within);
 
-/** Pixels of magenta with ground above them: where there is some below the first row of ground of a column. */
+/** Magenta pixels below ground: those below the first row of ground in a column. */
 export function holes(png) {
   let count = 0;
   for (let x = 0; x < png.width; x += 1) {
@@ -80,14 +80,14 @@ export function holes(png) {
   return count;
 }
 
-/** The share of pixels that are not magenta. */
+/** The fraction of pixels that are not magenta. */
 export function covered(png) {
   let count = 0;
   for (let at = 0; at < png.data.length; at += 4) if (!isNear(png.data, at, MAGENTA, 20)) count += 1;
   return count / (png.width * png.height);
 }
 
-/** Where a package is, and how high. */
+/** The position of a package, and its height. */
 export function extentOf(folder, name) {
   const { manifest } = JSON.parse(fs.readFileSync(path.join(folder, `${name}.json`)));
   const [west, south, east, north] = ["min_x", "min_y", "max_x", "max_y"].map((side) => manifest.wgs84_bounds[side]);

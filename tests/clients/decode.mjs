@@ -1,4 +1,5 @@
-// loaders.gl decodes the compressed tiles to the bits of the others: node decode.mjs PLAIN COMPRESSED
+// loaders.gl decodes the compressed tiles to the same bits as the uncompressed ones: node
+// decode.mjs PLAIN COMPRESSED
 import fs from "node:fs";
 import path from "node:path";
 import { parse } from "@loaders.gl/core";

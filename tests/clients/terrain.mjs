@@ -1,6 +1,8 @@
-// Shows terrain tiles in CesiumJS and asks it for heights: node terrain.mjs FOLDER NAME PACKAGE SITE PICTURES
+// Shows terrain tiles in CesiumJS and queries heights: node terrain.mjs FOLDER NAME PACKAGE SITE
+// PICTURES
 //
-// FOLDER has the export NAME-terrain, with the package's heights as they are, and NAME.json, what `corniche info` says.
+// FOLDER has the export NAME-terrain, with the package's heights as they are, and NAME.json, the
+// output of `corniche info`.
 import { execFileSync } from "node:child_process";
 import fs from "node:fs";
 import path from "node:path";
@@ -10,10 +12,10 @@ import { fail } from "./files.mjs";
 const [folder, name, packagePath, site, pictures] = process.argv.slice(2);
 const SIZE = { width: 800, height: 500 };
 const PLACES = 500;
-/** Azimuth and elevation of the light: so low that each fault of the surface casts a shade. */
+/** Azimuth and elevation of the light: so low that each fault of the surface casts a shadow. */
 const RAKING = "250,10";
 const LEAST_GROUND = 0.5;
-/** The root mean square at random places may be so much more than that told, which is of many more places. */
+/** The tolerance of the root mean square at random points over the reported one, which is computed from many more points. */
 const MOST_OF_RMS = 1.25;
 
 const { at, high, across } = extentOf(folder, name);
@@ -29,7 +31,7 @@ await hideTexts(page);
 
 const views = {
   far: [...at(0.5, -0.6), high + across * 0.5, 0, -30],
-  // Packages that are not the sample are looked at where Liechtenstein is.
+  // Packages other than the sample are viewed at Liechtenstein.
   near: name === "pass" ? [...at(0.47, 0.6), high + 300, 20, -20] : [9.515, 47.1, 1400, 15, -12],
   steep: [...at(0.5, 0.5), high + across * 0.4, 0, -88],
 };
@@ -46,7 +48,8 @@ for (const [view, numbers] of Object.entries(views)) {
       idle = viewer.scene.globe.tilesLoaded ? idle + 1 : 0;
       if (idle < 6) return;
       stop();
-      // Not in Cesium's documents, but the only way to know that there are borders in the picture.
+      // This is not in Cesium's documentation, but it is the only way to know that the image
+      // contains borders.
       const drawn = viewer.scene.globe._surface._tilesToRender;
       done({ drawn: drawn.length, finest: Math.max(...drawn.map((tile) => tile.level)) });
     });
@@ -54,13 +57,13 @@ for (const [view, numbers] of Object.entries(views)) {
   const png = await picture(page, path.join(pictures, `${name}-terrain-${view}.png`));
   const found = holes(png);
   console.log("CesiumJS terrain", name, view, { ms: Date.now() - begin, holes: found, ...tiles });
-  // Where a package has voids, the ground goes on here, so that no hole is allowed in any.
+  // Where a package has voids, the ground continues here, so that holes are never allowed.
   if (found > 0) fail(`${view}: ${found} pixels of holes`);
   if (tiles.drawn < 4) fail(`${view}: only ${tiles.drawn} tiles are drawn, so no border is looked at`);
   if (covered(png) < LEAST_GROUND) fail(`${view}: next to no ground is seen`);
 }
 
-// What is cut out must be counted, or that there are no holes means nothing.
+// Removed tiles must be detected as holes, otherwise the absence of holes means nothing.
 await page.evaluate(([west, south, east, north]) => {
   const { scene } = window.corniche.viewer;
   const positions = Cesium.Cartesian3.fromDegreesArray([west, south, east, south, east, north, west, north]);
@@ -72,7 +75,8 @@ await page.evaluate(([west, south, east, north]) => {
 }, [...at(0.45, 0.45), ...at(0.55, 0.55)]);
 if (holes(await picture(page, path.join(pictures, `${name}-terrain-cut.png`))) < 100) fail("a hole that was cut is not counted");
 
-// Places all over the package, and its own heights there. What `corniche profile` adds where lines cross edges is passed over.
+// Points all over the package, with its own heights. The vertices that `corniche profile` adds
+// where lines cross edges are skipped.
 let state = 1;
 const random = () => (state = (state * 48271) % 2147483647) / 2147483647;
 const wanted = Array.from({ length: PLACES }, () => at(random(), random()));

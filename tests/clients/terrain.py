@@ -17,14 +17,14 @@ from quantized_mesh_tile.terrain import TerrainTile
 LAST = 32767
 SIDES = ["west", "south", "east", "north"]
 RADII_M = numpy.array([6378137.0, 6378137.0, 6356752.3142451793])
-# In doubles, on numbers as large as the earth's radius.
+# In double precision, with numbers as large as the earth's radius.
 ROUNDING_M = 1e-6
-# The codec of normals has 8 bits an axis.
+# The codec of normals has 8 bits per axis.
 LEAST_LENGTH = 0.99
 
 
 class Wrong(Exception):
-    """What a tile must not be."""
+    """A violation in a tile."""
 
 
 def require(holds, text):
@@ -69,7 +69,7 @@ def check_vertices(tile):
 
 
 def check_topology(tile):
-    """Triangles cover the tile once, each seen from above, and each edge has one on both sides or lies on the border."""
+    """Checks that triangles cover the tile once, each counter-clockwise from above, and that each edge has one on both sides or is on the border."""
     u, v, _ = tile.steps.astype(numpy.int64)
     a, b, c = tile.triangles.T
     require(tile.triangles.min() == 0 and tile.triangles.max() == len(u) - 1, "indices are not those of the vertices")
@@ -87,7 +87,7 @@ def check_topology(tile):
 
 
 def border(tile, side):
-    """Vertices of a side from its south or west, by their places, as the side's list does not know them."""
+    """Vertices of a side from its south or west, by their positions, because the list of the side has another order."""
     u, v, _ = tile.steps
     across, along = (u, v) if side in ("west", "east") else (v, u)
     on_side = numpy.flatnonzero(across == (0 if side in ("west", "south") else LAST))
@@ -103,7 +103,7 @@ def check_edges(tile):
 
 
 def check_globe(tile, is_around_the_globe):
-    """The sphere holds all vertices, its middle lies near them, and the horizon hides no vertex that can be seen."""
+    """Checks that the sphere contains all vertices, that its centre is close to them, and that the horizon hides no visible vertex."""
     middle, radius = tile.header_point("boundingSphereCenter"), tile.header["boundingSphereRadius"]
     distances = numpy.linalg.norm(tile.on_earth - middle, axis=1)
     require(distances.max() <= radius + ROUNDING_M, f"a vertex is {distances.max() - radius} m outside of the sphere")
@@ -113,8 +113,10 @@ def check_globe(tile, is_around_the_globe):
     require(((low <= center) & (center <= high)).all(), "the centre is not among the vertices")
     if is_around_the_globe:
         return
-    # In the ellipsoid's radii the globe is a ball of radius 1. A point P stands for the tile when from wherever some vertex V is seen, so is P: from V's
-    # tangent cone, that is where P's distance along its direction is at least that of each vertex, cos(angle) cos(b) - sin(angle) sin(b) with cos b = 1/|V|.
+    # In the ellipsoid's radii the globe is a ball of radius 1. A point P stands for the tile when
+    # from wherever some vertex V is seen, so is P: from V's tangent cone, that is where P's
+    # distance along its direction is at least that of each vertex, cos(angle) cos(b) - sin(angle)
+    # sin(b) with cos b = 1/|V|.
     point = tile.header_point("horizonOcclusionPoint")
     reach = numpy.linalg.norm(point)
     require(reach >= 1.0, "the horizon's point lies in the earth")
@@ -145,12 +147,12 @@ def check_tile(tile, place):
 
 
 def step_m(tile):
-    """A step of heights."""
+    """The step of heights."""
     return (tile.header["maximumHeight"] - tile.header["minimumHeight"]) / LAST
 
 
 def check_border(one, other, sides):
-    """Vertices of a border are the same, but for the rounding of heights."""
+    """Checks that vertices of a border are the same, except for the rounding of heights."""
     (own, along), (next_own, next_along) = border(one, sides[0]), border(other, sides[1])
     require(list(along[own]) == list(next_along[next_own]), f"vertices of the {sides[0]} border are not the neighbour's")
     apart = max(abs(one.places[k][2] - other.places[l][2]) for k, l in zip(own, next_own))
@@ -160,7 +162,7 @@ def check_border(one, other, sides):
 
 
 def told_by(layer):
-    """Tiles that layer.json names."""
+    """The tiles in layer.json."""
     return {
         (z, x, y)
         for z, blocks in enumerate(layer["available"])
@@ -196,7 +198,7 @@ def check_folder(folder):
 
 
 def check_that_faults_are_found(tiles):
-    """What is falsified must be found, or the counts mean nothing."""
+    """Falsified tiles must be detected, otherwise the counts mean nothing."""
     place = max(tiles, key=lambda place: (place[0], len(tiles[place].places)))
     tile = tiles[place]
     faults = {

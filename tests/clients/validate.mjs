@@ -1,12 +1,13 @@
-// Khronos' validator on every GLB: node validate.mjs FOLDER…
+// Runs Khronos' validator on every GLB: node validate.mjs FOLDER…
 //
-// Those in folders named `roads` are vector content: indices that restart a strip are not glTF 2.0, and nothing else may be wrong with them.
+// Those in folders named `roads` are vector content: indices that restart a strip are not valid
+// glTF 2.0, but no other errors are allowed.
 import fs from "node:fs";
 import path from "node:path";
 import validator from "gltf-validator";
 import { fail, filesOf } from "./files.mjs";
 
-/** The largest index, which is that of no vertex. */
+/** The largest index, which belongs to no vertex. */
 const RESTART = /value (65535|4294967295) that is greater/;
 const checked = async (bytes) => (await validator.validateBytes(new Uint8Array(bytes))).issues;
 
@@ -29,7 +30,7 @@ for (const folder of process.argv.slice(2)) {
   if (counts.files === 0) fail(`no tiles in ${folder}`);
 }
 
-// What is falsified must be found, or the counts above mean nothing.
+// Falsified files must be detected, otherwise the counts above mean nothing.
 const [file] = filesOf(process.argv[2], ".glb");
 const bytes = fs.readFileSync(file);
 const text = bytes.toString("latin1");

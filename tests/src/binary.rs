@@ -1,4 +1,4 @@
-//! The program under test, which must be as new as its sources.
+//! The program under test, which must not be older than its sources.
 
 use std::{
     fs,
@@ -8,7 +8,7 @@ use std::{
 };
 
 static BINARY: LazyLock<PathBuf> = LazyLock::new(|| {
-    // Tests run from target/<profile>/deps; binaries lie one folder up.
+    // Tests run from target/<profile>/deps; binaries are one folder up.
     let tests = std::env::current_exe().unwrap_or_default();
     let folder = tests.parent().and_then(Path::parent).map(Path::to_path_buf).unwrap_or_default();
     let binary = folder.join(format!("corniche{}", std::env::consts::EXE_SUFFIX));
@@ -18,10 +18,11 @@ static BINARY: LazyLock<PathBuf> = LazyLock::new(|| {
     binary
 });
 
-/// The program under test, built before the scenarios by cargo in the same target folder.
+/// The program under test, which cargo builds in the same target folder before the scenarios.
 ///
 /// # Panics
-/// When it is not there, or older than one of its sources: `scripts/test` builds it, `cargo test` alone does not.
+/// When the program does not exist, or is older than one of its sources: `scripts/test` builds it,
+/// `cargo test` alone does not.
 #[must_use]
 pub fn binary() -> PathBuf {
     BINARY.clone()
@@ -31,8 +32,9 @@ fn changed(path: &Path) -> Option<SystemTime> {
     fs::metadata(path).and_then(|file| file.modified()).ok()
 }
 
-/// Says why not, when a program is missing or older than a file that it was made of. Cargo lists these files beside it, with the
-/// extension `d`: `program: source source …`, where a backslash stands before a space of a name.
+/// Fails when a program is missing or older than one of its sources, with the reason. Cargo lists
+/// the sources next to the program, in a file with the extension `d`: `program: source source …`,
+/// where spaces in names are escaped by backslashes.
 fn check_is_new(binary: &Path) -> Result<(), String> {
     let built = changed(binary).ok_or_else(|| format!("{} is missing", binary.display()))?;
     let list = binary.with_extension("d");
@@ -41,7 +43,7 @@ fn check_is_new(binary: &Path) -> Result<(), String> {
         text.split_once(": ").ok_or_else(|| format!("{} lists nothing", list.display()))?;
     let sources = sources.trim().replace("\\ ", "\0");
     for source in sources.split_whitespace().map(|name| PathBuf::from(name.replace('\0', " "))) {
-        // A file that was removed has changed, too.
+        // A removed file counts as a change, too.
         if changed(&source).is_none_or(|time| time > built) {
             return Err(format!("{} is older than {}", binary.display(), source.display()));
         }

@@ -1,4 +1,4 @@
-//! A program that is older than one of its sources is not tested.
+//! A program that is older than one of its sources is rejected.
 
 use std::time::Duration;
 

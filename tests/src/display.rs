@@ -1,4 +1,4 @@
-//! A display without a screen (Xvfb) for tests that open windows, with keys and mouse.
+//! A virtual display (Xvfb) for tests that open windows, with keys and mouse.
 
 use std::{
     io::{BufRead as _, BufReader},
@@ -7,10 +7,10 @@ use std::{
 
 use crate::skip;
 
-/// A server is tried so often.
+/// The number of attempts to start a server.
 const STARTS: u32 = 5;
 
-/// A display without a screen (Xvfb); it ends with this.
+/// A virtual display (Xvfb), which ends when this is dropped.
 #[derive(Debug)]
 pub struct Display {
     name: String,
@@ -26,7 +26,7 @@ impl Drop for Display {
 }
 
 impl Display {
-    /// `None`, and says why, where there is no Xvfb or no xdotool.
+    /// Returns `None`, and prints the reason, if Xvfb or xdotool is not installed.
     ///
     /// # Panics
     /// When Xvfb does not start or cannot be reached.
@@ -39,7 +39,8 @@ impl Display {
                 return None;
             }
         }
-        // Servers that start at one time may take each other's number from them, and then one cannot be reached.
+        // Servers that start at the same time may take each other's number, and then one of them
+        // cannot be reached.
         let mut displays = (0..STARTS).map(|_| Self::of_new_server());
         let reached = displays.find(|display| display.try_xdotool("getdisplaygeometry").is_some());
         assert!(reached.is_some(), "none of {STARTS} servers can be reached");
@@ -47,8 +48,8 @@ impl Display {
     }
 
     fn of_new_server() -> Self {
-        // The server chooses a free number itself. Without the last option it begins again whenever its last client goes,
-        // and whoever comes then is turned away.
+        // The server chooses a free number itself. Without the last option it restarts whenever its
+        // last client disconnects, and rejects clients meanwhile.
         let server = Command::new("Xvfb")
             .args([
                 "-displayfd",
@@ -70,12 +71,12 @@ impl Display {
         Self { name: format!(":{}", number.trim()), server }
     }
 
-    /// Lets a command's windows open here and nowhere else.
+    /// Makes a command open its windows on this display only.
     pub fn lend<'a>(&self, command: &'a mut Command) -> &'a mut Command {
         without_display(command).env("DISPLAY", &self.name)
     }
 
-    /// What `xdotool` says to a command; `None` when it cannot be followed.
+    /// The output of an `xdotool` command; `None` if it fails.
     #[must_use]
     pub fn try_xdotool(&self, command: &str) -> Option<String> {
         let output = Command::new("xdotool")
@@ -87,10 +88,10 @@ impl Display {
         output.status.success().then_some(said)
     }
 
-    /// The same for a command that must be followed.
+    /// The output of an `xdotool` command that must succeed.
     ///
     /// # Panics
-    /// When it is not.
+    /// When the command fails.
     #[expect(clippy::must_use_candidate, reason = "most commands are given for what they do")]
     pub fn xdotool(&self, command: &str) -> String {
         match self.try_xdotool(command) {
@@ -102,7 +103,7 @@ impl Display {
     /// The number of Corniche's window.
     ///
     /// # Panics
-    /// When there is none.
+    /// When there is no such window.
     #[must_use]
     pub fn window(&self) -> String {
         let found = self.xdotool("search --name Corniche");
@@ -113,7 +114,7 @@ impl Display {
     }
 }
 
-/// Leaves a command without any display to open a window on.
+/// Leaves a command without any display.
 pub fn without_display(command: &mut Command) -> &mut Command {
     command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET")
 }

@@ -1,4 +1,5 @@
-//! What the package says, in working metres, through `tile --json`, and where it is on the earth, through PROJ: an oracle for everything that is exported.
+//! The contents of a package in working metres, from `tile --json`, and their positions on the
+//! earth, from PROJ: an oracle for all exports.
 
 #![allow(clippy::unwrap_used, reason = "what is not there ends the test")]
 
@@ -9,21 +10,21 @@ use serde_json::Value;
 
 use crate::{json, text};
 
-/// Squares along each side of the index over a tile.
+/// Number of squares along each side of a tile's spatial index.
 const SQUARES: usize = 64;
 
-/// Rounding, and the chord of a straight line of the CRS, lead so far beside the edge of the ground.
+/// Tolerance at the edge of the ground for rounding and for the chords of curved lines.
 const BESIDE_M: f64 = 0.005;
 
-/// The ground of a tile in the package's CRS.
+/// The terrain of a tile in the package's CRS.
 pub struct Ground {
-    /// Working metres and heights.
+    /// Positions in working metres, with heights.
     pub corners: Vec<[f64; 3]>,
-    /// Numbers of corners.
+    /// Indices of corners.
     pub triangles: Vec<[usize; 3]>,
     /// West, south, east, north of the tile.
     pub bounds: [f64; 4],
-    /// Centre-lines with their way and class.
+    /// Centre-lines with way id and class.
     pub roads: Vec<(i64, u8, Vec<[f64; 2]>)>,
     squares: Vec<Vec<u32>>,
 }
@@ -36,7 +37,7 @@ impl Ground {
     /// Reads a tile, named like `3/4/2`, through `tile --json`.
     ///
     /// # Panics
-    /// When it cannot be read.
+    /// When the tile cannot be read.
     #[must_use]
     pub fn read(package: &Path, tile: &str) -> Self {
         let document = json(&["tile", text(package), tile, "--json"]);
@@ -82,8 +83,9 @@ impl Ground {
         ground
     }
 
-    /// On tiles of more than 57 km, chords may be further from the earth's surface than on others: a 128th of a side is not divided. The step of
-    /// positions counts where it is more than 4 mm.
+    /// The tolerance for chords. On tiles of more than 57 km, chords may be farther from the
+    /// earth's surface, because a 128th of a side is not divided. The step of positions counts if
+    /// it is more than 4 mm.
     #[must_use]
     pub fn chord_m(&self) -> f64 {
         let [west, south, east, north] = self.bounds;
@@ -91,7 +93,7 @@ impl Ground {
         let sag_m = part_m * part_m / (8.0 * 6_335_400.0) * 4.0 / 3.0;
         let reach_m = 64.0 * part_m * 1.1;
         let step_m = 2.0_f64.powi(reach_m.log2().ceil() as i32 - 24);
-        // Lines of degrees bend sideways, too.
+        // Lines of degrees are also curved sideways.
         let chord_m = if sag_m > 0.004 * 4.0 / 3.0 { 1.5 * sag_m } else { 0.0 };
         chord_m + if step_m > 0.004 { step_m } else { 0.0 }
     }
@@ -102,7 +104,8 @@ impl Ground {
         [of((x - west) / (east - west)), of((y - south) / (north - south))]
     }
 
-    /// Height at a position; `None` off the ground, but for what rounding and chords of a bent line leave.
+    /// The height at a position; `None` off the ground, with a tolerance for rounding and chords of
+    /// curved lines.
     #[must_use]
     pub fn height(&self, at: [f64; 2]) -> Option<f64> {
         let [column, row] = self.square(at);
@@ -110,7 +113,7 @@ impl Ground {
         let best = near.iter().map(|number| {
             let corners = self.triangles[*number as usize].map(|k| self.corners[k]);
             let shares = shares(corners.map(|[x, y, _]| [x, y]), at);
-            // How far outside of each edge the position lies, metres.
+            // The distance of the position outside each edge, metres.
             let outside = |k: usize| {
                 let [a, b, c] = [0, 1, 2].map(|turn| corners[(k + turn) % 3]);
                 let length = (b[0] - c[0]).hypot(b[1] - c[1]);
@@ -125,7 +128,7 @@ impl Ground {
     }
 }
 
-/// The shares of a triangle's corners in a position.
+/// The barycentric coordinates of a position in a triangle.
 #[must_use]
 pub fn shares([a, b, c]: [[f64; 2]; 3], [x, y]: [f64; 2]) -> [f64; 3] {
     let twice = |p: [f64; 2], q: [f64; 2]| (p[0] - x) * (q[1] - y) - (p[1] - y) * (q[0] - x);
@@ -134,26 +137,27 @@ pub fn shares([a, b, c]: [[f64; 2]; 3], [x, y]: [f64; 2]) -> [f64; 3] {
     parts.map(|part| part / whole)
 }
 
-/// The way from the earth's coordinates to a CRS with heights: two steps of PROJ, through EPSG:4979.
+/// The transformation from geocentric coordinates to a CRS with heights: two steps of PROJ, through
+/// EPSG:4979.
 pub struct FromEarth {
     to_degrees: CoordTransform,
     to_crs: CoordTransform,
     metres_per_unit: [f64; 2],
 }
 
-/// What a package is of.
+/// The region of a package.
 #[derive(Clone)]
 pub struct Region {
     /// Its CRS with heights, such as "EPSG:32632+5773".
     pub crs: String,
-    /// Working metres to a unit of the CRS, east and north.
+    /// Working metres per unit of the CRS, east and north.
     pub metres_per_unit: [f64; 2],
-    /// The DEM that it was built from.
+    /// The DEM that the package was built from.
     pub dem: PathBuf,
 }
 
 impl FromEarth {
-    /// The way to working metres and heights.
+    /// The transformation to working metres and heights.
     ///
     /// # Panics
     /// When PROJ does not know the CRS.
@@ -172,7 +176,7 @@ impl FromEarth {
         }
     }
 
-    /// Carries positions from the earth's centre; heights stay metres.
+    /// Transforms geocentric positions; heights stay in metres.
     ///
     /// # Panics
     /// When PROJ fails.
@@ -181,7 +185,8 @@ impl FromEarth {
         self.to_crs_of(&Self::step(&self.to_degrees, at))
     }
 
-    /// The same for those positions that lie in a rectangle of degrees (west, south, east, north): a projection may fail far from its middle.
+    /// Transforms the positions within a rectangle of degrees (west, south, east, north), because a
+    /// projection may fail far from its centre.
     ///
     /// # Panics
     /// When PROJ fails.
@@ -190,7 +195,7 @@ impl FromEarth {
         let [west, south, east, north] = bounds_deg;
         let mut degrees = Self::step(&self.to_degrees, at);
         degrees.retain(|[lon, lat, _]| {
-            // Bounds across 180° go on beyond it.
+            // Bounds across 180° continue beyond it.
             let is_between = |lon: f64| (west..=east).contains(&lon);
             (is_between(*lon) || is_between(lon + 360.0)) && (south..=north).contains(lat)
         });

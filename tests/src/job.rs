@@ -1,4 +1,4 @@
-//! A build in a folder of its own, which tests interrupt and go on with.
+//! A build in a separate folder, which tests interrupt and resume.
 
 use std::{
     fs,
@@ -18,17 +18,17 @@ pub const STORE_HEADER_BYTES: u64 = 48;
 /// A build of the sample `pass`, with a list of its defects.
 pub struct Job {
     folder: TempDir,
-    /// `--dem` or `--terrain`.
+    /// The option for the ground: `--dem` or `--terrain`.
     ground: &'static str,
     inputs: [PathBuf; 2],
     options: Vec<String>,
 }
 
 impl Job {
-    /// A job with more options.
+    /// Creates a job with more options.
     ///
     /// # Panics
-    /// When there is no place for it.
+    /// When its folder cannot be created.
     #[must_use]
     pub fn new(options: &[&str]) -> Self {
         let folder = match tempfile::tempdir() {
@@ -42,36 +42,36 @@ impl Job {
 
     /// The same build from other files.
     #[must_use]
-    pub fn of(self, inputs: [PathBuf; 2]) -> Self {
+    pub fn with_inputs(self, inputs: [PathBuf; 2]) -> Self {
         Self { inputs, ..self }
     }
 
-    /// The same build on the terrain of a package.
+    /// The same build onto the terrain of a package.
     #[must_use]
     pub fn on_terrain(self, package: &Path) -> Self {
         let [_, osm] = self.inputs;
         Self { ground: "--terrain", inputs: [package.to_path_buf(), osm], ..self }
     }
 
-    /// Where the package, the list of defects and the store are.
+    /// The folder of the package, the list of defects and the store.
     #[must_use]
     pub fn folder(&self) -> &Path {
         self.folder.path()
     }
 
-    /// The package that it makes.
+    /// The path of the package.
     #[must_use]
     pub fn package(&self) -> PathBuf {
         self.folder().join("out.pmtiles")
     }
 
-    /// The list of defects that it makes.
+    /// The path of the list of defects.
     #[must_use]
     pub fn defects(&self) -> PathBuf {
         self.folder().join("defects.csv")
     }
 
-    /// Where its store is unless `--tmp` says something else.
+    /// The path of its store, unless `--tmp` is given.
     #[must_use]
     pub fn store(&self) -> PathBuf {
         self.folder().join(".out.pmtiles.work")
@@ -86,10 +86,10 @@ impl Job {
         command
     }
 
-    /// Runs it to its end.
+    /// Runs the job to its end.
     ///
     /// # Panics
-    /// When it does not start.
+    /// When the job does not start.
     #[must_use]
     pub fn run(&self, more: &[&str]) -> Ran {
         match self.command(more).output() {
@@ -98,18 +98,18 @@ impl Job {
         }
     }
 
-    /// Runs it to its end, which must be a good one.
+    /// Runs the job to its end; it must succeed.
     ///
     /// # Panics
-    /// When it fails.
+    /// When the job fails.
     pub fn succeed(&self, more: &[&str]) {
         let _ = self.said(more);
     }
 
-    /// Does the same as [`Job::succeed`]; what it said.
+    /// Does the same as [`Job::succeed`], and returns the output.
     ///
     /// # Panics
-    /// When it fails.
+    /// When the job fails.
     #[must_use]
     pub fn said(&self, more: &[&str]) -> Ran {
         let ran = self.run(more);
@@ -117,10 +117,10 @@ impl Job {
         ran
     }
 
-    /// Starts it.
+    /// Starts the job.
     ///
     /// # Panics
-    /// When it does not start.
+    /// When the job does not start.
     #[must_use]
     pub fn start(&self, more: &[&str]) -> Child {
         match self.command(more).stderr(Stdio::piped()).spawn() {
@@ -129,11 +129,11 @@ impl Job {
         }
     }
 
-    /// Starts it, and sends it a signal as soon as the store holds durable work that was not there before, or after so long.
-    /// Returns how it ended: well, if it was faster.
+    /// Starts the job, and sends a signal as soon as the store has new durable work, or after a
+    /// given time. Returns the result, which is a success if the job was faster.
     ///
     /// # Panics
-    /// When it does not start or never ends.
+    /// When the job does not start or never ends.
     #[must_use]
     pub fn stop(&self, more: &[&str], signal: &str, when: When) -> Ran {
         let before = self.journal_bytes();
@@ -146,12 +146,12 @@ impl Job {
         while !is_time() && matches!(child.try_wait(), Ok(None)) {
             thread::sleep(Duration::from_millis(2));
         }
-        // It may have been faster.
+        // The job may have been faster.
         let _ = send_signal(&child, signal);
         ended(&mut child)
     }
 
-    /// The names of all that is in its folder, ascending.
+    /// The names of all files in its folder, ascending.
     ///
     /// # Panics
     /// When the folder cannot be read.
@@ -161,7 +161,7 @@ impl Job {
         names.map(|(path, _)| text(&path).to_owned()).collect()
     }
 
-    /// The store's files with their content. The one that is only there to be locked is left out.
+    /// The store's files with their content, without the lock file.
     #[must_use]
     pub fn stored(&self) -> Vec<(PathBuf, Vec<u8>)> {
         let files = files_of(&self.store()).into_iter();
@@ -179,16 +179,16 @@ impl Job {
         journals.filter_map(|(_, path)| Some(fs::metadata(path).ok()?.len())).max().unwrap_or(0)
     }
 
-    /// Whether the store holds durable work.
+    /// Whether the store has durable work.
     #[must_use]
     pub fn has_work(&self) -> bool {
         self.journal_bytes() > STORE_HEADER_BYTES
     }
 
-    /// The package and the list of defects, and nothing else is beside them.
+    /// The package and the list of defects, which must be the only files in the folder.
     ///
     /// # Panics
-    /// When one is missing, or something else is there.
+    /// When one is missing, or another file exists.
     #[must_use]
     pub fn result(&self) -> [Vec<u8>; 2] {
         assert_eq!(self.names(), ["defects.csv", "out.pmtiles"]);
@@ -199,7 +199,7 @@ impl Job {
     }
 }
 
-/// Whether a run with `--json-progress` found something done.
+/// Whether a run with `--json-progress` resumed earlier work.
 #[must_use]
 pub fn went_on(ran: &Ran) -> bool {
     let mut already = ran.err.lines().filter_map(|line| line.split_once("\"already\":"));
@@ -215,11 +215,11 @@ fn files_of(folder: &Path) -> Vec<(PathBuf, PathBuf)> {
     files
 }
 
-/// When a build is stopped.
+/// The moment at which a build is stopped.
 #[derive(Debug, Clone, Copy)]
 pub enum When {
-    /// The build is stopped after so long.
+    /// After a fixed time.
     After(Duration),
-    /// When more durable work is there than at its start.
+    /// When the store has more durable work than at the start.
     Worked,
 }

@@ -1,4 +1,4 @@
-//! Harness of the scenarios: runs the real binary on real and made-up inputs.
+//! The harness of the scenarios, which run the real binary on real and artificial inputs.
 
 mod binary;
 #[cfg(target_os = "linux")]
@@ -34,7 +34,7 @@ use serde_json::Value;
 /// The result of a run of the binary.
 #[derive(Debug)]
 pub struct Ran {
-    /// Exit code, −1 when a signal ended it.
+    /// Exit code; −1 if a signal ended the program.
     pub code: i32,
     /// Standard output.
     pub out: String,
@@ -64,7 +64,8 @@ pub fn corniche<I: AsRef<std::ffi::OsStr>>(arguments: impl IntoIterator<Item = I
     }
 }
 
-/// Runs commands in a shell in `folder`, as a page has them: `corniche` is on the path, and the first failure ends them.
+/// Runs commands of a page in a shell in `folder`: `corniche` is on the path, and the first failure
+/// ends them.
 ///
 /// # Panics
 /// When there is no shell.
@@ -73,7 +74,8 @@ pub fn shell(commands: &str, folder: &Path) -> Ran {
     let program = binary();
     let folders = program.parent().map(Path::to_path_buf).into_iter();
     let path = std::env::var_os("PATH").unwrap_or_default();
-    // With the path of the shell, it is spawned without a fork, after which PROJ's handlers wait for ever now and then for what another thread holds.
+    // With the path of the shell, it is spawned without a fork. After a fork, PROJ's handlers
+    // occasionally wait forever for a lock of another thread.
     let bash =
         std::env::split_paths(&path).map(|folder| folder.join("bash")).find(|bash| bash.is_file());
     let path = std::env::join_paths(folders.chain(std::env::split_paths(&path)));
@@ -85,13 +87,14 @@ pub fn shell(commands: &str, folder: &Path) -> Ran {
     }
 }
 
-/// Sends a program a signal, named without `SIG`. Returns whether it is there still: one that was waited for is not.
+/// Sends a signal to a program, named without `SIG`. Returns whether the program still exists; a
+/// program that was waited for does not.
 ///
 /// # Panics
 /// When there is no shell.
 #[must_use]
 pub fn send_signal(child: &Child, name: &str) -> bool {
-    // The `kill` built into the shell: a minimal machine has no program of that name.
+    // This is the `kill` built into the shell, because a minimal machine has no such program.
     let command = format!("kill -s {name} {} 2>&1", child.id());
     let sent = Command::new("sh").args(["-c", &command]).output();
     sent.unwrap_or_else(|error| panic!("there is no shell: {error}")).status.success()
@@ -118,7 +121,7 @@ pub fn ended(child: &mut Child) -> Ran {
     Ran { code: status.code().unwrap_or(-1), out: String::new(), err }
 }
 
-/// Starts the binary; nobody reads its standard output.
+/// Starts the binary; its standard output is ignored.
 ///
 /// # Panics
 /// When it cannot be started.
@@ -129,10 +132,10 @@ pub fn start(arguments: &[&str]) -> Child {
     command.spawn().unwrap_or_else(|error| panic!("{arguments:?} cannot be started: {error}"))
 }
 
-/// Runs the binary to its end, which must come soon.
+/// Runs the binary to its end, with a short time limit.
 ///
 /// # Panics
-/// When it hangs.
+/// When it does not end in time.
 #[must_use]
 pub fn run_soon(arguments: &[&str]) -> Ran {
     let mut child = start(arguments);
@@ -148,22 +151,23 @@ pub fn run_soon(arguments: &[&str]) -> Ran {
     ended(&mut child)
 }
 
-/// What a program took.
+/// The resources that a program used.
 #[cfg(target_os = "linux")]
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Costs {
-    /// Its largest resident size.
+    /// Peak resident memory.
     pub peak_bytes: u64,
-    /// Seconds of computing, of all its threads.
+    /// CPU seconds of all threads.
     pub cpu_s: f64,
-    /// Bytes that it read, of files and all else; what it reads again counts again.
+    /// Bytes read from files and other sources, including repeated reads.
     pub read_bytes: u64,
 }
 
-/// Waits for the end of a program, and tells what it took, as the kernel tells it while it runs.
+/// Waits for the end of a program, and returns the resources that it used, as the kernel reports
+/// them while it runs.
 ///
 /// # Panics
-/// As [`ended`] does.
+/// Panics under the same conditions as [`ended`].
 #[cfg(target_os = "linux")]
 #[must_use]
 pub fn ended_with_costs(child: &mut Child) -> (Ran, Costs) {
@@ -175,7 +179,8 @@ pub fn ended_with_costs(child: &mut Child) -> (Ran, Costs) {
         let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));
         let kib = line.and_then(|line| line.trim().strip_suffix(" kB")?.trim().parse::<u64>().ok());
         costs.peak_bytes = kib.map_or(0, |kib| kib * 1024).max(costs.peak_bytes);
-        // Behind the name, which is in brackets, the twelfth and thirteenth number are user's and system's hundredths of a second.
+        // After the name, which is in brackets, the twelfth and thirteenth numbers are user and
+        // system time in hundredths of a second.
         let text = read("stat").unwrap_or_default();
         let numbers = text.rsplit(')').next().unwrap_or_default().split_whitespace();
         let spent: f64 =
@@ -189,10 +194,10 @@ pub fn ended_with_costs(child: &mut Child) -> (Ran, Costs) {
     (ended(child), costs)
 }
 
-/// The cells of each line of a flight's list, without milliseconds, which come last.
+/// The cells of each line of a flight's table, without the milliseconds, which are last.
 ///
 /// # Panics
-/// When it cannot be read, or is none.
+/// When it cannot be read, or is not such a table.
 #[must_use]
 pub fn without_times(csv: &Path) -> Vec<Vec<String>> {
     let text = fs::read_to_string(csv).unwrap_or_else(|error| panic!("no list: {error}"));
@@ -202,7 +207,7 @@ pub fn without_times(csv: &Path) -> Vec<Vec<String>> {
     text.lines().map(|line| line.split(',').take(kept).map(str::to_owned).collect()).collect()
 }
 
-/// The folder in a folder in which something is made that is not complete yet: its name has a random part.
+/// The folder of an incomplete output within a folder: its name has a random part.
 #[must_use]
 pub fn unfinished(folder: &Path) -> Option<std::path::PathBuf> {
     let entries = fs::read_dir(folder).ok()?.flatten().map(|entry| entry.path());
@@ -211,7 +216,7 @@ pub fn unfinished(folder: &Path) -> Option<std::path::PathBuf> {
         .find(|path| path.is_dir() && path.extension().is_some_and(|ending| ending == "unfinished"))
 }
 
-/// The names of what is in a folder, sorted.
+/// The names of the files in a folder, sorted.
 ///
 /// # Panics
 /// When the folder cannot be read.
@@ -224,8 +229,8 @@ pub fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// Whether a command failed for want of a graphics adapter, which is no failure unless `CORNICHE_REQUIRE_GPU` is set; says
-/// so. Any other failure is one.
+/// Whether a command failed because there is no GPU adapter, which is not a failure of the test
+/// unless `CORNICHE_REQUIRE_GPU` is set; this is printed. Any other failure is one of the test.
 #[must_use]
 pub fn lacks_adapter(ran: &Ran) -> bool {
     let lacks = ran.code == 1
@@ -237,7 +242,7 @@ pub fn lacks_adapter(ran: &Ran) -> bool {
     lacks
 }
 
-/// Runs a command that draws from `package` into `output`; `None` where there is no adapter.
+/// Runs a command that draws from `package` to `output`; `None` if there is no adapter.
 #[must_use]
 pub fn draw(command: &str, package: &Path, output: &Path, options: &[&str]) -> Option<Ran> {
     let mut arguments = vec![command.as_ref(), package.as_os_str(), "-o".as_ref()];
@@ -247,7 +252,7 @@ pub fn draw(command: &str, package: &Path, output: &Path, options: &[&str]) -> O
     (!lacks_adapter(&ran)).then_some(ran)
 }
 
-/// A path as it is said on the command line.
+/// A path as text for the command line.
 ///
 /// # Panics
 /// When it is not UTF-8, as all paths of these tests are.
@@ -259,7 +264,7 @@ pub fn text(path: &Path) -> &str {
     }
 }
 
-/// What a command prints as JSON.
+/// The JSON that a command prints.
 ///
 /// # Panics
 /// When the command fails or prints something else.
@@ -270,7 +275,7 @@ pub fn json(arguments: &[&str]) -> Value {
     serde_json::from_str(&ran.out).unwrap_or_else(|error| panic!("{arguments:?}: {error}"))
 }
 
-/// The manifest of a package, as `corniche info` tells it.
+/// The manifest of a package, from `corniche info`.
 ///
 /// # Panics
 /// When the package cannot be read.
@@ -279,8 +284,8 @@ pub fn manifest(package: &Path) -> Value {
     json(&["info", text(package), "--json"])["manifest"].take()
 }
 
-/// Writes an ESRI ASCII grid of `columns` × `rows` heights, row by row from the north. `place` has the lines of its header
-/// that say where it lies.
+/// Writes an ESRI ASCII grid of `columns` × `rows` heights, row by row from the north. `place` has
+/// the header lines with its position.
 ///
 /// # Panics
 /// When the file cannot be written.
@@ -303,11 +308,12 @@ pub fn write_ascii_grid(
     }
 }
 
-/// The error bound of packages of the sample where a test names none: a quarter of the cell. With the default of a 16th they have 3.6 times the
-/// triangles, and what most tests show does not depend on it.
+/// The default error bound of sample packages in tests: a quarter of the cell. With the program's
+/// default of a 16th they have 3.6 times the triangles, on which most tests do not depend.
 pub const COARSE: [&str; 2] = ["--max-error", "2.5"];
 
-/// Builds the `pass` sample into `package` with more `options`; with [`COARSE`] triangles, if they name no error bound.
+/// Builds the `pass` sample to `package` with more `options`, and with [`COARSE`] triangles if the
+/// options have no error bound.
 ///
 /// # Panics
 /// When the build fails.
@@ -317,14 +323,15 @@ pub fn build_pass(package: &Path, options: &[&str]) {
     build_from([&dem, &osm], package, &bound.chain(options).copied().collect::<Vec<_>>());
 }
 
-/// The bytes of a package, once it was built.
+/// The bytes of a package, once it is built.
 type Built = Arc<OnceLock<Vec<u8>>>;
 
-/// Packages of the sample that were built in this process, by their options. What `build` makes of the same options is the
-/// same bytes, which `packages` and `kills` test.
+/// Sample packages that were built in this process, by their options. The tests `packages` and
+/// `kills` check that equal options produce equal bytes.
 static PASSES: Mutex<BTreeMap<Vec<String>, Built>> = Mutex::new(BTreeMap::new());
 
-/// Puts the package of the `pass` sample with these options at `package`; it is built once in a process.
+/// Writes the package of the `pass` sample with these options to `package`; it is built once per
+/// process.
 ///
 /// # Panics
 /// When the build fails, or the file cannot be written.
@@ -353,7 +360,7 @@ pub fn build_from([dem, osm]: [&Path; 2], package: &Path, options: &[&str]) {
     assert_eq!(ran.code, 0, "{}", ran.err);
 }
 
-/// The package of these inputs and settings, made part by part with a plan and a store in `folder`.
+/// Builds the package of these inputs and settings in parts, with a plan and a store in `folder`.
 ///
 /// # Panics
 /// When one of the commands fails.
@@ -362,7 +369,7 @@ pub fn built_in_parts<S: AsRef<str>>(folder: &Path, inputs: &[S]) -> Vec<u8> {
     built_in_subtrees(folder, inputs, 0)
 }
 
-/// The same, with a part for each subtree of a level.
+/// Does the same, with a part for each subtree of a level.
 ///
 /// # Panics
 /// When one of the commands fails.

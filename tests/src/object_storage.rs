@@ -1,4 +1,5 @@
-//! Object storage on the loopback: moto's server, a Python package that behaves like S3, and a proxy before it that can hold requests up.
+//! Object storage on the loopback: moto's server, a Python package that emulates S3, and a proxy in
+//! front of it that can hold back requests.
 
 use std::{
     env,
@@ -16,16 +17,17 @@ use std::{
 
 use crate::{binary, skip};
 
-/// Moto's server with an empty bucket `maps`; it ends with this.
+/// Moto's server with an empty bucket `maps`; it ends when this is dropped.
 #[derive(Debug)]
 pub struct ObjectStorage {
     server: Child,
-    /// Where it listens: address and port.
+    /// Its address and port.
     address: String,
     proxy: Proxy,
 }
 
-/// The Python interpreter that has moto's server. `None`, and says why, where there is none; in CI that is a failure.
+/// The Python interpreter with moto's server. `None`, with the reason printed, if it is not
+/// installed; in CI that is a failure.
 pub(crate) fn python_with_moto() -> Option<String> {
     let python = env::var("CORNICHE_S3_PYTHON").unwrap_or_default();
     let python = if python.is_empty() { "python3".to_owned() } else { python };
@@ -38,7 +40,7 @@ pub(crate) fn python_with_moto() -> Option<String> {
     None
 }
 
-/// Starts moto's server with more options; also tells where it listens.
+/// Starts moto's server with more options; returns also its address.
 pub(crate) fn start_moto(python: &str, options: &[&OsStr]) -> (Child, String) {
     let server = Command::new(python)
         .args(["-m", "moto.server", "-H", "127.0.0.1", "-p", "0"])
@@ -58,7 +60,7 @@ pub(crate) fn start_moto(python: &str, options: &[&OsStr]) -> (Child, String) {
         }
         said.push(line);
     };
-    // It says a line for each request; nobody may let it wait.
+    // The server writes a line per request; the pipe must be emptied so that it never blocks.
     thread::spawn(move || lines.for_each(drop));
     (server, address)
 }
@@ -71,10 +73,10 @@ impl Drop for ObjectStorage {
 }
 
 impl ObjectStorage {
-    /// `None`, and says why, where moto is not installed; in CI that is a failure.
+    /// Returns `None`, and prints the reason, if moto is not installed; in CI that is a failure.
     ///
     /// # Panics
-    /// When it does not start, or is not installed in CI.
+    /// When the server does not start, or is not installed in CI.
     #[must_use]
     pub fn start() -> Option<Self> {
         let (server, address) = start_moto(&python_with_moto()?, &[]);
@@ -87,13 +89,13 @@ impl ObjectStorage {
     /// Puts an object into the bucket.
     ///
     /// # Panics
-    /// When it is refused.
+    /// When the server rejects it.
     pub fn put(&self, key: &str, bytes: &[u8]) {
         let (status, _) = self.ask("PUT", &format!("/maps/{key}"), bytes);
         assert_eq!(status, 200, "{key} cannot be put");
     }
 
-    /// An object of the bucket, if it is there.
+    /// An object of the bucket, if it exists.
     #[must_use]
     pub fn get(&self, key: &str) -> Option<Vec<u8>> {
         let (status, bytes) = self.ask("GET", &format!("/maps/{key}"), b"");
@@ -106,13 +108,13 @@ impl ObjectStorage {
         self.texts("/maps?list-type=2", "Key")
     }
 
-    /// The `ETag`s of the objects beneath a prefix.
+    /// The `ETag`s of the objects with a prefix.
     #[must_use]
     pub fn etags(&self, prefix: &str) -> Vec<String> {
         self.texts(&format!("/maps?list-type=2&prefix={prefix}"), "ETag")
     }
 
-    /// The keys of uploads that were begun and neither completed nor ended.
+    /// The keys of uploads that are neither completed nor aborted.
     #[must_use]
     pub fn uploads(&self) -> Vec<String> {
         self.texts("/maps?uploads", "Key")
@@ -126,13 +128,13 @@ impl ObjectStorage {
         texts.map(str::to_owned).collect()
     }
 
-    /// The proxy, through which the program reaches it.
+    /// The proxy through which the program connects.
     #[must_use]
     pub fn proxy(&self) -> &Proxy {
         &self.proxy
     }
 
-    /// The binary under test, with the variables that lead it here.
+    /// The binary under test, with the environment variables for this server.
     #[must_use]
     pub fn command(&self) -> Command {
         let mut command = Command::new(binary());
@@ -150,11 +152,12 @@ impl ObjectStorage {
         command
     }
 
-    /// Asks the server itself; returns the status and the body.
+    /// Sends a request directly to the server; returns the status and the body.
     fn ask(&self, method: &str, target: &str, body: &[u8]) -> (u16, Vec<u8>) {
         let ask = || {
             let mut stream = TcpStream::connect(&self.address)?;
-            // The date and the region in the name are no matter: signatures are not checked.
+            // The date and the region in the name are arbitrary, because signatures are not
+            // checked.
             write!(
                 stream,
                 "{method} {target} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\nContent-Length: {}\r\n\
@@ -176,7 +179,7 @@ impl ObjectStorage {
     }
 }
 
-/// Hands all on, and holds up what it is told to.
+/// A proxy that forwards all requests, and holds back selected ones.
 #[derive(Debug, Clone)]
 pub struct Proxy {
     address: String,
@@ -202,21 +205,21 @@ impl Proxy {
         proxy
     }
 
-    /// From now on requests that send a sealed part are held up.
+    /// From now on, requests that upload a sealed part are held back.
     pub fn close(&self) {
         self.has_held.store(false, Ordering::SeqCst);
         self.is_closed.store(true, Ordering::SeqCst);
     }
 
-    /// From now on all passes.
+    /// From now on, all requests are forwarded.
     pub fn open(&self) {
         self.is_closed.store(false, Ordering::SeqCst);
     }
 
-    /// Waits until a request is held up.
+    /// Waits until a request is held back.
     ///
     /// # Panics
-    /// When none comes within a minute.
+    /// When no request arrives within a minute.
     pub fn wait_until_held(&self) {
         let begun = Instant::now();
         while !self.has_held.load(Ordering::SeqCst) {
@@ -249,7 +252,7 @@ impl Proxy {
                 to.write_all(&buffer[..read])?;
             }
         };
-        // A connection that was cut is the client's matter.
+        // The client handles connections that were cut.
         let _ = pass();
     }
 }

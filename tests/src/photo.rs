@@ -1,4 +1,4 @@
-//! The sample `pass` with photos that are made up.
+//! The sample `pass` with artificial photos.
 
 #![allow(clippy::unwrap_used, reason = "what is not there ends the test")]
 
@@ -11,7 +11,8 @@ use corniche_testing::ColourImage;
 
 use crate::{Ran, build_pass, corniche, manifest, sample, text};
 
-/// The colour that [`photo`] has at a longitude and latitude; `bounds_deg` are west, south, east and north of the sample.
+/// The colour of [`photo`] at a longitude and latitude; `bounds_deg` are west, south, east and
+/// north of the sample.
 #[must_use]
 pub fn colour([lon, lat]: [f64; 2], [west, south, east, north]: [f64; 4]) -> [u8; 3] {
     let (u, v) = ((lon - west) / (east - west), (lat - south) / (north - south));
@@ -19,7 +20,8 @@ pub fn colour([lon, lat]: [f64; 2], [west, south, east, north]: [f64; 4]) -> [u8
     [wave(u), wave(v), wave(u + v)]
 }
 
-/// A photo over the middle of the sample `pass`, in degrees; the sample is in UTM zone 32. Its colours change over some cells.
+/// A photo over the centre of the sample `pass`, in degrees; the sample is in UTM zone 32. Its
+/// colours change over several cells.
 ///
 /// # Panics
 /// When the sample cannot be built, or the photo not be written.
@@ -44,10 +46,10 @@ pub fn photo(folder: &Path, west: f64, name: &str) -> PathBuf {
     .write(folder, name, |_| {})
 }
 
-/// The sample without photos, built once for a folder.
+/// The sample without photos, built once per folder.
 ///
 /// # Panics
-/// When it cannot be built.
+/// When the sample cannot be built.
 #[must_use]
 pub fn pass(folder: &Path) -> PathBuf {
     let package = folder.join("plain.pmtiles");
@@ -57,10 +59,10 @@ pub fn pass(folder: &Path) -> PathBuf {
     package
 }
 
-/// What a run said that must end well.
+/// Returns a run that must have succeeded.
 ///
 /// # Panics
-/// When it does not.
+/// When the run failed.
 #[expect(clippy::must_use_candidate, reason = "most runs are made for what they do")]
 pub fn succeed(ran: Ran) -> Ran {
     assert_eq!(ran.code, 0, "{}{}", ran.out, ran.err);
@@ -74,7 +76,7 @@ pub fn inputs(photos: &[&Path]) -> Vec<String> {
     of_ground(&["--dem", text(&dem), "--max-error", "10"], photos)
 }
 
-/// The same with other words for the ground.
+/// The same inputs with other options for the ground.
 #[must_use]
 pub fn of_ground(ground: &[&str], photos: &[&Path]) -> Vec<String> {
     let osm = sample("pass/pass.osm.pbf");

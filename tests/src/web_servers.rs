@@ -18,11 +18,11 @@ use crate::{
     skip,
 };
 
-/// A server; it ends with this.
+/// A server, which ends when this is dropped.
 #[derive(Debug)]
 pub struct WebServer {
     server: Child,
-    /// Where it listens, without a slash at the end.
+    /// Its URL, without a slash at the end.
     root: String,
 }
 
@@ -34,7 +34,8 @@ impl Drop for WebServer {
 }
 
 impl WebServer {
-    /// The web server of busybox, which knows range requests. `None`, and says why, where it is not installed; in CI that is a failure.
+    /// The web server of busybox, which supports range requests. `None`, with the reason printed,
+    /// if it is not installed; in CI that is a failure.
     ///
     /// # Panics
     /// When it does not start, or is not installed in CI.
@@ -46,7 +47,8 @@ impl WebServer {
             skip("busybox is not installed (scripts/test installs it)");
             return None;
         }
-        // It does not tell a port that it chose, so the port is chosen here, and may be taken by others in between.
+        // Busybox does not report a port that it chose, so the port is chosen here; another program
+        // may take it in between.
         let mut tries = (0..5).map(|_| {
             let free = TcpListener::bind("127.0.0.1:0").unwrap();
             let place = free.local_addr().unwrap().to_string();
@@ -65,7 +67,8 @@ impl WebServer {
         started
     }
 
-    /// The web server of Python, which ignores ranges. `None`, and says why, where there is no Python.
+    /// The web server of Python, which ignores ranges. `None`, with the reason printed, if there is
+    /// no Python.
     ///
     /// # Panics
     /// When it does not start.
@@ -85,14 +88,14 @@ impl WebServer {
         Some(Self { server, root: format!("http://127.0.0.1:{port}") })
     }
 
-    /// Object storage over TLS (moto's server) with the files of a folder in the bucket `maps`. `None`, and says why, where moto is not installed; in
-    /// CI that is a failure.
+    /// Object storage over TLS (moto's server) with the files of a folder in the bucket `maps`.
+    /// `None`, with the reason printed, if moto is not installed; in CI that is a failure.
     ///
     /// # Panics
     /// When it does not start, or is not installed in CI.
     #[must_use]
     pub fn storage_over_tls(folder: &Path, [certificate, key]: [&Path; 2]) -> Option<Self> {
-        // Without a type, bytes would be taken for a form.
+        // Without a type, the bytes would be interpreted as a form.
         const PUT: &str = r"import os, ssl, sys, urllib.request as web
 root, folder, trusted = sys.argv[1:]
 context = ssl.create_default_context(cafile=trusted)
@@ -114,7 +117,7 @@ for name in os.listdir(folder):
         Some(storage)
     }
 
-    /// The address of a file.
+    /// The URL of a file.
     #[must_use]
     pub fn url(&self, name: &str) -> String {
         format!("{}/{name}", self.root)
@@ -134,10 +137,10 @@ fn waits_until_up(server: &mut Child, place: &str) -> bool {
     false
 }
 
-/// A certificate for 127.0.0.1 that nobody but its maker trusts, and its key, as PEM files in a folder.
+/// A self-signed certificate for 127.0.0.1, and its key, as PEM files in a folder.
 ///
 /// # Panics
-/// When they cannot be made.
+/// When they cannot be created.
 #[must_use]
 pub fn certificate(folder: &Path) -> [PathBuf; 2] {
     let made = rcgen::generate_simple_self_signed(vec!["127.0.0.1".to_owned()]).unwrap();
@@ -147,7 +150,7 @@ pub fn certificate(folder: &Path) -> [PathBuf; 2] {
     [certificate, key]
 }
 
-/// The binary under test, without proxies between it and a server here.
+/// The binary under test, without proxies between it and a local server.
 #[must_use]
 pub fn direct() -> Command {
     let mut command = Command::new(binary());

@@ -1,4 +1,4 @@
-// axe-core finds no serious violation, in both colour schemes, on desktop and phone.
+// axe-core finds no serious accessibility violation, in both colour schemes, on desktop and phone.
 import assert from "node:assert/strict";
 import { createRequire } from "node:module";
 import { test } from "node:test";
@@ -41,7 +41,7 @@ export function tests({ browser, server }) {
         map.shadowRoot.querySelector("[aria-label='Hide the panel']").click();
       });
       await checkPage(page, "with the divider, without the panel");
-      // A place that has ground: the card tells of it.
+      // A place with ground, which the card describes.
       await ask(page, async (map) => {
         map.lookAt({ lon: 9.51, lat: 46.91, distance: 4000, heading: 30, pitch: 60 }, { jump: true });
         await map.settled();
@@ -62,7 +62,7 @@ export function tests({ browser, server }) {
     await checkPage(page, "a failure");
     await page.end();
     const chooser = await openPage(browser, server, "/index.html");
-    await chooser.getByText("No map lies beside this page").waitFor();
+    await chooser.getByText("There is no map next to this page").waitFor();
     await checkPage(chooser, "the chooser");
     await chooser.end();
   });

@@ -1,4 +1,4 @@
-// Chromium with WebGPU on a software device, and pages that are watched.
+// Chromium with WebGPU on a software device, and monitored pages.
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import { chromium } from "playwright-core";
@@ -19,11 +19,11 @@ const FLAGS = [
   "--disable-quic",
 ];
 
-/** The browser, or `null` where it does not start; then it is said why. */
+/** The browser, or `null` with the reason printed if it does not start. */
 export function startChromium() {
   const executablePath = process.env.CHROMIUM ?? "/usr/bin/chromium";
   return chromium.launch({ executablePath, headless: true, args: FLAGS }).catch((error) => {
-    // A Chromium that is there must start, or the tests would pass because none ran.
+    // An installed Chromium must start, otherwise the tests would pass without running.
     if (fs.existsSync(executablePath)) throw error;
     console.error(`skipped: Chromium does not start here, so no page is opened: ${error.message.split("\n")[0]}`);
     return null;
@@ -31,14 +31,14 @@ export function startChromium() {
 }
 
 /**
- * A page at an address of the server. Requests to other hosts, errors of scripts and texts on the console are kept.
+ * A page at an address of the server. Requests to other hosts, script errors and console messages are recorded.
  *
  * @param {import("playwright-core").Browser} browser
  */
 export async function openPage(browser, server, address, { width = 800, height = 600, before, ...context } = {}) {
   const made = await browser.newContext({ viewport: { width, height }, ...context });
   const page = await made.newPage();
-  // A processor draws, and other programs may want it.
+  // The CPU renders, and other programs may need it.
   page.setDefaultTimeout(90_000);
   const faults = { foreign: [], errors: [], console: [] };
   page.on("request", (request) => {
@@ -53,13 +53,13 @@ export async function openPage(browser, server, address, { width = 800, height =
   return Object.assign(page, { faults, end: () => made.close() });
 }
 
-/** Nothing was asked of other hosts, and no script failed. */
+/** Checks that there were no requests to other hosts and no script errors. */
 export function checkFaults(page) {
   assert.deepEqual(page.faults.foreign, [], "requests to other hosts");
   assert.deepEqual(page.faults.errors, [], "errors of scripts");
 }
 
-/** The page's workers end, which a busy machine takes a while for. */
+/** Waits until the page's workers have ended, which takes a while on a busy machine. */
 export async function checkWorkersEnd(page) {
   for (let wait = 0; wait < 200 && page.workers().length > 0; wait += 1) await page.waitForTimeout(50);
   assert.equal(page.workers().length, 0, "workers that are left");
@@ -82,7 +82,7 @@ export function addMap(page, attributes, { width = "100%", height = "600px" } = 
   );
 }
 
-/** A page with one map, all tiles of its view there. */
+/** A page with one map, with all tiles of its view loaded. */
 export async function openMap(browser, server, attributes, options = {}) {
   const page = await openPage(browser, server, "/blank.html", options);
   const opened = await addMap(
@@ -97,14 +97,14 @@ export async function openMap(browser, server, attributes, options = {}) {
 
 export const settled = (page) => page.evaluate(() => document.querySelector("corniche-map").settled());
 
-/** Asks the map of the page. */
+/** Calls the map of the page. */
 export const ask = (page, of, argument) =>
   page.evaluate(
     ([of, argument]) => new Function("map", "argument", `return (${of})(map, argument)`)(document.querySelector("corniche-map"), argument),
     [of.toString(), argument],
   );
 
-/** The pixels shown, as { width, height, data }. */
+/** The displayed pixels, as { width, height, data }. */
 export async function pixelsOf(page) {
   const { width, height, text } = await ask(page, async (map) => {
     const { width, height, data } = await map.readPixels();
@@ -115,7 +115,7 @@ export async function pixelsOf(page) {
   return { width, height, data: Buffer.from(text, "base64") };
 }
 
-/** Touches by the browser's own protocol: points are [x, y] in CSS pixels of the page. */
+/** Touch events with the browser's protocol: points are [x, y] in CSS pixels of the page. */
 export async function touches(page) {
   const client = await page.context().newCDPSession(page);
   const send = (type, points) => client.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });

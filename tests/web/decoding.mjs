@@ -1,4 +1,4 @@
-// How fast the module decodes tiles, without a browser: node decoding.mjs SITE PACKAGE…
+// Measures how fast the module decodes tiles, without a browser: node decoding.mjs SITE PACKAGE…
 import fs from "node:fs";
 import path from "node:path";
 import { pathToFileURL } from "node:url";
@@ -6,7 +6,7 @@ import { PMTiles } from "pmtiles";
 
 const [site, ...packages] = process.argv.slice(2);
 const ROUNDS = 5;
-/** What is read of tiles: sections as bits by their kinds (FORMAT.md). */
+/** The sections of tiles that are read: bits by section kind (FORMAT.md). */
 const LOOKS = { ground: 1, "ground and relief": 1 | (1 << 5), "what GEO draws": 1 | (1 << 1) | (1 << 9) | (1 << 3) | (1 << 4) | (1 << 5) };
 
 class File {
@@ -24,7 +24,7 @@ class File {
   }
 }
 
-// Node takes the file for a module only by such an ending.
+// Node requires this extension for modules.
 const script = path.join(fs.mkdtempSync("/tmp/corniche-"), "glue.mjs");
 fs.copyFileSync(path.join(site, "corniche_web.js"), script);
 const { initSync, work } = await import(pathToFileURL(script).href);
@@ -51,7 +51,7 @@ for (const name of packages) {
     for (const [k, tile] of tiles.entries()) {
       let best = Infinity;
       for (let round = 0; round < ROUNDS; round += 1) {
-        // Time of the processor, which other programs do not change.
+        // CPU time, which does not depend on other programs.
         const begun = process.cpuUsage();
         const answer = work({ job: k, decoder, ...tile });
         const { user, system } = process.cpuUsage(begun);

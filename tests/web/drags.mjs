@@ -1,10 +1,10 @@
-// Drags by mouse and by fingers keep the ground point that was grabbed.
+// Drags with mouse and fingers keep the grabbed ground point under the pointer.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { ask, checkFaults, openMap, settled, touches } from "./browser.mjs";
 
 const METRES_PER_DEGREE = 111_320;
-/** The largest distance between the ground before and after, pixels. */
+/** The largest distance between the ground points before and after, pixels. */
 const MOST_PX = 0.5;
 const VIEW = { "look-at": "9.51,46.91,4000,30,55" };
 
@@ -15,7 +15,7 @@ function metres(a, b) {
   return Math.hypot(east, (b.lat - a.lat) * METRES_PER_DEGREE, b.height - a.height);
 }
 
-/** How many pixels of the place at [x, y] a place is away: the nearer of the neighbouring pixels is the measure. */
+/** The distance in pixels between a position and the one at [x, y], measured relative to the nearer neighbouring pixel. */
 async function pixelsApart(page, [x, y], ground) {
   const here = await pickAt(page, [x, y]);
   assert.ok(here, "there is ground where the pointer is");
@@ -31,7 +31,7 @@ async function checkKept(page, what, at, ground) {
   assert.ok(apart <= MOST_PX, `${what}: the ground is ${apart.toFixed(3)} pixels away`);
 }
 
-/** A map without inertia: nothing glides after a drag, so that places can be compared. */
+/** A map without inertia: the map stops after a drag, so that positions can be compared. */
 const still = (browser, server, more = {}, options = {}) =>
   openMap(browser, server, { ...VIEW, inertia: "off", controls: "none", ...more }, options);
 
@@ -148,7 +148,7 @@ export function tests({ browser, server }) {
     await finger.up();
     assert.ok(after.distance < 0.9 * before.distance, "the map zoomed");
     assert.ok(Math.abs(after.heading - before.heading) > 3, "the map turned");
-    // No finger is a tap.
+    // Without fingers there is no tap.
     assert.equal(await page.locator("corniche-map .place-card:visible").count(), 0);
     checkFaults(page);
     await page.end();
@@ -164,7 +164,7 @@ export function tests({ browser, server }) {
     await settled(page);
     const after = await ask(page, (map) => map.camera);
     assert.ok(Math.abs(after.pitch - before.pitch) > 5, `${before.pitch} to ${after.pitch}`);
-    // The finger that stays pans once it moves.
+    // The remaining finger pans when it moves.
     await finger.left([350, 348]);
     for (let step = 1; step <= 5; step += 1) await finger.move([350 + 12 * step, 348]);
     await settled(page);

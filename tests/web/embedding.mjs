@@ -1,4 +1,4 @@
-// Several maps on a page, pages of the site, pictures, flights, and the types.
+// Several maps on a page, pages of the site, images, flights, and the types.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import fs from "node:fs";
@@ -73,7 +73,7 @@ export function tests({ browser, server, other, site, sources, package: file }) 
     await ready(page);
     server.state.replaced.set("/packages.json", { bytes: null });
     await page.goto(`${server.origin}/`);
-    await page.getByText("No map lies beside this page").waitFor();
+    await page.getByText("There is no map next to this page").waitFor();
     checkFaults(page);
     server.behave();
     await page.end();
@@ -156,7 +156,7 @@ export function tests({ browser, server, other, site, sources, package: file }) 
       const page = await openPage(browser, server, `/examples/${name}.html`, { width: 800, height: 700 });
       await ready(page, maps);
       if (name === "events") {
-        // Another event may follow, and then the page tells of that.
+        // Another event may follow, and then the page shows that one.
         await page.evaluate(() => {
           const keep = () => {
             window.toldOfPick = document.querySelector("pre").textContent;
@@ -200,7 +200,7 @@ export function tests({ browser, server, other, site, sources, package: file }) 
       return { data: [...data.subarray(0, 400)] };
     });
     assert.deepEqual([...png.data.subarray(0, 400)], data, "the pixels of the map");
-    // In the corner the map shows through credits: light, with dark letters.
+    // In the corner the map is visible through the attribution: light, with dark letters.
     let dark = 0;
     for (let y = png.height - 18; y < png.height - 2; y += 1)
       for (let x = png.width - 150; x < png.width; x += 1) if (png.data[4 * (y * png.width + x)] < 90) dark += 1;
@@ -269,7 +269,7 @@ export function tests({ browser, server, other, site, sources, package: file }) 
     for (const name of fs.readdirSync(sources).filter((name) => /\.(js|d\.ts)$/.test(name)))
       fs.copyFileSync(path.join(sources, name), path.join(folder, name));
     fs.symlinkSync(path.join(here, "node_modules"), path.join(folder, "node_modules"));
-    // The glue is made by a program, and its types are not those of the element.
+    // The glue code is generated, and its types are not those of the element.
     fs.writeFileSync(
       path.join(folder, "corniche_web.d.ts"),
       "export default function init(options: object): Promise<any>;\nexport const MapView: any;\n",

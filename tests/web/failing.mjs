@@ -1,6 +1,6 @@
-// Every way in which a map can fail: what is done to the page or its host, and the kind that the element tells.
+// All failures of a map: the change to the page or its host, and the kind that the element reports.
 
-/** Takes WebGPU away, as in browsers that have none. */
+/** Removes WebGPU, as in browsers without it. */
 const withoutWebGpu = () => Object.defineProperty(Navigator.prototype, "gpu", { get: () => undefined, configurable: true });
 const withoutAdapter = () => {
   GPU.prototype.requestAdapter = async () => null;
@@ -10,7 +10,7 @@ const withoutDevice = () => {
     Promise.reject(new DOMException("the limits are beyond those of the adapter", "OperationError"));
 };
 
-/** Keeps the devices of the page, so that a test can take them away. */
+/** Stores the devices of the page, so that a test can destroy them. */
 export const keepDevices = () => {
   const native = GPUAdapter.prototype.requestDevice;
   GPUAdapter.prototype.requestDevice = async function requestDevice(...options) {
@@ -22,7 +22,7 @@ export const keepDevices = () => {
 
 const text = (bytes, type = "text/html") => ({ bytes: Buffer.from(bytes), type });
 
-/** Name, kind, address of the package, and what else is done. */
+/** Name, kind, URL of the package, and further changes. */
 export const FAILURES = [
   { name: "no WebGPU", kind: "no-webgpu", src: "/packages/pass.pmtiles", before: withoutWebGpu },
   { name: "no adapter", kind: "no-adapter", src: "/packages/pass.pmtiles", before: withoutAdapter },
@@ -72,9 +72,9 @@ export const FAILURES = [
   },
 ];
 
-/** Hosts that fail after the beginning of the package: the map is open by then. What is said: in a notice where the coarse map stays, else in its place. */
+/** Hosts that fail after the beginning of the package, when the map is already open. The message is a notice if the coarse map stays; otherwise it replaces the map. */
 export const LATER = [
-  { name: "cut answers", stays: true, says: /cut off/, src: "/as/truncated/pass.pmtiles" },
-  { name: "closed connections", stays: true, says: /breaks off|cannot be reached/, src: "/as/closing/pass.pmtiles" },
-  { name: "a changing file", says: /another one/, src: "/as/changed/pass.pmtiles" },
+  { name: "cut answers", stays: true, says: /truncated/, src: "/as/truncated/pass.pmtiles" },
+  { name: "closed connections", stays: true, says: /closes the connection|cannot be reached/, src: "/as/closing/pass.pmtiles" },
+  { name: "a changing file", says: /has changed/, src: "/as/changed/pass.pmtiles" },
 ];

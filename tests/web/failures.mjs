@@ -1,4 +1,4 @@
-// Failures are told in words in the place of the map: never a blank canvas, never a panic.
+// Failures are described in words in place of the map: there is never a blank canvas or a panic.
 import assert from "node:assert/strict";
 import path from "node:path";
 import { test } from "node:test";
@@ -7,7 +7,7 @@ import { addMap, ask, checkWorkersEnd, openMap, openPage, pixelsOf, settled } fr
 import { FAILURES, LATER, keepDevices } from "./failing.mjs";
 import { PNG } from "pngjs";
 
-/** A page with a map that fails so. */
+/** A page with a map that fails like this. */
 async function failing(browser, server, other, failure, options = {}) {
   server.behave();
   server.state.policy = failure.policy ?? "";
@@ -21,7 +21,7 @@ async function failing(browser, server, other, failure, options = {}) {
   return { page, opened };
 }
 
-/** Pictures of a failure on desktop and phone, in both colour schemes. */
+/** Images of a failure on desktop and phone, in both colour schemes. */
 async function takeAll(page, pictures, name) {
   const before = page.viewportSize();
   for (const [screen, size] of [
@@ -133,7 +133,7 @@ export function tests({ browser, server, other, packages, corniche, pictures }) 
       assert.ok(Math.abs(after[part] - before[part]) < 1e-3, `${JSON.stringify(after)} ${JSON.stringify(before)}`);
     assert.equal(await ask(page, (map) => map.settings.style), "dark");
     assert.ok(colours(await pixelsOf(page)) > 50);
-    // Lost again and again, the element gives up and says so.
+    // If the device is lost repeatedly, the element gives up with a message.
     for (let loss = 0; loss < 3; loss += 1) {
       const next = ask(
         page,
@@ -194,7 +194,8 @@ export function tests({ browser, server, other, packages, corniche, pictures }) 
     const page = await openMap(browser, server, { "look-at": "9.51,46.91,9000,30,50" }, { width: 500, height: 400 });
     await settled(page);
     server.state.replaced.set("/packages/pass.pmtiles", { bytes: null, status: 404 });
-    // Somewhere in the view is a tile whose SV roads were left out; they are asked for when a road is picked.
+    // Somewhere in the view is a tile whose SV roads were skipped; they are requested when a road
+    // is picked.
     const failed = await ask(page, async (map) => {
       for (let y = 50; y < 400; y += 50) {
         for (let x = 50; x < 500; x += 50) {

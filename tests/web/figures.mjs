@@ -1,9 +1,11 @@
-// Measures the page: the first picture over a slow network, and tasks of the main thread during a flight.
+// Measures the page: the first image over a slow network, and tasks of the main thread during a
+// flight.
 //
 //   node figures.mjs SITE PACKAGES [NAME…]
 //
-// 20 Mbit/s and 50 ms for each answer, files of the page compressed as static hosts do it. The renderer is a program on the processor here, which takes most of
-// the time of a picture; so the time until a frame is handed to it is told, too.
+// 20 Mbit/s and 50 ms for each answer, files of the page compressed as static hosts do it. The
+// renderer is a program on the processor here, which takes most of the time of a picture; so the
+// time until a frame is handed to it is told, too.
 import path from "node:path";
 import { openPage, startChromium } from "./browser.mjs";
 import { startServer } from "./server.mjs";
@@ -15,7 +17,7 @@ if (!browser) process.exit(77);
 const server = await startServer({ site: path.resolve(site), packages: path.resolve(packages) });
 const SLOW = { delay_ms: 50, bytes_per_ms: 2500, compresses: true };
 
-/** Notes, in the page, when frames begin and end, what they report, and messages of workers. */
+/** Records, in the page, when frames begin and end, their reports, and messages of workers. */
 function watch() {
   window.corniche_frames = [];
   window.corniche_decoded = [];
@@ -41,14 +43,14 @@ function watch() {
 }
 
 /**
- * How long the tasks of a page's main thread took that took a millisecond and more, the longest first, from a trace. `of` names the time: `dur` on the clock,
- * `tdur` of the processor, which does not grow with what runs beside.
+ * The durations of the tasks of a page's main thread of at least a millisecond, the longest first, from a trace. `of` names the time: `dur` is wall-clock time,
+ * `tdur` CPU time, which does not depend on other programs.
  */
 function mainTasks(events, of) {
   const main = new Set(
     events.filter(({ name, args }) => name === "thread_name" && args.name === "CrRendererMain").map(({ pid, tid }) => `${pid} ${tid}`),
   );
-  // Starting and ending the trace take the thread, too.
+  // Starting and ending the trace use the thread, too.
   const [begins, ends] = ["flight begins", "flight ends"].map((mark) => events.find(({ name }) => name === mark).ts);
   return events
     .filter(({ ts }) => ts > begins && ts < ends)
@@ -72,7 +74,7 @@ function spread(times) {
 const kB = (bytes) => `${(bytes / 1000).toFixed(0)} kB`;
 const ms = (time) => `${time.toFixed(0)} ms`;
 
-// Files are compressed when they are first asked for, which takes seconds.
+// Files are compressed at their first request, which takes seconds.
 server.state.compresses = true;
 await (await openPage(browser, server, "/", {})).end();
 await new Promise((done) => setTimeout(done, 8000));
@@ -84,7 +86,7 @@ for (const name of names) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 } });
   const page = await context.newPage();
   await before(page);
-  // The module's class is wrapped as soon as the page has it.
+  // The module's class is wrapped as soon as the page has loaded it.
   await page.addInitScript(() => {
     const timer = setInterval(async () => {
       if (!document.querySelector("corniche-map")) return;
@@ -125,7 +127,7 @@ for (const name of names) {
       try {
         map.lookAt(place);
       } catch {
-        // It has no ground; the map stays where it is.
+        // The point has no ground; the map stays where it is.
       }
       await new Promise((done) => setTimeout(done, 1500));
     }

@@ -27,7 +27,7 @@ async function longPage(browser, server, attributes, options = {}) {
 
 const camera = (page) => ask(page, (map) => map.camera);
 const scrolled = (page) => page.evaluate(() => Math.round(scrollY));
-/** Scrolls back to the top until the page rests there: what a finger has thrown goes on for a while, longer on a slow machine. */
+/** Scrolls back to the top until the page rests there: a fling continues for a while, longer on a slow machine. */
 async function toTop(page) {
   for (let rests = 0; rests < 5; ) {
     await page.evaluate(() => scrollTo(0, 0));
@@ -74,7 +74,7 @@ export function tests({ browser, server, pictures }) {
     await page.mouse.up();
     await settled(page);
     assert.ok(moved(await camera(page), still) > 1e-4);
-    // And back to what maps do without it.
+    // Back to the default behaviour of maps.
     await ask(page, (map) => map.removeAttribute("gestures"));
     const greedy = await camera(page);
     await wheel(page, 100);
@@ -116,7 +116,7 @@ export function tests({ browser, server, pictures }) {
     assert.deepEqual(await camera(page), before, "the map stays");
     await toTop(page);
 
-    // Up and down together: the ground between the fingers goes along.
+    // Up and down with two fingers: the ground between them follows.
     const ground = await ask(page, (map) => map.pick(400, 200));
     await finger.down([350, 300]);
     await finger.down([350, 300], [450, 300]);
@@ -151,7 +151,7 @@ export function tests({ browser, server, pictures }) {
     assert.ok(Math.abs((await camera(page)).pitch - near.pitch) > 5, "tilted");
     assert.equal(await scrolled(page), 0);
 
-    // A tap still asks what is here, and a double tap zooms.
+    // A tap still queries the point, and a double tap zooms.
     const picked = ask(page, (map) => new Promise((resolve) => map.addEventListener("pick", () => resolve(true), { once: true })));
     await finger.down([400, 350]);
     await finger.up();

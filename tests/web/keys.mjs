@@ -1,4 +1,4 @@
-// Everything can be done with the keyboard.
+// All functions are available with the keyboard.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { ask, checkFaults, openMap, settled } from "./browser.mjs";
@@ -92,7 +92,7 @@ export function tests({ browser, server }) {
       /From above/,
       /First view/,
       /Copy link/,
-      /Save picture/,
+      /Save image/,
       /Record flight/,
       /Play flight/,
       /Hide the panel/,
@@ -121,7 +121,8 @@ export function tests({ browser, server }) {
 
   test("Enter asks for the road in the middle; the card says what it is", async () => {
     const page = await openMap(browser, server, {}, { width: 800, height: 600 });
-    // The way nearest to the middle is brought there. What is picked may lie some pixels beside it, which are fewer metres the nearer the eye is.
+    // The way nearest to the centre is moved there. The picked way may be some pixels off, which
+    // are fewer metres the closer the camera is.
     let road = null;
     for (const distance of [6000, 2500, 1200, 600, 600]) {
       road = await ask(
@@ -156,7 +157,7 @@ export function tests({ browser, server }) {
     assert.match(await card.textContent(), /° N, .*° E/);
     await page.keyboard.press("Escape");
     assert.ok(!(await card.isVisible()));
-    // A page may show it by itself.
+    // A page may show the panel itself.
     await ask(page, (map) => map.addEventListener("pick", (event) => event.preventDefault()));
     await page.keyboard.press("Enter");
     await page.waitForTimeout(500);

@@ -1,4 +1,4 @@
-// Links keep what was changed by hand; attributes that are taken away leave nothing behind.
+// Links contain manual changes; removed attributes have no further effect.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { addMap, ask, checkFaults, openMap, openPage, settled } from "./browser.mjs";
@@ -28,7 +28,7 @@ const copied = async (page) => {
 export function tests({ browser, server }) {
   test("a copied link shows what was changed by hand, and is short where nothing was", async () => {
     server.behave();
-    // What the page asks for is no change by hand.
+    // Settings of the page are not manual changes.
     const attributes = { "look-at": VIEW, exaggeration: "1.5", outline: "none" };
     const page = await opened(browser, server, "", attributes, CLIPBOARD);
     await ask(page, (map) => {
@@ -47,7 +47,7 @@ export function tests({ browser, server }) {
     });
     await page.waitForTimeout(50);
     const link = await copied(page);
-    // Where heights are exaggerated otherwise, the camera goes up with the ground.
+    // If the exaggeration is higher, the camera rises with the ground.
     assert.match(link, /#9\.5\d+,46\.9\d+,[34]\d{3},10,50;roads=sv;map-style=dark;exaggeration=2;classes=0,1,2,4,5,6,7,8$/);
     await hashEnds(page, link.slice(link.indexOf(";")));
     const before = await settings(page);
@@ -77,7 +77,7 @@ export function tests({ browser, server }) {
     await page.keyboard.press("Tab");
     await ask(page, (map) => map.lookAt({ lon: 9.515, lat: 46.905 }, { jump: true }));
     await hashEnds(page, ",50;compare=split;divider=0.3");
-    // A place alone is no change of settings.
+    // A position alone is not a change of settings.
     await page.evaluate((view) => {
       location.hash = `#${view}`;
     }, VIEW);
@@ -101,8 +101,8 @@ export function tests({ browser, server }) {
       const notice = page.locator("corniche-map .notice.warn span");
       assert.equal(await notice.count(), 1, part);
       const text = await notice.textContent();
-      assert.match(text, /^Left out of the link: /);
-      if (shown) assert.equal(text, `Left out of the link: ${shown}${shown.endsWith("…") ? "" : "."}`);
+      assert.match(text, /^Skipped in the link: /);
+      if (shown) assert.equal(text, `Skipped in the link: ${shown}${shown.endsWith("…") ? "" : "."}`);
       const lines = await notice.evaluate((span) => {
         const style = getComputedStyle(span);
         return Math.round((span.clientHeight - 2 * parseFloat(style.paddingTop)) / parseFloat(style.lineHeight));
@@ -126,7 +126,7 @@ export function tests({ browser, server }) {
     const parts = (await page.evaluate(() => location.hash)).slice(1).split("&").sort();
     assert.equal(parts.length, 3, String(parts));
     assert.match(parts[0], /^a=9\.515,46\.905,[^;]*;roads=sv$/);
-    // While ground comes, the place in the middle moves by decimetres.
+    // While terrain is loaded, the centre moves by decimetres.
     const [, lon, lat] = parts[1].match(/^b=([\d.]+),([\d.]+),[^;]*;map-style=dark$/) ?? assert.fail(parts[1]);
     assert.ok(Math.hypot(lon - 9.51, lat - 46.91) < 1e-4, parts[1]);
     assert.equal(parts[2], "chapter-2");
@@ -159,7 +159,7 @@ export function tests({ browser, server }) {
     const after = await settings(page);
     for (const [setting, value] of Object.entries(usual)) assert.deepEqual(after[setting], value, setting);
     await page.end();
-    // While the map is being opened.
+    // While the map is opening.
     const early = await openPage(browser, server, "/blank.html", { width: 400, height: 300 });
     const roads = await early.evaluate(async () => {
       const map = document.createElement("corniche-map");

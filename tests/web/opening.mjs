@@ -1,4 +1,4 @@
-// A map opens, says what it is, and draws.
+// A map opens, describes itself, and draws.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { addMap, ask, checkFaults, checkWorkersEnd, openMap, openPage, pixelsOf, settled } from "./browser.mjs";
@@ -16,7 +16,7 @@ export function tests({ browser, server }) {
     const picture = await pixelsOf(page);
     assert.deepEqual([picture.width, picture.height], [800, 600]);
     assert.ok(colours(picture) > 100, `only ${colours(picture)} colours: is the canvas blank?`);
-    // What the person sees is what was read: the canvas itself is not blank.
+    // The displayed pixels are the rendered ones: the canvas itself is not blank.
     const shot = await page.locator("corniche-map").screenshot();
     assert.ok(shot.length > 20_000, `a screenshot of ${shot.length} bytes has no map`);
     const credit = page.locator("corniche-map .credit");
@@ -59,11 +59,11 @@ export function tests({ browser, server }) {
       JSON.stringify(camera),
     );
     assert.deepEqual([settings.roads, settings.style, settings.exaggeration, settings.samples], ["sv", "dark", 1.5, 1]);
-    // With such heights a slope may hide the next place.
+    // With these heights a slope may hide the next point.
     await ask(page, (map) => {
       map.exaggeration = 1;
     });
-    // A change of the hash moves the map there, and a move changes the hash.
+    // A change of the hash moves the map, and a move changes the hash.
     await page.evaluate(() => {
       location.hash = "#9.5,46.92,3000,10,40";
     });
@@ -75,7 +75,7 @@ export function tests({ browser, server }) {
     assert.ok(Math.abs(lon - 9.52) < 1e-4 && Math.abs(lat - 46.9) < 1e-4 && Math.abs(distance - 2500) < 25, hash);
     assert.ok(Math.abs(heading - 10) < 0.2 && Math.abs(pitch - 40) < 0.2, `${hash}: what a place leaves out stays`);
     await page.end();
-    // The page opens where the hash says.
+    // The page opens at the position in the hash.
     const again = await openPage(browser, server, `/blank.html${hash}`);
     await addMap(again, { src: "/packages/pass.pmtiles", samples: "1", hash: "" });
     await settled(again);

@@ -1,4 +1,4 @@
-// Own styles: files in TOML beside the page, read by a module that only they need.
+// Custom styles: TOML files next to the page, read by a module that is loaded only for them.
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import os from "node:os";
@@ -7,7 +7,7 @@ import { after, test } from "node:test";
 import { ask, checkFaults, openMap, pixelsOf, settled } from "./browser.mjs";
 import { difference, hasDriver, rendered } from "./rendering.mjs";
 
-/** A style that no preset is: the roads of the sample are wide and green. */
+/** A style that differs from all presets: the roads of the sample are wide and green. */
 const MINE = (sources) =>
   fs
     .readFileSync(path.join(sources, "../../../config/styles/dark.toml"), "utf8")
@@ -86,7 +86,7 @@ export function tests({ browser, server, packages, sources, corniche, pictures }
     ["has an unknown entry", toml(`neon = true\n${mine}`), /bad\.toml: line 1: unknown field `neon`/i],
     ["has a number out of range", toml(mine.replace("outline_px = 2", "outline_px = 9")), /bad\.toml: outline_px of 9 is out of range; it must be 0 to 4/i],
     ["is too long", toml(`${mine}\n#${" ".repeat(1 << 21)}`), /^Style bad\.toml: it is longer than 1048576 bytes/i],
-    ["is no text", { bytes: Buffer.from([0x61, 0xff, 0xfe]), type: "application/toml" }, /bad\.toml: it is no text in UTF-8/i],
+    ["is no text", { bytes: Buffer.from([0x61, 0xff, 0xfe]), type: "application/toml" }, /bad\.toml: it is not UTF-8 text/i],
   ]) {
     test(`an own style that ${what} is told, and the one before stays`, async () => {
       lay();

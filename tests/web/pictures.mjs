@@ -1,4 +1,4 @@
-// Pictures of the page for people to look at, on desktop and phone, in both colour schemes.
+// Images of the page for human inspection, on desktop and phone, in both colour schemes.
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import path from "node:path";

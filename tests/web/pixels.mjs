@@ -1,5 +1,6 @@
-// Pixels of the page are those of the native program on the same driver: of `render` where a view was asked for, and of a flight's frames after a flight. (A
-// view that was asked for has its haze by the distance to the place looked at; once it moves, by the height of the eye, as flights do.)
+// Pixels of the page are those of the native program on the same driver: of `render` where a view
+// was asked for, and of a flight's frames after a flight. (A view that was asked for has its haze
+// by the distance to the place looked at; once it moves, by the height of the eye, as flights do.)
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import path from "node:path";
@@ -14,9 +15,9 @@ const SIZE = { width: 640, height: 400 };
  * program.
  */
 const MOST_BYTES = { swellendam: 1, portland: 1 };
-/** Packages of which all views are compared; of others the first one and one in perspective. */
+/** Packages with a comparison of all views; others have the first view and one in perspective. */
 const isWhole = (name) => name === "pass" || process.env.CORNICHE_ALL_VIEWS === "1";
-/** Where to look in perspective: a share of the package's extent, and distance, heading and pitch. */
+/** Cameras in perspective: a position as a fraction of the package's extent, and distance, heading and pitch. */
 const VIEW = { share: [0.52, 0.55], distance: 4000, heading: 30, pitch: 60 };
 
 export function tests({ browser, server, packages, corniche }) {
@@ -35,7 +36,7 @@ export function tests({ browser, server, packages, corniche }) {
     assert.ok(bytes <= most && steps <= most, `${what}: ${bytes} bytes differ, by up to ${steps} of 255`);
   }
 
-  /** From above, as far away as the whole package is seen or half of it. */
+  /** From above, at the distance at which the whole package is visible, or half of it. */
   async function checkFromAbove(page, name, what, options, pixels) {
     const [west, south, east, north] = await ask(page, (map) => map.about.bounds);
     const [lon, lat] = [(west + east) / 2, (south + north) / 2];
@@ -62,7 +63,7 @@ export function tests({ browser, server, packages, corniche }) {
     );
   }
 
-  // In CI one of the real places a day.
+  // In CI, one of the real packages per day.
   const real = names.filter((name) => name !== "pass");
   for (const name of ["pass", ...someOf(real, real.length)]) {
     for (const roads of ["geo", "sv"]) {

@@ -1,4 +1,4 @@
-// Pictures of `corniche render` on the driver of Chromium, and how far pixels are from them.
+// Images of `corniche render` on Chromium's driver, and their difference from pixels of the page.
 import { execFileSync } from "node:child_process";
 import fs from "node:fs";
 import os from "node:os";
@@ -6,12 +6,12 @@ import path from "node:path";
 import { PNG } from "pngjs";
 
 const DRIVER = process.env.CHROMIUM_DRIVER ?? "/usr/lib/chromium/vk_swiftshader_icd.json";
-/** Credits are drawn into pictures of `render`; on a page they are text. They lie in this corner. */
+/** In `render`, attribution is drawn into the image; on a page it is text. It is in this corner. */
 const CREDITS = { width: 300, height: 30 };
 
 export const hasDriver = () => fs.existsSync(DRIVER);
 
-/** What a program draws in a folder that is removed afterwards; `file` is the picture in it. */
+/** The output of a program in a temporary folder; `file` is the image in it. */
 function drawn(corniche, work, file) {
   const folder = fs.mkdtempSync(path.join(os.tmpdir(), "corniche-"));
   const env = { ...process.env, VK_DRIVER_FILES: DRIVER, VK_ICD_FILENAMES: DRIVER };
@@ -23,7 +23,7 @@ function drawn(corniche, work, file) {
   }
 }
 
-/** The picture that `render` draws. */
+/** The image that `render` draws. */
 export const rendered = (corniche, file, options) =>
   drawn(corniche, (folder) => ["render", file, "-o", path.join(folder, "map.png"), "--quiet", ...options], "map.png");
 
@@ -53,7 +53,7 @@ export function flown(corniche, file, flight, options) {
   );
 }
 
-/** How many pixels are compared, how many bytes of them differ, and by how many steps at most. */
+/** The number of compared pixels, the number of differing bytes, and their largest difference. */
 export function difference(a, b) {
   let compared = 0;
   let bytes = 0;
@@ -73,7 +73,7 @@ export function difference(a, b) {
   return { compared, bytes, steps };
 }
 
-/** How many colours there are: a blank canvas has one. */
+/** The number of colours: a blank canvas has one. */
 export function colours(picture) {
   const seen = new Set();
   for (let at = 0; at < picture.data.length; at += 4) seen.add(picture.data.readUInt32LE(at));

@@ -2,9 +2,9 @@
 //
 //   node run.mjs SITE PACKAGES CORNICHE PICTURES SOURCES
 //
-// SITE is the folder made by scripts/web, PACKAGES holds pass.pmtiles and others, CORNICHE is the program, PICTURES a folder for pictures of the page,
-// SOURCES the folder of the element's modules.
-// node --test-reporter=spec --test-name-pattern=PATTERN run.mjs … runs some of them.
+// SITE is the folder that scripts/web creates, PACKAGES contains pass.pmtiles and others, CORNICHE
+// is the program, PICTURES a folder for images of the page, SOURCES the folder of the element's
+// modules. node --test-reporter=spec --test-name-pattern=PATTERN run.mjs … runs a selection.
 import fs from "node:fs";
 import path from "node:path";
 import { after, describe } from "node:test";
@@ -23,10 +23,10 @@ fs.mkdirSync(pictures, { recursive: true });
 const server = await startServer({ site, packages });
 const other = await startServer({ site, packages });
 
-/** What tests share. `other` is another host. */
+/** Shared by all tests. `other` is another host. */
 const world = { browser, server, other, site, packages, corniche, pictures, sources, package: path.join(packages, "pass.pmtiles") };
 const usual = ["units", "opening", "pixels", "sizes", "served", "failures"];
-// What people do with a page, and pictures of it, take longest; in CI days take turns.
+// Tests of user interaction, and images of it, take longest; in CI they alternate by day.
 const uses = ["drags", "access", "keys", "streaming", "embedding", "pictures", "own_styles", "links", "gestures"];
 const names = [...usual, ...someOf(uses, 5)];
 const parts = await Promise.all(names.map((name) => import(`./${name}.mjs`)));

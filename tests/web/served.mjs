@@ -1,4 +1,5 @@
-// The page as `corniche serve` sends it: under its security policy, from other servers, and in a frame of another page.
+// The page as `corniche serve` sends it: under its security policy, from other servers, and in a
+// frame of another page.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { createInterface } from "node:readline";
@@ -7,7 +8,7 @@ import { PNG } from "pngjs";
 import { ask, openPage } from "./browser.mjs";
 import { FAILURES } from "./failing.mjs";
 
-/** The program serves the package and the page; what it printed is its address. */
+/** The program serves the package and the page; the URL is its output. */
 async function serve(corniche, site, file) {
   const child = spawn(corniche, ["serve", file, "--page", site, "--port", "0"], { stdio: ["ignore", "pipe", "inherit"] });
   for await (const line of createInterface({ input: child.stdout })) return { origin: line.replace(/\/$/, ""), end: () => child.kill() };
@@ -16,7 +17,7 @@ async function serve(corniche, site, file) {
 
 const opened = (page) => page.waitForFunction(() => document.querySelector("corniche-map")?.about, null, { timeout: 60_000 });
 
-/** Nothing was forbidden, and no script failed. */
+/** Checks that nothing was blocked, and that no script failed. */
 function checkAllowed(page) {
   const offences = page.faults.console.filter((text) => /Content.Security.Policy|Refused to/i.test(text));
   assert.deepEqual([offences, page.faults.errors], [[], []]);
@@ -81,7 +82,7 @@ export function tests({ browser, server, other, site, corniche, package: file })
     served.end();
   });
 
-  // Each was once an error that ended the page's script: nothing was shown, and nothing said.
+  // Each of these was once an error that stopped the page's script, without any image or message.
   test("addresses that are no text say what is wrong", async () => {
     const served = await serve(corniche, site, file);
     for (const src of ["100%25.pmtiles", "%25E0%25A4.pmtiles", "http%3A%2F%2F%5B"]) {

@@ -19,10 +19,10 @@ const BLANK = `<!doctype html><html lang="en"><meta charset="utf-8"><meta name="
 <style>body { margin: 0; background: light-dark(#fff, #111); }</style><main></main>
 <script type="module" src="/corniche-map.js"></script></html>`;
 
-/** Headers without those that let pages of other hosts read. */
+/** Headers without those that allow pages of other hosts to read. */
 const bare = (head) => Object.fromEntries(Object.entries(head).filter(([name]) => !name.startsWith("Access-Control")));
 
-/** How a host under /as/HOW/ misbehaves. `range` is the range asked for, `null` where none was. */
+/** The misbehaviour of a host under /as/HOW/. `range` is the requested range, or `null`. */
 const WAYS = {
   missing: (answer) => answer.writeHead(404).end("no"),
   forbidden: (answer) => answer.writeHead(403).end("no"),
@@ -40,7 +40,7 @@ const WAYS = {
   "no-cors": (answer, { part, head }) => answer.writeHead(206, bare(head)).end(part),
 };
 
-/** Files that are no good packages, made of one that is. */
+/** Invalid files, derived from a valid one. */
 const FILES = {
   foreign: () => Buffer.from(`<!doctype html>${" ".repeat(70_000)}`),
   // A header of PMTiles 3 with tiles of another kind: vector tiles.
@@ -65,14 +65,14 @@ const FILES = {
 
 /**
  * Serves the files of `site`, packages of `packages` under /packages/, bad hosts under /as/HOW/NAME and bad files under /bad/HOW/NAME.
- * Other pages may read all of it.
+ * Other pages may read all of them.
  */
 export async function startServer({ site, packages }) {
   const state = { delay_ms: 0, bytes_per_ms: 0, compresses: false, requests: [], replaced: new Map(), policy: "" };
   let free = 0;
   let count = 0;
 
-  /** As long as so many bytes take on the way: one link for all. */
+  /** Waits for the transmission time of this number of bytes: all requests share one link. */
   async function slowly(bytes) {
     if (state.delay_ms > 0) await new Promise((done) => setTimeout(done, state.delay_ms));
     if (state.bytes_per_ms === 0) return;
@@ -82,7 +82,7 @@ export async function startServer({ site, packages }) {
   }
 
   const kept = new Map();
-  /** What is sent in place of a file: NAME.br beside it, or, for files of a page, what is made now. `null` where it goes as it is. */
+  /** The replacement of a file: NAME.br next to it, or, for files of the page, a generated one. `null` if it is sent unchanged. */
   function compressed(asked, bytes, type) {
     if (!kept.has(asked)) {
       const beside = path.join(site, `${asked}.br`);
@@ -137,7 +137,7 @@ export async function startServer({ site, packages }) {
       code = 206;
       head["Content-Range"] = `bytes ${range[0]}-${range[1]}/${bytes.length}`;
     }
-    // As static hosts do it: files of the page, and never a package.
+    // Like static hosts: files of the page, but never a package.
     const takesBrotli = /\bbr\b/.test(request.headers["accept-encoding"] ?? "");
     const small = state.compresses && takesBrotli && !match ? compressed(asked, bytes, type) : null;
     if (small) {
@@ -145,7 +145,7 @@ export async function startServer({ site, packages }) {
       head["Content-Encoding"] = "br";
     }
     await slowly(part.length);
-    // When the last byte was sent, in milliseconds since 1970.
+    // The time of the last sent byte, in milliseconds since 1970.
     Object.assign(told, { bytes: part.length, sent_ms: performance.timeOrigin + performance.now() });
     if (request.method === "HEAD") {
       if (way === WAYS.gzip) head["Content-Encoding"] = "gzip";
@@ -159,7 +159,7 @@ export async function startServer({ site, packages }) {
   return {
     origin: `http://127.0.0.1:${server.address().port}`,
     state,
-    /** As a host that is told to behave again. */
+    /** A host that stops misbehaving. */
     behave() {
       Object.assign(state, { delay_ms: 0, bytes_per_ms: 0, compresses: false, requests: [], policy: "" });
       state.replaced.clear();

@@ -1,4 +1,4 @@
-// The canvas has the size of the element in pixels of the screen, whatever happens to it.
+// The canvas has the size of the element in device pixels, whatever happens to it.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { ask, checkFaults, openMap, openPage, addMap, pixelsOf, settled } from "./browser.mjs";
@@ -51,7 +51,7 @@ export function tests({ browser, server }) {
       document.querySelector("main").style.display = "block";
     });
     assert.ok((await opened).ready);
-    // Hidden again, nothing is drawn, and nothing fails.
+    // Hidden again: nothing is drawn, and nothing fails.
     await page.evaluate(() => {
       document.querySelector("main").style.display = "none";
     });

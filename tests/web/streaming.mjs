@@ -1,13 +1,13 @@
-// What is asked of the server and kept in memory while the map moves.
+// Requests to the server and memory use while the map moves.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { ask, checkFaults, openMap, settled } from "./browser.mjs";
 
 const MIB = 1 << 20;
-/** Places all over the sample, as shares of its extent, near enough for the finest tiles. */
+/** Positions all over the sample, as fractions of its extent, close enough for the finest tiles. */
 const PLACES = [0.12, 0.3, 0.5, 0.7, 0.88].flatMap((u) => [0.2, 0.5, 0.8].map((v) => [u, v]));
 
-/** Lets the map look at each place in turn; returns what each frame said. */
+/** Moves the map to each position in turn; returns the reports of all frames. */
 const lookAround = (page, places, rest_ms) =>
   ask(
     page,
@@ -20,7 +20,7 @@ const lookAround = (page, places, rest_ms) =>
         try {
           map.lookAt(place, { jump: true });
         } catch (error) {
-          // A void of the sample has no ground to look at.
+          // A void of the sample has no ground for the target.
           if (!/ground/.test(error.message)) throw error;
           continue;
         }
@@ -61,7 +61,7 @@ export function tests({ browser, server }) {
     console.log(`# at most ${(most / MIB).toFixed(2)} MiB of ${memory}, ${(uploaded / MIB).toFixed(1)} MiB uploaded on the way`);
     for (const { gpu_bytes } of reports) assert.deepEqual(gpu_bytes[1], memory * MIB);
     assert.ok(most <= memory * MIB, `${most} bytes of tiles`);
-    // So some of it had to go again.
+    // Some of it had to be evicted.
     assert.ok(uploaded > memory * MIB, `only ${uploaded} bytes were uploaded: the memory was never full`);
     await settled(page);
     checkFaults(page);
@@ -72,13 +72,13 @@ export function tests({ browser, server }) {
     server.behave();
     const page = await openMap(browser, server, { controls: "none", inertia: "off" }, { width: 500, height: 400 });
     server.behave();
-    // So slow that no tile comes before the map looks elsewhere.
+    // So slow that no tile is loaded before the map moves elsewhere.
     Object.assign(server.state, { delay_ms: 50, bytes_per_ms: 15 });
     const isStopped = () => server.state.requests.some((request) => request.isStopped);
     const reports = [];
     for (let turn = 0; turn < 8 && !isStopped(); turn += 1) {
       reports.push(...(await lookAround(page, [turn % 2 === 0 ? [0.3, 0.2] : [0.7, 0.8]], 100)));
-      // Frames take their time here: the map must have asked for what it sees, and then for something else.
+      // Frames are slow here: the map must have requested the visible tiles, and then others.
       await page.waitForFunction(() => document.querySelector("corniche-map").report.tiles.loading > 0);
       await page.waitForTimeout(300);
     }
@@ -87,7 +87,7 @@ export function tests({ browser, server }) {
     console.log(`# ${stopped} of ${asked} requests were stopped`);
     assert.ok(stopped > 0, `none of ${asked} requests was stopped`);
     assert.ok(Math.max(...reports.map(({ tiles }) => tiles.loading)) <= 12, "tiles under way");
-    // What is wanted still comes.
+    // Wanted tiles are still loaded.
     Object.assign(server.state, { delay_ms: 0, bytes_per_ms: 0 });
     await settled(page);
     const report = await ask(page, (map) => map.report);
@@ -102,7 +102,7 @@ export function tests({ browser, server }) {
     const page = await openMap(browser, server, { controls: "none" }, { width: 500, height: 400 });
     await lookAround(page, PLACES.slice(3, 9), 0);
     await settled(page);
-    // By the other method all tiles are read again, of what was fetched before.
+    // With the other method all tiles are decoded again, from the cached bytes.
     for (const roads of ["geo", "sv"]) {
       await ask(
         page,
@@ -121,7 +121,8 @@ export function tests({ browser, server }) {
       .map(({ range }) => range.slice("bytes=".length).split("-").map(Number))
       .sort(([a], [b]) => a - b);
     assert.ok(ranges.length > 6, `${ranges.length} ranges`);
-    // A request may be stopped when its answer is on its way already, and what lies between neighbours is fetched with them: a little comes twice.
+    // A request may be cancelled when its answer is already on its way, and the bytes between
+    // neighbours are fetched with them: a little is fetched twice.
     const all = ranges.reduce((sum, [first, last]) => sum + last - first + 1, 0);
     const twice = ranges.slice(1).reduce((sum, [first], place) => sum + Math.max(0, ranges[place][1] - first + 1), 0);
     console.log(`# ${twice} of ${all} bytes were asked for twice`);

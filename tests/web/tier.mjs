@@ -1,6 +1,6 @@
-// How much a run looks at, as scripts/test says it: some cases where CORNICHE_TIER is `ci`, else all.
+// The extent of a run, set by scripts/test: some cases if CORNICHE_TIER is `ci`, otherwise all.
 
-/** Each `step`-th of some cases in CI, all of them otherwise. CORNICHE_TURN, a number, says with which to begin, so that other days look at others. */
+/** Every `step`-th case in CI, and all cases otherwise. CORNICHE_TURN, a number, selects the first one, so that the cases alternate by day. */
 export function someOf(cases, step) {
   if (process.env.CORNICHE_TIER !== "ci") return cases;
   const turn = Number(process.env.CORNICHE_TURN ?? 0) % step;

@@ -1,4 +1,4 @@
-// Parts that need no browser: texts of cameras, lengths, wheels, names of pictures.
+// Parts that need no browser: texts of cameras, lengths, wheels, names of images.
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import os from "node:os";
@@ -7,7 +7,7 @@ import { after, test } from "node:test";
 import { pathToFileURL } from "node:url";
 
 export function tests({ sources }) {
-  // Node takes files that end in .js for modules only where a package.json says so.
+  // Node treats files that end in .js as modules only if a package.json says so.
   const folder = fs.mkdtempSync(path.join(os.tmpdir(), "corniche-"));
   for (const name of fs.readdirSync(sources).filter((name) => name.endsWith(".js")))
     fs.copyFileSync(path.join(sources, name), path.join(folder, name));
@@ -30,7 +30,7 @@ export function tests({ sources }) {
     assert.equal(hashWith("#part&a=8,46", "a", place), `#part&a=${textOf(place)}`);
     assert.equal(hashWith("#9,47", "", place), `#${textOf(place)}`);
     assert.equal(hashWith("#contents", "", place), `#contents&${textOf(place)}`);
-    // With what was changed by hand.
+    // With manual changes.
     const part = partInHash("#contents&9,47;roads=sv;areas=off", "");
     assert.deepEqual([placeBefore(part), changesAfter(part)], [{ lon: 9, lat: 47 }, "roads=sv;areas=off"]);
     assert.equal(hashWith("#contents&9,47;roads=sv", "", place, "areas=off"), `#contents&${textOf(place)};areas=off`);
@@ -99,7 +99,8 @@ export function tests({ sources }) {
     assert.equal(notches({ deltaY: -1, deltaMode: 2 }), 1);
     assert.equal(notches({ deltaY: 0, deltaX: -100 }), 1, "Shift turns a wheel sideways");
     assert.equal(notches({ deltaY: -9000 }), 5, "never more than five at once");
-    // A pinch to twice the size has a delta of 100 ln 2 in all, and three notches halve the distance.
+    // A pinch to twice the size has a delta of 100 ln 2 in all, and three notches halve the
+    // distance.
     const pinch = 100 * Math.LN2;
     assert.ok(Math.abs(2 * notches({ deltaY: -pinch / 2, ctrlKey: true }) - 3) < 1e-9);
     assert.equal(notches({ deltaY: -100, ctrlKey: true }), 1, "Ctrl and the wheel of a mouse");

@@ -1,7 +1,8 @@
-//! How many bytes of product code there are, by crate, and the budget that they keep to.
+//! Counts the bytes of product code by crate, and compares them with their budget.
 //!
-//! A row of `tidy/budget.toml` sinks with its crate. It rises only in a commit that names the feature and the bytes
-//! (`CONTRIBUTING.md`); one that only renames or rewords may raise it, too.
+//! A row of `tidy/budget.toml` sinks with its crate. It rises only in a commit that names the
+//! feature and the bytes (`CONTRIBUTING.md`); a commit that only renames or rewords may raise it,
+//! too.
 
 use std::{
     collections::BTreeMap,
@@ -18,26 +19,29 @@ use crate::{
     source::{crates_of, is_test_file},
 };
 
-/// Where the budget is kept, from the root.
+/// The path of the budget, relative to the root.
 pub const BUDGET: &str = "tidy/budget.toml";
 
-/// The languages that are written by hand, by the ending of a file's name, and how a comment on a line of its own begins.
+/// The languages of handwritten code: the extension of a file's name, and the start of a comment on
+/// a separate line.
 const LANGUAGES: [(&str, &str); 6] =
     [("rs", "//"), ("wgsl", "//"), ("js", "//"), ("mjs", "//"), ("py", "#"), ("sh", "#")];
-/// Folders of product code beside the crates.
+/// Folders of product code in addition to the crates.
 const FOLDERS: [&str; 3] = ["config", "python", "scripts"];
-/// Folders whose files are tests, measurements, examples, or the page that is made from the crates.
+/// Folders whose files are tests, measurements, examples, or the page that is generated from the
+/// crates.
 const NOT_PRODUCT: [&str; 5] = ["tests", "benches", "examples", "fuzz_targets", "page"];
-/// A crate of tests alone.
+/// A crate that only serves tests.
 const FOR_TESTS: &str = "testing";
 
 /// Bytes of product code by crate or folder.
 pub type Bytes = BTreeMap<String, u64>;
 
-/// Counts the product code below `root`: lines that are neither empty, comments nor tests, without their indentation.
+/// Counts the product code below `root`: lines that are neither empty, comments nor tests, without
+/// their indentation.
 ///
 /// # Errors
-/// When a file cannot be read or is no Rust.
+/// When a file cannot be read or is not valid Rust.
 pub fn product_bytes(root: &Path) -> Result<Bytes> {
     let mut rows = Bytes::new();
     let crates = crates_of(root)?;
@@ -62,7 +66,7 @@ pub fn product_bytes(root: &Path) -> Result<Bytes> {
     Ok(rows)
 }
 
-/// Scripts have no ending. Those that only run tests are no product.
+/// Lists scripts, whose names have no extension. Scripts that only run tests are not product code.
 fn scripts_without_ending(folder: &Path) -> Result<Vec<PathBuf>> {
     let mut found = Vec::new();
     for entry in
@@ -88,7 +92,7 @@ fn bytes_of(folder: &Path, file: &Path, comment: &str) -> Result<u64> {
         fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?;
     let tests = if file.extension().is_some_and(|ending| ending == "rs") {
         let parsed = syn::parse_file(&text)
-            .with_context(|| format!("{} is no Rust that can be read", file.display()))?;
+            .with_context(|| format!("{} is not valid Rust", file.display()))?;
         test_lines(&parsed)
     } else {
         Vec::new()
@@ -96,11 +100,11 @@ fn bytes_of(folder: &Path, file: &Path, comment: &str) -> Result<u64> {
     Ok(code_bytes(&text, comment, &tests))
 }
 
-/// The bytes of a text's lines, each with the end of the line, that are neither empty nor comments nor in `tests`
-/// (first and last line, from 1).
+/// The bytes of those lines of a text, each with its line end, that are neither empty nor comments
+/// nor in `tests` (first and last line, from 1).
 fn code_bytes(text: &str, comment: &str, tests: &[[usize; 2]]) -> u64 {
     let mut bytes = 0;
-    // The end of the block comment or of the docstring that a line is in.
+    // The end of the block comment or docstring that contains the current line.
     let mut block: Option<&str> = None;
     for (number, line) in (1..).zip(text.lines().map(str::trim)) {
         if let Some(end) = block {
@@ -124,19 +128,20 @@ fn code_bytes(text: &str, comment: &str, tests: &[[usize; 2]]) -> u64 {
 /// Reads a budget: a name and a number on each line.
 ///
 /// # Errors
-/// When a line is something else.
+/// When a line has another form.
 pub fn read_budget(text: &str) -> Result<Bytes> {
     let rows =
         text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
     rows.map(|line| {
-        let (name, bytes) = line.split_once('=').context("no `name = bytes`")?;
+        let (name, bytes) = line.split_once('=').context("expected `name = bytes`")?;
         Ok((name.trim().trim_matches('"').to_owned(), bytes.trim().replace('_', "").parse()?))
     })
     .collect::<Result<_>>()
     .with_context(|| format!("{BUDGET} cannot be read"))
 }
 
-/// The budget that fits what is there: rows sink, and none rises. A new crate has no row until someone gives it one.
+/// The budget for the current code: rows sink, and none rises. A new crate has no row until someone
+/// adds one.
 ///
 /// # Errors
 /// Never: writing into memory cannot fail.
@@ -153,17 +158,18 @@ pub fn sunk(budget: &Bytes, found: &Bytes) -> Result<String> {
     Ok(text)
 }
 
-/// What the budget does not allow: a crate beyond its row, without one, or so far below that the row must sink.
+/// Violations of the budget: a crate above its row, a crate without a row, or a crate so far below
+/// its row that the row must sink.
 #[must_use]
 pub fn over_budget(budget: &Bytes, found: &Bytes) -> Vec<String> {
     let mut wrong = Vec::new();
     for (name, &bytes) in found {
         match budget.get(name) {
-            None => wrong.push(format!("{name} has {bytes} bytes and no row in {BUDGET}")),
+            None => wrong.push(format!("{name} has {bytes} bytes but no row in {BUDGET}")),
             Some(&row) if bytes > row => {
                 wrong.push(format!("{name} has {bytes} bytes, {} more than its row", bytes - row));
             }
-            // A hundredth, so that not each small change must touch the table.
+            // The tolerance is a hundredth, so that not every small change must touch the table.
             Some(&row) if row - bytes > row / 100 => {
                 wrong.push(format!("{name} has {bytes} bytes, and its row is {row}: lower it"));
             }
@@ -171,7 +177,7 @@ pub fn over_budget(budget: &Bytes, found: &Bytes) -> Vec<String> {
         }
     }
     let gone = budget.keys().filter(|name| !found.contains_key(*name));
-    wrong.extend(gone.map(|name| format!("{name} has a row in {BUDGET} and does not exist")));
+    wrong.extend(gone.map(|name| format!("{name} has a row in {BUDGET} but does not exist")));
     wrong
 }
 

@@ -1,4 +1,4 @@
-//! What counts as product code, and what a budget allows.
+//! Which lines count as product code, and what a budget allows.
 
 use super::*;
 

@@ -1,4 +1,4 @@
-//! How large things are: lines, functions, public items.
+//! Sizes of crates: lines, functions, public items.
 
 use std::{
     fs,
@@ -13,16 +13,18 @@ use crate::{
     source::{attributes_of, is_test, is_test_file},
 };
 
-/// What a crate amounts to. A line is counted once: as comment, as test or as product; empty lines are not counted.
+/// The figures of a crate. A line is counted once: as comment, as test or as product; empty lines
+/// are not counted.
 #[derive(Debug, Default, Clone, PartialEq, Eq)]
 pub struct CrateFigures {
     /// Lines of Rust that are neither test nor comment.
     pub product_lines: usize,
     /// Lines of tests, benches and examples.
     pub test_lines: usize,
-    /// Lines that hold a comment alone, in both.
+    /// Lines with only a comment, in products and tests.
     pub comment_lines: usize,
-    /// Functions, types, traits, constants and methods that are `pub`. Lints keep `pub` from what cannot be reached.
+    /// Functions, types, traits, constants and methods that are `pub`. Lints forbid `pub` for items
+    /// that cannot be reached.
     pub public_items: usize,
     /// Every product file with all its lines.
     pub files: Vec<(PathBuf, usize)>,
@@ -30,10 +32,10 @@ pub struct CrateFigures {
     pub functions: Vec<Function>,
 }
 
-/// A function and how long it is.
+/// A function and its length.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Function {
-    /// Its file, from the crate's folder.
+    /// The path of its file, relative to the crate's folder.
     pub file: PathBuf,
     /// Its name.
     pub name: String,
@@ -44,7 +46,7 @@ pub struct Function {
 /// Counts the crate in `folder`: `src`, `tests`, `benches` and `examples`.
 ///
 /// # Errors
-/// When a file cannot be read or is no Rust.
+/// When a file cannot be read or is not valid Rust.
 pub fn figures(folder: &Path) -> Result<CrateFigures> {
     let mut figures = CrateFigures::default();
     for part in ["src", "tests", "benches", "examples", "fuzz_targets"] {
@@ -52,7 +54,7 @@ pub fn figures(folder: &Path) -> Result<CrateFigures> {
             let text = fs::read_to_string(&file)
                 .with_context(|| format!("cannot read {}", file.display()))?;
             let parsed = syn::parse_file(&text)
-                .with_context(|| format!("{} is no Rust that can be read", file.display()))?;
+                .with_context(|| format!("{} is not valid Rust", file.display()))?;
             let inside = file.strip_prefix(folder).unwrap_or(&file);
             let tests = if part == "src" && !is_test_file(inside) {
                 figures.files.push((inside.to_owned(), text.lines().count()));
@@ -69,7 +71,7 @@ pub fn figures(folder: &Path) -> Result<CrateFigures> {
     Ok(figures)
 }
 
-/// First and last lines, from 1, of what a product file has of tests.
+/// First and last lines, from 1, of the tests in a product file.
 pub(crate) fn test_lines(parsed: &syn::File) -> Vec<[usize; 2]> {
     let mut figures = CrateFigures::default();
     let mut product = Product { file: Path::new(""), tests: Vec::new(), figures: &mut figures };
@@ -165,7 +167,7 @@ impl<'ast> Visit<'ast> for Product<'_> {
     }
 }
 
-/// From the signature to the closing brace, without docs and attributes.
+/// The function from the signature to the closing brace, without docs and attributes.
 fn body(signature: &syn::Signature, block: &syn::Block) -> proc_macro2::Span {
     signature.span().join(block.span()).unwrap_or_else(|| block.span())
 }

@@ -13,8 +13,8 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().map(Path::to_path_buf).unwrap_or_default()
 }
 
-/// Every file below `folder` with this extension, sorted. Hidden folders and those of outputs are left out; a folder that
-/// does not exist has none.
+/// Every file below `folder` with this extension, sorted. Hidden folders and output folders are
+/// skipped; a folder that does not exist has no files.
 ///
 /// # Errors
 /// When a folder cannot be listed.
@@ -24,7 +24,7 @@ pub fn files_below(folder: &Path, extension: &str) -> Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// Every file below `folder`, sorted. Hidden folders and those of outputs are left out.
+/// Every file below `folder`, sorted. Hidden folders and output folders are skipped.
 pub(crate) fn files_in(folder: &Path) -> Result<Vec<PathBuf>> {
     let mut found = Vec::new();
     gather(folder, &mut found)?;

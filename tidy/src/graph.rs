@@ -1,4 +1,4 @@
-//! What uses what as a directed graph: its cycles, and its nodes by rank.
+//! Uses of modules as a directed graph: its cycles, and its nodes by rank.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -16,24 +16,24 @@ use crate::{
     uses::{Use, files_of},
 };
 
-/// A directed graph of uses. Its nodes are the files of a crate, or the child modules of one module, each with all that
-/// lies below it.
+/// A directed graph of uses. Its nodes are the files of a crate, or the child modules of one
+/// module, each including everything below it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Graph {
-    /// Where the nodes lie: the crate's `src`, or the module whose children they are.
+    /// The crate's `src`, or the module whose children the nodes are.
     pub place: String,
     /// The nodes, sorted.
     pub nodes: Vec<String>,
-    /// From the user to what is used, with the names that are used.
+    /// Edges from the user to the used node, with the names that are used.
     pub edges: BTreeMap<(String, String), BTreeSet<String>>,
 }
 
 /// Nodes that use each other, directly or through others.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Cycle {
-    /// Where it is.
+    /// The graph's crate or module.
     pub place: String,
-    /// The nodes of it, sorted.
+    /// The nodes of the cycle, sorted.
     pub nodes: Vec<String>,
     /// The edges between them, with the names used.
     pub edges: Vec<String>,
@@ -50,7 +50,7 @@ impl fmt::Display for Cycle {
 }
 
 impl Graph {
-    /// The files of a crate.
+    /// The graph of a crate's files.
     #[must_use]
     pub fn of_files(of: &Crate, uses: &[Use]) -> Self {
         let text = |path: &Path| path.to_string_lossy().into_owned();
@@ -66,8 +66,8 @@ impl Graph {
         graph
     }
 
-    /// For every module that has children: these, each with all that lies below it. Two folders may use each other
-    /// although no two files do; that is a cycle, too.
+    /// The graphs of all modules with children. Each child includes everything below it. Two
+    /// folders may use each other although no two of their files do; that is a cycle, too.
     #[must_use]
     pub fn of_children(of: &Crate, uses: &[Use]) -> Vec<Self> {
         let mut graphs: BTreeMap<usize, Self> = BTreeMap::new();
@@ -83,7 +83,7 @@ impl Graph {
         for found in uses {
             let [from, to] = [found.user, found.owner].map(|module| &of.modules[module].path);
             let common = from.iter().zip(to).take_while(|(a, b)| a == b).count();
-            // A module and what lies below it are no siblings.
+            // A module and a module below it are not siblings.
             if from.len() == common || to.len() == common {
                 continue;
             }
@@ -123,12 +123,13 @@ impl Graph {
         cycles
     }
 
-    /// The nodes from top to bottom: each has a higher rank than all that it uses. The nodes of a cycle share a rank.
+    /// The nodes from top to bottom: each has a higher rank than all nodes that it uses. The nodes
+    /// of a cycle share a rank.
     #[must_use]
     pub fn ranks(&self) -> Vec<Vec<String>> {
         let mut height: BTreeMap<&str, usize> = BTreeMap::new();
         let components = self.components();
-        // What is used comes before its users.
+        // Used nodes come before their users.
         for nodes in &components {
             let below = self
                 .edges
@@ -147,7 +148,8 @@ impl Graph {
         ranks
     }
 
-    /// Strongly connected components, each sorted; those that are used come before those that use them (Tarjan 1972).
+    /// Strongly connected components, each sorted; used components come before their users (Tarjan
+    /// 1972).
     fn components(&self) -> Vec<Vec<String>> {
         let ends = self.edges.keys().flat_map(|(from, to)| [from, to]);
         let names: BTreeSet<&str> = self.nodes.iter().chain(ends).map(String::as_str).collect();

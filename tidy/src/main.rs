@@ -1,8 +1,10 @@
-//! Prints for every crate its files by rank (users above what they use), its cycles, and how large it is.
+//! Prints for every crate its files by rank (users above the files that they use), its cycles, and
+//! its size.
 //!
 //! `cargo run -p corniche-tidy [FOLDER OF A WORKSPACE]`
-//! `cargo run -p corniche-tidy budget [--sink]`: bytes of product code by crate beside their budget; lowers the budget to them.
-//! `cargo run -p corniche-tidy page`: the hash of what the page in the program is made from.
+//! `cargo run -p corniche-tidy budget [--sink]`: prints the bytes of product code by crate with
+//! their budget; `--sink` lowers the budget to them.
+//! `cargo run -p corniche-tidy page`: prints the hash of the sources of the page in the program.
 
 use std::{
     collections::BTreeSet,
@@ -19,7 +21,7 @@ use corniche_tidy::{
     product_bytes, read_budget, read_crate, root, sunk, uses,
 };
 
-/// How many of the longest functions and files are listed.
+/// The number of longest functions and files that are listed.
 const LONGEST: usize = 12;
 
 fn main() -> Result<()> {

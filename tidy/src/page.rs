@@ -1,4 +1,5 @@
-//! The page in the program (`crates/cli/page`), and whether it is made from the sources that are here.
+//! Checks whether the page in the program (`crates/cli/page`) was generated from the current
+//! sources.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -13,21 +14,21 @@ use toml::{Table, Value};
 
 use crate::{files::files_in, source::is_test_file};
 
-/// What is known of the page that is kept, from the root.
+/// The path of the record about the generated page, relative to the root.
 pub const PAGE: &str = "crates/cli/page.toml";
 
 /// The folders of the crates whose modules the page loads.
 const MODULES: [&str; 2] = ["crates/web", "crates/web-styles"];
-/// What makes the page from the crates.
+/// The scripts that generate the page from the crates.
 const SCRIPTS: [&str; 2] = ["scripts/web", "scripts/lib/web.sh"];
-/// Folders of a crate that no page is made from.
+/// Folders of a crate that are not sources of the page.
 const NOT_SOURCES: [&str; 3] = ["tests", "benches", "examples"];
 
-/// The SHA-256, in hexadecimal digits, of all that the page is made from: the crates of its modules and those that they
-/// use, with the versions and settings of what comes from others, and the script.
+/// The SHA-256, in hexadecimal digits, of all sources of the page: the crates of its modules and
+/// the crates that they use, the versions and settings of external dependencies, and the script.
 ///
 /// # Errors
-/// When a file cannot be read or a manifest is no TOML.
+/// When a file cannot be read or a manifest is not valid TOML.
 pub fn page_sources(root: &Path) -> Result<String> {
     let workspace = read_toml(&root.join("Cargo.toml"))?;
     let mut hash = Sha256::new();
@@ -38,7 +39,7 @@ pub fn page_sources(root: &Path) -> Result<String> {
         hash.update(bytes);
     };
     let known = workspace.get("workspace").and_then(|table| table.get("dependencies"));
-    let known = known.context("Cargo.toml has no dependencies of the workspace")?;
+    let known = known.context("Cargo.toml has no workspace dependencies")?;
     let used = used_crates(root, known)?;
     for name in &used.own {
         let folder = root.join(name);
@@ -56,7 +57,7 @@ pub fn page_sources(root: &Path) -> Result<String> {
     for name in &used.names {
         add(name, known[name].to_string().as_bytes());
     }
-    // Of a browser's modules; they take over what they do not set of those of a release.
+    // The profiles of the browser's modules; the profile for wasm inherits from that for releases.
     for name in ["release", "wasm"] {
         let profile = workspace.get("profile").and_then(|profiles| profiles.get(name));
         let profile = profile.with_context(|| format!("Cargo.toml has no profile {name}"))?;
@@ -72,7 +73,7 @@ pub fn page_sources(root: &Path) -> Result<String> {
     }))
 }
 
-/// What the modules are made of.
+/// The crates from which the modules are built.
 #[derive(Default)]
 struct UsedCrates {
     /// Folders of the workspace.
@@ -89,7 +90,7 @@ fn used_crates(root: &Path, known: &Value) -> Result<UsedCrates> {
         found.own.insert(folder);
         for name in dependencies(&manifest) {
             let dependency = known.get(&name).with_context(|| {
-                format!("{name} is none of the workspace's dependencies in Cargo.toml")
+                format!("{name} is not a dependency of the workspace in Cargo.toml")
             })?;
             if let Some(folder) = dependency.get("path").and_then(Value::as_str)
                 && !found.own.contains(folder)
@@ -102,7 +103,7 @@ fn used_crates(root: &Path, known: &Value) -> Result<UsedCrates> {
     Ok(found)
 }
 
-/// The names of what a manifest needs, on any system, but for tests.
+/// The names of a manifest's dependencies, on any system, except for those of tests.
 fn dependencies(manifest: &Table) -> Vec<String> {
     let targets = manifest.get("target").and_then(Value::as_table);
     let tables =
@@ -113,7 +114,7 @@ fn dependencies(manifest: &Table) -> Vec<String> {
     names.cloned().collect()
 }
 
-/// The names and versions of all packages that these names lead to, as the lock file holds them.
+/// The names and versions of all packages on which these names depend, as the lock file lists them.
 fn locked_versions(root: &Path, names: &BTreeSet<String>) -> Result<String> {
     let lock = read_toml(&root.join("Cargo.lock"))?;
     let packages = lock["package"].as_array().context("Cargo.lock lists no packages")?;
@@ -122,7 +123,8 @@ fn locked_versions(root: &Path, names: &BTreeSet<String>) -> Result<String> {
         let name = package["name"].as_str().context("a package without a name")?;
         by_name.entry(name).or_default().push(package);
     }
-    // What own crates need is among the names; the lock file also lists what their tests need.
+    // The dependencies of the workspace's own crates are among the names; the lock file also lists
+    // those of their tests.
     let is_other = |name: &&str| !name.starts_with("corniche-");
     let mut open: Vec<&str> = names.iter().map(String::as_str).filter(is_other).collect();
     let mut found = BTreeSet::new();
@@ -130,7 +132,7 @@ fn locked_versions(root: &Path, names: &BTreeSet<String>) -> Result<String> {
         for package in by_name.get(name).into_iter().flatten() {
             if found.insert(format!("{name} {}\n", package["version"])) {
                 let needed = package.get("dependencies").and_then(Value::as_array);
-                // `name` or `name version`.
+                // An entry is `name` or `name version`.
                 open.extend(
                     needed
                         .into_iter()
@@ -146,5 +148,5 @@ fn locked_versions(root: &Path, names: &BTreeSet<String>) -> Result<String> {
 fn read_toml(path: &Path) -> Result<Table> {
     let text =
         fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
-    text.parse().with_context(|| format!("{} is no TOML", path.display()))
+    text.parse().with_context(|| format!("{} is not valid TOML", path.display()))
 }

@@ -1,4 +1,5 @@
-//! A crate's source as modules: what each defines, what it imports, and every path it names.
+//! A crate's source as modules: the names that each module defines and imports, and every path in
+//! its code.
 
 use std::{
     collections::BTreeMap,
@@ -13,23 +14,23 @@ use syn::{
     visit::Visit,
 };
 
-/// One crate of the workspace, read.
+/// A crate of the workspace whose source was read.
 #[derive(Debug)]
 pub struct Crate {
     /// The name of its folder.
     pub name: String,
-    /// Its folder.
+    /// The path of its folder.
     pub folder: PathBuf,
-    /// Its modules, the root first. Modules written inside a file have that file.
+    /// Its modules, the root first. A module inside another module's file has that file.
     pub modules: Vec<Module>,
 }
 
-/// One module that is no test.
+/// A module that is not a test.
 #[derive(Debug, Default)]
 pub struct Module {
     /// Its path from the crate's root; empty for the root.
     pub path: Vec<String>,
-    /// Its file, from the crate's `src`.
+    /// The path of its file, relative to the crate's `src`.
     pub file: PathBuf,
     /// Index of the module that declares it.
     pub parent: Option<usize>,
@@ -37,16 +38,16 @@ pub struct Module {
     pub children: BTreeMap<String, usize>,
     /// Names that it defines itself.
     pub items: Vec<String>,
-    /// What it imports or re-exports.
+    /// Names that it imports or re-exports.
     pub imports: Vec<Import>,
     /// Paths that its code names, each as its segments.
     pub paths: Vec<Vec<String>>,
 }
 
-/// One leaf of a `use`.
+/// A leaf of a `use` declaration.
 #[derive(Debug, Clone)]
 pub struct Import {
-    /// The name that it gives; `None` for `*`.
+    /// The name that it introduces; `None` for `*`.
     pub name: Option<String>,
     /// The path that is imported.
     pub path: Vec<String>,
@@ -73,10 +74,10 @@ pub fn crates_of(root: &Path) -> Result<Vec<PathBuf>> {
     Ok(folders)
 }
 
-/// Reads the modules of the crate in `folder`, beginning at its `lib.rs` or `main.rs`.
+/// Reads the modules of the crate in `folder`, starting at its `lib.rs` or `main.rs`.
 ///
 /// # Errors
-/// When a file cannot be read or is no Rust, or a module has no file.
+/// When a file cannot be read or is not valid Rust, or a module has no file.
 pub fn read_crate(folder: &Path) -> Result<Crate> {
     let src = folder.join("src");
     let root = ["lib.rs", "main.rs"]
@@ -89,7 +90,7 @@ pub fn read_crate(folder: &Path) -> Result<Crate> {
     Ok(Crate { name, folder: folder.to_owned(), modules: reader.modules })
 }
 
-/// Whether what has these attributes is there for tests only.
+/// Whether an item with these attributes is for tests only.
 #[must_use]
 pub fn is_test(attributes: &[Attribute]) -> bool {
     attributes.iter().any(|attribute| {
@@ -115,7 +116,7 @@ impl Reader {
         let text = fs::read_to_string(&on_disk)
             .with_context(|| format!("cannot read {}", on_disk.display()))?;
         let parsed = syn::parse_file(&text)
-            .with_context(|| format!("{} is no Rust that can be read", on_disk.display()))?;
+            .with_context(|| format!("{} is not valid Rust", on_disk.display()))?;
         self.read_items(&parsed.items, file, path, parent)
     }
 
@@ -163,7 +164,8 @@ impl Reader {
         Ok(())
     }
 
-    /// Where `mod name;` finds its file: `#[path]`, or beside or below the file of its parent.
+    /// The path of the file of `mod name;`: given by `#[path]`, or next to or below the file of its
+    /// parent.
     fn file_of(&self, item: &syn::ItemMod, parent: usize) -> Result<PathBuf> {
         let parent = &self.modules[parent];
         let beside = parent.file.parent().unwrap_or(Path::new(""));
@@ -226,7 +228,7 @@ fn import(
     Import { name, path, is_public }
 }
 
-/// What an item defines in its module.
+/// The names that an item defines in its module.
 fn names_of(item: &Item) -> Vec<String> {
     let name = match item {
         Item::Const(item) => &item.ident,
@@ -243,8 +245,8 @@ fn names_of(item: &Item) -> Vec<String> {
     vec![name.to_string()]
 }
 
-/// What a macro defines: its own name, and the names after `enum`, `struct` or `trait` in its text. A macro that writes
-/// types is taken to be called in the file that defines it.
+/// The names that a macro defines: its own name, and the names after `enum`, `struct` or `trait` in
+/// its text. A macro that defines types is assumed to be called in the file that defines it.
 fn names_of_macro(item: &syn::ItemMacro) -> Vec<String> {
     let mut names: Vec<String> = item.ident.iter().map(ToString::to_string).collect();
     gather_definitions(item.mac.tokens.clone(), &mut names);
@@ -269,7 +271,7 @@ fn gather_definitions(tokens: TokenStream, into: &mut Vec<String>) {
     }
 }
 
-/// The attributes of an item; none of the kinds that hold no code.
+/// The attributes of an item; empty for items that contain no code.
 #[must_use]
 pub fn attributes_of(item: &Item) -> &[Attribute] {
     match item {
@@ -288,7 +290,7 @@ pub fn attributes_of(item: &Item) -> &[Attribute] {
     }
 }
 
-/// Gathers every path of an item, those in the arguments of macros such as `format!` among them.
+/// Collects every path in an item, including those in the arguments of macros such as `format!`.
 struct Paths<'a> {
     found: &'a mut Vec<Vec<String>>,
 }
@@ -310,14 +312,15 @@ impl<'ast> Visit<'ast> for Paths<'_> {
     }
 
     fn visit_item_use(&mut self, import: &'ast syn::ItemUse) {
-        // Imports inside a function: what they name is used there.
+        // Names that imports inside a function introduce are used there.
         let mut imports = Vec::new();
         flatten(&import.tree, &mut Vec::new(), false, &mut imports);
         self.found.extend(imports.into_iter().map(|import| import.path));
     }
 }
 
-/// Whether a file in `src` holds nothing but tests: `NAME_tests.rs`, or what lies in the folder of one.
+/// Whether a file in `src` contains only tests: `NAME_tests.rs`, or a file in the folder of such a
+/// file.
 pub(crate) fn is_test_file(file: &Path) -> bool {
     let is_tests = |name: &std::ffi::OsStr| {
         let name = name.to_string_lossy();

@@ -1,4 +1,4 @@
-//! Which file uses which: every path followed to the file that defines what it names.
+//! Which file uses which: every path is followed to the file that defines the name.
 
 use std::{
     collections::BTreeSet,
@@ -7,27 +7,27 @@ use std::{
 
 use crate::source::Crate;
 
-/// One file of a crate uses a name that another one defines.
+/// A use in one file of a name that another file defines.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Use {
     /// Index of the module that uses it.
     pub user: usize,
     /// Index of the module that defines it.
     pub owner: usize,
-    /// What is used.
+    /// The name that is used.
     pub name: String,
 }
 
 impl Use {
-    /// The files of both ends, from the crate's `src`.
+    /// The files of both modules, relative to the crate's `src`.
     #[must_use]
     pub fn files<'a>(&self, of: &'a Crate) -> [&'a Path; 2] {
         [&of.modules[self.user].file, &of.modules[self.owner].file]
     }
 }
 
-/// All uses between different files of `of`, sorted. A re-export is no use by the module that has it; who names the
-/// re-export uses the file behind it.
+/// All uses between different files of `of`, sorted. A re-export is not a use by the module that
+/// contains it; a module that names the re-export uses the file behind it.
 #[must_use]
 pub fn uses(of: &Crate) -> Vec<Use> {
     let mut found = BTreeSet::new();
@@ -47,7 +47,7 @@ pub fn uses(of: &Crate) -> Vec<Use> {
     found.into_iter().collect()
 }
 
-/// Follows paths. `depth` bounds imports that name each other.
+/// Follows paths. `depth` limits the search through imports that name each other.
 struct Resolver<'a> {
     of: &'a Crate,
     depth: u32,
@@ -56,8 +56,8 @@ struct Resolver<'a> {
 const MAX_DEPTH: u32 = 16;
 
 impl Resolver<'_> {
-    /// The module that defines what `path` names when `module` says it, and its name there. `None` if it is none of
-    /// this crate, or a module itself.
+    /// Returns the module that defines the name which `path` denotes in `module`, and the name
+    /// there. `None` for a name from another crate, or for a module itself.
     fn find(&self, module: usize, path: &[String]) -> Option<(usize, String)> {
         if self.depth > MAX_DEPTH {
             return None;
@@ -73,7 +73,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// The same for what lies below `module`.
+    /// Follows a path that starts below `module`.
     fn below(&self, module: usize, path: &[String]) -> Option<(usize, String)> {
         let here = &self.of.modules[module];
         let (first, rest) = path.split_first()?;
@@ -90,7 +90,7 @@ impl Resolver<'_> {
         let named = here.imports.iter().filter(|import| import.name.as_ref() == Some(first));
         for import in named {
             let whole: Vec<String> = import.path.iter().chain(rest).cloned().collect();
-            // `use name;` of another crate imports a name by itself.
+            // `use name;` of another crate imports a name that denotes itself.
             if whole == path {
                 continue;
             }
@@ -109,7 +109,7 @@ impl Resolver<'_> {
     }
 }
 
-/// The files of a crate that are no tests, sorted.
+/// The files of a crate that are not tests, sorted.
 pub(crate) fn files_of(of: &Crate) -> Vec<PathBuf> {
     let files: BTreeSet<&PathBuf> = of.modules.iter().map(|module| &module.file).collect();
     files.into_iter().cloned().collect()

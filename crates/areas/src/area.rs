@@ -1,4 +1,4 @@
-//! An area of the map: the OSM object that it was, its name, its polygons and its true size.
+//! An area of the map: its OSM object, its name, its polygons and its true size.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{AreaClass, Polygon};
 
-/// What an area was in OSM.
+/// The OSM object from which an area comes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum AreaObject {
     /// A closed way.
@@ -18,20 +18,20 @@ pub enum AreaObject {
 /// An area of the map: one object of OSM.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Area {
-    /// Where it comes from.
+    /// The OSM object from which the area comes.
     pub object: AreaObject,
-    /// What it is.
+    /// The class of the area.
     pub class: AreaClass,
     /// Its name, if it has one.
     pub name: Option<String>,
-    /// Its parts; at least one.
+    /// The parts of the area, at least one.
     pub polygons: Vec<Polygon>,
-    /// Its true area on the ellipsoid, square metres.
+    /// The true area on the ellipsoid, square metres.
     pub area_m2: f64,
 }
 
 impl AreaObject {
-    /// `"way"` or `"relation"`, and its id.
+    /// Returns the type of the object, `"way"` or `"relation"`, and its id.
     #[must_use]
     pub const fn parts(self) -> (&'static str, i64) {
         match self {

@@ -5,15 +5,16 @@ use serde::{Deserialize, Serialize};
 use crate::named_classes::named_classes;
 
 named_classes! {
-    /// What an area is on the map. Packages store the numbers of classes, so a new one comes last.
+    /// The class of an area on the map. Packages store the numbers of classes, so a new class comes
+    /// last.
     #[derive(Serialize, Deserialize)]
     #[non_exhaustive]
     AreaClass:
-    /// The sea: what lies on the right of coastlines.
+    /// The sea: everything to the right of coastlines.
     Sea = "sea",
     /// Lakes, reservoirs, wide rivers.
     Water = "water",
-    /// Ice that stays.
+    /// Permanent ice.
     Glacier = "glacier",
     /// Forest and wood.
     Forest = "forest",

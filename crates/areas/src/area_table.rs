@@ -1,29 +1,29 @@
-//! A table says which tags make which class of area; it is checked when it is made.
+//! A table that assigns a class of area to tags; it is validated when it is created.
 
 use std::{collections::BTreeMap, fmt::Write as _};
 
 use crate::AreaClass;
 
-/// Which tags make which class of area. A table is checked when it is made.
+/// The tags that make each class of area. A table is validated when it is created.
 ///
-/// The first tag of an object that the table lists decides; tags are looked at in the order of the table's keys, so that the
-/// order in a file does not matter. The sea has no tags: it is made of coastlines, if the
-/// table wants it.
+/// The first tag of an object that the table lists decides. Tags are checked in the order of the
+/// table's keys, so that their order in a file does not matter. The sea has no tags: it is built
+/// from coastlines, if the table includes it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AreaTable {
     name: String,
-    /// Key, then value → class; keys stand in the order in which they were named first.
+    /// The class of each value, by key; keys are in the order in which they were first named.
     keys: Vec<(String, BTreeMap<String, AreaClass>)>,
     has_sea: bool,
 }
 
-/// Why entries do not make an [`AreaTable`].
+/// The reason why entries do not form an [`AreaTable`].
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
 pub enum AreaTableError {
     #[error(
-        "an area table needs a name of 1 to 64 characters out of a-z, A-Z, 0-9, '.', '-' and '_', got {name:?}"
+        "the name of an area table must have 1 to 64 characters from a-z, A-Z, 0-9, '.', '-' and '_', got {name:?}"
     )]
     Name { name: String },
     #[error("area table {name:?} lists no tags")]
@@ -32,15 +32,19 @@ pub enum AreaTableError {
     Tag { name: String, tag: String },
     #[error("area table {name:?} lists {tag} twice; keep one of the entries")]
     Twice { name: String, tag: String },
-    #[error("area table {name:?} gives tags to the class sea, which is made of coastlines")]
+    #[error(
+        "area table {name:?} assigns tags to the class sea, which is built from coastlines; remove them"
+    )]
     Sea { name: String },
 }
 
 impl AreaTable {
-    /// Takes the table `name`: tags as `key=value`, each with its class. Tags whose keys come first decide first.
+    /// Creates the table `name` from tags as `key=value`, each with its class. Keys that come first
+    /// decide first.
     ///
     /// # Errors
-    /// When the name cannot stand in a package's metadata, a tag is none or is listed twice, or there is none.
+    /// When the name is not valid in a package's metadata, a tag is invalid or is listed twice, or
+    /// there are no tags.
     pub fn new(
         name: impl Into<String>,
         tags: Vec<(String, AreaClass)>,
@@ -75,45 +79,47 @@ impl AreaTable {
         Ok(Self { name, keys, has_sea: false })
     }
 
-    /// The same table with or without the sea, which is made of coastlines.
+    /// Returns the same table with or without the sea, which is built from coastlines.
     #[must_use]
     pub fn with_sea(self, has_sea: bool) -> Self {
         Self { has_sea, ..self }
     }
 
-    /// Whether the sea is wanted.
+    /// Whether the table includes the sea.
     #[must_use]
     pub const fn has_sea(&self) -> bool {
         self.has_sea
     }
 
-    /// Its name, as packages record it.
+    /// Returns the name of the table, as packages record it.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// What an object with these `(key, value)` tags is, or `None`. Of a key that occurs twice the first counts.
+    /// Returns the class of an object with these `(key, value)` tags, or `None`. If a key occurs
+    /// twice, the first value counts.
     #[must_use]
     pub fn classify(&self, tags: &[(&str, &str)]) -> Option<AreaClass> {
         let value_of = |key: &str| tags.iter().find(|(k, _)| *k == key).map(|&(_, value)| value);
         self.keys.iter().find_map(|(key, values)| values.get(value_of(key)?).copied())
     }
 
-    /// The keys, in the order in which they decide.
+    /// Returns the keys, in the order in which they decide.
     pub fn keys(&self) -> impl Iterator<Item = &str> {
         self.keys.iter().map(|(key, _)| key.as_str())
     }
 
-    /// All tags with their class: keys in the order in which they decide, values in alphabetical order.
+    /// Returns all tags with their class: keys in the order in which they decide, values in
+    /// alphabetical order.
     pub fn tags(&self) -> impl Iterator<Item = (&str, &str, AreaClass)> {
         self.keys.iter().flat_map(|(key, values)| {
             values.iter().map(move |(value, &class)| (key.as_str(), value.as_str(), class))
         })
     }
 
-    /// The whole table as text, one tag a line: equal tables give the same text, whatever their files look like, so this text
-    /// is what is hashed.
+    /// Returns the whole table as text, one tag per line. Equal tables give the same text, whatever
+    /// their files look like, so this text is hashed.
     #[must_use]
     pub fn canonical_text(&self) -> String {
         let mut text = format!("name={}\n", self.name);

@@ -1,4 +1,5 @@
-//! Area tables decide by the key that they name first, and refuse entries that contradict each other.
+//! Area tables decide by the key that they list first, and reject entries that contradict each
+//! other.
 
 use super::*;
 

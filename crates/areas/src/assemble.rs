@@ -1,4 +1,4 @@
-//! Ways of an outline, in any order and direction, become polygons with holes.
+//! Builds polygons with holes from the ways of an outline, in any order and direction.
 
 use std::collections::HashMap;
 
@@ -9,45 +9,55 @@ use crate::{
     outline::{OutlineError, OutlineWay},
     planar_graph::{OddEnds, PlanarGraph},
     polygon::{Polygon, Ring},
-    segments::{Segment, segments_of},
+    segments::{OrderedSegment, segments_of},
 };
 
-/// The polygons that an outline surrounds.
+/// The polygons that an outline encloses.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Assembled {
+pub struct AssembledArea {
     /// The polygons in order of their outer rings. No two have inner points in common.
     pub polygons: Vec<Polygon>,
-    /// Segments that were there more than once; of an even number nothing is left.
+    /// The number of repeated segments. Segments that occur an even number of times cancel out.
     pub repeated_segments: u64,
-    /// How often a point of the outline lay in the middle of one of its segments, which was divided there.
+    /// The number of points of the outline that were in the middle of one of its segments; the
+    /// segment was divided there.
     pub divided_segments: u64,
 }
 
-/// Makes polygons of the ways of an outline, in any order and direction.
+/// Builds polygons from the ways of an outline, in any order and direction.
 ///
-/// What is inside is decided by the even-odd rule: a place is inside if a line from it to far away meets the outline an odd
-/// number of times. Roles of ways (`outer`, `inner`) are not asked for, as they are often wrong. So a segment that is there
-/// twice counts as none: neighbouring outer rings become one polygon. Rings that touch at points are told apart so that each
-/// polygon is connected and no ring touches itself. Where a point lies in the middle of a segment, the segment is divided.
+/// The even-odd rule decides what is inside: a place is inside if a line from it to far away meets
+/// the outline an odd number of times. The roles of ways (`outer`, `inner`) are ignored, because
+/// they are often wrong. A segment that occurs twice therefore counts as none: neighbouring outer
+/// rings become one polygon. Rings that touch at points are separated so that each polygon is
+/// connected and no ring touches itself. Where a point is in the middle of a segment, the segment
+/// is divided.
 ///
-/// Takes time n log n for n points, and for each connected part the segments west and east of it.
+/// The time is n log n for n points, plus, for each connected part, the number of segments to the
+/// west and east of it.
 ///
-/// Source of the rules: Jochen Topf, *libosmium*, "Multipolygon assembler", which this agrees with where both make an area; the
-/// method with half-edges is from de Berg, Cheong, van Kreveld & Overmars, *Computational Geometry* (2008), section 2.2.
+/// Source of the rules: Jochen Topf, *libosmium*, "Multipolygon assembler", which gives the same
+/// areas where both give one; the method with half-edges is from de Berg, Cheong, van Kreveld &
+/// Overmars, *Computational Geometry* (2008), section 2.2.
 ///
 /// # Errors
-/// When an end is open, segments cross between their points, or nothing is left.
-pub fn assemble(ways: &[OutlineWay<'_>]) -> Result<Assembled, OutlineError> {
+/// When an end is open, segments cross between their points, or nothing remains.
+pub fn assemble(ways: &[OutlineWay<'_>]) -> Result<AssembledArea, OutlineError> {
     let found = segments_of(ways)?;
     if found.segments.is_empty() {
         return Err(OutlineError::Nothing);
     }
     let polygons = polygons_of(found.segments)?;
-    Ok(Assembled { polygons, repeated_segments: found.cancelled, divided_segments: found.divided })
+    Ok(AssembledArea {
+        polygons,
+        repeated_segments: found.cancelled,
+        divided_segments: found.divided,
+    })
 }
 
-/// The polygons that segments surround which meet at their ends only, in order of their outer rings.
-pub(crate) fn polygons_of(segments: Vec<Segment>) -> Result<Vec<Polygon>, OutlineError> {
+/// Returns the polygons enclosed by segments that meet only at their ends, in order of their outer
+/// rings.
+pub(crate) fn polygons_of(segments: Vec<OrderedSegment>) -> Result<Vec<Polygon>, OutlineError> {
     let graph = PlanarGraph::new(segments)
         .map_err(|OddEnds { count, first }| OutlineError::Open { ends: count, first })?;
     let faces = inner_faces(&graph);
@@ -56,13 +66,14 @@ pub(crate) fn polygons_of(segments: Vec<Segment>) -> Result<Vec<Polygon>, Outlin
     Ok(polygons)
 }
 
-/// The polygon of a face. A walk that comes to a point again is divided there, so that no ring touches itself.
+/// Returns the polygon of a face. A walk that reaches a point again is divided there, so that no
+/// ring touches itself.
 fn polygon_of(graph: &PlanarGraph, walks: &[Vec<usize>]) -> Polygon {
     let mut rings = Vec::new();
     for walk in walks {
         rings_of(walk.iter().map(|&half| graph.origin(half)), &mut rings);
     }
-    // A face has one ring around it; all others are around holes.
+    // A face has one ring around it; all other rings are around holes.
     let (mut outer, holes): (Vec<Ring>, Vec<Ring>) =
         rings.into_iter().partition(|ring| ring.doubled_area() > 0);
     debug_assert_eq!(outer.len(), 1, "a face has one outer ring");

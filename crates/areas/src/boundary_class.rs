@@ -1,9 +1,11 @@
 //! The classes of boundaries, from countries to protected areas, and the tags that make them.
 
-use crate::{class_table::ClassTable, named_classes::named_classes};
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::named_classes::named_classes;
 
 named_classes! {
-    /// What a boundary divides. A class with a lower number is more important.
+    /// The class of a boundary. A class with a lower number is more important.
     BoundaryClass:
     /// Countries: `admin_level=2`.
     Admin2 = "admin-2",
@@ -24,20 +26,21 @@ named_classes! {
 }
 
 impl BoundaryClass {
-    /// Districts and parks are too small to be drawn where cells are large.
-    pub(crate) const TABLE: ClassTable = ClassTable {
-        title: "Boundaries",
-        key: "boundary",
-        of_tags: |tags| Self::of_tags(tags).map(Self::number),
-        has_relations: true,
-        names: &Self::NAMES,
-        coarsest_cells_m: &{
-            let (county, small) = (Some(250.0), Some(80.0));
-            [None, None, None, county, county, small, small, small]
-        },
-    };
+    /// The OSM key that every boundary has.
+    pub const KEY: &str = "boundary";
 
-    /// OSM's `admin_level` of its relations; `None` for protected areas.
+    /// Returns the coarsest cell size, metres, of the levels on which its lines are stored; `None`
+    /// for all levels. Districts and parks are too small to be drawn where cells are large.
+    #[must_use]
+    pub const fn coarsest_cell_m(self) -> Option<f64> {
+        match self {
+            Self::Admin2 | Self::Admin3 | Self::Admin4 => None,
+            Self::Admin5 | Self::Admin6 => Some(250.0),
+            Self::Admin7 | Self::Admin8 | Self::Protected => Some(80.0),
+        }
+    }
+
+    /// Returns the OSM `admin_level` of its relations; `None` for protected areas.
     #[must_use]
     pub const fn admin_level(self) -> Option<u8> {
         match self {
@@ -46,7 +49,7 @@ impl BoundaryClass {
         }
     }
 
-    /// What people call such boundaries, for legends.
+    /// Returns a label for such boundaries, for legends.
     #[must_use]
     pub const fn label(self) -> &'static str {
         match self {
@@ -61,12 +64,12 @@ impl BoundaryClass {
         }
     }
 
-    /// What a way or relation with these `(key, value)` tags bounds; `None` if it is no such boundary. Of a key that occurs twice the
-    /// first counts.
+    /// Returns the class of a way or relation with these `(key, value)` tags; `None` if it is not
+    /// such a boundary. If a key occurs twice, the first value counts.
     #[must_use]
     pub fn of_tags(tags: &[(&str, &str)]) -> Option<Self> {
         let value_of = |key: &str| tags.iter().find(|(k, _)| *k == key).map(|&(_, value)| value);
-        match value_of("boundary")? {
+        match value_of(Self::KEY)? {
             "administrative" => {
                 let level: usize = value_of("admin_level")?.parse().ok()?;
                 Self::ALL[..Self::COUNT - 1].get(level.checked_sub(2)?).copied()
@@ -76,6 +79,9 @@ impl BoundaryClass {
         }
     }
 }
+
+/// The names of the objects that each way bounds, by the id of the way and the class of the object.
+pub type BoundaryNames = BTreeMap<i64, BTreeMap<BoundaryClass, BTreeSet<String>>>;
 
 #[cfg(test)]
 #[path = "boundary_class_tests.rs"]

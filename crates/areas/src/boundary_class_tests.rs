@@ -1,25 +1,26 @@
-//! Administrative levels and protected areas have boundary classes, and names and numbers lead back to them.
+//! Administrative levels and protected areas have boundary classes, whose names and numbers lead
+//! back to them.
 
 use super::*;
 
-fn of(tags: &[(&str, &str)]) -> Option<BoundaryClass> {
+fn class_of_tags(tags: &[(&str, &str)]) -> Option<BoundaryClass> {
     BoundaryClass::of_tags(tags)
 }
 
 #[test]
 fn levels_and_protected_areas_are_classes() {
-    let admin = |level| of(&[("boundary", "administrative"), ("admin_level", level)]);
+    let admin = |level| class_of_tags(&[("boundary", "administrative"), ("admin_level", level)]);
     assert_eq!(admin("2"), Some(BoundaryClass::Admin2));
     assert_eq!(admin("8"), Some(BoundaryClass::Admin8));
     for none in ["1", "9", "10", "0", "", "two", "4;6", "-2"] {
         assert_eq!(admin(none), None, "{none:?}");
     }
-    assert_eq!(of(&[("boundary", "administrative")]), None);
+    assert_eq!(class_of_tags(&[("boundary", "administrative")]), None);
     for value in ["protected_area", "national_park"] {
-        assert_eq!(of(&[("boundary", value)]), Some(BoundaryClass::Protected));
+        assert_eq!(class_of_tags(&[("boundary", value)]), Some(BoundaryClass::Protected));
     }
-    assert_eq!(of(&[("boundary", "postal_code"), ("admin_level", "4")]), None);
-    assert_eq!(of(&[("admin_level", "4")]), None);
+    assert_eq!(class_of_tags(&[("boundary", "postal_code"), ("admin_level", "4")]), None);
+    assert_eq!(class_of_tags(&[("admin_level", "4")]), None);
 }
 
 #[test]

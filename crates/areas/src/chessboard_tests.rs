@@ -1,4 +1,4 @@
-//! Areas for tests: cells of a chessboard.
+//! Random areas for tests: cells of a chessboard.
 
 use std::collections::BTreeSet;
 
@@ -8,12 +8,13 @@ use proptest::prelude::*;
 
 use crate::{Polygon, Ring};
 
-/// Cells of a chessboard that are inside.
+/// Generates the cells of a chessboard that are inside.
 pub(crate) fn cells() -> impl Strategy<Value = BTreeSet<(i64, i64)>> {
     prop::collection::btree_set((0_i64..9, 0_i64..9), 1..60)
 }
 
-/// The borders between cells inside and outside as ways, cut and turned by chance: bit by bit `seed` decides.
+/// Returns the borders between inner and outer cells as ways, which are cut and turned at random;
+/// the bits of `seed` decide.
 pub(crate) fn ways_around(cells: &BTreeSet<(i64, i64)>, seed: u64) -> Vec<Vec<LatticePoint>> {
     let mut edges: Vec<[(i64, i64); 2]> = Vec::new();
     for &(x, y) in cells {
@@ -51,7 +52,7 @@ pub(crate) fn ways_around(cells: &BTreeSet<(i64, i64)>, seed: u64) -> Vec<Vec<La
     ways.into_iter().map(|way| way.into_iter().map(placed).collect()).collect()
 }
 
-/// Numbers below the one that is asked for (Marsaglia 2003, *Xorshift RNGs*).
+/// Returns a generator of numbers below a given one (Marsaglia 2003, *Xorshift RNGs*).
 pub(crate) fn random(mut seed: u64) -> impl FnMut(usize) -> usize {
     move |below: usize| {
         seed ^= seed << 13;
@@ -61,15 +62,15 @@ pub(crate) fn random(mut seed: u64) -> impl FnMut(usize) -> usize {
     }
 }
 
-/// Corners of cells in a place where no side is level or upright.
+/// Returns the corner of a cell at a position where no side is horizontal or vertical.
 pub(crate) fn placed((x, y): (i64, i64)) -> LatticePoint {
     LatticePoint::new(7 * x - 2 * y, 3 * x + 11 * y)
 }
 
-/// Doubled area of a cell there.
+/// The doubled area of a cell with those corners.
 pub(crate) const DOUBLED_CELL: i128 = 2 * (7 * 11 + 2 * 3);
 
-/// How many groups of cells are connected by their sides.
+/// Returns the number of groups of cells that are connected by their sides.
 pub(crate) fn groups(cells: &BTreeSet<(i64, i64)>) -> usize {
     let mut left = cells.clone();
     let mut groups = 0;
@@ -93,7 +94,7 @@ pub(crate) fn to_geo(polygon: &Polygon) -> geo::Polygon<f64> {
     geo::Polygon::new(line(polygon.outer()), polygon.holes().iter().map(line).collect())
 }
 
-/// The polygons of some cells.
+/// Returns the polygons of some cells.
 pub(crate) fn polygons_around(cells: &BTreeSet<(i64, i64)>) -> Vec<Polygon> {
     let ways = ways_around(cells, 1);
     let ways: Vec<_> = ways.iter().map(|points| crate::OutlineWay { points }).collect();

@@ -1,4 +1,5 @@
-//! Polygons are put on a coarser lattice, which may join or divide them, and stay free of crossings.
+//! Snaps polygons to a coarser lattice, which may join or divide them, and keeps them free of
+//! crossings.
 
 use corniche_geom::LatticePoint;
 
@@ -9,26 +10,28 @@ use crate::{
     segments::uncrossed_segments_of,
 };
 
-/// A polygon with its points on a coarser lattice: whole multiples of `step`.
+/// Snaps a polygon to a coarser lattice, whose points are whole multiples of `step`.
 ///
-/// Each point goes to the nearest point of the coarse lattice, whatever its neighbours are. So two areas that share a part of their
-/// borders share it afterwards, too, and what is narrower than a step falls together. Where segments cross then, both are led
-/// through the coarse point nearest to the crossing. No point moves farther than half a step along each axis, but for such points.
+/// Each point moves to the nearest point of the coarse lattice, whatever its neighbours are. So two
+/// areas that share a part of their borders still share it afterwards, and parts narrower than a
+/// step collapse. Where segments then cross, both are routed through the coarse point nearest to
+/// the crossing. Except for such points, no point moves farther than half a step along each axis.
 ///
-/// Empty where nothing is left. `step` must be above 0.
+/// The result is empty if nothing remains. `step` must be above 0.
 ///
 /// # Errors
-/// [`OutlineError::TooIntricate`], for polygons far beyond what is real.
+/// [`OutlineError::TooIntricate`], for polygons far beyond what is realistic.
 pub fn coarsen(polygon: &Polygon, step: i64) -> Result<Vec<Polygon>, OutlineError> {
     let rings: Vec<&[LatticePoint]> = polygon.rings().map(Ring::points).collect();
     surrounded(&rings, step)
 }
 
-/// What closed lines surround by the even-odd rule, with points on a coarser lattice as in [`coarsen`]. Lines may cross themselves and each
-/// other; the point after the last one of each is its first.
+/// Returns the polygons that closed lines enclose by the even-odd rule, with points on a coarser
+/// lattice as in [`coarsen`]. Lines may cross themselves and each other; the last point of each
+/// line connects to its first.
 ///
 /// # Errors
-/// [`OutlineError::TooIntricate`], for lines far beyond what is real.
+/// [`OutlineError::TooIntricate`], for lines far beyond what is realistic.
 pub fn surrounded(rings: &[&[LatticePoint]], step: i64) -> Result<Vec<Polygon>, OutlineError> {
     let to_coarse = |part: i64| (2 * part + step).div_euclid(2 * step);
     let coarse = |point: &LatticePoint| LatticePoint::new(to_coarse(point.u), to_coarse(point.v));

@@ -1,4 +1,4 @@
-//! Coarse polygons are valid and near to the fine ones, and shared borders stay shared.
+//! Coarse polygons are valid and close to the fine ones, and shared borders stay shared.
 
 use std::collections::BTreeSet;
 
@@ -43,7 +43,7 @@ fn lines_that_cross_surround_what_the_even_odd_rule_says() {
     assert_eq!(surrounded(&[&points(&[[0, 0], [9, 9]])], 1).unwrap(), []);
 }
 
-/// A thin point reaches through a line that it does not touch before it is coarsened.
+/// A narrow spike crosses a line that it did not touch before it was coarsened.
 #[test]
 fn segments_that_come_to_cross_are_led_through_one_point() {
     let outline: Vec<LatticePoint> =
@@ -64,7 +64,8 @@ fn segments_that_come_to_cross_are_led_through_one_point() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(if cfg!(miri) { 4 } else { 300 }))]
 
-    /// Coarse polygons are valid, on the coarse lattice, near to the fine ones, and coarse already.
+    /// Coarse polygons are valid, on the coarse lattice, close to the fine ones, and unchanged if
+    /// coarsened again.
     #[test]
     fn coarse_polygons_are_valid_and_near(cells in cells(), step in 1_i64..30) {
         for polygon in polygons_around(&cells) {
@@ -77,13 +78,15 @@ proptest! {
             }
             let points: usize = polygon.rings().map(|ring| ring.points().len()).sum();
             let area: i128 = coarse.iter().map(Polygon::doubled_area).sum();
-            // Each side sweeps over less than a step on both sides; sides of cells are 14 long at most.
+            // Each side sweeps over less than a step on both sides; sides of cells are at most 14
+            // long.
             let off = (area - polygon.doubled_area()).abs();
             prop_assert!(off <= 2 * (14 + i128::from(step)) * i128::from(step) * points as i128, "{off}");
         }
     }
 
-    /// Where two areas share their border, their coarse forms do, too: together they are the coarse form of both as one.
+    /// If two areas share a border, their coarse forms share it, too: together they are the coarse
+    /// form of both as one.
     #[test]
     fn shared_borders_stay_shared(cells in cells(), step in 1_i64..6, column in 1_i64..8) {
         let (west, east): (BTreeSet<_>, BTreeSet<_>) = cells.iter().copied().partition(|cell| cell.0 < column);

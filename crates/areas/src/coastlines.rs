@@ -1,28 +1,28 @@
-//! Coastlines joined, and cut by a region.
+//! Joins coastlines, and clips them to a region.
 
 use std::collections::{HashMap, HashSet, VecDeque};
 
 use corniche_geom::{LatticePoint, LatticeRegion};
 
-/// A way between land on its left and sea on its right.
+/// A way with land on its left and sea on its right.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Coastline {
     /// The way in OSM.
     pub way_id: i64,
-    /// Its points in order; neighbouring ones are joined.
+    /// Its points in order; consecutive points are connected.
     pub points: Vec<LatticePoint>,
 }
 
-/// Coastlines one after the other. A ring has its first point again at the end.
+/// Coastlines joined one after the other. A ring repeats its first point at the end.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Chain {
+pub(crate) struct CoastlineChain {
     pub(crate) points: Vec<LatticePoint>,
     /// The way of each segment.
     pub(crate) ways: Vec<i64>,
 }
 
-impl Chain {
-    fn of(coastline: Coastline) -> Self {
+impl CoastlineChain {
+    fn from_coastline(coastline: Coastline) -> Self {
         let ways = vec![coastline.way_id; coastline.points.len().saturating_sub(1)];
         Self { points: coastline.points, ways }
     }
@@ -39,7 +39,7 @@ impl Chain {
         self.points.last().copied()
     }
 
-    /// Goes on along `next`.
+    /// Appends the chain `next`.
     pub(crate) fn append(&mut self, next: Self) {
         if self.last() == next.first() {
             self.points.pop();
@@ -50,15 +50,16 @@ impl Chain {
         self.ways.extend(next.ways);
     }
 
-    /// Goes on straight to a point.
+    /// Appends a straight segment to a point.
     pub(crate) fn push(&mut self, point: LatticePoint) {
         self.points.push(point);
         self.ways.extend(self.ways.last().copied());
     }
 }
 
-/// Joins coastlines where one ends and another begins, as far as they go. Where several begin, that with the smallest id goes on.
-pub(crate) fn join(mut coastlines: Vec<Coastline>) -> Vec<Chain> {
+/// Joins coastlines where one ends and another begins, as far as possible. Where several begin, the
+/// one with the smallest id continues the chain.
+pub(crate) fn join(mut coastlines: Vec<Coastline>) -> Vec<CoastlineChain> {
     coastlines.retain(|coastline| coastline.points.len() >= 2);
     coastlines.sort_unstable();
     coastlines.dedup();
@@ -68,26 +69,26 @@ pub(crate) fn join(mut coastlines: Vec<Coastline>) -> Vec<Chain> {
     }
     let ends: HashSet<LatticePoint> =
         coastlines.iter().filter_map(|coastline| coastline.points.last().copied()).collect();
-    // Chains with an open beginning first; what then is left are rings.
+    // Chains with an open beginning come first; the rest are rings.
     let (open, rings): (Vec<usize>, Vec<usize>) =
         (0..coastlines.len()).partition(|&index| !ends.contains(&coastlines[index].points[0]));
     let mut left: Vec<Option<Coastline>> = coastlines.into_iter().map(Some).collect();
     let mut chains = Vec::new();
     for index in open.into_iter().chain(rings) {
         let Some(first) = left[index].take() else { continue };
-        let mut chain = Chain::of(first);
+        let mut chain = CoastlineChain::from_coastline(first);
         while !chain.is_ring()
             && let Some(at) = chain.last()
             && let Some(next) = take_next(&mut beginning, at, &mut left)
         {
-            chain.append(Chain::of(next));
+            chain.append(CoastlineChain::from_coastline(next));
         }
         chains.push(chain);
     }
     chains
 }
 
-/// The coastline with the smallest id that begins at a point and is not in a chain yet.
+/// Takes the coastline with the smallest id that begins at a point and is not in a chain yet.
 fn take_next(
     beginning: &mut HashMap<LatticePoint, VecDeque<usize>>,
     at: LatticePoint,
@@ -102,10 +103,11 @@ fn take_next(
     None
 }
 
-/// The parts of a chain inside a region, its edge included, in order. Only a whole ring stays a ring.
-pub(crate) fn cut(chain: &Chain, region: &LatticeRegion) -> Vec<Chain> {
-    let mut parts: Vec<Chain> = Vec::new();
-    // Whether the last part goes on from the end of the last segment.
+/// Returns the parts of a chain inside a region, including its edge, in order. Only a whole ring
+/// stays a ring.
+pub(crate) fn cut(chain: &CoastlineChain, region: &LatticeRegion) -> Vec<CoastlineChain> {
+    let mut parts: Vec<CoastlineChain> = Vec::new();
+    // Whether the last part continues from the end of the last segment.
     let mut open = false;
     for (&[from, to], &way_id) in chain.points.array_windows::<2>().zip(&chain.ways) {
         let whole = || if region.contains(from) { vec![[0.0, 1.0]] } else { Vec::new() };
@@ -118,12 +120,15 @@ pub(crate) fn cut(chain: &Chain, region: &LatticeRegion) -> Vec<Chain> {
                     part.points.push(inner_to);
                     part.ways.push(way_id);
                 }
-                _ => parts.push(Chain { points: vec![inner_from, inner_to], ways: vec![way_id] }),
+                _ => parts.push(CoastlineChain {
+                    points: vec![inner_from, inner_to],
+                    ways: vec![way_id],
+                }),
             }
         }
         open = is_open;
     }
-    // A ring that begins inside goes on at its beginning.
+    // A ring that begins inside continues at its beginning.
     if chain.is_ring()
         && open
         && parts.len() > 1
@@ -133,7 +138,7 @@ pub(crate) fn cut(chain: &Chain, region: &LatticeRegion) -> Vec<Chain> {
         last.append(parts[0].clone());
         parts[0] = last;
     }
-    // A touch from outside is a point.
+    // A touch from outside is a single point, so it is dropped.
     parts.retain(|part| part.points.iter().any(|&point| Some(point) != part.first()));
     parts
 }

@@ -1,4 +1,4 @@
-//! Coastlines in any order are joined to chains and rings and cut where they cross the edge.
+//! Coastlines in any order are joined to chains and rings, and cut where they cross the edge.
 
 use super::*;
 
@@ -15,7 +15,7 @@ fn bounds() -> LatticeRegion {
     region(&[(0, 0), (100, 0), (100, 60), (0, 60)])
 }
 
-fn points(chain: &Chain) -> Vec<(i64, i64)> {
+fn points(chain: &CoastlineChain) -> Vec<(i64, i64)> {
     chain.points.iter().map(|point| (point.u, point.v)).collect()
 }
 
@@ -36,7 +36,7 @@ fn ways_in_any_order_make_chains_and_rings() {
     assert_eq!(points(&chains[1]), [(55, 20), (50, 10), (60, 10), (55, 20)]);
 }
 
-/// Where points of a way cannot be placed, it comes in several runs.
+/// If points of a way cannot be converted, the way has several parts.
 #[test]
 fn all_runs_of_a_way_count() {
     let chains = join(vec![coast(5, &[(1, 1), (2, 2)]), coast(5, &[(8, 8), (9, 9)])]);
@@ -49,13 +49,13 @@ fn a_chain_is_cut_where_it_crosses_the_edge() {
     let cut_points = |points_of: &[(i64, i64)]| {
         cut(&chain(points_of), &bounds()).iter().map(points).collect::<Vec<_>>()
     };
-    // Through two sides, with a vertex inside.
+    // The line passes through two sides, with a vertex inside.
     assert_eq!(cut_points(&[(-20, 10), (20, 30), (20, 90)]), [[(0, 20), (20, 30), (20, 60)]]);
-    // Past a corner, and beside it.
+    // The line passes a corner outside the rectangle.
     assert_eq!(cut_points(&[(-10, 10), (10, -10)]), [[(0, 0); 0]; 0]);
     assert_eq!(cut_points(&[(-5, 10), (15, -10)]), [[(0, 5), (5, 0)]]);
     assert!(cut_points(&[(-10, 5), (5, -11)]).is_empty());
-    // Out and in again; a touch from inside does not part it.
+    // The line leaves and enters again; a touch from inside does not divide it.
     assert_eq!(
         cut_points(&[(50, 30), (50, 60), (60, 30), (60, 90), (70, 90), (70, 30)]),
         [vec![(50, 30), (50, 60), (60, 30), (60, 60)], vec![(70, 60), (70, 30)]]
@@ -67,7 +67,7 @@ fn a_chain_is_cut_where_it_crosses_the_edge() {
     );
 }
 
-/// Cut at edges in any direction; the ends are rounded.
+/// Edges in any direction cut the lines; the ends are rounded.
 #[test]
 fn a_chain_is_cut_by_a_region_that_is_no_rectangle() {
     let diamond = region(&[(0, -50), (50, 0), (0, 50), (-50, 0)]);

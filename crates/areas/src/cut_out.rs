@@ -1,13 +1,13 @@
-//! Polygons are cut to a rectangle, one side after the other.
+//! Clips polygons to a rectangle, one side after the other.
 
 use corniche_geom::LatticeBounds;
 
 use crate::{Axis, OutlineError, Polygon, divide};
 
-/// The parts of polygons inside a rectangle.
+/// Returns the parts of polygons inside a rectangle.
 ///
 /// # Errors
-/// As [`divide`].
+/// The same as for [`divide`].
 pub fn cut_out(polygons: &[Polygon], bounds: &LatticeBounds) -> Result<Vec<Polygon>, OutlineError> {
     let [_, east] = divide_all(polygons, Axis::East, bounds.min.u)?;
     let [inside, _] = divide_all(&east, Axis::East, bounds.max.u)?;
@@ -16,10 +16,10 @@ pub fn cut_out(polygons: &[Polygon], bounds: &LatticeBounds) -> Result<Vec<Polyg
     Ok(inside)
 }
 
-/// [`divide`] for several polygons at once.
+/// Divides several polygons at once; see [`divide`].
 ///
 /// # Errors
-/// As [`divide`].
+/// The same as for [`divide`].
 pub fn divide_all(
     polygons: &[Polygon],
     axis: Axis,

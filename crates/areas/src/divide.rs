@@ -1,4 +1,4 @@
-//! A polygon is divided by an upright or level line, and both sides get the same new points.
+//! Divides a polygon by a vertical or horizontal line; both sides get the same new points.
 
 use corniche_geom::LatticePoint;
 
@@ -9,18 +9,19 @@ use crate::{
     segments::uncrossed_segments_of,
 };
 
-/// Along which axis a polygon is divided.
+/// The axis along which a polygon is divided.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Axis {
-    /// An upright line divides into a western and an eastern part.
+    /// A vertical line divides the polygon into a western and an eastern part.
     East,
-    /// A level line divides into a southern and a northern part.
+    /// A horizontal line divides the polygon into a southern and a northern part.
     North,
 }
 
-/// The parts of a polygon on both sides of a line: that with smaller coordinates first. Where the polygon lies on
-/// both sides of the line, both cover the same of it, between the same points. Where the outline runs along the line, the part on its inner side
-/// alone has it, and so with a corner that only touches the line.
+/// Returns the parts of a polygon on both sides of a line, the side with smaller coordinates first.
+/// Where the polygon is on both sides of the line, both parts cover the same stretch of the line,
+/// between the same points. Where the outline runs along the line, only the part on its inner side
+/// includes that stretch; the same applies to a corner that only touches the line.
 ///
 /// ```text
 ///        │                       each ring is cut at the line; what that adds along the line is there
@@ -31,16 +32,18 @@ pub enum Axis {
 ///        │
 /// ```
 ///
-/// A segment is cut at the lattice point on the line that is nearest to the crossing. If tiles are cut out of an area by dividing it
-/// like a quadtree, neighbours have the same points on their border, because that line has divided both at once.
+/// A segment is cut at the lattice point on the line that is nearest to the crossing. If tiles are
+/// cut out of an area by dividing it like a quadtree, neighbours have the same points on their
+/// common border, because one division by that line created both.
 ///
-/// Source: Sutherland & Hodgman 1974, *Reentrant Polygon Clipping*, Communications of the ACM 17; then polygons are assembled
-/// anew, because that method joins separate parts by segments along the line.
+/// Source: Sutherland & Hodgman 1974, *Reentrant Polygon Clipping*, Communications of the ACM 17.
+/// Afterwards polygons are assembled again, because that method joins separate parts by segments
+/// along the line.
 ///
 /// # Errors
-/// [`OutlineError::TooIntricate`], for polygons far beyond what is real.
+/// [`OutlineError::TooIntricate`], for polygons far beyond what is realistic.
 pub fn divide(polygon: &Polygon, axis: Axis, at: i64) -> Result<[Vec<Polygon>; 2], OutlineError> {
-    let line = Line { axis, at };
+    let line = DivisionLine { axis, at };
     let own = || vec![polygon.clone()];
     let points = polygon.outer().points();
     if points.iter().all(|&point| line.along(point) <= at) {
@@ -53,7 +56,7 @@ pub fn divide(polygon: &Polygon, axis: Axis, at: i64) -> Result<[Vec<Polygon>; 2
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Line {
+struct DivisionLine {
     axis: Axis,
     at: i64,
 }
@@ -64,7 +67,7 @@ enum LineSide {
     Larger,
 }
 
-impl Line {
+impl DivisionLine {
     fn along(self, point: LatticePoint) -> i64 {
         match self.axis {
             Axis::East => point.u,
@@ -86,7 +89,8 @@ impl Line {
         polygons_of(uncrossed_segments_of(&ways)?)
     }
 
-    /// The points of a ring on one side of the line, the first once more at the end. Points on the line are on both sides.
+    /// Returns the points of a ring on one side of the line, with the first repeated at the end.
+    /// Points on the line belong to both sides.
     fn part_of_ring(self, ring: &Ring, part: LineSide) -> Vec<LatticePoint> {
         let is_kept = |point: LatticePoint| match part {
             LineSide::Smaller => self.along(point) <= self.at,
@@ -105,7 +109,8 @@ impl Line {
         kept
     }
 
-    /// Where a segment crosses the line. Its direction does not matter.
+    /// Returns the point where a segment crosses the line. The direction of the segment does not
+    /// matter.
     fn crossing(self, from: LatticePoint, to: LatticePoint) -> LatticePoint {
         let [a, b] = if self.along(from) < self.along(to) { [from, to] } else { [to, from] };
         let length = i128::from(self.along(b) - self.along(a));

@@ -12,8 +12,9 @@ fn doubled_area(polygons: &[Polygon]) -> i128 {
     polygons.iter().map(Polygon::doubled_area).sum()
 }
 
-/// Where the border of some polygons runs along the line: pieces that do not touch, in order.
-fn along_line(polygons: &[Polygon], line: Line) -> Vec<[i64; 2]> {
+/// Returns the stretches of the line along which the borders of some polygons run: stretches that
+/// do not touch, in order.
+fn along_line(polygons: &[Polygon], line: DivisionLine) -> Vec<[i64; 2]> {
     let segments = polygons.iter().flat_map(Polygon::rings).flat_map(Ring::segments);
     let on_line = segments.filter(|ends| ends.iter().all(|&end| line.along(end) == line.at));
     let mut pieces: Vec<[i64; 2]> = on_line
@@ -33,7 +34,7 @@ fn along_line(polygons: &[Polygon], line: Line) -> Vec<[i64; 2]> {
 
 #[test]
 fn a_comb_falls_into_its_teeth() {
-    // Three teeth to the east, joined in the west.
+    // Three teeth point to the east and are joined in the west.
     let outline: Vec<LatticePoint> = [
         [0, 0],
         [10, 0],
@@ -55,20 +56,21 @@ fn a_comb_falls_into_its_teeth() {
     let [back, teeth] = divide(&comb, Axis::East, 6).unwrap();
     assert_eq!((back.len(), teeth.len()), (1, 3));
     assert!(teeth.iter().all(|tooth| tooth.doubled_area() == 16));
-    // Exactly where the teeth begin: no point of the line belongs to both but the teeth's own.
+    // The line is exactly where the teeth begin: only the teeth's own points on the line belong to
+    // both parts.
     let [back, teeth] = divide(&comb, Axis::East, 4).unwrap();
     assert_eq!((doubled_area(&back), teeth.len()), (80, 3));
-    // Beside it.
+    // The line is outside the polygon.
     assert_eq!(divide(&comb, Axis::North, 10).unwrap(), [vec![comb.clone()], vec![]]);
     assert_eq!(divide(&comb, Axis::North, -3).unwrap(), [vec![], vec![comb]]);
 }
 
-/// Corners of cells whose sides are level and upright.
+/// Returns the corner of a cell whose sides are horizontal and vertical.
 fn upright([x, y]: [i64; 2]) -> LatticePoint {
     LatticePoint::new(10 * x, 10 * y)
 }
 
-/// The polygons around cells whose sides are level and upright.
+/// Returns the polygons around cells whose sides are horizontal and vertical.
 fn upright_polygons(cells: &BTreeSet<(i64, i64)>) -> Vec<Polygon> {
     let ring = |&(x, y): &(i64, i64)| {
         [[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1], [x, y]].map(upright)
@@ -81,12 +83,12 @@ fn upright_polygons(cells: &BTreeSet<(i64, i64)>) -> Vec<Polygon> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(if cfg!(miri) { 4 } else { 300 }))]
 
-    /// Nothing is lost and nothing is there twice, but for rounding on the line, along which both parts have the same border. Both
-    /// are valid.
+    /// Nothing is lost and nothing occurs twice, except for rounding on the line, where both parts
+    /// have the same border. Both parts are valid.
     #[test]
     fn parts_add_up(cells in cells(), is_east: bool, at in -25_i64..130) {
         let axis = if is_east { Axis::East } else { Axis::North };
-        let line = Line { axis, at };
+        let line = DivisionLine { axis, at };
         for polygon in polygons_around(&cells) {
             let [smaller, larger] = divide(&polygon, axis, at).unwrap();
             prop_assert!(smaller.iter().flat_map(Polygon::rings).flat_map(Ring::points).all(|&p| line.along(p) <= at));
@@ -94,7 +96,8 @@ proptest! {
             if !smaller.is_empty() && !larger.is_empty() {
                 prop_assert_eq!(along_line(&smaller, line), along_line(&larger, line));
             }
-            // A cut moves by half a step at most, and what it moves is a triangle no longer than a side of a cell.
+            // A cut moves by at most half a step, and the area that it moves is a triangle no
+            // longer than a side of a cell.
             let cuts = 2 + 2 * along_line(&smaller, line).len() as i128;
             let off = doubled_area(&smaller) + doubled_area(&larger) - polygon.doubled_area();
             prop_assert!(off.abs() <= 12 * cuts, "{off}");
@@ -104,11 +107,12 @@ proptest! {
         }
     }
 
-    /// Where the outline runs along the line, nothing moves: each part is what lies on its side. So one part alone covers the line there.
+    /// If the outline runs along the line, nothing moves: each part is what is on its side of the
+    /// line. So only one part covers the line there.
     #[test]
     fn a_line_along_the_outline(cells in cells(), is_east: bool, column in 0_i64..10) {
         let axis = if is_east { Axis::East } else { Axis::North };
-        let line = Line { axis, at: 10 * column };
+        let line = DivisionLine { axis, at: 10 * column };
         let is_smaller = |&(x, y): &(i64, i64)| (if is_east { x } else { y }) < column;
         let sides: [BTreeSet<_>; 2] = [true, false].map(|side| cells.iter().copied().filter(|cell| is_smaller(cell) == side).collect());
         let [mut smaller, mut larger] = [Vec::new(), Vec::new()];

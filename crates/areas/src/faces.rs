@@ -1,20 +1,21 @@
 //! The faces of a planar graph, and which of them are inside.
 //!
-//! A *walk* goes once around a face along its left side. A face has one walk for each connected part of the graph that it
-//! meets: one around it and one around each island in it. Walks on both sides of a segment belong to different faces, one
-//! inside and one outside, because no segment is there an even number of times. So it is enough to know, for each connected
-//! part, in which face it lies: the face that is seen from its westernmost point towards the west.
+//! A *walk* goes once around a face along its left side. A face has one walk for each connected
+//! part of the graph that it meets: one around it, and one around each island in it. The walks on
+//! the two sides of a segment belong to different faces, one inside and one outside, because no
+//! segment occurs an even number of times. So for each connected part it is enough to know which
+//! face contains it: the face to the west of its westernmost point.
 
 use std::cmp::Ordering;
 
 use corniche_geom::{LatticePoint, Side, side};
 
-use crate::{planar_graph::PlanarGraph, segments::Segment, stabbing::Stabbing};
+use crate::{planar_graph::PlanarGraph, segments::OrderedSegment, stabbing::Stabbing};
 
-/// The face west of everything.
+/// The number of the face west of everything.
 const OUTERMOST: usize = usize::MAX;
 
-/// Finds the faces inside: the half-edges of the walks of each face, from any start.
+/// Finds the inner faces: the half-edges of the walks of each face, from any start.
 pub(crate) fn inner_faces(graph: &PlanarGraph) -> Vec<Vec<Vec<usize>>> {
     let walks = Walks::new(graph);
     let parts = parts_of(graph, &walks);
@@ -23,7 +24,7 @@ pub(crate) fn inner_faces(graph: &PlanarGraph) -> Vec<Vec<Vec<usize>>> {
     let mut face_of: Vec<Option<Face>> = vec![None; walks.starts.len()];
     for part in parts {
         let around = match west_of(graph, &stabbing, part.westernmost) {
-            // The part that is seen there begins farther west, so it came before.
+            // The part seen there begins farther west, so it was processed before.
             Some(half) => face_of[walks.of[half]].unwrap_or(Face::OUTSIDE),
             None => Face::OUTSIDE,
         };
@@ -32,7 +33,7 @@ pub(crate) fn inner_faces(graph: &PlanarGraph) -> Vec<Vec<Vec<usize>>> {
     collect(graph, &walks, &face_of)
 }
 
-/// A face: the walk that names it, and whether it is inside.
+/// A face: the walk that identifies it, and whether it is inside.
 #[derive(Debug, Clone, Copy)]
 struct Face {
     name: usize,
@@ -44,9 +45,9 @@ impl Face {
 }
 
 struct Walks {
-    /// The walk of each half-edge.
+    /// The walk to which each half-edge belongs.
     of: Vec<usize>,
-    /// One of the half-edges of each walk.
+    /// One half-edge of each walk.
     starts: Vec<usize>,
 }
 
@@ -72,22 +73,23 @@ impl Walks {
 /// A connected part of the graph.
 struct ConnectedPart {
     westernmost: LatticePoint,
-    /// The walk around all of it.
+    /// The walk around the whole part.
     outer_walk: usize,
 }
 
-/// The connected parts, from west to east.
+/// Returns the connected parts, from west to east.
 fn parts_of(graph: &PlanarGraph, walks: &Walks) -> Vec<ConnectedPart> {
     let mut is_seen = vec![false; walks.starts.len()];
     let mut parts = Vec::new();
-    // Half-edges with even numbers begin at the smaller point, and segments are in order of it: the first half-edge of a part
-    // that is met begins at the part's westernmost point.
+    // Half-edges with even numbers begin at the smaller point, and segments are sorted by it. So
+    // the first half-edge reached of each part begins at the part's westernmost point.
     for half in (0..graph.half_edges()).step_by(2) {
         if is_seen[walks.of[half]] {
             continue;
         }
         let westernmost = graph.origin(half);
-        // All segments from that point lead east (or straight north). Left of the last one, counter-clockwise, is the west.
+        // All segments from that point lead east (or straight north). The west is to the left of
+        // the last one, counter-clockwise.
         let last = (half..graph.half_edges())
             .step_by(2)
             .take_while(|&other| graph.origin(other) == westernmost)
@@ -114,7 +116,8 @@ fn parts_of(graph: &PlanarGraph, walks: &Walks) -> Vec<ConnectedPart> {
     parts
 }
 
-/// Gives the walks of a connected part their faces: `around` to its outer walk, then in turn from both sides of segments.
+/// Assigns faces to the walks of a connected part: `around` to its outer walk, then step by step
+/// across segments.
 fn spread(
     graph: &PlanarGraph,
     walks: &Walks,
@@ -164,10 +167,11 @@ fn for_each_half_edge(graph: &PlanarGraph, start: usize, mut take: impl FnMut(us
     }
 }
 
-/// The half-edge that is seen first from a point towards the west, with the point on its left side.
+/// Returns the first half-edge to the west of a point, in the direction that has the point on its
+/// left side.
 ///
-/// The look goes a little above the point, so that ends of segments at the same height are no special case: a segment counts
-/// from its lower end, without its upper one.
+/// The search runs a little above the point, so that ends of segments at the same height are no
+/// special case: a segment includes its lower end and excludes its upper end.
 fn west_of(graph: &PlanarGraph, stabbing: &Stabbing, point: LatticePoint) -> Option<usize> {
     let mut nearest: Option<(Upward, usize)> = None;
     stabbing.at(point.v, &mut |number| {
@@ -179,32 +183,33 @@ fn west_of(graph: &PlanarGraph, stabbing: &Stabbing, point: LatticePoint) -> Opt
             nearest = Some((upward, number));
         }
     });
-    // Seen from the east, the half-edge that leads down has the point on its left.
+    // As seen from the east, the half-edge that leads down has the point on its left.
     nearest.map(|(upward, number)| 2 * number + usize::from(upward.is_forward))
 }
 
-/// A segment that is not level, from its lower to its upper end.
+/// A segment that is not horizontal, from its lower to its upper end.
 #[derive(Clone, Copy)]
 struct Upward {
     low: LatticePoint,
     high: LatticePoint,
-    /// Whether the lower end is the first of the segment.
+    /// Whether the lower end is the first point of the segment.
     is_forward: bool,
 }
 
 impl Upward {
-    fn new([a, b]: Segment) -> Self {
+    fn new([a, b]: OrderedSegment) -> Self {
         let is_forward = a.v < b.v;
         let (low, high) = if is_forward { (a, b) } else { (b, a) };
         Self { low, high, is_forward }
     }
 
-    /// Whether this one is west (`Less`) or east of another at a height, or a little above it. The two do not cross.
+    /// Whether this segment is west (`Less`) or east of another at a height, or a little above it.
+    /// The two do not cross.
     fn at(self, height: i64, other: Self) -> Ordering {
         let rise = |segment: Self| i128::from(segment.high.v - segment.low.v);
         let run = |segment: Self| i128::from(segment.high.u - segment.low.u);
         let (own_rise, other_rise) = (rise(self), rise(other));
-        // Both places times their rise: exact, at most 2^70 for coordinates of 2^34.
+        // Both positions are multiplied by the rise: exact, at most 2^70 for coordinates of 2^34.
         let place = |segment: Self| {
             i128::from(segment.low.u) * rise(segment)
                 + run(segment) * i128::from(height - segment.low.v)

@@ -1,4 +1,4 @@
-//! What polygons have in common with a region of any outline.
+//! Intersects polygons with a region of any outline.
 
 use corniche_geom::{LatticeBounds, LatticePoint};
 use i_overlay::{
@@ -13,14 +13,18 @@ use i_overlay::{
 
 use crate::{OutlineError, Polygon, surrounded};
 
-/// The parts of polygons, whose points are whole multiples of `step`, in what rings wind around more often counter-clockwise than clockwise. So are the points of the parts: those of the
-/// rings, and those where outlines cross, go to the nearest multiples; where a segment ends within a step of a crossing, the crossing is that end.
-/// So the parts reach up to two steps beyond the region, and farther only where moved outlines cross again.
+/// Returns the parts of polygons that are inside `rings` by the positive winding rule: rings wind
+/// around them more often counter-clockwise than clockwise. The points of the polygons and of the
+/// result are whole multiples of `step`. Points of the rings, and points where outlines cross, move
+/// to the nearest multiples. If a segment ends within a step of a crossing, the crossing moves to
+/// that end. So the parts extend up to two steps beyond the region, and farther only where moved
+/// outlines cross again.
 ///
-/// Source: the crate `i_overlay`, which splits all outlines at their crossings and asks of each piece what is on its sides.
+/// Source: the crate `i_overlay`, which splits all outlines at their crossings and checks for each
+/// piece what is on its sides.
 ///
 /// # Errors
-/// [`OutlineError::TooIntricate`], where there are more than 2³¹ steps across.
+/// [`OutlineError::TooIntricate`], if the extent is more than 2³¹ steps.
 pub fn intersection<'a>(
     polygons: &[Polygon],
     region: impl Iterator<Item = &'a [LatticePoint]>,
@@ -40,8 +44,8 @@ pub fn intersection<'a>(
     }
     let points: Vec<LatticePoint> =
         polygons.iter().flat_map(|polygon| polygon.outer().points()).copied().collect();
-    // Outlines are put on the lattice, too, and move by half a step at most.
-    let Some(near) = LatticeBounds::of(&points).map(|bounds| bounds.expanded(step)) else {
+    // Outlines are also snapped to the lattice, and move by at most half a step.
+    let Some(near) = LatticeBounds::around(&points).map(|bounds| bounds.expanded(step)) else {
         return Ok(Vec::new());
     };
     for ring in region {
@@ -51,12 +55,14 @@ pub fn intersection<'a>(
     let shapes = overlay.overlay(OverlayRule::Intersect, FillRule::Positive);
     let rings: Vec<Vec<LatticePoint>> =
         shapes.into_iter().flatten().map(|ring| ring.into_iter().map(fine).collect()).collect();
-    // Where rounding joins points, rings of the library may touch in ways that a polygon's may not.
+    // Where rounding joins points, rings of the library may touch in ways that are not allowed in a
+    // polygon.
     surrounded(&rings.iter().map(Vec::as_slice).collect::<Vec<_>>(), step)
 }
 
-/// A ring without the points that say nothing of a rectangle: those that lie on the same side of it as the points before and after them. All
-/// segments that meet the rectangle stay as they are, and what is left winds around its places as often as the whole ring.
+/// Returns a ring without the points that do not matter for a rectangle: points on the same side of
+/// it as the points before and after them. All segments that meet the rectangle stay unchanged, and
+/// the remaining ring winds around its points as often as the whole ring.
 fn without_far_points(ring: &[LatticePoint], near: &LatticeBounds) -> Vec<LatticePoint> {
     let sides = |point: &LatticePoint| {
         let LatticeBounds { min, max } = near;

@@ -1,4 +1,4 @@
-//! The parts inside and outside of a region are the whole, and are valid polygons.
+//! The parts inside and outside a region add up to the whole, and are valid polygons.
 
 use proptest::prelude::*;
 
@@ -42,7 +42,7 @@ fn a_region_of_polygons_that_overlap_is_their_union_and_holes_are_left_out() {
     let found =
         intersection(&polygon(&square([-5, -5], 40, 1)), region.iter().map(Vec::as_slice), 1)
             .unwrap();
-    // 64 + 64 - 16 - (9 - 1): a cell of the hole is in the second square.
+    // The numbers are 64 + 64 - 16 - (9 - 1): one cell of the hole is in the second square.
     assert_eq!(doubled_area(&found), 2 * (64 + 64 - 16 - 8));
 }
 
@@ -79,7 +79,7 @@ fn more_steps_than_can_be_counted_are_refused() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
-    /// Far points of the region change nothing of what is near.
+    /// Distant points of the region do not affect the result near the polygon.
     #[test]
     fn a_ring_without_its_far_points_winds_as_often(
         corners in prop::collection::vec([-60_i64..60, -60_i64..60], 3..30),
@@ -99,14 +99,15 @@ proptest! {
         };
         for du in 0..side {
             for dv in 0..side {
-                // No place on a segment: these have whole ends below 60.
+                // No test position is on a segment, because segments have integer ends below 60.
                 let place = [(west + du) as f64 + 0.500_137, (south + dv) as f64 + 0.500_071];
                 prop_assert_eq!(winding(&ring, place), winding(&fewer, place));
             }
         }
     }
 
-    /// What is inside of a triangle and what is outside of it are the whole, but for rounding at each crossing.
+    /// The parts inside and outside a triangle add up to the whole, except for rounding at each
+    /// crossing.
     #[test]
     fn inside_and_outside_are_the_whole(
         corners in prop::collection::vec([-60_i64..60, -60_i64..60], 3..9),
@@ -125,7 +126,7 @@ proptest! {
         let outside =
             intersection(&whole, [around.as_slice(), hole.as_slice()].into_iter(), step).unwrap();
         let off = (doubled_area(&inside) + doubled_area(&outside) - doubled_area(&whole)).abs();
-        // Each of at most 3 × 9 crossings moves two edges of at most 170 steps by a step at most.
+        // Each of at most 3 × 9 crossings moves two edges of at most 170 steps by at most a step.
         prop_assert!(off <= i128::from(step * step) * 2 * 27 * 170, "{off}");
         for polygon in inside.iter().chain(&outside) {
             prop_assert!(polygon.doubled_area() > 0);

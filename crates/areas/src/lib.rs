@@ -1,4 +1,4 @@
-//! What an area is: a class from tags, and polygons from the ways of its outline.
+//! The areas of a map: classes from tags, and polygons from the ways of their outlines.
 //!
 //! ```text
 //!  tags ──► AreaTable::classify ──► class, or none
@@ -9,18 +9,17 @@
 //!  Polygon ──► coarsen: for a level ──► divide: by lines between tiles ──► polygons
 //! ```
 //!
-//! Assembling is exact: points lie on an integer lattice, and no point is computed. Coarsening and dividing round new points to the
-//! lattice, by rules that look at one segment or one point, so that neighbours agree.
+//! Assembling is exact: points are on an integer lattice, and no point is computed. Coarsening and
+//! dividing round new points to the lattice, by rules that consider one segment or one point at a
+//! time, so that neighbours agree.
 //!
-//! This crate never sees terrain or a file.
+//! This crate never reads terrain or files.
 
 mod area;
 mod area_class;
 mod area_table;
 mod assemble;
 mod boundary_class;
-mod class_table;
-mod classed_layer;
 mod coarsen;
 mod cut_out;
 mod divide;
@@ -44,10 +43,8 @@ mod chessboard_tests;
 pub use area::{Area, AreaObject};
 pub use area_class::AreaClass;
 pub use area_table::{AreaTable, AreaTableError};
-pub use assemble::{Assembled, assemble};
-pub use boundary_class::BoundaryClass;
-pub use class_table::ClassTable;
-pub use classed_layer::{ClassedLayer, LineClass, LineNames};
+pub use assemble::{AssembledArea, assemble};
+pub use boundary_class::{BoundaryClass, BoundaryNames};
 pub use coarsen::{coarsen, surrounded};
 pub use coastlines::Coastline;
 pub use cut_out::{cut_out, divide_all};

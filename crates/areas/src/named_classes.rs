@@ -1,6 +1,7 @@
-//! Classes of a layer: an enum with numbers and names, from one list.
+//! The classes of a layer: an enum with numbers and names, declared in one list.
 
-/// Declares the classes of a layer in order of their numbers, with their names in tables, styles and packages.
+/// Declares the classes of a layer in order of their numbers, with their names in tables, styles
+/// and packages.
 macro_rules! named_classes {
     ($(#[$about:meta])* $class:ident: $($(#[$meaning:meta])* $variant:ident = $name:literal,)+) => {
         $(#[$about])*
@@ -10,7 +11,7 @@ macro_rules! named_classes {
         }
 
         impl $class {
-            /// How many classes there are.
+            /// The number of classes.
             pub const COUNT: usize = [$($name),+].len();
 
             /// The names of all classes, in order of their numbers.
@@ -19,25 +20,25 @@ macro_rules! named_classes {
             /// All classes, in order of their numbers.
             pub const ALL: [Self; Self::COUNT] = [$(Self::$variant),+];
 
-            /// The class with this number.
+            /// Returns the class with this number.
             #[must_use]
             pub fn from_number(number: u8) -> Option<Self> {
                 Self::ALL.get(usize::from(number)).copied()
             }
 
-            /// Its number, from 0.
+            /// Returns the number of the class, from 0.
             #[must_use]
             pub const fn number(self) -> u8 {
                 self as u8
             }
 
-            /// Its name in tables, settings and styles.
+            /// Returns the name of the class in tables, settings and styles.
             #[must_use]
             pub const fn name(self) -> &'static str {
                 Self::NAMES[self as usize]
             }
 
-            /// The class with this name.
+            /// Returns the class with this name.
             #[must_use]
             pub fn from_name(name: &str) -> Option<Self> {
                 Self::ALL.into_iter().find(|class| class.name() == name)

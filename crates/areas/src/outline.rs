@@ -1,15 +1,15 @@
-//! The ways that make an outline, and why an outline can fail to surround anything.
+//! The ways of an outline, and the reasons why an outline may enclose nothing.
 
 use corniche_geom::LatticePoint;
 
-/// A way of an outline: neighbouring points are joined. Its direction does not matter.
+/// A way of an outline: consecutive points are connected. Its direction does not matter.
 #[derive(Debug, Clone, Copy)]
 pub struct OutlineWay<'a> {
     /// Its points in order.
     pub points: &'a [LatticePoint],
 }
 
-/// Why an outline surrounds nothing.
+/// The reason why an outline encloses nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
@@ -18,8 +18,8 @@ pub enum OutlineError {
     Open { ends: u64, first: LatticePoint },
     #[error("the outline crosses itself between its points")]
     Crossing { at: LatticePoint },
-    #[error("nothing is left of the outline: it has no segments, or each of them twice")]
+    #[error("the outline encloses nothing: it has no segments, or each segment occurs twice")]
     Nothing,
-    #[error("the outline has too many long segments side by side to be searched for crossings")]
+    #[error("the outline has too many long segments close together to be checked for crossings")]
     TooIntricate,
 }

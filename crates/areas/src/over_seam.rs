@@ -1,14 +1,14 @@
-//! Polygons that go on beyond the end of a map of the earth come in at the other end.
+//! Polygons that extend beyond one end of a map of the Earth continue at the other end.
 
 use corniche_geom::{LatticePoint, OnSeamedMap as _, Seam};
 
 use crate::{Axis, OutlineError, Polygon, divide_all};
 
-/// The parts of a polygon on the map that ends at a seam. Its points are continuous along its rings, so it may reach beyond one end by up to
-/// a turn; `seam` has whole steps.
+/// Splits a polygon at the seam of a map. The polygon's points are continuous along its rings, so
+/// it may extend beyond one end of the map by up to a turn; `seam` has whole steps.
 ///
 /// # Errors
-/// As [`divide`](crate::divide).
+/// The same as for [`divide`](crate::divide).
 pub fn split_polygon(polygon: Polygon, seam: Seam) -> Result<Vec<Polygon>, OutlineError> {
     let [west, east] = seam.ends();
     let [least, most] = x_range(polygon.outer().points());
@@ -26,7 +26,8 @@ pub fn split_polygon(polygon: Polygon, seam: Seam) -> Result<Vec<Polygon>, Outli
     Ok(inside)
 }
 
-/// Makes the points of a polygon's rings continuous, the outer ring first: it lies next to the middle of the map, and holes lie where it is.
+/// Makes the points of a polygon's rings continuous, the outer ring first: it is moved next to the
+/// middle of the map, and holes to where it is.
 pub fn unroll_rings(rings: &mut [Vec<LatticePoint>], seam: Seam) {
     let mut map = seam;
     for (number, ring) in rings.iter_mut().enumerate() {

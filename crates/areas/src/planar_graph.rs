@@ -4,34 +4,36 @@ use std::cmp::Ordering;
 
 use corniche_geom::{LatticePoint, Side, side};
 
-use crate::segments::Segment;
+use crate::segments::OrderedSegment;
 
-/// Segments that meet at their ends only, as pairs of half-edges.
+/// Segments that meet only at their ends, as pairs of half-edges.
 ///
-/// Half-edge `2 s` goes from the first to the second point of segment `s`, half-edge `2 s + 1` back: its *twin*.
+/// Half-edge `2 s` goes from the first to the second point of segment `s`, half-edge `2 s + 1`
+/// back: its *twin*.
 ///
 /// ```text
 ///            next ╲  ╱
 ///                  ╲╱ to            next: the first half-edge clockwise from the twin,
-///                  ▲│ twin          so that what lies on the left stays on the left
+///                  ▲│ twin          so that the left side stays on the left
 ///        left face │▼
 ///                 from
 /// ```
 pub(crate) struct PlanarGraph {
-    segments: Vec<Segment>,
-    /// The half-edge that follows each half-edge around its left face.
+    segments: Vec<OrderedSegment>,
+    /// The next half-edge around the left face of each half-edge.
     next: Vec<u32>,
 }
 
-/// Where the first odd end of an outline is, and how many there are.
+/// The first odd end of an outline, and the number of odd ends.
 pub(crate) struct OddEnds {
     pub(crate) count: u64,
     pub(crate) first: LatticePoint,
 }
 
 impl PlanarGraph {
-    /// Fails where a point has an odd number of segments: there the outline is open.
-    pub(crate) fn new(segments: Vec<Segment>) -> Result<Self, OddEnds> {
+    /// Creates the graph. Fails if a point has an odd number of segments: the outline is open
+    /// there.
+    pub(crate) fn new(segments: Vec<OrderedSegment>) -> Result<Self, OddEnds> {
         let mut leaving: Vec<u32> = (0..2 * segments.len() as u32).collect();
         let origin = |half: u32| segments[half as usize / 2][half as usize % 2];
         let target = |half: u32| origin(half ^ 1);
@@ -46,7 +48,7 @@ impl PlanarGraph {
                 let first = origin(around[0]);
                 odd.get_or_insert(OddEnds { count: 0, first }).count += 1;
             }
-            // Angles ascend counter-clockwise, so the one before is the next clockwise.
+            // Angles ascend counter-clockwise, so the previous half-edge is the next one clockwise.
             let before = around.iter().cycle().skip(around.len() - 1);
             for (&half, &clockwise) in around.iter().zip(before) {
                 next[half as usize ^ 1] = clockwise;
@@ -58,7 +60,7 @@ impl PlanarGraph {
         }
     }
 
-    pub(crate) fn segments(&self) -> &[Segment] {
+    pub(crate) fn segments(&self) -> &[OrderedSegment] {
         &self.segments
     }
 
@@ -79,7 +81,8 @@ impl PlanarGraph {
     }
 }
 
-/// Orders directions from one point by angle, from east counter-clockwise. No two are the same.
+/// Orders directions from one point by angle, counter-clockwise from east. No two directions are
+/// equal.
 fn by_angle(from: LatticePoint, a: LatticePoint, b: LatticePoint) -> Ordering {
     let is_lower_half = |to: LatticePoint| to.v < from.v || (to.v == from.v && to.u < from.u);
     is_lower_half(a).cmp(&is_lower_half(b)).then_with(|| match side(from, a, b) {

@@ -2,15 +2,16 @@
 
 use corniche_geom::{LatticeBounds, LatticePoint, cross};
 
-/// A closed line that neither touches nor crosses itself. The first point is not repeated at the end.
+/// A closed line that neither touches nor crosses itself. The first point is not repeated at the
+/// end.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Ring {
     points: Vec<LatticePoint>,
 }
 
-/// A connected area: an outer ring, counter-clockwise, and rings around its holes, clockwise.
+/// A connected area: a counter-clockwise outer ring, and clockwise rings around its holes.
 ///
-/// Rings of a polygon may touch at points, and never cross or share a segment.
+/// Rings of a polygon may touch at points, but never cross or share a segment.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Polygon {
     outer: Ring,
@@ -18,7 +19,8 @@ pub struct Polygon {
 }
 
 impl Ring {
-    /// `points` are at least three, all different, and make no crossing. The ring begins at its smallest point.
+    /// Creates a ring. `points` are at least three, all different, and form no crossing. The ring
+    /// begins at its smallest point.
     pub(crate) fn new(mut points: Vec<LatticePoint>) -> Self {
         let smallest = points.iter().enumerate().min_by_key(|(_, point)| **point);
         let first = smallest.map_or(0, |(index, _)| index);
@@ -26,19 +28,19 @@ impl Ring {
         Self { points }
     }
 
-    /// Its points in order.
+    /// Returns the points of the ring in order.
     #[must_use]
     pub fn points(&self) -> &[LatticePoint] {
         &self.points
     }
 
-    /// Its segments, the one that closes it last.
+    /// Returns the segments of the ring; the one that closes it comes last.
     pub fn segments(&self) -> impl Iterator<Item = [LatticePoint; 2]> {
         let next = self.points.iter().cycle().skip(1);
         self.points.iter().zip(next).map(|(&from, &to)| [from, to])
     }
 
-    /// Twice the area inside in square lattice steps; negative for a clockwise ring.
+    /// Returns twice the area inside, in square lattice steps; negative for a clockwise ring.
     #[must_use]
     pub fn doubled_area(&self) -> i128 {
         let Some(&first) = self.points.first() else { return 0 };
@@ -47,13 +49,13 @@ impl Ring {
 }
 
 impl Polygon {
-    /// `outer` is counter-clockwise, `holes` are clockwise and inside.
+    /// Creates a polygon. `outer` is counter-clockwise, `holes` are clockwise and inside it.
     pub(crate) fn new(outer: Ring, mut holes: Vec<Ring>) -> Self {
         holes.sort_unstable();
         Self { outer, holes }
     }
 
-    /// A rectangle; `None` where it has no area.
+    /// Returns a rectangle; `None` if it has no area.
     #[must_use]
     pub fn rectangle(LatticeBounds { min, max }: LatticeBounds) -> Option<Self> {
         let corners =
@@ -62,24 +64,24 @@ impl Polygon {
         has_area.then(|| Self::new(Ring::new(corners), Vec::new()))
     }
 
-    /// What is around it.
+    /// Returns the outer ring.
     #[must_use]
     pub fn outer(&self) -> &Ring {
         &self.outer
     }
 
-    /// What is cut out of it, in order of their smallest points.
+    /// Returns the rings of the holes, in order of their smallest points.
     #[must_use]
     pub fn holes(&self) -> &[Ring] {
         &self.holes
     }
 
-    /// All rings, the outer one first.
+    /// Returns all rings, the outer one first.
     pub fn rings(&self) -> impl Iterator<Item = &Ring> {
         std::iter::once(&self.outer).chain(&self.holes)
     }
 
-    /// Twice its area in square lattice steps, without the holes.
+    /// Returns twice the area in square lattice steps, without the holes.
     #[must_use]
     pub fn doubled_area(&self) -> i128 {
         self.rings().map(Ring::doubled_area).sum()
@@ -87,8 +89,9 @@ impl Polygon {
 }
 
 impl Polygon {
-    /// The same polygon with each point where `place` puts it: the same rings, about the same directions. `None` where a point
-    /// has no place, or so many fall together that a ring is none any more.
+    /// Returns the polygon with each point moved by `place`. The rings keep about the same
+    /// directions. `None` if a point has no new position, or if so many points coincide that a ring
+    /// vanishes.
     #[must_use]
     pub fn placed(
         &self,
@@ -106,7 +109,7 @@ impl Polygon {
         let is_ring = |points: &Vec<LatticePoint>| points.len() >= 3;
         let outer = Some(ring(&self.outer)?).filter(is_ring).map(Ring::new)?;
         let holes: Option<Vec<_>> = self.holes.iter().map(ring).collect();
-        // A hole that has shrunk to a line is gone.
+        // A hole that has shrunk to a line is dropped.
         let holes = holes?.into_iter().filter(is_ring).map(Ring::new).collect();
         Some(Self::new(outer, holes))
     }

@@ -4,25 +4,27 @@ use corniche_geom::{LatticePoint, LatticeRegion, dot};
 
 use crate::Ring;
 
-/// The edge of a region, and what lies in it.
+/// The edge of a region, and its interior.
 pub(crate) struct RegionEdge {
-    /// Clockwise.
+    /// The corners, clockwise.
     corners: Vec<LatticePoint>,
     region: LatticeRegion,
 }
 
-/// How far along the edge a point lies: on which of its sides, and there by the product of the side with the way to the point.
+/// The position of a point along the edge: the number of the side, and on it the product of the
+/// side with the vector to the point.
 pub(crate) type AlongEdge = (usize, i128);
 
 impl RegionEdge {
-    /// The edge of what a counter-clockwise ring surrounds; `None` where that is nothing.
+    /// Returns the edge of the region that a counter-clockwise ring encloses; `None` if the region
+    /// is empty.
     pub(crate) fn new(outer: &Ring) -> Option<Self> {
         let corners: Vec<LatticePoint> = outer.points().iter().rev().copied().collect();
         let region = LatticeRegion::new(&[vec![corners.clone()]])?;
         Some(Self { corners, region })
     }
 
-    /// The corners clockwise.
+    /// Returns the corners, clockwise.
     pub(crate) fn corners(&self) -> &[LatticePoint] {
         &self.corners
     }
@@ -35,7 +37,7 @@ impl RegionEdge {
         [self.corners[index], self.corners[(index + 1) % self.corners.len()]]
     }
 
-    /// How far inside a point lies, steps; 0 on the edge, negative outside.
+    /// Returns how far inside a point is, in steps; 0 on the edge, negative outside.
     pub(crate) fn distance(&self, point: LatticePoint) -> f64 {
         let (_, distance) = self.nearest_side(point);
         if self.region.contains(point) { distance } else { -distance }
@@ -48,7 +50,8 @@ impl RegionEdge {
         from.share_of_way(to, share)
     }
 
-    /// How far along the edge a point on it lies, be it rounded to the lattice.
+    /// Returns the position along the edge of a point on it, even if the point is rounded to the
+    /// lattice.
     pub(crate) fn along(&self, point: LatticePoint) -> AlongEdge {
         let (index, _) = self.nearest_side(point);
         let [from, to] = self.side(index);
@@ -60,7 +63,7 @@ impl RegionEdge {
         }
     }
 
-    /// The nearest side and how far away it is; of several the first.
+    /// Returns the nearest side and its distance; of several, the first.
     fn nearest_side(&self, point: LatticePoint) -> (usize, f64) {
         let mut nearest = (0, f64::INFINITY);
         for index in 0..self.corners.len() {
@@ -77,7 +80,7 @@ impl RegionEdge {
     }
 }
 
-/// How far along a side the nearest point of it lies, as a share.
+/// Returns the position of the nearest point on a side, as a fraction of the side.
 fn share(from: LatticePoint, to: LatticePoint, point: LatticePoint) -> f64 {
     (dot(from, to, point) as f64 / dot(from, to, to) as f64).clamp(0.0, 1.0)
 }

@@ -1,38 +1,42 @@
-//! The sea is made of coastlines: they are closed along the edge of a region, and what is missing or wrong is reported.
+//! Builds the sea from coastlines: closes them along the edge of a region, and reports what is
+//! missing or wrong.
 
 use corniche_geom::{LatticePoint, cross};
 
 use crate::{
     OutlineError, OutlineWay, Polygon, Ring, assemble,
     assemble::polygons_of,
-    coastlines::{Chain, Coastline, cut, join},
+    coastlines::{Coastline, CoastlineChain, cut, join},
     intersection,
     region_edge::{AlongEdge, RegionEdge, squared_distance},
     segments::{segments_of, uncrossed_segments_of},
 };
 
-/// Points that are rounded to the lattice count as inside from so many steps on.
+/// The minimum distance from the edge, in steps, at which points that are rounded to the lattice
+/// count as inside.
 const INSIDE: f64 = 1.0;
-/// More open ends than this are not looked at for one near by.
+/// The maximum number of open ends for which nearby beginnings are searched.
 const MOST_OPEN_ENDS: usize = 4096;
 
 /// The sea within a region.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Sea {
-    /// No two have inner points in common.
+    /// The polygons of the sea. No two have inner points in common.
     pub polygons: Vec<Polygon>,
-    /// Ways that end where no other begins, inside the region. A straight line goes on to the nearest beginning or to the edge.
+    /// Ways that end inside the region where no other way begins. A straight line connects each to
+    /// the nearest beginning or to the edge.
     pub bridged: Vec<i64>,
-    /// Ways that say that there is sea where others say that there is land. They were left out.
+    /// Ways that claim sea where others claim land. They were omitted.
     pub left_out: Vec<i64>,
 }
 
-/// Makes the sea of coastlines: what lies on their right. Along the edge of each part of `region` it is closed clockwise, from where a
-/// coast leaves the part to where the next one enters it. A part without any coast has no sea. Coasts are looked at in holes of the region,
-/// too, and the sea then ends there.
+/// Builds the sea from coastlines: it is to the right of them. Along the edge of each part of
+/// `region`, the sea is closed clockwise, from where a coast leaves the part to where the next
+/// coast enters it. A part without any coast has no sea. Coasts in holes of the region are also
+/// considered, and the sea then ends there.
 ///
-/// The rule that sea lies on the right is OSM's (wiki, "Tag:natural=coastline"). As in Jochen Topf's *osmcoastline*, open ends are joined
-/// with the nearest open beginning.
+/// The rule that the sea is on the right is OSM's (wiki, "Tag:natural=coastline"). As in Jochen
+/// Topf's *osmcoastline*, open ends are joined with the nearest open beginning.
 ///
 /// # Errors
 /// When coastlines cross between their points.
@@ -54,9 +58,9 @@ pub fn close_sea(coastlines: Vec<Coastline>, region: &[Polygon]) -> Result<Sea, 
     Ok(sea)
 }
 
-/// The sea within an edge.
+/// Returns the sea within an edge.
 fn close_in(
-    chains: Vec<Chain>,
+    chains: Vec<CoastlineChain>,
     edge: &RegionEdge,
     sea: &mut Sea,
 ) -> Result<Vec<Polygon>, OutlineError> {
@@ -84,7 +88,8 @@ fn close_in(
     match assemble(&ways) {
         Ok(assembled) => Ok(assembled.polygons),
         Err(OutlineError::Nothing) => Ok(Vec::new()),
-        // Where coasts meet a slanting edge they are rounded, so that a line along it may cross one of them by less than a step.
+        // Coasts are rounded where they meet a slanting edge, so a line along the edge may cross
+        // one of them by less than a step.
         Err(OutlineError::Crossing { .. }) if segments_of(&ways[..coasts]).is_ok() => {
             polygons_of(uncrossed_segments_of(&ways)?)
         }
@@ -97,13 +102,18 @@ fn closed(mut points: Vec<LatticePoint>) -> Vec<LatticePoint> {
     points
 }
 
-/// Joins ends that lie inside with the nearest beginnings inside, where these are nearer than the way of both to the edge.
-fn bridge(chains: Vec<Chain>, edge: &RegionEdge, bridged: &mut Vec<i64>) -> Vec<Chain> {
+/// Joins ends inside the region with the nearest beginnings inside it, if these are nearer than the
+/// sum of both distances to the edge.
+fn bridge(
+    chains: Vec<CoastlineChain>,
+    edge: &RegionEdge,
+    bridged: &mut Vec<i64>,
+) -> Vec<CoastlineChain> {
     let inside = |point: Option<LatticePoint>| {
         let distance = edge.distance(point?);
         Some((point?, distance)).filter(|_| distance >= INSIDE)
     };
-    let open = |chain: &&Chain| !chain.is_ring();
+    let open = |chain: &&CoastlineChain| !chain.is_ring();
     let ends = || chains.iter().enumerate().filter(|(_, chain)| open(chain));
     let tails: Vec<(usize, (LatticePoint, f64))> =
         ends().filter_map(|(index, chain)| Some((index, inside(chain.last())?))).collect();
@@ -116,7 +126,7 @@ fn bridge(chains: Vec<Chain>, edge: &RegionEdge, bridged: &mut Vec<i64>) -> Vec<
     for &(tail, (end, end_to_edge)) in &tails {
         for &(head, (beginning, beginning_to_edge)) in &heads {
             let away = squared_distance(end, beginning);
-            // Of both ways to close the coast, the one that invents less of it.
+            // Of the two ways to close the coast, take the one that invents less coast.
             if away as f64 <= (end_to_edge + beginning_to_edge).powi(2) {
                 pairs.push((away, tail, head));
             }
@@ -136,9 +146,14 @@ fn bridge(chains: Vec<Chain>, edge: &RegionEdge, bridged: &mut Vec<i64>) -> Vec<
     follow(chains, &next, &has_before)
 }
 
-/// Joins chains as `next` says; those that nothing comes before first, then what is left, which are rings.
-fn follow(chains: Vec<Chain>, next: &[Option<usize>], has_before: &[bool]) -> Vec<Chain> {
-    let mut left: Vec<Option<Chain>> = chains.into_iter().map(Some).collect();
+/// Joins chains as `next` says: first the chains that nothing precedes, then the rest, which are
+/// rings.
+fn follow(
+    chains: Vec<CoastlineChain>,
+    next: &[Option<usize>],
+    has_before: &[bool],
+) -> Vec<CoastlineChain> {
+    let mut left: Vec<Option<CoastlineChain>> = chains.into_iter().map(Some).collect();
     let (first, others): (Vec<usize>, Vec<usize>) =
         (0..left.len()).partition(|&index| !has_before[index]);
     let mut joined = Vec::new();
@@ -147,7 +162,7 @@ fn follow(chains: Vec<Chain>, next: &[Option<usize>], has_before: &[bool]) -> Ve
         let mut at = index;
         while let Some(following) = next[at] {
             let Some(following_chain) = left[following].take() else {
-                // Round again.
+                // Close the ring.
                 chain.first().into_iter().for_each(|first| chain.push(first));
                 break;
             };
@@ -159,8 +174,8 @@ fn follow(chains: Vec<Chain>, next: &[Option<usize>], has_before: &[bool]) -> Ve
     joined
 }
 
-/// The same part with ends that lie inside brought to the edge by the shortest way.
-fn to_edge(mut part: Chain, edge: &RegionEdge, bridged: &mut Vec<i64>) -> Chain {
+/// Returns the same part with ends inside the region extended to the edge by the shortest way.
+fn to_edge(mut part: CoastlineChain, edge: &RegionEdge, bridged: &mut Vec<i64>) -> CoastlineChain {
     if let Some(last) = part.last().filter(|&last| edge.distance(last) >= INSIDE) {
         bridged.extend(part.ways.last());
         part.push(edge.nearest_on_edge(last));
@@ -174,17 +189,17 @@ fn to_edge(mut part: Chain, edge: &RegionEdge, bridged: &mut Vec<i64>) -> Chain 
     part
 }
 
-/// Where a coast meets the edge.
+/// A point where a coast meets the edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Crossing {
-    /// How far along the edge, clockwise.
+    /// The position along the edge, clockwise.
     along: AlongEdge,
     leaves: bool,
     part: usize,
     at: LatticePoint,
 }
 
-fn crossings_of(parts: &[Chain], edge: &RegionEdge) -> Vec<Crossing> {
+fn crossings_of(parts: &[CoastlineChain], edge: &RegionEdge) -> Vec<Crossing> {
     let mut crossings = Vec::new();
     for (part, chain) in parts.iter().enumerate() {
         for (at, leaves) in [(chain.first(), false), (chain.last(), true)] {
@@ -195,10 +210,11 @@ fn crossings_of(parts: &[Chain], edge: &RegionEdge) -> Vec<Crossing> {
     crossings
 }
 
-/// Crossings in order, in turns in and out. Of two that contradict each other, the shorter part is left out.
+/// Returns the crossings in order, alternately in and out. Of two that contradict each other, the
+/// shorter part is omitted.
 fn agreeing(
     mut crossings: Vec<Crossing>,
-    parts: &mut Vec<Chain>,
+    parts: &mut Vec<CoastlineChain>,
     left_out: &mut Vec<i64>,
 ) -> Vec<Crossing> {
     let mut is_out = vec![false; parts.len()];
@@ -216,13 +232,14 @@ fn agreeing(
         left_out.extend(&parts[shorter].ways);
         crossings.retain(|crossing| crossing.part != shorter);
     }
-    // A part that is left out is no line of the outline, either.
+    // A part that is omitted is not a line of the outline, either.
     let mut is_out = is_out.into_iter();
     parts.retain(|_| !is_out.next().unwrap_or_default());
     crossings
 }
 
-/// Where crossings lie at the same place, the one that fits to what comes before is first.
+/// Orders crossings at the same position so that the one that fits the preceding crossings is
+/// first.
 fn in_turns_where_equal(crossings: &mut [Crossing]) {
     let count = crossings.len();
     for index in 1..count {
@@ -237,7 +254,7 @@ fn in_turns_where_equal(crossings: &mut [Crossing]) {
             crossings.swap(index, other);
         }
     }
-    // The first has none before it but the last.
+    // The first crossing is preceded only by the last.
     if let [first, second, .., last] = crossings
         && first.along == second.along
         && first.leaves == last.leaves
@@ -247,11 +264,12 @@ fn in_turns_where_equal(crossings: &mut [Crossing]) {
     }
 }
 
-fn length_steps(chain: &Chain) -> f64 {
+fn length_steps(chain: &CoastlineChain) -> f64 {
     chain.points.array_windows().map(|&[from, to]| from.distance_steps(to)).sum()
 }
 
-/// The lines along the edge from where coasts leave to where the next one enters, clockwise.
+/// Returns the lines along the edge from where coasts leave to where the next coast enters,
+/// clockwise.
 fn edge_lines(crossings: &[Crossing], edge: &RegionEdge) -> Vec<Vec<LatticePoint>> {
     let corners = || edge.corners().iter().enumerate().map(|(index, &corner)| ((index, 0), corner));
     let mut lines = Vec::new();
@@ -262,7 +280,7 @@ fn edge_lines(crossings: &[Crossing], edge: &RegionEdge) -> Vec<Vec<LatticePoint
         let before = |place: AlongEdge| place < next.along;
         let mut line = vec![crossing.at];
         if index + 1 == count {
-            // The last one goes on to the first, past the beginning of the edge.
+            // The last line continues to the first crossing, past the beginning of the edge.
             line.extend(corners().filter(|&(place, _)| behind(place)).map(|(_, corner)| corner));
             line.extend(corners().filter(|&(place, _)| before(place)).map(|(_, corner)| corner));
         } else {
@@ -276,8 +294,9 @@ fn edge_lines(crossings: &[Crossing], edge: &RegionEdge) -> Vec<Vec<LatticePoint
     lines
 }
 
-/// Whether there is sea around all rings: the outermost, which has the smallest point, is an island.
-fn is_surrounded_by_sea(rings: &[Chain]) -> bool {
+/// Whether there is sea around all rings: the outermost ring, which has the smallest point, is an
+/// island.
+fn is_surrounded_by_sea(rings: &[CoastlineChain]) -> bool {
     let outermost = rings.iter().min_by_key(|ring| ring.points.iter().min().copied());
     outermost.is_some_and(|ring| {
         let origin = ring.points[0];

@@ -1,4 +1,4 @@
-//! The sea is what is no land, also where coastlines are open or contradict each other.
+//! Everything that is not land is sea, also where coastlines are open or contradict each other.
 
 use std::collections::BTreeSet;
 
@@ -12,7 +12,7 @@ fn coast(way_id: i64, points: &[(i64, i64)]) -> Coastline {
     Coastline { way_id, points: points.iter().map(|&(u, v)| LatticePoint::new(u, v)).collect() }
 }
 
-/// 100 east, 60 north.
+/// Returns a rectangle that is 100 wide and 60 high.
 fn bounds() -> Vec<Polygon> {
     rectangle([0, 0, 100, 60])
 }
@@ -22,7 +22,7 @@ fn rectangle([west, south, east, north]: [i64; 4]) -> Vec<Polygon> {
     Polygon::rectangle(LatticeBounds { min, max }).into_iter().collect()
 }
 
-/// What rings have inside, by the even-odd rule.
+/// Returns the polygons that rings enclose by the even-odd rule.
 fn region(rings: &[&[(i64, i64)]]) -> Vec<Polygon> {
     let closed = |ring: &&[(i64, i64)]| {
         let points = ring.iter().chain(ring.first());
@@ -56,12 +56,12 @@ fn islands_and_inner_seas() {
     let pond: Vec<(i64, i64)> = island.iter().rev().copied().collect();
     assert_eq!(area(&sea_of(vec![coast(1, island)])), 6000 - 100);
     assert_eq!(area(&sea_of(vec![coast(1, &pond)])), 100);
-    // An island beside a coast, and one whose outline leaves the rectangle.
+    // There is an island near a coast, and one whose outline leaves the rectangle.
     let both = vec![coast(1, &[(30, 70), (30, -5)]), coast(2, island)];
     assert_eq!(area(&sea_of(both)), 30 * 60 - 100);
     let half = coast(3, &[(-10, 10), (10, 10), (10, 30), (-10, 30), (-10, 10)]);
     assert_eq!(area(&sea_of(vec![half])), 6000 - 200);
-    // Nothing is known without coasts.
+    // Without coasts nothing is known.
     assert_eq!(sea_of(vec![]), Sea::default());
     assert_eq!(sea_of(vec![coast(1, &[(300, 0), (300, 50)])]), Sea::default());
 }
@@ -82,21 +82,21 @@ fn a_strait_between_two_coasts() {
 
 #[test]
 fn open_ends_are_bridged_and_told() {
-    // A gap of five steps; the edge is farther away.
+    // The gap is five steps wide; the edge is farther away.
     let gap = vec![coast(1, &[(50, -5), (50, 28)]), coast(2, &[(50, 33), (50, 70)])];
     let sea = sea_of(gap);
     assert_eq!((area(&sea), &sea.bridged[..]), (50 * 60, &[1, 2][..]));
-    // An end with nothing near it goes on to the edge.
+    // An end with nothing near it continues to the edge.
     let sea = sea_of(vec![coast(8, &[(50, -5), (50, 50)])]);
     assert_eq!((area(&sea), &sea.bridged[..]), (50 * 60, &[8][..]));
-    // A ring with a gap.
+    // The ring has a gap.
     let sea = sea_of(vec![coast(3, &[(40, 30), (50, 30), (50, 38), (40, 38), (40, 31)])]);
     assert_eq!((area(&sea), &sea.bridged[..]), (6000 - 80, &[3][..]));
 }
 
 #[test]
 fn coasts_that_contradict_each_other_are_left_out_and_told() {
-    // Both go north: between them the first says sea, the second land.
+    // Both coasts go north: between them, the first claims sea and the second claims land.
     let coasts = vec![coast(1, &[(30, -5), (30, 70)]), coast(2, &[(60, -500), (60, -5), (60, 70)])];
     let sea = sea_of(coasts);
     assert_eq!(sea.left_out.len(), 1);
@@ -106,25 +106,25 @@ fn coasts_that_contradict_each_other_are_left_out_and_told() {
     assert!(crossing.is_err() || !crossing.unwrap().left_out.is_empty());
 }
 
-/// Coasts are closed along the edge of what is known, whatever its shape.
+/// Coasts are closed along the edge of the known region, whatever its shape.
 #[test]
 fn regions_that_are_no_rectangles() {
     let southward = || vec![coast(1, &[(30, 70), (30, -5)])];
-    // The northern west is not known.
+    // The northwest is not known.
     let corner = region(&[&[(0, 0), (100, 0), (100, 60), (20, 60), (20, 40), (0, 40)]]);
     let sea = close_sea(southward(), &corner).unwrap();
     assert_eq!((area(&sea), sea.bridged.len()), (30 * 60 - 20 * 20, 0));
-    // Two places that are known.
+    // Two separate regions are known.
     let apart =
         region(&[&[(0, 0), (50, 0), (50, 20), (0, 20)], &[(10, 40), (60, 40), (60, 60), (10, 60)]]);
     assert_eq!(area(&close_sea(southward(), &apart).unwrap()), 30 * 20 + 20 * 20);
-    // A hole in what is known, on the coast.
+    // The known region has a hole on the coast.
     let hole = region(&[
         &[(0, 0), (100, 0), (100, 60), (0, 60)],
         &[(20, 20), (40, 20), (40, 30), (20, 30)],
     ]);
     assert_eq!(area(&close_sea(southward(), &hole).unwrap()), 30 * 60 - 100);
-    // An island in a diamond, and one that reaches over its edge.
+    // There is an island in a diamond, and one that extends beyond the diamond's edge.
     let diamond = || region(&[&[(0, -500), (500, 0), (0, 500), (-500, 0)]]);
     let island = coast(1, &[(0, 0), (10, 0), (10, 10), (0, 10), (0, 0)]);
     assert_eq!(area(&close_sea(vec![island], &diamond()).unwrap()), 500_000 - 100);
@@ -132,7 +132,8 @@ fn regions_that_are_no_rectangles() {
     assert_eq!(area(&close_sea(vec![cape], &diamond()).unwrap()), 500_000 - 30_000);
 }
 
-/// A turned square over a coast: where its sides are cut, points are rounded, and no end counts as open.
+/// The region is a rotated square across a coast: points are rounded where its sides are cut, and
+/// no end counts as open.
 #[test]
 fn slanting_edges_are_met_between_steps() {
     let turned = || region(&[&[(-970, -333), (333, -970), (970, 333), (-333, 970)]]);
@@ -150,15 +151,16 @@ fn slanting_edges_are_met_between_steps() {
     assert!((found - count * whole).abs() < count * 3000, "{found} {}", count * whole);
 }
 
-/// Steps along a cell of the random sea.
+/// The steps along a cell of the random sea.
 const CELL: i64 = 10;
 
-/// Coasts around cells of land, which lie anywhere: of a field of 9 × 9 cells around a rectangle that ends within cells.
+/// Returns coasts around cells of land at random places in a field of 9 × 9 cells. The field
+/// surrounds a rectangle that ends within cells.
 fn coasts_around(land: &BTreeSet<(i64, i64)>, seed: u64) -> Vec<Coastline> {
     let mut edges = Vec::new();
     for &(x, y) in land {
         let corner = |dx: i64, dy: i64| LatticePoint::new((x + dx) * CELL, (y + dy) * CELL);
-        // Counter-clockwise around the cell: land on the left.
+        // The direction is counter-clockwise around the cell, so that land is on the left.
         for (beside, edge) in [
             ((x, y - 1), [corner(0, 0), corner(1, 0)]),
             ((x + 1, y), [corner(1, 0), corner(1, 1)]),
@@ -203,7 +205,7 @@ proptest! {
                 has_coast |= !is_land;
             }
         }
-        // Without a coast in the rectangle nothing is known.
+        // Without a coast in the rectangle, nothing is known.
         if has_land && has_coast {
             prop_assert_eq!(area(&sea), expected);
         } else {

@@ -1,26 +1,28 @@
-//! The segments of an outline: each once, none crossing another, none with a point of another in its middle.
+//! The segments of an outline: each occurs once, none crosses another, and none contains a point of
+//! another in its middle.
 
 use corniche_geom::{LatticePoint, Side, cross, dot, side};
 
 use crate::outline::{OutlineError, OutlineWay};
 
 /// Two different points, the smaller first.
-pub(crate) type Segment = [LatticePoint; 2];
+pub(crate) type OrderedSegment = [LatticePoint; 2];
 
-/// Segments that meet at their ends only.
+/// Segments that meet only at their ends.
 pub(crate) struct Separated {
     /// The segments in ascending order.
-    pub(crate) segments: Vec<Segment>,
-    /// How many were there an even number of times; they separate nothing.
+    pub(crate) segments: Vec<OrderedSegment>,
+    /// The number of segments that occurred an even number of times; they separate nothing.
     pub(crate) cancelled: u64,
-    /// How often a point lay in the middle of a segment, which was then divided there.
+    /// The number of points that were in the middle of a segment, which was then divided there.
     pub(crate) divided: u64,
 }
 
-/// Pairs of segments that are compared at most. Real outlines of a million points need a tenth; more would take minutes.
+/// The maximum number of segment pairs to compare. Real outlines of a million points need a tenth
+/// of it; more would take minutes.
 const MOST_COMPARISONS: u64 = 1 << 30;
 
-/// Takes the ways of an outline apart. Fails where segments cross.
+/// Splits the ways of an outline into segments. Fails if segments cross.
 pub(crate) fn segments_of(ways: &[OutlineWay<'_>]) -> Result<Separated, OutlineError> {
     let mut all = all_segments(ways);
     let mut cancelled = cancel_pairs(&mut all);
@@ -31,23 +33,28 @@ pub(crate) fn segments_of(ways: &[OutlineWay<'_>]) -> Result<Separated, OutlineE
     let divided = inner_points.len() as u64;
     if divided > 0 {
         all = divide(&all, inner_points);
-        // A part of a segment may lie on another one.
+        // A part of a segment may be on another segment.
         cancelled += cancel_pairs(&mut all);
     }
     Ok(Separated { segments: all, cancelled, divided })
 }
 
-/// How often segments are divided at most; each time brings what crosses together, and a few times are enough.
+/// The maximum number of rounds in which segments are divided. Each round brings crossing segments
+/// together, and a few rounds are enough.
 const MOST_ROUNDS: usize = 32;
 
-/// Takes the ways of an outline apart; where segments cross, both are led through the lattice point that is nearest to the
-/// crossing.
+/// Splits the ways of an outline into segments. Where segments cross, both are routed through the
+/// lattice point nearest to the crossing.
 ///
-/// Moved segments may cross others, so this is done until none do. A point moves by half a step at most each time.
+/// Moved segments may cross others, so this is repeated until none do. A point moves by at most
+/// half a step each time.
 ///
-/// Source: Halperin & Packer 2002, *Iterated Snap Rounding*, Computational Geometry 23; with points that are only as near to the
-/// crossing as the lattice allows, and without pulling segments to points that they pass by.
-pub(crate) fn uncrossed_segments_of(ways: &[OutlineWay<'_>]) -> Result<Vec<Segment>, OutlineError> {
+/// Source: Halperin & Packer 2002, *Iterated Snap Rounding*, Computational Geometry 23. Here,
+/// points are only as near to the crossing as the lattice allows, and segments are not pulled to
+/// points that they pass.
+pub(crate) fn uncrossed_segments_of(
+    ways: &[OutlineWay<'_>],
+) -> Result<Vec<OrderedSegment>, OutlineError> {
     let mut all = all_segments(ways);
     for _ in 0..MOST_ROUNDS {
         cancel_pairs(&mut all);
@@ -65,15 +72,17 @@ pub(crate) fn uncrossed_segments_of(ways: &[OutlineWay<'_>]) -> Result<Vec<Segme
     Err(OutlineError::TooIntricate)
 }
 
-fn all_segments(ways: &[OutlineWay<'_>]) -> Vec<Segment> {
+fn all_segments(ways: &[OutlineWay<'_>]) -> Vec<OrderedSegment> {
     let pairs = ways.iter().flat_map(|way| way.points.array_windows());
     pairs.filter(|[from, to]| from != to).map(|&[a, b]| [a.min(b), a.max(b)]).collect()
 }
 
-/// Sorts segments and leaves one of each that is there an odd number of times. Returns how many others there were.
+/// Sorts segments, and keeps one of each that occurs an odd number of times. Returns the number of
+/// the others.
 ///
-/// A segment that two ways share separates the same from the same: two neighbouring outer rings make one area.
-fn cancel_pairs(segments: &mut Vec<Segment>) -> u64 {
+/// A segment that two ways share has the same area on both sides: two neighbouring outer rings make
+/// one area.
+fn cancel_pairs(segments: &mut Vec<OrderedSegment>) -> u64 {
     segments.sort_unstable();
     let mut kept = Vec::with_capacity(segments.len());
     let mut cancelled = 0;
@@ -87,19 +96,20 @@ fn cancel_pairs(segments: &mut Vec<Segment>) -> u64 {
     cancelled
 }
 
-/// Where segments meet beside their ends.
+/// The places where segments meet other than at their ends.
 struct Meetings {
-    /// Points in the middle of segments, with the number of the segment.
+    /// Points in the middle of segments, each with the number of the segment.
     inner_points: Vec<(usize, LatticePoint)>,
     /// Segments that cross.
     crossings: Vec<[usize; 2]>,
 }
 
-fn meetings_of(segments: &[Segment]) -> Result<Meetings, OutlineError> {
+fn meetings_of(segments: &[OrderedSegment]) -> Result<Meetings, OutlineError> {
     let mut meetings = Meetings { inner_points: Vec::new(), crossings: Vec::new() };
     let mut comparisons = 0;
     for (number, &one) in segments.iter().enumerate() {
-        // Segments begin at their western end and are sorted by it, so those that begin east of this one are past it.
+        // Segments begin at their western end and are sorted by it, so segments that begin east of
+        // the end of this one cannot meet it.
         let later = segments[number + 1..].iter().take_while(|other| other[0].u <= one[1].u);
         for (ahead, &other) in later.enumerate() {
             comparisons += 1;
@@ -111,7 +121,7 @@ fn meetings_of(segments: &[Segment]) -> Result<Meetings, OutlineError> {
                 Meeting::Apart => {}
                 Meeting::Crossing => meetings.crossings.push([number, other_number]),
                 Meeting::Touching => {
-                    let inner = |segment: Segment, ends: Segment| {
+                    let inner = |segment: OrderedSegment, ends: OrderedSegment| {
                         ends.into_iter().filter(move |&end| is_inside(segment, end))
                     };
                     let points = &mut meetings.inner_points;
@@ -121,27 +131,27 @@ fn meetings_of(segments: &[Segment]) -> Result<Meetings, OutlineError> {
             }
         }
     }
-    // Two segments may end at the same point in the middle of a third.
+    // Two segments may end at the same point in the middle of a third segment.
     meetings.inner_points.sort_unstable();
     meetings.inner_points.dedup();
     Ok(meetings)
 }
 
 enum Meeting {
-    /// They have no point in common, or an end of both.
+    /// They have no point in common, or only a common end.
     Apart,
-    /// An end of one may lie in the middle of the other.
+    /// An end of one may be in the middle of the other.
     Touching,
     Crossing,
 }
 
-fn meeting(one: Segment, other: Segment) -> Meeting {
-    let range_v = |[a, b]: Segment| [a.v.min(b.v), a.v.max(b.v)];
+fn meeting(one: OrderedSegment, other: OrderedSegment) -> Meeting {
+    let range_v = |[a, b]: OrderedSegment| [a.v.min(b.v), a.v.max(b.v)];
     let ([low, high], [other_low, other_high]) = (range_v(one), range_v(other));
     if high < other_low || other_high < low {
         return Meeting::Apart;
     }
-    let sides = |[a, b]: Segment, ends: Segment| ends.map(|end| side(a, b, end));
+    let sides = |[a, b]: OrderedSegment, ends: OrderedSegment| ends.map(|end| side(a, b, end));
     let (of_other, of_one) = (sides(one, other), sides(other, one));
     let is_on = |sides: [Side; 2]| sides.contains(&Side::On);
     if is_on(of_other) || is_on(of_one) {
@@ -153,29 +163,34 @@ fn meeting(one: Segment, other: Segment) -> Meeting {
     }
 }
 
-/// Whether a point lies on a segment and is none of its ends.
-fn is_inside([a, b]: Segment, point: LatticePoint) -> bool {
-    // On the line, points are in the order of their coordinates.
+/// Whether a point is on a segment and is not one of its ends.
+fn is_inside([a, b]: OrderedSegment, point: LatticePoint) -> bool {
+    // On a line, points are in the order of their coordinates.
     a < point && point < b && side(a, b, point) == Side::On
 }
 
-/// The lattice point nearest to where two segments cross.
-fn crossing_of([a, b]: Segment, [c, d]: Segment) -> LatticePoint {
-    // From a to b it is at the share `from_a / both` of the way: the distances of a and b from the line c d.
+/// Returns the lattice point nearest to the crossing of two segments.
+fn crossing_of([a, b]: OrderedSegment, [c, d]: OrderedSegment) -> LatticePoint {
+    // Measured from a to b, the crossing is at the fraction `from_a / both`: the distances of a and
+    // b from the line c d.
     let from_a = cross(c, d, a);
     let both = from_a - cross(c, d, b);
     let along = |a: i64, b: i64| a + round_div(i128::from(b - a) * from_a, both);
     LatticePoint::new(along(a.u, b.u), along(a.v, b.v))
 }
 
-/// The whole number nearest to a quotient, halves upwards. Coordinates below 2^40 do not overflow.
+/// Returns the integer nearest to a quotient, with halves rounded upwards. Coordinates below 2^40
+/// do not overflow.
 fn round_div(dividend: i128, divisor: i128) -> i64 {
     let (dividend, divisor) = (dividend * divisor.signum(), divisor.abs());
     (2 * dividend + divisor).div_euclid(2 * divisor) as i64
 }
 
-/// Divides segments at points, which lie on them or near to them, and come in any order.
-fn divide(segments: &[Segment], mut points: Vec<(usize, LatticePoint)>) -> Vec<Segment> {
+/// Divides segments at points, which are on the segments or near them, in any order.
+fn divide(
+    segments: &[OrderedSegment],
+    mut points: Vec<(usize, LatticePoint)>,
+) -> Vec<OrderedSegment> {
     let along = |&(number, point): &(usize, LatticePoint)| {
         let [a, b] = segments[number];
         dot(a, b, point)

@@ -1,9 +1,10 @@
-//! Which of many intervals hold a number.
+//! Finds which of many intervals contain a number.
 
-/// Intervals `[low, high)`, sorted by `low`, as a balanced tree in one list: the middle of a range is the root of what is
-/// left and right of it, and knows the largest `high` of the whole range.
+/// Intervals `[low, high)`, sorted by `low`, as a balanced tree in one list. The middle of a range
+/// is the root of the parts left and right of it, and stores the largest `high` of the whole range.
 ///
-/// Source: Cormen, Leiserson, Rivest & Stein, *Introduction to Algorithms* (2009), section 14.3, interval trees.
+/// Source: Cormen, Leiserson, Rivest & Stein, *Introduction to Algorithms* (2009), section 14.3,
+/// interval trees.
 pub(crate) struct Stabbing {
     intervals: Vec<Interval>,
 }
@@ -17,7 +18,8 @@ struct Interval {
 }
 
 impl Stabbing {
-    /// Takes intervals `[low, high)`; items are named by their place in the list. Empty ones are left out.
+    /// Creates the tree from intervals `[low, high)`; items are identified by their position in the
+    /// list. Empty intervals are omitted.
     pub(crate) fn new(intervals: impl Iterator<Item = [i64; 2]>) -> Self {
         let mut intervals: Vec<Interval> = intervals
             .enumerate()
@@ -29,7 +31,7 @@ impl Stabbing {
         Self { intervals }
     }
 
-    /// Calls `take` with each item whose interval holds `number`.
+    /// Calls `take` with each item whose interval contains `number`.
     pub(crate) fn at(&self, number: i64, take: &mut impl FnMut(usize)) {
         visit(&self.intervals, number, take);
     }

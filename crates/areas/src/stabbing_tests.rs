@@ -1,11 +1,11 @@
-//! The tree of intervals finds what a look at all intervals finds.
+//! The tree of intervals finds the same intervals as a scan of all of them.
 
 use proptest::prelude::*;
 
 use super::*;
 
 proptest! {
-    /// The tree finds what a look at all intervals finds.
+    /// The tree finds the same intervals as a scan of all of them.
     #[test]
     fn finds_the_intervals_that_hold_a_number(
         intervals in prop::collection::vec([-20_i64..20, -20_i64..20], 0..60),

@@ -1,4 +1,4 @@
-//! Blocks of files: kept, fetched once, and read ahead where reads follow each other.
+//! A cache of blocks of files: blocks are fetched once, and read ahead when reads are sequential.
 
 use std::{
     collections::{HashMap, VecDeque},
@@ -8,47 +8,50 @@ use std::{
 
 use bytes::Bytes;
 
-/// A read that begins so many blocks behind an earlier one goes on with it: what nobody asks for may lie between.
+/// A read that begins up to this many blocks after the end of an earlier read continues it: a
+/// sequential reader may skip blocks.
 const LEAP_BLOCKS: u64 = 1;
-/// So many places where reads went on are remembered: threads read side by side.
+/// The number of positions of sequential reads that are remembered, since several threads read at
+/// the same time.
 const PLACES: usize = 16;
 
-/// How large blocks are, and how many.
+/// The size and number of blocks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Limits {
-    /// Bytes of a block; the last one of a file has fewer.
+pub struct CacheLimits {
+    /// Bytes per block; the last block of a file has fewer.
     pub block_bytes: u64,
-    /// The most bytes that are kept, but at least what was fetched last. What is being fetched comes on top.
+    /// The largest number of cached bytes; the last fetch is always kept. Fetches in progress are
+    /// not included.
     pub kept_bytes: u64,
-    /// The most blocks that are fetched at once: with 1, nothing is read ahead.
+    /// The largest number of blocks per fetch; with 1, nothing is read ahead.
     pub most_blocks: u64,
 }
 
-/// Which block of which file.
+/// The number of a file, and the number of a block in it.
 type BlockId = (u64, u64);
 
-/// Blocks of some files, those that were used last.
+/// The most recently used blocks of some files.
 #[derive(Debug)]
 pub struct BlockCache {
-    limits: Limits,
+    limits: CacheLimits,
     state: Mutex<State>,
-    /// A fetch ended.
+    /// Notifies waiting threads that a fetch has ended.
     fetched: Condvar,
 }
 
 #[derive(Debug, Default)]
 struct State {
-    blocks: HashMap<BlockId, Block>,
+    blocks: HashMap<BlockId, BlockSlot>,
     kept_bytes: u64,
     clock: u64,
     files: u64,
-    /// Where fetches ended, and how many blocks they had; the last one at the back.
+    /// The ends of fetches and their numbers of blocks, the last one at the back.
     ends: VecDeque<(BlockId, u64)>,
 }
 
 #[derive(Debug)]
-enum Block {
-    /// A thread fetches it.
+enum BlockSlot {
+    /// A thread is fetching the block.
     Coming,
     Kept {
         bytes: Bytes,
@@ -57,19 +60,19 @@ enum Block {
 }
 
 impl BlockCache {
-    /// A cache without blocks.
+    /// Creates an empty cache.
     #[must_use]
-    pub fn new(limits: Limits) -> Self {
+    pub fn new(limits: CacheLimits) -> Self {
         Self { limits, state: Mutex::default(), fetched: Condvar::new() }
     }
 
-    /// Bytes of a block. The last one of a file may have fewer.
+    /// Bytes per block. The last block of a file may have fewer.
     #[must_use]
     pub fn block_bytes(&self) -> u64 {
         self.limits.block_bytes
     }
 
-    /// A number for a file, by which its blocks are told from those of others.
+    /// Returns a new number for a file, which distinguishes its blocks from those of other files.
     #[must_use]
     pub fn new_file(&self) -> u64 {
         let mut state = self.state();
@@ -77,12 +80,14 @@ impl BlockCache {
         state.files
     }
 
-    /// A block of a file of `count` blocks. `wanted` is how many from this one on are asked for next, at least 1.
+    /// Returns a block of a file of `count` blocks. `wanted` is the number of blocks from this one
+    /// on that will be requested next, at least 1.
     ///
-    /// `fetch` gets the bytes of a run of blocks; one thread fetches while others that want the same wait.
+    /// `fetch` gets the bytes of a run of blocks. One thread fetches while others that need the
+    /// same blocks wait.
     ///
     /// # Errors
-    /// What `fetch` returns.
+    /// The error of `fetch`.
     pub fn get<E>(
         &self,
         (file, number): BlockId,
@@ -91,21 +96,21 @@ impl BlockCache {
         fetch: impl FnOnce(Range<u64>) -> Result<Bytes, E>,
     ) -> Result<Bytes, E> {
         let mut state = self.state();
-        while let Some(Block::Coming) = state.blocks.get(&(file, number)) {
+        while let Some(BlockSlot::Coming) = state.blocks.get(&(file, number)) {
             state = self.fetched.wait(state).unwrap_or_else(PoisonError::into_inner);
         }
         state.clock += 1;
         let now = state.clock;
-        if let Some(Block::Kept { bytes, used }) = state.blocks.get_mut(&(file, number)) {
+        if let Some(BlockSlot::Kept { bytes, used }) = state.blocks.get_mut(&(file, number)) {
             *used = now;
             return Ok(bytes.clone());
         }
         let run = state.run((file, number), wanted, count, self.limits.most_blocks);
         for block in run.clone() {
-            state.blocks.insert((file, block), Block::Coming);
+            state.blocks.insert((file, block), BlockSlot::Coming);
         }
         drop(state);
-        // Whatever happens, also a panic, others must not wait for ever.
+        // Whatever happens, even a panic, other threads must not wait forever.
         let mut coming = Coming { blocks: self, file, run: run.clone(), bytes: None };
         let bytes = fetch(run)?;
         let first = bytes.slice(..bytes.len().min(self.limits.block_bytes as usize));
@@ -114,10 +119,11 @@ impl BlockCache {
         Ok(first)
     }
 
-    /// Fills `bytes` with those at a place of a file of `length` bytes, which has all of them. `fetch` gets runs of bytes of whole blocks.
+    /// Fills `bytes` from the position `offset` of a file of `length` bytes; the file must contain
+    /// all of them. `fetch` gets runs of bytes of whole blocks.
     ///
     /// # Errors
-    /// What `fetch` returns.
+    /// The error of `fetch`.
     pub fn read<E>(
         &self,
         (file, length): (u64, u64),
@@ -146,7 +152,7 @@ impl BlockCache {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Puts in what was fetched, or takes the marks away.
+    /// Stores fetched blocks, or removes the marks of a failed fetch.
     fn arrived(&self, file: u64, run: &Range<u64>, bytes: Option<&Bytes>) {
         let block_bytes = self.limits.block_bytes as usize;
         let mut state = self.state();
@@ -154,14 +160,14 @@ impl BlockCache {
             let rest = bytes.and_then(|bytes| Some((bytes, bytes.get(k * block_bytes..)?)));
             match rest {
                 Some((bytes, rest)) => {
-                    // A copy of its own, so that memory is given back block by block.
+                    // A separate copy per block, so that memory is freed block by block.
                     let bytes = match run.end - run.start {
                         1 => bytes.slice(..bytes.len().min(block_bytes)),
                         _ => Bytes::copy_from_slice(&rest[..rest.len().min(block_bytes)]),
                     };
                     let used = state.clock;
                     state.kept_bytes += bytes.len() as u64;
-                    state.blocks.insert((file, number), Block::Kept { bytes, used });
+                    state.blocks.insert((file, number), BlockSlot::Kept { bytes, used });
                 }
                 None => drop(state.blocks.remove(&(file, number))),
             }
@@ -179,8 +185,8 @@ impl BlockCache {
 }
 
 impl State {
-    /// Which blocks are fetched for a block that is not there: what is wanted, and where reads follow each other twice as many as before.
-    /// A run ends before a block that is there or comes.
+    /// The blocks to fetch when one is missing: the requested ones, and for sequential reads twice
+    /// as many as before. A run ends before a block that is cached or being fetched.
     fn run(&mut self, (file, number): BlockId, wanted: u64, count: u64, most: u64) -> Range<u64> {
         let follows = |&((of, end), _): &(BlockId, u64)| {
             of == file && (end..=end + LEAP_BLOCKS).contains(&number)
@@ -192,17 +198,17 @@ impl State {
         number..known.unwrap_or(end)
     }
 
-    /// Gives up the blocks that were used longest ago, beyond what is kept, and none of the last run.
+    /// Drops the least recently used blocks above the limit, but none of the last run.
     fn forget(&mut self, limit_bytes: u64, file: u64, run: &Range<u64>) {
         while self.kept_bytes > limit_bytes {
             let kept = self.blocks.iter().filter_map(|(&id, block)| match block {
-                Block::Kept { used, .. } if id.0 != file || !run.contains(&id.1) => {
+                BlockSlot::Kept { used, .. } if id.0 != file || !run.contains(&id.1) => {
                     Some((*used, id))
                 }
-                Block::Kept { .. } | Block::Coming => None,
+                BlockSlot::Kept { .. } | BlockSlot::Coming => None,
             });
             let Some((_, oldest)) = kept.min() else { return };
-            if let Some(Block::Kept { bytes, .. }) = self.blocks.remove(&oldest) {
+            if let Some(BlockSlot::Kept { bytes, .. }) = self.blocks.remove(&oldest) {
                 self.kept_bytes -= bytes.len() as u64;
             }
         }

@@ -1,4 +1,4 @@
-//! Reads that follow each other become few requests, and many threads fetch a block once.
+//! Sequential reads become few requests, and many threads fetch a block only once.
 
 use std::{
     panic::{AssertUnwindSafe, catch_unwind},
@@ -12,8 +12,9 @@ use super::*;
 const MANY: u64 = 1 << 20;
 const FILE: u64 = 1;
 const KEPT_BLOCKS: usize = 1024;
-/// As packages are read from web servers.
-const WEB: Limits = Limits { block_bytes: 64 << 10, kept_bytes: 64 << 20, most_blocks: 64 };
+/// The limits for packages on web servers.
+const WEB: CacheLimits =
+    CacheLimits { block_bytes: 64 << 10, kept_bytes: 64 << 20, most_blocks: 64 };
 
 fn of_the_web() -> BlockCache {
     BlockCache::new(WEB)
@@ -29,7 +30,7 @@ fn content(run: &Range<u64>) -> Bytes {
     blocks.collect::<Vec<u8>>().into()
 }
 
-/// Reads blocks one after the other; gives the runs that were fetched.
+/// Reads blocks one after the other; returns the fetched runs.
 fn fetched(blocks: &BlockCache, numbers: impl IntoIterator<Item = u64>) -> Vec<Range<u64>> {
     let mut runs = Vec::new();
     for number in numbers {
@@ -56,7 +57,7 @@ fn reads_here_and_there_take_what_they_ask_for() {
     assert_eq!(runs, [0..1, 900..901, 30..31, 800..801, 60..61, 700..701]);
 }
 
-/// Threads that read side by side, each in its own part.
+/// Threads that read in parallel, each in its own part.
 #[test]
 fn several_sequences_do_not_disturb_each_other() {
     let blocks = of_the_web();
@@ -114,7 +115,7 @@ fn many_threads_fetch_a_block_once() {
     assert_eq!(fetches.into_inner(), 63, "each block once, up to the end of a run");
 }
 
-/// Whoever waits for a fetch that fails tries it itself.
+/// A thread that waits for a fetch that fails then fetches the block itself.
 #[test]
 fn a_fetch_that_fails_or_panics_leaves_nobody_waiting() {
     let blocks = of_the_web();
@@ -139,17 +140,17 @@ fn a_fetch_that_fails_or_panics_leaves_nobody_waiting() {
 fn blocks_of_several_files_are_kept_within_the_limit() {
     let (size, limit_bytes) = (256 << 10, 4 << 20);
     let cache =
-        BlockCache::new(Limits { block_bytes: size, kept_bytes: limit_bytes, most_blocks: 1 });
+        BlockCache::new(CacheLimits { block_bytes: size, kept_bytes: limit_bytes, most_blocks: 1 });
     let block = |with: u8| Bytes::from(vec![with; size as usize]);
     for number in 0..100 {
         cache.get((1, number), 1, MANY, |_| Ok::<_, ()>(block(number as u8))).unwrap();
-        // One that is used again and again stays.
+        // A block that is used again and again stays.
         let again = cache.get((1, 0), 1, MANY, |_| Err::<Bytes, _>(number)).unwrap();
         assert_eq!(again, vec![0; size as usize]);
         let state = cache.state();
         let bytes = state.blocks.values().map(|block| match block {
-            Block::Kept { bytes, .. } => bytes.len() as u64,
-            Block::Coming => 0,
+            BlockSlot::Kept { bytes, .. } => bytes.len() as u64,
+            BlockSlot::Coming => 0,
         });
         let held: u64 = bytes.sum();
         assert_eq!(held, state.kept_bytes);
@@ -163,10 +164,10 @@ fn blocks_of_several_files_are_kept_within_the_limit() {
     );
 }
 
-/// Where a block is larger than what may be kept, the last one is kept all the same.
+/// Even if a block is larger than the cache limit, the last one is kept.
 #[test]
 fn what_was_fetched_last_is_kept_under_any_limit() {
-    let cache = BlockCache::new(Limits { block_bytes: 1000, kept_bytes: 10, most_blocks: 1 });
+    let cache = BlockCache::new(CacheLimits { block_bytes: 1000, kept_bytes: 10, most_blocks: 1 });
     for number in [3, 4] {
         cache.get((1, number), 1, MANY, |_| Ok::<_, ()>(Bytes::from(vec![0; 1000]))).unwrap();
         assert!(cache.get((1, number), 1, MANY, |_| Err::<Bytes, _>(())).is_ok());

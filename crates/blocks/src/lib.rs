@@ -1,7 +1,8 @@
-//! Blocks of files that are far away: those that were used last are kept, and each is fetched once.
+//! A cache of blocks of remote files: it keeps the most recently used blocks, and each is fetched
+//! once.
 //!
-//! This crate never fetches: who asks for a block says how.
+//! This crate never fetches anything itself: the caller passes a function that does.
 
 mod block_cache;
 
-pub use block_cache::{BlockCache, Limits};
+pub use block_cache::{BlockCache, CacheLimits};

@@ -1,6 +1,6 @@
-/** Types of the module corniche-map: the element <corniche-map> and what its events carry. */
+/** Types of the module corniche-map: the element <corniche-map> and the details of its events. */
 
-/** A place to look at. What is left out stays as it is. */
+/** A place to look at. Omitted fields stay unchanged. */
 export interface Target {
   /** Longitude, WGS84 degrees. */
   lon: number;
@@ -14,32 +14,32 @@ export interface Target {
   pitch?: number;
   /** Straight from above with parallel rays. */
   above?: boolean;
-  /** From above, instead of the distance: metres in a pixel. */
+  /** From above, instead of the distance: metres per pixel. */
   pixel_m?: number;
 }
 
-/** What is seen. */
+/** The current view. */
 export interface Place extends Target {
-  /** Metres, of the ground in the middle; absent where there is none. */
+  /** Height of the ground in the middle, metres; absent if there is no ground. */
   height?: number;
   heading: number;
   pitch: number;
 }
 
 export interface Settings {
-  /** How roads are drawn: as geometry, as shadow volumes, or not at all. */
+  /** The drawing method of roads: as geometry (GEO), by shadow volumes (SV), or not at all. */
   roads: "geo" | "sv" | "none";
   compare: "off" | "split" | "difference";
-  /** Where the line between GEO and SV is, 0 left to 1 right. */
+  /** The position of the divider between GEO and SV, 0 left to 1 right. */
   divider: number;
-  /** Which classes are shown, in the order of `About.classes`. */
+  /** Whether each class is shown, in the order of `About.classes`. */
   classes: boolean[];
   /** A factor on the width of each class. */
   widths: number[];
   outline: "style" | "none" | "3" | "5";
-  /** One of `About.styles`, or the address of an own style: what holds a slash or ends in `.toml`. An own one is told once its file has been read. */
+  /** One of `About.styles`, or the address of a custom style: a text with a slash or that ends in `.toml`. A custom style appears here once its file has been read. */
   style: string;
-  /** How strongly photos are seen, 0 to 1; `null` as the style says. */
+  /** The opacity of photos, 0 to 1; `null` for that of the style. */
   photo: number | null;
   areas: boolean;
   boundaries: boolean;
@@ -48,7 +48,7 @@ export interface Settings {
   /** The largest error of the ground on the screen, pixels. */
   error_px: number;
   cell_px: number | null;
-  /** Samples per pixel, a side. */
+  /** Samples per pixel along each side. */
   samples: number;
   wireframe: boolean;
   inertia: boolean;
@@ -67,11 +67,11 @@ export interface About {
   styles: string[];
   /** Names of the classes of roads, and their colours in the style shown. */
   classes: { label: string; color: string }[];
-  /** Names of the boundaries that the map has and the style draws, and their colours. */
+  /** Names of the map's boundaries that the style draws, and their colours. */
   boundaries: { label: string; color: string }[];
   has: { photo: boolean; areas: boolean; boundaries: boolean };
   adapter: string;
-  /** Whether the processor draws. */
+  /** Whether the CPU draws. */
   is_software: boolean;
   max_side_px: number;
   format_version: number;
@@ -83,14 +83,14 @@ export interface FrameReport {
   is_settled: boolean;
   view: Place | null;
   cursor: { lon: number; lat: number; height: number } | null;
-  /** In the middle, of the screen's pixels and of CSS pixels. */
+  /** In the middle, per pixel of the screen and per CSS pixel. */
   metres_per_pixel: number | null;
   metres_per_point: number | null;
   mode: "map" | "fly";
   tiles: { drawn: number; missing: number; loading: number; full: boolean };
   triangles: number;
   segments: number;
-  /** Used and allowed. */
+  /** Used and allowed bytes. */
   gpu_bytes: [number, number];
   requests: number;
   bytes: number;
@@ -129,7 +129,7 @@ export interface Failure {
     | "files"
     | "other";
   message: string;
-  /** What can be done; may be empty. */
+  /** What the user can do; may be empty. */
   advice: string;
 }
 
@@ -138,7 +138,7 @@ export interface CornicheMapEventMap {
   ready: CustomEvent<About>;
   /** The camera came to rest. */
   moveend: CustomEvent<Place>;
-  /** A click, a tap, a long press or Enter: what is there, or `null` over the sky. `preventDefault()` keeps the element's own card away. */
+  /** A click, a tap, a long press or Enter: the place there, or `null` over the sky. `preventDefault()` suppresses the element's own card. */
   pick: CustomEvent<Pick | null>;
   /** The map cannot be shown. */
   error: CustomEvent<Failure>;
@@ -151,7 +151,7 @@ export class CornicheMap extends HTMLElement {
   roads: Settings["roads"];
   compare: Settings["compare"];
   divider: number;
-  /** As `Settings.style`. Assigned again, the file of an own style is read again. */
+  /** As `Settings.style`. Assigning it again reads the file of a custom style again. */
   mapStyle: string;
   outline: Settings["outline"];
   exaggeration: number;
@@ -163,33 +163,33 @@ export class CornicheMap extends HTMLElement {
   boundaries: boolean;
   wireframe: boolean;
   inertia: boolean;
-  /** All settings. Those in an object that is assigned are changed, the others stay; a value that cannot be throws a RangeError. A file of a style that cannot be read is told in a notice. */
+  /** All settings. An assigned object changes the settings that it contains; an invalid value throws a RangeError. A notice reports a style file that cannot be read. */
   get settings(): Settings;
   set settings(change: Partial<Settings>);
-  /** What the package is; `null` before `ready`. */
+  /** Facts about the package; `null` before `ready`. */
   readonly about: About | null;
-  /** What the last frame said; `null` before the first. */
+  /** The report of the last frame; `null` before the first. */
   readonly report: FrameReport | null;
-  /** What is seen; an assignment jumps there. `null` before `ready`. */
+  /** The current view; an assignment jumps there. `null` before `ready`. */
   get camera(): Place | null;
   set camera(target: Target | null);
-  /** Moves to a place, with `jump` at once. */
+  /** Moves to a place; with `jump` at once. */
   lookAt(target: Target, options?: { jump?: boolean }): void;
   /** Moves to "lon,lat". */
   goTo(text: string): void;
   command(name: "north-up" | "reset" | "toggle-fly" | "toggle-above"): void;
-  /** What is at a position, in CSS pixels from the corner of the element; `null` over the sky. Rejects, with `kind` and `message`, where the roads there cannot be fetched. */
+  /** The place at a position, in CSS pixels from the corner of the element; `null` over the sky. Rejects, with `kind` and `message`, if the roads there cannot be fetched. */
   pick(x: number, y: number): Promise<Pick | null>;
   startRecording(): void;
   /** Ends the recording and returns the flight as TOML. */
   stopRecording(): string;
-  /** Flies a flight; fulfilled when it has begun. */
+  /** Plays a flight; fulfilled when it has begun. */
   play(flight: string): Promise<void>;
-  /** The map as a PNG with its credits. */
+  /** The map as a PNG with its attribution. */
   picture(): Promise<Blob>;
-  /** The pixels as shown last: RGBA, rows from the top, without credits. */
+  /** The pixels as shown last: RGBA, rows from the top, without attribution. */
   readPixels(): Promise<{ width: number; height: number; data: Uint8Array }>;
-  /** Fulfilled when nothing moves, all tiles of the view are there, and the file of an own style has been read. */
+  /** Fulfilled when nothing moves, all tiles of the view are loaded, and the file of a custom style has been read. */
   settled(): Promise<void>;
 
   addEventListener<K extends keyof CornicheMapEventMap>(

@@ -1,4 +1,5 @@
-// A worker: decodes tiles with the module that the page compiled. The first message brings it, the others bring tiles.
+// A worker: decodes tiles with the module that the page compiled. The first message contains the
+// module, the others contain tiles.
 import { initSync, work } from "./corniche_web.js";
 
 self.onmessage = (event) => {
@@ -10,7 +11,7 @@ self.onmessage = (event) => {
     const answer = work(event.data);
     if (answer !== undefined) self.postMessage(answer, { transfer: answer.tile ? [answer.tile.buffer] : [] });
   } catch (error) {
-    // A tile on which the decoder stops costs that tile, and not the map.
+    // A tile that stops the decoder is lost, but the map is not.
     const { job } = event.data;
     self.postMessage(job === undefined ? { failed: String(error) } : { job, error: `the decoder stopped: ${error}` });
   }

@@ -1,4 +1,4 @@
-//! The command line: every command with its options.
+//! The command line: all commands and their options.
 
 mod build;
 mod camera;
@@ -44,7 +44,7 @@ pub(crate) use overlay::parse as overlay;
 pub(crate) use overlay::{OverlayArg, styled as with_overlays};
 pub(crate) use part::{JobsArgs, MergeArgs, PartArgs, plan_and_stores};
 pub(crate) use profile::ProfileArgs;
-pub(crate) use reading::{Coordinates, InfoArgs, TileArgs, VerifyArgs};
+pub(crate) use reading::{DumpCoordinates, InfoArgs, TileArgs, VerifyArgs};
 pub(crate) use serve::ServeArgs;
 pub(crate) use shared::{
     DatumArg, ExtractArgs, FileArgs, FolderArgs, PackageArg, RecordedArgs, ThreadsArg,
@@ -57,29 +57,30 @@ pub(crate) use voice::{LogFormat, Voice};
 use self::voice::JSON_PROGRESS;
 use crate::escaped::one_line;
 
-/// Terrain tiles with roads laid exactly on them, from elevation rasters and OpenStreetMap extracts.
+/// Create terrain tiles with roads exactly on them, from a DEM and OpenStreetMap extracts.
 #[derive(Debug, Parser)]
 #[command(version, name = "corniche", max_term_width = 100)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
-    pub(crate) command: Command,
+    pub(crate) command: CliCommand,
     /// The name of the command.
     #[arg(skip)]
     pub(crate) name: String,
-    /// How the program is to talk.
+    /// How the program writes its messages.
     #[command(flatten)]
     pub(crate) voice: Voice,
-    /// End, with exit code 1, when standard input ends: for programs that start this one and keep a pipe to it open. It ends when they
-    /// do, however they end. The same part or merge goes on from what was done
+    /// Exit with code 1 when stdin closes, so that the process does not outlive its parent. For
+    /// programs that start this one with a pipe as its stdin. Rerun the same part or merge to
+    /// resume
     #[arg(long, global = true, help_heading = "For programs")]
     pub(crate) die_with_parent: bool,
 }
 
 impl Arguments {
-    /// The command line, checked.
+    /// Parses and checks the command line.
     ///
     /// # Errors
-    /// When it cannot be used; also when what is asked for is help or the version.
+    /// When the command line is invalid; also when it requests the help or the version.
     pub(crate) fn checked_from(words: impl Iterator<Item = OsString>) -> Result<Self, clap::Error> {
         let words: Vec<OsString> = words.collect();
         Self::parsed(&words).map_err(|error| as_shown(error, words))
@@ -91,7 +92,7 @@ impl Arguments {
         let mut arguments = Self::from_arg_matches(&matches)?;
         matches.subcommand_name().unwrap_or_default().clone_into(&mut arguments.name);
         arguments.voice.json_progress = has_json_progress(&matches);
-        // Conflicts of options before the command's name with those behind it are not the parser's.
+        // clap does not detect conflicts between options before and after the command's name.
         let Voice { quiet, verbose, json_progress, .. } = arguments.voice;
         let given =
             [(quiet, "--quiet"), (verbose > 0, "--verbose"), (json_progress, "--json-progress")];
@@ -103,8 +104,9 @@ impl Arguments {
     }
 }
 
-/// A refusal in whose message the words of the command line stand as [`one_line`] makes them, so that none passes for a line of ours: it is that of
-/// the words so written.
+/// Rewrites an error so that the words of the command line in it are escaped with [`one_line`]: no
+/// word can then be mistaken for a line of ours. The escaped words are parsed again, and their
+/// error is returned.
 fn as_shown(error: clap::Error, words: Vec<OsString>) -> clap::Error {
     let mut is_shown_as_it_is = true;
     let written = words.into_iter().map(|word| match one_line(&word.to_string_lossy()) {
@@ -119,14 +121,14 @@ fn as_shown(error: clap::Error, words: Vec<OsString>) -> clap::Error {
         return error;
     }
     Arguments::parsed(&written).err().unwrap_or_else(|| {
-        // Written otherwise nothing is wrong with them.
+        // The escaped words are valid.
         let said = error.to_string();
         let said = said.trim_start_matches("error: ").trim_end();
         Arguments::command().error(error.kind(), one_line(said))
     })
 }
 
-/// Whether `--json-progress` is given, to the command or to the one below it.
+/// Whether `--json-progress` is given, to this command or to its subcommand.
 fn has_json_progress(matches: &ArgMatches) -> bool {
     match matches.subcommand() {
         Some((_, below)) => has_json_progress(below),
@@ -134,12 +136,13 @@ fn has_json_progress(matches: &ArgMatches) -> bool {
     }
 }
 
-/// What other programs call a part of the data.
+/// Names that other programs give to the option for a part of the data.
 const NAMES_OF_PARTS: [&str; 3] = ["--bbox", "--clip", "--cutline"];
 
-/// A refusal, with what to write instead where that is known.
+/// Adds a tip to an error: what to write instead, where this is known.
 fn with_tip(mut error: clap::Error, words: &[OsString]) -> clap::Error {
     let tip = match error.kind() {
+        ErrorKind::MissingRequiredArgument => return needs(&error).unwrap_or(error),
         ErrorKind::UnknownArgument => {
             tip_for_part(&error).or_else(|| tip_for_inputs(&error, words))
         }
@@ -155,12 +158,41 @@ fn with_tip(mut error: clap::Error, words: &[OsString]) -> clap::Error {
     error
 }
 
+/// The error for missing arguments as a sentence with advice.
+fn needs(error: &clap::Error) -> Option<clap::Error> {
+    let usage = text_of(error, ContextKind::Usage);
+    let Some(ContextValue::Strings(missing)) = error.get(ContextKind::InvalidArg) else {
+        return None;
+    };
+    let words = usage.split_once("corniche ")?.1.split_whitespace();
+    let name = words.take_while(|word| word.starts_with(|c: char| c.is_ascii_alphanumeric()));
+    let name = name.collect::<Vec<_>>().join(" ");
+    let option = |word: &String| match word.strip_prefix("<--") {
+        // A choice is written as <--one|--other>.
+        Some(choice) => {
+            format!("--{}", choice.strip_suffix('>').unwrap_or(choice)).replace("|--", " or --")
+        }
+        // Options that other arguments replace or require.
+        None if word == "<Z/X/Y>" => format!("{word} or --at <LON,LAT>"),
+        None => word.clone(),
+    };
+    let in_brackets = |words: String| {
+        if words.contains(" or ") && missing.len() > 1 { format!("({words})") } else { words }
+    };
+    let pass = missing.iter().map(option).map(in_brackets).collect::<Vec<_>>().join(" and ");
+    let pass = pass.replace("--from <LON,LAT>", "--from <LON,LAT> --to <LON,LAT>");
+    let text = format!(
+        "corniche {name} needs more arguments; pass {pass}\n\n{usage}\n\nFor more information, try '--help'.\n"
+    );
+    Some(clap::Error::raw(error.kind(), text))
+}
+
 fn text_of(error: &clap::Error, kind: ContextKind) -> String {
     error.get(kind).map(ToString::to_string).unwrap_or_default()
 }
 
-/// For an unknown option that is one for a part of the data in other programs, of a command that can convert a part. Its value is written in
-/// another way, so ours have no such names themselves.
+/// A tip for an unknown option that selects a part of the data in other programs, in commands that
+/// can convert a part. Our options have other names because their values have another format.
 fn tip_for_part(error: &clap::Error) -> Option<String> {
     let option = text_of(error, ContextKind::InvalidArg);
     let usage = text_of(error, ContextKind::Usage);
@@ -171,7 +203,8 @@ fn tip_for_part(error: &clap::Error) -> Option<String> {
         .then(|| "use --bounds W,S,E,N or --polygon FILE".to_owned())
 }
 
-/// Options by the endings of the files that they take, in lower case; the first that a command has counts.
+/// Options by the file extensions that they accept, in lower case. The first option that the
+/// command has is used.
 const OPTIONS_BY_ENDING: [(&str, &[&str]); 7] = [
     ("osm", &[".pbf", ".osm", ".osm.gz", ".osm.bz2", ".osm.xz", ".o5m"]),
     ("line", &[".gpx", ".kml", ".geojson", ".shp"]),
@@ -188,7 +221,8 @@ const OPTIONS_BY_ENDING: [(&str, &[&str]); 7] = [
     ("photo", &[".jpg", ".jp2"]),
 ];
 
-/// For files where a command takes none: its options, by what the files are by their names.
+/// A tip for files where the command expects none: the options for them, judged by their
+/// extensions.
 fn tip_for_inputs(error: &clap::Error, words: &[OsString]) -> Option<String> {
     let first = text_of(error, ContextKind::InvalidArg);
     if first.starts_with('-') {
@@ -208,7 +242,7 @@ fn tip_for_inputs(error: &clap::Error, words: &[OsString]) -> Option<String> {
         })
     };
     let option_of = |file: &str| -> Option<&str> {
-        // A number is half of a place that was written with a space.
+        // A number is half of a position that was written with a space.
         if file.parse::<f64>().is_ok() {
             return None;
         }
@@ -217,11 +251,11 @@ fn tip_for_inputs(error: &clap::Error, words: &[OsString]) -> Option<String> {
         let mut fitting = OPTIONS_BY_ENDING.iter().filter(|(option, endings)| {
             has(option) && is_for(endings) && !(*option == "output" && is_given(option))
         });
-        // A raster is what this one writes, unless that is named.
+        // A raster is the output of this command, unless the output is named.
         let writes_rasters = command.get_name() == "geotiff" && !is_given("output");
         let found = fitting.next().map(|(option, _)| *option);
         let other = ["dem", "output"].into_iter().find(|option| has(option) && !is_given(option));
-        // What is not there is what is to be written, rather than a polygon.
+        // A missing file is more likely to be the output than a polygon.
         let is_missing = has("output") && !is_given("output") && !Path::new(file).exists();
         match found {
             Some("dem") if writes_rasters => Some("output"),
@@ -241,7 +275,7 @@ fn tip_for_inputs(error: &clap::Error, words: &[OsString]) -> Option<String> {
     }
     let named = tip.iter().map(|(option, files)| format!("--{option} {}", files.join(" ")));
     let named = named.collect::<Vec<_>>().join(" ");
-    (!named.is_empty()).then(|| format!("files are named by options: {named}"))
+    (!named.is_empty()).then(|| format!("files are passed with options: {named}"))
 }
 
 /// The words that are neither options of a command nor their values.
@@ -271,69 +305,72 @@ fn files_in<'a>(
     files
 }
 
-/// For a method without caps, which `fly` alone has, of a command that has the method itself.
+/// A tip for a method without caps, which only `fly` accepts, in a command that has the method
+/// itself.
 fn tip_for_caps(error: &clap::Error) -> Option<String> {
     let value = text_of(error, ContextKind::InvalidValue);
     let method =
         value.strip_suffix("-no-caps").filter(|_| ROADS.iter().any(|(word, ..)| *word == value))?;
     let valid = text_of(error, ContextKind::ValidValue);
     let has_method = valid.split(", ").any(|valid| valid == method);
-    has_method.then(|| format!("write --roads {method} --caps none; {value} is for fly alone"))
+    has_method.then(|| format!("write --roads {method} --caps none; only fly accepts {value}"))
 }
 
-/// For an address or a port together with a site, which no server of ours serves.
+/// A tip for an address or a port together with `--site`, which starts no server.
 fn tip_for_site(error: &clap::Error) -> Option<String> {
     let both = [ContextKind::InvalidArg, ContextKind::PriorArg].map(|kind| text_of(error, kind));
     both.iter().any(|option| option.starts_with("--site")).then(|| {
-        "--site writes files for another web server and listens nowhere; leave --port and --address out, or leave --site out to \
+        "--site writes files for another web server and starts no server itself; omit --port and --address, or omit --site to \
          serve the packages"
             .to_owned()
     })
 }
 
 #[derive(Debug, Subcommand)]
-pub(crate) enum Command {
-    /// Build a tile package from elevation rasters and an OpenStreetMap extract
+pub(crate) enum CliCommand {
+    /// Build a tile package from a DEM (elevation files) and an OpenStreetMap extract
     Build(Box<BuildArgs>),
-    /// Tell what a build will make and what it will take, and write its plan
+    /// Estimate what a build will produce and need, and write its plan
     Plan(Box<PlanArgs>),
-    /// List the parts of a planned build for so many processes, one JSON object per line
+    /// List the parts of a planned build for a number of processes, one JSON object per line
     Jobs(JobsArgs),
-    /// Make one part of a planned build; prints the path of its file
+    /// Compute one part of a planned build and print the path of its file
     Part(PartArgs),
-    /// Write the package of a plan from all its parts
+    /// Merge all parts of a plan into its package
     Merge(MergeArgs),
-    /// Tell what a package holds and what became of its inputs
+    /// Print what a package contains and what became of its inputs
     Info(InfoArgs),
-    /// Tell what laying roads on the terrain costs, per level and class
+    /// Report the cost of draping roads on the terrain (growth: the vertices that clipping adds),
+    /// per level and class
     Growth(GrowthArgs),
-    /// Tell height and grade along roads
+    /// Print height and grade along roads
     Profile(ProfileArgs),
-    /// Tell how far roads lie beside what a photo or the slope of the ground shows of them
+    /// Measure how far roads are offset from the road visible in a photo or in the terrain's slope
     Match(MatchArgs),
-    /// Check every promise a package makes; exits with 1 when one is broken
+    /// Check every promise that a package makes; exits with 1 if one is broken
     Verify(VerifyArgs),
     /// Dump one decoded tile
     Tile(TileArgs),
-    /// Give what a package holds to other programs
+    /// Export a package to other formats
     #[command(subcommand)]
     Export(Export),
-    /// Draw a package to a PNG, without a window
+    /// Render a package to a PNG, without a window
     Render(RenderArgs),
-    /// Fly over a package and tell what each frame costs; needs no window
+    /// Fly over a package and measure the cost of each frame; needs no window
     Fly(FlyArgs),
-    /// Open a window on a package
+    /// Open a package in a window
     View(ViewArgs),
-    /// Show packages in web browsers: a small web server with a page, or the files for one
+    /// Show packages in web browsers: start a small web server with a page, or write the files for
+    /// another server
     Serve(ServeArgs),
-    /// Print a script that completes this command's names and options in a shell
+    /// Print a shell completion script for the commands and options
     Completions(CompletionsArgs),
     /// Write manual pages, one for the program and one for each command
     Man(ManArgs),
 }
 
-impl Command {
-    /// Whether it may ask for a graphics card.
+impl CliCommand {
+    /// Whether the command may need a GPU.
     pub(crate) fn draws(&self) -> bool {
         matches!(self, Self::Render(_) | Self::Fly(_) | Self::View(_))
     }

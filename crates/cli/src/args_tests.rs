@@ -1,13 +1,14 @@
-//! The command line is consistent: its options exclude each other, leave positional arguments alone and give tips.
+//! The command line is consistent: options exclude each other, do not consume positional arguments,
+//! and have tips.
 
 use std::path::{Path, PathBuf};
 
 use corniche_remote::PackagePlace;
 
 use super::*;
-use crate::failure::Failure;
+use crate::failure::CommandFailure;
 
-fn planned(args: &part::PlannedArgs) -> Result<(PathBuf, Vec<PathBuf>), Failure> {
+fn planned(args: &part::PlannedArgs) -> Result<(PathBuf, Vec<PathBuf>), CommandFailure> {
     plan_and_stores(args.plan.as_ref(), &args.store)
 }
 
@@ -25,7 +26,7 @@ fn options_that_are_not_there_are_rejected() {
 #[test]
 fn the_options_of_resumed_builds_and_plans_are_understood() {
     let parse = |line: &str| Arguments::try_parse_from(line.split(' '));
-    let Ok(Arguments { command: Command::Build(args), .. }) =
+    let Ok(Arguments { command: CliCommand::Build(args), .. }) =
         parse("corniche build --dem a.tif -o b --resume --tmp c --force")
     else {
         panic!("it is no build");
@@ -35,13 +36,13 @@ fn the_options_of_resumed_builds_and_plans_are_understood() {
     for line in ["--json", "-o plan.json -O", "--osm b.osm.pbf --max-error 5 --threads 3"] {
         assert!(parse(&format!("corniche plan --dem a.tif {line}")).is_ok(), "{line}");
     }
-    // What a plan does not depend on is no option of it.
+    // Options that do not affect a plan are not options of it.
     for line in ["--resume", "-O", "--defects a.csv"] {
         assert!(parse(&format!("corniche plan --dem a.tif {line}")).is_err(), "{line}");
     }
 }
 
-/// `-q`, `-v` and `--log-format` are options of every command, before its name and behind it.
+/// `-q`, `-v` and `--log-format` are options of every command, before and after its name.
 #[test]
 fn every_command_takes_the_options_of_messages() {
     let parse = |line: String| Arguments::checked_from(line.split_whitespace().map(Into::into));
@@ -87,7 +88,8 @@ fn every_command_takes_the_options_of_messages() {
     assert!(parse("corniche verify a.pmtiles --json-progress -q".into()).is_err());
 }
 
-/// Two of `-q`, `-v` and `--json-progress` are refused wherever they stand; the parser alone sees only those of one side.
+/// Two of `-q`, `-v` and `--json-progress` are rejected in every order; the parser alone detects
+/// only those on one side of the command's name.
 #[test]
 fn silence_and_talk_exclude_each_other_on_both_sides_of_the_command() {
     let parse = |line: &str| Arguments::checked_from(line.split(' ').map(Into::into));
@@ -114,7 +116,7 @@ fn silence_and_talk_exclude_each_other_on_both_sides_of_the_command() {
     assert!(parse(&format!("corniche {package} --json-progress")).is_ok());
 }
 
-/// Whoever reads records gets the refusal of a command line as one, although it was not understood.
+/// Readers of records get the error of an invalid command line as a record.
 #[test]
 fn the_voice_of_a_line_that_is_not_understood_is_found() {
     let voice = |line: &str| Voice::of_unparsed(line.split(' ').map(Into::into));
@@ -133,8 +135,8 @@ fn the_voice_of_a_line_that_is_not_understood_is_found() {
     }
 }
 
-/// An option with several values takes all that follows it, also a positional argument. Each command that has both finds its
-/// own among them by its name.
+/// An option with several values consumes all words that follow it, including a positional
+/// argument. Each command that has both finds its own argument among them by its name.
 #[test]
 fn options_with_several_values_leave_positional_arguments_alone() {
     let mut found = Vec::new();
@@ -148,7 +150,7 @@ fn options_with_several_values_leave_positional_arguments_alone() {
         }
     }
     found.sort();
-    // Of what a line needs beside, files are called `rest`.
+    // Further required options; files are called `rest`.
     let measured = |from: &RecordedArgs, osm: &[PathBuf]| {
         let (package, files) = from.files(osm, "").unwrap();
         let mut files = files.concat();
@@ -156,11 +158,11 @@ fn options_with_several_values_leave_positional_arguments_alone() {
         (path_of(package), files)
     };
     let files = |arguments: &Arguments| match &arguments.command {
-        Command::Profile(args) => measured(&args.recorded, &args.extract.osm),
-        Command::Jobs(args) => plan_and_stores(args.plan.as_ref(), &args.store).unwrap(),
-        Command::Part(args) => planned(&args.planned).unwrap(),
-        Command::Merge(args) => planned(&args.planned).unwrap(),
-        Command::Export(what) => match what {
+        CliCommand::Profile(args) => measured(&args.recorded, &args.extract.osm),
+        CliCommand::Jobs(args) => plan_and_stores(args.plan.as_ref(), &args.store).unwrap(),
+        CliCommand::Part(args) => planned(&args.planned).unwrap(),
+        CliCommand::Merge(args) => planned(&args.planned).unwrap(),
+        CliCommand::Export(what) => match what {
             Export::GeoTiff(args) => measured(&args.from, &[]),
             Export::Roads(args) => measured(&args.vector.from, &args.vector.extract.osm),
             Export::Boundaries(args) => {
@@ -171,19 +173,19 @@ fn options_with_several_values_leave_positional_arguments_alone() {
             Export::Edges(args) => measured(&args.vector.from, &args.vector.extract.osm),
             what => panic!("{what:?} has no files to tell apart"),
         },
-        Command::Match(args) => {
+        CliCommand::Match(args) => {
             let (package, [photos]) =
                 package_among(args.package.as_ref(), [&args.photo], "").unwrap();
             (path_of(package), photos)
         }
-        Command::Verify(args) => {
+        CliCommand::Verify(args) => {
             let lists = [&*args.dem, &*args.photo, &*args.osm];
             let (package, files) = package_among(args.package.as_ref(), lists, "").unwrap();
             (path_of(package), files.concat())
         }
         _ => panic!("{arguments:?} has no files to tell apart"),
     };
-    // What follows the option, what is meant by the positional argument, and what else the command needs.
+    // The words after the option, the expected positional argument, and the required options.
     let known = [
         ("export boundaries --osm", "p.pmtiles", "-o b.csv"),
         ("export edges --dem", "p.pmtiles", "-o e.csv --osm rest"),
@@ -229,7 +231,7 @@ fn path_of(place: PackagePlace) -> PathBuf {
     }
 }
 
-/// All commands and what is below them, by their words.
+/// All commands and their subcommands, by their words.
 fn all_commands() -> Vec<(String, clap::Command)> {
     let mut all = vec![(String::new(), Arguments::command())];
     let mut next = 0;
@@ -243,12 +245,12 @@ fn all_commands() -> Vec<(String, clap::Command)> {
     all
 }
 
-/// Where it cannot be told which name is the plan, or there is none, that is said.
+/// A missing or ambiguous plan is reported.
 #[test]
 fn a_plan_that_is_not_named_is_missed() {
     let refusal = |line: &str| {
         let arguments = Arguments::try_parse_from(line.split(' ')).unwrap();
-        let Command::Part(args) = arguments.command else { panic!("{line}") };
+        let CliCommand::Part(args) = arguments.command else { panic!("{line}") };
         planned(&args.planned).unwrap_err().to_string()
     };
     for (names, word) in [
@@ -262,13 +264,14 @@ fn a_plan_that_is_not_named_is_missed() {
     assert!(Arguments::try_parse_from(["corniche", "jobs", "--slots", "2"]).is_err());
 }
 
-/// `--dem` and `--osm` take every name up to the next option; a package among them is told by its ending.
+/// `--dem` and `--osm` consume every name up to the next option; a package among them is recognized
+/// by its extension.
 #[test]
 fn verify_finds_its_package_wherever_it_is_named() {
     let files = |line: &str| {
         let arguments =
             Arguments::try_parse_from(line.split(' ')).map_err(|error| error.to_string())?;
-        let Command::Verify(args) = arguments.command else { panic!("{line}") };
+        let CliCommand::Verify(args) = arguments.command else { panic!("{line}") };
         let lists = [&*args.dem, &*args.photo, &*args.osm];
         let found = package_among(args.package.as_ref(), lists, "verify");
         let (package, [dem, _, osm]) = found.map_err(|failure| failure.to_string())?;
@@ -292,7 +295,7 @@ fn verify_finds_its_package_wherever_it_is_named() {
     ] {
         assert_eq!(files(line), expected, "{line}");
     }
-    // A package of another name is found where nothing swallows it.
+    // A package with another name is found where no option consumes it.
     assert!(files("corniche verify old --dem a.tif").is_ok_and(|(package, ..)| package == *"old"));
     assert!(
         files("corniche verify --dem a.tif b.tif").unwrap_err().contains("no package is named")
@@ -303,7 +306,8 @@ fn verify_finds_its_package_wherever_it_is_named() {
     assert!(files("corniche verify").is_err());
 }
 
-/// The methods without caps are for `fly`, which may take several; elsewhere the refusal says what to write.
+/// The methods without caps are for `fly`, which accepts several; elsewhere the error says what to
+/// write.
 #[test]
 fn caps_are_an_option_wherever_one_method_is_drawn() {
     let parse = |line: &str| Arguments::checked_from(line.split(' ').map(Into::into));
@@ -312,7 +316,7 @@ fn caps_are_an_option_wherever_one_method_is_drawn() {
             let line = format!("corniche {command} --roads {method}-no-caps");
             let said = parse(&line).expect_err(&line).to_string();
             let tip = format!(
-                "tip: write --roads {method} --caps none; {method}-no-caps is for fly alone"
+                "tip: write --roads {method} --caps none; only fly accepts {method}-no-caps"
             );
             assert!(said.contains(&tip) && said.matches("tip:").count() == 1, "{line}: {said}");
             assert!(said.contains("[possible values: geo, sv, none]"), "{line}: {said}");
@@ -320,14 +324,15 @@ fn caps_are_an_option_wherever_one_method_is_drawn() {
             assert!(parse(&line).is_ok(), "{line}");
         }
         let line = format!("corniche {command} --roads none-no-caps");
-        assert!(!parse(&line).expect_err(&line).to_string().contains("fly alone"), "{line}");
+        assert!(!parse(&line).expect_err(&line).to_string().contains("only fly accepts"), "{line}");
     }
     assert!(parse("corniche fly a.pmtiles -o a.csv --roads geo,geo-no-caps,sv-no-caps").is_ok());
     let line = "corniche export mesh a.pmtiles -o a.glb --roads sv-no-caps";
-    assert!(!parse(line).expect_err(line).to_string().contains("fly alone"), "{line}");
+    assert!(!parse(line).expect_err(line).to_string().contains("only fly accepts"), "{line}");
 }
 
-/// What is there for comparisons is not in the way of others: the long help has it, under its own heading.
+/// Options for comparisons are not in the way of others: only the long help shows them, under a
+/// separate heading.
 #[test]
 fn what_compares_with_the_papers_is_in_the_long_help_alone() {
     let papers = ["caps", "width-growth", "outline", "cap-test", "geo-quads"];
@@ -342,12 +347,13 @@ fn what_compares_with_the_papers_is_in_the_long_help_alone() {
             assert!(!short.contains(&option) && compared.contains(&option), "{option}: {short}");
         }
         assert!(short.contains("--style ") && !short.contains("Comparing"), "{short}");
-        // A picture alone, never a map that is moved or flown over.
+        // These apply to an image only, not to a map that moves or a flight.
         assert_eq!(compared.contains("--unmapped"), command.get_name() == "render");
     }
 }
 
-/// Whoever looks for a part of the data by another program's option is told ours; of a command without parts nothing is said.
+/// Another program's option for a part of the data gets a tip with ours; commands without parts
+/// give no tip.
 #[test]
 fn options_of_other_programs_for_a_part_get_a_tip() {
     let refusal = |line: &str| {
@@ -370,7 +376,7 @@ fn options_of_other_programs_for_a_part_get_a_tip() {
     }
 }
 
-/// Who writes inputs without their options is told these options, by what the files are.
+/// Inputs without options get a tip with the options for them, judged by their extensions.
 #[test]
 fn files_without_options_get_the_options_that_name_them() {
     for (line, tip) in [
@@ -396,16 +402,16 @@ fn files_without_options_get_the_options_that_name_them() {
         let line = format!("corniche {line}");
         let refused = Arguments::checked_from(line.split(' ').map(Into::into));
         let said = refused.expect_err(&line).to_string();
-        let tip = format!("tip: files are named by options: {tip}\n");
+        let tip = format!("tip: files are passed with options: {tip}\n");
         assert!(said.contains(&tip) && said.matches("tip:").count() == 1, "{line}: {said}");
     }
     for line in ["corniche info a.pmtiles b.pmtiles", "corniche build --odd a.tif"] {
         let refused = Arguments::checked_from(line.split(' ').map(Into::into));
-        assert!(!refused.expect_err(line).to_string().contains("are named by"), "{line}");
+        assert!(!refused.expect_err(line).to_string().contains("files are passed"), "{line}");
     }
 }
 
-/// A site is files: the refusal of a port beside it says why, in whatever order they stand.
+/// A site is files: the error for a port together with it says why, in any order.
 #[test]
 fn an_address_beside_a_site_is_refused_with_the_reason() {
     for line in [
@@ -416,13 +422,36 @@ fn an_address_beside_a_site_is_refused_with_the_reason() {
     ] {
         let refused = Arguments::checked_from(line.split(' ').map(Into::into));
         let said = refused.expect_err(line).to_string();
-        let tip = "tip: --site writes files for another web server and listens nowhere";
-        assert!(
-            said.contains(tip) && said.contains("leave --port and --address out"),
-            "{line}: {said}"
-        );
+        let tip = "tip: --site writes files for another web server and starts no server";
+        assert!(said.contains(tip) && said.contains("omit --port and --address"), "{line}: {said}");
     }
     let other = "corniche verify a.pmtiles -q --json-progress";
     let refused = Arguments::checked_from(other.split(' ').map(Into::into));
     assert!(!refused.expect_err(other).to_string().contains("tip:"), "{other}");
+}
+
+#[test]
+fn missing_arguments_are_named_in_a_sentence() {
+    for (line, words) in [
+        ("match a.pmtiles", "match needs more arguments; pass --photo <FILE>... or --slope\n"),
+        (
+            "export edges a.pmtiles -o e.csv",
+            "export edges needs more arguments; pass --dem <FILE>... and --osm <FILE>...\n",
+        ),
+        ("tile a.pmtiles", "tile needs more arguments; pass <Z/X/Y> or --at <LON,LAT>\n"),
+        (
+            "match",
+            "match needs more arguments; pass (--photo <FILE>... or --slope) and <PACKAGE>\n",
+        ),
+        (
+            "profile a.pmtiles",
+            "profile needs more arguments; pass --way <ID> or --line <FILE> or --ref <NUMBER> or --name <NAME> or --from <LON,LAT> --to <LON,LAT>\n",
+        ),
+    ] {
+        let line = format!("corniche {line}");
+        let refused = Arguments::checked_from(line.split(' ').map(Into::into));
+        let said = refused.expect_err(&line).to_string();
+        let begin = format!("error: corniche {words}\nUsage: corniche ");
+        assert!(said.starts_with(&begin), "{line}: {said}");
+    }
 }

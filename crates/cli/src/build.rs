@@ -9,29 +9,26 @@ use corniche_spec::{BuildSettings, Leftovers};
 use crate::{
     args::BuildArgs,
     defects::DefectList,
-    exit::ExitCode,
-    failure::Failure,
+    failure::CommandFailure,
     info, messages, output,
     part::make_tmp,
     progress::Progress,
-    settings::{self, Work},
+    settings::{self, BuildWork},
     table::Digits,
     verdict,
 };
 
-pub(crate) fn run(mut args: Box<BuildArgs>) -> Result<ExitCode, Failure> {
+pub(crate) fn run(mut args: Box<BuildArgs>) -> Result<(), CommandFailure> {
     let written = settings::complete(&mut args.work)?;
     let Some(output) = args.output.take().or(written.package) else {
-        return Err(Failure::unusable(
-            "no package to write is named; give -o PACKAGE.pmtiles, or package under [output] in the settings file",
+        return Err(unusable!(
+            "no output package is named; pass -o PACKAGE.pmtiles, or write package under [output] in the settings file"
         ));
     };
     output::writable_package(&output)?;
     let defects = args.defects.take().or(written.defects);
     if defects.is_some() && args.work.inputs.osm.is_empty() {
-        return Err(Failure::unusable(
-            "--defects lists what is wrong with an extract; give it with --osm",
-        ));
+        return Err(unusable!("--defects lists the defects of an extract; pass one with --osm"));
     }
     let mut others: Vec<&Path> = args.work.files().collect();
     others.push(&output);
@@ -42,14 +39,15 @@ pub(crate) fn run(mut args: Box<BuildArgs>) -> Result<ExitCode, Failure> {
     finish(built, progress, &settings.output)
 }
 
-/// Tells what became of a build, and puts the list of defects in its place.
+/// Reports the result of a build, and moves the list of defects to its target.
 pub(crate) fn finish(
     built: Result<BuildSummary, BuildError>,
     mut progress: Progress,
     output: &Path,
-) -> Result<ExitCode, Failure> {
-    // A list is put in its place only if it is complete. That is so after a run that failed because no road was kept: all
-    // roads were looked at, and the list tells why they were lost.
+) -> Result<(), CommandFailure> {
+    // The list replaces its target only if it is complete. It is also complete after a run that
+    // failed because no road was kept: all roads were read, and the list has the reasons for their
+    // loss.
     let is_complete = match &built {
         Ok(_)
         | Err(BuildError::Extract(ExtractError::NoRoads { .. }) | BuildError::NoGround { .. }) => {
@@ -62,7 +60,7 @@ pub(crate) fn finish(
     listed?;
     let BuildSummary { manifest, package_bytes } = summary;
     if let Some(warning) = info::odd_heights(&manifest) {
-        messages::warning(&warning);
+        messages::warning(&format!("the package was written, but has an {warning}"));
     }
     if messages::is_for_people() {
         let digits = Digits::of_notes();
@@ -76,12 +74,12 @@ pub(crate) fn finish(
         messages::note(&format!("wrote {}", output.display()));
     }
     progress.tell_costs();
-    Ok(ExitCode::Done)
+    Ok(())
 }
 
 /// The settings of a build.
-fn settings(args: BuildArgs, output: PathBuf) -> Result<BuildSettings, Failure> {
-    let Work { plan, resources, tmp, force } = settings::of(args.work)?;
+fn settings(args: BuildArgs, output: PathBuf) -> Result<BuildSettings, CommandFailure> {
+    let BuildWork { plan, resources, tmp, force } = settings::build_work(args.work)?;
     Ok(BuildSettings {
         plan,
         output,

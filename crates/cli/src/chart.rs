@@ -1,4 +1,4 @@
-//! Drawings for reports, as SVG: curves over a common axis, with their names beside them.
+//! Charts for reports, as SVG: curves over a common axis, with a legend next to them.
 
 use std::ops::Range;
 
@@ -14,37 +14,39 @@ use plotters::{
 
 use crate::info::rounded;
 
-/// Caption and axes around the curves.
+/// The caption and the axes of a chart.
 pub(crate) struct Axes {
     pub(crate) size_px: (u32, u32),
     pub(crate) caption: String,
-    pub(crate) x: Axis,
-    /// It has round places or counts.
-    pub(crate) y: Axis,
+    pub(crate) x: ChartAxis,
+    /// The vertical axis, with ticks at round numbers or counts.
+    pub(crate) y: ChartAxis,
 }
 
-/// One of the two directions.
-pub(crate) struct Axis {
-    /// What is counted, with its unit.
+/// One of the two axes.
+pub(crate) struct ChartAxis {
+    /// The quantity, with its unit.
     pub(crate) description: &'static str,
     pub(crate) range: Range<f64>,
     pub(crate) ticks: Ticks,
 }
 
-/// Where an axis has numbers and lines.
+/// The positions of an axis's numbers and lines.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Ticks {
-    /// At round places, with finer lines between them.
+    /// At round numbers, with finer lines between them.
     Round,
-    /// The same for what is counted: only whole numbers are written.
+    /// At round numbers of a count: only whole numbers are labelled.
     Counts,
-    /// At so many whole numbers, with nothing between them.
+    /// At this number of whole numbers, with nothing between them.
     Whole(usize),
-    /// The same, where each step doubles what is counted; at 0 it is `unit`, and that is what the numbers say.
+    /// At whole numbers at which the quantity doubles with each step; at 0 it is `unit`. The labels
+    /// are the quantities.
     Doubled { count: usize, unit: f64 },
 }
 
-/// A line from point to point. It and its marks differ from those of the other curves also without colours.
+/// A line from point to point. Its dashes and marks distinguish it from the other curves without
+/// colours.
 pub(crate) struct Curve {
     pub(crate) name: String,
     pub(crate) color: RGBColor,
@@ -52,16 +54,17 @@ pub(crate) struct Curve {
     pub(crate) marks: Marks,
 }
 
-/// Whether the points of a curve show.
+/// Whether the points of a curve have marks.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Marks {
-    /// No; the line has the dashes and the width of this number.
+    /// No marks; the line has the dashes and the width with this index.
     None(usize),
-    /// A mark with the shape of this number, and a line with its dashes.
+    /// Marks of the shape with this index, and a line with its dashes.
     Shape(usize),
 }
 
-/// Outlines of marks, in pixels about the point, and whether they are filled: neighbours in the list differ most.
+/// Outlines of marks, in pixels around the point, and whether they are filled: neighbours in the
+/// list differ most.
 const SHAPES: [(&[(i32, i32)], bool); 9] = [
     (&ROUND, true),
     (&SQUARE, false),
@@ -79,33 +82,37 @@ const SQUARE: [(i32, i32); 4] = [(-4, -4), (4, -4), (4, 4), (-4, 4)];
 const UP: [(i32, i32); 3] = [(0, -5), (5, 4), (-5, 4)];
 const DOWN: [(i32, i32); 3] = [(0, 5), (5, -4), (-5, -4)];
 const DIAMOND: [(i32, i32); 4] = [(0, -6), (6, 0), (0, 6), (-6, 0)];
-/// Lengths of dashes and of the gaps between them, pixels; 0: an unbroken line.
+/// Lengths of dashes and of the gaps between them, pixels; 0: a solid line.
 const DASHES: [(i32, i32); 3] = [(0, 0), (9, 4), (3, 3)];
 
-/// So many curves with marks can be told apart without colours: after all shapes come the same ones with other dashes.
+/// The number of curves with marks that can be distinguished without colours: after all shapes, the
+/// same shapes follow with other dashes.
 pub(crate) const MOST_SHAPES: usize = SHAPES.len() * DASHES.len();
 
 /// Width of a line, pixels.
 const LINE_PX: u32 = 2;
-/// Height of a row in the list of names, and the width of a character, pixels.
+/// Height of a row in the legend, and the width of a character, pixels.
 const ROW_PX: i32 = 24;
 const CHARACTER_PX: i32 = 8;
-/// The line before a name, pixels.
+/// Length of the line before a name, pixels.
 const SAMPLE_PX: i32 = 34;
 const MARGIN_PX: i32 = 16;
 
-/// The least and the largest of some values; infinite, the largest below the least, where there are none.
+/// The minimum and the maximum of some values; infinite, with the maximum below the minimum, for no
+/// values.
 pub(crate) fn ends(values: impl Iterator<Item = f64>) -> [f64; 2] {
     let nothing = [f64::INFINITY, f64::NEG_INFINITY];
     values.fold(nothing, |[least, most], value| [least.min(value), most.max(value)])
 }
 
-/// The curves as SVG, with their names at the right. A curve without points is in that list as well.
+/// Draws the curves as SVG, with a legend on the right. Curves without points are in the legend as
+/// well.
 pub(crate) fn draw(axes: &Axes, curves: &[Curve]) -> Result<String> {
     draw_below_each_other(&[(axes, curves)])
 }
 
-/// Several drawings of one width, the first one on top. All show the same curves; their names stand beside the first.
+/// Draws several charts of one width, the first on top. All show the same curves; the legend is
+/// next to the first.
 pub(crate) fn draw_below_each_other(drawings: &[(&Axes, &[Curve])]) -> Result<String> {
     let width = drawings.iter().map(|(axes, _)| axes.size_px.0).max().unwrap_or(0);
     let height = drawings.iter().map(|(axes, _)| axes.size_px.1).sum();
@@ -131,7 +138,7 @@ pub(crate) fn draw_below_each_other(drawings: &[(&Axes, &[Curve])]) -> Result<St
     Ok(in_xml(&svg))
 }
 
-/// The text without the characters that XML 1.0 (section 2.2) has no place for, not even escaped.
+/// The text without the characters that XML 1.0 (section 2.2) does not allow, even escaped.
 pub(crate) fn in_xml(text: &str) -> String {
     let has_place = |character: &char| match character {
         '\t' | '\n' | '\r' => true,
@@ -141,7 +148,7 @@ pub(crate) fn in_xml(text: &str) -> String {
     text.chars().filter(has_place).collect()
 }
 
-/// The curves between their axes.
+/// Draws the curves between their axes.
 fn draw_curves(
     area: &DrawingArea<SVGBackend<'_>, Shift>,
     axes: &Axes,
@@ -180,7 +187,7 @@ fn draw_curves(
         mesh.y_label_formatter(&tick_y);
     }
     mesh.draw()?;
-    // Wide lines lie below narrow ones, which they would hide.
+    // Wide lines are drawn below narrow ones, which they would hide.
     let mut by_width: Vec<&Curve> = curves.iter().collect();
     by_width.sort_by_key(|curve| std::cmp::Reverse(curve.line().2.stroke_width));
     for curve in by_width {
@@ -192,7 +199,7 @@ fn draw_curves(
             chart.draw_series([DashedPathElement::new(points, dash, gap, style)])?;
         }
     }
-    // Marks lie over all lines.
+    // Marks are drawn above all lines.
     for curve in curves {
         let Some((outline, fill)) = curve.mark() else { continue };
         let closed: Vec<(i32, i32)> = outline.iter().chain(outline.first()).copied().collect();
@@ -205,7 +212,7 @@ fn draw_curves(
     Ok(())
 }
 
-/// The list of names, with a piece of each line and its mark before it.
+/// Draws the legend: names after a piece of each line and its mark.
 fn draw_names(area: &DrawingArea<SVGBackend<'_>, Shift>, curves: &[Curve]) -> Result<()> {
     let font = TextStyle::from(("sans-serif", 15)).color(&BLACK);
     // Parts of a curve after the first have no name.
@@ -231,7 +238,7 @@ fn draw_names(area: &DrawingArea<SVGBackend<'_>, Shift>, curves: &[Curve]) -> Re
 }
 
 impl Curve {
-    /// Dash, gap and style of its line.
+    /// Dash, gap and style of the line.
     fn line(&self) -> (i32, i32, ShapeStyle) {
         let (number, width_px) = match self.marks {
             Marks::None(number) => (number, LINE_PX * (1 + number / DASHES.len()) as u32),
@@ -241,7 +248,7 @@ impl Curve {
         (dash, gap, self.color.stroke_width(width_px))
     }
 
-    /// Outline and filling of its marks.
+    /// Outline and filling of the marks.
     fn mark(&self) -> Option<(&'static [(i32, i32)], ShapeStyle)> {
         let Marks::Shape(number) = self.marks else { return None };
         let (outline, is_filled) = SHAPES[number % SHAPES.len()];

@@ -1,11 +1,11 @@
-//! Drawings are well-formed XML, whatever the texts in them hold.
+//! Charts are well-formed XML, whatever texts they contain.
 
 use corniche_testing::Random;
 use quick_xml::{Reader, events::Event};
 
 use super::*;
 
-/// A text of characters that XML, its parsers or people stumble over.
+/// A text of characters that are difficult for XML, its parsers or people.
 fn text(random: &mut Random) -> String {
     let special = [
         '<', '>', '&', '"', '\'', ']', '-', '\0', '\u{1b}', '\u{7f}', '\u{85}', '\u{fffe}',
@@ -29,7 +29,7 @@ fn every_drawing_is_well_formed() {
     let mut random = Random::new(38);
     for _ in 0..200 {
         let [caption, name] = [text(&mut random), text(&mut random)];
-        let axis = |description| Axis { description, range: 0.0..2.0, ticks: Ticks::Round };
+        let axis = |description| ChartAxis { description, range: 0.0..2.0, ticks: Ticks::Round };
         let (x, y) = (axis("x"), axis("y"));
         let axes = Axes { size_px: (400, 300), caption: caption.clone(), x, y };
         let points = vec![(0.0, 1.0), (2.0, 2.0)];
@@ -59,7 +59,8 @@ fn every_drawing_is_well_formed() {
             }
         }
         for text in [caption, name] {
-            // Parsers join line ends and programs blanks: the letters must be there.
+            // Parsers normalize line ends and programs merge spaces: only the letters must be
+            // preserved.
             let letters = |text: &str| -> String {
                 text.chars().filter(|one| is_char(*one) && !one.is_whitespace()).collect()
             };

@@ -1,20 +1,18 @@
-//! `corniche completions`: a script for a shell.
+//! `corniche completions`: prints a completion script for a shell.
 
 use clap::CommandFactory as _;
 
 use crate::{
     args::{Arguments, CompletionsArgs},
-    exit::ExitCode,
-    failure::Failure,
+    failure::CommandFailure,
     messages,
 };
 
-pub(crate) fn run(args: &CompletionsArgs) -> Result<ExitCode, Failure> {
-    // The generator panics when it cannot write, so it writes to memory.
+pub(crate) fn run(args: &CompletionsArgs) -> Result<(), CommandFailure> {
+    // The generator panics if it cannot write, so it writes to memory.
     let mut script = Vec::new();
     let mut command = Arguments::command();
     let name = command.get_name().to_owned();
     clap_complete::generate(args.shell, &mut command, name, &mut script);
-    messages::answer_as_it_is(&script)?;
-    Ok(ExitCode::Done)
+    Ok(messages::answer_as_it_is(&script)?)
 }

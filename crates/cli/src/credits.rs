@@ -1,27 +1,26 @@
-//! Credits: those that are given are checked, those of a package are told with what is made of it.
+//! Attribution: the given texts are checked, and those of a package are printed with everything
+//! that is exported from it.
 
 use corniche_tileset::{Manifest, check_credit};
 
-use crate::{escaped::in_line, failure::Failure};
+use crate::{escaped::in_line, failure::CommandFailure};
 
-/// Refuses credits that cannot be shown everywhere, before any work is done.
-pub(crate) fn check(credits: &[String]) -> Result<(), Failure> {
+/// Rejects attribution that cannot be shown everywhere, before any work is done.
+pub(crate) fn check(credits: &[String]) -> Result<(), CommandFailure> {
     for credit in credits {
         check_credit(credit).map_err(|error| {
-            Failure::unusable(format!(
-                "the attribution \"{}\" cannot be used: {error}",
-                in_line(credit)
-            ))
+            unusable!("the attribution \"{}\" cannot be used: {error}", in_line(credit))
         })?;
     }
     Ok(())
 }
 
-/// The last line of what is told of an export, from the line break before it; nothing where a package has no credits.
+/// The attribution line at the end of an export's report, starting with a line break; empty for a
+/// package without attribution.
 pub(crate) fn credits_line(manifest: &Manifest) -> String {
     let credits = manifest.attribution.join("; ");
     if credits.is_empty() {
         return String::new();
     }
-    format!("\nto be shown with it: {}", in_line(&credits))
+    format!("\nattribution (must be displayed): {}", in_line(&credits))
 }

@@ -1,4 +1,5 @@
-//! The list that `corniche build --defects` writes: one line for every defect of the extract and every road lost.
+//! The list that `corniche build --defects` writes: one line per defect of the extract and per
+//! lost road.
 
 use std::{
     fmt::Write as _,
@@ -12,33 +13,35 @@ use corniche_spec::{Defect, span_reason_words};
 use corniche_work::locked;
 
 use crate::{
-    failure::Failure,
+    failure::CommandFailure,
     output::{self, Existing, Output},
 };
 
-/// The columns. `count` is the number of points, pieces or crossings concerned; `detail` holds further facts, if there are any.
+/// The columns. `count` is the number of affected points, pieces or crossings; `detail` has further
+/// facts, if any.
 const HEADER: &str = "reason,object,id,count,length_m,detail\n";
 
 /// A list that is being written.
 pub(crate) struct DefectList {
     target: PathBuf,
-    /// The first failure ends the writing and is reported at the end; the build goes on.
+    /// The file. The first failure ends the writing and is reported at the end; the build
+    /// continues.
     file: Mutex<io::Result<Output>>,
 }
 
 impl DefectList {
-    /// Begins a list at `target`, which is none of `others`.
+    /// Begins a list at `target`, which must not be one of `others`.
     pub(crate) fn create(
         target: &Path,
         existing: Existing,
         others: &[&Path],
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, CommandFailure> {
         let mut output = Output::create(target, existing, others)?;
         let begun = output.write_all(HEADER.as_bytes()).map(|()| output);
         Ok(Self { target: target.to_path_buf(), file: Mutex::new(begun) })
     }
 
-    /// Adds a line, unless nothing is wrong with the extract.
+    /// Adds a line, unless the event is not a defect of the extract.
     pub(crate) fn add(&self, defect: &Defect) {
         if matches!(defect, Defect::Osm(defect) if defect.is_beyond_extract()) {
             return;
@@ -51,8 +54,8 @@ impl DefectList {
         }
     }
 
-    /// Puts the list in its place.
-    pub(crate) fn finish(self) -> Result<(), Failure> {
+    /// Moves the complete list to its target.
+    pub(crate) fn finish(self) -> Result<(), CommandFailure> {
         let file = self.file.into_inner().unwrap_or_else(PoisonError::into_inner);
         file.map_err(|error| output::failed(&self.target, &error))?.finish()
     }
@@ -83,7 +86,8 @@ fn line(defect: &Defect) -> String {
     line
 }
 
-/// A text as CSV wants it (RFC 4180, section 2): quoted where it holds a comma or a quote. Line breaks and control characters are written as in JSON, and spreadsheets do not take it for a
+/// A text as a CSV field (RFC 4180, section 2): quoted if it contains a comma or a quote. Line
+/// breaks and control characters are escaped as in JSON, and spreadsheets do not interpret it as a
 /// formula.
 pub(crate) fn quoted(text: &str) -> String {
     let text = &*cell_text(text);

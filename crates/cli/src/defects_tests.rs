@@ -5,9 +5,9 @@ use super::*;
 #[test]
 fn every_kind_of_defect_is_one_line_of_six_fields() {
     let unknown =
-        corniche_osm::Defect::UnknownHighway { way_id: -7, value: "a,\"b\"\nc".to_owned() };
+        corniche_osm::ExtractDefect::UnknownHighway { way_id: -7, value: "a,\"b\"\nc".to_owned() };
     assert_eq!(line(&unknown.into()), "unknown highway value,way,-7,,,\"a,\"\"b\"\"\\u000ac\"\n");
-    let missing = corniche_osm::Defect::MissingNodes { way_id: 5, points: 3 };
+    let missing = corniche_osm::ExtractDefect::MissingNodes { way_id: 5, points: 3 };
     assert_eq!(line(&missing.into()), "missing nodes,way,5,3,,\n");
     let lost = Defect::LostRoad {
         way_id: 9,

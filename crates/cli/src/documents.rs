@@ -1,7 +1,8 @@
-//! What commands print as JSON, as types: the schemas under `docs/schema` are made from them.
+//! The types of all JSON that commands print; the schemas under `docs/schema` are generated
+//! from them.
 //!
-//! Programs rely on these: fields may be added, but not changed. Positions, rectangles and ranges are lists of numbers; everything else
-//! that belongs together is an object.
+//! Programs rely on these types: fields may be added, but not changed. Positions, rectangles
+//! and ranges are lists of numbers; other groups of values are objects.
 
 pub(crate) mod areas;
 pub(crate) mod growth;
@@ -20,18 +21,18 @@ use serde::Serialize;
 
 use crate::escaped::JsonTexts;
 
-/// As one line.
+/// Serializes a document as one line.
 pub(crate) fn to_line(document: &impl Serialize) -> String {
     let mut line = Vec::new();
-    // Texts, numbers, lists and fields have a JSON form, so there is no error.
+    // Texts, numbers, lists and fields always have a JSON form, so serialization cannot fail.
     let _ = write_line_to(&mut line, document);
     String::from_utf8(line).unwrap_or_default()
 }
 
-/// Writes a document as one line while it is made: its text is never held as a whole.
+/// Writes a document as one line during serialization: the whole text is never in memory.
 ///
 /// # Errors
-/// When it cannot be written.
+/// When writing fails.
 pub(crate) fn write_line_to(out: impl Write, document: &impl Serialize) -> io::Result<()> {
     let mut serializer = serde_json::Serializer::with_formatter(out, JsonTexts);
     document.serialize(&mut serializer).map_err(io::Error::from)

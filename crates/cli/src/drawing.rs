@@ -1,4 +1,4 @@
-//! The lines and areas that a person draws in a window: where they come from and where they go.
+//! The lines and areas that a user draws in a window: how they are loaded and saved.
 
 use std::{
     collections::BTreeMap,
@@ -7,58 +7,57 @@ use std::{
     sync::Arc,
 };
 
-use corniche_overlay::{EllipsoidHeights, LineFile, SavedLine, Shape};
+use corniche_overlay::{EllipsoidHeights, LineFile, LineShape, SavedLine};
 use corniche_store::is_same_file;
 use corniche_viewer::tiles::{MapPackage as _, PackageSource, TileStore};
 use corniche_window::{DrawnLine, NotSaved, SaveDrawing};
 
 use crate::{
-    failure::Failure,
+    failure::CommandFailure,
     messages,
     output::{Existing, Output},
 };
 
-/// Without a name, lines go into a file with the first free number up to this.
+/// The largest number in a file name that is chosen automatically.
 const MOST: u32 = 99_999;
 
-/// Lines to begin with, and the way to save them.
-pub(crate) struct Drawing {
+/// The lines at the start, and where to save them.
+pub(crate) struct DrawingFile {
     pub(crate) lines: Vec<DrawnLine>,
     pub(crate) save: SaveDrawing,
 }
 
-/// Where lines are saved.
+/// The target for saving lines.
 enum SaveTarget {
     File(PathBuf),
     /// The next free name in a folder.
     Folder(PathBuf),
 }
 
-impl Drawing {
-    /// The lines of `file`, if that is given and is there. They are saved there, or, without one, in a new file in `folder`.
+impl DrawingFile {
+    /// Loads the lines of `file` if it is given and exists. They are saved there, or without a file
+    /// in a new file in `folder`.
     pub(crate) fn begin(
         file: Option<&Path>,
         folder: &Path,
         used: &[&Path],
         package: Arc<PackageSource>,
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, CommandFailure> {
         let mut known = LineFile::default();
         if let Some(path) = file {
             if used.iter().any(|used| is_same_file(used, path)) {
-                return Err(Failure::unusable(format!(
-                    "--draw {}: the command uses that file itself; choose another name",
-                    path.display()
-                )));
+                return Err(unusable!(
+                    "--draw {path:?}: the command already uses this file; choose another name"
+                ));
             }
             if path.symlink_metadata().is_ok() {
                 known = LineFile::read(path)?;
             }
-            // A place that cannot be written is told before anything is drawn.
+            // An unwritable path is reported before anything is drawn.
             drop(Output::create(path, Existing::Replace, used)?);
             if known.others() > 0 {
                 messages::note(&format!(
-                    "note: {}: {} features are no single lines or areas without holes; they stay as they are",
-                    path.display(),
+                    "note: {path:?}: {} features are neither single lines nor areas without holes; they are kept unchanged",
                     known.others()
                 ));
             }
@@ -68,7 +67,7 @@ impl Drawing {
             .into_iter()
             .map(|(feature, shape, points_deg)| DrawnLine {
                 feature: Some(feature),
-                is_area: shape == Shape::Area,
+                is_area: shape == LineShape::Area,
                 points_deg,
             })
             .collect();
@@ -100,20 +99,20 @@ fn save(
     lines: &[DrawnLine],
     place: &mut SaveTarget,
     package: &PackageSource,
-) -> Result<PathBuf, Failure> {
-    // Heights may be left out; lines may not be lost for want of them.
-    let heights = EllipsoidHeights::of(package.manifest()).unwrap_or_else(|error| {
-        without_heights(&Failure::from(error));
+) -> Result<PathBuf, CommandFailure> {
+    // Heights may be omitted, but lines must not be lost for lack of them.
+    let heights = EllipsoidHeights::from_manifest(package.manifest()).unwrap_or_else(|error| {
+        without_heights(&CommandFailure::from(error));
         None
     });
     let old = known.lines().into_iter();
     let old: BTreeMap<usize, (bool, Vec<[f64; 2]>)> = old
-        .map(|(number, shape, points_deg)| (number, (shape == Shape::Area, points_deg)))
+        .map(|(number, shape, points_deg)| (number, (shape == LineShape::Area, points_deg)))
         .collect();
     let mut store: TileStore<'_> = TileStore::new(package);
     let mut saved = Vec::with_capacity(lines.len());
     for line in lines {
-        // What has not changed stays as it is in the file.
+        // Unchanged features are kept as they are in the file.
         let known = line.feature.and_then(|feature| old.get(&feature));
         let is_old = known.is_some_and(|(is_area, points_deg)| {
             (*is_area, points_deg) == (line.is_area, &line.points_deg)
@@ -128,7 +127,7 @@ fn save(
             }
             None => None,
         };
-        let shape = if line.is_area { Shape::Area } else { Shape::Line };
+        let shape = if line.is_area { LineShape::Area } else { LineShape::Line };
         let (feature, points_deg) = (line.feature, line.points_deg.clone());
         saved.push(SavedLine { feature, shape, points_deg, heights_m });
     }
@@ -142,13 +141,14 @@ fn save(
     Ok(path)
 }
 
-/// Heights of the finest ground at the points of a line, above the ellipsoid; `None` if one of them is not known.
+/// The heights of the finest ground at the points of a line, above the ellipsoid; `None` if one of
+/// them is unknown.
 fn heights_of(
     line: &DrawnLine,
     heights: &EllipsoidHeights,
     package: &PackageSource,
     store: &mut TileStore<'_>,
-) -> Result<Option<Vec<f64>>, Failure> {
+) -> Result<Option<Vec<f64>>, CommandFailure> {
     let coordinates = &package.manifest().coordinates;
     let mut positions_m = Vec::new();
     let mut heights_m = Vec::new();
@@ -163,15 +163,14 @@ fn heights_of(
     Ok(heights.carry(&positions_m, &mut heights_m).then_some(heights_m))
 }
 
-fn without_heights(failure: &Failure) {
-    messages::note(&format!("note: lines are saved without heights: {failure}"));
+fn without_heights(failure: &CommandFailure) {
+    messages::note(&format!("note: lines were saved without heights: {failure}"));
 }
 
-fn free_name(folder: &Path) -> Result<PathBuf, Failure> {
-    std::fs::create_dir_all(folder)
-        .map_err(|error| Failure::unusable(format!("{}: {error}", folder.display())))?;
+fn free_name(folder: &Path) -> Result<PathBuf, CommandFailure> {
+    std::fs::create_dir_all(folder).map_err(|error| unusable!("{folder:?}: {error}"))?;
     let names = (1..=MOST).map(|number| folder.join(format!("lines-{number:05}.geojson")));
     names.into_iter().find(|path| path.symlink_metadata().is_err()).ok_or_else(|| {
-        Failure::unusable(format!("all numbers up to {MOST} are taken in {}", folder.display()))
+        unusable!("all file numbers up to {MOST} are used in {folder:?}; choose another folder")
     })
 }

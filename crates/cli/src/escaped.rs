@@ -1,4 +1,5 @@
-//! Texts of other people as they may be shown: a terminal obeys control characters, and bidirectional ones hide what is written.
+//! Escapes foreign texts for display: terminals obey control characters, and bidirectional ones
+//! hide text.
 
 use std::{
     borrow::Cow,
@@ -7,20 +8,21 @@ use std::{
 
 use corniche_export::is_unseen;
 
-/// The text with what does something written out, as in `\u{1b}`.
+/// The text with all active characters escaped, as in `\u{1b}`.
 pub(crate) fn for_people(text: &str) -> Cow<'_, str> {
     replaced(text, is_unseen, |character| character.escape_unicode().to_string())
 }
 
-/// Most characters that are shown of a value of others. Documents for programs have all of them.
+/// The largest number of characters of a foreign value in a message. JSON documents are not
+/// shortened.
 const MOST_SHOWN: usize = 2000;
 
-/// A value of others that stands within a line of ours, as [`one_line`] makes it, and no longer than is worth reading.
+/// A foreign value for use within a message: escaped with [`one_line`], and shortened.
 pub(crate) fn in_line(value: &str) -> Cow<'_, str> {
     line_within(value, MOST_SHOWN)
 }
 
-/// A text as one line of at most so many characters.
+/// A text as one line of at most `most` characters.
 pub(crate) fn line_within(text: &str, most: usize) -> Cow<'_, str> {
     match shortened(text, most) {
         Cow::Borrowed(text) => one_line(text),
@@ -28,13 +30,14 @@ pub(crate) fn line_within(text: &str, most: usize) -> Cow<'_, str> {
     }
 }
 
-/// A text as one line: line breaks are written out, too, so that none of it can pass for another line.
+/// A text as one line: line breaks are also escaped, so that no part of it can be mistaken for
+/// another line.
 pub(crate) fn one_line(text: &str) -> Cow<'_, str> {
     let breaks = |character| is_unseen(character) || matches!(character, '\n' | '\t');
     replaced(text, breaks, |character| character.escape_unicode().to_string())
 }
 
-/// A text of at most so many characters; what is left out is told by an ellipsis.
+/// A text of at most `most` characters; an ellipsis marks omitted text.
 pub(crate) fn shortened(text: &str, most: usize) -> Cow<'_, str> {
     if text.len() <= most || text.chars().nth(most).is_none() {
         return Cow::Borrowed(text);
@@ -42,14 +45,14 @@ pub(crate) fn shortened(text: &str, most: usize) -> Cow<'_, str> {
     Cow::Owned(text.chars().take(most.saturating_sub(1)).chain(['…']).collect())
 }
 
-/// A JSON document in which what does something is written as JSON writes it: programs read the same texts.
+/// A JSON document with active characters escaped as in JSON: programs read the same texts.
 ///
-/// Such characters can only stand within texts, and all of them have four digits.
+/// Such characters occur only within strings, and all of them have four hexadecimal digits.
 pub(crate) fn in_json(document: &str) -> Cow<'_, str> {
     replaced(document, is_unseen, |character| format!("\\u{:04x}", u32::from(character)))
 }
 
-/// Writes JSON whose texts are as those of [`in_json`].
+/// Writes JSON whose strings are escaped as in [`in_json`].
 pub(crate) struct JsonTexts;
 
 impl serde_json::ser::Formatter for JsonTexts {

@@ -1,4 +1,4 @@
-//! Nothing that is shown commands a terminal, and JSON keeps its texts.
+//! No displayed text controls a terminal, and JSON keeps its texts.
 
 use super::*;
 
@@ -8,7 +8,7 @@ fn what_commands_a_terminal_is_written_out() {
     assert_eq!(for_people("a\u{1b}[31mred\rb\u{7}"), r"a\u{1b}[31mred\u{d}b\u{7}");
     assert_eq!(for_people("\u{9b}2J\u{7f}"), r"\u{9b}2J\u{7f}");
     assert_eq!(for_people("gpj.\u{202e}elif"), r"gpj.\u{202e}elif");
-    // Text from right to left is only text.
+    // Right-to-left text is ordinary text.
     assert_eq!(for_people("דרך نهر"), "דרך نهر");
 }
 

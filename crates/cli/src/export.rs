@@ -1,4 +1,4 @@
-//! `corniche export`: what a package holds, for other programs.
+//! `corniche export`: converts packages to formats of other programs.
 
 mod edges;
 mod geotiff;
@@ -11,8 +11,8 @@ mod vector_files;
 
 use std::path::Path;
 
-use corniche_areas::{AreaClass, ClassedLayer};
-use corniche_export::{FeatureRequest, export_areas, export_lines};
+use corniche_areas::{AreaClass, BoundaryClass};
+use corniche_export::{FeatureRequest, export_areas, export_boundaries};
 use corniche_remote::PackagePlace;
 use corniche_tileset::{FilePackage, Manifest};
 
@@ -23,8 +23,7 @@ use crate::{
         Export, ExportAreasArgs, ExportBoundariesArgs, FileArgs, InPlanArgs, VECTOR_FORMATS,
         package_among, word_of,
     },
-    exit::ExitCode,
-    failure::Failure,
+    failure::CommandFailure,
     messages,
     names::format_of,
     output::{existing_of, named::NamedOutput},
@@ -34,7 +33,7 @@ use crate::{
     table::{bytes, length, noted},
 };
 
-pub(crate) fn run(what: &Export) -> Result<ExitCode, Failure> {
+pub(crate) fn run(what: &Export) -> Result<(), CommandFailure> {
     match what {
         Export::Roads(args) => roads::run(args),
         Export::Edges(args) => edges::run(args),
@@ -47,7 +46,7 @@ pub(crate) fn run(what: &Export) -> Result<ExitCode, Failure> {
     }
 }
 
-fn areas(args: &ExportAreasArgs) -> Result<ExitCode, Failure> {
+fn areas(args: &ExportAreasArgs) -> Result<(), CommandFailure> {
     let plan = &args.plan;
     let (package, request) =
         plan_request((&args.from.package, plan), &args.classes, &AreaClass::ALL)?;
@@ -57,7 +56,7 @@ fn areas(args: &ExportAreasArgs) -> Result<ExitCode, Failure> {
     let (summary, size) = write(&plan.file, name, args.from.package.name(), export)?;
     if summary.unjoined > 0 {
         messages::warning(&format!(
-            "{} areas could not be joined over borders of tiles; each of their parts is a polygon",
+            "{} areas could not be merged across tile borders; each of their parts is a separate polygon",
             summary.unjoined
         ));
     }
@@ -70,18 +69,18 @@ fn areas(args: &ExportAreasArgs) -> Result<ExitCode, Failure> {
         noted(summary.points),
     );
     note_plan(plan, &request, &what, (package.manifest(), size));
-    Ok(ExitCode::Done)
+    Ok(())
 }
 
-fn boundaries(args: &ExportBoundariesArgs) -> Result<ExitCode, Failure> {
-    let (plan, layer) = (&args.plan, ClassedLayer::Boundaries);
+fn boundaries(args: &ExportBoundariesArgs) -> Result<(), CommandFailure> {
+    let plan = &args.plan;
     let usage = "corniche export boundaries PACKAGE -o FILE --osm FILE…";
     let (place, [osm]) = package_among(args.package.as_ref(), [&args.extract.osm], usage)?;
-    let (package, request) = plan_request((&place, plan), &args.classes, &layer.classes())?;
-    let names = recorded::line_names((&args.extract, &osm), layer, (&args.cpu, &package))?;
-    let name = format!("{}.{}", layer.name(), word_of(&VECTOR_FORMATS, &request.format));
+    let (package, request) = plan_request((&place, plan), &args.classes, &BoundaryClass::ALL)?;
+    let names = recorded::boundary_names((&args.extract, &osm), (&args.cpu, &package))?;
+    let name = format!("boundaries.{}", word_of(&VECTOR_FORMATS, &request.format));
     let export = |path: &Path, progress: &Progress| {
-        export_lines(&package, (layer, names.as_ref()), &request, path, progress)
+        export_boundaries(&package, names.as_ref(), &request, path, progress)
     };
     let (summary, size) = write(&plan.file, name, place.name(), export)?;
     let what = format!(
@@ -93,15 +92,15 @@ fn boundaries(args: &ExportBoundariesArgs) -> Result<ExitCode, Failure> {
         noted(summary.points),
     );
     note_plan(plan, &request, &what, (package.manifest(), size));
-    Ok(ExitCode::Done)
+    Ok(())
 }
 
-/// The package, and what is asked of a layer without heights; `classes` is empty for all.
+/// The package, and the request for a layer without heights; `classes` is empty for all.
 fn plan_request<C: Copy>(
     (place, args): (&PackagePlace, &InPlanArgs),
     classes: &[C],
     all: &[C],
-) -> Result<(FilePackage, FeatureRequest<C>), Failure> {
+) -> Result<(FilePackage, FeatureRequest<C>), CommandFailure> {
     let format = format_of(args.format, &args.file.output, &VECTOR_FORMATS)?;
     let package = packages::open(place)?;
     let request = FeatureRequest {
@@ -115,18 +114,19 @@ fn plan_request<C: Copy>(
     Ok((package, request))
 }
 
-/// Writes a file in a folder beside its target, under its own name there, and puts it into its place. Gives its size, too.
-fn write<T, E: Into<Failure>>(
+/// Writes a file in a temporary folder next to its target, under its own name, and moves it to its
+/// target. Returns its size, too.
+fn write<T, E: Into<CommandFailure>>(
     file: &FileArgs,
     name: String,
     package: &Path,
     export: impl FnOnce(&Path, &Progress) -> Result<T, E>,
-) -> Result<(T, u64), Failure> {
+) -> Result<(T, u64), CommandFailure> {
     let output = NamedOutput::create(&file.output, existing_of(file.overwrite), name, &[package])?;
     fill(file, output, None, export)
 }
 
-/// Tells what was exported of a layer without heights.
+/// Reports the export of a layer without heights.
 fn note_plan<C>(
     args: &InPlanArgs,
     request: &FeatureRequest<C>,

@@ -1,11 +1,13 @@
-//! Why a command failed: an error, its exit code, and whether trying again may help.
+//! The failure of a command: an error, its exit code, and whether a retry may help.
 
 use std::{fmt, io};
 
+use corniche_drape::BadLine;
 use corniche_export::{
     CoordinatesError, DatumError, ErrorKind, FeaturesError, GdalFileError, MeshError, ProfileError,
     QuantizedMeshError, RasterError, RouteError, Tiles3dError,
 };
+use corniche_gis::{CrsError, PolygonError};
 use corniche_ground::TerrainError;
 use corniche_matching::MatchError;
 use corniche_overlay::OverlayError;
@@ -15,49 +17,50 @@ use corniche_serve::ServeError;
 use corniche_spec::{ExtractBoundsError, inputs::InputError};
 use corniche_tileset::{OpenError, ReadError, SourceError};
 use corniche_verify::VerifyError;
-use corniche_viewer::{RenderError, ReplayError, gpu::GpuError, tiles::LoadTileError};
+use corniche_viewer::{DrawError, gpu::GpuError, tiles::LoadTileError};
 use corniche_window::WindowError;
 
 use crate::exit::ExitCode;
 
-/// Why a command failed, and with which exit code the program ends.
+/// The reason why a command failed, and the exit code of the program.
 #[derive(Debug)]
-pub(crate) struct Failure {
+pub(crate) struct CommandFailure {
     code: ExitCode,
     error: anyhow::Error,
 }
 
-impl Failure {
+impl CommandFailure {
     pub(crate) fn new(code: ExitCode, error: impl Into<anyhow::Error>) -> Self {
         Self { code, error: error.into() }
     }
 
-    /// Wrong usage or unusable input, with a text for the user.
+    /// Creates a failure for wrong usage or unusable input, with a text for the user.
     pub(crate) fn unusable(message: impl fmt::Display) -> Self {
         Self::new(ExitCode::Unusable, anyhow::anyhow!("{message}"))
     }
 
-    /// Something failed, with a text for the user.
+    /// Creates a failure of processing, with a text for the user.
     pub(crate) fn failed(message: impl fmt::Display) -> Self {
         Self::new(ExitCode::Failed, anyhow::anyhow!("{message}"))
     }
 
-    /// The same, with the file that it is about in front.
+    /// Prefixes the message with the file that it is about.
     pub(crate) fn about(self, path: &std::path::Path) -> Self {
-        Self { error: self.error.context(path.display().to_string()), ..self }
+        Self { error: self.error.context(format!("{path:?}")), ..self }
     }
 
-    /// What could not be written is known to people by the name of the target, not of the file that becomes it.
+    /// Prefixes the message with the target: users know it, but not the temporary file that becomes
+    /// it.
     pub(crate) fn about_target(self, target: &std::path::Path) -> Self {
         if self.code == ExitCode::Failed { self.about(target) } else { self }
     }
 
-    /// The target exists, with a text for the user.
+    /// Creates a failure for a target that already exists, with a text for the user.
     pub(crate) fn exists(message: impl fmt::Display) -> Self {
         Self::new(ExitCode::Exists, anyhow::anyhow!("{message}"))
     }
 
-    /// A signal came.
+    /// The failure after a signal.
     pub(crate) fn interrupted() -> Self {
         Self::new(ExitCode::Interrupted, anyhow::anyhow!("interrupted"))
     }
@@ -70,18 +73,20 @@ impl Failure {
         }
     }
 
-    /// Whether a package could not be read because a server or the network failed: it need not be unusable.
+    /// Whether a package could not be read because a server or the network failed: the package may
+    /// still be usable.
     fn may_pass(&self) -> bool {
         self.error.chain().any(|cause| {
             cause.downcast_ref::<OpenError>().is_some_and(OpenError::may_pass)
-                // Behind the name of a file it is boxed.
+                // When the error names a file, it is boxed.
                 || cause.downcast_ref::<Box<OpenError>>().is_some_and(|error| error.may_pass())
                 || cause.downcast_ref::<ReadError>().is_some_and(ReadError::may_pass)
                 || cause.downcast_ref::<SourceError>().is_some_and(|error| error.may_pass)
         })
     }
 
-    /// Whether the reader of our output has closed the pipe (`corniche info … | head`), which is no failure.
+    /// Whether the reader of our output has closed the pipe (`corniche info … | head`), which is
+    /// not a failure.
     pub(crate) fn is_closed_pipe(&self) -> bool {
         self.error
             .downcast_ref::<io::Error>()
@@ -89,24 +94,39 @@ impl Failure {
     }
 }
 
-impl fmt::Display for Failure {
-    /// The error and its causes on one line; a cause that the text before it repeats is left out.
+impl fmt::Display for CommandFailure {
+    /// Writes the error and its causes on one line; a cause that the text before it repeats is
+    /// omitted. Causes after advice are in brackets: the advice remains readable.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut said = self.error.to_string();
+        let mut end = "";
         for cause in self.error.chain().skip(1) {
             let cause = cause.to_string();
-            if !said.contains(&cause) {
-                said = format!("{said}: {cause}");
+            if said.contains(&cause) {
+                continue;
+            }
+            let is_after_advice = end.is_empty() && said.contains("; ");
+            said.push_str(if is_after_advice { " (" } else { ": " });
+            said.push_str(&cause);
+            if is_after_advice {
+                end = ")";
             }
         }
-        f.write_str(&said)
+        write!(f, "{said}{end}")
     }
 }
 
-/// Errors with the codes that they end with.
+/// A [`CommandFailure`] for unusable input, with a message formatted as by [`format!`].
+macro_rules! unusable {
+    ($($message:tt)*) => {
+        $crate::failure::CommandFailure::unusable(format_args!($($message)*))
+    };
+}
+
+/// Errors with the exit codes that they cause.
 macro_rules! codes {
     ($($error:ty { $($case:pat $(if $condition:expr)? => $code:ident,)* })*) => {$(
-        impl From<$error> for Failure {
+        impl From<$error> for CommandFailure {
             fn from(error: $error) -> Self {
                 let code = match &error {
                     $($case $(if $condition)? => ExitCode::$code,)*
@@ -152,6 +172,9 @@ codes! {
         _ => Failed,
     }
     CoordinatesError { _ => Unusable, }
+    BadLine { _ => Unusable, }
+    CrsError { _ => Unusable, }
+    PolygonError { _ => Unusable, }
     DatumError { _ => Unusable, }
     ExtractBoundsError { _ => Unusable, }
     LoadTileError { _ => Unusable, }
@@ -160,16 +183,16 @@ codes! {
     ReadError { _ => Unusable, }
     GdalFileError { _ => Failed, }
     io::Error { _ => Failed, }
-    // What draws charts, and what writes flights.
+    // Errors of charts and of writing flights.
     anyhow::Error { _ => Failed, }
     ctrlc::Error { _ => Failed, }
     image::ImageError { _ => Failed, }
 }
 
-/// What a build may fail with fails the same way outside one.
+/// Gives errors of builds the same exit code outside builds.
 macro_rules! as_of_a_build {
     ($($error:ty),*) => {
-        $(impl From<$error> for Failure {
+        $(impl From<$error> for CommandFailure {
             fn from(error: $error) -> Self {
                 BuildError::from(error).into()
             }
@@ -179,7 +202,7 @@ macro_rules! as_of_a_build {
 
 as_of_a_build!(InputError, PlanError, PlanFileError, TerrainError);
 
-/// What exports end with, by the kind of their errors.
+/// Maps the errors of exports by their kind.
 macro_rules! exports {
     ($($error:ident)*) => {
         codes! {$(
@@ -196,32 +219,25 @@ exports! {
     FeaturesError RouteError ProfileError MeshError Tiles3dError QuantizedMeshError RasterError
 }
 
-/// What drawing ends with.
-macro_rules! drawings {
-    ($($error:ident)*) => {
-        $(impl From<$error> for Failure {
-            fn from(error: $error) -> Self {
-                let code = match error {
-                    $error::Gpu(error) => return error.into(),
-                    $error::Stopped => return Self::interrupted(),
-                    $error::ReadBack(_) => ExitCode::Failed,
-                    _ => ExitCode::Unusable,
-                };
-                Self::new(code, error)
-            }
-        })*
-    };
+impl From<DrawError> for CommandFailure {
+    fn from(error: DrawError) -> Self {
+        let code = match error {
+            DrawError::Gpu(error) => return error.into(),
+            DrawError::Stopped | DrawError::FlightStopped => return Self::interrupted(),
+            DrawError::ReadBack(_) => ExitCode::Failed,
+            _ => ExitCode::Unusable,
+        };
+        Self::new(code, error)
+    }
 }
 
-drawings! { RenderError ReplayError }
-
-impl From<GpuError> for Failure {
+impl From<GpuError> for CommandFailure {
     fn from(error: GpuError) -> Self {
         match error {
             GpuError::TooLarge { size_px, samples_per_side, limit_px }
                 if samples_per_side > 1 && size_px.iter().all(|side| *side <= limit_px) =>
             {
-                Self::unusable(format!("{error}; it fits with --supersampling 1"))
+                unusable!("{error}; use --supersampling 1 for this size")
             }
             GpuError::TooLarge { .. } | GpuError::Empty { .. } | GpuError::Samples { .. } => {
                 Self::new(ExitCode::Unusable, error)
@@ -230,3 +246,7 @@ impl From<GpuError> for Failure {
         }
     }
 }
+
+#[cfg(test)]
+#[path = "failure_tests.rs"]
+mod tests;

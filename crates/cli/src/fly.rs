@@ -1,4 +1,5 @@
-//! `corniche fly`: a flight over a package, frame by frame: what each costs, as a list, pictures and a chart.
+//! `corniche fly`: a flight over a package, frame by frame, with the cost of each frame as a
+//! table, images and a chart.
 
 mod chart;
 mod list;
@@ -23,7 +24,7 @@ use self::{measured_run::MeasuredRun, outputs::Outputs};
 use crate::{
     args::{FlyArgs, Roads},
     exit::ExitCode,
-    failure::Failure,
+    failure::CommandFailure,
     interrupt, messages, overlays, packages, presets,
     progress::Progress,
     styles,
@@ -31,7 +32,7 @@ use crate::{
 };
 use corniche_styles::Style;
 use corniche_viewer::{
-    Detail, Lifted, Replay, ReplayOptions, default_flight,
+    Detail, Lifted, PictureOptions, Replay, ReplayOptions, default_flight,
     flight::{Flight, WorkingCrs},
     gpu::Gpu,
     tiles::{BlockingPackage, MapPackage as _, Overlays, TileDecoder},
@@ -39,10 +40,10 @@ use corniche_viewer::{
 use corniche_window::{Watched, watch};
 use corniche_work::{Observer as _, Stage};
 
-/// Longest file of keyframes that is read; a hundred thousand keyframes are shorter.
+/// Largest size of a keyframe file; a hundred thousand keyframes are smaller.
 const MAX_PATH_BYTES: u64 = 32 << 20;
 
-pub(crate) fn run(args: &FlyArgs) -> Result<ExitCode, Failure> {
+pub(crate) fn run(args: &FlyArgs) -> Result<(), CommandFailure> {
     let outputs = Outputs::create(args)?;
     let style = args.look.styled(styles::style(&args.look.style)?);
     let methods = args.look.roads(&args.drawing.roads)?;
@@ -53,33 +54,32 @@ pub(crate) fn run(args: &FlyArgs) -> Result<ExitCode, Failure> {
     let plan = Plan { args, flight: flown, style: &style, methods, outputs: &outputs, overlays };
     let (runs, adapter) = if args.window { plan.fly_in_a_window()? } else { plan.fly(None)? };
 
-    outputs.finish(&flight, WorkingCrs::of(package.manifest()), &runs, &adapter)?;
+    outputs.finish(&flight, WorkingCrs::from_manifest(package.manifest()), &runs, &adapter)?;
     let point_scale = package.manifest().point_scale;
     let digits = Digits::of_answers();
-    messages::answer(&summary::to_text(&runs, point_scale, digits))?;
-    Ok(ExitCode::Done)
+    Ok(messages::answer(&summary::to_text(&runs, point_scale, digits))?)
 }
 
-/// The flight asked for, else a pass along the data.
-fn flight(args: &FlyArgs, package: &dyn BlockingPackage) -> Result<Flight, Failure> {
+/// The requested flight, or else a pass along the data.
+fn flight(args: &FlyArgs, package: &dyn BlockingPackage) -> Result<Flight, CommandFailure> {
     let Some(path) = &args.flight.path else {
         return Ok(default_flight(package, &interrupt::is_noted)?);
     };
     let unusable =
-        |error: &dyn std::fmt::Display| Failure::unusable(format!("{}: {error}", path.display()));
+        |error: &dyn std::error::Error| presets::refuse(&format!("flight {path:?}"), error);
     presets::refuse_stream(path).map_err(|error| unusable(&error))?;
     let size_bytes = fs::metadata(path).map_err(|error| unusable(&error))?.len();
     if size_bytes > MAX_PATH_BYTES {
-        return Err(unusable(&"too large for a flight"));
+        return Err(unusable!("flight {path:?}: the file is too large for a flight path"));
     }
     let text = fs::read_to_string(path).map_err(|error| unusable(&error))?;
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
     let manifest = package.manifest();
-    Flight::parse(text, WorkingCrs::of(manifest), &manifest.coordinates)
+    Flight::parse(text, WorkingCrs::from_manifest(manifest), &manifest.coordinates)
         .map_err(|error| unusable(&error))
 }
 
-/// All flights that are asked for.
+/// All requested flights.
 struct Plan<'a> {
     args: &'a FlyArgs,
     flight: &'a Flight,
@@ -89,7 +89,7 @@ struct Plan<'a> {
     overlays: Arc<Overlays>,
 }
 
-/// What came of them, and what drew them.
+/// The results, and the name of the adapter that drew them.
 type Drawn = (Vec<MeasuredRun>, String);
 
 /// A window that shows frames while they are drawn.
@@ -99,23 +99,25 @@ struct Watcher<'a> {
 }
 
 impl Plan<'_> {
-    /// Flies in a thread of its own, because on most systems a window must belong to the program's first thread, which is this
-    /// one. Without a display the flight fails; if the window is lost on the way, the flight goes on without it.
-    fn fly_in_a_window(&self) -> Result<Drawn, Failure> {
-        // The channel holds one picture, so the flight is at most one picture ahead of the window.
+    /// Flies in a separate thread, because on most systems a window must belong to the program's
+    /// first thread, which is this one. Without a display the flight fails; if the window is lost
+    /// during the flight, the flight continues without it.
+    fn fly_in_a_window(&self) -> Result<Drawn, CommandFailure> {
+        // The channel holds one image, so the flight is at most one image ahead of the window.
         let (window, pictures) = mpsc::sync_channel(1);
         let is_gone = AtomicBool::new(false);
         let watcher = Watcher { window, is_gone: &is_gone };
         let name = self.args.from.package.file_name();
         thread::scope(|scope| {
-            // When the thread ends, the watcher is dropped, the channel closes, and with it the window.
+            // When the thread ends, the watcher is dropped, so the channel and then the window
+            // close.
             let worker = scope.spawn(move || self.fly(Some(&watcher)));
             let watched = watch(&name, self.args.drawing.size, pictures);
             let is_closed = match watched {
                 Ok(Watched::Lost(error)) => {
-                    let why = Failure::from(error);
+                    let why = CommandFailure::from(error);
                     messages::warning(&format!(
-                        "the window is lost, the flight goes on without it: {why}"
+                        "the window was lost; the flight continues without it: {why}"
                     ));
                     Ok(false)
                 }
@@ -132,15 +134,15 @@ impl Plan<'_> {
                         && failure.code() == ExitCode::Interrupted
                         && !interrupt::is_noted() =>
                 {
-                    let closed = anyhow::anyhow!("the window was closed before the flight's end");
-                    Err(Failure::new(ExitCode::Interrupted, closed))
+                    let closed = anyhow::anyhow!("the window was closed before the flight ended");
+                    Err(CommandFailure::new(ExitCode::Interrupted, closed))
                 }
                 drawn => drawn,
             }
         })
     }
 
-    fn fly(&self, watcher: Option<&Watcher<'_>>) -> Result<Drawn, Failure> {
+    fn fly(&self, watcher: Option<&Watcher<'_>>) -> Result<Drawn, CommandFailure> {
         let gpu = Gpu::new()?;
         messages::note(&format!("drawn by {}", gpu.adapter_name));
         let mut runs = Vec::new();
@@ -158,22 +160,25 @@ impl Plan<'_> {
         watcher: Option<&Watcher<'_>>,
         lod: Detail,
         roads: Roads,
-    ) -> Result<MeasuredRun, Failure> {
+    ) -> Result<MeasuredRun, CommandFailure> {
         let drawing = &self.args.drawing;
         let options = ReplayOptions {
-            size_px: drawing.size,
-            roads: self.args.look.road_options(roads),
+            picture: PictureOptions {
+                size_px: drawing.size,
+                roads: self.args.look.road_options(roads),
+                screen_space_error_px: drawing.ground.screen_space_error,
+                cell_px: drawing.ground.cell_px,
+                exaggeration: drawing.ground.exaggeration,
+                supersampling: drawing.supersampling,
+                style: self.style.clone(),
+            },
             detail: lod,
-            screen_space_error_px: drawing.ground.screen_space_error,
-            cell_px: drawing.ground.cell_px,
-            exaggeration: drawing.ground.exaggeration,
-            supersampling: drawing.supersampling,
-            style: self.style.clone(),
             budget: drawing.gpu.budget(),
             ahead_s: drawing.ahead,
             frames: frames(self.args, self.flight)?,
         };
-        let decoder = TileDecoder::default().for_look(options.roads.method, &options.style);
+        let picture = &options.picture;
+        let decoder = TileDecoder::default().for_look(picture.roads.method, &picture.style);
         let decoder = decoder.with_overlays(Arc::clone(&self.overlays));
         let package = packages::source(&self.args.from.package)?.with_decoder(decoder);
         let is_stopped = || {
@@ -185,7 +190,7 @@ impl Plan<'_> {
         let Lifted { frames, most_m } = replay.lifted();
         if frames > 0 {
             messages::note(&format!(
-                "note: {}: in {frames} frames the eye was lifted off the ground, by up to {most_m:.1} m",
+                "note: {}: in {frames} frames the camera was raised to stay above the ground, by up to {most_m:.1} m",
                 run.name()
             ));
         }
@@ -196,7 +201,8 @@ impl Plan<'_> {
             let name = format!("{}-{:05}.png", run.words().join("-"), record.frame);
             self.outputs.add_picture(&name, &replay)?;
             if let Some(watcher) = watcher {
-                // It fails only when the window is closed or lost; `is_gone` then ends the flight or lets it go on.
+                // This fails only if the window is closed or lost; `is_gone` then ends the flight
+                // or lets it continue.
                 let _ = watcher.window.send(replay.picture()?);
             }
             run.frames.push(record);
@@ -210,21 +216,19 @@ impl Plan<'_> {
     }
 }
 
-/// The number of frames: `--frames`, or so many that they are about `--step` apart.
-fn frames(args: &FlyArgs, flight: &Flight) -> Result<u32, Failure> {
+/// The number of frames: `--frames`, or the number that spaces them about `--step` apart.
+fn frames(args: &FlyArgs, flight: &Flight) -> Result<u32, CommandFailure> {
     match args.flight.step {
         None => Ok(args.flight.frames),
-        // A number too large for u32 becomes the largest u32, which the replay refuses.
+        // A number too large for u32 becomes the largest u32, which the replay rejects.
         Some(step_s) if step_s > 0.0 => {
             Ok(((flight.duration_s() / step_s).round() as u32).saturating_add(1))
         }
-        Some(step_s) => {
-            Err(Failure::unusable(format!("--step must be more than 0 seconds, not {step_s}")))
-        }
+        Some(step_s) => Err(unusable!("--step must be greater than 0 seconds, not {step_s}")),
     }
 }
 
-/// The values in the order given, without repetitions.
+/// The given values in their order, without duplicates.
 fn once_each<T: Copy + PartialEq>(given: &[T]) -> Vec<T> {
     given
         .iter()

@@ -1,4 +1,4 @@
-//! `corniche growth`: what laying roads on the terrain costs.
+//! `corniche growth`: the cost of draping roads on the terrain.
 
 mod chart;
 mod compare;
@@ -17,15 +17,14 @@ use self::compare::Compared;
 use crate::{
     args::GrowthArgs,
     documents::to_line,
-    exit::ExitCode,
-    failure::Failure,
+    failure::CommandFailure,
     messages,
     output::{Output, existing_of, report_files::ReportFiles},
     packages,
     table::Digits,
 };
 
-pub(crate) fn run(args: &GrowthArgs) -> Result<ExitCode, Failure> {
+pub(crate) fn run(args: &GrowthArgs) -> Result<(), CommandFailure> {
     if args.svg.is_some() {
         chart::refuse_too_many(args.packages.len())?;
     }
@@ -33,14 +32,15 @@ pub(crate) fn run(args: &GrowthArgs) -> Result<ExitCode, Failure> {
     for place in &args.packages {
         let package = packages::open(place)?;
         if package.manifest().growth.is_empty() {
-            return Err(Failure::unusable(format!(
-                "{place} has no roads: it was built without --osm, or of an extract without them"
-            )));
+            return Err(unusable!(
+                "{:?} has no roads: it was built without --osm, or from an extract without roads; build it again with roads",
+                place.name()
+            ));
         }
         packages.push(package);
     }
     let compared = Compared::all(&packages);
-    // Files are written first, because the reader of the table may close the pipe before its end.
+    // Files are written first, because the reader of the table may close the pipe early.
     write_files(args, &packages, &compared)?;
     let answer = match &compared[..] {
         [one] if args.json => format!("{}\n", to_line(&document::document(one.manifest))),
@@ -49,30 +49,32 @@ pub(crate) fn run(args: &GrowthArgs) -> Result<ExitCode, Failure> {
         several if args.json => format!("{}\n", to_line(&compare::to_document(several))),
         several if args.csv => {
             for difference in compare::differences(several) {
-                messages::warning(&format!("not like with like: {}", difference.text(several)));
+                messages::warning(&format!(
+                    "the packages differ not only in cell and error bound: {}",
+                    difference.text(several)
+                ));
             }
             let named = several.iter().map(|package| (package.name.as_str(), package.manifest));
             csv::to_csv_of_several(named)
         }
         several => compare::to_text(several, Digits::of_answers()),
     };
-    messages::answer(&answer)?;
-    Ok(ExitCode::Done)
+    Ok(messages::answer(&answer)?)
 }
 
 fn write_files(
     args: &GrowthArgs,
     packages: &[FilePackage],
     compared: &[Compared<'_>],
-) -> Result<(), Failure> {
+) -> Result<(), CommandFailure> {
     if args.per_way.is_some() && packages.len() != 1 {
-        return Err(Failure::unusable(
-            "--per-way tells of one package; run it once for each, with a file of its own",
+        return Err(unusable!(
+            "--per-way accepts a single package; run the command once for each, with a separate file"
         ));
     }
     let inputs: Vec<&Path> = args.packages.iter().map(PackagePlace::name).collect();
     let list = [("--per-way", args.per_way.as_deref())];
-    // Both places are looked at before any work is done.
+    // Both paths are checked before any work is done.
     let files =
         ReportFiles::begin(args.svg.as_deref(), list, &inputs, existing_of(args.overwrite))?;
     let make_svg = || {
@@ -83,7 +85,7 @@ fn write_files(
     };
     let mut told = None;
     let fill_list = |_, output: Output| {
-        // There is a list of one package alone, which was looked at.
+        // The list exists only for a single package, which was checked above.
         let path = args.per_way.as_deref().unwrap_or(Path::new(""));
         let (list, note) = per_way::fill(&packages[0], path, output)?;
         told = Some(note);

@@ -1,14 +1,15 @@
-//! `corniche info`: what a package holds and what became of its inputs.
+//! `corniche info`: the contents of a package, and what became of its inputs.
 
 mod words;
 
-use std::fmt::Write as _;
+use std::{borrow::Cow, fmt::Write as _};
 
-use corniche_areas::{AreaClass, ClassedLayer, LineClass};
+use corniche_areas::{AreaClass, BoundaryClass};
 use corniche_geom::Cell;
 use corniche_osm::LineLoss;
+use corniche_roads::LossReason;
 use corniche_tileset::{
-    AreasRecord, Counts, DatumOperationRecord, LineLevelRecord, LinesRecord, Manifest,
+    AreasRecord, DatumOperationRecord, LineLevelRecord, LinesRecord, Manifest, ManifestCounts,
     SampleErrorRecord, ScaleRecord, SpansRecord,
 };
 
@@ -17,17 +18,18 @@ use crate::{
     args::InfoArgs,
     documents::info::InfoDocument,
     escaped::in_line,
-    exit::ExitCode,
-    failure::Failure,
+    failure::CommandFailure,
     messages, packages,
     presets::class_labels,
     table::{Digits, Table, bytes, length, wrapped},
 };
 
-/// Width of the names before the first lines' texts.
+/// Width of the label column in the first lines.
 const NAMES: usize = 13;
+/// What areas and boundaries count.
+const ALL: &str = "numbers include objects outside the package's extent";
 
-pub(crate) fn run(args: &InfoArgs) -> Result<ExitCode, Failure> {
+pub(crate) fn run(args: &InfoArgs) -> Result<(), CommandFailure> {
     let package = packages::open(&args.from.package)?;
     if args.json {
         let tiles: Vec<String> = package.tile_ids()?.iter().map(ToString::to_string).collect();
@@ -37,10 +39,10 @@ pub(crate) fn run(args: &InfoArgs) -> Result<ExitCode, Failure> {
         let size = package.bytes()?;
         messages::answer(&to_text(package.manifest(), size, Digits::of_answers()))?;
     }
-    Ok(ExitCode::Done)
+    Ok(())
 }
 
-/// A manifest for people.
+/// A manifest as text.
 pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64, digits: Digits) -> String {
     let mut text = String::new();
     let mut say = |line: String| {
@@ -73,7 +75,7 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64, digits: Digits) -
         "heights      {lowest_m:.1} to {highest_m:.1} m, quantum {} m{}",
         vertical.quantum_m,
         match vertical.height_step_m {
-            step_m if step_m > 0.0 => format!("; the DEM's are multiples of {step_m} m"),
+            step_m if step_m > 0.0 => format!("; heights of the DEM are multiples of {step_m} m"),
             _ => String::new(),
         }
     ));
@@ -118,30 +120,32 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64, digits: Digits) -
     if let Some(areas) = &manifest.areas {
         say(area_texts(areas, digits));
     }
-    for layer in ClassedLayer::ALL {
-        if let Some(lines) = manifest.lines(layer) {
-            say(line_texts(layer, lines, digits));
-        }
+    if let Some(boundaries) = &manifest.boundaries {
+        say(boundary_texts(boundaries, digits));
     }
     if let Some(spans) = &manifest.spans {
         say(span_texts(spans, digits));
     }
-    say(format!("Errors of the tiles:\n{}", tile_errors(manifest).to_text()));
+    say(format!(
+        "Errors of the tiles, at all nodes of the finest level. The tolerance applies only to the nodes of a level's \
+         own grid (every 2nd, 4th, … node), so errors of coarse levels may be much larger:\n{}",
+        tile_errors(manifest).to_text()
+    ));
     text.push_str(&sample_errors(manifest, digits));
     text.push_str(&roads(manifest, digits));
     text.push_str(&words_of(&text));
     narrow(&text)
 }
 
-/// How positions come from one datum to another, in words.
+/// The operation that converts positions between datums, in words.
 pub(crate) fn datum_operation(found: &DatumOperationRecord) -> String {
     let DatumOperationRecord { from, to, operation, ballpark, .. } = found;
     let accuracy = found.accuracy_text();
-    let guess = if *ballpark { ", which takes one datum for the other" } else { "" };
+    let guess = if *ballpark { ", a ballpark transformation without datum shift" } else { "" };
     format!("{} to {} by {}, {accuracy}{guess}", in_line(from), in_line(to), in_line(operation))
 }
 
-/// What became of areas, and what they take on each level.
+/// The numbers of kept and lost areas, and their sizes on each level.
 fn area_texts(areas: &AreasRecord, digits: Digits) -> String {
     let AreasRecord { counts, levels } = areas;
     let mut classes = Table::new(["areas", "number", "km²"]);
@@ -153,7 +157,7 @@ fn area_texts(areas: &AreasRecord, digits: Digits) -> String {
     let kept: u64 = counts.kept.iter().map(|kept| kept.areas).sum();
     let levels = levels.iter().map(|of| (of.level, [of.tiles, of.areas, of.points, of.bytes]));
     format!(
-        "Areas: {} objects of the extract, of which {} became areas, wherever they lie:\n{}{}\n{}",
+        "Areas: {} objects of the extract, {} of them converted ({ALL}):\n{}{}\n{}",
         digits.count(counts.objects),
         digits.count(kept),
         classes.to_text(),
@@ -162,19 +166,18 @@ fn area_texts(areas: &AreasRecord, digits: Digits) -> String {
     )
 }
 
-/// What became of a layer of lines, and what it takes on each level.
-fn line_texts(layer: ClassedLayer, lines: &LinesRecord, digits: Digits) -> String {
+/// The numbers of kept and lost boundaries, and their sizes on each level.
+fn boundary_texts(lines: &LinesRecord, digits: Digits) -> String {
     let LinesRecord { counts, levels } = lines;
-    let mut classes = Table::new([layer.name(), "ways", "km"]);
+    let mut classes = Table::new(["boundaries", "ways", "km"]);
     for kept in &counts.kept {
-        let name = layer.class(kept.class).map_or("?", LineClass::name);
+        let name = BoundaryClass::from_number(kept.class).map_or("?", BoundaryClass::name);
         let length_km = format!("{:.1}", kept.length_um as f64 / 1e9);
         classes.row([name.to_owned(), digits.count(kept.ways), length_km]);
     }
     let levels = levels.iter().map(LineLevelRecord::figures);
     format!(
-        "{}: {} ways of the extract, each once, wherever they lie:\n{}{}\n{}",
-        layer.table().title,
+        "Boundaries: {} ways of the extract, each counted once ({ALL}):\n{}{}\n{}",
         digits.count(counts.ways),
         classes.to_text(),
         lost_text("ways", &counts.lost, digits),
@@ -182,7 +185,7 @@ fn line_texts(layer: ClassedLayer, lines: &LinesRecord, digits: Digits) -> Strin
     )
 }
 
-/// How many bridges and tunnels there are, and what they take on each level.
+/// The numbers of bridges and tunnels, and their sizes on each level.
 fn span_texts(spans: &SpansRecord, digits: Digits) -> String {
     let SpansRecord { counts, levels, .. } = spans;
     let levels = levels.iter().map(LineLevelRecord::figures);
@@ -191,29 +194,30 @@ fn span_texts(spans: &SpansRecord, digits: Digits) -> String {
     let reasons = reasons
         .map(|(reason, number)| format!("  {} × {}\n", digits.count(*number), in_line(reason)));
     format!(
-        "Bridges and tunnels, heights estimated: {} bridges ({}) and {} tunnels ({}), each with all ways that it connects; they cross {} times:\n{}{}",
+        "Bridges and tunnels (spans), heights estimated: {} bridges ({}) and {} tunnels ({}), connected ways counted as one; {} crossings{}:\n{}{}",
         digits.count(counts.bridges),
         kilometres(counts.bridges_um),
         digits.count(counts.tunnels),
         kilometres(counts.tunnels_um),
         digits.count(counts.crossings),
+        if counts.reasons.is_empty() { "" } else { "; to check" },
         reasons.collect::<String>(),
         level_text("runs", levels, digits)
     )
 }
 
-/// Which objects of a layer were lost, by reason.
+/// The numbers of lost objects of a layer, by reason.
 fn lost_text(objects: &str, lost: &[(String, u64)], digits: Digits) -> String {
     let line = |(reason, number): &(String, u64)| {
         if is_beyond_extract(reason) {
-            return format!("  {objects} beyond the extract: {}\n", digits.count(*number));
+            return format!("  {objects} missing from the extract: {}\n", digits.count(*number));
         }
         format!("  lost {} {objects}: {}\n", digits.count(*number), in_line(reason))
     };
     lost.iter().map(line).collect()
 }
 
-/// What a layer takes on each level: tiles, parts of objects in them, points, bytes.
+/// The size of a layer on each level: tiles, parts of objects in them, points, bytes.
 fn level_text(parts: &str, levels: impl Iterator<Item = (u8, [u64; 4])>, digits: Digits) -> String {
     let mut table = Table::new(["level", "tiles", parts, "points", "bytes", "per tile"]);
     for (level, [tiles, parts, points, of_level]) in levels {
@@ -224,7 +228,7 @@ fn level_text(parts: &str, levels: impl Iterator<Item = (u8, [u64; 4])>, digits:
     table.to_text()
 }
 
-/// Lines that are too wide are texts: they go on below the place where they began, beside their name.
+/// Wraps lines that are too wide: they continue below the start of their text, next to their label.
 fn narrow(text: &str) -> String {
     let line = |line: &str| {
         let is_named = !line.starts_with(' ') && line.get(NAMES - 2..NAMES) == Some("  ");
@@ -235,7 +239,8 @@ fn narrow(text: &str) -> String {
     text.lines().map(line).collect()
 }
 
-/// The photos of each level. A square kilometre is one of the tiles that have a photo, whether it covers them or not.
+/// The photos of each level. Square kilometres are those of the tiles with a photo, even where it
+/// does not cover them.
 fn photos(manifest: &Manifest, digits: Digits) -> Table {
     let mut photos = Table::new(["level", "texel m", "tiles", "photo", "per tile", "per km²"]);
     let finest = manifest.frame.max_level();
@@ -257,7 +262,7 @@ fn photos(manifest: &Manifest, digits: Digits) -> Table {
     photos
 }
 
-/// What each level holds.
+/// The contents of each level.
 fn levels(manifest: &Manifest, digits: Digits) -> Table {
     let mut levels = Table::new([
         "level",
@@ -269,13 +274,13 @@ fn levels(manifest: &Manifest, digits: Digits) -> Table {
         "B/triangle",
         "relief",
         "roads to FRC",
-        "uncovered",
+        "uncovered nodes",
     ]);
     for level in &manifest.levels {
         levels.row([
             level.level.to_string(),
             sides(level.cell_m),
-            rounded(level.max_error_m),
+            in_metres(level.max_error_m),
             digits.count(level.tiles),
             digits.count(level.triangles),
             bytes(level.terrain_bytes),
@@ -288,16 +293,16 @@ fn levels(manifest: &Manifest, digits: Digits) -> Table {
     levels
 }
 
-/// What the tiles of each level store as their errors, and how much larger that is than the true ones.
+/// The stored errors of the tiles of each level, and their ratio to the true errors.
 fn tile_errors(manifest: &Manifest) -> Table {
     let mut errors =
         Table::new(["level", "error m", "median", "p95", "stored/true p95", "stored/true max"]);
     for level in &manifest.levels {
         errors.row([
             level.level.to_string(),
-            format!("{:.2}", level.geometric_error_m),
-            or_dash(level.errors_m.map(|errors_m| errors_m.median), 2),
-            or_dash(level.errors_m.map(|errors_m| errors_m.p95), 2),
+            in_metres(level.geometric_error_m),
+            or_dash(level.errors_m.map(|errors_m| errors_m.median), 3),
+            or_dash(level.errors_m.map(|errors_m| errors_m.p95), 3),
             or_dash(level.tightness.map(|tightness| tightness.p95), 3),
             or_dash(level.tightness.map(|tightness| tightness.max), 3),
         ]);
@@ -305,29 +310,35 @@ fn tile_errors(manifest: &Manifest) -> Table {
     errors
 }
 
-/// How far each level is from the DEM's own samples.
+/// The differences between each level and the DEM's own samples.
 fn sample_errors(manifest: &Manifest, digits: Digits) -> String {
-    let mut table = Table::new(["level", "samples on TIN", "off TIN", "max m", "RMS m", "p99 m"]);
+    let mut table =
+        Table::new(["level", "covered samples", "uncovered samples", "max m", "RMS m", "p99 m"]);
     for level in &manifest.levels {
         let SampleErrorRecord { on_tin, off_tin, max_m, rms_m, p99_m } = level.sample_error;
         table.row([
             level.level.to_string(),
             digits.count(on_tin),
             digits.count(off_tin),
-            format!("{max_m:.2}"),
-            format!("{rms_m:.3}"),
-            format!("{p99_m:.2}"),
+            in_metres(max_m),
+            in_metres(rms_m),
+            in_metres(p99_m),
         ]);
     }
     let what = if manifest.nodes_are_samples {
-        "At the DEM's own samples, which are the nodes"
+        "Errors at the DEM's own samples, each of which is a node"
     } else {
-        "At the DEM's own samples, which are not the nodes"
+        "Errors at the DEM's own samples, which are other points than the nodes"
     };
     format!("{what}:\n{}\n", table.to_text())
 }
 
-/// What makes working metres of a CRS's coordinates.
+/// An error, or its limit.
+pub(crate) fn in_metres(error_m: f64) -> String {
+    format!("{error_m:.3}")
+}
+
+/// The factors from a CRS's coordinates to working metres.
 fn factors([east, north]: [f64; 2]) -> String {
     if [east, north].iter().all(|factor| factor.to_bits() == 1.0_f64.to_bits()) {
         return "working metres are its coordinates".to_owned();
@@ -339,11 +350,11 @@ fn factors([east, north]: [f64; 2]) -> String {
 fn scales(scale: &ScaleRecord) -> String {
     let along = |axis: usize, name: &str| {
         format!(
-            "{name} {:.4} at the centre, {:.4} to {:.4} over the rim",
+            "{name} {:.4} at the centre, {:.4} to {:.4} along the border",
             scale.center[axis], scale.least[axis], scale.largest[axis]
         )
     };
-    format!("working metres to a true metre: {}; {}", along(0, "east"), along(1, "north"))
+    format!("working metres per true metre: {}; {}", along(0, "east"), along(1, "north"))
 }
 
 /// A cell's sides: "30", "63.1 × 92.7".
@@ -352,7 +363,7 @@ pub(crate) fn sides(cell: Cell) -> String {
     if east == north { north } else { format!("{east} × {north}") }
 }
 
-/// A length to three digits at least, without zeros at its end.
+/// A length with at least three digits, without trailing zeros.
 pub(crate) fn rounded(metres: f64) -> String {
     let digits = (2.0 - metres.abs().log10().floor()).clamp(0.0, 9.0) as usize;
     let text = format!("{metres:.digits$}");
@@ -362,16 +373,17 @@ pub(crate) fn rounded(metres: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// A number with so many digits after the point; a dash where there is none.
+/// A number with this many decimals; a dash for `None`.
 pub(crate) fn or_dash(value: Option<f64>, digits: usize) -> String {
     value.map_or_else(|| "–".to_owned(), |value| format!("{value:.digits$}"))
 }
 
-/// What heights tell of an undeclared "no data": no land or sea floor lies so low or so high.
+/// A warning about heights that suggest an undeclared nodata value: no land or sea floor is so low
+/// or so high.
 ///
-/// Challenger Deep lies some 10 935 m below the sea, Everest 8 849 m above it.
-/// What was said to be allowed is not odd. A build refuses samples outside; what remains comes of a shift or of another
-/// vertical CRS, or of an older package.
+/// Challenger Deep is some 10 935 m below the sea, Everest 8 849 m above it. Heights within the
+/// range that the user allowed are not odd. A build rejects samples outside it; such heights remain
+/// after a shift, with another vertical CRS, or in an older package.
 pub(crate) fn odd_heights(manifest: &Manifest) -> Option<String> {
     const PLAUSIBLE_M: [f64; 2] = [-12_000.0, 9_500.0];
     let [lowest_m, highest_m] = manifest.vertical.range_m;
@@ -386,14 +398,14 @@ pub(crate) fn odd_heights(manifest: &Manifest) -> Option<String> {
         return None;
     };
     Some(format!(
-        "a height of {odd_m} m is none of this earth; is --vertical-shift right? If the files store a value that means \"no data\", give it \
-         with --nodata as they store it (before scale, unit and shift)"
+        "implausible height: {odd_m} m. Check --vertical-shift. If the files contain an undeclared nodata value, pass it \
+         with --nodata, as stored in the files (before scale, unit and shift)"
     ))
 }
 
-/// What is wrong with an extract. Ways that are no road, and values that are read as others, are counted with their reasons, too, but are no
-/// faults: they are told elsewhere.
-pub(crate) fn defects(counts: &Counts) -> impl Iterator<Item = &(String, u64)> {
+/// The defects of an extract. Ways that are not roads, and values that are interpreted as others,
+/// are also counted by reason, but they are not defects and are reported elsewhere.
+pub(crate) fn defects(counts: &ManifestCounts) -> impl Iterator<Item = &(String, u64)> {
     const TOLD_ELSEWHERE: [&str; 3] =
         ["area", "unknown highway value", "tag taken for another value"];
     counts
@@ -402,12 +414,22 @@ pub(crate) fn defects(counts: &Counts) -> impl Iterator<Item = &(String, u64)> {
         .filter(|(name, _)| !TOLD_ELSEWHERE.contains(&name.as_str()) && !is_beyond_extract(name))
 }
 
-/// Whether a reason says that ways lie beyond the extract, where a line of it goes on.
-fn is_beyond_extract(reason: &str) -> bool {
-    ClassedLayer::ALL.into_iter().any(|layer| LineLoss::MissingWay.reason(layer) == reason)
+/// The reason of a loss, without the older words in which packages record some.
+pub(crate) fn reason_words(recorded: &str) -> Cow<'_, str> {
+    match LossReason::from_text(recorded) {
+        Some(LossReason::Listed) => "not roads by the FRC table".into(),
+        Some(LossReason::NoGround) => "where the data has no ground (void or edge)".into(),
+        Some(LossReason::OutsideBounds) => "outside the requested bounds".into(),
+        _ => in_line(recorded),
+    }
 }
 
-/// How many ways of a layer of lines lie beyond the extract.
+/// Whether a reason means that ways are beyond the extract, where a boundary continues outside it.
+fn is_beyond_extract(reason: &str) -> bool {
+    LineLoss::MissingWay.reason() == reason
+}
+
+/// The number of boundary ways beyond the extract.
 pub(crate) fn beyond_extract(lines: &LinesRecord) -> u64 {
     let lost = lines.counts.lost.iter().filter(|(reason, _)| is_beyond_extract(reason));
     lost.map(|(_, number)| number).sum()
@@ -416,7 +438,7 @@ pub(crate) fn beyond_extract(lines: &LinesRecord) -> u64 {
 fn roads(manifest: &Manifest, digits: Digits) -> String {
     let counts = &manifest.counts;
     if counts.roads_in == 0 && counts.highways_in == 0 {
-        return "no roads: built without an extract, or from one without them\n".to_owned();
+        return "no roads: built without an extract, or from an extract without roads\n".to_owned();
     }
     let mut text = String::new();
     let mut table = Table::new(["roads", "count", "length"]);
@@ -432,17 +454,17 @@ fn roads(manifest: &Manifest, digits: Digits) -> String {
         }
     }
     table.row([
-        "kept at the finest level".into(),
+        "kept: in the package, on the finest level".into(),
         digits.count(counts.roads_kept),
         length(counts.roads_kept_um),
     ]);
     if !counts.roads_lost.is_empty() {
-        // What is lost of a road that is kept in part is in the lengths alone.
+        // Roads that are kept in part add to the lost lengths only.
         table.row(["lost, by reason", "whole roads", "length"].map(str::to_owned));
     }
     for loss in &counts.roads_lost {
         table.row([
-            format!("lost {}", in_line(&loss.reason)),
+            format!("lost {}", reason_words(&loss.reason)),
             digits.count(loss.roads),
             length(loss.length_um),
         ]);
@@ -453,7 +475,7 @@ fn roads(manifest: &Manifest, digits: Digits) -> String {
     if counts.blobs_passed_over > 0 {
         let _ = writeln!(
             text,
-            "blobs of the extract of an unknown type, passed over: {}",
+            "blobs of unknown type in the extract, skipped: {}",
             digits.count(counts.blobs_passed_over)
         );
     }
@@ -461,8 +483,8 @@ fn roads(manifest: &Manifest, digits: Digits) -> String {
         let of_reason = || counts.left_out.iter().filter(|left_out| &left_out.reason == reason);
         let length_um: u64 = of_reason().map(|left_out| left_out.length_um).sum();
         let whole = if length_um > 0 { format!(", {}", length(length_um)) } else { String::new() };
-        let _ =
-            writeln!(text, "  not taken, {}: {}{whole}", in_line(reason), digits.count(*number));
+        let (words, number) = (reason_words(reason), digits.count(*number));
+        let _ = writeln!(text, "  skipped, {words}: {number}{whole}");
         for left_out in of_reason() {
             let (ways, length) = (digits.count(left_out.ways), length(left_out.length_um));
             let _ = writeln!(text, "    highway={}: {ways}, {length}", in_line(&left_out.highway));
@@ -472,13 +494,13 @@ fn roads(manifest: &Manifest, digits: Digits) -> String {
         let _ = writeln!(text, "defect: {}: {}", in_line(name), digits.count(*number));
     }
     for (value, number) in &counts.unknown_highways {
-        let _ =
-            writeln!(text, "highway={} is in no class: {}", in_line(value), digits.count(*number));
+        let (value, ways) = (in_line(value), digits.count(*number));
+        let _ = writeln!(text, "highway={value} is in no class of the FRC table: {ways}");
     }
     for (tag, number) in &counts.tags_taken_otherwise {
         let _ = writeln!(
             text,
-            "{} is taken for another value: {}",
+            "{} is treated as another value: {}",
             in_line(tag),
             digits.count(*number)
         );

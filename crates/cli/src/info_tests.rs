@@ -1,4 +1,4 @@
-//! Numbers and long texts of `info` are told in a form that people read.
+//! Numbers and long texts of `info` are readable.
 
 use super::*;
 
@@ -26,9 +26,23 @@ fn factors_are_told_where_there_are_any() {
 }
 
 #[test]
+fn errors_and_limits_have_the_same_decimals() {
+    assert_eq!([0.625, 3.921_875, 1.25].map(in_metres), ["0.625", "3.922", "1.250"]);
+}
+
+#[test]
+fn reasons_of_losses_are_in_words_for_people() {
+    let words = |reason: LossReason| reason_words(reason.text());
+    assert_eq!(words(LossReason::Listed), "not roads by the FRC table");
+    assert_eq!(words(LossReason::ClassOff), "class is off");
+    let all = LossReason::ALL.map(words);
+    assert_eq!(std::collections::BTreeSet::from(all).len(), LossReason::ALL.len());
+}
+
+#[test]
 fn long_texts_go_on_beside_their_names() {
     let words = "word ".repeat(30);
-    let text = format!("datum        {words}\nwarning: {words}\n  not taken, {words}\n");
+    let text = format!("datum        {words}\nwarning: {words}\n  skipped, {words}\n");
     let narrow = narrow(&text);
     assert!(narrow.lines().all(|line| line.chars().count() <= 100), "{narrow}");
     let begins: Vec<&str> = narrow.lines().map(|line| &line[..14]).collect();
@@ -39,7 +53,7 @@ fn long_texts_go_on_beside_their_names() {
             "             w",
             "warning: word ",
             "  word word wor",
-            "  not taken, w",
+            "  skipped, wor",
             "    word word "
         ]
         .map(|begin| &begin[..14])

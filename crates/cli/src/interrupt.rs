@@ -1,10 +1,11 @@
-//! Ctrl-C and other signals that ask a program to end, and the end of the process that started it. The run stops as soon as it
-//! asks, and cleans up. If it does not ask, because it waits in a read that never returns, or if a second signal comes, the
-//! program cleans up and ends at once.
+//! Handling of Ctrl-C, of other signals that request the program to end, and of the end of the
+//! parent process. The run stops at its next check and cleans up. If it does not check, because it
+//! waits in a read that never returns, or if a second signal arrives, the program cleans up and
+//! ends at once.
 //!
 //! ```text
-//!   first signal, or parent gone ─► noted ─┬─ asked for within half a second: the run ends itself, in ten seconds at most
-//!                                          └─ not asked for: the program removes temporary files and exits
+//!   first signal, or parent gone ─► noted ─┬─ checked within half a second: the run ends itself, in ten seconds at most
+//!                                          └─ not checked: the program removes temporary files and exits
 //!   second signal ─► the program removes temporary files and exits
 //! ```
 
@@ -22,44 +23,44 @@ use std::{
 
 use corniche_work::locked;
 
-use crate::{exit::ExitCode, failure::Failure, messages};
+use crate::{exit::ExitCode, failure::CommandFailure, messages};
 
-/// What asks the program to end.
+/// The cause of an early end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Cause {
     /// A signal.
     Signal,
-    /// The process that started this one is gone.
+    /// The parent process has ended.
     ParentGone,
 }
 
-/// The program was asked to end.
+/// Whether the program was requested to end.
 static NOTED: AtomicBool = AtomicBool::new(false);
-/// What ended the run; set before `NOTED`.
+/// The first cause; set before `NOTED`.
 static CAUSE: OnceLock<Cause> = OnceLock::new();
-/// The run knows of it.
+/// Whether the run has noticed the request.
 static SEEN: AtomicBool = AtomicBool::new(false);
-/// What is removed when the program ends early: temporary files and folders beside targets. It is locked for as long as they are removed, so
-/// that who spares one before it is moved does so before that or never.
+/// Temporary files and folders next to targets, which are removed when the program ends early. The
+/// list is locked during the removal, so a path is spared either before the removal or never.
 static TEMPORARY: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Where the intermediate results of the run are, which stay.
+/// The folder of intermediate results of the run, which is kept.
 static KEPT: Mutex<Option<PathBuf>> = Mutex::new(None);
 
-/// A run that can stop asks more often than this.
+/// The longest time between two checks of a run that can stop.
 const ASKS_WITHIN: Duration = Duration::from_millis(500);
-/// What a run may take to stop and clean up.
+/// The longest time that a run may need to stop and clean up.
 const STOPS_WITHIN: Duration = Duration::from_secs(10);
 
-/// From now on a signal is noted instead of ending the program at once.
-pub(crate) fn watch() -> Result<(), Failure> {
+/// Registers the handler: from now on, signals are noted instead of ending the program at once.
+pub(crate) fn watch() -> Result<(), CommandFailure> {
     ctrlc::set_handler(|| note(Cause::Signal))?;
     spare_from_file_limits()
 }
 
-/// Notes that the program is to end, and sees to it that it does.
+/// Notes that the program is to end, and ensures that it does.
 pub(crate) fn note(cause: Cause) {
-    // The first cause is the one that is told.
+    // The first cause is reported.
     let _ = CAUSE.set(cause);
     if NOTED.swap(true, Ordering::SeqCst) {
         if cause == Cause::Signal {
@@ -76,26 +77,27 @@ pub(crate) fn note(cause: Cause) {
     });
 }
 
-/// A run that ended because the process that started it is gone says so; other failures stay what they are.
-pub(crate) fn explain(failure: Failure) -> Failure {
+/// Replaces the failure of a run whose parent process has ended by one that says so; other failures
+/// are returned unchanged.
+pub(crate) fn explain(failure: CommandFailure) -> CommandFailure {
     match CAUSE.get() {
         Some(Cause::ParentGone) if failure.code() == ExitCode::Interrupted => reason(),
         _ => failure,
     }
 }
 
-/// Why the program ends early.
-fn reason() -> Failure {
+/// The reason for the early end.
+fn reason() -> CommandFailure {
     match CAUSE.get() {
-        Some(Cause::ParentGone) => Failure::failed(
-            "standard input has ended, so the process that started this one is gone (--die-with-parent); what was done of \
-             a part is kept, and the same command goes on from there",
+        Some(Cause::ParentGone) => CommandFailure::failed(
+            "stdin was closed, so the parent process has ended (--die-with-parent); finished work on \
+             a part is kept; rerun the same command to resume",
         ),
-        Some(Cause::Signal) | None => Failure::interrupted(),
+        Some(Cause::Signal) | None => CommandFailure::interrupted(),
     }
 }
 
-/// Whether the program was asked to end.
+/// Whether the program was requested to end.
 pub(crate) fn is_noted() -> bool {
     let is_noted = NOTED.load(Ordering::SeqCst);
     if is_noted {
@@ -104,32 +106,36 @@ pub(crate) fn is_noted() -> bool {
     is_noted
 }
 
-/// A temporary file or folder, which is removed when the program ends early. It may be gone already.
+/// Registers a temporary file or folder, which is removed if the program ends early. It may be gone
+/// by then.
 pub(crate) fn remove_at_end(path: &Path) {
     temporary().push(path.to_path_buf());
 }
 
-/// These are not removed any more when the program ends early. Where it is about to end and removes them, this does not return.
+/// Unregisters temporary files and folders. If the program is just ending and removes them, this
+/// does not return.
 pub(crate) fn spare(paths: &[&Path]) {
     temporary().retain(|path| !paths.contains(&&**path));
 }
 
-/// What is removed when the program ends early, for as long as no other thread may change that.
+/// The registered files and folders, locked for other threads.
 pub(crate) fn temporary() -> MutexGuard<'static, Vec<PathBuf>> {
     locked(&TEMPORARY)
 }
 
-/// A folder of intermediate results, from which the same run can go on. It stays when the program ends early, and the user is told.
+/// Registers a folder of intermediate results, from which the same run can resume. It is kept if
+/// the program ends early, and the user is informed.
 pub(crate) fn keep(path: &Path) {
     *locked(&KEPT) = Some(path.to_path_buf());
 }
 
 fn end() -> ! {
-    // Held until the program is gone.
+    // Held until the program has ended.
     let temporary = temporary();
-    // Other threads are still at work and may add files while a folder is emptied, so it is tried again.
+    // Other threads are still at work and may add files while a folder is emptied, so the removal
+    // is repeated.
     for _ in 0..3 {
-        // What was begun first says whose the rest is, so it goes last.
+        // The first entry identifies the owner of the others, so it is removed last.
         for path in temporary.iter().rev() {
             let _ = match path.symlink_metadata() {
                 Ok(found) if found.is_dir() => fs::remove_dir_all(path),
@@ -138,15 +144,15 @@ fn end() -> ! {
             };
         }
     }
-    // A message can wait for ever when the reader of a full pipe has stopped, so it gets a limited time.
+    // A message can block forever when the reader of a full pipe has stopped, so it gets a limited
+    // time.
     let (said, waits) = mpsc::channel();
     let code = i32::from(reason().code().number());
     thread::spawn(move || {
         let kept = locked(&KEPT).clone();
         if let Some(kept) = kept.filter(|kept| kept.exists()) {
             messages::warning(&format!(
-                "what was done is kept in {}; the same command with --resume goes on from there, with -O it starts again",
-                kept.display()
+                "progress is saved in {kept:?}; rerun with --resume to continue, or with -O to start over"
             ));
         }
         let reason = reason();
@@ -161,13 +167,14 @@ fn end() -> ! {
     std::process::exit(code);
 }
 
-/// Makes a limit on the size of files (`ulimit -f`) look like a full disk: writing fails with an error, instead of a signal
-/// that ends the program without a message.
-fn spare_from_file_limits() -> Result<(), Failure> {
+/// Makes a limit on file sizes (`ulimit -f`) look like a full disk: writing fails with an error
+/// instead of a signal that ends the program without a message.
+fn spare_from_file_limits() -> Result<(), CommandFailure> {
     #[cfg(unix)]
     {
         use std::sync::Arc;
-        // The handler does nothing: it only replaces the default action, which is to end the program.
+        // The handler does nothing: it only replaces the default action, which is to end the
+        // program.
         let ignored = Arc::new(AtomicBool::new(false));
         signal_hook::flag::register(signal_hook::consts::SIGXFSZ, ignored)?;
     }

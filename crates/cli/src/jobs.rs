@@ -1,20 +1,19 @@
-//! `corniche jobs`: the parts of a planned build, for a scheduler.
+//! `corniche jobs`: lists the parts of a planned build, for a scheduler.
 
 use corniche_pipeline::{Job, JobSettings};
 
 use crate::{
     args::{JobsArgs, plan_and_stores},
-    exit::ExitCode,
-    failure::Failure,
+    failure::CommandFailure,
     messages,
     part::read_plan,
     settings,
 };
 
-pub(crate) fn run(args: &JobsArgs) -> Result<ExitCode, Failure> {
+pub(crate) fn run(args: &JobsArgs) -> Result<(), CommandFailure> {
     if let Some(seconds) = args.least_work.filter(|&seconds| !(0.0..=1e9).contains(&seconds)) {
-        let message = format!("--least-work must be from 0 to 1e9 seconds, not {seconds}");
-        return Err(Failure::unusable(message));
+        let message = format!("--least-work must be between 0 and 1e9 seconds, not {seconds}");
+        return Err(CommandFailure::unusable(message));
     }
     let (plan, stores) = plan_and_stores(args.plan.as_ref(), &args.store)?;
     let jobs = corniche_pipeline::jobs(&JobSettings {
@@ -29,9 +28,9 @@ pub(crate) fn run(args: &JobsArgs) -> Result<ExitCode, Failure> {
 }
 
 /// Prints one JSON object per line.
-pub(crate) fn print(jobs: &[Job]) -> Result<ExitCode, Failure> {
+pub(crate) fn print(jobs: &[Job]) -> Result<(), CommandFailure> {
     for job in jobs {
         messages::answer_document(job)?;
     }
-    Ok(ExitCode::Done)
+    Ok(())
 }

@@ -2,6 +2,9 @@
 //!
 //! This crate never holds an algorithm.
 
+#[macro_use]
+mod failure;
+
 mod args;
 mod build;
 mod chart;
@@ -13,7 +16,6 @@ mod drawing;
 mod escaped;
 mod exit;
 mod export;
-mod failure;
 mod fly;
 mod free_memory;
 mod growth;
@@ -54,9 +56,9 @@ use std::{env, process};
 use clap::error::ErrorKind;
 use corniche_remote::without_secrets;
 
-use args::{Arguments, Command, LogFormat, Voice};
+use args::{Arguments, CliCommand, LogFormat, Voice};
 use exit::ExitCode;
-use failure::Failure;
+use failure::CommandFailure;
 
 fn main() -> process::ExitCode {
     if let Ok(program) = env::current_exe() {
@@ -88,15 +90,15 @@ fn main() -> process::ExitCode {
     code.into()
 }
 
-/// Help and version are answers, not errors; clap knows which stream each belongs on.
+/// Prints help or version, which are no errors; clap selects the stream.
 fn answer(error: &clap::Error) -> ExitCode {
     let voice = Voice::of_unparsed(env::args_os().skip(1));
     if error.use_stderr() && (voice.json_progress || voice.log_format == LogFormat::Json) {
         messages::begin(voice);
-        messages::ended(ExitCode::Unusable, Some(&Failure::unusable(refusal(error))));
+        messages::ended(ExitCode::Unusable, Some(&CommandFailure::unusable(refusal(error))));
         return ExitCode::Unusable;
     }
-    // If nobody reads it any more, the exit code alone must tell.
+    // If nobody reads the stream, only the exit code is left.
     if error.kind() == ErrorKind::DisplayVersion && version::is_long_asked_for() {
         let _ = version::print_long();
     } else {
@@ -114,7 +116,7 @@ fn answer(error: &clap::Error) -> ExitCode {
     if error.use_stderr() { ExitCode::Unusable } else { ExitCode::Done }
 }
 
-/// What the parser says of a command line, in one line, without its usage.
+/// The parser's error message in one line, without the usage.
 fn refusal(error: &clap::Error) -> String {
     let said = error.render().to_string();
     let paragraphs = said.split("\n\n").take_while(|paragraph| {
@@ -124,34 +126,39 @@ fn refusal(error: &clap::Error) -> String {
     words.strip_prefix("error: ").unwrap_or(&words).to_owned()
 }
 
-fn run(arguments: Arguments) -> Result<ExitCode, Failure> {
+fn run(arguments: Arguments) -> Result<ExitCode, CommandFailure> {
     interrupt::watch()?;
     if arguments.die_with_parent {
         parent::watch()?;
     }
     open_files::allow_many();
-    // Those that promise to stay within --memory.
-    if matches!(arguments.command, Command::Build(_) | Command::Part(_) | Command::Merge(_)) {
+    // Commands that promise to stay within --memory.
+    if matches!(
+        arguments.command,
+        CliCommand::Build(_) | CliCommand::Part(_) | CliCommand::Merge(_)
+    ) {
         free_memory::give_back_early();
     }
     match arguments.command {
-        Command::Build(args) => build::run(args),
-        Command::Plan(args) => plan::run(*args),
-        Command::Jobs(args) => jobs::run(&args),
-        Command::Part(args) => part::run(&args),
-        Command::Merge(args) => merge::run(&args),
-        Command::Info(args) => info::run(&args),
-        Command::Growth(args) => growth::run(&args),
-        Command::Profile(args) => profile::run(&args),
-        Command::Match(args) => matching::run(&args),
-        Command::Verify(args) => verify::run(&args),
-        Command::Tile(args) => tile::run(&args),
-        Command::Export(args) => export::run(&args),
-        Command::Render(args) => render::run(&args),
-        Command::Fly(args) => fly::run(&args),
-        Command::View(args) => view::run(&args),
-        Command::Serve(args) => serve::run(&args),
-        Command::Completions(args) => completions::run(&args),
-        Command::Man(args) => man::run(&args),
-    }
+        // Commands that also report a result by their exit code.
+        CliCommand::Verify(args) => return verify::run(&args),
+        CliCommand::View(args) => return view::run(&args),
+        CliCommand::Build(args) => build::run(args),
+        CliCommand::Plan(args) => plan::run(*args),
+        CliCommand::Jobs(args) => jobs::run(&args),
+        CliCommand::Part(args) => part::run(&args),
+        CliCommand::Merge(args) => merge::run(&args),
+        CliCommand::Info(args) => info::run(&args),
+        CliCommand::Growth(args) => growth::run(&args),
+        CliCommand::Profile(args) => profile::run(&args),
+        CliCommand::Match(args) => matching::run(&args),
+        CliCommand::Tile(args) => tile::run(&args),
+        CliCommand::Export(args) => export::run(&args),
+        CliCommand::Render(args) => render::run(&args),
+        CliCommand::Fly(args) => fly::run(&args),
+        CliCommand::Serve(args) => serve::run(&args),
+        CliCommand::Completions(args) => completions::run(&args),
+        CliCommand::Man(args) => man::run(&args),
+    }?;
+    Ok(ExitCode::Done)
 }

@@ -1,4 +1,4 @@
-//! `corniche man`: manual pages are written to a folder.
+//! `corniche man`: writes manual pages to a folder.
 
 use std::{
     fs,
@@ -10,19 +10,18 @@ use clap_mangen::Man;
 
 use crate::{
     args::{Arguments, ManArgs},
-    exit::ExitCode,
-    failure::Failure,
+    failure::CommandFailure,
     messages,
     output::{Complete, Output, existing_of},
 };
 
-pub(crate) fn run(args: &ManArgs) -> Result<ExitCode, Failure> {
+pub(crate) fn run(args: &ManArgs) -> Result<(), CommandFailure> {
     let folder = &args.folder;
-    fs::create_dir_all(folder).map_err(|error| {
-        Failure::unusable(format!("cannot make the folder {}: {error}", folder.display()))
-    })?;
+    fs::create_dir_all(folder)
+        .map_err(|error| unusable!("cannot create the folder {folder:?}: {error}"))?;
     let pages = pages()?;
-    // All places are looked at before anything is written, and all pages are written before one takes its place.
+    // All paths are checked before anything is written, and all pages are written before the first
+    // is moved to its target.
     let existing = existing_of(args.overwrite);
     let place = |(name, _): &(PathBuf, Vec<u8>)| Output::create(&folder.join(name), existing, &[]);
     let places: Vec<Output> = pages.iter().map(place).collect::<Result<_, _>>()?;
@@ -34,11 +33,11 @@ pub(crate) fn run(args: &ManArgs) -> Result<ExitCode, Failure> {
     let count = written.len();
     written.into_iter().try_for_each(Complete::place)?;
     messages::note(&format!("wrote {count} pages to {}", folder.display()));
-    Ok(ExitCode::Done)
+    Ok(())
 }
 
-/// The page of the program and those of its commands and theirs, with the names of their files.
-fn pages() -> Result<Vec<(PathBuf, Vec<u8>)>, Failure> {
+/// The pages of the program, its commands and their subcommands, with their file names.
+fn pages() -> Result<Vec<(PathBuf, Vec<u8>)>, CommandFailure> {
     let mut program = Arguments::command().disable_help_subcommand(true);
     program.build();
     let mut commands = vec![program];
@@ -54,7 +53,7 @@ fn pages() -> Result<Vec<(PathBuf, Vec<u8>)>, Failure> {
     commands
         .into_iter()
         .map(|command| {
-            // What the short help leaves out is told by a page, which has room for it.
+            // A page has space for the options that the short help hides.
             let command = command.mut_args(|arg| arg.hide_short_help(false));
             let man = Man::new(command).manual("Corniche");
             let mut page = Vec::new();

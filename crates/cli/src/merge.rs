@@ -1,4 +1,4 @@
-//! `corniche merge`: the package of a planned build from its parts.
+//! `corniche merge`: merges the parts of a planned build into its package.
 
 use std::path::Path;
 
@@ -7,15 +7,14 @@ use corniche_pipeline::{MergeSettings, is_in_object_storage};
 use crate::{
     args::{MergeArgs, plan_and_stores},
     build,
-    exit::ExitCode,
-    failure::Failure,
+    failure::CommandFailure,
     messages, names, output,
     part::{make_tmp, read_plan, told},
     progress::Progress,
     settings,
 };
 
-pub(crate) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
+pub(crate) fn run(args: &MergeArgs) -> Result<(), CommandFailure> {
     let planned = &args.planned;
     if !is_in_object_storage(&args.output) {
         output::writable(&args.output)?;
@@ -41,9 +40,9 @@ pub(crate) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
         Ok(merged) => (Ok(merged.package), merged.requests),
         Err(error) => (Err(error), None),
     };
-    let code = build::finish(package, progress, &args.output)?;
+    build::finish(package, progress, &args.output)?;
     if let Some(requests) = requests {
         messages::note(&told(&requests));
     }
-    Ok(code)
+    Ok(())
 }

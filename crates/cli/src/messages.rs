@@ -1,8 +1,8 @@
-//! What the program says: its answers on standard output, and on standard error notes, warnings and errors, as lines for people or as records for
-//! programs.
+//! The output of the program: results on standard output; notes, warnings and errors on
+//! standard error, as lines for people or as records for programs.
 //!
-//! All of them are events of `tracing`; [`begin`] says which are shown and how. Standard error may be closed (`2>&1 | head`): then
-//! nothing is said, and the work goes on.
+//! All messages are events of `tracing`; [`begin`] decides which are shown and how. If standard
+//! error is closed (`2>&1 | head`), messages are dropped and the work continues.
 
 mod lines;
 
@@ -29,19 +29,19 @@ use crate::{
     },
     escaped::{for_people, in_json, line_within},
     exit::ExitCode,
-    failure::Failure,
+    failure::CommandFailure,
 };
 
 static VOICE: OnceLock<Voice> = OnceLock::new();
 static BEGUN: OnceLock<Instant> = OnceLock::new();
 
-/// Targets of our own events: names of crates, which begin so.
+/// Target prefix of our own events: the common prefix of our crates' names.
 const OWN_TARGETS: &str = "corniche";
 
-/// Target of a library that tells user names of addresses with its connections.
+/// Target of a library that logs the user names of URLs with its connections.
 const TELLS_USER_NAMES: &str = "hyper_util";
 
-/// Sets how messages are written, once, before the first one.
+/// Sets the format of messages, once, before the first message.
 pub(crate) fn begin(voice: Voice) {
     let _ = VOICE.set(voice);
     let _ = BEGUN.set(Instant::now());
@@ -51,7 +51,7 @@ pub(crate) fn begin(voice: Voice) {
         .with_target(TELLS_USER_NAMES, libraries.min(LevelFilter::WARN))
         .with_default(libraries);
     let layer = fmt::layer().with_writer(|| Tolerant).with_ansi(false).log_internal_errors(false);
-    // It can fail only if someone else was first, and nobody else is in this program.
+    // This fails only if another subscriber is registered, which does not happen in this program.
     let _ = match voice.log_format {
         LogFormat::Text => tracing_subscriber::registry()
             .with(layer.event_format(Lines).with_filter(shown))
@@ -62,10 +62,10 @@ pub(crate) fn begin(voice: Voice) {
     };
 }
 
-/// The least important events that are shown: ours, and those of libraries.
+/// The lowest levels of shown events: ours, and those of libraries.
 fn levels(voice: Voice) -> (LevelFilter, LevelFilter) {
     match voice {
-        // Records of progress have their own form, and nothing comes between them.
+        // Progress records have their own format, and no other output may be between them.
         Voice { json_progress: true, .. } => (LevelFilter::OFF, LevelFilter::OFF),
         Voice { quiet: true, .. } => (LevelFilter::WARN, LevelFilter::OFF),
         Voice { verbose: 0, .. } => (LevelFilter::INFO, LevelFilter::OFF),
@@ -74,38 +74,41 @@ fn levels(voice: Voice) -> (LevelFilter, LevelFilter) {
     }
 }
 
-/// How messages are written.
+/// The format of messages.
 pub(crate) fn voice() -> Voice {
     VOICE.get().copied().unwrap_or_default()
 }
 
-/// Whether texts of several lines are for people who read along: neither silence nor records were asked for.
+/// Whether texts of several lines are for people who read along: neither `--quiet` nor records are
+/// requested.
 pub(crate) fn is_for_people() -> bool {
     let Voice { quiet, log_format, json_progress, .. } = voice();
     !quiet && !json_progress && log_format == LogFormat::Text
 }
 
-/// Whether people who read along want more than what matters most (`-v`).
+/// Whether details are requested for people (`-v`).
 pub(crate) fn is_detailed() -> bool {
     is_for_people() && voice().verbose > 0
 }
 
-/// Something good to know, in one line.
+/// Prints a note of one line.
 pub(crate) fn note(text: &str) {
     summary(&line(text));
 }
 
-/// Something good to know, in lines of ours. What others wrote stands in them as [`in_line`](crate::escaped::in_line) makes it.
+/// Prints a note of our own lines. Foreign values in it must be escaped with
+/// [`in_line`](crate::escaped::in_line).
 pub(crate) fn summary(text: &str) {
     if !voice().json_progress {
         tracing::info!("{text}");
     }
 }
 
-/// Most characters of a message: all that our words need, and what others wrote as far as anyone reads it.
+/// The largest number of characters in a message: enough for all of our texts, and for foreign
+/// texts as far as anyone reads them.
 const MOST_SAID: usize = 8000;
 
-/// A message of one line. Records for programs hold it as it is.
+/// The message as one line. Records for programs contain the unchanged text.
 fn line(text: &str) -> Cow<'_, str> {
     match voice().log_format {
         LogFormat::Text => line_within(text, MOST_SAID),
@@ -113,7 +116,7 @@ fn line(text: &str) -> Cow<'_, str> {
     }
 }
 
-/// Something that should be seen, also with `--quiet`.
+/// Prints a warning, also with `--quiet`.
 pub(crate) fn warning(text: &str) {
     if voice().json_progress {
         write_line(&to_line(&ProgressRecord::Warning { warning: text }));
@@ -122,15 +125,16 @@ pub(crate) fn warning(text: &str) {
     }
 }
 
-/// Why something failed.
-pub(crate) fn error(failure: &Failure) {
+/// Prints the reason of a failure.
+pub(crate) fn error(failure: &CommandFailure) {
     if !voice().json_progress {
         tracing::error!(exit_code = failure.code().number(), "{}", line(&failure.to_string()));
     }
 }
 
-/// How the program ends: with `--json-progress` the last record, else the error, if there is one.
-pub(crate) fn ended(code: ExitCode, failure: Option<&Failure>) {
+/// Reports the end of the program: with `--json-progress` the last record, otherwise the error, if
+/// there is one.
+pub(crate) fn ended(code: ExitCode, failure: Option<&CommandFailure>) {
     if voice().json_progress {
         let end = EndRecord {
             result: code,
@@ -144,27 +148,27 @@ pub(crate) fn ended(code: ExitCode, failure: Option<&Failure>) {
     }
 }
 
-/// Whether answers go to a terminal.
+/// Whether standard output is a terminal.
 pub(crate) fn answers_are_seen() -> bool {
     io::stdout().is_terminal()
 }
 
-/// Whether notes, warnings and progress go to a terminal.
+/// Whether standard error, and with it notes, warnings and progress, is a terminal.
 pub(crate) fn notes_are_seen() -> bool {
     io::stderr().is_terminal()
 }
 
-/// A line that is complete as it is, but for the secrets of addresses.
+/// Writes a complete line, from which only the secrets in URLs are removed.
 pub(crate) fn write_line(line: &str) {
     let _ = writeln!(io::stderr(), "{}", for_people(&without_secrets(line)));
 }
 
-/// Writes an answer for people, or a list, to standard output.
+/// Writes a text for people, or a list, to standard output.
 pub(crate) fn answer(text: &str) -> io::Result<()> {
     answer_as_it_is(for_people(text).as_bytes())
 }
 
-/// Writes a document for programs as a line of JSON, piece by piece.
+/// Writes a document for programs as a line of JSON, streaming it.
 pub(crate) fn answer_document(document: &impl Serialize) -> io::Result<()> {
     let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());
     write_line_to(&mut out, document)?;
@@ -172,19 +176,20 @@ pub(crate) fn answer_document(document: &impl Serialize) -> io::Result<()> {
     out.flush()
 }
 
-/// Writes what programs read as it is, such as a script that we made.
+/// Writes output for programs unchanged, such as a generated script.
 pub(crate) fn answer_as_it_is(bytes: &[u8]) -> io::Result<()> {
     let mut out = io::stdout().lock();
     out.write_all(bytes)?;
     out.flush()
 }
 
-/// Standard error, where it does not matter if nobody reads any more.
+/// Standard error; failures to write are ignored, because nobody may be reading.
 struct Tolerant;
 
 impl Write for Tolerant {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        // The library writes an event at once, so no character comes in two pieces. Whoever wrote the text, a library or a server that redirects.
+        // The library writes each event in a single call, so no character is split. The text may
+        // come from a library or from a server that redirects.
         let text = String::from_utf8_lossy(bytes);
         let text = without_secrets(&text);
         let text = match voice().log_format {

@@ -1,10 +1,11 @@
-//! Messages have a form for people and one for programs, and each voice says more than the one before.
+//! Messages have a form for people and one for programs, and each voice prints more than the
+//! previous one.
 
 use std::sync::{Arc, Mutex};
 
 use super::*;
 
-/// Where a test's messages go.
+/// A buffer for a test's messages.
 #[derive(Clone, Default)]
 struct Paper(Arc<Mutex<Vec<u8>>>);
 
@@ -18,7 +19,7 @@ impl Write for Paper {
     }
 }
 
-/// What is said in lines, with this voice.
+/// The lines that are printed with this voice.
 fn said(voice: Voice, talk: impl FnOnce()) -> String {
     let paper = Paper::default();
     let pen = paper.clone();

@@ -1,9 +1,10 @@
-//! How many files the program may have open at once.
+//! The limit of files that the program may have open at once.
 
-/// Raises the limit of open files (`ulimit -n`) as far as the system lets the user. Every sealed part of a store is an open file while the
-/// store is read, and the usual limit, 1024, is so low only for old programs that use `select`.
+/// Raises the limit of open files (`ulimit -n`) as far as the user may. Every sealed part of a
+/// store is an open file while the store is read, and the usual limit of 1024 is only so low for
+/// the sake of old programs that use `select`.
 ///
-/// If that fails the limit stays as it is: an error that comes from it says what to do.
+/// If this fails, the limit stays as it is: the error of a later open explains what to do.
 pub(crate) fn allow_many() {
     #[cfg(unix)]
     {

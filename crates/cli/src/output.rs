@@ -1,8 +1,8 @@
-//! Files beside the package that commands write: a file that is cut off never stands at its target.
+//! Output files other than packages: a target never holds a truncated file.
 //!
 //! ```text
 //!   claim ──► Output                a file that the command writes itself
-//!         ──► named::NamedOutput    a file that a library writes by its name
+//!         ──► named::NamedOutput    a file that a library writes by name
 //!         ──► folder::FolderOutput  a folder
 //! ```
 
@@ -21,18 +21,22 @@ pub(crate) use corniche_store::Existing;
 use corniche_store::{Claim, LackOfRoom, UnfinishedFile, file_target, is_same_file};
 use image::RgbaImage;
 
-use crate::{exit::ExitCode, failure::Failure, interrupt, names};
+use crate::{exit::ExitCode, failure::CommandFailure, interrupt, names};
 
-/// What to do with a file that exists, as `-O` says.
+/// The treatment of existing files, from `-O`.
 pub(crate) fn existing_of(overwrite: bool) -> Existing {
     if overwrite { Existing::Replace } else { Existing::Keep }
 }
 
-/// A place for a file, claimed while it is written.
-pub(crate) fn claim(named: &Path, existing: Existing, others: &[&Path]) -> Result<Claim, Failure> {
+/// Claims the target of a file while it is written.
+pub(crate) fn claim(
+    named: &Path,
+    existing: Existing,
+    others: &[&Path],
+) -> Result<Claim, CommandFailure> {
     let target = writable(named)?;
     if others.iter().any(|other| is_same_file(other, &target)) {
-        let reason = "the command uses that file itself; choose another name";
+        let reason = "the command already uses this file; choose another name";
         return Err(unusable(named, &reason));
     }
     if existing == Existing::Keep && named.symlink_metadata().is_ok() {
@@ -44,58 +48,62 @@ pub(crate) fn claim(named: &Path, existing: Existing, others: &[&Path]) -> Resul
     Ok(claim)
 }
 
-/// The failure of a command whose target is of no use.
-pub(crate) fn unusable(named: &Path, reason: &dyn Display) -> Failure {
-    Failure::unusable(format!("cannot write {}: {reason}", named.display()))
+/// The failure of a command whose target is unusable.
+pub(crate) fn unusable(named: &Path, reason: &dyn Display) -> CommandFailure {
+    unusable!("cannot write {named:?}: {reason}")
 }
 
-/// Why something cannot be begun: a disk that is full is no fault of what was asked for.
-pub(crate) fn not_begun(named: &Path, error: &io::Error) -> Failure {
-    if LackOfRoom::of(error).is_some() { failed(named, error) } else { unusable(named, error) }
+/// The failure to begin a file: a full disk is not the fault of the command line.
+pub(crate) fn not_begun(named: &Path, error: &io::Error) -> CommandFailure {
+    if LackOfRoom::from_io_error(error).is_some() {
+        failed(named, error)
+    } else {
+        unusable(named, error)
+    }
 }
 
-/// Why something did not get to its place.
-pub(crate) fn not_placed(target: &Path, error: &io::Error) -> Failure {
+/// The failure to move a file to its target.
+pub(crate) fn not_placed(target: &Path, error: &io::Error) -> CommandFailure {
     match error.kind() {
         io::ErrorKind::AlreadyExists => exists(target),
         _ => failed(target, error),
     }
 }
 
-/// A file that is written beside its target and takes its place when it is complete.
+/// A file that is written next to its target and moved there when it is complete.
 #[derive(Debug)]
 pub(crate) struct Output(BufWriter<UnfinishedFile>);
 
 impl Output {
-    /// Begins a file that is none of `others`, which the command reads or writes itself. An unusable place is reported here,
-    /// before any work is done.
+    /// Begins a file that must not be one of `others`, which the command itself reads or writes. An
+    /// unwritable target is reported here, before any work is done.
     pub(crate) fn create(
         named: &Path,
         existing: Existing,
         others: &[&Path],
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, CommandFailure> {
         let file = claim(named, existing, others)?.begin_file(existing);
         Ok(Self(BufWriter::new(file.map_err(|error| not_begun(named, &error))?)))
     }
 
-    /// Puts the file in its place.
-    pub(crate) fn finish(self) -> Result<(), Failure> {
+    /// Moves the file to its target.
+    pub(crate) fn finish(self) -> Result<(), CommandFailure> {
         self.end()?.place()
     }
 
     /// Writes the whole file at once.
-    pub(crate) fn write_whole(self, bytes: &[u8]) -> Result<(), Failure> {
+    pub(crate) fn write_whole(self, bytes: &[u8]) -> Result<(), CommandFailure> {
         self.fill(bytes)?.place()
     }
 
-    /// Writes the whole file, which takes its place later: together with others.
-    pub(crate) fn fill(mut self, bytes: &[u8]) -> Result<Complete, Failure> {
+    /// Writes the whole file; it is moved to its target later, together with others.
+    pub(crate) fn fill(mut self, bytes: &[u8]) -> Result<Complete, CommandFailure> {
         self.write_all(bytes).map_err(|error| failed(self.0.get_ref().target(), &error))?;
         self.end()
     }
 
-    /// Ends the file, which takes its place later: together with others.
-    pub(crate) fn end(self) -> Result<Complete, Failure> {
+    /// Ends the file; it is moved to its target later, together with others.
+    pub(crate) fn end(self) -> Result<Complete, CommandFailure> {
         self.0.into_inner().map(Complete).map_err(|refused| {
             let (error, writer) = refused.into_parts();
             failed(writer.get_ref().target(), &error)
@@ -103,13 +111,13 @@ impl Output {
     }
 }
 
-/// A file that is written to its end, beside its target.
+/// A complete file, still next to its target.
 #[derive(Debug)]
 pub(crate) struct Complete(UnfinishedFile);
 
 impl Complete {
-    /// Puts it in its place.
-    pub(crate) fn place(self) -> Result<(), Failure> {
+    /// Moves it to its target.
+    pub(crate) fn place(self) -> Result<(), CommandFailure> {
         let target = self.0.target().to_path_buf();
         self.0.place().map_err(|error| not_placed(&target, &error))?;
         tracing::debug!(path = %target.display(), "file written");
@@ -127,35 +135,38 @@ impl Write for Output {
     }
 }
 
-/// Where a file that is wanted at `target` goes: there, or to the file that a link there leads to. A place that is neither
-/// free nor a regular file's is refused, with `-O` too: devices, pipes and folders are never replaced.
-pub(crate) fn writable(target: &Path) -> Result<PathBuf, Failure> {
+/// The path of a file for `target`: the target, or the file that a link there leads to. A target
+/// that is neither free nor a regular file is rejected, also with `-O`: devices, pipes and folders
+/// are never overwritten.
+pub(crate) fn writable(target: &Path) -> Result<PathBuf, CommandFailure> {
     names::refuse_what_is_no_file(target)?;
-    file_target(target).map_err(|error| Failure::new(ExitCode::Unusable, error))
+    file_target(target).map_err(|error| CommandFailure::new(ExitCode::Unusable, error))
 }
 
-/// Where a package goes: like [`writable`], and its name says what it is, so that no other file is meant.
-pub(crate) fn writable_package(target: &Path) -> Result<PathBuf, Failure> {
+/// The path of a package: like [`writable`], but its name must be that of a package, so that no
+/// other file is overwritten by mistake.
+pub(crate) fn writable_package(target: &Path) -> Result<PathBuf, CommandFailure> {
     let place = writable(target)?;
     names::refuse_other_than_package(target)?;
     Ok(place)
 }
 
-/// A picture's file.
-pub(crate) fn png(picture: &RgbaImage) -> Result<Vec<u8>, Failure> {
+/// Encodes an image as PNG.
+pub(crate) fn png(picture: &RgbaImage) -> Result<Vec<u8>, CommandFailure> {
     let mut bytes = Cursor::new(Vec::new());
     picture.write_to(&mut bytes, image::ImageFormat::Png)?;
     Ok(bytes.into_inner())
 }
 
-pub(crate) fn failed(target: &Path, error: &io::Error) -> Failure {
-    let advice = LackOfRoom::advice(LackOfRoom::of(error));
-    Failure::failed(format!("cannot write {}{advice}: {error}", target.display()))
+pub(crate) fn failed(target: &Path, error: &io::Error) -> CommandFailure {
+    let advice = LackOfRoom::advice(LackOfRoom::from_io_error(error));
+    let cause = if advice.is_empty() { format!(": {error}") } else { format!(" ({error})") };
+    CommandFailure::failed(format!("cannot write {target:?}{advice}{cause}"))
 }
 
 /// The failure of a command whose target exists.
-pub(crate) fn exists(target: &Path) -> Failure {
-    Failure::exists(format!("{} exists already; give -O to replace it", target.display()))
+pub(crate) fn exists(target: &Path) -> CommandFailure {
+    CommandFailure::exists(format!("{target:?} already exists; pass -O to overwrite it"))
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Output files appear when they are complete, and nothing that exists is lost by mistake.
+//! Output files appear when they are complete, and no existing file is lost by mistake.
 
 use std::fs;
 
@@ -35,7 +35,7 @@ fn what_is_there_is_kept_unless_said_otherwise() {
 #[test]
 fn names_that_mean_no_file_are_refused_with_a_way_out() {
     for (name, word) in
-        [("-", "./-"), ("s3://bucket/a.svg", "corniche merge"), ("http://a/b", "address")]
+        [("-", "./-"), ("s3://bucket/a.svg", "corniche merge"), ("http://a/b", "URL")]
     {
         let refused = Output::create(Path::new(name), Existing::Replace, &[]).unwrap_err();
         assert_eq!(refused.code(), ExitCode::Unusable, "{name}");
@@ -63,8 +63,8 @@ fn pictures_and_charts_are_called_so() {
         let refused = known(format, name).unwrap_err();
         assert_eq!(refused.code(), ExitCode::Unusable, "{name}");
         let said = refused.to_string();
-        assert!(said.contains(&format!("cannot write {name}: ")), "{said}");
-        assert!(said.ends_with(&format!("a name that ends in {ending}")), "{said}");
+        assert!(said.contains(&format!("cannot write {name:?}: ")), "{said}");
+        assert!(said.ends_with(&format!("a name with the extension {ending}")), "{said}");
     }
 }
 
@@ -84,7 +84,7 @@ fn a_package_is_called_so() {
         let refused = writable_package(&folder.path().join(name)).unwrap_err();
         assert_eq!(refused.code(), ExitCode::Unusable, "{name}");
         let said = refused.to_string();
-        assert!(said.ends_with(&format!("/{whole}")), "{name}: {said}");
+        assert!(said.ends_with(&format!("/{whole}\"")), "{name}: {said}");
     }
 }
 

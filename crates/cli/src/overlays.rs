@@ -1,4 +1,4 @@
-//! Lines of people's own files, as `--overlay` names them.
+//! The lines of the user's files that `--overlay` names.
 
 use std::{path::Path, sync::Arc};
 
@@ -9,17 +9,18 @@ use corniche_viewer::tiles::{LayerLine, Overlays};
 
 use crate::{
     args::{LookArgs, OverlayArg},
-    failure::Failure,
+    failure::CommandFailure,
     messages,
     names::file_name,
 };
 
-/// Reads the files and lays out their lines for a package. What has no place on it, or is no line, is told.
-pub(crate) fn load(look: &LookArgs, manifest: &Manifest) -> Result<Arc<Overlays>, Failure> {
+/// Reads the files and projects their lines for a package. Features outside the package and
+/// features that are not lines are reported.
+pub(crate) fn load(look: &LookArgs, manifest: &Manifest) -> Result<Arc<Overlays>, CommandFailure> {
     let files = &look.overlay;
     if files.len() > LineStyle::MOST {
         let most = LineStyle::MOST;
-        return Err(Failure::unusable(format!("at most {most} files can be given as --overlay")));
+        return Err(unusable!("--overlay accepts at most {most} files"));
     }
     let (mut lines, mut first, mut points) = (Vec::new(), 0, 0);
     for (style, file) in (0..).zip(files) {
@@ -36,7 +37,7 @@ pub(crate) fn load(look: &LookArgs, manifest: &Manifest) -> Result<Arc<Overlays>
             line.points.iter().any(|point| tile.contains(*point))
         });
         if !is_near {
-            note(&file.path, "no point of its lines lies in the package");
+            note(&file.path, "no point of its lines is in the package");
         }
         lines.extend(placed.into_iter().map(|line| LayerLine {
             id: (first + line.line) as i64,
@@ -48,7 +49,7 @@ pub(crate) fn load(look: &LookArgs, manifest: &Manifest) -> Result<Arc<Overlays>
     Ok(Arc::new(Overlays::new(&lines, &manifest.frame).of_files(names(files))))
 }
 
-/// Tells what of a file may not be meant.
+/// Reports features of a file that may be unintended.
 pub(crate) fn tell(path: &Path, found: &VectorLines) {
     for notice in found.notices() {
         note(path, &notice);
@@ -57,10 +58,10 @@ pub(crate) fn tell(path: &Path, found: &VectorLines) {
 }
 
 fn note(path: &Path, what: &str) {
-    messages::note(&format!("note: {}: {what}", path.display()));
+    messages::note(&format!("note: {path:?}: {what}"));
 }
 
-/// What the files are called.
+/// The names of the files.
 pub(crate) fn names(files: &[OverlayArg]) -> Vec<String> {
     files.iter().map(|file| file_name(&file.path)).collect()
 }

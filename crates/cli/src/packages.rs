@@ -3,18 +3,19 @@
 use std::sync::{Arc, Mutex};
 
 use corniche_export::with_vertical_crs;
-use corniche_remote::{HttpSettings, HttpSource, PackagePlace, Requests, Web};
+use corniche_remote::{HttpSettings, HttpSource, PackagePlace, ServerRequests, Web};
 use corniche_tileset::FilePackage;
 use corniche_viewer::tiles::PackageSource;
 use corniche_work::locked;
 
-use crate::{args::DatumArg, exit::ExitCode, failure::Failure};
+use crate::{args::DatumArg, exit::ExitCode, failure::CommandFailure};
 
-/// What asks web servers, once it is needed, and what it has opened: a package that is opened again has what was read of it.
+/// The HTTP client, once it is needed, and the sources that it has opened: a package that is opened
+/// again reuses the cached data.
 static OPENED: Mutex<(Option<Web>, Vec<Arc<HttpSource>>)> = Mutex::new((None, Vec::new()));
 
 /// Opens a package.
-pub(crate) fn open(place: &PackagePlace) -> Result<FilePackage, Failure> {
+pub(crate) fn open(place: &PackagePlace) -> Result<FilePackage, CommandFailure> {
     let PackagePlace::Address(address) = place else {
         return Ok(corniche_spec::open_package(place.name())?);
     };
@@ -28,7 +29,7 @@ pub(crate) fn open(place: &PackagePlace) -> Result<FilePackage, Failure> {
             Some(web) => web,
             None => web.insert(
                 Web::new(HttpSettings::default())
-                    .map_err(|error| Failure::new(ExitCode::Failed, error))?,
+                    .map_err(|error| CommandFailure::new(ExitCode::Failed, error))?,
             ),
         };
         let source = Arc::new(web.source(address));
@@ -39,11 +40,11 @@ pub(crate) fn open(place: &PackagePlace) -> Result<FilePackage, Failure> {
     Ok(FilePackage::of_source(place.name(), place.file_name(), source)?)
 }
 
-/// Opens a package to export it with heights of the datum that is said, if one is.
+/// Opens a package for an export with heights; `--dem-vertical-crs` sets a missing datum.
 pub(crate) fn open_with_datum(
     place: &PackagePlace,
     said: &DatumArg,
-) -> Result<FilePackage, Failure> {
+) -> Result<FilePackage, CommandFailure> {
     let package = open(place)?;
     match &said.dem_vertical_crs {
         None => Ok(package),
@@ -52,14 +53,14 @@ pub(crate) fn open_with_datum(
 }
 
 /// Opens a package to draw it.
-pub(crate) fn source(place: &PackagePlace) -> Result<PackageSource, Failure> {
+pub(crate) fn source(place: &PackagePlace) -> Result<PackageSource, CommandFailure> {
     Ok(PackageSource::of_file(open(place)?)?)
 }
 
-/// Tells, with `-v`, what was asked of web servers.
+/// Reports the requests to web servers, with `-v`.
 pub(crate) fn tell_requests() {
     for source in &locked(&OPENED).1 {
-        let Requests { count, received_bytes } = source.requests();
+        let ServerRequests { count, received_bytes } = source.requests();
         let package_bytes = source.known_length();
         tracing::debug!(address = %source.address(), requests = count, received_bytes, package_bytes, "read from a web server");
     }

@@ -1,20 +1,23 @@
-//! `--die-with-parent`: the run ends when its standard input does.
+//! `--die-with-parent`: ends the run when stdin is closed.
 //!
-//! Whoever starts the process keeps the other end of a pipe open. The kernel closes it when its holder ends, however it ends, also by
-//! SIGKILL. A signal at the death of the parent (`PR_SET_PDEATHSIG`) would come when the *thread* that started the process ends,
-//! and a pool may end a thread whose work goes on.
+//! The parent process keeps the other end of a pipe open. The kernel closes it when the parent
+//! ends, in whatever way, also by SIGKILL. A signal at the death of the parent (`PR_SET_PDEATHSIG`)
+//! would be sent at the end of the *thread* that started the process, and a thread pool may end a
+//! thread although the work continues.
 
 use std::{io, thread};
 
 use crate::{
-    failure::Failure,
+    failure::CommandFailure,
     interrupt::{self, Cause},
 };
 
-/// From now on the program ends when standard input does: as after a signal, with another exit code.
-pub(crate) fn watch() -> Result<(), Failure> {
+/// Starts watching stdin: when it is closed, the program ends as after a signal, with another exit
+/// code.
+pub(crate) fn watch() -> Result<(), CommandFailure> {
     let waiting = || {
-        // What comes in is not looked at. An error is an end, too: nothing will tell of the parent any more.
+        // The input is ignored. An error counts as the end: nothing else would report the end of
+        // the parent any more.
         let _ = io::copy(&mut io::stdin().lock(), &mut io::sink());
         interrupt::note(Cause::ParentGone);
     };

@@ -1,15 +1,15 @@
-//! `corniche part`: one step of a planned build, for one subtree.
+//! `corniche part`: runs one step of a planned build, for one subtree.
 
 use std::{fs, path::Path};
 
-use corniche_objects::Requests;
+use corniche_objects::StorageRequests;
 use corniche_pipeline::PartSettings;
 use corniche_plan::BuildPlan;
 
 use crate::{
     args::{PartArgs, plan_and_stores},
     exit::ExitCode,
-    failure::Failure,
+    failure::CommandFailure,
     messages,
     presets::refuse_stream,
     progress::Progress,
@@ -17,7 +17,7 @@ use crate::{
     table::bytes,
 };
 
-pub(crate) fn run(args: &PartArgs) -> Result<ExitCode, Failure> {
+pub(crate) fn run(args: &PartArgs) -> Result<(), CommandFailure> {
     let planned = &args.planned;
     let (plan, stores) = plan_and_stores(planned.plan.as_ref(), &planned.store)?;
     make_tmp(planned.tmp.as_deref())?;
@@ -34,34 +34,29 @@ pub(crate) fn run(args: &PartArgs) -> Result<ExitCode, Failure> {
     let progress = Progress::new();
     let made = corniche_pipeline::make_part(&part, &progress)?;
     match made.sealed {
-        // Programs read it (`path=$(corniche part …)`).
+        // Programs read the path (`path=$(corniche part …)`).
         Some(path) => {
             messages::answer_as_it_is(&[path.as_os_str().as_encoded_bytes(), b"\n"].concat())?;
         }
-        None => messages::note(
-            "nothing to do: there is no data in this part, or it is in the stores already",
-        ),
+        None => messages::note("nothing to do: this part has no data, or is already in the stores"),
     }
     progress.tell_costs();
     if let Some(requests) = made.requests {
         messages::note(&told(&requests));
     }
-    Ok(ExitCode::Done)
+    Ok(())
 }
 
-/// Makes the folder that `--tmp` names, so that a new machine needs no preparation.
-pub(crate) fn make_tmp(tmp: Option<&Path>) -> Result<(), Failure> {
+/// Creates the folder of `--tmp`, so that a new machine needs no preparation.
+pub(crate) fn make_tmp(tmp: Option<&Path>) -> Result<(), CommandFailure> {
     let Some(tmp) = tmp else { return Ok(()) };
     fs::create_dir_all(tmp).map_err(|error| {
-        Failure::unusable(format!(
-            "the folder {} of --tmp cannot be made: {error}; name another one",
-            tmp.display()
-        ))
+        unusable!("cannot create the folder --tmp {tmp:?}; choose another one ({error})")
     })
 }
 
-/// What was asked of object storage, which may cost money.
-pub(crate) fn told(requests: &Requests) -> String {
+/// The requests to object storage, which may cost money, as text.
+pub(crate) fn told(requests: &StorageRequests) -> String {
     let counts: Vec<String> =
         requests.by_method.iter().map(|(method, count)| format!("{count} {method}")).collect();
     format!(
@@ -72,10 +67,11 @@ pub(crate) fn told(requests: &Requests) -> String {
     )
 }
 
-/// Reads a plan's file.
-pub(crate) fn read_plan(path: &Path) -> Result<BuildPlan, Failure> {
+/// Reads a plan from its file.
+pub(crate) fn read_plan(path: &Path) -> Result<BuildPlan, CommandFailure> {
     let text = refuse_stream(path)
         .and_then(|()| fs::read_to_string(path))
-        .map_err(|error| Failure::unusable(format!("cannot read {}: {error}", path.display())))?;
-    BuildPlan::from_json(&text).map_err(|error| Failure::new(ExitCode::Unusable, error).about(path))
+        .map_err(|error| unusable!("cannot read the plan {path:?}: {error}"))?;
+    BuildPlan::from_json(&text)
+        .map_err(|error| CommandFailure::new(ExitCode::Unusable, error).about(path))
 }

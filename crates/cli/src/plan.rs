@@ -1,4 +1,4 @@
-//! `corniche plan`: what a build will make and what it will take.
+//! `corniche plan`: estimates what a build will produce and need.
 
 use std::{
     borrow::Cow,
@@ -6,7 +6,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use corniche_plan::{BuildPlan, Estimate};
+use corniche_plan::{BuildEstimate, BuildPlan};
 use corniche_remote::without_secrets;
 use corniche_spec::{Resources, machine::MIN_MEMORY_BYTES};
 use corniche_work::Observer;
@@ -15,7 +15,7 @@ use crate::{
     args::PlanArgs,
     documents::plan::PlanDocument,
     exit::ExitCode,
-    failure::Failure,
+    failure::CommandFailure,
     info::datum_operation,
     interrupt, jobs, messages,
     output::{Output, existing_of},
@@ -23,20 +23,19 @@ use crate::{
     table::{Digits, Table, bytes},
 };
 
-pub(crate) fn run(mut args: PlanArgs) -> Result<ExitCode, Failure> {
+pub(crate) fn run(mut args: PlanArgs) -> Result<(), CommandFailure> {
     settings::complete(&mut args.work)?;
-    // An unusable place is reported before the files are looked at.
+    // An unwritable target is reported before the files are read.
     let inputs: Vec<&Path> = args.work.files().collect();
     let create = |path: &PathBuf| Output::create(path, existing_of(args.overwrite), &inputs);
     let written = args.output.as_ref().map(create).transpose()?;
     let write = |plan: &BuildPlan| written.map_or(Ok(()), |file| write_plan(file, plan));
-    let work = settings::of(args.work)?;
+    let work = settings::build_work(args.work)?;
     if let Some(level) = args.subtrees {
         let plan = BuildPlan::make(&work.plan)?;
         let subtrees = subtrees(&plan, level)?;
         write(&plan)?;
-        messages::answer(&subtrees)?;
-        return Ok(ExitCode::Done);
+        return Ok(messages::answer(&subtrees)?);
     }
     if let Some(slots) = args.jobs {
         let (plan, jobs) = corniche_pipeline::plan_with_jobs(&work.plan, work.resources, slots)?;
@@ -52,26 +51,27 @@ pub(crate) fn run(mut args: PlanArgs) -> Result<ExitCode, Failure> {
     } else {
         messages::answer(&to_text(&plan, &estimate, work.resources, digits))?;
     }
-    Ok(ExitCode::Done)
+    Ok(())
 }
 
-/// The path of an input without secrets, which only addresses have: names of files stay as they are.
+/// The path of an input without secrets, which only URLs contain: names of files are returned
+/// unchanged.
 fn shown(path: &str) -> Cow<'_, str> {
     let is_address = path.contains("://") || path.starts_with("/vsi");
     if is_address { without_secrets(path) } else { Cow::Borrowed(path) }
 }
 
-fn write_plan(file: Output, plan: &BuildPlan) -> Result<(), Failure> {
-    let text = plan.to_json().map_err(|error| Failure::new(ExitCode::Failed, error))?;
+fn write_plan(file: Output, plan: &BuildPlan) -> Result<(), CommandFailure> {
+    let text = plan.to_json().map_err(|error| CommandFailure::new(ExitCode::Failed, error))?;
     file.write_whole(text.as_bytes())
 }
 
 /// The subtrees of a level, one per line.
-fn subtrees(plan: &BuildPlan, level: u8) -> Result<String, Failure> {
+fn subtrees(plan: &BuildPlan, level: u8) -> Result<String, CommandFailure> {
     let finest = plan.grid.frame.max_level();
     if level > finest {
-        let message = format!("--subtrees {level}: the finest level is {finest}");
-        return Err(Failure::unusable(message));
+        let message = format!("--subtrees {level} does not exist: the finest level is {finest}");
+        return Err(CommandFailure::unusable(message));
     }
     let mut lines = String::new();
     for id in plan.subtrees(level) {
@@ -81,7 +81,7 @@ fn subtrees(plan: &BuildPlan, level: u8) -> Result<String, Failure> {
     Ok(lines)
 }
 
-/// Stops when a signal comes; has nothing to show.
+/// An observer that only stops the work after a signal.
 struct Signals;
 
 impl Observer for Signals {
@@ -90,10 +90,15 @@ impl Observer for Signals {
     }
 }
 
-impl corniche_spec::Observer for Signals {}
+impl corniche_spec::BuildObserver for Signals {}
 
-/// Plan and estimates for people.
-fn to_text(plan: &BuildPlan, estimate: &Estimate, resources: Resources, digits: Digits) -> String {
+/// The plan and the estimates as text.
+fn to_text(
+    plan: &BuildPlan,
+    estimate: &BuildEstimate,
+    resources: Resources,
+    digits: Digits,
+) -> String {
     let mut text = String::new();
     let mut say = |name: &str, value: &str| {
         // Writing to a String cannot fail.
@@ -122,7 +127,7 @@ fn to_text(plan: &BuildPlan, estimate: &Estimate, resources: Resources, digits: 
     say(
         "memory",
         &format!(
-            "at least {}, of {} allowed: {} for the program, {} for its list of tiles, {} threads × {} (never less than {})",
+            "at least {} of the limit {}: {} for the program, {} for its list of tiles, {} threads × {} (never less than {})",
             mebibytes(least_bytes),
             mebibytes(resources.memory_bytes),
             mebibytes(memory.base_bytes),
@@ -141,7 +146,7 @@ fn to_text(plan: &BuildPlan, estimate: &Estimate, resources: Resources, digits: 
         ),
     );
     if least_bytes > resources.memory_bytes {
-        say("", "this is not enough: a build would stop with exit code 2");
+        say("", "the limit is too low: a build would fail with exit code 2");
     }
     say(
         "disk",
@@ -168,7 +173,7 @@ fn to_text(plan: &BuildPlan, estimate: &Estimate, resources: Resources, digits: 
     text + &table.to_text()
 }
 
-/// Memory as `--memory` takes it, rounded up.
+/// A size in the format of `--memory`, rounded up.
 fn mebibytes(size: u64) -> String {
     format!("{}M", size.div_ceil(1 << 20))
 }

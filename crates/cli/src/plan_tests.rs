@@ -1,4 +1,4 @@
-//! Times in a plan are told in units that fit, and inputs by their names.
+//! Times in a plan have suitable units, and inputs are listed by name.
 
 use super::*;
 

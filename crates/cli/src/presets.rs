@@ -1,4 +1,5 @@
-//! Presets by name, settings files by path: files to text, which `corniche-presets` reads.
+//! Loads presets by name and settings files by path, and passes their text to
+//! `corniche-presets`.
 
 use std::{
     borrow::Cow,
@@ -15,66 +16,67 @@ use corniche_presets::{
 use corniche_roads::{FrcTable, FunctionalRoadClass};
 use corniche_tileset::Manifest;
 
-use crate::failure::Failure;
+use crate::failure::CommandFailure;
 
-/// Longest text that is read; settings files are far shorter.
+/// The largest size of a settings file; real ones are far smaller.
 const MAX_FILE_BYTES: u64 = 2 << 20;
 
-/// The FRC table that is a preset by its name, else a file by its path.
-pub(crate) fn frc_table(name_or_path: &str) -> Result<FrcTable, Failure> {
+/// Loads an FRC table: a preset by name, or a file by path.
+pub(crate) fn frc_table(name_or_path: &str) -> Result<FrcTable, CommandFailure> {
     let what = format!("--frc-table {name_or_path:?} is neither a preset");
     let text = text_of(name_or_path, frc_preset(name_or_path), (&what, frc_preset_names()))?;
     let table = parse_frc_table(&text)
         .map_err(|error| refuse(&format!("FRC table {name_or_path:?}"), &error))?;
-    // Of a preset, or of a copy of one, the name says it all.
+    // For a preset, or a copy of one, the name is sufficient.
     let is_known = preset_labels(table.name()) == table.class_labels();
     Ok(if is_known { table } else { table.with_recorded_labels() })
 }
 
-/// The text of a preset, else of a file by its path. A refusal begins with `what`, and names all presets.
+/// The text of a preset by name, or of a file by path. The error begins with `what`, and lists all
+/// presets.
 pub(crate) fn text_of(
     path: &str,
     preset: Option<&'static str>,
     (what, names): (&str, impl Iterator<Item = &'static str>),
-) -> Result<Cow<'static, str>, Failure> {
+) -> Result<Cow<'static, str>, CommandFailure> {
     if let Some(text) = preset {
         return Ok(text.into());
     }
     read_text(Path::new(path)).map(Cow::Owned).map_err(|error| {
         let names = names.collect::<Vec<_>>().join(", ");
-        Failure::unusable(format!("{what} ({names}) nor a readable file: {error}"))
+        unusable!("{what} ({names}) nor a readable file: {error}")
     })
 }
 
-/// What the roads of each class of a package are called: as it records, else as the table of its name has them.
+/// The labels of the road classes of a package: the recorded ones, or those of the table with the
+/// recorded name.
 pub(crate) fn class_labels(manifest: &Manifest) -> [String; FunctionalRoadClass::COUNT] {
     let settings = &manifest.settings;
     settings.recorded_labels().unwrap_or_else(|| preset_labels(&settings.frc_table))
 }
 
-/// The table of areas that is a preset by its name, else a file by its path.
-pub(crate) fn area_table(name_or_path: &str) -> Result<AreaTable, Failure> {
+/// Loads the table of areas: a preset by name, or a file by path.
+pub(crate) fn area_table(name_or_path: &str) -> Result<AreaTable, CommandFailure> {
     let what = format!("--areas {name_or_path:?} is neither off nor a preset");
     let text = text_of(name_or_path, area_preset(name_or_path), (&what, area_preset_names()))?;
     parse_area_table(&text).map_err(|error| refuse(&format!("area table {name_or_path:?}"), &error))
 }
 
 /// Reads a settings file.
-pub(crate) fn read_config(path: &Path) -> Result<Config, Failure> {
-    let text = read_text(path).map_err(|error| {
-        Failure::unusable(format!("cannot read settings {}: {error}", path.display()))
-    })?;
-    Config::parse(&text).map_err(|error| refuse(&format!("settings {}", path.display()), &error))
+pub(crate) fn read_config(path: &Path) -> Result<Config, CommandFailure> {
+    let text = read_text(path)
+        .map_err(|error| unusable!("cannot read the settings file {path:?}: {error}"))?;
+    Config::parse(&text).map_err(|error| refuse(&format!("settings file {path:?}"), &error))
 }
 
-pub(crate) fn refuse(what: &str, error: &dyn std::error::Error) -> Failure {
+pub(crate) fn refuse(what: &str, error: &dyn std::error::Error) -> CommandFailure {
     let said = error.to_string();
-    // TOML draws the place between its line and its reason; a message is one line.
+    // TOML's error draws the position between its line and its reason; a message is one line.
     let is_drawn = |line: &&str| {
         line.trim_start_matches(|c: char| c == ' ' || c.is_ascii_digit()).starts_with('|')
     };
     let said: Vec<&str> = said.lines().filter(|line| !is_drawn(line)).collect();
-    Failure::unusable(format!("{what}: {}", said.join(": ")))
+    unusable!("{what}: {}", said.join(": "))
 }
 
 pub(crate) fn read_text(path: &Path) -> io::Result<String> {
@@ -84,8 +86,8 @@ pub(crate) fn read_text(path: &Path) -> io::Result<String> {
     Ok(text)
 }
 
-/// Refuses what is no file. Opening a pipe waits until another program writes into it; and texts are read again when they
-/// change.
+/// Rejects streams. Opening a pipe blocks until another program writes into it, and texts are read
+/// again when they change.
 pub(crate) fn refuse_stream(path: &Path) -> io::Result<()> {
     if fs::metadata(path)?.file_type().is_file() {
         Ok(())

@@ -1,14 +1,14 @@
-//! `corniche profile`: height and grade along roads and other lines.
+//! `corniche profile`: prints height and grade along roads and other lines.
 
 mod drawing;
 
 use std::{collections::BTreeSet, fmt::Write as _, path::Path};
 
 use corniche_export::{
-    Course, HeightKind, Profile, ProfileGrades, ProfileLeg, ProfilePoint, RoadHeights, RoadQuery,
-    Route, RouteError, RouteRequest, profile, profile_of_course, route,
+    Course, HeightKind, NetworkRoute, ProfileGrades, ProfileLeg, ProfilePoint, RoadHeights,
+    RoadProfile, RoadQuery, RouteError, RouteRequest, profile, profile_of_course, route,
 };
-use corniche_overlay::Placed;
+use corniche_overlay::LatticeLine;
 use corniche_tileset::FilePackage;
 use corniche_verify::RecordedElevation;
 
@@ -17,8 +17,7 @@ use crate::{
     chart::ends,
     documents::{profile::ProfileDocument, to_line},
     escaped::in_line,
-    exit::ExitCode,
-    failure::Failure,
+    failure::CommandFailure,
     messages,
     names::file_name,
     output::{Output, existing_of, report_files::ReportFiles},
@@ -28,12 +27,12 @@ use crate::{
     table::up_to,
 };
 
-pub(crate) fn run(args: &ProfileArgs) -> Result<ExitCode, Failure> {
+pub(crate) fn run(args: &ProfileArgs) -> Result<(), CommandFailure> {
     let usage = "corniche profile PACKAGE --way ID --dem FILE...";
     let (place, [dem, osm]) = args.recorded.files(&args.extract.osm, usage)?;
     args.refuse_idle_extract(&dem, &osm)?;
     let package = packages::open(&place)?;
-    // All places are looked at before any work is done.
+    // All paths are checked before any work is done.
     let inputs: Vec<&Path> = [place.name()]
         .into_iter()
         .chain(args.line.as_deref())
@@ -74,7 +73,7 @@ pub(crate) fn run(args: &ProfileArgs) -> Result<ExitCode, Failure> {
         profile(&package, &args.way, level, heights, &progress)
     };
     progress.finish();
-    // A file that changed may be the cause of any other error.
+    // A changed file may be the cause of any other error.
     recorded.as_ref().map_or(Ok(()), RecordedElevation::check_unchanged)?;
     let found = found?;
     let title = title(args, &found);
@@ -86,7 +85,8 @@ pub(crate) fn run(args: &ProfileArgs) -> Result<ExitCode, Failure> {
         if number == 0 {
             return output.fill(to_csv(&found).as_bytes());
         }
-        let document = ProfileDocument::of(&found, &title, &package.manifest().attribution);
+        let document =
+            ProfileDocument::from_profile(&found, &title, &package.manifest().attribution);
         output.fill(format!("{}\n", to_line(&document)).as_bytes())
     };
     files.write(fill_list, make_svg)?;
@@ -94,12 +94,11 @@ pub(crate) fn run(args: &ProfileArgs) -> Result<ExitCode, Failure> {
         messages::note(&format!("wrote {}", written.display()));
     }
     let told = road.map(|road| to_text_of_route(&road, args.road.query().as_ref()));
-    messages::answer(&(told.unwrap_or_default() + &to_text(&found, network.is_some())))?;
-    Ok(ExitCode::Done)
+    Ok(messages::answer(&(told.unwrap_or_default() + &to_text(&found, network.is_some())))?)
 }
 
-/// What a profile is called: a road as it is signed, a file, or else the roads that it follows, each once.
-fn title(args: &ProfileArgs, found: &Profile) -> String {
+/// The title of a profile: a road as signed, a file, or the roads that it follows, each once.
+fn title(args: &ProfileArgs, found: &RoadProfile) -> String {
     if let Some(path) = &args.line {
         return file_name(path);
     }
@@ -125,8 +124,8 @@ fn title(args: &ProfileArgs, found: &Profile) -> String {
     names.join(", ")
 }
 
-/// What the text tells, in short.
-fn facts(found: &Profile) -> String {
+/// The main figures of a profile, in short.
+fn facts(found: &RoadProfile) -> String {
     let (grades, over) = match &found.smooth {
         Some((grades, _)) => (grades, "50 m"),
         None => (&found.grades, "20 m"),
@@ -140,7 +139,7 @@ fn facts(found: &Profile) -> String {
         None => format!("heights of the package, level {}", found.level),
     };
     let without = match found.on_structures_m {
-        without_m if without_m > 0.0 => ", without bridges and tunnels",
+        without_m if without_m > 0.0 => ", excluding bridges and tunnels",
         _ => "",
     };
     format!(
@@ -151,19 +150,19 @@ fn facts(found: &Profile) -> String {
     )
 }
 
-/// What was found of a road.
-fn to_text_of_route(road: &Route, query: Option<&RoadQuery>) -> String {
+/// The route that was found for a road, as text.
+fn to_text_of_route(road: &NetworkRoute, query: Option<&RoadQuery>) -> String {
     let mut text = String::new();
     if let (Some(road_m), Some(query)) = (road.road_m, query) {
         // Writing to a String cannot fail.
         let _ = writeln!(
             text,
-            "Road     {}: {:.1} km from end to end, of {:.1} km of its ways{}",
+            "Road     {}: {:.1} km from end to end; its OSM ways have {:.1} km in total{}",
             in_line(&query.text()),
             road.length_m / 1e3,
             road_m / 1e3,
             if road.length_m < 0.999 * road_m {
-                "; other carriageways, arms of roundabouts and branches are left out"
+                "; other carriageways, arms of roundabouts and branches are skipped"
             } else {
                 ""
             },
@@ -172,12 +171,12 @@ fn to_text_of_route(road: &Route, query: Option<&RoadQuery>) -> String {
     if road.others_m > 0.0 && query.is_some() {
         let _ = writeln!(
             text,
-            "         {:.0} m of it are other roads, which close its gaps",
+            "         {:.0} m of other roads close gaps in this road",
             road.others_m
         );
     }
     if !road.same_name.is_empty() {
-        let _ = writeln!(text, "         not connected with it, and left out:");
+        let _ = writeln!(text, "         skipped, because not connected with this route:");
         for other in &road.same_name {
             let _ = writeln!(text, "         {other}");
         }
@@ -186,7 +185,7 @@ fn to_text_of_route(road: &Route, query: Option<&RoadQuery>) -> String {
         let [from_m, to_m] = road.off_m;
         let _ = writeln!(
             text,
-            "Ends     {from_m:.0} m and {to_m:.0} m beside the places that were given, on the nearest road"
+            "Ends     on the nearest roads, {from_m:.0} m and {to_m:.0} m from the given positions"
         );
     }
     text
@@ -197,23 +196,23 @@ fn placed_lines(
     path: &Path,
     allow_ballpark: bool,
     package: &FilePackage,
-) -> Result<Course, Failure> {
+) -> Result<Course, CommandFailure> {
     let found = corniche_overlay::read(path, allow_ballpark)?;
     overlays::tell(path, &found);
     let placed = corniche_overlay::place(&found.lines, package.manifest())?;
-    let line = |placed: Placed| {
+    let line = |placed: LatticeLine| {
         (placed.line as i64 + 1, found.lines[placed.line].name.clone(), placed.points)
     };
     let begins_deg = found.lines.first().and_then(|line| line.positions_deg.first()).copied();
     Ok(Course { begins_deg, ..Course::of_lines(placed.into_iter().map(line)) })
 }
 
-fn points(found: &Profile) -> impl Iterator<Item = &ProfilePoint> {
+fn points(found: &RoadProfile) -> impl Iterator<Item = &ProfilePoint> {
     found.parts.iter().flat_map(|part| &part.points)
 }
 
-/// What a profile is; `has_network` says whether the roads of the extract were at hand.
-fn to_text(found: &Profile, has_network: bool) -> String {
+/// The profile as text; `has_network` means that the roads of the extract are available.
+fn to_text(found: &RoadProfile, has_network: bool) -> String {
     let [lowest, highest] = ends(points(found).map(|point| point.height_m));
     let gaps = match found.parts.len() {
         0 | 1 => String::new(),
@@ -234,12 +233,12 @@ fn to_text(found: &Profile, has_network: bool) -> String {
         };
         let decks =
             if points(found).any(is_deck) { "; bridges and tunnels are estimates" } else { "" };
-        writeln!(text, "         those of the DEM, within {within_m} m between vertices{decks}")
+        writeln!(text, "         from the DEM, within {within_m} m between vertices{decks}")
     } else {
         let within_m = up_to(found.height_tolerance_m, 1);
         writeln!(
             text,
-            "         within {within_m} m of the DEM at its samples; --dem FILE gives the DEM's own"
+            "         within {within_m} m of the DEM at its samples; use --dem FILE for the DEM's own heights"
         )
     };
     let has_grades = found.on_structures_m < found.length_2d_m;
@@ -247,7 +246,7 @@ fn to_text(found: &Profile, has_network: bool) -> String {
         text.push_str(&grades_text(&smooth, "50 m"));
         let _ = writeln!(
             text,
-            "         of a smooth line, which is up to {} m from the ground; of the ground itself:",
+            "         along a smoothed line, which is up to {} m from the ground; along the ground itself:",
             up_to(most_off_m, 1)
         );
     }
@@ -255,11 +254,12 @@ fn to_text(found: &Profile, has_network: bool) -> String {
         text.push_str(&grades_text(&found.grades, "20 m"));
     }
     if found.on_structures_m > 0.0 {
-        let hint = if has_network { "" } else { "; --dem with --osm estimates their own" };
-        let begin = if has_grades { "         without" } else { "Up, down not known of" };
+        let hint =
+            if has_network { "" } else { "; --dem with --osm estimates the heights of decks" };
+        let begin = if has_grades { "         excluding" } else { "Up, down unknown on" };
         let _ = writeln!(
             text,
-            "{begin} {:.1} m of bridges and tunnels: heights there are those of the ground below or above{hint}",
+            "{begin} {:.1} m of bridges and tunnels, which have the heights of the ground below or above{hint}",
             found.on_structures_m
         );
     }
@@ -278,8 +278,8 @@ fn grades_text(grades: &ProfileGrades, over: &str) -> String {
     )
 }
 
-/// A line for each vertex; parts are numbered from 0.
-fn to_csv(found: &Profile) -> String {
+/// The profile as CSV, one line per vertex; parts are numbered from 0.
+fn to_csv(found: &RoadProfile) -> String {
     let mut text = "part,way_id,distance_m,height_m,grade_pct,lon,lat,height_source".to_owned();
     if found.smooth.is_some() {
         text.push_str(",smooth_m,smooth_grade_pct");

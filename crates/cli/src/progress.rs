@@ -1,8 +1,8 @@
-//! Progress of every command that takes its time: bars on a terminal, plain lines elsewhere, records on request, or nothing; and what the stages took, at
-//! the end.
+//! Progress of all commands that take time: bars on a terminal, plain lines elsewhere, records
+//! on request, or nothing; and the costs of the stages at the end.
 //!
-//! A thread of its own looks twice a second whether something is to be told, so a stage that counts nothing for minutes is
-//! told of, too. Each step looks as well.
+//! A separate thread checks twice a second whether something is to be reported, so that stages
+//! without any steps for minutes are reported, too. Each step also checks.
 
 mod costs;
 mod efforts;
@@ -22,19 +22,19 @@ use corniche_work::{Observer, Stage, locked};
 use indicatif::{ProgressBar, ProgressStyle};
 use tracing::Span;
 
-use self::{costs::Costs, efforts::Efforts, pace::Pace, texts::Reading, usage::Usage};
+use self::{costs::StageCosts, efforts::Efforts, pace::Pace, texts::StageReading, usage::Usage};
 use crate::{
     args::{LogFormat, Voice},
     defects::DefectList,
     documents::{progress::seconds, to_line},
-    failure::Failure,
+    failure::CommandFailure,
     free_memory, interrupt, messages,
     messages::write_line,
     output::existing_of,
     table::Digits,
 };
 
-/// How progress is told.
+/// The form of progress.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Manner {
     Quiet,
@@ -47,19 +47,20 @@ enum Manner {
 }
 
 impl Manner {
-    /// Progress in the form that the voice asks for.
-    fn of(voice: Voice) -> Self {
+    /// The form of progress that the voice requests.
+    fn for_voice(voice: Voice) -> Self {
         match voice {
             Voice { quiet: true, .. } => Self::Quiet,
             Voice { json_progress: true, .. } => Self::Json,
             Voice { log_format: LogFormat::Json, .. } => Self::Events,
-            // Lines that come in between would tear a bar.
+            // Lines in between would break a bar.
             Voice { verbose: 0, .. } if messages::notes_are_seen() => Self::Bars,
             Voice { .. } => Self::Lines,
         }
     }
 
-    /// Whether a running stage is to be told, the last time being `since_told` ago and steps having been made since or not.
+    /// Whether a running stage is to be reported: the last report was `since_told` ago, and steps
+    /// were made since then or not.
     fn is_due(self, since_told: Duration, has_moved: bool) -> bool {
         match self {
             Self::Quiet => false,
@@ -70,11 +71,11 @@ impl Manner {
     }
 }
 
-/// Tells of a run on standard error; output meant for programs stays alone on standard output.
+/// Reports a run on standard error; output for programs goes to standard output alone.
 pub(crate) struct Progress {
     shared: Arc<Shared>,
     ticker: Option<JoinHandle<()>>,
-    /// The list of defects, if one is wanted.
+    /// The list of defects, if it is requested.
     pub(crate) defects: Option<DefectList>,
 }
 
@@ -88,9 +89,9 @@ struct State {
     begun: Instant,
     used_before: Usage,
     running: Option<Running>,
-    /// What the steps of the stage that begins next take.
+    /// The efforts of the steps of the next stage.
     efforts: Option<Efforts>,
-    costs: Costs,
+    costs: StageCosts,
     is_over: bool,
 }
 
@@ -102,7 +103,7 @@ struct Running {
     done: u64,
     already: u64,
     pace: Pace,
-    /// Where steps take unequal time, how long they take, and the pace in that.
+    /// For steps of unequal effort: the efforts, and the pace in units of effort.
     efforts: Option<(Efforts, Pace)>,
     begun: Instant,
     used_before: Usage,
@@ -112,34 +113,35 @@ struct Running {
     bar: Option<ProgressBar>,
 }
 
-/// How often it is looked whether something is to be told.
+/// Interval of the checks whether something is to be reported.
 const TICK: Duration = Duration::from_millis(500);
-/// Least time between two plain lines; with a tick it is below ten seconds.
+/// Least time between two plain lines; together with a tick it is below ten seconds.
 const LINE_INTERVAL: Duration = Duration::from_secs(9);
-/// Time between two JSON lines if nothing was done in between; else there is one at each tick.
+/// Time between two JSON lines if nothing was done in between; otherwise there is one at each tick.
 const IDLE_INTERVAL: Duration = Duration::from_secs(5);
-/// How often free memory is given back within a stage.
+/// Interval at which free memory is returned to the system within a stage.
 const GIVE_BACK_INTERVAL: Duration = Duration::from_secs(5);
 
 impl Progress {
     pub(crate) fn new() -> Self {
-        Self::in_manner(Manner::of(messages::voice()))
+        Self::in_manner(Manner::for_voice(messages::voice()))
     }
 
-    /// Does work and tells of it. What runs at its end ends with it.
-    pub(crate) fn of<R>(work: impl FnOnce(&Self) -> R) -> R {
+    /// Runs `work` and reports its progress. The reporting thread ends with it.
+    pub(crate) fn show_during<R>(work: impl FnOnce(&Self) -> R) -> R {
         let progress = Self::new();
         let done = work(&progress);
         progress.finish();
         done
     }
 
-    /// Tells of a build, and lists its defects if a list is asked for; it must be none of `others`.
+    /// Reports a build, and lists its defects if a list is requested; the list must not be one of
+    /// `others`.
     pub(crate) fn of_build(
         list: Option<&Path>,
         overwrite: bool,
         others: &[&Path],
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, CommandFailure> {
         let create = |target| DefectList::create(target, existing_of(overwrite), others);
         let mut progress = Self::new();
         progress.defects = list.map(create).transpose()?;
@@ -152,29 +154,32 @@ impl Progress {
             used_before: Usage::now(),
             running: None,
             efforts: None,
-            costs: Costs::default(),
+            costs: StageCosts::default(),
             is_over: false,
         };
         let shared = Arc::new(Shared { manner, state: Mutex::new(state), over: Condvar::new() });
         let ticking = Arc::clone(&shared);
-        // Where the system has no thread to spare, the steps alone look whether something is to be told.
+        // If the system cannot start another thread, only the steps check whether something is to
+        // be reported.
         let ticker = (manner != Manner::Quiet)
             .then(|| thread::Builder::new().name("progress".into()).spawn(move || ticking.tick()))
             .and_then(Result::ok);
         Self { shared, ticker, defects: None }
     }
 
-    /// Steps of the stage that begins next take unequal time: so many after each other take so long each.
+    /// Announces that steps of the next stage take unequal time: pairs of a number of consecutive
+    /// steps and the time of each.
     pub(crate) fn expect_efforts(&self, parts: Vec<(u64, f64)>) {
         self.shared.state().efforts = Some(Efforts(parts));
     }
 
-    /// The stage that runs is over.
+    /// Ends the running stage.
     pub(crate) fn finish(&self) {
         self.shared.state().end_running();
     }
 
-    /// Tells what the stages took: as one JSON object, or as a table for people who want the details.
+    /// Reports the costs of the stages: as one JSON object, or as a table for people who requested
+    /// details.
     pub(crate) fn tell_costs(&self) {
         let state = self.shared.state();
         let wall = state.begun.elapsed();
@@ -225,7 +230,7 @@ impl Shared {
         locked(&self.state)
     }
 
-    /// Tells what is due until all is over.
+    /// Reports what is due, until the run is over.
     fn tick(&self) {
         let mut state = self.state();
         while !state.is_over {
@@ -236,7 +241,7 @@ impl Shared {
         }
     }
 
-    /// Does something to a stage that is running.
+    /// Applies `act` to the stage if it is running.
     fn with(&self, stage: Stage, act: impl FnOnce(&mut Running)) {
         let mut state = self.state();
         if let Some(running) = state.running.as_mut().filter(|running| running.stage == stage) {
@@ -248,7 +253,7 @@ impl Shared {
 }
 
 impl State {
-    /// A stage begins, and the one that ran is over.
+    /// Begins a stage, and ends the previous one.
     fn begin(&mut self, stage: Stage, total: Option<u64>, manner: Manner) {
         self.end_running();
         let efforts = self.efforts.take().map(|efforts| (efforts, Pace::new()));
@@ -296,7 +301,7 @@ impl Running {
         }
     }
 
-    /// The stage has done `done` in all.
+    /// Sets the total number of steps done.
     fn reach(&mut self, done: u64) {
         self.done = done;
         tracing::trace!(parent: &self.span, done, "counted");
@@ -307,20 +312,20 @@ impl Running {
         }
     }
 
-    /// The same, of a total that is known only now or that changed.
+    /// Sets the number of steps done and a total that became known or changed.
     fn reach_of(&mut self, done: u64, total: u64) {
         self.total = Some(total);
         self.reach(done.max(self.done));
     }
 
-    fn read(&self) -> Reading {
+    fn read(&self) -> StageReading {
         let elapsed = self.begun.elapsed();
         let remaining = self.total.map(|total| total.saturating_sub(self.done));
         let left = match &self.efforts {
             Some((efforts, pace)) => pace.left(elapsed, efforts.after(self.done, self.total)),
             None => remaining.and_then(|remaining| self.pace.left(elapsed, remaining)),
         };
-        Reading {
+        StageReading {
             stage: self.stage,
             done: self.done,
             already: self.already,
@@ -347,8 +352,8 @@ impl Running {
         self.tell(&self.read(), false);
     }
 
-    /// Tells how far it is, or how it ended.
-    fn tell(&self, reading: &Reading, is_over: bool) {
+    /// Reports the progress or the end of the stage.
+    fn tell(&self, reading: &StageReading, is_over: bool) {
         let title = self.stage.title();
         let text = |digits| if is_over { reading.ended(digits) } else { reading.running(digits) };
         match (self.manner, &self.bar) {
@@ -428,7 +433,7 @@ impl Observer for Progress {
     }
 }
 
-impl corniche_spec::Observer for Progress {
+impl corniche_spec::BuildObserver for Progress {
     fn defect(&self, defect: &Defect) {
         if let Some(defects) = &self.defects {
             defects.add(defect);

@@ -1,9 +1,10 @@
-//! Progress is told often enough while nothing moves, and rates count only the work of this run.
+//! Progress is reported often enough while nothing happens, and rates count only the work of this
+//! run.
 
 use super::*;
 
-/// Looked at every half second, and as late as a busy machine may do it, a stage has a plain line every ten seconds, also if
-/// nothing is counted in it.
+/// Checked every half second, and as late as a busy machine may check, a stage has a plain line
+/// every ten seconds, even without any steps.
 #[test]
 fn a_plain_line_comes_at_least_every_ten_seconds() {
     for has_moved in [false, true] {
@@ -27,7 +28,7 @@ fn json_lines_are_rare_while_nothing_moves() {
     assert!(due(5000, false) && !due(4999, false));
 }
 
-/// Programs rely on the names of stages and of what they count: the page has them all.
+/// Programs rely on the names of stages and units: the page lists them all.
 #[test]
 fn the_page_names_every_stage_and_every_unit() {
     let page = std::fs::read_to_string(corniche_testing::root().join("docs/progress.md")).unwrap();
@@ -39,7 +40,7 @@ fn the_page_names_every_stage_and_every_unit() {
     }
 }
 
-/// Nothing calls for it: the thread alone tells.
+/// No call reports the stage: the thread alone does.
 #[test]
 fn a_stage_that_counts_nothing_is_told_of() {
     let progress = Progress::in_manner(Manner::Bars);
@@ -56,7 +57,7 @@ fn a_stage_that_counts_nothing_is_told_of() {
     assert!(message().starts_with("0 of 5 tiles (0 %)"), "{}", message());
 }
 
-/// What an earlier run did counts as done, and not as fast.
+/// Work of an earlier run counts as done, but not for the rate.
 #[test]
 fn resumed_work_is_done_but_says_nothing_of_the_rate() {
     let progress = Progress::in_manner(Manner::Quiet);
@@ -69,7 +70,8 @@ fn resumed_work_is_done_but_says_nothing_of_the_rate() {
     progress.advance(Stage::Tiles, 50);
     let after = read();
     assert_eq!((after.done, after.already), (950, 900));
-    // 50 steps took 5 ms or more, so that the same number again needs no less, as the countdown has not ended yet.
+    // 50 steps took 5 ms or more, so the same number again needs no less, because the countdown has
+    // not ended yet.
     let ran_s = after.elapsed.as_secs_f64();
     let rate = after.per_second.unwrap();
     assert!(rate <= 50.0 / 0.005 && rate * ran_s <= 100.0 + 1e-6, "{rate} per second in {ran_s} s");
@@ -86,7 +88,7 @@ fn steps_of_another_stage_are_not_counted() {
     assert_eq!((reading.done, reading.total), (3, Some(10)));
 }
 
-/// A stage whose end was not told ends where the next one begins.
+/// A stage whose end was not reported ends where the next one begins.
 #[test]
 fn each_stage_that_began_is_in_the_table() {
     let progress = Progress::in_manner(Manner::Quiet);

@@ -1,14 +1,16 @@
-//! Libraries of the system that would write to standard error in our place.
+//! Silences system libraries that would write to standard error.
 
-/// Where Wayland has its socket.
+/// The folder of Wayland's socket.
 #[cfg(target_os = "linux")]
 const FOLDER: &str = "XDG_RUNTIME_DIR";
 
-/// Begins again, as the same process, with an environment in which libraries have nothing to say.
+/// Restarts the program, as the same process, with an environment in which libraries print nothing.
 ///
-/// Where [`FOLDER`] is not set, as on servers, libwayland says so on standard error whenever Vulkan looks for graphics cards, because a layer of Mesa
-/// asks it for a display. A folder that is not there has no socket either, and nothing is said. A process may not change its environment while
-/// other threads may read it, and drivers have threads; so it is changed before anything else begins.
+/// If [`FOLDER`] is not set, as on servers, libwayland prints this to standard error whenever
+/// Vulkan searches for GPUs, because a layer of Mesa requests a display. A folder that does not
+/// exist has no socket either, and nothing is printed. A process must not change its environment
+/// while other threads may read it, and drivers have threads; so it is changed before anything else
+/// begins.
 #[cfg(target_os = "linux")]
 pub(crate) fn begin() {
     use std::{env, os::unix::process::CommandExt as _, path::Path, process::Command};
@@ -18,7 +20,7 @@ pub(crate) fn begin() {
     }
     let mut words = env::args_os();
     let name = words.next().unwrap_or_default();
-    // It comes back only where it failed; then one line too many is said.
+    // This returns only after a failure; then one line too many is printed.
     let _ =
         Command::new("/proc/self/exe").arg0(name).args(words).env(FOLDER, "/nonexistent").exec();
 }

@@ -1,33 +1,34 @@
-//! The inputs that a package was made from, opened again for commands that measure with them.
+//! The inputs that a package was built from, reopened for commands that measure with them.
 
 use std::path::PathBuf;
 
-use corniche_areas::{ClassedLayer, LineNames};
+use corniche_areas::BoundaryNames;
 use corniche_export::Elevation;
 use corniche_network::Network;
 use corniche_presets::frc_preset;
 use corniche_roads::FrcTable;
-use corniche_spec::Observer;
+use corniche_spec::BuildObserver;
 use corniche_tileset::FilePackage;
 use corniche_verify::{RecordedElevation, VerifyError, VerifyOsm};
 
 use crate::{
     args::{ExtractArgs, RecordedArgs, ThreadsArg},
-    failure::Failure,
+    failure::CommandFailure,
     presets,
     progress::Progress,
     settings::{polygon, threads},
 };
 
-/// Memory for sorting what extracts hold.
+/// Memory for sorting the contents of extracts.
 pub(crate) const MEMORY_BYTES: u64 = 256 << 20;
 
-/// The elevation files of a package, if some are named; those of another package are refused.
+/// Opens the elevation files of a package, if some are named; those of another package are
+/// rejected.
 pub(crate) fn elevation(
     args: &RecordedArgs,
     dem: &[PathBuf],
     package: &FilePackage,
-) -> Result<Option<RecordedElevation>, Failure> {
+) -> Result<Option<RecordedElevation>, CommandFailure> {
     if dem.is_empty() {
         return Ok(None);
     }
@@ -41,32 +42,30 @@ pub(crate) fn for_export(recorded: &RecordedElevation) -> Elevation<'_> {
     Elevation { dem: &recorded.dem, plan: &recorded.plan }
 }
 
-/// The roads of a package's extracts as a network, if some are named; those of another package are refused.
+/// Opens the roads of a package's extracts as a network, if some are named; those of another
+/// package are rejected.
 pub(crate) fn network(
     args: &ExtractArgs,
     osm: &[PathBuf],
     of: (&ThreadsArg, &FilePackage),
-) -> Result<Option<Network>, Failure> {
+) -> Result<Option<Network>, CommandFailure> {
     from_extracts(args, osm, of, corniche_verify::network)
 }
 
-/// The names of what the lines of a layer bound, if extracts are named; those of another package are refused.
-pub(crate) fn line_names(
+/// Reads the names of bounded areas, if extracts are named; those of another package are rejected.
+pub(crate) fn boundary_names(
     (args, osm): (&ExtractArgs, &[PathBuf]),
-    layer: ClassedLayer,
     of: (&ThreadsArg, &FilePackage),
-) -> Result<Option<LineNames>, Failure> {
-    from_extracts(args, osm, of, |package, extract, threads, observer| {
-        corniche_verify::line_names(package, layer, extract, threads, observer)
-    })
+) -> Result<Option<BoundaryNames>, CommandFailure> {
+    from_extracts(args, osm, of, corniche_verify::boundary_names)
 }
 
 fn from_extracts<T>(
     args: &ExtractArgs,
     osm: &[PathBuf],
     (cpu, package): (&ThreadsArg, &FilePackage),
-    read: impl FnOnce(&FilePackage, &VerifyOsm, usize, &dyn Observer) -> Result<T, VerifyError>,
-) -> Result<Option<T>, Failure> {
+    read: impl FnOnce(&FilePackage, &VerifyOsm, usize, &dyn BuildObserver) -> Result<T, VerifyError>,
+) -> Result<Option<T>, CommandFailure> {
     if osm.is_empty() {
         return Ok(None);
     }
@@ -76,12 +75,16 @@ fn from_extracts<T>(
         areas: None,
         memory_bytes: MEMORY_BYTES,
     };
-    let found = Progress::of(|progress| read(package, &extract, threads(cpu.threads), progress))?;
+    let found =
+        Progress::show_during(|progress| read(package, &extract, threads(cpu.threads), progress))?;
     Ok(Some(found))
 }
 
-/// The FRC table that is named, or the preset whose name the package has.
-pub(crate) fn frc_table(named: Option<&str>, package: &FilePackage) -> Result<FrcTable, Failure> {
+/// The named FRC table, or the preset whose name the package records.
+pub(crate) fn frc_table(
+    named: Option<&str>,
+    package: &FilePackage,
+) -> Result<FrcTable, CommandFailure> {
     if let Some(table) = named {
         return presets::frc_table(table);
     }
@@ -92,10 +95,10 @@ pub(crate) fn frc_table(named: Option<&str>, package: &FilePackage) -> Result<Fr
     presets::frc_table(name)
 }
 
-/// A package was made with a table that does not come with the program.
-pub(crate) fn no_preset(package: &FilePackage, table: &str, option: &str) -> Failure {
-    Failure::unusable(format!(
-        "{} was made with the {table}, which is no preset; give its file with {option}",
-        package.path().display()
-    ))
+/// The failure for a package whose table does not come with the program.
+pub(crate) fn no_preset(package: &FilePackage, table: &str, option: &str) -> CommandFailure {
+    unusable!(
+        "{:?} was built with the {table}, which is not a preset; pass its file with {option}",
+        package.path()
+    )
 }

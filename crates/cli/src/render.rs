@@ -1,4 +1,4 @@
-//! `corniche render`: a picture of a package, without a window.
+//! `corniche render`: renders an image of a package, without a window.
 
 mod picture_files;
 
@@ -7,17 +7,18 @@ use corniche_osm::AreaLoss;
 use corniche_styles::{OwnWidths, Style};
 use corniche_tileset::Manifest;
 use corniche_viewer::{
-    LegendRequest, Mapping, RenderReport, RenderRequest, RoadMethod, TitleFlaws, render,
+    LegendRequest, Mapping, PictureOptions, RenderReport, RenderRequest, RoadMethod, TitleFlaws,
+    render,
     tiles::{MapPackage as _, TileDecoder},
 };
 
 use self::picture_files::PictureFiles;
 use crate::{
-    args::RenderArgs, exit::ExitCode, failure::Failure, interrupt, messages, overlays, packages,
-    presets, styles, table::noted,
+    args::RenderArgs, failure::CommandFailure, interrupt, messages, overlays, packages, presets,
+    styles, table::noted,
 };
 
-pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
+pub(crate) fn run(args: &RenderArgs) -> Result<(), CommandFailure> {
     let used = styles::files_of_look(&args.look, &args.from);
     let style = args.look.styled(styles::style(&args.look.style)?);
     let roads = args.look.roads(&[args.roads])?[0];
@@ -25,21 +26,23 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
         (false, _) => Mapping::OnTriangles,
         (true, RoadMethod::Geometry) => Mapping::Unmapped,
         (true, _) => {
-            return Err(Failure::unusable(
-                "--unmapped has an effect only on roads as geometry; give it together with --roads geo",
+            return Err(unusable!(
+                "--unmapped applies only to roads as geometry; use it with --roads geo"
             ));
         }
     };
     let request = RenderRequest {
         name: args.from.package.to_string(),
-        size_px: args.size,
-        roads: args.look.road_options(roads),
+        options: PictureOptions {
+            size_px: args.size,
+            roads: args.look.road_options(roads),
+            screen_space_error_px: args.ground.screen_space_error,
+            cell_px: args.ground.cell_px,
+            exaggeration: args.ground.exaggeration,
+            supersampling: args.supersampling,
+            style,
+        },
         camera: args.from_above.request(&args.camera),
-        screen_space_error_px: args.ground.screen_space_error,
-        cell_px: args.ground.cell_px,
-        exaggeration: args.ground.exaggeration,
-        supersampling: args.supersampling,
-        style,
         legend: None,
         title: args.title.clone(),
         is_wireframe: args.wireframe,
@@ -48,7 +51,8 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     request.check()?;
     let package = packages::source(&args.from.package)?;
     let overlays = overlays::load(&args.look, package.manifest())?;
-    let decoder = TileDecoder::default().for_look(request.roads.method, &request.style);
+    let decoder =
+        TileDecoder::default().for_look(request.options.roads.method, &request.options.style);
     let package = package.with_decoder(decoder.with_overlays(overlays).with_mapping(mapping));
     let scale = args.from_above.print_scale();
     let legend = args.legend.then(|| LegendRequest {
@@ -70,17 +74,17 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     tell(args, &rendered.report);
     if !is_same_crs {
         messages::warning(&format!(
-            "GeoTIFF has no words for all of the package's coordinate system ({}); what programs read of it may differ",
+            "GeoTIFF cannot represent the whole coordinate system of the package ({}); programs may interpret it differently",
             manifest.crs
         ));
     }
-    if let Some(text) = incomplete_areas(manifest, &request.style) {
+    if let Some(text) = incomplete_areas(manifest, &request.options.style) {
         messages::note(&text);
     }
-    Ok(ExitCode::Done)
+    Ok(())
 }
 
-/// Tells what went into a picture, and what of it is not as it was asked for.
+/// Reports the contents of an image, and what differs from the request.
 fn tell(args: &RenderArgs, report: &RenderReport) {
     let areas = match report.area_polygons {
         0 => String::new(),
@@ -96,14 +100,14 @@ fn tell(args: &RenderArgs, report: &RenderReport) {
     ));
     if report.clamped_tiles > 0 {
         messages::note(&format!(
-            "note: in up to {} tiles roads may be drawn narrower than the style says, because a tile knows of no roads \
+            "note: in up to {} tiles roads may be drawn narrower than in the style, because a tile contains no roads \
              farther away than the package's width margin",
             report.clamped_tiles
         ));
     }
     if report.capped_ways > 0 {
         messages::note(&format!(
-            "note: roads drawn {} m wide although their tags ask for more: {}",
+            "note: roads drawn {} m wide although their tags are wider: {}",
             OwnWidths::WIDEST_M,
             report.capped_ways
         ));
@@ -111,18 +115,19 @@ fn tell(args: &RenderArgs, report: &RenderReport) {
     let TitleFlaws { lacking, is_cut } = &report.title_flaws;
     if !lacking.is_empty() {
         messages::warning(&format!(
-            "--title: the font of pictures has no {lacking}; boxes stand in their places"
+            "--title: the font of images has no {lacking}; boxes are drawn instead"
         ));
     }
     if *is_cut {
-        messages::warning("--title: it does not fit into the picture; a part of it is cut off");
+        messages::warning("--title: the title does not fit into the image and is truncated");
     }
     if report.is_legend_cut {
-        messages::warning("--legend: it does not fit into the picture; a part of it is cut off");
+        messages::warning("--legend: the legend does not fit into the image and is truncated");
     }
 }
 
-/// What to know of areas that the extract has in part only; `None` where there are none, or the style draws no areas.
+/// A note about areas that are incomplete in the extract; `None` if there are none, or the style
+/// draws no areas.
 fn incomplete_areas(manifest: &Manifest, style: &Style) -> Option<String> {
     let reasons = [AreaLoss::MissingWays, AreaLoss::MissingNodes].map(AreaLoss::reason);
     let lost = manifest.areas.as_ref().filter(|_| style.has_areas())?.counts.lost.iter();
@@ -131,7 +136,7 @@ fn incomplete_areas(manifest: &Manifest, style: &Style) -> Option<String> {
     let objects: u64 = objects.sum();
     (objects > 0).then(|| {
         format!(
-            "note: areas that are not drawn because the extract lacks parts of their outlines: {}; they may lie anywhere, and corniche build --defects lists \
+            "note: areas that are not drawn because the extract lacks parts of their outlines: {}; they may be anywhere. corniche build --defects lists \
              them",
             noted(objects)
         )

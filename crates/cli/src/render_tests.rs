@@ -1,4 +1,4 @@
-//! A picture tells of areas that the extract has in part only.
+//! An image is reported with the areas that are incomplete in the extract.
 
 use corniche_tileset::{AreaCounts, AreasRecord};
 

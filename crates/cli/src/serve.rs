@@ -1,4 +1,5 @@
-//! `corniche serve`: packages in web browsers, by a small web server, or by the files for another one.
+//! `corniche serve`: shows packages in web browsers, with a small web server or as files for
+//! another one.
 
 mod browser;
 mod package_file;
@@ -14,7 +15,7 @@ use std::{
     sync::Arc,
 };
 
-use corniche_serve::{Answered, Content, Readers, Routes, Server, Watch};
+use corniche_serve::{Answered, FileContent, Readers, Routes, Server, ServerWatch};
 use corniche_store::folder_of;
 
 use self::{
@@ -23,11 +24,11 @@ use self::{
     shown::{LIST, Shown},
 };
 use crate::{
-    args::ServeArgs, exit::ExitCode, failure::Failure, interrupt, messages, output::existing_of,
+    args::ServeArgs, failure::CommandFailure, interrupt, messages, output::existing_of,
     table::bytes,
 };
 
-pub(crate) fn run(args: &ServeArgs) -> Result<ExitCode, Failure> {
+pub(crate) fn run(args: &ServeArgs) -> Result<(), CommandFailure> {
     let page = page::load(args.page.as_deref())?;
     let packages = shown::open(&args.packages)?;
     match &args.site {
@@ -41,79 +42,82 @@ fn write_site(
     folder: &Path,
     page: &[PageFile],
     packages: &[Shown],
-) -> Result<ExitCode, Failure> {
+) -> Result<(), CommandFailure> {
     refuse_inside_page(folder, args.page.as_deref())?;
     let files = packages.iter().map(|package| package.file.as_path());
     let used: Vec<&Path> = files.chain(args.page.as_deref()).collect();
     let size = site::write(folder, existing_of(args.overwrite), page, packages, &used)?;
     messages::note(&format!(
-        "{}: {} of the page, {}, {}; any web server that knows range requests can show it",
+        "{}: {} of the page, {}, {}; any web server with support for range requests can serve it",
         folder.display(),
         counted(page.len(), "file"),
         counted(packages.len(), "package"),
         bytes(size),
     ));
-    Ok(ExitCode::Done)
+    Ok(())
 }
 
-/// Refuses a site in the folder of the page, where the next one would take it for a part of the page.
-fn refuse_inside_page(site: &Path, page: Option<&Path>) -> Result<(), Failure> {
+/// Rejects a site inside the folder of the page: the next site would include it in the page.
+fn refuse_inside_page(site: &Path, page: Option<&Path>) -> Result<(), CommandFailure> {
     let place = |path: &Path| path.canonicalize().ok();
     let parent = place(folder_of(site));
     match (parent, page.and_then(place)) {
-        (Some(parent), Some(page)) if parent.starts_with(&page) => Err(Failure::unusable(format!(
-            "cannot write {}: it would be in the folder of the page, {}; give a folder beside it",
-            site.display(),
-            page.display()
-        ))),
+        (Some(parent), Some(page)) if parent.starts_with(&page) => Err(unusable!(
+            "cannot write {site:?}: it would be inside the folder of the page, {page:?}; choose a folder outside it"
+        )),
         _ => Ok(()),
     }
 }
 
-fn serve(args: &ServeArgs, page: Vec<PageFile>, packages: &[Shown]) -> Result<ExitCode, Failure> {
+fn serve(args: &ServeArgs, page: Vec<PageFile>, packages: &[Shown]) -> Result<(), CommandFailure> {
     let mut routes = Routes::default();
     for PageFile { path, bytes } in page {
         let content = match bytes {
-            Cow::Borrowed(bytes) => Content::Memory(bytes.into()),
-            Cow::Owned(bytes) => Content::Memory(bytes.into()),
+            Cow::Borrowed(bytes) => FileContent::Memory(bytes.into()),
+            Cow::Owned(bytes) => FileContent::Memory(bytes.into()),
         };
         routes.add(path, content, Readers::AnyPage);
     }
-    // What is shown here is nobody's business who does not know it.
-    routes.add(LIST, Content::Memory(shown::list(packages).into()), Readers::OwnPages);
+    // Nobody who does not know the address should see what is served.
+    routes.add(LIST, FileContent::Memory(shown::list(packages).into()), Readers::OwnPages);
     for package in packages {
-        let file = PackageFile::of(&package.file);
-        let file = file.map_err(|error| Failure::from(error).about(&package.file))?;
-        routes.add(package.path(), Content::Disk(Arc::new(file)), Readers::AnyPage);
+        let file = PackageFile::at_path(&package.file);
+        let file = file.map_err(|error| CommandFailure::from(error).about(&package.file))?;
+        routes.add(package.path(), FileContent::Disk(Arc::new(file)), Readers::AnyPage);
     }
     let server = Server::bind(&args.address, args.port)?;
     let address = server.address();
     let url = url(&args.address, address);
     messages::answer(&format!("{url}\n"))?;
-    messages::note(&format!("serves {}; Ctrl-C ends it", counted(packages.len(), "package")));
+    messages::note(&format!(
+        "serving {}; press Ctrl-C to stop",
+        counted(packages.len(), "package")
+    ));
     if !address.ip().is_loopback() {
         messages::note(&format!(
-            "it listens at {address}, so other computers can read these packages"
+            "the server listens at {address}, so other computers can read these packages"
         ));
     }
-    // The address answers already: until the server is ready, connections wait in its queue.
+    // The address already accepts connections: until the server is ready, they wait in its queue.
     if args.open && !browser::open(&url) {
-        messages::note("no browser could be opened here; open the address above in one");
+        messages::note("cannot open a browser on this computer; open the address above in one");
     }
     let observer = |Answered { method, path, range, status }: &Answered| {
         let range = range.as_deref().unwrap_or_default();
         tracing::debug!(method, path, range, status, "answered");
     };
-    server
-        .serve(routes, &Watch { is_stopped: &interrupt::is_noted, observer: Arc::new(observer) })?;
-    // That is how it is meant to end, so it is no failure.
-    Ok(ExitCode::Done)
+    server.serve(
+        routes,
+        &ServerWatch { is_stopped: &interrupt::is_noted, observer: Arc::new(observer) },
+    )?;
+    // This is the normal end, so it is not a failure.
+    Ok(())
 }
 
-/// Where a browser finds the page.
+/// The URL of the page for a browser.
 fn url(named: &str, bound: SocketAddr) -> String {
     let host = match bound.ip() {
-        // All addresses of this machine; this one is among them.
+        // The address stands for all addresses of this machine, so use the loopback address.
         IpAddr::V4(ip) if ip.is_unspecified() => Ipv4Addr::LOCALHOST.into(),
         IpAddr::V6(ip) if ip.is_unspecified() => Ipv6Addr::LOCALHOST.into(),
         ip => ip,

@@ -1,4 +1,4 @@
-//! The address that `serve` prints is one that a browser opens.
+//! Browsers can open the address that `serve` prints.
 
 use super::{counted, url};
 

@@ -1,4 +1,4 @@
-//! Turns arguments and settings files into checked settings.
+//! Converts arguments and settings files to checked settings.
 
 use std::{
     mem,
@@ -7,8 +7,8 @@ use std::{
     thread,
 };
 
-use corniche_areas::{AreaTable, ClassedLayer};
-use corniche_gis::Polygon;
+use corniche_areas::AreaTable;
+use corniche_gis::RegionPolygons;
 use corniche_ground::terrain::recorded::TerrainRecord;
 use corniche_presets::{
     AreaOptions, BoundsChoice, InputFiles, OutputFiles, PhotoOptions, RoadOptions, TerrainOptions,
@@ -21,36 +21,37 @@ use corniche_spec::{
     machine::{MIN_MEMORY_BYTES, default_memory_bytes},
 };
 
-use crate::{args::WorkArgs, credits, exit::ExitCode, failure::Failure, presets};
+use crate::{args::WorkArgs, credits, failure::CommandFailure, presets};
 
-/// Default quality of photos: at 85 they take a fifth more bytes for half a decibel (docs/lab/measured.md).
+/// Default JPEG quality of photos: quality 85 needs a fifth more bytes for half a decibel
+/// (docs/lab/measured.md).
 const PHOTO_QUALITY: u8 = 80;
-/// What to make, and with what.
-pub(crate) struct Work {
+/// The work of a build: what to build, and from which inputs.
+pub(crate) struct BuildWork {
     pub(crate) plan: PlanSettings,
     pub(crate) resources: Resources,
-    /// Where intermediate results go.
+    /// The folder of intermediate results.
     pub(crate) tmp: Option<PathBuf>,
     pub(crate) force: bool,
 }
 
-/// Puts what the settings file says where the command line says nothing, and gives what it says of outputs.
-pub(crate) fn complete(args: &mut WorkArgs) -> Result<OutputFiles, Failure> {
+/// Fills in missing arguments from the settings file, and returns its settings of outputs.
+pub(crate) fn complete(args: &mut WorkArgs) -> Result<OutputFiles, CommandFailure> {
     let Some(path) = &args.config else { return Ok(OutputFiles::default()) };
     let folder = path.parent().unwrap_or(Path::new(""));
     let config = presets::read_config(path)?.in_folder(folder);
     args.inputs = mem::take(&mut args.inputs).or(config.inputs);
     let InputFiles { dem, terrain, .. } = &args.inputs;
-    let place = path.display();
+    let place = format!("{path:?}");
     if dem.is_empty() && terrain.is_none() {
-        return Err(Failure::unusable(format!(
-            "no elevation is named; give --dem FILE, or dem under [inputs] in {place}"
-        )));
+        return Err(unusable!(
+            "no elevation data is named; pass --dem FILE, or write dem under [inputs] in {place}"
+        ));
     }
     if !dem.is_empty() && terrain.is_some() {
-        return Err(Failure::unusable(format!(
-            "{place} has dem and terrain under [inputs]; terrain comes from one of them, so leave the other out"
-        )));
+        return Err(unusable!(
+            "{place} has both dem and terrain under [inputs]; only one of them can be the source of the terrain, so remove the other one"
+        ));
     }
     args.photos = mem::take(&mut args.photos).or(config.photo);
     args.terrain = mem::take(&mut args.terrain).or(config.terrain);
@@ -60,11 +61,12 @@ pub(crate) fn complete(args: &mut WorkArgs) -> Result<OutputFiles, Failure> {
     Ok(config.output)
 }
 
-/// The only place where text becomes settings. The command line has precedence over the settings file, which has precedence
-/// over the defaults; [`complete`] has put both together.
-pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
+/// The only place where text is converted to settings. The command line has precedence over the
+/// settings file, which has precedence over the defaults; [`complete`] has merged the first two.
+pub(crate) fn build_work(args: WorkArgs) -> Result<BuildWork, CommandFailure> {
     let WorkArgs { inputs, terrain, roads, resources, .. } = args;
-    // What is not given is as it was when the package was made whose terrain is taken, else the usual.
+    // Missing settings are those of the package whose terrain is reused, if any, and otherwise the
+    // defaults.
     let base = match &inputs.terrain {
         Some(package) => TerrainRecord::of_package(package)?,
         None => TerrainRecord { terrain: TerrainSettings::usual(), attribution: Vec::new() },
@@ -74,14 +76,14 @@ pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
     let mut attribution = attribution.unwrap_or(base.attribution);
     let photo = photo_choice(&inputs.photo, &args.photos)?;
     if let PhotoChoice::Files(_) = photo {
-        // The package whose terrain is taken may have the same photos.
+        // The package whose terrain is reused may have the same photos.
         let credit = args.photos.attribution.filter(|credit| !attribution.contains(credit));
         attribution.extend(credit);
     }
     credits::check(&attribution)?;
     let osm = extract_names(&inputs.osm)?;
     let areas = area_table(&args.areas, &osm)?;
-    let lines = lines(&args.areas, &osm)?;
+    let boundaries = boundaries(&args.areas, &osm)?;
     let bounds = terrain.bounds.map(|bounds| in_degrees(bounds, &osm)).transpose()?;
     let polygon = inputs.polygon.map(polygon).transpose()?;
     let dem = elevation_names(&inputs.dem)?;
@@ -93,7 +95,7 @@ pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
         terrain_of: inputs.terrain,
         osm,
         areas,
-        lines,
+        boundaries,
         photo,
         attribution,
         terrain,
@@ -113,29 +115,26 @@ pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
         memory_bytes = resources.memory_bytes,
         "settings"
     );
-    Ok(Work { plan, resources, tmp, force })
+    Ok(BuildWork { plan, resources, tmp, force })
 }
 
 /// Reads a polygon.
-pub(crate) fn polygon(path: PathBuf) -> Result<Polygon, Failure> {
-    let read = Polygon::read(&input_name(path).map_err(Failure::unusable)?);
-    read.map_err(|error| Failure::new(ExitCode::Unusable, error))
+pub(crate) fn polygon(path: PathBuf) -> Result<RegionPolygons, CommandFailure> {
+    Ok(RegionPolygons::read(&input_name(path).map_err(CommandFailure::unusable)?)?)
 }
 
-/// The bounds in degrees, which an extract may have to tell.
-fn in_degrees(bounds: BoundsChoice, osm: &[PathBuf]) -> Result<BoundsChoice, Failure> {
+/// The bounds in degrees; with `osm` they are read from the extract.
+fn in_degrees(bounds: BoundsChoice, osm: &[PathBuf]) -> Result<BoundsChoice, CommandFailure> {
     match bounds {
         BoundsChoice::Degrees(_) => Ok(bounds),
         BoundsChoice::Osm if !osm.is_empty() => {
             Ok(BoundsChoice::Degrees(corniche_spec::extract_bounds(osm)?))
         }
-        BoundsChoice::Osm => Err(Failure::unusable(
-            "--bounds osm takes the bounds of the extract; give one with --osm",
-        )),
+        BoundsChoice::Osm => Err(unusable!("--bounds osm needs an extract; pass one with --osm")),
     }
 }
 
-/// Puts an option, if it is given, in its place in the checked settings.
+/// Assigns an option, if it is given, to its place in the checked settings.
 macro_rules! give {
     (($options:ident to $settings:ident) $name:ident $key:ident [$($path:tt)+] $usual:tt) => {
         if let Some(value) = $options.$name {
@@ -144,12 +143,12 @@ macro_rules! give {
     };
 }
 
-/// The settings that are given; others are those of `base`.
+/// The given settings; missing ones are those of `base`.
 fn terrain_settings(
     options: TerrainOptions,
     base: TerrainSettings,
-) -> Result<TerrainSettings, Failure> {
-    options.check().map_err(Failure::unusable)?;
+) -> Result<TerrainSettings, CommandFailure> {
+    options.check().map_err(CommandFailure::unusable)?;
     let mut settings = TerrainSettings {
         allow_ballpark: options.allow_ballpark,
         max_error_m: options.max_error.or(base.max_error_m),
@@ -159,9 +158,9 @@ fn terrain_settings(
     Ok(settings)
 }
 
-/// Which photos the package gets, and how they are made.
-fn photo_choice(names: &[PathBuf], options: &PhotoOptions) -> Result<PhotoChoice, Failure> {
-    // A settings file may say how photos are made that the command line does not want.
+/// The photos of the package, and how they are stored.
+fn photo_choice(names: &[PathBuf], options: &PhotoOptions) -> Result<PhotoChoice, CommandFailure> {
+    // A settings file may have options for photos although the command line turns photos off.
     if is_photo_off(names) {
         return Ok(PhotoChoice::Off);
     }
@@ -169,51 +168,42 @@ fn photo_choice(names: &[PathBuf], options: &PhotoOptions) -> Result<PhotoChoice
         return if *options == PhotoOptions::default() {
             Ok(PhotoChoice::OfTerrain)
         } else {
-            Err(Failure::unusable(
-                "--photo-levels, --photo-quality and --photo-attribution have an effect only with photos that are read; give them together with --photo FILE",
+            Err(unusable!(
+                "--photo-levels, --photo-quality and --photo-attribution apply only to photos that are read; pass photos with --photo FILE"
             ))
         };
     }
     let quality = options.quality.unwrap_or(PHOTO_QUALITY);
     if !(1..=100).contains(&quality) {
-        return Err(Failure::unusable(format!(
-            "--photo-quality must be from 1 to 100, not {quality}"
-        )));
+        return Err(unusable!("--photo-quality must be between 1 and 100, not {quality}"));
     }
     let files = corniche_spec::inputs::photo_names(names)?;
     Ok(PhotoChoice::Files(PhotoSettings { files, levels: options.levels, quality }))
 }
 
-/// The table of areas; `None` without.
-fn area_table(options: &AreaOptions, osm: &[PathBuf]) -> Result<Option<AreaTable>, Failure> {
+/// The table of areas; `None` without areas.
+fn area_table(options: &AreaOptions, osm: &[PathBuf]) -> Result<Option<AreaTable>, CommandFailure> {
     match options.table.as_deref() {
         None | Some("off") => Ok(None),
         Some(_) if osm.is_empty() => {
-            Err(Failure::unusable("--areas takes areas from an extract; give one with --osm"))
+            Err(unusable!("--areas needs an extract; pass one with --osm"))
         }
         Some(table) => presets::area_table(table).map(Some),
     }
 }
 
-/// The layers of lines that are wanted.
-fn lines(options: &AreaOptions, osm: &[PathBuf]) -> Result<Vec<ClassedLayer>, Failure> {
-    let is_wanted = |layer: &ClassedLayer| match layer {
-        ClassedLayer::Boundaries => options.boundaries == Some(true),
-    };
-    let wanted: Vec<_> = ClassedLayer::ALL.into_iter().filter(is_wanted).collect();
-    match wanted.first() {
-        Some(layer) if osm.is_empty() => {
-            let name = layer.name();
-            Err(Failure::unusable(format!(
-                "--{name} takes {name} from an extract; give one with --osm"
-            )))
+/// Whether boundaries are requested.
+fn boundaries(options: &AreaOptions, osm: &[PathBuf]) -> Result<bool, CommandFailure> {
+    match options.boundaries {
+        Some(true) if osm.is_empty() => {
+            Err(unusable!("--boundaries needs an extract; pass one with --osm"))
         }
-        _ => Ok(wanted),
+        wanted => Ok(wanted == Some(true)),
     }
 }
 
-fn road_settings(options: RoadOptions) -> Result<RoadSettings, Failure> {
-    options.check().map_err(Failure::unusable)?;
+fn road_settings(options: RoadOptions) -> Result<RoadSettings, CommandFailure> {
+    options.check().map_err(CommandFailure::unusable)?;
     let filter = match options.class_max_cell {
         _ if options.all_classes => ClassFilter::all(),
         Some(cells) => class_filter(&cells).map_err(|error| presets::refuse("settings", &error))?,
@@ -226,28 +216,28 @@ fn road_settings(options: RoadOptions) -> Result<RoadSettings, Failure> {
             .map_err(|error| presets::refuse("--classes", &error))?,
         None => table,
     };
-    let mut settings = RoadSettings { filter, ..RoadSettings::of(table) };
+    let mut settings = RoadSettings { filter, ..RoadSettings::from_table(table) };
     corniche_settings::placed! { Roads [give] (options to settings) }
     Ok(settings)
 }
 
-/// Program and version.
+/// The name and version of the program.
 pub(crate) fn generator() -> String {
     format!("corniche {}", env!("CARGO_PKG_VERSION"))
 }
 
-/// What a run may use.
+/// The memory, threads and folders that a run may use.
 pub(crate) fn resources(
     threads_asked: Option<NonZeroUsize>,
     memory: Option<&str>,
-) -> Result<Resources, Failure> {
+) -> Result<Resources, CommandFailure> {
     let memory_bytes = match memory {
         Some(text) => match parse_bytes(text) {
             Ok(size_bytes) if size_bytes >= MIN_MEMORY_BYTES => size_bytes,
             _ => {
-                return Err(Failure::unusable(format!(
-                    "--memory {text:?} is not a size of at least 256M; write it like 512M, 800MB, 0.5G or 1T"
-                )));
+                return Err(unusable!(
+                    "--memory {text:?} is not a size of at least 256M; write a size such as 512M, 800MB, 0.5G or 1T"
+                ));
             }
         },
         None => default_memory_bytes(),
@@ -255,7 +245,7 @@ pub(crate) fn resources(
     Ok(Resources { threads: threads(threads_asked), memory_bytes })
 }
 
-/// The number of threads that is asked for, else one per processor.
+/// The requested number of threads, or one per processor.
 pub(crate) fn threads(asked: Option<NonZeroUsize>) -> usize {
     asked.or_else(|| thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get)
 }

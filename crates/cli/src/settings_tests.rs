@@ -1,4 +1,4 @@
-//! Settings are checked once the command line has overridden them.
+//! Settings are checked after the command line has overridden them.
 
 use corniche_presets::{Config, ResourceOptions};
 
@@ -8,7 +8,7 @@ use super::*;
 fn lengths_must_be_lengths() {
     let checked = |max_error_m| {
         let options = TerrainOptions { max_error: Some(max_error_m), ..TerrainOptions::default() };
-        Ok::<_, Failure>(terrain_settings(options, TerrainSettings::usual())?.max_error_m)
+        Ok::<_, CommandFailure>(terrain_settings(options, TerrainSettings::usual())?.max_error_m)
     };
     assert!(checked(0.0).is_err());
     assert!(checked(f64::NAN).is_err());
@@ -21,14 +21,15 @@ fn a_memory_that_the_command_line_overrides_does_not_matter() {
     let error = resources(None, of_file.memory.as_deref()).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "--memory \"1M\" is not a size of at least 256M; write it like 512M, 800MB, 0.5G or 1T"
+        "--memory \"1M\" is not a size of at least 256M; write a size such as 512M, 800MB, 0.5G or 1T"
     );
     let given = ResourceOptions { memory: Some("512M".to_owned()), ..ResourceOptions::default() };
     let merged = given.or(of_file);
     assert_eq!(resources(None, merged.memory.as_deref()).unwrap().memory_bytes, 512 << 20);
 }
 
-/// The settings file that comes with the program, with the keys uncommented for which `is_wanted` says so of a line.
+/// The settings file that comes with the program, with those keys uncommented whose line
+/// `is_wanted` accepts.
 fn uncommented(is_wanted: impl Fn(&str) -> bool) -> String {
     let lines = corniche_config::BUILD_SETTINGS.lines().map(|line| match line.strip_prefix('#') {
         Some(key) if is_key(line) && is_wanted(key) => key,
@@ -37,26 +38,26 @@ fn uncommented(is_wanted: impl Fn(&str) -> bool) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// Whether this line is a key that is commented out: no space follows its `#`.
+/// Whether this line is a commented key: no space follows its `#`.
 fn is_key(line: &str) -> bool {
     line.strip_prefix('#').is_some_and(|key| key.starts_with(char::is_alphabetic))
 }
 
-/// What a settings file says, as settings; without its inputs, outputs and what depends on the machine.
+/// The settings in a file; without inputs, outputs and settings that depend on the machine.
 fn settings_of(text: &str) -> String {
     let Config { terrain, roads, areas, photo, .. } = Config::parse(text).unwrap();
     let credits = (terrain.attribution.clone(), photo.attribution.clone(), terrain.bounds);
     let terrain = terrain_settings(terrain, TerrainSettings::usual()).unwrap();
     let photo = photo_choice(&[PathBuf::from("a.tif")], &photo).unwrap();
-    let areas = (area_table(&areas, &[]).unwrap(), lines(&areas, &[]).unwrap());
+    let areas = (area_table(&areas, &[]).unwrap(), boundaries(&areas, &[]).unwrap());
     format!("{credits:?} {terrain:?} {:?} {areas:?} {photo:?}", road_settings(roads).unwrap())
 }
 
-/// Every key of the settings file is known, and changes nothing where it stands with its default, but something where it is an example.
-/// Inputs and outputs have no defaults, and those of resources depend on the machine.
+/// Every key of the settings file is known. A default has no effect, but an example has. Inputs and
+/// outputs have no defaults, and those of resources depend on the machine.
 #[test]
 fn the_settings_file_has_the_defaults() {
-    // Two pairs of keys exclude each other only when a build begins, so all can be read at once.
+    // Two pairs of keys exclude each other only when a build begins, so all can be parsed at once.
     Config::parse(&uncommented(|_| true)).unwrap();
     let without = settings_of("");
     let mut compared = 0;
@@ -69,7 +70,7 @@ fn the_settings_file_has_the_defaults() {
         }
         if is_compared {
             let text = uncommented(|key| Some(key) == line.strip_prefix('#'));
-            // An example is no default.
+            // An example is not a default.
             let is_example = line.ends_with("# example");
             assert_eq!(settings_of(&text) != without, is_example, "{line}");
             compared += 1;
@@ -78,7 +79,7 @@ fn the_settings_file_has_the_defaults() {
     assert!(compared > 20, "only {compared} keys were compared");
 }
 
-/// The settings file has every key: those that the reader names when it meets one that it does not know.
+/// The settings file has every key: those that the parser lists in its error about an unknown key.
 #[test]
 fn the_settings_file_has_every_key() {
     let known = |text: &str| -> Vec<String> {

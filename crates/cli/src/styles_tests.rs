@@ -1,4 +1,4 @@
-//! A style is read again when its file changes, and a broken one is told once.
+//! A style is reloaded when its file changes, and an invalid one is reported once.
 
 use std::{
     fs,
@@ -20,7 +20,7 @@ fn what_is_no_style_is_refused_by_its_name() {
     assert!(message.contains("mine.toml") && message.contains("line 1"), "{message}");
 }
 
-/// A look finds whatever changed, also what no time stamp tells of.
+/// A check detects every change, including those that no time stamp shows.
 #[test]
 fn a_style_is_read_again_when_its_file_changes_and_only_then() {
     let folder = tempfile::tempdir().unwrap();
@@ -32,7 +32,7 @@ fn a_style_is_read_again_when_its_file_changes_and_only_then() {
     };
     let [atlas, dark] = ["road-atlas", "dark"].map(|name| style_preset(name).unwrap());
     write(atlas);
-    let mut file = StyleFile::of(path.to_str().unwrap()).unwrap();
+    let mut file = StyleFile::find(path.to_str().unwrap()).unwrap();
     assert!(file.reload_if_changed().is_none());
     write(dark);
     assert_eq!(file.reload_if_changed().unwrap().unwrap(), style("dark").unwrap());
@@ -41,7 +41,7 @@ fn a_style_is_read_again_when_its_file_changes_and_only_then() {
     assert!(as_long != dark && as_long.len() == dark.len());
     write(&as_long);
     assert!(file.reload_if_changed().unwrap().is_ok());
-    assert!(StyleFile::of("dark").is_none());
+    assert!(StyleFile::find("dark").is_none());
 }
 
 #[test]
@@ -50,8 +50,8 @@ fn what_is_no_style_is_told_once_and_not_while_it_may_still_be_written() {
     let path = folder.path().join("mine.toml");
     let [atlas, dark] = ["road-atlas", "dark"].map(|name| style_preset(name).unwrap());
     fs::write(&path, atlas).unwrap();
-    let mut file = StyleFile::of(path.to_str().unwrap()).unwrap();
-    // Emptied, begun, complete.
+    let mut file = StyleFile::find(path.to_str().unwrap()).unwrap();
+    // First the file is truncated, then incomplete, then complete.
     for part in [0, dark.len() / 2] {
         fs::write(&path, &dark[..part]).unwrap();
         assert!(file.reload_if_changed().is_none(), "{part} bytes of it");
@@ -78,7 +78,7 @@ fn a_style_whose_file_is_gone_is_told_once_and_read_again_when_it_is_back() {
     let path = folder.path().join("mine.toml");
     let dark = style_preset("dark").unwrap();
     fs::write(&path, dark).unwrap();
-    let mut file = StyleFile::of(path.to_str().unwrap()).unwrap();
+    let mut file = StyleFile::find(path.to_str().unwrap()).unwrap();
     fs::remove_file(&path).unwrap();
     assert!(file.reload_if_changed().is_none(), "perhaps an editor is replacing it");
     fs::write(&path, dark).unwrap();
@@ -86,7 +86,7 @@ fn a_style_whose_file_is_gone_is_told_once_and_read_again_when_it_is_back() {
     fs::remove_file(&path).unwrap();
     assert!(file.reload_if_changed().is_none(), "the doubt begins anew");
     let message = file.reload_if_changed().unwrap().unwrap_err().to_string();
-    assert!(message.contains("mine.toml") && message.contains("gone"), "{message}");
+    assert!(message.contains("mine.toml") && message.contains("missing"), "{message}");
     assert!(file.reload_if_changed().is_none(), "it is told once");
     fs::write(&path, dark).unwrap();
     assert_eq!(file.reload_if_changed().unwrap().unwrap(), style("dark").unwrap());

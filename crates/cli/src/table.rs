@@ -4,7 +4,8 @@ use std::{fmt::Write as _, ops::Range};
 
 use crate::{escaped::shortened, messages};
 
-/// Rows under headings, columns as wide as they need, up to [`MAX_CELL`]; the first column left, the others right.
+/// Rows below headings; columns are as wide as needed, up to [`MAX_CELL`]; the first column is
+/// left-aligned, the others right-aligned.
 pub(crate) struct Table {
     rows: Vec<Vec<String>>,
 }
@@ -20,7 +21,7 @@ impl Table {
         self.rows.push(cells.map(|cell| shortened(&cell, MAX_CELL).into_owned()).into());
     }
 
-    /// Leaves out the columns that have nothing in them but their heading.
+    /// Removes columns that are empty except for their heading.
     pub(crate) fn without_empty_columns(mut self) -> Self {
         for column in (0..self.rows[0].len()).rev() {
             if self.rows[1..].iter().all(|row| row[column].is_empty()) {
@@ -30,7 +31,8 @@ impl Table {
         self
     }
 
-    /// Lines of at most [`MAX_WIDTH`] characters: what does not fit beside each other goes below, beside the first column again.
+    /// The table in lines of at most [`MAX_WIDTH`] characters: columns that do not fit follow
+    /// below, next to the first column again.
     pub(crate) fn to_text(&self) -> String {
         let width = |column: usize| {
             self.rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0)
@@ -41,7 +43,7 @@ impl Table {
         blocks.join("\n")
     }
 
-    /// The first column with these columns beside it.
+    /// The first column followed by these columns.
     fn block(&self, widths: &[usize], columns: Range<usize>) -> String {
         let mut text = String::new();
         for row in &self.rows {
@@ -56,21 +58,23 @@ impl Table {
     }
 }
 
-/// Most characters in a line of a table.
+/// The largest number of characters in a line of a table.
 const MAX_WIDTH: usize = 100;
-/// Most characters in a cell. Texts of others may be of any length, and no width of a column comes from them.
+/// The largest number of characters in a cell. Foreign texts may have any length, but do not
+/// determine the width of a column.
 const MAX_CELL: usize = 80;
-/// What stands between two columns.
+/// The gap between two columns.
 const GAP: &str = "  ";
 
-/// Which columns go beside the first one, block by block: no more blocks than needed, and those as narrow as they can be.
+/// Distributes columns to blocks next to the first column: as few blocks as possible, and each as
+/// narrow as possible.
 fn folds(widths: &[usize]) -> Vec<Range<usize>> {
     let widest = folds_within(widths, MAX_WIDTH);
     let narrower = (0..MAX_WIDTH).map(|limit| folds_within(widths, limit));
     narrower.into_iter().find(|blocks| blocks.len() == widest.len()).unwrap_or(widest)
 }
 
-/// Blocks of columns, each with as many as fit, at least one.
+/// Blocks with as many columns as fit, at least one.
 fn folds_within(widths: &[usize], limit: usize) -> Vec<Range<usize>> {
     let mut blocks = Vec::new();
     let mut begin = 1;
@@ -88,8 +92,8 @@ fn folds_within(widths: &[usize], limit: usize) -> Vec<Range<usize>> {
     blocks
 }
 
-/// A text in lines of at most [`MAX_WIDTH`] characters, broken at spaces; a longer word stays whole. The first line begins with `first`, the
-/// others with `rest`.
+/// Wraps a text at spaces to lines of at most [`MAX_WIDTH`] characters; a longer word stays whole.
+/// The first line begins with `first`, the others with `rest`.
 pub(crate) fn wrapped(text: &str, first: &str, rest: &str) -> String {
     let mut lines = String::from(first);
     let mut width = first.chars().count();
@@ -111,22 +115,22 @@ pub(crate) fn wrapped(text: &str, first: &str, rest: &str) -> String {
     lines
 }
 
-/// How whole numbers are written.
+/// The format of whole numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Digits {
-    /// Thousands stand apart, for people.
+    /// Grouped by thousands, for people.
     Apart,
-    /// Digits alone, for what reads a file or a pipe.
+    /// Digits only, for programs that read a file or a pipe.
     Plain,
 }
 
 impl Digits {
-    /// The form of numbers in answers.
+    /// The format of numbers on standard output.
     pub(crate) fn of_answers() -> Self {
         if messages::answers_are_seen() { Self::Apart } else { Self::Plain }
     }
 
-    /// The form of numbers in notes.
+    /// The format of numbers in notes.
     pub(crate) fn of_notes() -> Self {
         if messages::notes_are_seen() { Self::Apart } else { Self::Plain }
     }
@@ -169,10 +173,10 @@ pub(crate) fn length(micrometres: u64) -> String {
     if metres < 1000.0 { format!("{metres:.1} m") } else { format!("{:.1} km", metres / 1000.0) }
 }
 
-/// A number that nothing exceeds, with so many decimals: rounded up.
+/// An upper bound for a value, with this many decimals: rounded up.
 pub(crate) fn up_to(value: f64, decimals: u8) -> String {
     let steps = 10_f64.powi(decimals.into());
-    // A multiple that is not quite one is no reason for the next.
+    // A multiple that is not quite exact is not rounded up to the next.
     format!("{:.*}", decimals.into(), (value * steps - 1e-6).ceil().max(0.0) / steps)
 }
 

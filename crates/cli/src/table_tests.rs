@@ -1,4 +1,4 @@
-//! Tables line up, are folded where they are too wide, and leave out empty columns.
+//! Tables are aligned, are folded if they are too wide, and omit empty columns.
 
 use super::*;
 
@@ -31,7 +31,7 @@ fn a_table_is_folded_where_it_would_be_too_wide() {
             let is_alone = line.split_whitespace().count() <= 2;
             assert!(line.chars().count() <= MAX_WIDTH || is_alone, "{widths:?}:\n{text}");
         }
-        // Nothing is lost, and each block has the first column.
+        // All columns are there, and each block has the first column.
         for heading in headings {
             let times = text.split_whitespace().filter(|word| *word == heading).count();
             assert!(times == 1 || heading == "level", "{heading}: {times}\n{text}");
@@ -68,7 +68,7 @@ fn texts_are_broken_at_spaces_and_go_on_below() {
         assert!(next.starts_with("    x"), "{folded}");
     }
     assert_eq!(folded.split_whitespace().skip(1).collect::<Vec<_>>(), words);
-    // What fits stays as it is, spaces included; a long word stays whole.
+    // A text that fits is unchanged, including its spaces; a long word stays whole.
     assert_eq!(wrapped("a  b   c", "", "  "), "a  b   c");
     let long = "x".repeat(150);
     assert_eq!(wrapped(&format!("a {long} b"), "", "  "), format!("a\n  {long}\n  b"));

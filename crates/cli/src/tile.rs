@@ -1,37 +1,35 @@
-//! `corniche tile`: one decoded tile, for other tools to check packages with.
+//! `corniche tile`: prints one decoded tile, for other tools that check packages.
 
-use corniche_areas::ClassedLayer;
 use corniche_geom::{Bounds, LatticePoint, NodeIndex, TileId};
 use corniche_tileset::{
     AreaRecord, FilePackage, GeoRoad, LineRecord, Manifest, Sections, SpanPoint, SpanRun, SvRoad,
-    Terrain, TilePayload, decode_areas, decode_lines,
+    TilePayload, TileTerrain, decode_areas, decode_boundaries,
 };
 use corniche_tin::Surface;
 
 use crate::{
-    args::{Coordinates, TileArgs},
+    args::{DumpCoordinates, TileArgs},
     documents::{
         areas::TileAreaDocument,
         lines::TileBoundaryDocument,
         spans::TileSpanDocument,
         tile::{
-            GeoRoadDocument, SvRoadDocument, TileDocument, TinDocument, WayDocument, Written,
+            GeoRoadDocument, StreamedList, SvRoadDocument, TileDocument, TinDocument, WayDocument,
             normal,
         },
     },
-    exit::ExitCode,
-    failure::Failure,
+    failure::CommandFailure,
     messages, packages,
     table::{Digits, Table},
 };
 
-pub(crate) fn run(args: &TileArgs) -> Result<ExitCode, Failure> {
+pub(crate) fn run(args: &TileArgs) -> Result<(), CommandFailure> {
     let package = packages::open(&args.from.package)?;
     let payload = match (args.id, args.at) {
         (Some(id), _) => package.payload(id, Sections::ALL)?.ok_or_else(|| no_tile(args, id))?,
         (None, Some(at)) => payload_at(args, &package, at)?,
-        // The command line has one of them.
-        (None, None) => return Err(Failure::unusable("name a tile: Z/X/Y, or --at LON,LAT")),
+        // The parser requires one of them.
+        (None, None) => return Err(unusable!("name a tile: Z/X/Y, or --at LON,LAT")),
     };
     let layers = TileLayers::read(&package, payload.id)?;
     if args.json {
@@ -40,10 +38,10 @@ pub(crate) fn run(args: &TileArgs) -> Result<ExitCode, Failure> {
     } else {
         messages::answer(&to_text(&payload, &layers, Digits::of_answers()))?;
     }
-    Ok(ExitCode::Done)
+    Ok(())
 }
 
-/// What a tile has of the layers that are read by themselves.
+/// The layers of a tile that are read separately.
 struct TileLayers {
     areas: Vec<AreaRecord>,
     boundaries: Vec<LineRecord>,
@@ -51,75 +49,75 @@ struct TileLayers {
 }
 
 impl TileLayers {
-    fn read(package: &FilePackage, id: TileId) -> Result<Self, Failure> {
-        let bytes = package.tile(id).map_err(Failure::unusable)?.unwrap_or_default();
+    fn read(package: &FilePackage, id: TileId) -> Result<Self, CommandFailure> {
+        let bytes = package.tile(id).map_err(CommandFailure::unusable)?.unwrap_or_default();
         let manifest = package.manifest();
-        let boundaries = decode_lines(&bytes, id, ClassedLayer::Boundaries);
+        let boundaries = decode_boundaries(&bytes, id);
         let spans = manifest.decode_spans(&bytes, id);
         Ok(Self {
-            areas: decode_areas(&bytes, id, &manifest.frame).map_err(Failure::unusable)?,
-            boundaries: boundaries.map_err(Failure::unusable)?,
-            spans: spans.map_err(Failure::unusable)?,
+            areas: decode_areas(&bytes, id, &manifest.frame).map_err(CommandFailure::unusable)?,
+            boundaries: boundaries.map_err(CommandFailure::unusable)?,
+            spans: spans.map_err(CommandFailure::unusable)?,
         })
     }
 }
 
-fn no_tile(args: &TileArgs, id: TileId) -> Failure {
-    let package = &args.from.package;
-    Failure::unusable(format!("{package} has no tile {id}; corniche info --json lists its tiles"))
+fn no_tile(args: &TileArgs, id: TileId) -> CommandFailure {
+    let package = args.from.package.name();
+    unusable!("{package:?} has no tile {id}; list its tiles with corniche info --json")
 }
 
-/// The tile of the level asked for that holds a place, else the finest one there.
+/// The tile at a position, of the requested level or of the finest one that has a tile there.
 fn payload_at(
     args: &TileArgs,
     package: &FilePackage,
     [lon_deg, lat_deg]: [f64; 2],
-) -> Result<TilePayload, Failure> {
+) -> Result<TilePayload, CommandFailure> {
     let manifest = package.manifest();
     let finest = manifest.frame.max_level();
     if let Some(level) = args.level.filter(|&level| level > finest) {
-        return Err(Failure::unusable(format!("--level {level}: the finest level is {finest}")));
+        return Err(unusable!("--level {level} does not exist: the finest level is {finest}"));
     }
     let levels = args.level.map_or(0..=finest, |level| level..=level);
     for level in levels.rev() {
         let Some((id, point)) = tile_at(manifest, level, [lon_deg, lat_deg]) else { continue };
-        // A tile at the edge reaches beyond the data.
+        // A tile at the edge extends beyond the data.
         if !lies_in_data(manifest, point) {
             break;
         }
         let Some(payload) = package.payload(id, Sections::ALL)? else { continue };
         if args.level.is_none() && level < finest {
             messages::note(&format!(
-                "there is no tile of level {finest} at this place; tile {id} is the finest one"
+                "there is no tile of level {finest} at this position; tile {id} is the finest one"
             ));
         }
         if !has_ground(manifest, &payload, point) {
             messages::note(&format!(
-                "tile {id} has no ground at this place: it is in a void or beyond the edge of the data"
+                "tile {id} has no ground at this position, which is in a void or beyond the edge of the data"
             ));
         }
         return Ok(payload);
     }
-    Err(Failure::unusable(no_tile_at(args, manifest, [lon_deg, lat_deg])))
+    Err(CommandFailure::unusable(no_tile_at(args, manifest, [lon_deg, lat_deg])))
 }
 
-/// Why there is no tile at a place, and what to do.
+/// The error for a position without a tile: the reason, and what to do.
 fn no_tile_at(args: &TileArgs, manifest: &Manifest, [lon_deg, lat_deg]: [f64; 2]) -> String {
-    let package = &args.from.package;
+    let package = args.from.package.name();
     let on = args.level.map_or_else(String::new, |level| format!(" on level {level}"));
     let place = format!("longitude {lon_deg}, latitude {lat_deg}");
     if manifest.covers_deg([lon_deg, lat_deg]) {
-        let coarser = if args.level.is_some() { "leave --level out, or " } else { "" };
+        let coarser = if args.level.is_some() { "omit --level, or " } else { "" };
         return format!(
-            "{package} has no tile{on} at {place}: the data have a void there; {coarser}choose another place \
+            "{package:?} has no tile{on} at {place}: the data has a void there; {coarser}choose another position \
              (corniche info --json lists the tiles)"
         );
     }
     let covered = manifest.covered_text([lon_deg, lat_deg]);
-    format!("{package} has no ground{on} at {place}; it covers {covered}; choose a place there")
+    format!("{package:?} has no ground{on} at {place}; {covered}")
 }
 
-/// Whether a place lies in the rectangle of the data, or at its edge, to a cell.
+/// Whether a point is in the rectangle of the data, with a tolerance of one cell.
 fn lies_in_data(manifest: &Manifest, point: LatticePoint) -> bool {
     let [low, high] = manifest.data_nodes();
     let around =
@@ -127,7 +125,7 @@ fn lies_in_data(manifest: &Manifest, point: LatticePoint) -> bool {
     manifest.frame.lattice_bounds(around).contains(point)
 }
 
-/// Whether a tile's triangles cover a place.
+/// Whether a tile's triangles cover a point.
 fn has_ground(manifest: &Manifest, payload: &TilePayload, point: LatticePoint) -> bool {
     payload
         .terrain
@@ -135,13 +133,14 @@ fn has_ground(manifest: &Manifest, payload: &TilePayload, point: LatticePoint) -
         .is_some_and(|terrain| manifest.surface(payload.id, &terrain.tin).locate(point).is_some())
 }
 
-/// The tile of a level that holds a place, and where that is; `None` outside the root tile.
+/// The tile of a level that contains a position, and the position on the lattice; `None` outside
+/// the root tile.
 fn tile_at(
     manifest: &Manifest,
     level: u8,
     [lon_deg, lat_deg]: [f64; 2],
 ) -> Option<(TileId, LatticePoint)> {
-    // Longitudes of a package may run on past 180.
+    // Longitudes of a package may continue past 180.
     [0.0, 360.0, -360.0].into_iter().find_map(|turn| {
         let position = manifest.coordinates.working_from_wgs84([lon_deg + turn, lat_deg])?;
         let point = manifest.frame.snap(position)?;
@@ -165,7 +164,7 @@ fn to_text(payload: &TilePayload, layers: &TileLayers, digits: Digits) -> String
     let vertices = payload.roads_geo.iter().map(|road| road.line.vertices.len()).sum();
     table.row(["GEO vertices".into(), count(vertices)]);
     table.row(["SV lines".into(), count(payload.roads_sv.len())]);
-    table.row(["ways".into(), count(payload.attributes.len())]);
+    table.row(["OSM ways".into(), count(payload.attributes.len())]);
     let layers = [
         ("areas", layers.areas.len()),
         ("boundaries", layers.boundaries.len()),
@@ -177,25 +176,25 @@ fn to_text(payload: &TilePayload, layers: &TileLayers, digits: Digits) -> String
     table.to_text()
 }
 
-/// Makes coordinates of one kind from working metres and from points of the lattice.
+/// Converts working metres and lattice points to coordinates of one kind.
 #[derive(Clone, Copy)]
 struct Places<'a> {
     manifest: &'a Manifest,
-    /// What working metres are divided by.
+    /// The divisor of working metres.
     unit: [f64; 2],
 }
 
 impl Places<'_> {
-    fn of(self, [x, y]: [f64; 2]) -> [f64; 2] {
+    fn coordinates_at(self, [x, y]: [f64; 2]) -> [f64; 2] {
         [x / self.unit[0], y / self.unit[1]]
     }
 
     fn of_point(self, point: LatticePoint) -> [f64; 2] {
-        self.of(self.manifest.frame.position_m(point))
+        self.coordinates_at(self.manifest.frame.position_m(point))
     }
 
     fn with_height(self, position: [f64; 2], height_m: f64) -> [f64; 3] {
-        let [x, y] = self.of(position);
+        let [x, y] = self.coordinates_at(position);
         [x, y, height_m]
     }
 }
@@ -204,25 +203,25 @@ fn document<'a>(
     manifest: &'a Manifest,
     payload: &'a TilePayload,
     layers: TileLayers,
-    coordinates: Coordinates,
-) -> Result<TileDocument<'a>, Failure> {
+    coordinates: DumpCoordinates,
+) -> Result<TileDocument<'a>, CommandFailure> {
     let frame = &manifest.frame;
     let id = payload.id;
     let (word, unit) = match coordinates {
-        Coordinates::Working => ("working", [1.0; 2]),
-        Coordinates::Crs => ("crs", manifest.metres_per_unit),
+        DumpCoordinates::Working => ("working", [1.0; 2]),
+        DumpCoordinates::Crs => ("crs", manifest.metres_per_unit),
     };
     let places = Places { manifest, unit };
     let at = |point| places.of_point(point);
     let Bounds { min_x, min_y, max_x, max_y } = frame.tile_bounds(id);
-    // Where an axis counts back, its smallest coordinate is that of the other end.
+    // If an axis is reversed, the smallest coordinate is that of the other end.
     let mut bounds = Bounds::EMPTY;
-    bounds.include(places.of([min_x, min_y]));
-    bounds.include(places.of([max_x, max_y]));
+    bounds.include(places.coordinates_at([min_x, min_y]));
+    bounds.include(places.coordinates_at([max_x, max_y]));
     let terrain = payload.terrain.as_ref();
     let surface = terrain.map(|terrain| manifest.surface(id, &terrain.tin));
     let (mut roads_geo, mut spans) = (Vec::new(), Vec::new());
-    // Without ground a tile has neither.
+    // A tile without ground has neither.
     if let Some(surface) = &surface {
         for road in &payload.roads_geo {
             roads_geo.push(geo_road(road, surface, places)?);
@@ -244,19 +243,23 @@ fn document<'a>(
         uncovered_nodes: terrain.map(|terrain| terrain.uncovered_nodes),
         tin: terrain.map(|terrain| tin(id, terrain, places)).unwrap_or_default(),
         roads_geo,
-        roads_sv: Written::of(&payload.roads_sv, move |road| sv_road(road, places)),
-        attributes: Written::of(&payload.attributes, WayDocument::from),
-        areas: layers.areas.into_iter().map(|area| TileAreaDocument::of(area, &at)).collect(),
+        roads_sv: StreamedList::from_slice(&payload.roads_sv, move |road| sv_road(road, places)),
+        attributes: StreamedList::from_slice(&payload.attributes, WayDocument::from),
+        areas: layers
+            .areas
+            .into_iter()
+            .map(|area| TileAreaDocument::from_record(area, &at))
+            .collect(),
         boundaries: layers
             .boundaries
             .into_iter()
-            .map(|line| TileBoundaryDocument::of(line, at))
+            .map(|line| TileBoundaryDocument::from_record(line, at))
             .collect(),
         spans,
     })
 }
 
-fn tin(id: TileId, terrain: &Terrain, places: Places<'_>) -> TinDocument {
+fn tin(id: TileId, terrain: &TileTerrain, places: Places<'_>) -> TinDocument {
     let Manifest { frame, vertical, .. } = places.manifest;
     let corner = frame.tile_corner(id);
     let stride = frame.stride(id.z());
@@ -276,9 +279,8 @@ fn geo_road(
     road: &GeoRoad,
     surface: &Surface,
     places: Places<'_>,
-) -> Result<GeoRoadDocument, Failure> {
-    let positions = corniche_drape::positions(&road.line, surface)
-        .map_err(|error| Failure::new(ExitCode::Unusable, error))?;
+) -> Result<GeoRoadDocument, CommandFailure> {
+    let positions = corniche_drape::positions(&road.line, surface)?;
     let place = |[u, v, height_m]: [f64; 3]| {
         places.with_height(places.manifest.frame.position_of_fraction_m([u, v]), height_m)
     };
@@ -295,7 +297,7 @@ fn span(
     run: &SpanRun,
     surface: &Surface,
     places: Places<'_>,
-) -> Result<TileSpanDocument, Failure> {
+) -> Result<TileSpanDocument, CommandFailure> {
     let Manifest { frame, vertical, .. } = places.manifest;
     let place = |point: &SpanPoint| {
         let height_m = point.height_m(surface, vertical.quantum_m)?;
@@ -304,9 +306,9 @@ fn span(
     let line: Option<Vec<[f64; 3]>> = run.points.iter().map(place).collect();
     let line = line.ok_or_else(|| {
         let way = run.way_id;
-        Failure::unusable(format!("tile {id}: a span of way {way} ends beside the ground"))
+        unusable!("tile {id}: a span of OSM way {way} does not end on the ground")
     })?;
-    Ok(TileSpanDocument::of(run, line))
+    Ok(TileSpanDocument::from_run(run, line))
 }
 
 fn sv_road(road: &SvRoad, places: Places<'_>) -> SvRoadDocument {

@@ -1,24 +1,30 @@
-//! What a build ends with, in a few lines: the roads that are kept, what was left out and how to have it, the error, the size.
+//! The summary at the end of a build, in a few lines: kept roads, skipped objects and how to
+//! include them, the error, the size.
 
 use std::path::Path;
 
 use corniche_roads::LossReason;
-use corniche_tileset::{AreasRecord, Counts, LinesRecord, Manifest, VerticalRecord};
+use corniche_tileset::{
+    AreasRecord, LeftOutRecord, LinesRecord, Manifest, ManifestCounts, VerticalRecord,
+};
 
 use crate::{
     escaped::in_line,
-    info::{beyond_extract, rounded, sides},
+    info::{beyond_extract, in_metres, reason_words, sides},
     table::{Digits, bytes, length},
 };
 
-/// The most lines that a build ends with.
-const MOST_LINES: usize = 8;
-/// The most lines of what was left out.
+/// The largest number of lines.
+const MOST_LINES: usize = 10;
+/// The largest number of characters of a line after its name of 13, if values of `highway` are
+/// short.
+const WIDTH: usize = 87;
+/// The largest number of lines about skipped objects.
 const MOST_LEFT_OUT: usize = 3;
-/// The most values of `highway` that are named.
+/// The largest number of values of `highway` in a line.
 const MOST_VALUES: usize = 3;
 
-/// The verdict on a package that was written to `output`.
+/// The summary of a package that was written to `output`.
 pub(crate) fn to_text(
     manifest: &Manifest,
     package_bytes: u64,
@@ -26,8 +32,9 @@ pub(crate) fn to_text(
     digits: Digits,
 ) -> String {
     let counts = &manifest.counts;
-    let layers = [layers(manifest, digits), defects(counts, digits), datum(manifest)];
-    let mut end: Vec<String> = layers.into_iter().flatten().collect();
+    let [areas, boundaries] = [areas(manifest, digits), boundaries(manifest, digits)];
+    let some = [areas, boundaries, defects(counts, digits), datum(manifest)];
+    let mut end: Vec<String> = some.into_iter().flatten().collect();
     end.extend([error(manifest), size(manifest, package_bytes, digits), look(output)]);
     let mut lines = vec![roads(manifest, digits)];
     lines.extend(left_out(counts, digits, MOST_LEFT_OUT.min(MOST_LINES - 1 - end.len())));
@@ -37,7 +44,7 @@ pub(crate) fn to_text(
     lines.concat()
 }
 
-/// Roads kept of those that were read.
+/// The line of kept roads.
 fn roads(manifest: &Manifest, digits: Digits) -> String {
     let counts = &manifest.counts;
     if counts.roads_in == 0 {
@@ -57,83 +64,89 @@ fn roads(manifest: &Manifest, digits: Digits) -> String {
     )
 }
 
-/// Something of the extract that the package does not have.
+/// Objects of the extract that the package does not have.
 struct LeftOut {
     number: u64,
     length_um: u64,
-    /// What it is, and why it was left out.
+    /// The kind of objects, and the reason why they were skipped.
     what: String,
-    /// How to have it.
+    /// Values of `highway`, those with the longest ways first.
+    values: Vec<String>,
+    /// How to include them.
     remedy: Option<&'static str>,
 }
 
-/// What was left out, the longest first, in at most so many lines.
-fn left_out(counts: &Counts, digits: Digits, most: usize) -> Vec<String> {
+impl LeftOut {
+    /// One line with at most `most` values; with fewer, if they do not fit.
+    fn to_text(&self, digits: Digits, most: usize) -> String {
+        let Self { number, length_um, what, values, remedy } = self;
+        // Kept roads may also lose parts; those are not counted.
+        let number = if *number > 0 { digits.count(*number) + " " } else { String::new() };
+        let mut shown = values[..most.min(values.len())].join(", ");
+        if values.len() > most {
+            shown += ", …";
+        }
+        let shown = if shown.is_empty() { shown } else { format!(" ({shown})") };
+        let long = if *length_um > 0 { format!(", {}", length(*length_um)) } else { String::new() };
+        let remedy = remedy.map(|remedy| format!("; {remedy}")).unwrap_or_default();
+        let text = format!("{number}{what}{shown}{long}{remedy}");
+        if most > 1 && text.chars().count() > WIDTH { self.to_text(digits, most - 1) } else { text }
+    }
+}
+
+/// The skipped objects, the longest first, in at most `most` lines (two or more).
+fn left_out(counts: &ManifestCounts, digits: Digits, most: usize) -> Vec<String> {
     let lost = counts.roads_lost.iter().filter(|loss| loss.length_um > 0).map(|loss| LeftOut {
         number: loss.roads,
         length_um: loss.length_um,
         what: format!(
             "{} {}",
-            if loss.roads > 0 { "whole roads" } else { "parts of roads" },
-            in_line(&loss.reason)
+            if loss.roads > 0 { "roads" } else { "parts of roads" },
+            reason_words(&loss.reason)
         ),
+        values: Vec::new(),
         remedy: remedy(&loss.reason),
     });
     let ways = counts.highways_left_out.iter().map(|(reason, number)| {
         let of_reason: Vec<_> =
             counts.left_out.iter().filter(|left_out| &left_out.reason == reason).collect();
-        let values = of_reason
-            .iter()
-            .take(MOST_VALUES)
-            .map(|left_out| in_line(&left_out.highway).into_owned());
-        let mut values: Vec<String> = values.collect();
-        if of_reason.len() > MOST_VALUES {
-            values.push("…".to_owned());
-        }
-        let values =
-            if values.is_empty() { values.concat() } else { format!(" ({})", values.join(", ")) };
+        let value = |left_out: &&LeftOutRecord| in_line(&left_out.highway).into_owned();
         LeftOut {
             number: *number,
             length_um: of_reason.iter().map(|left_out| left_out.length_um).sum(),
-            what: format!("ways, {}{values}", in_line(reason)),
+            what: format!("ways, {}", reason_words(reason)),
+            values: of_reason.iter().map(value).collect(),
             remedy: remedy(reason),
         }
     });
     let mut all: Vec<LeftOut> = lost.chain(ways).collect();
-    // What can be had comes first. The sort is stable.
+    // Objects that can be included come first. The sort is stable.
     all.sort_by_key(|one| (one.remedy.is_none(), std::cmp::Reverse(one.length_um)));
-    // Where there is one line alone, what is not told stands at its end.
-    let told = if all.len() > most { most.saturating_sub(1).max(1) } else { all.len() };
-    let line = |one: &LeftOut| {
-        let LeftOut { number, length_um, what, remedy } = one;
-        let remedy = remedy.map(|remedy| format!(": {remedy}")).unwrap_or_default();
-        let long = if *length_um > 0 { format!(", {}", length(*length_um)) } else { String::new() };
-        // Of roads that are kept parts may be lost; they are not counted.
-        let number = if *number > 0 { digits.count(*number) + " " } else { String::new() };
-        format!("{number}{what}{long}{remedy}")
-    };
-    let mut lines: Vec<String> = all[..told].iter().map(line).collect();
+    let told = if all.len() > most { most - 1 } else { all.len() };
+    let mut lines: Vec<String> =
+        all[..told].iter().map(|one| one.to_text(digits, MOST_VALUES)).collect();
     if let rest @ [_, ..] = &all[told..] {
-        let number: u64 = rest.iter().map(|one| one.number).sum();
-        let length_um = rest.iter().map(|one| one.length_um).sum();
-        let number = digits.count(number);
-        match lines.last_mut().filter(|_| told == most) {
-            Some(line) => *line = format!("{line}; {number} more"),
-            None => lines.push(format!("{number} more for other reasons, {}", length(length_um))),
-        }
+        let rest = LeftOut {
+            number: rest.iter().map(|one| one.number).sum(),
+            length_um: rest.iter().map(|one| one.length_um).sum(),
+            what: "more, for other reasons".to_owned(),
+            values: Vec::new(),
+            remedy: Some("corniche info lists them"),
+        };
+        lines.push(rest.to_text(digits, 0));
     }
-    let name = |index: usize| if index == 0 { "left out" } else { "" };
+    let name = |index: usize| if index == 0 { "skipped" } else { "" };
     lines.iter().enumerate().map(|(index, line)| format!("{:<13}{line}", name(index))).collect()
 }
 
-/// How to have what was left out for a reason, as packages name it; `None` where it is no road, or
-/// was not asked for.
+/// How to include objects that were skipped for a reason, by its name in packages; `None` if they
+/// are no roads, or were not requested.
 fn remedy(reason: &str) -> Option<&'static str> {
     match LossReason::from_text(reason)? {
-        LossReason::ClassOff => Some("--classes 0-8 has them"),
-        LossReason::Unknown => Some("--frc-table FILE, with these values, has them"),
-        LossReason::OutsideData => Some("give --dem files that cover them"),
-        LossReason::NoGround => Some("--fill-voids N fills gaps of N cells"),
+        LossReason::ClassOff => Some("--classes 0-8 includes them"),
+        LossReason::Unknown => Some("--frc-table FILE adds them"),
+        LossReason::OutsideData => Some("a DEM that covers them includes them"),
+        LossReason::NoGround => Some("see --fill-voids"),
         LossReason::Listed
         | LossReason::Area
         | LossReason::Duplicate
@@ -142,61 +155,60 @@ fn remedy(reason: &str) -> Option<&'static str> {
     }
 }
 
-/// Areas and boundaries, where they were asked for.
-fn layers(manifest: &Manifest, digits: Digits) -> Option<String> {
-    let kept = |kept: u64, all: u64| format!("{} of {}", digits.count(kept), digits.count(all));
-    let areas = manifest.areas.as_ref().map(|AreasRecord { counts, .. }| {
-        let kept = kept(counts.kept.iter().map(|of| of.areas).sum(), counts.objects);
-        format!("areas        {kept} objects kept")
-    });
-    let boundaries = manifest.boundaries.as_ref().map(|record @ LinesRecord { counts, .. }| {
-        let kept = kept(counts.kept.iter().map(|of| of.ways).sum(), counts.ways);
-        match beyond_extract(record) {
-            0 => format!("{kept} ways kept"),
-            beyond => format!("{kept} ways kept, {} beyond the extract", digits.count(beyond)),
-        }
-    });
-    match (areas, boundaries) {
-        (Some(areas), Some(boundaries)) => Some(format!("{areas}; boundaries: {boundaries}")),
-        (Some(areas), None) => Some(areas),
-        (None, boundaries) => boundaries.map(|boundaries| format!("boundaries   {boundaries}")),
-    }
+/// Areas, if they were requested.
+fn areas(manifest: &Manifest, digits: Digits) -> Option<String> {
+    let AreasRecord { counts, .. } = manifest.areas.as_ref()?;
+    let kept = digits.count(counts.kept.iter().map(|of| of.areas).sum());
+    Some(format!("areas        {kept} of {} objects kept", digits.count(counts.objects)))
 }
 
-/// Bad input that was survived.
-fn defects(counts: &Counts, digits: Digits) -> Option<String> {
+/// Boundaries, if they were requested.
+fn boundaries(manifest: &Manifest, digits: Digits) -> Option<String> {
+    let record @ LinesRecord { counts, .. } = manifest.boundaries.as_ref()?;
+    let kept = digits.count(counts.kept.iter().map(|of| of.ways).sum());
+    let missing = match beyond_extract(record) {
+        0 => String::new(),
+        number => format!(", {} missing from the extract", digits.count(number)),
+    };
+    Some(format!("boundaries   {kept} of {} ways kept{missing}", digits.count(counts.ways)))
+}
+
+/// The number of defects in the input.
+fn defects(counts: &ManifestCounts, digits: Digits) -> Option<String> {
     let defects: Vec<&(String, u64)> = crate::info::defects(counts).collect();
     let number: u64 = defects.iter().map(|(_, number)| number).sum();
-    let (name, _) = defects.iter().max_by_key(|(_, number)| number)?;
-    let more = if defects.len() > 1 {
-        format!(", most of all: {}", in_line(name))
+    let (name, most) = defects.iter().max_by_key(|(_, number)| number)?;
+    let name = in_line(name);
+    let kinds = if *most == number {
+        name.into_owned()
     } else {
-        format!(": {}", in_line(name))
+        let [most, rest] = [*most, number - most].map(|number| digits.count(number));
+        format!("{name} ({most}), and {rest} of other kinds")
     };
-    Some(format!("defects      {}{more}; --defects FILE lists them", digits.count(number)))
+    Some(format!("defects      {}: {kinds}; --defects FILE lists them", digits.count(number)))
 }
 
-/// What cannot be done with heights of an unknown datum.
+/// A note about heights with an unknown datum.
 fn datum(manifest: &Manifest) -> Option<String> {
     (manifest.vertical.datum == VerticalRecord::UNKNOWN_DATUM).then(|| {
-        "datum        unknown: heights above the ellipsoid need --dem-vertical-crs, here or in exports"
+        "datum        vertical datum unknown; exports of ellipsoidal heights need --dem-vertical-crs EPSG:N"
             .to_owned()
     })
 }
 
-/// How far the finest level is from the DEM's samples.
+/// The error of the finest level at the DEM's samples.
 fn error(manifest: &Manifest) -> String {
     let Some(finest) = manifest.levels.last() else { return "error        none".to_owned() };
     let at_samples = &finest.sample_error;
     format!(
-        "error        at most {:.2} m at the DEM's samples, {:.3} m RMS, where {} m are allowed",
-        at_samples.max_m,
-        at_samples.rms_m,
-        rounded(finest.max_error_m)
+        "error        at most {} m at the DEM's samples, {} m RMS (limit: {} m)",
+        in_metres(at_samples.max_m),
+        in_metres(at_samples.rms_m),
+        in_metres(finest.max_error_m)
     )
 }
 
-/// What the package takes.
+/// The size of the package.
 fn size(manifest: &Manifest, package_bytes: u64, digits: Digits) -> String {
     let tiles: u64 = manifest.levels.iter().map(|level| level.tiles).sum();
     format!(
@@ -208,10 +220,12 @@ fn size(manifest: &Manifest, package_bytes: u64, digits: Digits) -> String {
     )
 }
 
-/// Where the package is, and where to look on.
+/// The path of the package, and the commands for it.
 fn look(output: &Path) -> String {
     let place = output.display();
-    format!("wrote        {place}; corniche info tells all of it, view and serve show it")
+    format!(
+        "wrote        {place}. Inspect it with corniche info, show it with corniche view or serve"
+    )
 }
 
 #[cfg(test)]

@@ -1,7 +1,10 @@
-//! A build ends with its verdict: a few lines, with all that was left out, and how to have it.
+//! A build ends with a summary: a few lines, with all skipped objects and how to include them.
 
+use corniche_osm::LineLoss;
 use corniche_testing::package::manifest;
-use corniche_tileset::{AreaCounts, AreasRecord, InputRecord, LeftOutRecord, Manifest, RoadLoss};
+use corniche_tileset::{
+    AreaCounts, AreasRecord, InputRecord, LeftOutRecord, LineCounts, Manifest, RoadLoss,
+};
 
 use super::*;
 
@@ -20,7 +23,7 @@ fn lost(reason: &str, roads: u64, length_um: u64) -> RoadLoss {
 /// A kilometre.
 const KM: u64 = 1_000_000_000;
 
-/// A manifest with something for every line.
+/// A manifest with contents for every line.
 fn full() -> Manifest {
     let mut manifest = manifest();
     let counts = &mut manifest.counts;
@@ -46,42 +49,51 @@ fn full() -> Manifest {
     let kept = Vec::new();
     let counts = AreaCounts { objects: 30, kept, lost: Vec::new() };
     manifest.areas = Some(AreasRecord { counts, levels: Vec::new() });
+    let lost = vec![(LineLoss::MissingWay.reason().to_owned(), 1493)];
+    let counts = LineCounts { ways: 1602, kept: Vec::new(), lost };
+    manifest.boundaries = Some(LinesRecord { counts, levels: Vec::new() });
     manifest
 }
 
 #[test]
-fn the_verdict_has_at_most_eight_lines_and_names_what_is_left_out() {
+fn the_verdict_has_at_most_ten_lines_and_names_what_is_left_out() {
     let full = full();
     let text = told(&full);
     let lines: Vec<&str> = text.lines().collect();
     assert_eq!(lines.len(), MOST_LINES, "{text}");
-    assert!(lines.iter().all(|line| line.chars().count() <= 110), "{text}");
+    assert!(lines.iter().all(|line| line.chars().count() <= 100), "{text}");
     assert_eq!(lines[0], "roads        4900 of 4956 kept, 850.0 km of 876.0 km");
-    // There is room for one line: what can be had is told in it, and that it is not all.
+    // There is space for two lines: one with the objects that can be included, and the number of
+    // others.
     assert_eq!(
-        lines[1],
-        "left out     2002 ways, class is off (path, footway, cycleway, …), 441.0 km: --classes 0-8 has them; 85 more"
+        lines[1..5],
+        [
+            "skipped      2002 ways, class is off (path, footway, …), 441.0 km; --classes 0-8 includes them",
+            "             85 more, for other reasons, 28.0 km; corniche info lists them",
+            "areas        0 of 30 objects kept",
+            "boundaries   0 of 1602 ways kept, 1493 missing from the extract",
+        ]
     );
-    assert!(lines[4].starts_with("datum        unknown: "), "{text}");
+    assert!(lines[6].starts_with("datum        vertical datum unknown; "), "{text}");
     assert_eq!(
-        lines[7],
-        "wrote        maps/li.pmtiles; corniche info tells all of it, view and serve show it"
+        lines[9],
+        "wrote        maps/li.pmtiles. Inspect it with corniche info, show it with corniche view or serve"
     );
 }
 
 #[test]
 fn what_can_be_had_comes_first_with_its_option() {
     let mut manifest = full();
-    manifest.areas = None;
+    (manifest.areas, manifest.boundaries) = (None, None);
     manifest.counts.defects.truncate(1);
     let text = told(&manifest);
     let lines: Vec<&str> = text.lines().collect();
     assert_eq!(
         lines[1..4],
         [
-            "left out     2002 ways, class is off (path, footway, cycleway, …), 441.0 km: --classes 0-8 has them",
-            "             50 whole roads outside the elevation data, 25.0 km: give --dem files that cover them",
-            "             35 more for other reasons, 3.0 km",
+            "skipped      2002 ways, class is off (path, footway, …), 441.0 km; --classes 0-8 includes them",
+            "             50 roads outside the elevation data, 25.0 km; a DEM that covers them includes them",
+            "             35 more, for other reasons, 3.0 km; corniche info lists them",
         ]
     );
     assert!(!text.contains("defects"), "an outline of a surface is no defect: {text}");
@@ -90,14 +102,15 @@ fn what_can_be_had_comes_first_with_its_option() {
 #[test]
 fn parts_of_roads_are_told_without_a_number() {
     let mut manifest = full();
-    manifest.areas = None;
-    manifest.counts.defects.truncate(1);
-    manifest.counts.roads_lost[0].roads = 0;
+    manifest.counts.roads_lost = vec![lost("where the data have no ground (void or edge)", 0, KM)];
+    manifest.counts.highways_left_out.clear();
     let text = told(&manifest);
-    assert!(text.contains(" parts of roads outside the elevation data, 25.0 km: give"), "{text}");
+    let line = "skipped      parts of roads where the data has no ground (void or edge), 1.0 km; see --fill-voids\n";
+    assert!(text.contains(line), "{text}");
+    assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
 }
 
-/// Without an extract, with a datum, and with nothing lost there is little to say.
+/// Without an extract, with a datum, and without losses the summary is short.
 #[test]
 fn a_whole_build_has_four_lines() {
     let mut manifest = manifest();

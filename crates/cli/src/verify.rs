@@ -1,4 +1,4 @@
-//! `corniche verify`: whether a package keeps its promises.
+//! `corniche verify`: checks whether a package keeps its promises.
 
 use std::{fmt::Write as _, path::PathBuf};
 
@@ -14,7 +14,7 @@ use crate::{
     documents::{to_line, verify::VerifyDocument},
     escaped::in_line,
     exit::ExitCode,
-    failure::Failure,
+    failure::CommandFailure,
     info::or_dash,
     messages, packages, presets,
     progress::Progress,
@@ -23,7 +23,7 @@ use crate::{
     table::{Digits, Table},
 };
 
-pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
+pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, CommandFailure> {
     let lists = [&*args.dem, &*args.photo, &*args.osm];
     let usage = "corniche verify PACKAGE --dem FILE...";
     let (package, [dem, photo, osm]) = package_among(args.package.as_ref(), lists, usage)?;
@@ -42,7 +42,7 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
     } else {
         let manifest = package.manifest();
         let held = [manifest.settings.photo.is_some(), manifest.has_extract()];
-        let missing = Missing::of(&report, held);
+        let missing = Missing::from_report(&report, held);
         let digits = Digits::of_answers();
         if messages::voice().quiet {
             to_short_text(&report, &missing, digits)
@@ -55,17 +55,18 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
         written?;
         Ok(ExitCode::Done)
     } else {
-        // The exit code reports a broken promise even if the output could not be written.
+        // The exit code reports a broken promise even if the output cannot be written.
         Ok(ExitCode::Failed)
     }
 }
 
-/// The extracts to read again, with the FRC table that the package names: given, or the preset of that name.
+/// The extracts to read again, with the FRC table that the package names: the given one, or the
+/// preset with that name.
 fn extract(
     args: &VerifyArgs,
     osm: &[PathBuf],
     package: &FilePackage,
-) -> Result<Option<VerifyOsm>, Failure> {
+) -> Result<Option<VerifyOsm>, CommandFailure> {
     if osm.is_empty() {
         return Ok(None);
     }
@@ -79,8 +80,9 @@ fn extract(
     Ok(Some(VerifyOsm { paths, table, areas, memory_bytes: MEMORY_BYTES }))
 }
 
-/// The table of areas that the package names: given, or the preset of that name; `None` if the package has no areas.
-fn areas(args: &VerifyArgs, package: &FilePackage) -> Result<Option<AreaTable>, Failure> {
+/// The table of areas that the package names: the given one, or the preset with that name; `None`
+/// if the package has no areas.
+fn areas(args: &VerifyArgs, package: &FilePackage) -> Result<Option<AreaTable>, CommandFailure> {
     match (&args.areas, &package.manifest().settings.areas) {
         (Some(table), _) => presets::area_table(table).map(Some),
         (None, None) => Ok(None),
@@ -94,20 +96,21 @@ fn areas(args: &VerifyArgs, package: &FilePackage) -> Result<Option<AreaTable>, 
     }
 }
 
-/// Inputs that were not given, though checks of the package need them.
+/// Inputs that were not given, although checks of the package need them.
 #[derive(Debug, Default)]
 struct Missing(Vec<Needs>);
 
 impl Missing {
-    /// What is missing for the checks that a report does not have, of a package with photos or an extract, or without: then it has no checks of them.
-    fn of(report: &VerifyReport, [has_photos, has_extract]: [bool; 2]) -> Self {
+    /// The inputs that are missing for further checks. A package without photos or without an
+    /// extract has no checks of them.
+    fn from_report(report: &VerifyReport, [has_photos, has_extract]: [bool; 2]) -> Self {
         let is_given = |needs| report.checks.iter().any(|check| check.id.needs() == needs);
         let needed = [(Needs::Dem, true), (Needs::Photo, has_photos), (Needs::Osm, has_extract)];
         let missing = needed.into_iter().filter(|&(needs, has)| has && !is_given(needs));
         Self(missing.map(|(needs, _)| needs).collect())
     }
 
-    /// How many more checks they allow, and their options: "20 more need --dem and --osm".
+    /// The number of further checks, and the options for them: "20 more need --dem and --osm".
     fn text(&self) -> Option<String> {
         let options: Vec<&str> =
             self.0.iter().map(|needs| needs.text().trim_matches('`')).collect();
@@ -123,25 +126,25 @@ impl Missing {
     }
 }
 
-/// The report in one line: whether the checks hold, and which were not made.
+/// The report in one line: whether the checks hold, and how many had nothing to check.
 fn verdict(report: &VerifyReport, missing: &Missing) -> String {
-    let number = |verdict| report.checks.iter().filter(|check| check.verdict() == verdict).count();
-    let (broken, not_made) = (number(Some(false)), number(None));
+    let broken = report.checks.iter().filter(|check| !check.holds()).count();
+    let not_made = report.checks.iter().filter(|check| check.checked == 0).count();
     let made = report.checks.len() - not_made;
     let mut text = match broken {
         0 => format!("all {made} checks hold"),
         1 => format!("1 of {made} checks is broken"),
         _ => format!("{broken} of {made} checks are broken"),
     };
-    match (not_made, broken) {
-        (0, _) => {}
-        (1, 0) => text.push_str("; 1 does not apply"),
-        (_, 0) => {
-            let _ = write!(text, "; {not_made} do not apply");
-        }
-        // What is broken may be why.
-        _ => {
-            let _ = write!(text, "; {not_made} not made");
+    let not_run = report.checks.iter().filter(|check| is_not_run(check, broken > 0)).count();
+    if not_run > 0 {
+        let _ = write!(text, "; {not_run} not run");
+    }
+    match not_made - not_run {
+        0 => {}
+        1 => text.push_str("; 1 does not apply"),
+        others => {
+            let _ = write!(text, "; {others} do not apply");
         }
     }
     if let Some(more) = missing.text() {
@@ -150,16 +153,22 @@ fn verdict(report: &VerifyReport, missing: &Missing) -> String {
     text
 }
 
-/// A check with what breaks it. Where nothing `is_broken`, a check was not made because the package has nothing of its kind.
+/// Whether a check was not made because others are broken: a check of the package alone that found
+/// nothing to check does not apply to the package.
+fn is_not_run(check: &Check, is_broken: bool) -> bool {
+    is_broken && check.verdict().is_none()
+}
+
+/// A check and the first objects that break it.
 fn check_text(check: &Check, is_broken: bool, digits: Digits) -> String {
-    let verdict = match check.verdict() {
-        Some(true) => "holds   ",
-        Some(false) => "BROKEN  ",
-        None if is_broken => "not made",
-        None => "no case ",
+    let verdict = match check.checked {
+        _ if !check.holds() => "BROKEN  ",
+        0 if is_not_run(check, is_broken) => "not run ",
+        0 => "n/a     ",
+        _ => "holds   ",
     };
     let (id, promise) = (check.id.id(), check.id.promise());
-    let mut text = format!("{verdict}  {id}: {promise} ({} looked at", digits.count(check.checked));
+    let mut text = format!("{verdict}  {id}: {promise} ({} checked", digits.count(check.checked));
     if !check.holds() {
         let _ = write!(text, ", {} broken", digits.count(check.broken));
     }
@@ -170,22 +179,34 @@ fn check_text(check: &Check, is_broken: bool, digits: Digits) -> String {
     text
 }
 
-/// What is broken, and the verdict.
+/// The broken checks, and the verdict.
 fn to_short_text(report: &VerifyReport, missing: &Missing, digits: Digits) -> String {
     let broken = report.checks.iter().filter(|check| !check.holds());
     let broken: String = broken.map(|check| check_text(check, true, digits)).collect();
     format!("{broken}{}\n", verdict(report, missing))
 }
 
-/// Every check, the figures, and the verdict.
+/// The words that checks and figures use.
+const WORDS: &str = "
+P1: roads lie on the ground; P2: errors are bounded; P3: tile borders match; P6: roads and nodes are counted
+GEO: roads stored as lines on the triangles of their tile
+SV: roads stored as shadow volumes, which are drawn on whatever ground is visible
+TIN: the triangles that are a tile's ground
+node: a point of the package's height grid; sample: a height in the DEM's files
+uncovered: with a height, but without a triangle, next to voids and at the edge of the data
+manifest: the package's record of its settings, inputs and totals
+";
+
+/// All checks, the words, the figures, and the verdict.
 fn to_text(report: &VerifyReport, missing: &Missing, digits: Digits) -> String {
     let is_broken = !report.holds();
     let checks = report.checks.iter().map(|check| check_text(check, is_broken, digits));
     let mut text: String = checks.collect();
+    text.push_str(WORDS);
     let largest_m = report.gaps.iter().map(|gap| gap.largest_m).fold(0.0, f64::max);
     let _ = write!(
         text,
-        "\n{} tiles, {} borders compared; largest gap of a GEO road to its TIN: {largest_m:.3e} m\n",
+        "\n{} tiles and {} borders compared; largest gap between a GEO road and its TIN: {largest_m:.3e} m\n",
         digits.count(report.tiles),
         digits.count(report.borders),
     );
@@ -206,28 +227,20 @@ fn to_text(report: &VerifyReport, missing: &Missing, digits: Digits) -> String {
     if let Some(samples) = report.samples {
         let _ = write!(
             text,
-            "\nAt the DEM's own {} samples the finest level is off by {:.3} m at most, {:.3} m RMS, {:.3} m at \
-             the 99th percentile; {} off the TIN\n",
+            "\nErrors of the finest level at the DEM's {} covered samples: at most {:.3} m, {:.3} m RMS, {:.3} m at the \
+             99th percentile; uncovered samples: {}\n",
             digits.count(samples.on_tin),
             samples.max_m,
             samples.rms_m,
             samples.p99_m,
-            lying(samples.off_tin, digits),
+            digits.count(samples.off_tin),
         );
     }
     let _ = writeln!(text, "\n{}", verdict(report, missing));
     text
 }
 
-/// A number of samples in words, with their verb.
-fn lying(samples: u64, digits: Digits) -> String {
-    match samples {
-        1 => "1 sample lies".to_owned(),
-        _ => format!("{} samples lie", digits.count(samples)),
-    }
-}
-
-/// True errors and stored ones, one row for each level.
+/// True and stored errors, one row per level.
 fn errors(errors: &[ErrorFigures], digits: Digits) -> Table {
     let mut table = Table::new([
         "level",

@@ -1,4 +1,5 @@
-//! The last line of `verify` is the verdict, and checks that looked at nothing do not count.
+//! The last line of `verify` is the verdict, checks without objects do not count, and words are
+//! explained.
 
 use corniche_verify::{Check, CheckId};
 
@@ -20,9 +21,10 @@ fn report(checks: Vec<Check>) -> VerifyReport {
 }
 
 #[test]
-fn a_check_of_an_input_that_looked_at_nothing_does_not_apply_or_was_not_made() {
-    // A broken check may be why another one was not made; a package that is whole has nothing of its kind.
-    for (broken, expected) in [(0, ["holds   ", "no case "]), (1, ["BROKEN  ", "not made"])] {
+fn a_check_that_looked_at_nothing_does_not_apply_or_was_not_made() {
+    // A broken check may be the reason why another one was not run; a valid package has no objects
+    // of that kind. In the document, a check of the package alone always has a result.
+    for (broken, expected) in [(0, ["holds   ", "n/a     "]), (1, ["BROKEN  ", "not run "])] {
         let report = report(vec![
             check(CheckId::Seams, 0, 0),
             check(CheckId::DemPlan, 1, broken),
@@ -30,10 +32,11 @@ fn a_check_of_an_input_that_looked_at_nothing_does_not_apply_or_was_not_made() {
         ]);
         let text = to_text(&report, &Missing::default(), Digits::Plain);
         let verdict = |id: &str| text.lines().find(|line| line.contains(id)).map(|line| &line[..8]);
-        assert_eq!(verdict(" P3:"), Some("holds   "));
         assert_eq!([verdict(" dem.plan:"), verdict(" P2.bound:")], expected.map(Some));
+        assert_eq!(verdict(" P3:"), Some("n/a     "));
         let document = serde_json::to_value(VerifyDocument::from(&report)).unwrap();
         let checks = document["checks"].clone();
+        assert_eq!(checks[0]["holds"], true);
         assert_eq!(checks[1]["holds"], broken == 0);
         assert!(checks[2]["holds"].is_null(), "{checks}");
     }
@@ -65,15 +68,15 @@ fn the_last_line_is_the_verdict() {
         (
             dem.clone(),
             roads,
-            format!("1 of 2 checks is broken; 1 not made; {of_osm} more need --osm"),
+            format!("1 of 2 checks is broken; 1 not run; {of_osm} more need --osm"),
         ),
-        (dem, none, "1 of 2 checks is broken; 1 not made".to_owned()),
+        (dem, none, "1 of 2 checks is broken; 1 not run".to_owned()),
         (whole(1), none, "all 2 checks hold; 1 does not apply".to_owned()),
         (whole(4), none, "all 2 checks hold; 4 do not apply".to_owned()),
         (all, roads, "2 of 3 checks are broken".to_owned()),
     ] {
         let report = report(checks);
-        let missing = Missing::of(&report, holds);
+        let missing = Missing::from_report(&report, holds);
         let text = to_text(&report, &missing, Digits::Plain);
         assert_eq!(text.lines().last(), Some(&*expected), "{text}");
         let short = to_short_text(&report, &missing, Digits::Plain);
@@ -82,4 +85,23 @@ fn the_last_line_is_the_verdict() {
         assert!(short.lines().take(broken).all(|line| line.starts_with("BROKEN ")), "{short}");
         assert_eq!(short.lines().last(), Some(&*expected), "{short}");
     }
+}
+
+#[test]
+fn the_output_explains_the_words_of_checks() {
+    let report = report(vec![check(CheckId::OnTin, 1, 0), check(CheckId::Methods, 1, 0)]);
+    assert!(to_text(&report, &Missing::default(), Digits::Plain).contains(WORDS));
+    let words =
+        ["P1", "P2", "P3", "P6", "GEO", "SV", "TIN", "node", "sample", "uncovered", "manifest"];
+    for word in words {
+        assert_eq!(WORDS.matches(&format!("{word}: ")).count(), 1, "{word}");
+        let is_used = |id: &CheckId| id.id().contains(word) || id.promise().contains(word);
+        assert!(CheckId::ALL.iter().any(is_used), "{word}");
+    }
+    let promises = CheckId::ALL.iter().filter_map(|id| id.id().split('.').next());
+    for promise in promises.filter(|name| name.starts_with('P')) {
+        assert!(words.contains(&promise), "{promise} is not explained");
+    }
+    let short = to_short_text(&report, &Missing::default(), Digits::Plain);
+    assert_eq!(short, "all 2 checks hold\n");
 }

@@ -1,15 +1,15 @@
-//! What the program is made of.
+//! The version of the program, its formats and its libraries.
 
 use std::{env, io};
 
 use crate::messages;
 
-/// Whether the command line asks for more than the program's own version: `--version`, not `-V`.
+/// Whether the command line requests more than the version number: `--version`, not `-V`.
 pub(crate) fn is_long_asked_for() -> bool {
     env::args_os().any(|argument| argument == "--version")
 }
 
-/// Prints the program's version, then what else a report of an error should name.
+/// Prints the program's version, followed by everything else that a bug report should contain.
 pub(crate) fn print_long() -> io::Result<()> {
     let backends = corniche_viewer::gpu::backends();
     let missing = corniche_gis::missing_formats();
@@ -23,7 +23,7 @@ pub(crate) fn print_long() -> io::Result<()> {
         if missing.is_empty() {
             "all of the manual".to_owned()
         } else {
-            format!("all of the manual but {}", missing.join(", "))
+            format!("all of the manual except {}", missing.join(", "))
         },
         if backends.is_empty() { "none".to_owned() } else { backends.join(", ") },
     );

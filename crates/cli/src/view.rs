@@ -1,4 +1,4 @@
-//! `corniche view`: a window on a package.
+//! `corniche view`: opens a window on a package.
 
 use std::{fs, io, path::Path, sync::Arc};
 
@@ -9,15 +9,15 @@ use corniche_viewer::{
     tiles::{MapPackage as _, TileDecoder},
 };
 use corniche_window::{
-    BeginTrace, Closed, End, MapSettings, NamedStyle, Reload, WindowError, WindowRequest,
+    BeginTrace, Closed, MapSettings, NamedStyle, Reload, WindowEnd, WindowError, WindowRequest,
     run as open_window,
 };
 
 use crate::{
     args::{OverlayArg, Roads, ViewArgs, with_overlays},
-    drawing::Drawing,
+    drawing::DrawingFile,
     exit::ExitCode,
-    failure::Failure,
+    failure::CommandFailure,
     interrupt, messages,
     output::{Existing, Output},
     overlays, packages, presets,
@@ -25,7 +25,7 @@ use crate::{
     view_command::command_of,
 };
 
-pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
+pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, CommandFailure> {
     let chosen = &args.look.style;
     let mut styles = vec![NamedStyle { name: chosen.clone(), style: style(chosen)? }];
     for name in style_preset_names().filter(|name| name != chosen) {
@@ -35,16 +35,16 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
     let used = files_of_look(&args.look, &args.from);
     let trace = args.trace.as_deref().map(|path| begin_trace(path, &used)).transpose()?;
     if args.folder.exists() && !args.folder.is_dir() {
-        return Err(Failure::unusable(format!(
-            "--folder {} is a file; give a folder for pictures and flights",
-            args.folder.display()
-        )));
+        return Err(unusable!(
+            "--folder {:?} is a file; pass a folder for images and flights",
+            args.folder
+        ));
     }
     let package = packages::source(&args.from.package)?;
     let overlays = overlays::load(&args.look, package.manifest())?;
     let package = Arc::new(package.with_decoder(TileDecoder::default().with_overlays(overlays)));
     let draw = args.draw.as_deref();
-    let drawing = Drawing::begin(draw, &args.folder, &used, Arc::clone(&package))?;
+    let drawing = DrawingFile::begin(draw, &args.folder, &used, Arc::clone(&package))?;
     for named in &mut styles {
         named.style = with_overlays(&args.look.overlay, named.style.clone());
     }
@@ -86,20 +86,21 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         match saved {
             Ok(path) => messages::note(&format!("saved {}", path.display())),
             Err(error) => {
-                let lost = Failure::new(ExitCode::Failed, error);
+                let lost = CommandFailure::new(ExitCode::Failed, error);
                 messages::error(&lost);
                 code = lost.code();
             }
         }
     }
     match end.map_err(with_way_out)? {
-        End::Closed => Ok(code),
-        End::Stopped => Err(Failure::interrupted()),
+        WindowEnd::Closed => Ok(code),
+        WindowEnd::Stopped => Err(CommandFailure::interrupted()),
     }
 }
 
-/// Where this computer gives no window, or nothing to draw with, a browser may show the package all the same, also that of another computer.
-fn with_way_out(error: WindowError) -> Failure {
+/// Adds a hint to errors of this computer's window system or GPU: a browser may still show the
+/// package, also on another computer.
+fn with_way_out(error: WindowError) -> CommandFailure {
     let gives_none = matches!(
         error,
         WindowError::NoDisplay { .. }
@@ -108,44 +109,42 @@ fn with_way_out(error: WindowError) -> Failure {
             | WindowError::NoFormat { .. }
             | WindowError::Gpu(GpuError::NoAdapter { .. } | GpuError::NoDevice { .. })
     );
-    let failure = Failure::from(error);
+    let failure = CommandFailure::from(error);
     if !gives_none {
         return failure;
     }
-    let said = format!("{failure}; `corniche serve` shows the package in a browser");
-    Failure::new(failure.code(), anyhow::anyhow!(said))
+    let said = format!("{failure}; use `corniche serve` to show the package in a browser");
+    CommandFailure::new(failure.code(), anyhow::anyhow!(said))
 }
 
-/// How roads are drawn where the processor draws, unless the command line says how: shadow volumes take it several times as
-/// long as geometry. A test for caps is one of shadow volumes.
+/// The default method for roads when the CPU renders: shadow volumes take several times as long as
+/// geometry. `--cap-test` implies shadow volumes.
 fn software_method(args: &ViewArgs) -> Option<RoadMethod> {
     let is_free = args.roads.is_none() && !args.look.needs_method();
     is_free.then_some(RoadMethod::Geometry)
 }
 
-/// Checks the place of the trace as for any other file. The file is created when the window exists, and directly at its
-/// place, so that another program can read the trace while it is written.
-fn begin_trace(path: &Path, used: &[&Path]) -> Result<BeginTrace, Failure> {
+/// Checks the path of the trace as for any other file. The file is created when the window exists,
+/// and directly at its path, so that another program can read the trace while it is written.
+fn begin_trace(path: &Path, used: &[&Path]) -> Result<BeginTrace, CommandFailure> {
     drop(Output::create(path, Existing::Replace, used)?);
     if path.symlink_metadata().is_ok() {
-        return Err(Failure::exists(format!(
-            "--trace {} exists already; choose another name",
-            path.display()
+        return Err(CommandFailure::exists(format!(
+            "--trace {path:?} already exists; choose another name"
         )));
     }
     let path = path.to_owned();
     Ok(Box::new(move || {
         let begun = fs::OpenOptions::new().write(true).create_new(true).open(&path);
-        let file = begun.map_err(|error| {
-            io::Error::new(error.kind(), format!("{}: {error}", path.display()))
-        })?;
+        let file =
+            begun.map_err(|error| io::Error::new(error.kind(), format!("{path:?}: {error}")))?;
         Ok(Box::new(file))
     }))
 }
 
-/// Reads the file of a style again whenever it changes.
+/// Reads a style file again whenever it changes.
 fn reload(name_or_path: &str, overlays: &[OverlayArg]) -> Option<Reload> {
-    let mut file = StyleFile::of(name_or_path)?;
+    let mut file = StyleFile::find(name_or_path)?;
     let overlays = overlays.to_vec();
     Some(Box::new(move || {
         let style = file.reload_if_changed()?;

@@ -1,9 +1,9 @@
-//! The command that draws what a window shows.
+//! Creates the `corniche render` command that reproduces the view in a window.
 
 use std::path::Path;
 
 use corniche_viewer::{
-    CameraRequest, CapTest, Caps, Outline, Quads, RoadMethod, RoadOptions, WidthGrowth,
+    CameraRequest, CapTest, Caps, Quads, RoadMethod, RoadOptions, RoadOutline, WidthGrowth,
 };
 use corniche_window::{CommandOf, ShownView};
 
@@ -11,10 +11,10 @@ use corniche_styles::Rgb;
 
 use crate::args::{OUTLINES, OverlayArg, Roads, WIDTH_GROWTHS, word_of};
 
-/// The file that the command names.
+/// The output file in the command.
 const PICTURE: &str = "view.png";
 
-/// Tells the command that draws a view of this package, quoted for a POSIX shell.
+/// Prints the command that renders a view of this package, quoted for a POSIX shell.
 pub(crate) fn command_of(
     package: &Path,
     overlays: &[OverlayArg],
@@ -27,7 +27,7 @@ pub(crate) fn command_of(
         if allow_ballpark && words.iter().any(|word| word == "--overlay") {
             words.push("--allow-ballpark".to_owned());
         }
-        // The character 0, which no argument of a program can hold, is the one that cannot be quoted.
+        // Only the NUL character cannot be quoted, and arguments of programs cannot contain it.
         shlex::Quoter::new()
             .allow_nul(true)
             .join(words.iter().map(String::as_str))
@@ -46,7 +46,7 @@ fn words(package: &str, overlays: &[OverlayArg], shown: &ShownView) -> Vec<Strin
     option("--size", format!("{width}x{height}"));
     match shown.camera {
         CameraRequest::LookAt { lon_deg, lat_deg, height_m, distance_m, orientation } => {
-            // To a centimetre on the ground, and to a hundredth of a pixel in direction.
+            // The precision is a centimetre on the ground, and a hundredth of a pixel in direction.
             option("--look-at", format!("{lon_deg:.7},{lat_deg:.7}"));
             if let Some(height_m) = height_m {
                 option("--height", format!("{height_m:.2}"));
@@ -57,7 +57,7 @@ fn words(package: &str, overlays: &[OverlayArg], shown: &ShownView) -> Vec<Strin
         }
         CameraRequest::FromAbove { lon_deg, lat_deg, pixel_m, heading_deg } => {
             option("--look-at", format!("{lon_deg:.7},{lat_deg:.7}"));
-            // To a micrometre.
+            // The precision is a micrometre.
             option("--pixel", format!("{pixel_m:.6}"));
             option("--heading", format!("{heading_deg:.4}"));
             words.push("--ortho".to_owned());
@@ -82,7 +82,7 @@ fn words(package: &str, overlays: &[OverlayArg], shown: &ShownView) -> Vec<Strin
         if settings.hidden_overlays.contains(&number) {
             continue;
         }
-        // Without the files before it, it would be drawn in their colour.
+        // Without the overlays before it, the file would be drawn in their colour.
         let color = shown.overlay_colors.get(number).filter(|_| overlay.color.is_none());
         let color = color.map(|color| format!(",color={}", hex(*color))).unwrap_or_default();
         option("--overlay", format!("{}{color}", overlay.text));
@@ -109,7 +109,7 @@ fn method(method: RoadMethod) -> Roads {
     }
 }
 
-/// Options of roads that differ from what `render` does where nothing is said.
+/// Options of roads that differ from the defaults of `render`.
 fn look(roads: RoadOptions) -> Vec<(&'static str, &'static str)> {
     let mut given = Vec::new();
     if roads.caps == Caps::None && roads.method != RoadMethod::None {
@@ -118,10 +118,10 @@ fn look(roads: RoadOptions) -> Vec<(&'static str, &'static str)> {
     if roads.width_growth != WidthGrowth::ByDistance {
         given.push(("--width-growth", word_of(&WIDTH_GROWTHS, &roads.width_growth)));
     }
-    if roads.outline != Outline::OfStyle {
+    if roads.outline != RoadOutline::OfStyle {
         given.push(("--outline", word_of(&OUTLINES, &roads.outline)));
     }
-    // The option is refused where no shadow volume has caps.
+    // The option is rejected if no shadow volume has caps.
     let has_caps = roads.method == RoadMethod::ShadowVolumes && roads.caps == Caps::Round;
     if roads.cap_test == CapTest::PaperQuadratic && has_caps {
         given.push(("--cap-test", "paper"));

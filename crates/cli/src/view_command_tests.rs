@@ -1,4 +1,4 @@
-//! The command that a window offers draws what the window shows.
+//! The command that a window offers renders the view in the window.
 
 use clap::Parser as _;
 use corniche_remote::PackagePlace;
@@ -7,7 +7,7 @@ use corniche_viewer::camera::Orientation;
 use corniche_window::MapSettings;
 
 use super::*;
-use crate::args::{Arguments, Command, RenderArgs};
+use crate::args::{Arguments, CliCommand, RenderArgs};
 
 fn shown(roads: RoadOptions) -> ShownView {
     ShownView {
@@ -31,20 +31,20 @@ fn shown(roads: RoadOptions) -> ShownView {
     }
 }
 
-/// The same with other settings.
+/// The same view with other settings.
 fn with(shown: &ShownView, change: impl FnOnce(&mut MapSettings)) -> ShownView {
     let mut shown = shown.clone();
     change(&mut shown.settings);
     shown
 }
 
-/// Two files, the second with a colour of its own.
+/// Two files, the second with its own colour.
 fn overlays() -> Vec<OverlayArg> {
     let of = |text| crate::args::overlay(text).unwrap();
     vec![of("my tracks/a.gpx"), of("b.geojson,color=#00FF00"), of("c.gpx")]
 }
 
-/// The command as the program reads it, after a shell has split it into words.
+/// The arguments of the command, after a shell has split it into words.
 fn read(package: &str, shown: &ShownView) -> RenderArgs {
     let command = command_of(Path::new(package), &overlays(), true)(shown);
     let words = shlex::split(&command).expect("quotes that a shell understands");
@@ -52,14 +52,14 @@ fn read(package: &str, shown: &ShownView) -> RenderArgs {
         .unwrap_or_else(|error| panic!("{command}: {error}"))
         .command
     {
-        Command::Render(args) => args,
+        CliCommand::Render(args) => args,
         other => panic!("{command}: {other:?}"),
     }
 }
 
 #[test]
 fn the_command_draws_what_the_window_shows() {
-    let shown = shown(RoadOptions::of(RoadMethod::ShadowVolumes));
+    let shown = shown(RoadOptions::for_method(RoadMethod::ShadowVolumes));
     let args = read("my maps/$HOME.pmtiles", &shown);
     assert_eq!(args.from.package, PackagePlace::File("my maps/$HOME.pmtiles".into()));
     assert_eq!(args.look.style, shown.style);
@@ -73,10 +73,10 @@ fn the_command_draws_what_the_window_shows() {
     assert!(read("a", &with(&shown, |settings| settings.is_wireframe = true)).wireframe);
 }
 
-/// What is hidden is left out, and no other file takes its colour.
+/// Hidden files are omitted, and no other file takes their colour.
 #[test]
 fn files_of_lines_are_drawn_as_they_are_shown() {
-    let shown = shown(RoadOptions::of(RoadMethod::ShadowVolumes));
+    let shown = shown(RoadOptions::for_method(RoadMethod::ShadowVolumes));
     let texts = |shown: &ShownView| -> Vec<String> {
         let given = read("a.pmtiles", shown).look.overlay;
         given.iter().map(|overlay| overlay.text.clone()).collect()
@@ -89,7 +89,7 @@ fn files_of_lines_are_drawn_as_they_are_shown() {
         with(&shown, |settings| settings.hidden_overlays = numbers.iter().copied().collect())
     };
     assert_eq!(texts(&hiding(&[0, 1])), all[2..]);
-    // An option for files of lines is not given without one.
+    // An option for files of lines is not given without such a file.
     let without = hiding(&[0, 1, 2]);
     assert!(texts(&without).is_empty() && !read("a.pmtiles", &without).look.allow_ballpark);
 }
@@ -97,7 +97,7 @@ fn files_of_lines_are_drawn_as_they_are_shown() {
 /// A ten-millionth of a degree is at most 1.2 cm.
 #[test]
 fn the_command_looks_from_where_the_window_does() {
-    let shown = shown(RoadOptions::of(RoadMethod::Geometry));
+    let shown = shown(RoadOptions::for_method(RoadMethod::Geometry));
     let numbers = |camera| match camera {
         CameraRequest::LookAt { lon_deg, lat_deg, height_m, distance_m, orientation } => {
             let Orientation { heading_deg, pitch_deg } = orientation;
@@ -119,8 +119,12 @@ fn every_look_of_roads_is_read_as_it_was() {
         for caps in [Caps::Round, Caps::None] {
             for width_growth in [WidthGrowth::None, WidthGrowth::Constant, WidthGrowth::ByDistance]
             {
-                for outline in [Outline::OfStyle, Outline::None, Outline::Kernel3, Outline::Kernel5]
-                {
+                for outline in [
+                    RoadOutline::OfStyle,
+                    RoadOutline::None,
+                    RoadOutline::Kernel3,
+                    RoadOutline::Kernel5,
+                ] {
                     for cap_test in [CapTest::Distance, CapTest::PaperQuadratic] {
                         let is_tested = method == RoadMethod::ShadowVolumes && caps == Caps::Round;
                         if cap_test == CapTest::PaperQuadratic && !is_tested {
@@ -130,7 +134,7 @@ fn every_look_of_roads_is_read_as_it_was() {
                             if quads == Quads::Level && method != RoadMethod::Geometry {
                                 continue;
                             }
-                            let usual = RoadOptions::of(method);
+                            let usual = RoadOptions::for_method(method);
                             let roads = RoadOptions {
                                 caps,
                                 cap_test,
@@ -150,7 +154,7 @@ fn every_look_of_roads_is_read_as_it_was() {
         }
     }
     assert_eq!(count, 84);
-    let none = shown(RoadOptions::of(RoadMethod::None));
+    let none = shown(RoadOptions::for_method(RoadMethod::None));
     assert_eq!(read("a", &none).roads, Roads::None);
     for areas in [true, false] {
         let shown = with(&none, |settings| settings.areas = areas);
@@ -166,7 +170,7 @@ fn a_view_from_above_is_drawn_from_above() {
         pixel_m: 3.123_456,
         heading_deg: -12.5,
     };
-    let shown = ShownView { camera, ..shown(RoadOptions::of(RoadMethod::Geometry)) };
+    let shown = ShownView { camera, ..shown(RoadOptions::for_method(RoadMethod::Geometry)) };
     let args = read("p.pmtiles", &shown);
     assert_eq!(args.from_above.request(&args.camera), camera);
 }

@@ -1,4 +1,4 @@
-//! How fast windows of heights are read, by how nodes come from samples.
+//! Measures how fast windows of heights are read, for each way in which nodes come from samples.
 #![expect(missing_docs, reason = "criterion's macros make public items")]
 #![expect(clippy::unwrap_used, reason = "a bench has nobody to tell")]
 
@@ -14,8 +14,8 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 const SAMPLES: usize = 3000;
 const NODES: usize = 1024;
 
-/// A rolling ground of 30 m samples in UTM, or of 0.0003° in degrees, with a void in every 1000
-/// samples if asked.
+/// A rolling ground of 30 m samples in UTM, or of 0.0003° in degrees, optionally with a void in
+/// every `void_every` samples.
 fn ground(folder: &std::path::Path, epsg: u32, void_every: usize) -> PathBuf {
     let path = folder.join(format!("{epsg}-{void_every}.tif"));
     let (west, north, step) =
@@ -33,7 +33,7 @@ fn ground(folder: &std::path::Path, epsg: u32, void_every: usize) -> PathBuf {
     path
 }
 
-/// A grid with square cells; degrees are carried to UTM.
+/// A grid with square cells; positions in degrees are transformed to UTM.
 fn options(cell_m: f64) -> PlanOptions {
     PlanOptions {
         crs: Some("utm".to_owned()),

@@ -1,8 +1,8 @@
-//! Finds samples that cannot be heights, by looking at every sample once.
+//! Finds samples that cannot be heights, by reading every sample once.
 //!
-//! A file that writes −9999 for "no data" and does not say so would have holes of −9999 m. Such a
-//! value can be recognised: it is one of those that programs usually write, or it occurs many
-//! times; and it lies far beyond all true heights.
+//! A file that writes −9999 for "no data" without declaring it would have holes of −9999 m. Such a
+//! value can be recognised: programs usually write it, or it occurs many times; and it lies far
+//! beyond all true heights.
 //!
 //! ```text
 //!   how often │                                                ▄▄▄
@@ -25,14 +25,14 @@ use crate::mosaics::open_files::OpenFiles;
 use crate::plan::clip::{needed_samples, parts_of_file};
 use crate::{AuditError, Dem, GridPlan};
 
-/// What the surface of the earth has: Challenger Deep lies some 10 935 m below the sea, Everest 8
+/// The range of the earth's surface: Challenger Deep lies some 10 935 m below the sea, Everest 8
 /// 849 m above it.
 pub const SURFACE_RANGE_M: [f64; 2] = [-12_000.0, 9_000.0];
 
 /// A repeated value that lies this far beyond all others is not a height.
 const FAR_M: f64 = 1000.0;
-/// Values that programs write for "no data", as they are stored. One of them that lies so far
-/// beyond all others is refused even if a single sample has it.
+/// Values that programs write for "no data", as stored. One of them that lies this far beyond all
+/// others is rejected even if a single sample has it.
 const USUAL_NO_DATA: [f64; 13] = [
     -999.0,
     -9999.0,
@@ -50,18 +50,18 @@ const USUAL_NO_DATA: [f64; 13] = [
 ];
 /// Any other value is repeated if more than one sample in this many has it.
 const ONE_IN: u64 = 10_000;
-/// How many of the lowest values, and of the highest, are kept. Only these are examined.
+/// The number of lowest and of highest values that are kept. Only these are examined.
 const KEPT: usize = 16;
-/// Sea levels are within this of 0, whatever they are measured from.
+/// Sea levels are within this distance of 0, in any vertical datum.
 const SEA_LEVEL_M: f64 = 12.0;
-/// No dry land lies lower: files that hold one value alone, and a lower one, hold none. (The Dead
-/// Sea: −430 m.)
+/// No dry land is lower: a file with a single, lower value has no heights. (The Dead Sea is at −430
+/// m.)
 const LOWEST_LAND_M: f64 = -500.0;
-/// Side of the blocks that are read. From a file that is stored in rows, the same number of samples
-/// is read in whole rows.
+/// Side of the blocks that are read. From a file stored in rows, the same number of samples is read
+/// in whole rows.
 const BLOCK_SAMPLES: usize = 512;
 
-/// A rectangle of one file's samples.
+/// A rectangle of samples in one file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AuditBlock {
     file: usize,
@@ -69,11 +69,11 @@ pub struct AuditBlock {
     size: [usize; 2],
 }
 
-/// One of the lowest or highest heights, and how many samples have it.
+/// One of the lowest or highest heights, and the number of samples that have it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-struct Entry {
+struct ExtremeHeight {
     height_m: f64,
-    /// The value as the file stores it.
+    /// The value as stored in the file.
     stored: f64,
     count: u64,
 }
@@ -81,22 +81,22 @@ struct Entry {
 /// The outermost different heights at one end, the outermost first, at most [`KEPT`]; their counts
 /// are exact.
 ///
-/// An entry is removed only when [`KEPT`] others lie farther out, and those are never removed for
-/// one farther in: so an entry that was removed cannot come back. Neither the order of samples nor
-/// the order of merges matters.
+/// An entry is removed only when [`KEPT`] others lie farther out, and these are never removed for
+/// one farther in: so a removed entry cannot return. Neither the order of samples nor the order of
+/// merges matters.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 struct End {
-    entries: Vec<Entry>,
+    entries: Vec<ExtremeHeight>,
 }
 
-/// What some samples of one file were found to be.
+/// The audit of some samples of one file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AuditPart {
     file: usize,
     found: FileAudit,
 }
 
-/// What the samples of a DEM were found to be, in bounded memory; parts of it merge in any order.
+/// The audit of a DEM's samples, in bounded memory; parts of it can be merged in any order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Audit {
     range_m: [f64; 2],
@@ -105,9 +105,9 @@ pub struct Audit {
 
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 struct FileAudit {
-    /// Samples that have a height.
+    /// The number of samples that have a height.
     samples: u64,
-    /// Some are stored as numbers that are not whole.
+    /// Whether some samples are stored as numbers with fractions.
     has_fractions: bool,
     lowest: End,
     highest: End,
@@ -115,7 +115,7 @@ struct FileAudit {
     spikes: Spikes,
 }
 
-/// Examines blocks of samples. It keeps files open, so each thread has its own.
+/// Examines blocks of samples. It keeps files open, so each thread has its own auditor.
 pub struct Auditor<'a> {
     dem: &'a Dem,
     range_m: [f64; 2],
@@ -125,9 +125,9 @@ pub struct Auditor<'a> {
 }
 
 impl Dem {
-    /// All samples of all files that the plan's nodes can depend on, and no others, each in one
-    /// block, in a fixed order: what is found depends on the part of the data that is asked for,
-    /// and on neither how its files are stored nor how work is split.
+    /// All samples of all files on which the plan's nodes can depend, and no others, each in one
+    /// block, in a fixed order: the result depends only on the requested part of the data, and
+    /// neither on how files are stored nor on how work is split.
     ///
     /// # Errors
     /// When PROJ fails.
@@ -171,8 +171,7 @@ impl Dem {
         Ok(blocks)
     }
 
-    /// Where the middle of a block lies, working metres; not finite where the working CRS does not
-    /// reach.
+    /// The middle of a block in working metres; not finite outside the working CRS.
     ///
     /// # Errors
     /// When PROJ fails.
@@ -196,7 +195,7 @@ impl Dem {
         Ok([f64::NAN; 2])
     }
 
-    /// Makes an auditor; `range_m` is the lowest and the highest height that is allowed, in metres.
+    /// Creates an auditor; `range_m` is the lowest and the highest allowed height, in metres.
     #[must_use]
     pub fn auditor(&self, range_m: [f64; 2]) -> Auditor<'_> {
         Auditor {
@@ -210,8 +209,8 @@ impl Dem {
 }
 
 impl Auditor<'_> {
-    /// Examines every sample of a block, in metres as the file gives them: after scale and unit,
-    /// but before the change to another vertical CRS and before the shift. Memory is bounded by the
+    /// Examines every sample of a block, in metres as given by the file: after scale and unit, but
+    /// before the conversion to another vertical CRS and before the shift. Memory is bounded by the
     /// block.
     ///
     /// # Errors
@@ -231,7 +230,7 @@ impl Auditor<'_> {
         for [column, row] in spikes::candidates(&self.heights_m, columns, limit_m) {
             let index = row * columns + column;
             let (height_m, stored) = (self.heights_m[index], self.stored[index]);
-            // Off the block's rim all neighbours are known, and nothing is read again.
+            // Inside the block's rim all neighbours are known, and nothing is read again.
             let is_known = !spikes::is_on_rim(block.size, [column, row]);
             let [column, row] = [block.start[0] + column, block.start[1] + row];
             if is_known || self.is_spike(block.file, [column, row])? {
@@ -241,7 +240,8 @@ impl Auditor<'_> {
         Ok(AuditPart { file: block.file, found })
     }
 
-    /// Whether a sample is a spike among its neighbours in the file, also those of other blocks.
+    /// Whether a sample is a spike among its neighbours in the file, including those in other
+    /// blocks.
     fn is_spike(&mut self, file: usize, [column, row]: [usize; 2]) -> Result<bool, RasterError> {
         let source = &self.dem.sources[file];
         let start = [column.saturating_sub(1), row.saturating_sub(1)];
@@ -257,7 +257,7 @@ impl Auditor<'_> {
 }
 
 impl AuditPart {
-    /// Adds what was found in samples of the same file. Returns what belongs to another file.
+    /// Merges the audit of samples of the same file. Returns an audit of another file.
     pub fn merge(&mut self, other: Self) -> Option<Self> {
         if self.file != other.file {
             return Some(other);
@@ -275,7 +275,7 @@ impl FileAudit {
         self.samples += 1;
         self.has_fractions |= stored.fract() != 0.0;
         self.outside += u64::from(!(range_m[0]..=range_m[1]).contains(&height_m));
-        let entry = Entry { height_m, stored, count: 1 };
+        let entry = ExtremeHeight { height_m, stored, count: 1 };
         self.lowest.add(entry, 1.0);
         self.highest.add(entry, -1.0);
     }
@@ -293,14 +293,13 @@ impl FileAudit {
     ///
     /// At the high end it must be farther from sea level than the next value. Otherwise the next
     /// value is the odd one, for example a single −9999 in a plateau.
-    fn sentinel(&self) -> Option<(Entry, f64)> {
+    fn sentinel(&self) -> Option<(ExtremeHeight, f64)> {
         let low = self.lowest.sentinel(self.samples, |_| true);
         let high = self
             .highest
             .sentinel(self.samples, |[outer, inner]| outer.height_m.abs() > inner.height_m.abs());
         match (low, high) {
-            // Where there are only two values, far apart, the one nearer to sea level is the
-            // ground.
+            // If there are only two values, far apart, the one nearer to sea level is the ground.
             (Some(low), Some(high)) if self.lowest.entries.len() == 2 => {
                 let is_low = low.0.height_m.abs() >= high.0.height_m.abs();
                 Some(if is_low { low } else { high })
@@ -309,7 +308,7 @@ impl FileAudit {
         }
     }
 
-    /// How many samples have one of the lowest or highest values.
+    /// The number of samples that have one of the lowest or highest values.
     fn count_of(&self, height_m: f64) -> u64 {
         let entries = self.lowest.entries.iter().chain(&self.highest.entries);
         entries
@@ -318,7 +317,7 @@ impl FileAudit {
             .map_or(0, |entry| entry.count)
     }
 
-    /// Lowest and highest sample.
+    /// The lowest and the highest sample.
     fn range_m(&self) -> Option<[f64; 2]> {
         let [low, high] = [&self.lowest, &self.highest].map(|end| end.entries.first());
         Some([low?.height_m, high?.height_m])
@@ -327,8 +326,8 @@ impl FileAudit {
 
 impl End {
     /// `towards` is 1 at the low end and −1 at the high one.
-    fn add(&mut self, entry: Entry, towards: f64) {
-        let inwards = |other: &Entry| (other.height_m - entry.height_m) * towards;
+    fn add(&mut self, entry: ExtremeHeight, towards: f64) {
+        let inwards = |other: &ExtremeHeight| (other.height_m - entry.height_m) * towards;
         if self.entries.len() == KEPT && self.entries.last().is_some_and(|last| inwards(last) < 0.0)
         {
             return;
@@ -348,14 +347,18 @@ impl End {
     }
 
     /// The outermost value that is usual for "no data" or repeated, and far from the next value.
-    /// `may_be` can refuse a pair of neighbouring values.
-    fn sentinel(&self, samples: u64, may_be: impl Fn([Entry; 2]) -> bool) -> Option<(Entry, f64)> {
-        let gap_m = |[outer, inner]: [Entry; 2]| (inner.height_m - outer.height_m).abs();
+    /// `may_be` can reject a pair of neighbouring values.
+    fn sentinel(
+        &self,
+        samples: u64,
+        may_be: impl Fn([ExtremeHeight; 2]) -> bool,
+    ) -> Option<(ExtremeHeight, f64)> {
+        let gap_m = |[outer, inner]: [ExtremeHeight; 2]| (inner.height_m - outer.height_m).abs();
         self.entries
             .windows(2)
             .map(|pair| [pair[0], pair[1]])
             .find(|&pair| {
-                let Entry { count, stored, .. } = pair[0];
+                let ExtremeHeight { count, stored, .. } = pair[0];
                 let is_repeated = count > 1 && count > samples / ONE_IN;
                 let is_usual = USUAL_NO_DATA.iter().any(|usual| stored - usual == 0.0);
                 (is_repeated || is_usual) && gap_m(pair) >= FAR_M && may_be(pair)
@@ -369,27 +372,27 @@ impl Audit {
         Self { range_m, files: vec![FileAudit::default(); files] }
     }
 
-    /// The audit of a DEM before any of its blocks was examined.
+    /// The audit of a DEM before any block was examined.
     #[must_use]
     pub fn none_of(dem: &Dem, range_m: [f64; 2]) -> Self {
         Self::new(dem.sources.len(), range_m)
     }
 
-    /// Adds what was found in a block of the same DEM.
+    /// Merges the audit of a block of the same DEM.
     pub fn merge(&mut self, part: &AuditPart) {
         if let Some(file) = self.files.get_mut(part.file) {
             file.merge(&part.found);
         }
     }
 
-    /// Refuses values that are no heights: of each file, then of all files together.
+    /// Rejects values that are not heights: of each file, then of all files together.
     ///
-    /// - One that programs usually write for "no data", or that is repeated in more than 0.01 % of
-    ///   the samples, and that lies 1000 m or more beyond all others means "no data"; where several
-    ///   such values are found, the outermost is named. With `is_range_given` this test is left
-    ///   out: a user who gives the range knows the values.
-    /// - A value that all samples share is refused below −500 m.
-    /// - None may lie outside the range.
+    /// - A value that programs usually write for "no data", or that more than 0.01 % of the samples
+    ///   have, and that lies 1000 m or more beyond all others means "no data"; of several such
+    ///   values, the outermost is named. With `is_range_given` this test is skipped: a user who
+    ///   gives the range knows the values.
+    /// - A value that all samples share is rejected below −500 m.
+    /// - No value may lie outside the range.
     ///
     /// # Errors
     /// [`AuditError::Sentinel`] or [`AuditError::OutOfRange`].
@@ -420,9 +423,9 @@ impl Audit {
         })
     }
 
-    /// The step between heights that the files can tell apart, metres: that of whole numbers where
-    /// all samples are stored so, which is a metre for most files from satellites. The smallest of
-    /// all files that have heights; 0 if a file has fractions.
+    /// The step between heights that the files can distinguish, in metres: if all samples are
+    /// stored as whole numbers, the step of these, which is a metre for most files from satellites.
+    /// The smallest step of all files that have heights; 0 if a file has fractions.
     #[must_use]
     pub fn height_step_m(&self, dem: &Dem) -> f64 {
         let files = dem.sources.iter().zip(&self.files).filter(|(_, file)| file.samples > 0);
@@ -432,8 +435,8 @@ impl Audit {
         files.map(step_m).reduce(f64::min).unwrap_or_default()
     }
 
-    /// What a user should know of single samples that stand far above or below all of their
-    /// neighbours: one text for each file that has some.
+    /// Warnings about single samples far above or below all of their neighbours: one text for each
+    /// file that has some.
     #[must_use]
     pub fn spikes(&self, dem: &Dem) -> Vec<String> {
         let text = |(source, file): (&Source, &FileAudit)| {
@@ -458,9 +461,9 @@ impl Audit {
             let limit_m = spikes::limit_m(source.spacing_m()).floor();
             let option = first.first().map(|spike| source.values.stored_text(spike.stored));
             format!(
-                "{}: samples that stand alone, more than {limit_m} m above or below all around them: {places}{more}; if such a value means \"no data\", \
-                 give it with --nodata {}, and if all are heights, allow them with --height-range LOW,HIGH",
-                source.path.display(),
+                "{:?}: isolated samples, more than {limit_m} m above or below all samples around them: {places}{more}; if the stored value means \"no data\", \
+                 declare it with --nodata {}; if all are heights, allow them with --height-range LOW,HIGH",
+                source.path,
                 option.unwrap_or_default()
             )
         };
@@ -468,8 +471,7 @@ impl Audit {
         dem.sources.iter().zip(&self.files).filter(with_spikes).map(text).collect()
     }
 
-    /// The error when all samples of all files have the same value, and it is lower than any dry
-    /// land.
+    /// The error if all samples of all files have the same value, which is lower than any dry land.
     fn nothing_error(&self, dem: &Dem) -> Option<AuditError> {
         let mut all = FileAudit::default();
         self.files.iter().for_each(|file| all.merge(file));
@@ -490,10 +492,11 @@ impl Audit {
         let files = || dem.sources.iter().zip(&self.files);
         let mut all = FileAudit::default();
         self.files.iter().for_each(|file| all.merge(file));
-        // First a value that stands out in a file of its own; else one that stands out only among
-        // the values of all files.
+        // First searches a value that is isolated within its own file; then one that is isolated
+        // only among the values of all files.
         let own = self.files.iter().find_map(FileAudit::sentinel);
-        // A file that holds only sea, beside files of high land, does not hold "no data" alone.
+        // A file that contains only sea, next to files of high land, is not a file of only "no
+        // data".
         let across = || all.sentinel().filter(|(entry, _)| entry.height_m.abs() > SEA_LEVEL_M);
         let (entry, gap_m) = own.or_else(across)?;
         let count_in = |file: &FileAudit| match file.sentinel() {
@@ -508,7 +511,7 @@ impl Audit {
             None => all.samples,
         };
         let [low_m, high_m] = all.range_m()?;
-        let names = holders.iter().map(|(source, _)| source.path.display().to_string());
+        let names = holders.iter().map(|(source, _)| format!("{:?}", source.path));
         Some(AuditError::Sentinel {
             files: first_names(names),
             stored: first.values.stored_text(entry.stored),
@@ -523,8 +526,8 @@ impl Audit {
     }
 }
 
-/// Parts of one file, of the same rows, as parts that have no sample in common: where a grid goes
-/// all around the earth, its file can be there more than once.
+/// The parts of one file, in the same rows, as parts without common samples: if a grid covers the
+/// whole earth, its file can occur more than once.
 fn without_overlap(mut parts: Vec<SampleRect>) -> Vec<SampleRect> {
     parts.sort_by_key(|part| part.min[0]);
     let mut apart: Vec<SampleRect> = Vec::new();

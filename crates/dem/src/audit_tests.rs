@@ -1,4 +1,4 @@
-//! Values that stand for missing data although the file does not say so are found.
+//! Undeclared values that mean missing data are found.
 
 use super::*;
 
@@ -35,8 +35,8 @@ fn a_value_far_beyond_all_others_is_found_when_it_is_repeated_often_enough() {
     }
 }
 
-/// Values that programs write for "no data" are refused from the first on, where they lie as far
-/// from all heights; others are not.
+/// Values that programs write for "no data" are rejected from the first sample on, if they lie far
+/// from all heights; other values are not.
 #[test]
 fn a_usual_value_for_no_data_is_found_in_a_single_sample() {
     for value in USUAL_NO_DATA {

@@ -1,5 +1,4 @@
-//! One elevation file: how it is to be understood, what it says about itself, and its samples as
-//! metres.
+//! One elevation file: the options that describe it, its metadata, and its samples in metres.
 
 pub(crate) mod source;
 pub(crate) mod stored_values;

@@ -1,4 +1,4 @@
-//! Elevation files to windows of heights on a package's global grid.
+//! Reads elevation files as windows of heights on a package's global grid.
 //!
 //! ```text
 //!   files ──► Dem::open ──► Dem::plan ──► Dem::reader ──► Reader::window ──► HeightGrid
@@ -6,9 +6,8 @@
 //!             CRS, units)     cell, extent)                interpolation, voids)
 //! ```
 //!
-//! A node has the same height, bit for bit, whichever window it is read through: its position comes
-//! from its global index, its height from samples around that position, and a filled void from
-//! nodes around it.
+//! A node has the same height, bit for bit, in any window: its position comes from its global
+//! index, its height from samples around this position, and a filled void from nodes around it.
 //!
 //! This crate never triangulates, never uses GDAL's warper, and never guesses what a sentinel, a
 //! unit or a vertical datum means.
@@ -31,6 +30,6 @@ pub use files::stored_values::OpenOptions;
 pub use plan::clip::nodes_within;
 pub use plan::footprint::Footprint;
 pub use plan::grid_plan::{GridPlan, MosaicRoles, PlanOptions, Resampling};
-pub use reading::reader::{DemWindow, Reader};
+pub use reading::reader::{DemWindow, HeightReader};
 pub use reading::sample_surface::{SampleSurface, largest_of_parabola};
 pub use reading::samples::{SampleBlock, SampleRange};

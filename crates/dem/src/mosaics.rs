@@ -1,4 +1,4 @@
-//! All elevation files together: those of one grid as one raster, where they lie, and one vertical
+//! All elevation files together: files of one grid as one raster, their extent, and one vertical
 //! CRS for all.
 
 pub(crate) mod mosaic;

@@ -1,4 +1,4 @@
-//! Heights read from the files: windows of nodes, and the DEM's own samples.
+//! Reads heights from the files: windows of nodes, and the DEM's own samples.
 
 pub(crate) mod fill_voids;
 pub(crate) mod reader;

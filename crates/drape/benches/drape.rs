@@ -1,6 +1,10 @@
-//! How many TIN edges a second a line can be laid across, and what clipping and extruding cost.
+//! Measures how many TIN edges per second a line is draped across, and the time of clipping and
+//! extruding.
 
-#![expect(missing_docs, reason = "criterion's macros make public functions without")]
+#![expect(
+    missing_docs,
+    reason = "criterion's macros create public functions without documentation"
+)]
 
 use std::hint::black_box;
 
@@ -9,10 +13,10 @@ use corniche_geom::{LatticeBounds, LatticePoint, Polyline};
 use corniche_tin::{Placement, Surface, Tin, TinVertex};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 
-/// A 30 m cell at less than a millimetre a step.
+/// A 30 m cell, so that a lattice step is less than a millimetre.
 const NODE_STEPS: i64 = 1 << 15;
 
-/// All 257² nodes of a tile, triangulated with diagonals that follow no pattern.
+/// All 257² nodes of a tile, triangulated with diagonals in no pattern.
 fn full_tile() -> Surface {
     let mut vertices = Vec::new();
     let mut triangles = Vec::new();
@@ -39,7 +43,7 @@ fn full_tile() -> Surface {
     Surface::new(&tin, Placement { corner, node_steps: [NODE_STEPS; 2], quantum_m: 1.0 / 64.0 })
 }
 
-/// Winding lines through the tile with segments of about `segment_steps`.
+/// Winding lines through the tile, with segments of about `segment_steps`.
 fn roads(bounds: LatticeBounds, segment_steps: f64) -> Vec<Polyline> {
     let mut seed = 12_345_u64;
     let mut random = move || {
@@ -66,7 +70,7 @@ fn roads(bounds: LatticeBounds, segment_steps: f64) -> Vec<Polyline> {
 
 fn bench(c: &mut Criterion) {
     let surface = full_tile();
-    let bounds = LatticeBounds::of(surface.points()).expect("a full tile");
+    let bounds = LatticeBounds::around(surface.points()).expect("a full tile");
     let mut group = c.benchmark_group("drape::drape, crossings");
     for cells in [1.0, 4.0, 16.0] {
         let roads = roads(bounds, cells * NODE_STEPS as f64);

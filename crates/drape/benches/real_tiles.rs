@@ -1,8 +1,12 @@
-//! How many TIN edges a second real roads are laid across on real tiles, level by level, and what extruding them
-//! costs. The tiles come as `corniche tile PACKAGE Z/X/Y --json` prints them, a file each:
+//! Measures how many TIN edges per second real roads are draped across on real tiles, level by
+//! level, and the time of extruding them. The tiles are files with the output of
+//! `corniche tile PACKAGE Z/X/Y --json`, one file per tile:
 //! `CORNICHE_TILES=FOLDER cargo bench -p corniche-drape --bench real_tiles`.
 
-#![expect(missing_docs, reason = "criterion's macros make public functions without")]
+#![expect(
+    missing_docs,
+    reason = "criterion's macros create public functions without documentation"
+)]
 
 use std::{collections::BTreeMap, fs, hint::black_box, path::Path};
 
@@ -12,15 +16,15 @@ use corniche_tin::{Placement, Surface, Tin, TinVertex};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use serde_json::Value;
 
-/// Heights of any package are whole steps of this.
+/// Heights of any package are whole steps of this size.
 const QUANTUM_M: f64 = 1.0 / 1024.0;
 
 /// A tile with roads.
 struct Tile {
     surface: Surface,
-    /// The level's plan lines within the tile.
+    /// The level's lines in plan within the tile.
     lines: Vec<Polyline>,
-    /// The same with their margin, for shadow volumes.
+    /// The level's lines in plan within the tile and its margin, for shadow volumes.
     sv_lines: Vec<Polyline>,
     margin_steps: i64,
 }
@@ -33,7 +37,7 @@ fn rows(list: &Value) -> impl Iterator<Item = Vec<f64>> {
     list.as_array().into_iter().flatten().map(numbers)
 }
 
-/// A tile from its JSON; its own corner is the lattice's origin.
+/// Reads a tile from its JSON; the tile's corner is the origin of the lattice.
 fn tile(json: &Value) -> Tile {
     let cell_m = json["cell_m"].as_f64().expect("a cell");
     let bounds_m = numbers(&json["bounds"]);
@@ -68,14 +72,14 @@ fn tile(json: &Value) -> Tile {
     let bounds =
         LatticeBounds { min: LatticePoint::new(0, -side), max: LatticePoint::new(side, 0) };
     let lines = sv_lines.iter().flat_map(|line| clip_closed(line, &bounds)).collect();
-    // As the pipeline has it: eight cells, at least 40 m.
+    // The margin is that of the pipeline: eight cells, at least 40 m.
     let margin_steps = steps((8.0 * cell_m).max(40.0));
     Tile { surface: Surface::new(&tin, placement), lines, sv_lines, margin_steps }
 }
 
 /// Straight lines from the west to the east of a tile: nearly all of their vertices are crossings.
 fn straight_lines(surface: &Surface) -> Vec<Polyline> {
-    let Some(LatticeBounds { min, max }) = LatticeBounds::of(surface.points()) else {
+    let Some(LatticeBounds { min, max }) = LatticeBounds::around(surface.points()) else {
         return Vec::new();
     };
     let at = |part: i64| min.v + (max.v - min.v) * part / 256;
@@ -84,7 +88,7 @@ fn straight_lines(surface: &Surface) -> Vec<Polyline> {
     (0..256).filter_map(|n| Polyline::new(ends(n)).ok()).collect()
 }
 
-/// Tiles with roads in a folder, by level.
+/// The tiles with roads in a folder, by level.
 fn tiles(folder: &Path) -> BTreeMap<u8, Vec<Tile>> {
     let mut paths: Vec<_> = fs::read_dir(folder)
         .expect("a folder")

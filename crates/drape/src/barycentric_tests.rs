@@ -1,4 +1,5 @@
-//! Comparing the exits from a triangle is the orientation of its apex, as products of 256 bits have it.
+//! The comparison of the exits from a triangle by the orientation of its apex agrees with products
+//! of 256 bits.
 
 use std::collections::BTreeMap;
 
@@ -7,16 +8,16 @@ use crate::oracle_tests::exact::{Along, END, area, wide_product};
 use corniche_testing::Random;
 use proptest::prelude::*;
 
-/// How a segment lies to a triangle.
+/// The position of a segment relative to a triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Lie {
-    /// Anywhere, near or far.
+    /// The segment is anywhere, near or far.
     Anywhere,
-    /// A corner lies on the segment, or on its line before or beyond it.
+    /// A corner is on the segment, or on its line before or beyond it.
     CornerOnLine,
     /// An edge is parallel to the segment.
     ParallelEdge,
-    /// An edge lies on the segment's line.
+    /// An edge is on the segment's line.
     EdgeOnLine,
     /// The segment begins or ends at a corner.
     EndAtCorner,
@@ -44,11 +45,11 @@ struct Case {
 }
 
 impl Case {
-    /// `None` where chance makes no triangle or no segment.
+    /// Creates a random case; `None` if the random points do not form a triangle and a segment.
     fn new(seed: u64) -> Option<Self> {
         let mut random = Random::new(seed);
         let lie = random.one_of(&Lie::ALL);
-        // From some steps to nearly the whole lattice that draping allows.
+        // Coordinates range from some steps to nearly the whole lattice that draping allows.
         let reach = random.one_of(&[2, 3, 5, 40, 1 << 15, 1 << 31, 1 << 40, 1 << 56]);
         let mut point = || LatticePoint::new(random.around(reach), random.around(reach));
         let [mut p, mut q] = [point(), point()];
@@ -99,7 +100,7 @@ impl Case {
         )
     }
 
-    /// The same once more, at a point.
+    /// The coordinate at a point, computed independently.
     fn at(&self, corner: usize, point: LatticePoint) -> i128 {
         area(self.corners[(corner + 1) % 3], self.corners[(corner + 2) % 3], point)
     }
@@ -108,13 +109,14 @@ impl Case {
         self.at(corner, self.segment[1]) - self.at(corner, self.segment[0])
     }
 
-    /// Where the segment's line comes out across the edge opposite a corner.
+    /// The position where the segment's line exits across the edge opposite a corner.
     fn exit(&self, corner: usize) -> Option<Along> {
         let rate = self.rate(corner);
         (rate < 0).then(|| Along::new(self.at(corner, self.segment[0]), -rate))
     }
 
-    /// Checks the coordinates and each comparison of two exits; counts pairs of exits, and those that are equal.
+    /// Checks the coordinates and each comparison of two exits; counts pairs of exits, and equal
+    /// pairs.
     fn check_pairs(&self) -> [u64; 2] {
         let [p, q] = self.segment;
         let doubled_area = area(self.corners[0], self.corners[1], self.corners[2]);
@@ -129,7 +131,7 @@ impl Case {
             assert_eq!(coordinate.rate(), self.rate(first));
             let side = area(p, q, self.corners[apex]).cmp(&0);
             assert_eq!(turn(self.segment[0], self.segment[1], self.corners[apex]), side);
-            // The identity of the proof, by its signs.
+            // The signs of the identity in the proof.
             let left = wide_product(self.at(first, p), self.rate(second));
             assert_eq!(left.cmp(&wide_product(self.at(second, p), self.rate(first))), side);
             let Some(exit) = self.exit(first) else { continue };
@@ -144,8 +146,9 @@ impl Case {
         [pairs, equal]
     }
 
-    /// Checks the way out of the triangle where the segment's line comes in across the inside of an edge: the apex tells
-    /// which of all exits is the smallest one ahead. Counts such ways, and those through the apex.
+    /// Checks the exit from the triangle if the segment's line enters across the interior of an
+    /// edge: the apex determines which of all exits is the smallest one ahead. Counts these cases,
+    /// and those through the apex.
     fn check_way(&self) -> [u64; 2] {
         let [p, q] = self.segment;
         let (mut ways, mut through_apex) = (0, 0);
@@ -173,8 +176,9 @@ impl Case {
         [ways, through_apex]
     }
 
-    /// Checks the way out for a start in the inside of the triangle: where the orientations of two corners change from right to
-    /// left, the edge between them has the smallest of the three exits. Counts such starts.
+    /// Checks the exit for a start in the interior of the triangle: if the orientations of two
+    /// corners change from right to left, the edge between them has the smallest of the three
+    /// exits. Counts these starts.
     fn check_from_inside(&self) -> u64 {
         let [p, q] = self.segment;
         if (0..3).any(|corner| self.at(corner, p) <= 0) {
@@ -198,7 +202,7 @@ impl Case {
     }
 }
 
-/// How much was checked.
+/// The numbers of checks.
 #[derive(Debug, Clone, Copy, Default)]
 struct Counts {
     cases: u64,
@@ -236,7 +240,7 @@ fn the_apex_compares_the_exits() {
     for lie in Lie::ALL {
         let counts = all[&lie];
         assert!(counts.cases > 2000, "{lie:?}: {all:?}");
-        // Across an edge along the line there is no exit.
+        // There is no exit across an edge along the line.
         let has_parallel = [Lie::ParallelEdge, Lie::EdgeOnLine].contains(&lie);
         assert!(has_parallel || counts.pairs > 1000, "{lie:?}: {all:?}");
         assert!(lie == Lie::EdgeOnLine || counts.ways > 500, "{lie:?}: {all:?}");
@@ -247,7 +251,7 @@ fn the_apex_compares_the_exits() {
 }
 
 proptest! {
-    /// The same for seeds that proptest chooses.
+    /// The same check for seeds that proptest chooses.
     #[test]
     fn the_apex_compares_the_exits_for_any_seed(seed in any::<u64>()) {
         if let Some(case) = Case::new(seed) {

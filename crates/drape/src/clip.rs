@@ -1,17 +1,18 @@
-//! Lines are clipped to a rectangle of the lattice, with the rule for what runs exactly along its borders.
+//! Clips lines to a rectangle of the lattice, with a rule for segments exactly along its borders.
 
 use corniche_geom::{LatticeBounds, LatticePoint, Polyline, TILE_CELLS};
 
-use crate::{OwnedBorders, fraction::Fraction, owned_borders::Border};
+use crate::{OwnedBorders, fraction::Fraction, owned_borders::TileBorder};
 
-/// The parts of `line` in the closed rectangle `bounds`, in order.
+/// Returns the parts of `line` in the closed rectangle `bounds`, in order.
 ///
-/// A segment that leaves is cut on the exact border coordinate; the other coordinate is the exact one, rounded
-/// to the nearest lattice step (half a step: up), so both tiles at a border and both directions of travel get
-/// the same point. Parts that are a point, or become one by rounding, are dropped. Of segments along the
-/// border only what is on `owned` stretches is kept; where a stretch ends, between two cells, is a cut, too.
+/// A segment that leaves the rectangle is cut exactly at the border coordinate; the other
+/// coordinate is the exact one, rounded to the nearest lattice step (half a step: up), so both
+/// tiles at a border and both directions of travel get the same point. Parts that are a point, or
+/// become one by rounding, are dropped. Segments along the border are only kept on `owned`
+/// stretches; the end of a stretch, between two cells, is a cut, too.
 ///
-/// Coordinates are below 2^60, so that products of their differences fit 128 bits.
+/// Coordinates must be below 2^60, so that products of their differences fit in 128 bits.
 ///
 /// Source: Liang & Barsky 1984, *A New Concept and Method for Line Clipping*, with exact fractions.
 #[must_use]
@@ -24,11 +25,11 @@ pub fn clip(line: &Polyline, bounds: &LatticeBounds, owned: OwnedBorders) -> Vec
 pub struct ClippedPart {
     /// The part.
     pub line: Polyline,
-    /// The segment of the whole line that each of its segments is a piece of.
+    /// For each segment of the part, the index of the segment of the whole line that contains it.
     pub segments: Vec<usize>,
 }
 
-/// [`clip`], and where in the line its parts come from.
+/// Clips like [`clip`], and also returns where in the line the parts come from.
 #[must_use]
 pub fn clip_parts(
     line: &Polyline,
@@ -38,10 +39,10 @@ pub fn clip_parts(
     clip_parts_within(line, bounds, owned, bounds)
 }
 
-/// [`clip_parts`] of what lies in `within`, too; `owned` are the borders of `bounds`.
+/// Clips like [`clip_parts`], and also to `within`; `owned` are the borders of `bounds`.
 ///
-/// Where a segment is cut depends on the segment and the border alone, so a tile that lies in `within` as a whole, and its
-/// neighbour that does not, get the same points on their border.
+/// Cuts depend only on the segment and the border, so a tile that is completely in `within`, and a
+/// neighbour that is not, get the same points on their border.
 #[must_use]
 pub fn clip_parts_within(
     line: &Polyline,
@@ -50,11 +51,11 @@ pub fn clip_parts_within(
     within: &LatticeBounds,
 ) -> Vec<ClippedPart> {
     let both = bounds.intersection(within);
-    let mut parts = Parts::default();
+    let mut parts = ClippedParts::default();
     for (index, pair) in line.points().windows(2).enumerate() {
         let segment = [pair[0], pair[1]];
         parts.segment = index;
-        if let Some(along) = Along::of(segment, bounds) {
+        if let Some(along) = Along::from_segment(segment, bounds) {
             along.keep_owned(&owned, &both, &mut parts);
         } else if let Some(inside) = inside(segment, &both) {
             parts.keep(inside);
@@ -66,26 +67,27 @@ pub fn clip_parts_within(
     parts.ended
 }
 
-/// [`clip`] that keeps segments along every border: for a tile with a margin, whose parts overlap anyway.
+/// Clips like [`clip`], but keeps segments along every border: for a tile with a margin, whose
+/// parts overlap anyway.
 #[must_use]
 pub fn clip_closed(line: &Polyline, bounds: &LatticeBounds) -> Vec<Polyline> {
     clip(line, bounds, OwnedBorders::ALL)
 }
 
-/// The parts that are being made.
+/// The parts that are being assembled.
 #[derive(Default)]
-pub(crate) struct Parts {
+pub(crate) struct ClippedParts {
     pub(crate) ended: Vec<ClippedPart>,
     current: Vec<LatticePoint>,
-    /// The segment of the line that each segment of `current` is a piece of.
+    /// The index of the segment of the line that contains each segment of `current`.
     segments: Vec<usize>,
     /// The segment of the line that is being clipped.
     pub(crate) segment: usize,
-    /// Whether the last segment's end was kept, so that the next one goes on from it.
+    /// Whether the last segment's end was kept, so that the next segment continues from it.
     pub(crate) goes_on: bool,
 }
 
-impl Parts {
+impl ClippedParts {
     pub(crate) fn keep(&mut self, inside: Inside) {
         if !(self.goes_on && inside.whole_start) {
             self.end();
@@ -94,7 +96,7 @@ impl Parts {
         if self.current.is_empty() {
             self.current.push(start);
         }
-        // A piece that rounding makes a point is left out.
+        // A piece that rounding makes a point is dropped.
         if start != end {
             self.current.push(end);
             self.segments.push(self.segment);
@@ -109,13 +111,13 @@ impl Parts {
     }
 }
 
-/// What of a segment lies inside.
+/// The part of a segment inside the rectangle.
 #[derive(Clone, Copy)]
 pub(crate) struct Inside {
     pub(crate) ends: [LatticePoint; 2],
-    /// The first end is the segment's own.
+    /// Whether the first end is the segment's own.
     pub(crate) whole_start: bool,
-    /// The second end is the segment's own.
+    /// Whether the second end is the segment's own.
     pub(crate) whole_end: bool,
 }
 
@@ -123,32 +125,32 @@ pub(crate) struct Inside {
 struct Along<'a> {
     segment: [LatticePoint; 2],
     bounds: &'a LatticeBounds,
-    border: Border,
+    border: TileBorder,
 }
 
 impl<'a> Along<'a> {
-    fn of([p, q]: [LatticePoint; 2], bounds: &'a LatticeBounds) -> Option<Self> {
+    fn from_segment([p, q]: [LatticePoint; 2], bounds: &'a LatticeBounds) -> Option<Self> {
         let (min, max) = (bounds.min, bounds.max);
         let border = match (p.u == q.u, p.v == q.v) {
-            (true, _) if p.u == min.u => Border::West,
-            (true, _) if p.u == max.u => Border::East,
-            (_, true) if p.v == min.v => Border::South,
-            (_, true) if p.v == max.v => Border::North,
+            (true, _) if p.u == min.u => TileBorder::West,
+            (true, _) if p.u == max.u => TileBorder::East,
+            (_, true) if p.v == min.v => TileBorder::South,
+            (_, true) if p.v == max.v => TileBorder::North,
             _ => return None,
         };
         Some(Self { segment: [p, q], bounds, border })
     }
 
-    /// Keeps what of the segment is on owned stretches and `within`, in its direction.
-    fn keep_owned(&self, owned: &OwnedBorders, within: &LatticeBounds, parts: &mut Parts) {
+    /// Keeps the pieces of the segment on owned stretches and in `within`, in its direction.
+    fn keep_owned(&self, owned: &OwnedBorders, within: &LatticeBounds, parts: &mut ClippedParts) {
         let [p, q] = self.segment;
         let mut kept = Vec::new();
         let mut from = 0;
         let (first_within, last_within, is_within) = match self.border {
-            Border::North | Border::South => {
+            TileBorder::North | TileBorder::South => {
                 (within.min.u, within.max.u, (within.min.v..=within.max.v).contains(&p.v))
             }
-            Border::East | Border::West => {
+            TileBorder::East | TileBorder::West => {
                 (within.min.v, within.max.v, (within.min.u..=within.max.u).contains(&p.u))
             }
         };
@@ -166,8 +168,8 @@ impl<'a> Along<'a> {
             }
         }
         let eastward_or_southward = match self.border {
-            Border::North | Border::South => p.u < q.u,
-            Border::East | Border::West => p.v > q.v,
+            TileBorder::North | TileBorder::South => p.u < q.u,
+            TileBorder::East | TileBorder::West => p.v > q.v,
         };
         if !eastward_or_southward {
             kept.reverse();
@@ -180,41 +182,42 @@ impl<'a> Along<'a> {
         }
     }
 
-    /// Where, along the border, the `cell`th cell begins: from the west or from the north.
+    /// The offset along the border at which the `cell`th cell begins: from the west or from the
+    /// north.
     fn offset(&self, cell: i64) -> i64 {
         let (min, max) = (self.bounds.min, self.bounds.max);
         let part =
             |side: i64| (i128::from(side) * i128::from(cell) / i128::from(TILE_CELLS)) as i64;
         match self.border {
-            Border::North | Border::South => min.u + part(max.u - min.u),
-            Border::East | Border::West => max.v - part(max.v - min.v),
+            TileBorder::North | TileBorder::South => min.u + part(max.u - min.u),
+            TileBorder::East | TileBorder::West => max.v - part(max.v - min.v),
         }
     }
 
     fn along(&self, point: LatticePoint) -> i64 {
         match self.border {
-            Border::North | Border::South => point.u,
-            Border::East | Border::West => point.v,
+            TileBorder::North | TileBorder::South => point.u,
+            TileBorder::East | TileBorder::West => point.v,
         }
     }
 
     fn at(&self, along: i64) -> LatticePoint {
         match self.border {
-            Border::North | Border::South => LatticePoint::new(along, self.segment[0].v),
-            Border::East | Border::West => LatticePoint::new(self.segment[0].u, along),
+            TileBorder::North | TileBorder::South => LatticePoint::new(along, self.segment[0].v),
+            TileBorder::East | TileBorder::West => LatticePoint::new(self.segment[0].u, along),
         }
     }
 }
 
-/// What of a segment that is on no border's line lies in the rectangle.
+/// The part in the rectangle of a segment that is not on the line of a border.
 fn inside([p, q]: [LatticePoint; 2], bounds: &LatticeBounds) -> Option<Inside> {
     let (min, max) = (bounds.min, bounds.max);
     let (mut start, mut end) =
         (Cut { at: Fraction::ZERO, point: p }, Cut { at: Fraction::ONE, point: q });
     let (mut whole_start, mut whole_end) = (true, true);
     for axis in [Axis::U, Axis::V] {
-        let (from, to) = (axis.of(p), axis.of(q));
-        let (low, high) = (axis.of(min), axis.of(max));
+        let (from, to) = (axis.coordinate_of(p), axis.coordinate_of(q));
+        let (low, high) = (axis.coordinate_of(min), axis.coordinate_of(max));
         let (first, last) = if from < to { (low, high) } else { (high, low) };
         if from == to {
             if from < low || from > high {
@@ -241,7 +244,7 @@ enum Axis {
 }
 
 impl Axis {
-    fn of(self, point: LatticePoint) -> i64 {
+    fn coordinate_of(self, point: LatticePoint) -> i64 {
         match self {
             Self::U => point.u,
             Self::V => point.v,
@@ -249,7 +252,7 @@ impl Axis {
     }
 }
 
-/// Where a segment meets the line of a border.
+/// The position where a segment meets the line of a border.
 #[derive(Clone, Copy)]
 struct Cut {
     at: Fraction,
@@ -257,13 +260,13 @@ struct Cut {
 }
 
 impl Cut {
-    /// The segment is not parallel to the border.
+    /// Computes the cut; the segment must not be parallel to the border.
     fn new([p, q]: [LatticePoint; 2], axis: Axis, border: i64) -> Self {
-        let towards = i128::from((axis.of(q) - axis.of(p)).signum());
-        let length = i128::from(axis.of(q) - axis.of(p)) * towards;
-        let reach = i128::from(border - axis.of(p)) * towards;
-        // ⌊x + 1/2⌋ of the exact x: the same from either end. For a border that the segment does not reach, the
-        // result has no meaning and is not used; it only must not overflow.
+        let towards = i128::from((axis.coordinate_of(q) - axis.coordinate_of(p)).signum());
+        let length = i128::from(axis.coordinate_of(q) - axis.coordinate_of(p)) * towards;
+        let reach = i128::from(border - axis.coordinate_of(p)) * towards;
+        // ⌊x + 1/2⌋ of the exact x: the same from either end. If the segment does not reach the
+        // border, the result has no meaning and is not used; it only must not overflow.
         let round = |from: i64, to: i64| {
             let offset = (2 * i128::from(to - from) * reach + length).div_euclid(2 * length);
             from.wrapping_add(offset as i64)

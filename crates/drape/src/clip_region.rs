@@ -1,20 +1,22 @@
-//! Lines are clipped to a region of any outline.
+//! Clips lines to a region of any outline.
 
 use corniche_geom::{LatticeBounds, LatticePoint, LatticeRegion, Polyline};
 
-use crate::clip::{ClippedPart, Inside, Parts};
+use crate::clip::{ClippedPart, ClippedParts, Inside};
 
-/// The parts of `line` in a region of any outline, in order, and where in the line they come from.
+/// Returns the parts of `line` in a region of any outline, in order, and where in the line they
+/// come from.
 ///
-/// Which edges a segment crosses is decided exactly. Where it crosses is rounded to the nearest lattice step. What runs along an outline is
-/// inside. A stretch of less than two lattice steps between two crossings may go to either side.
+/// Which edges a segment crosses is decided exactly. The crossings are rounded to the nearest
+/// lattice step. Stretches along an outline are inside. A stretch of less than two lattice steps
+/// between two crossings may be assigned to either side.
 #[must_use]
 pub fn clip_region(line: &Polyline, region: &LatticeRegion) -> Vec<ClippedPart> {
-    let around = LatticeBounds::of(line.points());
+    let around = LatticeBounds::around(line.points());
     if around.is_none_or(|around| !around.intersects(&region.bounds())) {
         return Vec::new();
     }
-    let mut parts = Parts::default();
+    let mut parts = ClippedParts::default();
     // Whether the end of the last segment is inside, if no outline touches that segment.
     let mut last_inside = None;
     for (index, pair) in line.points().windows(2).enumerate() {
@@ -38,8 +40,9 @@ pub fn clip_region(line: &Polyline, region: &LatticeRegion) -> Vec<ClippedPart> 
     parts.ended
 }
 
-impl Parts {
-    /// Keeps a stretch of a segment, given as shares of it; or nothing, and then what follows begins anew.
+impl ClippedParts {
+    /// Keeps a stretch of a segment, given as fractions of it; without a stretch, the next one
+    /// begins a new part.
     fn take(&mut self, [p, q]: [LatticePoint; 2], stretch: Option<[f64; 2]>) {
         let Some([from, to]) = stretch else {
             self.goes_on = false;

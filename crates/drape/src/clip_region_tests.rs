@@ -1,4 +1,4 @@
-//! Lines that are cut at a region of any outline add up, inside and outside, to the whole.
+//! The parts of lines inside and outside a region of any outline add up to the whole lines.
 
 use proptest::prelude::*;
 
@@ -34,7 +34,8 @@ fn a_line_is_cut_at_outlines_and_holes() {
         clipped(&[[-50, 50], [150, 50]], &region),
         [(vec![[0, 50], [40, 50]], vec![0]), (vec![[60, 50], [100, 50]], vec![0])]
     );
-    // Inside as a whole; across the hole's corner; outside as a whole.
+    // The first line is completely inside, the second crosses the hole's corner, the third is
+    // completely outside.
     assert_eq!(
         clipped(&[[10, 10], [20, 30], [30, 10]], &region),
         [(vec![[10, 10], [20, 30], [30, 10]], vec![0, 1])]
@@ -70,13 +71,14 @@ fn polygons_side_by_side_do_not_cut() {
     );
 }
 
-/// Part of a line that lies inside, in lattice steps.
+/// The length of the parts inside, in lattice steps.
 fn length(parts: &[ClippedPart]) -> f64 {
     parts.iter().map(|part| corniche_testing::length_steps(&part.line)).sum()
 }
 
 proptest! {
-    /// In a rectangle it finds what the exact clip against rectangles finds.
+    /// For a rectangle, the clip against regions gives the same parts as the exact clip against
+    /// rectangles.
     #[test]
     fn a_rectangle_is_cut_as_by_the_clip_against_rectangles(
         corners in prop::collection::vec(prop::array::uniform2(-5000_i64..5000), 2..12),
@@ -96,7 +98,8 @@ proptest! {
         }
     }
 
-    /// What is inside a polygon and what is inside a rectangle with the polygon as hole add up to the line.
+    /// The parts inside a polygon, and those inside a rectangle with the polygon as a hole, add up
+    /// to the line.
     #[test]
     fn inside_and_outside_add_up(
         corners in prop::collection::vec(prop::array::uniform2(-5000_i64..5000), 2..12),
@@ -111,7 +114,7 @@ proptest! {
         let Some(inside) = LatticeRegion::new(&[vec![ring.clone()]]) else { return Ok(()) };
         let outside = LatticeRegion::new(&[vec![square(-6000, 6000), ring]]).unwrap();
         let both = length(&clip_region(&line, &inside)) + length(&clip_region(&line, &outside));
-        // Each crossing is rounded to a step, and may leave over a stretch of two.
+        // Each crossing is rounded to a step, and may add or remove a stretch of two steps.
         let crossings = (corners.len() * radii.len()) as f64;
         prop_assert!((both - corniche_testing::length_steps(&line)).abs() <= 4.0 * crossings, "{both}");
     }

@@ -1,4 +1,4 @@
-//! The tiles together have each line once, as brute force finds it.
+//! The tiles together contain each line once, in agreement with brute force.
 
 use std::collections::BTreeMap;
 
@@ -19,14 +19,15 @@ fn line(points: &[(i64, i64)]) -> Polyline {
 const SIDE: i64 = 10;
 const TILES: i64 = 3;
 
-/// Tile in a column from the west and a row from the north; the root's north-west corner is (0, 0).
+/// The bounds and the borders of a tile in a column from the west and a row from the north; the
+/// root's north-west corner is (0, 0).
 fn tile(column: i64, row: i64) -> (LatticeBounds, OwnedBorders) {
     let min = point(column * SIDE, -(row + 1) * SIDE);
     let bounds = LatticeBounds { min, max: point(min.u + SIDE, min.v + SIDE) };
     (bounds, OwnedBorders::among(Neighbours { east: column < TILES - 1, south: row < TILES - 1 }))
 }
 
-/// Which tile the middle of a piece belongs to, from positions in `parts` of a step.
+/// Returns the tile to which the middle of a piece belongs, from positions in `parts` of a step.
 fn owner(u: i128, v: i128, parts: i128) -> Option<(i64, i64)> {
     let span = i128::from(SIDE) * parts;
     let last = i128::from(TILES) * span;
@@ -37,14 +38,16 @@ fn owner(u: i128, v: i128, parts: i128) -> Option<(i64, i64)> {
     Some((index(u), index(-v)))
 }
 
-/// All cuts of a segment by all tile borders, sorted; each piece goes to the tile that owns its middle.
+/// Computes all cuts of a segment by all tile borders, sorted; each piece goes to the tile that
+/// owns its middle.
 fn expected(line: &Polyline, column: i64, row: i64) -> Vec<Polyline> {
     let mut parts: Vec<Vec<LatticePoint>> = Vec::new();
     let mut open = false;
     for pair in line.points().windows(2) {
         let (p, q) = (pair[0], pair[1]);
         let (du, dv) = (i128::from(q.u - p.u), i128::from(q.v - p.v));
-        // Positions along the segment in multiples of 1 / (2 |du| |dv|): exact for every cut and every middle.
+        // Positions along the segment are multiples of 1 / (2 |du| |dv|), which is exact for every
+        // cut and every middle.
         let whole = 2 * du.abs().max(1) * dv.abs().max(1);
         let mut cuts = vec![0, whole];
         for border in (-TILES..=TILES).map(|n| i128::from(n * SIDE)) {
@@ -96,8 +99,8 @@ fn any_line() -> impl Strategy<Value = Polyline> {
         })
 }
 
-/// For each segment of the whole line, how far a part follows it along its longer side. Cuts are rounded along the other one, or
-/// to the same point from both sides.
+/// For each segment of the whole line, the length along its longer side that a part covers. Cuts
+/// are rounded along the other side, or to the same point from both sides.
 fn covered(part: &ClippedPart) -> Vec<(usize, i64)> {
     let pairs = part.line.points().windows(2).zip(&part.segments);
     pairs
@@ -108,7 +111,8 @@ fn covered(part: &ClippedPart) -> Vec<(usize, i64)> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(4000))]
 
-    /// Every tile gets what cutting at all borders by brute force gives it: the whole line, each piece once.
+    /// Every tile gets the same pieces as by cutting at all borders by brute force: the whole line,
+    /// each piece once.
     #[test]
     fn tiles_share_a_line_as_brute_force_does(line in any_line()) {
         for column in 0..TILES {
@@ -123,7 +127,8 @@ proptest! {
         }
     }
 
-    /// What lies in a second rectangle, too, is what clipping to both at once gives: cuts depend on the segment alone.
+    /// Parts in a second rectangle equal those of clipping to both rectangles at once: cuts depend
+    /// only on the segment.
     #[test]
     fn within_bounds_cuts_are_those_of_whole_segments(
         line in any_line(), west in 0_i64..28, south in 0_i64..28, size in (1_i64..12, 1_i64..12),
@@ -158,7 +163,7 @@ proptest! {
         prop_assert_eq!(of_tiles, whole);
     }
 
-    /// No point of a part is farther than half a step from the segment that it was cut from.
+    /// No point of a part is farther than half a step from the segment from which it was cut.
     #[test]
     fn a_part_stays_within_half_a_step_of_its_source(line in any_line()) {
         let (bounds, owned) = tile(1, 1);
@@ -168,7 +173,8 @@ proptest! {
                     let (du, dv) = (q.u - p.u, q.v - p.v);
                     let (across, along) = (du * (at.v - p.v) - dv * (at.u - p.u), du * (at.u - p.u) + dv * (at.v - p.v));
                     let length_squared = du * du + dv * dv;
-                    // Half a step along a border is less across a segment, and less than one along it.
+                    // Half a step along a border is less than that across a segment, and less than
+                    // one step along it.
                     4 * across * across <= length_squared && (-length_squared..=2 * length_squared).contains(&along)
                 };
                 prop_assert!(line.points().windows(2).any(|pair| near(pair[0], pair[1])), "{at:?}");
@@ -176,7 +182,7 @@ proptest! {
         }
     }
 
-    /// Backwards the same parts, backwards.
+    /// The reversed line has the same parts, reversed.
     #[test]
     fn direction_does_not_matter(line in any_line(), scale in prop_oneof![Just(1_i64), Just(1 << 40)]) {
         let scaled = |p: &LatticePoint| point(p.u * scale + 1, p.v * scale - 1);

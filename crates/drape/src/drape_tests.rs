@@ -1,4 +1,4 @@
-//! The cases where plain arithmetic goes wrong, each by name. The ground:
+//! Cases in which plain arithmetic fails, each with a name. The ground:
 //!
 //! ```text
 //!     0 ───── 1 ───── 2        nodes 10 steps apart, 0 at (0, 0), south is negative v;
@@ -33,8 +33,8 @@ fn line(points: &[(i64, i64)]) -> Polyline {
     Polyline::new(points.iter().map(|&(u, v)| LatticePoint::new(u, v)).collect()).unwrap()
 }
 
-/// A line's parts as text: `s` and a position for source points, `a×b` for crossings, `@v` for TIN vertices,
-/// leads in parentheses.
+/// A line's parts as text: `s` and a position for source points, `a×b` for crossings, `@v` for TIN
+/// vertices, leads in parentheses.
 fn spell(drape: &Drape) -> Vec<String> {
     let lead = |point: Option<LatticePoint>| point.map(|p| format!("({} {})", p.u, p.v));
     let vertex = |vertex: &DrapedVertex| match vertex {
@@ -242,11 +242,12 @@ fn damaged_lines_are_refused_without_panic() {
         assert_eq!(positions(&bad, &surface), Err(error));
         assert_eq!(check(&bad, &surface), Err(error));
     }
-    // Beyond 2^50 steps positions would be guesses, so there are none: lines, leads and TINs alike.
+    // Beyond 2^50 steps positions would be inexact, so they are errors: for lines, leads and TINs
+    // alike.
     let far = LatticePoint::new(0, 1 << 50);
     let led = DrapedLine { lead_in: Some(far), ..with(0, DrapedVertex::Crossing { a: 0, b: 1 }) };
     assert_eq!(positions(&led, &surface), Err(BadLine::OutOfRange { point: far }));
-    // What only `check` sees.
+    // Errors that only `check` detects.
     let subtle = [
         (with(0, source(2, -4, 1)), BadLine::OutsideTriangle { at: 0, triangle: 1 }),
         (with(1, DrapedVertex::Crossing { a: 1, b: 4 }), BadLine::Apart { at: 1 }),

@@ -1,4 +1,4 @@
-//! A check that a draped line is one that draping could have made, in exact arithmetic.
+//! Checks in exact arithmetic that a draped line could be a result of draping.
 
 use corniche_geom::{LatticePoint, cross};
 use corniche_tin::{NO_TWIN, Surface};
@@ -8,12 +8,13 @@ use crate::{
     line_positions::for_each_vertex,
 };
 
-/// Whether `line` is what [`drape`](crate::drape()) could have made on `surface`, exactly: its indices exist, every
-/// source point lies in its triangle, every crossing and TIN vertex lies on its segment in order, and
-/// neighbouring vertices share a triangle. Then every edge of the line lies on the TIN.
+/// Checks exactly that `line` could be a result of [`drape`](crate::drape()) on `surface`: its
+/// indices exist, every source point is in its triangle, every crossing and TIN vertex is on its
+/// segment in order, and neighbouring vertices share a triangle. Then every edge of the line is on
+/// the TIN.
 ///
 /// # Errors
-/// The first thing that is wrong.
+/// The first error of the line.
 pub fn check(line: &DrapedLine, surface: &Surface) -> Result<(), BadLine> {
     let is_source =
         |vertex: Option<&DrapedVertex>| matches!(vertex, Some(DrapedVertex::Source { .. }));
@@ -53,7 +54,7 @@ pub fn check(line: &DrapedLine, surface: &Surface) -> Result<(), BadLine> {
     })
 }
 
-/// Where along its segment a crossing or passed TIN vertex lies.
+/// The position of a crossing or passed TIN vertex along its segment.
 fn fraction(vertex: DrapedVertex, segment: [LatticePoint; 2], surface: &Surface) -> Fraction {
     let at = |vertex: u32| surface.points()[vertex as usize];
     match vertex {
@@ -63,7 +64,7 @@ fn fraction(vertex: DrapedVertex, segment: [LatticePoint; 2], surface: &Surface)
     }
 }
 
-/// All triangles that hold a vertex of the line, borders included.
+/// All triangles that contain a vertex of the line, borders included.
 fn triangles_at(vertex: DrapedVertex, surface: &Surface, out: &mut Vec<u32>) {
     out.clear();
     match vertex {
@@ -91,7 +92,7 @@ fn triangles_at(vertex: DrapedVertex, surface: &Surface, out: &mut Vec<u32>) {
     }
 }
 
-/// Whether a triangle holds a vertex of the line, borders included.
+/// Whether a triangle contains a vertex of the line, borders included.
 fn holds(triangle: u32, vertex: DrapedVertex, surface: &Surface) -> bool {
     let corners = surface.triangles()[triangle as usize];
     match vertex {

@@ -1,37 +1,40 @@
-//! Lines for shadow volumes: the plan line, and the lowest and highest ground around each of its segments.
+//! Lines for shadow volumes: the line in plan, and the lowest and the highest ground around each of
+//! its segments.
 
 use std::ops::Range;
 
-use corniche_geom::{LatticeBounds, LatticePoint, Polyline, TooMuchWork, Work};
+use corniche_geom::{LatticeBounds, LatticePoint, Polyline, StepBudget, TooMuchWork};
 use corniche_tin::Surface;
 
 use crate::{SvLine, height_range::padded, segment_rectangle::SegmentRectangle};
 
-/// The plan line for shadow volumes, with the lowest and highest ground of this tile around each segment.
+/// Returns the lines in plan for shadow volumes, with the lowest and the highest ground of this
+/// tile around each segment.
 ///
-/// *Around* means the rectangle along the segment that reaches `margin_steps` beyond it on every side, so it contains
-/// the segment's caps. The range holds all heights of the TIN in this rectangle. Segments without ground in it are
-/// left out, which splits the line. Clip `line` to the tile and its margin first
-/// ([`clip_closed`](crate::clip_closed)).
+/// *Around* means the rectangle along the segment that extends `margin_steps` beyond it on every
+/// side, so it contains the segment's caps. The range includes all heights of the TIN in this
+/// rectangle. Segments without ground in their rectangle are omitted, which splits the line. Clip
+/// `line` to the tile and its margin first ([`clip_closed`](crate::clip_closed)).
 ///
-/// Source: Sutherland & Hodgman 1974, *Reentrant Polygon Clipping*, for the polygons; the height range per
-/// segment in place of the tile's is ours (Vaaraniemi, Treib & Westermann 2011, section 5, take the tile's).
+/// Source: Sutherland & Hodgman 1974, *Reentrant Polygon Clipping*, for the polygons. Vaaraniemi,
+/// Treib & Westermann 2011, section 5, use the height range of the tile; we use one per segment.
 #[must_use]
 pub fn extrude(line: &Polyline, surface: &Surface, margin_steps: i64) -> Vec<SvLine> {
-    extrude_within(line, surface, margin_steps, &Work::unlimited()).unwrap_or_default()
+    extrude_within(line, surface, margin_steps, &StepBudget::unlimited()).unwrap_or_default()
 }
 
-/// The same within a limit of work, for lines that somebody else made: looking at a triangle is a step.
+/// Extrudes a line like [`extrude`] within a limit of work, for lines from untrusted sources: each
+/// examined triangle is a step.
 ///
 /// # Errors
-/// When the limit is passed.
+/// When the limit is exceeded.
 pub fn extrude_within(
     line: &Polyline,
     surface: &Surface,
     margin_steps: i64,
-    work: &Work,
+    work: &StepBudget,
 ) -> Result<Vec<SvLine>, TooMuchWork> {
-    // One step more than asked: rounding to f64 must not lose ground at the rim.
+    // Add one step to the margin: rounding to f64 must not lose ground at the edge.
     let margin = margin_steps.max(0) + 1;
     let mut lines = Vec::new();
     let mut current = SvLine { points: Vec::new(), ground_range_m: Vec::new() };
@@ -62,7 +65,8 @@ pub fn extrude_within(
     Ok(lines)
 }
 
-/// The triangles near some segments of a line, sorted so that only a few are examined for each segment.
+/// The triangles near some segments of a line, sorted so that only a few are examined for each
+/// segment.
 ///
 /// ```text
 ///     height │    ╷   ╷                 A triangle whose lowest corner is above what has been found cannot
@@ -78,11 +82,12 @@ struct Near<'a> {
     lowest_first: Vec<(f64, u32)>,
     /// Each triangle with its highest corner.
     highest_first: Vec<(f64, u32)>,
-    work: &'a Work,
+    work: &'a StepBudget,
 }
 
 impl Near<'_> {
-    /// Collects the triangles near segment `first` and near those after it that add little; tells which.
+    /// Collects the triangles near segment `first` and near the segments after it that add few;
+    /// returns the range of segments.
     fn search(&mut self, points: &[LatticePoint], first: usize, margin: i64) -> Range<usize> {
         let ends = |index: usize| {
             let (p, q) = (points[index], points[index + 1]);
@@ -126,7 +131,8 @@ impl Near<'_> {
         first..end
     }
 
-    /// Lowest and highest ground around one of the segments; `None` without ground there.
+    /// Returns the lowest and the highest ground around one of the segments; `None` if there is no
+    /// ground.
     fn ground_range_m(&self, [p, q]: [LatticePoint; 2], margin: i64) -> Option<[f64; 2]> {
         let around = SegmentRectangle::new([p, q].map(LatticePoint::in_steps), margin as f64);
         let (mut lowest_m, mut highest_m) = (f64::INFINITY, f64::NEG_INFINITY);

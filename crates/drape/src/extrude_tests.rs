@@ -1,4 +1,4 @@
-//! No ground around a line for shadow volumes lies beyond the range of its segment.
+//! No ground around a line for shadow volumes is outside the range of its segment.
 
 use super::*;
 use crate::height_range::PAD;
@@ -7,7 +7,7 @@ use proptest::prelude::*;
 
 const STEPS: i64 = 1000;
 
-/// 17 × 17 nodes; the cells for which `hole` holds are void.
+/// Ground of 17 × 17 nodes, without the cells for which `hole` returns true.
 pub(crate) fn ground(
     height_q: impl Fn(i32, i32) -> i32,
     hole: impl Fn(u32, u32) -> bool,
@@ -65,7 +65,7 @@ proptest! {
         }
         let lowest = heights_m.iter().copied().fold(f64::INFINITY, f64::min);
         let highest = heights_m.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        // One step more of margin on either axis, and the padding.
+        // The slack is one more step of margin on each axis, and the padding.
         let slack = 0.5 * f64::from(east.abs() + south.abs()) * 2.0 / STEPS as f64 + 1e-3;
         prop_assert!(low <= lowest && lowest - low <= slack, "{low} {lowest}");
         prop_assert!(high >= highest && high - highest <= slack, "{high} {highest}");
@@ -88,7 +88,8 @@ proptest! {
             let u = p.0 as f64 + (along * along_u - across * along_v) / length;
             let v = p.1 as f64 + (along * along_v + across * along_u) / length;
             let at = LatticePoint::new(u.trunc() as i64, v.trunc() as i64);
-            // Truncated towards zero a sample may lie up to a step beyond; on the steepest slope half a metre.
+            // A sample that is truncated towards zero may be up to a step outside; on the steepest
+            // slope this is half a metre.
             if let Some(triangle) = surface.locate(at) {
                 let height_m = surface.height_at_point_m(triangle, at);
                 let [low, high] = lines[0].ground_range_m[0];
@@ -99,7 +100,7 @@ proptest! {
 }
 
 proptest! {
-    /// Looking at few triangles finds, to the last bit, what looking at all of them finds.
+    /// Examining few triangles gives the same result, to the last bit, as examining all of them.
     #[test]
     fn ranges_are_those_of_all_triangles(
         points in prop::collection::vec((-3000_i64..19_000, -3000_i64..19_000), 2..12),
@@ -107,7 +108,7 @@ proptest! {
     ) {
         let rough = |column: i32, row: i32| (column * 7919 + row * 104_729 + seed * 31).rem_euclid(997);
         let surface = ground(rough, |column, row| (column * 5 + row * 3) % holes == 1);
-        // Long segments, or many short ones that share a search.
+        // Either long segments, or many short ones that share a search.
         let points = points.iter().map(|&(u, v)| LatticePoint::new(8000 + u / shrink, 8000 + v / shrink));
         let Ok(line) = Polyline::new(points.collect()) else { return Ok(()) };
         let mut expected = Vec::new();
@@ -161,7 +162,8 @@ fn segments_without_ground_split_the_line() {
 
 #[test]
 fn the_margin_counts_ground_beside_the_line_only() {
-    // A spike two cells north of the line, and one in the line's own cell row far to the east.
+    // There is a spike two cells north of the line, and one in the line's own cell row far to the
+    // east.
     let surface = ground(|column, row| if (column, row) == (4, 6) { 100 } else { 0 }, |_, _| false);
     let along = line(&[(2000, 8000), (6000, 8000)]);
     let highest = |margin| extrude(&along, &surface, margin)[0].ground_range_m[0][1];

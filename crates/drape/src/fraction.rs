@@ -1,4 +1,4 @@
-//! Exact comparison of where along a segment something lies.
+//! Exact comparison of positions along a segment.
 
 use std::cmp::Ordering;
 
@@ -16,7 +16,7 @@ impl Fraction {
     pub(crate) const ZERO: Self = Self { numerator: 0, denominator: 1 };
     pub(crate) const ONE: Self = Self { numerator: 1, denominator: 1 };
 
-    /// Numerator over denominator; the denominator is not 0.
+    /// Creates numerator / denominator; the denominator must not be 0.
     pub(crate) fn new(numerator: i128, denominator: i128) -> Self {
         if denominator < 0 {
             Self { numerator: -numerator, denominator: -denominator }
@@ -25,7 +25,7 @@ impl Fraction {
         }
     }
 
-    /// Where `point`, which lies on the line through p and q, lies along it.
+    /// The position of `point`, which is on the line through p and q, along the segment.
     pub(crate) fn of_point([p, q]: [LatticePoint; 2], point: LatticePoint) -> Self {
         let (du, dv) = (q.u - p.u, q.v - p.v);
         if du.unsigned_abs() >= dv.unsigned_abs() {
@@ -35,7 +35,7 @@ impl Fraction {
         }
     }
 
-    /// The nearest f64, or one next to it.
+    /// The nearest f64, or a neighbour of it.
     pub(crate) fn to_f64(self) -> f64 {
         self.numerator as f64 / self.denominator as f64
     }
@@ -56,8 +56,8 @@ impl PartialOrd for Fraction {
 }
 
 impl Ord for Fraction {
-    /// Compares whole parts, then the reciprocals of the remainders, as in Euclid's algorithm: the cross products of
-    /// two fractions with numbers up to 2^115 would not fit 128 bits.
+    /// Compares whole parts, then the reciprocals of the remainders, as in Euclid's algorithm: the
+    /// cross products of two fractions with numbers up to 2^115 would not fit in 128 bits.
     fn cmp(&self, other: &Self) -> Ordering {
         let (mut a, mut b) = (*self, *other);
         loop {
@@ -72,7 +72,7 @@ impl Ord for Fraction {
                 (0, 0) => return Ordering::Equal,
                 (0, _) => return Ordering::Less,
                 (_, 0) => return Ordering::Greater,
-                // x < y among rests between 0 and 1 when 1/y < 1/x.
+                // For remainders between 0 and 1, x < y if 1/y < 1/x.
                 _ => {
                     let next_a = Self { numerator: b.denominator, denominator: rest_b };
                     b = Self { numerator: a.denominator, denominator: rest_a };

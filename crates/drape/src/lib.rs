@@ -1,14 +1,14 @@
-//! Clip polylines to a tile, lay them on its TIN (GEO), extrude them (SV).
+//! Clips polylines to a tile, drapes them on its TIN (GEO), extrudes them (SV).
 //!
 //! ```text
 //!   Polyline ──clip──► Polylines in the tile ──drape──► DrapedLines ──positions──► metres above the lattice
 //!      └──clip_closed, tile and margin──► Polylines ──extrude──► SvLines
 //! ```
 //!
-//! Every decision, on which side, which edge first, whether on the ground, is exact integer arithmetic on
-//! the lattice; floating point only measures what has been decided.
+//! Every decision (on which side, which edge first, whether on the ground) is exact integer
+//! arithmetic on the lattice; floating point only measures the results.
 //!
-//! A line laid on two triangles, and the height of the ground at a point:
+//! This example drapes a line on two triangles, and computes the height of the ground at a point:
 //!
 //! ```
 //! use corniche_drape::{drape, positions};
@@ -47,7 +47,7 @@
 //! # }
 //! ```
 //!
-//! This crate never knows what a line means, and never reads a file.
+//! This crate never knows the meaning of a line, and never reads a file.
 
 mod draped_line;
 mod owned_borders;
@@ -78,7 +78,7 @@ pub use extrude::{extrude, extrude_within};
 pub use line_positions::{BadLine, positions, source_segments};
 pub use near_ground::{NearGround, near_ground};
 pub use owned_borders::{Neighbours, OwnedBorders};
-pub use road_bed::{RoadBed, RoadPiece, road_bed};
+pub use road_bed::{GroundSegment, RoadBed, road_bed};
 
 #[cfg(test)]
 mod oracle_tests;

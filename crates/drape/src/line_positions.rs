@@ -1,111 +1,115 @@
-//! Positions and heights of a draped line are computed from the TIN on which it lies.
+//! Computes positions and heights of a draped line from the TIN on which it is.
 
 use corniche_geom::{LatticePoint, MAX_LATTICE_STEPS, cross};
 use corniche_tin::Surface;
 
 use crate::{DrapedLine, DrapedVertex};
 
-/// Coordinates stay within the lattice: up to its ends f64 has quarters of a step, so that a crossing's position
-/// is off by no more than an eighth of a step on either axis (and differences and their products are exact
-/// in 128 bits).
+/// Coordinates stay within the lattice: even at its edges f64 represents quarters of a step, so the
+/// position of a crossing has an error of at most an eighth of a step on either axis (and
+/// differences and their products are exact in 128 bits).
 const REACH_STEPS: u64 = MAX_LATTICE_STEPS.unsigned_abs();
 
-/// Why a [`DrapedLine`] does not fit its surface: the package it comes from is damaged.
+/// Why a [`DrapedLine`] does not match its surface: the package from which it comes is damaged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BadLine {
     /// The line has too few vertices.
-    #[error("a draped line has {vertices} vertices and needs two")]
+    #[error("a draped line has {vertices} vertices and needs at least two")]
     TooShort {
-        /// How many it has.
+        /// The number of its vertices.
         vertices: usize,
     },
-    /// A vertex names a triangle that does not exist.
-    #[error("vertex {at} of a draped line names triangle {triangle}, which does not exist")]
+    /// A vertex refers to a triangle that does not exist.
+    #[error("vertex {at} of a draped line refers to triangle {triangle}, which does not exist")]
     NoSuchTriangle {
-        /// Which vertex of the line.
+        /// The index of the vertex in the line.
         at: usize,
-        /// The triangle it names.
+        /// The index of the triangle.
         triangle: u32,
     },
-    /// A vertex names a TIN vertex that does not exist.
-    #[error("vertex {at} of a draped line names TIN vertex {vertex}, which does not exist")]
+    /// A vertex refers to a TIN vertex that does not exist.
+    #[error("vertex {at} of a draped line refers to TIN vertex {vertex}, which does not exist")]
     NoSuchVertex {
-        /// Which vertex of the line.
+        /// The index of the vertex in the line.
         at: usize,
-        /// The TIN vertex it names.
+        /// The index of the TIN vertex.
         vertex: u32,
     },
-    /// A point lies more than 2^50 steps from the origin, where f64 would not represent fractions of a step well
-    /// enough.
+    /// A point is more than 2^50 steps from the origin, where f64 does not represent fractions of a
+    /// step well enough.
     #[error("point ({}, {}) of a draped line is out of range", point.u, point.v)]
     OutOfRange {
         /// The point.
         point: LatticePoint,
     },
-    /// A crossing or passed vertex has no source point (or lead) on one side, or there is a lead where there must be
-    /// none.
+    /// A crossing or passed vertex has no source point (or lead) on one side, or there is a lead
+    /// where there must be none.
     #[error(
-        "vertex {at} of a draped line does not lie between two source points, or a lead is not needed"
+        "vertex {at} of a draped line is not between two source points, or a lead is not needed"
     )]
     Loose {
-        /// Which vertex of the line.
+        /// The index of the vertex in the line.
         at: usize,
     },
-    /// The line does not cross the edge that a crossing names.
+    /// The line does not cross the edge of a crossing.
     #[error(
-        "vertex {at} of a draped line names the edge {a}–{b}, which the line does not cross there"
+        "vertex {at} of a draped line refers to the edge {a}–{b}, which the line does not cross there"
     )]
     NoCrossing {
-        /// Which vertex of the line.
+        /// The index of the vertex in the line.
         at: usize,
         /// The edge's first TIN vertex.
         a: u32,
         /// The edge's second TIN vertex.
         b: u32,
     },
-    /// The line does not pass through the TIN vertex that it names.
+    /// The line does not pass through a TIN vertex of its list.
     #[error(
-        "vertex {at} of a draped line names TIN vertex {vertex}, which the line does not pass through"
+        "vertex {at} of a draped line refers to TIN vertex {vertex}, which the line does not pass through"
     )]
     NotPassed {
-        /// Which vertex of the line.
+        /// The index of the vertex in the line.
         at: usize,
-        /// The TIN vertex it names.
+        /// The index of the TIN vertex.
         vertex: u32,
     },
-    /// A source point does not lie in the triangle it names.
-    #[error("vertex {at} of a draped line does not lie in triangle {triangle}, which it names")]
+    /// A source point is not in its triangle.
+    #[error("vertex {at} of a draped line is not in triangle {triangle}, to which it refers")]
     OutsideTriangle {
-        /// Which vertex of the line.
+        /// The index of the vertex in the line.
         at: usize,
-        /// The triangle it names.
+        /// The index of the triangle.
         triangle: u32,
     },
-    /// A vertex comes at or before the one it follows, or two source points are the same.
-    #[error("vertex {at} of a draped line does not lie beyond the vertex before it")]
+    /// A vertex is at the position of the vertex before it or in front of it, or two source points
+    /// are the same.
+    #[error("vertex {at} of a draped line is not beyond the vertex before it")]
     Disorder {
-        /// Which vertex of the line.
+        /// The index of the vertex in the line.
         at: usize,
     },
-    /// A vertex shares no triangle with the one it follows.
+    /// A vertex shares no triangle with the vertex before it.
     #[error("vertex {at} of a draped line shares no triangle with the vertex before it")]
     Apart {
-        /// Which vertex of the line.
+        /// The index of the vertex in the line.
         at: usize,
     },
 }
 
-/// Where the vertices of `line` lie on `surface`: [u, v] in (fractional) lattice steps, and the height in metres.
+/// Returns the positions of the vertices of `line` on `surface`: [u, v] in (fractional) lattice
+/// steps, and the height in metres.
 ///
-/// A crossing's position and height come from its edge, in one order of the edge's ends, and do not depend on
-/// the direction of travel, nor on the triangles beside it: both pieces that meet there agree to the last bit.
-/// In plan it is off by an eighth of a step at most, 2^50 steps out, and less nearer by; its height is that of
-/// its exact position to within 2^-50 of the heights of the edge's ends. Source points and TIN vertices are exact.
+/// The position and height of a crossing come from its edge, in one order of the edge's ends, and
+/// do not depend on the direction of travel or on the adjacent triangles: both pieces that meet
+/// there agree to the last bit. In plan the error is at most an eighth of a step at a distance of
+/// 2^50 steps from the origin, and smaller nearer to it; the height is that of the exact position
+/// to within 2^-50 of the heights of the edge's ends. Source points and TIN vertices are exact.
 ///
 /// # Errors
-/// When the line has too few vertices, names a triangle or a TIN vertex that does not exist, or names an edge that it
-/// does not cross. A line without an error here may still be wrong in ways that [`check`](crate::check()) finds.
+/// When the line has too few vertices, refers to a triangle or a TIN vertex that does not exist, or
+/// to an edge that it does not cross. A line without an error here may still be wrong in ways that
+/// [`check`](crate::check()) detects.
 pub fn positions(line: &DrapedLine, surface: &Surface) -> Result<Vec<[f64; 3]>, BadLine> {
     let mut positions = Vec::with_capacity(line.vertices.len());
     for_each_vertex(line, surface, |_, vertex, segment| {
@@ -124,10 +128,12 @@ pub fn positions(line: &DrapedLine, surface: &Surface) -> Result<Vec<[f64; 3]>, 
     Ok(positions)
 }
 
-/// The segment of the source line that each edge of `line` is a piece of, one fewer than vertices.
+/// Returns for each edge of `line` the segment of the source line that contains it; edges are one
+/// fewer than vertices.
 ///
-/// For a line that [`positions`] accepts; in another line, a missing source point on one side is replaced by the one
-/// on the other side; a line without source points has no segments.
+/// The line should be one that [`positions`] accepts. In another line, a missing source point on
+/// one side is replaced by the source point on the other side; a line without source points has no
+/// segments.
 #[must_use]
 pub fn source_segments(line: &DrapedLine) -> Vec<[LatticePoint; 2]> {
     let source = |vertex: &DrapedVertex| match vertex {
@@ -151,8 +157,8 @@ pub fn source_segments(line: &DrapedLine) -> Vec<[LatticePoint; 2]> {
     segments
 }
 
-/// Visits every vertex with its index and the segment it lies on (for a source point twice that point), once its
-/// indices, its range and, for a crossing, the sides of its edge's ends have been checked.
+/// Visits every vertex with its index and its segment (for a source point twice that point), after
+/// checking its indices, its range and, for a crossing, the sides of its edge's ends.
 pub(crate) fn for_each_vertex(
     line: &DrapedLine,
     surface: &Surface,
@@ -211,7 +217,7 @@ fn in_range(point: LatticePoint) -> Result<LatticePoint, BadLine> {
     if fits { Ok(point) } else { Err(BadLine::OutOfRange { point }) }
 }
 
-/// On which side of the segment a TIN vertex lies: -1, 0 or 1.
+/// The side of the segment on which a TIN vertex is: -1, 0 or 1.
 fn side(
     surface: &Surface,
     at: usize,
@@ -223,12 +229,12 @@ fn side(
     Ok(cross(p, q, in_range(point)?).signum())
 }
 
-/// Where the segment crosses the edge, and how high.
+/// The position and the height at which the segment crosses the edge.
 fn crossing(surface: &Surface, [p, q]: [LatticePoint; 2], ends: [u32; 2]) -> [f64; 3] {
     let at = ends.map(|vertex| surface.points()[vertex as usize]);
     let from_line = at.map(|point| cross(p, q, point));
-    // Measured from the nearer end, so that the offset is small. If the segment runs the other way, both numbers
-    // change their sign only.
+    // The position is measured from the nearer end, so that the offset is small. If the segment
+    // runs the other way, both numbers only change their signs.
     let (near, far) = if from_line[0].abs() <= from_line[1].abs() { (0, 1) } else { (1, 0) };
     let part = from_line[near] as f64 / (from_line[near] - from_line[far]) as f64;
     let heights_m = ends.map(|vertex| surface.heights_m()[vertex as usize]);

@@ -1,15 +1,16 @@
-//! Bounds on the heights of the ground near a segment, which grow with the distance from it.
+//! Bounds on the heights of the ground near a segment, which widen with the distance from it.
 
-use corniche_geom::Work;
+use corniche_geom::StepBudget;
 use corniche_tin::Surface;
 
 use crate::height_range::padded;
 use crate::segment_rectangle::SegmentRectangle;
 
-/// A triangle some of which lies near is cut by two rectangles, which takes as long as to look at so many.
+/// A triangle that is partly near is cut by two rectangles, which takes as long as examining this
+/// many triangles.
 const STEPS_OF_PART: usize = 4;
 
-/// Bounds on the ground near a segment that grow with the distance from it.
+/// Bounds on the ground near a segment that widen with the distance from it.
 ///
 /// ```text
 ///     height │  ╲                 ╱       Ground at a distance d from the segment, d ≤ reach, is not lower than
@@ -23,27 +24,29 @@ const STEPS_OF_PART: usize = 4;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NearGround {
-    /// Lowest and highest ground beneath the segment, metres; within the reach where `rise_m` is 0.
+    /// Lowest and highest ground beneath the segment in metres; if `rise_m` is 0, within the whole
+    /// reach.
     pub range_m: [f64; 2],
-    /// Metres that ground may be lower or higher for each lattice step away from the segment.
+    /// Metres by which ground may be lower or higher per lattice step of distance from the segment.
     pub rise_m: f64,
 }
 
-/// Bounds on the ground within `reach` of a segment; `None` without any there.
+/// Returns bounds on the ground within `reach` of a segment; `None` if there is no ground.
 ///
-/// The ends and the reach are in lattice steps. *Within* is as for [`extrude`](crate::extrude): a rectangle, which holds
-/// the caps. Looking at a triangle is a step of `work`, and there are four more when some of it lies within.
+/// The ends and the reach are in lattice steps. *Within* means the same rectangle as for
+/// [`extrude`](crate::extrude), which contains the caps. Each examined triangle is a step of
+/// `work`, and a triangle that is partly within the reach counts for four more.
 #[must_use]
 pub fn near_ground(
     ends: [[f64; 2]; 2],
     surface: &Surface,
     reach: f64,
-    work: &Work,
+    work: &StepBudget,
 ) -> Option<NearGround> {
     let (near, beneath) =
         (SegmentRectangle::new(ends, reach), SegmentRectangle::new(ends, reach.min(1.0)));
     let mut triangles = Vec::new();
-    // A corner of the rectangle is √2 · reach away from the end of the segment.
+    // A corner of the rectangle is √2 · reach from the end of the segment.
     surface.triangles_along(ends, 1.5 * reach + 1.0, &mut triangles);
     work.add(triangles.len());
     let (mut near_range_m, mut beneath_range_m) = (NOTHING, NOTHING);
@@ -63,7 +66,7 @@ pub fn near_ground(
     if near_range_m[0] > near_range_m[1] {
         return None;
     }
-    // Slopes bound the heights only if there is ground everywhere between the segment and the place.
+    // Slopes only limit the heights if there is ground everywhere between the segment and a point.
     let is_covered = near.is_covered(covered);
     Some(if is_covered && beneath_range_m[0] <= beneath_range_m[1] {
         NearGround { range_m: padded(beneath_range_m), rise_m }
@@ -72,7 +75,7 @@ pub fn near_ground(
     })
 }
 
-/// The range that holds no height.
+/// The range that contains no height.
 const NOTHING: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
 
 fn widen([lowest_m, highest_m]: &mut [f64; 2], corners: &[[f64; 3]]) {

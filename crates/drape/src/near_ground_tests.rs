@@ -1,4 +1,4 @@
-//! No ground near a segment lies beyond the bounds.
+//! No ground near a segment is outside the bounds.
 
 use corniche_geom::LatticePoint;
 use proptest::prelude::*;
@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::extrude::tests::ground;
 
-/// How far a point is from a segment.
+/// The distance of a point from a segment.
 fn distance(at: [f64; 2], [p, q]: [[f64; 2]; 2]) -> f64 {
     let (d, e) = ([q[0] - p[0], q[1] - p[1]], [at[0] - p[0], at[1] - p[1]]);
     let squared = d[0] * d[0] + d[1] * d[1];
@@ -16,7 +16,8 @@ fn distance(at: [f64; 2], [p, q]: [[f64; 2]; 2]) -> f64 {
 }
 
 proptest! {
-    /// All ground within the reach is where the bounds say, holes or not, inside the ground or beside it.
+    /// All ground within the reach is within the bounds, with holes or without, in the interior of
+    /// the ground or at its boundary.
     #[test]
     fn no_ground_is_beyond_the_bounds(
         p in (-1500_i64..17_500, -1500_i64..17_500), by in (-4000_i64..4000, -4000_i64..4000),
@@ -26,9 +27,9 @@ proptest! {
         let rough = |column: i32, row: i32| steep * (column * 7919 + row * 104_729 + seed * 31).rem_euclid(97);
         let surface = ground(rough, |column, row| (column * 5 + row * 3) % holes == 1);
         let ends = [[p.0 as f64, p.1 as f64], [(p.0 + by.0) as f64, (p.1 + by.1) as f64]];
-        let found = near_ground(ends, &surface, reach as f64, &Work::unlimited());
+        let found = near_ground(ends, &surface, reach as f64, &StepBudget::unlimited());
         for (share, east, north) in samples {
-            // Anywhere around the segment, most of it near.
+            // Points anywhere around the segment, most of them near.
             let at = [0, 1].map(|axis| ends[0][axis] + share * (ends[1][axis] - ends[0][axis]));
             let at = LatticePoint::new((at[0] + east * reach as f64) as i64, (at[1] + north * reach as f64) as i64);
             let away = distance(at.in_steps(), ends);
@@ -41,15 +42,20 @@ proptest! {
     }
 }
 
-/// On a slope of 3 in 4 along the segment, 0.5 m a step of height: closed form.
+/// The slope is 3 in 4 along the segment, with 0.5 m per step of height; the expected values have a
+/// closed form.
 #[test]
 fn on_a_plane_the_bounds_are_those_of_the_plane() {
     let surface = ground(|column, _| 1500 * column, |_, _| false);
-    let found =
-        near_ground([[4000.0, 8000.0], [6000.0, 8000.0]], &surface, 1000.0, &Work::unlimited())
-            .unwrap();
+    let found = near_ground(
+        [[4000.0, 8000.0], [6000.0, 8000.0]],
+        &surface,
+        1000.0,
+        &StepBudget::unlimited(),
+    )
+    .unwrap();
     let [low_m, high_m] = found.range_m;
-    // One step beyond either end, and the padding.
+    // The slack is one step beyond each end, and the padding.
     assert!((low_m - 3000.0).abs() < 1.0 && low_m <= 3000.0, "{found:?}");
     assert!((high_m - 4500.0).abs() < 1.0 && high_m >= 4500.0, "{found:?}");
     assert!((found.rise_m - 0.75).abs() < 1e-12, "{found:?}");
@@ -59,7 +65,7 @@ fn on_a_plane_the_bounds_are_those_of_the_plane() {
 fn beside_a_hole_it_is_the_range_within_the_reach() {
     let surface = ground(|column, _| 100 * column, |column, row| column == 9 && row == 8);
     let near = |x: f64| {
-        near_ground([[x, 7500.0], [x, 7600.0]], &surface, 1000.0, &Work::unlimited()).unwrap()
+        near_ground([[x, 7500.0], [x, 7600.0]], &surface, 1000.0, &StepBudget::unlimited()).unwrap()
     };
     assert!(near(5000.0).rise_m > 0.0, "far from it");
     let beside = near(8500.0);
@@ -72,11 +78,11 @@ fn beside_a_hole_it_is_the_range_within_the_reach() {
 fn far_from_all_ground_there_is_nothing() {
     let surface = ground(|_, _| 10, |_, _| false);
     assert_eq!(
-        near_ground([[-9000.0, 0.0], [-8000.0, 0.0]], &surface, 1000.0, &Work::unlimited()),
+        near_ground([[-9000.0, 0.0], [-8000.0, 0.0]], &surface, 1000.0, &StepBudget::unlimited()),
         None
     );
     assert!(
-        near_ground([[-900.0, 500.0], [-900.0, 500.0]], &surface, 1000.0, &Work::unlimited())
+        near_ground([[-900.0, 500.0], [-900.0, 500.0]], &surface, 1000.0, &StepBudget::unlimited())
             .is_some()
     );
 }

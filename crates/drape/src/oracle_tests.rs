@@ -1,4 +1,4 @@
-//! The walk against brute force, for TINs and lines of every awkward kind.
+//! The walk agrees with brute force, for TINs and lines of every difficult kind.
 
 pub(crate) mod exact;
 mod lines;
@@ -20,21 +20,23 @@ use crate::{Drape, DrapedLine, DrapedVertex, check, drape, positions};
 
 const QUANTUM_M: f64 = 0.25;
 
-/// The same line travelled the other way.
+/// The same line in the opposite direction.
 fn turned(line: &DrapedLine) -> DrapedLine {
     let vertices = line.vertices.iter().rev().copied().collect();
     DrapedLine { lead_in: line.lead_out, vertices, lead_out: line.lead_in }
 }
 
-/// Length in plan, and that every edge lies on the TIN: its middle has the height of the triangle beneath, as near
-/// as f64 can tell where that is. (Over a sliver the ground may rise by a million metres a step.)
+/// Returns the length in plan, and checks that every edge is on the TIN: its middle has the height
+/// of the triangle beneath, as closely as f64 can determine which triangle that is. (Over a sliver
+/// the ground may rise by a million metres per step.)
 fn length_on_tin(line: &DrapedLine, surface: &Surface) -> f64 {
     let at = positions(line, surface).unwrap();
     let mut length = 0.0;
     for (k, pair) in at.windows(2).enumerate() {
         let [[u0, v0, z0], [u1, v1, z1]] = [pair[0], pair[1]];
         let middle = [f64::midpoint(u0, u1), f64::midpoint(v0, v1)];
-        // Along an edge rounding puts the middle on either side of it, so every triangle that near is tried.
+        // Along an edge rounding moves the middle to either side of it, so every triangle this near
+        // is tried.
         let beyond_rounding_m = |t: u32| {
             let height_m = |east: f64, north: f64| {
                 surface.height_in_triangle_m(t, [middle[0] + east, middle[1] + north])
@@ -58,7 +60,7 @@ fn length_on_tin(line: &DrapedLine, surface: &Surface) -> f64 {
     length
 }
 
-/// Length in plan that is over no ground, in lattice steps.
+/// The length in plan without ground, in lattice steps.
 pub(crate) fn off_ground_steps(line: &Polyline, draped: &Drape) -> f64 {
     let points = line.points();
     draped.gaps.iter().fold(0.0, |sum, gap| {
@@ -77,7 +79,7 @@ struct Case {
 }
 
 impl Case {
-    /// `None` where chance makes no TIN, or a line of one point.
+    /// Creates a random case; `None` if there is no TIN, or a line of one point.
     fn new(seed: u64) -> Option<Self> {
         let mut random = Random::new(seed);
         let terrain = random.one_of(&Terrain::ALL);
@@ -117,7 +119,7 @@ impl Case {
         let error = (on_steps + off_steps - total).abs();
         assert!(error <= 1e-9 * total, "{on_steps} on, {off_steps} off, {total}");
 
-        // The other way: the same crossings at the same positions, to the last bit.
+        // The opposite direction has the same crossings at the same positions, to the last bit.
         let back = Polyline::new(line.points().iter().rev().copied().collect()).unwrap();
         let back = drape(&back, &surface).lines;
         assert_eq!(back.iter().rev().map(turned).collect::<Vec<_>>(), draped.lines);
@@ -132,8 +134,9 @@ impl Case {
         }
     }
 
-    /// Positions and heights are those of exact arithmetic: in plan to 2^-20 of a step, the line's own points
-    /// and the TIN's vertices exactly, heights on edges to 2^-40 of a quantum, in triangles to 2^-36.
+    /// Positions and heights are those of exact arithmetic: in plan to 2^-20 of a step, the line's
+    /// own points and the TIN's vertices exactly, heights on edges to 2^-40 of a quantum, in
+    /// triangles to 2^-36.
     fn check_positions(&self, part: &DrapedLine, surface: &Surface) {
         let near = |point: LatticePoint| [point.u as f64, point.v as f64];
         let height_q = |vertex: u32| i64::from(self.tin.vertices()[vertex as usize].height_q);
@@ -178,7 +181,7 @@ impl Case {
         }
     }
 
-    /// Far larger numbers, far away, take the 128-bit paths and must decide the same.
+    /// Far larger coordinates, which take the 128-bit paths, must give the same decisions.
     fn check_wide(&self, lines: &[DrapedLine]) {
         let Self { tin, placement, line, .. } = self;
         let (wider, far) = (1_i64 << 24, 1_i64 << 55);
@@ -194,7 +197,8 @@ impl Case {
         assert_eq!(wide.lines, lines.iter().map(|part| moved(part, widen)).collect::<Vec<_>>());
     }
 
-    /// As far out as positions are given, they are off by an eighth of a step at most; heights do not change.
+    /// At the largest distance at which positions are computed, their error is at most an eighth of
+    /// a step; heights do not change.
     fn check_far(&self, lines: &[DrapedLine]) {
         let Self { tin, placement, line, .. } = self;
         let far = (1_i64 << 50) - (1 << 31);
@@ -216,7 +220,7 @@ impl Case {
     }
 }
 
-/// The same line after moving its points.
+/// The same line with moved points.
 fn moved(line: &DrapedLine, place: impl Fn(LatticePoint) -> LatticePoint + Copy) -> DrapedLine {
     let vertex = |&vertex: &DrapedVertex| match vertex {
         DrapedVertex::Source { point, triangle } => {
@@ -231,10 +235,10 @@ fn moved(line: &DrapedLine, place: impl Fn(LatticePoint) -> LatticePoint + Copy)
     }
 }
 
-/// How many cases of each kind ran, and how many parts and vertices they came to.
+/// The numbers of cases of each kind, of parts and of vertices.
 type Counts = BTreeMap<(Terrain, Course), [u64; 3]>;
 
-/// Runs cases from `first` on; names the first that fails.
+/// Runs cases from `first` on; reports the first that fails.
 fn run(first: u64, count: u64) -> Counts {
     let mut counts = Counts::new();
     for seed in first..first + count {
@@ -273,7 +277,7 @@ fn agrees_with_brute_force() {
     }
 }
 
-/// `CORNICHE_DRAPE_CASES` sets how many.
+/// `CORNICHE_DRAPE_CASES` sets the number of cases.
 #[test]
 #[ignore = "slow: minutes of brute force"]
 fn agrees_with_brute_force_a_million_times() {
@@ -304,7 +308,7 @@ fn agrees_with_brute_force_a_million_times() {
 }
 
 proptest! {
-    /// The walk is what brute force makes of it, for seeds proptest chooses.
+    /// The walk agrees with brute force, for seeds that proptest chooses.
     #[test]
     fn agrees_with_brute_force_for_any_seed(seed in any::<u64>()) {
         if let Some(case) = Case::new(seed) {

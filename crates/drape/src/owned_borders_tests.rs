@@ -1,4 +1,5 @@
-//! A level of two by two tiles with voids: everything is laid, or counted as over no ground, exactly once.
+//! In a level of two by two tiles with voids, every stretch is draped, or counted as without
+//! ground, exactly once.
 
 use corniche_geom::{HeightGrid, LatticeBounds, LatticePoint, Polyline};
 use corniche_tin::{Placement, Surface, TinSpec, triangulate};
@@ -8,7 +9,7 @@ use super::*;
 use crate::oracle_tests::off_ground_steps;
 use crate::{DrapedLine, clip, clip_closed, drape, positions};
 
-/// Cells along a tile of these tests; each stands for 256 / 8 cells of a border.
+/// Cells along a tile of these tests; each of them represents 256 / 8 cells of a border.
 const CELLS: i64 = 8;
 /// Lattice steps from node to node.
 const STEPS: i64 = 32;
@@ -40,7 +41,7 @@ impl Level {
             .all(|&(east, south)| self.node(column + east, row + south))
     }
 
-    /// A tile as the pipeline makes it: from its own window with a halo of one node.
+    /// Creates a tile like the pipeline: from its own window with a halo of one node.
     fn tile(&self, x: i64, y: i64) -> Tile {
         let (west, north) = (x * CELLS, y * CELLS);
         let nodes = CELLS as usize + 3;
@@ -66,8 +67,9 @@ impl Level {
         places.iter().map(|&(x, y)| self.tile(x, y)).collect()
     }
 
-    /// Where p → q is on closed ground cells, by trying every cell, as parts of its length; merged, in order.
-    /// f64 is exact enough: positions of different cuts are at least 1 / 2^20 apart.
+    /// The stretches of p → q on closed ground cells as fractions of its length, by trying every
+    /// cell; merged, in order. f64 is exact enough: positions of different cuts are at least 1 /
+    /// 2^20 apart.
     fn on_ground(&self, [p, q]: [LatticePoint; 2]) -> Vec<[f64; 2]> {
         let mut parts = Vec::new();
         for column in 0..TILES * CELLS {
@@ -106,17 +108,18 @@ impl Level {
     }
 }
 
-/// Where a draped part of p → q begins and ends, as steps from p.
+/// The beginning and the end of a draped part of p → q, in steps from p.
 fn span_steps(part: &DrapedLine, surface: &Surface, p: LatticePoint) -> [f64; 2] {
     let at = positions(part, surface).unwrap();
     let reach = |[u, v, _]: [f64; 3]| (u - p.u as f64).hypot(v - p.v as f64);
     [reach(at[0]), reach(at[at.len() - 1])]
 }
 
-/// Rounding in f64.
+/// The tolerance for rounding in f64.
 const ROUNDING_STEPS: f64 = 1e-6;
 
-/// One segment is laid on the ground exactly, and nowhere twice. It meets tile borders in lattice points.
+/// Checks that one segment is draped on exactly the ground, and nowhere twice. It meets tile
+/// borders in lattice points.
 fn check_segment(level: &Level, p: LatticePoint, q: LatticePoint) {
     let Ok(line) = Polyline::new(vec![p, q]) else { return };
     let length = p.distance_steps(q);
@@ -153,14 +156,14 @@ fn check_segment(level: &Level, p: LatticePoint, q: LatticePoint) {
     assert!((inside - kept).abs() <= ROUNDING_STEPS, "{inside} inside, {kept} in tiles");
 }
 
-/// Length within the level.
+/// The length within the level.
 fn inside_steps(line: &Polyline) -> f64 {
     let min = LatticePoint::new(0, -TILES * SIDE);
     let root = LatticeBounds { min, max: LatticePoint::new(TILES * SIDE, 0) };
     clip_closed(line, &root).iter().map(corniche_testing::length_steps).sum()
 }
 
-/// Coordinates where it hurts: tile borders, cell borders, and anything; some far outside.
+/// Difficult coordinates: tile borders, cell borders, and any others; some far outside.
 fn coordinate() -> impl Strategy<Value = i64> {
     prop_oneof![
         4 => (0..=TILES).prop_map(|n| n * SIDE),
@@ -177,33 +180,34 @@ fn any_direction() -> impl Strategy<Value = (i64, i64)> {
 fn any_level() -> impl Strategy<Value = Level> {
     let node = prop_oneof![
         2 => (0..=TILES * CELLS).boxed(),
-        // Beside and on the border in the middle.
+        // Next to the border in the middle, and on it.
         3 => (CELLS - 1..=CELLS + 1).boxed(),
     ];
     prop::collection::vec((node.clone(), node), 0..14).prop_map(|gaps| Level { gaps })
 }
 
-/// A level of four tiles is meshed for each.
+/// The number of cases; each case triangulates a level of four tiles.
 const CASES: u32 = 600;
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(CASES))]
 
-    /// The tiles of a level lay a segment on all ground it runs over or along, each piece once, and count the
-    /// rest: nothing drawn twice, nothing lost.
+    /// The tiles of a level drape a segment on all ground along it, each piece once, and count the
+    /// rest: nothing is drawn twice, nothing is lost.
     #[test]
     fn tiles_lay_every_piece_exactly_once(
         level in any_level(),
         segments in prop::collection::vec((coordinate(), coordinate(), any_direction(), -200_i64..200), 1..6),
     ) {
         for (u, v, (east, south), reach) in segments {
-            // Even coordinates, and directions like a knight's moves: borders are met in lattice points.
+            // Even coordinates, and directions like a knight's moves, so that borders are met in
+            // lattice points.
             let p = LatticePoint::new(u & !1, -(v & !1));
             check_segment(&level, p, LatticePoint::new(p.u + 4 * reach * east, p.v - 4 * reach * south));
         }
     }
 
-    /// Whatever the slopes: no more than the rounding of cuts, half a step each, is lost or gained.
+    /// Whatever the slopes, no more than the rounding of cuts, half a step each, is lost or gained.
     #[test]
     fn lengths_of_any_line_add_up(
         level in any_level(), points in prop::collection::vec((coordinate(), coordinate()), 2..7),
@@ -222,12 +226,12 @@ proptest! {
             }
         }
         prop_assert!((on + off - kept).abs() <= 1e-6, "{on} on, {off} off, {kept} in tiles");
-        // A segment is cut at six borders at most, at each for the tiles on both sides.
+        // A segment is cut at six borders at most, at each of them for the tiles on both sides.
         let inside = inside_steps(&line);
         prop_assert!((inside - kept).abs() <= 6.0 * line.points().len() as f64, "{inside} inside, {kept} in tiles");
     }
 
-    /// What is on tile borders alone is cut at whole nodes, and adds up to the last bit.
+    /// Lines that are only on tile borders are cut at whole nodes, and add up to the last bit.
     #[test]
     fn lengths_along_borders_add_up_exactly(level in any_level(), [a, b, c] in [coordinate(), coordinate(), coordinate()]) {
         let at = |u: i64, v: i64| LatticePoint::new(u.clamp(0, TILES * SIDE), -v.clamp(0, TILES * SIDE));
@@ -242,7 +246,8 @@ proptest! {
     }
 }
 
-/// What each tile (north-west, north-east, south-west, south-east) keeps of a line: points of its parts.
+/// Checks what each tile (north-west, north-east, south-west, south-east) keeps of a line: the
+/// points of its parts.
 #[track_caller]
 fn assert_shares(level: &Level, points: &[(i64, i64)], expected: [&[&[(i64, i64)]]; 4]) {
     let points = points.iter().map(|&(u, v)| LatticePoint::new(u * STEPS, -v * STEPS)).collect();
@@ -267,7 +272,7 @@ fn a_border_with_ground_on_both_sides_is_the_eastern_tiles() {
 
 #[test]
 fn a_border_with_a_void_in_the_east_is_the_western_tiles_there() {
-    // Node (9, 4) is missing: the eastern tile's cells (8, 3) and (8, 4) are void.
+    // Node (9, 4) is missing, so the eastern tile's cells (8, 3) and (8, 4) are void.
     let level = Level { gaps: vec![(9, 4)] };
     let [down, up] = [[(8, 1), (8, 7)], [(8, 7), (8, 1)]];
     assert_shares(
@@ -314,7 +319,7 @@ fn the_corner_of_four_tiles_splits_a_line_along_borders() {
         &[(8, 4), (8, 12)],
         [&[], &[&[(8, 4), (8, 8)]], &[], &[&[(8, 8), (8, 12)]]],
     );
-    // Round the corner: along a border, then along the other.
+    // Around the corner: along one border, then along the other.
     assert_shares(
         &Level { gaps: vec![] },
         &[(8, 10), (8, 8), (4, 8)],

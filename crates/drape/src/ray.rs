@@ -1,4 +1,4 @@
-//! The way of one segment over the triangles, found by exact tests.
+//! The path of one segment over the triangles, found by exact tests.
 
 use std::cmp::Ordering;
 
@@ -7,21 +7,21 @@ use corniche_tin::{NO_TWIN, Surface};
 
 use crate::barycentric::{Barycentric, turn};
 
-/// Where on the ground a point lies.
+/// The place of a point on the ground.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum PlaceOnTin {
-    /// The point lies outside the ground.
+    /// The point is outside the ground.
     Off,
-    /// The point lies in the inside of a triangle.
+    /// The point is in the interior of a triangle.
     Inside(u32),
-    /// The point lies in the inside of the edge of this half-edge.
+    /// The point is in the interior of the edge of this half-edge.
     Edge(u32),
     /// The point is a TIN vertex.
     Vertex(u32),
 }
 
 impl PlaceOnTin {
-    pub(crate) fn of(point: LatticePoint, surface: &Surface) -> Self {
+    pub(crate) fn locate(point: LatticePoint, surface: &Surface) -> Self {
         let Some(triangle) = surface.locate(point) else {
             return Self::Off;
         };
@@ -39,7 +39,7 @@ impl PlaceOnTin {
         }
     }
 
-    /// The smallest index of the triangles that hold the point; whichever way the place was reached.
+    /// The smallest index of the triangles that contain the point, however the place was reached.
     pub(crate) fn first_triangle(self, surface: &Surface) -> Option<u32> {
         match self {
             Self::Off => None,
@@ -51,50 +51,51 @@ impl PlaceOnTin {
     }
 }
 
-/// What a segment meets next.
+/// The next event of a segment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Next {
-    /// Its own end, which lies here.
+pub(crate) enum NextCrossing {
+    /// The segment reaches its own end, which is at this place.
     Arrives(PlaceOnTin),
-    /// It leaves a triangle through the inside of this half-edge of it, which runs from a to b.
+    /// The segment leaves a triangle through the interior of this half-edge of it, which runs from
+    /// a to b.
     Crosses { half_edge: u32, a: u32, b: u32 },
-    /// It reaches this TIN vertex before its end.
+    /// The segment reaches this TIN vertex before its end.
     Passes(u32),
-    /// No ground continues from where it is.
+    /// No ground continues from the current place.
     Ends,
 }
 
 /// A segment p → q over a surface.
 ///
 /// ```text
-///                 c                 Entered across o–d, the segment leaves across d–c when c lies on its
+///                 c                 Entered across o–d, the segment leaves across d–c when c is on its
 ///                / \                left, across c–o when on its right, through c when on it. This is the
 ///       p ─ ─ ─ /─ ─\─ ─ ► q        smallest positive exit in barycentric coordinates, without their
-///              /     \              division (`Barycentric`): one orientation tells the edge, a second
-///             o───────d             whether q lies before it.
+///              /     \              division (`Barycentric`): one orientation gives the edge, a second
+///             o───────d             says whether q is before it.
 /// ```
 #[derive(Clone, Copy)]
-pub(crate) struct Ray<'a> {
+pub(crate) struct SegmentWalk<'a> {
     pub(crate) surface: &'a Surface,
     pub(crate) p: LatticePoint,
     pub(crate) q: LatticePoint,
 }
 
-impl Ray<'_> {
-    /// The way from p on.
-    pub(crate) fn leave_start(&self, place: PlaceOnTin) -> Next {
+impl SegmentWalk<'_> {
+    /// The path from p on.
+    pub(crate) fn leave_start(&self, place: PlaceOnTin) -> NextCrossing {
         match place {
-            PlaceOnTin::Off => Next::Ends,
+            PlaceOnTin::Off => NextCrossing::Ends,
             PlaceOnTin::Inside(triangle) => self.through(triangle),
             PlaceOnTin::Edge(half_edge) => self.leave_edge(half_edge),
             PlaceOnTin::Vertex(vertex) => self.leave_vertex(vertex),
         }
     }
 
-    /// The way on from a triangle just entered across its own `half_edge`, whose start lies on the left of the
-    /// segment and whose end on the right.
+    /// The path from a triangle that was just entered across its own `half_edge`, whose start is on
+    /// the left of the segment and whose end is on the right.
     #[inline]
-    pub(crate) fn entered(&self, half_edge: u32) -> Next {
+    pub(crate) fn entered(&self, half_edge: u32) -> NextCrossing {
         let triangle = half_edge / 3;
         let k = half_edge % 3;
         let (next, previous) = (3 * triangle + (k + 1) % 3, 3 * triangle + (k + 2) % 3);
@@ -106,8 +107,8 @@ impl Ray<'_> {
         }
     }
 
-    /// The way on from a TIN vertex that lies on the segment, q beyond it.
-    pub(crate) fn leave_vertex(&self, vertex: u32) -> Next {
+    /// The path from a TIN vertex on the segment, with q beyond it.
+    pub(crate) fn leave_vertex(&self, vertex: u32) -> NextCrossing {
         let hub = self.point(vertex);
         for &out in self.surface.fan(vertex) {
             let triangle = out / 3;
@@ -126,11 +127,11 @@ impl Ray<'_> {
                 return self.out_of(across);
             }
         }
-        Next::Ends
+        NextCrossing::Ends
     }
 
-    /// The next step from p, which lies in the inside of an edge.
-    fn leave_edge(&self, half_edge: u32) -> Next {
+    /// The next step from p, which is in the interior of an edge.
+    fn leave_edge(&self, half_edge: u32) -> NextCrossing {
         let [a, b] = self.surface.ends(half_edge);
         // On the edge the coordinate is 0, so its sign at the end is that of its rate.
         match self.coordinate([a, b]).sign_at_end() {
@@ -140,16 +141,17 @@ impl Ray<'_> {
             }
             Ordering::Greater => self.through(half_edge / 3),
             Ordering::Less => match self.surface.twin(half_edge) {
-                NO_TWIN => Next::Ends,
+                NO_TWIN => NextCrossing::Ends,
                 twin => self.through(twin / 3),
             },
         }
     }
 
-    /// The way on through the inside of a triangle that holds p in its inside or on an edge.
-    fn through(&self, triangle: u32) -> Next {
+    /// The path through the interior of a triangle that contains p in its interior or on an edge.
+    fn through(&self, triangle: u32) -> NextCrossing {
         let corners = self.surface.triangles()[triangle as usize];
-        // The smallest of three exits: it comes before that across the edge before it, and before that across the next one.
+        // The smallest of three exits: it is before the exits across the previous and the next
+        // edge.
         let sides = corners.map(|vertex| turn(self.p, self.q, self.point(vertex)));
         for k in 0..3 {
             let (this, next, previous) = (sides[k], sides[(k + 1) % 3], sides[(k + 2) % 3]);
@@ -160,33 +162,33 @@ impl Ray<'_> {
                 return self.towards(corners[k], PlaceOnTin::Inside(triangle));
             }
         }
-        Next::Ends
+        NextCrossing::Ends
     }
 
-    /// Towards the inside of `half_edge` of the triangle it is in.
+    /// The step towards the interior of `half_edge` of the current triangle.
     #[inline]
-    fn out_of(&self, half_edge: u32) -> Next {
+    fn out_of(&self, half_edge: u32) -> NextCrossing {
         let [a, b] = self.surface.ends(half_edge);
         match self.coordinate([a, b]).sign_at_end() {
-            Ordering::Equal => Next::Arrives(PlaceOnTin::Edge(half_edge)),
-            Ordering::Greater => Next::Arrives(PlaceOnTin::Inside(half_edge / 3)),
-            Ordering::Less => Next::Crosses { half_edge, a, b },
+            Ordering::Equal => NextCrossing::Arrives(PlaceOnTin::Edge(half_edge)),
+            Ordering::Greater => NextCrossing::Arrives(PlaceOnTin::Inside(half_edge / 3)),
+            Ordering::Less => NextCrossing::Crosses { half_edge, a, b },
         }
     }
 
-    /// Towards a TIN vertex ahead on the segment's line, over `place`.
-    fn towards(&self, vertex: u32, place: PlaceOnTin) -> Next {
+    /// The step towards a TIN vertex ahead on the segment's line, over `place`.
+    fn towards(&self, vertex: u32, place: PlaceOnTin) -> NextCrossing {
         let target = self.point(vertex);
         if target == self.q {
-            Next::Arrives(PlaceOnTin::Vertex(vertex))
+            NextCrossing::Arrives(PlaceOnTin::Vertex(vertex))
         } else if self.ahead(target, self.q) {
-            Next::Passes(vertex)
+            NextCrossing::Passes(vertex)
         } else {
-            Next::Arrives(place)
+            NextCrossing::Arrives(place)
         }
     }
 
-    /// Whether, of two points on the segment's line, `to` lies in its direction from `from`.
+    /// Whether `to` is ahead of `from` in the direction of the segment, for two points on its line.
     fn ahead(&self, from: LatticePoint, to: LatticePoint) -> bool {
         let (du, dv) = (self.q.u - self.p.u, self.q.v - self.p.v);
         if du == 0 {

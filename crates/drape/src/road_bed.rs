@@ -1,27 +1,29 @@
-//! A plane through a piece of a road, and how far the ground beside the piece departs from it.
+//! A plane through a piece of a road, and the deviation of the ground near the piece from it.
 
-use corniche_geom::{LatticeBounds, LatticePoint, Work};
+use corniche_geom::{LatticeBounds, LatticePoint, StepBudget};
 use corniche_tin::Surface;
 
 use crate::height_range::padded;
 use crate::segment_rectangle::SegmentRectangle;
 
-/// A straight piece of a road on the ground, in one triangle. Plan positions are in lattice steps.
+/// A straight piece of a road on the ground, in one triangle. Positions in plan are in lattice
+/// steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RoadPiece {
-    /// Where it starts.
+pub struct GroundSegment {
+    /// The start of the piece.
     pub start: [f64; 2],
-    /// East and north parts of its direction, of length 1.
+    /// The east and north components of its direction, of length 1.
     pub direction: [f64; 2],
-    /// How long it is in plan.
+    /// The length of the piece in plan.
     pub length: f64,
-    /// Heights of the ground at its start and its end, metres.
+    /// Heights of the ground at its start and its end, in metres.
     pub heights_m: [f64; 2],
-    /// Whether the road has a cap at its start and at its end: where it does not go straight on.
+    /// Whether the road has a cap at its start and at its end, which is where it does not continue
+    /// straight on.
     pub has_caps: [bool; 2],
 }
 
-/// A plane through a piece of a road, and how far the ground beside the piece leaves it.
+/// A plane through a piece of a road, and the deviation of the ground near the piece from it.
 ///
 /// ```text
 ///     height │          ╱‾‾╲___   ground
@@ -32,27 +34,35 @@ pub struct RoadPiece {
 ///                 piece
 /// ```
 ///
-/// The plane holds the piece, and across the piece it rises as the ground does on the whole. At a distance d from the piece
-/// the ground is below the plane by no more than `rises_m[0]` · d, and nowhere within the reach by more than `most_m[0]`;
-/// above the plane by no more than `rises_m[1]` · d and `most_m[1]`. "Beside the piece" is what lies across it, and what lies
-/// around its end where the road has a cap.
+/// The plane contains the piece, and across the piece it rises like the ground on the whole. At a
+/// distance d from the piece the ground is below the plane by at most `rises_m[0]` · d, and within
+/// the reach by at most `most_m[0]`; it is above the plane by at most `rises_m[1]` · d and
+/// `most_m[1]`. "Near the piece" means the ground across it, and the ground around its end if the
+/// road has a cap there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RoadBed {
-    /// Metres that the plane rises for each lattice step to the left of the piece.
+    /// Metres by which the plane rises per lattice step to the left of the piece.
     pub cross_rise_m: f64,
-    /// Metres that the ground leaves the plane downwards and upwards for each lattice step away from the piece; infinite
-    /// where there is not ground everywhere near.
+    /// Metres by which the ground deviates from the plane downwards and upwards per lattice step of
+    /// distance from the piece; infinite if there is not ground everywhere near.
     pub rises_m: [f64; 2],
-    /// Metres that it leaves the plane downwards and upwards at most.
+    /// The largest deviation downwards and upwards, in metres.
     pub most_m: [f64; 2],
 }
 
-/// The bed of a piece, for ground within `reach` lattice steps of it. Looking at a triangle is a step of `work`.
+/// Computes the bed of a piece, for ground within `reach` lattice steps of it. Each examined
+/// triangle is a step of `work`.
 #[must_use]
-pub fn road_bed(piece: &RoadPiece, surface: &Surface, reach: f64, work: &Work) -> RoadBed {
-    let RoadPiece { start, direction, length, heights_m, has_caps } = *piece;
+pub fn road_bed(
+    piece: &GroundSegment,
+    surface: &Surface,
+    reach: f64,
+    work: &StepBudget,
+) -> RoadBed {
+    let GroundSegment { start, direction, length, heights_m, has_caps } = *piece;
     let beyond = has_caps.map(|has_cap| if has_cap { reach } else { 0.0 });
-    // A piece may be shorter than rounding errors: it is made a little longer, so that the rectangle has an area.
+    // A piece may be shorter than rounding errors: it is extended a little, so that the rectangle
+    // has an area.
     let slack = 1e-3_f64.min(reach);
     let beside = SegmentRectangle::beside(
         start,
@@ -69,7 +79,7 @@ pub fn road_bed(piece: &RoadPiece, surface: &Surface, reach: f64, work: &Work) -
         .filter_map(|triangle| {
             let part = beside.part_of(triangle, surface);
             let [east_m, north_m] = surface.gradient_m(triangle);
-            // Rise along the piece and to its left.
+            // The rise along the piece, and the rise to its left.
             let rise_m = [
                 east_m * direction[0] + north_m * direction[1],
                 north_m * direction[0] - east_m * direction[1],
@@ -89,7 +99,8 @@ pub fn road_bed(piece: &RoadPiece, surface: &Surface, reach: f64, work: &Work) -
         for &[along, across, height_m] in part.corners() {
             let plane_m = heights_m[0] + along_rise_m * along + cross_rise_m * across;
             widen(&mut range_m, height_m - plane_m);
-            // Ground beside the piece is reached straight across it; ground around an end can lie in any direction.
+            // Ground next to the piece is reached straight across it; ground around an end can be
+            // in any direction.
             if along < -slack || along > length + slack {
                 let most_m = libm::hypot(bend_m[0], bend_m[1]);
                 widen(&mut rises_m, most_m);
@@ -113,9 +124,9 @@ fn widen([least, most]: &mut [f64; 2], value: f64) {
     *most = most.max(value);
 }
 
-/// Whatever lies in the rectangle beside a piece, and more.
-fn bounds(piece: &RoadPiece, reach: f64) -> LatticeBounds {
-    let RoadPiece { start, direction, length, .. } = *piece;
+/// The bounds of the rectangle near a piece, and some more.
+fn bounds(piece: &GroundSegment, reach: f64) -> LatticeBounds {
+    let GroundSegment { start, direction, length, .. } = *piece;
     let end = [0, 1].map(|axis| start[axis] + length * direction[axis]);
     // A corner is √2 reaches from its end.
     let around = 1.5 * reach + 1.0;

@@ -1,4 +1,4 @@
-//! The whole way of areas out of a package.
+//! The export of a package's areas, from tiles to file.
 
 use std::path::Path;
 
@@ -11,19 +11,21 @@ use crate::{
     cut::polygons_of,
     cut_polygon::{Rings, cut_polygon_at_bounds, rings_of},
     error::{FeaturesError, SelectionError},
-    features::{About, FeatureRequest, FeatureSource, Features, write_features},
-    places::Places,
+    features::{FeatureRequest, FeatureSource, Features, write_features},
     plan_piece::{PlanPiece, class_of, lines_of},
     read,
-    vector::{Field, FieldKind, Record, Shape, ShapeKind, Value, fields, fields_of, text},
+    vector::{
+        FeatureField, FeatureGeometry, FeatureRecord, FieldKind, FieldValue, Layer, ShapeKind,
+        fields, fields_of, text,
+    },
 };
 
-/// What was exported.
-#[derive(Debug, Clone, PartialEq)]
+/// The figures of an export of areas.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct AreasSummary {
-    /// The level whose areas were taken.
+    /// The level whose areas were exported.
     pub level: u8,
-    /// Features written: objects of OSM.
+    /// Features written: one for each OSM object.
     pub areas: u64,
     /// Polygons of all features.
     pub polygons: u64,
@@ -31,11 +33,12 @@ pub struct AreasSummary {
     pub points: u64,
     /// True area on the ellipsoid, square metres.
     pub area_m2: f64,
-    /// Areas whose parts in tiles could not be joined; each part is a polygon.
+    /// Areas whose parts in different tiles could not be joined; each part is exported as a
+    /// polygon.
     pub unjoined: u64,
 }
 
-/// What is told of an area.
+/// The attributes and the geometry of an area.
 struct AreaFeature<'a> {
     object: AreaObject,
     class: AreaClass,
@@ -46,22 +49,23 @@ struct AreaFeature<'a> {
 }
 
 fields! { FIELDS, area: &AreaFeature<'_>:
-    "object", Text, "", "`way` or `relation` of OpenStreetMap", area.object.parts().0;
-    "id", Integer64, "", "its id", area.object.parts().1;
+    "object", Text, "", "type of the OSM object: `way` or `relation`", area.object.parts().0;
+    "id", Integer64, "", "id of the OSM object", area.object.parts().1;
     "class", Text, "", "class of the area, such as `water`", area.class.name();
-    "name", Text, "", "OSM's `name`; null without", text(area.name);
-    "area_m2", Real, "m²", "true area on the ellipsoid of WGS84, of what the package has of it",
+    "name", Text, "", "OSM's `name`; null if not tagged", text(area.name);
+    "area_m2", Real, "m²", "area of the part in the package, on the WGS84 ellipsoid",
         (area.area_m2 * 1e3).round() / 1e3;
     "polygons", Integer, "", "number of polygons", area.polygons as i64;
-    "points", Integer, "", "points of all rings, the closing ones not counted", area.points as i64;
+    "points", Integer, "", "number of points of all rings, without the closing points", area.points as i64;
 }
 
-/// Writes the areas of a package to a new file at `path`: a feature for each object, joined again over borders of tiles. Beside
-/// the file, in the same folder, are unnamed files for sorting. After an error the file at `path` is of no use.
+/// Writes the areas of a package to a new file at `path`: one feature for each object, joined
+/// across tile borders. Unnamed temporary files for sorting are created in the same folder. After
+/// an error the file at `path` is incomplete.
 ///
 /// # Errors
-/// When the package has no areas or no such level, the request cannot be met, the package is damaged, or something cannot be
-/// written.
+/// When the package has no areas or no such level, the request cannot be met, the package is
+/// corrupt, or something cannot be written.
 pub fn export_areas(
     package: &FilePackage,
     request: &FeatureRequest<AreaClass>,
@@ -71,24 +75,24 @@ pub fn export_areas(
     SelectionError::check_layer(package, NAME, package.manifest().areas.as_ref())?;
     let source = FeatureSource::new(package, request)?;
     let level = source.level;
-    let summary =
-        AreasSummary { level, areas: 0, polygons: 0, points: 0, area_m2: 0.0, unjoined: 0 };
+    let summary = AreasSummary { level, ..AreasSummary::default() };
     let mut areas = Areas { rounding_m: rounding_m(package, level), summary };
     write_features(&mut areas, &source, path, observer)?;
     Ok(areas.summary)
 }
 
-/// The most by which corners of areas can be off on a level: the build has them on a lattice of 0.1 m on the finest level, of a quarter of a cell
-/// above. Where tiles meet they are rounded twice, by half a step each time.
+/// The largest rounding error of area corners on a level, metres. The build rounds corners to a
+/// lattice of 0.1 m on the finest level, and of a quarter of a cell on the levels above. Where
+/// tiles meet, corners are rounded twice, by up to half a step each time.
 fn rounding_m(package: &FilePackage, level: u8) -> f64 {
     let frame = &package.manifest().frame;
     if level == frame.max_level() { 0.1 } else { frame.level_cell(level).shorter_m() / 4.0 }
 }
 
-/// See [`Features::name`].
+/// The name of the layer.
 const NAME: &str = "areas";
 
-/// Areas on their way into a file.
+/// An export of areas in progress.
 struct Areas {
     rounding_m: f64,
     summary: AreasSummary,
@@ -96,19 +100,11 @@ struct Areas {
 
 impl Features for Areas {
     type Class = AreaClass;
-    type Piece = PlanPiece;
-    const SHAPES: ShapeKind = ShapeKind::Polygons;
+    type TilePiece = PlanPiece;
 
-    fn name(&self) -> &'static str {
-        NAME
-    }
-
-    fn about(&self, source: &FeatureSource<'_, AreaClass>) -> About {
-        About {
-            fields: fields_of(FIELDS),
-            description: format!("Areas, as they are stored for {}.", source.cells()),
-            metadata: Vec::new(),
-        }
+    fn layer(&self, source: &FeatureSource<'_, AreaClass>) -> Layer {
+        let description = format!("Areas, as they are stored for {}.", source.cells());
+        source.layer((NAME, ShapeKind::Polygons), fields_of(FIELDS), description, Vec::new())
     }
 
     fn pieces(
@@ -138,7 +134,7 @@ impl Features for Areas {
         &mut self,
         FeatureSource { places, request, .. }: &FeatureSource<'_, AreaClass>,
         pieces: &[PlanPiece],
-    ) -> Result<Vec<Record>, FeaturesError> {
+    ) -> Result<Vec<FeatureRecord>, FeaturesError> {
         let class = class_of(pieces, AreaClass::from_number)?;
         let object = pieces[0].object;
         let (joined, is_joined) = joined(pieces);
@@ -161,7 +157,7 @@ impl Features for Areas {
             let mut rings = Vec::new();
             for ring in polygon {
                 points += ring.len();
-                area_m2 += area_of(&ring, places);
+                area_m2 += places.manifest.coordinates.ring_area_m2(&ring);
                 rings.push(places.carry_plan(object, ring)?);
             }
             shape.extend(places.cut_polygon(object, rings, self.rounding_m)?);
@@ -174,12 +170,13 @@ impl Features for Areas {
         let feature =
             AreaFeature { object, class, name: &pieces[0].name, area_m2, polygons: count, points };
         let values = FIELDS.iter().map(|(_, value)| value(&feature)).collect();
-        Ok(vec![Record { values, shape: Shape::Polygons(shape) }])
+        Ok(vec![FeatureRecord { values, shape: FeatureGeometry::Polygons(shape) }])
     }
 }
 
-/// The polygons of an object, joined over borders of tiles: there both tiles have the same segments, and what is there twice
-/// cancels out. Where that is no outline any more (a damaged package), the parts as the tiles have them, and `false`.
+/// Joins the polygons of an object across tile borders. Both tiles of a border have the same
+/// segments there, and a segment that occurs twice cancels out. Where the result is no valid
+/// outline (in a corrupt package), returns the parts as the tiles have them, and `false`.
 fn joined(pieces: &[PlanPiece]) -> (Vec<Polygon>, bool) {
     let all: Vec<_> = lines_of(pieces).collect();
     if let Some(polygons) = polygons_of(&all) {
@@ -187,9 +184,4 @@ fn joined(pieces: &[PlanPiece]) -> (Vec<Polygon>, bool) {
     }
     let parts = pieces.iter().filter_map(|piece| polygons_of(&piece.lines));
     (parts.flatten().collect(), false)
-}
-
-/// True area inside a ring of positions in working metres, square metres; negative for a clockwise one.
-fn area_of(ring: &[[f64; 2]], places: &Places<'_>) -> f64 {
-    places.manifest.coordinates.ring_area_m2(ring)
 }

@@ -1,5 +1,6 @@
 //! Triangles against elevation data that are bilinear between samples.
 
+use corniche_geom::LatticePoint;
 use corniche_tin::{Placement, Tin, TinVertex};
 
 use super::*;
@@ -28,13 +29,13 @@ fn line(surface: &Surface, from: [f64; 2], to: [f64; 2]) -> Vec<Vertex> {
     [from, ridge, to].map(|at| Vertex { at, z_m: height_m(at), is_source: false }).to_vec()
 }
 
-/// Data that are anywhere within the stored error at samples are within the bound of the line everywhere, and data on the triangles themselves come
-/// near to it: a cell of the ridge is a quarter of its fold below.
+/// Data anywhere within the stored error at the samples are within the bound of the line
+/// everywhere. Data on the triangles themselves come close to the bound: in a cell of the ridge
+/// they are a quarter of its fold below.
 #[test]
 fn data_within_the_stored_error_are_within_the_bound() {
     let surface = roof();
     let stored_m = 0.4;
-    let own = SampleCells { steps: [STEPS; 2], others_m: 0.0 };
     let mut state = 3_u64;
     let mut random = || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
@@ -45,7 +46,9 @@ fn data_within_the_stored_error_are_within_the_bound() {
         let from = [(4000.0 * random()).floor(), 0.0];
         let to = [(4000.0 * random()).floor(), 4000.0];
         let line = line(&surface, from, to);
-        let bound_m = own.on_tile(&surface, stored_m).bound_m(&line);
+        let corners_m = HashMap::new();
+        let mut own = TileCells { steps: [STEPS; 2], stored_m, surface: &surface, corners_m };
+        let bound_m = own.bound_m(&line);
         let mut data_m = [[0.0; 5]; 5];
         for (j, row) in data_m.iter_mut().enumerate() {
             for (i, height_m) in row.iter_mut().enumerate() {

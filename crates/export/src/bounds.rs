@@ -1,4 +1,5 @@
-//! A rectangle of longitudes and latitudes, which may cross the antimeridian, and lines clipped to it.
+//! A rectangle of longitudes and latitudes, which may cross the antimeridian, and lines clipped to
+//! it.
 
 use corniche_geom::{Bounds, Seam};
 
@@ -12,8 +13,9 @@ pub struct DegreeBounds {
 }
 
 impl DegreeBounds {
-    /// The rectangle of west, south, east and north. A west beyond the east means that the rectangle crosses 180°. `None` where it is
-    /// empty or beyond ±180 and ±90 degrees.
+    /// Returns the rectangle of west, south, east and north. If the west is greater than the east,
+    /// the rectangle crosses 180°. Returns `None` if the rectangle is empty or exceeds ±180 and ±90
+    /// degrees.
     #[must_use]
     pub fn new([west, south, east, north]: [f64; 4]) -> Option<Self> {
         let on_earth = [west, east].iter().all(|lon| (-180.0..=180.0).contains(lon))
@@ -27,20 +29,22 @@ impl DegreeBounds {
         })
     }
 
-    /// West, south, east and north; the east is not below the west, and may lie beyond 180.
+    /// West, south, east and north. The east is at least the west, and may exceed 180.
     pub(crate) fn degrees(&self) -> [f64; 4] {
         let Self { center, half_width, south, north } = *self;
         [center - half_width, south, center + half_width, north]
     }
 
-    /// Whether a rectangle of degrees, given by its south-western and north-eastern corner, shares more than a side with this one.
+    /// Whether a rectangle of degrees, given by its south-western and north-eastern corner, shares
+    /// more than a side with this one.
     pub(crate) fn overlaps(&self, [[west, south], [east, north]]: [[f64; 2]; 2]) -> bool {
         let [half, room] = [(east - west) / 2.0, self.half_width];
         let away = self.relative([west + half, south])[0].abs();
         away < half + room && south < self.north && self.south < north
     }
 
-    /// What of a rectangle of degrees lies in this one, with its longitudes; all of it where it goes around most of the earth.
+    /// Returns the part of a rectangle of degrees that is in this one, with the longitudes of
+    /// `whole`. Returns all of it if it spans most of the globe.
     pub(crate) fn within(&self, whole: Bounds) -> Bounds {
         let middle = whole.center()[0];
         let center = middle - self.relative([middle, 0.0])[0];
@@ -59,21 +63,24 @@ impl DegreeBounds {
         [Seam::of_degrees().image(self.center), f64::midpoint(self.south, self.north)]
     }
 
-    /// A position as degrees east of the rectangle's middle, within ±180, and degrees of latitude.
+    /// Returns a position as degrees east of the rectangle's middle, within ±180, and degrees of
+    /// latitude.
     pub(crate) fn relative(&self, [lon, lat]: [f64; 2]) -> [f64; 2] {
         [Seam::of_degrees().image(lon - self.center), lat]
     }
 
-    /// The same for a position that follows another one: a line between the two never goes around the earth.
+    /// Returns the same for a position that follows another one: the line between both never goes
+    /// around the globe.
     pub(crate) fn relative_after(&self, position: [f64; 2], before: [f64; 2]) -> [f64; 2] {
         let [east, lat] = self.relative(position);
         [Seam::of_degrees().around(before[0]).image(east), lat]
     }
 
-    /// Lowest and highest degrees, as [`DegreeBounds::relative`] has them, eastwards and northwards; once for each turn around the earth.
+    /// Lowest and highest degrees in the coordinates of [`DegreeBounds::relative`], eastwards and
+    /// northwards; one pair for each turn around the globe.
     pub(crate) fn limits(&self) -> Vec<[[f64; 2]; 2]> {
         let across = [self.south, self.north];
-        // All around the earth there is no side in the west and none in the east.
+        // A rectangle all around the globe has no western or eastern side.
         if self.half_width >= 180.0 {
             return vec![[[f64::NEG_INFINITY, f64::INFINITY], across]];
         }
@@ -82,8 +89,9 @@ impl DegreeBounds {
             .to_vec()
     }
 
-    /// What of the line between two positions (longitude and latitude) lies inside: from which share of it to which, in its order. There
-    /// are two parts where the line leaves at one side and comes in at the other one, behind which the rectangle begins again.
+    /// Returns the parts of the line between two positions (longitude and latitude) that are
+    /// inside, as shares of the line in its order. There are two parts if the line leaves at one
+    /// side and enters at the opposite side, where the rectangle begins again.
     pub(crate) fn inside(&self, from: [f64; 2], to: [f64; 2]) -> Vec<[f64; 2]> {
         let from = self.relative(from);
         let to = self.relative_after(to, from);
@@ -93,7 +101,8 @@ impl DegreeBounds {
         parts
     }
 
-    /// Whether a line through these positions, with room on all sides, might reach inside: for leaving out what cannot.
+    /// Whether a line through these positions, with a margin on all sides, might reach inside. Used
+    /// to skip lines that cannot.
     pub(crate) fn may_meet(&self, positions: &[[f64; 2]]) -> bool {
         let Some(&first) = positions.first() else { return false };
         let mut before = self.relative(first);
@@ -106,7 +115,7 @@ impl DegreeBounds {
                 high[axis] = high[axis].max(before[axis]);
             }
         }
-        // Around a pole longitudes say nothing.
+        // Around a pole, longitudes are meaningless.
         if high[0] - low[0] > 90.0 || low.iter().chain(&high).any(|degrees| !degrees.is_finite()) {
             return true;
         }
@@ -120,7 +129,8 @@ impl DegreeBounds {
     }
 }
 
-/// What of a line lies between limits, low and high along both axes, as shares of it; nothing where that is one point.
+/// Clips a line to limits, low and high along both axes, and returns the part inside as shares of
+/// the line. Returns nothing if that part is a single point.
 ///
 /// Source: Liang & Barsky 1984, *A New Concept and Method for Line Clipping*.
 pub(crate) fn clip(from: [f64; 2], to: [f64; 2], limits: [[f64; 2]; 2]) -> Option<[f64; 2]> {

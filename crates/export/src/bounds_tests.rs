@@ -50,7 +50,8 @@ fn a_line_is_cut_where_it_crosses_the_rectangle() {
     assert!(bounds.inside([9.5, 48.1], [9.6, 48.1]).is_empty(), "parallel to a side, beyond it");
 }
 
-/// West beyond east crosses 180°; the same line is cut at the same shares whichever image of its longitudes it has.
+/// West beyond east crosses 180°; a line is cut at the same shares whichever multiple of 360° is
+/// added to its longitudes.
 #[test]
 fn a_rectangle_may_cross_the_antimeridian() {
     let bounds = bounds([179.0, 51.0, -179.0, 53.0]);
@@ -63,8 +64,8 @@ fn a_rectangle_may_cross_the_antimeridian() {
     assert!(bounds.inside([0.0, 52.0], [1.0, 52.0]).is_empty());
 }
 
-/// A rectangle all around the earth has no sides in the west and east, wherever it begins; in one that is nearly so a line across the
-/// gap has two parts.
+/// A rectangle all around the globe has no sides in the west and east, wherever it begins. In a
+/// rectangle that almost closes, a line across the gap has two parts.
 #[test]
 fn a_rectangle_may_go_around_the_earth() {
     for around in [[-180.0, -90.0, 180.0, 90.0], [-180.0, 0.0, 180.0, 80.0]] {

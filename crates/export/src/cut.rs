@@ -1,24 +1,25 @@
-//! Lines cut: at the bounds, and at the antimeridian; polygons at the antimeridian.
+//! Cuts lines at the bounds and at the antimeridian, and polygons at the antimeridian.
 
 use corniche_areas::{OutlineWay, Polygon, Ring, assemble, split_polygon, unroll_rings};
 use corniche_geom::{LatticePoint, Seam};
 
 use crate::{
     bounds::DegreeBounds,
-    piece::{Piece, PieceKey, Vertex},
+    piece::{PieceKey, Vertex, WayPiece},
     plane,
 };
 
-/// What the bounds leave of a piece; see [`cut_line_at_bounds`]. Nothing goes on from a new end.
+/// Clips a piece to the bounds; see [`cut_line_at_bounds`]. New ends do not continue in other
+/// tiles.
 pub(crate) fn cut_at_bounds(
-    piece: &Piece,
+    piece: &WayPiece,
     bounds: &DegreeBounds,
     wgs84: &dyn Fn([f64; 2]) -> [f64; 2],
-) -> Vec<Piece> {
+) -> Vec<WayPiece> {
     let [first_end, last_end] = piece.goes_on;
     (0..)
         .zip(cut_line_at_bounds(&piece.vertices, bounds, wgs84))
-        .map(|(cut, CutLine { vertices, has_end: [first, last] })| Piece {
+        .map(|(cut, CutLine { vertices, has_end: [first, last] })| WayPiece {
             key: PieceKey { cut, ..piece.key },
             vertices,
             goes_on: [first && first_end, last && last_end],
@@ -27,24 +28,24 @@ pub(crate) fn cut_at_bounds(
         .collect()
 }
 
-/// What the bounds left of a line.
+/// A part of a line inside the bounds.
 pub(crate) struct CutLine {
-    /// At least two.
+    /// At least two vertices.
     pub(crate) vertices: Vec<Vertex>,
-    /// Whether the line's own first vertex is its first one, and likewise the last.
+    /// Whether the first vertex is the line's own first one, and whether the last is its last.
     has_end: [bool; 2],
 }
 
-/// What the bounds leave of a line. `wgs84` gives the longitude and latitude of a place on the lattice.
+/// Clips a line to the bounds. `wgs84` gives the longitude and latitude of a point of the lattice.
 ///
-/// A new end lies on the line, where it crosses a side of the rectangle; it is no source point.
+/// A new end is on the line, where it crosses a side of the rectangle; it is not a source point.
 pub(crate) fn cut_line_at_bounds(
     vertices: &[Vertex],
     bounds: &DegreeBounds,
     wgs84: &dyn Fn([f64; 2]) -> [f64; 2],
 ) -> Vec<CutLine> {
     let mut cuts: Vec<CutLine> = Vec::new();
-    // Whether the segment before ended inside.
+    // Whether the previous segment ended inside.
     let mut goes_on = false;
     let mut before: Option<[f64; 2]> = None;
     for (at, pair) in vertices.array_windows::<2>().enumerate() {
@@ -73,14 +74,17 @@ pub(crate) fn cut_line_at_bounds(
     cuts
 }
 
-/// A line is as good as straight in degrees where its middle is no farther beside, degrees: a centimetre.
+/// A line counts as straight in degrees if its middle is at most this far off, degrees: a
+/// centimetre.
 pub(crate) const STRAIGHT_DEG: f64 = 1e-7;
 
-/// Bent segments are halved down to this share: then one of ten kilometres is straight to a millimetre, and the work is bounded.
+/// The shortest share to which bent segments are halved. A segment of ten kilometres is then
+/// straight to a millimetre, and the work is bounded.
 const LEAST_SHARE: f64 = 1.0 / 64.0;
 
-/// Which shares of a segment lie inside; its ends are places on the lattice with their degrees, and `of` is the part of the segment that they
-/// are. Where the projection bends it in degrees, its halves are looked at.
+/// Returns the shares of a segment that are inside. The ends are points of the lattice with their
+/// degrees; `of` is the part of the segment between them. If the projection bends that part in
+/// degrees, its halves are checked separately.
 fn shares_inside(
     bounds: &DegreeBounds,
     wgs84: &dyn Fn([f64; 2]) -> [f64; 2],
@@ -114,7 +118,7 @@ fn shares_inside(
     }
 }
 
-/// The vertex at a share of the way from one to the next; at its ends these themselves.
+/// Returns the vertex at a share of the way between two; at shares 0 and 1, exactly these vertices.
 fn between(from: Vertex, to: Vertex, share: f64) -> Vertex {
     match share {
         ..=0.0 => from,
@@ -123,12 +127,14 @@ fn between(from: Vertex, to: Vertex, share: f64) -> Vertex {
     }
 }
 
-/// Places this near to 180° lie on it, degrees: the lattice has steps of up to a millimetre.
+/// Points this near to 180° count as being on it, degrees: the lattice has steps of up to a
+/// millimetre.
 const ON_ANTIMERIDIAN_DEG: f64 = 2e-8;
 
-/// Positions of longitude, latitude and height, as lines that do not cross the antimeridian (RFC 7946, 3.1.9), with longitudes
-/// within ±180. Neighbours are less than half the earth apart; longitudes may have run on past 180. Nothing as short as a step of the lattice
-/// is left beyond it.
+/// Splits a line of longitudes, latitudes and heights into lines that do not cross the antimeridian
+/// (RFC 7946, 3.1.9), with longitudes within ±180. Neighbours are less than half the globe apart;
+/// input longitudes may exceed 180. No part beyond the antimeridian is as short as a step of the
+/// lattice.
 pub(crate) fn cut_at_antimeridian(mut line: Vec<[f64; 3]>) -> Vec<Vec<[f64; 3]>> {
     let seam = Seam::of_degrees();
     for place in &mut line {
@@ -146,7 +152,7 @@ pub(crate) fn cut_at_antimeridian(mut line: Vec<[f64; 3]>) -> Vec<Vec<[f64; 3]>>
     let mut lines = seam.split(line.clone());
     lines.retain(|line| is_long(line));
     if lines.is_empty() {
-        // No longer than a step of the lattice: it lies on the antimeridian as a whole.
+        // No longer than a step of the lattice: move it onto the antimeridian as a whole.
         for place in &mut line {
             place[0] = 180.0_f64.copysign(first);
         }
@@ -155,7 +161,7 @@ pub(crate) fn cut_at_antimeridian(mut line: Vec<[f64; 3]>) -> Vec<Vec<[f64; 3]>>
     lines
 }
 
-/// Whether a line reaches farther than from one place of the lattice to the next.
+/// Whether a line is longer than one step of the lattice.
 fn is_long(line: &[[f64; 3]]) -> bool {
     line.iter().any(|[lon, lat, _]| {
         let [first_lon, first_lat, _] = line[0];
@@ -164,11 +170,13 @@ fn is_long(line: &[[f64; 3]]) -> bool {
     })
 }
 
-/// Steps of a degree in which polygons are cut: a tenth of a millimetre.
+/// Steps to a degree of the grid in which polygons are cut: a tenth of a millimetre each.
 pub(crate) const STEPS: f64 = 1e9;
 
-/// Rings of a polygon in degrees, the outer one first, as polygons that do not cross the antimeridian, with longitudes within ±180. Corners
-/// that lie as near to it as `rounding_deg` lie on it, and what is no wider is left out. `None` where that is no polygon.
+/// Splits a polygon (rings in degrees, the outer one first) into polygons that do not cross the
+/// antimeridian, with longitudes within ±180. Corners within `rounding_deg` of the antimeridian are
+/// moved onto it, and parts no wider than that are dropped. Returns `None` if the rings do not form
+/// a polygon.
 pub(crate) fn cut_polygon_at_antimeridian(
     rings: Vec<Vec<[f64; 2]>>,
     rounding_deg: f64,
@@ -184,7 +192,7 @@ pub(crate) fn cut_polygon_at_antimeridian(
     let on_lattice = |&[lon, lat]: &[f64; 2]| {
         let is_near = |end: f64| (lon - end).abs() * lat.to_radians().cos() <= rounding_deg;
         let lon = [-180.0, 180.0].into_iter().find(|&end| is_near(end)).unwrap_or(lon);
-        LatticePoint::new((lon * STEPS).round() as i64, (lat * STEPS).round() as i64)
+        plane::nearest_point([lon * STEPS, lat * STEPS])
     };
     let mut rings: Vec<Vec<LatticePoint>> =
         rings.iter().map(|ring| ring.iter().map(on_lattice).collect()).collect();
@@ -202,7 +210,7 @@ pub(crate) fn cut_polygon_at_antimeridian(
     Some(polygons.iter().map(|polygon| polygon.rings().map(ring).collect()).collect())
 }
 
-/// The polygons between closed lines; `None` where these are no outline.
+/// Returns the polygons that closed lines bound; `None` if the lines are not valid outlines.
 pub(crate) fn polygons_of<R: AsRef<[LatticePoint]>>(rings: &[R]) -> Option<Vec<Polygon>> {
     let close = |ring: &R| ring.as_ref().iter().chain(ring.as_ref().first()).copied().collect();
     let closed: Vec<Vec<LatticePoint>> = rings.iter().map(close).collect();

@@ -1,4 +1,5 @@
-//! Areas cut at a rectangle of longitudes and latitudes, whose sides a projection bends.
+//! Clips areas to a rectangle of longitudes and latitudes, whose sides are bent in the package's
+//! projection.
 
 use std::collections::BTreeMap;
 
@@ -9,18 +10,19 @@ use crate::{
     bounds::DegreeBounds,
     cut::{STEPS, STRAIGHT_DEG, polygons_of},
     places::Places,
-    plane,
+    plane::{self, nearest_point},
 };
 
 /// A polygon as rings of positions in working metres, the outer one first.
 pub(crate) type Rings = Vec<Vec<[f64; 2]>>;
 
-/// A corner: where it is in working metres, and in degrees as [`DegreeBounds::relative`] has them.
+/// A corner: its position in working metres, and in degrees relative to the bounds (see
+/// [`DegreeBounds::relative`]).
 #[derive(Clone, Copy)]
 struct Corner {
     at_m: [f64; 2],
     at_deg: [f64; 2],
-    /// Whether it is none of the polygon's, but lies between two.
+    /// Whether the corner was added between two corners of the polygon.
     is_between: bool,
 }
 
@@ -31,11 +33,13 @@ pub(crate) fn rings_of(polygon: &Polygon, places: &Places<'_>) -> Rings {
     polygon.rings().map(|ring| ring.points().iter().map(position).collect()).collect()
 }
 
-/// What the bounds leave of a polygon; `None` where it cannot be cut, as around a pole.
+/// Clips a polygon to the bounds. Returns `None` if that is impossible, for example around a pole.
 ///
-/// It is cut on a lattice of degrees, where the rectangle's sides are straight. So that the polygon's own lines are straight there, too, those
-/// that the projection bends get points between, which are left out again afterwards. New corners lie on the sides; where
-/// features have the package's coordinates, a side gets as many as it needs to be bent.
+/// The polygon is clipped on a lattice of degrees, where the rectangle's sides are straight. Its
+/// own lines must be straight there as well, so lines that the projection bends get intermediate
+/// points, which are removed again afterwards. New corners are on the sides of the rectangle. If
+/// features have the package's coordinates, a side gets as many corners as it needs to follow its
+/// bend.
 pub(crate) fn cut_polygon_at_bounds(
     polygon: &Polygon,
     bounds: &DegreeBounds,
@@ -44,10 +48,9 @@ pub(crate) fn cut_polygon_at_bounds(
     let cutting = Cutting { bounds, places };
     let whole = rings_of(polygon, places);
     let mut first = None;
-    let rings: Option<Vec<Vec<Corner>>> =
-        whole.iter().map(|ring| cutting.corners(ring, &mut first)).collect();
-    let rings = rings?;
-    // What each corner is in working metres; `None` for those between.
+    let corners = whole.iter().map(|ring| cutting.corners(ring, &mut first));
+    let rings = corners.collect::<Option<Vec<Vec<Corner>>>>()?;
+    // The working metres of each corner; `None` for intermediate points.
     let mut known: BTreeMap<LatticePoint, Option<[f64; 2]>> = BTreeMap::new();
     let mut on_lattice: Vec<Vec<LatticePoint>> = Vec::with_capacity(rings.len());
     for ring in &rings {
@@ -73,12 +76,8 @@ pub(crate) fn cut_polygon_at_bounds(
     let mut cut = Vec::new();
     for limits in limits {
         for polygon in cut_out(&polygons, &limits).ok()? {
-            let rings = polygon.rings().map(|ring| {
-                let segments = ring.segments();
-                cutting.ring(segments, &limits, &known)
-            });
-            let rings: Option<Rings> = rings.collect();
-            cut.push(rings?);
+            let rings = polygon.rings().map(|ring| cutting.ring(ring.segments(), &limits, &known));
+            cut.push(rings.collect::<Option<Rings>>()?);
         }
     }
     Some(cut)
@@ -90,7 +89,8 @@ struct Cutting<'a> {
 }
 
 impl Cutting<'_> {
-    /// The corners of a ring with those between where its lines are bent in degrees. Longitudes run on from `first`, the polygon's first corner.
+    /// Returns the corners of a ring, with intermediate points where its lines are bent in degrees.
+    /// Longitudes continue from `first`, the polygon's first corner.
     fn corners(&self, ring: &[[f64; 2]], first: &mut Option<[f64; 2]>) -> Option<Vec<Corner>> {
         let coordinates = &self.places.manifest.coordinates;
         let after = |at_m: [f64; 2], before: Option<[f64; 2]>| {
@@ -115,11 +115,11 @@ impl Cutting<'_> {
             corners.push(to);
         }
         let end = corners.pop()?;
-        // Around a pole a ring does not come back to its first longitude.
+        // Around a pole, a ring does not return to its first longitude.
         ((end.at_deg[0] - start.at_deg[0]).abs() < 1.0).then_some(corners)
     }
 
-    /// A ring of the lattice of degrees in working metres.
+    /// Converts a ring from the lattice of degrees to working metres.
     fn ring(
         &self,
         segments: impl Iterator<Item = [LatticePoint; 2]>,
@@ -156,7 +156,8 @@ impl Cutting<'_> {
         Some(corners.iter().map(|corner| corner.at_m).collect())
     }
 
-    /// The position of a place in degrees from the middle of the bounds. Longitudes of a package may run on past 180.
+    /// Returns the position of a point given in degrees from the middle of the bounds. Longitudes
+    /// of a package may exceed 180.
     fn position_m(&self, [east, lat]: [f64; 2]) -> Option<[f64; 2]> {
         let manifest = self.places.manifest;
         let lon = self.bounds.middle()[0] + east;
@@ -169,14 +170,17 @@ impl Cutting<'_> {
     }
 }
 
-/// Lines are bent if their middle is farther than this from where it would be, metres; in degrees, [`STRAIGHT_DEG`].
+/// Lines are bent if their middle is farther off than this, metres. In degrees, the limit is
+/// [`STRAIGHT_DEG`].
 const STRAIGHT_M: f64 = 0.01;
-/// How often lines of a polygon are halved at most: then one of ten kilometres is straight to a millimetre, and the work is bounded.
+/// How often lines of a polygon are halved at most. A line of ten kilometres is then straight to a
+/// millimetre, and the work is bounded.
 const LINE_HALVINGS: u32 = 6;
-/// The same for the sides of the rectangle, which are few and long.
+/// The same limit for the sides of the rectangle, which are few and long.
 const SIDE_HALVINGS: u32 = 12;
 
-/// Adds corners between two, so many that lines from one to the next are straight in both coordinates.
+/// Adds as many corners between two as are needed for lines to be straight in both coordinate
+/// systems.
 fn add_between(
     [from, to]: [Corner; 2],
     middle: &dyn Fn(Corner, Corner) -> Option<Corner>,
@@ -195,12 +199,11 @@ fn add_between(
 }
 
 fn lattice_point(deg: [f64; 2]) -> LatticePoint {
-    let [u, v] = deg.map(|degrees| (degrees * STEPS).round() as i64);
-    LatticePoint::new(u, v)
+    nearest_point(deg.map(|degrees| degrees * STEPS))
 }
 
 fn lattice_limits([[west, east], [south, north]]: [[f64; 2]; 2]) -> LatticeBounds {
-    // Farther than anything lies, where there is no side.
+    // Clamp to values beyond all data; they stand for a missing side.
     let within = |degrees: f64| degrees.clamp(-2000.0, 2000.0);
     LatticeBounds {
         min: lattice_point([within(west), south]),

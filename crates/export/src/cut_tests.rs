@@ -5,10 +5,10 @@ use corniche_roads::{FunctionalRoadClass, RoadAttributes};
 use super::*;
 
 /// A piece through longitudes at 0 north; its heights are its longitudes.
-fn piece(longitudes: &[f64]) -> Piece {
+fn piece(longitudes: &[f64]) -> WayPiece {
     let vertices =
         longitudes.iter().map(|&lon| Vertex { at: [lon, 0.0], z_m: lon, is_source: true });
-    Piece {
+    WayPiece {
         key: PieceKey { way_id: 1, tile: 2, part: 3, cut: 0 },
         class: FunctionalRoadClass::new(0).unwrap(),
         attributes: RoadAttributes::default(),
@@ -23,25 +23,25 @@ fn piece(longitudes: &[f64]) -> Piece {
     }
 }
 
-fn cut(piece: &Piece, west: f64, east: f64) -> Vec<Piece> {
+fn cut(piece: &WayPiece, west: f64, east: f64) -> Vec<WayPiece> {
     let bounds = DegreeBounds::new([west, -1.0, east, 1.0]).unwrap();
     cut_at_bounds(piece, &bounds, &|at| at)
 }
 
-fn longitudes(piece: &Piece) -> Vec<f64> {
+fn longitudes(piece: &WayPiece) -> Vec<f64> {
     piece.vertices.iter().map(|vertex| vertex.at[0]).collect()
 }
 
-/// A piece inside stays what it is, to the last bit; one outside is gone.
+/// A piece inside the bounds is unchanged, to the last bit; a piece outside disappears.
 #[test]
 fn what_is_inside_stays_as_it_is() {
     let inside = piece(&[1.0, 2.5, 4.0]);
     assert_eq!(cut(&inside, 0.0, 10.0), std::slice::from_ref(&inside));
     assert!(cut(&inside, 5.0, 10.0).is_empty());
-    assert!(cut(&inside, 4.0, 10.0).is_empty(), "one point is no line");
+    assert!(cut(&inside, 4.0, 10.0).is_empty(), "one point is not a line");
 }
 
-/// New ends are on the sides, with the height of the line there; nothing goes on from them.
+/// New ends are on the sides, with the line's height there, and do not continue.
 #[test]
 fn ends_lie_on_the_sides() {
     let [found] = &cut(&piece(&[1.0, 3.0, 5.0]), 2.0, 4.5)[..] else { panic!() };
@@ -58,7 +58,7 @@ fn ends_lie_on_the_sides() {
     assert_eq!(found.goes_on, [false, true]);
 }
 
-/// A line that leaves and comes back is two pieces with numbers of their own.
+/// A line that leaves and returns becomes two pieces with numbers of their own.
 #[test]
 fn a_line_that_comes_back_is_two_pieces() {
     let found = cut(&piece(&[1.0, 3.0, 6.0, 3.0]), 0.0, 4.0);
@@ -89,7 +89,8 @@ fn lines_are_cut_at_the_antimeridian() {
     assert_eq!(cut_at_antimeridian(line), back);
 }
 
-/// In a CRS in degrees longitudes run on past 180; they come back, and the line is cut as well.
+/// In a CRS in degrees, longitudes may exceed 180; they are normalised, and the line is cut in the
+/// same way.
 #[test]
 fn longitudes_that_ran_on_come_back() {
     let line = vec![[179.0, 10.0, 100.0], [181.0, 12.0, 300.0], [182.0, 12.0, 300.0]];
@@ -102,7 +103,7 @@ fn longitudes_that_ran_on_come_back() {
     assert_eq!(cut_at_antimeridian(line), [vec![[179.0, 1.0, 1.0], [178.0, 2.0, 2.0]]]);
 }
 
-/// Vertices exactly on it are not doubled, and make no line of one point.
+/// Vertices exactly on the antimeridian are not duplicated, and do not make lines of one point.
 #[test]
 fn a_vertex_on_the_antimeridian_is_there_once() {
     let line = vec![[179.0, 0.0, 0.0], [180.0, 0.0, 0.0], [-179.0, 0.0, 0.0]];
@@ -116,7 +117,7 @@ fn a_vertex_on_the_antimeridian_is_there_once() {
     assert_eq!(cut_at_antimeridian(line.clone()), [line]);
 }
 
-/// What is left beyond 180° of a vertex that the lattice has moved by half a millimetre is no part.
+/// If the lattice moves a vertex beyond 180° by half a millimetre, no part is created there.
 #[test]
 fn no_part_is_as_short_as_a_step_of_the_lattice() {
     let line = vec![[179.9, -16.6, 1.0], [180.000_000_004, -16.6, 2.0]];
@@ -157,14 +158,15 @@ fn polygons_are_cut_at_the_antimeridian() {
     }
     let beyond = cut_polygon_at_antimeridian(vec![square(270.0, 271.0, 1.0)], 1e-6).unwrap();
     assert_eq!(beyond, [vec![square(-90.0, -89.0, 1.0)]]);
-    // Rounded beyond the antimeridian, and nothing but that.
+    // Beyond the antimeridian by rounding alone.
     let rounded = cut_polygon_at_antimeridian(vec![square(179.0, 180.000_000_5, 1.0)], 1e-6);
     assert_eq!(rounded, Some(vec![vec![square(179.0, 180.0, 1.0)]]));
     let sliver = cut_polygon_at_antimeridian(vec![square(180.0, 180.000_000_5, 1.0)], 1e-6);
     assert_eq!(sliver, Some(Vec::new()));
 }
 
-/// A line that runs on across 180° and goes around the earth stays whole in a rectangle all around it.
+/// A line that runs on across 180° and goes around the earth stays whole in a rectangle all around
+/// it.
 #[test]
 fn all_around_the_earth_nothing_is_cut() {
     for around in [
@@ -175,7 +177,7 @@ fn all_around_the_earth_nothing_is_cut() {
         let line = piece(&around);
         assert_eq!(cut(&line, -180.0, 180.0), std::slice::from_ref(&line), "{around:?}");
     }
-    // Nearly: what lies in the gap of two degrees is left out.
+    // Almost: the part in the gap of two degrees is dropped.
     let found = cut(&piece(&[178.0, 182.0, 183.0]), -179.0, 179.0);
     let ends: Vec<_> = found.iter().map(longitudes).collect();
     assert_eq!(ends, [vec![178.0, 179.0], vec![181.0, 182.0, 183.0]]);

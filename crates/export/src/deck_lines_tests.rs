@@ -1,4 +1,4 @@
-//! Decks over ground: where they lie, where they meet it, and which vertices are left.
+//! Decks over ground: their heights, where they meet the ground, and which vertices remain.
 
 use super::*;
 use crate::grades::Station;
@@ -11,7 +11,7 @@ fn distance_m(from: [f64; 2], to: [f64; 2]) -> f64 {
     (to[0] - from[0]).hypot(to[1] - from[1]) / 1000.0
 }
 
-/// A deck through places `(along, height)`, one metre of the lattice for each of the way.
+/// A deck through places `(along, height)`; one metre of the lattice for each metre of the way.
 fn deck(places: &[(f64, f64)]) -> SmoothLine {
     let station = |&(along_m, ground_m): &(f64, f64)| Station {
         at: [1000.0 * along_m, 0.0],
@@ -27,7 +27,7 @@ fn raised(structure: Structure, ground: &[Vertex], deck: SmoothLine) -> Vec<(f64
     found.iter().map(|vertex| (vertex.at[0] / 1000.0, vertex.z_m)).collect()
 }
 
-/// Over a gorge only the ends are left, and points of the way.
+/// Over a gorge only the ends and the points of the way remain.
 #[test]
 fn a_bridge_leaves_the_ground_beneath_it() {
     let ground = [
@@ -41,7 +41,8 @@ fn a_bridge_leaves_the_ground_beneath_it() {
     assert_eq!(found, [(0.0, 100.0), (25.0, 105.0), (40.0, 108.0)]);
 }
 
-/// Where a hill is in the way the bridge lies on it, and the tunnel beneath dips under a valley; both have a vertex where they meet the ground.
+/// Where a hill obstructs the bridge, the bridge is on the hill; the tunnel beneath dips under a
+/// valley. Both have a vertex where they meet the ground.
 #[test]
 fn bridges_are_never_below_the_ground_and_tunnels_never_above() {
     let ground = |sign: f64| {
@@ -61,7 +62,8 @@ fn bridges_are_never_below_the_ground_and_tunnels_never_above() {
     assert_eq!(raised(Structure::Tunnel, &ground(-1.0), flat()), under);
 }
 
-/// Bends between two vertices of the ground count on both sides of where the deck meets it, and lie on the ground where that is higher.
+/// Bends between two vertices of the ground count on both sides of the point where the deck meets
+/// it; they are on the ground where the ground is higher.
 #[test]
 fn bends_are_kept_where_the_ground_is_near() {
     let two = |from: (f64, f64), to: (f64, f64)| {
@@ -103,7 +105,7 @@ fn bends_are_kept_where_the_ground_is_near() {
     close(found, &expected);
 }
 
-/// The bends of a lift are vertices, also on a part of the way.
+/// The bends of a raised deck are vertices, also on a part of the way.
 #[test]
 fn a_deck_has_vertices_where_it_bends() {
     let tent = || deck(&[(0.0, 50.0), (10.0, 50.0), (20.0, 51.0), (30.0, 50.0), (40.0, 50.0)]);
@@ -121,7 +123,8 @@ fn what_lies_elsewhere_or_on_the_ground_is_no_deck() {
     assert_eq!(on_deck(Structure::Bridge, &beside, (&way, 10.0), &distance_m), None);
 }
 
-/// On level ground a ridge begins at a vertex: the line meets the ground there twice, and the foot of the ridge stays.
+/// On level ground an obstructing ridge begins at a vertex: the line meets the ground there twice,
+/// and the foot of the ridge remains.
 #[test]
 fn a_ridge_in_the_way_keeps_its_foot_and_its_top() {
     let along = [

@@ -1,47 +1,50 @@
-//! The ground of the elevation files themselves, bilinear between their samples, and lines that lie on it.
+//! The ground of the elevation files themselves, bilinear between their samples, and lines draped
+//! on it.
 //!
 //! ```text
 //!   ┌──────┬──────┬──────┐      ●  a point of the line
 //!   │   ●╌╌┼╌x╌╌╌╌┼──●   │      │  the line crosses from cell to cell: a vertex
-//!   └──────┴──────┴──────┘      x  the middle of what lies in a cell: a vertex
+//!   └──────┴──────┴──────┘      x  the middle of the part in a cell: a vertex
 //! ```
 //!
-//! Along a straight line the bilinear surface of a cell is a parabola, which a vertex in its middle follows nearly. How far the line is from the
-//! surface of the files' own samples is measured, since nodes need not be samples.
+//! Along a straight line the bilinear surface of a cell is a parabola, which a vertex in its middle
+//! approximates closely. The distance of the line from the surface of the files' own samples is
+//! measured, because grid nodes need not be samples. In this module, a node is a node of the grid.
 
 use std::{
     collections::{HashMap, VecDeque},
     rc::Rc,
 };
 
-use corniche_dem::{Reader, SampleSurface};
+use corniche_dem::{HeightReader, SampleSurface};
 use corniche_geom::{GridFrame, NodeIndex, NodeWindow};
 
 use crate::{
     error::ElevationError,
     heights::Elevation,
-    piece::Vertex,
+    piece::{Vertex, own_points},
     plane::{middle, mix},
 };
 
 /// Cells along each side of a block.
 const BLOCK_CELLS: i64 = 64;
-/// Blocks that are kept: 17 MB.
+/// The number of blocks in the cache: 17 MB.
 const MOST_BLOCKS: usize = 1024;
 
 /// Heights at the nodes of a block, row by row from the north.
-type Block = Rc<[f32]>;
+type HeightBlock = Rc<[f32]>;
 
-/// The surface over the nodes of a package's grid, as its elevation files have them: bilinear in each cell.
+/// The surface over the nodes of a package's grid, with the heights of its elevation files:
+/// bilinear in each cell.
 pub(crate) struct DemNodes<'a> {
-    reader: Reader<'a>,
-    /// The surface of the files' own samples, which may be others than the nodes.
+    reader: HeightReader<'a>,
+    /// The surface of the files' own samples, which may differ from the nodes.
     samples: SampleSurface<'a>,
     pub(crate) frame: GridFrame,
     /// Lattice steps from node to node, east and north.
     steps: [f64; 2],
-    kept: HashMap<[i64; 2], Block>,
-    /// The blocks that are kept, the oldest first.
+    kept: HashMap<[i64; 2], HeightBlock>,
+    /// The blocks in the cache, the oldest first.
     order: VecDeque<[i64; 2]>,
 }
 
@@ -51,20 +54,20 @@ impl<'a> DemNodes<'a> {
             reader: elevation.dem.reader(elevation.plan),
             samples: elevation.dem.sample_surface(elevation.plan),
             frame: *frame,
-            steps: frame.node_steps(frame.max_level()).map(|steps| steps as f64),
+            steps: node_steps(frame),
             kept: HashMap::new(),
             order: VecDeque::new(),
         }
     }
 
-    /// The block in which a place lies.
+    /// Returns the block that contains a place.
     pub(crate) fn block_of(&self, at: [f64; 2]) -> [i64; 2] {
         let cell = [0, 1].map(|axis| (at[axis] / self.steps[axis]).floor() as i64);
         cell.map(|index| index.div_euclid(BLOCK_CELLS))
     }
 
-    /// The height at a place on the lattice; `None` where a node that it needs has none. The same place has the same height to the last bit, from
-    /// whatever cell a line comes.
+    /// Returns the height at a place on the lattice, or `None` if one of the nodes around it has no
+    /// height. The height is the same to the last bit, whichever cell a line comes from.
     pub(crate) fn height_m(&mut self, at: [f64; 2]) -> Result<Option<f64>, ElevationError> {
         let in_cells = [at[0] / self.steps[0], at[1] / self.steps[1]];
         let cell = in_cells.map(f64::floor);
@@ -81,16 +84,16 @@ impl<'a> DemNodes<'a> {
         Ok(height_m.is_finite().then_some(height_m))
     }
 
-    /// How far a line is from the surface of the files' own samples, at most, over the whole line, metres; `None` where no part of it lies on that.
-    /// Of its vertices each second one is the middle of a straight part.
+    /// Returns the largest distance of a line from the surface of the files' own samples, over the
+    /// whole line, metres; `None` if no part of it is on that surface. Every second vertex is the
+    /// middle of a straight part.
     fn farthest_m(&mut self, line: &[Vertex]) -> Result<Option<f64>, ElevationError> {
         let place = |vertex: &Vertex| {
             let [x, y] = self.frame.position_of_fraction_m(vertex.at);
             [x, y, vertex.z_m]
         };
         let line: Vec<[f64; 3]> = line.iter().map(place).collect();
-        let found = self.samples.largest_distance_m(&line);
-        found.map_err(|source| ElevationError::Read(Box::new(source)))
+        Ok(self.samples.largest_distance_m(&line)?)
     }
 
     /// The height of a node; NaN where there is none.
@@ -105,14 +108,12 @@ impl<'a> DemNodes<'a> {
         Ok(f64::from(block[(from_north * BLOCK_CELLS + column) as usize]))
     }
 
-    fn read(&mut self, number: [i64; 2]) -> Result<Block, ElevationError> {
+    fn read(&mut self, number: [i64; 2]) -> Result<HeightBlock, ElevationError> {
         let side = BLOCK_CELLS as usize;
         let [i, j] = number.map(|number| number * BLOCK_CELLS);
         let corner = NodeIndex { i, j: j + BLOCK_CELLS - 1 };
         let window = NodeWindow { corner, stride: 1, columns: side, rows: side };
-        let read = self.reader.window(window);
-        let read = read.map_err(|source| ElevationError::Read(Box::new(source)))?;
-        let block: Block = read.heights.raw().into();
+        let block: HeightBlock = self.reader.window(window)?.heights.raw().into();
         if self.order.len() >= MOST_BLOCKS
             && let Some(oldest) = self.order.pop_front()
         {
@@ -124,19 +125,19 @@ impl<'a> DemNodes<'a> {
     }
 }
 
-/// Crossings that are nearer to each other than this, lattice steps, are one: a node of the grid.
+/// Crossings closer together than this, lattice steps, are one crossing: a node of the grid.
 const SAME_PLACE_STEPS: f64 = 1e-3;
 
 /// A line on the ground of the elevation files, without a gap.
-#[derive(Clone)]
 pub(crate) struct DemLine {
-    /// Two at least.
+    /// At least two vertices.
     pub(crate) vertices: Vec<Vertex>,
-    /// How far the line is from the surface of the files' own samples, at most, metres; `None` where nothing of it lies on that.
+    /// The largest distance of the line from the surface of the files' own samples, metres; `None`
+    /// if no part of it is on that surface.
     pub(crate) tolerance_m: Option<f64>,
-    /// Whether its first vertex is that of the whole line, and its last the last.
+    /// Whether its first vertex is the first of the whole line, and its last the last.
     pub(crate) has_end: [bool; 2],
-    /// Whether a deck carries it instead.
+    /// Whether the line is on a deck instead.
     pub(crate) on_deck: bool,
 }
 
@@ -147,87 +148,54 @@ impl DemLine {
     }
 }
 
-/// Lays a line on the ground: of its vertices, those that are source points, and its ends, tell where it runs. Where there is no ground it has a gap.
+/// Drapes a line on the ground. Only its ends and those of its vertices that are source points
+/// determine its course. Where there is no ground, the line has a gap.
 pub(crate) fn lay(
     nodes: &mut DemNodes<'_>,
     line: &[Vertex],
 ) -> Result<Vec<DemLine>, ElevationError> {
-    let last = line.len().saturating_sub(1);
-    let is_kept =
-        |(index, vertex): &(usize, &Vertex)| vertex.is_source || *index == 0 || *index == last;
-    let points: Vec<Vertex> =
-        line.iter().enumerate().filter(is_kept).map(|(_, vertex)| *vertex).collect();
-    let mut laid = Laid::default();
+    let points: Vec<Vertex> = own_points(line).map(|(_, vertex)| *vertex).collect();
+    let mut lines: Vec<DemLine> = Vec::new();
+    // Whether the last line may continue.
+    let mut is_open = false;
     for (number, pair) in points.array_windows::<2>().enumerate() {
         let [from, to] = *pair;
         let places = places_between(from.at, to.at, nodes.steps);
-        let mut before = laid.begin(nodes, from, number == 0)?;
+        let mut before = nodes.height_m(from.at)?;
+        if let Some(z_m) = before.filter(|_| !is_open) {
+            lines.push(DemLine::from(Vertex { z_m, ..from }, number == 0));
+        }
+        is_open = before.is_some();
         let ends = places.len() - 1;
         for (index, [middle, end]) in places.iter().enumerate() {
-            let is_end = index == ends;
-            let middle_m = nodes.height_m(*middle)?;
-            let end_m = nodes.height_m(*end)?;
-            if let (Some(_), Some(middle_m), Some(end_m)) = (before, middle_m, end_m) {
-                let inner = Vertex { at: *middle, z_m: middle_m, is_source: false };
-                let is_source = is_end && to.is_source;
-                laid.go_on(inner, Vertex { at: *end, z_m: end_m, is_source });
+            let is_source = index == ends && to.is_source;
+            let [middle_m, end_m] = [nodes.height_m(*middle)?, nodes.height_m(*end)?];
+            let next = end_m.map(|z_m| Vertex { at: *end, z_m, is_source });
+            if let (Some(_), Some(z_m), Some(next)) = (before, middle_m, next)
+                && let Some(line) = lines.last_mut()
+            {
+                line.vertices.extend([Vertex { at: *middle, z_m, is_source: false }, next]);
             } else {
-                let is_source = is_end && to.is_source;
-                laid.interrupt(end_m.map(|z_m| Vertex { at: *end, z_m, is_source }));
+                // The ground ends before this end, which begins a new line if it has ground itself.
+                is_open = next.is_some();
+                lines.extend(next.map(|vertex| DemLine::from(vertex, false)));
             }
             before = end_m;
         }
     }
-    let reaches_end =
-        laid.is_open && laid.lines.last().is_some_and(|line| line.vertices.len() >= 2);
-    laid.lines.retain(|line| line.vertices.len() >= 2);
-    if let Some(line) = laid.lines.last_mut().filter(|_| reaches_end) {
+    let is_long = |line: &DemLine| line.vertices.len() >= 2;
+    if let Some(line) = lines.last_mut().filter(|line| is_open && is_long(line)) {
         line.has_end[1] = true;
     }
-    for line in &mut laid.lines {
+    lines.retain(is_long);
+    for line in &mut lines {
         line.tolerance_m = nodes.farthest_m(&line.vertices)?;
     }
-    Ok(laid.lines)
+    Ok(lines)
 }
 
-#[derive(Default)]
-struct Laid {
-    lines: Vec<DemLine>,
-    /// Whether the last line goes on.
-    is_open: bool,
-}
-
-impl Laid {
-    /// A segment begins at a point. Returns the height there.
-    fn begin(
-        &mut self,
-        nodes: &mut DemNodes<'_>,
-        from: Vertex,
-        is_first: bool,
-    ) -> Result<Option<f64>, ElevationError> {
-        let height_m = nodes.height_m(from.at)?;
-        if let Some(z_m) = height_m.filter(|_| !self.is_open) {
-            self.lines.push(DemLine::from(Vertex { z_m, ..from }, is_first));
-        }
-        self.is_open = height_m.is_some();
-        Ok(height_m)
-    }
-
-    fn go_on(&mut self, middle: Vertex, end: Vertex) {
-        if let Some(line) = self.lines.last_mut() {
-            line.vertices.extend([middle, end]);
-        }
-    }
-
-    /// There is no ground somewhere before a place, which begins a new line if it has ground itself.
-    fn interrupt(&mut self, next: Option<Vertex>) {
-        self.is_open = next.is_some();
-        self.lines.extend(next.map(|vertex| DemLine::from(vertex, false)));
-    }
-}
-
-/// How far a line on a package's triangles is from the ground of the elevation files, at most, over the whole line, metres; `None` where no part of
-/// it lies on such ground.
+/// Returns the largest distance between a line on a package's triangles and the ground of the
+/// elevation files, over the whole line, metres; `None` if no part of it is on ground with samples.
 pub(crate) fn off_dem_m(
     nodes: &mut DemNodes<'_>,
     line: &[Vertex],
@@ -242,8 +210,13 @@ pub(crate) fn off_dem_m(
     nodes.farthest_m(&divided)
 }
 
-/// What lies between two places, cell by cell: the middle and the end of each part. The last end is the second place. The places are the same in both
-/// directions.
+/// Lattice steps from node to node of the finest level, east and north.
+pub(crate) fn node_steps(frame: &GridFrame) -> [f64; 2] {
+    frame.node_steps(frame.max_level()).map(|steps| steps as f64)
+}
+
+/// Divides the way between two places cell by cell: the middle and the end of each part. The last
+/// end is the second place. The places are the same in both directions.
 pub(crate) fn places_between(from: [f64; 2], to: [f64; 2], steps: [f64; 2]) -> Vec<[[f64; 2]; 2]> {
     let is_turned = from > to;
     let [low, high] = if is_turned { [to, from] } else { [from, to] };
@@ -256,7 +229,8 @@ pub(crate) fn places_between(from: [f64; 2], to: [f64; 2], steps: [f64; 2]) -> V
     places.array_windows().map(|&[a, b]| [middle(a, b), b]).collect()
 }
 
-/// Where a segment crosses lines of the grid, in its direction; not its ends.
+/// Returns the points at which a segment crosses lines of the grid, in its direction, without its
+/// ends.
 fn crossings(from: [f64; 2], to: [f64; 2], steps: [f64; 2]) -> Vec<[f64; 2]> {
     let mut found: Vec<(f64, [f64; 2])> = Vec::new();
     for axis in 0..2 {
@@ -281,7 +255,7 @@ fn crossings(from: [f64; 2], to: [f64; 2], steps: [f64; 2]) -> Vec<[f64; 2]> {
                 if (last[0] - at[0]).abs() < SAME_PLACE_STEPS
                     && (last[1] - at[1]).abs() < SAME_PLACE_STEPS =>
             {
-                // Both lie on lines of the grid, so this is a node.
+                // Both are on lines of the grid, so this is a node.
                 *last = [0, 1].map(|axis| (at[axis] / steps[axis]).round() * steps[axis]);
             }
             _ => places.push(at),

@@ -1,4 +1,5 @@
-//! Lines on bilinear ground: where their vertices are, and how far they are from it between them.
+//! Lines on bilinear ground: the positions of their vertices, and their distance from the ground
+//! between vertices.
 
 use super::*;
 
@@ -16,7 +17,7 @@ fn a_line_has_vertices_at_cell_lines_and_in_the_middle_of_cells() {
         [250.0, 100.0],
     ];
     assert_eq!(found.concat(), expected);
-    // Through a node both lines of the grid are crossed at once.
+    // At a node both lines of the grid are crossed at once.
     let found = places_between([50.0, 100.0], [150.0, 300.0], STEPS);
     assert_eq!(found.concat(), [[75.0, 150.0], [100.0, 200.0], [125.0, 250.0], [150.0, 300.0]]);
     // Along a line of the grid.

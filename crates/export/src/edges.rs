@@ -1,8 +1,8 @@
-//! The stretches of an extract's roads from junction to junction, as a router reads them.
+//! Edges of the road network: stretches of an extract's roads from junction to junction, for
+//! routers.
 
 use std::{
     collections::{BTreeMap, HashMap},
-    fmt::Write as _,
     path::Path,
 };
 
@@ -18,7 +18,7 @@ use crate::{
     dem_ground::{DemLine, DemNodes},
     error::{ElevationError, FeaturesError},
     feature::oneway,
-    features::{About, FeatureRequest, FeatureSource},
+    features::{FeatureRequest, FeatureSource},
     grades::{GRADE_LENGTH_M, MeasuredChains},
     heights::{Elevation, dem_heights},
     measures::{ProfileGrades, profile_of},
@@ -26,46 +26,49 @@ use crate::{
     road_query::{RoadQuery, named_ways},
     span_facts::SpanFacts,
     vector::{
-        Field, FieldKind, Record, Shape, ShapeKind, Value, VectorFile, fields, fields_of, real,
-        text,
+        FeatureField, FeatureGeometry, FeatureRecord, FieldKind, FieldValue, ShapeKind, VectorFile,
+        fields, fields_of, real, text,
     },
 };
 
-/// Lines of a network lie on its ways: half a metre allows for nothing but rounding.
+/// Lines of a network are on their ways: half a metre allows for rounding only.
 const NEAR_STEPS: f64 = 500.0;
-/// Edges are told of after so many.
+/// Progress is reported after this many edges.
 const TOLD_EDGES: usize = 1024;
 
-/// What was exported.
-#[derive(Debug, Clone, PartialEq)]
+/// The figures of an export of edges.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct EdgesSummary {
     /// Edges written.
     pub edges: u64,
-    /// Edges of which no part lies on ground; they are left out.
+    /// Edges without any part on ground; they are skipped.
     pub without_ground: u64,
-    /// Edges with a height that is not known, because they leave the ground, or nothing carries their bridge or tunnel: they have no ascent.
+    /// Edges without ascent and descent, because a height is unknown: they leave the ground, or
+    /// nothing carries their bridge or tunnel.
     pub without_ascent: u64,
     /// True length in plan, metres.
     pub length_m: f64,
-    /// What heights are, in words.
+    /// What heights refer to, in words.
     pub heights: String,
-    /// How far heights are from the elevation files between vertices at most, metres; without bridges and tunnels.
+    /// The largest distance of lines from the elevation files, between vertices too, metres;
+    /// bridges and tunnels excluded.
     pub height_tolerance_m: f64,
     /// The bridges and tunnels of the network.
     pub spans: SpanFacts,
 }
 
-/// What is known of an edge.
+/// The geometry, heights and attributes of an edge.
 struct Edge<'a> {
     ends: [Option<i64>; 2],
     ways: String,
     shares: Shares<'a>,
     grades: Option<ProfileGrades>,
-    /// At its nodes, as other edges share them, or of its own line where it is alone there.
+    /// Heights at both OSM nodes, shared with the other edges there, or taken from the edge's own
+    /// line if no other edge shares the node.
     heights_m: [Option<f64>; 2],
 }
 
-/// What an edge is made of, by length in metres.
+/// The composition of an edge: lengths in metres by attribute.
 #[derive(Default)]
 struct Shares<'a> {
     length_m: f64,
@@ -77,42 +80,44 @@ struct Shares<'a> {
 }
 
 fields! { FIELDS, edge: &Edge<'_>:
-    "from_node", Integer64, "", "id of the node where it begins; null where a way is cut", edge.ends[0];
-    "to_node", Integer64, "", "id of the node where it ends; null where a way is cut", edge.ends[1];
-    "ways", Text, "", "ids of its ways in their order, each with `f` where the edge runs along the way and `b` where it runs against it",
+    "from_node", Integer64, "", "id of the OSM node where the edge begins; null if a way is cut there", edge.ends[0];
+    "to_node", Integer64, "", "id of the OSM node where the edge ends; null if a way is cut there", edge.ends[1];
+    "ways", Text, "", "ids of its ways in order, each followed by `f` (the edge has the direction of the way) or `b` (the opposite)",
         edge.ways.as_str();
-    "class", Integer, "", "functional road class of the largest part",
+    "class", Integer, "", "functional road class with the largest share of the length",
         edge.shares.largest().0.map(|class| i64::from(class.number()));
-    "highway", Text, "", "OSM's `highway` of the largest part", text(edge.shares.largest().1);
-    "oneway", Text, "", "`yes` (from the first to the last node), `-1` (against it), `no`, or `mixed`",
+    "highway", Text, "", "OSM's `highway` value with the largest share of the length", text(edge.shares.largest().1);
+    "oneway", Text, "", "`yes` (from `from_node` to `to_node`), `-1` (in the opposite direction), `no` or `mixed`",
         edge.shares.oneway();
-    "length_m", Real, "m", "true length in plan, on the ellipsoid of WGS84", real(edge.shares.length_m);
-    "ascent_m", Real, "m", "sum of all that the smooth line rises from the first to the last node; null where a height is not known",
-        edge.grades.map(|grades| real(grades.ascent_m));
-    "descent_m", Real, "m", "sum of all that it falls from the first to the last node", edge.grades.map(|grades| real(grades.descent_m));
-    "ascent_back_m", Real, "m", "sum of all that it rises on the way back", edge.grades.map(|grades| real(grades.descent_m));
-    "descent_back_m", Real, "m", "sum of all that it falls on the way back", edge.grades.map(|grades| real(grades.ascent_m));
-    "weighted_grade_pct", Real, "%", "size of the grade, up or down, weighted by length", edge.weighted_pct().map(real);
-    "steepest_pct", Real, "%", "steepest grade over 50 m or more, up or down; null where it is shorter",
+    "length_m", Real, "m", "2D length (in plan), on the WGS84 ellipsoid", real(edge.shares.length_m);
+    "ascent_m", Real, "m", "total ascent of the smooth line from `from_node` to `to_node`; null if a height is unknown",
+        edge.metres(|grades| grades.ascent_m);
+    "descent_m", Real, "m", "total descent in the same direction; null if a height is unknown", edge.metres(|grades| grades.descent_m);
+    "ascent_back_m", Real, "m", "total ascent in the opposite direction; null if a height is unknown", edge.metres(|grades| grades.descent_m);
+    "descent_back_m", Real, "m", "total descent in the opposite direction; null if a height is unknown", edge.metres(|grades| grades.ascent_m);
+    "weighted_grade_pct", Real, "%", "mean grade without sign, weighted by length; null if a height is unknown", edge.weighted_pct().map(real);
+    "steepest_pct", Real, "%", "steepest grade, up or down, over 50 m or more; null if the edge is shorter or a height is unknown",
         edge.grades.and_then(|grades| grades.steepest).map(|grade| real(100.0 * grade));
-    "from_height_m", Real, "m", "height of the smooth line at the first node: the same for all edges there, but of a way that only touches a deck its own",
+    "from_height_m", Real, "m", "height of the smooth line at `from_node`: the same for all edges that meet there, except that a way that only touches a deck keeps its own height",
         edge.heights_m[0].map(real);
-    "to_height_m", Real, "m", "height of the smooth line at the last node", edge.heights_m[1].map(real);
-    "bridge_share", Real, "", "part of its length on bridges, 0 to 1", real(edge.shares.share(edge.shares.bridge_m));
-    "tunnel_share", Real, "", "part of its length in tunnels, 0 to 1", real(edge.shares.share(edge.shares.tunnel_m));
+    "to_height_m", Real, "m", "height of the smooth line at `to_node`", edge.heights_m[1].map(real);
+    "bridge_share", Real, "", "share of its length on bridges, 0 to 1", real(edge.shares.share(edge.shares.bridge_m));
+    "tunnel_share", Real, "", "share of its length in tunnels, 0 to 1", real(edge.shares.share(edge.shares.tunnel_m));
 }
 
 /// The fields of edges, in their order.
 #[must_use]
-pub fn edge_fields() -> Vec<Field> {
+pub fn edge_fields() -> Vec<FeatureField> {
     fields_of(FIELDS)
 }
 
-/// Writes the edges of a network to a new file at `path`: each is there once, from the node with the smaller id. Their lines lie on the elevation
-/// files and on decks; ascents and grades are those of smooth lines. After an error the file at `path` is of no use.
+/// Writes the edges of a network to a new file at `path`. Each edge is written once, starting at
+/// the OSM node with the smaller id. Lines are on the elevation files and decks; ascents and grades
+/// are measured on smoothed lines. After an error the file at `path` is incomplete.
 ///
 /// # Errors
-/// When the request cannot be met, an elevation file cannot be read, or something cannot be written.
+/// When the request cannot be met, an elevation file cannot be read, or something cannot be
+/// written.
 pub fn export_edges(
     package: &FilePackage,
     (request, road): (&FeatureRequest<FunctionalRoadClass>, Option<&RoadQuery>),
@@ -124,29 +129,22 @@ pub fn export_edges(
     let named = road.map(|road| named_ways(package, source.level, Some(road), observer));
     let named = named.transpose()?;
     let frame = &package.manifest().frame;
-    // Edges that reach the package's data are whole.
+    // Edges that reach the package's data are exported whole.
     let plan = elevation.plan.of_whole_data();
     let elevation = Elevation { plan: &plan, ..elevation };
     let mut nodes = DemNodes::new(elevation, frame);
     let places = &source.places;
     let measured = MeasuredChains::measure(network, places, elevation, observer)?;
-    let about = About {
-        fields: edge_fields(),
-        description: format!("Roads from junction to junction. Heights: {}.", places.heights),
-        metadata: vec![("HEIGHTS", places.heights.clone())],
-    };
-    let layer = source.layer("edges", ShapeKind::Lines, about);
+    let description = format!("Roads from junction to junction. Heights: {}.", places.heights);
+    let metadata = vec![("HEIGHTS", places.heights.clone())];
+    let layer = source.layer(("edges", ShapeKind::Lines), edge_fields(), description, metadata);
     let mut file = VectorFile::create(path, request.format, layer)?;
     let mut summary = EdgesSummary {
-        edges: 0,
-        without_ground: 0,
-        without_ascent: 0,
-        length_m: 0.0,
         heights: places.heights.clone(),
-        height_tolerance_m: 0.0,
         spans: measured.decks.facts.clone(),
+        ..EdgesSummary::default()
     };
-    let edges = Chains::of(network, Breaks::Junctions);
+    let edges = Chains::from_network(network, Breaks::Junctions);
     let mut numbers: Vec<ChainNumber> = edges.numbers().collect();
     if let Some(named) = &named {
         let is_meant = |link: &Link| named.meant.contains(&network.way_of(*link).way_id);
@@ -167,14 +165,12 @@ pub fn export_edges(
             }
             let profile = measured.profile(chain.links, &decks);
             let nodes_m = node_heights(&measured, &chain);
-            let own_m = |place: Option<&[f64; 2]>| place.map(|&[_, height_m]| height_m);
-            let own_m =
-                profile.as_ref().map(|profile| [profile.first(), profile.last()].map(own_m));
-            let own_m = own_m.unwrap_or_default();
+            let ends = profile.as_ref().map(|profile| [profile.first(), profile.last()]);
+            let own_m = ends.unwrap_or_default().map(|end| end.map(|&[_, height_m]| height_m));
             let edge = Edge {
                 ends: chain.ends.map(|node| network.node_id(node)),
                 ways: ways_text(network, &chain),
-                shares: Shares::of(&measured, &chain),
+                shares: Shares::from_chain(&measured, &chain),
                 grades: profile.as_deref().map(grades_of),
                 heights_m: [0, 1].map(|end| nodes_m[end].or(own_m[end])),
             };
@@ -189,7 +185,7 @@ pub fn export_edges(
                 carried.extend(places.carry(object, &line.vertices)?);
             }
             let values = FIELDS.iter().map(|(_, value)| value(&edge)).collect();
-            file.push(Record { values, shape: Shape::Lines(carried) })?;
+            file.push(FeatureRecord { values, shape: FeatureGeometry::Lines(carried) })?;
         }
         observer.advance(Stage::ExportFeatures, some.len() as u64);
     }
@@ -202,7 +198,8 @@ pub fn export_edges(
 /// An edge on the elevation files, and on the decks of its bridges and tunnels.
 struct LaidEdge {
     lines: Vec<DemLine>,
-    /// Distances and heights along the lines of its bridges and tunnels, by the numbers of their links; lines with a gap are not there.
+    /// Distances and heights along the lines of its bridges and tunnels, by link number; lines with
+    /// a gap are missing.
     decks: HashMap<usize, Vec<[f64; 2]>>,
 }
 
@@ -252,21 +249,30 @@ fn laid(
     Ok(LaidEdge { lines, decks })
 }
 
-/// The grades of an edge. Files have had −0 for what a level edge falls.
+/// Returns the grades of an edge. The descent of a level edge is −0, as it has always been in
+/// files.
 fn grades_of(profile: &[[f64; 2]]) -> ProfileGrades {
     let falls = profile.array_windows().map(|[from, to]| (-(to[1] - from[1])).max(0.0));
-    ProfileGrades { descent_m: falls.sum(), ..ProfileGrades::of([profile], GRADE_LENGTH_M) }
+    ProfileGrades {
+        descent_m: falls.sum(),
+        ..ProfileGrades::from_profiles([profile], GRADE_LENGTH_M)
+    }
 }
 
-/// The heights of both nodes that other edges share; none on a bridge or in a tunnel, whose own height counts there.
+/// Returns the heights at both ends that other edges share; none on a bridge or in a tunnel, where
+/// the edge has its own height.
 fn node_heights(measured: &MeasuredChains<'_>, chain: &Chain<'_>) -> [Option<f64>; 2] {
-    let structure = |link: Option<&Link>| link.map(|link| measured.network.way_of(*link).structure);
-    let links = [chain.links.first(), chain.links.last()];
-    let is_on_ground = links.map(|link| structure(link) == Some(Structure::Ground));
-    [0, 1].map(|end| measured.node_m(chain.ends[end]).filter(|_| is_on_ground[end]))
+    let is_on_ground =
+        |link: &&Link| measured.network.way_of(**link).structure == Structure::Ground;
+    let links = [chain.links.first(), chain.links.last()].map(|link| link.filter(is_on_ground));
+    [0, 1].map(|end| links[end].and_then(|_| measured.node_m(chain.ends[end])))
 }
 
 impl Edge<'_> {
+    fn metres(&self, of: fn(&ProfileGrades) -> f64) -> Option<f64> {
+        self.grades.as_ref().map(of).map(real)
+    }
+
     fn weighted_pct(&self) -> Option<f64> {
         let grades = self.grades?;
         let length_m = self.shares.length_m;
@@ -274,22 +280,17 @@ impl Edge<'_> {
     }
 }
 
-/// The ways of an edge, each once in a row, with their directions.
+/// Returns the ways of an edge with their directions; repetitions in a row are written once.
 fn ways_text(network: &Network, chain: &Chain<'_>) -> String {
     let mut ways: Vec<(i64, bool)> =
         chain.links.iter().map(|link| (network.way_of(*link).way_id, link.is_against)).collect();
     ways.dedup();
-    let mut text = String::new();
-    for (way_id, is_against) in ways {
-        let space = if text.is_empty() { "" } else { " " };
-        // Writing to a String cannot fail.
-        let _ = write!(text, "{space}{way_id}{}", if is_against { 'b' } else { 'f' });
-    }
-    text
+    let text = |(way_id, is_against)| format!("{way_id}{}", if is_against { 'b' } else { 'f' });
+    ways.into_iter().map(text).collect::<Vec<String>>().join(" ")
 }
 
 impl<'a> Shares<'a> {
-    fn of(measured: &MeasuredChains<'a>, chain: &Chain<'_>) -> Self {
+    fn from_chain(measured: &MeasuredChains<'a>, chain: &Chain<'_>) -> Self {
         let network = measured.network;
         let mut shares = Self::default();
         for &link in chain.links {
@@ -314,7 +315,7 @@ impl<'a> Shares<'a> {
         if self.length_m > 0.0 { part_m / self.length_m } else { 0.0 }
     }
 
-    /// What most of it is; of equal parts the more important class.
+    /// Returns the class and tag with the largest share; of equal shares, the more important class.
     fn largest(&self) -> (Option<FunctionalRoadClass>, &'a str) {
         let mut most: Option<((FunctionalRoadClass, &'a str), f64)> = None;
         for (&kind, &own_m) in &self.kinds {

@@ -1,9 +1,9 @@
-//! Why exports fail: an enum for each activity, so that a signature tells what can happen.
+//! Errors of exports: one enum for each activity, so that a function's signature lists its errors.
 //!
 //! ```text
 //!   FeaturesError  RasterError  MeshError  Tiles3dError  QuantizedMeshError  ProfileError  RouteError
 //!        │
-//!        └──► what each is made of: SelectionError  CoordinatesError  TileError  SurfaceError
+//!        └──► their parts:          SelectionError  CoordinatesError  TileError  SurfaceError
 //!                                   ElevationError  RoadQueryError  GdalFileError
 //! ```
 
@@ -22,21 +22,33 @@ use corniche_gis::{CrsError, LibraryError};
 use corniche_store::LackOfRoom;
 use corniche_tileset::{DecodeError, FilePackage, OpenError, ReadError};
 
-/// What an error asks of whoever meets it.
+/// The kind of an error, from which callers derive an exit code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ErrorKind {
     /// The package or the request cannot be used.
     Unusable,
-    /// Something failed.
+    /// The export failed for another reason.
     Failed,
-    /// The work was asked to stop.
+    /// The user or the caller requested a stop.
     Interrupted,
 }
 
-/// Declares the error of an activity: the errors of what it is made of, and its own. Own ones in
-/// `failed` say that something failed, others that the package or the request is of no use.
+/// Declares the error enum of an activity: with the errors of its parts (for activities that read a
+/// `package`, including those of reading it), and its own errors. Own errors in `failed` mean that
+/// the export failed, others that the package or the request cannot be used.
 macro_rules! activity {
-    (
+(
+$(#[$doc:meta])*
+$error:ident: package [$($more:tt)*] $($rest:tt)*
+) => {
+activity! {
+$(#[$doc])*
+$error: [
+Selection(SelectionError) FeatureCoordinates(CoordinatesError) Tile(TileError) $($more)*
+] $($rest)*
+}
+};
+(
         $(#[$doc:meta])*
         $error:ident: [$($part:ident($inner:ident))*] failed [$($failed:ident)*] { $($own:tt)* }
     ) => {
@@ -52,7 +64,7 @@ macro_rules! activity {
         }
 
         impl $error {
-            /// What it asks of whoever meets it.
+            /// The kind of the error.
             #[must_use]
             #[allow(unreachable_patterns, reason = "all own errors may be failures")]
             pub fn kind(&self) -> ErrorKind {
@@ -69,7 +81,7 @@ macro_rules! activity {
     };
 }
 
-/// What reads tiles can meet their errors.
+/// Converts errors of reading tiles to the errors of activities that read them.
 macro_rules! reads_tiles {
     ($($error:ident)*) => {$(
         impl From<OpenError> for $error {
@@ -86,9 +98,9 @@ macro_rules! reads_tiles {
     )*};
 }
 
-/// All errors of one enum are of one kind.
+/// An error enum whose errors are all of one kind.
 trait OfOneKind {
-    /// What they ask of whoever meets them.
+    /// The kind of all errors.
     const KIND: ErrorKind;
 
     fn kind(&self) -> ErrorKind {
@@ -116,32 +128,34 @@ of_one_kind! {
     GdalFileError: Failed;
 }
 
-/// The outlines of a tile's roads make no triangulation with its ground.
+/// The error of a tile whose road outlines cannot be triangulated with its ground.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("the outlines of its roads cannot be triangulated")]
+#[error("the outlines of roads cannot be triangulated")]
 pub struct CutError;
 
-/// Why the package has not what is asked for.
+/// Errors of requests for something that the package does not have.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SelectionError {
-    #[error("{package:?} has no level {level}; its finest is {finest}")]
+    #[error("{package:?} has no level {level}; its finest level is {finest}")]
     NoLevel { package: PathBuf, level: u8, finest: u8 },
-    #[error("{package:?} has no {layer}: it was built without --{layer}")]
+    #[error(
+        "{package:?} has no {layer}: it was built without --{layer}; build it again with this option"
+    )]
     NoLayer { package: PathBuf, layer: &'static str },
-    #[error("{package:?} has no roads: it was built without --osm")]
+    #[error("{package:?} has no roads: it was built without --osm; build it again with an extract")]
     NoRoads { package: PathBuf },
-    #[error("{package:?} has no ground there; corniche info tells its extent")]
+    #[error("{package:?} has no ground in the requested area; corniche info prints its extent")]
     NoGround { package: PathBuf },
 }
 
 impl SelectionError {
-    /// The package has no ground there.
+    /// Returns the error of a package without ground in the requested area.
     pub(crate) fn no_ground(package: &FilePackage) -> Self {
         Self::NoGround { package: package.path().to_path_buf() }
     }
 
-    /// Fails where a package lacks a layer that is asked for.
+    /// Fails if a package lacks a requested layer.
     pub(crate) fn check_layer<T>(
         package: &FilePackage,
         layer: &'static str,
@@ -151,7 +165,7 @@ impl SelectionError {
         found.map(drop).ok_or_else(missing)
     }
 
-    /// Fails where a package was built without an extract.
+    /// Fails if a package was built without an extract.
     pub(crate) fn check_roads(package: &FilePackage) -> Result<(), Self> {
         if package.manifest().has_extract() {
             Ok(())
@@ -161,7 +175,7 @@ impl SelectionError {
     }
 }
 
-/// Why a tile of a package cannot be read.
+/// Errors of reading a tile of a package.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum TileError {
@@ -169,66 +183,81 @@ pub enum TileError {
     Package(#[from] OpenError),
     #[error(transparent)]
     Tile(#[from] ReadError),
-    #[error("the roads of tile {tile} do not fit its ground; corniche verify says more")]
+    #[error("the roads of tile {tile} do not match its ground; run corniche verify for details")]
     Line { tile: TileId, source: BadLine },
-    #[error("tile {tile} knows nothing of way {way_id}, which it holds; corniche verify says more")]
+    #[error(
+        "tile {tile} contains way {way_id}, but not its attributes; run corniche verify for details"
+    )]
     NoAttributes { tile: TileId, way_id: i64 },
-    #[error("the {layer} of a tile are damaged; corniche verify says more")]
+    #[error("the {layer} of a tile are corrupt; run corniche verify for details")]
     Damaged { layer: &'static str, source: Box<DecodeError> },
 }
 
-/// Why heights are not known to be measured from a datum that is told.
+/// Errors of naming the vertical datum of a package.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum DatumError {
     #[error(
-        "what the package's heights are measured from is known, {datum:?}; leave --dem-vertical-crs out"
+        "the vertical datum of the package is already known, {datum:?}; omit --dem-vertical-crs"
     )]
     KnownDatum { datum: String },
     #[error("--dem-vertical-crs cannot be used")]
     VerticalCrs(#[source] Box<CrsError>),
     #[error(
-        "--dem-vertical-crs {text} is not in metres upwards, and the package has taken its heights for metres; build it again with \
+        "--dem-vertical-crs {text} is not in metres upwards, but the package was built as if its heights were in metres; build it again with \
          --dem-vertical-crs {text}"
     )]
     NotInMetres { text: String },
 }
 
-/// Why places cannot be carried to the coordinates that are asked for.
+/// Errors of transforming places to the requested coordinates.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CoordinatesError {
     #[error(
-        "heights above the ellipsoid cannot be told: what the package's heights are measured from is {datum:?}; say it with \
-         --dem-vertical-crs EPSG:N, here or when the package is built, or keep the heights as they are with --heights as-is"
+        "heights above the ellipsoid cannot be computed: the vertical datum of the package is {datum:?}; pass its vertical CRS with \
+         --dem-vertical-crs EPSG:N, here or when you build the package, or keep the package's heights with --heights as-is"
     )]
     UnknownDatum { datum: String },
     #[error(
-        "heights of {datum:?} cannot be carried to the ellipsoid of WGS84: a geoid grid may be missing; get it with projsync \
-         (Debian: package proj-bin), or keep the heights as they are with --heights as-is"
+        "heights in vertical datum {datum:?} cannot be transformed to the ellipsoid of WGS84: a geoid grid may be missing; install it with projsync \
+         (Debian: package proj-bin), or keep the package's heights with --heights as-is"
     )]
     Heights { datum: String, source: Box<CrsError> },
     #[error(
-        "a height of {datum:?} near {lon:.5}, {lat:.5} has no height above the ellipsoid of WGS84: the geoid grid ends before; keep \
-         the heights as they are with --heights as-is"
+        "a height in vertical datum {datum:?} near {lon:.5}, {lat:.5} cannot be transformed to the ellipsoid of WGS84: the geoid grid does not cover this position; keep \
+         the package's heights with --heights as-is"
     )]
     NoHeightHere { datum: String, lon: f64, lat: f64 },
     #[error("the package's CRS cannot be used")]
     Crs(#[source] Box<CrsError>),
-    #[error("positions cannot be carried to WGS84")]
+    #[error("positions cannot be transformed to WGS84")]
     Project(#[from] ProjectError),
     #[error("a position of the ground has no longitude and latitude in WGS84")]
     NoGroundPosition,
-    #[error("the coordinates cannot be made")]
+    #[error("coordinates cannot be transformed to the requested CRS; choose another --crs")]
     OtherCrs(#[source] Box<CrsError>),
     #[error(
-        "a position of {object} has no place in the CRS that is asked for; choose another with --crs, or cut with --bounds"
+        "a position of {object} has no coordinates in the requested CRS; choose another CRS with --crs, or clip with --bounds"
     )]
     NoPosition { object: AreaObject },
     #[error(
-        "{object} lies across 180 degrees of longitude and cannot be cut there; export it in the package's CRS"
+        "{object} crosses 180 degrees of longitude and cannot be split there; export it in the package's CRS"
     )]
     AcrossAntimeridian { object: AreaObject },
+}
+
+impl CoordinatesError {
+    /// Returns the error of heights that cannot be transformed from a datum.
+    pub(crate) fn of_heights(datum: &str) -> impl FnOnce(CrsError) -> Self {
+        |source| Self::Heights { datum: datum.to_owned(), source: Box::new(source) }
+    }
+}
+
+impl From<ReadHeightsError> for ElevationError {
+    fn from(source: ReadHeightsError) -> Self {
+        Self::Read(Box::new(source))
+    }
 }
 
 impl From<CrsError> for CoordinatesError {
@@ -238,32 +267,32 @@ impl From<CrsError> for CoordinatesError {
 }
 
 activity! {
-    /// Why heights of the elevation files are not known.
+    /// Errors of reading heights of the elevation files.
     ElevationError: [] failed [] {
         #[error("the elevation files cannot be read")]
         Read(#[source] Box<ReadHeightsError>),
     }
 }
 
-/// Why a tile has no surfaces of roads, or no picture for its ground.
+/// Errors of creating the surfaces of a tile's roads, or the images of its ground.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SurfaceError {
     #[error(transparent)]
     Tile(#[from] TileError),
     #[error(
-        "the bridges of tile {tile} lie over more ground than any writer makes; corniche verify says more"
+        "the bridges of tile {tile} cover more ground than in any valid package; run corniche verify for details"
     )]
     TooManyBridges { tile: TileId, source: TooMuchWork },
     #[error(
-        "tile {tile} cannot be written with its roads as surfaces; --roads line or none does without"
+        "tile {tile} cannot be written with its roads as surfaces; avoid them with --roads line or --roads none"
     )]
     Cut { tile: TileId, source: CutError },
     #[error(
-        "the photo of tile {tile} cannot be written as a picture; a --style without photos does without"
+        "the photo of tile {tile} cannot be encoded as an image; choose a --style without photos"
     )]
     Picture { tile: TileId, source: Box<jpeg_encoder::EncodingError> },
-    #[error("the relief of tile {tile} cannot be written as a picture; --relief none does without")]
+    #[error("the relief of tile {tile} cannot be encoded as an image; omit it with --relief none")]
     Relief { tile: TileId, source: Box<image::ImageError> },
 }
 
@@ -276,7 +305,7 @@ impl SurfaceError {
     }
 }
 
-/// Why a file that GDAL writes is not there, or not whole.
+/// Errors of writing a file through GDAL.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GdalFileError {
@@ -287,166 +316,150 @@ pub enum GdalFileError {
     #[error("cannot write {path:?}{}", LackOfRoom::advice(*.room))]
     Write { path: PathBuf, room: Option<LackOfRoom>, source: Box<LibraryError> },
     #[error(
-        "{path:?} is not whole: {written} features were written, {found} can be read{}",
+        "{path:?} is incomplete: {written} features were written, but {found} can be read back{}",
         LackOfRoom::advice(*.room)
     )]
     NotWhole { path: PathBuf, room: Option<LackOfRoom>, written: u64, found: u64 },
     #[error(
-        "{path:?} is not whole: what was written is not what can be read{}",
+        "{path:?} is incomplete: the data read back differs from the data written{}",
         LackOfRoom::advice(*.room)
     )]
     RasterNotWhole { path: PathBuf, room: Option<LackOfRoom> },
-    #[error("cannot read {path:?} again")]
+    #[error("cannot read back {path:?}")]
     ReadAgain { path: PathBuf, source: io::Error },
 }
 
 impl GdalFileError {
-    /// A library could not write a file that is still there.
+    /// Returns the error of a library that could not write a file; the file still exists.
     pub(crate) fn write(path: &Path, source: impl Into<Box<LibraryError>>) -> Self {
         Self::Write { path: path.to_path_buf(), room: LackOfRoom::at(path), source: source.into() }
     }
 }
 
 activity! {
-    /// Why the ways of a number or a name are not found.
+    /// Errors of finding the ways with a number or a name.
     RoadQueryError: [Tile(TileError)] failed [] {
-        #[error("{package:?} has no road with {query}{near}; spaces, hyphens and case do not matter")]
+        #[error("{package:?} has no road with {query}{near}; list its roads with corniche export roads (the search ignores spaces, hyphens and case)")]
         NoSuchRoad { package: PathBuf, query: String, near: String },
     }
 }
 
 activity! {
-    /// Why roads, edges, areas or lines cannot be written as features, or not be measured by way.
-    FeaturesError: [
-        Selection(SelectionError) Coordinates(CoordinatesError) Tile(TileError) Road(RoadQueryError)
-        Elevation(ElevationError) File(GdalFileError)
+    /// Errors of writing roads, edges, areas or lines as features, and of measuring the growth of
+    /// ways.
+    FeaturesError: package [
+        Road(RoadQueryError) Elevation(ElevationError) File(GdalFileError)
     ] failed [Sort] {
-        #[error("{object} is not the same in all tiles; corniche verify says more")]
+        #[error("{object} differs between tiles; run corniche verify for details")]
         Differs { object: AreaObject },
-        #[error("{object} cannot be cut at --bounds; leave them out")]
+        #[error("{object} cannot be clipped to --bounds; omit --bounds")]
         BoundsAcross { object: AreaObject },
         #[error(
-            "GeoJSON has longitudes and latitudes of WGS84 (RFC 7946); leave --crs out, name a registered system (--crs EPSG:N), or choose another format"
+            "GeoJSON needs longitudes and latitudes of WGS84 (RFC 7946); omit --crs, name a registered CRS (--crs EPSG:N), or choose another format"
         )]
         GeoJsonCrs,
-        #[error("cannot sort in {folder:?}{}", LackOfRoom::advice(LackOfRoom::of(.source)))]
+        #[error("cannot use a temporary file for sorting in {folder:?}{}", LackOfRoom::advice(LackOfRoom::from_io_error(.source)))]
         Sort { folder: PathBuf, source: io::Error },
     }
 }
 
 activity! {
-    /// Why there is no way through the network, or not one alone.
-    RouteError: [
-        Selection(SelectionError) Coordinates(CoordinatesError) Tile(TileError) Road(RoadQueryError)
-    ] failed [] {
+    /// Errors of finding a route through the network.
+    RouteError: package [Road(RoadQueryError)] failed [] {
         #[error(
-            "{} roads that are not connected have {query}; name the ways of one, or two places on it with --from LON,LAT --to LON,LAT",
+            "{} roads with {query} are not connected; name the ways of one of them with --way, or two places on it with --from LON,LAT --to LON,LAT",
             roads.len()
         )]
         SeveralRoads { query: String, roads: Vec<String> },
         #[error(
-            "the ways with {query} are interrupted near {lon:.5},{lat:.5}, by more than 300 m of other roads; leave it out, or name places on one part with --from and --to"
+            "the ways with {query} are interrupted by more than 300 m of other roads near {lon:.5},{lat:.5}; omit --ref and --name, or choose --from and --to on one part of the road"
         )]
         RoadInterrupted { query: String, lon: f64, lat: f64 },
         #[error(
-            "there are no {of} within 500 m of {lon},{lat}: the nearest are {off_m:.0} m away; the package covers {covered}"
+            "there are no {of} within 500 m of {lon},{lat}: the nearest are {off_m:.0} m away; {covered}"
         )]
         FarFromRoads { of: String, lon: f64, lat: f64, off_m: f64, covered: String },
-        #[error("there are no {of} near {lon},{lat}; the package covers {covered}")]
+        #[error("there are no {of} near {lon},{lat}; {covered}")]
         NoRoadNear { of: String, lon: f64, lat: f64, covered: String },
-        #[error("no {of} of the package lead from {},{} to {},{}; a bound or a void may cut them", ends[0][0], ends[0][1], ends[1][0], ends[1][1])]
+        #[error("no {of} in the package lead from {},{} to {},{}; bounds or a void may interrupt them", ends[0][0], ends[0][1], ends[1][0], ends[1][1])]
         NotConnected { of: String, ends: [[f64; 2]; 2] },
         #[error(
-            "{of} of the package cannot be followed: they are not among its roads of these classes"
+            "the package has no {of} among the roads that a route may follow; choose other classes with --classes"
         )]
         NothingToFollow { of: String },
         #[error(
-            "--from and --to are nearest to one place of a road; give places that are farther apart"
+            "--from and --to snap to one place on a road; choose places that are farther apart"
         )]
         OnePlace,
     }
 }
 
 activity! {
-    /// Why ways or lines have no profile.
-    ProfileError: [
-        Selection(SelectionError) Coordinates(CoordinatesError) Tile(TileError)
-        Elevation(ElevationError)
-    ] failed [] {
+    /// Errors of computing the profile of ways or lines.
+    ProfileError: package [Elevation(ElevationError)] failed [] {
         #[error(
-            "{package:?} has no way {way_id} on level {level}; corniche export roads lists the ways that it has"
+            "{package:?} has no way {way_id} on level {level}; list the ways of the package with corniche export roads"
         )]
         NoWay { package: PathBuf, way_id: i64, level: u8 },
-        #[error("no line lies on ground of {package:?}{begins}; the package covers {covered}")]
+        #[error("no line crosses the ground of {package:?}{begins}; {covered}")]
         NoLineOnGround { package: PathBuf, begins: String, covered: String },
         #[error(
-            "the lines cross so many triangles that their profile would have millions of points; give a coarser level with --level, or simplify them (ogr2ogr -simplify)"
+            "the lines cross so many triangles that their profile would have millions of points; choose a coarser level with --level, or simplify the lines (ogr2ogr -simplify)"
         )]
         TooManyCrossings(#[from] TooMuchWork),
     }
 }
 
 activity! {
-    /// Why there is no model of a level.
-    MeshError: [
-        Selection(SelectionError) Coordinates(CoordinatesError) Tile(TileError)
-        Surface(SurfaceError)
-    ] failed [Write] {
-        #[error("glTF has the y axis upwards, always; leave --up z out, or choose another format")]
+    /// Errors of writing a model of a level.
+    MeshError: package [Surface(SurfaceError)] failed [Write] {
+        #[error("the y axis of glTF always points up; omit --up z, or choose another format")]
         GlbAxis,
-        #[error("cannot write {path:?}{}", LackOfRoom::advice(LackOfRoom::of(.source)))]
+        #[error("cannot write {path:?}{}", LackOfRoom::advice(LackOfRoom::from_io_error(.source)))]
         Write { path: PathBuf, source: io::Error },
     }
 }
 
 activity! {
-    /// Why there are no 3D Tiles.
-    Tiles3dError: [
-        Selection(SelectionError) Coordinates(CoordinatesError) Tile(TileError)
-        Surface(SurfaceError)
-    ] failed [Write] {
-        #[error("the tiles cannot be written{}", LackOfRoom::advice(LackOfRoom::of(.source)))]
-        Write { source: io::Error },
+    /// Errors of writing 3D Tiles.
+    Tiles3dError: package [Surface(SurfaceError)] failed [Write] {
+        #[error("the tiles cannot be written{}", LackOfRoom::advice(LackOfRoom::from_io_error(.source)))]
+        Write { #[from] source: io::Error },
     }
 }
 
 activity! {
-    /// Why there is no quantized-mesh terrain.
-    QuantizedMeshError: [
-        Selection(SelectionError) Coordinates(CoordinatesError) Tile(TileError)
-    ] failed [Write Triangulate] {
+    /// Errors of writing quantized-mesh terrain.
+    QuantizedMeshError: package [] failed [Write Triangulate] {
         #[error(
-            "the data reach to latitude {lat:.2}, and Web Mercator ends at {north:.2}; use --tiling geographic"
+            "the data reaches latitude {lat:.2}, but Web Mercator ends at {north:.2}; use --tiling geographic"
         )]
         BeyondGrid { lat: f64, north: f64 },
         #[error(
-            "level {finest} would have more than {most} tiles, which no export makes; end with --max-level {level}"
+            "level {finest} would have more than {most} tiles, the limit of an export; limit the levels with --max-level {level}"
         )]
         TooManyTiles { finest: u8, most: u64, level: u8 },
         #[error(
-            "levels 0 to {finest} would be up to {files} files, more than {most}; write them all with --max-files {files}, or end with --max-level {level}"
+            "levels 0 to {finest} would need up to {files} files, more than {most}; allow them with --max-files {files}, or limit the levels with --max-level {level}"
         )]
         TooManyFiles { finest: u8, files: u64, most: u64, level: u8 },
         #[error(
-            "{package:?}: its table of coordinates and its rectangle in degrees do not agree; corniche verify tells more"
+            "{package:?}: its table of coordinates contradicts its bounds in degrees; run corniche verify for details"
         )]
         OtherCoordinates { package: PathBuf },
         #[error("terrain tile {tile} cannot be triangulated")]
         Triangulate { tile: String, source: corniche_tin::TriangulateError },
-        #[error("the tiles cannot be written{}", LackOfRoom::advice(LackOfRoom::of(.source)))]
-        Write { source: io::Error },
+        #[error("the tiles cannot be written{}", LackOfRoom::advice(LackOfRoom::from_io_error(.source)))]
+        Write { #[from] source: io::Error },
     }
 }
 
 activity! {
-    /// Why there is no raster of heights.
-    RasterError: [
-        Selection(SelectionError) Coordinates(CoordinatesError) Tile(TileError)
-        Elevation(ElevationError) File(GdalFileError)
-    ] failed [] {
+    /// Errors of writing a raster of heights.
+    RasterError: package [Elevation(ElevationError) File(GdalFileError)] failed [] {
         #[error(
-            "the raster would have {columns} × {rows} nodes, and the tiles of level {level} have no more than {within} of them, which is too few; give the part \
-             with ground with --bounds"
+            "the raster would have {columns} × {rows} grid nodes, but the tiles of level {level} have at most {within} of them; limit the raster with \
+             --bounds to the part that has ground"
         )]
         MostlyNothing { columns: usize, rows: usize, level: u8, within: u64 },
     }

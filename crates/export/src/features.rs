@@ -1,4 +1,5 @@
-//! The way of each layer out of a package: pieces of tiles, sorted by object, become features of a vector file.
+//! The export of each layer of a package: pieces of tiles, sorted by object, become features of a
+//! vector file.
 
 use std::path::Path;
 
@@ -11,46 +12,46 @@ use corniche_work::{Observer, Stage};
 use crate::{
     bounds::DegreeBounds,
     error::FeaturesError,
-    places::{Coordinates, Places},
+    places::{FeatureCoordinates, Places},
     read,
     sorted_pieces::{FileScratch, SortedPieces},
-    vector::{Field, Layer, Record, ShapeKind, VectorFile, VectorFormat},
+    vector::{FeatureField, FeatureRecord, Layer, ShapeKind, VectorFile, VectorFormat},
 };
 
-/// Which objects of a layer of a package are exported, and how.
+/// The objects of a layer that are exported, and the form of the file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FeatureRequest<C> {
     /// The format of the file.
     pub format: VectorFormat,
-    /// The level whose objects are taken; `None` is the finest.
+    /// The level whose objects are exported; `None` means the finest.
     pub level: Option<u8>,
-    /// The classes that are taken.
+    /// The classes that are exported.
     pub classes: Vec<C>,
-    /// Objects are cut here.
+    /// The rectangle to which objects are clipped.
     pub bounds: Option<DegreeBounds>,
-    /// The coordinates of features; only roads have heights.
-    pub coordinates: Coordinates,
-    /// Memory for sorting, bytes.
+    /// The coordinates of features. Only roads have heights.
+    pub coordinates: FeatureCoordinates,
+    /// Memory for sorting, in bytes.
     pub memory_bytes: u64,
 }
 
-/// Which features roads become.
+/// The unit of road that becomes a feature.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RoadFeatures {
-    /// One for each way.
+    /// One feature for each way.
     Ways,
-    /// One for each piece, as the tiles have them.
+    /// One feature for each piece of a tile.
     Pieces,
 }
 
-/// Looks whether lines with heights can be had from a package as they are asked for, before anything is read.
+/// Checks, before anything is read, whether a package can provide lines with heights as requested.
 ///
 /// # Errors
 /// When the package has no such level, or the request cannot be met.
 pub fn check_lines_request(
     package: &FilePackage,
     level: Option<u8>,
-    (format, coordinates): (VectorFormat, Coordinates),
+    (format, coordinates): (VectorFormat, FeatureCoordinates),
 ) -> Result<(), FeaturesError> {
     let classes: Vec<()> = Vec::new();
     let request =
@@ -58,82 +59,78 @@ pub fn check_lines_request(
     FeatureSource::new(package, &request).map(drop)
 }
 
-/// A layer of a package on its way into a file: what is its own.
+/// The part of an export that is specific to a layer.
 pub(crate) trait Features {
     /// The classes of its objects.
     type Class;
-    /// What one tile holds of an object; pieces sort by objects.
-    type Piece: SortRecord;
-    /// Its geometries.
-    const SHAPES: ShapeKind;
+    /// A piece: what one tile has of an object. Pieces sort by object.
+    type TilePiece: SortRecord;
+    /// The layer's name, fields and metadata in the file.
+    fn layer(&self, source: &FeatureSource<'_, Self::Class>) -> Layer;
 
-    /// The layer's name in the file.
-    fn name(&self) -> &'static str;
-
-    /// What the file says of the layer.
-    fn about(&self, source: &FeatureSource<'_, Self::Class>) -> About;
-
-    /// How far heights may be off, a whole sentence, once all features are written; `None` for a layer without heights.
+    /// A whole sentence with the largest error of heights, once all features are written; `None`
+    /// for a layer without heights.
     fn heights_told(&self, _source: &FeatureSource<'_, Self::Class>) -> Option<String> {
         None
     }
 
-    /// What a tile holds of the objects that are wanted.
+    /// Returns the pieces of the requested objects in a tile.
     fn pieces(
         &mut self,
         source: &FeatureSource<'_, Self::Class>,
         tile: TileId,
-    ) -> Result<Vec<Self::Piece>, FeaturesError>;
+    ) -> Result<Vec<Self::TilePiece>, FeaturesError>;
 
     /// The object of a piece.
-    fn object(piece: &Self::Piece) -> AreaObject;
+    fn object(piece: &Self::TilePiece) -> AreaObject;
 
-    /// The features of an object, from all its pieces.
+    /// Returns the features of an object, made from all its pieces.
     fn records(
         &mut self,
         source: &FeatureSource<'_, Self::Class>,
-        pieces: &[Self::Piece],
-    ) -> Result<Vec<Record>, FeaturesError>;
+        pieces: &[Self::TilePiece],
+    ) -> Result<Vec<FeatureRecord>, FeaturesError>;
 }
 
-/// What a file says of a layer, beside what it says of the package.
-pub(crate) struct About {
-    pub(crate) fields: Vec<Field>,
-    pub(crate) description: String,
-    pub(crate) metadata: Vec<(&'static str, String)>,
-}
-
-/// What features are made from.
+/// The inputs of the features of a layer.
 pub(crate) struct FeatureSource<'a, C> {
     pub(crate) package: &'a FilePackage,
     pub(crate) request: &'a FeatureRequest<C>,
-    /// The level whose objects are taken.
+    /// The level whose objects are exported.
     pub(crate) level: u8,
     pub(crate) places: Places<'a>,
 }
 
 impl<'a, C> FeatureSource<'a, C> {
-    /// Fails where the package or the format cannot have what is asked for.
+    /// Fails if the package or the format does not support the request.
     pub(crate) fn new(
         package: &'a FilePackage,
         request: &'a FeatureRequest<C>,
     ) -> Result<Self, FeaturesError> {
         let level = read::level(package, request.level)?;
-        if request.format == VectorFormat::GeoJson && request.coordinates == Coordinates::Package {
+        if request.format == VectorFormat::GeoJson
+            && request.coordinates == FeatureCoordinates::Package
+        {
             return Err(FeaturesError::GeoJsonCrs);
         }
         let places = Places::new(package.manifest(), request.coordinates)?;
         Ok(Self { package, request, level, places })
     }
 
-    /// The layer of a file that is made from it.
-    pub(crate) fn layer(&self, name: &'static str, shapes: ShapeKind, about: About) -> Layer {
+    /// Returns the description of the file's layer: its own metadata, and the metadata of the
+    /// package that all layers share.
+    pub(crate) fn layer(
+        &self,
+        (name, shapes): (&'static str, ShapeKind),
+        fields: Vec<FeatureField>,
+        description: String,
+        metadata: Vec<(&'static str, String)>,
+    ) -> Layer {
         let Self { package, level, places, .. } = self;
         let manifest = package.manifest();
-        let About { fields, description, metadata } = about;
         let crs = match (self.request.format, self.request.coordinates) {
-            // GeoJSON names systems by their codes, or not at all: there is none for both parts of a compound one.
-            (VectorFormat::GeoJson, Coordinates::Epsg(code)) => format!("EPSG:{code}"),
+            // GeoJSON can name a CRS only by its code, and a compound CRS of two codes has none.
+            (VectorFormat::GeoJson, FeatureCoordinates::Epsg(code)) => format!("EPSG:{code}"),
             _ => places.wkt.clone(),
         };
         let of_package = [
@@ -154,15 +151,16 @@ impl<'a, C> FeatureSource<'a, C> {
         }
     }
 
-    /// The spacing of the level's nodes, in words.
+    /// The spacing of the level's grid nodes, in words.
     pub(crate) fn cells(&self) -> String {
         let [east_m, north_m] = self.package.manifest().frame.level_cell(self.level).to_array();
         format!("cells of {east_m:.1} × {north_m:.1} m")
     }
 }
 
-/// Writes the features of a layer to a new file at `path`. Beside it, in the same folder, are unnamed files for sorting, and what GDAL needs
-/// while it writes. After an error the file at `path` is of no use.
+/// Writes the features of a layer to a new file at `path`. While it writes, the same folder also
+/// contains unnamed temporary files for sorting, and temporary files of GDAL. After an error the
+/// file at `path` is incomplete.
 pub(crate) fn write_features<F: Features>(
     features: &mut F,
     source: &FeatureSource<'_, F::Class>,
@@ -175,8 +173,7 @@ pub(crate) fn write_features<F: Features>(
     let sorting = (&scratch, request.memory_bytes);
     let pieces =
         SortedPieces::read(&tiles, sorting, observer, |tile| features.pieces(source, tile))?;
-    let layer = source.layer(features.name(), F::SHAPES, features.about(source));
-    let mut file = VectorFile::create(path, request.format, layer)?;
+    let mut file = VectorFile::create(path, request.format, features.layer(source))?;
     pieces.for_each(observer, F::object, |pieces| {
         for record in features.records(source, &pieces)? {
             file.push(record)?;
@@ -191,9 +188,9 @@ pub(crate) fn write_features<F: Features>(
     Ok(())
 }
 
-/// What fields say and in which unit, a line for each.
-fn meanings(fields: &[Field]) -> String {
-    let line = |field: &Field| match field.unit {
+/// The meaning and the unit of each field, one line per field.
+fn meanings(fields: &[FeatureField]) -> String {
+    let line = |field: &FeatureField| match field.unit {
         "" => format!("{}: {}", field.name, field.meaning),
         unit => format!("{} ({unit}): {}", field.name, field.meaning),
     };

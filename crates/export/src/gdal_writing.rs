@@ -1,4 +1,4 @@
-//! What GDAL's writers are given: settings that hold for one thread until they are dropped, and
+//! Inputs of GDAL's writers: settings for one thread that are reset when they are dropped, and
 //! plain texts.
 
 use std::{borrow::Cow, path::Path};
@@ -12,7 +12,7 @@ use gdal::{
 
 use crate::error::GdalFileError;
 
-/// Settings of GDAL, of this thread alone, until it is dropped.
+/// Settings of GDAL for the current thread, until this value is dropped.
 pub(crate) struct GdalSettings(&'static [(&'static str, &'static str)]);
 
 impl GdalSettings {
@@ -20,7 +20,7 @@ impl GdalSettings {
         corniche_gis::quiet();
         corniche_gis::forget();
         for (key, value) in settings {
-            // Both are plain texts: this fails for texts with a zero byte alone.
+            // Both are plain texts. This fails only for texts with a zero byte.
             let _ = set_thread_local_config_option(key, value);
         }
         Self(settings)
@@ -35,32 +35,25 @@ impl Drop for GdalSettings {
     }
 }
 
-/// A system whose axes are east and north, as in files, whatever its authority says.
+/// A CRS with the axis order east, north that files use, whatever its authority defines.
 pub(crate) fn east_north(definition: &str) -> Result<SpatialRef, GdalError> {
     let mut crs = SpatialRef::from_definition(definition)?;
     crs.set_axis_mapping_strategy(AxisMappingStrategy::TraditionalGisOrder);
     Ok(crs)
 }
 
-/// Closes a file. What fails then comes back from no call before GDAL 3.7.
+/// Closes a file. Before GDAL 3.7, no call returns the errors of closing.
 pub(crate) fn close(dataset: Dataset, path: &Path) -> Result<(), GdalFileError> {
     corniche_gis::forget();
     dataset.close().map_err(|error| GdalFileError::write(path, error))?;
     corniche_gis::failure().map_or(Ok(()), |source| Err(GdalFileError::write(path, source)))
 }
 
-/// A text about a whole file: C's texts end at a NUL, and XML, which some formats keep such texts as, has no control characters.
+/// Returns a text about a whole file without NUL, which ends texts in C, and without the other
+/// control characters, which XML (in which some formats store these texts) does not allow.
 pub(crate) fn plain_text(text: &str) -> Cow<'_, str> {
     if text.contains(char::is_control) {
         return Cow::Owned(text.replace(char::is_control, " "));
-    }
-    Cow::Borrowed(text)
-}
-
-/// A value of a feature. What cannot be in a text of C is replaced as what is no UTF-8 is.
-pub(crate) fn without_nul(text: &str) -> Cow<'_, str> {
-    if text.contains('\0') {
-        return Cow::Owned(text.replace('\0', "\u{fffd}"));
     }
     Cow::Borrowed(text)
 }

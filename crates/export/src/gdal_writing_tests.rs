@@ -1,9 +1,8 @@
-//! Texts for formats that take plain text alone.
+//! Texts for formats that only accept plain text.
 
 use super::*;
 
 #[test]
-fn control_characters_of_facts_are_spaces_and_values_keep_all_but_nul() {
+fn control_characters_of_facts_are_spaces() {
     assert_eq!(plain_text("© A\0\nB\u{9b}"), "© A  B ");
-    assert_eq!(without_nul("A\0\nB"), "A\u{fffd}\nB");
 }

@@ -1,6 +1,7 @@
-//! Rasters that know their place: the heights of a level's TINs, and pictures from above.
+//! Georeferenced rasters: the heights of a level's TINs, and rendered images from above.
 //!
-//! Heights are a `GeoTIFF`, on request with the difference from the elevation files as a second band.
+//! Heights are written as a `GeoTIFF`, on request with the difference from the elevation files as a
+//! second band.
 //!
 //! ```text
 //!                          TINs of the tiles around ──► heights at nodes ──┬──► band 1
@@ -8,10 +9,12 @@
 //!                          elevation files ──► heights at nodes ──► TIN minus DEM ──► band 2, figures
 //! ```
 //!
-//! Pixels are the nodes of the package's finest level, whichever level's TINs are taken: where nodes are samples, the second band is the error at each
-//! sample, and rasters of two levels can be subtracted. A pixel's middle is its node, so the file says `PixelIsPoint`.
+//! Pixels are the grid nodes of the package's finest level, whichever level's TINs are used. If
+//! they are samples, the second band is therefore the error at each sample, and rasters of two
+//! levels can be subtracted. The middle of a pixel is its node, so the file declares
+//! `PixelIsPoint`.
 //!
-//! Memory holds some rows of blocks, of 256 nodes along each side, and the TINs beneath them.
+//! Memory contains some rows of blocks, with 256 nodes along each side, and the TINs beneath them.
 
 mod block;
 mod file;

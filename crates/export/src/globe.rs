@@ -1,10 +1,11 @@
-//! Places on the earth, in metres from the middle of the data.
+//! Positions on the globe, in metres from the middle of the data.
 
 use std::ops::{Mul, Sub};
 
 use corniche_geom::wgs84::{ECCENTRICITY_2, SEMI_MAJOR_M};
 
-/// A position from the earth's centre: x towards longitude 0, y towards 90° E, z towards the north pole (EPSG:4978).
+/// A position from the earth's centre: x towards longitude 0, y towards 90° E, z towards the north
+/// pole (EPSG:4978).
 ///
 /// Source: IOGP 2019, *Guidance Note 7-2*, section 4.1.1.
 pub(crate) fn geocentric_m([lon_deg, lat_deg, height_m]: [f64; 3]) -> [f64; 3] {
@@ -31,12 +32,12 @@ fn local_axes([lon_deg, lat_deg]: [f64; 2]) -> [[f64; 3]; 3] {
 }
 
 /// The direction upwards on the ellipsoid.
-pub(crate) fn up_at(place_deg: [f64; 2]) -> [f64; 3] {
-    let [.., up] = local_axes(place_deg);
+pub(crate) fn up_at([lon_deg, lat_deg, _]: [f64; 3]) -> [f64; 3] {
+    let [.., up] = local_axes([lon_deg, lat_deg]);
     up
 }
 
-/// The frame in which all tiles are: east, north and up at its origin on the ellipsoid.
+/// The coordinate frame of all tiles: east, north and up at its origin on the ellipsoid.
 #[derive(Clone, Copy)]
 pub(crate) struct RootFrame {
     origin_m: [f64; 3],
@@ -44,26 +45,26 @@ pub(crate) struct RootFrame {
 }
 
 impl RootFrame {
-    /// The place at a longitude and latitude in degrees.
+    /// Returns the frame at a longitude and latitude in degrees.
     pub(crate) fn at(place_deg: [f64; 2]) -> Self {
         let [lon, lat] = place_deg;
         Self { origin_m: geocentric_m([lon, lat, 0.0]), axes: local_axes(place_deg) }
     }
 
-    /// A place, longitude and latitude in degrees and metres above the ellipsoid, in this frame.
-    pub(crate) fn of(&self, place: [f64; 3]) -> [f64; 3] {
+    /// Converts longitude and latitude in degrees and metres above the ellipsoid to this frame.
+    pub(crate) fn position_in_root(&self, place: [f64; 3]) -> [f64; 3] {
         let at = geocentric_m(place);
         let from = between(self.origin_m, at);
         self.axes.map(|axis| dot(axis, from))
     }
 
-    /// The direction upwards at a longitude and latitude, in this frame.
+    /// The upward direction at a longitude and latitude, in this frame.
     pub(crate) fn up_at(&self, place_deg: [f64; 2]) -> [f64; 3] {
         let [.., up] = local_axes(place_deg);
         self.axes.map(|axis| dot(axis, up))
     }
 
-    /// The matrix from this frame to the earth's, by columns.
+    /// The matrix from this frame to the earth-centred one, by columns.
     pub(crate) fn to_earth(self) -> [f64; 16] {
         let [e, n, u] = self.axes;
         let o = self.origin_m;
@@ -82,7 +83,7 @@ pub(crate) fn cross<T: Copy + Mul<Output = T> + Sub<Output = T>>(
     [b * z - c * y, c * x - a * z, a * y - b * x]
 }
 
-/// The way from one place to another.
+/// The vector from one place to another.
 pub(crate) fn between(from: [f64; 3], to: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|axis| to[axis] - from[axis])
 }

@@ -1,4 +1,4 @@
-//! Earth-centred positions are those of the published example.
+//! Earth-centred positions agree with the published example.
 
 use super::{RootFrame, cross, dot, geocentric_m};
 
@@ -16,7 +16,7 @@ fn positions_are_those_of_the_guidance_note() {
 fn the_frame_leads_back_to_the_earth() {
     let frame = RootFrame::at([9.5, 47.1]);
     let place = [9.6, 47.0, 1234.5];
-    let own = frame.of(place);
+    let own = frame.position_in_root(place);
     let m = frame.to_earth();
     let back = [0, 1, 2]
         .map(|row| m[row] * own[0] + m[4 + row] * own[1] + m[8 + row] * own[2] + m[12 + row]);

@@ -1,5 +1,6 @@
-//! What all glTF files have in common: a document with the buffer that its views are of, the binary container (a header, a document and one chunk of
-//! bytes), numbers that glTF takes from OpenGL, and how slabs of bridges look.
+//! Common parts of all glTF files: a document with the buffer of its views, the binary container (a
+//! header, a document and one chunk of bytes), numbers that glTF takes from OpenGL, and the
+//! material of bridge slabs.
 //!
 //! Source: Khronos Group, *glTF 2.0 Specification*, sections 3.6 and 4.4.
 
@@ -11,12 +12,13 @@ use serde_json::{Value, json};
 const HEADER_BYTES: usize = 12;
 const CHUNK_HEADER_BYTES: usize = 8;
 
-/// The length of a chunk is a multiple of this.
+/// The length of a chunk is a multiple of this number.
 const CHUNK_ALIGNMENT: usize = 4;
-/// Nothing needs more.
+/// The largest alignment that anything needs.
 const MOST_ALIGNMENT: usize = 8;
 
-/// Writes a binary glTF: its document, and `length` bytes, a multiple of [`CHUNK_ALIGNMENT`], that `put` writes.
+/// Writes a binary glTF: its document, and the `length` bytes (a multiple of [`CHUNK_ALIGNMENT`])
+/// that `put` writes.
 pub(crate) fn write_container<W: Write + ?Sized>(
     into: &mut W,
     document: &Value,
@@ -39,16 +41,16 @@ pub(crate) fn write_container<W: Write + ?Sized>(
     put(into)
 }
 
-/// A document as it grows, with its buffer.
+/// A document with its buffer while it is composed.
 #[derive(Default)]
 pub(crate) struct Gltf<B> {
-    /// What the buffer is written to.
+    /// The target of the buffer's bytes.
     pub(crate) bytes: B,
-    /// Bytes of the buffer.
+    /// The length of the buffer in bytes.
     pub(crate) length: usize,
     pub(crate) views: Vec<Value>,
     accessors: Vec<Value>,
-    /// Textures have the same numbers.
+    /// Textures have the same numbers as images.
     images: Vec<Value>,
 }
 
@@ -58,7 +60,7 @@ impl<B: Write> Gltf<B> {
         Self { bytes, length: 0, views, accessors, images }
     }
 
-    /// What follows begins at a multiple of `alignment`, at most [`MOST_ALIGNMENT`].
+    /// Pads the buffer to a multiple of `alignment`, at most [`MOST_ALIGNMENT`].
     pub(crate) fn align(&mut self, alignment: usize) -> io::Result<()> {
         let end = self.length.next_multiple_of(alignment);
         self.bytes.write_all(&[0; MOST_ALIGNMENT][..end - self.length])?;
@@ -66,7 +68,7 @@ impl<B: Write> Gltf<B> {
         Ok(())
     }
 
-    /// Appends bytes, and tells in `view` where they are.
+    /// Appends bytes, and records their position in `view`.
     pub(crate) fn put(&mut self, bytes: &[u8], view: &mut Value) -> io::Result<()> {
         view["buffer"] = json!(0);
         view["byteOffset"] = json!(self.length);
@@ -76,14 +78,14 @@ impl<B: Write> Gltf<B> {
         self.align(CHUNK_ALIGNMENT)
     }
 
-    /// Adds bytes, of which `view` says what they are; returns the number of the view.
+    /// Appends bytes as a view with these properties; returns the number of the view.
     pub(crate) fn view(&mut self, bytes: &[u8], mut view: Value) -> io::Result<usize> {
         self.put(bytes, &mut view)?;
         self.views.push(view);
         Ok(self.views.len() - 1)
     }
 
-    /// Adds what an accessor says of as many numbers of a view; returns its number.
+    /// Adds an accessor with these properties for `count` numbers of a view; returns its number.
     pub(crate) fn accessor(&mut self, mut accessor: Value, view: usize, count: usize) -> usize {
         accessor["bufferView"] = json!(view);
         accessor["count"] = json!(count);
@@ -98,13 +100,13 @@ impl<B: Write> Gltf<B> {
         view: Value,
         accessor: Value,
     ) -> io::Result<usize> {
-        // glTF is little-endian, as is every machine that this is compiled for.
+        // glTF is little-endian, and so is every supported machine.
         const { assert!(cfg!(target_endian = "little")) };
         let view = self.view(bytemuck::cast_slice(items), view)?;
         Ok(self.accessor(accessor, view, items.len()))
     }
 
-    /// Adds a picture, of which `image` says what it is; returns the number of its texture.
+    /// Adds an image with these properties; returns the number of its texture.
     pub(crate) fn picture(&mut self, bytes: &[u8], mut image: Value) -> io::Result<usize> {
         image["bufferView"] = json!(self.view(bytes, json!({}))?);
         self.images.push(image);
@@ -142,7 +144,7 @@ impl<B: Write> Gltf<B> {
 
 /// A material of one colour, sRGB.
 pub(crate) fn material(name: &str, color: Rgb) -> Value {
-    // Colours of styles are sRGB, those of glTF linear.
+    // Colours of styles are sRGB; glTF has linear ones.
     let [red, green, blue] = color.map(linear);
     json!({
         "name": name,
@@ -152,7 +154,7 @@ pub(crate) fn material(name: &str, color: Rgb) -> Value {
     })
 }
 
-/// East, north and up along the axes of glTF.
+/// Converts east, north and up to the axes of glTF.
 pub(crate) fn y_up<T: std::ops::Neg<Output = T>>([east, north, up]: [T; 3]) -> [T; 3] {
     [east, up, -north]
 }
@@ -171,12 +173,12 @@ pub(crate) const LINES: u32 = 1;
 pub(crate) const LINE_STRIP: u32 = 3;
 pub(crate) const TRIANGLES: u32 = 4;
 
-/// What an accessor of floats says, but for its view and its length.
+/// The properties of an accessor of floats, without its view and its length.
 pub(crate) fn floats(kind: &str) -> Value {
     json!({ "componentType": F32, "type": kind })
 }
 
-/// What an accessor of positions says, with their range.
+/// The properties of an accessor of positions, with their range.
 pub(crate) fn positions(at: &[[f32; 3]]) -> Value {
     let [least, largest] = range_of(at);
     json!({ "componentType": F32, "type": "VEC3", "min": least, "max": largest })
@@ -187,7 +189,7 @@ const LINEAR: u32 = 9729;
 const LINEAR_MIPMAP_LINEAR: u32 = 9987;
 const CLAMP_TO_EDGE: u32 = 33_071;
 
-/// How pictures of the ground are read: smoothly, and never across their edge.
+/// The sampler for images of the ground: smooth, and clamped at the edge.
 fn sampler() -> Value {
     json!({
         "magFilter": LINEAR, "minFilter": LINEAR_MIPMAP_LINEAR,
@@ -200,7 +202,7 @@ pub(crate) fn linear(channel: f32) -> f32 {
     if channel <= 0.040_45 { channel / 12.92 } else { ((channel + 0.055) / 1.055).powf(2.4) }
 }
 
-/// The smallest and the largest of each axis, as accessors of positions say them.
+/// The smallest and the largest value along each axis, as accessors of positions require them.
 fn range_of(vectors: &[[f32; 3]]) -> [[f32; 3]; 2] {
     [f32::min, f32::max].map(|pick: fn(f32, f32) -> f32| {
         [0, 1, 2].map(|axis: usize| {
@@ -209,7 +211,7 @@ fn range_of(vectors: &[[f32; 3]]) -> [[f32; 3]; 2] {
     })
 }
 
-/// The name of the material of slabs, but for the road on top.
+/// The name of the material of slabs, the road on top excepted.
 pub(crate) const SLAB_NAME: &str = "bridge_slab";
 /// Concrete, sRGB.
 pub(crate) const SLAB_COLOR: Rgb = [0.62, 0.61, 0.59];

@@ -1,10 +1,12 @@
 //! Grades of roads without the noise of elevation models.
 //!
-//! Heights of a road are those of the elevation files; grades are those of a smooth line near them. It is the one that is nearest to the heights and
-//! bends least: least squares, as a stiff ruler is laid through scattered points. It is a measure, never a geometry.
+//! The heights of a road are those of the elevation files. Its grades are those of a smooth line
+//! near these heights: the line that minimises the squared distances from the heights and its own
+//! bending (least squares), like a stiff ruler through scattered points. The smooth line serves for
+//! measuring only, and never becomes geometry.
 //!
 //! ```text
-//!   heights along a chain ──► one height for each junction ──► a smooth line for each chain ──► what lies on each way
+//!   heights along a chain ──► one height for each junction ──► a smooth line for each chain ──► the part of each way
 //! ```
 
 mod junctions;

@@ -1,44 +1,48 @@
-//! What laying each way on the terrain costs.
+//! The growth of each way: the vertices that splitting at triangle edges adds.
 
 use std::path::Path;
 
 use corniche_areas::AreaObject;
 use corniche_geom::LatticeBounds;
 use corniche_roads::FunctionalRoadClass;
-use corniche_tileset::{FilePackage, Manifest, tile_of_order};
+use corniche_tileset::{FilePackage, tile_of_order};
 use corniche_work::{Observer, Stage};
 
 use crate::{
     error::{FeaturesError, SelectionError},
     join::lines,
     measures::{Measures, Profiled},
-    piece::{Piece, Vertex},
-    places::{Coordinates, Places},
+    piece::{Vertex, WayPiece},
+    places::{FeatureCoordinates, Places},
     read,
     sorted_pieces::{FileScratch, SortedPieces},
 };
 
-/// What laying one way on the terrain costs.
+/// The growth of one way.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WayGrowth {
     /// Id of the way in OpenStreetMap.
     pub way_id: i64,
     /// Its functional road class.
     pub class: FunctionalRoadClass,
-    /// True length in plan of what lies on the finest level's ground, metres.
+    /// True length in plan of the parts on the finest level's ground, metres.
     pub length_m: f64,
-    /// Points of the way that lie on the finest level's ground. Cuts at tile borders and at the package's bounds are none; cuts at a
-    /// polygon are, because roads are cut there before anything is counted.
+    /// Points of the way that are on the finest level's ground. Cuts at tile borders and at the
+    /// package's bounds do not count. Cuts at a polygon do, because roads are cut there before
+    /// anything is counted.
     pub source_vertices: u64,
-    /// Vertices of the clipped lines of each level, root first, as the tiles hold them: one on a border is in both tiles.
+    /// Vertices of the clipped lines of each level, root first, as the tiles have them: a vertex on
+    /// a border is in both tiles.
     pub geo_vertices: Vec<u64>,
 }
 
-/// Tells of each way of a package, in ascending order of their ids. Beside one tile and one way, memory holds `memory_bytes` for
-/// sorting; the rest of what is sorted is in an unnamed file in `folder`.
+/// Calls `each` for each way of a package, in ascending order of ids. In addition to one tile and
+/// one way, memory contains `memory_bytes` for sorting; the rest is sorted in an unnamed file in
+/// `folder`.
 ///
 /// # Errors
-/// When the package has no roads or is damaged, when `folder` cannot be written, or what `each` returns.
+/// When the package has no roads or is corrupt, when `folder` cannot be written, or when `each`
+/// fails.
 pub fn growth_by_way<E: From<FeaturesError>>(
     package: &FilePackage,
     folder: &Path,
@@ -46,32 +50,31 @@ pub fn growth_by_way<E: From<FeaturesError>>(
     observer: &dyn Observer,
     mut each: impl FnMut(&WayGrowth) -> Result<(), E>,
 ) -> Result<(), E> {
-    let manifest = package.manifest();
     SelectionError::check_roads(package).map_err(FeaturesError::from)?;
     let scratch = FileScratch::create(folder)?;
-    let classes: Vec<FunctionalRoadClass> = FunctionalRoadClass::all().collect();
     let tiles = package.tile_ids().map_err(FeaturesError::from)?;
     let pieces = SortedPieces::read(&tiles, (&scratch, memory_bytes), observer, |id| {
-        Ok(read::pieces(package, id, &classes)?)
+        Ok(read::all_pieces(package, id)?)
     })?;
-    let places = Places::new(manifest, Coordinates::Package).map_err(FeaturesError::from)?;
-    let way = |piece: &Piece| piece.key.way_id;
+    let places = Places::new(package.manifest(), FeatureCoordinates::Package)
+        .map_err(FeaturesError::from)?;
+    let way = |piece: &WayPiece| piece.key.way_id;
     pieces.for_each(observer, way, |pieces| {
-        growth_of(pieces, manifest, &places)?.map_or(Ok(()), |way| each(&way))
+        growth_of(pieces, &places)?.map_or(Ok(()), |way| each(&way))
     })?;
     observer.end(Stage::ExportFeatures);
     Ok(())
 }
 
-/// The growth of all pieces of a way, on all levels; `None` without any.
+/// Returns the growth of all pieces of a way, on all levels; `None` without any.
 fn growth_of(
-    pieces: Vec<Piece>,
-    manifest: &Manifest,
+    pieces: Vec<WayPiece>,
     places: &Places<'_>,
 ) -> Result<Option<WayGrowth>, FeaturesError> {
     let Some((way_id, class)) = pieces.first().map(|first| (first.key.way_id, first.class)) else {
         return Ok(None);
     };
+    let manifest = places.manifest;
     let finest = manifest.frame.max_level();
     let mut geo_vertices = vec![0; usize::from(finest) + 1];
     let mut of_finest = Vec::new();
@@ -79,7 +82,7 @@ fn growth_of(
         if piece.class != class {
             return Err(FeaturesError::Differs { object: AreaObject::Way(way_id) });
         }
-        // Keys were made of tiles that the package has.
+        // Keys come from tiles that the package has.
         let Some(tile) = tile_of_order(piece.key.tile) else { continue };
         if let Some(vertices) = geo_vertices.get_mut(usize::from(tile.z())) {
             *vertices += piece.vertices.len() as u64;
@@ -91,8 +94,8 @@ fn growth_of(
     let joined = lines(&of_finest);
     let distance_m = places.metric();
     let profiled: Vec<Profiled<'_>> =
-        joined.iter().map(|line| Profiled::of(line, &distance_m)).collect();
-    let measures = Measures::of(&profiled);
+        joined.iter().map(|line| Profiled::from_line(line, &distance_m)).collect();
+    let measures = Measures::from_lines(&profiled);
     let joins: usize = joined.iter().map(|line| line.joins.len()).sum();
     let clip = manifest.clip.as_ref().map(|clip| manifest.frame.lattice_bounds(clip.nodes));
     let cuts = cut_ends(&of_finest, clip).saturating_sub(2 * joins as u64);
@@ -105,10 +108,11 @@ fn growth_of(
     }))
 }
 
-/// How many ends of pieces were made by cutting, at the border of a tile or at the bounds of the package.
-fn cut_ends(pieces: &[Piece], clip: Option<LatticeBounds>) -> u64 {
+/// Counts the ends of pieces that cutting made, at the border of a tile or at the bounds of the
+/// package.
+fn cut_ends(pieces: &[WayPiece], clip: Option<LatticeBounds>) -> u64 {
     let is_at_bounds = |vertex: &Vertex| {
-        // Points are whole steps, so they lie on a side exactly or not at all.
+        // Points are whole steps, so they are exactly on a side or not at all.
         let is_at = |along: f64, sides: [i64; 2]| {
             sides.iter().any(|&side| along.to_bits() == (side as f64).to_bits())
         };
@@ -120,7 +124,7 @@ fn cut_ends(pieces: &[Piece], clip: Option<LatticeBounds>) -> u64 {
     let is_cut = |end: Option<&Vertex>, goes_on: bool| {
         end.is_some_and(|vertex| vertex.is_source && (goes_on || is_at_bounds(vertex)))
     };
-    let ends = |piece: &Piece| {
+    let ends = |piece: &WayPiece| {
         let [first, last] = piece.goes_on;
         u64::from(is_cut(piece.vertices.first(), first))
             + u64::from(is_cut(piece.vertices.last(), last))

@@ -6,9 +6,9 @@ use corniche_roads::RoadAttributes;
 use super::*;
 use crate::piece::PieceKey;
 
-/// A piece from one place to another, each a point of the line or not.
-fn piece(ends: [([f64; 2], bool); 2], goes_on: [bool; 2]) -> Piece {
-    Piece {
+/// A piece from one place to another; each end is a point of the line or not.
+fn piece(ends: [([f64; 2], bool); 2], goes_on: [bool; 2]) -> WayPiece {
+    WayPiece {
         key: PieceKey { way_id: 1, tile: 0, part: 0, cut: 0 },
         class: FunctionalRoadClass::new(0).unwrap(),
         attributes: RoadAttributes::default(),
@@ -38,7 +38,7 @@ fn ends_at_borders_and_at_bounds_are_cuts_and_others_are_points() {
         (([90.0, 30.0], true), false, false, true),
         (([20.0, -10.0], true), false, false, true),
         (([20.0, 70.0], true), false, false, true),
-        // Where the ground ends there is no point in any case.
+        // Where the ground ends there is never a point.
         (([10.0, 30.0], false), false, false, false),
     ] {
         for pieces in

@@ -1,29 +1,30 @@
-//! The pieces of a way, put together again where tile borders cut them.
+//! Joins the pieces of a way where tile borders cut them.
 
 use std::collections::BTreeMap;
 
-use crate::piece::{Piece, Vertex};
+use crate::piece::{Vertex, WayPiece};
 
-/// Heights of one place on a tile border come from the same two vertices in both tiles, each by its own triangle's plane:
-/// they differ in their last bits. With coordinates below 2^24 m that is far less than this.
+/// Heights of one place on a tile border are interpolated between the same two vertices in both
+/// tiles, each in its own triangle's plane: they differ in their last bits. With coordinates below
+/// 2^24 m, the difference is far below this.
 const SAME_HEIGHT_M: f64 = 1e-6;
 
 /// A line without gaps.
 #[derive(Debug, Clone)]
-pub(crate) struct Line {
+pub(crate) struct JoinedLine {
     pub(crate) vertices: Vec<Vertex>,
-    /// Where pieces were joined: numbers of vertices, ascending.
+    /// The numbers of the vertices at which pieces were joined, ascending.
     pub(crate) joins: Vec<usize>,
 }
 
-/// The lines of a way, from all its pieces.
-pub(crate) fn lines(pieces: &[Piece]) -> Vec<Line> {
+/// Returns the lines of a way, from all its pieces.
+pub(crate) fn lines(pieces: &[WayPiece]) -> Vec<JoinedLine> {
     chains(pieces).iter().map(|chain| line(pieces, chain)).collect()
 }
 
-/// The line of pieces that follow each other. The vertex where two meet is there once.
-fn line(pieces: &[Piece], chain: &[usize]) -> Line {
-    let mut line = Line { vertices: Vec::new(), joins: Vec::new() };
+/// Returns the line of consecutive pieces. The vertex between two pieces occurs once.
+fn line(pieces: &[WayPiece], chain: &[usize]) -> JoinedLine {
+    let mut line = JoinedLine { vertices: Vec::new(), joins: Vec::new() };
     for &index in chain {
         let vertices = &pieces[index].vertices;
         if let Some(last) = line.vertices.len().checked_sub(1) {
@@ -36,7 +37,8 @@ fn line(pieces: &[Piece], chain: &[usize]) -> Line {
     line
 }
 
-/// Which pieces of a way follow each other: one list for each line without gaps, by the first of its pieces.
+/// Returns the pieces of a way in order: one list for each line without gaps, sorted by the first
+/// of its pieces.
 ///
 /// ```text
 ///   tile A        │ tile B        │ tile C            ●  a point on the border: the same lattice point in both tiles
@@ -44,9 +46,10 @@ fn line(pieces: &[Piece], chain: &[usize]) -> Line {
 ///        A 0      │  B 0      B 1 │    C 0
 /// ```
 ///
-/// A piece that ends at a place goes on with one that begins there, of another tile if there is one, else the first in the
-/// package's order. More than one can only begin there where the way meets itself exactly on a border.
-fn chains(pieces: &[Piece]) -> Vec<Vec<usize>> {
+/// A piece that ends at a place is continued by one that begins there: one of another tile if
+/// possible, otherwise the first in the package's order. There is more than one only if the way
+/// meets itself exactly on a border.
+fn chains(pieces: &[WayPiece]) -> Vec<Vec<usize>> {
     let mut starts: BTreeMap<[u64; 2], Vec<usize>> = BTreeMap::new();
     for (index, piece) in pieces.iter().enumerate() {
         if let (true, Some(first)) = (piece.goes_on[0], piece.vertices.first()) {
@@ -73,25 +76,26 @@ fn chains(pieces: &[Piece]) -> Vec<Vec<usize>> {
     chains
 }
 
-/// Which of some numbers are followed by which.
+/// A successor for each of some numbers.
 pub(crate) struct Following {
     pub(crate) next: Vec<Option<usize>>,
     pub(crate) has_before: Vec<bool>,
 }
 
 impl Following {
-    /// Numbers below `count`, none of which is followed yet.
+    /// Returns numbers below `count` without successors.
     pub(crate) fn among(count: usize) -> Self {
         Self { next: vec![None; count], has_before: vec![false; count] }
     }
 
-    /// Lets one be followed by another, which follows none yet.
+    /// Makes one number the successor of another; it must not be a successor yet.
     pub(crate) fn join(&mut self, one: usize, other: usize) {
         self.next[one] = Some(other);
         self.has_before[other] = true;
     }
 
-    /// The numbers in chains, as they follow each other: those with a beginning first; what is left are rings, which begin with the first of `numbers`.
+    /// Returns the chains of successors: first those with a beginning, then the rings, which begin
+    /// with the first of `numbers`.
     pub(crate) fn chains(self, numbers: impl Iterator<Item = usize> + Clone) -> Vec<Vec<usize>> {
         let Self { next, has_before } = self;
         let mut is_taken = vec![false; next.len()];

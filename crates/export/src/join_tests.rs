@@ -6,9 +6,9 @@ use super::*;
 use crate::piece::PieceKey;
 
 /// A piece of a tile through these places, all at one height.
-fn piece(tile: u64, part: u32, places: &[[f64; 2]], goes_on: [bool; 2]) -> Piece {
+fn piece(tile: u64, part: u32, places: &[[f64; 2]], goes_on: [bool; 2]) -> WayPiece {
     let vertices = places.iter().map(|&at| Vertex { at, z_m: 5.0, is_source: true });
-    Piece {
+    WayPiece {
         key: PieceKey { way_id: 1, tile, part, cut: 0 },
         class: FunctionalRoadClass::new(0).unwrap(),
         attributes: RoadAttributes::default(),
@@ -23,11 +23,12 @@ fn piece(tile: u64, part: u32, places: &[[f64; 2]], goes_on: [bool; 2]) -> Piece
     }
 }
 
-fn places(line: &Line) -> Vec<[f64; 2]> {
+fn places(line: &JoinedLine) -> Vec<[f64; 2]> {
     line.vertices.iter().map(|vertex| vertex.at).collect()
 }
 
-/// A way from west to east through three tiles, whose pieces come in the package's order: one line, each place once.
+/// A way from west to east through three tiles, whose pieces come in the package's order, is one
+/// line with each place once.
 #[test]
 fn pieces_that_meet_on_a_border_are_one_line() {
     let pieces = [
@@ -40,7 +41,7 @@ fn pieces_that_meet_on_a_border_are_one_line() {
     assert_eq!(line.joins, [1, 2]);
 }
 
-/// Where there is no ground, lines end; so they do where the heights on a border are not the same.
+/// Lines end where there is no ground, and where the heights on a border differ.
 #[test]
 fn gaps_stay_gaps() {
     let mut pieces = [
@@ -62,7 +63,8 @@ fn gaps_stay_gaps() {
     assert_eq!(lines(&pieces).len(), 4);
 }
 
-/// A ring begins where the way begins, if that is inside a tile, and is closed; a ring inside one tile is left as it is.
+/// A ring begins where the way begins, if that is inside a tile, and is closed; a ring inside one
+/// tile is unchanged.
 #[test]
 fn rings_stay_rings() {
     let pieces = [
@@ -83,7 +85,7 @@ fn rings_stay_rings() {
     assert_eq!(lines(&alone).len(), 1);
 }
 
-/// A way that touches a border twice in one place: every piece is in one line, and none is lost or twice there.
+/// If a way touches a border twice at one place, every piece is in exactly one line.
 #[test]
 fn each_piece_is_in_one_line() {
     let meet = [10.0, 0.0];

@@ -1,7 +1,7 @@
-//! Lines that are no roads of the package, on the ground of a level.
+//! Lines that are not roads of the package, draped on the ground of a level.
 
 use corniche_drape::OwnedBorders;
-use corniche_geom::{LatticeBounds, LatticePoint, Polyline, TileId, Work};
+use corniche_geom::{LatticeBounds, LatticePoint, Polyline, StepBudget, TileId};
 use corniche_tileset::{FilePackage, Sections};
 use corniche_work::{Observer, Stage, workers::one_by_one};
 
@@ -11,39 +11,46 @@ use crate::{
     read,
 };
 
-/// Steps that laying lines may take, of which a vertex counts for 32: eight million vertices.
+/// The work that draping lines may take, in steps; a vertex counts 32 steps, so this is eight
+/// million vertices.
 const MOST_STEPS: u64 = 1 << 28;
 
-/// What lies on one tile.
-struct Laid {
+/// The part of a line on one tile.
+struct LaidOnTile {
     line: usize,
-    /// How far along the line it begins, steps of the lattice.
+    /// The distance along the line at which the part begins, lattice steps.
     along: f64,
     vertices: Vec<Vertex>,
 }
 
-/// The parts of each line that lie on ground, in order. Parts that meet on a border of tiles are one.
+/// Returns the parts of each line that are on ground, in order. Parts that meet on a tile border
+/// are joined.
 pub(crate) fn laid_lines(
     package: &FilePackage,
     lines: &[&[LatticePoint]],
     level: u8,
     observer: &dyn Observer,
 ) -> Result<Vec<Vec<Vec<Vertex>>>, ProfileError> {
-    let paths: Vec<Option<Polyline>> = lines.iter().map(|line| path_of(line)).collect();
+    let path_of = |line: &&[LatticePoint]| {
+        let mut points = line.to_vec();
+        points.dedup();
+        Polyline::new(points).ok()
+    };
+    let paths: Vec<Option<Polyline>> = lines.iter().map(path_of).collect();
     let tiles = read::tiles(package, level, None)?;
     let mut laid = Vec::new();
-    let work = Work::new(MOST_STEPS);
+    let work = StepBudget::new(MOST_STEPS);
     one_by_one((observer, Stage::ExportTiles), &tiles, |&id| {
         lay_on(package, id, &paths, &work, &mut laid)
     })?;
     laid.sort_by(|one, other| (one.line.cmp(&other.line)).then(one.along.total_cmp(&other.along)));
-    // What runs along a border lies on both of its tiles.
-    let end = |laid: &Laid| laid.vertices.last().map(|vertex| vertex.at.map(f64::to_bits));
+    // A part along a border is on both of its tiles.
+    let end = |laid: &LaidOnTile| laid.vertices.last().map(|vertex| vertex.at.map(f64::to_bits));
     laid.dedup_by(|later, one| {
         (later.line, later.along.to_bits(), end(later)) == (one.line, one.along.to_bits(), end(one))
     });
     let mut parts: Vec<Vec<Vec<Vertex>>> = vec![Vec::new(); lines.len()];
-    for Laid { line, vertices, .. } in laid {
+    for LaidOnTile { line, vertices, .. } in laid {
         let ends_at = |part: &Vec<Vertex>| part.last().map(|vertex| vertex.at);
         match parts[line].last_mut() {
             Some(part) if ends_at(part) == vertices.first().map(|vertex| vertex.at) => {
@@ -55,23 +62,17 @@ pub(crate) fn laid_lines(
     Ok(parts)
 }
 
-fn path_of(points: &[LatticePoint]) -> Option<Polyline> {
-    let mut points = points.to_vec();
-    points.dedup();
-    Polyline::new(points).ok()
-}
-
 fn lay_on(
     package: &FilePackage,
     id: TileId,
     paths: &[Option<Polyline>],
-    work: &Work,
-    laid: &mut Vec<Laid>,
+    work: &StepBudget,
+    laid: &mut Vec<LaidOnTile>,
 ) -> Result<(), ProfileError> {
     let manifest = package.manifest();
     let tile = manifest.frame.tile_lattice_bounds(id);
     let is_near = |path: &Polyline| {
-        LatticeBounds::of(path.points()).is_some_and(|bounds| bounds.intersects(&tile))
+        LatticeBounds::around(path.points()).is_some_and(|bounds| bounds.intersects(&tile))
     };
     if !paths.iter().flatten().any(is_near) {
         return Ok(());
@@ -96,21 +97,21 @@ fn lay_on(
                 let Some(segment) = segment else { continue };
                 let from = path.points()[segment];
                 let beyond = (first.at[0] - from.u as f64).hypot(first.at[1] - from.v as f64);
-                laid.push(Laid { line, along: starts[segment] + beyond, vertices });
+                laid.push(LaidOnTile { line, along: starts[segment] + beyond, vertices });
             }
         }
     }
     Ok(())
 }
 
-/// How far along a line each of its segments begins, steps of the lattice.
+/// The distance along the line at which each segment begins, lattice steps.
 fn starts_of(path: &Polyline) -> Vec<f64> {
     let mut along = 0.0;
     path.points()
         .array_windows()
         .map(|[from, to]| {
             let start = along;
-            along += ((to.u - from.u) as f64).hypot((to.v - from.v) as f64);
+            along += from.distance_steps(*to);
             start
         })
         .collect()

@@ -1,5 +1,5 @@
-//! What a package holds, for other programs: roads, areas and boundaries as features (GeoPackage, FlatGeobuf, GeoJSON, CSV), ground and roads as models
-//! (GLB, PLY, OBJ).
+//! Exports the contents of a package for other programs: roads, areas and boundaries as features
+//! (GeoPackage, FlatGeobuf, GeoJSON, CSV), ground and roads as models (GLB, PLY, OBJ).
 //!
 //! ```text
 //!   tiles of a level ──► pieces ──► cut at the bounds ──► sorted by way, on disk
@@ -8,29 +8,33 @@
 //!      GDAL's vector drivers ◄── feature ◄── measures ◄── joined pieces
 //! ```
 //!
-//! A piece is what one tile holds of a way. Pieces that meet on the border of two tiles have the same lattice point there
-//! and are joined; where there is no ground, the line has a gap and stays in parts. Memory holds one tile, one way, and
-//! what the sorting is given.
+//! A piece is a stretch of a way in one tile. Pieces that meet on the border of two tiles have the
+//! same lattice point there and are joined. Where there is no ground, the feature has a gap and
+//! consists of several lines. Memory contains one tile, one way, and the memory given to sorting.
 //!
-//! The same pieces, of all levels, tell what laying each way on the terrain costs ([`growth_by_way`]).
+//! The same pieces, of all levels, give the growth of each way: the vertices that clipping to the
+//! terrain adds ([`growth_by_way`]).
 //!
-//! [`profile`] follows some ways and tells height and grade along them.
+//! [`profile`] follows ways and returns height and grade along them.
 //!
-//! Each layer goes this way (`features`). What tiles hold of an area is joined where both sides of a border have the same segments; parts of
-//! boundaries overlap, and each of their segments is taken once.
+//! Each layer is exported in this way (`features`). The pieces of an area in several tiles are
+//! joined where both sides of a border have the same segments. Pieces of boundaries overlap, and
+//! each of their segments is used once.
 //!
-//! [`export_mesh`] makes a model for 3D programs of a level's ground and roads.
+//! [`export_mesh`] writes a level's ground and roads as a model for 3D programs.
 //!
-//! [`export_geotiff`] makes a raster of the heights of a level, and of their difference from the elevation files. [`export_picture`]
-//! writes a picture from above, which others have drawn, with its place.
+//! [`export_geotiff`] writes a raster of a level's heights, and of their difference from the
+//! elevation files. [`export_picture`] writes an image from above, drawn elsewhere, with its
+//! georeference.
 //!
-//! [`export_tiles3d`] writes all levels as 3D Tiles, [`export_quantized_mesh`] the ground as terrain tiles of a globe; only there heights are sampled
-//! on another grid.
+//! [`export_tiles3d`] writes all levels as 3D Tiles, and [`export_quantized_mesh`] writes the
+//! ground as terrain tiles of a globe. Only the latter samples heights on another grid.
 //!
-//! Vertices are those of the package: nothing is simplified, smoothed or rounded, except in GeoJSON (nine decimals).
+//! Vertices are those of the package: nothing is simplified, smoothed or rounded, except in GeoJSON
+//! (nine decimals).
 //!
-//! This crate never reads an extract, reads elevation files only to compare with them, never decides which road matters, and
-//! writes no file but the one it is asked for.
+//! This crate never reads an extract, reads elevation files only for heights or comparisons that
+//! are requested, never decides which road matters, and writes only the requested file.
 
 mod areas;
 mod between_samples;
@@ -89,20 +93,21 @@ pub use geotiff::{
 };
 pub use growth::{WayGrowth, growth_by_way};
 pub use heights::{Elevation, with_vertical_crs};
-pub use lines::{LinesSummary, export_lines};
+pub use lines::{LinesSummary, export_boundaries};
 pub use measures::ProfileGrades;
 pub use mesh::{MeshFormat, MeshRequest, MeshSummary, ModelRoads, UpAxis, export_mesh};
-pub use places::Coordinates;
+pub use places::FeatureCoordinates;
 pub use profile::{
-    Course, CourseLeg, Profile, ProfileLeg, ProfilePart, ProfilePoint, profile, profile_of_course,
+    Course, CourseLeg, ProfileLeg, ProfilePart, ProfilePoint, RoadProfile, profile,
+    profile_of_course,
 };
 pub use quantized_mesh::{
-    Availability, PlannedLevel, QuantizedMeshLevel, QuantizedMeshPlan, QuantizedMeshRequest,
+    Availability, MeshLevelPlan, QuantizedMeshLevel, QuantizedMeshPlan, QuantizedMeshRequest,
     QuantizedMeshSummary, Tiling, export_quantized_mesh,
 };
 pub use road_query::RoadQuery;
 pub use roads::{ExportSummary, RoadHeights, export_roads};
-pub use route::{Route, RouteRequest, route};
+pub use route::{NetworkRoute, RouteRequest, route};
 pub use span_facts::SpanFacts;
 pub use tiles3d::{TileRoads, Tiles3dLevel, Tiles3dRequest, Tiles3dSummary, export_tiles3d};
-pub use vector::{Field, FieldKind, VectorFormat, cell_text, is_unseen, text_in_line};
+pub use vector::{FeatureField, FieldKind, VectorFormat, cell_text, is_unseen, text_in_line};

@@ -1,29 +1,32 @@
-//! The whole way of a layer of lines, such as boundaries, out of a package.
+//! The export of a package's boundaries, from tiles to file.
 
 use std::path::Path;
 
-use corniche_areas::{AreaObject, BoundaryClass, ClassedLayer, LineClass, LineNames};
+use corniche_areas::{AreaObject, BoundaryClass, BoundaryNames};
 use corniche_geom::{LatticePoint, TileId};
-use corniche_tileset::{FilePackage, decode_lines, pmtiles_order};
+use corniche_tileset::{FilePackage, decode_boundaries, pmtiles_order};
 use corniche_work::Observer;
 
 use crate::{
     cut::cut_line_at_bounds,
     error::{FeaturesError, SelectionError},
-    features::{About, FeatureRequest, FeatureSource, Features, write_features},
+    features::{FeatureRequest, FeatureSource, Features, write_features},
     piece::Vertex,
     plan_piece::{PlanPiece, class_of, lines_of},
     read,
-    vector::{Field, FieldKind, Record, Shape, ShapeKind, Value, fields, fields_of, real},
+    vector::{
+        FeatureField, FeatureGeometry, FeatureRecord, FieldKind, FieldValue, Layer, ShapeKind,
+        fields, fields_of, real,
+    },
     whole_lines::whole_lines,
 };
 
-/// What was exported.
-#[derive(Debug, Clone, PartialEq)]
+/// The figures of an export of boundaries.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct LinesSummary {
-    /// The level whose lines were taken.
+    /// The level whose lines were exported.
     pub level: u8,
-    /// Features written: ways of OSM.
+    /// Features written: one for each OSM way.
     pub ways: u64,
     /// Lines of all features.
     pub lines: u64,
@@ -33,43 +36,43 @@ pub struct LinesSummary {
     pub length_m: f64,
 }
 
-/// A way on its way into a file.
+/// A way with its measures, the input of a feature.
 struct LineFeature<'a> {
     way_id: i64,
-    class: LineClass,
-    /// The names of what ways bound.
-    names: Option<&'a LineNames>,
+    class: BoundaryClass,
+    /// The names of the areas that ways bound.
+    names: Option<&'a BoundaryNames>,
     length_m: f64,
     parts: usize,
     points: u64,
 }
 
-/// A field of lines with what is in it.
-type LineField = (Field, fn(&LineFeature<'_>) -> Value);
+/// A field of lines with the function that returns its value.
+type LineField = (FeatureField, fn(&LineFeature<'_>) -> FieldValue);
 
 fields! { WAY_FIELDS, line: &LineFeature<'_>:
     "way_id", Integer64, "", "id of the way in OpenStreetMap", line.way_id;
 }
 
 fields! { BOUNDARY_FIELDS, line: &LineFeature<'_>:
-    "class", Text, "", "the most important of what it bounds: `admin-2` to `admin-8` or `protected`", line.class.name();
-    "admin_level", Integer, "", "OSM's `admin_level` of that; null for protected areas",
-        BoundaryClass::from_number(line.class.number()).and_then(BoundaryClass::admin_level).map(i64::from);
+    "class", Text, "", "class of the most important area that the way bounds: `admin-2` to `admin-8` or `protected`", line.class.name();
+    "admin_level", Integer, "", "OSM's `admin_level` of that area; null for protected areas",
+        line.class.admin_level().map(i64::from);
 }
 
 fields! { NAME_FIELDS, line: &LineFeature<'_>:
-    "names", Text, "", "names of all that it bounds, by class, as JSON: `{\"admin-2\":[\"A\",\"B\"],\"protected\":[\"C\"]}`; null without",
+    "names", Text, "", "names of all areas that the way bounds, by class, as JSON: `{\"admin-2\":[\"A\",\"B\"],\"protected\":[\"C\"]}`; null if none is known",
         names(line).as_deref();
 }
 
 fields! { MEASURES, line: &LineFeature<'_>:
-    "length_m", Real, "m", "true length in plan, on the ellipsoid of WGS84, of what the package has of it",
+    "length_m", Real, "m", "2D length (in plan) of the part in the package, on the WGS84 ellipsoid",
         real(line.length_m);
-    "parts", Integer, "", "lines without a gap between them", line.parts as i64;
-    "points", Integer64, "", "points of these lines", line.points as i64;
+    "parts", Integer, "", "number of lines of the feature; gaps separate them", line.parts as i64;
+    "points", Integer64, "", "number of points of these lines", line.points as i64;
 }
 
-/// The names of what a way bounds, by class, as JSON.
+/// Returns the names of the areas that a way bounds, by class, as JSON.
 fn names(line: &LineFeature<'_>) -> Option<String> {
     let by_class: serde_json::Map<String, serde_json::Value> = line
         .names?
@@ -80,74 +83,64 @@ fn names(line: &LineFeature<'_>) -> Option<String> {
     Some(serde_json::Value::from(by_class).to_string())
 }
 
-/// Writes a layer of lines of a package to a new file at `path`: a feature for each way, joined again over borders of tiles, each segment once.
-/// Beside the file, in the same folder, are unnamed files for sorting. After an error the file at `path` is of no use. With `names` each way has
-/// those of what it bounds.
+/// Writes the boundaries of a package to a new file at `path`: one feature for each way, joined
+/// across tile borders, each segment once. Unnamed temporary files for sorting are created in the
+/// same folder. After an error the file at `path` is incomplete. With `names`, each way has the
+/// names of the areas that it bounds.
 ///
 /// # Errors
-/// When the package has no such layer or level, the request cannot be met, the package is damaged, or something cannot be
-/// written.
-pub fn export_lines(
+/// When the package has no boundaries or no such level, the request cannot be met, the package is
+/// corrupt, or something cannot be written.
+pub fn export_boundaries(
     package: &FilePackage,
-    (layer, names): (ClassedLayer, Option<&LineNames>),
-    request: &FeatureRequest<LineClass>,
+    names: Option<&BoundaryNames>,
+    request: &FeatureRequest<BoundaryClass>,
     path: &Path,
     observer: &dyn Observer,
 ) -> Result<LinesSummary, FeaturesError> {
-    SelectionError::check_layer(package, layer.name(), package.manifest().lines(layer))?;
+    SelectionError::check_layer(package, NAME, package.manifest().boundaries.as_ref())?;
     let source = FeatureSource::new(package, request)?;
-    let level = source.level;
-    let summary = LinesSummary { level, ways: 0, lines: 0, points: 0, length_m: 0.0 };
-    let mut lines = Lines { layer, names, summary };
+    let summary = LinesSummary { level: source.level, ..LinesSummary::default() };
+    let mut lines = Lines { names, summary };
     write_features(&mut lines, &source, path, observer)?;
     Ok(lines.summary)
 }
 
-/// Lines of a layer on their way into a file.
+/// The layer's name in files.
+const NAME: &str = "boundaries";
+
+/// An export of boundaries in progress.
 struct Lines<'a> {
-    layer: ClassedLayer,
-    names: Option<&'a LineNames>,
+    names: Option<&'a BoundaryNames>,
     summary: LinesSummary,
 }
 
 impl Lines<'_> {
     fn fields(&self) -> Vec<LineField> {
-        let of_class = match self.layer {
-            ClassedLayer::Boundaries => BOUNDARY_FIELDS,
-        };
         let names = if self.names.is_some() { NAME_FIELDS } else { &[] };
-        [WAY_FIELDS, of_class, names, MEASURES].concat()
+        [WAY_FIELDS, BOUNDARY_FIELDS, names, MEASURES].concat()
     }
 }
 
 impl Features for Lines<'_> {
-    type Class = LineClass;
-    type Piece = PlanPiece;
-    const SHAPES: ShapeKind = ShapeKind::PlanLines;
-
-    fn name(&self) -> &'static str {
-        self.layer.name()
-    }
-
-    fn about(&self, source: &FeatureSource<'_, LineClass>) -> About {
-        About {
-            fields: fields_of(&self.fields()),
-            description: format!(
-                "{}, as they are stored for {}.",
-                self.layer.table().title,
-                source.cells()
-            ),
-            metadata: Vec::new(),
-        }
+    type Class = BoundaryClass;
+    type TilePiece = PlanPiece;
+    fn layer(&self, source: &FeatureSource<'_, BoundaryClass>) -> Layer {
+        let description = format!("Boundaries, as they are stored for {}.", source.cells());
+        source.layer(
+            (NAME, ShapeKind::PlanLines),
+            fields_of(&self.fields()),
+            description,
+            Vec::new(),
+        )
     }
 
     fn pieces(
         &mut self,
-        FeatureSource { package, request, .. }: &FeatureSource<'_, LineClass>,
+        FeatureSource { package, request, .. }: &FeatureSource<'_, BoundaryClass>,
         tile: TileId,
     ) -> Result<Vec<PlanPiece>, FeaturesError> {
-        let lines =
-            read::layer(package, tile, self.name(), |bytes| decode_lines(bytes, tile, self.layer))?;
+        let lines = read::layer(package, tile, NAME, |bytes| decode_boundaries(bytes, tile))?;
         let wanted = lines.into_iter().filter(|one| request.classes.contains(&one.class));
         Ok(wanted
             .map(|line| PlanPiece {
@@ -166,10 +159,10 @@ impl Features for Lines<'_> {
 
     fn records(
         &mut self,
-        FeatureSource { places, request, .. }: &FeatureSource<'_, LineClass>,
+        FeatureSource { places, request, .. }: &FeatureSource<'_, BoundaryClass>,
         pieces: &[PlanPiece],
-    ) -> Result<Vec<Record>, FeaturesError> {
-        let class = class_of(pieces, |number| self.layer.class(number))?;
+    ) -> Result<Vec<FeatureRecord>, FeaturesError> {
+        let class = class_of(pieces, BoundaryClass::from_number)?;
         let object = pieces[0].object;
         let vertex =
             |point: &LatticePoint| Vertex { at: point.in_steps(), z_m: 0.0, is_source: true };
@@ -205,6 +198,6 @@ impl Features for Lines<'_> {
             points,
         };
         let values = self.fields().into_iter().map(|(_, value)| value(&line)).collect();
-        Ok(vec![Record { values, shape: Shape::Lines(carried) }])
+        Ok(vec![FeatureRecord { values, shape: FeatureGeometry::Lines(carried) }])
     }
 }

@@ -1,67 +1,71 @@
-//! How long, how steep and how detailed lines are.
+//! Measures of lines: length, grade and number of vertices.
 
 use crate::{
-    join::Line,
+    join::JoinedLine,
     piece::{Vertex, larger},
+    plane::{doubled_area, vector},
 };
 
-/// A grade is taken over at least this length: shorter ones tell of single triangles and of steps in the heights, not of the
-/// road.
+/// The least length over which a grade is measured. Over shorter lengths, grades reflect single
+/// triangles and steps in the heights rather than the road.
 pub(crate) const LEAST_GRADE_LENGTH_M: f64 = 20.0;
 
-/// What is measured of a feature, over all its lines.
+/// Returns the true length in plan between two places in lattice steps, metres.
+pub(crate) type Metric<'a> = dyn Fn([f64; 2], [f64; 2]) -> f64 + 'a;
+
+/// The measures of a feature, over all its lines.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Measures {
     /// True length in plan, on the ellipsoid of WGS84.
     pub(crate) length_2d_m: f64,
     /// True length with heights.
     pub(crate) length_3d_m: f64,
-    /// Over [`LEAST_GRADE_LENGTH_M`] or more of one line.
+    /// Grades over [`LEAST_GRADE_LENGTH_M`] or more of one line.
     pub(crate) grades: ProfileGrades,
-    /// Points of the level's lines, before they were laid on the ground.
+    /// Points of the level's lines, before they were draped on the ground.
     pub(crate) vertices_in: u64,
     /// Vertices of the lines on the ground.
     pub(crate) vertices_out: u64,
 }
 
-/// What is measured of profiles: lines of distances and heights.
+/// The measures of profiles: lines of distances and heights.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ProfileGrades {
-    /// Metres upwards in the direction of the lines, all of them together.
+    /// Total ascent in the direction of the lines, metres.
     pub ascent_m: f64,
-    /// The same downwards.
+    /// Total descent in the direction of the lines, metres.
     pub descent_m: f64,
-    /// The steepest grade over a least length of one line: rise over run, without sign; `None` where no line is as long.
+    /// The steepest grade over a least length of one line: rise over run, without sign; `None` if
+    /// no line is that long.
     pub steepest: Option<f64>,
 }
 
-/// A line with its profile: true distances in plan from its beginning, and heights, of all its vertices.
+/// A line with its profile: true distances in plan from its beginning, and heights, of all its
+/// vertices.
 pub(crate) struct Profiled<'a> {
-    pub(crate) line: &'a Line,
+    pub(crate) line: &'a JoinedLine,
     pub(crate) profile: Vec<[f64; 2]>,
 }
 
 impl<'a> Profiled<'a> {
-    /// A line with its profile. `distance_m` gives the true distance in plan between two places on the lattice.
-    pub(crate) fn of(line: &'a Line, distance_m: &dyn Fn([f64; 2], [f64; 2]) -> f64) -> Self {
+    /// A line with its profile. `distance_m` gives the true distance in plan between two places on
+    /// the lattice.
+    pub(crate) fn from_line(line: &'a JoinedLine, distance_m: &Metric<'_>) -> Self {
         Self { line, profile: profile_of(&line.vertices, distance_m) }
     }
 }
 
-/// The profile of a line: true distances in plan from its beginning, and heights.
-pub(crate) fn profile_of(
-    vertices: &[Vertex],
-    distance_m: &dyn Fn([f64; 2], [f64; 2]) -> f64,
-) -> Vec<[f64; 2]> {
+/// Returns the profile of a line: true distances in plan from its beginning, and heights.
+pub(crate) fn profile_of(vertices: &[Vertex], distance_m: &Metric<'_>) -> Vec<[f64; 2]> {
     let distances_m = distances_m(vertices.iter().map(|vertex| vertex.at), distance_m);
     let places = distances_m.into_iter().zip(vertices);
     places.map(|(along_m, vertex)| [along_m, vertex.z_m]).collect()
 }
 
-/// How far along a line each of its places is, from the first.
+/// Returns the distance of each place along a line from the first.
 pub(crate) fn distances_m(
     places: impl Iterator<Item = [f64; 2]>,
-    distance_m: &dyn Fn([f64; 2], [f64; 2]) -> f64,
+    distance_m: &Metric<'_>,
 ) -> Vec<f64> {
     let (mut before, mut along_m) = (None, 0.0);
     let next = |at| {
@@ -75,9 +79,9 @@ pub(crate) fn distances_m(
 
 impl Measures {
     /// The measures of some lines.
-    pub(crate) fn of(lines: &[Profiled<'_>]) -> Self {
+    pub(crate) fn from_lines(lines: &[Profiled<'_>]) -> Self {
         let profiles = lines.iter().map(|line| &line.profile);
-        let grades = ProfileGrades::of(profiles, LEAST_GRADE_LENGTH_M);
+        let grades = ProfileGrades::from_profiles(profiles, LEAST_GRADE_LENGTH_M);
         let mut all = Self { grades, ..Self::default() };
         for Profiled { line, profile } in lines {
             for [from, to] in profile.array_windows::<2>() {
@@ -92,8 +96,8 @@ impl Measures {
 }
 
 impl ProfileGrades {
-    /// The grades of some lines, the steepest one over `least_m` or more.
-    pub(crate) fn of<P: AsRef<[[f64; 2]]>>(
+    /// Returns the grades of some lines, the steepest one over `least_m` or more.
+    pub(crate) fn from_profiles<P: AsRef<[[f64; 2]]>>(
         profiles: impl IntoIterator<Item = P>,
         least_m: f64,
     ) -> Self {
@@ -111,8 +115,9 @@ impl ProfileGrades {
     }
 }
 
-/// The steepest grade, without sign, between two places on a profile that are at least so far apart. The profile has
-/// distances along a line, ascending, with heights; heights between are linear.
+/// Returns the steepest grade, without sign, between two places on a profile that are at least
+/// `least_m` apart. The profile has distances along a line, ascending, with heights; heights
+/// between are linear.
 ///
 /// ```text
 ///          ___.-'    Seen from a fixed place a, the grade to b is monotone while b stays on one segment. So the steepest
@@ -155,7 +160,7 @@ fn steepest(profile: &[[f64; 2]], least_m: f64) -> Option<f64> {
     Some(most)
 }
 
-/// The place on a profile so far along, on the segment that begins with vertex `index`.
+/// The place at this distance along a profile, on the segment that begins with vertex `index`.
 fn at(profile: &[[f64; 2]], index: usize, along_m: f64) -> [f64; 2] {
     let from = profile[index];
     let to = profile.get(index + 1).copied().unwrap_or(from);
@@ -169,9 +174,10 @@ pub(crate) fn between(from: [f64; 2], to: [f64; 2], along_m: f64) -> f64 {
     from[1] + share * (to[1] - from[1])
 }
 
-/// How many points the line had before it was laid on the ground. Where a border cut a straight segment no point was: a
-/// place where pieces were joined counts only if the line bends there, by more than the step to which a cut is rounded.
-fn source_points(line: &Line) -> u64 {
+/// Counts the points of the line before it was draped on the ground. A border that cuts a straight
+/// segment adds none: a place where pieces were joined counts only if the line bends there, by more
+/// than the step to which a cut is rounded.
+fn source_points(line: &JoinedLine) -> u64 {
     let vertices = &line.vertices;
     let is_source = |&index: &usize| vertices[index].is_source;
     let all = (0..vertices.len()).filter(is_source).count();
@@ -179,8 +185,7 @@ fn source_points(line: &Line) -> u64 {
         let before = (0..join).rev().find(is_source).unwrap_or(0);
         let after = (join + 1..vertices.len()).find(is_source).unwrap_or(vertices.len() - 1);
         let [p, q, here] = [before, after, join].map(|index| vertices[index].at);
-        let [along, off] = [[q[0] - p[0], q[1] - p[1]], [here[0] - p[0], here[1] - p[1]]];
-        let area = along[0] * off[1] - along[1] * off[0];
+        let ([along, off], area) = ([q, here].map(|to| vector(p, to)), doubled_area([p, q, here]));
         let share = (off[0] * along[0] + off[1] * along[1]) / (along[0].powi(2) + along[1].powi(2));
         let is_between = (0.0..=1.0).contains(&share);
         is_between && area.abs() <= along[0].hypot(along[1])

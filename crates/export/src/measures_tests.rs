@@ -4,12 +4,12 @@ use proptest::prelude::*;
 
 use super::*;
 
-fn line(vertices: &[([f64; 2], f64, bool)], joins: &[usize]) -> Line {
+fn line(vertices: &[([f64; 2], f64, bool)], joins: &[usize]) -> JoinedLine {
     let vertices = vertices.iter().map(|&(at, z_m, is_source)| Vertex { at, z_m, is_source });
-    Line { vertices: vertices.collect(), joins: joins.to_vec() }
+    JoinedLine { vertices: vertices.collect(), joins: joins.to_vec() }
 }
 
-/// Metres are the steps themselves.
+/// One step is one metre.
 fn flat_m(from: [f64; 2], to: [f64; 2]) -> f64 {
     (to[0] - from[0]).hypot(to[1] - from[1])
 }
@@ -18,12 +18,12 @@ fn near(found: f64, expected: f64) {
     assert!((found - expected).abs() < 1e-9 * expected.abs().max(1.0), "{found}, not {expected}");
 }
 
-/// A straight road of 300 m on a plane that rises 1 in 10 along it, then 100 m down again on one that falls 1 in 4: every
-/// number is known.
-fn measures(lines: &[Line]) -> Measures {
+/// A straight road of 300 m on a plane that rises 1 in 10 along it, then 100 m down again on a
+/// plane that falls 1 in 4: every measure is known.
+fn measures(lines: &[JoinedLine]) -> Measures {
     let profiled: Vec<Profiled<'_>> =
-        lines.iter().map(|line| Profiled::of(line, &flat_m)).collect();
-    Measures::of(&profiled)
+        lines.iter().map(|line| Profiled::from_line(line, &flat_m)).collect();
+    Measures::from_lines(&profiled)
 }
 
 #[test]
@@ -41,7 +41,7 @@ fn a_road_on_planes_is_measured_in_closed_form() {
     assert_eq!((found.vertices_in, found.vertices_out), (3, 33));
 }
 
-/// Lines are measured each by itself: no grade is taken across a gap.
+/// Each line is measured separately: no grade is measured across a gap.
 #[test]
 fn a_gap_has_no_grade() {
     let first = line(&[([0.0, 0.0], 0.0, true), ([19.0, 0.0], 10.0, true)], &[]);
@@ -66,7 +66,8 @@ fn a_short_step_is_spread_over_the_least_length() {
     near(measures(&[line(&steps, &[])]).grades.steepest.unwrap(), 0.25);
 }
 
-/// A straight line that a border cut has the points it had before; one that bends on the border has one more.
+/// A straight line that a border cuts keeps its number of points; a line that bends on the border
+/// has one more.
 #[test]
 fn a_cut_of_a_border_is_no_point_unless_the_line_bends_there() {
     let straight = [
@@ -83,7 +84,7 @@ fn a_cut_of_a_border_is_no_point_unless_the_line_bends_there() {
     assert_eq!(source_points(&line(&back, &[1])), 3, "the line turns back on the border");
 }
 
-/// The grade between two places of a profile, by looking at very many of them.
+/// Returns the steepest grade of a profile by trying very many pairs of places.
 fn steepest_by_force(profile: &[[f64; 2]], least_m: f64) -> f64 {
     let [last_m, _] = profile[profile.len() - 1];
     let height = |along_m: f64| {
@@ -102,7 +103,7 @@ fn steepest_by_force(profile: &[[f64; 2]], least_m: f64) -> f64 {
 }
 
 proptest! {
-    /// No grade over the least length is steeper than the one found, and the one found is there.
+    /// No grade over the least length is steeper than the result, and the result occurs.
     #[test]
     fn the_steepest_grade_is_the_steepest(
         steps in prop::collection::vec((0.5_f64..30.0, -5.0_f64..5.0), 2..30),
@@ -118,14 +119,15 @@ proptest! {
         if let Some(found) = found {
             let least = steepest_by_force(&profile, LEAST_GRADE_LENGTH_M);
             prop_assert!(found >= least - 1e-12, "{} is less than {}", found, least);
-            // The finest places that were tried are this far apart; a grade changes little over that.
+            // The finest places tried are this far apart; a grade changes little over that
+            // distance.
             let share = length_m / 400.0 / LEAST_GRADE_LENGTH_M;
             prop_assert!(found <= least + 22.0 * share, "{} is more than {}", found, least);
         }
     }
 }
 
-/// Where a profile begins changes nothing: parts of longer ones keep their distances.
+/// The beginning of a profile does not matter: parts of longer profiles keep their distances.
 #[test]
 fn a_profile_may_begin_anywhere() {
     let profile = [[0.0, 5.0], [12.0, 6.0], [31.0, 2.0], [40.0, 2.5]];

@@ -4,7 +4,8 @@
 //!   tiles of a level ──► ground in local metres, road lines or surfaces ──► a writer for each format ──► one file
 //! ```
 //!
-//! Memory holds one tile, and where tiles meet. Positions are those of the package: nothing is simplified or moved.
+//! Memory contains one tile, and the seams between tiles. Positions are those of the package:
+//! nothing is simplified or moved.
 
 mod glb;
 mod mesh_request;

@@ -1,4 +1,4 @@
-//! What one tile holds of a way, and how it is sorted outside memory.
+//! A piece: a stretch of a way in one tile, and its form for sorting outside memory.
 
 use corniche_roads::{AttributeParts, FunctionalRoadClass, RoadAttributes};
 use corniche_store::{SortRecord, append_record, take_record};
@@ -9,23 +9,24 @@ use crate::plane::{along, vector};
 /// A vertex of a road on its tile's ground.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Vertex {
-    /// Steps of the lattice east and north; whole for a source point.
+    /// Lattice steps east and north; whole for a source point.
     pub(crate) at: [f64; 2],
     /// Height, metres.
     pub(crate) z_m: f64,
-    /// A point of the level's line, or of its cut at the tile's border; else where the line crosses an edge of the ground.
+    /// Whether this is a point of the level's line, or of its cut at the tile's border; otherwise
+    /// the line crosses a triangle edge of the ground here.
     pub(crate) is_source: bool,
 }
 
 impl Vertex {
-    /// The place on the way to another vertex.
+    /// Returns the place at a share of the way to another vertex.
     pub(crate) fn towards(self, to: Self, share: f64) -> Self {
         let [u, v, z_m] =
             along([self.at[0], self.at[1], self.z_m], [to.at[0], to.at[1], to.z_m], share);
         Self { at: [u, v], z_m, is_source: false }
     }
 
-    /// The height at a place on the way to another vertex.
+    /// Returns the height at a place on the way to another vertex.
     pub(crate) fn height_m_at(self, to: Self, at: [f64; 2]) -> f64 {
         let run = vector(self.at, to.at);
         let axis = usize::from(run[1].abs() > run[0].abs());
@@ -35,47 +36,55 @@ impl Vertex {
     }
 }
 
-/// Where a piece comes from; pieces sort by it.
+/// Returns the vertices of a line that are source points or its ends, with their indices.
+pub(crate) fn own_points(line: &[Vertex]) -> impl Iterator<Item = (usize, &Vertex)> {
+    let last = line.len().saturating_sub(1);
+    let is_kept = move |index: usize| line[index].is_source || index == 0 || index == last;
+    line.iter().enumerate().filter(move |(index, _)| is_kept(*index))
+}
+
+/// The origin of a piece, which is its sorting key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) struct PieceKey {
     pub(crate) way_id: i64,
-    /// The tile's place in the package.
+    /// The tile's position in the order of the package.
     pub(crate) tile: u64,
     /// The number of the piece along the way within the tile.
     pub(crate) part: u32,
-    /// The number of what the bounds left of the piece.
+    /// The number of the part of the piece inside the bounds.
     pub(crate) cut: u32,
 }
 
-/// What one tile holds of a way, in the way's direction.
+/// A stretch of a way in one tile, in the way's direction.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Piece {
+pub(crate) struct WayPiece {
     pub(crate) key: PieceKey,
     pub(crate) class: FunctionalRoadClass,
     pub(crate) attributes: RoadAttributes,
-    /// Two at least.
+    /// At least two vertices.
     pub(crate) vertices: Vec<Vertex>,
-    /// Whether the line may go on from its first vertex, and from its last, in another tile: they are points on the tile's
-    /// border.
+    /// Whether the line may continue in another tile from its first vertex, and from its last: they
+    /// are points on the tile's border.
     pub(crate) goes_on: [bool; 2],
     pub(crate) heights: PieceHeights,
 }
 
-/// How far heights of a piece are from those of the elevation files, at most, metres.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+/// The largest distances of a piece's heights from those of the elevation files, metres.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PieceHeights {
-    /// The piece's own heights, over the whole line where it lies on the ground; `None` where nothing of it lies on the files' samples.
+    /// The distance of the piece's own heights, over the whole line where it is on the ground;
+    /// `None` if no part of it is on the files' samples.
     pub(crate) tolerance_m: Option<f64>,
-    /// The ground of its tile; `None` where it was not measured.
+    /// The distance of its tile's triangles; `None` if it was not measured.
     pub(crate) ground_m: Option<f64>,
-    /// Whether they are those of a deck or a tunnel, which nothing tells how good they are.
+    /// Whether the heights are those of a deck or a tunnel, whose accuracy is unknown.
     pub(crate) on_deck: bool,
-    /// Whether some of them are.
+    /// Whether some of the heights are those of a deck or a tunnel.
     pub(crate) has_deck: bool,
 }
 
 impl PieceHeights {
-    /// What holds for two pieces together.
+    /// Returns the heights of two pieces together.
     pub(crate) fn with(self, other: Self) -> Self {
         Self {
             tolerance_m: larger(self.tolerance_m, other.tolerance_m),
@@ -86,29 +95,29 @@ impl PieceHeights {
     }
 }
 
-/// The larger of two numbers; one alone is the larger.
+/// Returns the larger of two numbers, or the only one.
 pub(crate) fn larger(one: Option<f64>, other: Option<f64>) -> Option<f64> {
     [one, other].into_iter().flatten().reduce(f64::max)
 }
 
 /// No two pieces have the same key.
-impl Eq for Piece {}
+impl Eq for WayPiece {}
 
-impl PartialOrd for Piece {
+impl PartialOrd for WayPiece {
     fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl Ord for Piece {
+impl Ord for WayPiece {
     fn cmp(&self, other: &Self) -> std::cmp::Ordering {
         self.key.cmp(&other.key)
     }
 }
 
-impl SortRecord for Piece {
+impl SortRecord for WayPiece {
     fn encode(&self, bytes: &mut Vec<u8>) {
-        let Piece { key, class, attributes, vertices, goes_on, heights } = self;
+        let WayPiece { key, class, attributes, vertices, goes_on, heights } = self;
         let AttributeParts { codes, width_mm, texts } = attributes.parts();
         let record = (key, class, codes, width_mm, texts, vertices, goes_on, heights);
         append_record(bytes, record);
@@ -122,7 +131,7 @@ impl SortRecord for Piece {
     }
 
     fn extra_bytes(&self) -> usize {
-        let Piece { attributes, vertices, .. } = self;
+        let WayPiece { attributes, vertices, .. } = self;
         vertices.capacity() * size_of::<Vertex>() + attributes.text_bytes()
     }
 }

@@ -8,8 +8,8 @@ use corniche_testing::MemoryScratch;
 
 use super::*;
 
-fn piece(way_id: i64, tile: u64, part: u32) -> Piece {
-    Piece {
+fn piece(way_id: i64, tile: u64, part: u32) -> WayPiece {
+    WayPiece {
         key: PieceKey { way_id, tile, part, cut: 0 },
         class: FunctionalRoadClass::new(4).unwrap(),
         attributes: RoadAttributes {
@@ -41,7 +41,7 @@ fn piece(way_id: i64, tile: u64, part: u32) -> Piece {
     }
 }
 
-/// What goes through scratch space comes back as it was, by way, tile and part.
+/// Pieces return from temporary files unchanged, sorted by way, tile and part.
 #[test]
 fn pieces_come_back_sorted_and_whole() {
     let scratch = MemoryScratch::default();
@@ -52,7 +52,7 @@ fn pieces_come_back_sorted_and_whole() {
             sorter.push(piece(way_id, tile + 10 * round, part)).unwrap();
         }
     }
-    let pieces: Vec<Piece> = sorter.finish().unwrap().map(Result::unwrap).collect();
+    let pieces: Vec<WayPiece> = sorter.finish().unwrap().map(Result::unwrap).collect();
     assert_eq!(pieces.len(), 240);
     assert!(pieces.is_sorted_by(|a, b| a.key < b.key));
     for found in pieces {

@@ -1,4 +1,4 @@
-//! Where vertices are, in the coordinates that were asked for.
+//! The positions of vertices, in the requested coordinates.
 
 use corniche_areas::AreaObject;
 use corniche_geom::{LatticePoint, Projection as _, known_line_length_m};
@@ -12,48 +12,55 @@ use crate::{
     piece::Vertex,
 };
 
-/// What coordinates the features get.
+/// The coordinates of features.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Coordinates {
-    /// Coordinates of the package's CRS, with the package's heights: exactly what the tiles hold.
+pub enum FeatureCoordinates {
+    /// Coordinates of the package's CRS, with the package's heights: exactly those of the tiles.
     Package,
     /// Longitude, latitude and height above the ellipsoid of WGS84 (EPSG:4979).
     Wgs84,
     /// Longitude and latitude of WGS84, with the package's heights as they are.
     Wgs84WithPackageHeights,
-    /// Coordinates of a projected CRS of the EPSG registry, by its code, with the package's heights as they are.
+    /// Coordinates of a projected CRS of the EPSG registry, given by its code, with the package's
+    /// heights as they are.
     Epsg(u32),
 }
 
-/// Carries places on the lattice to the coordinates of features.
+/// Transforms places on the lattice to the coordinates of features.
 pub(crate) struct Places<'a> {
     pub(crate) manifest: &'a Manifest,
     target: Target,
-    /// Where the package's table of longitudes and latitudes ends: there is a network beyond it, if the package was cut.
+    /// The projection beyond the package's table of longitudes and latitudes: if the package was
+    /// cut, the network extends beyond it.
     beyond: Option<Box<DemProjection>>,
     /// The CRS of features, as WKT2 or as a code.
     pub(crate) wkt: String,
-    /// What their heights are, in words.
+    /// What the heights of features refer to, in words.
     pub(crate) heights: String,
 }
 
 enum Target {
     /// The package's CRS.
     Package,
-    /// WGS84; heights are carried to the ellipsoid where there is something to carry them.
+    /// WGS84; heights are transformed to the ellipsoid if `heights` is present.
     Wgs84 { projection: Box<DemProjection>, heights: Option<Box<RecordedHeights>> },
     /// Another projected CRS.
     Projected(Box<ProjectedCrs>),
 }
 
+/// Returns the CRS that a package records.
+pub(crate) fn crs_of(manifest: &Manifest) -> Result<RecordedCrs, CoordinatesError> {
+    let Manifest { crs_wkt, metres_per_unit, .. } = manifest;
+    Ok(RecordedCrs::new(crs_wkt, *metres_per_unit, manifest.whole_data_bounds())?)
+}
+
 impl<'a> Places<'a> {
     pub(crate) fn new(
         manifest: &'a Manifest,
-        coordinates: Coordinates,
+        coordinates: FeatureCoordinates,
     ) -> Result<Self, CoordinatesError> {
-        let Manifest { crs_wkt, metres_per_unit, data_bounds, vertical, settings, .. } = manifest;
-        let whole = manifest.whole_data_bounds();
-        let crs = RecordedCrs::new(crs_wkt, *metres_per_unit, whole)?;
+        let Manifest { data_bounds, vertical, settings, .. } = manifest;
+        let crs = crs_of(manifest)?;
         let area = manifest.wgs84_bounds;
         let datum = &vertical.datum;
         let given = [&settings.vertical_crs, &settings.dem_vertical_crs];
@@ -66,27 +73,26 @@ impl<'a> Places<'a> {
         };
         let projection = || Ok::<_, CrsError>(Box::new(crs.projection(area)?));
         let (target, wkt, heights) = match coordinates {
-            Coordinates::Package => {
+            FeatureCoordinates::Package => {
                 let both = known.as_ref().and_then(RecordedHeights::wkt);
                 (Target::Package, both.unwrap_or_else(|| crs.wkt().to_owned()), of_package)
             }
-            Coordinates::Wgs84 => {
+            FeatureCoordinates::Wgs84 => {
                 let heights =
                     known.ok_or_else(|| CoordinatesError::UnknownDatum { datum: datum.clone() })?;
-                // A missing grid is told before anything is read.
+                // A missing grid is reported before anything is read.
                 let mut height_m = [f64::midpoint(vertical.range_m[0], vertical.range_m[1])];
-                heights.to_wgs84_m(&[data_bounds.center()], &mut height_m).map_err(|source| {
-                    CoordinatesError::Heights { datum: datum.clone(), source: Box::new(source) }
-                })?;
+                let failed = CoordinatesError::of_heights(datum);
+                heights.to_wgs84_m(&[data_bounds.center()], &mut height_m).map_err(failed)?;
                 let target =
                     Target::Wgs84 { projection: projection()?, heights: Some(Box::new(heights)) };
                 (target, "EPSG:4979".to_owned(), "above the ellipsoid of WGS84, metres".to_owned())
             }
-            Coordinates::Wgs84WithPackageHeights => {
+            FeatureCoordinates::Wgs84WithPackageHeights => {
                 let target = Target::Wgs84 { projection: projection()?, heights: None };
                 (target, "EPSG:4326".to_owned(), of_package)
             }
-            Coordinates::Epsg(code) => {
+            FeatureCoordinates::Epsg(code) => {
                 let to = crs
                     .projected(&format!("EPSG:{code}"), area)
                     .map_err(|source| CoordinatesError::OtherCrs(Box::new(source)))?;
@@ -102,13 +108,15 @@ impl<'a> Places<'a> {
         Ok(Self { manifest, target, beyond, wkt, heights })
     }
 
-    /// Longitude and latitude of a place on the lattice, without PROJ: to the centimetre, and smooth.
+    /// Longitude and latitude of a place on the lattice, without PROJ: accurate to the centimetre,
+    /// and smooth.
     pub(crate) fn wgs84(&self, at: [f64; 2]) -> [f64; 2] {
         let Manifest { frame, coordinates, .. } = self.manifest;
         coordinates.wgs84_from_working(frame.position_of_fraction_m(at))
     }
 
-    /// True distance in plan of two places on the lattice, as the build measures roads.
+    /// True distance in plan between two places on the lattice, measured in the same way as in a
+    /// build.
     pub(crate) fn distance_m(&self, from: [f64; 2], to: [f64; 2]) -> f64 {
         let frame = &self.manifest.frame;
         let ends_m = [from, to].map(|at| frame.position_of_fraction_m(at));
@@ -116,12 +124,12 @@ impl<'a> Places<'a> {
         known_line_length_m(ends_m, ends_m.map(degrees), &degrees)
     }
 
-    /// The true distance in plan between two places on the lattice, as a function.
+    /// Returns a function for the true distance in plan between two places on the lattice.
     pub(crate) fn metric(&self) -> impl Fn([f64; 2], [f64; 2]) -> f64 + '_ {
         |from, to| self.distance_m(from, to)
     }
 
-    /// How far along a line on the lattice each of its points is.
+    /// Returns the distance of each point along a line on the lattice.
     pub(crate) fn distances_m(&self, points: impl Iterator<Item = LatticePoint>) -> Vec<f64> {
         distances_m(points.map(LatticePoint::in_steps), &self.metric())
     }
@@ -138,16 +146,15 @@ impl<'a> Places<'a> {
             && !coordinates.bounds().contains(at_m)
         {
             let mut position = [at_m];
-            if projection.wgs84_from_working(&mut position).is_ok()
-                && position[0].iter().all(|degrees| degrees.is_finite())
-            {
+            if projection.wgs84_from_working(&mut position).is_ok() && are_finite(&position) {
                 return position[0];
             }
         }
         coordinates.wgs84_from_working(at_m)
     }
 
-    /// Replaces positions in working metres by longitude and latitude, and heights by those that were asked for.
+    /// Replaces positions in working metres by longitude and latitude, and heights by the requested
+    /// ones.
     pub(crate) fn to_wgs84(
         &self,
         plan: &mut [[f64; 2]],
@@ -158,69 +165,60 @@ impl<'a> Places<'a> {
         self.all_have_heights(plan, heights_m)
     }
 
-    /// Replaces heights of the package, at positions in working metres, by those that were asked for; NaN where there is none.
+    /// Replaces heights of the package, at positions in working metres, by the requested ones; NaN
+    /// if there is none.
     pub(crate) fn to_wanted_heights(
         &self,
         positions_m: &[[f64; 2]],
         heights_m: &mut [f64],
     ) -> Result<(), CoordinatesError> {
         let Target::Wgs84 { heights: Some(heights), .. } = &self.target else { return Ok(()) };
-        heights.to_wgs84_m(positions_m, heights_m).map_err(|source| {
-            let datum = self.manifest.vertical.datum.clone();
-            CoordinatesError::Heights { datum, source: Box::new(source) }
-        })
+        let failed = CoordinatesError::of_heights(&self.manifest.vertical.datum);
+        heights.to_wgs84_m(positions_m, heights_m).map_err(failed)
     }
 
-    /// Fails at the first place, longitude and latitude, without a height.
+    /// Fails at the first place (longitude and latitude) without a height.
     pub(crate) fn all_have_heights(
         &self,
         places_deg: &[[f64; 2]],
         heights_m: &[f64],
     ) -> Result<(), CoordinatesError> {
-        match places_deg.iter().zip(heights_m).find(|(_, height_m)| !height_m.is_finite()) {
-            None => Ok(()),
-            Some((&[lon, lat], _)) => {
-                let datum = self.manifest.vertical.datum.clone();
-                Err(CoordinatesError::NoHeightHere { datum, lon, lat })
-            }
-        }
+        let mut missing =
+            places_deg.iter().zip(heights_m).filter(|(_, height_m)| !height_m.is_finite());
+        missing.next().map_or(Ok(()), |(&[lon, lat], _)| {
+            let datum = self.manifest.vertical.datum.clone();
+            Err(CoordinatesError::NoHeightHere { datum, lon, lat })
+        })
     }
 
-    /// Replaces longitudes and latitudes by positions in working metres; NaN where there is none.
+    /// Replaces longitudes and latitudes by positions in working metres; NaN if there is none.
     pub(crate) fn working_from_wgs84(
         &self,
         places: &mut [[f64; 2]],
     ) -> Result<(), CoordinatesError> {
-        match &self.target {
-            Target::Wgs84 { projection, .. } => projection.working_from_wgs84(places)?,
-            Target::Package | Target::Projected(_) => {
-                for place in places.iter_mut() {
-                    let known = self.manifest.coordinates.working_from_wgs84(*place);
-                    *place = known.unwrap_or([f64::NAN; 2]);
-                }
-            }
+        if let Target::Wgs84 { projection, .. } = &self.target {
+            return Ok(projection.working_from_wgs84(places)?);
+        }
+        for place in places {
+            let known = self.manifest.coordinates.working_from_wgs84(*place);
+            *place = known.unwrap_or([f64::NAN; 2]);
         }
         Ok(())
     }
 
     /// Replaces positions in working metres by longitude and latitude.
     pub(crate) fn to_wgs84_plan(&self, plan: &mut [[f64; 2]]) -> Result<(), CoordinatesError> {
-        match &self.target {
-            Target::Wgs84 { projection, .. } => projection.wgs84_from_working(plan)?,
-            Target::Package | Target::Projected(_) => {
-                for position in plan.iter_mut() {
-                    *position = self.manifest.coordinates.wgs84_from_working(*position);
-                }
+        if let Target::Wgs84 { projection, .. } = &self.target {
+            projection.wgs84_from_working(plan)?;
+        } else {
+            for position in plan.iter_mut() {
+                *position = self.manifest.coordinates.wgs84_from_working(*position);
             }
         }
-        if plan.iter().flatten().all(|degrees| degrees.is_finite()) {
-            Ok(())
-        } else {
-            Err(CoordinatesError::NoGroundPosition)
-        }
+        are_finite(plan).then_some(()).ok_or(CoordinatesError::NoGroundPosition)
     }
 
-    /// Positions of an object in working metres, in the features' coordinates.
+    /// Transforms positions of an object from working metres to the features' coordinates.
     pub(crate) fn carry_plan(
         &self,
         object: AreaObject,
@@ -241,33 +239,29 @@ impl<'a> Places<'a> {
                     .map_err(|source| CoordinatesError::OtherCrs(Box::new(source)))?;
             }
         }
-        if plan.iter().flatten().all(|coordinate| coordinate.is_finite()) {
-            Ok(plan)
-        } else {
-            Err(CoordinatesError::NoPosition { object })
-        }
+        if are_finite(&plan) { Ok(plan) } else { Err(CoordinatesError::NoPosition { object }) }
     }
 
-    /// Carried rings of a polygon, the outer one first: one polygon, or several where it crosses the antimeridian in degrees. Its corners were
-    /// rounded by up to `rounding_m`.
+    /// Splits the transformed rings of a polygon, the outer one first: into one polygon, or into
+    /// several if it crosses the antimeridian in degrees. Its corners were rounded by up to
+    /// `rounding_m`.
     pub(crate) fn cut_polygon(
         &self,
         object: AreaObject,
         rings: Vec<Vec<[f64; 2]>>,
         rounding_m: f64,
     ) -> Result<Vec<Vec<Vec<[f64; 2]>>>, CoordinatesError> {
-        match &self.target {
-            Target::Package | Target::Projected(_) => Ok(vec![rings]),
-            Target::Wgs84 { .. } => {
-                // The smallest number of metres to a degree of longitude or latitude at the equator.
-                let rounding_deg = rounding_m / 110_000.0;
-                cut_polygon_at_antimeridian(rings, rounding_deg)
-                    .ok_or(CoordinatesError::AcrossAntimeridian { object })
-            }
+        if !self.are_degrees() {
+            return Ok(vec![rings]);
         }
+        // The smallest number of metres in a degree of longitude or latitude at the equator.
+        let rounding_deg = rounding_m / 110_000.0;
+        cut_polygon_at_antimeridian(rings, rounding_deg)
+            .ok_or(CoordinatesError::AcrossAntimeridian { object })
     }
 
-    /// A line of an object in the features' coordinates: one line, or several where it crosses the antimeridian in degrees.
+    /// Transforms a line of an object to the features' coordinates: one line, or several if it
+    /// crosses the antimeridian in degrees.
     pub(crate) fn carry(
         &self,
         object: AreaObject,
@@ -280,17 +274,20 @@ impl<'a> Places<'a> {
         self.to_wanted_heights(&plan, &mut heights_m)?;
         let plan = self.carry_plan(object, plan)?;
         let line = plan.iter().zip(&heights_m).map(|(&[x, y], &z)| [x, y, z]).collect();
-        match &self.target {
-            Target::Package | Target::Projected(_) => Ok(vec![line]),
-            Target::Wgs84 { .. } => {
-                self.all_have_heights(&plan, &heights_m)?;
-                Ok(cut_at_antimeridian(line))
-            }
+        if !self.are_degrees() {
+            return Ok(vec![line]);
         }
+        self.all_have_heights(&plan, &heights_m)?;
+        Ok(cut_at_antimeridian(line))
     }
 
-    /// Whether straight lines of the features' coordinates are straight in degrees.
+    /// Whether lines that are straight in the features' coordinates are straight in degrees.
     pub(crate) fn are_degrees(&self) -> bool {
         matches!(self.target, Target::Wgs84 { .. })
     }
+}
+
+/// Whether all positions have coordinates.
+fn are_finite(positions: &[[f64; 2]]) -> bool {
+    positions.iter().flatten().all(|coordinate| coordinate.is_finite())
 }

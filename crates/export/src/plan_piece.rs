@@ -1,4 +1,5 @@
-//! What one tile holds of an object in plan, an area or a boundary, and how it is sorted outside memory.
+//! A piece of an object without heights (an area or a boundary): what one tile has of it, and its
+//! form for sorting outside memory.
 
 use corniche_areas::AreaObject;
 use corniche_geom::LatticePoint;
@@ -7,15 +8,15 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::FeaturesError;
 
-/// What one tile holds of an object: rings of an area in any order, or a part of a line.
+/// What one tile has of an object: rings of an area in any order, or some segments of a line.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) struct PlanPiece {
     pub(crate) object: AreaObject,
-    /// The tile's place in the package.
+    /// The tile's position in the order of the package.
     pub(crate) tile: u64,
     /// The number of its class.
     pub(crate) class: u8,
-    /// Empty for none.
+    /// The name; empty for none.
     pub(crate) name: String,
     pub(crate) lines: Vec<Vec<LatticePoint>>,
 }
@@ -25,7 +26,8 @@ pub(crate) fn lines_of(pieces: &[PlanPiece]) -> impl Iterator<Item = &[LatticePo
     pieces.iter().flat_map(|piece| piece.lines.iter().map(Vec::as_slice))
 }
 
-/// The class of an object, which all its pieces have, as they have its name; `class` is that of a number.
+/// Returns the class of an object, which all its pieces share, as they share its name; `class`
+/// converts the number.
 pub(crate) fn class_of<C>(
     pieces: &[PlanPiece],
     class: impl Fn(u8) -> Option<C>,

@@ -1,4 +1,4 @@
-//! A piece of an object in plan comes back from its bytes as it was.
+//! A piece of an object in plan can be decoded from its bytes unchanged.
 
 use corniche_store::SortRecord;
 
@@ -22,7 +22,8 @@ fn a_piece_comes_back_as_it_was_and_never_from_less() {
         piece.encode(&mut bytes);
         assert_eq!(PlanPiece::decode(&mut bytes.as_slice()), Some(piece.clone()));
         for length in 0..bytes.len() {
-            // Cut between two lines, it is a piece with fewer lines; the sorter never cuts.
+            // Truncated between two lines, it is a piece with fewer lines; the sorter never
+            // truncates.
             let cut = PlanPiece::decode(&mut &bytes[..length]);
             assert!(cut.is_none_or(|cut| cut.lines.len() < piece.lines.len()), "{length}");
         }

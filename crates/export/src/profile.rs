@@ -8,22 +8,22 @@ use std::{
 };
 
 use corniche_geom::LatticePoint;
-use corniche_roads::{FunctionalRoadClass, RoadAttributes, Structure};
+use corniche_roads::{RoadAttributes, Structure};
 use corniche_tileset::FilePackage;
 use corniche_work::{Observer, Stage, workers::one_by_one};
 
 use crate::{
-    deck_lines::{Carrier, lay_on_deck},
+    deck_lines::{Carrier, along_way, lay_on_deck},
     dem_ground::{DemLine, DemNodes},
     error::{ElevationError, ProfileError, SelectionError},
     feature::{HeightKind, HeightSource},
     grades::{MeasuredChains, SmoothLine, Smoothing, grades_of, most_steps, stretch_of_way},
     heights::{Elevation, sample_bound_m},
-    join::{Line, lines},
+    join::{JoinedLine, lines},
     laid_lines::laid_lines,
     measures::{LEAST_GRADE_LENGTH_M, ProfileGrades, profile_of},
-    piece::{Piece, Vertex},
-    places::{Coordinates, Places},
+    piece::{Vertex, WayPiece},
+    places::{FeatureCoordinates, Places},
     read,
     roads::RoadHeights,
 };
@@ -31,84 +31,92 @@ use crate::{
 use self::legs::joined_runs;
 pub use self::legs::{Course, CourseLeg, ProfileLeg};
 
-/// A place at both ends of the map comes out at the same longitude and latitude to this, as tables of coordinates have them to a centimetre.
+/// Positions at both ends of the map are the same place if their longitudes and latitudes agree to
+/// this, metres: coordinate tables are accurate to a centimetre.
 const SAME_PLACE_M: f64 = 0.02;
-/// Such places are at one end of the map within this, working metres.
+/// The largest distance of such places on the map if they are at the same end of it, working
+/// metres.
 const NEAR_ON_MAP_M: f64 = 1000.0;
 
 /// The profile of some ways, one after the other.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Profile {
-    /// The level whose roads were taken.
+pub struct RoadProfile {
+    /// The level whose roads were used.
     pub level: u8,
-    /// What heights are, in words.
+    /// What heights refer to, in words.
     pub heights: String,
-    /// How far heights are from the elevation files at most, metres.
+    /// The largest distance of heights from the elevation files, metres.
     pub height_tolerance_m: f64,
     /// Parts without gaps, in order.
     pub parts: Vec<ProfilePart>,
-    /// What is followed, in order. A way that is followed twice, or has a gap, is there several times.
+    /// The ways or lines that are followed, in order. A way that is followed twice, or has a gap,
+    /// occurs several times.
     pub legs: Vec<ProfileLeg>,
     /// True length in plan of all parts, metres.
     pub length_2d_m: f64,
     /// True length with heights, metres.
     pub length_3d_m: f64,
-    /// What bridges and tunnels without known decks have of the length in plan: what follows is told without them.
+    /// The length in plan of bridges and tunnels without known decks, metres. The following
+    /// measures exclude it.
     pub on_structures_m: f64,
-    /// The ups and downs of the line itself.
+    /// Ascent, descent and grade of the line itself.
     pub grades: ProfileGrades,
-    /// With heights of the elevation files: those of a smooth line, and the largest distance of it from the line, metres.
+    /// With heights of the elevation files: the measures of a smooth line, and its largest distance
+    /// from the line, metres.
     pub smooth: Option<(ProfileGrades, f64)>,
 }
 
 /// A part of a profile without gaps.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProfilePart {
-    /// Its points; at least two.
+    /// The points; at least two.
     pub points: Vec<ProfilePoint>,
 }
 
 /// A vertex of a road on the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ProfilePoint {
-    /// The way that it belongs to; of two ways that meet, the first. Of lines that are no ways their numbers, from 1.
+    /// The way to which the point belongs; where two ways meet, the first. Lines that are not ways
+    /// have numbers from 1.
     pub way_id: i64,
-    /// True distance in plan from the beginning of the profile, metres. Gaps count nothing.
+    /// True distance in plan from the beginning of the profile, metres. Gaps have no length.
     pub distance_m: f64,
     /// Height of the line.
     pub height_m: f64,
-    /// Rise over run, over 20 m around the point, or as many as the part has; upwards is positive.
+    /// Rise over run, over 20 m around the point, or over the whole part if it is shorter; upwards
+    /// is positive.
     pub grade: f64,
     /// Longitude and latitude, degrees.
     pub position_deg: [f64; 2],
-    /// Where the height is from, as in exported roads.
+    /// The source of the height, as in exported roads.
     pub height_source: HeightKind,
-    /// Height of the smooth line, and its rise over run over 50 m around the point; `None` on bridges and in tunnels whose decks are not
-    /// known, and without elevation files.
+    /// Height of the smooth line, and its rise over run over 50 m around the point; `None` on
+    /// bridges and in tunnels whose decks are unknown, and without elevation files.
     pub smooth: Option<[f64; 2]>,
 }
 
-/// Follows ways over the ground of a level, in the order in which they are named. Each is turned so that it goes on where the one before
-/// it ends, if it has an end there; the first so that it ends at the second. With elevation files, heights are theirs.
+/// Follows ways over the ground of a level, in the given order. Each way is turned to continue
+/// where the previous one ends, if it has an end there; the first way is turned to end at the
+/// second. With elevation files, heights come from them.
 ///
 /// # Errors
-/// When the package has no such way or level, or is damaged.
+/// When the package has no such way or level, or is corrupt.
 pub fn profile(
     package: &FilePackage,
     way_ids: &[i64],
     level: Option<u8>,
     heights: RoadHeights<'_>,
     observer: &dyn Observer,
-) -> Result<Profile, ProfileError> {
+) -> Result<RoadProfile, ProfileError> {
     let manifest = package.manifest();
     SelectionError::check_roads(package)?;
     let level = read::level(package, level)?;
-    let places = Places::new(manifest, Coordinates::Package)?;
-    let mut of_ways: Vec<Vec<Line>> = Vec::with_capacity(way_ids.len());
+    let places = Places::new(manifest, FeatureCoordinates::Package)?;
+    let mut of_ways: Vec<Vec<JoinedLine>> = Vec::with_capacity(way_ids.len());
     let pieces = pieces(package, way_ids, level, observer)?;
     let mut ways = BTreeMap::new();
     for &way_id in way_ids {
-        let own: Vec<Piece> =
+        let own: Vec<WayPiece> =
             pieces.iter().filter(|piece| piece.key.way_id == way_id).cloned().collect();
         let Some(first) = own.first() else {
             let package = package.path().to_path_buf();
@@ -123,20 +131,21 @@ pub fn profile(
     Ok(telling.tell(&parts))
 }
 
-/// Follows lines over the ground of a level, one after the other. With elevation files, heights are theirs.
+/// Follows lines over the ground of a level, one after the other. With elevation files, heights
+/// come from them.
 ///
 /// # Errors
-/// When the package has no such level, no line lies on its ground, or it is damaged.
+/// When the package has no such level, no line is on its ground, or it is corrupt.
 pub fn profile_of_course(
     package: &FilePackage,
     course: &Course,
     level: Option<u8>,
     heights: RoadHeights<'_>,
     observer: &dyn Observer,
-) -> Result<Profile, ProfileError> {
+) -> Result<RoadProfile, ProfileError> {
     let level = read::level(package, level)?;
     let manifest = package.manifest();
-    let places = Places::new(manifest, Coordinates::Package)?;
+    let places = Places::new(manifest, FeatureCoordinates::Package)?;
     let lines: Vec<&[LatticePoint]> = course.legs.iter().map(|leg| leg.points.as_slice()).collect();
     let laid = laid_lines(package, &lines, level, observer)?;
     let numbered = laid.into_iter().enumerate().flat_map(|(leg, parts)| {
@@ -152,7 +161,8 @@ pub fn profile_of_course(
     let about = (legs, course.ways.clone());
     let mut telling = Telling::new((places, level), about, heights, observer)?;
     let parts = telling.on_ground(parts)?;
-    // Lines go on at the other end of the map only once they were laid: between its ends there is nothing.
+    // Lines continue at the other end of the map only after they were draped: between the ends
+    // there is nothing.
     let parts = joined(parts.into_iter(), &telling.places);
     if parts.is_empty() {
         let package = package.path().to_path_buf();
@@ -165,19 +175,19 @@ pub fn profile_of_course(
     Ok(telling.tell(&parts))
 }
 
-/// What a profile is told from.
+/// The inputs of a profile.
 struct Telling<'a> {
     level: u8,
     places: Places<'a>,
     legs: Vec<Leg>,
-    /// What is known of each way.
+    /// The attributes of each way.
     ways: BTreeMap<i64, RoadAttributes>,
     elevation: Option<Elevation<'a>>,
     /// Legs over bridges and through tunnels whose decks are known.
     on_deck: BTreeSet<usize>,
-    /// The smooth line of each way, where those of chains are known.
+    /// The smooth lines of each way for which those of chains are known.
     smooth_ways: BTreeMap<i64, Vec<SmoothLine>>,
-    /// How far the ground is from the elevation files at most, metres.
+    /// The largest distance of the ground from the elevation files, metres.
     tolerance_m: f64,
 }
 
@@ -200,8 +210,8 @@ impl<'a> Telling<'a> {
         Ok(Self { level, places, legs, ways, elevation, on_deck, smooth_ways, tolerance_m })
     }
 
-    /// Measures the parts; those of elevation files are smoothed.
-    fn tell(self, parts: &[ProfileLine]) -> Profile {
+    /// Measures the parts; those with heights of the elevation files are smoothed.
+    fn tell(self, parts: &[ProfileLine]) -> RoadProfile {
         let frame = &self.places.manifest.frame;
         let smoothing = self.elevation.map(|_| Smoothing::of_frame(frame));
         let distance_m = self.places.metric();
@@ -227,7 +237,8 @@ impl<'a> Telling<'a> {
                 Some(smoothing) => {
                     let of = |run: &Range<usize>| {
                         let own = &profile[run.clone()];
-                        // A deck is smooth by itself, and on the ground where that is in its way.
+                        // A deck is smooth by itself, and on the ground where the ground obstructs
+                        // it.
                         if self.on_deck.contains(&part[run.end - 1].0) {
                             return SmoothLine::itself(own);
                         }
@@ -252,7 +263,7 @@ impl<'a> Telling<'a> {
             on_ground.extend(runs.into_iter().map(|run| profile_of(&vertices[run], &distance_m)));
         }
         let smooth = smoothing.map(|_| (grades_of(&smooth), most_off_m));
-        Profile {
+        RoadProfile {
             level: self.level,
             heights: self.places.heights.clone(),
             height_tolerance_m: self.tolerance_m,
@@ -261,12 +272,12 @@ impl<'a> Telling<'a> {
             length_2d_m: begin_m,
             length_3d_m,
             on_structures_m,
-            grades: ProfileGrades::of(on_ground, LEAST_GRADE_LENGTH_M),
+            grades: ProfileGrades::from_profiles(on_ground, LEAST_GRADE_LENGTH_M),
             smooth,
         }
     }
 
-    /// Adds what a leg follows; parts of a way in a row are one.
+    /// Adds the leg of this range; consecutive parts of a way are one leg.
     fn add_leg(&self, legs: &mut Vec<(Leg, ProfileLeg)>, leg: Leg, range_m: [f64; 2]) {
         match legs.last_mut() {
             Some((before, told)) if *before == leg && told.range_m[1] >= range_m[0] => {
@@ -276,7 +287,7 @@ impl<'a> Telling<'a> {
         }
     }
 
-    /// The parts as they are, or on the ground of the elevation files and on decks.
+    /// Returns the parts unchanged, or on the ground of the elevation files and on decks.
     fn on_ground(&mut self, parts: Vec<ProfileLine>) -> Result<Vec<ProfileLine>, ElevationError> {
         let Some(elevation) = self.elevation else { return Ok(parts) };
         let nodes = &mut DemNodes::new(elevation, &self.places.manifest.frame);
@@ -302,15 +313,7 @@ impl<'a> Telling<'a> {
                     if on_deck {
                         self.on_deck.insert(leg);
                     }
-                    let begin = vertices.first().map(|vertex| vertex.at);
-                    let goes_on = |before: &&mut ProfileLine| {
-                        before.last().map(|(_, vertex)| vertex.at) == begin
-                    };
-                    let vertices = vertices.into_iter().map(|vertex| (leg, vertex));
-                    match laid_parts.last_mut().filter(goes_on) {
-                        Some(before) => before.extend(vertices.skip(1)),
-                        None => laid_parts.push(vertices.collect()),
-                    }
+                    add_line(&mut laid_parts, leg, vertices);
                 }
                 first += own;
             }
@@ -318,7 +321,7 @@ impl<'a> Telling<'a> {
         Ok(laid_parts)
     }
 
-    /// Whether heights along a leg are its own.
+    /// Whether the heights along a leg are the road's own.
     fn is_measured(&self, leg: usize) -> bool {
         self.structure(leg) == Structure::Ground || self.on_deck.contains(&leg)
     }
@@ -328,13 +331,13 @@ impl<'a> Telling<'a> {
         way.map(|way| way.structure).unwrap_or_default()
     }
 
-    /// The smooth line of some vertices of a leg, where those of chains are known.
+    /// Returns the smooth line of some vertices of a leg, if those of chains are known.
     fn of_chains(&self, run: &[(usize, Vertex)], profile: &[[f64; 2]]) -> Option<SmoothLine> {
         let Leg { way_id, is_turned } = self.legs[run.last()?.0];
         let way = self.smooth_ways.get(&way_id)?;
         let [begin_m, end_m] = [profile.first()?[0], profile.last()?[0]];
         let most_steps = most_steps(self.places.manifest, self.level);
-        let vertices = along_way(run.iter().map(|(_, vertex)| *vertex), is_turned);
+        let vertices = along_way(run.iter().map(|(_, vertex)| *vertex).collect(), is_turned);
         let stretch = stretch_of_way(way, &vertices, end_m - begin_m, most_steps)?;
         let parts = way.iter().map(|line| line.part(stretch));
         let mut line = parts.max_by_key(|part| part.stations.len())?;
@@ -349,8 +352,9 @@ impl<'a> Telling<'a> {
         Some(line)
     }
 
-    /// The vertices between which the heights of a part are its own, not those beneath a bridge or above a tunnel; leg by leg where smooth lines are those of ways. A segment
-    /// belongs to the leg of its second vertex.
+    /// Returns the ranges of vertices between which the heights of a part are the road's own,
+    /// rather than those beneath a bridge or above a tunnel; leg by leg if smooth lines follow
+    /// ways. A segment belongs to the leg of its second vertex.
     fn runs_on_ground(&self, part: &ProfileLine) -> Vec<Range<usize>> {
         let mut runs: Vec<Range<usize>> = Vec::new();
         for end in 1..part.len() {
@@ -394,25 +398,25 @@ impl<'a> Telling<'a> {
     }
 }
 
-/// What the tiles of a level hold of some ways, in the package's order.
+/// Returns the pieces of some ways in the tiles of a level, in the package's order.
 fn pieces(
     package: &FilePackage,
     way_ids: &[i64],
     level: u8,
     observer: &dyn Observer,
-) -> Result<Vec<Piece>, ProfileError> {
-    let classes: Vec<FunctionalRoadClass> = FunctionalRoadClass::all().collect();
+) -> Result<Vec<WayPiece>, ProfileError> {
     let tiles = read::tiles(package, level, None)?;
     let mut pieces = Vec::new();
     one_by_one((observer, Stage::ExportTiles), &tiles, |&id| {
-        let own = read::pieces(package, id, &classes)?;
+        let own = read::all_pieces(package, id)?;
         pieces.extend(own.into_iter().filter(|piece| way_ids.contains(&piece.key.way_id)));
         Ok::<(), ProfileError>(())
     })?;
     Ok(pieces)
 }
 
-/// A way as it is followed once, or a line of a file. A way may be followed again, also back at once.
+/// A way that is followed once, or a line of a file. A way may be followed again, also back at
+/// once.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct Leg {
     way_id: i64,
@@ -423,14 +427,21 @@ struct Leg {
 /// Vertices, each with the number of its leg.
 type ProfileLine = Vec<(usize, Vertex)>;
 
-/// Vertices of a leg in the direction of its way; or those of a way in the direction of its leg.
-fn along_way(vertices: impl DoubleEndedIterator<Item = Vertex>, is_turned: bool) -> Vec<Vertex> {
-    if is_turned { vertices.rev().collect() } else { vertices.collect() }
+/// Appends a line of a leg to the last part if it continues there; otherwise it becomes a new part.
+fn add_line(parts: &mut Vec<ProfileLine>, leg: usize, vertices: Vec<Vertex>) {
+    let begin = vertices.first().map(|vertex| vertex.at);
+    let goes_on = |part: &&mut ProfileLine| part.last().map(|(_, vertex)| vertex.at) == begin;
+    let vertices = vertices.into_iter().map(|vertex| (leg, vertex));
+    match parts.last_mut().filter(goes_on) {
+        Some(part) => part.extend(vertices.skip(1)),
+        None => parts.push(vertices.collect()),
+    }
 }
 
-/// The lines of all ways in a row, turned so that they go on; those that meet become one part.
-fn in_a_row(way_ids: &[i64], of_ways: Vec<Vec<Line>>) -> (Vec<Leg>, Vec<ProfileLine>) {
-    let ends = |lines: &[Line]| -> [Option<[f64; 2]>; 2] {
+/// Returns the lines of consecutive ways, turned so that each continues the previous one; lines
+/// that meet become one part.
+fn in_a_row(way_ids: &[i64], of_ways: Vec<Vec<JoinedLine>>) -> (Vec<Leg>, Vec<ProfileLine>) {
+    let ends = |lines: &[JoinedLine]| -> [Option<[f64; 2]>; 2] {
         let first = lines.first().and_then(|line| line.vertices.first());
         let last = lines.last().and_then(|line| line.vertices.last());
         [first, last].map(|vertex| vertex.map(|vertex| vertex.at))
@@ -444,7 +455,7 @@ fn in_a_row(way_ids: &[i64], of_ways: Vec<Vec<Line>>) -> (Vec<Leg>, Vec<ProfileL
         let next = all_ends.get(index + 1).copied().unwrap_or_default();
         let is_turned = match end {
             Some(_) => first != end && last == end,
-            // The first way: its beginning is where the second one goes on.
+            // The first way ends where the second one continues.
             None => next.contains(&first) && !next.contains(&last) && first.is_some(),
         };
         legs.push(Leg { way_id, is_turned });
@@ -455,20 +466,15 @@ fn in_a_row(way_ids: &[i64], of_ways: Vec<Vec<Line>>) -> (Vec<Leg>, Vec<ProfileL
             }
         }
         for line in lines {
-            let begin = line.vertices.first().map(|vertex| vertex.at);
-            let goes_on = end.is_some() && begin == end;
-            let vertices = line.vertices.into_iter().map(|vertex| (index, vertex));
-            match parts.last_mut().filter(|_| goes_on) {
-                Some(part) => part.extend(vertices.skip(1)),
-                None => parts.push(vertices.collect()),
-            }
+            add_line(&mut parts, index, line.vertices);
             end = parts.last().and_then(|part| part.last()).map(|(_, vertex)| vertex.at);
         }
     }
     (legs, parts)
 }
 
-/// Lines of which each begins where the one before ends are one part: also where a line ends at the end of the map and goes on at its other end.
+/// Joins lines that begin where the previous one ends into one part, also across the ends of the
+/// map, where a line continues at the other end.
 fn joined(lines: impl Iterator<Item = ProfileLine>, places: &Places<'_>) -> Vec<ProfileLine> {
     let mut parts: Vec<ProfileLine> = Vec::new();
     let near_steps = NEAR_ON_MAP_M / places.manifest.frame.lattice_step_m();
@@ -481,7 +487,8 @@ fn joined(lines: impl Iterator<Item = ProfileLine>, places: &Places<'_>) -> Vec<
         };
         match parts.last_mut().filter(goes_on) {
             Some(before) => {
-                // At the other end of the map the line begins at a place of its own: from the one before, the next would be a map away.
+                // At the other end of the map the line begins at a separate place: the distance
+                // from the previous one would be as wide as the map.
                 let is_there = |end: &(usize, Vertex), begin: &(usize, Vertex)| {
                     (0..2).all(|axis| (end.1.at[axis] - begin.1.at[axis]).abs() <= near_steps)
                 };
@@ -494,7 +501,7 @@ fn joined(lines: impl Iterator<Item = ProfileLine>, places: &Places<'_>) -> Vec<
     parts
 }
 
-/// The grade at each point of a profile, whose distances ascend.
+/// The grade at each point of a profile; distances must ascend.
 fn grades(profile: &[[f64; 2]]) -> Vec<f64> {
     let half_m = LEAST_GRADE_LENGTH_M / 2.0;
     let height_at = |along_m: f64| -> [f64; 2] {
@@ -507,7 +514,7 @@ fn grades(profile: &[[f64; 2]]) -> Vec<f64> {
     let [begin_m, end_m] =
         [profile.first(), profile.last()].map(|end| end.map_or(0.0, |end| end[0]));
     let grade = |point: &[f64; 2]| {
-        // Near an end the stretch lies to one side.
+        // Near an end, the stretch is on one side only.
         let middle_m = point[0].min(end_m - half_m).max(begin_m + half_m);
         let [before, after] = [middle_m - half_m, middle_m + half_m].map(height_at);
         let run_m = after[0] - before[0];

@@ -1,10 +1,10 @@
-//! Ways of a profile are turned so that they go on, and grades are taken over twenty metres.
+//! Ways of a profile are turned to continue each other, and grades are measured over twenty metres.
 
 use super::*;
 
-fn line(points: &[[f64; 2]]) -> Line {
+fn line(points: &[[f64; 2]]) -> JoinedLine {
     let vertices = points.iter().map(|&at| Vertex { at, z_m: 0.0, is_source: true }).collect();
-    Line { vertices, joins: Vec::new() }
+    JoinedLine { vertices, joins: Vec::new() }
 }
 
 fn places(parts: &[ProfileLine]) -> Vec<Vec<f64>> {
@@ -23,7 +23,7 @@ fn ways_are_turned_so_that_they_go_on() {
     assert_eq!(numbers, [0, 0, 0, 1, 2, 2]);
     let legs: Vec<_> = legs.iter().map(|leg| (leg.way_id, leg.is_turned)).collect();
     assert_eq!(legs, [(11, true), (12, false), (13, true)]);
-    // Alone, a way keeps its direction; ways that do not meet are parts.
+    // A single way keeps its direction; ways that do not meet are separate parts.
     assert_eq!(places(&in_a_row(&[1], vec![first.clone()]).1), [[3.0, 2.0, 1.0]]);
     let (_, apart) = in_a_row(&[1, 2], vec![first.clone(), vec![line(&[at(7.0), at(8.0)])]]);
     assert_eq!(places(&apart), [vec![3.0, 2.0, 1.0], vec![7.0, 8.0]]);
@@ -46,7 +46,7 @@ fn grades_are_those_of_twenty_metres() {
     for (found, expected) in found.iter().zip([0.0, 0.05, 0.05, 0.0]) {
         assert!((found - expected).abs() < 1e-12, "{found} {expected}");
     }
-    // At an end, the twenty metres lie inside.
+    // At an end, the twenty metres are inside the line.
     let ends = grades(&[[0.0, 0.0], [10.0, 4.0], [20.0, 4.0], [40.0, 4.0]]);
     assert!((ends[0] - 0.2).abs() < 1e-12, "{ends:?}");
     // A short line has one grade.

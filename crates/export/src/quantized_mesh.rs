@@ -6,10 +6,12 @@
 //!                                                                 └───────────► deviation, measured ◄──────────┘
 //! ```
 //!
-//! The grid of tiles is that of the globe, not the package's, so heights are sampled again, and each level follows the finest ground to the error that
-//! CesiumJS takes it to have: the format has no field for an error.
+//! The grid of tiles is that of the globe rather than the package's, so heights are sampled again.
+//! Each level follows the finest ground to the error that CesiumJS assumes for it: the format has
+//! no field for an error.
 //!
-//! Source: Cesium, *quantized-mesh-1.0 terrain format*, <https://github.com/CesiumGS/quantized-mesh>.
+//! Source: Cesium, *quantized-mesh-1.0 terrain format*,
+//! <https://github.com/CesiumGS/quantized-mesh>.
 
 mod available;
 mod comparison;
@@ -26,7 +28,7 @@ mod tiling;
 mod write_tiles;
 
 pub use quantized_mesh_request::{
-    Availability, PlannedLevel, QuantizedMeshLevel, QuantizedMeshPlan, QuantizedMeshRequest,
+    Availability, MeshLevelPlan, QuantizedMeshLevel, QuantizedMeshPlan, QuantizedMeshRequest,
     QuantizedMeshSummary,
 };
 pub use tiling::Tiling;

@@ -1,4 +1,4 @@
-//! Pieces of roads out of tiles.
+//! Reads pieces of roads from tiles.
 
 use std::collections::HashMap;
 
@@ -11,21 +11,30 @@ use corniche_tileset::{
 use corniche_tin::Surface;
 
 use crate::{
-    between_samples::SampleCells,
+    between_samples::TileCells,
     bounds::DegreeBounds,
     error::{SelectionError, TileError},
-    piece::{Piece, PieceHeights, PieceKey, Vertex},
+    piece::{PieceHeights, PieceKey, Vertex, WayPiece},
 };
 
-/// What pieces of roads are read from.
+/// The payload sections from which pieces of roads are read.
 pub(crate) fn road_sections() -> Sections {
     Sections::ROADS_GEO | Sections::ATTRIBUTES
 }
 
-/// Positions along each side of a tile that tell where it is: enough for tiles that the CRS bends.
+/// The payload sections from which the ground of a tile is read, with the lines of its roads or its
+/// relief if requested.
+pub(crate) fn ground_sections(has_lines: bool, has_relief: bool) -> Sections {
+    let lines = if has_lines { road_sections() } else { Sections::TERRAIN };
+    let relief = if has_relief { Sections::RELIEF } else { Sections::TERRAIN };
+    Sections::TERRAIN | lines | relief
+}
+
+/// Positions along each side of a tile that determine its extent: enough for tiles that the CRS
+/// bends.
 const SIDE: usize = 9;
 
-/// The level that is asked for, if the package has it; else the finest.
+/// Returns the requested level if the package has it; by default the finest.
 pub(crate) fn level(package: &FilePackage, wanted: Option<u8>) -> Result<u8, SelectionError> {
     let finest = package.manifest().frame.max_level();
     let level = wanted.unwrap_or(finest);
@@ -36,7 +45,7 @@ pub(crate) fn level(package: &FilePackage, wanted: Option<u8>) -> Result<u8, Sel
     Ok(level)
 }
 
-/// The tiles of a level that may hold roads of the bounds, in the package's order.
+/// Returns the tiles of a level that may contain roads inside the bounds, in the package's order.
 pub(crate) fn tiles(
     package: &FilePackage,
     level: u8,
@@ -50,7 +59,8 @@ pub(crate) fn tiles(
     Ok(ids)
 }
 
-/// Whether the part of a tile on which data can lie and the bounds have a place in common: a side of the tile goes through the bounds, or they lie within the tile.
+/// Whether the bounds share a place with the part of a tile that can have data: a side of the tile
+/// passes through the bounds, or the bounds are within the tile.
 pub(crate) fn meets(manifest: &Manifest, id: TileId, bounds: &DegreeBounds) -> bool {
     let tile = data_part(manifest, id);
     let last = SIDE - 1;
@@ -62,8 +72,7 @@ pub(crate) fn meets(manifest: &Manifest, id: TileId, bounds: &DegreeBounds) -> b
             2 => [1.0 - share, 1.0],
             _ => [0.0, 1.0 - share],
         };
-        let at = [tile.min_x + tile.width() * across, tile.min_y + tile.height() * along];
-        manifest.coordinates.wgs84_from_working(at)
+        place_deg(manifest, &tile, [across, along])
     });
     let around: Vec<[f64; 2]> = around.collect();
     around.windows(2).any(|ends| !bounds.inside(ends[0], ends[1]).is_empty())
@@ -73,58 +82,64 @@ pub(crate) fn meets(manifest: &Manifest, id: TileId, bounds: &DegreeBounds) -> b
             .is_some_and(|middle| tile.contains(middle))
 }
 
-/// The part of a tile on which data can lie. The table of coordinates reaches little beyond the data: of small ones a tile is many times as wide, and
-/// places far outside would come out anywhere.
+/// Returns the part of a tile that can have data. The coordinate table extends little beyond the
+/// data: a tile can be many times as wide as small data, and places far outside would be
+/// transformed to anywhere.
 pub(crate) fn data_part(manifest: &Manifest, id: TileId) -> Bounds {
     manifest.frame.tile_bounds(id).intersection(&manifest.data_bounds)
 }
 
-/// Longitudes and latitudes over the part of a tile on which data can lie.
+/// Longitudes and latitudes over the part of a tile that can have data.
 pub(crate) fn places_deg(manifest: &Manifest, id: TileId) -> Vec<[f64; 2]> {
     let tile = data_part(manifest, id);
     let share = |k: usize| k as f64 / (SIDE - 1) as f64;
-    (0..SIDE * SIDE)
-        .map(|k| {
-            [
-                tile.min_x + tile.width() * share(k % SIDE),
-                tile.min_y + tile.height() * share(k / SIDE),
-            ]
-        })
-        .map(|position| manifest.coordinates.wgs84_from_working(position))
-        .collect()
+    let places = (0..SIDE * SIDE).map(|k| [share(k % SIDE), share(k / SIDE)]);
+    places.map(|shares| place_deg(manifest, &tile, shares)).collect()
 }
 
-/// The pieces of one tile whose class is wanted.
+/// Returns the place at shares of a rectangle's sides, from the west and from the south.
+fn place_deg(manifest: &Manifest, tile: &Bounds, [across, along]: [f64; 2]) -> [f64; 2] {
+    let at = [tile.min_x + tile.width() * across, tile.min_y + tile.height() * along];
+    manifest.coordinates.wgs84_from_working(at)
+}
+
+/// Returns the pieces of one tile that have a requested class.
 pub(crate) fn pieces(
     package: &FilePackage,
     id: TileId,
     classes: &[FunctionalRoadClass],
-) -> Result<Vec<Piece>, TileError> {
+) -> Result<Vec<WayPiece>, TileError> {
     let payload = package.payload(id, road_sections())?;
     payload.map_or(Ok(Vec::new()), |payload| pieces_of(&payload, package.manifest(), classes))
 }
 
-/// The same, with what the package knows of the distance of their lines from the elevation data.
+/// Returns the [`pieces`] of roads of all classes.
+pub(crate) fn all_pieces(package: &FilePackage, id: TileId) -> Result<Vec<WayPiece>, TileError> {
+    let classes: Vec<FunctionalRoadClass> = FunctionalRoadClass::all().collect();
+    pieces(package, id, &classes)
+}
+
+/// Returns [`pieces`] with the package's bounds for the distance of the lines from the elevation
+/// data.
 pub(crate) fn bounded_pieces(
     package: &FilePackage,
     id: TileId,
     classes: &[FunctionalRoadClass],
-) -> Result<Vec<Piece>, TileError> {
+) -> Result<Vec<WayPiece>, TileError> {
     let Some(payload) = package.payload(id, road_sections())? else { return Ok(Vec::new()) };
     let (manifest, Some(terrain)) = (package.manifest(), &payload.terrain) else {
         return Ok(Vec::new());
     };
     let surface = manifest.surface(id, &terrain.tin);
     let mut pieces = pieces_on(&surface, &payload, manifest, classes)?;
-    let cells = SampleCells::of(manifest, id.z());
-    let mut cells = cells.as_ref().map(|cells| cells.on_tile(&surface, terrain.geometric_error_m));
+    let mut cells = TileCells::from_level(manifest, id.z(), &surface, terrain.geometric_error_m);
     for piece in &mut pieces {
         piece.heights.tolerance_m = cells.as_mut().map(|cells| cells.bound_m(&piece.vertices));
     }
     Ok(pieces)
 }
 
-/// What one tile holds of a layer, which `decode` finds in its bytes.
+/// Returns a layer of one tile, which `decode` reads from its bytes.
 pub(crate) fn layer<T>(
     package: &FilePackage,
     id: TileId,
@@ -135,7 +150,8 @@ pub(crate) fn layer<T>(
     decode(&bytes).map_err(|source| TileError::Damaged { layer, source: Box::new(source) })
 }
 
-/// The runs of bridges and tunnels of one tile by their ways; none in a package that was built without.
+/// Returns the runs of bridges and tunnels of one tile by way; none if the package was built
+/// without them.
 pub(crate) fn span_runs(
     package: &FilePackage,
     id: TileId,
@@ -152,12 +168,12 @@ pub(crate) fn span_runs(
     Ok(runs)
 }
 
-/// The same pieces of a payload that was read with [`road_sections`].
+/// Returns the [`pieces`] of a payload that was read with [`road_sections`].
 pub(crate) fn pieces_of(
     payload: &TilePayload,
     manifest: &Manifest,
     classes: &[FunctionalRoadClass],
-) -> Result<Vec<Piece>, TileError> {
+) -> Result<Vec<WayPiece>, TileError> {
     let Some(terrain) = &payload.terrain else { return Ok(Vec::new()) };
     pieces_on(&manifest.surface(payload.id, &terrain.tin), payload, manifest, classes)
 }
@@ -167,7 +183,7 @@ fn pieces_on(
     payload: &TilePayload,
     Manifest { frame, .. }: &Manifest,
     classes: &[FunctionalRoadClass],
-) -> Result<Vec<Piece>, TileError> {
+) -> Result<Vec<WayPiece>, TileError> {
     let id = payload.id;
     let mut pieces = Vec::new();
     for road in payload.roads_geo.iter().filter(|road| classes.contains(&road.class)) {
@@ -178,24 +194,19 @@ fn pieces_on(
             .ok_or(TileError::NoAttributes { tile: id, way_id: road.way_id })?;
         let vertices =
             vertices(&road.line, surface).map_err(|source| TileError::Line { tile: id, source })?;
-        pieces.push(Piece {
+        pieces.push(WayPiece {
             key: PieceKey { way_id: road.way_id, tile: pmtiles_order(id), part: road.part, cut: 0 },
             class: road.class,
             attributes: attributes.attributes.clone(),
             goes_on: goes_on(road, frame, id),
-            heights: PieceHeights {
-                tolerance_m: None,
-                ground_m: None,
-                on_deck: false,
-                has_deck: false,
-            },
+            heights: PieceHeights::default(),
             vertices,
         });
     }
     Ok(pieces)
 }
 
-/// The vertices of a line on the ground of a tile.
+/// Returns the vertices of a line on the ground of a tile.
 pub(crate) fn vertices(
     line: &DrapedLine,
     surface: &Surface,
@@ -211,7 +222,8 @@ pub(crate) fn vertices(
         .collect())
 }
 
-/// Whether the ends of a line are points on its tile's border. A line that ends where the ground ends has no such point.
+/// Whether the ends of a line are points on its tile's border. A line that ends where the ground
+/// ends has no point on the border.
 fn goes_on(road: &GeoRoad, frame: &GridFrame, id: TileId) -> [bool; 2] {
     let tile = frame.tile_lattice_bounds(id);
     let vertices = &road.line.vertices;

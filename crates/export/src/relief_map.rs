@@ -1,9 +1,12 @@
 //! The relief of a tile as a normal map of its ground.
 //!
-//! A normal map is read against the normals of the vertices that a program mixes across triangles, so each texel holds the relief's normal as seen from
-//! there: what is shaded is the relief, and a program that knows no normal maps still has the vertices' own.
+//! Programs apply a normal map to the normals that they interpolate between the vertices of a
+//! triangle. Each texel therefore contains the relief's normal relative to the interpolated one:
+//! the shading shows the relief, and a program without support for normal maps still has the
+//! vertices' own normals.
 //!
-//! Source: Khronos Group, *glTF 2.0 Specification*, section 3.9.3 (`normalTexture`) and 3.7.2.1 (`TANGENT`).
+//! Source: Khronos Group, *glTF 2.0 Specification*, section 3.9.3 (`normalTexture`) and 3.7.2.1
+//! (`TANGENT`).
 
 use corniche_geom::{LatticeBounds, TILE_NODES, TileId};
 use corniche_tileset::{FilePackage, Relief};
@@ -12,32 +15,34 @@ use image::{ExtendedColorType, ImageEncoder, codecs::png};
 use crate::{
     error::SurfaceError,
     globe::cross,
-    surfaces::{GroundMesh, unit},
+    plane::doubled_area,
+    surfaces::{LabelledMesh, unit},
 };
 
-/// A normal map with a texel for each node of a tile.
-#[derive(Clone)]
+/// A normal map with a texel for each grid node of a tile.
 pub(crate) struct ReliefMap {
-    /// Red, green and blue as glTF has them: along the tangent (east), northwards, and away from the ground.
+    /// Red, green and blue in glTF's form: along the tangent (east), northwards, and away from the
+    /// ground.
     pub(crate) png: Vec<u8>,
 }
 
 /// Texels on a side.
 const SIDE: usize = TILE_NODES;
-/// What is less is 0.
+/// Smaller values count as 0.
 const LEVEL: f32 = 1e-5;
-/// The least that a texel may look away from the ground: the first step above half.
+/// The least component of a texel away from the ground: the first step above half.
 const LEAST_AWAY: f32 = 0.005;
-/// A node may lie on an edge but for rounding.
+/// A grid node within this distance of a triangle edge counts as on it, to allow for rounding.
 const EDGE: f64 = 1e-9;
 
 impl ReliefMap {
-    /// The normal map of a tile whose ground is `mesh`, normals and all; `None` where the package has no relief there.
+    /// Returns the normal map of a tile with the ground `mesh`, including its normals; `None` if
+    /// the package has no relief there.
     pub(crate) fn of_tile(
         package: &FilePackage,
         id: TileId,
         relief: Option<&Relief>,
-        mesh: &GroundMesh,
+        mesh: &LabelledMesh,
     ) -> Result<Option<Self>, SurfaceError> {
         let Some(relief) = relief else { return Ok(None) };
         let manifest = package.manifest();
@@ -54,7 +59,8 @@ impl ReliefMap {
         let mut png = Vec::new();
         let encoder = png::PngEncoder::new_with_quality(
             &mut png,
-            // At the slowest level files are as large, and a model took 1.5 times as long (docs/lab/exports.md).
+            // With the best compression, files are as large, and a model took 1.5 times as long
+            // (docs/lab/exports.md).
             png::CompressionType::Fast,
             png::FilterType::Adaptive,
         );
@@ -64,29 +70,32 @@ impl ReliefMap {
         Ok(Some(Self { png }))
     }
 
-    /// Where on it a place of the tile is, given as shares of the tile from the west and from the north: nodes lie in the middle of their texels, so
-    /// that both tiles of a border read the same.
+    /// Returns the texture coordinates of a place of the tile, given as shares of the tile from the
+    /// west and from the north. Nodes are in the middle of their texels, so both tiles of a border
+    /// read the same.
     pub(crate) fn place(across: [f32; 2]) -> [f32; 2] {
         let side = SIDE as f32;
         across.map(|share| (share * (side - 1.0) + 0.5) / side)
     }
 }
 
-/// The tangent that belongs to a vertex: east, along the ground. All are vectors of east, north and up.
+/// Returns the tangent of a vertex: east, along the ground. All are vectors of east, north and up.
 pub(crate) fn tangent([east, north, up]: [f32; 3]) -> [f32; 3] {
-    // The part of (1, 0, 0) at right angles to the normal; nothing is left of it where the ground is a wall that looks east or west.
+    // The part of (1, 0, 0) perpendicular to the normal. It vanishes where the ground is a wall
+    // that faces east or west.
     let part = [1.0 - east * east, -east * north, -east * up];
     if part[0] > f32::EPSILON { unit(part) } else { [0.0, 0.0, -east.signum()] }
 }
 
-/// A direction along the tangent of a vertex, at right angles to it, and along the vertex' normal.
+/// Returns the components of a direction along the tangent of a vertex, perpendicular to it, and
+/// along the vertex normal.
 fn seen_from(vertex: [f32; 3], direction: [f32; 3]) -> [f32; 3] {
     let along = tangent(vertex);
     let aside = cross(vertex, along);
     [along, aside, vertex].map(|axis| (0..3).map(|k| axis[k] * direction[k]).sum())
 }
 
-/// Nothing looks into the ground: glTF has no such normals.
+/// Encodes a normal as a texel. No texel points into the ground: glTF does not allow such normals.
 fn texel([along, aside, away]: [f32; 3]) -> [u8; 3] {
     // Between 127 and 128, rounding alone would decide, and differently in two tiles.
     let level = |axis: f32| if axis.abs() < LEVEL { 0.0 } else { axis };
@@ -94,8 +103,9 @@ fn texel([along, aside, away]: [f32; 3]) -> [u8; 3] {
     [x, y, z].map(|axis| ((axis + 1.0) * 127.5).round() as u8)
 }
 
-/// What a program mixes from the normals of vertices at each node, by row from the north; upwards where there is no ground.
-fn mixed_normals(bounds: &LatticeBounds, mesh: &GroundMesh) -> Vec<[f32; 3]> {
+/// Returns the normal that a program interpolates between vertices at each node, by row from the
+/// north; upwards where there is no ground.
+fn mixed_normals(bounds: &LatticeBounds, mesh: &LabelledMesh) -> Vec<[f32; 3]> {
     let steps = [bounds.max.u - bounds.min.u, bounds.max.v - bounds.min.v]
         .map(|side| side as f64 / (SIDE - 1) as f64);
     let among_nodes = |corner: u32| {
@@ -106,7 +116,7 @@ fn mixed_normals(bounds: &LatticeBounds, mesh: &GroundMesh) -> Vec<[f32; 3]> {
     let on_ground = |corners: &&[u32; 3]| !mesh.vertices[corners[0] as usize].on_slab;
     for triangle in mesh.triangles.iter().filter(on_ground) {
         let [a, b, c] = triangle.map(among_nodes);
-        let doubled = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+        let doubled = doubled_area([a, b, c]);
         if doubled.abs() < f64::MIN_POSITIVE {
             continue;
         }
@@ -118,9 +128,9 @@ fn mixed_normals(bounds: &LatticeBounds, mesh: &GroundMesh) -> Vec<[f32; 3]> {
         };
         for row in range(1) {
             for column in range(0) {
-                let [x, y] = [column as f64 - a[0], row as f64 - a[1]];
-                let of_b = (x * (c[1] - a[1]) - y * (c[0] - a[0])) / doubled;
-                let of_c = (y * (b[0] - a[0]) - x * (b[1] - a[1])) / doubled;
+                let node = [column as f64, row as f64];
+                let of_b = doubled_area([a, node, c]) / doubled;
+                let of_c = doubled_area([a, b, node]) / doubled;
                 let shares = [1.0 - of_b - of_c, of_b, of_c];
                 if shares.iter().any(|share| *share < -EDGE) {
                     continue;

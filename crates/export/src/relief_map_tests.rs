@@ -1,9 +1,9 @@
-//! The texels of normal maps give back the directions of the ground.
+//! The directions of the ground can be recovered from the texels of normal maps.
 
 use corniche_geom::LatticePoint;
 
 use super::*;
-use crate::surfaces::GroundVertex;
+use crate::surfaces::SurfaceVertex;
 
 fn near(one: [f32; 3], other: [f32; 3]) -> bool {
     one.iter().zip(other).all(|(one, other)| (one - other).abs() < 1e-6)
@@ -15,16 +15,16 @@ fn tangents_point_east_along_the_ground() {
         let along = tangent(normal);
         let dot: f32 = along.iter().zip(normal).map(|(a, b)| a * b).sum();
         assert!(dot.abs() < 1e-6 && along[0] > 0.0, "{normal:?} {along:?}");
-        // The other axis has nothing of east: it is north along the ground.
+        // The other axis has no eastern component: it is north along the ground.
         let aside = cross(normal, along);
         assert!(aside[0].abs() < 1e-6 && aside[1] > 0.0, "{normal:?} {aside:?}");
     }
-    // On walls there is no east: down or up.
+    // On walls, east has no direction along the ground: the tangent is down or up.
     assert!(near(tangent([1.0, 0.0, 0.0]), [0.0, 0.0, -1.0]));
     assert!(near(tangent([-1.0, 0.0, 0.0]), [0.0, 0.0, 1.0]));
 }
 
-/// What a program makes of a texel is the direction that went in.
+/// A program recovers the original direction from a texel.
 #[test]
 fn directions_come_back() {
     for vertex in [[0.0, 0.0, 1.0], unit([0.3, -0.4, 1.0]), unit([-2.0, 1.0, 1.0])] {
@@ -38,7 +38,7 @@ fn directions_come_back() {
     }
     assert_eq!(texel([0.0, 0.0, 1.0]), [128, 128, 255]);
     assert_eq!(texel([1e-6, -1e-6, 1.0]), [128, 128, 255]);
-    // Nothing looks into the ground.
+    // No texel points into the ground.
     let [x, y, z] = texel(unit([-1.0, 0.0, -1.0]));
     assert!(x <= 1 && y == 128 && z >= 128, "{x} {y} {z}");
 }
@@ -53,7 +53,8 @@ fn nodes_lie_in_the_middle_of_their_texels() {
     }
 }
 
-/// Two triangles over the whole tile, whose corners lean differently: at every node the mix of the three corners around it.
+/// Two triangles over the whole tile, whose corners have different normals: at every node, the
+/// interpolation of the three corners around it.
 #[test]
 fn normals_are_mixed_across_triangles() {
     let side = 1 << 10;
@@ -61,7 +62,7 @@ fn normals_are_mixed_across_triangles() {
         min: LatticePoint::new(500, -300),
         max: LatticePoint::new(500 + 256 * side, 256 * side - 300),
     };
-    let mut mesh = GroundMesh::new(LatticePoint::new(0, 0));
+    let mut mesh = LabelledMesh::new(LatticePoint::new(0, 0));
     let normals = [[0.0, 0.0, 1.0], [0.6, 0.0, 0.8], [0.0, 0.6, 0.8], [0.0, -0.6, 0.8]];
     let corners = [
         [bounds.min.u, bounds.min.v],
@@ -72,7 +73,7 @@ fn normals_are_mixed_across_triangles() {
     mesh.vertices = corners
         .into_iter()
         .zip(normals)
-        .map(|(at, normal)| GroundVertex {
+        .map(|(at, normal)| SurfaceVertex {
             at: at.map(|axis| axis as f64),
             height_m: 0.0,
             normal,
@@ -99,6 +100,6 @@ fn normals_are_mixed_across_triangles() {
 #[test]
 fn normals_point_up_where_there_is_no_ground() {
     let bounds = LatticeBounds { min: LatticePoint::new(0, 0), max: LatticePoint::new(2560, 2560) };
-    let mesh = GroundMesh::new(LatticePoint::new(0, 0));
+    let mesh = LabelledMesh::new(LatticePoint::new(0, 0));
     assert!(mixed_normals(&bounds, &mesh).iter().all(|normal| near(*normal, [0.0, 0.0, 1.0])));
 }

@@ -1,4 +1,4 @@
-//! Roads by what is written on signs: their numbers and names.
+//! Finds roads by the text on signs: their numbers and names.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -6,16 +6,19 @@ use corniche_roads::RoadAttributes;
 use corniche_tileset::{FilePackage, Sections};
 use corniche_work::{Observer, Stage, workers::one_by_one};
 use icu_normalizer::ComposingNormalizerBorrowed;
+use strsim::levenshtein;
 
 use crate::{error::RoadQueryError, read};
 
-/// So many numbers or names that are like the one that was asked for are told.
+/// The number of similar numbers or names that are suggested.
 const MOST_NEAR: usize = 5;
-/// Texts are alike if no more letters than these have to be changed, and one of so many at most.
+/// Texts are similar if they differ by at most this many letters, and by at most one in every
+/// `LETTERS_OF_CHANGE`.
 const ALIKE: usize = 2;
 const LETTERS_OF_CHANGE: usize = 3;
 
-/// A road as a person names it. Spaces, hyphens and case do not matter; where a way has several numbers (`A 1;E 60`), one of them is enough.
+/// A road as named by a person. Spaces, hyphens and case are ignored. If a way has several numbers
+/// (`A 1;E 60`), one of them is enough.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct RoadQuery {
     /// OSM's `ref`, the number on signs.
@@ -26,9 +29,9 @@ pub struct RoadQuery {
 
 /// The ways of a level.
 pub(crate) struct NamedWays {
-    /// What is known of all ways: those that are not meant join those that are.
+    /// The attributes of all ways: ways that do not match connect those that do.
     pub(crate) known: BTreeMap<i64, RoadAttributes>,
-    /// The ways that are meant.
+    /// The ways that match.
     pub(crate) meant: BTreeSet<i64>,
 }
 
@@ -36,8 +39,7 @@ impl RoadQuery {
     fn is_met_by(&self, way: &RoadAttributes) -> bool {
         let meets = |wanted: &Option<String>, texts: &str| {
             wanted.as_ref().is_none_or(|wanted| {
-                let texts: Vec<String> = texts.split(';').map(folded).collect();
-                let wanted: Vec<String> = wanted.split(';').map(folded).collect();
+                let [wanted, texts] = [wanted.as_str(), texts].map(folded_parts);
                 let is_there = |part: &String| !part.is_empty() && texts.contains(part);
                 wanted.iter().all(is_there)
             })
@@ -45,17 +47,17 @@ impl RoadQuery {
         meets(&self.reference, &way.reference) && meets(&self.name, &way.name)
     }
 
-    /// The number or the name that is meant, as a way has it.
+    /// Returns the number or the name that matches, as written in the way's tags.
     #[must_use]
     pub fn written<'a>(&self, reference: &'a str, name: &'a str) -> Option<&'a str> {
         let part = |wanted: &Option<String>, texts: &'a str| {
-            let wanted: Vec<String> = wanted.as_ref()?.split(';').map(folded).collect();
+            let wanted = folded_parts(wanted.as_ref()?);
             texts.split(';').map(str::trim).find(|text| wanted.contains(&folded(text)))
         };
         part(&self.reference, reference).or_else(|| part(&self.name, name))
     }
 
-    /// The query as it is told, such as `ref "A 1"`.
+    /// The text of the query in messages, such as `ref "A 1"`.
     #[must_use]
     pub fn text(&self) -> String {
         let part = |key: &str, text: &Option<String>| {
@@ -65,7 +67,7 @@ impl RoadQuery {
         parts.into_iter().flatten().collect::<Vec<_>>().join(" and ")
     }
 
-    /// Values of the key that was asked for, the most alike first.
+    /// Returns values of the requested key, the most similar first.
     fn near<'a>(&self, ways: impl Iterator<Item = &'a RoadAttributes>) -> Vec<String> {
         let (wanted, of): (&str, fn(&RoadAttributes) -> &str) = match (&self.reference, &self.name)
         {
@@ -78,7 +80,7 @@ impl RoadQuery {
             ways.flat_map(|way| of(way).split(';')).map(str::trim).collect();
         let rank = |text: &&str| {
             let own = folded(text);
-            let changes = changes(&wanted, &own);
+            let changes = levenshtein(&wanted, &own);
             let is_part = !wanted.is_empty() && (own.contains(&wanted) || wanted.contains(&own));
             let alike = ALIKE.min(wanted.chars().count() / LETTERS_OF_CHANGE);
             (!own.is_empty() && (changes <= alike || is_part)).then_some(changes)
@@ -90,7 +92,13 @@ impl RoadQuery {
     }
 }
 
-/// A text without what does not matter: spaces, hyphens, case, ß for ss, and whether accents are letters of their own.
+/// Returns the texts of a list, each [`folded`].
+fn folded_parts(list: &str) -> Vec<String> {
+    list.split(';').map(folded).collect()
+}
+
+/// Returns a text without the differences that a query ignores: spaces, hyphens, case, ß for ss,
+/// and whether accents are separate characters.
 fn folded(text: &str) -> String {
     let matters = |letter: &char| {
         let is_hyphen =
@@ -101,26 +109,10 @@ fn folded(text: &str) -> String {
     ComposingNormalizerBorrowed::new_nfc().normalize(&lower.replace('ß', "ss")).into_owned()
 }
 
-/// How many letters have to be put in, left out or replaced to make one text of another. Source: Wagner & Fischer 1974, *The String-to-String Correction
-/// Problem*.
-fn changes(one: &str, other: &str) -> usize {
-    let other: Vec<char> = other.chars().collect();
-    let mut row: Vec<usize> = (0..=other.len()).collect();
-    for (done, letter) in (1..).zip(one.chars()) {
-        let mut before = std::mem::replace(&mut row[0], done);
-        for (k, own) in other.iter().enumerate() {
-            let replaced = before + usize::from(*own != letter);
-            before = row[k + 1];
-            row[k + 1] = replaced.min(before + 1).min(row[k] + 1);
-        }
-    }
-    row.last().copied().unwrap_or_default()
-}
-
-/// The ways of a level, and which of them a query means: none without one.
+/// Returns the ways of a level, and those that match a query: none without a query.
 ///
 /// # Errors
-/// When a tile cannot be read, or no way is meant.
+/// When a tile cannot be read, or no way matches.
 pub(crate) fn named_ways(
     package: &FilePackage,
     level: u8,

@@ -53,11 +53,8 @@ fn a_road_is_written_as_its_ways_have_it() {
 }
 
 #[test]
-fn what_is_alike_is_told() {
+fn similar_values_are_reported() {
     let ways = [way("CG 1", ""), way("CG 2;N 2", ""), way("X", ""), way("CG 23", ""), way("", "")];
     assert_eq!(by_ref("CG 3").near(ways.iter()), ["CG 1", "CG 2", "CG 23", "N 2", "X"][..3]);
     assert!(by_ref("Hauptstrasse").near(ways.iter()).is_empty());
-    assert_eq!(changes("kitten", "sitting"), 3);
-    assert_eq!(changes("", "abc"), 3);
-    assert_eq!(changes("abc", "abc"), 0);
 }

@@ -1,4 +1,4 @@
-//! The whole way of roads out of a package.
+//! The export of a package's roads, from tiles to file.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -17,68 +17,69 @@ use crate::{
     deck_lines::{Carrier, lay_on_deck},
     dem_ground::{DemLine, DemNodes, off_dem_m},
     error::{CoordinatesError, ElevationError, FeaturesError, SelectionError},
-    feature::{HeightSource, Road, Smooth, road_fields, road_values},
-    features::{About, FeatureRequest, FeatureSource, Features, RoadFeatures, write_features},
+    feature::{FeatureRoad, HeightSource, Smooth, road_fields, road_values},
+    features::{FeatureRequest, FeatureSource, Features, RoadFeatures, write_features},
     grades::{MeasuredChains, SmoothLine, Smoothing, grades_of, most_steps, stretch_of_way},
     heights::{Elevation, dem_heights, height_bound, sample_bound_m},
-    join::{Line, lines},
+    join::{JoinedLine, lines},
     measures::{Measures, Profiled},
-    piece::{Piece, PieceHeights, PieceKey, larger},
+    piece::{PieceHeights, PieceKey, WayPiece, larger},
     places::Places,
     read,
     road_query::{RoadQuery, named_ways},
     span_facts::{SpanFacts, least_free_heights},
-    vector::{Record, Shape, ShapeKind},
+    vector::{FeatureGeometry, FeatureRecord, Layer, ShapeKind},
 };
 
-/// What was exported.
-#[derive(Debug, Clone, PartialEq)]
+/// The figures of an export of roads.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct ExportSummary {
-    /// The level whose roads were taken.
+    /// The level whose roads were exported.
     pub level: u8,
     /// Features written.
     pub features: u64,
-    /// Ways of which there is something.
+    /// Ways with at least one feature.
     pub ways: u64,
     /// True length in plan, metres.
     pub length_2d_m: f64,
     /// Vertices of all lines on the ground.
     pub vertices: u64,
-    /// What the heights of the features are, in words.
+    /// What the heights of the features refer to, in words.
     pub heights: String,
-    /// How far lines are from the elevation files at most, over their whole length, metres; without bridges and tunnels off the ground. `None` where
-    /// that is not known.
+    /// The largest distance of lines from the elevation files, over their whole length, metres;
+    /// bridges and tunnels off the ground excluded. `None` if it is unknown.
     pub height_tolerance_m: Option<f64>,
-    /// How far the package's triangles are from the elevation files' samples at most, metres.
+    /// The largest distance of the package's triangles from the elevation files' samples, metres.
     pub sample_tolerance_m: f64,
-    /// How far the package's triangles are from the elevation files along the lines at most, metres; `None` where they were not compared.
+    /// The largest distance of the package's triangles from the elevation files along the lines,
+    /// metres; `None` if they were not compared.
     pub ground_tolerance_m: Option<f64>,
-    /// The bridges and tunnels of the network, where there is one.
+    /// The bridges and tunnels of the network, if there is one.
     pub spans: Option<SpanFacts>,
 }
 
-/// Where heights of roads are taken from.
+/// The source of the heights of roads.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct RoadHeights<'a> {
-    /// The elevation files; without them heights are those of the package's triangles.
+    /// The elevation files. Without them, heights are those of the package's triangles.
     pub elevation: Option<Elevation<'a>>,
-    /// The roads of the package's extract: with them, and the elevation files, grades are those of chains from junction to junction.
+    /// The roads of the package's extract. With them and the elevation files, grades are those of
+    /// chains from junction to junction.
     pub network: Option<&'a Network>,
 }
 
-/// Writes the roads of a package to a new file at `path`. Beside it, in the same folder, are unnamed files for sorting, and
-/// what GDAL needs while it writes. After an error the file at `path` is of no use.
+/// Writes the roads of a package to a new file at `path`. While it writes, the same folder also
+/// contains unnamed temporary files for sorting, and temporary files of GDAL. After an error the
+/// file at `path` is incomplete.
 ///
 /// # Errors
-/// When the package has no roads or no such level, the request cannot be met, the package is damaged, or something cannot be
-/// written.
+/// When the package has no roads or no such level, the request cannot be met, the package is
+/// corrupt, or something cannot be written.
 pub fn export_roads(
     package: &FilePackage,
-    (request, features, road): (
-        &FeatureRequest<FunctionalRoadClass>,
-        RoadFeatures,
-        Option<&RoadQuery>,
-    ),
+    request: &FeatureRequest<FunctionalRoadClass>,
+    features: RoadFeatures,
+    road: Option<&RoadQuery>,
     heights: RoadHeights<'_>,
     path: &Path,
     observer: &dyn Observer,
@@ -110,67 +111,54 @@ pub fn export_roads(
         dem,
         summary: ExportSummary {
             level: source.level,
-            features: 0,
-            ways: 0,
-            length_2d_m: 0.0,
-            vertices: 0,
             heights: source.places.heights.clone(),
-            height_tolerance_m: None,
             sample_tolerance_m: sample_bound_m(manifest, source.level),
-            ground_tolerance_m: None,
             spans,
+            ..ExportSummary::default()
         },
     };
     write_features(&mut roads, &source, path, observer)?;
     Ok(roads.summary)
 }
 
-/// Roads on their way into a file.
+/// An export of roads in progress.
 struct Roads<'a> {
     by_piece: bool,
-    /// The ways that are taken, if roads are named.
+    /// The ways to export, if the user named roads.
     meant: Option<BTreeSet<i64>>,
     dem: Option<OnDem<'a>>,
     summary: ExportSummary,
 }
 
-/// What heights and grades of the elevation files are made from.
+/// The inputs of heights and grades from the elevation files.
 struct OnDem<'a> {
     nodes: DemNodes<'a>,
     chains: Option<MeasuredChains<'a>>,
-    /// How far lines may be beside their ways, lattice steps.
+    /// The largest distance of lines from their ways, lattice steps.
     most_steps: f64,
-    /// The least height between each bridge or tunnel and what it crosses, by way.
+    /// The least clearance between each bridge or tunnel and the roads that it crosses, by way.
     free_heights_m: BTreeMap<i64, f64>,
-    /// The decks of the way that was asked for last: pieces of a way often come one after the other.
+    /// The decks of the last requested way: pieces of a way often follow each other.
     deck: Option<(i64, Vec<SmoothLine>)>,
 }
 
 impl Features for Roads<'_> {
     type Class = FunctionalRoadClass;
-    type Piece = Piece;
-    const SHAPES: ShapeKind = ShapeKind::Lines;
-
-    fn name(&self) -> &'static str {
-        "roads"
-    }
-
-    fn about(&self, source: &FeatureSource<'_, FunctionalRoadClass>) -> About {
+    type TilePiece = WayPiece;
+    fn layer(&self, source: &FeatureSource<'_, FunctionalRoadClass>) -> Layer {
         let what = if self.by_piece { "Pieces of roads" } else { "Roads" };
         let (cells, heights) = (source.cells(), &source.places.heights);
-        let from = if self.dem.is_some() { HeightSource::Dem } else { HeightSource::Ground };
-        let laid = match from {
-            HeightSource::Ground => format!("laid on terrain with {cells}"),
-            HeightSource::Dem => "laid on the elevation files".to_owned(),
+        let (from, laid) = match self.dem {
+            None => (HeightSource::Ground, format!("laid on terrain with {cells}")),
+            Some(_) => (HeightSource::Dem, "laid on the elevation files".to_owned()),
         };
-        About {
-            fields: road_fields(self.by_piece, from),
-            description: format!("{what} {laid}. Heights: {heights}."),
-            metadata: vec![
-                ("HEIGHTS", heights.clone()),
-                ("VERTICAL_DATUM_OF_PACKAGE", source.package.manifest().vertical.datum.clone()),
-            ],
-        }
+        let description = format!("{what} {laid}. Heights: {heights}.");
+        let metadata = vec![
+            ("HEIGHTS", heights.clone()),
+            ("VERTICAL_DATUM_OF_PACKAGE", source.package.manifest().vertical.datum.clone()),
+        ];
+        let fields = road_fields(self.by_piece, from);
+        source.layer(("roads", ShapeKind::Lines), fields, description, metadata)
     }
 
     fn heights_told(&self, source: &FeatureSource<'_, FunctionalRoadClass>) -> Option<String> {
@@ -186,12 +174,12 @@ impl Features for Roads<'_> {
         &mut self,
         FeatureSource { package, request, places, .. }: &FeatureSource<'_, FunctionalRoadClass>,
         tile: TileId,
-    ) -> Result<Vec<Piece>, FeaturesError> {
+    ) -> Result<Vec<WayPiece>, FeaturesError> {
         let mut found = Vec::new();
-        let is_meant = |piece: &Piece| {
+        let is_meant = |piece: &WayPiece| {
             self.meant.as_ref().is_none_or(|meant| meant.contains(&piece.key.way_id))
         };
-        // Elevation files tell distances themselves.
+        // With elevation files, the distances are measured.
         let read = if self.dem.is_some() { read::pieces } else { read::bounded_pieces };
         let mut pieces = read(package, tile, &request.classes)?;
         pieces.retain(is_meant);
@@ -208,18 +196,18 @@ impl Features for Roads<'_> {
         Ok(found)
     }
 
-    fn object(piece: &Piece) -> AreaObject {
+    fn object(piece: &WayPiece) -> AreaObject {
         AreaObject::Way(piece.key.way_id)
     }
 
     fn records(
         &mut self,
         source: &FeatureSource<'_, FunctionalRoadClass>,
-        pieces: &[Piece],
-    ) -> Result<Vec<Record>, FeaturesError> {
+        pieces: &[WayPiece],
+    ) -> Result<Vec<FeatureRecord>, FeaturesError> {
         let Some(first) = pieces.first() else { return Ok(Vec::new()) };
         let is_same =
-            |piece: &Piece| piece.class == first.class && piece.attributes == first.attributes;
+            |piece: &WayPiece| piece.class == first.class && piece.attributes == first.attributes;
         if !pieces.iter().all(is_same) {
             return Err(FeaturesError::Differs { object: Self::object(first) });
         }
@@ -228,11 +216,11 @@ impl Features for Roads<'_> {
         let way = chains.map(|chains| chains.of_way(first.key.way_id)).unwrap_or_default();
         if !self.by_piece {
             let heights = pieces.iter().map(|piece| piece.heights).reduce(PieceHeights::with);
-            let of = Piece { heights: heights.unwrap_or(first.heights), ..first.clone() };
+            let of = WayPiece { heights: heights.unwrap_or(first.heights), ..first.clone() };
             return Ok(vec![self.record(&source.places, &of, &lines(pieces), &way)?]);
         }
-        let of_piece = |piece: &Piece| {
-            let line = Line { vertices: piece.vertices.clone(), joins: Vec::new() };
+        let of_piece = |piece: &WayPiece| {
+            let line = JoinedLine { vertices: piece.vertices.clone(), joins: Vec::new() };
             Ok(self.record(&source.places, piece, &[line], &way)?)
         };
         pieces.iter().map(of_piece).collect()
@@ -240,8 +228,12 @@ impl Features for Roads<'_> {
 }
 
 impl OnDem<'_> {
-    /// What is left of a piece, on the ground of the elevation files.
-    fn laid(&mut self, cut: Vec<Piece>, places: &Places<'_>) -> Result<Vec<Piece>, ElevationError> {
+    /// Returns the remaining parts of a piece, on the ground of the elevation files.
+    fn laid(
+        &mut self,
+        cut: Vec<WayPiece>,
+        places: &Places<'_>,
+    ) -> Result<Vec<WayPiece>, ElevationError> {
         let Self { nodes, chains, most_steps, deck, .. } = self;
         let mut laid = Vec::new();
         for piece in cut {
@@ -259,7 +251,7 @@ impl OnDem<'_> {
             for DemLine { vertices, tolerance_m, has_end: [first, last], on_deck } in
                 lay_on_deck(nodes, &piece.vertices, &carrier, &places.metric())?
             {
-                laid.push(Piece {
+                laid.push(WayPiece {
                     key: PieceKey { cut: laid.len() as u32, ..piece.key },
                     vertices,
                     goes_on: [first && first_end, last && last_end],
@@ -271,8 +263,8 @@ impl OnDem<'_> {
         Ok(laid)
     }
 
-    /// The grades of lines of a way, of which `way` are the smooth lines where these are known.
-    fn smooth(&self, of: &Piece, lines: &[Profiled<'_>], way: &[SmoothLine]) -> Smooth {
+    /// Returns the grades of lines of a way; `way` contains its smooth lines, if they are known.
+    fn smooth(&self, of: &WayPiece, lines: &[Profiled<'_>], way: &[SmoothLine]) -> Smooth {
         let unknown = Smooth {
             grades: None,
             most_off_m: 0.0,
@@ -291,7 +283,7 @@ impl OnDem<'_> {
             let length_m = profile.last().map_or(0.0, |last| last[0]);
             let found = stretch_of_way(way, &line.vertices, length_m, self.most_steps);
             is_of_chain &= found.is_some();
-            // A deck is smooth by itself, and on the ground where that is in its way.
+            // A deck is smooth by itself, and on the ground where the ground obstructs it.
             if of.heights.on_deck {
                 parts.push(SmoothLine::itself(profile));
                 continue;
@@ -302,7 +294,7 @@ impl OnDem<'_> {
                 parts.push(own);
                 continue;
             };
-            // Lines that are simplified are shorter than their ways.
+            // Simplified lines are shorter than their ways.
             let on_way = |&[at_m, height_m]: &[f64; 2]| {
                 [from_m + at_m * (to_m - from_m) / length_m, height_m]
             };
@@ -320,15 +312,15 @@ impl Roads<'_> {
     fn record(
         &mut self,
         places: &Places<'_>,
-        of: &Piece,
-        lines: &[Line],
+        of: &WayPiece,
+        lines: &[JoinedLine],
         way: &[SmoothLine],
-    ) -> Result<Record, CoordinatesError> {
-        let Piece { key, class, attributes, heights, .. } = of;
+    ) -> Result<FeatureRecord, CoordinatesError> {
+        let WayPiece { key, class, attributes, heights, .. } = of;
         let distance_m = places.metric();
         let profiled: Vec<Profiled<'_>> =
-            lines.iter().map(|line| Profiled::of(line, &distance_m)).collect();
-        let measures = Measures::of(&profiled);
+            lines.iter().map(|line| Profiled::from_line(line, &distance_m)).collect();
+        let measures = Measures::from_lines(&profiled);
         let summary = &mut self.summary;
         summary.features += 1;
         summary.length_2d_m += measures.length_2d_m;
@@ -336,7 +328,7 @@ impl Roads<'_> {
         summary.height_tolerance_m = larger(summary.height_tolerance_m, heights.tolerance_m);
         summary.ground_tolerance_m = larger(summary.ground_tolerance_m, heights.ground_m);
         let piece = tile_of_order(key.tile).filter(|_| self.by_piece).map(|tile| (tile, key.part));
-        let road = Road {
+        let road = FeatureRoad {
             way_id: key.way_id,
             class: *class,
             attributes,
@@ -350,6 +342,6 @@ impl Roads<'_> {
         for line in lines {
             carried.extend(places.carry(Self::object(of), &line.vertices)?);
         }
-        Ok(Record { values: road_values(&road), shape: Shape::Lines(carried) })
+        Ok(FeatureRecord { values: road_values(&road), shape: FeatureGeometry::Lines(carried) })
     }
 }

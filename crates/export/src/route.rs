@@ -1,8 +1,8 @@
-//! Roads by their numbers or names, and ways through the network from place to place.
+//! Finds roads by their numbers or names, and routes through the network from place to place.
 //!
 //! ```text
-//!   attributes of tiles ──► ways that are meant ──┐
-//!   lines of tiles, or an extract ──► network ────┴──► graph of links ──► shortest way ──► a course for a profile
+//!   attributes of tiles ──► ways that match ──────┐
+//!   lines of tiles, or an extract ──► network ────┴──► graph of links ──► shortest route ──► a course for a profile
 //! ```
 
 mod find_route;
@@ -10,41 +10,40 @@ mod graph;
 mod package_network;
 
 use corniche_network::Network;
-use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::FilePackage;
 use corniche_work::Observer;
 
-pub use self::find_route::{Route, RouteRequest};
+pub use self::find_route::{NetworkRoute, RouteRequest};
 use self::{find_route::Finder, graph::RoadGraph, package_network::package_network};
 use crate::{
     error::{RouteError, SelectionError},
-    places::{Coordinates, Places},
+    places::{FeatureCoordinates, Places},
     read,
     road_query::named_ways,
 };
 
-/// The shortest way from place to place, or along a whole road. Roads join as they do in the network, or else where lines of the package have a point
-/// in common.
+/// Returns the shortest route from place to place, or along a whole road. Roads join as they do in
+/// the network; without a network, they join where lines of the package share a point.
 ///
 /// # Errors
-/// When no road is meant, or several are; when a place is far from roads, nothing joins both, or the package is damaged.
+/// When no road matches, or several do; when a place is far from roads, nothing connects both
+/// places, or the package is corrupt.
 pub fn route(
     package: &FilePackage,
     request: &RouteRequest,
     network: Option<&Network>,
     observer: &dyn Observer,
-) -> Result<Route, RouteError> {
+) -> Result<NetworkRoute, RouteError> {
     let manifest = package.manifest();
     SelectionError::check_roads(package)?;
     let level = read::level(package, request.level)?;
-    let places = Places::new(manifest, Coordinates::Package)?;
+    let places = Places::new(manifest, FeatureCoordinates::Package)?;
     let roads = named_ways(package, level, request.road.as_ref(), observer)?;
     let own;
     let network = if let Some(network) = network {
         network
     } else {
-        let classes: Vec<FunctionalRoadClass> = FunctionalRoadClass::all().collect();
-        own = package_network(package, level, &classes, observer)?;
+        own = package_network(package, level, observer)?;
         &own
     };
     let graph = RoadGraph::new(network, &places, |way| {

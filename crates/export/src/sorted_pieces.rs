@@ -1,4 +1,4 @@
-//! The pieces of all tiles, sorted by the object that they belong to, with an unnamed file as scratch space.
+//! The pieces of all tiles, sorted by object, with an unnamed temporary file.
 
 use std::{
     fs::File,
@@ -8,19 +8,19 @@ use std::{
 };
 
 use corniche_geom::TileId;
-use corniche_store::{Groups, Scratch, SortRecord, Sorter, Span};
+use corniche_store::{Groups, ScratchRange, ScratchSpace, SortRecord, Sorter};
 use corniche_work::{Observer, Stage, locked, workers::one_by_one};
 
 use crate::error::FeaturesError;
 
-/// Scratch space in a file without a name, which is gone when the program ends, however it ends.
+/// A temporary file without a name, which disappears when the program ends for any reason.
 pub(crate) struct FileScratch {
     file: Mutex<File>,
     folder: PathBuf,
 }
 
 impl FileScratch {
-    /// In a folder where the file has room.
+    /// Creates the file in a folder with space for it.
     pub(crate) fn create(folder: &Path) -> Result<Self, FeaturesError> {
         let folder = folder.to_path_buf();
         match tempfile::tempfile_in(&folder) {
@@ -34,15 +34,15 @@ impl FileScratch {
     }
 }
 
-impl Scratch for FileScratch {
-    fn append(&self, bytes: &[u8]) -> io::Result<Span> {
+impl ScratchSpace for FileScratch {
+    fn append(&self, bytes: &[u8]) -> io::Result<ScratchRange> {
         let mut file = locked(&self.file);
         let offset = file.seek(SeekFrom::End(0))?;
         file.write_all(bytes)?;
-        Ok(Span { offset, length: bytes.len() as u64 })
+        Ok(ScratchRange { offset, length: bytes.len() as u64 })
     }
 
-    fn read(&self, span: Span) -> io::Result<Vec<u8>> {
+    fn read(&self, span: ScratchRange) -> io::Result<Vec<u8>> {
         let mut file = locked(&self.file);
         let mut bytes = vec![0; usize::try_from(span.length).map_err(io::Error::other)?];
         file.seek(SeekFrom::Start(span.offset))?;
@@ -56,12 +56,13 @@ pub(crate) struct SortedPieces<'a, P: SortRecord> {
     sorted: Groups<'a, P>,
     /// How many pieces there are.
     count: u64,
-    /// Where they were sorted.
+    /// The temporary file in which they were sorted.
     scratch: &'a FileScratch,
 }
 
 impl<'a, P: SortRecord> SortedPieces<'a, P> {
-    /// Reads tiles and sorts the pieces that `pieces` finds in each, with `memory_bytes` of memory.
+    /// Reads tiles and sorts the pieces that `pieces` returns for each, with `memory_bytes` of
+    /// memory.
     pub(crate) fn read(
         tiles: &[TileId],
         (scratch, memory_bytes): (&'a FileScratch, u64),
@@ -78,10 +79,10 @@ impl<'a, P: SortRecord> SortedPieces<'a, P> {
             }
             Ok::<(), FeaturesError>(())
         })?;
-        Ok(Self { sorted: Groups::of(sorter.finish().map_err(failed)?), count, scratch })
+        Ok(Self { sorted: Groups::from_sorted(sorter.finish().map_err(failed)?), count, scratch })
     }
 
-    /// Hands all pieces of each object to `each`, in ascending order.
+    /// Calls `each` with all pieces of each object, in ascending order.
     pub(crate) fn for_each<K: PartialEq, E: From<FeaturesError>>(
         mut self,
         observer: &dyn Observer,

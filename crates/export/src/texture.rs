@@ -1,4 +1,4 @@
-//! The photo of a tile as a picture of the ground.
+//! The photo of a tile as an image of the ground.
 
 use corniche_geom::TileId;
 use corniche_styles::{Rgb, Style};
@@ -7,16 +7,16 @@ use jpeg_encoder::{ColorType, Encoder};
 
 use crate::error::SurfaceError;
 
-/// A picture that covers a tile and a little beyond.
-#[derive(Clone)]
+/// An image that covers a tile and a margin around it.
 pub(crate) struct Texture {
     pub(crate) jpeg: Vec<u8>,
-    /// The share of its side that lies beyond the tile, on each side.
+    /// The share of its side that is outside the tile, on each side.
     border: f32,
 }
 
 impl Texture {
-    /// The photo of a tile, as strong as the style says, over `ground` where there is none; `None` where the tile has no photo or the style shows none.
+    /// Returns the photo of a tile, at the strength that the style sets, over `ground` where there
+    /// is none; `None` if the tile has no photo or the style shows none.
     pub(crate) fn of_tile(
         package: &FilePackage,
         id: TileId,
@@ -34,21 +34,22 @@ impl Texture {
         let side = photo.side();
         let rgb = mixed(&photo, strength, ground);
         let mut jpeg = Vec::new();
-        // Sides of photos are a few thousand texels at most.
-        let sides = [side as u16; 2];
+        // Sides of photos have a few thousand texels at most.
+        let texels = side as u16;
         Encoder::new(&mut jpeg, record.quality)
-            .encode(&rgb, sides[0], sides[1], ColorType::Rgb)
+            .encode(&rgb, texels, texels, ColorType::Rgb)
             .map_err(|source| SurfaceError::Picture { tile: id, source: Box::new(source) })?;
         Ok(Some(Self { jpeg, border: PHOTO_BORDER as f32 / side as f32 }))
     }
 
-    /// Where on the picture a place of the tile is, given as shares of the tile from the west and from the north.
+    /// Returns the texture coordinates of a place of the tile, given as shares of the tile from the
+    /// west and from the north.
     pub(crate) fn place(&self, across: [f32; 2]) -> [f32; 2] {
         across.map(|share| self.border + share * (1.0 - 2.0 * self.border))
     }
 }
 
-/// A photo over ground of one colour.
+/// Blends a photo over ground of one colour.
 fn mixed(photo: &Photo, strength: f32, ground: Rgb) -> Vec<u8> {
     let texels = photo.rgba.as_chunks::<4>().0;
     texels

@@ -6,10 +6,12 @@
 //!   tileset.json ◄── boxes and errors from the finest level upwards ◄── GLB ◄── placed on the globe ◄────┘
 //! ```
 //!
-//! Roads as vector content are a tileset of their own, in a folder beneath, with the same tree: CesiumJS (1.145) takes all of a tileset for vectors or none.
+//! Roads as vector content are a separate tileset, in a subfolder, with the same tree: CesiumJS
+//! (1.145) treats either all of a tileset as vectors or nothing.
 //!
-//! All tiles are in one frame (east, north and up in the middle of the data), so one matrix leads to the earth's, and vertices that two tiles of a level
-//! share have the same bits.
+//! All tiles are in one coordinate frame (east, north and up in the middle of the data), so one
+//! matrix transforms to the earth's frame, and vertices that two tiles of a level share have the
+//! same bits.
 
 mod content;
 mod glb;

@@ -1,4 +1,5 @@
-//! Files of features through GDAL's vector drivers. Nothing here knows a road or an area, but for the colours of their classes.
+//! Files of features through GDAL's vector drivers. Nothing here depends on roads or areas, except
+//! for the colours of their classes.
 
 mod cell;
 mod field;
@@ -9,7 +10,9 @@ mod map_style;
 mod whole;
 
 pub use cell::{cell_text, is_unseen, text_in_line};
-pub use field::{Field, FieldKind};
-pub(crate) use field::{Record, Shape, ShapeKind, Value, fields, fields_of, real, text};
+pub use field::{FeatureField, FieldKind};
+pub(crate) use field::{
+    FeatureGeometry, FeatureRecord, FieldValue, ShapeKind, fields, fields_of, real, text,
+};
 pub(crate) use file::{Layer, VectorFile};
 pub use format::VectorFormat;

@@ -1,4 +1,5 @@
-//! Lines in plan out of parts that overlap: each tile has the segments that come near it, whole.
+//! Reconstructs lines in plan from overlapping parts: each tile has the segments that come near it,
+//! whole.
 
 use std::collections::BTreeMap;
 
@@ -8,17 +9,18 @@ use crate::join::Following;
 
 type Segment = [LatticePoint; 2];
 
-/// The lines of a way, each of its segments once, from the parts that tiles have of it.
+/// Returns the lines of a way, each of its segments once, from the parts in tiles.
 ///
 /// ```text
 ///   tile A   a────b────c────d
 ///   tile B             c────d────e          one line: a b c d e
-///   tile C        b────c                    c f g, where f lies on no tile: a line of its own up to f, and one from there,
+///   tile C        b────c                    c f g, where f is on no tile: one line up to f, and one from f,
 ///                                           which are joined
 /// ```
 ///
-/// Segments follow each other as they do in a part. So a line that touches itself goes on as the way does. Lines that then end where another one begins
-/// are joined. What is once more in the same direction is there once.
+/// Segments follow each other in the order of the parts, so a line that touches itself continues as
+/// the way does. Lines that then end where another one begins are joined. A segment that is
+/// repeated in the same direction occurs once.
 pub(crate) fn whole_lines<'a>(
     parts: &(impl Iterator<Item = &'a [LatticePoint]> + Clone),
 ) -> Vec<Vec<LatticePoint>> {
@@ -44,7 +46,7 @@ pub(crate) fn whole_lines<'a>(
     join_ends(&chains.iter().map(line).collect::<Vec<_>>())
 }
 
-/// Lines go on with others that begin where they end; rings are whole.
+/// Joins lines that end where others begin; rings are complete.
 fn join_ends(lines: &[Vec<LatticePoint>]) -> Vec<Vec<LatticePoint>> {
     let mut beginnings: BTreeMap<LatticePoint, Vec<usize>> = BTreeMap::new();
     let is_open = |line: &[LatticePoint]| line.first() != line.last();

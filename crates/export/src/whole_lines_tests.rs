@@ -1,4 +1,4 @@
-//! Overlapping parts of a way become the way again, each segment once.
+//! Overlapping parts of a way give the way again, each segment once.
 
 use super::*;
 
@@ -14,7 +14,7 @@ fn whole(parts: &[Vec<LatticePoint>]) -> Vec<Vec<LatticePoint>> {
 #[test]
 fn windows_of_a_line_become_the_line() {
     let straight = points(&[[0, 0], [1, 0], [2, 1], [3, 1], [4, 2], [5, 5]]);
-    // It meets itself in [2, 0], as an 8 does; the way goes straight on there.
+    // It meets itself in [2, 0], like an 8; the way goes straight on there.
     let eight = points(&[[0, 0], [2, 0], [4, 0], [4, 2], [2, 2], [2, 0], [2, -2], [0, -2]]);
     let ring = points(&[[0, 0], [3, 0], [3, 3], [0, 3], [0, 0]]);
     for line in [straight, eight, ring] {
@@ -27,7 +27,8 @@ fn windows_of_a_line_become_the_line() {
     }
 }
 
-/// Parts without a common segment are joined where one begins at the other one's end, and stay apart where there is a gap.
+/// Parts without a common segment are joined where one begins at the other one's end, and stay
+/// apart where there is a gap.
 #[test]
 fn ends_that_meet_are_joined_and_gaps_stay() {
     let [a, b, c] =
@@ -38,7 +39,7 @@ fn ends_that_meet_are_joined_and_gaps_stay() {
     assert_eq!(whole(&[a.clone(), c.clone()]), [a, c]);
 }
 
-/// There and back are two segments; the same one twice is one.
+/// The segments there and back are different; the same segment twice is one.
 #[test]
 fn back_is_another_direction_and_twice_is_once() {
     let there = points(&[[0, 0], [1, 0], [0, 0]]);

@@ -1,9 +1,10 @@
 //! Barycentric coordinates of a point in a triangle.
 
-/// Barycentric coordinates of `p` in the triangle `a`, `b`, `c`: weights in that order, summing to 1.
+/// Returns the barycentric coordinates of `p` in the triangle `a`, `b`, `c`: weights in this order,
+/// which add up to 1.
 ///
-/// All positions in one plane coordinate system, in any unit. A weight is below 0 when `p` lies beyond
-/// the edge opposite that corner. The result is not finite for a triangle without area.
+/// All positions must be in one plane coordinate system, in any unit. A weight is below 0 if `p` is
+/// beyond the edge opposite that corner. The result is not finite for a triangle without area.
 ///
 /// Source: Vaaraniemi, Treib & Westermann 2011, *High-Quality Cartographic Roads on High-Resolution
 /// DEMs*, section 6.1.

@@ -1,4 +1,4 @@
-//! Barycentric coordinates of corners, the centroid and points outside are as defined.
+//! Barycentric coordinates of corners, the centroid and points outside match their definition.
 
 use super::*;
 

@@ -18,7 +18,7 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The rectangle that holds nothing; [`Bounds::include`] grows it.
+    /// The rectangle without points; [`Bounds::include`] extends it.
     pub const EMPTY: Self = Self {
         min_x: f64::INFINITY,
         min_y: f64::INFINITY,
@@ -26,7 +26,7 @@ impl Bounds {
         max_y: f64::NEG_INFINITY,
     };
 
-    /// The smallest rectangle around those points that are finite; empty where none is.
+    /// Returns the smallest rectangle around the finite points; empty if there are none.
     #[must_use]
     pub fn around<'a>(points: impl IntoIterator<Item = &'a [f64; 2]>) -> Self {
         let mut bounds = Self::EMPTY;
@@ -35,19 +35,20 @@ impl Bounds {
         bounds
     }
 
-    /// Makes the rectangle large enough to hold `point`.
+    /// Extends the rectangle to contain `point`.
     pub fn include(&mut self, point: [f64; 2]) {
         let [x, y] = point;
         *self = self.union(&Self { min_x: x, min_y: y, max_x: x, max_y: y });
     }
 
-    /// Whether it holds no point at all.
+    /// Whether the rectangle contains no point at all.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         !(self.min_x <= self.max_x && self.min_y <= self.max_y)
     }
 
-    /// The same rectangle, wider by `margin_x` on the west and on the east side, higher by `margin_y` on the south and on the north side.
+    /// Returns the rectangle extended by `margin_x` on the west and on the east side, and by
+    /// `margin_y` on the south and on the north side.
     #[must_use]
     pub fn expanded(&self, [margin_x, margin_y]: [f64; 2]) -> Self {
         Self {
@@ -58,7 +59,7 @@ impl Bounds {
         }
     }
 
-    /// The smallest rectangle around both.
+    /// Returns the smallest rectangle around both rectangles.
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
         Self {
@@ -69,7 +70,7 @@ impl Bounds {
         }
     }
 
-    /// The rectangle that both have in common; with its sides exchanged where that is nothing.
+    /// Returns the intersection of both rectangles; if it is empty, its sides are swapped.
     #[must_use]
     pub fn intersection(&self, other: &Self) -> Self {
         Self {
@@ -80,7 +81,7 @@ impl Bounds {
         }
     }
 
-    /// Whether a point lies inside or on the edge.
+    /// Whether a point is inside or on the edge.
     #[must_use]
     pub fn contains(&self, [x, y]: [f64; 2]) -> bool {
         (self.min_x..=self.max_x).contains(&x) && (self.min_y..=self.max_y).contains(&y)
@@ -95,32 +96,32 @@ impl Bounds {
             && other.min_y <= self.max_y
     }
 
-    /// The middle of the rectangle.
+    /// Returns the centre of the rectangle.
     #[must_use]
     pub fn center(&self) -> [f64; 2] {
         [f64::midpoint(self.min_x, self.max_x), f64::midpoint(self.min_y, self.max_y)]
     }
 
-    /// Length from west to east.
+    /// The length from west to east.
     #[must_use]
     pub fn width(&self) -> f64 {
         self.max_x - self.min_x
     }
 
-    /// Length from south to north.
+    /// The length from south to north.
     #[must_use]
     pub fn height(&self) -> f64 {
         self.max_y - self.min_y
     }
 
-    /// A rectangle in degrees, in words.
+    /// Describes a rectangle in degrees as text.
     #[must_use]
     pub fn degrees_text(&self) -> String {
         let [west, south, east, north] = self.to_array();
         format!("longitudes {west:.5} to {east:.5} and latitudes {south:.5} to {north:.5}")
     }
 
-    /// The rectangle as `[min_x, min_y, max_x, max_y]`.
+    /// Returns the rectangle as `[min_x, min_y, max_x, max_y]`.
     #[must_use]
     pub fn to_array(self) -> [f64; 4] {
         [self.min_x, self.min_y, self.max_x, self.max_y]
@@ -137,20 +138,20 @@ pub struct LatticeBounds {
 }
 
 impl LatticeBounds {
-    /// Whether `point` lies inside or on the edge.
+    /// Whether `point` is inside or on the edge.
     #[must_use]
     pub fn contains(&self, point: LatticePoint) -> bool {
         (self.min.u..=self.max.u).contains(&point.u) && (self.min.v..=self.max.v).contains(&point.v)
     }
 
-    /// Whether a point of the rectangle lies on its edge.
+    /// Whether a point of the rectangle is on its edge.
     #[must_use]
     pub fn has_on_border(&self, point: LatticePoint) -> bool {
         let Self { min, max } = self;
         [min.u, max.u].contains(&point.u) || [min.v, max.v].contains(&point.v)
     }
 
-    /// The same rectangle, larger by `margin` steps on every side.
+    /// Returns the rectangle extended by `margin` steps on every side.
     #[must_use]
     pub fn expanded(&self, margin: i64) -> Self {
         Self {
@@ -159,19 +160,19 @@ impl LatticeBounds {
         }
     }
 
-    /// The rectangle of one point.
+    /// Returns the rectangle of one point.
     #[must_use]
     pub fn at(point: LatticePoint) -> Self {
         Self { min: point, max: point }
     }
 
-    /// The smallest rectangle around `points`; `None` without points.
+    /// Returns the smallest rectangle around `points`; `None` without points.
     #[must_use]
-    pub fn of(points: &[LatticePoint]) -> Option<Self> {
+    pub fn around(points: &[LatticePoint]) -> Option<Self> {
         points.iter().copied().map(Self::at).reduce(|bounds, point| bounds.union(&point))
     }
 
-    /// The smallest rectangle around both.
+    /// Returns the smallest rectangle around both rectangles.
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
         Self {
@@ -180,7 +181,8 @@ impl LatticeBounds {
         }
     }
 
-    /// The rectangle that both have in common. Where they have none, its corners have changed places, and it contains no point.
+    /// Returns the intersection of both rectangles. If it is empty, its corners are swapped, and it
+    /// contains no point.
     #[must_use]
     pub fn intersection(&self, other: &Self) -> Self {
         Self {

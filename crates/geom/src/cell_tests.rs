@@ -1,4 +1,4 @@
-//! Cells are told as squares or as rectangles.
+//! Cells are printed as squares or as rectangles.
 
 use super::*;
 

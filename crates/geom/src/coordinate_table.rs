@@ -1,25 +1,28 @@
-//! A table of WGS84 positions over the working CRS, by which readers convert coordinates without PROJ.
+//! A table of WGS84 positions over the working CRS, by which readers convert coordinates without
+//! PROJ.
 
 use serde::{Deserialize, Serialize};
 
 use crate::{Bounds, ProjectError, Projection, Seam, line_length_m, ring_area_m2, wgs84};
 
-/// WGS84 positions sampled over the working CRS, from which a reader interpolates both ways without PROJ.
+/// WGS84 positions sampled over the working CRS, from which a reader interpolates in both
+/// directions without PROJ.
 ///
-/// A regular grid of `size × size` samples over `bounds`, interpolated by Lagrange's cubic through the
-/// nearest four samples on each axis: its error falls with the fourth power of the spacing, so that some
-/// dozen samples a side suffice for a country. The inverse is computed by Newton's method on that interpolation.
+/// The table is a regular grid of `size × size` samples over `bounds`, interpolated by Lagrange's
+/// cubic through the nearest four samples on each axis: its error falls with the fourth power of
+/// the spacing, so a few dozen samples per side are enough for a country. The inverse is computed
+/// by Newton's method on that interpolation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "TableRecord")]
 pub struct CoordinateTable {
     bounds: Bounds,
     size: usize,
-    /// `[lon_deg, lat_deg]`, row by row from the south. Longitudes are continuous: past the antimeridian
-    /// they go on beyond ±180.
+    /// Pairs `[lon_deg, lat_deg]`, row by row from the south. Longitudes are continuous: they
+    /// continue past ±180 across the antimeridian.
     samples_deg: Vec<[f64; 2]>,
 }
 
-/// [`CoordinateTable`] as it is read, not checked yet.
+/// A [`CoordinateTable`] as it is read, before it is checked.
 #[derive(Deserialize)]
 struct TableRecord {
     bounds: Bounds,
@@ -49,40 +52,41 @@ impl TryFrom<TableRecord> for CoordinateTable {
     }
 }
 
-/// Why there is no coordinate table.
+/// Why a coordinate table could not be computed or read.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CoordinateTableError {
     /// The projection failed.
     #[error("the package's corners have no longitude and latitude")]
     Project(#[from] ProjectError),
-    /// The table that was read is not usable.
+    /// The table that was read is invalid.
     #[error("the table of longitudes and latitudes is damaged")]
     Damaged,
-    /// No table of permitted size is exact enough, for example because the extent touches a pole.
+    /// No table of permitted size is accurate enough, for example because the extent touches a
+    /// pole.
     #[error(
-        "longitude and latitude cannot be tabulated to {tolerance_m} m: {reached_m} m is the best reached"
+        "longitude and latitude cannot be tabulated to {tolerance_m} m; the best accuracy reached is {reached_m} m"
     )]
     TooCurved {
-        /// The error asked for.
+        /// The requested accuracy.
         tolerance_m: f64,
-        /// The error at the largest table tried.
+        /// The error of the largest table that was tried.
         reached_m: f64,
     },
 }
 
 const MAX_SIZE: usize = 129;
-/// The distance, in working metres, over which the scale is measured: long enough that the table's rounding does not
-/// matter, short enough that the scale hardly changes over it.
+/// The distance, in working metres, over which the scale is measured: long enough for the table's
+/// rounding not to matter, short enough for the scale to be nearly constant.
 const SCALE_SPAN_M: f64 = 1000.0;
-/// Metres to a degree of latitude, near enough to turn a tolerance into degrees.
+/// Metres per degree of latitude, accurate enough to convert a tolerance to degrees.
 const METRES_PER_DEGREE: f64 = 111_320.0;
 
 impl CoordinateTable {
-    /// Tabulates `projection` over `bounds` so that positions interpolated halfway between samples, where a
-    /// cubic is worst, are within `tolerance_m` of the projected ones.
+    /// Tabulates `projection` over `bounds` so that positions interpolated halfway between samples,
+    /// where a cubic is least accurate, are within `tolerance_m` of the projected ones.
     ///
     /// # Errors
-    /// When the projection fails or no table of permitted size is that exact.
+    /// When the projection fails or no table of permitted size is accurate enough.
     pub fn sample(
         projection: &dyn Projection,
         bounds: Bounds,
@@ -102,7 +106,7 @@ impl CoordinateTable {
         }
     }
 
-    /// Longitude and latitude of each sample, degrees.
+    /// The longitude and latitude of each sample, in degrees.
     #[must_use]
     pub fn samples_deg(&self) -> &[[f64; 2]] {
         &self.samples_deg
@@ -115,7 +119,8 @@ impl CoordinateTable {
     ) -> Result<Self, CoordinateTableError> {
         let mut samples_deg = positions(bounds, size, size, 0.0);
         projection.wgs84_from_working(&mut samples_deg)?;
-        // Each longitude is moved next to its neighbour's: a table may be wider than half the earth.
+        // Each longitude is moved next to its neighbour's: a table may be wider than half the
+        // earth.
         let center = size / 2;
         let unwrap = |samples_deg: &mut [[f64; 2]], at: usize, beside: usize| {
             samples_deg[at][0] = near_longitude(samples_deg[at][0], samples_deg[beside][0]);
@@ -137,7 +142,8 @@ impl CoordinateTable {
         TableRecord { bounds, size, samples_deg }.try_into()
     }
 
-    /// Largest distance between interpolated and projected positions at the midpoints of all samples.
+    /// The largest distance between interpolated and projected positions at the midpoints of all
+    /// samples.
     fn error_m(&self, projection: &dyn Projection) -> Result<f64, ProjectError> {
         let positions = positions(self.bounds, self.size, self.size - 1, 0.5);
         let mut truth = positions.clone();
@@ -150,19 +156,20 @@ impl CoordinateTable {
         }))
     }
 
-    /// The rectangle the table covers, working CRS.
+    /// The rectangle of the table, in the working CRS.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
         self.bounds
     }
 
-    /// Samples along each side.
+    /// The number of samples along each side.
     #[must_use]
     pub fn size(&self) -> usize {
         self.size
     }
 
-    /// `[lon_deg, lat_deg]` of a position in the working CRS. Outside the table's bounds it extrapolates.
+    /// Converts a position in the working CRS to `[lon_deg, lat_deg]`. Outside the table's bounds
+    /// it extrapolates.
     #[must_use]
     pub fn wgs84_from_working(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let last = (self.size - 1) as f64;
@@ -181,13 +188,14 @@ impl CoordinateTable {
         sum
     }
 
-    /// True length of the straight line between two positions in the working CRS, metres.
+    /// The true length of the straight line between two positions in the working CRS, in metres.
     #[must_use]
     pub fn line_length_m(&self, ends: [[f64; 2]; 2]) -> f64 {
         line_length_m(ends, &|at| self.wgs84_from_working(at))
     }
 
-    /// True area inside a closed line of positions in the working CRS, square metres; negative for a clockwise one.
+    /// The true area inside a closed line of positions in the working CRS, in square metres;
+    /// negative for a clockwise line.
     #[must_use]
     pub fn ring_area_m2(&self, ring: &[[f64; 2]]) -> f64 {
         let degrees = |at| self.wgs84_from_working(at);
@@ -195,9 +203,10 @@ impl CoordinateTable {
         ring_area_m2(&ring_deg, &|side| side.map(|corner| ring[corner]), &degrees)
     }
 
-    /// Working metres to a true metre at a position, along the working CRS's east and north: by how far longitude and
-    /// latitude change from half a kilometre on one side to half a kilometre on the other, and the radii of curvature
-    /// of the WGS84 ellipsoid there. `None` where that is not a positive number.
+    /// Working metres per true metre at a position, along the working CRS's east and north: from
+    /// the change of longitude and latitude between half a kilometre on one side and half a
+    /// kilometre on the other, and the radii of curvature of the WGS84 ellipsoid there. `None` if
+    /// the result is not a positive number.
     #[must_use]
     pub fn scale_at(&self, at: [f64; 2]) -> Option<[f64; 2]> {
         let [_, lat_deg] = self.wgs84_from_working(at);
@@ -217,14 +226,14 @@ impl CoordinateTable {
         scale.iter().all(|scale| scale.is_finite() && *scale > 0.0).then_some(scale)
     }
 
-    /// Position in the working CRS of `[lon_deg, lat_deg]`; `None` where the table has no such position (far
-    /// outside).
+    /// Converts `[lon_deg, lat_deg]` to a position in the working CRS; `None` if the table has no
+    /// such position (far outside).
     #[must_use]
     pub fn working_from_wgs84(&self, [lon, lat]: [f64; 2]) -> Option<[f64; 2]> {
         let mut at = self.bounds.center();
         let center_lon = self.wgs84_from_working(at)[0];
         let target = [near_longitude(lon, center_lon), lat];
-        // Central differences over a hundredth of the table: its cubic is smooth on that scale.
+        // Central differences over a hundredth of the table: its cubic is smooth at this scale.
         let h = [self.bounds.width() / 100.0, self.bounds.height() / 100.0];
         for _ in 0..30 {
             let here = self.wgs84_from_working(at);
@@ -258,8 +267,9 @@ impl CoordinateTable {
     }
 }
 
-/// Working metres across a line for each true metre across it, where a true metre is `scale` working metres east and
-/// north. `direction` is the line's in the working CRS, of any length above 0; without one it counts as eastwards.
+/// Working metres across a line per true metre across it, if a true metre is `scale` working metres
+/// east and north. `direction` is the direction of the line in the working CRS, of any length above
+/// 0; a direction of length 0 counts as eastwards.
 ///
 /// ```text
 ///     true: a band 1 wide             working: stretched by [sx, sy]
@@ -276,7 +286,8 @@ pub fn width_factor(scale: [f64; 2], direction: [f64; 2]) -> f64 {
     sx * sy * libm::hypot(dx / sx, dy / sy)
 }
 
-/// Positions of `count × count` samples of a table that has `size × size`, or beside each of them by a share of their spacing.
+/// Positions of `count × count` samples of a table of `size × size` samples, or positions shifted
+/// from each of them by a fraction of their spacing.
 fn positions(bounds: Bounds, size: usize, count: usize, beside: f64) -> Vec<[f64; 2]> {
     let last = (size - 1) as f64;
     let share = |index: usize| (index as f64 + beside) / last;
@@ -289,7 +300,7 @@ fn positions(bounds: Bounds, size: usize, count: usize, beside: f64) -> Vec<[f64
     (0..count * count).map(position).collect()
 }
 
-/// First sample and the four weights of Lagrange's cubic at `t`, in units of the spacing.
+/// The first sample and the four weights of Lagrange's cubic at `t`, in units of the spacing.
 fn cubic(t: f64, size: usize) -> (usize, [f64; 4]) {
     let first = (t.floor() - 1.0).clamp(0.0, (size - 4) as f64);
     let s = t - first;

@@ -1,4 +1,5 @@
-//! The coordinate table is within a centimetre both ways, and its scale is that of closed forms.
+//! The coordinate table is accurate to a centimetre in both directions, and its scale agrees with
+//! closed forms.
 
 use super::*;
 
@@ -46,7 +47,7 @@ fn is_within_a_centimetre_both_ways_across_the_antimeridian() {
     }
 }
 
-/// Degrees times two factors: what a geographic DEM's working metres are.
+/// Degrees times two factors, like the working metres of a geographic DEM.
 struct Geographic([f64; 2]);
 
 impl Projection for Geographic {
@@ -65,7 +66,8 @@ impl Projection for Geographic {
     }
 }
 
-/// Degrees of the WGS84 ellipsoid at 47° N, from tables: 76 056.0 m of longitude, 111 170.8 m of latitude.
+/// Degrees of the WGS84 ellipsoid at 47° N, from tables: 76 056.0 m of longitude, 111 170.8 m of
+/// latitude.
 #[test]
 fn the_scale_of_degrees_is_what_tables_of_their_lengths_say() {
     let factors = [80_000.0, 100_000.0];
@@ -76,7 +78,8 @@ fn the_scale_of_degrees_is_what_tables_of_their_lengths_say() {
     assert!((north - factors[1] / 111_170.8).abs() < 1e-5, "{north}");
 }
 
-/// On a sphere of radius R Mercator's scale is 1 / cos φ both ways; that of the ellipsoid is off by its radii.
+/// On a sphere of radius R Mercator's scale is 1 / cos φ in both directions; on the ellipsoid it
+/// differs by the ellipsoid's radii.
 #[test]
 fn the_scale_of_mercator_is_one_over_the_cosine() {
     let table = table();
@@ -85,14 +88,14 @@ fn the_scale_of_mercator_is_one_over_the_cosine() {
         let [parallel_m, meridian_m] = wgs84::radii_m(lat_rad.to_degrees());
         let [east, north] = table.scale_at([1e5, y]).unwrap();
         assert!((east - R / parallel_m).abs() < 1e-6, "{east} at {y}");
-        // Over a kilometre a degree of latitude hardly changes.
+        // Over a kilometre the length of a degree of latitude is nearly constant.
         assert!((north - R / lat_rad.cos() / meridian_m).abs() < 1e-6, "{north} at {y}");
     }
     assert_eq!(table.scale_at([f64::NAN, 6e6]), None);
 }
 
-/// A true circle is an ellipse in working metres: what lies between two tangents of it in a direction is twice the
-/// radius across, times the factor.
+/// A true circle is an ellipse in working metres: the distance between two of its tangents in a
+/// direction is twice the radius across the direction, multiplied by the factor.
 #[test]
 fn a_circle_is_as_wide_across_any_direction_as_the_factor_says() {
     let scale = [1.5, 0.8];

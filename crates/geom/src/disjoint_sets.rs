@@ -1,6 +1,7 @@
-//! Whole numbers in disjoint sets: which of them belong together.
+//! Disjoint sets of whole numbers (union-find).
 
-/// Whole numbers from 0 in disjoint sets; each set is known by its smallest number, its first.
+/// Whole numbers from 0 in disjoint sets; the smallest number of each set, its first, represents
+/// the set.
 #[derive(Debug, Clone)]
 pub struct DisjointSets {
     /// Another number of the same set, or the first itself.
@@ -8,19 +9,19 @@ pub struct DisjointSets {
 }
 
 impl DisjointSets {
-    /// So many numbers, each alone.
+    /// Creates sets of `count` numbers, each number in a set of its own.
     #[must_use]
     pub fn new(count: usize) -> Self {
         Self { before: (0..count).collect() }
     }
 
-    /// Adds the next number, alone, and returns it.
+    /// Adds the next number in a set of its own, and returns it.
     pub fn add(&mut self) -> usize {
         self.before.push(self.before.len());
         self.before.len() - 1
     }
 
-    /// The smallest number of a set.
+    /// Returns the smallest number of a set.
     pub fn first_of(&mut self, number: usize) -> usize {
         let mut first = number;
         while self.before[first] != first {
@@ -30,7 +31,7 @@ impl DisjointSets {
         first
     }
 
-    /// Makes one set of those of two numbers.
+    /// Joins the sets of two numbers.
     pub fn join(&mut self, one: usize, other: usize) {
         let (one, other) = (self.first_of(one), self.first_of(other));
         self.before[one.max(other)] = one.min(other);

@@ -1,4 +1,4 @@
-//! Sets are joined in any order, and each is known by its smallest number.
+//! Sets are joined in any order, and the smallest number represents each of them.
 
 use super::DisjointSets;
 

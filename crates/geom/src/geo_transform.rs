@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Affine map from pixel coordinates (column, row; 0 at the outer corner of the first pixel, row 0 in
-/// the north of a north-up raster) to CRS coordinates, in GDAL's order of coefficients:
+/// Affine map from pixel coordinates (column, row; 0 at the outer corner of the first pixel, row 0
+/// in the north of a north-up raster) to CRS coordinates, in GDAL's order of coefficients:
 ///
 /// ```text
 /// x = c0 + c1 · column + c2 · row
@@ -16,14 +16,14 @@ pub struct GeoTransform {
 }
 
 impl GeoTransform {
-    /// CRS position of a pixel position; the centre of pixel (0, 0) is `[0.5, 0.5]`.
+    /// Converts a pixel position to a CRS position; the centre of pixel (0, 0) is `[0.5, 0.5]`.
     #[must_use]
     pub fn crs_from_pixel(&self, [column, row]: [f64; 2]) -> [f64; 2] {
         let c = &self.coefficients;
         [c[0] + c[1] * column + c[2] * row, c[3] + c[4] * column + c[5] * row]
     }
 
-    /// Pixel position of a CRS position; `None` when the transform flattens the plane.
+    /// Converts a CRS position to a pixel position; `None` if the transform is not invertible.
     #[must_use]
     pub fn pixel_from_crs(&self, [x, y]: [f64; 2]) -> Option<[f64; 2]> {
         let c = &self.coefficients;

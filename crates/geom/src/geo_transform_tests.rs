@@ -1,4 +1,4 @@
-//! The inverse of a geotransform leads back, where there is one.
+//! The inverse of a geotransform restores positions, if there is an inverse.
 
 use super::*;
 

@@ -1,4 +1,5 @@
-//! The global grid of a package: its tiles, its lattice, and the conversions between them and working metres.
+//! The global grid of a package: its tiles, its lattice, and the conversions between them and
+//! working metres.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,39 +7,42 @@ use crate::node::{NodeIndex, NodeWindow};
 use crate::tile_size::{MAX_LEVEL, TILE_CELLS, TILE_NODES};
 use crate::{Bounds, Cell, LatticeBounds, LatticePoint, TileId};
 
-/// Node indices stay below this, so that they and their differences fit the types in which they are stored.
+/// The limit of node indices, so that they and their differences fit in the types in which they are
+/// stored.
 const MAX_INDEX: i64 = 1 << 32;
-/// Lattice coordinates stay below this, some 500 million km: an f64 is then still exact to an eighth of a step, which the
-/// positions of crossings need, and products of two differences are far below the limit of 128 bits.
+/// The limit of lattice coordinates, about 500 million km: an f64 is still exact to an eighth of a
+/// step, which the positions of crossings need, and products of two differences are far below the
+/// limit of 128 bits.
 pub const MAX_LATTICE_STEPS: i64 = 1 << 50;
-/// No position in working metres is farther from zero: lattice points are within [`MAX_LATTICE_STEPS`] steps of at most a millimetre of
-/// the grid's origin, and that is within a cell of zero. It is twice that.
+/// The limit of positions in working metres: lattice points are within [`MAX_LATTICE_STEPS`] steps
+/// of at most a millimetre of the grid's origin, which is within a cell of zero. The limit is twice
+/// that distance.
 pub const MAX_COORDINATE_M: f64 = 2.0 * (MAX_LATTICE_STEPS as f64) * 0.001;
 
-/// Why numbers do not make a [`GridFrame`].
+/// Why numbers cannot form a [`GridFrame`].
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum GridFrameError {
-    /// The cell is not of usable lengths.
+    /// The cell's sides have unusable lengths.
     #[error("a cell of {cell} is not usable; its sides must be between 0.001 m and 1000 km")]
     Cell {
-        /// The cell asked for.
+        /// The requested cell.
         cell: Cell,
     },
     /// The cell's east side is not a whole number of lattice steps.
-    #[error("a cell of {cell} does not fit the lattice: its east side is {steps} steps")]
+    #[error("a cell of {cell} does not fit the lattice: its east side is {steps} lattice steps")]
     EastSide {
         /// The cell given.
         cell: Cell,
-        /// How many lattice steps its east side is long.
+        /// The length of its east side in lattice steps.
         steps: f64,
     },
     /// The origin is not finite.
     #[error("the grid origin {origin_m:?} is not a position")]
     Origin {
-        /// The origin asked for.
+        /// The requested origin.
         origin_m: [f64; 2],
     },
-    /// The extent needs more levels than a package can have, or lies too far out.
+    /// The extent needs more levels than a package can have, or is too far from the origin.
     #[error("{columns} × {rows} cells of {cell} are too many for one package; use a larger --cell")]
     Extent {
         /// Cells from west to east.
@@ -56,8 +60,8 @@ pub enum GridFrameError {
     },
 }
 
-/// The global grid of a package, its tiles and its lattice, in working metres: the CRS's coordinates, each times a
-/// factor that the package records.
+/// The global grid of a package, its tiles and its lattice, in working metres: the CRS's
+/// coordinates, each multiplied by a factor that the package records.
 ///
 /// ```text
 ///   root corner (node i0, j0)            x = origin_x + cell_east · i     i grows east
@@ -70,9 +74,10 @@ pub enum GridFrameError {
 ///
 /// Cells are rectangles, the lattice is square.
 ///
-/// Positions come from the global integer indices, by the two formulas above and in no other way:
-/// `tile_min + k · cell` differs in its last bit between neighbours. The origin is the grid's phase (within
-/// one cell of CRS zero), so adjoining regions of one product get the same nodes and the same tile borders.
+/// Positions are computed from the global integer indices, by the two formulas above and in no
+/// other way: the last bit of `tile_min + k · cell` would differ between neighbours. The origin is
+/// the grid's phase (within one cell of CRS zero), so adjoining regions of one product get the same
+/// nodes and the same tile borders.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "GridFrameRecord")]
 pub struct GridFrame {
@@ -81,12 +86,12 @@ pub struct GridFrame {
     cell: Cell,
     root_corner: NodeIndex,
     max_level: u8,
-    /// Lattice steps to a cell, east and north. They follow from the cell.
+    /// Lattice steps per cell, east and north. They follow from the cell.
     #[serde(skip_serializing)]
     steps: [i64; 2],
 }
 
-/// [`GridFrame`] as it is written down.
+/// The serialised form of [`GridFrame`].
 #[derive(Deserialize)]
 struct GridFrameRecord {
     origin_m: [f64; 2],
@@ -104,11 +109,11 @@ impl TryFrom<GridFrameRecord> for GridFrame {
 }
 
 impl GridFrame {
-    /// A frame from its parts, as a package records them.
+    /// Creates a frame from its parts, as a package records them.
     ///
     /// # Errors
-    /// When the parts are out of range, the corner is not on a whole tile, or the cell's east side is no whole number of
-    /// lattice steps ([`Cell::fitted`] makes it one).
+    /// When the parts are out of range, the corner is not on a whole tile, or the cell's east side
+    /// is not a whole number of lattice steps ([`Cell::fitted`] makes it one).
     pub fn new(
         origin_m: [f64; 2],
         cell: impl Into<Cell>,
@@ -142,10 +147,11 @@ impl GridFrame {
         Ok(Self { origin_m, cell, root_corner, max_level, steps })
     }
 
-    /// The smallest frame whose root covers all nodes from `south_west` to `north_east`, both included.
+    /// Returns the smallest frame whose root covers all nodes from `south_west` to `north_east`,
+    /// both included.
     ///
     /// # Errors
-    /// When that takes more levels than a package can have.
+    /// When this takes more levels than a package can have.
     pub fn covering(
         origin_m: [f64; 2],
         cell: impl Into<Cell>,
@@ -154,7 +160,8 @@ impl GridFrame {
     ) -> Result<Self, GridFrameError> {
         let cell = cell.into();
         let down = |index: i64| index.div_euclid(TILE_CELLS);
-        // A border node belongs to both tiles; one tile is enough for an extent that ends on a border.
+        // A border node belongs to both tiles; one tile is enough for an extent that ends on a
+        // border.
         let up = |index: i64| {
             index.div_euclid(TILE_CELLS) + i64::from(index.rem_euclid(TILE_CELLS) != 0)
         };
@@ -177,7 +184,7 @@ impl GridFrame {
         )
     }
 
-    /// Position of node (0, 0).
+    /// The position of node (0, 0).
     #[must_use]
     pub fn origin_m(&self) -> [f64; 2] {
         self.origin_m
@@ -195,31 +202,31 @@ impl GridFrame {
         self.max_level
     }
 
-    /// North-west node of tile 0/0/0.
+    /// The north-west node of tile 0/0/0.
     #[must_use]
     pub fn root_corner(&self) -> NodeIndex {
         self.root_corner
     }
 
-    /// Lattice steps from one node of a level to the next, east and north.
+    /// The number of lattice steps from one node of a level to the next, east and north.
     ///
     /// # Panics
-    /// When `level` is beyond the finest one.
+    /// When `level` is beyond the finest level.
     #[must_use]
     pub fn node_steps(&self, level: u8) -> [i64; 2] {
         self.steps.map(|steps| steps * self.stride(level))
     }
 
-    /// Length of a lattice step: at most a millimetre.
+    /// The length of a lattice step: at most a millimetre.
     #[must_use]
     pub fn lattice_step_m(&self) -> f64 {
         self.cell.lattice_step_m()
     }
 
-    /// Spacing of a level's nodes in finest cells.
+    /// The spacing of a level's nodes in finest cells.
     ///
     /// # Panics
-    /// When `level` is beyond the finest one.
+    /// When `level` is beyond the finest level.
     #[must_use]
     pub fn stride(&self, level: u8) -> i64 {
         assert!(level <= self.max_level, "level {level} of {}", self.max_level);
@@ -229,38 +236,38 @@ impl GridFrame {
     /// The cell of a level.
     ///
     /// # Panics
-    /// When `level` is beyond the finest one.
+    /// When `level` is beyond the finest level.
     #[must_use]
     pub fn level_cell(&self, level: u8) -> Cell {
         self.cell.times(self.stride(level) as f64)
     }
 
-    /// x of every node with index `i`.
+    /// The x of every node with index `i`.
     #[must_use]
     pub fn x_m(&self, i: i64) -> f64 {
         self.origin_m[0] + self.cell.east_m * i as f64
     }
 
-    /// y of every node with index `j`.
+    /// The y of every node with index `j`.
     #[must_use]
     pub fn y_m(&self, j: i64) -> f64 {
         self.origin_m[1] + self.cell.north_m * j as f64
     }
 
-    /// The lattice point under a node.
+    /// The lattice point of a node.
     #[must_use]
     pub fn lattice_of_node(&self, node: NodeIndex) -> LatticePoint {
         LatticePoint::new(node.i * self.steps[0], node.j * self.steps[1])
     }
 
-    /// The rectangle between a south-western and a north-eastern node.
+    /// The rectangle between a south-western and a north-eastern node, on the lattice.
     #[must_use]
     pub fn lattice_bounds(&self, nodes: [NodeIndex; 2]) -> LatticeBounds {
         let [min, max] = nodes.map(|node| self.lattice_of_node(node));
         LatticeBounds { min, max }
     }
 
-    /// The same in working metres.
+    /// The rectangle between a south-western and a north-eastern node, in working metres.
     #[must_use]
     pub fn node_bounds_m(&self, [south_west, north_east]: [NodeIndex; 2]) -> Bounds {
         Bounds {
@@ -271,13 +278,14 @@ impl GridFrame {
         }
     }
 
-    /// Position of a lattice point; for a node's point the same bits as [`GridFrame::x_m`], [`GridFrame::y_m`].
+    /// The position of a lattice point; for a node's point the same bits as [`GridFrame::x_m`] and
+    /// [`GridFrame::y_m`].
     #[must_use]
     pub fn position_m(&self, point: LatticePoint) -> [f64; 2] {
         self.position_of_fraction_m([point.u as f64, point.v as f64])
     }
 
-    /// Position of a point between lattice points, given in lattice steps.
+    /// The position of a point between lattice points, which is given in lattice steps.
     #[must_use]
     pub fn position_of_fraction_m(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         let [east, north] = self.steps.map(|steps| steps as f64);
@@ -287,7 +295,7 @@ impl GridFrame {
         ]
     }
 
-    /// A position in lattice steps: the inverse of [`GridFrame::position_of_fraction_m`].
+    /// Converts a position to lattice steps: the inverse of [`GridFrame::position_of_fraction_m`].
     #[must_use]
     pub fn fraction_of_position(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let [east, north] = self.steps.map(|steps| steps as f64);
@@ -297,7 +305,8 @@ impl GridFrame {
         ]
     }
 
-    /// The lattice point nearest to a position; `None` when the position is not finite or beyond the lattice's limit.
+    /// Returns the lattice point nearest to a position; `None` if the position is not finite or
+    /// beyond the lattice's limit.
     #[must_use]
     pub fn snap(&self, position: [f64; 2]) -> Option<LatticePoint> {
         let [u, v] = self.fraction_of_position(position).map(|steps| {
@@ -311,7 +320,7 @@ impl GridFrame {
     /// The north-west node of a tile.
     ///
     /// # Panics
-    /// When the tile's level is beyond the finest one.
+    /// When the tile's level is beyond the finest level.
     #[must_use]
     pub fn tile_corner(&self, id: TileId) -> NodeIndex {
         let side = TILE_CELLS * self.stride(id.z());
@@ -332,13 +341,13 @@ impl GridFrame {
         }
     }
 
-    /// A tile's rectangle on the lattice.
+    /// The rectangle of a tile on the lattice.
     #[must_use]
     pub fn tile_lattice_bounds(&self, id: TileId) -> LatticeBounds {
         self.lattice_bounds(self.tile_ends(id))
     }
 
-    /// A tile's rectangle in the working CRS.
+    /// The rectangle of a tile in the working CRS.
     #[must_use]
     pub fn tile_bounds(&self, id: TileId) -> Bounds {
         self.node_bounds_m(self.tile_ends(id))
@@ -351,8 +360,8 @@ impl GridFrame {
         [NodeIndex { i, j: j - side }, NodeIndex { i: i + side, j }]
     }
 
-    /// Column and row of the tile of `level` that holds a lattice point (the south-eastern one on a border);
-    /// outside 0…2^level − 1 when the point lies outside the root.
+    /// The column and the row of the tile of `level` that contains a lattice point (the
+    /// south-eastern tile on a border); outside 0…2^level − 1 if the point is outside the root.
     #[must_use]
     pub fn tile_column_row(&self, level: u8, point: LatticePoint) -> [i64; 2] {
         let corner = self.lattice_of_node(self.root_corner);

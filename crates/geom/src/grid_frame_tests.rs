@@ -1,4 +1,5 @@
-//! The grid covers its extent with aligned tiles, and neighbours share their borders to the last bit.
+//! The grid covers its extent with aligned tiles, and neighbours share their borders to the last
+//! bit.
 
 use super::*;
 use proptest::prelude::*;
@@ -78,7 +79,7 @@ fn what_lies_beyond_the_lattice_has_no_place_on_it() {
 }
 
 proptest! {
-    /// A node has one position, whichever way it is reached.
+    /// A node has one position, however it is computed.
     #[test]
     fn node_and_lattice_positions_have_the_same_bits(
         i in -2_000_000_i64..2_000_000, j in -2_000_000_i64..2_000_000, east_m in 0.1..1000.0_f64,

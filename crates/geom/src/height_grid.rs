@@ -1,33 +1,35 @@
 //! A regular grid of heights in metres, with gaps.
 
-/// Heights that are compared at the same time.
+/// The number of heights that are compared at the same time.
 const LANES: usize = 8;
 
-/// A regular grid of heights in metres, row 0 in the north, row by row. A gap holds no height.
+/// A regular grid of heights in metres, row by row, with row 0 in the north. A gap has no height.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeightGrid {
     columns: usize,
     rows: usize,
-    /// NaN marks a gap; kept private so that no caller compares with a sentinel.
+    /// NaN marks a gap; the field is private so that no caller compares with a sentinel.
     heights_m: Vec<f32>,
 }
 
 impl HeightGrid {
-    /// A grid from its heights, row by row from the north; every value that is not finite becomes a gap.
+    /// Creates a grid from its heights, row by row from the north; every value that is not finite
+    /// becomes a gap.
     ///
     /// # Panics
-    /// When `heights_m` does not hold `columns` × `rows` values: that is a bug of the caller.
+    /// When `heights_m` does not have `columns` × `rows` values, which is a bug of the caller.
     #[must_use]
     pub fn new(columns: usize, rows: usize, mut heights_m: Vec<f32>) -> Self {
         assert_eq!(heights_m.len(), columns * rows, "a grid of {columns} × {rows}");
         for height_m in &mut heights_m {
-            // All gaps are the same NaN, and all zeros are the same zero, so that equal grids have equal bits.
+            // All gaps are the same NaN, and all zeros are the same zero, so that equal grids have
+            // equal bits.
             *height_m = if height_m.is_finite() { *height_m + 0.0 } else { f32::NAN };
         }
         Self { columns, rows, heights_m }
     }
 
-    /// A grid computed from `height_m(column, row)`.
+    /// Creates a grid from `height_m(column, row)`.
     #[must_use]
     pub fn from_fn(
         columns: usize,
@@ -43,19 +45,19 @@ impl HeightGrid {
         Self::new(columns, rows, heights_m)
     }
 
-    /// Nodes from west to east.
+    /// The number of nodes from west to east.
     #[must_use]
     pub fn columns(&self) -> usize {
         self.columns
     }
 
-    /// Nodes from north to south.
+    /// The number of nodes from north to south.
     #[must_use]
     pub fn rows(&self) -> usize {
         self.rows
     }
 
-    /// The height of a node, `None` in a gap.
+    /// The height of a node; `None` in a gap.
     ///
     /// # Panics
     /// When the node is outside the grid.
@@ -76,7 +78,8 @@ impl HeightGrid {
         !self.heights_m[row * self.columns + column].is_nan()
     }
 
-    /// Whether the cell whose north-west node is (`column`, `row`) has ground: all four corners do.
+    /// Whether the cell whose north-west node is (`column`, `row`) has ground, which means that all
+    /// four corners have a height.
     ///
     /// # Panics
     /// When the cell is outside the grid.
@@ -89,22 +92,23 @@ impl HeightGrid {
             && self.has_height(column + 1, row + 1)
     }
 
-    /// All heights row by row from the north, NaN in gaps; for loops over all nodes and for storage.
+    /// All heights row by row from the north, NaN in gaps; for loops over all nodes and for
+    /// storage.
     #[must_use]
     pub fn raw(&self) -> &[f32] {
         &self.heights_m
     }
 
-    /// How many nodes have a height.
+    /// The number of nodes that have a height.
     #[must_use]
     pub fn count_heights(&self) -> usize {
         self.heights_m.iter().filter(|height_m| !height_m.is_nan()).count()
     }
 
-    /// Lowest and highest height; `None` when no node has a height.
+    /// The lowest and the highest height; `None` if no node has a height.
     #[must_use]
     pub fn range_m(&self) -> Option<[f32; 2]> {
-        // Several heights at a time; comparisons with NaN are false.
+        // Several heights are compared at a time; comparisons with NaN are false.
         let (chunks, rest) = self.heights_m.as_chunks::<LANES>();
         let (mut low, mut high) = ([f32::INFINITY; LANES], [f32::NEG_INFINITY; LANES]);
         let mut look = |lane: usize, height_m: f32| {
@@ -126,10 +130,11 @@ impl HeightGrid {
         (range_m[0] <= range_m[1]).then_some(range_m)
     }
 
-    /// The rectangle of `columns` × `rows` nodes whose north-west node is (`column`, `row`).
+    /// Returns the rectangle of `columns` × `rows` nodes whose north-west node is (`column`,
+    /// `row`).
     ///
     /// # Panics
-    /// When it reaches outside the grid.
+    /// When the rectangle extends outside the grid.
     #[must_use]
     pub fn window(&self, column: usize, row: usize, columns: usize, rows: usize) -> Self {
         assert!(column + columns <= self.columns && row + rows <= self.rows, "a window outside");
@@ -141,10 +146,10 @@ impl HeightGrid {
         Self { columns, rows, heights_m }
     }
 
-    /// The grid without so many nodes on every side.
+    /// Returns the grid without `margin` nodes on every side.
     ///
     /// # Panics
-    /// When it has no more than these.
+    /// When the grid has no other nodes.
     #[must_use]
     pub fn inner(&self, margin: usize) -> Self {
         let [columns, rows] = [self.columns, self.rows].map(|nodes| nodes - 2 * margin);

@@ -1,4 +1,4 @@
-//! Gaps in a grid of heights hold none and are not counted.
+//! Gaps in a grid have no heights and are not counted.
 
 use super::*;
 

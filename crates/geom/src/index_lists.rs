@@ -1,6 +1,7 @@
 //! Many lists of indices in two flat arrays, such as the triangles of each cell of a grid.
 
-/// Lists of indices, one list for each place: triangles by the cells of a grid, half-edges by their vertex.
+/// Lists of indices, one list per place: for example triangles by the cells of a grid, or
+/// half-edges by their vertex.
 ///
 /// ```text
 ///  starts   0   2   2   5 …     one more than there are places
@@ -8,8 +9,8 @@
 ///  indices  7 9     1 7 8 …     the list of each place, ascending
 /// ```
 ///
-/// Two flat arrays take 4 bytes for each place and for each entry, and are allocated once, with their final lengths: the
-/// entries are counted first, then filled in.
+/// The two flat arrays take 4 bytes per place and per entry, and are allocated once, with their
+/// final lengths: entries are counted first, then filled in.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct IndexLists {
     /// The list of place p is `indices[starts[p]..starts[p + 1]]`.
@@ -18,8 +19,9 @@ pub struct IndexLists {
 }
 
 impl IndexLists {
-    /// Lists for `places` places. The items are numbered from 0; item k goes into the list of each of `places_of(k)`, which
-    /// is asked twice and gives the same places both times, all below `places`.
+    /// Creates lists for `places` places. Items are numbered from 0; item k is added to the list of
+    /// each of `places_of(k)`, which is called twice and must return the same places both times,
+    /// all below `places`.
     #[must_use]
     pub fn new<P: Iterator<Item = usize>>(
         places: usize,
@@ -44,27 +46,29 @@ impl IndexLists {
         Self { starts, indices }
     }
 
-    /// Lists of parts as [`IndexLists::parts`] gives them; `None` if they are others.
+    /// Creates lists from parts that [`IndexLists::parts`] returned; `None` if the parts are
+    /// invalid.
     #[must_use]
     pub fn of_parts(starts: Vec<u32>, indices: Vec<u32>) -> Option<Self> {
         let ends = [starts.first()?, starts.last()?].map(|at| *at as usize);
         (ends == [0, indices.len()] && starts.is_sorted()).then_some(Self { starts, indices })
     }
 
-    /// Where the list of each place begins, and where the last one ends; and all lists one after the other.
+    /// The start of the list of each place, and the end of the last list; and all lists one after
+    /// another.
     #[must_use]
     pub fn parts(&self) -> [&[u32]; 2] {
         [&self.starts, &self.indices]
     }
 
-    /// The list of a place, ascending.
+    /// The list of a place, in ascending order.
     #[inline]
     #[must_use]
-    pub fn of(&self, place: usize) -> &[u32] {
+    pub fn list(&self, place: usize) -> &[u32] {
         &self.indices[self.starts[place] as usize..self.starts[place + 1] as usize]
     }
 
-    /// How many entries all lists have together.
+    /// The number of entries of all lists together.
     #[must_use]
     pub fn len(&self) -> usize {
         self.indices.len()
@@ -78,7 +82,7 @@ impl IndexLists {
 }
 
 impl Default for IndexLists {
-    /// Lists for no places.
+    /// Returns lists for no places.
     fn default() -> Self {
         Self { starts: vec![0], indices: Vec::new() }
     }

@@ -1,4 +1,4 @@
-//! Each place lists the items that name it, in ascending order.
+//! The list of each place contains the items that name it, in ascending order.
 
 use super::*;
 
@@ -6,17 +6,17 @@ use super::*;
 fn each_place_lists_the_items_that_name_it_in_ascending_order() {
     let places_of = [vec![2, 0], vec![], vec![2], vec![0, 2]];
     let lists = IndexLists::new(4, places_of.len(), |item| places_of[item].iter().copied());
-    assert_eq!(lists.of(0), [0, 3]);
-    assert!(lists.of(1).is_empty());
-    assert_eq!(lists.of(2), [0, 2, 3]);
-    assert!(lists.of(3).is_empty());
+    assert_eq!(lists.list(0), [0, 3]);
+    assert!(lists.list(1).is_empty());
+    assert_eq!(lists.list(2), [0, 2, 3]);
+    assert!(lists.list(3).is_empty());
     assert!(!lists.is_empty());
 }
 
 #[test]
 fn without_items_every_list_is_empty() {
     let lists = IndexLists::new(2, 0, |_| std::iter::empty());
-    assert!(lists.is_empty() && lists.of(0).is_empty() && lists.of(1).is_empty());
+    assert!(lists.is_empty() && lists.list(0).is_empty() && lists.list(1).is_empty());
     assert_eq!(IndexLists::new(0, 0, |_| std::iter::empty()), IndexLists::default());
 }
 

@@ -1,50 +1,54 @@
-//! A region of the lattice with any outline, with fast tests of which points lie inside.
+//! A region of the lattice with any outline, with fast tests of whether points are inside.
 
 use crate::index_lists::IndexLists;
 use crate::node::NodeWindow;
 use crate::{LatticeBounds, LatticePoint, cross};
 
-/// Bands are made of about so many edges, …
+/// The approximate number of edges per band.
 const EDGES_PER_BAND: usize = 4;
-/// … and there are at most so many. The lists of all bands together are at most eight times as long as that of the edges.
+/// The largest number of bands. The lists of all bands together are at most eight times as long as
+/// the list of the edges.
 const MOST_BANDS: usize = 1 << 16;
 const MOST_ENTRIES_PER_EDGE: usize = 8;
 
-/// A region of the lattice with any outline: polygons with holes, which may overlap. Its outline belongs to it.
+/// A region of the lattice with any outline: polygons with holes, which may overlap. The outline
+/// belongs to the region.
 ///
 /// ```text
-///   ┌───────────────┐  band 3     a polygon winds once around what is inside; a hole takes that back.
+///   ┌───────────────┐  band 3     a polygon winds once around its interior; a hole undoes that.
 ///   │    ┌────┐     │  band 2     Edges are listed by bands of rows, so that a question about a row
-///   │    └────┘     │  band 1     looks at the edges that cross it, and not at all of them.
+///   │    └────┘     │  band 1     only tests the edges that cross it.
 ///   └───────────────┘  band 0
 /// ```
 ///
-/// A point is inside if at least one polygon has it inside and not in a hole: the polygons are united. All tests are exact.
+/// A point is inside if at least one polygon contains it, and not in a hole: the region is the
+/// union of the polygons. All tests are exact.
 ///
 /// Source: D. Sunday 2021, *Practical Geometry Algorithms*, "Winding number".
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LatticeRegion {
-    /// Open, outer ones counter-clockwise, holes clockwise.
+    /// Open rings, outer ones counter-clockwise, holes clockwise.
     rings: Vec<Vec<LatticePoint>>,
     edges: Vec<Edge>,
     bounds: LatticeBounds,
-    /// Rows of lattice points to a band.
+    /// Number of rows of lattice points per band.
     band_steps: i64,
     bands: IndexLists,
 }
 
-/// An edge of an outline, upwards.
+/// An edge of an outline, directed upwards.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Edge {
     low: LatticePoint,
     high: LatticePoint,
-    /// How often the outline winds around what is to the right of the edge, on account of it: 1 or −1.
+    /// The contribution of the edge to the winding number of points to its right: 1 or −1.
     winding: i32,
 }
 
 impl LatticeRegion {
-    /// Takes polygons, each as its outer ring and its holes. Rings may be closed or open, in either direction; those that enclose
-    /// nothing on the lattice are left out. `None` where nothing is left.
+    /// Creates a region from polygons, each given as its outer ring and its holes. Rings may be
+    /// closed or open, in either direction; rings that enclose nothing on the lattice are dropped.
+    /// `None` if nothing is left.
     #[must_use]
     pub fn new(polygons: &[Vec<Vec<LatticePoint>>]) -> Option<Self> {
         let (mut edges, mut rings) = (Vec::new(), Vec::new());
@@ -54,7 +58,8 @@ impl LatticeRegion {
                 if area == 0 && index == 0 {
                     break;
                 }
-                // Outer rings wind counter-clockwise, holes clockwise, whichever way they are written.
+                // Outer rings wind counter-clockwise, holes clockwise, whatever the direction of
+                // the input.
                 let is_turned = (area > 0) != (index == 0);
                 edges.extend(ring_edges(ring).filter_map(|edge| Edge::new(edge, is_turned)));
                 let mut own = ring.clone();
@@ -68,7 +73,7 @@ impl LatticeRegion {
         }
         let corners: Vec<LatticePoint> =
             edges.iter().flat_map(|edge| [edge.low, edge.high]).collect();
-        let bounds = LatticeBounds::of(&corners)?;
+        let bounds = LatticeBounds::around(&corners)?;
         let rows = bounds.max.v - bounds.min.v + 1;
         let mut count = (edges.len() / EDGES_PER_BAND).clamp(1, MOST_BANDS);
         let band_steps = loop {
@@ -87,19 +92,21 @@ impl LatticeRegion {
         Some(Self { rings, edges, bounds, band_steps, bands })
     }
 
-    /// The smallest rectangle around it.
+    /// The smallest rectangle around the region.
     #[must_use]
     pub fn bounds(&self) -> LatticeBounds {
         self.bounds
     }
 
-    /// The outlines as open lines, whose last point is joined to the first: counter-clockwise around what is inside, clockwise around holes. What
-    /// they wind around more often than never is inside.
+    /// The outlines as open lines, whose last point is joined to the first: counter-clockwise
+    /// around the interior, clockwise around holes. Points with a positive winding number are
+    /// inside.
     pub fn rings(&self) -> impl Iterator<Item = &[LatticePoint]> {
         self.rings.iter().map(Vec::as_slice)
     }
 
-    /// The edges of outlines that may share a point with a rectangle, in a fixed order; each once.
+    /// The edges of outlines that may share a point with a rectangle, in a fixed order, each of
+    /// them once.
     pub fn edges_near(
         &self,
         near: &LatticeBounds,
@@ -112,13 +119,13 @@ impl LatticeRegion {
             .map(|edge| [edge.low, edge.high])
     }
 
-    /// Whether a point lies inside or on an outline.
+    /// Whether a point is inside or on an outline.
     #[must_use]
     pub fn contains(&self, point: LatticePoint) -> bool {
         self.contains_half([2 * point.u, 2 * point.v])
     }
 
-    /// The same for a point in half steps of the lattice: `[2 * u, 2 * v]`.
+    /// Whether a point in half steps of the lattice, `[2 * u, 2 * v]`, is inside or on an outline.
     #[must_use]
     pub fn contains_half(&self, [u2, v2]: [i64; 2]) -> bool {
         let point = LatticePoint::new(u2, v2);
@@ -134,7 +141,7 @@ impl LatticeRegion {
             if side == 0 && is_between {
                 return true;
             }
-            // Where two edges meet at this height, one of them counts.
+            // If two edges meet at this height, only one of them counts.
             if side < 0 && v2 < high.v {
                 winding += edge.winding;
             }
@@ -142,11 +149,12 @@ impl LatticeRegion {
         winding > 0
     }
 
-    /// Which nodes of a window of stride 1 are corners of cells that share more than a point of their border with the region. `steps` are
-    /// lattice steps to a cell, east and north. Nodes come row by row from the north.
+    /// Which nodes of a window of stride 1 are corners of cells that share more than a point of
+    /// their border with the region. `steps` are lattice steps per cell, east and north. Nodes are
+    /// in rows from the north.
     ///
-    /// So the ground between these nodes covers the region, and reaches less than a cell beyond it. Whether a node counts does not depend on
-    /// the window.
+    /// So the ground between these nodes covers the region, and extends less than a cell beyond it.
+    /// Whether a node counts does not depend on the window.
     #[must_use]
     pub fn nodes(&self, steps: [i64; 2], window: &NodeWindow) -> Vec<bool> {
         let mut inside = Vec::with_capacity(window.columns * window.rows);
@@ -164,12 +172,12 @@ impl LatticeRegion {
         inside
     }
 
-    /// Which cells of a row share more than their border with the region: `columns` of them from the cell between node `first` and
-    /// the one north-east of it.
+    /// Which cells of a row share more than their border with the region: `columns` cells from the
+    /// one whose south-west node is `first`.
     fn cells(&self, first: [i64; 2], columns: usize, [east, north]: [i64; 2]) -> Vec<bool> {
         let mut inside = vec![false; columns];
         let [south_v, north_v] = [first[1] * north, (first[1] + 1) * north];
-        // How often outlines wind around the centres, as differences along the row.
+        // The winding numbers of the centres, as differences along the row.
         let mut winding = vec![0; columns + 1];
         for edge in self.edges_between(south_v, north_v) {
             for column in edge.cells_met([south_v, north_v], east, first[0], columns) {
@@ -183,13 +191,13 @@ impl LatticeRegion {
         let mut sum = 0;
         for (cell, difference) in inside.iter_mut().zip(winding) {
             sum += difference;
-            // A cell that no outline enters lies inside or outside as a whole.
+            // A cell that no outline enters is inside or outside as a whole.
             *cell |= sum > 0;
         }
         inside
     }
 
-    /// The edges that may have a point between two rows, both included; each once.
+    /// The edges that may have a point between two rows, both included; each of them once.
     fn edges_between(&self, from_v: i64, to_v: i64) -> impl Iterator<Item = &Edge> {
         let band = |v: i64| {
             let v = v.clamp(self.bounds.min.v, self.bounds.max.v);
@@ -199,7 +207,7 @@ impl LatticeRegion {
         let bands = if meets { band(from_v)..band(to_v) + 1 } else { 0..0 };
         let first = bands.start;
         bands.flat_map(move |own| {
-            let edges = self.bands.of(own).iter().map(|&index| &self.edges[index as usize]);
+            let edges = self.bands.list(own).iter().map(|&index| &self.edges[index as usize]);
             // An edge in several of these bands counts in the first of them.
             edges.filter(move |edge| own == first || band(edge.low.v) == own)
         })
@@ -213,11 +221,12 @@ impl Edge {
         }
         let is_up = (from.v, from.u) < (to.v, to.u);
         let (low, high) = if is_up { (from, to) } else { (to, from) };
-        // What lies inside is to the left of an outer ring, and so to the right of its edges that run down.
+        // The interior is to the left of an outer ring, and so to the right of its edges that go
+        // down.
         Some(Self { low, high, winding: if is_up == is_turned { 1 } else { -1 } })
     }
 
-    /// Columns, counted from `first`, of the cells of a row whose inside the edge enters.
+    /// The columns, counted from `first`, of the cells of a row whose interior the edge enters.
     fn cells_met(
         &self,
         [south_v, north_v]: [i64; 2],
@@ -228,7 +237,7 @@ impl Edge {
         if self.high.v <= south_v || self.low.v >= north_v {
             return 0..0;
         }
-        // As fractions with one denominator.
+        // The values are fractions with a common denominator.
         let (rise, ends) = if self.low.v == self.high.v {
             (1, [self.low.u, self.high.u].map(i128::from))
         } else {
@@ -244,8 +253,8 @@ impl Edge {
         from..to.max(from)
     }
 
-    /// The first cell of a row whose centre lies to the east of the edge; `None` where the edge does not cross the row of centres. `v2` is
-    /// twice the row of the centres.
+    /// The first cell of a row whose centre is to the east of the edge; `None` if the edge does not
+    /// cross the row of centres. `v2` is twice the row of the centres.
     fn first_centre_east(&self, v2: i64, east: i64) -> Option<i128> {
         if v2 < 2 * self.low.v || v2 >= 2 * self.high.v {
             return None;
@@ -259,7 +268,7 @@ impl Edge {
         i128::from(self.high.v - self.low.v)
     }
 
-    /// Twice the edge's u at a row, times its rise; `v2` is twice the row.
+    /// Twice the u of the edge at a row, multiplied by its rise; `v2` is twice the row.
     fn u_times_rise(&self, v2: i128) -> i128 {
         let run = i128::from(self.high.u - self.low.u);
         2 * i128::from(self.low.u) * self.rise() + run * (v2 - 2 * i128::from(self.low.v))
@@ -270,13 +279,13 @@ fn twice(point: LatticePoint) -> LatticePoint {
     LatticePoint::new(2 * point.u, 2 * point.v)
 }
 
-/// The edges of a ring, the one from its last point to its first included.
+/// The edges of a ring, including the one from its last point to its first.
 fn ring_edges(ring: &[LatticePoint]) -> impl Iterator<Item = [LatticePoint; 2]> {
     let next = ring.iter().cycle().skip(1);
     ring.iter().zip(next).map(|(&from, &to)| [from, to])
 }
 
-/// Twice the area of a ring, positive if it winds counter-clockwise.
+/// Twice the area of a ring; positive if the ring winds counter-clockwise.
 fn twice_signed_area(ring: &[LatticePoint]) -> i128 {
     let Some(&first) = ring.first() else { return 0 };
     ring_edges(ring).map(|[from, to]| cross(first, from, to)).sum()

@@ -1,4 +1,4 @@
-//! A region contains exactly the points that a look at all its edges finds.
+//! A region contains exactly the points that a search over all its edges finds.
 
 use proptest::prelude::*;
 
@@ -10,7 +10,7 @@ fn points(corners: &[[i64; 2]]) -> Vec<LatticePoint> {
 }
 
 impl LatticeRegion {
-    /// Asserts what every region promises.
+    /// Asserts the invariants of every region.
     fn check_invariants(&self) {
         for edge in &self.edges {
             assert!(edge.low != edge.high && edge.low.v <= edge.high.v, "{edge:?}");
@@ -32,7 +32,8 @@ fn region(polygons: &[&[&[[i64; 2]]]]) -> LatticeRegion {
     region
 }
 
-/// The inside nodes of a window from (0, 0) to (columns − 1, rows − 1), as rows of text from the north.
+/// The inside nodes of a window from (0, 0) to (columns − 1, rows − 1), as rows of text from the
+/// north.
 fn picture(region: &LatticeRegion, steps: [i64; 2], columns: usize, rows: usize) -> Vec<String> {
     let corner = NodeIndex { i: 0, j: rows as i64 - 1 };
     let nodes = region.nodes(steps, &NodeWindow { corner, stride: 1, columns, rows });
@@ -62,7 +63,7 @@ fn a_step_beyond_a_node_takes_the_next_cell() {
 
 #[test]
 fn a_hole_has_no_nodes_but_those_of_cells_it_leaves_over() {
-    // The hole takes the four cells around node (3, 3) as a whole, so only that node is outside.
+    // The hole removes the four cells around node (3, 3) completely, so only that node is outside.
     let hole: &[[i64; 2]] = &[[20, 20], [40, 20], [40, 40], [20, 40]];
     let outer: &[[i64; 2]] = &[[10, 10], [50, 10], [50, 50], [10, 50]];
     let own = region(&[&[outer, hole]]);
@@ -72,7 +73,7 @@ fn a_hole_has_no_nodes_but_those_of_cells_it_leaves_over() {
     );
     assert!(own.contains(LatticePoint::new(20, 30)), "the outline of a hole belongs to the region");
     assert!(!own.contains(LatticePoint::new(21, 30)));
-    // Another polygon in the hole counts: all are united.
+    // Another polygon in the hole counts: the region is the union of all polygons.
     let both = region(&[&[outer, hole], &[&[[25, 25], [35, 25], [35, 35], [25, 35]]]]);
     assert!(both.contains(LatticePoint::new(30, 30)));
     assert!(!both.contains(LatticePoint::new(22, 30)));
@@ -80,13 +81,13 @@ fn a_hole_has_no_nodes_but_those_of_cells_it_leaves_over() {
 
 #[test]
 fn a_triangle_takes_the_cells_that_it_enters() {
-    // The long side runs through corners of cells, and enters the cells on the diagonal alone.
+    // The long side passes through corners of cells, and only enters the cells on the diagonal.
     let own = region(&[&[&[[0, 0], [40, 0], [40, 40]]]]);
     assert_eq!(
         picture(&own, [10, 10], 6, 6),
         ["......", "...##.", "..###.", ".####.", "#####.", "#####."]
     );
-    // The same triangle, drawn the other way around.
+    // The same triangle in the opposite direction.
     let turned = region(&[&[&[[40, 40], [40, 0], [0, 0]]]]);
     assert_eq!(picture(&turned, [10, 10], 6, 6), picture(&own, [10, 10], 6, 6));
 }
@@ -104,7 +105,7 @@ fn rings_without_area_are_none() {
     assert_eq!(LatticeRegion::new(&[vec![Vec::new()]]), None);
 }
 
-/// A star around (0, 0): a simple polygon of any number of corners.
+/// A star around (0, 0), which is a simple polygon with any number of corners.
 fn star() -> impl Strategy<Value = Vec<LatticePoint>> {
     prop::collection::vec(5.0_f64..400.0, 3..200).prop_map(|radii| {
         let turn = std::f64::consts::TAU / radii.len() as f64;
@@ -116,7 +117,8 @@ fn star() -> impl Strategy<Value = Vec<LatticePoint>> {
     })
 }
 
-/// Whether a point is inside or on the outline, edge by edge over all edges; points are in half steps.
+/// Whether a point is inside or on the outline, edge by edge over all edges; points are in half
+/// steps.
 fn slow_contains(rings: &[Vec<LatticePoint>], [u2, v2]: [i64; 2]) -> bool {
     let mut crossings = 0;
     for [a, b] in rings.iter().flat_map(|ring| ring_edges(ring)) {
@@ -134,7 +136,7 @@ fn slow_contains(rings: &[Vec<LatticePoint>], [u2, v2]: [i64; 2]) -> bool {
 }
 
 proptest! {
-    /// Points are inside as the even-odd rule says, for polygons that do not cross themselves.
+    /// Points are inside according to the even-odd rule, for polygons that do not cross themselves.
     #[test]
     fn contains_agrees_with_the_even_odd_rule(star in star(), at in prop::array::uniform2(-900_i64..900)) {
         if let Some(region) = LatticeRegion::new(&[vec![star.clone()]]) {
@@ -148,13 +150,15 @@ proptest! {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(corniche_testing::cases(12, 40, 256)))]
 
-    /// A node counts exactly if a point of the inside of one of its four cells is in the region: cells are looked at point by point.
+    /// A node counts exactly if a point in the interior of one of its four cells is in the region;
+    /// the test checks cells point by point.
     #[test]
     fn nodes_agree_with_a_look_at_every_point(star in star(), steps in prop::array::uniform2(3_i64..40)) {
         let Some(region) = LatticeRegion::new(&[vec![star.clone()]]) else { return Ok(()) };
         let window = NodeWindow { corner: NodeIndex { i: -7, j: 6 }, stride: 1, columns: 14, rows: 12 };
         let nodes = region.nodes(steps, &window);
-        // At half steps, a region can pass between the points: what they show is there, but not all of it.
+        // A region can pass between points at half steps: what they show is correct, but
+        // incomplete.
         for (index, &inside) in nodes.iter().enumerate() {
             let node = window.node(index % 14, index / 14);
             let [u2, v2] = [2 * node.i * steps[0], 2 * node.j * steps[1]];
@@ -177,7 +181,7 @@ proptest! {
 }
 
 proptest! {
-    /// A node counts or not, whichever window asks.
+    /// Whether a node counts does not depend on the window.
     #[test]
     fn nodes_do_not_depend_on_the_window(star in star(), west in -9_i64..3, north in -3_i64..9) {
         let Some(region) = LatticeRegion::new(&[vec![star]]) else { return Ok(()) };

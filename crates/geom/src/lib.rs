@@ -1,8 +1,8 @@
-//! The nouns of space: lattice points, frames, tiles, bounds, polylines and height grids.
+//! The types of space: lattice points, frames, tiles, bounds, polylines and height grids.
 //!
-//! Everything that two tiles must agree on to the last bit is an integer here: nodes of the global
-//! grid ([`NodeIndex`]) and points of the plan lattice ([`LatticePoint`]). Metres come out of a
-//! [`GridFrame`] and out of nothing else.
+//! Values on which two tiles must agree to the last bit are integers here: nodes of the global grid
+//! ([`NodeIndex`]) and points of the lattice ([`LatticePoint`]). Only a [`GridFrame`] converts them
+//! to metres.
 //!
 //! This crate never knows a road, a file or a GPU.
 
@@ -15,7 +15,7 @@ mod disjoint_sets;
 mod geo_transform;
 mod grid_frame;
 mod height_grid;
-// A plain container that knows nothing of triangles, though `tin` is its only user.
+// This plain container knows nothing of triangles, although `tin` is its only user.
 mod index_lists;
 mod lattice;
 mod lattice_region;
@@ -53,4 +53,4 @@ pub use projection::{ProjectError, Projection};
 pub use seam::{OnSeamedMap, Seam, split_at_seam};
 pub use tile_id::{TileId, TileIdError};
 pub use tile_size::{MAX_LEVEL, TILE_CELLS, TILE_NODES};
-pub use work::{MOST_TILE_STEPS, TooMuchWork, Work};
+pub use work::{MOST_TILE_STEPS, StepBudget, TooMuchWork};

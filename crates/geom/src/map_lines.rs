@@ -1,34 +1,37 @@
-//! True lengths of lines that are straight on a map, and true areas of what such lines surround.
+//! True lengths of lines that are straight on a map, and true areas inside such lines.
 
 use crate::wgs84;
 
-/// Lines of which the ends are no farther apart are measured by their ends alone: a map bends them by less than a tenth of a
-/// millimetre.
+/// Lines whose ends are at most this far apart are measured only by their ends: a map bends them by
+/// less than a tenth of a millimetre.
 const SHORT_M: f64 = 1000.0;
-/// A longer line is measured along its course where that makes more of a difference, …
+/// A longer line is measured along its course if this changes the length by more than this value.
 const LEAST_DIFFERENCE_M: f64 = 1e-4;
-/// … and so closely in each of its parts, …
+/// The accuracy of the length of each part of a longer line.
 const CLOSED_M: f64 = 1e-6;
-/// … or as areas beside it are, …
+/// The accuracy of areas next to a part.
 const CLOSED_M2: f64 = 1e-2;
-/// … but no closer than to this share of a part, which is more than coordinates are rounded by.
+/// The relative accuracy of a part, which is larger than the rounding of coordinates.
 const CLOSED_SHARE: f64 = 1e-10;
-/// A part is halved so often at most: one that needs more crosses a place where the map is torn.
+/// The largest number of times that a part is halved: a part that needs more crosses a place where
+/// the map is torn.
 const MOST_HALVINGS: u32 = 40;
 
-/// A map: coordinates to longitude and latitude in degrees, not finite where there are none.
+/// A map: converts coordinates to longitude and latitude in degrees; the result is not finite if
+/// there are none.
 pub type Degrees<'a> = dyn Fn([f64; 2]) -> [f64; 2] + 'a;
 
-/// True length of the line that is straight on a map, on the ellipsoid of WGS84, metres; not finite where the map does not reach.
+/// The true length of a line that is straight on a map, on the ellipsoid of WGS84, in metres; not
+/// finite if the map does not contain it.
 ///
-/// Source: Romberg 1955, *Vereinfachte numerische Integration*: the lengths of one, two and four chords, extrapolated; a part whose
-/// extrapolations differ is halved.
+/// Source: Romberg 1955, *Vereinfachte numerische Integration*: the lengths of one, two and four
+/// chords, extrapolated; a part whose extrapolations differ is halved.
 #[must_use]
 pub fn line_length_m(ends: [[f64; 2]; 2], degrees: &Degrees<'_>) -> f64 {
     known_line_length_m(ends, ends.map(degrees), degrees)
 }
 
-/// The same of a line whose ends are known in degrees already.
+/// The true length of a line whose ends are already known in degrees.
 #[must_use]
 pub fn known_line_length_m(
     ends: [[f64; 2]; 2],
@@ -44,9 +47,10 @@ pub fn known_line_length_m(
     if (along_m - ends_m).abs() <= LEAST_DIFFERENCE_M { ends_m } else { along_m }
 }
 
-/// True area inside a closed line of positions in degrees whose sides are straight on a map, square metres; negative for a clockwise
-/// one. The first position is not repeated at the end. `side` gives the ends of the side between two positions on the map; it is
-/// asked for long ones alone. No line may go around a pole, and where the map does not reach, sides are straight in the cylindrical
+/// The true area inside a closed line of positions in degrees whose sides are straight on a map, in
+/// square metres; negative for a clockwise line. The first position is not repeated at the end.
+/// `side` returns the ends of the side between two positions on the map; it is only called for long
+/// sides. No line may go around a pole. Outside the map, sides are straight in the cylindrical
 /// equal-area projection.
 #[must_use]
 pub fn ring_area_m2(
@@ -69,11 +73,12 @@ pub fn ring_area_m2(
     wgs84::area_m2(ring_deg) + all_m2
 }
 
-/// A line along which something is summed up.
+/// A line along which a quantity is summed.
 struct Course<'a> {
     ends: [[f64; 2]; 2],
     degrees: &'a Degrees<'a>,
-    /// What is summed, of a chord between two places in degrees. Its error falls with even powers of the chord's length.
+    /// The summed quantity of a chord between two positions in degrees. Its error falls with even
+    /// powers of the chord's length.
     measure: &'a dyn Fn([f64; 2], [f64; 2]) -> f64,
     closed: f64,
 }
@@ -89,7 +94,7 @@ impl Course<'_> {
         (self.degrees)([0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis])))
     }
 
-    /// The sum between two shares of the line; the places at both and halfway are known.
+    /// The sum between two fractions of the line; the positions at both and halfway are known.
     fn part(&self, [from, to]: [f64; 2], [a, c, e]: [[f64; 2]; 3], halvings: u32) -> f64 {
         let middle = f64::midpoint(from, to);
         let [b, d] = [[from, middle], [middle, to]]
@@ -100,7 +105,7 @@ impl Course<'_> {
         let four = measure(a, b) + measure(b, c) + measure(c, d) + measure(d, e);
         let [coarse, fine] = [two + (two - one) / 3.0, four + (four - two) / 3.0];
         let allowed = self.closed + CLOSED_SHARE * four.abs();
-        // What is not finite stays so, however often it is halved.
+        // A value that is not finite stays so, however often the part is halved.
         if (fine - coarse).abs() > allowed && halvings > 0 {
             return self.part([from, middle], [a, b, c], halvings - 1)
                 + self.part([middle, to], [c, d, e], halvings - 1);

@@ -1,19 +1,20 @@
-//! Lines and areas on maps of which lengths and areas are known in closed form, or by very many short pieces.
+//! Lines and areas on maps agree with closed forms, or with sums over very many short pieces.
 
 use std::f64::consts::FRAC_PI_4;
 
 use super::*;
 
-/// Isometric latitude of a latitude, radians (Snyder 1987, equation 7-7 over the radius).
+/// The isometric latitude of a latitude in radians (Snyder 1987, equation 7-7 divided by the
+/// radius).
 fn isometric(lat: f64) -> f64 {
     let e = wgs84::ECCENTRICITY_2.sqrt();
     let e_sin = e * lat.sin();
     ((FRAC_PI_4 + lat / 2.0).tan() * ((1.0 - e_sin) / (1.0 + e_sin)).powf(e / 2.0)).ln()
 }
 
-/// Mercator's map of the ellipsoid, radians at the equator.
+/// Mercator's map of the ellipsoid, in radians at the equator.
 fn mercator([x, y]: [f64; 2]) -> [f64; 2] {
-    // Newton's method; its slope is that on the sphere.
+    // Newton's method with the slope on the sphere.
     let mut lat = y.sinh().atan();
     for _ in 0..50 {
         lat += (y - isometric(lat)) * lat.cos();
@@ -25,12 +26,13 @@ fn on_mercator([lon_deg, lat_deg]: [f64; 2]) -> [f64; 2] {
     [lon_deg.to_radians(), isometric(lat_deg.to_radians())]
 }
 
-/// A perspective map of the southern polar region: positions are angles at the pole, in all directions.
+/// A perspective map of the southern polar region: positions are angles at the pole, in all
+/// directions.
 fn polar([x, y]: [f64; 2]) -> [f64; 2] {
     [x.atan2(y).to_degrees(), 2.0 * x.hypot(y).atan().to_degrees() - 90.0]
 }
 
-/// Length of the meridian between two latitudes in degrees, by Simpson's rule.
+/// The length of the meridian between two latitudes in degrees, by Simpson's rule.
 fn meridian_m(from_deg: f64, to_deg: f64) -> f64 {
     let count = 20_000;
     let step = (to_deg - from_deg) / f64::from(count);
@@ -39,7 +41,8 @@ fn meridian_m(from_deg: f64, to_deg: f64) -> f64 {
     (0..=count).map(|k| weight(k) * radius(k)).sum::<f64>() * step.to_radians() / 3.0
 }
 
-/// A line that is straight in Mercator's map keeps its angle to meridians, so its length is that of the meridian, over a cosine.
+/// A line that is straight in Mercator's map has a constant angle to meridians, so its length is
+/// that of the meridian divided by a cosine.
 #[test]
 fn loxodromes_are_as_long_as_the_meridian_says() {
     for (from, to) in [
@@ -60,7 +63,8 @@ fn loxodromes_are_as_long_as_the_meridian_says() {
     assert!((found_m - along_m).abs() < 1e-5, "{found_m} {along_m}");
 }
 
-/// Straight lines beside a pole, which a formula for their ends alone measures wrong by metres, and one through it.
+/// Straight lines near a pole, for which a formula with their ends alone is wrong by metres, and
+/// one line through it.
 #[test]
 fn lines_beside_a_pole_are_as_long_as_their_pieces() {
     for ends in [
@@ -77,7 +81,7 @@ fn lines_beside_a_pole_are_as_long_as_their_pieces() {
         let pieces_m: f64 =
             places.array_windows().map(|&[from, to]| wgs84::short_distance_m(from, to)).sum();
         let found_m = line_length_m(ends, &polar);
-        // The piece over the pole itself is measured badly.
+        // The piece over the pole itself is measured inaccurately.
         assert!(
             (found_m - pieces_m).abs() < 1e-9 * pieces_m + 5.0 * f64::from(ends[1][1] == 0.0),
             "{found_m} {pieces_m}"
@@ -89,7 +93,8 @@ fn lines_beside_a_pole_are_as_long_as_their_pieces() {
     }
 }
 
-/// Short lines are measured by their ends, bit by bit, and places that no map has give no number.
+/// Short lines are measured by their ends, to the bit, and positions outside the map give no
+/// number.
 #[test]
 fn short_lines_are_measured_by_their_ends() {
     let ends = [[9.5, 47.0], [9.505, 47.005]];
@@ -100,7 +105,8 @@ fn short_lines_are_measured_by_their_ends() {
     assert!(line_length_m([[9.5, 47.0], [9.9, 47.0]], &torn).is_nan());
 }
 
-/// Areas are those of the same ring with very many corners along its sides, and of a box in degrees in closed form.
+/// Areas agree with those of the same ring with very many corners along its sides, and of a box in
+/// degrees in closed form.
 #[test]
 fn areas_are_those_of_what_the_sides_surround() {
     let maps: [(&Degrees<'_>, Vec<[f64; 2]>); 3] = [

@@ -5,22 +5,22 @@ use serde::{Deserialize, Serialize};
 /// A node of the package's global grid at the finest level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct NodeIndex {
-    /// Nodes east of the frame's origin.
+    /// Number of nodes east of the frame's origin.
     pub i: i64,
-    /// Nodes north of the frame's origin.
+    /// Number of nodes north of the frame's origin.
     pub j: i64,
 }
 
 /// A rectangle of nodes of one level: north-west node, spacing and count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NodeWindow {
-    /// North-west node.
+    /// The north-west node.
     pub corner: NodeIndex,
-    /// Spacing in finest cells: 1 at the finest level, 2 one above.
+    /// The spacing in finest cells: 1 at the finest level, 2 at the next coarser one.
     pub stride: i64,
-    /// Nodes from west to east.
+    /// Number of nodes from west to east.
     pub columns: usize,
-    /// Nodes from north to south.
+    /// Number of nodes from north to south.
     pub rows: usize,
 }
 
@@ -34,7 +34,7 @@ impl NodeWindow {
         }
     }
 
-    /// The same window with `halo` more nodes on every side.
+    /// Returns the window with `halo` more nodes on every side.
     #[must_use]
     pub fn with_halo(&self, halo: usize) -> Self {
         let reach = halo as i64 * self.stride;

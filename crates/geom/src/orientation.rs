@@ -1,25 +1,25 @@
-//! The exact test on which side of a line a point lies.
+//! The exact test of the side of a line on which a point is.
 
 use crate::LatticePoint;
 
-/// On which side of a directed line a point lies.
+/// The side of a directed line on which a point is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Side {
-    /// The point lies to the right of the direction of travel (clockwise turn).
+    /// The point is to the right of the direction of travel (clockwise turn).
     Right,
-    /// Exactly on the line.
+    /// The point is exactly on the line.
     On,
-    /// The point lies to the left of the direction of travel (counter-clockwise turn).
+    /// The point is to the left of the direction of travel (counter-clockwise turn).
     Left,
 }
 
-/// Twice the signed area of the triangle a, b, c in square lattice steps; positive when
+/// Twice the signed area of the triangle a, b, c in square lattice steps; positive if
 /// counter-clockwise seen from above. Exact for all coordinates below 2^62.
 #[must_use]
 #[inline]
 pub fn cross(a: LatticePoint, b: LatticePoint, c: LatticePoint) -> i128 {
-    // Two products of 31-bit factors fit an i64 with their difference; this is the common case
-    // (a tile of 256 cells at less than 2^22 steps each) and several times faster than i128.
+    // Two products of 31-bit factors and their difference fit in an i64; this is the common case (a
+    // tile of 256 cells of less than 2^22 steps each), and is several times faster than i128.
     const SMALL: i64 = 1 << 31;
     let (abu, abv) = (b.u - a.u, b.v - a.v);
     let (acu, acv) = (c.u - a.u, c.v - a.v);
@@ -30,8 +30,9 @@ pub fn cross(a: LatticePoint, b: LatticePoint, c: LatticePoint) -> i128 {
     }
 }
 
-/// The product of the vectors from `from` to `to` and to `point`, in square lattice steps: positive where these are less than a right angle
-/// apart. Exact for all coordinates below 2^62.
+/// The dot product of the vectors from `from` to `to` and to `point`, in square lattice steps:
+/// positive if the angle between them is less than a right angle. Exact for all coordinates below
+/// 2^62.
 #[must_use]
 #[inline]
 pub fn dot(from: LatticePoint, to: LatticePoint, point: LatticePoint) -> i128 {
@@ -39,7 +40,7 @@ pub fn dot(from: LatticePoint, to: LatticePoint, point: LatticePoint) -> i128 {
         + i128::from(to.v - from.v) * i128::from(point.v - from.v)
 }
 
-/// On which side of the line from `a` to `b` the point `c` lies, exactly.
+/// The side of the line from `a` to `b` on which the point `c` is, exactly.
 #[must_use]
 #[inline]
 pub fn side(a: LatticePoint, b: LatticePoint, c: LatticePoint) -> Side {

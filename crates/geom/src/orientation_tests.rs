@@ -1,4 +1,4 @@
-//! The side of a line is exact, whatever the arithmetic that finds it.
+//! The side of a line is exact, whatever arithmetic computes it.
 
 use super::*;
 use proptest::prelude::*;
@@ -8,7 +8,7 @@ fn point(range: std::ops::Range<i64>) -> impl Strategy<Value = LatticePoint> {
 }
 
 proptest! {
-    /// The short path gives the same number as 128-bit arithmetic, on both sides of its limit.
+    /// The fast path gives the same number as 128-bit arithmetic, on both sides of its limit.
     #[test]
     fn short_path_equals_wide_arithmetic(
         a in point(-(1 << 33)..1 << 33), b in point(-(1 << 33)..1 << 33), c in point(-(1 << 33)..1 << 33),
@@ -18,7 +18,7 @@ proptest! {
         prop_assert_eq!(cross(a, b, c), bu * cv - bv * cu);
     }
 
-    /// Swapping two corners turns the triangle over.
+    /// Swapping two corners reverses the triangle.
     #[test]
     fn exchanging_two_corners_changes_the_sign(a in point(-1000..1000), b in point(-1000..1000), c in point(-1000..1000)) {
         prop_assert_eq!(cross(a, b, c), -cross(b, a, c));

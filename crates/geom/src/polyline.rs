@@ -1,26 +1,26 @@
-//! A line on the lattice: at least two points, and no two neighbours equal.
+//! A line on the lattice: at least two points, without equal neighbours.
 
 use crate::LatticePoint;
 
-/// Why points do not make a [`Polyline`].
+/// Why points cannot form a [`Polyline`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("a polyline needs two different points, got {distinct}")]
 pub struct PolylineError {
-    /// How many points were left after equal neighbours were merged.
+    /// The number of points that were left after equal neighbours were merged.
     pub distinct: usize,
 }
 
-/// At least two lattice points, no two neighbours equal.
+/// At least two lattice points, without equal neighbours.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Polyline {
     points: Vec<LatticePoint>,
 }
 
 impl Polyline {
-    /// Takes the points in order; equal neighbours are merged into one.
+    /// Creates a line from points in order; equal neighbours are merged into one.
     ///
     /// # Errors
-    /// When fewer than two points are left.
+    /// When fewer than two points remain.
     pub fn new(mut points: Vec<LatticePoint>) -> Result<Self, PolylineError> {
         points.dedup();
         if points.len() < 2 {
@@ -36,7 +36,7 @@ impl Polyline {
         &self.points
     }
 
-    /// The points, in order, as their vector.
+    /// Returns the vector of the points, in order.
     #[must_use]
     pub fn into_points(self) -> Vec<LatticePoint> {
         self.points

@@ -1,22 +1,22 @@
-//! Which shares of a segment lie in a region of any outline.
+//! The fractions of a segment in a region of any outline.
 
 use crate::{LatticeBounds, LatticePoint, LatticeRegion, cross};
 
 impl LatticeRegion {
-    /// The shares of a segment that lie inside, ascending, as from where to where; `None` where no outline touches the segment, so that it
-    /// lies inside or outside as a whole.
+    /// The fractions of the segment that are inside, ascending, each from start to end; `None` if
+    /// no outline touches the segment, so that it is inside or outside as a whole.
     ///
     /// ```text
     ///            ┌─────────┐
-    ///   p ───────x─ ─ ─ ─ ─x──────── q      the parts between two crossings lie inside or outside as a whole:
-    ///            └─────────┘                their middles are asked
+    ///   p ───────x─ ─ ─ ─ ─x──────── q      the parts between two crossings are inside or outside as a whole:
+    ///            └─────────┘                their middles are tested
     /// ```
     ///
-    /// Which edges a segment crosses is decided exactly. What runs along an outline is inside. A stretch of less than two lattice steps
-    /// between two crossings may go to either side.
+    /// Which edges a segment crosses is decided exactly. Stretches along an outline are inside. A
+    /// stretch of less than two lattice steps between two crossings may be assigned to either side.
     #[must_use]
     pub fn shares_inside(&self, segment: [LatticePoint; 2]) -> Option<Vec<[f64; 2]>> {
-        let crossings = Crossings::of(segment, self);
+        let crossings = Crossings::from_segment(segment, self);
         if !crossings.touches {
             return None;
         }
@@ -34,21 +34,22 @@ impl LatticeRegion {
     }
 }
 
-/// Where a segment meets outlines, as shares of it: 0 at its start, 1 at its end.
+/// The positions at which a segment meets outlines, as fractions of it: 0 at its start, 1 at its
+/// end.
 #[derive(Default)]
 struct Crossings {
-    /// Shares between 0 and 1, without these; ascending.
+    /// Fractions strictly between 0 and 1, ascending.
     shares: Vec<f64>,
     /// Stretches along outlines.
     along: Vec<[f64; 2]>,
-    /// Whether an outline touches it at all.
+    /// Whether an outline touches the segment at all.
     touches: bool,
 }
 
 impl Crossings {
-    fn of([p, q]: [LatticePoint; 2], region: &LatticeRegion) -> Self {
+    fn from_segment([p, q]: [LatticePoint; 2], region: &LatticeRegion) -> Self {
         let mut found = Self::default();
-        let Some(near) = LatticeBounds::of(&[p, q]) else { return found };
+        let Some(near) = LatticeBounds::around(&[p, q]) else { return found };
         for [a, b] in region.edges_near(&near) {
             let (of_p, of_q) = (cross(a, b, p), cross(a, b, q));
             if of_p == 0 && of_q == 0 {
@@ -90,13 +91,13 @@ impl Crossings {
         if self.along.iter().any(|[from, to]| (*from..=*to).contains(&middle)) {
             return true;
         }
-        // In half steps of the lattice.
+        // The position is in half steps of the lattice.
         let at = |p: i64, q: i64| 2 * p + ((q - p) as f64 * 2.0 * middle).round() as i64;
         region.contains_half([at(p.u, q.u), at(p.v, q.v)])
     }
 }
 
-/// How far along a segment a point on its line lies.
+/// The fraction of a segment at which a point on its line is.
 fn share([p, q]: [LatticePoint; 2], at: LatticePoint) -> f64 {
     let (run, rise) = (q.u - p.u, q.v - p.v);
     if run.abs() >= rise.abs() {

@@ -1,12 +1,12 @@
-//! The seam of a map of the earth: lines go from place to place the shorter way around, and are cut where the map ends.
+//! The seam of a map of the earth: lines go the shorter way around, and are cut where the map ends.
 
 use crate::{GridFrame, LatticePoint};
 
-/// What computing with coordinates rounds, in turns.
+/// The rounding error of computations with coordinates, in turns.
 const ROUNDING: f64 = 1e-12;
 
-/// Where a map is cut open whose first coordinate comes back after a full turn around the earth: half a turn from its middle, on both
-/// sides.
+/// The seam at which a map is cut open whose first coordinate repeats after a full turn around the
+/// earth: half a turn from its centre, on both sides.
 ///
 /// ```text
 ///   west            middle            east        A line from p to q is shorter over the seam than through the middle. It is
@@ -16,38 +16,41 @@ const ROUNDING: f64 = 1e-12;
 pub struct Seam {
     middle: f64,
     turn: f64,
-    /// Places this near to an end lie on it: what is rounded to a lattice is rounded apart at the two ends.
+    /// Positions this near to an end count as being on it: positions that are rounded to a lattice
+    /// are rounded differently at the two ends.
     rounding: f64,
 }
 
-/// A place on such a map.
+/// A position on a map with a seam.
 pub trait OnSeamedMap: Copy {
-    /// Its first coordinate.
+    /// The first coordinate.
     fn x(&self) -> f64;
-    /// The same place with another first coordinate.
+    /// Returns the same position with another first coordinate.
     #[must_use]
     fn with_x(self, x: f64) -> Self;
-    /// The place on the line to another one at a share of its length. Its first coordinate means nothing.
+    /// Returns the position on the line to another position at a fraction of its length. Its first
+    /// coordinate has no meaning.
     #[must_use]
     fn towards(self, other: Self, share: f64) -> Self;
-    /// Whether both lie at the same place in plan.
+    /// Whether both positions are equal in plan.
     fn is_at(&self, other: &Self) -> bool;
 }
 
 impl Seam {
-    /// The seam of a map around a middle; `turn` is a full turn in the same unit, of either sign.
+    /// Returns the seam of a map around a centre; `turn` is a full turn in the same unit, of either
+    /// sign.
     #[must_use]
     pub fn new(middle: f64, turn: f64) -> Self {
         Self { middle, turn: turn.abs(), rounding: 0.0 }
     }
 
-    /// The seam of degrees that are counted from −180 to 180.
+    /// Returns the seam of degrees from −180 to 180.
     #[must_use]
     pub fn of_degrees() -> Self {
         Self::new(0.0, 360.0)
     }
 
-    /// A full turn.
+    /// The length of a full turn.
     #[must_use]
     pub fn turn(&self) -> f64 {
         self.turn
@@ -59,13 +62,14 @@ impl Seam {
         [self.middle - self.turn / 2.0, self.middle + self.turn / 2.0]
     }
 
-    /// The seam of the same map around another middle.
+    /// Returns the seam of the same map around another centre.
     #[must_use]
     pub fn around(self, middle: f64) -> Self {
         Self { middle, ..self }
     }
 
-    /// A seam in working metres as one of a package's lattice: a turn is a whole number of steps, and so are its ends.
+    /// Converts a seam in working metres to a seam on a package's lattice: a turn is a whole number
+    /// of steps, and so are its ends.
     #[must_use]
     pub fn on_lattice(&self, frame: &GridFrame) -> Self {
         let [_, east] = self.ends();
@@ -74,7 +78,8 @@ impl Seam {
         Self { middle: east - turn / 2.0, turn, rounding: 1.0 }
     }
 
-    /// The image of a coordinate on this map. Half a turn from the middle, be it a rounding more, it stays as it is: both ways around are equally long.
+    /// The image of a coordinate on this map. A coordinate half a turn from the centre (or more by
+    /// a rounding error) does not change: both ways around are equally long.
     #[must_use]
     pub fn image(&self, x: f64) -> f64 {
         let away = x - self.middle;
@@ -85,22 +90,24 @@ impl Seam {
         }
     }
 
-    /// The image of a coordinate between the ends of the map; what lies at the eastern end comes to the western one.
+    /// The image of a coordinate between the ends of the map; the eastern end is mapped to the
+    /// western one.
     #[must_use]
     pub fn image_from_west(&self, x: f64) -> f64 {
         let [west, _] = self.ends();
         x - self.turn * ((x - west) / self.turn).floor()
     }
 
-    /// Whole turns that something as wide as its middle `x` is away from the middle of the map; none from half a turn, be it a rounding more.
+    /// The number of whole turns between an object with the centre `x` and the centre of the map; 0
+    /// at half a turn (or more by a rounding error).
     #[must_use]
     pub fn turns(&self, x: f64) -> f64 {
         let turns = (x - self.middle) / self.turn;
         if turns.abs() <= 0.5 + 1e-9 { 0.0 } else { turns.round() }
     }
 
-    /// Makes a sequence of places continuous: each lies next to the one before it, the first next to the middle of the map. Places
-    /// that are nowhere (NaN) stay.
+    /// Makes a sequence of positions continuous: each position is moved next to the one before it,
+    /// the first next to the centre of the map. Undefined positions (NaN) do not change.
     pub fn unroll<P: OnSeamedMap>(&self, places: &mut [P]) {
         let mut near = *self;
         for place in places.iter_mut().filter(|place| place.x().is_finite()) {
@@ -112,16 +119,17 @@ impl Seam {
         }
     }
 
-    /// Whether the shorter way between two places of the map leads over the seam.
+    /// Whether the shorter way between two positions of the map crosses the seam.
     #[must_use]
     pub fn parts<P: OnSeamedMap>(&self, from: &P, to: &P) -> bool {
         (to.x() - from.x()).abs() > self.turn / 2.0
     }
 
-    /// A line through places of the map, cut at the seam: its parts, each of two places at least. A line that does not meet the seam
-    /// comes back as it is.
+    /// Cuts a line through positions of the map at the seam: returns its parts, each of at least
+    /// two positions. A line that does not meet the seam is returned unchanged.
     ///
-    /// A cut lies on both ends of the map at the same height, whichever way the line goes. A line that ends at the seam ends there once.
+    /// A cut is at the same height on both ends of the map, whatever the direction of the line. A
+    /// line that ends at the seam ends there only once.
     #[must_use]
     pub fn split<P: OnSeamedMap>(&self, line: Vec<P>) -> Vec<Vec<P>> {
         if !line.array_windows().any(|[from, to]| self.parts(from, to)) {
@@ -144,23 +152,25 @@ impl Seam {
         lines
     }
 
-    /// A place on the end of the map that it is as near to as rounding goes; others stay.
+    /// Moves a position onto an end of the map if it is there except for rounding; other positions
+    /// do not change.
     fn onto_end<P: OnSeamedMap>(&self, place: P) -> P {
         let is_near = |end: &f64| (place.x() - end).abs() <= self.rounding;
         self.ends().into_iter().find(is_near).map_or(place, |end| place.with_x(end))
     }
 
-    /// Where a line over the seam is cut: on the side of `from`, and on that of `to`.
+    /// The cut of a line over the seam: the position on the side of `from`, and the position on the
+    /// side of `to`.
     fn cut<P: OnSeamedMap>(&self, from: P, to: P) -> [P; 2] {
         let goes_east = from.x() > to.x();
         let [high, low] = if goes_east { [from, to] } else { [to, from] };
         let [west, east] = self.ends();
-        // Rounding can put a place a little beyond the end.
+        // Rounding can move a position slightly beyond the end.
         let [before, behind] = [east - high.x(), low.x() - west].map(|along| along.max(0.0));
         let at = if before + behind > 0.0 {
             high.towards(low, before / (before + behind))
         } else {
-            // Along the seam, on the side where the line is.
+            // The line runs along the seam; cut it on its own side.
             to
         };
         let [first, second] = if goes_east { [east, west] } else { [west, east] };
@@ -168,7 +178,7 @@ impl Seam {
     }
 }
 
-/// A line cut at the seam of a map, if the map has one.
+/// Cuts a line at the seam of a map, if the map has one.
 #[must_use]
 pub fn split_at_seam<P: OnSeamedMap>(line: Vec<P>, seam: Option<Seam>) -> Vec<Vec<P>> {
     match seam {
@@ -177,7 +187,7 @@ pub fn split_at_seam<P: OnSeamedMap>(line: Vec<P>, seam: Option<Seam>) -> Vec<Ve
     }
 }
 
-/// Adds a place unless the line is there already.
+/// Adds a position unless the line is there already.
 fn push<P: OnSeamedMap>(line: &mut Vec<P>, place: P) {
     if line.last().is_none_or(|last| !last.is_at(&place)) {
         line.push(place);
@@ -203,7 +213,7 @@ impl OnSeamedMap for LatticePoint {
     }
 }
 
-/// A point of a line and whether it must stay in it: a cut must.
+/// A point of a line, and whether it must stay in the line, as a cut must.
 impl OnSeamedMap for (LatticePoint, bool) {
     fn x(&self) -> f64 {
         self.0.x()
@@ -222,7 +232,7 @@ impl OnSeamedMap for (LatticePoint, bool) {
     }
 }
 
-/// A position and what else changes evenly along a line, such as its height.
+/// A position with other values that change linearly along a line, for example its height.
 impl<const N: usize> OnSeamedMap for [f64; N] {
     fn x(&self) -> f64 {
         self[0]

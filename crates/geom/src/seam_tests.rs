@@ -1,4 +1,4 @@
-//! Lines over the seam of a map are cut there, and others are not touched.
+//! Lines over the seam of a map are cut there, and other lines do not change.
 
 #![expect(clippy::float_cmp, reason = "degrees and steps are exact")]
 
@@ -8,14 +8,15 @@ fn split(line: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
     Seam::of_degrees().split(Vec::from(line))
 }
 
-/// Lines that do not meet the seam come back as they are, whatever is in them.
+/// Lines that do not meet the seam are returned unchanged, whatever they contain.
 #[test]
 fn what_does_not_meet_the_seam_stays() {
     for line in [
         vec![],
         vec![[180.0, 1.0]],
         vec![[1.0, 1.0], [1.0, 1.0], [170.0, 2.0]],
-        // Along the end of the map, and from end to middle: both ways around are equally long.
+        // Lines along the end of the map, and from an end to the centre: both ways around are
+        // equally long.
         vec![[180.0, 1.0], [180.0, 2.0]],
         vec![[0.0, 1.0], [180.0, 2.0]],
     ] {
@@ -34,7 +35,8 @@ fn a_line_over_the_seam_is_cut_at_both_ends_of_the_map() {
     assert_eq!(split(&back), [second, first]);
 }
 
-/// A place at the seam may have the coordinate of either end: the line ends there once, and nothing of no length is left.
+/// A position at the seam may have the coordinate of either end: the line ends there once, without
+/// parts of zero length.
 #[test]
 fn a_line_that_ends_at_the_seam_has_one_part() {
     let east = vec![[179.0, 1.0], [180.0, 2.0]];
@@ -47,14 +49,15 @@ fn a_line_that_ends_at_the_seam_has_one_part() {
     assert_eq!(split(&[[179.0, 1.0], [-180.0, 2.0], [-179.0, 3.0]]), both);
     assert_eq!(split(&[[179.0, 1.0], [180.0, 2.0], [-180.0, 2.0], [-179.0, 3.0]]), both);
     assert_eq!(split(&[[179.0, 1.0], [-180.0, 2.0], [180.0, 2.0], [-179.0, 3.0]]), both);
-    // Along the seam and back to where it came from.
+    // A line along the seam and back to its start.
     let along = [[179.0, 1.0], [180.0, 2.0], [-180.0, 3.0], [179.0, 4.0]];
     let found = split(&along);
     let parts = [vec![[179.0, 1.0], [180.0, 2.0], [180.0, 3.0]], vec![[180.0, 3.0], [179.0, 4.0]]];
     assert_eq!(found, parts);
 }
 
-/// Places that run on past the end come back to the map, next to its middle; then each lies beside the one before.
+/// Positions past the end are moved back to the map, next to its centre; then each is moved next to
+/// the one before.
 #[test]
 fn places_are_continuous_from_one_to_the_next() {
     let mut places = [[181.0, 0.0], [f64::NAN, 0.0], [-178.0, 0.0], [178.0, 0.0], [-90.0, 0.0]];
@@ -77,7 +80,7 @@ fn between_the_ends_the_eastern_one_is_the_western_one() {
 #[test]
 fn on_a_lattice_cuts_are_points() {
     let frame = GridFrame::new([0.0; 2], 10.0, crate::NodeIndex { i: 0, j: 0 }, 2).unwrap();
-    // An earth of 40 km, no whole number of steps.
+    // An earth of 40 km, which is not a whole number of steps.
     let half_m = 20_037.508_342_789_244;
     let seam = Seam::new(0.0, 2.0 * half_m).on_lattice(&frame);
     let [west, east] = seam.ends();
@@ -90,7 +93,8 @@ fn on_a_lattice_cuts_are_points() {
     );
 }
 
-/// A turn of 10.3 steps with its eastern end at −0.4: the ends are 0 and −10, and a place at the western end is rounded to −11.
+/// A turn of 10.3 steps with its eastern end at −0.4: the ends are 0 and −10, and a position at the
+/// western end is rounded to −11.
 #[test]
 fn a_line_to_an_end_that_is_rounded_apart_ends_there_once() {
     let seam = Seam { middle: -5.0, turn: 10.0, rounding: 1.0 };

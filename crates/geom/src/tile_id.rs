@@ -14,16 +14,16 @@ pub struct TileId {
     y: u32,
 }
 
-/// Why something is not a tile id.
+/// Why a value is not a tile id.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum TileIdError {
-    /// The level is beyond the deepest one.
+    /// The level is beyond the deepest level.
     #[error("level {z} is beyond the deepest level {MAX_LEVEL}")]
     Level {
-        /// The level asked for.
+        /// The requested level.
         z: u8,
     },
-    /// Column or row do not exist on the level.
+    /// The column or the row does not exist on the level.
     #[error("level {z} has columns and rows 0 to {max}; {x}/{y} is not one of them", max = (1_u64 << z) - 1)]
     Outside {
         /// Level.
@@ -33,10 +33,10 @@ pub enum TileIdError {
         /// Row.
         y: u32,
     },
-    /// The text is not three numbers.
+    /// The text does not consist of three numbers.
     #[error("{text:?} is not a tile id; write Z/X/Y, for example 3/1/4")]
     Text {
-        /// What was given.
+        /// The given text.
         text: String,
     },
 }
@@ -56,13 +56,13 @@ impl From<TileId> for (u8, u32, u32) {
 }
 
 impl TileId {
-    /// The tile that covers all.
+    /// The tile that covers everything.
     pub const ROOT: Self = Self { z: 0, x: 0, y: 0 };
 
-    /// Tile `z/x/y`.
+    /// Creates tile `z/x/y`.
     ///
     /// # Errors
-    /// When the level is too deep or has no such column or row.
+    /// When the level is too deep, or has no such column or row.
     pub fn new(z: u8, x: u32, y: u32) -> Result<Self, TileIdError> {
         if z > MAX_LEVEL {
             return Err(TileIdError::Level { z });
@@ -91,20 +91,21 @@ impl TileId {
         self.y
     }
 
-    /// The tile above; `None` for the root.
+    /// The parent tile; `None` for the root.
     #[must_use]
     pub fn parent(self) -> Option<Self> {
         self.z.checked_sub(1).map(|z| self.ancestor(z))
     }
 
-    /// The tile of level `z` (at most its own) that holds this one.
+    /// The tile of level `z` (at most its own) that contains this tile.
     #[must_use]
     pub fn ancestor(self, z: u8) -> Self {
         let up = self.z - z.min(self.z);
         Self { z: self.z - up, x: self.x >> up, y: self.y >> up }
     }
 
-    /// The four tiles beneath: north-west, north-east, south-west, south-east. Empty at the deepest level.
+    /// The four child tiles: north-west, north-east, south-west, south-east. Empty at the deepest
+    /// level.
     pub fn children(self) -> impl Iterator<Item = Self> {
         let deeper = self.z < MAX_LEVEL;
         [(0, 0), (1, 0), (0, 1), (1, 1)]
@@ -113,7 +114,7 @@ impl TileId {
             .map(move |(dx, dy)| Self { z: self.z + 1, x: self.x * 2 + dx, y: self.y * 2 + dy })
     }
 
-    /// The tile `dx` columns east and `dy` rows south on the same level, if there is one.
+    /// The tile `dx` columns east and `dy` rows south on the same level, if it exists.
     #[must_use]
     pub fn neighbour(self, dx: i32, dy: i32) -> Option<Self> {
         let x = self.x.checked_add_signed(dx)?;

@@ -1,4 +1,4 @@
-//! Tile ids are read as they are printed, and children know their parent.
+//! Tile ids are parsed as they are printed, and children know their parent.
 
 use super::*;
 

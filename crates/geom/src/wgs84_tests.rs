@@ -1,4 +1,4 @@
-//! Lengths and areas on the ellipsoid are those of published tables.
+//! Lengths and areas on the ellipsoid agree with published tables.
 
 use super::*;
 
@@ -20,16 +20,18 @@ fn the_shorter_way_goes_over_the_antimeridian() {
     assert!((across_m - short_distance_m([0.0, 10.0], [0.2, 10.0])).abs() < 1e-3);
 }
 
-/// Half of the whole ellipsoid lies between the equator and a pole: its area is known in closed form.
+/// Half of the whole ellipsoid is between the equator and a pole: its area has a closed form.
 #[test]
 fn areas_add_up_to_the_ellipsoid() {
-    // One eighth of the earth, with its side along the pole.
+    // One eighth of the earth, with a side along the pole.
     let octant = area_m2(&[[0.0, 0.0], [90.0, 0.0], [90.0, 90.0], [0.0, 90.0]]);
-    // Moritz 2000, Geodetic Reference System 1980, gives 510 065 600 km² for an ellipsoid that differs by 1e-10.
+    // Moritz 2000, Geodetic Reference System 1980, gives 510 065 600 km² for an ellipsoid that
+    // differs by 1e-10.
     assert!((8.0 * octant / 5.100_656_217e14 - 1.0).abs() < 1e-8, "{}", 8.0 * octant);
 }
 
-/// A small square has the area of its sides; turned round it is negative; across 180 degrees it is the same.
+/// A small square has the area of its sides; in reverse order it is negative; across 180 degrees it
+/// is the same.
 #[test]
 fn areas_of_small_squares_are_those_of_their_sides() {
     for [lon, lat] in [[9.5, 47.0], [-70.0, -55.0], [179.9995, 10.0]] {

@@ -1,56 +1,58 @@
-//! A limit on the steps that something may take, whatever the numbers are that it is given.
+//! A limit on the number of steps of a computation, whatever its input.
 
 use std::cell::Cell;
 
-/// Steps that laying lines on one tile, or placing its roads, may take: looking at a triangle is one, and a vertex where a line crosses an edge
-/// of the ground counts for 32.
+/// The largest number of steps for draping lines on one tile, or for positioning its roads: each
+/// examined triangle is a step, and a vertex where a line crosses an edge of the ground counts as
+/// 32 steps.
 ///
-/// Real tiles take some hundred thousand. The limit is two million vertices, some 500 MiB of them, and a few seconds. How many points a file
-/// of lines may have follows from it.
+/// Real tiles take some hundred thousand. The limit allows two million vertices, which take about
+/// 500 MiB and a few seconds. It also limits the number of points in a file of lines.
 pub const MOST_TILE_STEPS: u64 = 1 << 26;
 
 /// More steps were taken than are allowed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("it takes more than the limit of {limit} steps")]
+#[error("this takes more than the limit of {limit} steps")]
 pub struct TooMuchWork {
-    /// How many are allowed.
+    /// The number of allowed steps.
     pub limit: u64,
 }
 
-/// Steps done and allowed. Steps are counted and not timed, so that every machine refuses the same.
+/// Steps done and allowed. Steps are counted, and time is not measured, so that every machine
+/// rejects the same input.
 #[derive(Debug)]
-pub struct Work {
+pub struct StepBudget {
     limit: u64,
     done: Cell<u64>,
 }
 
-impl Work {
-    /// Nothing is done yet of at most so many steps.
+impl StepBudget {
+    /// Creates a budget of `limit` steps, none of them used.
     #[must_use]
     pub const fn new(limit: u64) -> Self {
         Self { limit, done: Cell::new(0) }
     }
 
-    /// Work that is never too much.
+    /// Creates a budget without a limit.
     #[must_use]
     pub const fn unlimited() -> Self {
         Self::new(u64::MAX)
     }
 
-    /// Counts `steps` more.
+    /// Counts `steps` more steps.
     pub fn add(&self, steps: usize) {
         self.done.set(self.done.get().saturating_add(steps as u64));
     }
 
-    /// An error when more was done than is allowed.
+    /// Fails if more steps were done than are allowed.
     ///
     /// # Errors
-    /// When the limit is passed.
+    /// When the limit is exceeded.
     pub fn check(&self) -> Result<(), TooMuchWork> {
         if self.done.get() > self.limit { Err(TooMuchWork { limit: self.limit }) } else { Ok(()) }
     }
 
-    /// Steps done.
+    /// The number of steps done.
     #[must_use]
     pub fn done(&self) -> u64 {
         self.done.get()

@@ -1,4 +1,5 @@
-//! Coordinate systems, horizontal and vertical, and PROJ's operations between them. Knows no file.
+//! Coordinate systems, horizontal and vertical, and PROJ's operations between them. This module
+//! opens no files.
 
 pub(crate) mod cylindrical;
 pub(crate) mod horizontal;

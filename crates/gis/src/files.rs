@@ -1,5 +1,4 @@
-//! Files that GDAL opens: which a name means, where they lie on the earth, how they are cut into
-//! blocks.
+//! Files that GDAL opens: the files that a name means, their georeference, and their blocks.
 
 pub(crate) mod named_files;
 pub(crate) mod open;

@@ -1,4 +1,4 @@
-//! The formats that the manual promises, and which of them the GDAL at hand was built without.
+//! The formats that the manual promises, and a check for those that the installed GDAL lacks.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use gdal::{DriverManager, Metadata as _, version::VersionInfo};
 /// A format: its name for people, GDAL's name of its driver, and the endings of its files.
 type Format = (&'static str, &'static str, &'static [&'static str]);
 
-/// The formats of elevation files and photos, and of lines and areas, which are read or written.
+/// The formats of elevation files and photos, and of lines and areas, that are read or written.
 const FORMATS: [Format; 16] = [
     ("GeoTIFF", GEOTIFF, &["tif", "tiff"]),
     ("HGT", "SRTMHGT", &["hgt"]),
@@ -24,12 +24,12 @@ const FORMATS: [Format; 16] = [
     ("GPX", "GPX", &["gpx"]),
     ("KML", "KML", &["kml"]),
     ("CSV", "CSV", &["csv"]),
-    // The driver that is there if GDAL can fetch; it reads no files of its own.
+    // GDAL has this driver if it can fetch files; the driver reads no files itself.
     ("files on servers", "HTTP", &[]),
 ];
 
-/// Usual formats that nothing promises: a GDAL may lack them, and then files of theirs are not
-/// damaged.
+/// Common formats that the manual does not promise: if GDAL lacks one, its files are not reported
+/// as corrupt.
 const OTHERS: [Format; 19] = [
     ("GML", "GML", &["gml"]),
     ("DXF", "DXF", &["dxf"]),
@@ -54,18 +54,18 @@ const OTHERS: [Format; 19] = [
 
 const GEOTIFF: &str = "GTiff";
 
-/// Compressions of GeoTIFF that elevation files and photos have, as GDAL names them. Each needs a
-/// library of its own, or a part of libtiff.
+/// Compressions of GeoTIFF in elevation files and photos, as GDAL names them. Each needs a separate
+/// library, or a part of libtiff.
 const COMPRESSIONS: [&str; 9] =
     ["LZW", "PACKBITS", "JPEG", "DEFLATE", "LZMA", "ZSTD", "WEBP", "LERC", "LERC_ZSTD"];
 
-/// The formats, and the compressions of GeoTIFF, that GDAL lacks here, by name.
+/// The names of the formats, and of the compressions of GeoTIFF, that this GDAL lacks.
 #[must_use]
 pub fn missing_formats() -> Vec<String> {
     let formats = FORMATS.iter().filter(|format| is_missing(format));
     let names = formats.map(|&(name, ..)| name.to_owned());
-    // What the driver can write it can read, too. Without the driver, its compressions are not
-    // worth a word.
+    // If the driver can write a compression, it can read it, too. Without the driver, its
+    // compressions are not listed.
     let options = DriverManager::get_driver_by_name(GEOTIFF)
         .ok()
         .map(|driver| driver.metadata_item("DMD_CREATIONOPTIONLIST", "").unwrap_or_default());
@@ -77,7 +77,7 @@ fn is_missing((_, driver, _): &Format) -> bool {
     DriverManager::get_driver_by_name(driver).is_err()
 }
 
-/// The compressions that the list of a driver's options for writing, which is XML, does not name.
+/// The compressions that a driver's list of creation options, which is XML, does not name.
 fn missing_compressions(options: &str) -> Vec<&'static str> {
     let from = options.find("'COMPRESS'").or_else(|| options.find("\"COMPRESS\""));
     let named = from.map_or("", |from| &options[from..]);
@@ -86,8 +86,8 @@ fn missing_compressions(options: &str) -> Vec<&'static str> {
     COMPRESSIONS.into_iter().filter(lacks).collect()
 }
 
-/// Says that GDAL lacks the format of a file, by the ending of its name, if that is so, and what to
-/// do.
+/// A message that GDAL lacks the format of a file, by the ending of its name, and what to do;
+/// `None` if this is not so.
 pub(crate) fn lacks_format_of(path: &Path) -> Option<String> {
     let ending = path.extension()?.to_str()?.to_ascii_lowercase();
     let mut formats = FORMATS.iter().chain(&OTHERS);
@@ -97,7 +97,7 @@ pub(crate) fn lacks_format_of(path: &Path) -> Option<String> {
 
 fn advice((name, driver, _): &Format) -> String {
     format!(
-        "GDAL {} of this program does not read {name}; convert the file with ogr2ogr (lines and areas, to .gpkg) or gdal_translate (rasters, to .tif) \
+        "GDAL {} in this program does not read {name}; convert the file with ogr2ogr (lines and areas, to .gpkg) or gdal_translate (rasters, to .tif) \
          of a GDAL that has the driver {driver}",
         VersionInfo::release_name(),
     )

@@ -1,4 +1,4 @@
-//! What the manual promises is there in the GDAL that tests run with, and no ending stands for two
+//! The GDAL of the tests has all formats that the manual promises, and no ending belongs to two
 //! formats.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]

@@ -1,5 +1,5 @@
-//! The room for GDAL and PROJ: whatever opens files with them, or asks them for coordinates, does
-//! so through this crate.
+//! The interface to GDAL and PROJ: all other crates open files and transform coordinates through
+//! this crate.
 //!
 //! ```text
 //!   names ──► files ──► PlacedRaster, open_vectors, Polygon          Crs ──► CrsOperation ──► coordinates
@@ -7,8 +7,9 @@
 //!   lists, archives)
 //! ```
 //!
-//! What only heights, photos or overlays need is in the crates `dem`, `photo` and `overlay`. This
-//! crate knows no grid of heights, never uses GDAL's warper, and never guesses a coordinate system.
+//! Code that only heights, photos or overlays need is in the crates `dem`, `photo` and `overlay`.
+//! This crate knows no grid of heights, never uses GDAL's warper, and never guesses a coordinate
+//! system.
 
 mod error;
 mod library_error;
@@ -35,7 +36,7 @@ pub use crs::vertical::{VerticalCrs, grid_names};
 pub use error::{CrsError, FileUse, NameError, NotUtf8, PolygonError, RasterError, VectorError};
 pub use error::{first_names, listed_files, names_up_to};
 pub use files::georeference::Georeference;
-pub use files::named_files::{Sought, expand_name, unpack_name};
+pub use files::named_files::{SoughtFiles, expand_name, unpack_name};
 pub use files::open::{OpenRasters, open_raster, stand_in};
 pub use files::placed_raster::{PlacedRaster, RasterOnGrid};
 pub use files::raster_files::{FileBlocks, has_own_mask, raster_files};
@@ -44,4 +45,4 @@ pub use files::vsi::{VirtualFile, stored_text};
 pub use formats::missing_formats;
 pub use libraries::{libraries, limit_block_cache, set_unless_set, use_files_beside};
 pub use library_error::{LibraryError, failure, forget, quiet};
-pub use polygon::Polygon;
+pub use polygon::RegionPolygons;

@@ -1,5 +1,5 @@
-//! GDAL and PROJ for the whole process: their releases, settings, and what a released program has
-//! beside it: tables, drivers, certificates.
+//! GDAL and PROJ for the whole process: their releases, settings, and the tables, drivers and
+//! certificates that a released program ships.
 
 use std::{
     env,
@@ -12,19 +12,19 @@ use gdal::{errors::GdalError, version::VersionInfo};
 
 use crate::proj_folders;
 
-/// The folder of GDAL and PROJ in a released archive, counted from the folder of the program.
-/// `scripts/release` makes it.
+/// The folder of GDAL and PROJ in a released archive, relative to the folder of the program.
+/// `scripts/release` creates it.
 const LIBRARIES: &str = "../lib/corniche";
 
-/// PROJ's tables and grids there. A program that has them is a released one.
+/// The folder of PROJ's database and grids in it. A program that has this folder is a released one.
 const PROJ_TABLES: &str = "share/proj";
 
-/// GDAL's options for its folders there.
+/// GDAL's options for its folders in it.
 const FOLDERS: [(&str, &str); 2] =
     [("GDAL_DATA", "share/gdal"), ("GDAL_DRIVER_PATH", "gdalplugins")];
 
-/// Where systems keep the certificates that they trust. The released library for `https://` was
-/// made on one system and knows the place of that one alone.
+/// Files in which systems keep their trusted certificates. The released library for `https://` was
+/// built on one system and knows only the path of that system.
 const CERTIFICATES: [&str; 4] = [
     "/etc/ssl/certs/ca-certificates.crt",
     "/etc/pki/tls/certs/ca-bundle.crt",
@@ -32,40 +32,40 @@ const CERTIFICATES: [&str; 4] = [
     "/etc/ssl/cert.pem",
 ];
 
-/// Lets GDAL and PROJ take their tables and drivers from beside `program`, if it is a released one,
-/// and else changes nothing. To be called before anything else uses GDAL.
+/// Makes GDAL and PROJ use the tables and drivers next to `program`, if it is a released one;
+/// otherwise changes nothing. Must be called before anything else uses GDAL.
 ///
 /// A shell in which conda or another installation of GDAL is active sets `PROJ_DATA`, `GDAL_DATA`
 /// and `GDAL_DRIVER_PATH` for libraries of other versions, which a released program does not use.
-/// So its own folders count; PROJ looks into the user's after them, for more grids. Certificates
-/// that the user names have precedence.
+/// Therefore the program's own folders have precedence; PROJ searches the user's folders after
+/// them, for more grids. Certificates that the user names have precedence.
 pub fn use_files_beside(program: &Path) {
     let Some(folder) = libraries_beside(program) else { return };
     for (option, name) in FOLDERS {
         let place = folder.join(name);
         if let (true, Some(place)) = (place.is_dir(), place.to_str()) {
-            // A name with a zero byte is all that GDAL refuses, and no folder has one.
+            // GDAL rejects only a name with a zero byte, and no folder has one.
             let _ = gdal::config::set_config_option(option, place);
         }
     }
     let named = proj_folders::NAMED_BY.iter().find_map(env::var_os);
     proj_folders::search(&proj_search(&folder, proj_folders::of_user(), named));
     let found = || CERTIFICATES.into_iter().find(|file| Path::new(file).is_file());
-    // GDAL has this variable in the second place only.
+    // GDAL reads this variable with lower precedence.
     let given = env::var("SSL_CERT_FILE").ok().filter(|file| !file.is_empty());
     if let Some(file) = given.or_else(|| found().map(str::to_owned)) {
         let _ = set_unless_set("CURL_CA_BUNDLE", &file);
     }
 }
 
-/// The folder of GDAL and PROJ beside a released program; `None` beside another one.
+/// The folder of GDAL and PROJ next to a released program; `None` for other programs.
 fn libraries_beside(program: &Path) -> Option<PathBuf> {
     let folder = program.parent()?.join(LIBRARIES);
     folder.join(PROJ_TABLES).is_dir().then_some(folder)
 }
 
-/// Where PROJ looks for tables and grids: in its own folder, in the one to which it saves grids for
-/// the user, and in those that the environment names.
+/// The folders in which PROJ searches tables and grids: its own, the one in which it saves grids
+/// for the user, and those that the environment names.
 fn proj_search(
     libraries: &Path,
     of_user: Option<PathBuf>,
@@ -76,21 +76,22 @@ fn proj_search(
     [libraries.join(PROJ_TABLES)].into_iter().chain(of_user).chain(named).collect()
 }
 
-/// Limits the memory in which GDAL keeps blocks of rasters, for all threads together; without it
-/// GDAL takes up to 5 % of the machine's. To be called before the first file is opened.
+/// Limits the memory in which GDAL caches blocks of rasters, for all threads together; without a
+/// limit GDAL uses up to 5 % of the machine's memory. Must be called before the first file is
+/// opened.
 ///
 /// # Errors
-/// When GDAL refuses.
+/// When GDAL rejects the value.
 pub fn limit_block_cache(bytes: u64) -> Result<(), GdalError> {
-    // GDAL reads small numbers as megabytes; a megabyte is the least that is sensible anyway.
+    // GDAL reads small numbers as megabytes; a megabyte is the smallest sensible value anyway.
     gdal::config::set_config_option("GDAL_CACHEMAX", &bytes.max(1 << 20).to_string())
 }
 
-/// Sets one of GDAL's options for the whole process, unless the user has set it, in the environment
-/// or in GDAL's own settings file.
+/// Sets one of GDAL's options for the whole process, unless the user has set it in the environment
+/// or in GDAL's own configuration file.
 ///
 /// # Errors
-/// When GDAL refuses.
+/// When GDAL rejects the value.
 pub fn set_unless_set(option: &str, value: &str) -> Result<(), GdalError> {
     if gdal::config::get_config_option(option, "")?.is_empty() {
         gdal::config::set_config_option(option, value)?;
@@ -98,11 +99,11 @@ pub fn set_unless_set(option: &str, value: &str) -> Result<(), GdalError> {
     Ok(())
 }
 
-/// Releases of GDAL and PROJ that this program runs with, as packages record them.
+/// The releases of GDAL and PROJ that this program uses, as packages record them.
 #[must_use]
 pub fn libraries() -> String {
-    // Asked for once: PROJ writes its version anew each time, in one place for all threads, and
-    // another thread may find it half written.
+    // Queried once: PROJ writes its version again each time, into one buffer for all threads, and
+    // another thread may read it half written.
     static LIBRARIES: LazyLock<String> = LazyLock::new(|| {
         let proj = VersionInfo::build_info()
             .remove("PROJ_RUNTIME_VERSION")

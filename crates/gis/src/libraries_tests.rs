@@ -1,4 +1,4 @@
-//! A released program is known by its own tables of PROJ, and these count for more than those of
+//! A released program is recognised by its own tables of PROJ, which have precedence over those of
 //! another PROJ.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
@@ -13,7 +13,7 @@ fn a_released_program_is_one_with_its_own_tables_of_proj() {
     let program = place.path().join("bin/corniche");
     fs::create_dir_all(program.parent().unwrap()).unwrap();
     assert_eq!(libraries_beside(&program), None);
-    // Another package may keep files of its own there.
+    // Another package may keep its own files there.
     fs::create_dir_all(place.path().join("lib/corniche")).unwrap();
     assert_eq!(libraries_beside(&program), None);
     fs::create_dir_all(place.path().join("lib/corniche/share/proj")).unwrap();

@@ -1,4 +1,4 @@
-//! What GDAL and PROJ say when something fails, as a text for users.
+//! The messages of GDAL and PROJ about failures, as texts for users.
 
 use std::cell::{Cell, RefCell};
 use std::env;
@@ -10,7 +10,7 @@ use crate::proj_folders::NAMED_BY;
 
 thread_local! {
     static LAST_WORDS: RefCell<String> = const { RefCell::new(String::new()) };
-    /// Whether it was more than a warning.
+    /// Whether the last message was more than a warning.
     static HAS_FAILED: Cell<bool> = const { Cell::new(false) };
 }
 
@@ -21,11 +21,14 @@ pub struct LibraryError {
     words: String,
 }
 
-/// Text longer than this is a dump of definitions; its beginning says what happened.
+/// A longer text is a dump of definitions; its beginning says what happened.
 const MOST_LETTERS: usize = 300;
 
+/// What is said if the library says nothing.
+const NO_REASON: &str = "GDAL gives no reason";
+
 impl LibraryError {
-    /// Tells of an error that was just returned on this thread.
+    /// The reason of an error that was just returned on this thread.
     pub(crate) fn new(error: &GdalError) -> Self {
         let own = match error {
             GdalError::CplError { msg, .. } | GdalError::NullPointer { msg, .. } => msg.clone(),
@@ -36,11 +39,20 @@ impl LibraryError {
         };
         let heard = LAST_WORDS.with_borrow(String::clone);
         let words = [own, heard].into_iter().find(|words| !words.trim().is_empty());
-        Self::shortened(words.as_deref().unwrap_or("GDAL gives no reason"))
+        Self::quoted(words.as_deref().unwrap_or_default())
     }
 
-    /// Says what was found out about a failure without the library.
-    pub(crate) fn of(words: String) -> Self {
+    /// The words of the library, after its name.
+    fn quoted(words: &str) -> Self {
+        let words = Self::shortened(words.trim().trim_end_matches('.')).words;
+        let words = if words.is_empty() { NO_REASON.to_owned() } else { words };
+        let is_named = words.starts_with("GDAL") || words.starts_with("PROJ");
+        let library = if words.starts_with("proj") { "PROJ" } else { "GDAL" };
+        Self { words: if is_named { words } else { format!("{library}: {words}") } }
+    }
+
+    /// The reason of a failure that was found without the library.
+    pub(crate) fn from_message(words: String) -> Self {
         Self { words }
     }
 
@@ -54,32 +66,32 @@ impl LibraryError {
     }
 }
 
-/// What the libraries say, and after it what to do, where they leave that out.
+/// The message of the library, followed by advice if the message has none.
 fn with_advice(words: String, variable: impl Fn(&str) -> Option<String>) -> String {
-    // The second is said of a database that has other tables, or none.
+    // The second message means a database with other tables, or an empty one.
     if words.contains("proj.db") || words.contains("proj_create_from_database: SQLite error") {
         let set = NAMED_BY.into_iter().find_map(|name| Some((name, variable(name)?)));
         return match set {
             Some((name, value)) => format!(
-                "{words}; {name} is set to {value:?}: unset it, or let it name the tables of this program's PROJ"
+                "{words}; {name} is set to {value:?}: unset it, or set it to the folder of the proj.db of this program's PROJ"
             ),
             None => words,
         };
     }
     if is_no_answer(&words) || words.starts_with(CURL_REASON) {
         return format!(
-            "{words}; there was no answer: the server was not reached, or its certificate is not trusted (SSL_CERT_FILE names a file of \
-             certificates that are; CURL_CA_BUNDLE has precedence)"
+            "{words}; the server did not answer: it was not reached, or its certificate is not trusted (set SSL_CERT_FILE to a file of trusted \
+             certificates; CURL_CA_BUNDLE has precedence)"
         );
     }
     words
 }
 
-/// How GDAL begins when it tells curl's reason.
+/// The beginning of GDAL's message with the reason of curl.
 const CURL_REASON: &str = "CURL error";
 
-/// Whether this is what GDAL says where a server gave no answer: 0 in the place of the answer's
-/// status.
+/// Whether this is GDAL's message for a server that did not answer: it has 0 instead of a status
+/// code.
 fn is_no_answer(words: &str) -> bool {
     words.contains("HTTP response code") && words.ends_with(": 0")
 }
@@ -90,16 +102,16 @@ impl From<GdalError> for Box<LibraryError> {
     }
 }
 
-/// Keeps GDAL and PROJ from writing to standard error: what they say comes back in errors.
+/// Keeps GDAL and PROJ from writing to standard error: their messages become part of errors.
 pub fn quiet() {
     static QUIET: Once = Once::new();
     QUIET.call_once(|| gdal::config::set_error_handler(|kind, _, words| hear(kind, words)));
 }
 
-/// Remembers what was said on this thread, in the place of GDAL's printing it.
+/// Stores a message of this thread, instead of letting GDAL print it.
 fn hear(kind: CplErrType, words: &str) {
     LAST_WORDS.with_borrow_mut(|last| {
-        // Curl's reason comes first, and says more than that there was no answer.
+        // The reason of curl comes first, and says more than that the server did not answer.
         if !(is_no_answer(words) && last.starts_with(CURL_REASON)) {
             words.clone_into(last);
         }
@@ -109,22 +121,22 @@ fn hear(kind: CplErrType, words: &str) {
     }
 }
 
-/// Forgets what was said, so that the next failure is not explained by an earlier one.
+/// Deletes the stored message, so that the next failure is not explained by an earlier one.
 pub fn forget() {
     LAST_WORDS.with_borrow_mut(String::clear);
     HAS_FAILED.set(false);
 }
 
-/// What was said last on this thread, if anything was.
+/// The last message on this thread, if any.
 pub(crate) fn last_words() -> Option<String> {
     let words = LAST_WORDS.with_borrow(|words| LibraryError::shortened(words).words);
     (!words.is_empty()).then_some(words)
 }
 
-/// The failure that was told on this thread, for calls that return none.
+/// The failure that was reported on this thread, for calls that return none.
 #[must_use]
 pub fn failure() -> Option<Box<LibraryError>> {
-    let said = || LAST_WORDS.with_borrow(|words| LibraryError::shortened(words));
+    let said = || LAST_WORDS.with_borrow(|words| LibraryError::quoted(words));
     HAS_FAILED.get().then(|| Box::new(said()))
 }
 

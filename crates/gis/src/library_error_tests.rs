@@ -1,4 +1,4 @@
-//! Where GDAL and PROJ do not say what to do, the error does.
+//! The error gives advice if GDAL and PROJ do not.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -25,14 +25,14 @@ fn a_server_without_an_answer_is_told_with_what_names_certificates() {
     let with = |code: u16| {
         with_advice(format!("HTTP response code on https://localhost/a.tif: {code}"), |_| None)
     };
-    assert!(with(0).contains("certificate is not trusted (SSL_CERT_FILE"), "{}", with(0));
+    assert!(with(0).contains("certificate is not trusted (set SSL_CERT_FILE"), "{}", with(0));
     assert!(with(404).ends_with(": 404"), "{}", with(404));
-    // Curl's reason, where GDAL tells it before.
+    // The reason of curl, if GDAL reports it first.
     forget();
     hear(CplErrType::Failure, "CURL error: certificate verification failed");
     hear(CplErrType::Failure, "HTTP response code on https://localhost/a.tif: 0");
     let said = last_words().unwrap();
-    assert!(said.starts_with("CURL error: certificate verification failed; there was"), "{said}");
+    assert!(said.starts_with("CURL error: certificate verification failed; the server"), "{said}");
     hear(CplErrType::Failure, "HTTP response code on https://localhost/a.tif: 404");
     assert!(last_words().unwrap().ends_with(": 404"));
     forget();

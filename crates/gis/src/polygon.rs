@@ -1,5 +1,4 @@
-//! Polygons with holes, read from a vector file, that say which part of the elevation data is
-//! wanted.
+//! Polygons with holes, read from a vector file, to which elevation data are clipped.
 
 use std::{
     fmt,
@@ -13,16 +12,16 @@ use crate::crs::horizontal::Crs;
 use crate::files::vector_files::{for_each_feature, open_vectors};
 use crate::{FileUse, PolygonError, library_error};
 
-/// Far more than any administrative border has; the limit keeps memory bounded.
+/// The largest number of corners: far more than any administrative border has; the limit bounds
+/// memory.
 const MOST_CORNERS: usize = 4_000_000;
 
 /// The corners of a ring, in the file's CRS; the first is not repeated at the end.
-pub(crate) type Ring = Vec<[f64; 2]>;
+pub(crate) type FileRing = Vec<[f64; 2]>;
 
-/// Polygons with holes, united, that say which part of the elevation data is wanted. Copies share
-/// their corners.
+/// Merged polygons with holes, to which elevation data are clipped. Copies share their corners.
 #[derive(Clone)]
-pub struct Polygon {
+pub struct RegionPolygons {
     content: Arc<Content>,
 }
 
@@ -35,15 +34,15 @@ struct Content {
 /// One polygon: its outer ring first, then its holes.
 pub(crate) struct PolygonRings {
     pub(crate) crs: Crs,
-    pub(crate) rings: Vec<Ring>,
+    pub(crate) rings: Vec<FileRing>,
 }
 
-impl Polygon {
+impl RegionPolygons {
     /// Reads a vector file: all polygons of all its layers, each layer in its own coordinate
     /// system. Edges are straight in that system.
     ///
     /// # Errors
-    /// When GDAL cannot read the file, when it has no polygon or something else beside, names no
+    /// When GDAL cannot read the file, the file has no polygon or other geometries, names no
     /// coordinate system, or a polygon crosses itself.
     pub fn read(path: &Path) -> Result<Self, PolygonError> {
         let own = || path.to_path_buf();
@@ -66,7 +65,7 @@ impl Polygon {
         &self.content.path
     }
 
-    /// The polygons as bytes that depend on coordinate system and corners alone: neither on the
+    /// The polygons as bytes that depend only on coordinate system and corners: neither on the
     /// file's format nor on the order of features.
     #[must_use]
     pub fn canonical_bytes(&self) -> &[u8] {
@@ -83,14 +82,14 @@ impl Polygon {
     }
 }
 
-/// Equal polygons enclose the same, whatever their files are called.
-impl PartialEq for Polygon {
+/// Equal polygons enclose the same area, regardless of their files' names.
+impl PartialEq for RegionPolygons {
     fn eq(&self, other: &Self) -> bool {
         self.content.bytes == other.content.bytes
     }
 }
 
-impl fmt::Debug for Polygon {
+impl fmt::Debug for RegionPolygons {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Polygon").field("path", &self.content.path).finish_non_exhaustive()
     }
@@ -121,7 +120,7 @@ impl Reading<'_> {
         })
     }
 
-    /// Takes a geometry apart into polygons.
+    /// Splits a geometry into polygons.
     fn take(&mut self, geometry: &Geometry, crs: &Crs) -> Result<(), PolygonError> {
         match geometry_type_flatten(geometry.geometry_type()) {
             OGRwkbGeometryType::wkbPolygon => self.take_polygon(geometry, crs),
@@ -150,7 +149,7 @@ impl Reading<'_> {
         self.take_rings(polygon, crs)
     }
 
-    /// Fails if a polygon crosses itself, or cannot be one for another reason.
+    /// Fails if a polygon crosses itself, or is invalid for another reason.
     fn check_valid(&self, geometry: &Geometry) -> Result<(), PolygonError> {
         library_error::forget();
         if geometry.is_valid() {
@@ -161,7 +160,8 @@ impl Reading<'_> {
         Err(PolygonError::Invalid { path, feature, reason })
     }
 
-    /// Fails if a ring of a polygon does not end where it begins: then GEOS says nothing of use.
+    /// Fails if a ring of a polygon is not closed: the message of GEOS for this case is not
+    /// helpful.
     fn check_closed(&self, polygon: &Geometry) -> Result<(), PolygonError> {
         for index in 0..polygon.geometry_count() {
             let mut points = Vec::new();
@@ -188,8 +188,8 @@ impl Reading<'_> {
             if corners > MOST_CORNERS {
                 return Err(PolygonError::TooManyCorners { path: path(), limit: MOST_CORNERS });
             }
-            // Adding 0.0 turns −0.0 into 0.0, which is the same place.
-            let mut ring: Ring = points.iter().map(|&(x, y, _)| [x + 0.0, y + 0.0]).collect();
+            // Adding 0.0 turns −0.0 into 0.0, which is the same position.
+            let mut ring: FileRing = points.iter().map(|&(x, y, _)| [x + 0.0, y + 0.0]).collect();
             if ring.len() > 1 && ring.first() == ring.last() {
                 ring.pop();
             }
@@ -214,9 +214,9 @@ impl Reading<'_> {
     }
 }
 
-/// The same ring from its least corner on, towards the lesser of its neighbours: formats differ in
-/// direction and in where rings begin.
-fn in_normal_order(mut ring: Ring) -> Ring {
+/// The same ring starting at its smallest corner, towards the smaller of its neighbours: formats
+/// differ in direction and starting point of rings.
+fn in_normal_order(mut ring: FileRing) -> FileRing {
     let order = |a: &[f64; 2], b: &[f64; 2]| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]));
     let least = (0..ring.len()).min_by(|&a, &b| order(&ring[a], &ring[b]));
     ring.rotate_left(least.unwrap_or_default());

@@ -1,27 +1,27 @@
-//! A polygon in the working CRS, and on the lattice of a package.
+//! The image of a polygon in the working CRS, and on the lattice of a package.
 
 use corniche_geom::{Bounds, GridFrame, LatticePoint, LatticeRegion, Seam, along};
 
 use crate::crs::horizontal::GridCrs;
 use crate::crs::operation::CrsOperation;
-use crate::polygon::{Polygon, PolygonRings, Ring};
+use crate::polygon::{FileRing, PolygonRings, RegionPolygons};
 use crate::{CrsError, PolygonError};
 
-/// Edges that are bent in the working CRS are followed this closely, in cells.
+/// Edges that are curved in the working CRS are approximated to this tolerance, in cells.
 const TOLERANCE_CELLS: f64 = 0.01;
-/// An edge is halved so often at most: one that still bends then crosses a place where the CRS is
-/// torn.
+/// The largest number of times that an edge is halved: an edge that is still curved then crosses a
+/// discontinuity of the CRS.
 const MOST_HALVINGS: u32 = 24;
 
 impl GridCrs {
-    /// The rectangle around a polygon in working metres, over data that lie in `area_deg`, with
-    /// cells of `cell_m`.
+    /// The rectangle around a polygon in working metres, over data in `area_deg`, with cells of
+    /// `cell_m`.
     ///
     /// # Errors
-    /// When the polygon has no place in the CRS.
+    /// When the polygon has no position in the CRS.
     pub fn polygon_bounds_m(
         &self,
-        polygon: &Polygon,
+        polygon: &RegionPolygons,
         area_deg: Bounds,
         cell_m: f64,
     ) -> Result<Bounds, PolygonError> {
@@ -29,18 +29,18 @@ impl GridCrs {
         Ok(Bounds::around(parts.iter().flatten().flatten()))
     }
 
-    /// A polygon on the lattice of a package over data that lie in `area_deg`: the same, to the
-    /// last step, as when the package was built.
+    /// A polygon on the lattice of a package over data in `area_deg`: the same to the last step as
+    /// when the package was built.
     ///
     /// # Errors
-    /// When the polygon has no place in the CRS, or encloses nothing.
+    /// When the polygon has no position in the CRS, or encloses no area.
     pub fn polygon_on_lattice(
         &self,
-        polygon: &Polygon,
+        polygon: &RegionPolygons,
         area_deg: Bounds,
         frame: &GridFrame,
     ) -> Result<LatticeRegion, PolygonError> {
-        let ring = |ring: &Ring| -> Option<Vec<LatticePoint>> {
+        let ring = |ring: &FileRing| -> Option<Vec<LatticePoint>> {
             ring.iter().map(|&corner| frame.snap(corner)).collect()
         };
         let parts = self.polygon_parts_m(polygon, area_deg, frame.cell().shorter_m())?;
@@ -51,13 +51,13 @@ impl GridCrs {
         LatticeRegion::new(&parts).ok_or_else(no_area)
     }
 
-    /// The rings of each part in working metres. Where edges are bent there, corners are added.
+    /// The rings of each part in working metres. Corners are added where edges are curved.
     fn polygon_parts_m(
         &self,
-        polygon: &Polygon,
+        polygon: &RegionPolygons,
         area_deg: Bounds,
         cell_m: f64,
-    ) -> Result<Vec<Vec<Ring>>, PolygonError> {
+    ) -> Result<Vec<Vec<FileRing>>, PolygonError> {
         let carried = |part| {
             let rings = of_part(part, self, area_deg, cell_m * TOLERANCE_CELLS)?;
             rings.ok_or_else(|| self.outside(polygon))
@@ -65,30 +65,30 @@ impl GridCrs {
         polygon.parts().iter().map(carried).collect()
     }
 
-    fn outside(&self, polygon: &Polygon) -> PolygonError {
+    fn outside(&self, polygon: &RegionPolygons) -> PolygonError {
         let (path, crs) = (polygon.path().to_path_buf(), self.crs.label.clone());
         PolygonError::OutsideCrs { path, crs }
     }
 }
 
-/// The rings of a part in working metres, next to the middle of the data; `None` where the CRS does
-/// not reach or is torn.
+/// The rings of a part in working metres, next to the middle of the data; `None` where the CRS ends
+/// or is discontinuous.
 fn of_part(
     part: &PolygonRings,
     working: &GridCrs,
     area_deg: Bounds,
     tolerance_m: f64,
-) -> Result<Option<Vec<Ring>>, CrsError> {
+) -> Result<Option<Vec<FileRing>>, CrsError> {
     let operation = CrsOperation::into_working(&part.crs, working, Some(area_deg)).around(None);
     let seam_m = working.seam_m();
-    let mut rings: Vec<Ring> = Vec::with_capacity(part.rings.len());
+    let mut rings: Vec<FileRing> = Vec::with_capacity(part.rings.len());
     let mut center_m = None;
     for ring in &part.rings {
         let Some(mut ring) = of_ring(ring, &operation, seam_m, tolerance_m)? else {
             return Ok(None);
         };
         if let Some(seam_m) = seam_m {
-            // The outer ring goes where the data's middle is near, and holes go with it.
+            // The outer ring is moved next to the middle of the data, and holes are moved with it.
             let [own, _] = Bounds::around(&ring).center();
             let near = *center_m.get_or_insert(own - seam_m.turn() * seam_m.turns(own));
             let away = seam_m.turn() * seam_m.around(near).turns(own);
@@ -101,7 +101,7 @@ fn of_part(
     Ok(Some(rings))
 }
 
-/// A corner, where it comes out, and whether the edge to the next corner needs no more corners.
+/// A corner, its image, and whether the edge to the next corner needs no more corners.
 #[derive(Clone, Copy)]
 struct Corner {
     own: [f64; 2],
@@ -109,13 +109,13 @@ struct Corner {
     is_done: bool,
 }
 
-/// A ring in working metres. Longitudes are continuous along it.
+/// A ring in working metres. Longitudes are continuous along the ring.
 fn of_ring(
-    ring: &Ring,
+    ring: &FileRing,
     operation: &CrsOperation,
     seam_m: Option<Seam>,
     tolerance_m: f64,
-) -> Result<Option<Ring>, CrsError> {
+) -> Result<Option<FileRing>, CrsError> {
     let carry = |own: &[[f64; 2]]| -> Result<Option<Vec<[f64; 2]>>, CrsError> {
         let mut images = own.to_vec();
         operation.apply(&mut images)?;
@@ -132,7 +132,7 @@ fn of_ring(
     if let (Some(first), Some(last), Some(seam_m)) = (images.first(), images.last(), seam_m)
         && seam_m.parts(first, last)
     {
-        // It goes around a pole.
+        // The ring encloses a pole.
         return Ok(None);
     }
     if operation.is_identity() {
@@ -147,8 +147,8 @@ fn of_ring(
         let next = |index: usize| corners[(index + 1) % corners.len()];
         let open: Vec<usize> =
             (0..corners.len()).filter(|&index| !corners[index].is_done).collect();
-        // A quarter and half along each edge: an edge with the shape of an S is straight at its
-        // middle.
+        // Points at a quarter and half along each edge: an edge with the shape of an S is straight
+        // at its middle.
         let probes: Vec<[f64; 2]> = open
             .iter()
             .flat_map(|&index| [0.25, 0.5].map(|t| along(corners[index].own, next(index).own, t)))

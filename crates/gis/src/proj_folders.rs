@@ -1,4 +1,4 @@
-//! Where PROJ looks for its tables and grids.
+//! The folders in which PROJ searches its tables and grids.
 
 #![expect(
     unsafe_code,
@@ -14,18 +14,18 @@ use std::{
 };
 
 /// The variables that name folders with tables and grids for PROJ: the second is the older name,
-/// read where the first is not set.
+/// which is read if the first is not set.
 pub(crate) const NAMED_BY: [&str; 2] = ["PROJ_DATA", "PROJ_LIB"];
 
-/// Forbids PROJ the user's folder.
+/// The variable that keeps PROJ from reading the user's folder.
 const NOT_OF_USER: &str = "PROJ_SKIP_READ_USER_WRITABLE_DIRECTORY";
 
-/// Lets PROJ look into these folders, in this order, and into no others. To be called before
-/// anything else uses PROJ: contexts that are there keep what they have. GDAL gives the contexts
-/// that it makes folders of their own, so it is told, too.
+/// Makes PROJ search these folders, in this order, and no others. Must be called before anything
+/// else uses PROJ: existing contexts keep their folders. GDAL sets folders for the contexts that it
+/// creates, so it is configured, too.
 pub(crate) fn search(folders: &[PathBuf]) {
     let names = folders.iter().filter_map(|folder| c_name(folder)).collect::<Vec<_>>();
-    // More folders than fit into the number are no folders that a user named.
+    // A count of folders beyond this type cannot come from a user.
     let Ok(count) = c_int::try_from(names.len()) else { return };
     let pointers = names.iter().map(|name| name.as_ptr()).chain([null()]).collect::<Vec<_>>();
     // SAFETY: null is the default context, from which all others are made. The texts are C strings
@@ -36,8 +36,8 @@ pub(crate) fn search(folders: &[PathBuf]) {
     }
 }
 
-/// The folder to which PROJ saves grids for the user (`projsync`); `None` where it is not to be
-/// read, or there is none.
+/// The folder in which PROJ saves grids for the user (`projsync`); `None` if it must not be read,
+/// or there is none.
 pub(crate) fn of_user() -> Option<PathBuf> {
     if env::var_os(NOT_OF_USER).is_some_and(|value| !value.is_empty()) {
         return None;
@@ -51,12 +51,12 @@ pub(crate) fn of_user() -> Option<PathBuf> {
     folder.filter(|folder| folder.is_dir())
 }
 
-/// A name with a zero byte is that of no folder.
+/// A name with a zero byte cannot be that of a folder.
 fn c_name(folder: &Path) -> Option<CString> {
     CString::new(folder.as_os_str().as_bytes()).ok()
 }
 
-// The library that GDAL itself works with; both are there since PROJ 7.1.
+// The library that GDAL itself uses; both functions exist since PROJ 7.1.
 unsafe extern "C" {
     fn proj_context_set_search_paths(
         context: *mut c_void,

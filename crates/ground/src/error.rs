@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use corniche_spec::artifacts::ArtifactError;
 use corniche_store::StoreError;
 
-/// Why heights or photos could not be read or kept.
+/// Why heights or photos could not be read or stored.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]
 pub enum GroundError {
@@ -33,7 +33,7 @@ impl From<StoreError> for GroundError {
     }
 }
 
-/// Why the terrain of a package cannot be taken.
+/// Why the terrain of a package cannot be reused.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
@@ -41,7 +41,7 @@ pub enum TerrainError {
     #[error(transparent)]
     Open(#[from] corniche_tileset::OpenError),
     #[error(
-        "the terrain of {path:?} cannot be taken: {differences}; give the same settings, or build from the elevation files with --dem"
+        "the terrain of {path:?} cannot be reused: {differences}; use the same settings, or build from the elevation files with --dem"
     )]
     Other { path: PathBuf, differences: String },
     #[error("{path:?} is damaged: {what}; build from the elevation files with --dem")]
@@ -51,7 +51,7 @@ pub enum TerrainError {
 }
 
 impl GroundError {
-    /// Whether the cause is an unusable input, rather than a failure while it was read or kept.
+    /// Whether the cause is an unusable input, rather than a failure while it was read or stored.
     #[must_use]
     pub fn is_unusable_input(&self) -> bool {
         match self {

@@ -1,4 +1,4 @@
-//! Heights of the elevation files, judged and read: for the build, and once more for `verify`.
+//! Heights of the elevation files: checked and read for the build, and again for `verify`.
 
 pub mod finest;
 pub mod near;

@@ -1,4 +1,4 @@
-//! The ground of a build: heights and photos of files, or a package as the source of both.
+//! The ground of a build: heights and photos from files, or a package as the source of both.
 //!
 //! ```text
 //!   elevation files ─► patches ─► heights of finest tiles ─► rasters of coarse ones
@@ -6,7 +6,7 @@
 //!   package ─► TINs, reliefs and textures as they are
 //! ```
 //!
-//! This crate triangulates nothing and knows no road.
+//! This crate neither triangulates nor reads roads.
 
 pub mod heights;
 pub mod photos;

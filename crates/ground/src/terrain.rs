@@ -1,4 +1,5 @@
-//! The ground of a build without elevation files: what an earlier package of the same terrain holds.
+//! The ground of a build without elevation files: an earlier package with the same terrain provides
+//! it.
 //!
 //! ```text
 //!   package ─► RecordedTerrain ─┬─► grid, levels, coordinates, counts   (from the manifest)
@@ -6,7 +7,8 @@
 //!                               └─► which borders a tile owns           (from its TIN and those of its neighbours)
 //! ```
 //!
-//! Nothing of a package that is made with it tells so: it has the same bytes as one made from the elevation files.
+//! The new package does not record where its terrain comes from: its bytes equal those of a build
+//! from the elevation files.
 
 pub mod border_cells;
 pub mod ground;

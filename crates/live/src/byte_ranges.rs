@@ -1,18 +1,19 @@
-//! Ranges of bytes of a file on a web server: those that were read are kept, and those that lie
-//! near each other are fetched as one.
+//! Byte ranges of a file on a web server: ranges that were read are cached, and neighbouring ranges
+//! are fetched in one request.
 
 use std::{collections::BTreeMap, rc::Rc};
 
-/// What is kept of what was read.
+/// The capacity of the cache of ranges.
 const CACHE_BYTES: usize = 64 << 20;
 
-/// Where at most this lies between two ranges, it costs less than another request.
+/// A gap between two ranges up to this length costs less than another request.
 const MOST_GAP_BYTES: u64 = 4096;
-/// Merged ranges are no longer than this: tiles that come first are decoded while others are on their way.
+/// Merged ranges are no longer than this, so that the first tiles are decoded while others are
+/// still loading.
 const MOST_MERGED_BYTES: u64 = 128 << 10;
 
-/// Groups of ranges to fetch at once, as places in `ranges` (first byte, length), by position. A range that is longer than what is merged
-/// is a group by itself.
+/// Groups the ranges to fetch in one request, as indices into `ranges` (first byte, length), sorted
+/// by position. A range longer than the limit for merged ranges is a group by itself.
 #[must_use]
 pub fn merged_ranges(ranges: &[[u64; 2]]) -> Vec<Vec<usize>> {
     let mut order: Vec<usize> = (0..ranges.len()).collect();
@@ -35,7 +36,7 @@ pub fn merged_ranges(ranges: &[[u64; 2]]) -> Vec<Vec<usize>> {
     groups.into_iter().map(|(.., group)| group).collect()
 }
 
-/// Ranges that were read, by their first byte.
+/// A cache of ranges that were read, by their first byte.
 #[derive(Default)]
 pub struct RangeCache {
     ranges: BTreeMap<u64, (Rc<[u8]>, u64)>,
@@ -44,7 +45,8 @@ pub struct RangeCache {
 }
 
 impl RangeCache {
-    /// What there is of some bytes, from the first of them on; maybe nothing. They may lie in several ranges.
+    /// Returns the cached bytes from `offset` on, up to the first gap; may be empty. The bytes may
+    /// come from several ranges.
     pub fn get(&mut self, offset: u64, length: usize) -> Vec<u8> {
         let mut found = Vec::new();
         while found.len() < length {
@@ -57,7 +59,7 @@ impl RangeCache {
         found
     }
 
-    /// The same, as far as one range has them.
+    /// Returns the same bytes, but only as far as one range has them.
     fn get_in_one(&mut self, offset: u64, length: usize) -> Vec<u8> {
         self.clock += 1;
         let Some((from, (bytes, used))) = self.ranges.range_mut(..=offset).next_back() else {
@@ -72,8 +74,8 @@ impl RangeCache {
         found
     }
 
-    /// Keeps bytes that were read, and drops those that were used longest ago where there are too
-    /// many.
+    /// Stores bytes that were read, and drops the least recently used ranges when the cache is
+    /// full.
     pub fn put(&mut self, offset: u64, bytes: Rc<[u8]>) {
         self.clock += 1;
         self.bytes += bytes.len();

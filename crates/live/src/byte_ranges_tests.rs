@@ -1,11 +1,11 @@
-//! Ranges that are near each other are fetched together, and far ones apart.
+//! Neighbouring ranges are fetched together, and distant ones separately.
 
 use super::*;
 
 #[test]
 fn near_ranges_are_fetched_together_and_far_ones_apart() {
     let ranges = [[50_000, 100], [0, 100], [4_196, 10], [9_000, 5]];
-    // 4096 bytes lie between the first two, 4794 between the next two.
+    // There are 4096 bytes between the first two ranges, and 4794 between the next two.
     assert_eq!(merged_ranges(&ranges), [vec![1, 2], vec![3], vec![0]]);
     assert_eq!(merged_ranges(&[]), Vec::<Vec<usize>>::new());
 }

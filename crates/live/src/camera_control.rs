@@ -1,33 +1,33 @@
-//! What a person does with mouse and keys, made into a camera for each frame.
+//! Turns mouse and keyboard input into a camera for each frame.
 
 use corniche_viewer::{camera::Camera, flight::Pose};
 use glam::DVec2;
 
 use crate::{
-    clicks::{Click, Clicks},
-    controls::{Button, Input, KnownGround, Modifiers, Navigator, View},
+    clicks::Clicks,
+    controls::{Button, CameraView, Input, KnownGround, Modifiers, Navigator},
 };
 
-/// Tiles are loaded in advance for where the camera will be after this time.
+/// Tiles are loaded in advance for the camera position after this time.
 const AHEAD_S: f64 = 0.5;
 
 /// The camera, moved by mouse and keys.
 pub struct CameraControl {
-    /// What moves it.
+    /// The navigator that moves the camera.
     pub navigator: Navigator,
     clicks: Clicks,
-    /// Whether a button of the mouse is held down that was pressed on the map.
+    /// Whether a mouse button that was pressed on the map is held down.
     pub is_dragging: bool,
-    /// Pixels to a point of the screen, as in the last frame.
+    /// Pixels per point of the screen, as in the last frame.
     pub pixels_per_point: f64,
     /// Time and view of the last frame.
-    last_view: Option<(f64, View)>,
+    last_view: Option<(f64, CameraView)>,
     /// When the camera moved last.
     moved_s: f64,
 }
 
 impl CameraControl {
-    /// Moves what `navigator` moves, on a screen with so many pixels to a point.
+    /// Creates the control of `navigator`, on a screen with this many pixels per point.
     #[must_use]
     pub fn new(navigator: Navigator, pixels_per_point: f32) -> Self {
         Self {
@@ -40,7 +40,7 @@ impl CameraControl {
         }
     }
 
-    /// A button of the mouse goes down on the map.
+    /// Handles a press of a mouse button on the map.
     pub fn press(
         &mut self,
         button: Button,
@@ -49,11 +49,8 @@ impl CameraControl {
         now_s: f64,
         ground: &dyn KnownGround,
     ) {
-        let click = match button {
-            Button::Left => self.clicks.press(self.in_points(at_px), now_s),
-            _ => Click::Single,
-        };
-        let input = if click == Click::Double {
+        let at = self.in_points(at_px);
+        let input = if button == Button::Left && self.clicks.press(at, now_s) {
             Input::DoubleClick { at_px, modifiers }
         } else {
             Input::Press { button, at_px, modifiers }
@@ -61,7 +58,7 @@ impl CameraControl {
         self.input(&input, now_s, ground);
     }
 
-    /// Any other input, and a press that is never the second of a double click.
+    /// Handles any other input, and a press that is never the second of a double click.
     pub fn input(&mut self, input: &Input, now_s: f64, ground: &dyn KnownGround) {
         match input {
             Input::Press { .. } => self.is_dragging = true,
@@ -100,8 +97,8 @@ impl CameraControl {
         self.navigator.camera()
     }
 
-    /// Where the camera will be soon if it moves on as it did since the last frame; `None` where it did not move. To be
-    /// called once for each frame.
+    /// Predicts the camera from its movement since the last frame; `None` if it did not move. Call
+    /// this once per frame.
     pub fn look_ahead(&mut self, now_s: f64, size_px: [u32; 2]) -> Option<Camera> {
         let view = self.view();
         let ahead = self.last_view.and_then(|(last_s, last)| {
@@ -110,7 +107,7 @@ impl CameraControl {
             let is_moving = passed_s > 0.0 && passed_s < AHEAD_S && way.length() > 0.0;
             is_moving.then(|| {
                 let eye_in_world = view.eye_in_world + way * (AHEAD_S / passed_s);
-                View { eye_in_world, ..view }.camera(size_px)
+                CameraView { eye_in_world, ..view }.camera(size_px)
             })
         });
         if self.last_view.is_some_and(|(_, last)| last != view) {
@@ -120,15 +117,15 @@ impl CameraControl {
         ahead
     }
 
-    /// How long ago the camera moved last.
+    /// Seconds since the camera last moved.
     #[must_use]
     pub fn at_rest_s(&self, now_s: f64) -> f64 {
         now_s - self.moved_s
     }
 
-    /// What is seen now.
+    /// The current view.
     #[must_use]
-    pub fn view(&self) -> View {
+    pub fn view(&self) -> CameraView {
         self.navigator.view()
     }
 
@@ -138,10 +135,10 @@ impl CameraControl {
         self.navigator.camera().size_px
     }
 
-    /// The camera as flights have it: with its true height.
+    /// The camera with its true height, as flights store it.
     #[must_use]
     pub fn pose(&self, vertical_scale: f64) -> Pose {
-        let View { eye_in_world: eye, orientation, .. } = self.view();
+        let CameraView { eye_in_world: eye, orientation, .. } = self.view();
         Pose { eye_m: [eye.x, eye.y, eye.z / vertical_scale], orientation }
     }
 }

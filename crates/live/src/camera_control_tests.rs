@@ -1,11 +1,12 @@
-//! The camera's next place is predicted from its movement, and drags are told from double clicks.
+//! The next position of the camera is predicted from its movement, and drags are distinguished from
+//! double clicks.
 
 use corniche_geom::Bounds;
 use corniche_viewer::camera::Orientation;
 use glam::DVec3;
 
 use super::*;
-use crate::controls::Limits;
+use crate::controls::CameraLimits;
 
 const SIZE_PX: [u32; 2] = [800, 600];
 
@@ -30,9 +31,9 @@ impl KnownGround for Level {
     }
 }
 
-fn view_at(x: f64) -> View {
+fn view_at(x: f64) -> CameraView {
     let orientation = Orientation { heading_deg: 0.0, pitch_deg: 30.0 };
-    View {
+    CameraView {
         eye_in_world: DVec3::new(x, 500.0, 1000.0),
         orientation,
         focus_m: 1000.0,
@@ -41,7 +42,7 @@ fn view_at(x: f64) -> View {
 }
 
 fn control() -> CameraControl {
-    let limits = Limits {
+    let limits = CameraLimits {
         data: Bounds { min_x: 0.0, min_y: 0.0, max_x: 1000.0, max_y: 1000.0 },
         clearance_m: 2.0,
         max_pitch_deg: 85.0,

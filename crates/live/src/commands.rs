@@ -1,106 +1,106 @@
-//! What a person asks for with a key or a button, besides other settings, and what keys mean, by
-//! the names that browsers and window systems give them.
+//! Commands of keys and buttons, other than settings, and the meaning of keys by the names that
+//! browsers and window systems give them.
 
-use crate::controls::{Key, Modifiers};
+use crate::controls::{CameraKey, Modifiers};
 
-/// What a saved picture shows.
+/// The content of a saved image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shot {
-    /// The map and its credits.
+    /// The map and its attribution.
     Map,
-    /// All that the window shows.
+    /// Everything that the window shows.
     Window,
 }
 
-/// What a key or the panel does to the drawing.
+/// A command of a key or the panel for the drawing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DrawingCommand {
-    /// Begin to draw, or end it.
+    /// Start or stop drawing.
     Toggle,
-    /// The next click begins another line.
+    /// End the line: the next click starts another one.
     EndLine,
-    /// Remove the picked point.
+    /// Remove the selected point.
     RemovePoint,
-    /// Remove the picked line.
+    /// Remove the selected line.
     RemoveLine,
-    /// Make an area of the picked line, or a line of the picked area.
+    /// Turn the selected line into an area, or the selected area into a line.
     Turn,
-    /// Make a curve of the picked line.
+    /// Round the corners of the selected line.
     Smooth,
-    /// Take the last change back.
+    /// Undo the last change.
     Undo,
-    /// Make the change again that was taken back last.
+    /// Redo the change that was undone last.
     Redo,
     /// Save the lines.
     Save,
 }
 
-/// What a person asks for.
+/// A command of the user.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Command {
+pub enum MapCommand {
     /// Turn north up.
     NorthUp,
-    /// Back to the first view.
+    /// Return to the first view.
     Reset,
-    /// Change from map to fly mode, or back.
+    /// Switch between map and fly mode.
     ToggleFly,
-    /// Change to a view straight from above, or back.
+    /// Switch between perspective and a view straight from above.
     ToggleAbove,
     /// Look at the place that is typed in the panel.
     GoTo,
-    /// Put a command that draws this view on the clipboard.
+    /// Copy a command that draws this view to the clipboard.
     CopyView,
-    /// Show the panel, or hide it.
+    /// Show or hide the panel.
     TogglePanel,
-    /// Show the page of keys and mouse, or hide it.
+    /// Show or hide the page of keys and mouse.
     ToggleHelp,
     /// Hide the page of keys and mouse.
     CloseHelp,
-    /// Save a picture.
+    /// Save an image.
     Take(Shot),
-    /// Begin to record a flight, or end the recording.
+    /// Start or stop recording a flight.
     ToggleRecording,
-    /// Begin to record a flight.
+    /// Start recording a flight.
     StartRecording,
-    /// End the recording and save the flight.
+    /// Stop recording and save the flight.
     StopRecording,
-    /// Do something to the lines that are drawn.
+    /// Change the drawn lines.
     Draw(DrawingCommand),
-    /// Remove the notice at this place of the list.
+    /// Remove the notice at this index of the list.
     Dismiss(usize),
 }
 
-/// What to do with mouse and keys in a window, and what it does.
+/// The help page: inputs of mouse and keyboard in a window, and their effects.
 pub const KEY_HELP: [(&str, &str); 24] = [
-    ("left drag", "move the map; in fly mode look around"),
+    ("left drag", "move the map; in fly mode: look around"),
     ("right drag, Ctrl + left drag", "turn and tilt around the middle"),
     ("middle drag", "turn and tilt around the cursor"),
-    ("wheel", "zoom at the cursor; in fly mode speed"),
-    ("double click", "zoom in; with Shift out"),
-    ("arrows", "move; with Shift turn and tilt"),
-    ("+  −", "zoom by a level; with Shift by two"),
+    ("wheel", "zoom at the cursor; in fly mode: speed"),
+    ("double click", "zoom in; with Shift: out"),
+    ("arrows", "move; with Shift: turn and tilt"),
+    ("+  −", "zoom by a level; with Shift: by two"),
     ("R, Home", "back to the first view"),
     ("N", "north up"),
-    ("F", "fly mode, and back"),
-    ("T", "straight from above, and back"),
+    ("F", "fly mode on and off"),
+    ("T", "view from above on and off"),
     ("W A S D, Q E", "in fly mode: fly, sink, rise"),
     ("Shift", "in fly mode: faster"),
     ("V", "copy this view as a command"),
-    ("P, Shift P", "picture of the map, of the window"),
-    ("C", "record the camera's way, and stop"),
-    ("L, then click, Shift click", "draw lines: a point at the end, inside"),
-    ("Enter, Del, Shift Del", "end the line, remove the point, the line"),
+    ("P, Shift P", "save an image of the map, of the window"),
+    ("C", "start and stop recording a flight"),
+    ("L, then click, Shift click", "draw lines: add a point, insert one"),
+    ("Enter, Del, Shift Del", "end line, delete point, delete line"),
     ("G, M", "line or area, round its corners"),
-    ("Ctrl Z, Ctrl Y, Ctrl S", "take back, make again, save"),
-    ("Tab", "show and hide the panel"),
-    ("?", "show and hide this page"),
+    ("Ctrl Z, Ctrl Y, Ctrl S", "undo, redo, save"),
+    ("Tab", "show or hide the panel"),
+    ("?", "show or hide this page"),
     ("Esc", "close this page; end the line"),
     ("Ctrl Q", "close the window"),
 ];
 
-impl Key {
-    /// The key with this code, as the W3C names the places of keys: arrows, the keys of fly
-    /// mode, and those that have + and − on many keyboards.
+impl CameraKey {
+    /// The key with this W3C code (its position on the keyboard): arrows, the keys of fly mode, and
+    /// the keys that have + and − on many keyboards.
     #[must_use]
     pub fn of_code(code: &str) -> Option<Self> {
         Some(match code {
@@ -120,10 +120,10 @@ impl Key {
         })
     }
 
-    /// The key by what is printed on it, and else by its code: arrows, + and − are told by their
-    /// signs, the keys of fly mode by their position on the keyboard.
+    /// The key by its label, or else by its code. Arrows, + and − are recognized by their labels,
+    /// the keys of fly mode by their position on the keyboard.
     #[must_use]
-    pub fn of(sign: &str, code: &str) -> Option<Self> {
+    pub fn from_sign(sign: &str, code: &str) -> Option<Self> {
         match sign {
             "+" | "=" => Some(Self::ZoomIn),
             "-" | "_" => Some(Self::ZoomOut),
@@ -132,7 +132,7 @@ impl Key {
         }
     }
 
-    /// Whether it means something in fly mode alone.
+    /// Whether the key has a meaning in fly mode only.
     #[must_use]
     pub fn is_for_flying(self) -> bool {
         matches!(
@@ -148,8 +148,8 @@ impl Key {
 }
 
 impl DrawingCommand {
-    /// What a key does to drawn lines, by what is printed on it. With Control, keys of fly mode are
-    /// these.
+    /// The command of a key for drawn lines, by the label of the key. With Control, keys of fly
+    /// mode are commands too.
     #[must_use]
     pub fn of_key(sign: &str, modifiers: Modifiers, is_drawing: bool) -> Option<Self> {
         let Modifiers { shift, control } = modifiers;
@@ -168,15 +168,15 @@ impl DrawingCommand {
         }
     }
 
-    /// Whether a key that is held down does it only once.
+    /// Whether a key that is held down acts only once.
     #[must_use]
     pub fn is_once(self) -> bool {
         matches!(self, Self::Toggle | Self::Turn | Self::Smooth | Self::Save)
     }
 }
 
-impl Command {
-    /// What a key asks for, by what is printed on it.
+impl MapCommand {
+    /// The command of a key, by the label of the key.
     #[must_use]
     pub fn of_key(sign: &str, modifiers: Modifiers) -> Option<Self> {
         Some(match sign.to_lowercase().as_str() {

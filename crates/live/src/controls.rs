@@ -1,4 +1,5 @@
-//! What moves the camera: `MapLibre`'s controls and a fly mode, as pure functions of inputs and time.
+//! Controls that move the camera: `MapLibre`'s controls and a fly mode, as pure functions of inputs
+//! and time.
 //!
 //! ```text
 //!  left drag                pan; the ground grabbed stays under the cursor
@@ -12,14 +13,17 @@
 //!  W A S D, Q E             fly mode: ahead, left, back, right, down, up; with Shift fast
 //! ```
 //!
-//! Differences from `MapLibre`: there is no box zoom (Shift and drag pans), and two fingers zoom and turn at once, as soon as
-//! it is clear that they do not tilt. A notch of the wheel is a third of a level, whatever size the system reports for it; `MapLibre` takes about a sixth. + and −
-//! zoom by whole levels from where the camera is, not to the next whole level: no level is special here. A double click acts
-//! when the button goes down for the second time. The largest tilt is 85°, in `MapLibre` usually 60°. What a drag or a zoom
-//! keeps under the cursor is a point of the terrain. `MapLibre` has nothing on the middle button.
+//! Differences from `MapLibre`: there is no box zoom (Shift and drag pans). Two fingers zoom and
+//! rotate at once, as soon as it is clear that they do not tilt. A notch of the wheel is a third of
+//! a level, whatever size the system reports for it; in `MapLibre` it is about a sixth. + and −
+//! zoom by one level from the current zoom, not to the next whole level: no level is special here.
+//! A double click acts on the second press of the button. The largest tilt is 85°, in `MapLibre`
+//! usually 60°. A drag or a zoom keeps a point of the terrain under the cursor. `MapLibre` has no
+//! action for the middle button.
 //!
-//! Nothing here knows a window, a tile or a clock: times are arguments, and heights come from a [`KnownGround`]. All positions
-//! are in world space: the working CRS, heights times the vertical scale.
+//! This module knows no window, tile or clock: times are arguments, and heights come from a
+//! [`KnownGround`]. All positions are in world space: the working CRS, with heights times the
+//! vertical scale.
 
 mod bounded_view;
 mod fingers;
@@ -32,8 +36,8 @@ mod sight;
 mod view;
 
 pub use self::{
-    input::{Button, Input, Key, KeyState, Modifiers},
+    input::{Button, CameraKey, Input, Modifiers},
     navigator::Navigator,
-    options::{Limits, Mode},
-    view::{KnownGround, View},
+    options::{CameraLimits, Mode},
+    view::{CameraView, KnownGround},
 };

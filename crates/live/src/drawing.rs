@@ -1,5 +1,5 @@
-//! Lines and areas that a person draws on the ground: what mouse and keys do to them, and how they
-//! come onto the tiles.
+//! Lines and areas that the user draws on the ground: how mouse and keys change them, and how they
+//! are draped on the tiles.
 //!
 //! ```text
 //!  mouse, keys ──► Tool ──► Document (lines, undo, redo) ──► LaidLines ──► layers of the tiles that are shown
@@ -20,7 +20,7 @@ use corniche_viewer::camera::Camera;
 use glam::{DVec2, DVec3};
 
 use self::{
-    document::{Document, DrawnPoint, Line},
+    document::{Document, DocumentLine, DrawnPoint, LineOfFile},
     laid::LaidLines,
     tool::Tool,
 };
@@ -33,69 +33,70 @@ use crate::{
     tiles::ShownGround,
 };
 
-/// More points than these have no handles that can be seen.
+/// Above this number of points, handles are not drawn.
 const MOST_HANDLES: usize = 4000;
-/// The beginning of the notice that drawn lines are not shown.
+/// The beginning of the notice about drawn lines that are not shown.
 const NOT_LAID: &str =
-    "drawn lines that cannot be laid on the ground, and are not shown on all of it: ";
+    "drawn lines that cannot be draped on the ground, and are only partly shown: ";
 
-/// A line that a person draws or has drawn.
+/// A line that the user draws or has drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DrawnLine {
-    /// Which feature of the file it comes from; `None` for one that was drawn here.
+    /// The feature of the file that the line comes from; `None` for a line drawn here.
     pub feature: Option<usize>,
-    /// Whether it is the outline of an area: its first point comes after the last one.
+    /// Whether the line is the outline of an area: its last point is joined to the first.
     pub is_area: bool,
     /// Longitude and latitude of each point, WGS84.
     pub points_deg: Vec<[f64; 2]>,
 }
 
-/// Saves all lines, and tells where.
+/// Saves all lines, and returns the path of the file.
 pub type SaveDrawing = Box<dyn FnMut(&[DrawnLine]) -> Result<PathBuf, NotSaved>>;
 
-/// Tells the time, seconds since any moment.
+/// Returns the time, in seconds since any moment.
 pub type ClockS = Box<dyn Fn() -> f64>;
 
-/// A point of a drawn line as it is shown.
+/// A point of a drawn line on the screen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DrawingHandle {
-    /// The place on the screen, points.
+    /// The position on the screen, in points.
     pub at: [f32; 2],
-    /// Whether keys act on it.
+    /// Whether the point is selected, so that keys act on it.
     pub is_picked: bool,
 }
 
-/// What is told of the lines that a person draws.
+/// The state of the drawing for the panel.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct DrawingContent {
-    /// Whether the mouse draws.
+    /// Whether the drawing mode is on.
     pub is_on: bool,
-    /// The points of all lines, while it does.
+    /// The points of all lines, in drawing mode only.
     pub handles: Vec<DrawingHandle>,
     /// How many lines there are.
     pub lines: usize,
-    /// Whether a point is picked.
+    /// Whether a point is selected.
     pub is_picked: bool,
-    /// Whether a change can be taken back, and whether one can be made again.
+    /// Whether a change can be undone, and whether one can be redone.
     pub can_step: [bool; 2],
-    /// Whether something is not saved.
+    /// Whether there are unsaved changes.
     pub is_changed: bool,
-    /// How often a line was laid on a tile for the last change, and how many milliseconds that took.
+    /// The number of lines draped on tiles for the last change, and the milliseconds this took.
     pub last: Option<(usize, f64)>,
 }
 
-/// The lines that a person draws, and the state of the tool.
-pub struct Drawing {
-    /// Whether the mouse draws.
+/// The lines that the user draws, and the state of the tool.
+pub struct LineDrawing {
+    /// Whether the drawing mode is on.
     pub is_on: bool,
     tool: Tool,
     document: Document,
-    /// Lines that have no place in the package's CRS: they cannot be shown, and are saved as they are.
+    /// Lines that cannot be transformed to the package's CRS: they are not shown, and are saved
+    /// unchanged.
     unplaced: Vec<DrawnLine>,
     laid: LaidLines,
-    /// The state of the document that was laid last.
+    /// The revision of the document that was draped last.
     laid_revision: u64,
-    /// How many lines cannot be laid on one of the tiles that are there.
+    /// The number of lines that cannot be draped on one of the loaded tiles.
     not_laid: usize,
     last: Option<(usize, f64)>,
     modifiers: Modifiers,
@@ -103,9 +104,9 @@ pub struct Drawing {
     clock_s: ClockS,
 }
 
-impl Drawing {
-    /// The drawing with the lines of a file. A notice tells how many have a point without a place
-    /// in the package's CRS: they are not shown.
+impl LineDrawing {
+    /// Creates the drawing with the lines of a file. A notice reports the lines that have a point
+    /// without a position in the package's CRS: they are not shown.
     pub fn new(
         lines: &[DrawnLine],
         (save, clock_s): (SaveDrawing, ClockS),
@@ -120,18 +121,18 @@ impl Drawing {
         for line in lines {
             let points: Option<Vec<DrawnPoint>> = line.points_deg.iter().map(point).collect();
             match points {
-                Some(points) => placed.push((line.feature, line.is_area, points)),
+                Some(points) => placed.push(LineOfFile::new(line.feature, line.is_area, points)),
                 None => unplaced.push(line.clone()),
             }
         }
         if !unplaced.is_empty() {
             let left_out = unplaced.len();
-            notices.warn(format!("{left_out} lines lie too far away from the package: they are not shown, and stay in the file"));
+            notices.warn(format!("{left_out} lines are too far from the package: they are not shown, but stay in the file"));
         }
         Self {
             is_on: false,
             tool: Tool::default(),
-            document: Document::of(placed),
+            document: Document::from_lines(placed),
             unplaced,
             laid: LaidLines::default(),
             laid_revision: 0,
@@ -143,20 +144,20 @@ impl Drawing {
         }
     }
 
-    /// Grows with every change of a line.
+    /// The revision, which grows with every change of a line.
     #[must_use]
     pub fn revision(&self) -> u64 {
         self.document.revision
     }
 
-    /// The left button goes down while drawing. Whether the map stays where it is.
+    /// Handles a press of the left button while drawing. Returns whether the map must not move.
     pub fn press(&mut self, at_px: DVec2, modifiers: Modifiers, session: &Session) -> bool {
         self.modifiers = modifiers;
-        let seen = SeenPoints::of(session);
+        let seen = SeenPoints::from_session(session);
         self.tool.press(at_px / seen.pixels_per_point, &self.document, |point| seen.at(point))
     }
 
-    /// Any other input. Whether the camera does not get it.
+    /// Handles any other input. Returns whether the camera must not get it.
     pub fn input(&mut self, input: &Input, session: &Session) -> bool {
         if !self.is_on {
             return false;
@@ -165,13 +166,13 @@ impl Drawing {
             Input::Modify { modifiers } => self.modifiers = modifiers,
             Input::LetGo => self.tool.let_go(),
             Input::Move { at_px } => {
-                let seen = SeenPoints::of(session);
+                let seen = SeenPoints::from_session(session);
                 let at = at_px / seen.pixels_per_point;
                 self.tool.move_to(at, &mut self.document, || seen.under(at));
                 return self.tool.is_dragging();
             }
             Input::Release { button: Button::Left } => {
-                let seen = SeenPoints::of(session);
+                let seen = SeenPoints::from_session(session);
                 let under = |at: DVec2| seen.under(at);
                 let is_shift = self.modifiers.shift;
                 self.tool.release(is_shift, &mut self.document, under, |point| seen.at(point));
@@ -181,7 +182,7 @@ impl Drawing {
         false
     }
 
-    /// Does what a key or the panel asks of the drawing.
+    /// Executes a command of a key or the panel for the drawing.
     pub fn command(
         &mut self,
         command: DrawingCommand,
@@ -191,7 +192,7 @@ impl Drawing {
     ) {
         let Self { tool, document, is_on, .. } = self;
         if command != DrawingCommand::Save {
-            // What is held may be another point afterwards.
+            // The held point may be another one afterwards.
             tool.let_go();
         }
         match command {
@@ -199,9 +200,10 @@ impl Drawing {
                 *is_on = !*is_on;
                 tool.end_line();
                 let told = if *is_on {
-                    "drawing: click on the ground to add points, drag a point to move it, Enter ends the line, G makes it an area"
+                    "drawing: click on the ground to add points, drag a point to move it; Enter \
+                     ends the line, G turns it into an area"
                 } else {
-                    "drawing is over"
+                    "drawing ended"
                 };
                 notices.tell(told.to_owned(), now_s);
             }
@@ -214,31 +216,29 @@ impl Drawing {
             }
             DrawingCommand::Turn => {
                 if let Err(why) = tool.turn(document) {
-                    notices.tell(format!("no area: {why}"), now_s);
+                    notices.tell(format!("not turned into an area: {why}"), now_s);
                 }
             }
             DrawingCommand::Smooth => {
-                let coordinates = &manifest.coordinates;
-                let point =
-                    |at_m| DrawnPoint { lon_lat_deg: coordinates.wgs84_from_working(at_m), at_m };
+                let point = |at_m| DrawnPoint::at(at_m, &manifest.coordinates);
                 if let Err(why) = tool.smooth(document, point) {
-                    notices.tell(format!("no corners rounded: {why}"), now_s);
+                    notices.tell(format!("corners not rounded: {why}"), now_s);
                 }
             }
             DrawingCommand::Undo => document.undo(),
             DrawingCommand::Redo => document.redo(),
             DrawingCommand::Save => match self.save() {
                 Some(saved) => notices.tell_saved(saved, now_s),
-                None => notices.tell("no line has changed".to_owned(), now_s),
+                None => notices.tell("no unsaved changes".to_owned(), now_s),
             },
         }
     }
 
-    /// What is shown of the drawing.
+    /// The state of the drawing for the panel.
     #[must_use]
     pub fn content(&self, session: &Session) -> DrawingContent {
         let picked = self.tool.picked(&self.document);
-        let seen = SeenPoints::of(session);
+        let seen = SeenPoints::from_session(session);
         let handle = |(line, place, point): (u64, usize, &DrawnPoint)| {
             let is_picked = picked.is_some_and(|at| (at.line, at.place) == (line, place));
             let at = seen.at(point)?.to_array().map(|value| value as f32);
@@ -260,9 +260,9 @@ impl Drawing {
         }
     }
 
-    /// Tiles were evicted and uploaded: lays what has changed on those that are there now; `is_new`
-    /// says that some of them were not there before. A notice tells how many lines cannot be laid,
-    /// when that has changed.
+    /// Handles evicted and uploaded tiles: drapes changed lines on the loaded tiles; `is_new` means
+    /// that some tiles are new. If the number of lines that cannot be draped has changed, a notice
+    /// reports it.
     pub fn follow_tiles(
         &mut self,
         (evicted, is_new): (&[TileId], bool),
@@ -292,13 +292,13 @@ impl Drawing {
         notices.retract(NOT_LAID);
         if number > 0 {
             notices.warn(format!(
-                "{NOT_LAID}{number}. They cross too much ground with too many points, and stay in the file; simplify them (ogr2ogr \
-                 -simplify), or divide them"
+                "{NOT_LAID}{number}. They have too many points over too much ground, and stay in \
+                 the file; simplify them (ogr2ogr -simplify) or split them"
             ));
         }
     }
 
-    /// All tiles are gone.
+    /// Handles the loss of all tiles.
     pub fn clear_tiles(&mut self) {
         self.laid.clear();
     }
@@ -308,7 +308,7 @@ impl Drawing {
         if !self.document.is_changed() {
             return None;
         }
-        let line = |line: &Arc<Line>| DrawnLine {
+        let line = |line: &Arc<DocumentLine>| DrawnLine {
             feature: line.feature,
             is_area: line.is_area,
             points_deg: line.points.iter().map(|point| point.lon_lat_deg).collect(),
@@ -323,7 +323,7 @@ impl Drawing {
     }
 }
 
-/// Where points of lines are seen, and which points are.
+/// The mapping between points of lines and positions on the screen.
 struct SeenPoints<'a> {
     camera: Camera,
     ground: ShownGround<'a>,
@@ -332,7 +332,7 @@ struct SeenPoints<'a> {
 }
 
 impl<'a> SeenPoints<'a> {
-    fn of(session: &'a Session) -> Self {
+    fn from_session(session: &'a Session) -> Self {
         let control = &session.camera;
         Self {
             camera: control.view().camera(control.size_px()),
@@ -342,7 +342,7 @@ impl<'a> SeenPoints<'a> {
         }
     }
 
-    /// The place on the screen, in points; `None` behind the eye or where there is no ground.
+    /// The position of a point on the screen, in points; `None` behind the eye or without ground.
     fn at(&self, point: &DrawnPoint) -> Option<DVec2> {
         let [x, y] = point.at_m;
         let height = self.ground.height(point.at_m)?;
@@ -350,12 +350,10 @@ impl<'a> SeenPoints<'a> {
         Some(at_px / self.pixels_per_point)
     }
 
-    /// The point of the ground that is seen there, in points of the screen.
+    /// The point of the ground at a position on the screen, in points.
     fn under(&self, at: DVec2) -> Option<DrawnPoint> {
         let at_px = at * self.pixels_per_point;
-        let (start, ray) = (self.camera.ray_start_in_world(at_px), self.camera.ray_in_world(at_px));
-        let hit = self.ground.hit(start, ray)?;
-        let at_m = [hit.x, hit.y];
-        Some(DrawnPoint { lon_lat_deg: self.manifest.coordinates.wgs84_from_working(at_m), at_m })
+        let hit = self.ground.under(&self.camera, at_px)?;
+        Some(DrawnPoint::at([hit.x, hit.y], &self.manifest.coordinates))
     }
 }

@@ -1,64 +1,47 @@
-//! What must be known of a package's first tiles before there is a frame, and which tiles the first
-//! view will need.
+//! The first tiles of a package: those that must be known before the first frame, and those that
+//! the first view will need.
 
 use std::{cell::RefCell, collections::BTreeMap};
 
-use corniche_geom::{Bounds, GridFrame, TileId};
-use corniche_tileset::Manifest;
+use corniche_geom::{GridFrame, TileId};
 use corniche_viewer::{
     CameraRequest, SightedGround,
     camera::Camera,
-    lod::{self, GroundSummary, Node, Quality, TileTree},
+    lod::{self, GroundSummary, Quality},
     tiles::{
-        LoadTileError, MapExtent, MapPackage, TileCatalog, TileGeometry, TileSource, TileStore,
+        CatalogTree, LoadTileError, MapPackage, TileCatalog, TileGeometry, TileSource, TileStore,
     },
 };
 
-/// The ground that the camera of a first view is set up by, but for the height at its place; `None`
-/// where there is no ground.
-///
-/// # Errors
-/// When a tile cannot be read.
-pub fn sighted_ground<S: TileSource + ?Sized>(
-    store: &mut TileStore<'_, S>,
-    manifest: &Manifest,
-    camera: CameraRequest,
-) -> Result<Option<SightedGround>, LoadTileError> {
-    let data = manifest.data_bounds;
-    let Some(coarsest) = store.coarsest_ground()? else { return Ok(None) };
-    let heights_m = coarsest.height_range_m;
-    let extent = if camera.is_overview() { store.map_extent(data)? } else { None };
-    let extent = extent.unwrap_or_else(|| MapExtent::of_data(data, heights_m));
-    Ok(Some(SightedGround { extent, heights_m, at_place_m: None }))
-}
-
-/// Tiles that are there, for those who must not wait for others. It notes those that are not.
+/// The loaded tiles, for callers that must not wait for others. It notes the missing ones.
 pub struct KnownTiles<'a> {
-    /// The package.
-    pub package: &'a dyn MapPackage,
-    /// The tiles.
-    pub there: &'a BTreeMap<TileId, TileGeometry>,
-    /// Whether some of its tiles may have roads, as they are read.
-    pub may_have_roads: bool,
-}
-
-/// What known tiles say of the first view.
-pub enum FirstLook {
-    /// The ground by which its camera is set up; `None` where there is no ground.
-    Known(Option<SightedGround>),
-    /// These tiles must be there for that.
-    Wanted(Vec<TileId>),
-}
-
-/// [`KnownTiles`], and those that were asked for and are not there.
-struct NotingTiles<'a> {
-    known: &'a KnownTiles<'a>,
+    package: &'a dyn MapPackage,
+    there: &'a BTreeMap<TileId, TileGeometry>,
+    may_have_roads: bool,
     missing: RefCell<Vec<TileId>>,
 }
 
-impl KnownTiles<'_> {
-    /// What is known of the ground for the first view. `place` is that of the camera, in the
-    /// working CRS.
+/// The information about the first view in the known tiles.
+pub enum FirstLook {
+    /// The ground that sets up the camera; `None` if there is no ground.
+    Known(Option<SightedGround>),
+    /// These tiles must be loaded first.
+    Wanted(Vec<TileId>),
+}
+
+impl<'a> KnownTiles<'a> {
+    /// Creates the set of loaded tiles of a package. `may_have_roads` says whether some of the
+    /// tiles may have roads, with the sections that are read.
+    pub fn new(
+        package: &'a dyn MapPackage,
+        there: &'a BTreeMap<TileId, TileGeometry>,
+        may_have_roads: bool,
+    ) -> Self {
+        Self { package, there, may_have_roads, missing: RefCell::default() }
+    }
+
+    /// Returns the ground for the first view, or the tiles it needs. `place` is the position of the
+    /// camera, in the working CRS.
     ///
     /// # Errors
     /// When a tile cannot be read.
@@ -67,10 +50,9 @@ impl KnownTiles<'_> {
         camera: CameraRequest,
         place: Option<[f64; 2]>,
     ) -> Result<FirstLook, LoadTileError> {
-        let noting = NotingTiles { known: self, missing: RefCell::default() };
-        let mut store = TileStore::new(&noting);
+        let mut store = TileStore::new(self);
         let mut look = || {
-            let Some(ground) = sighted_ground(&mut store, self.package.manifest(), camera)? else {
+            let Some(ground) = camera.sighted_ground(&mut store, self.package.manifest())? else {
                 return Ok(None);
             };
             let at_place_m = match place {
@@ -80,7 +62,7 @@ impl KnownTiles<'_> {
             Ok(Some(SightedGround { at_place_m, ..ground }))
         };
         let found = look();
-        let mut wanted = noting.missing.take();
+        let mut wanted = self.missing.take();
         wanted.retain(|id| !self.there.contains_key(id));
         match found {
             Err(_) if !wanted.is_empty() => Ok(FirstLook::Wanted(wanted)),
@@ -89,60 +71,35 @@ impl KnownTiles<'_> {
     }
 }
 
-impl TileCatalog for NotingTiles<'_> {
+impl TileCatalog for KnownTiles<'_> {
     fn frame(&self) -> &GridFrame {
-        self.known.package.frame()
+        self.package.frame()
     }
 
     fn exists(&self, id: TileId) -> bool {
-        self.known.package.exists(id)
+        self.package.exists(id)
     }
 }
 
-impl TileSource for NotingTiles<'_> {
+impl TileSource for KnownTiles<'_> {
     fn load(&self, id: TileId) -> Result<TileGeometry, LoadTileError> {
-        self.known.there.get(&id).cloned().ok_or_else(|| {
+        self.there.get(&id).cloned().ok_or_else(|| {
             self.missing.borrow_mut().push(id);
-            LoadTileError { id, source: "it is not loaded yet".into() }
+            LoadTileError { id, source: "the tile is not loaded yet".into() }
         })
     }
 
     fn may_have_roads(&self) -> bool {
-        self.known.may_have_roads
+        self.may_have_roads
     }
 }
 
-/// More tiles than these are not foreseen: the guess may be wrong.
+/// The largest number of predicted tiles, since the prediction may be wrong.
 const MOST_TILES: usize = 24;
 
-/// A tree in which each tile has the usual error of its level.
-struct Guessed<'a> {
-    package: &'a dyn MapPackage,
-    heights_m: [f64; 2],
-}
-
-impl TileTree for Guessed<'_> {
-    fn node(&self, id: TileId) -> Node {
-        if !self.package.exists(id) {
-            return Node::Absent;
-        }
-        let level = self.package.manifest().levels.get(usize::from(id.z()));
-        let errors = level.and_then(|level| level.errors_m);
-        let geometric_error_m = errors.map_or(0.0, |errors| errors.median);
-        Node::Loaded(Some(GroundSummary { geometric_error_m, height_range_m: self.heights_m }))
-    }
-
-    fn plan_bounds(&self, id: TileId) -> Bounds {
-        self.package.frame().tile_bounds(id)
-    }
-
-    fn max_level(&self) -> u8 {
-        self.package.frame().max_level()
-    }
-}
-
-/// The tiles that a view will probably need, coarse ones first. A page asks for them at once: else it would learn of each level's tiles only when those
-/// above have come, one round of the network after the other.
+/// Predicts the tiles that a view will need, coarse ones first. A page requests them all at once:
+/// otherwise each level would cost another network round trip, since its tiles are only known after
+/// those above have been loaded.
 #[must_use]
 pub fn foreseen(
     package: &dyn MapPackage,
@@ -150,7 +107,16 @@ pub fn foreseen(
     camera: &Camera,
     quality: Quality,
 ) -> Vec<TileId> {
-    let selection = lod::select(&Guessed { package, heights_m }, camera, quality);
+    // The prediction assumes the error of the level and the height range of the package for every
+    // tile.
+    let ground_of = |id: TileId| {
+        let level = package.manifest().levels.get(usize::from(id.z()));
+        let errors = level.and_then(|level| level.errors_m);
+        let geometric_error_m = errors.map_or(0.0, |errors| errors.median);
+        let ground = GroundSummary { geometric_error_m, height_range_m: heights_m };
+        package.exists(id).then_some(Some(ground))
+    };
+    let selection = lod::select(&CatalogTree { catalog: package, ground_of }, camera, quality);
     let mut wanted: Vec<TileId> = Vec::new();
     for drawn in selection.drawn {
         wanted.extend(std::iter::successors(Some(drawn.id), |id| id.parent()));

@@ -1,4 +1,5 @@
-//! The flight that a person records, as keyframes of the camera's path, and the one that is played.
+//! The flight that is being recorded, as keyframes of the camera's path, and the flight that is
+//! being played.
 
 use corniche_viewer::{
     eye_height,
@@ -6,36 +7,37 @@ use corniche_viewer::{
 };
 use glam::DVec3;
 
-use crate::controls::{KnownGround, View};
+use crate::controls::{CameraView, KnownGround};
 
-/// Time between two keyframes of a moving camera.
+/// The time between two keyframes of a moving camera.
 const STEP_S: f64 = 0.1;
 
 /// A recording under way. Times are seconds of one clock.
 #[derive(Debug, Clone)]
-pub(crate) struct Recorder {
+pub(crate) struct FlightRecorder {
     begun_s: f64,
     keyframes: Vec<Keyframe>,
     last: Keyframe,
 }
 
-impl Recorder {
+impl FlightRecorder {
     /// Begins a recording.
     pub(crate) fn new(now_s: f64, pose: Pose) -> Self {
         let first = Keyframe { time_s: 0.0, pose };
         Self { begun_s: now_s, keyframes: vec![first], last: first }
     }
 
-    /// How long the recording has been going on.
+    /// The duration of the recording so far.
     pub(crate) fn duration_s(&self, now_s: f64) -> f64 {
         now_s - self.begun_s
     }
 
-    /// The camera is here now. If there was no frame for some time, it stood still meanwhile.
+    /// Notes the position of the camera. If there was no frame for some time, the camera stood
+    /// still meanwhile.
     pub(crate) fn note(&mut self, now_s: f64, pose: Pose) {
         let now = Keyframe { time_s: self.duration_s(now_s), pose };
         if pose != self.last.pose {
-            // It stood still until this movement began, one step before now.
+            // The camera stood still until this movement began, one step before now.
             let moved_s = now.time_s - STEP_S;
             if moved_s > self.last.time_s {
                 self.push(self.last);
@@ -70,31 +72,32 @@ impl Recorder {
     }
 }
 
-/// The flight that is recorded, and the one that is played. Times are seconds of one clock.
+/// The flight that is being recorded, and the one that is being played. Times are seconds of one
+/// clock.
 #[derive(Default)]
 pub struct Flights {
-    recorder: Option<Recorder>,
-    /// The flight, and when it began.
+    recorder: Option<FlightRecorder>,
+    /// The flight, and the time at which it began.
     playing: Option<(Flight, f64)>,
 }
 
 impl Flights {
     pub(crate) fn start_recording(&mut self, now_s: f64, pose: Pose) {
-        self.recorder = Some(Recorder::new(now_s, pose));
+        self.recorder = Some(FlightRecorder::new(now_s, pose));
     }
 
-    /// Ends the recording; `None` where there was none.
+    /// Ends the recording; `None` if there was none.
     pub fn stop_recording(&mut self, now_s: f64) -> Option<Result<Flight, FlightError>> {
         self.recorder.take().map(|recorder| recorder.finish(now_s))
     }
 
-    /// How long a flight has been recorded; `None` while none is.
+    /// The duration of the recording so far; `None` if there is none.
     #[must_use]
     pub fn recording_s(&self, now_s: f64) -> Option<f64> {
         self.recorder.as_ref().map(|recorder| recorder.duration_s(now_s))
     }
 
-    /// The camera is here in this frame.
+    /// Notes the position of the camera in this frame.
     pub(crate) fn note(&mut self, now_s: f64, pose: Pose) {
         if let Some(recorder) = &mut self.recorder {
             recorder.note(now_s, pose);
@@ -110,19 +113,19 @@ impl Flights {
         self.playing = None;
     }
 
-    /// Whether a flight is played.
+    /// Whether a flight is being played.
     #[must_use]
     pub fn is_playing(&self) -> bool {
         self.playing.is_some()
     }
 
-    /// What is seen in a flight that is played. After its last keyframe it ends.
+    /// The view of the flight that is being played. The flight ends after its last keyframe.
     pub(crate) fn view(
         &mut self,
         now_s: f64,
         vertical_scale: f64,
         ground: &dyn KnownGround,
-    ) -> Option<View> {
+    ) -> Option<CameraView> {
         let (flight, begun_s) = self.playing.as_ref()?;
         let [begin_s, end_s] = flight.span_s();
         let time_s = begin_s + (now_s - begun_s).max(0.0);
@@ -133,7 +136,7 @@ impl Flights {
         let ground_m = ground.height([x, y]).unwrap_or_else(|| ground.base_height());
         let eye_in_world = DVec3::new(x, y, height_m * vertical_scale);
         let focus_m = eye_height::focus_m(eye_in_world.z - ground_m, orientation.pitch_deg);
-        Some(View { eye_in_world, orientation, focus_m, from_above: None })
+        Some(CameraView { eye_in_world, orientation, focus_m, from_above: None })
     }
 }
 

@@ -1,4 +1,4 @@
-//! A recorded flight goes where the camera went, pauses included.
+//! A recorded flight follows the camera, including its pauses.
 
 use corniche_viewer::camera::Orientation;
 
@@ -15,7 +15,7 @@ fn x_at(flight: &Flight, time_s: f64) -> f64 {
 
 #[test]
 fn the_flight_goes_where_the_camera_went() {
-    let mut recorder = Recorder::new(50.0, at(0.0));
+    let mut recorder = FlightRecorder::new(50.0, at(0.0));
     for frame in 1..=200 {
         let time_s = f64::from(frame) / 60.0;
         recorder.note(50.0 + time_s, at(100.0 * time_s));
@@ -29,7 +29,7 @@ fn the_flight_goes_where_the_camera_went() {
 
 #[test]
 fn a_pause_without_frames_is_a_pause_of_the_flight() {
-    let mut recorder = Recorder::new(0.0, at(0.0));
+    let mut recorder = FlightRecorder::new(0.0, at(0.0));
     recorder.note(0.5, at(10.0));
     // Nothing is drawn for nine seconds.
     recorder.note(9.5, at(20.0));
@@ -45,7 +45,7 @@ fn a_pause_without_frames_is_a_pause_of_the_flight() {
 
 #[test]
 fn where_a_movement_ends_is_noted_however_short_it_was() {
-    let mut recorder = Recorder::new(0.0, at(0.0));
+    let mut recorder = FlightRecorder::new(0.0, at(0.0));
     recorder.note(0.1, at(10.0));
     recorder.note(0.15, at(15.0));
     let flight = recorder.finish(2.0).unwrap();
@@ -54,5 +54,5 @@ fn where_a_movement_ends_is_noted_however_short_it_was() {
 
 #[test]
 fn a_recording_of_no_time_is_no_flight() {
-    assert!(Recorder::new(3.0, at(0.0)).finish(3.0).is_err());
+    assert!(FlightRecorder::new(3.0, at(0.0)).finish(3.0).is_err());
 }

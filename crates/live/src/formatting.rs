@@ -44,11 +44,11 @@ pub fn coordinates(working: WorkingCrs<'_>, at_m: [f64; 2]) -> String {
     format!("{}  {x}  {y}", working.crs)
 }
 
-/// A position on the earth: "47.14012° N, 9.52201° E".
+/// A position in degrees: "47.14012° N, 9.52201° E".
 #[must_use]
 pub fn position([lon_deg, lat_deg]: [f64; 2]) -> String {
     let side = |value: f64, positive, negative| if value < 0.0 { negative } else { positive };
-    // In a package that crosses the antimeridian, longitudes go on beyond 180.
+    // In a package that crosses the antimeridian, longitudes continue beyond 180.
     let lon_deg = (lon_deg + 180.0).rem_euclid(360.0) - 180.0;
     format!(
         "{:.5}° {}, {:.5}° {}",
@@ -66,7 +66,7 @@ pub fn heading(heading_deg: f64) -> String {
     format!("{:03.0}°", heading_deg.round().rem_euclid(360.0) + 0.0)
 }
 
-/// An error and what caused it, on one line.
+/// An error and its causes, on one line.
 #[must_use]
 pub fn with_causes(error: &dyn Error) -> String {
     let causes = std::iter::successors(error.source(), |cause| (*cause).source());

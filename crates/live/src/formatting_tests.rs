@@ -1,4 +1,4 @@
-//! Numbers and positions are written as people write them.
+//! Numbers and positions have their usual notation.
 
 use super::*;
 

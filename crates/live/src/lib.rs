@@ -1,18 +1,18 @@
-//! A map that a person moves, without a window, a page or a clock.
+//! An interactive map, independent of window, page and clock.
 //!
 //! ```text
-//!  inputs ──► controls ──► camera ──► tiles ──► MapCanvas: pictures on the graphics card
+//!  inputs ──► controls ──► camera ──► tiles ──► MapCanvas: images on the GPU
 //!                 ▲                     │
 //!                 └── ground, heights ──┘◄── TileLoader: threads, or the workers of a page
 //! ```
 //!
-//! The window and the page in a browser are two faces of one [`Session`]: it has the state of the
-//! map and does what people ask of it. [`controls`] move its camera, [`Tiles`] chooses what is
-//! loaded, kept and drawn, and is the ground under the cursor; a [`MapCanvas`] is what it has on
-//! the graphics card. Times are arguments.
+//! The window and the page in a browser are two front ends of one [`Session`], which holds the
+//! state of the map and executes the user's commands. [`controls`] move its camera. [`Tiles`]
+//! chooses which tiles are loaded, kept and drawn, and provides the ground under the cursor. A
+//! [`MapCanvas`] holds the map's data on the GPU. Times are arguments.
 //!
-//! This crate never draws but through `corniche-viewer`, never opens a file and knows neither
-//! window system nor browser.
+//! This crate draws only through `corniche-viewer`, never opens a file, and knows neither window
+//! system nor browser.
 
 mod byte_ranges;
 mod camera_control;
@@ -50,20 +50,20 @@ pub use loader_threads::LoaderThreads;
 pub use {
     byte_ranges::{RangeCache, merged_ranges},
     camera_control::CameraControl,
-    commands::{Command, DrawingCommand, KEY_HELP, Shot},
+    commands::{DrawingCommand, KEY_HELP, MapCommand, Shot},
     desk::{Errand, MapDesk},
-    drawing::{ClockS, Drawing, DrawingContent, DrawingHandle, DrawnLine, SaveDrawing},
-    first_tiles::{FirstLook, KnownTiles, foreseen, sighted_ground},
+    drawing::{ClockS, DrawingContent, DrawingHandle, DrawnLine, LineDrawing, SaveDrawing},
+    first_tiles::{FirstLook, KnownTiles, foreseen},
     flights::Flights,
     frame_pace::{FramePace, FrameTimes, Redraw},
     ground_probe::{GroundPoint, GroundProbe},
-    map_canvas::{Counts, MapCanvas, MapScene, PixelReading},
+    map_canvas::{MapCanvas, MapScene, PixelReading, SceneCounts},
     notices::{NotSaved, Notice, Notices},
     picked_road::{PickPlace, PickedRoad},
     session::{Session, SessionStart, SessionStep},
     session_json::FrameRest,
     settings::{Compare, MapSettings, range},
-    settings_json::{SettingChanges, SettingsRecord},
+    settings_json::{SettingChanges, StoredSettings},
     shown_view::{CommandOf, ShownView},
     style_list::{NamedStyle, Reload, StyleList},
     tiles::{Loaded, ShownGround, TileLoader, Tiles},

@@ -4,8 +4,9 @@
 //!  frame ── request ──► queue ──► workers: TileSource::load ──► results ──► next frame
 //! ```
 //!
-//! The thread that draws never waits: it adds requests and takes the tiles that are there. The caller bounds how many tiles
-//! are under way ([`corniche_viewer::stream::StreamBudget`]); the queue of results has room for as many.
+//! The drawing thread never waits: it adds requests and takes the tiles that have arrived. The
+//! caller limits the number of tiles being loaded ([`corniche_viewer::stream::StreamBudget`]); the
+//! queue of results has space for this number.
 
 use std::{
     any::Any,
@@ -25,7 +26,7 @@ use crate::tiles::{Loaded, TileLoader};
 /// Threads that load tiles.
 pub struct LoaderThreads {
     shared: Arc<Shared>,
-    /// `None` once the workers must end.
+    /// The receiver of loaded tiles; `None` once the workers must end.
     results: Option<mpsc::Receiver<Loaded>>,
     workers: Vec<JoinHandle<()>>,
 }
@@ -43,11 +44,11 @@ struct Queue {
 
 impl Shared {
     fn queue(&self) -> MutexGuard<'_, Queue> {
-        // A panic while the lock was held cannot leave a list of ids half changed.
+        // A panic with the lock held cannot leave a list of ids half changed.
         self.queue.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The next tile to load; `None` when there will be no more.
+    /// The next tile to load; `None` if there will be no more.
     fn next(&self) -> Option<TileId> {
         let mut queue = self.queue();
         loop {
@@ -63,17 +64,17 @@ impl Shared {
 }
 
 impl LoaderThreads {
-    /// How many workers are useful on this machine: one core is left to the thread that draws.
+    /// The number of useful workers on this machine: one core is left to the drawing thread.
     pub fn usual_number() -> NonZeroUsize {
         let cores = thread::available_parallelism().map_or(2, NonZeroUsize::get);
         NonZeroUsize::new((cores - 1).clamp(1, MOST_LOADERS)).unwrap_or(NonZeroUsize::MIN)
     }
 
-    /// Starts `threads` workers, which load at most `room` tiles more than have been taken. `wake` is called from them
-    /// whenever a tile has arrived.
+    /// Starts `threads` workers, which load at most `room` tiles ahead of those taken. They call
+    /// `wake` whenever a tile has arrived.
     ///
     /// # Errors
-    /// When the system gives no thread.
+    /// When the system cannot start a thread.
     pub fn new<S: TileSource + Send + Sync + ?Sized + 'static>(
         source: &Arc<S>,
         threads: NonZeroUsize,
@@ -115,7 +116,7 @@ impl TileLoader for LoaderThreads {
     }
 
     fn abandon(&mut self, ids: &[TileId]) -> Vec<TileId> {
-        // What a worker has begun it ends.
+        // Workers finish the tiles that they have started.
         let mut queue = self.shared.queue();
         let is_waiting = |id: &&TileId| queue.wanted.contains(id);
         let dropped: Vec<TileId> = ids.iter().filter(is_waiting).copied().collect();
@@ -128,29 +129,29 @@ impl TileLoader for LoaderThreads {
     }
 }
 
-/// Loads a tile. If the decoder panics, that costs one tile and not the worker: otherwise the tile would be waited for
-/// for ever.
+/// Loads a tile. If the decoder panics, only that tile is lost and not the worker: otherwise the
+/// caller would wait for the tile forever.
 fn load<S: TileSource + ?Sized>(source: &S, id: TileId) -> Result<TileGeometry, LoadTileError> {
-    // A source is only read, so a panic leaves nothing of it half changed.
+    // A source is only read, so a panic leaves no half-changed state in it.
     catch_unwind(AssertUnwindSafe(|| source.load(id))).unwrap_or_else(|panic| {
-        let source = format!("the program fails on it: {}", words_of(panic.as_ref())).into();
+        let source = format!("the decoder panicked: {}", words_of(panic.as_ref())).into();
         Err(LoadTileError { id, source })
     })
 }
 
 fn words_of(panic: &(dyn Any + Send)) -> &str {
     let text = panic.downcast_ref::<String>().map(String::as_str);
-    text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("without a word")
+    text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("no message")
 }
 
 impl Drop for LoaderThreads {
     fn drop(&mut self) {
         self.shared.queue().is_closed = true;
         self.shared.has_changed.notify_all();
-        // The workers that wait for room in the queue of results end because they can send no more.
+        // Workers that wait for space in the queue of results end because they can no longer send.
         self.results = None;
         for worker in self.workers.drain(..) {
-            // It fails only if the worker panicked; there is nothing left to be told.
+            // Joining fails only if the worker panicked; there is nothing left to report.
             let _ = worker.join();
         }
     }

@@ -1,4 +1,4 @@
-//! Threads load tiles in the order asked, and a damaged tile stops no other.
+//! Threads load tiles in the requested order, and a corrupt tile does not stop the others.
 
 use std::{
     sync::atomic::{AtomicUsize, Ordering},
@@ -10,7 +10,7 @@ use corniche_viewer::tiles::{TileCatalog, TileLines};
 
 use super::*;
 
-/// Tiles without ground; those of level 3 are damaged, and on those of level 2 the decoder fails.
+/// Tiles without ground; those of level 3 are corrupt, and the decoder fails on those of level 2.
 struct Bare {
     frame: GridFrame,
     loaded: AtomicUsize,
@@ -128,7 +128,7 @@ fn it_ends_while_nobody_takes_what_has_arrived() {
 fn what_is_forgotten_is_not_loaded() {
     let (source, woken) = (bare(), Arc::new(AtomicUsize::new(0)));
     let mut loader = loader(&source, 1, 1, &woken);
-    // One in the results, one waiting for room, the others in the queue.
+    // One is in the results, one waits for space, and the others are in the queue.
     loader.request(&level_4(10));
     let begun = Instant::now();
     while source.loaded.load(Ordering::SeqCst) < 2 {

@@ -1,5 +1,4 @@
-//! What a map shows, and what it has on the graphics card for that: tiles, and one picture or
-//! several.
+//! The content of a map and its data on the GPU: tiles, and one image or several.
 
 use std::{ops::Range, rc::Rc};
 
@@ -12,50 +11,50 @@ use corniche_viewer::{
         Gpu, GpuError, PassTimer, PassTimes, Picture, ReadBack, ReadBackError, Renderer,
         ResidentTiles, Targets,
     },
-    lod::Drawn,
+    lod::DrawnTile,
     tiles::{AreaVolumes, LineLayer, TileGeometry, TileLayer},
 };
 
 use crate::settings::Compare;
 
-/// What a map shows, in one picture or in several that differ in how roads are drawn. Two equal scenes look the same, as long as their
-/// tiles are on the graphics card.
+/// The content of a map, in one image or in several that differ in the drawing method of roads. Two
+/// equal scenes look the same, as long as their tiles are on the GPU.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MapScene {
-    /// The camera; its size is that of the pictures.
+    /// The camera; its size is the size of the images.
     pub camera: Camera,
-    /// Width and height of what shows the map. Pictures are smaller while the map is drawn
-    /// coarsely.
+    /// Width and height of the window or page element, in pixels. Images are smaller while the map
+    /// is drawn coarsely.
     pub shown_px: [u32; 2],
     /// Colours and widths.
     pub style: Style,
     /// Whether one method is shown, or two are compared.
     pub compare: Compare,
-    /// How the roads of each picture are drawn: one picture, or GEO and SV.
+    /// The drawing method of the roads of each image: one image, or GEO and SV.
     pub roads: Vec<RoadOptions>,
     /// Factor on heights.
     pub exaggeration: f64,
-    /// Working metres to a true metre.
+    /// Working metres per true metre.
     pub point_scale: f64,
-    /// All ground lies between these true heights.
+    /// The true heights between which all ground lies.
     pub height_range_m: [f64; 2],
-    /// How large a cell of a tile may look, pixels; may be infinite.
+    /// The largest apparent size of a tile's cell, in pixels; may be infinite.
     pub cell_px: f64,
-    /// Latitude of the middle of the package.
+    /// The latitude of the middle of the package.
     pub latitude_deg: f64,
     /// Whether the edges of triangles are drawn.
     pub is_wireframe: bool,
     /// The tiles to draw.
-    pub drawn: Vec<Drawn>,
+    pub drawn: Vec<DrawnTile>,
     /// Samples per pixel along each side.
     pub samples_per_side: u32,
-    /// What else changes the picture when it changes: lines that a person draws, a divider that is
-    /// part of the picture.
+    /// The revision of everything else that changes the image: drawn lines, and a divider that is
+    /// part of the image.
     pub revision: u64,
 }
 
 impl MapScene {
-    /// One of its pictures, with roads drawn like this.
+    /// One image of the scene, with roads drawn like this.
     #[must_use]
     pub fn view(&self, roads: RoadOptions) -> FrameView<'_> {
         FrameView {
@@ -72,38 +71,42 @@ impl MapScene {
         }
     }
 
-    /// Whether its pictures have all the pixels of what shows them.
+    /// Whether the images have the full resolution of the window or page element.
     #[must_use]
     pub fn is_full(&self) -> bool {
         self.camera.size_px == self.shown_px
     }
+
+    /// Whether an image has the size and the samples of the scene.
+    fn fits(&self, picture: &Picture) -> bool {
+        picture.size_px == self.camera.size_px && picture.samples_per_side == self.samples_per_side
+    }
 }
 
-/// Numbers of the scene that was drawn last, all pictures together.
+/// The counts of the scene drawn last, for all images together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Counts {
-    /// Triangles of the ground, skirts not counted.
+pub struct SceneCounts {
+    /// Triangles of the ground, without skirts.
     pub triangles: u64,
     /// Segments of roads.
     pub segments: u64,
 }
 
-/// What a map has on the graphics card. When the device is lost, a new canvas takes the place of
-/// the old one.
+/// The data of a map on the GPU. When the device is lost, a new canvas replaces the old one.
 pub struct MapCanvas {
     /// The device.
     pub gpu: Rc<Gpu>,
     renderer: Renderer,
     tiles: ResidentTiles,
-    /// One for each method that is shown.
+    /// One image for each method in view.
     methods: Vec<MethodPicture>,
     difference: Option<Picture>,
     shown: Option<MapScene>,
-    /// Numbers of the scene that was drawn last.
-    pub counts: Counts,
+    /// The counts of the scene drawn last.
+    pub counts: SceneCounts,
 }
 
-/// The picture of one method.
+/// The image of one method.
 struct MethodPicture {
     targets: Targets,
     timer: Option<PassTimer>,
@@ -112,7 +115,7 @@ struct MethodPicture {
 }
 
 impl MapCanvas {
-    /// Nothing drawn yet.
+    /// Creates a canvas without tiles and images.
     #[must_use]
     pub fn new(gpu: Gpu) -> Self {
         Self {
@@ -122,7 +125,7 @@ impl MapCanvas {
             methods: Vec::new(),
             difference: None,
             shown: None,
-            counts: Counts::default(),
+            counts: SceneCounts::default(),
         }
     }
 
@@ -131,12 +134,12 @@ impl MapCanvas {
         self.tiles.change(&self.gpu, evict, upload);
     }
 
-    /// Removes all tiles; what is shown stays.
+    /// Removes all tiles; the shown image stays.
     pub fn clear(&mut self) {
         self.tiles.clear();
     }
 
-    /// Replaces the lines and areas that a person draws on a tile.
+    /// Replaces the drawn lines and areas on a tile.
     pub(crate) fn replace_drawn(&mut self, id: TileId, lines: &TileLayer, areas: &AreaVolumes) {
         if let Some(tile) = self.tiles.get_mut(id) {
             tile.replace_lines(&self.gpu, LineLayer::Drawn, lines);
@@ -144,38 +147,34 @@ impl MapCanvas {
         }
     }
 
-    /// The most samples on a side of a pixel with which a picture of this size can be drawn, at
-    /// least 1.
+    /// The largest number of samples per side of a pixel with which an image of this size can be
+    /// drawn, at least 1.
     #[must_use]
     pub fn most_samples(&self, size_px: [u32; 2]) -> u32 {
         let longest_px = size_px.into_iter().max().unwrap_or(1);
         (self.gpu.max_side_px() / longest_px.max(1)).max(1)
     }
 
-    /// Draws the scene, unless it is what is shown already. Returns whether something was drawn.
+    /// Draws the scene, unless it is already shown. Returns whether something was drawn.
     ///
     /// # Errors
-    /// When the pictures are beyond what the adapter can draw.
+    /// When the images exceed the limits of the adapter.
     pub fn draw(&mut self, scene: &MapScene) -> Result<bool, GpuError> {
         if self.shown.as_ref() == Some(scene) {
             return Ok(false);
         }
         self.shown = None;
         self.methods.truncate(scene.roads.len());
-        self.counts = Counts::default();
+        self.counts = SceneCounts::default();
         for (place, roads) in scene.roads.iter().enumerate() {
             self.fit(place, scene)?;
             self.draw_method(place, *roads, scene);
         }
         let before = self.difference.take();
         if let (Compare::Difference, [first, second]) = (scene.compare, &self.methods[..]) {
-            let (size_px, samples) = (scene.camera.size_px, scene.samples_per_side);
-            let fits = |picture: &Picture| {
-                (picture.size_px, picture.samples_per_side) == (size_px, samples)
-            };
-            let picture = match before.filter(fits) {
+            let picture = match before.filter(|picture| scene.fits(picture)) {
                 Some(picture) => picture,
-                None => Picture::new(&self.gpu, size_px, samples)?,
+                None => Picture::new(&self.gpu, scene.camera.size_px, scene.samples_per_side)?,
             };
             let (first, second) = (&first.targets, &second.targets);
             self.renderer.draw_difference(&self.gpu, first, second, &picture)?;
@@ -185,21 +184,16 @@ impl MapCanvas {
         Ok(true)
     }
 
-    /// Makes room for the picture at `place`.
+    /// Allocates the image at index `place`.
     fn fit(&mut self, place: usize, scene: &MapScene) -> Result<(), GpuError> {
-        let (size_px, samples) = (scene.camera.size_px, scene.samples_per_side);
-        let fits = |method: &MethodPicture| {
-            (method.targets.picture.size_px, method.targets.picture.samples_per_side)
-                == (size_px, samples)
-        };
-        if self.methods.get(place).is_some_and(fits) {
+        if self.methods.get(place).is_some_and(|method| scene.fits(&method.targets.picture)) {
             return Ok(());
         }
-        let targets = Targets::new(&self.gpu, size_px, samples)?;
+        let targets = Targets::new(&self.gpu, scene.camera.size_px, scene.samples_per_side)?;
         if let Some(method) = self.methods.get_mut(place) {
             method.targets = targets;
         } else {
-            // Pages do not show how long passes take.
+            // Pages do not show the times of passes.
             let is_timed = !cfg!(target_arch = "wasm32");
             let timer = is_timed.then(|| PassTimer::new(&self.gpu)).flatten();
             self.methods.push(MethodPicture { targets, timer, times: None, is_timing: false });
@@ -215,26 +209,26 @@ impl MapCanvas {
             self.counts.triangles += tile.buffers.triangles;
             self.counts.segments += tile.road_segments(&view);
         }
-        // Times of another method do not count for this one.
+        // The times of another method do not count for this one.
         method.times = method.times.filter(|(of, _)| *of == roads.method);
         method.is_timing = method.timer.is_some();
         let timer = method.timer.as_mut();
         self.renderer.draw_timed(&self.gpu, &view, &tiles, &method.targets, timer);
     }
 
-    /// What was drawn last; `None` where nothing is shown.
+    /// The scene drawn last; `None` if nothing is shown.
     #[must_use]
     pub fn shown(&self) -> Option<&MapScene> {
         self.shown.as_ref()
     }
 
-    /// What was drawn did not reach the screen: the same scene is drawn again.
+    /// Notes that the last scene did not reach the screen: the same scene is drawn again.
     pub fn forget_shown(&mut self) {
         self.shown = None;
     }
 
-    /// The pictures that are shown, each with the columns where it is seen. Of two pictures beside
-    /// each other, the second is seen from the share `divider` of the width on.
+    /// The shown images, each with its range of columns. Of two images side by side, the second
+    /// begins at the share `divider` of the width.
     #[must_use]
     pub fn parts(&self, divider: f32) -> Vec<(&Picture, Range<u32>)> {
         let Some(scene) = &self.shown else { return Vec::new() };
@@ -252,7 +246,7 @@ impl MapCanvas {
         }
     }
 
-    /// Begins to read what is shown; `None` where nothing is.
+    /// Starts reading back the shown images; `None` if nothing is shown.
     #[must_use]
     pub fn begin_read(&self, divider: f32) -> Option<PixelReading> {
         let parts = self.parts(divider);
@@ -262,13 +256,13 @@ impl MapCanvas {
         Some(PixelReading::new(parts.into_iter().map(part).collect(), size_px))
     }
 
-    /// Whether it is not yet known how long the last frame took the graphics card.
+    /// Whether the GPU times of the last frame are still pending.
     #[must_use]
     pub fn is_timing(&self) -> bool {
         self.methods.iter().any(|method| method.is_timing)
     }
 
-    /// The newest times that the graphics card has finished, picture by picture; never waits.
+    /// The newest times that the GPU has finished, image by image; never waits.
     ///
     /// # Errors
     /// When the device is lost.
@@ -286,7 +280,7 @@ impl MapCanvas {
     }
 }
 
-/// Pixels on their way back from the graphics card, of one picture or of several beside each other.
+/// Pixels being read back from the GPU, of one image or of several side by side.
 pub struct PixelReading {
     parts: Vec<(ReadBack, Range<u32>)>,
     /// Width and height, pixels.
@@ -294,13 +288,13 @@ pub struct PixelReading {
 }
 
 impl PixelReading {
-    /// The pixels of readings of one size, each in its columns.
+    /// Creates the reading from readings of one size, each with its range of columns.
     #[must_use]
     pub fn new(parts: Vec<(ReadBack, Range<u32>)>, size_px: [u32; 2]) -> Self {
         Self { parts, size_px }
     }
 
-    /// Whether all pixels are there; never waits.
+    /// Whether all pixels have arrived; never waits.
     ///
     /// # Errors
     /// When the device is lost or could not draw.
@@ -312,7 +306,7 @@ impl PixelReading {
         Ok(have_all)
     }
 
-    /// Four bytes a pixel, rows from the top; waits for what is not yet there.
+    /// The pixels: four bytes each, rows from the top. Waits for those that have not arrived yet.
     ///
     /// # Errors
     /// When the device is lost or could not draw.

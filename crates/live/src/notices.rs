@@ -1,4 +1,5 @@
-//! Messages for the person. Warnings stay until they are dismissed; other messages disappear after a few seconds.
+//! Messages for the user. Warnings stay until they are dismissed; other messages disappear after a
+//! few seconds.
 
 use std::{io, path::PathBuf};
 
@@ -10,34 +11,34 @@ use corniche_viewer::{
 
 use crate::formatting::with_causes;
 
-/// Most messages that are kept.
+/// The largest number of messages.
 const MOST: usize = 6;
-/// A message that is no warning disappears after this time.
+/// A message that is not a warning disappears after this time.
 const NEWS_S: f64 = 8.0;
 
 /// A message.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Notice {
-    /// Its text. In a text of several lines, one line points at letters of another.
+    /// The text of the message. In a text of several lines, one line points at letters of another.
     pub words: String,
-    /// When it disappears; `None` if it stays until it is dismissed.
+    /// The time at which the message disappears; `None` if it stays until it is dismissed.
     pub until_s: Option<f64>,
 }
 
-/// Why a picture, a flight or a drawing was not saved.
+/// The reason why an image, a flight or a drawing was not saved.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
 pub enum NotSaved {
-    #[error("nothing could be saved in {}", folder.display())]
+    #[error("cannot save to {folder:?}")]
     File { folder: PathBuf, source: io::Error },
     #[error("nothing was recorded")]
     Recording(#[from] FlightError),
-    #[error("no picture was taken")]
+    #[error("no image was saved")]
     Picture(#[from] ReadBackError),
-    #[error("no picture was taken: it was not yet drawn")]
+    #[error("no image was saved: the map was not drawn yet")]
     Untaken,
-    #[error("no picture was taken: the graphics device was lost")]
+    #[error("no image was saved: the graphics device was lost")]
     DeviceLost,
 }
 
@@ -61,23 +62,20 @@ impl Notices {
         self.add(words, Some(now_s + NEWS_S));
     }
 
-    /// Warns where the processor draws. `roads` is how roads are drawn, `asked` how they would be
-    /// drawn by a graphics card.
+    /// Warns if the CPU draws. `roads` is the drawing method of roads, `asked` the method that a
+    /// GPU would use.
     pub fn warn_of_software(&mut self, gpu: &Gpu, roads: RoadMethod, asked: RoadMethod) {
         if gpu.is_software() {
             let adapter = &gpu.adapter_name;
-            let roads = if roads == asked {
-                ""
-            } else {
-                ", and roads as geometry (GEO), which takes less time"
-            };
+            let roads =
+                if roads == asked { "" } else { ", and roads as geometry (GEO), which is faster" };
             self.warn(format!(
-                "no graphics card was found: the processor draws ({adapter}), more coarsely while the camera moves{roads}"
+                "no GPU was found: the CPU draws ({adapter}), more coarsely while the camera moves{roads}"
             ));
         }
     }
 
-    /// Tells what became of a file that was to be saved.
+    /// Reports whether a file was saved.
     pub fn tell_saved(&mut self, saved: Result<PathBuf, NotSaved>, now_s: f64) {
         match saved {
             Ok(path) => self.tell(format!("saved {}", path.display()), now_s),
@@ -85,7 +83,8 @@ impl Notices {
         }
     }
 
-    /// Adds a message. Where there are too many, the oldest that is no warning is removed, or else the oldest warning.
+    /// Adds a message. If there are too many, the oldest message that is not a warning is removed,
+    /// or else the oldest warning.
     fn add(&mut self, mut words: String, until_s: Option<f64>) {
         words.truncate(words.trim_end().len());
         // The same message is shown once, as the newest.
@@ -102,19 +101,19 @@ impl Notices {
         self.0.retain(|notice| !notice.words.starts_with(beginning));
     }
 
-    /// Removes the message at this place, if there is one.
+    /// Removes the message at this index, if there is one.
     pub fn dismiss(&mut self, place: usize) {
         if place < self.0.len() {
             self.0.remove(place);
         }
     }
 
-    /// Removes the messages whose time is over.
+    /// Removes expired messages.
     pub fn expire(&mut self, now_s: f64) {
         self.0.retain(|notice| notice.until_s.is_none_or(|until_s| now_s < until_s));
     }
 
-    /// When the next message disappears.
+    /// The time at which the next message disappears.
     #[must_use]
     pub fn next_end_s(&self) -> Option<f64> {
         self.0.iter().filter_map(|notice| notice.until_s).reduce(f64::min)

@@ -1,4 +1,4 @@
-//! Good news goes by itself, and warnings stay until they are no longer true.
+//! Messages of success disappear by themselves, and warnings stay until they no longer apply.
 
 use super::*;
 

@@ -1,4 +1,4 @@
-//! Which road is at a place.
+//! Finds the road at a place.
 
 use std::collections::BTreeMap;
 
@@ -11,39 +11,39 @@ use serde_json::{Value, json};
 
 use crate::ground_probe::GroundPoint;
 
-/// A place on the ground at which a road is looked for.
+/// A place on the ground where a road is searched.
 pub struct PickPlace {
     /// The place.
     pub point: GroundPoint,
     /// The tile that is drawn there.
     pub tile: Option<TileId>,
-    /// A road is picked if it is no farther away than this beside half its width, working metres.
+    /// The largest distance of a road beyond half its width, in working metres.
     pub(crate) reach_m: f64,
-    /// How the map looks.
+    /// The style of the map.
     pub(crate) style: Style,
-    /// The classes that are shown; others do not count.
+    /// The shown classes; roads of other classes are ignored.
     pub(crate) classes: ClassSet,
 }
 
 /// A road that was picked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PickedRoad {
-    /// OSM's id of the way.
+    /// The OSM id of the way.
     pub way_id: i64,
     /// Its class.
     pub class: FunctionalRoadClass,
-    /// What is known of it, under OSM's keys.
+    /// The known attributes, under OSM's keys.
     pub attributes: BTreeMap<&'static str, String>,
 }
 
 impl PickPlace {
-    /// What must be read of the tile.
+    /// The sections of the tile that must be read.
     pub const SECTIONS: Sections = Sections::ROADS_SV.and(Sections::ATTRIBUTES);
 
-    /// The road of a tile's payload that lies nearest.
+    /// The nearest road of a tile's payload.
     ///
     /// # Errors
-    /// When the tile's roads are damaged.
+    /// When the tile's roads are corrupt.
     pub fn road_in(
         &self,
         payload: &[u8],
@@ -52,7 +52,7 @@ impl PickPlace {
     ) -> Result<Option<PickedRoad>, LoadTileError> {
         let Manifest { frame, vertical, .. } = manifest;
         let payload = decode(payload, tile, frame, vertical.quantum_m, Self::SECTIONS)
-            .map_err(|error| LoadTileError { id: tile, source: error.into() })?;
+            .map_err(LoadTileError::for_tile(tile))?;
         let [x, y, _] = self.point.at_m;
         let position = |point: &LatticePoint| frame.position_m(*point);
         let record_of = |way_id: i64| {
@@ -84,7 +84,7 @@ impl PickPlace {
 }
 
 impl PickPlace {
-    /// What was picked, as a page is told; `labels` are what the roads of each class are called.
+    /// The picked road as JSON for a page; `labels` are the names of the classes.
     #[must_use]
     pub fn record(&self, road: Option<PickedRoad>, labels: &[String]) -> Value {
         let road = road.map(|PickedRoad { way_id, class, attributes }| {
@@ -110,7 +110,7 @@ fn distance_m([x, y]: [f64; 2], [x0, y0]: [f64; 2], [x1, y1]: [f64; 2]) -> f64 {
     (x - x0 - share * dx).hypot(y - y0 - share * dy)
 }
 
-/// What is known of a road, under OSM's keys.
+/// The known attributes of a road, under OSM's keys.
 fn texts(road: &RoadAttributes) -> BTreeMap<&'static str, String> {
     let number = |value: Option<u8>| value.map(|value| value.to_string()).unwrap_or_default();
     let all = [

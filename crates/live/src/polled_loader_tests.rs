@@ -1,5 +1,5 @@
-//! Tiles that nothing waits for: their bytes are in memory and come late, and their futures are polled by hand. A tile that is
-//! loaded without threads comes in a later frame.
+//! Tiles that nothing waits for: their bytes are in memory and arrive late, and their futures are
+//! polled by hand. A tile that is loaded without threads arrives in a later frame.
 
 use std::{
     future::poll_fn,
@@ -15,7 +15,7 @@ use corniche_viewer::tiles::{LoadTileError, PackageTiles, TileGeometry};
 
 use crate::tiles::{Loaded, TileLoader};
 
-/// How often a read is polled before its bytes are there.
+/// The number of polls of a read until its bytes arrive.
 const POLLS: u32 = 3;
 
 /// Bytes in memory. Each read is pending at first.
@@ -41,10 +41,10 @@ fn poll<T>(work: Pin<&mut (impl Future<Output = T> + ?Sized)>) -> Poll<T> {
     work.poll(&mut Context::from_waker(Waker::noop()))
 }
 
-/// Polls until it is done.
+/// Polls a future until it is done.
 ///
 /// # Panics
-/// When it is not done after many times.
+/// When the future is not done after many polls.
 pub(crate) fn polled<T>(work: impl Future<Output = T>) -> T {
     let mut work = pin!(work);
     for _ in 0..100_000 {
@@ -55,10 +55,10 @@ pub(crate) fn polled<T>(work: impl Future<Output = T>) -> T {
     panic!("the work never gets ready")
 }
 
-/// A package whose tiles come late.
+/// Opens a package whose tiles arrive late.
 ///
 /// # Panics
-/// When `bytes` are none.
+/// When `bytes` are not a package.
 pub(crate) fn late_package(bytes: Vec<u8>) -> Arc<PackageTiles<LateBytes>> {
     let package = polled(Package::open(LateBytes(MemorySource::new(bytes))));
     let tiles = package.map(|package| polled(PackageTiles::new(package)));
@@ -67,14 +67,14 @@ pub(crate) fn late_package(bytes: Vec<u8>) -> Arc<PackageTiles<LateBytes>> {
 
 type Loading = Pin<Box<dyn Future<Output = Result<TileGeometry, LoadTileError>>>>;
 
-/// Loads tiles in the thread that draws, without waiting for one: each is polled once a frame.
+/// Loads tiles in the drawing thread, without waiting for one: each is polled once per frame.
 pub(crate) struct PolledLoader {
     tiles: Arc<PackageTiles<LateBytes>>,
     under_way: Vec<(TileId, Loading)>,
 }
 
 impl PolledLoader {
-    /// Loads the tiles of a package.
+    /// Creates the loader for the tiles of a package.
     pub(crate) fn new(tiles: &Arc<PackageTiles<LateBytes>>) -> Self {
         Self { tiles: Arc::clone(tiles), under_way: Vec::new() }
     }

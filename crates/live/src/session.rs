@@ -1,4 +1,4 @@
-//! A map that a person moves, whatever shows it: its state, and what is asked of it between two
+//! An interactive map, independent of the program that shows it: its state, and the work between
 //! frames and in a frame.
 //!
 //! ```text
@@ -13,7 +13,7 @@ use corniche_geom::TileId;
 use corniche_styles::{Rgb, Style};
 use corniche_tileset::Manifest;
 use corniche_viewer::{
-    CameraRequest, OffGround, SightedGround,
+    CameraRequest, SightedGround, ViewpointOffGround,
     camera::Camera,
     flight::Pose,
     stream::StreamBudget,
@@ -23,7 +23,7 @@ use glam::DVec2;
 
 use crate::{
     camera_control::CameraControl,
-    controls::{Button, Input, KnownGround as _, Modifiers, Navigator, View},
+    controls::{Button, CameraView, Input, KnownGround as _, Modifiers, Navigator},
     flights::Flights,
     ground_probe::{GroundPoint, GroundProbe},
     map_canvas::{MapCanvas, MapScene},
@@ -34,58 +34,58 @@ use crate::{
     views::{limits, place_in_world, request_of_view, view_on},
 };
 
-/// A processor that draws draws coarsely until the camera has been at rest for this time.
+/// A CPU that draws does so coarsely until the camera has been at rest for this time.
 pub(crate) const HURRY_S: f64 = 0.15;
-/// A road is picked at most so far beside it, points of the screen.
+/// The largest distance between a picked position and a road, in points of the screen.
 const PICK_POINTS: f64 = 6.0;
 
-/// What a session begins with.
+/// The initial state of a session.
 pub struct SessionStart {
     /// The package.
     pub package: Arc<dyn MapPackage>,
-    /// All its ground lies between these true heights.
+    /// The true heights between which all ground lies.
     pub height_range_m: [f64; 2],
-    /// The first view, to which a person can return.
-    pub home: View,
-    /// What is shown at first.
+    /// The first view, to which the user can return.
+    pub home: CameraView,
+    /// The initial settings.
     pub settings: MapSettings,
     /// The styles to choose from.
     pub styles: StyleList,
     /// Loads tiles.
     pub loader: Box<dyn TileLoader>,
-    /// What may be loaded and kept.
+    /// The limits of tiles being loaded and kept.
     pub budget: StreamBudget,
-    /// Width and height of what shows the map, pixels; no side is 0.
+    /// Width and height of the window or page element, in pixels; no side is 0.
     pub size_px: [u32; 2],
-    /// Pixels to a point of the screen.
+    /// Pixels per point of the screen.
     pub pixels_per_point: f32,
     /// Whether movements slow down smoothly, or end at once.
     pub has_inertia: bool,
 }
 
-/// A map that a person moves. Times are seconds of one clock, positions pixels of what shows the
-/// map.
+/// An interactive map. Times are seconds of one clock, positions are pixels of the window or page
+/// element.
 pub struct Session {
     package: ShownPackage,
     /// The tiles, from the request to the drawing.
     pub tiles: Tiles,
     /// The camera and what moves it.
     pub camera: CameraControl,
-    /// What a person can change. Changes of the heights are made with [`Session::change`].
+    /// The settings of the user. Change heights with [`Session::change`].
     pub settings: MapSettings,
     /// The styles to choose from.
     pub styles: StyleList,
-    /// The flight that is recorded, and the one that is played.
+    /// The flight that is being recorded, and the one that is being played.
     pub flights: Flights,
-    /// What rays into the scene found.
+    /// The results of rays into the scene.
     pub probe: GroundProbe,
-    /// Where the cursor is; `None` outside.
+    /// The position of the cursor; `None` outside.
     pub cursor_px: Option<DVec2>,
-    /// A place that was jumped to, and the view of it. The ground there may still be on its way.
-    placed: Option<(CameraRequest, View)>,
+    /// The place and the view after a jump. The ground there may still be loading.
+    placed: Option<(CameraRequest, CameraView)>,
 }
 
-/// The package, and between which true heights all its ground lies.
+/// The package, and the true heights between which all its ground lies.
 struct ShownPackage {
     package: Arc<dyn MapPackage>,
     height_range_m: [f64; 2],
@@ -102,33 +102,27 @@ impl ShownPackage {
     }
 }
 
-/// What a step came to.
+/// The result of a step.
 pub struct SessionStep {
-    /// The camera, for a picture as large as what shows the map.
+    /// The camera, for an image as large as the window or page element.
     pub camera: Camera,
-    /// Tiles that were removed from the graphics card.
+    /// Tiles that were removed from the GPU.
     pub evicted: Vec<TileId>,
     /// Whether tiles were uploaded.
     pub has_new_tiles: bool,
-    /// Whether the next step may have more tiles to bring to the graphics card.
+    /// Whether the next step may have more tiles to upload to the GPU.
     pub is_under_way: bool,
 }
 
 impl Session {
-    /// Ready for the first step.
+    /// Creates a session that is ready for the first step.
     #[must_use]
     pub fn new(start: SessionStart) -> Self {
         let SessionStart { package, height_range_m, size_px, pixels_per_point, .. } = start;
         let manifest = package.manifest();
         let navigator = Navigator::new(start.home, limits(manifest), size_px, start.has_inertia);
-        let quantum_m = manifest.vertical.quantum_m;
         Self {
-            tiles: Tiles::new(
-                Arc::<dyn MapPackage>::clone(&package),
-                quantum_m,
-                start.loader,
-                start.budget,
-            ),
+            tiles: Tiles::new(Arc::<dyn MapPackage>::clone(&package), start.loader, start.budget),
             camera: CameraControl::new(navigator, pixels_per_point),
             settings: start.settings,
             styles: start.styles,
@@ -140,7 +134,7 @@ impl Session {
         }
     }
 
-    /// The package's table of contents.
+    /// The manifest of the package.
     #[must_use]
     pub fn manifest(&self) -> &Manifest {
         self.package.package.manifest()
@@ -164,31 +158,31 @@ impl Session {
         self.package.ground(&self.tiles, &self.settings)
     }
 
-    /// The camera as flights have it.
+    /// The camera as flights store it.
     #[must_use]
     pub fn pose(&self) -> Pose {
         self.camera.pose(self.vertical_scale())
     }
 
-    /// The style that was chosen, without what the other settings make of it.
+    /// The chosen style, before the other settings are applied.
     #[must_use]
     pub fn style(&self) -> &Style {
         self.styles.at(self.settings.style)
     }
 
-    /// Colours of the lines of so many files, in the style that was chosen.
+    /// The colours of the lines of this many files, in the chosen style.
     #[must_use]
     pub fn overlay_colors(&self, overlays: usize) -> Vec<Rgb> {
         self.style().overlays.iter().take(overlays).map(|line| line.color).collect()
     }
 
-    /// How the map looks: the style with all settings.
+    /// The style with all settings applied.
     #[must_use]
     pub fn look(&self) -> Style {
         self.settings.applied_to(self.style())
     }
 
-    /// Changes the settings. Where heights change, the camera keeps its place over the ground.
+    /// Changes the settings. If heights change, the camera keeps its place above the ground.
     pub fn change(&mut self, changed: MapSettings) {
         if changed.exaggeration.to_bits() != self.settings.exaggeration.to_bits() {
             let factor = changed.exaggeration / self.settings.exaggeration;
@@ -198,27 +192,27 @@ impl Session {
         self.settings = changed;
     }
 
-    /// Somebody moves the map, and has it from now on: a flight that is played ends.
+    /// Gives control to the user: a flight that is being played ends.
     pub fn take_over(&mut self) {
         self.flights.stop_playing();
         self.placed = None;
     }
 
-    /// A button of the mouse goes down on the map.
+    /// Handles a press of a mouse button on the map.
     pub fn press(&mut self, button: Button, at_px: DVec2, modifiers: Modifiers, now_s: f64) {
         let ground = self.package.ground(&self.tiles, &self.settings);
         self.camera.press(button, at_px, modifiers, now_s, &ground);
     }
 
-    /// Any other input that moves the camera, and a press that is never the second of a double
-    /// click.
+    /// Handles any other input that moves the camera, and a press that is never the second of a
+    /// double click.
     pub fn input(&mut self, input: &Input, now_s: f64) {
         let ground = self.package.ground(&self.tiles, &self.settings);
         self.camera.input(input, now_s, &ground);
     }
 
-    /// Changes to a view straight from above, or back. Flights are in perspective: while one is
-    /// recorded, nothing is done. Returns whether something was.
+    /// Switches between perspective and a view straight from above. Flights are in perspective:
+    /// while one is being recorded, nothing changes. Returns whether something changed.
     pub fn toggle_above(&mut self, now_s: f64) -> bool {
         let is_recording = self.flights.recording_s(now_s).is_some();
         if !is_recording {
@@ -227,8 +221,8 @@ impl Session {
         !is_recording
     }
 
-    /// Begins to record a flight, unless the view is from above; one that is being recorded already
-    /// is dropped. Returns whether it began.
+    /// Starts recording a flight, unless the view is from above; drops a recording in progress.
+    /// Returns whether it started.
     pub fn start_recording(&mut self, now_s: f64) -> bool {
         let is_above = self.camera.view().from_above.is_some();
         if !is_above {
@@ -238,10 +232,10 @@ impl Session {
         !is_above
     }
 
-    /// Moves to a place as people write it: `9.52,47.14`.
+    /// Moves to a place in the usual notation: `9.52,47.14`.
     ///
     /// # Errors
-    /// In words, when the text tells no place or there is no ground.
+    /// When the text is not a place or there is no ground, as a message.
     pub fn go_to(&mut self, lon_lat: &str, now_s: f64) -> Result<(), String> {
         let target_in_world = place_in_world(lon_lat, self.manifest(), &self.ground())?;
         self.take_over();
@@ -249,7 +243,7 @@ impl Session {
         Ok(())
     }
 
-    /// Moves to the view of a request, in what is `size_px` large.
+    /// Moves to the requested view, in a window or page element of `size_px`.
     ///
     /// # Errors
     /// When the place has no ground, and no height is given.
@@ -258,33 +252,41 @@ impl Session {
         request: CameraRequest,
         size_px: [u32; 2],
         now_s: f64,
-    ) -> Result<(), OffGround> {
+    ) -> Result<(), ViewpointOffGround> {
         let view = self.view_at(request, size_px)?;
         self.placed = None;
         self.camera.navigator.travel_to(view, now_s);
         Ok(())
     }
 
-    /// Shows the view of a request at once. Where finer ground comes, at another height, the view
-    /// follows it until somebody moves the map.
+    /// Shows the requested view at once. When finer ground arrives at another height, the view
+    /// follows it until the user moves the map.
     ///
     /// # Errors
     /// When the place has no ground, and no height is given.
-    pub fn jump_to(&mut self, request: CameraRequest, size_px: [u32; 2]) -> Result<(), OffGround> {
+    pub fn jump_to(
+        &mut self,
+        request: CameraRequest,
+        size_px: [u32; 2],
+    ) -> Result<(), ViewpointOffGround> {
         let view = self.view_at(request, size_px)?;
         self.camera.navigator.jump_to(view);
         self.placed = Some((request, self.camera.view()));
         Ok(())
     }
 
-    /// The view of a request, by the ground that is known.
-    fn view_at(&self, request: CameraRequest, size_px: [u32; 2]) -> Result<View, OffGround> {
+    /// The requested view over the known ground.
+    fn view_at(
+        &self,
+        request: CameraRequest,
+        size_px: [u32; 2],
+    ) -> Result<CameraView, ViewpointOffGround> {
         let (manifest, scale, ground) = (self.manifest(), self.vertical_scale(), self.ground());
         let heights_m = self.package.height_range_m;
         let at = request.place(manifest)?;
         let at_place_m = at.and_then(|at| {
             let known_m = ground.height(at).map(|height| height / scale);
-            // Before the first tiles are there, any height will do.
+            // Before the first tiles are loaded, any height will do.
             let is_inside = manifest.data_bounds.contains(at) && self.tiles.drawn.is_empty();
             known_m.or_else(|| is_inside.then(|| f64::midpoint(heights_m[0], heights_m[1])))
         });
@@ -293,7 +295,7 @@ impl Session {
         view_on(request, manifest, sighted, scale, size_px)
     }
 
-    /// Looks again at the place that was jumped to, as long as nothing else moves the camera.
+    /// Updates the view of a place that was jumped to, as long as nothing else moves the camera.
     fn place_again(&mut self, size_px: [u32; 2]) {
         let Some((request, view)) = self.placed.take() else { return };
         if self.camera.view() != view {
@@ -307,43 +309,38 @@ impl Session {
         self.placed = Some((request, self.camera.view()));
     }
 
-    /// The view has come to rest, and all its tiles are there: the ground of a place that was
+    /// Notes that the view is at rest and all its tiles are loaded: the ground of a place that was
     /// jumped to will not change any more.
     pub fn settle(&mut self) {
         self.placed = None;
     }
 
-    /// The request that shows again what is seen now.
+    /// The request that shows the current view again.
     #[must_use]
     pub fn request(&self) -> CameraRequest {
         let (view, size_px) = (self.camera.view(), self.camera.size_px());
         request_of_view(&view, &self.ground(), self.vertical_scale(), self.manifest(), size_px)
     }
 
-    /// The ground at a pixel, to look for a road there; `None` over the sky.
+    /// The ground at a pixel, for finding the road there; `None` over the sky.
     #[must_use]
     pub fn pick_at(&self, at_px: DVec2, size_px: [u32; 2]) -> Option<PickPlace> {
         let manifest = self.manifest();
         let camera = self.camera.view().camera(size_px);
-        let (start, ray) = (camera.ray_start_in_world(at_px), camera.ray_in_world(at_px));
-        let hit = self.ground().hit(start, ray)?;
+        let hit = self.ground().under(&camera, at_px)?;
         let (_, depth_m) = camera.project(hit)?;
-        let [x, y] = [hit.x, hit.y];
         let mut drawn = self.tiles.drawn.iter().map(|drawn| drawn.id);
         let reach_points = PICK_POINTS * self.camera.pixels_per_point;
         Some(PickPlace {
-            point: GroundPoint {
-                lon_lat_deg: manifest.coordinates.wgs84_from_working([x, y]),
-                at_m: [x, y, hit.z / self.vertical_scale()],
-            },
-            tile: drawn.find(|id| manifest.frame.tile_bounds(*id).contains([x, y])),
+            point: GroundPoint::from_world(hit, self.vertical_scale(), &manifest.coordinates),
+            tile: drawn.find(|id| manifest.frame.tile_bounds(*id).contains([hit.x, hit.y])),
             reach_m: reach_points * camera.pixel_at_depth_m(depth_m),
             style: self.look(),
             classes: self.settings.roads.classes,
         })
     }
 
-    /// Moves the camera, chooses tiles and brings them to the graphics card.
+    /// Moves the camera, chooses tiles and uploads them to the GPU.
     pub fn step(
         &mut self,
         canvas: &mut MapCanvas,
@@ -374,21 +371,21 @@ impl Session {
         SessionStep { camera, evicted: evict, has_new_tiles, is_under_way }
     }
 
-    /// Everything on the graphics card is lost, or other parts of tiles are needed: all tiles are
-    /// loaded again.
+    /// Loads all tiles again, after everything on the GPU was lost or when other sections of tiles
+    /// are needed.
     pub fn begin_again(&mut self) {
         self.tiles.begin_again();
-        // A frozen choice of tiles would stay empty.
+        // A frozen selection of tiles would stay empty.
         self.settings.is_frozen = false;
     }
 
-    /// Whether the map is drawn coarsely for a moment, because a processor draws and the camera moves.
+    /// Whether the map is drawn coarsely for a moment, because the CPU draws and the camera moves.
     #[must_use]
     pub fn is_hurrying(&self, canvas: &MapCanvas, now_s: f64) -> bool {
         canvas.gpu.is_software() && self.camera.at_rest_s(now_s) < HURRY_S
     }
 
-    /// What a picture of this size shows.
+    /// The scene for an image of this size.
     #[must_use]
     pub fn scene(&self, size_px: [u32; 2], samples_per_side: u32) -> MapScene {
         let (manifest, settings) = (self.manifest(), &self.settings);
@@ -410,7 +407,7 @@ impl Session {
         }
     }
 
-    /// Looks at the ground under the cursor and in the middle; `is_new` says that something was
+    /// Updates the ground under the cursor and in the middle; `is_new` means that something was
     /// drawn.
     pub fn look_at_ground(&mut self, camera: &Camera, is_new: bool) {
         let scale = self.vertical_scale();

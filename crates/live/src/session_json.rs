@@ -1,4 +1,4 @@
-//! What a page says and is told of a session, as JSON.
+//! The JSON that a page exchanges with a session.
 
 use corniche_styles::Rgb;
 use corniche_tileset::FORMAT_VERSION;
@@ -10,27 +10,26 @@ use corniche_viewer::{
 };
 use serde_json::{Value, json};
 
-use crate::{controls::Mode, map_canvas::Counts, session::Session, view_json::ViewRecord};
+use crate::{controls::Mode, map_canvas::SceneCounts, session::Session, view_json::ViewRecord};
 
-/// What a frame has left to do beside what the session knows of.
+/// Pending work of a frame that the session does not know of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FrameRest {
-    /// Whether another frame is needed at once.
+    /// Whether the next frame is needed at once.
     pub is_busy: bool,
-    /// How many of the tiles that are being loaded will not come soon.
+    /// The number of loading tiles that will be delayed.
     pub troubled: usize,
 }
 
 impl Session {
-    /// What is known of the map before anything is drawn; `labels` are what the roads of each class
-    /// are called.
+    /// The properties of the map before anything is drawn; `labels` are the names of the classes.
     #[must_use]
     pub fn about(&self, labels: &[String], gpu: &Gpu) -> Value {
         let (manifest, look) = (self.manifest(), self.look());
         let entry = |label: &str, color| json!({ "label": label, "color": css(color) });
         let roads = labels.iter().zip(&look.roads);
         let roads = roads.map(|(label, road)| entry(label, road.bands.main_color()));
-        let boundaries = BoundaryLines::of(manifest, &look).into_iter();
+        let boundaries = BoundaryLines::from_manifest(manifest, &look).into_iter();
         let boundaries = boundaries.map(|lines| entry(&lines.label, lines.style.color));
         json!({
             "attribution": manifest.attribution,
@@ -52,10 +51,11 @@ impl Session {
         })
     }
 
-    /// Moves to a place as JSON, in what is `size_px` large: at once, or in some time.
+    /// Moves to a place given as JSON, in a window or page element of `size_px`: at once, or
+    /// gradually.
     ///
     /// # Errors
-    /// In words, when the text is no place, or there is no ground.
+    /// When the text is not a place or there is no ground, as a message.
     pub fn go_to_record(
         &mut self,
         place: &str,
@@ -64,7 +64,7 @@ impl Session {
         now_s: f64,
     ) -> Result<(), String> {
         let place: ViewRecord = serde_json::from_slice(place.as_bytes())
-            .map_err(|error| format!("the place: {error}"))?;
+            .map_err(|error| format!("invalid view: {error}"))?;
         let request = place.request();
         range::check_camera(request).map_err(|error| error.to_string())?;
         let gone = if is_jump {
@@ -75,35 +75,36 @@ impl Session {
         gone.map_err(|error| error.to_string())
     }
 
-    /// Ends the recording; the flight as JSON, with the fields of its TOML.
+    /// Ends the recording and returns the flight as JSON, with the fields of its TOML.
     ///
     /// # Errors
-    /// In words, when nothing was recorded.
+    /// When nothing was recorded, as a message.
     pub fn stop_recording(&mut self, now_s: f64) -> Result<String, String> {
         let flight = self.flights.stop_recording(now_s).ok_or("no flight is being recorded")?;
         let flight = flight.map_err(|error| error.to_string())?;
-        let record = flight.record(WorkingCrs::of(self.manifest()));
+        let record = flight.record(WorkingCrs::from_manifest(self.manifest()));
         serde_json::to_string(&record).map_err(|error| error.to_string())
     }
 
-    /// Plays a flight: JSON with the fields of its TOML.
+    /// Plays a flight given as JSON, with the fields of its TOML.
     ///
     /// # Errors
-    /// In words, when the text is none for this package.
+    /// When the text is not a flight for this package, as a message.
     pub fn play(&mut self, flight: &str, now_s: f64) -> Result<(), String> {
         let record: FlightRecord = serde_json::from_slice(flight.as_bytes())
-            .map_err(|error| format!("this is no flight: {error}"))?;
+            .map_err(|error| format!("invalid flight: {error}"))?;
         let manifest = self.manifest();
-        let flight = Flight::of_record(&record, WorkingCrs::of(manifest), &manifest.coordinates);
+        let flight =
+            Flight::of_record(&record, WorkingCrs::from_manifest(manifest), &manifest.coordinates);
         self.flights.play(flight.map_err(|error| error.to_string())?, now_s);
         Ok(())
     }
 
-    /// What came of a frame, and whether nothing moves and nothing is loaded any more.
+    /// Reports a frame, and whether nothing moves and nothing is being loaded any more.
     #[must_use]
     pub fn report(
         &self,
-        counts: Counts,
+        counts: SceneCounts,
         rest: FrameRest,
         pixels_per_point: f64,
         now_s: f64,
@@ -122,7 +123,7 @@ impl Session {
         let report = json!({
             "next": if is_busy { "now" } else { "asked" },
             "is_settled": is_settled,
-            "view": ViewRecord::of(self.request()),
+            "view": ViewRecord::from_request(self.request()),
             "cursor": probe.cursor().map(|point| point.record()),
             "metres_per_pixel": metres_per_pixel,
             "metres_per_point": metres_per_pixel.map(|pixel_m| pixel_m * pixels_per_point),

@@ -1,11 +1,11 @@
-//! A session says what pages know, and records no flight from above.
+//! A session reports the fields that pages know, and records no flight from above.
 
 use corniche_styles::Style;
 use corniche_viewer::{RoadMethod, RoadOptions};
 
 use super::*;
 use crate::{
-    map_canvas::Counts,
+    map_canvas::SceneCounts,
     polled_loader::{PolledLoader, late_package},
     session_json::FrameRest,
     style_list::NamedStyle,
@@ -28,7 +28,7 @@ fn session() -> Session {
         package,
         height_range_m: heights_m,
         home,
-        settings: MapSettings::usual(RoadOptions::of(RoadMethod::Geometry)),
+        settings: MapSettings::usual(RoadOptions::for_method(RoadMethod::Geometry)),
         styles: StyleList::new(vec![atlas], None),
         budget: StreamBudget {
             tiles_in_flight: 8,
@@ -41,11 +41,12 @@ fn session() -> Session {
     })
 }
 
-/// The names are those of `FrameReport` in the types of the page; it adds requests, bytes and notices.
+/// The names are those of `FrameReport` in the types of the page; it adds requests, bytes and
+/// notices.
 #[test]
 fn a_report_has_the_names_that_pages_know() {
     let rest = FrameRest { is_busy: false, troubled: 0 };
-    let (report, is_settled) = session().report(Counts::default(), rest, 1.0, 0.0);
+    let (report, is_settled) = session().report(SceneCounts::default(), rest, 1.0, 0.0);
     assert!(is_settled && report["next"] == "asked" && report["mode"] == "map", "{report}");
     let mut names: Vec<&String> = report.as_object().unwrap().keys().collect();
     names.sort();
@@ -67,7 +68,7 @@ fn a_report_has_the_names_that_pages_know() {
     ];
     assert_eq!(names, expected);
     let busy = FrameRest { is_busy: true, ..rest };
-    let (report, is_settled) = session().report(Counts::default(), busy, 1.0, 0.0);
+    let (report, is_settled) = session().report(SceneCounts::default(), busy, 1.0, 0.0);
     assert!(!is_settled && report["next"] == "now");
 }
 

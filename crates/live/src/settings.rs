@@ -1,4 +1,4 @@
-//! What a person can change of a map, as plain values.
+//! The settings of a map that the user can change, as plain values.
 
 use std::collections::BTreeSet;
 
@@ -25,7 +25,7 @@ pub enum Compare {
 }
 
 impl Compare {
-    /// The options of the roads for each picture: one picture, or GEO and SV.
+    /// The road options of each image: one image, or GEO and SV.
     #[must_use]
     pub fn pictures(self, roads: RoadOptions) -> Vec<RoadOptions> {
         match self {
@@ -37,27 +37,27 @@ impl Compare {
     }
 }
 
-/// Everything that a person can change of a map, and of the panel beside it.
+/// All settings of a map, and of its panel.
 #[derive(Debug, Clone, PartialEq)]
-#[expect(clippy::struct_excessive_bools, reason = "boxes to tick, independent of each other")]
+#[expect(clippy::struct_excessive_bools, reason = "independent checkboxes")]
 pub struct MapSettings {
-    /// How roads are drawn.
+    /// The drawing method of roads.
     pub roads: RoadOptions,
     /// Whether one method is shown, or two are compared.
     pub compare: Compare,
-    /// Position of the divider, as a share of the map's width.
+    /// The position of the divider, as a share of the map's width.
     pub divider_share: f32,
     /// Factors on the style's widths, class 0 first.
     pub width_factors: [f32; FunctionalRoadClass::COUNT],
-    /// Place of the style in the list of styles.
+    /// The index of the style in the list of styles.
     pub style: usize,
-    /// How strongly photos are seen, 0 to 1; `None`: as the style says.
+    /// The opacity of photos, 0 to 1; `None` for that of the style.
     pub photo: Option<f32>,
-    /// Whether areas are drawn as the style says, or not at all.
+    /// Whether areas are drawn as in the style, or not at all.
     pub areas: bool,
-    /// Whether boundaries are drawn as the style says, or not at all.
+    /// Whether boundaries are drawn as in the style, or not at all.
     pub boundaries: bool,
-    /// Files of lines that are not shown, by their numbers.
+    /// The numbers of the line files that are hidden.
     pub hidden_overlays: BTreeSet<usize>,
     /// Factor on heights; 1 is true.
     pub exaggeration: f64,
@@ -69,13 +69,14 @@ pub struct MapSettings {
     pub samples_per_side: u32,
     /// Whether the edges of triangles are drawn.
     pub is_wireframe: bool,
-    /// Whether the tiles that are drawn now stay, wherever the camera goes, so that their choice can be looked at from elsewhere.
+    /// Whether the drawn tiles stay the same while the camera moves, so that their selection can be
+    /// inspected from elsewhere.
     pub is_frozen: bool,
     /// Whether the panel is open.
     pub is_panel_open: bool,
     /// Whether the page of keys and mouse is open.
     pub is_help_open: bool,
-    /// What is typed as the place to go to.
+    /// The text typed as the place to go to.
     pub place: String,
 }
 
@@ -92,15 +93,14 @@ pub mod range {
         1..=corniche_viewer::gpu::MAX_SAMPLES_PER_SIDE;
     /// Factors on the widths of classes.
     pub const WIDTH_FACTOR: RangeInclusive<f32> = 0.25..=4.0;
-    /// How strongly photos are seen.
+    /// Opacities of photos.
     pub const PHOTO: RangeInclusive<f32> = 0.0..=1.0;
     /// Positions of the divider, as shares of the map's width.
     pub const DIVIDER_SHARE: RangeInclusive<f32> = 0.05..=0.95;
 }
 
 impl MapSettings {
-    /// What is shown where nothing else is asked for: roads like these, everything of the first
-    /// style, true heights.
+    /// The default settings: roads like these, everything of the first style, true heights.
     #[must_use]
     pub fn usual(roads: RoadOptions) -> Self {
         Self {
@@ -125,7 +125,8 @@ impl MapSettings {
         }
     }
 
-    /// A style with its widths multiplied by their factors, photos as strong as is wanted, and without areas and lines of files that are not.
+    /// The style with its widths multiplied by their factors, with the chosen opacity of photos,
+    /// and without hidden areas and lines of files.
     #[must_use]
     pub fn applied_to(&self, style: &Style) -> Style {
         let mut applied = style.clone();
@@ -147,7 +148,7 @@ impl MapSettings {
         applied
     }
 
-    /// How finely the ground of a package is drawn in this style.
+    /// The quality at which the ground of a package is drawn in this style.
     #[must_use]
     pub fn quality(&self, manifest: &Manifest, style: &Style) -> Quality {
         let Self { screen_space_error_px, cell_px, .. } = *self;
@@ -155,7 +156,7 @@ impl MapSettings {
         Quality::of_package(manifest, fineness, style, self.roads, self.exaggeration)
     }
 
-    /// What is read of tiles to show them in this style.
+    /// The decoder of the tile sections that this style needs.
     #[must_use]
     pub fn decoder(&self, style: &Style) -> TileDecoder {
         let look = self.applied_to(style);

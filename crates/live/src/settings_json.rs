@@ -1,51 +1,49 @@
 //! Settings of a map as JSON: what a page can change.
 
 use corniche_roads::FunctionalRoadClass;
-use corniche_viewer::{ClassSet, OutOfRange, Outline, RoadMethod, RoadOptions, range};
+use corniche_viewer::{ClassSet, OutOfRange, RoadMethod, RoadOptions, RoadOutline, range};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use crate::settings::{Compare, MapSettings};
 
-/// Settings to change; those that are left out stay as they are.
+/// Settings to change; omitted settings stay unchanged.
 pub type SettingChanges = Map<String, Value>;
 
-/// Settings for which `null` is a value. For others it says nothing.
+/// Settings for which `null` is a value. For others, `null` means unchanged.
 const WITH_NULL: [&str; 2] = ["photo", "cell_px"];
 
-/// Everything that a page can change.
+/// All settings that a page can change.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-#[expect(
-    clippy::struct_excessive_bools,
-    reason = "they are boxes to tick, independent of each other"
-)]
-pub struct SettingsRecord {
-    /// How roads are drawn, if one method is shown.
+#[expect(clippy::struct_excessive_bools, reason = "they are independent checkboxes")]
+pub struct StoredSettings {
+    /// The drawing method of roads, if one method is shown.
     pub roads: RoadMethod,
     /// Whether one method is shown, or both are compared.
     pub compare: Compare,
-    /// Position of the divider, as a share of the canvas's width.
+    /// The position of the divider, as a share of the canvas's width.
     pub divider: f32,
-    /// Which classes are drawn, 0 first.
+    /// Whether each class is drawn, class 0 first.
     pub classes: [bool; FunctionalRoadClass::COUNT],
     /// Factors on the style's widths, class 0 first.
     pub widths: [f32; FunctionalRoadClass::COUNT],
     /// The edge around roads.
-    pub outline: Outline,
-    /// The name of a style that comes with the program, or the address of an own one that the page keeps.
+    pub outline: RoadOutline,
+    /// The name of a bundled style, or the address of a custom style that the page keeps.
     pub style: String,
-    /// How strongly photos are seen, 0 to 1; `None`: as the style says.
+    /// The opacity of photos, 0 to 1; `None` for that of the style.
     pub photo: Option<f32>,
-    /// Whether areas are drawn as the style says.
+    /// Whether areas are drawn as in the style.
     pub areas: bool,
-    /// Whether boundaries are drawn as the style says.
+    /// Whether boundaries are drawn as in the style.
     pub boundaries: bool,
     /// Factor on heights; 1 is true.
     pub exaggeration: f64,
     /// A tile is refined while its error looks larger than this, pixels.
     pub error_px: f64,
-    /// A tile is refined while one of its cells looks larger than this, pixels; `None`: cells do not count.
+    /// A tile is refined while one of its cells looks larger than this, pixels; `None` for no
+    /// limit.
     pub cell_px: Option<f64>,
     /// Samples per pixel along each side.
     pub samples: u32,
@@ -55,8 +53,8 @@ pub struct SettingsRecord {
     pub inertia: bool,
 }
 
-impl Default for SettingsRecord {
-    /// The settings with which `corniche render` draws without options.
+impl Default for StoredSettings {
+    /// The settings of `corniche render` without options.
     fn default() -> Self {
         Self {
             roads: RoadMethod::Geometry,
@@ -64,7 +62,7 @@ impl Default for SettingsRecord {
             divider: 0.5,
             classes: [true; FunctionalRoadClass::COUNT],
             widths: [1.0; FunctionalRoadClass::COUNT],
-            outline: Outline::OfStyle,
+            outline: RoadOutline::OfStyle,
             style: "road-atlas".to_owned(),
             photo: None,
             areas: true,
@@ -79,25 +77,25 @@ impl Default for SettingsRecord {
     }
 }
 
-impl SettingsRecord {
-    /// These settings with some of them changed: a JSON object with the fields to change.
+impl StoredSettings {
+    /// Returns these settings with some of them changed by a JSON object with the fields to change.
     ///
     /// # Errors
-    /// In words, when the text is no such object or a value is out of its range.
+    /// When the text is not an object of settings or a value is out of range, as a message.
     pub fn changed_by(&self, changes: &str) -> Result<Self, String> {
         let changes = serde_json::from_slice(changes.as_bytes());
         self.changed(changes.map_err(|error| format!("settings: {error}"))?)
     }
 
-    /// The same of changes that were read already.
+    /// Applies changes that were parsed already.
     ///
     /// # Errors
-    /// In words, when there is no such setting or a value is out of its range.
+    /// When there is no such setting or a value is out of range, as a message.
     pub fn changed(&self, mut changes: SettingChanges) -> Result<Self, String> {
         let told = |error: serde_json::Error| format!("settings: {error}");
         let mut all = serde_json::to_value(self).map_err(told)?;
         if let Value::Object(all) = &mut all {
-            // A name that no setting has stays, and is refused with its value or without.
+            // An unknown name stays in the object, so that it is rejected with or without a value.
             changes.retain(|name, value| {
                 !value.is_null() || WITH_NULL.contains(&name.as_str()) || !all.contains_key(name)
             });
@@ -132,7 +130,7 @@ impl SettingsRecord {
         let roads = RoadOptions {
             classes: shown.collect::<ClassSet>(),
             outline: self.outline,
-            ..RoadOptions::of(self.roads)
+            ..RoadOptions::for_method(self.roads)
         };
         MapSettings {
             compare: self.compare,

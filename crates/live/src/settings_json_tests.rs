@@ -1,4 +1,4 @@
-//! Settings of the page change what they name and nothing else.
+//! Changes of settings by the page affect only the named settings.
 
 use corniche_styles::Style;
 
@@ -6,11 +6,11 @@ use super::*;
 
 #[test]
 fn what_is_not_named_stays_and_what_is_named_changes() {
-    let usual = SettingsRecord::default();
+    let usual = StoredSettings::default();
     let changed = usual.changed_by(r#"{"roads": "sv", "cell_px": null, "photo": 0.5}"#).unwrap();
     assert_eq!(
         changed,
-        SettingsRecord {
+        StoredSettings {
             roads: RoadMethod::ShadowVolumes,
             cell_px: None,
             photo: Some(0.5),
@@ -49,16 +49,16 @@ fn what_cannot_be_is_told_in_words() {
         (r#"{"widths": [1,1,1,1,1,1,1,1,-1]}"#, "0.01 to 100"),
         (r#"{"divider": 2}"#, "0 to 1"),
     ] {
-        let why = SettingsRecord::default().changed_by(changes).unwrap_err();
+        let why = StoredSettings::default().changed_by(changes).unwrap_err();
         assert!(why.contains(told), "{changes}: {why}");
     }
 }
 
 #[test]
 fn widths_and_layers_change_the_style() {
-    let look = |settings: &SettingsRecord| settings.of_session().applied_to(&Style::road_atlas());
-    let usual = look(&SettingsRecord::default());
-    let changed = SettingsRecord::default()
+    let look = |settings: &StoredSettings| settings.of_session().applied_to(&Style::road_atlas());
+    let usual = look(&StoredSettings::default());
+    let changed = StoredSettings::default()
         .changed_by(r#"{"widths": [2,1,1,1,1,1,1,1,1], "areas": false, "boundaries": false}"#)
         .unwrap();
     let style = look(&changed);

@@ -1,10 +1,10 @@
-//! A comparison draws both methods, and a factor widens its own class alone.
+//! A comparison draws both methods, and a width factor affects only its own class.
 
 use super::*;
 
 #[test]
 fn a_comparison_draws_both_methods_whichever_was_chosen() {
-    let roads = RoadOptions::of(RoadMethod::None);
+    let roads = RoadOptions::for_method(RoadMethod::None);
     assert_eq!(Compare::Off.pictures(roads), [roads]);
     let methods = |compare: Compare| -> Vec<RoadMethod> {
         compare.pictures(roads).iter().map(|options| options.method).collect()
@@ -17,7 +17,7 @@ fn a_comparison_draws_both_methods_whichever_was_chosen() {
 #[test]
 fn a_factor_widens_its_class_and_no_other() {
     let style = Style::road_atlas();
-    let mut settings = MapSettings::usual(RoadOptions::of(RoadMethod::ShadowVolumes));
+    let mut settings = MapSettings::usual(RoadOptions::for_method(RoadMethod::ShadowVolumes));
     settings.width_factors[3] = 2.0;
     let applied = settings.applied_to(&style);
     for (class, (before, after)) in style.roads.iter().zip(&applied.roads).enumerate() {

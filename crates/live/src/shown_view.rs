@@ -1,4 +1,4 @@
-//! What is seen, as far as a command that draws a picture of it needs to know.
+//! The current view, as far as a command that draws it as an image needs it.
 
 use corniche_styles::Rgb;
 use corniche_viewer::{CameraRequest, ClassSet};
@@ -8,14 +8,14 @@ use crate::{
     settings::{Compare, MapSettings},
 };
 
-/// What a window shows, as far as a picture of the same view needs it.
+/// The view of a window, as far as an image of the same view needs it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ShownView {
-    /// Where it looks from; never the overview.
+    /// The request for the camera; never the overview.
     pub camera: CameraRequest,
     /// Width and height of the map, pixels.
     pub size_px: [u32; 2],
-    /// How it is shown.
+    /// The settings of the map.
     pub settings: MapSettings,
     /// The name of the style.
     pub style: String,
@@ -27,10 +27,10 @@ pub struct ShownView {
 pub type CommandOf = Box<dyn Fn(&ShownView) -> String>;
 
 impl ShownView {
-    /// What is shown, with so many files of lines, and in words what no command can tell of it.
-    /// `None` where the style has no name.
+    /// The current view with this many line files, and a text about the parts that no command can
+    /// express. `None` if the style has no name.
     #[must_use]
-    pub fn of(session: &Session, overlays: usize) -> Option<(Self, String)> {
+    pub fn from_session(session: &Session, overlays: usize) -> Option<(Self, String)> {
         let settings = &session.settings;
         let shown = Self {
             camera: session.request(),
@@ -43,7 +43,7 @@ impl ShownView {
             (settings.roads.classes != ClassSet::ALL, "hidden classes"),
             (
                 settings.width_factors.iter().any(|factor| (*factor - 1.0).abs() > 0.0),
-                "factors on widths",
+                "width factors",
             ),
             (settings.compare != Compare::Off, "the comparison"),
         ]

@@ -1,21 +1,22 @@
-//! The styles of a map, of which the first may be read again while it is shown.
+//! The styles of a map. The first one can be reloaded while it is shown.
 
 use corniche_styles::Style;
 
-/// A style and what it is called.
+/// A style and its name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NamedStyle {
-    /// The name that is listed.
+    /// The name in the list.
     pub name: String,
-    /// How the map looks.
+    /// The style.
     pub style: Style,
 }
 
-/// Called about once a second: has the first style changed? `None` if not; else the new style, which is shown from then on,
-/// or in words why it cannot be used: these words are shown, and the old style stays.
+/// Checks about once a second whether the first style has changed. Returns `None` if not, the new
+/// style, which is shown from then on, or an error message, which is shown while the old style
+/// stays.
 pub type Reload = Box<dyn FnMut() -> Option<Result<Style, String>>>;
 
-/// How often it is asked whether the first style has changed.
+/// The interval between checks of the first style.
 const RELOAD_S: f64 = 1.0;
 
 /// The styles to choose from. The first of them may change while the map is shown.
@@ -25,31 +26,32 @@ pub struct StyleList {
     /// The names of all styles.
     pub names: Vec<String>,
     reload: Option<Reload>,
-    /// When the first style was asked about last.
+    /// The time of the last check of the first style.
     reloaded_s: f64,
 }
 
 impl StyleList {
-    /// Styles to choose from, at least one; `reload` tells whether the first has changed.
+    /// Creates the list of styles, at least one; `reload` checks whether the first has changed.
     #[must_use]
     pub fn new(styles: Vec<NamedStyle>, reload: Option<Reload>) -> Self {
         let names = styles.iter().map(|style| style.name.clone()).collect();
         Self { styles, names, reload, reloaded_s: 0.0 }
     }
 
-    /// The style at this place of the list; the last one where there are fewer.
+    /// The style at this index; the last one if the list is shorter.
     #[must_use]
     pub fn at(&self, place: usize) -> &Style {
         &self.styles[place.min(self.styles.len() - 1)].style
     }
 
-    /// When the first style must be asked about.
+    /// The time of the next check of the first style.
     #[must_use]
     pub fn reload_due_s(&self) -> Option<f64> {
         self.reload.as_ref().map(|_| self.reloaded_s + RELOAD_S)
     }
 
-    /// Asks about the first style if it is time: `None` if it has not changed, an error in words if it cannot be used.
+    /// Checks the first style if it is time: `None` if it has not changed, an error message if it
+    /// is invalid.
     pub fn reload(&mut self, now_s: f64) -> Option<Result<(), String>> {
         if self.reload_due_s().is_none_or(|due_s| due_s > now_s) {
             return None;

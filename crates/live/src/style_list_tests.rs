@@ -1,4 +1,4 @@
-//! The first style is read again once a second, and the others never.
+//! The first style is checked once a second, and the others never.
 
 use std::collections::VecDeque;
 

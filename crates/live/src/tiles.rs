@@ -1,4 +1,5 @@
-//! The tiles of the window: chosen by the streamer, loaded by a [`TileLoader`]. Their ground is kept for rays and heights.
+//! The tiles of a map: the streamer selects them, and a [`TileLoader`] loads them. Their ground is
+//! kept for rays and heights.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -9,10 +10,10 @@ use corniche_geom::TileId;
 use corniche_viewer::{
     camera::Camera,
     gpu::tile_bytes,
-    lod::{Drawn, Quality},
+    lod::{DrawnTile, Quality},
     pick,
     stream::{Plan, StreamBudget, Streamer, TileFacts},
-    tiles::{LoadTileError, TileCatalog, TileGeometry, TileLines},
+    tiles::{LoadTileError, TileCatalog, TileGeometry},
 };
 use glam::DVec3;
 
@@ -20,73 +21,72 @@ use crate::controls::KnownGround;
 
 /// The answer to a request for a tile.
 pub struct Loaded {
-    /// The tile that was asked for.
+    /// The requested tile.
     pub id: TileId,
-    /// The decoded tile, or why there is none.
+    /// The decoded tile, or the reason why there is none.
     pub tile: Result<TileGeometry, LoadTileError>,
 }
 
-/// Loads tiles while the window goes on drawing. Nothing here waits: tiles are requested in one frame and taken in a later
-/// one.
+/// Loads tiles while drawing continues. Nothing here waits: tiles are requested in one frame and
+/// taken in a later one.
 pub trait TileLoader {
-    /// Asks for tiles, in order, after those asked for before.
+    /// Requests tiles, in order, after those requested before.
     fn request(&mut self, ids: &[TileId]);
-    /// Drops the requests on which no work has begun.
+    /// Drops the requests that have not been started.
     fn forget(&mut self);
-    /// Stops loading tiles that nobody wants any more, as far as it can. Returns those that will not arrive.
+    /// Cancels the loading of tiles that are no longer needed, as far as possible. Returns those
+    /// that will not arrive.
     fn abandon(&mut self, ids: &[TileId]) -> Vec<TileId> {
         let _ = ids;
         Vec::new()
     }
-    /// The tiles that have arrived since this was called last.
+    /// The tiles that have arrived since the last call.
     fn arrivals(&mut self) -> Vec<Loaded>;
 }
 
 /// All tiles, from the request to the drawing.
 pub struct Tiles {
     catalog: Arc<dyn TileCatalog>,
-    quantum_m: f64,
     loader: Box<dyn TileLoader>,
     budget: StreamBudget,
     streamer: Streamer,
-    /// Tiles that are decoded and not yet on the graphics card.
+    /// Decoded tiles that are not on the GPU yet.
     waiting: BTreeMap<TileId, TileGeometry>,
-    /// The ground of the tiles that are on the graphics card.
+    /// The ground of the tiles on the GPU.
     resident: BTreeMap<TileId, TileGeometry>,
     /// Tiles that are drawn.
-    pub drawn: Vec<Drawn>,
-    /// Tiles that the view needs and that are not on the graphics card yet.
+    pub drawn: Vec<DrawnTile>,
+    /// The number of tiles that the view needs and that are not on the GPU yet.
     pub missing: usize,
     loading: BTreeSet<TileId>,
-    /// Whether the view needs more tiles than fit into the graphics memory allowed, so that it is drawn more coarsely than
-    /// was asked.
+    /// Whether the view needs more tiles than fit into the graphics memory, so that it is drawn
+    /// more coarsely than requested.
     pub is_full: bool,
     /// Whether [`Tiles::take_first_time_full`] has returned true.
     was_full: bool,
 }
 
-/// What a frame has to do on the graphics card, in this order.
+/// The work of a frame on the GPU, in this order.
 #[derive(Default)]
 pub struct Changes {
     /// Tiles to remove.
     pub evict: Vec<TileId>,
-    /// Tiles to upload, and then to hand to [`Tiles::keep_ground`].
+    /// Tiles to upload, and then to pass to [`Tiles::keep_ground`].
     pub upload: Vec<TileGeometry>,
-    /// Whether tiles were requested, uploaded or removed: then the next frame may have more to do.
+    /// Whether tiles were requested, uploaded or removed, so that the next frame may have more to
+    /// do.
     pub is_under_way: bool,
 }
 
 impl Tiles {
-    /// Nothing loaded yet. `quantum_m` is the package's height step.
+    /// Creates an empty set of tiles.
     pub fn new(
         catalog: Arc<dyn TileCatalog>,
-        quantum_m: f64,
         loader: Box<dyn TileLoader>,
         budget: StreamBudget,
     ) -> Self {
         Self {
             catalog,
-            quantum_m,
             loader,
             budget,
             streamer: Streamer::new(budget),
@@ -100,21 +100,22 @@ impl Tiles {
         }
     }
 
-    /// Takes the tiles that have arrived. Returns messages about those that cannot be had.
+    /// Takes the tiles that have arrived. Returns messages about tiles that cannot be loaded.
     ///
-    /// Such a tile counts as one without ground: finer tiles beneath it are shown where there are any, and else a hole.
+    /// A tile that cannot be loaded is treated as a tile without ground: finer tiles beneath it are
+    /// shown if there are any, and a hole otherwise.
     pub fn take_arrivals(&mut self) -> Vec<String> {
         let mut defects = Vec::new();
         for loaded in self.loader.arrivals() {
             if !self.loading.remove(&loaded.id) {
-                // It was requested before the device was lost, and again after that; this is the second answer.
+                // The tile was requested before the device was lost, and again afterwards; this is
+                // the second answer.
                 continue;
             }
             let tile = loaded.tile.unwrap_or_else(|error| {
                 let cause = std::error::Error::source(&error).map(ToString::to_string);
                 defects.push(format!("{error}: {}", cause.unwrap_or_default()));
-                let (frame, lines) = (self.catalog.frame(), TileLines::default());
-                TileGeometry::assemble(loaded.id, None, &lines, frame, self.quantum_m)
+                TileGeometry::empty(loaded.id, self.catalog.frame())
             });
             let facts = TileFacts { ground: tile.summary, gpu_bytes: tile_bytes(&tile) };
             self.streamer.arrived(loaded.id, facts);
@@ -123,7 +124,7 @@ impl Tiles {
         defects
     }
 
-    /// Chooses what is drawn, kept and loaded.
+    /// Selects the tiles to draw, keep and load.
     pub fn choose(&mut self, camera: &Camera, ahead: Option<&Camera>, quality: Quality) -> Changes {
         let plan = self.streamer.plan(self.catalog.as_ref(), camera, ahead, quality);
         let Plan { evict, upload, drawn, cancel, load, missing, unwanted } = plan;
@@ -146,25 +147,25 @@ impl Tiles {
         self.drawn = drawn;
         self.missing = missing;
         let is_under_way = !(evict.is_empty() && uploaded.is_empty() && load.is_empty());
-        // Tiles wait for room that no other tile gives up, and nothing is being loaded.
+        // Tiles wait for memory that no other tile frees, and nothing is being loaded.
         self.is_full = missing > 0 && !is_under_way && self.loading.is_empty();
         Changes { evict, upload: uploaded, is_under_way }
     }
 
-    /// Keeps the ground of tiles that were uploaded, for rays and heights. Their roads, which are most of a tile in a town,
-    /// are dropped: they are needed on the graphics card only.
+    /// Keeps the ground of uploaded tiles, for rays and heights. Their roads, which are most of a
+    /// tile in a town, are dropped: only the GPU needs them.
     pub fn keep_ground(&mut self, uploaded: Vec<TileGeometry>) {
         for tile in uploaded {
             self.resident.insert(tile.id, tile.without_roads());
         }
     }
 
-    /// The ground of the tiles that are on the graphics card.
+    /// The ground of the tiles on the GPU.
     pub fn resident(&self) -> impl Iterator<Item = &TileGeometry> {
         self.resident.values()
     }
 
-    /// Everything on the graphics card is lost: all tiles are requested again.
+    /// Handles the loss of everything on the GPU: all tiles are requested again.
     pub fn begin_again(&mut self) {
         self.loader.forget();
         self.loading.clear();
@@ -175,33 +176,34 @@ impl Tiles {
         self.is_full = false;
     }
 
-    /// Tiles being loaded.
+    /// The number of tiles being loaded.
     #[must_use]
     pub fn loading(&self) -> usize {
         self.loading.len()
     }
 
-    /// Whether [`Tiles::is_full`] holds for the first time since the window opened: true once.
+    /// Returns true once: when [`Tiles::is_full`] first becomes true.
     pub fn take_first_time_full(&mut self) -> bool {
         self.is_full && !std::mem::replace(&mut self.was_full, true)
     }
 
-    /// Bytes on the graphics card, and how many there may be.
+    /// The bytes used on the GPU, and the limit.
     #[must_use]
     pub fn bytes_of_budget(&self) -> [u64; 2] {
         [self.streamer.resident_bytes, self.budget.gpu_bytes]
     }
 
-    /// The ground that is drawn; outside the view, the other ground that is on the graphics card.
+    /// The drawn ground; outside the view, the other ground on the GPU.
     ///
-    /// `height_range_m` are the true heights between which all of it lies.
+    /// `height_range_m` are the true heights between which all ground lies.
     #[must_use]
     pub fn ground(&self, vertical_scale: f64, height_range_m: [f64; 2]) -> ShownGround<'_> {
         ShownGround { tiles: self, vertical_scale, height_range_m }
     }
 }
 
-/// The ground as the camera's controls see it, in world heights: true heights times `vertical_scale`.
+/// The ground as the camera's controls see it, in world heights: true heights times
+/// `vertical_scale`.
 pub struct ShownGround<'a> {
     tiles: &'a Tiles,
     vertical_scale: f64,

@@ -1,4 +1,5 @@
-//! The tiles of a live map are those that its views need, and damage or loss of the device is survived.
+//! A live map has the tiles that its views need, and tolerates corrupt tiles and the loss of the
+//! device.
 
 use std::{
     num::NonZeroUsize,
@@ -6,12 +7,11 @@ use std::{
 };
 
 use corniche_geom::{GridFrame, NodeIndex};
-use corniche_testing::package::QUANTUM_M;
-use corniche_tileset::Terrain;
+use corniche_tileset::TileTerrain;
 use corniche_tin::{Tin, TinVertex};
 use corniche_viewer::{
     camera::Orientation,
-    tiles::{LoadTileError, PackageSource, TileSource},
+    tiles::{LoadTileError, PackageSource, TileLines, TileSource},
 };
 use glam::DVec2;
 
@@ -21,7 +21,8 @@ use crate::{
     polled_loader::{PolledLoader, late_package},
 };
 
-/// A package of two levels: ground at 100 m, 10 m higher in the finer level. One tile of it is damaged.
+/// A package of two levels: ground at 100 m, 10 m higher in the finer level. One of its tiles is
+/// corrupt.
 struct Steps {
     frame: GridFrame,
 }
@@ -49,7 +50,7 @@ impl TileSource for Steps {
         let corners = vec![vertex(0, 0), vertex(0, 256), vertex(256, 0), vertex(256, 256)];
         let tin = Tin::new(corners, &[[0, 2, 1], [1, 2, 3]]);
         let tin = tin.unwrap_or_else(|error| panic!("{error}"));
-        let terrain = Terrain {
+        let terrain = TileTerrain {
             tin,
             normals: vec![[0, 0]; 4],
             geometric_error_m: if id.z() == 0 { 10.0 } else { 0.0 },
@@ -71,16 +72,16 @@ fn tiles_within(gpu_bytes: u64) -> Tiles {
     let loader = LoaderThreads::new(&source, NonZeroUsize::MIN, 8, &wake);
     let budget = StreamBudget { tiles_in_flight: 8, upload_bytes_per_frame: 1 << 20, gpu_bytes };
     let loader = Box::new(loader.unwrap_or_else(|error| panic!("{error}")));
-    Tiles::new(source, 1.0, loader, budget)
+    Tiles::new(source, loader, budget)
 }
 
-/// Straight down on the middle of the package.
+/// A camera that looks straight down on the middle of the package.
 fn camera() -> Camera {
     let down = Orientation { heading_deg: 0.0, pitch_deg: 0.0 };
     Camera::look_at(DVec3::new(2560.0, 2560.0, 100.0), 7000.0, down, [400, 400])
 }
 
-/// Frames until nothing more happens; returns what went wrong.
+/// Draws frames until nothing more happens; returns the errors.
 fn settle(tiles: &mut Tiles, screen_space_error_px: f64) -> Vec<String> {
     let quality = Quality::by_error(screen_space_error_px, 1.0);
     let begun = Instant::now();
@@ -169,7 +170,7 @@ fn after_a_loss_everything_is_asked_for_again() {
 fn what_arrives_from_before_a_loss_does_not_count_twice() {
     let mut tiles = tiles();
     let quality = Quality::by_error(0.01, 1.0);
-    // The root is asked for, forgotten, and asked for again while it may be under way.
+    // The root is requested, forgotten, and requested again while it may still be loading.
     tiles.choose(&camera(), None, quality);
     tiles.begin_again();
     settle(&mut tiles, 0.01);
@@ -177,8 +178,8 @@ fn what_arrives_from_before_a_loss_does_not_count_twice() {
     assert!(tiles.waiting.is_empty(), "{:?}", tiles.waiting.keys());
 }
 
-/// What is drawn of the small package once nothing is missing, and how many bytes it takes.
-fn shown(catalog: Arc<dyn TileCatalog>, loader: Box<dyn TileLoader>) -> (Vec<Drawn>, u64) {
+/// The drawn tiles of the small package once nothing is missing, and their bytes.
+fn shown(catalog: Arc<dyn TileCatalog>, loader: Box<dyn TileLoader>) -> (Vec<DrawnTile>, u64) {
     let bounds = catalog.frame().tile_bounds(TileId::ROOT);
     let middle = DVec3::from((DVec2::from(bounds.center()), 0.0));
     let down = Orientation { heading_deg: 0.0, pitch_deg: 0.0 };
@@ -186,7 +187,7 @@ fn shown(catalog: Arc<dyn TileCatalog>, loader: Box<dyn TileLoader>) -> (Vec<Dra
     let quality = Quality::by_error(0.01, 1.0);
     let budget =
         StreamBudget { tiles_in_flight: 8, upload_bytes_per_frame: 1 << 20, gpu_bytes: 1 << 24 };
-    let mut tiles = Tiles::new(catalog, QUANTUM_M, loader, budget);
+    let mut tiles = Tiles::new(catalog, loader, budget);
     let begun = Instant::now();
     loop {
         let defects = tiles.take_arrivals();

@@ -1,5 +1,5 @@
-//! A diagnostic: a file with a line per frame. A script that reads it can wait until everything is loaded, and check that
-//! the grabbed ground stays under the cursor.
+//! A diagnostic: a file with one line per frame. A script that reads it can wait until everything
+//! is loaded, and check that the grabbed ground stays under the cursor.
 
 use std::io;
 
@@ -8,24 +8,25 @@ use glam::DVec2;
 
 use crate::session::Session;
 
-/// What the trace says of a frame.
+/// The data of a frame in the trace.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TraceLine {
-    /// Number of the frame, 1 first.
+    /// The number of the frame, from 1.
     pub frame: u64,
     /// The cursor, pixels of the window; `None` outside.
     pub cursor_px: Option<DVec2>,
-    /// The ground under it: x and y in the working CRS, true height; `None` over sky and voids.
+    /// The ground under the cursor: x and y in the working CRS, true height; `None` over sky and
+    /// voids.
     pub ground_m: Option<[f64; 3]>,
-    /// Side of a pixel there, metres of the working CRS.
+    /// The side of a pixel there, in metres of the working CRS.
     pub pixel_m: Option<f64>,
     /// The camera.
     pub pose: Pose,
-    /// Tiles drawn.
+    /// The number of drawn tiles.
     pub tiles: usize,
-    /// Tiles that the view needs and that are not on the graphics card.
+    /// The number of tiles that the view needs and that are not on the GPU.
     pub missing: usize,
-    /// Tiles being loaded.
+    /// The number of tiles being loaded.
     pub loading: usize,
     /// Whether the camera moves without input.
     pub is_moving: bool,
@@ -38,9 +39,9 @@ const HEAD: &str = "frame,cursor_x_px,cursor_y_px,ground_x_m,ground_y_m,ground_h
                     eye_height_m,heading_deg,pitch_deg,tiles,missing,loading,moving,width_px,height_px\n";
 
 impl TraceLine {
-    /// What there is to say of a session after the frame of this number, in a window of this size.
+    /// The line of a session after the frame of this number, in a window of this size.
     #[must_use]
-    pub fn of(session: &Session, frame: u64, size_px: [u32; 2]) -> Self {
+    pub fn from_session(session: &Session, frame: u64, size_px: [u32; 2]) -> Self {
         let Session { probe, camera, tiles, cursor_px, .. } = session;
         Self {
             frame,
@@ -86,7 +87,7 @@ impl TraceLine {
     }
 }
 
-/// Where the lines go.
+/// The writer of the lines.
 pub struct Trace {
     out: Box<dyn io::Write>,
 }
@@ -95,7 +96,7 @@ impl Trace {
     /// Begins the trace with the names of the columns.
     ///
     /// # Errors
-    /// When it cannot be written.
+    /// When the file cannot be written.
     pub fn begin(mut out: Box<dyn io::Write>) -> io::Result<Self> {
         out.write_all(HEAD.as_bytes())?;
         Ok(Self { out })
@@ -104,7 +105,7 @@ impl Trace {
     /// Writes a line in one piece: a reader of the file sees all of it or nothing.
     ///
     /// # Errors
-    /// When it cannot be written.
+    /// When the file cannot be written.
     pub fn write(&mut self, line: TraceLine) -> io::Result<()> {
         self.out.write_all(format!("{}\n", line.to_text()).as_bytes())
     }

@@ -1,4 +1,4 @@
-//! Every line of the trace has a cell for every column.
+//! Every line of the trace has a value for every column.
 
 use corniche_viewer::camera::Orientation;
 

@@ -1,9 +1,10 @@
-//! Where a map looks, as JSON.
+//! The view of a map, as JSON.
 
 use corniche_viewer::{CameraRequest, camera::Orientation};
 use serde::{Deserialize, Serialize};
 
-/// Where a map looks: at a place, from a distance in a direction, or straight from above with parallel rays.
+/// The view of a map: at a place, from a distance in a direction, or straight from above with
+/// parallel rays.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ViewRecord {
@@ -11,10 +12,10 @@ pub struct ViewRecord {
     pub lon: f64,
     /// Latitude, degrees.
     pub lat: f64,
-    /// True height of the place, metres; `None`: that of the ground.
+    /// True height of the place, metres; `None` for that of the ground.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub height: Option<f64>,
-    /// True metres from the eye to the place; not from above.
+    /// True metres from the eye to the place; `None` from above.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub distance: Option<f64>,
     /// Clockwise from north, degrees.
@@ -26,20 +27,20 @@ pub struct ViewRecord {
     /// Whether rays are parallel.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub above: bool,
-    /// True metres in a pixel; only from above.
+    /// True metres per pixel; only from above.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pixel_m: Option<f64>,
 }
 
-/// The distance from which a place is looked at if nothing else is said, metres.
+/// The default distance between the eye and the place, metres.
 const USUAL_DISTANCE_M: f64 = 5000.0;
-/// True metres in a pixel from above if nothing else is said.
+/// The default true metres per pixel from above.
 const USUAL_PIXEL_M: f64 = 5.0;
 
 impl ViewRecord {
-    /// The place of a request that is no overview.
+    /// The view of a request that is not the overview.
     #[must_use]
-    pub fn of(request: CameraRequest) -> Option<Self> {
+    pub fn from_request(request: CameraRequest) -> Option<Self> {
         match request {
             CameraRequest::LookAt { lon_deg, lat_deg, height_m, distance_m, orientation } => {
                 Some(Self {
@@ -67,7 +68,7 @@ impl ViewRecord {
         }
     }
 
-    /// The request that shows it.
+    /// The request for this view.
     #[must_use]
     pub fn request(&self) -> CameraRequest {
         let (lon_deg, lat_deg) = (self.lon, self.lat);

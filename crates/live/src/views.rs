@@ -1,34 +1,35 @@
-//! Views of a package, and the requests that show them: of the first view, of a place, of what is
-//! seen now.
+//! Views of a package and the requests for them: for the first view, for a place, and for the
+//! current view.
 
 use corniche_tileset::Manifest;
 use corniche_viewer::{
-    CameraRequest, OffGround, SightedGround,
+    CameraRequest, SightedGround, ViewpointOffGround,
     camera::{Camera, Orientation},
     eye_height::clearance_m,
     parse_lon_lat,
 };
 use glam::DVec3;
 
-use crate::controls::{KnownGround, Limits, View};
+use crate::controls::{CameraLimits, CameraView, KnownGround};
 
-/// The largest tilt in map mode. Nearer to the horizon, the ground under the cursor is too far away to be dragged.
+/// The largest tilt in map mode. Nearer to the horizon, the ground under the cursor is too far away
+/// to be dragged.
 pub const MAX_PITCH_DEG: f64 = 85.0;
 
-/// How far the camera may go over the package of this manifest.
-pub(crate) fn limits(manifest: &Manifest) -> Limits {
-    Limits {
+/// The limits of the camera over the package of this manifest.
+pub(crate) fn limits(manifest: &Manifest) -> CameraLimits {
+    CameraLimits {
         data: manifest.data_bounds,
         clearance_m: clearance_m(manifest.point_scale),
         max_pitch_deg: MAX_PITCH_DEG,
     }
 }
 
-/// The view that was asked for, in a window of this size, of which `covered_px` on the right are covered. `vertical_scale` is the world
-/// height of a metre of true height.
+/// The requested first view, in a window of this size whose right `covered_px` are covered.
+/// `vertical_scale` is the world height of one metre of true height.
 ///
 /// # Errors
-/// When the place that was asked for has no ground.
+/// When there is no ground at the requested place.
 pub fn first_view(
     camera: CameraRequest,
     manifest: &Manifest,
@@ -36,12 +37,12 @@ pub fn first_view(
     vertical_scale: f64,
     size_px: [u32; 2],
     covered_px: u32,
-) -> Result<View, OffGround> {
+) -> Result<CameraView, ViewpointOffGround> {
     let part_px = match camera {
         CameraRequest::FromAbove { .. } => {
             return view_on(camera, manifest, ground, vertical_scale, size_px);
         }
-        // All of it must be visible, so it is framed in the part that is not covered.
+        // The whole package must be visible, so it is framed in the uncovered part.
         CameraRequest::Overview | CameraRequest::OverviewFromAbove { .. } => {
             [size_px[0].saturating_sub(covered_px).max(1), size_px[1]]
         }
@@ -52,7 +53,7 @@ pub fn first_view(
     Ok(in_left_part(&camera, orientation, size_px[0]))
 }
 
-/// The view that a request asks for, over this ground. World heights are `vertical_scale` times true ones.
+/// The view of a request over this ground. World heights are `vertical_scale` times true heights.
 ///
 /// # Errors
 /// When the place has no ground, and no height is given.
@@ -62,28 +63,29 @@ pub(crate) fn view_on(
     ground: SightedGround,
     vertical_scale: f64,
     size_px: [u32; 2],
-) -> Result<View, OffGround> {
+) -> Result<CameraView, ViewpointOffGround> {
     let camera = request.camera(manifest, ground, vertical_scale, size_px)?;
     let orientation = request.orientation();
-    let view = View::of(&camera, orientation);
+    let view = CameraView::from_camera(&camera, orientation);
     let CameraRequest::FromAbove { pixel_m, .. } = request else { return Ok(view) };
     let heights = ground.heights_m.map(|height_m| height_m * vertical_scale);
     let target = camera.target_in_world();
     let at_one_m = Camera::look_at(DVec3::ZERO, 1.0, orientation, size_px).pixel_at_unit_depth_m();
     let focus_m = pixel_m * manifest.point_scale / at_one_m;
     let eye_in_world = DVec3::new(target.x, target.y, heights[0].midpoint(heights[1]) + focus_m);
-    Ok(View { eye_in_world, focus_m, from_above: Some(heights), ..view })
+    Ok(CameraView { eye_in_world, focus_m, from_above: Some(heights), ..view })
 }
 
-/// A view that shows in the left part of a window of this width what `camera` shows in a picture of its own.
-fn in_left_part(camera: &Camera, orientation: Orientation, window_width_px: u32) -> View {
-    let mut view = View::of(camera, orientation);
+/// A view whose left part, in a window of this width, shows what `camera` shows in an image of its
+/// own.
+fn in_left_part(camera: &Camera, orientation: Orientation, window_width_px: u32) -> CameraView {
+    let mut view = CameraView::from_camera(camera, orientation);
     let part_width_px = camera.size_px[0];
     let hidden_px = f64::from(window_width_px.saturating_sub(part_width_px));
-    // The middle of the window lies this far to the right of the middle of the part. A pixel has the same size in both,
-    // for the size follows from the height of the picture.
+    // The middle of the window is this far to the right of the middle of the part. A pixel has the
+    // same size in both, because its size follows from the height of the image.
     let aside_px = hidden_px / 2.0;
-    // Near things move farther aside than those in the middle: a step back makes room for them.
+    // Near objects move farther aside than those in the middle, so the eye steps back.
     let back_m = view.focus_m * hidden_px / f64::from(part_width_px) / 8.0;
     let aside_m = aside_px * camera.pixel_at_unit_depth_m() * (view.focus_m + back_m);
     let axes = view.world_from_view();
@@ -91,13 +93,13 @@ fn in_left_part(camera: &Camera, orientation: Orientation, window_width_px: u32)
     view
 }
 
-/// The request that shows a view again. World heights are `vertical_scale` times true ones.
+/// The request that shows a view again. World heights are `vertical_scale` times true heights.
 ///
-/// [`CameraRequest::camera`] makes the same camera of it, whatever the ground there. Without ground
-/// in the middle of the picture, the point looked at hangs in the air at the distance that drags
-/// and turns go by.
+/// [`CameraRequest::camera`] makes the same camera from it, whatever the ground there. Without
+/// ground in the middle of the image, the target is a point in the air at the distance that drags
+/// and turns use.
 pub(crate) fn request_of_view(
-    view: &View,
+    view: &CameraView,
     ground: &dyn KnownGround,
     vertical_scale: f64,
     manifest: &Manifest,
@@ -107,7 +109,7 @@ pub(crate) fn request_of_view(
     let degrees = |at: DVec3| manifest.coordinates.wgs84_from_working([at.x, at.y]);
     if view.from_above.is_some() {
         let [lon_deg, lat_deg] = degrees(eye);
-        // At any depth.
+        // The target may be at any depth.
         let pixel_m = view.camera(size_px).pixel_at_depth_m(0.0) / manifest.point_scale;
         let heading_deg = orientation.heading_deg;
         return CameraRequest::FromAbove { lon_deg, lat_deg, pixel_m, heading_deg };
@@ -121,10 +123,10 @@ pub(crate) fn request_of_view(
     CameraRequest::LookAt { lon_deg, lat_deg, height_m, distance_m, orientation }
 }
 
-/// The ground at the place that a text tells, in world metres.
+/// Returns the ground at the place written in a text, in world metres.
 ///
 /// # Errors
-/// In words, when the text tells no place or there is no ground.
+/// When the text is not a place or there is no ground, as a message.
 pub(crate) fn place_in_world(
     text: &str,
     manifest: &Manifest,
@@ -138,7 +140,7 @@ pub(crate) fn place_in_world(
     at([lon_deg, lat_deg]).ok_or_else(|| {
         let [west, south, east, north] = manifest.wgs84_bounds.to_array();
         let hint = if at([lat_deg, lon_deg]).is_some() {
-            "; longitude comes first: are the two numbers the wrong way round?"
+            "; longitude comes first: the two numbers are probably swapped"
         } else {
             ""
         };

@@ -1,4 +1,4 @@
-//! The first view shows all the data beside the panel.
+//! The first view shows all the data next to the panel.
 
 use corniche_geom::Bounds;
 use corniche_viewer::camera::WorldBox;

@@ -1,5 +1,5 @@
-//! Roads of the finest level are compared with a photo or with the slope of the ground, and their
-//! offsets are measured.
+//! Compares the roads of the finest level with a photo or with the slope of the ground, and
+//! measures their offsets.
 
 use std::collections::BTreeMap;
 
@@ -12,49 +12,50 @@ use geo::{Euclidean, Length as _, LineString};
 
 use crate::{
     error::MatchError,
-    images::{Images, MOST_TEXELS, Target, photos_of},
+    images::{Images, MOST_TEXELS, MatchTarget, photos_of},
     report::{MatchReport, MatchedRegion, MatchedRoad},
-    response::{Profile, responses},
-    samples::{Sample, samples},
-    votes::{Search, Votes},
+    response::{RoadCrossSection, responses},
+    samples::{RoadSample, samples},
+    votes::{ShiftSearch, Votes},
 };
 
-/// Samples of a road that must agree on whether it is bright or dark.
+/// The number of consecutive samples of a road that must agree on whether it is bright or dark.
 const RUN: usize = 16;
-/// Texels along a side of the blocks whose samples are looked at together.
+/// Texels along a side of the blocks whose samples are compared together.
 const BLOCK_TEXELS: i64 = 512;
 
-/// What is compared, and how.
+/// The parameters of a comparison.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MatchRequest {
-    /// Classes that are taken.
+    /// Classes of roads that are compared.
     pub classes: Vec<FunctionalRoadClass>,
-    /// How far beside roads is looked, metres.
+    /// The search radius around roads, metres.
     pub radius_m: f64,
-    /// Side of the squares for which offsets are told, metres.
+    /// The side of the squares for which offsets are reported, metres.
     pub region_m: f64,
 }
 
-/// Measures how far the roads of the finest level lie beside what `target` shows.
+/// Measures the offset of the roads of the finest level from the roads visible in `target`.
 ///
-/// At each place on a road, and for each shift of it, the image is asked whether there is a line:
-/// whether the middle is darker, or brighter, than both sides. What the places on some sixty metres
-/// of a road answer together is a vote for each shift, and the shift with most votes is the offset.
-/// Places beside the edge of the image are left out.
+/// For each place on a road and each shift of it, the image is searched for a line: a middle that
+/// is darker, or brighter, than both sides. The results along some sixty metres of a road vote for
+/// each shift together, and the shift with most votes is the offset. Places next to the edge of the
+/// image are skipped.
 ///
 /// # Errors
-/// When the package has no roads or cannot be read, a photo cannot, or `observer` ends it.
+/// When the package has no roads or cannot be read, a photo cannot be read, or `observer` requests
+/// a stop.
 pub fn match_roads(
     package: &FilePackage,
-    target: &Target<'_>,
+    target: &MatchTarget<'_>,
     request: &MatchRequest,
     observer: &dyn Observer,
 ) -> Result<MatchReport, MatchError> {
     let photos = photos_of(target)?;
     let images = Images::new(package, photos.as_ref());
     let texel_m = images.scale.texel_m.into_iter().reduce(f64::max).unwrap_or_default();
-    let search = Search::new(request.radius_m, texel_m);
-    let mut matching = Matching { images, search, request, texel_m, found: Found::default() };
+    let search = ShiftSearch::new(request.radius_m, texel_m);
+    let mut matching = Matching { images, search, request, texel_m, found: VotesByWay::default() };
     let mut ids = package.tile_ids()?;
     ids.retain(|id| id.z() == package.manifest().frame.max_level());
     one_by_one((observer, Stage::Match), &ids, |&id| matching.tile(package, id))?;
@@ -66,14 +67,14 @@ pub fn match_roads(
 
 struct Matching<'a> {
     images: Images<'a>,
-    search: Search,
+    search: ShiftSearch,
     request: &'a MatchRequest,
     texel_m: f64,
-    found: Found,
+    found: VotesByWay,
 }
 
 #[derive(Default)]
-struct Found {
+struct VotesByWay {
     all: Votes,
     regions: BTreeMap<[i64; 2], Votes>,
     roads: BTreeMap<i64, Road>,
@@ -86,11 +87,11 @@ struct Road {
     votes: Votes,
 }
 
-/// Samples that follow each other on a road in a block.
+/// Consecutive samples on a road in a block.
 struct Run {
     way_id: i64,
-    profile: Profile,
-    samples: Vec<Sample>,
+    profile: RoadCrossSection,
+    samples: Vec<RoadSample>,
 }
 
 impl Matching<'_> {
@@ -142,13 +143,14 @@ impl Matching<'_> {
         Ok(())
     }
 
-    /// What is looked for: the tagged width, or what is usual for the class.
-    fn profile(&self, class: FunctionalRoadClass, attributes: &RoadAttributes) -> Profile {
+    /// Returns the cross-section to search for: with the tagged width, or the usual width of the
+    /// class.
+    fn profile(&self, class: FunctionalRoadClass, attributes: &RoadAttributes) -> RoadCrossSection {
         const USUAL_M: [f64; FunctionalRoadClass::COUNT] =
             [12.0, 10.0, 9.0, 7.5, 6.5, 5.5, 5.5, 3.5, 2.0];
         let usual_m = USUAL_M.get(usize::from(class.number())).copied().unwrap_or(4.0);
         let width_m = attributes.width_mm.map_or(usual_m, |width| f64::from(width.get()) / 1e3);
-        Profile::new(width_m, self.texel_m)
+        RoadCrossSection::new(width_m, self.texel_m)
     }
 
     fn block(&mut self, id: TileId, block: [i64; 2], runs: &[Run]) -> Result<(), MatchError> {

@@ -5,7 +5,7 @@ use corniche_geom::TileId;
 use corniche_photo::PhotoError;
 use corniche_tileset::{OpenError, ReadError};
 
-/// Why roads could not be compared with an image.
+/// Errors of comparing roads with an image.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
@@ -16,12 +16,12 @@ pub enum MatchError {
     Read(#[from] ReadError),
     #[error(transparent)]
     Photo(#[from] PhotoError),
-    #[error("a road of tile {tile} does not lie on its ground; see what corniche verify says")]
+    #[error("a road of tile {tile} does not match its ground; run corniche verify for details")]
     Line { tile: TileId, source: BadLine },
     #[error("the package has no roads of these classes, or was built without --osm")]
     NoRoads,
     #[error(
-        "the package has no relief, from which slopes are taken; build it without --relief off, or compare with --photo"
+        "the package has no relief, which is needed to compute slopes; build it again without --relief off, or compare with --photo"
     )]
     NoRelief,
     #[error("interrupted")]

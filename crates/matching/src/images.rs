@@ -1,4 +1,4 @@
-//! What roads are compared with, as images around a block of samples.
+//! Images around blocks of samples, with which roads are compared.
 
 use corniche_dem::GridPlan;
 use corniche_geom::{GridFrame, TILE_CELLS, TileId};
@@ -10,32 +10,32 @@ use crate::{
     response::{Grey, TexelScale},
 };
 
-/// What roads are compared with.
+/// The target of a comparison.
 #[derive(Debug)]
-pub enum Target<'a> {
-    /// Photos, brought onto this grid of the package.
+pub enum MatchTarget<'a> {
+    /// Photos, resampled to this grid of the package.
     Photos(&'a Photos, &'a GridPlan),
-    /// How steep the ground is, as the relief of the finest tiles has it: roads are flatter across
-    /// than their banks.
+    /// The slope of the ground, from the relief of the finest tiles: across, roads are flatter than
+    /// their embankments.
     Slope,
 }
 
-/// Texels need be no smaller than this, metres.
+/// Texels need not be smaller than this, metres.
 const FINE_M: f64 = 1.0;
 /// Largest side of an image, texels.
 pub(crate) const MOST_TEXELS: usize = 4096;
 
-/// The photos of a target, as they are read.
-pub(crate) fn photos_of(target: &Target<'_>) -> Result<Option<PhotoGrid>, MatchError> {
+/// Returns the photos of a target, ready for reading.
+pub(crate) fn photos_of(target: &MatchTarget<'_>) -> Result<Option<PhotoGrid>, MatchError> {
     match target {
-        Target::Photos(photos, grid) => {
+        MatchTarget::Photos(photos, grid) => {
             Ok(Some(photos.on(grid, LevelChoice::NotCoarserThan(FINE_M))?))
         }
-        Target::Slope => Ok(None),
+        MatchTarget::Slope => Ok(None),
     }
 }
 
-/// Gives images.
+/// The source of images.
 pub(crate) struct Images<'a> {
     package: &'a FilePackage,
     pub(crate) scale: TexelScale,
@@ -47,12 +47,12 @@ enum Source<'a> {
         grid: &'a PhotoGrid,
         reader: PhotoReader<'a>,
     },
-    /// The slopes, with the tile looked at last: windows come tile by tile.
+    /// The slopes, with the relief of the last tile: windows come tile by tile.
     Slope(Option<(TileId, Option<Relief>)>),
 }
 
 impl<'a> Images<'a> {
-    /// Images of photos, or of slopes if there are none.
+    /// Returns images of photos, or of slopes if there are none.
     pub(crate) fn new(package: &'a FilePackage, photos: Option<&'a PhotoGrid>) -> Self {
         let frame = &package.manifest().frame;
         let (source, per_cell) = match photos {
@@ -76,8 +76,8 @@ impl<'a> Images<'a> {
         }
     }
 
-    /// The image in a window of texels, which lies in tile `id` or around a part of it; NaN where
-    /// there is none.
+    /// Returns the image in a window of texels, which is in tile `id` or around a part of it; NaN
+    /// where there is no data.
     pub(crate) fn window(&mut self, id: TileId, window: TexelWindow) -> Result<Grey, MatchError> {
         let first = [window.u, window.v];
         let columns = window.columns;
@@ -99,14 +99,14 @@ impl<'a> Images<'a> {
     }
 }
 
-/// The heights of a tile; `None` if the package has no such tile.
+/// Returns the heights of a tile; `None` if the package has no such tile.
 fn relief(package: &FilePackage, id: TileId) -> Result<Option<Relief>, MatchError> {
     let Some(payload) = package.payload(id, Sections::RELIEF)? else { return Ok(None) };
     payload.relief.map_or(Err(MatchError::NoRelief), |relief| Ok(Some(relief)))
 }
 
-/// The steepness of each cell of a window, degrees, as far as the tile has heights at its corners.
-/// A texel is a cell.
+/// Returns the slope of each cell of a window, degrees, where the tile has heights at the cell's
+/// corners. A texel is a cell.
 fn slopes(
     manifest: &Manifest,
     relief: Option<&Relief>,
@@ -137,7 +137,7 @@ fn slopes(
     slopes
 }
 
-/// How bright a photo is, 0 to 255 (ITU-R BT.601).
+/// Returns the brightness of a photo, 0 to 255 (ITU-R BT.601).
 fn brightness(photos: &mut PhotoReader<'_>, window: TexelWindow) -> Result<Vec<f32>, MatchError> {
     let texels = photos.window(window)?;
     let value = |texel: &[u8]| match *texel {

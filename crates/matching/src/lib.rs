@@ -1,5 +1,5 @@
-//! How far the roads of a package lie beside what a photo, or the slope of the ground, shows of
-//! them.
+//! Measures the offset of a package's roads from the roads visible in a photo, or in the slope of
+//! the ground.
 //!
 //! ```text
 //!  GEO lines of finest tiles ─► samples along roads ─┐
@@ -8,11 +8,11 @@
 //!                                                         than both sides?)                          of all)
 //! ```
 //!
-//! It measures and changes nothing: roads of a package are those of the extract.
+//! The crate measures only, and changes nothing: roads of a package are those of the extract.
 //!
-//! The question is that of Vaaraniemi, Treib & Westermann 2011, *High-Quality Cartographic Roads on
+//! The question comes from Vaaraniemi, Treib & Westermann 2011, *High-Quality Cartographic Roads on
 //! High-Resolution DEMs*, section 7 and Figure 16: roads and terrain come from different sources,
-//! and may not fit.
+//! and may not match.
 
 mod comparison;
 mod error;
@@ -25,6 +25,6 @@ mod votes;
 
 pub use comparison::{MatchRequest, match_roads};
 pub use error::MatchError;
-pub use images::Target;
+pub use images::MatchTarget;
 pub use report::{MatchReport, MatchedRegion, MatchedRoad};
 pub use votes::{AlongOffset, Offset};

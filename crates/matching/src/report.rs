@@ -4,14 +4,15 @@ use corniche_roads::{FunctionalRoadClass, RoadAttributes};
 
 use crate::votes::{AlongOffset, Offset};
 
-/// What was found.
+/// The results of a comparison.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MatchReport {
-    /// All roads together; `None` where the image shows none of them.
+    /// The offset of all roads together; `None` if the image shows none of them.
     pub all: Option<Offset>,
-    /// Length of the roads that were compared, metres, and the places on them that an image covers.
+    /// Length of the roads that were compared, metres, and the number of places on them that the
+    /// image covers.
     pub length_m: f64,
-    /// Places that were looked at.
+    /// The number of places that were compared.
     pub samples: u64,
     /// The largest shift that was tried to each side, and the step between shifts, metres.
     pub reach_m: f64,
@@ -28,9 +29,9 @@ pub struct MatchReport {
 pub struct MatchedRegion {
     /// Its middle, working metres.
     pub center_m: [f64; 2],
-    /// Places on roads in it.
+    /// The number of places on roads in it.
     pub samples: u64,
-    /// The offset; `None` where the image shows nothing.
+    /// The offset; `None` if the image shows no road there.
     pub offset: Option<Offset>,
 }
 
@@ -41,20 +42,20 @@ pub struct MatchedRoad {
     pub way_id: i64,
     /// Functional road class.
     pub class: FunctionalRoadClass,
-    /// What its tags say.
+    /// The attributes from its tags.
     pub attributes: RoadAttributes,
     /// Its length on the finest level, metres in plan.
     pub length_m: f64,
-    /// Places on it that an image covers.
+    /// The number of places on it that the image covers.
     pub samples: u64,
-    /// The offset; `None` where the image shows nothing.
+    /// The offset; `None` if the image does not show the road.
     pub offset: Option<Offset>,
-    /// The offset across the road, along `across`, if only such shifts are tried.
+    /// The offset across the road, along `across`, if only shifts in that direction are tried.
     pub across_offset: Option<AlongOffset>,
     /// The direction across the road, of length 1, eastwards.
     pub across: [f64; 2],
-    /// 0 for a straight road, whose offset is known across it alone; 1 for one that goes in all
-    /// directions alike.
+    /// 0 for a straight road, whose offset is known only across it; 1 for a road that runs equally
+    /// in all directions.
     pub bends: f64,
     /// Its lines, working metres.
     pub lines: Vec<Vec<[f64; 2]>>,

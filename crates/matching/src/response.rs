@@ -1,19 +1,19 @@
 //! The grey of an image between texels, and whether the image shows a line at a place.
 
-use crate::{samples::Sample, votes::Search};
+use crate::{samples::RoadSample, votes::ShiftSearch};
 
-/// Values at the centres of texels, row by row from the north; NaN where there is none.
+/// Values at the centres of texels, row by row from the north; NaN where there is no data.
 #[derive(Debug, Clone)]
 pub(crate) struct Grey {
-    /// Texel of the first value, eastwards and southwards.
+    /// The texel of the first value, eastwards and southwards.
     pub(crate) first: [i64; 2],
     pub(crate) columns: usize,
     pub(crate) values: Vec<f32>,
 }
 
 impl Grey {
-    /// The value at a place in texels, where the centre of texel (0, 0) is (0.5, 0.5): from the
-    /// four centres around it. NaN where one of them has none.
+    /// Interpolates the value at a place in texels, where the centre of texel (0, 0) is (0.5, 0.5),
+    /// from the four centres around it. NaN if one of them has no value.
     pub(crate) fn at(&self, [u, v]: [f64; 2]) -> f32 {
         let (x, y) = (u - 0.5 - self.first[0] as f64, v - 0.5 - self.first[1] as f64);
         let (column, row) = (x.floor(), y.floor());
@@ -35,10 +35,10 @@ impl Grey {
     }
 }
 
-/// Texels to working metres, eastwards and southwards.
+/// The transformation from texels to working metres, eastwards and southwards.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TexelScale {
-    /// Where texel (0, 0) begins.
+    /// The position of the outer corner of texel (0, 0).
     pub(crate) origin_m: [f64; 2],
     /// East and north.
     pub(crate) texel_m: [f64; 2],
@@ -50,21 +50,22 @@ impl TexelScale {
     }
 }
 
-/// Least distance beside a road at which the ground is looked at, metres.
+/// The least distance from a road's edge at which the ground is sampled, metres.
 const LEAST_BESIDE_M: f64 = 2.0;
-/// Half the width of the widest road that is looked for, but on texels that are wider, metres.
+/// Half the width of the widest road that is searched, metres; wider texels raise this limit.
 const MOST_HALF_WIDTH_M: f64 = 15.0;
 
-/// Half the width of a road, and how far beside its edges the ground is looked at, metres.
+/// Half the width of a road, and the distance from its edges at which the ground is sampled,
+/// metres.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Profile {
+pub(crate) struct RoadCrossSection {
     pub(crate) half_width_m: f64,
     pub(crate) beside_m: f64,
 }
 
-impl Profile {
-    /// The profile of a road so wide in an image of such texels, of which a half is the least that
-    /// is looked at.
+impl RoadCrossSection {
+    /// Returns the cross-section of a road of this width in an image of texels of this size. The
+    /// half width is at least half a texel.
     pub(crate) fn new(width_m: f64, texel_m: f64) -> Self {
         Self {
             half_width_m: (width_m / 2.0).min(MOST_HALF_WIDTH_M).max(texel_m / 2.0),
@@ -72,21 +73,21 @@ impl Profile {
         }
     }
 
-    /// How far from its middle it looks.
+    /// The largest distance from the middle of the road that is sampled.
     pub(crate) fn reach_m(&self) -> f64 {
         self.half_width_m + 2.0 * self.beside_m
     }
 }
 
-/// How much brighter the middle is than both sides at each shift, in the order of
-/// [`Search::shifts`]; negative where it is darker, 0 where it lies between both sides: there is an
-/// edge and no line. `None` if a value is missing.
+/// Returns how much brighter the middle is than both sides at each shift, in the order of
+/// [`ShiftSearch::shifts`]: negative if it is darker, and 0 if its brightness is between those of
+/// both sides, which indicates an edge rather than a line. `None` if a value is missing.
 pub(crate) fn responses(
     grey: &Grey,
     scale: &TexelScale,
-    sample: &Sample,
-    profile: Profile,
-    search: &Search,
+    sample: &RoadSample,
+    profile: RoadCrossSection,
+    search: &ShiftSearch,
 ) -> Option<Vec<f32>> {
     let [nx, ny] = sample.normal;
     let mut found = Vec::with_capacity(search.count());
@@ -113,7 +114,7 @@ pub(crate) fn responses(
     Some(found)
 }
 
-/// A single bright roof must not outvote a road.
+/// The largest response: a single bright roof must not outvote a road.
 const MOST: f32 = 40.0;
 
 #[cfg(test)]

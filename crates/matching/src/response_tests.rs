@@ -1,20 +1,20 @@
-//! Values are mixed between centres of texels. The filter for lines answers to a line where it
-//! lies, and not to an edge.
+//! Values are interpolated between centres of texels. The line filter responds to a line at its
+//! position, and not to an edge.
 
 use super::*;
 
 const SCALE: TexelScale = TexelScale { origin_m: [0.0, 100.0], texel_m: [1.0, 1.0] };
-const PROFILE: Profile = Profile { half_width_m: 2.0, beside_m: 1.5 };
+const PROFILE: RoadCrossSection = RoadCrossSection { half_width_m: 2.0, beside_m: 1.5 };
 
-/// A hundred texels square, by place in working metres.
+/// An image of a hundred by a hundred texels; `value` receives the place in working metres.
 fn image(value: impl Fn([f64; 2]) -> f32) -> Grey {
     let at = |n: usize| value([(n % 100) as f64 + 0.5, 99.5 - (n / 100) as f64]);
     Grey { first: [0, 0], columns: 100, values: (0..10_000).map(at).collect() }
 }
 
 fn found(grey: &Grey, at: [f64; 2]) -> Option<Vec<f32>> {
-    let search = Search::new(4.0, 1.0);
-    responses(grey, &SCALE, &Sample { at, normal: [-1.0, 0.0] }, PROFILE, &search)
+    let search = ShiftSearch::new(4.0, 1.0);
+    responses(grey, &SCALE, &RoadSample { at, normal: [-1.0, 0.0] }, PROFILE, &search)
 }
 
 #[test]
@@ -23,7 +23,7 @@ fn a_line_answers_where_it_lies_and_an_edge_does_not() {
     let line = image(|[x, _]| if (x - 53.0).abs() < 2.0 { 30.0 } else { 100.0 });
     let answers = found(&line, [50.0, 50.0]).unwrap();
     let best = answers.iter().copied().reduce(f32::min).unwrap();
-    let search = Search::new(4.0, 1.0);
+    let search = ShiftSearch::new(4.0, 1.0);
     for ([east, _], answer) in search.shifts().zip(&answers) {
         assert_eq!(*answer <= best + 1.0, (east - 3.0).abs() < 1.1, "{east}: {answer}");
     }
@@ -44,7 +44,7 @@ fn texels_wider_than_roads_are_the_least_that_is_looked_at() {
     for (width_m, texel_m, half_width_m) in
         [(7.0, 2.0, 3.5), (0.5, 2.0, 1.0), (90.0, 2.0, 15.0), (7.0, 92.7, 46.35)]
     {
-        let profile = Profile::new(width_m, texel_m);
+        let profile = RoadCrossSection::new(width_m, texel_m);
         assert!((profile.half_width_m - half_width_m).abs() < 1e-9, "{profile:?}");
     }
 }

@@ -7,15 +7,15 @@ const SPACING_M: f64 = 4.0;
 
 /// A place on a road.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Sample {
+pub(crate) struct RoadSample {
     /// Working metres.
     pub(crate) at: [f64; 2],
     /// The direction to the left of the road, of length 1.
     pub(crate) normal: [f64; 2],
 }
 
-/// Samples in the middles of equal parts of a line; none on a line that has no length.
-pub(crate) fn samples(line: &[[f64; 2]]) -> Vec<Sample> {
+/// Returns samples in the middles of equal parts of a line; none if the line has no length.
+pub(crate) fn samples(line: &[[f64; 2]]) -> Vec<RoadSample> {
     let line = LineString::from(line.to_vec());
     let total = Euclidean.length(&line);
     let count = (total / SPACING_M).ceil();
@@ -33,7 +33,7 @@ pub(crate) fn samples(line: &[[f64; 2]]) -> Vec<Sample> {
             let (from, to) = (segment.start_point(), segment.end_point());
             let at = Euclidean.point_at_ratio_between(from, to, share);
             let normal = [-segment.dy() / own, segment.dx() / own];
-            samples.push(Sample { at: at.into(), normal });
+            samples.push(RoadSample { at: at.into(), normal });
             next += spacing;
         }
         before += own;

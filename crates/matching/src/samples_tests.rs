@@ -1,4 +1,4 @@
-//! Samples lie in the middles of equal parts of a line.
+//! Samples are in the middles of equal parts of a line.
 
 use super::*;
 

@@ -1,35 +1,34 @@
-//! What all samples together say of each shift.
+//! The votes of all samples for each shift.
 
-/// Shifts that are tried: a square of equal steps around no shift.
+/// The shifts that are tried: a square of equal steps around zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Search {
+pub(crate) struct ShiftSearch {
     /// Steps to each side.
     steps: i32,
     step_m: f64,
 }
 
-/// Steps to each side, at most: votes for each shift are kept for each road.
+/// The most steps to each side: votes for each shift are kept for each road.
 const MOST_STEPS: f64 = 20.0;
 
-/// How far an image lies beside roads.
+/// The offset of an image from roads.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Offset {
-    /// What must be added to places of the roads, metres.
+    /// The distance east that must be added to positions of the roads, metres.
     pub east_m: f64,
-    /// The same northwards.
+    /// The distance north that must be added to positions of the roads, metres.
     pub north_m: f64,
-    /// How many times the scatter of the votes the best shift stands above their median. From about
-    /// 6 on it is one that the image shows.
+    /// The excess of the best shift's votes over the median, in multiples of the votes' scatter.
+    /// From about 6, the image shows the offset clearly.
     pub confidence: f64,
-    /// Whether the best shift lies at the edge of those that were tried: the true one may lie
-    /// beyond.
+    /// Whether the best shift is at the edge of those that were tried: the true one may be beyond.
     pub is_at_edge: bool,
 }
 
-/// How far an image lies beside a road, in one direction.
+/// The offset of an image from a road in one direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AlongOffset {
-    /// How far in that direction, metres.
+    /// The distance in that direction, metres.
     pub metres: f64,
     /// See [`Offset::confidence`].
     pub confidence: f64,
@@ -37,8 +36,9 @@ pub struct AlongOffset {
     pub is_at_edge: bool,
 }
 
-impl Search {
-    /// Shifts up to `radius_m`, in steps of `step_m` or larger ones, if there were too many.
+impl ShiftSearch {
+    /// Returns shifts up to `radius_m`, in steps of `step_m`, or in larger steps if there would be
+    /// too many.
     pub(crate) fn new(radius_m: f64, step_m: f64) -> Self {
         let step_m = step_m.max(radius_m / MOST_STEPS);
         Self { steps: (radius_m / step_m).ceil() as i32, step_m }
@@ -69,19 +69,19 @@ impl Search {
     }
 }
 
-/// The sum of votes for each shift, and of the directions of the roads that gave them.
+/// The sum of votes for each shift, and of the directions of the voting roads.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Votes {
-    /// The sums in the order of [`Search::shifts`]; empty before the first.
+    /// The sums in the order of [`ShiftSearch::shifts`]; empty before the first.
     sums: Vec<f32>,
     pub(crate) samples: u64,
-    /// Sums of the products of the normals' parts: east · east, east · north, north · north.
+    /// Sums of the products of the normals' components: east · east, east · north, north · north.
     normals: [f64; 3],
 }
 
 impl Votes {
-    /// A run of samples along a road votes with the size of what all of them answer together: what
-    /// is now darker and now brighter is no road.
+    /// Adds the vote of a run of samples along a road: the size of their common response. A run
+    /// that is partly darker and partly brighter is not a road.
     pub(crate) fn add(&mut self, answers: &[f32], samples: u64, normals: [f64; 3]) {
         if self.sums.is_empty() {
             self.sums = vec![0.0; answers.len()];
@@ -95,9 +95,9 @@ impl Votes {
         }
     }
 
-    /// The direction across which the roads say most, of length 1 and eastwards, and how much the
-    /// roads bend away from it: 0 for one straight road, 1 for roads in all directions alike. Along
-    /// a straight road nothing can be said.
+    /// Returns the direction across which the roads determine the offset best, of length 1 and
+    /// eastwards, and how much the roads bend away from it: 0 for one straight road, 1 for roads
+    /// equally in all directions. A straight road does not determine the offset along itself.
     pub(crate) fn across(&self) -> ([f64; 2], f64) {
         let [ee, en, nn] = self.normals;
         let angle = 0.5 * (2.0 * en).atan2(ee - nn);
@@ -107,12 +107,13 @@ impl Votes {
         ([angle.cos(), angle.sin()], bends)
     }
 
-    /// The same for shifts in one direction alone, of length 1 and eastwards: how far, and the
-    /// confidence. For roads that are nearly straight, of which nothing is known along them.
+    /// Returns the offset for shifts in one direction alone, of length 1 and eastwards, with its
+    /// confidence. For roads that are nearly straight, which do not determine the offset along
+    /// themselves.
     pub(crate) fn offset_along(
         &self,
         [east, north]: [f64; 2],
-        search: &Search,
+        search: &ShiftSearch,
     ) -> Option<AlongOffset> {
         let sums: Option<Vec<f32>> = (-search.steps..=search.steps)
             .map(|step| self.between(f64::from(step) * east, f64::from(step) * north, search))
@@ -130,8 +131,8 @@ impl Votes {
         Some(AlongOffset { metres, confidence, is_at_edge })
     }
 
-    /// The votes at a shift between steps, given in steps from none.
-    fn between(&self, east: f64, north: f64, search: &Search) -> Option<f32> {
+    /// Interpolates the votes at a shift between steps, given in steps from zero.
+    fn between(&self, east: f64, north: f64, search: &ShiftSearch) -> Option<f32> {
         let side = search.side();
         let [x, y] = [east, north].map(|at| at + f64::from(search.steps));
         let [column, row] = [x, y].map(|at| (at.floor() as usize).min(side - 2));
@@ -144,9 +145,9 @@ impl Votes {
         Some(mix(south, north, fy))
     }
 
-    /// The shift with most votes, to a part of a step. `None` without votes, or where all shifts
-    /// have the same.
-    pub(crate) fn offset(&self, search: &Search) -> Option<Offset> {
+    /// Returns the shift with most votes, to a fraction of a step. `None` without votes, or if all
+    /// shifts have the same.
+    pub(crate) fn offset(&self, search: &ShiftSearch) -> Option<Offset> {
         let side = search.side();
         let best = (0..self.sums.len()).max_by(|&a, &b| self.sums[a].total_cmp(&self.sums[b]))?;
         let confidence = confidence(&self.sums, best)?;
@@ -169,22 +170,23 @@ impl Votes {
     }
 }
 
-/// How many times the scatter of the sums the best one stands above their median; `None` where they
-/// do not scatter.
+/// Returns the excess of the best sum over the median, in multiples of the sums' scatter; `None` if
+/// they do not scatter.
 ///
-/// The scatter is taken from the sums below the median: those above hold the ridges along which
-/// straight roads fit, too.
+/// The scatter is computed from the sums below the median: those above include the ridges along
+/// which straight roads match as well.
 fn confidence(sums: &[f32], best: usize) -> Option<f64> {
     let mut sorted = sums.to_vec();
     sorted.sort_unstable_by(f32::total_cmp);
     let at = |share: usize| sorted.get(sorted.len() / share).copied();
     let (low, median) = (at(10)?, at(2)?);
-    // Of a normal distribution a tenth lies more than 1.28 standard deviations below the median.
+    // In a normal distribution, a tenth is more than 1.28 standard deviations below the median.
     let scatter = (median - low) / 1.28;
     (scatter > 0.0).then(|| f64::from((sums[best] - median) / scatter))
 }
 
-/// Where the parabola through values at −1, 0 and 1 is largest, if that at 0 is.
+/// Returns the position of the maximum of the parabola through values at −1, 0 and 1, if the value
+/// at 0 is the largest.
 fn top([before, at, after]: [f64; 3]) -> f64 {
     let bend = before + after - 2.0 * at;
     if bend < 0.0 { ((before - after) / (2.0 * bend)).clamp(-0.5, 0.5) } else { 0.0 }

@@ -1,24 +1,25 @@
-//! The best shift is found between whole steps, and straight roads say nothing along themselves.
+//! The best shift is found between whole steps, and straight roads do not determine the offset
+//! along themselves.
 
 use super::*;
 
 #[test]
 fn shifts_are_a_square_around_none() {
-    let search = Search::new(3.0, 1.0);
+    let search = ShiftSearch::new(3.0, 1.0);
     let shifts: Vec<[f64; 2]> = search.shifts().collect();
     assert_eq!((shifts.len(), search.count()), (49, 49));
     assert_eq!((shifts[0], shifts[24], shifts[48]), ([-3.0, -3.0], [0.0, 0.0], [3.0, 3.0]));
-    // Not more than so many.
-    let search = Search::new(100.0, 0.1);
+    // No more than this number.
+    let search = ShiftSearch::new(100.0, 0.1);
     assert_eq!((search.count(), search.step_m()), (41 * 41, 5.0));
 }
 
 #[test]
 fn the_best_shift_is_found_between_steps() {
-    let search = Search::new(10.0, 1.0);
+    let search = ShiftSearch::new(10.0, 1.0);
     let hill = |[east, north]: [f64; 2]| {
         let away = (east - 3.3_f64).powi(2) + (north + 6.8).powi(2);
-        // Elsewhere votes scatter.
+        // Everywhere else, votes scatter.
         (100.0 * (-away / 8.0).exp() + (east * 7.0 + north * 13.0).sin()) as f32 + 10.0
     };
     let answers: Vec<f32> = search.shifts().map(hill).collect();

@@ -1,4 +1,4 @@
-//! Chains of stretches through nodes at which two of them meet.
+//! Chains of stretches that continue through nodes at which exactly two stretches meet.
 
 use std::ops::Range;
 
@@ -7,12 +7,12 @@ use corniche_roads::Structure;
 
 use crate::network::{Network, NetworkWay, NodeNumber};
 
-/// Where chains end, beside dead ends.
+/// The places where chains end, besides dead ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Breaks {
-    /// At junctions.
+    /// Chains end at junctions.
     Junctions,
-    /// At junctions, and where a bridge or a tunnel begins.
+    /// Chains end at junctions, and where a bridge or a tunnel begins.
     JunctionsAndStructures,
 }
 
@@ -31,39 +31,41 @@ pub struct Link {
 /// A sequence of stretches, from node to node.
 #[derive(Debug, Clone, Copy)]
 pub struct Chain<'a> {
-    /// Where it begins and where it ends. Of two different nodes the first has the smaller number; one that comes back to its node runs counterclockwise.
+    /// The nodes at the chain's beginning and end. Of two different nodes, the first has the
+    /// smaller number. A chain that returns to its first node runs counterclockwise.
     pub ends: [NodeNumber; 2],
-    /// Its stretches, in order; at least one.
+    /// The stretches of the chain in order, at least one.
     pub links: &'a [Link],
 }
 
 impl Chain<'_> {
-    /// Whether it comes back to where it begins.
+    /// Whether the chain returns to the node where it begins.
     #[must_use]
     pub fn is_closed(&self) -> bool {
         self.ends[0] == self.ends[1]
     }
 }
 
-/// All chains of a network: each stretch is in one of them.
+/// All chains of a network: each stretch is in exactly one of them.
 #[derive(Debug)]
 pub struct Chains {
     links: Vec<Link>,
-    /// Where the links of each chain begin, and the end of all.
+    /// The index of each chain's first link, and the end of all links.
     starts: Vec<usize>,
     ends: Vec<[NodeNumber; 2]>,
-    /// The place of each stretch among the links.
+    /// The index of each stretch among the links.
     places: Vec<u32>,
 }
 
-/// The place of a stretch that is in no chain yet, and of stops that begin no stretch.
+/// The index of a stretch that is in no chain yet, and of stops at which no stretch begins.
 const NO_PLACE: u32 = u32::MAX;
 
 impl Chains {
-    /// The chains of a network, ordered by the nodes at their ends, and those between the same two by their points. What they are and their order
-    /// do not depend on the order, the direction or the splitting of ways.
+    /// Returns the chains of a network, ordered by the nodes at their ends; chains between the same
+    /// two nodes are ordered by their points. The chains and their order do not depend on the
+    /// order, the direction or the splitting of ways.
     #[must_use]
-    pub fn of(network: &Network, breaks: Breaks) -> Self {
+    pub fn from_network(network: &Network, breaks: Breaks) -> Self {
         let mut chains = Self {
             links: Vec::new(),
             starts: vec![0],
@@ -71,13 +73,14 @@ impl Chains {
             places: vec![NO_PLACE; network.stop_points.len()],
         };
         let goes_on = |node: u32| {
-            network.ends_at.of(node as usize).len() == 2
+            network.ends_at.list(node as usize).len() == 2
                 && (breaks == Breaks::Junctions || network.structure_at(node).is_some())
         };
         let nodes = || 0..network.nodes as u32;
-        // Chains with two ends first; what is left are rings without a junction, which begin at the smallest of their nodes.
+        // Chains with two ends come first. The rest are rings without a junction, which begin at
+        // the smallest of their nodes.
         for node in nodes().filter(|&node| !goes_on(node)).chain(nodes()) {
-            for &end in network.ends_at.of(node as usize) {
+            for &end in network.ends_at.list(node as usize) {
                 if chains.places[end as usize / 2] == NO_PLACE {
                     chains.walk(network, node, end, &goes_on);
                 }
@@ -86,7 +89,7 @@ impl Chains {
         chains.sorted(network)
     }
 
-    /// The same chains in the order of their ends, then of their points.
+    /// Returns the same chains in the order of their ends, then of their points.
     fn sorted(self, network: &Network) -> Self {
         let mut order: Vec<ChainNumber> = self.numbers().collect();
         let points =
@@ -114,7 +117,7 @@ impl Chains {
         sorted
     }
 
-    /// Adds the chain that leaves a node with an end of a stretch.
+    /// Adds the chain that leaves a node along one end of a stretch.
     fn walk(&mut self, network: &Network, from: u32, first: u32, goes_on: &dyn Fn(u32) -> bool) {
         let mut end = first;
         let to = loop {
@@ -126,7 +129,7 @@ impl Chains {
             if !goes_on(node) || node == from {
                 break node;
             }
-            let next = network.ends_at.of(node as usize).iter().find(|&&other| other != arrives);
+            let next = network.ends_at.list(node as usize).iter().find(|&&other| other != arrives);
             match next {
                 Some(&next) if self.places[next as usize / 2] == NO_PLACE => end = next,
                 _ => break node,
@@ -144,24 +147,24 @@ impl Chains {
         self.ends.push([NodeNumber(from), NodeNumber(to)]);
     }
 
-    /// How many there are.
+    /// Returns the number of chains.
     #[must_use]
     pub fn len(&self) -> usize {
         self.ends.len()
     }
 
-    /// Whether there is none.
+    /// Whether there are no chains.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.ends.is_empty()
     }
 
-    /// The numbers of all chains.
+    /// Returns the numbers of all chains.
     pub fn numbers(&self) -> impl DoubleEndedIterator<Item = ChainNumber> + use<> {
         (0..self.len()).map(ChainNumber)
     }
 
-    /// A chain.
+    /// Returns the chain with this number.
     #[must_use]
     pub fn get(&self, number: ChainNumber) -> Chain<'_> {
         let ChainNumber(number) = number;
@@ -169,7 +172,8 @@ impl Chains {
         Chain { ends: self.ends[number], links }
     }
 
-    /// The ends of chains that lie at each node: twice the number of the chain, plus one for its last end. `counts` says of which chains.
+    /// Returns the ends of chains at each node: twice the number of the chain, plus one for its
+    /// last end. Only the chains that `counts` accepts are included.
     #[must_use]
     pub fn ends_at(&self, network: &Network, counts: impl Fn(ChainNumber) -> bool) -> IndexLists {
         IndexLists::new(network.node_count(), 2 * self.len(), |end| {
@@ -179,19 +183,20 @@ impl Chains {
         })
     }
 
-    /// The place of a link among the links of all chains.
+    /// Returns the index of a link among the links of all chains.
     #[must_use]
     pub fn place_of(&self, ChainNumber(number): ChainNumber, index: usize) -> usize {
         self.starts[number] + index
     }
 
-    /// How many links all chains have together.
+    /// Returns the total number of links in all chains.
     #[must_use]
     pub fn link_count(&self) -> usize {
         self.links.len()
     }
 
-    /// The chain that a stretch of any other chains is in, and the number of its link there.
+    /// Returns the chain that contains a stretch, which may come from other chains, and the number
+    /// of its link there.
     #[must_use]
     pub fn of_link(&self, link: Link) -> (ChainNumber, usize) {
         self.of_stretch(link.stretch as usize)
@@ -203,7 +208,8 @@ impl Chains {
         (ChainNumber(chain), place - self.starts[chain])
     }
 
-    /// The chains that the stretches of a road are in, in the road's order, each with the number of the link in its chain.
+    /// Returns the chains that contain the stretches of a road, in the road's order, each with the
+    /// number of the link in its chain.
     pub fn of_road<'a>(
         &'a self,
         way: &NetworkWay,
@@ -213,18 +219,19 @@ impl Chains {
     }
 }
 
-/// How long chains are, metres.
+/// The lengths of chains, metres.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChainLengths {
     /// The length of each chain.
     pub chains_m: Vec<f64>,
-    /// Where each link begins and ends along its chain, by [`Chains::place_of`].
+    /// The distances along its chain at which each link begins and ends, by [`Chains::place_of`].
     pub links_m: Vec<[f64; 2]>,
 }
 
 impl Chains {
-    /// Lengths by the distances between neighbouring points, in lattice steps. Sums run along whole chains: those of links would depend, in the last
-    /// bit, on where ways are split.
+    /// Returns the lengths, from the distances between neighbouring points in lattice steps. Sums
+    /// run along whole chains, because sums of links would depend, in the last bit, on where ways
+    /// are split.
     #[must_use]
     pub fn lengths(
         &self,
@@ -252,26 +259,26 @@ impl Chains {
 }
 
 impl Network {
-    /// The road of a link.
+    /// Returns the road of a link.
     #[must_use]
     pub fn way_of(&self, link: Link) -> &NetworkWay {
         &self.ways[self.way_of_stretch(link.stretch)]
     }
 
-    /// The nodes at both ends of a link, in the direction of the chain.
+    /// Returns the nodes at both ends of a link, in the direction of the chain.
     #[must_use]
     pub fn nodes_of_link(&self, link: Link) -> [NodeNumber; 2] {
         let [first, last] = self.stretch_nodes(link.stretch).map(NodeNumber);
         if link.is_against { [last, first] } else { [first, last] }
     }
 
-    /// What carries a chain of [`Breaks::JunctionsAndStructures`].
+    /// Returns the structure that carries a chain of [`Breaks::JunctionsAndStructures`].
     #[must_use]
     pub fn structure_of(&self, chain: &Chain<'_>) -> Structure {
         chain.links.first().map_or(Structure::Ground, |&link| self.way_of(link).structure)
     }
 
-    /// The points of a link, in the direction of the chain: two at least.
+    /// Returns the points of a link, in the direction of the chain; at least two.
     #[must_use]
     pub fn points_of_link(&self, link: Link) -> impl DoubleEndedIterator<Item = LatticePoint> + '_ {
         let way = self.way_of(link);
@@ -282,14 +289,14 @@ impl Network {
         (0..count).map(move |k| self.points[at(k)])
     }
 
-    /// Whether a box around a chain has a place of some bounds.
+    /// Whether the bounding box of a chain overlaps some bounds.
     #[must_use]
     pub fn reaches(&self, chain: &Chain<'_>, bounds: &LatticeBounds) -> bool {
         let points = self.points_of_chain(chain);
-        LatticeBounds::of(&points).is_some_and(|own| own.intersects(bounds))
+        LatticeBounds::around(&points).is_some_and(|own| own.intersects(bounds))
     }
 
-    /// The points of a chain, each once.
+    /// Returns the points of a chain, each once.
     #[must_use]
     pub fn points_of_chain(&self, chain: &Chain<'_>) -> Vec<LatticePoint> {
         let mut points: Vec<LatticePoint> = Vec::new();
@@ -300,8 +307,9 @@ impl Network {
     }
 }
 
-/// Whether links that come back to where they begin run clockwise: the same whichever way roads were drawn. Of those with no area inside, whether the
-/// other direction comes first in the order of points.
+/// Whether links that return to their first node run clockwise. The answer does not depend on the
+/// direction in which roads were drawn. For links that enclose no area: whether the other direction
+/// comes first in the order of points.
 fn is_clockwise(network: &Network, links: &[Link]) -> bool {
     let points = || links.iter().flat_map(|&link| network.points_of_link(link));
     let Some(from) = points().next() else { return false };

@@ -1,4 +1,5 @@
-//! Chains are those of small networks drawn by hand, however their ways are split, turned and named.
+//! Chains of small hand-drawn networks are as expected, however their ways are split, turned and
+//! numbered.
 
 use corniche_geom::Polyline;
 use corniche_roads::{FunctionalRoadClass, MetNodes, Road, RoadAttributes, Structure};
@@ -7,7 +8,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::NetworkBuilder;
 
-/// A road through nodes; each node lies at its own place, all are fixed.
+/// Returns a road through nodes; each node has its own position, and all are fixed.
 fn road(way_id: i64, node_ids: &[i64], structure: Structure) -> Road {
     let points = node_ids.iter().map(|&id| LatticePoint::new(id * 1000, id * id)).collect();
     Road {
@@ -30,9 +31,10 @@ fn network(roads: &[Road]) -> Network {
     builder.finish()
 }
 
-/// The nodes of each chain, smaller end first; of rings and loops the smaller neighbour second.
+/// Returns the nodes of each chain, smaller end first; in rings and loops, the smaller neighbour
+/// comes second.
 fn nodes_of(network: &Network, breaks: Breaks) -> Vec<Vec<i64>> {
-    let chains = Chains::of(network, breaks);
+    let chains = Chains::from_network(network, breaks);
     let mut all: Vec<Vec<i64>> = chains
         .numbers()
         .map(|number| {
@@ -48,16 +50,17 @@ fn nodes_of(network: &Network, breaks: Breaks) -> Vec<Vec<i64>> {
     all
 }
 
-/// The points of all chains in their order and direction, without rings that have no junction: these begin where a way does.
+/// Returns the points of all chains in their order and direction, without rings that have no
+/// junction, because these begin where a way does.
 fn in_order(network: &Network) -> Vec<Vec<LatticePoint>> {
-    let chains = Chains::of(network, Breaks::Junctions);
+    let chains = Chains::from_network(network, Breaks::Junctions);
     let all = chains.numbers().map(|number| chains.get(number));
     all.filter(|chain| !chain.is_closed() || network.degree(chain.ends[0]) > 2)
         .map(|chain| network.points_of_chain(&chain))
         .collect()
 }
 
-/// Two ways between the same two nodes have the order of their points, whatever their ids.
+/// Two ways between the same two nodes are ordered by their points, whatever their ids.
 #[test]
 fn chains_between_the_same_nodes_do_not_have_the_order_of_ways() {
     let ground = Structure::Ground;
@@ -73,7 +76,7 @@ fn chains_between_the_same_nodes_do_not_have_the_order_of_ways() {
     assert!(orders.iter().all(|order| *order == orders[0]));
 }
 
-/// Where roads are cut, ends have no node: they are numbered by where they lie.
+/// Where roads are cut, ends have no node: they are numbered by their positions.
 #[test]
 fn ends_without_a_node_do_not_have_the_order_of_ways() {
     let orders = [[1, 2], [2, 1]].map(|ids: [i64; 2]| {
@@ -99,7 +102,7 @@ fn a_chain_goes_through_ends_of_ways_and_ends_at_junctions() {
         road(7, &[1, 2, 3], ground),
         road(8, &[5, 4, 3], ground),
         road(9, &[2, 6], ground),
-        // A ring on its own, and one that hangs on node 6.
+        // One ring stands alone, and one hangs on node 6.
         road(10, &[20, 21, 22, 20], ground),
         road(11, &[6, 31, 30, 6], ground),
     ];
@@ -107,11 +110,11 @@ fn a_chain_goes_through_ends_of_ways_and_ends_at_junctions() {
     let expected: [&[i64]; 5] =
         [&[1, 2], &[2, 3, 4, 5], &[2, 6], &[6, 30, 31, 6], &[20, 21, 22, 20]];
     assert_eq!(nodes_of(&network, Breaks::Junctions), expected);
-    let chains = Chains::of(&network, Breaks::Junctions);
+    let chains = Chains::from_network(&network, Breaks::Junctions);
     let degree =
         |id: i64| network.degree(NodeNumber(network.node_ids.binary_search(&id).unwrap() as u32));
     assert_eq!([1, 2, 3, 6, 20].map(degree), [1, 3, 2, 3, 2]);
-    // Way 8 is in the second chain, against its direction.
+    // Way 8 is in the second chain, against the chain's direction.
     let of_road: Vec<_> = chains.of_road(&network.ways()[1]).collect();
     assert_eq!(of_road.len(), 2);
     for (number, link) in of_road {
@@ -121,17 +124,18 @@ fn a_chain_goes_through_ends_of_ways_and_ends_at_junctions() {
     }
 }
 
-/// Loops and rings run counterclockwise however they were drawn, with links whose places are known; those with no area inside are the same both ways.
+/// Loops and rings run counterclockwise however they were drawn, and the places of their links are
+/// known. Those that enclose no area are the same in both directions.
 #[test]
 fn what_comes_back_runs_counterclockwise() {
-    // Nodes lie on a parabola: through ascending ids it turns to the left.
+    // The nodes are on a parabola: a line through ascending ids turns to the left.
     let shapes: [&[i64]; 4] = [&[1, 2, 3, 4, 1], &[1, 4, 5, 6, 9, 1], &[1, 2, 1], &[3, 2, 1, 2, 3]];
     for shape in shapes {
         let mut back = shape.to_vec();
         back.reverse();
         let found = [shape.to_vec(), back].map(|nodes| {
             let network = network(&[road(1, &nodes, Structure::Ground)]);
-            let chains = Chains::of(&network, Breaks::Junctions);
+            let chains = Chains::from_network(&network, Breaks::Junctions);
             for number in chains.numbers() {
                 for (index, &link) in chains.get(number).links.iter().enumerate() {
                     assert_eq!(chains.of_link(link), (number, index));
@@ -167,7 +171,7 @@ fn structures_are_chains_of_their_own_where_that_is_wanted() {
     assert_eq!(nodes_of(&network, Breaks::JunctionsAndStructures), expected);
 }
 
-/// Two nodes of a way that lie at one place are one, whichever of them others join.
+/// Two nodes of a way at the same point are one node, whichever of them other ways join.
 #[test]
 fn nodes_that_a_way_has_at_one_place_are_one() {
     let mut way = road(1, &[1, 2, 4], Structure::Ground);
@@ -225,7 +229,8 @@ proptest! {
             (1..).zip(&parts).map(|(id, line)| road(id, line, Structure::Ground)).collect();
         let both = [network(&whole), network(&split)];
         let [one, other] = both.each_ref().map(|network| nodes_of(network, Breaks::Junctions));
-        // A ring without a junction may be walked in either direction, which `nodes_of` evens out.
+        // A ring without a junction may be walked in either direction; `nodes_of` removes the
+        // difference.
         prop_assert_eq!(one, other);
         let [one, other] = both.each_ref().map(in_order);
         prop_assert_eq!(one, other);

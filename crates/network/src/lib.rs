@@ -2,19 +2,21 @@
 //!
 //! ```text
 //!      way 7          way 8
-//!   A ──●───●── B ──●─────── C          nodes A, C: ends; D: a junction of three; B: a way ends, another goes on
-//!           D                           chains: A D, D B C, and what leads away from D
+//!   A ──●───●── B ──●─────── C          nodes A, C: ends; D: a junction of three; B: a way ends, another continues
+//!           D                           chains: A D, D B C, and the way that leaves D
 //!           │  way 9
 //! ```
 //!
-//! Two roads meet only where they name the same node of OpenStreetMap: roads that cross in the same place at different nodes do not join. A
-//! *stretch* is the part of a way between two neighbouring nodes at which it may join others; a *chain* is a sequence of stretches through nodes
-//! at which exactly two of them meet. So chains do not depend on where mappers have split ways, nor on the direction of ways.
+//! Two roads meet only if they reference the same OpenStreetMap node; roads that cross in the same
+//! place at different nodes do not join. A *stretch* is the part of a way between two neighbouring
+//! nodes at which it may join others. A *chain* is a sequence of stretches through nodes at which
+//! exactly two of them meet. So chains do not depend on where mappers have split ways, nor on the
+//! direction of ways.
 //!
 //! # Memory
-//! A network is held as a whole: 16 bytes for each point, and about 40 for each stretch.
+//! A network is held in memory as a whole: 16 bytes for each point, and about 40 for each stretch.
 //!
-//! This crate never sees heights or a file, and never decides which road matters.
+//! This crate never reads heights or files, and never decides which road matters.
 
 mod chains;
 mod network;

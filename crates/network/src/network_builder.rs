@@ -1,4 +1,4 @@
-//! A network is made of roads, one after the other.
+//! Builds a network from roads, one after the other.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,8 @@ use corniche_roads::Road;
 
 use crate::network::{Network, NetworkWay};
 
-/// Takes roads in ascending order of way id, with the ids of their nodes, and makes a network of them.
+/// Builds a network from roads, which must come in ascending order of way ids, with the ids of
+/// their nodes.
 #[derive(Debug, Default)]
 pub struct NetworkBuilder {
     ways: Vec<NetworkWay>,
@@ -15,12 +16,13 @@ pub struct NetworkBuilder {
     stop_points: Vec<u32>,
     stop_ids: Vec<Option<i64>>,
     highways: BTreeMap<String, u32>,
-    /// The larger id of two nodes at one place, and the smaller one that stands for it, for which another one may stand.
+    /// For two nodes at the same point, the larger id maps to the smaller one, which represents
+    /// both. Another node may in turn represent the smaller one.
     stands_for: BTreeMap<i64, i64>,
 }
 
 impl NetworkBuilder {
-    /// Adds a road. Ends without an id meet nothing.
+    /// Adds a road. Ends without an id meet no other road.
     pub fn push(&mut self, road: &Road) {
         for &[one, other] in &road.same_places {
             let [one, other] = [one, other].map(|id| self.representative(id));
@@ -52,7 +54,7 @@ impl NetworkBuilder {
         });
     }
 
-    /// The smallest of all nodes at the place of a node, as far as they are known.
+    /// Returns the smallest known id of all nodes at the point of a node.
     fn representative(&self, mut id: i64) -> i64 {
         while let Some(&smaller) = self.stands_for.get(&id) {
             id = smaller;
@@ -60,7 +62,7 @@ impl NetworkBuilder {
         id
     }
 
-    /// Finds out which roads meet.
+    /// Builds the network: finds out which roads meet.
     #[must_use]
     pub fn finish(mut self) -> Network {
         let mut stop_ids = std::mem::take(&mut self.stop_ids);
@@ -77,7 +79,8 @@ impl NetworkBuilder {
             id.map_or(0, |id| node_ids.partition_point(|&known| known < id) as u32)
         };
         let mut stop_nodes: Vec<u32> = stop_ids.iter().map(number).collect();
-        // Places that are no nodes come after them, by where they are: not in the order of ways.
+        // Places that are not nodes come after the nodes, ordered by their position and not by
+        // their ways.
         let mut others: Vec<(LatticePoint, usize)> = Vec::new();
         for way in &ways {
             let without_id = way.stops.clone().filter(|&stop| stop_ids[stop].is_none());

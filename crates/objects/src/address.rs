@@ -4,27 +4,29 @@ use std::fmt;
 
 use crate::ObjectError;
 
-/// Where an object is, or the objects whose names begin alike: `s3://BUCKET/NAME`.
+/// The address of an object, or of all objects with a common prefix: `s3://BUCKET/NAME`.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ObjectAddress {
     /// The bucket.
     pub bucket: String,
-    /// The object's name in it (its key), without a slash at its ends; empty for the whole bucket.
+    /// The object's name (its key), without slashes at its ends; empty for the whole bucket.
     pub key: String,
 }
 
 impl ObjectAddress {
-    /// The address in a text that begins as one does; `None` for other texts, which are names of files.
+    /// Parses a text that begins with `s3://`; returns `None` for other texts, which are file
+    /// names.
     ///
     /// # Errors
-    /// [`ObjectError::Address`] where it begins as an address and is none.
+    /// [`ObjectError::Address`] for an invalid address.
     pub fn parse(text: &str) -> Result<Option<Self>, ObjectError> {
         let Some(rest) = text.strip_prefix("s3://") else { return Ok(None) };
         let (bucket, key) = rest.split_once('/').unwrap_or((rest, ""));
         let key = key.strip_suffix('/').unwrap_or(key);
         let is_plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '_');
         let has_bucket = !bucket.is_empty() && bucket.chars().all(is_plain);
-        // What a URL would take for a question or a fragment is a name here, but programs do not agree on it.
+        // The characters that separate the query and the fragment of a URL could be part of a name
+        // here, but programs do not agree on this.
         let is_fine = |name: &str| {
             !matches!(name, "" | "." | "..") && !name.contains(['?', '#', '\\', '\0', '\n', '\r'])
         };
@@ -36,7 +38,7 @@ impl ObjectAddress {
         }
     }
 
-    /// The key of an object beneath this one.
+    /// The key of an object below this one.
     #[must_use]
     pub fn beneath(&self, name: &str) -> String {
         if self.key.is_empty() { name.to_owned() } else { format!("{}/{name}", self.key) }

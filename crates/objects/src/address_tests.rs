@@ -1,4 +1,4 @@
-//! Addresses of objects are told from file names, and broken ones are refused.
+//! Addresses of objects are distinguished from file names, and invalid ones are rejected.
 
 use super::*;
 

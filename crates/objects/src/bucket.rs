@@ -1,4 +1,4 @@
-//! A bucket of object storage: its objects are listed, found, read and created here.
+//! A bucket of object storage: lists, finds, reads and creates its objects.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -20,63 +20,66 @@ use object_store::{
 use tokio::runtime::{Builder, Runtime};
 
 use crate::{
-    ObjectAddress, ObjectError, Requests, StorageSettings,
+    ObjectAddress, ObjectError, StorageRequests, StorageSettings,
     watch::{
-        AnswerTooLarge, AtTheEnd, BadAnswer, Counter, NoMachineCredentials, RangeIgnored, Refusal,
-        Watch, check_name,
+        AnswerTooLarge, AtTheEnd, BadAnswer, NoMachineCredentials, PermanentRefusal, RangeIgnored,
+        RequestWatch, StorageCounter, check_name,
     },
 };
 
-/// Names directly beneath a prefix that are listed: many times as many as the parts of the largest plan.
+/// The largest number of listed names directly below a prefix: many times the number of parts of
+/// the largest plan.
 const MOST_LISTED: usize = 100_000;
-/// Pages in a row without a new name: servers that look for names may give some.
+/// The largest number of consecutive pages without a new name, which some servers send while they
+/// search.
 const MOST_EMPTY_PAGES: u32 = 8;
-/// Answers that a list may take; a server gives a thousand names in each.
+/// The largest number of answers to one list request; a server sends a thousand names in each.
 const MOST_PAGES: usize = 1_000;
-/// How long a list may take.
+/// The time limit of a listing.
 const LIST_WITHIN: Duration = Duration::from_mins(10);
 
-/// What tells apart who wrote an object: metadata with a random number.
+/// The metadata field that identifies the writer of an object, a random number.
 pub(crate) const WRITER: &str = "corniche-writer";
 
-/// Object storage as the environment describes it.
+/// Object storage as configured by the environment.
 #[derive(Debug)]
 pub struct Storage {
     settings: StorageSettings,
     runtime: Arc<Runtime>,
-    counter: Arc<Counter>,
+    counter: Arc<StorageCounter>,
 }
 
 /// The objects of a bucket. All methods block, and many threads may call them at once.
 #[derive(Clone)]
 pub struct Bucket {
     name: String,
-    /// Ends uploads only where there is nothing of that name.
+    /// Completes uploads only if no object of that name exists.
     pub(crate) keeping: Arc<AmazonS3>,
-    /// Ends uploads in any case.
+    /// Completes uploads in any case.
     pub(crate) replacing: Arc<AmazonS3>,
     pub(crate) runtime: Arc<Runtime>,
     pub(crate) first_pause: Duration,
 }
 
-/// An object that was found.
+/// A listed or requested object.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Found {
-    /// Its key.
+pub struct ObjectInfo {
+    /// The key of the object.
     pub key: String,
-    /// Its length, bytes.
+    /// The length of the object, bytes.
     pub length: u64,
-    /// Its `ETag`, which changes with its content, if the server gives one.
+    /// The `ETag` of the object, which changes with its content, if the server sends one.
     pub etag: Option<String>,
 }
 
 impl Storage {
-    /// Nothing is asked of the server yet.
+    /// Creates the storage without any request to the server.
     ///
     /// # Errors
-    /// [`ObjectError::Settings`] where the runtime cannot be made.
+    /// [`ObjectError::Settings`] if the runtime cannot be created.
     pub fn new(settings: StorageSettings) -> Result<Self, ObjectError> {
-        // A second client in this process that chose otherwise is as good: then this does nothing.
+        // If a second client in this process has chosen another provider, it works as well: then
+        // this call does nothing.
         let _ = rustls::crypto::ring::default_provider().install_default();
         let runtime = Builder::new_multi_thread()
             .worker_threads(1)
@@ -87,13 +90,13 @@ impl Storage {
         Ok(Self { settings, runtime: Arc::new(runtime), counter: Arc::default() })
     }
 
-    /// A bucket, which need not be there.
+    /// Returns a bucket, which need not exist.
     ///
     /// # Errors
-    /// [`ObjectError::Settings`] where the environment's variables make no sense.
+    /// [`ObjectError::Settings`] if the environment variables are invalid.
     pub fn bucket(&self, name: &str) -> Result<Bucket, ObjectError> {
         let client = |at_the_end| {
-            let watch = Watch { counter: Arc::clone(&self.counter), at_the_end };
+            let watch = RequestWatch { counter: Arc::clone(&self.counter), at_the_end };
             let builder = self.settings.builder(name)?.with_http_connector(watch);
             let built = builder.with_conditional_put(S3ConditionalPut::ETagMatch).build();
             built.map(Arc::new).map_err(|error| ObjectError::Settings { what: error.to_string() })
@@ -107,9 +110,9 @@ impl Storage {
         })
     }
 
-    /// What was sent and received so far.
+    /// The counts of requests and bytes so far.
     #[must_use]
-    pub fn requests(&self) -> Requests {
+    pub fn requests(&self) -> StorageRequests {
         self.counter.so_far()
     }
 }
@@ -121,17 +124,18 @@ impl fmt::Debug for Bucket {
 }
 
 impl Bucket {
-    /// The address of an object in it.
+    /// The address of an object in the bucket.
     #[must_use]
     pub fn address(&self, key: &str) -> ObjectAddress {
         ObjectAddress { bucket: self.name.clone(), key: key.to_owned() }
     }
 
-    /// The objects and the folders directly beneath a prefix (`PREFIX/…`; an empty one is the bucket), by their keys.
+    /// Lists the keys of the objects and folders directly below a prefix (`PREFIX/…`; an empty one
+    /// lists the bucket).
     ///
     /// # Errors
     /// See [`ObjectError`].
-    pub fn list(&self, prefix: &str) -> Result<(Vec<Found>, Vec<String>), ObjectError> {
+    pub fn list(&self, prefix: &str) -> Result<(Vec<ObjectInfo>, Vec<String>), ObjectError> {
         let (path, failed) = self.object(prefix, "list")?;
         let prefix = if prefix.is_empty() { String::new() } else { format!("{path}/") };
         let (mut found, mut folders) = (BTreeMap::new(), BTreeSet::new());
@@ -153,11 +157,11 @@ impl Bucket {
             let before = found.len() + folders.len();
             found.extend(page.result.objects.into_iter().filter_map(|object| {
                 let (key, length) = (object.location.to_string(), object.size);
-                // One that no request can be made with says nothing.
+                // A tag that no request can contain is ignored.
                 let etag = object.e_tag.filter(|etag| HeaderValue::from_str(etag).is_ok());
-                // Programs that show folders make an object for the prefix itself.
+                // Programs that show folders create an object for the prefix itself.
                 let is_beneath = key.len() > prefix.trim_end_matches('/').len();
-                is_beneath.then(|| (key.clone(), Found { key, length, etag }))
+                is_beneath.then(|| (key.clone(), ObjectInfo { key, length, etag }))
             }));
             folders.extend(page.result.common_prefixes.iter().map(ToString::to_string));
             if page.page_token.is_none() {
@@ -175,16 +179,19 @@ impl Bucket {
         Err(ObjectError::EndlessList { name, count })
     }
 
-    /// An object's length and `ETag`; `None` if it is not there.
+    /// Returns an object's length and `ETag`; `None` if it does not exist.
     ///
     /// # Errors
     /// See [`ObjectError`].
-    pub fn find(&self, key: &str) -> Result<Option<Found>, ObjectError> {
+    pub fn find(&self, key: &str) -> Result<Option<ObjectInfo>, ObjectError> {
         Ok(self.look(key)?.map(|(found, _)| found))
     }
 
-    /// The same, and who wrote it.
-    pub(crate) fn look(&self, key: &str) -> Result<Option<(Found, Option<String>)>, ObjectError> {
+    /// Returns an object's length and `ETag`, and its writer.
+    pub(crate) fn look(
+        &self,
+        key: &str,
+    ) -> Result<Option<(ObjectInfo, Option<String>)>, ObjectError> {
         let (path, failed) = self.object(key, "look for")?;
         let options = GetOptions { head: true, ..GetOptions::default() };
         match self.runtime.block_on(self.keeping.get_opts(&path, options)) {
@@ -193,13 +200,13 @@ impl Bucket {
             Ok(GetResult { meta, attributes, .. }) => {
                 let writer = attributes.get(&Attribute::Metadata(WRITER.into()));
                 let writer = writer.map(|writer| writer.to_string());
-                let found = Found { key: key.to_owned(), length: meta.size, etag: meta.e_tag };
+                let found = ObjectInfo { key: key.to_owned(), length: meta.size, etag: meta.e_tag };
                 Ok(Some((found, writer)))
             }
         }
     }
 
-    /// A whole object, which is small; `None` if it is not there.
+    /// Returns a whole small object; `None` if it does not exist.
     ///
     /// # Errors
     /// See [`ObjectError`].
@@ -218,17 +225,17 @@ impl Bucket {
         }
     }
 
-    /// Bytes of an object that is still the one that had this `ETag`.
+    /// Reads bytes of an object that still has this `ETag`.
     ///
     /// # Errors
-    /// [`ObjectError::Changed`] if it is another now; see [`ObjectError`].
+    /// [`ObjectError::Changed`] if the object has changed; see [`ObjectError`].
     pub fn read(
         &self,
         key: &str,
         etag: Option<&str>,
         range: Range<u64>,
     ) -> Result<Bytes, ObjectError> {
-        /// How often a server may say that this is all, when it is not.
+        /// The number of tries until a server sends all bytes.
         const TRIES: u32 = 4;
         let wanted = range.end.saturating_sub(range.start);
         if wanted == 0 {
@@ -251,7 +258,7 @@ impl Bucket {
                 Ok((etag, got.bytes().await?))
             });
             let (now, bytes) = read.map_err(failed)?;
-            // Not every server knows the condition.
+            // Not every server supports the condition.
             if let (Some(then), Some(now)) = (etag, now)
                 && then != now
             {
@@ -265,7 +272,7 @@ impl Bucket {
         Err(self.short(key, got, wanted))
     }
 
-    /// Writes a small object unless there is one of that name. Returns whether it was written.
+    /// Writes a small object unless one of that name exists. Returns whether it was written.
     ///
     /// # Errors
     /// See [`ObjectError`].
@@ -279,7 +286,7 @@ impl Bucket {
         }
     }
 
-    /// The name of an object as the library has it, and what its errors mean for what is done.
+    /// The library's path of an object, and the translation of its errors for this operation.
     pub(crate) fn object<'a>(
         &'a self,
         key: &'a str,
@@ -301,12 +308,12 @@ impl Bucket {
         ObjectError::Short { name: self.address(key).to_string(), got: got as u64, wanted }
     }
 
-    /// What an error of the library means for an object.
+    /// Translates an error of the library for an object.
     pub(crate) fn explain(&self, key: &str, doing: &'static str, error: Error) -> ObjectError {
         let name = self.address(key).to_string();
         let mut cause: Option<&(dyn std::error::Error + 'static)> = Some(&error);
         while let Some(found) = cause {
-            if let Some(refusal) = found.downcast_ref::<Refusal>() {
+            if let Some(refusal) = found.downcast_ref::<PermanentRefusal>() {
                 return self.refused(name, refusal);
             }
             if found.is::<RangeIgnored>() {
@@ -335,7 +342,7 @@ impl Bucket {
         ObjectError::BadAnswer { name: self.address(key).to_string(), what: what.clone() }
     }
 
-    fn refused(&self, name: String, refusal: &Refusal) -> ObjectError {
+    fn refused(&self, name: String, refusal: &PermanentRefusal) -> ObjectError {
         let advice = match (refusal.code.as_str(), refusal.status) {
             ("NoSuchBucket", _) => {
                 return ObjectError::NoBucket { name, bucket: self.name.clone() };
@@ -351,10 +358,11 @@ impl Bucket {
                 "set AWS_REGION to the region of the bucket, and AWS_ENDPOINT_URL to its endpoint"
             }
             (_, 401 | 403) => {
-                "check the credentials (AWS_ACCESS_KEY_ID, AWS_SECRET_ACCESS_KEY) and what they permit: listing, reading and writing"
+                "check the credentials (AWS_ACCESS_KEY_ID, AWS_SECRET_ACCESS_KEY) and their \
+                 permissions: listing, reading and writing are needed"
             }
             (_, 405 | 501) => {
-                "this endpoint cannot do what is needed (docs/long-builds.md says what that is)"
+                "this endpoint lacks a required feature; docs/long-builds.md lists what is needed"
             }
             _ => "correct the name or the settings (AWS_REGION, AWS_ENDPOINT_URL, credentials)",
         };

@@ -1,78 +1,85 @@
-//! Errors of object storage, told without passwords.
+//! Errors of object storage, without passwords in their messages.
 
 use std::{io, path::PathBuf};
 
 use corniche_store::StoreError;
 
-/// Why an object could not be read or written.
+/// The reason why an object could not be read or written.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
 pub enum ObjectError {
-    #[error("this is no address of an object or a prefix: {}; write s3://BUCKET/NAME", without_secret(.text))]
+    #[error("invalid address of an object or a prefix: {}; write s3://BUCKET/NAME", without_secret(.text))]
     Address { text: String },
-    #[error("object storage cannot be used: {what}; look at the environment variables AWS_…")]
+    #[error("cannot use object storage: {what}; check the environment variables AWS_…")]
     Settings { what: String },
     #[error(
-        "{name}: there are no credentials; set AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY, or AWS_SKIP_SIGNATURE=true for a bucket \
-         that is open to all"
+        "{name}: no credentials found; set AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY, or \
+         AWS_SKIP_SIGNATURE=true for a public bucket"
     )]
     NoCredentials { name: String },
-    #[error("{name}: the server refuses it ({why}); {advice}")]
+    #[error("{name}: the server rejects the request ({why}); {advice}")]
     Refused { name: String, why: String, advice: &'static str },
     #[error(
-        "{name}: the bucket {bucket:?} does not exist there; make it, or correct its name or AWS_ENDPOINT_URL"
+        "{name}: the bucket {bucket:?} does not exist there; create it, or correct its name or \
+         AWS_ENDPOINT_URL"
     )]
     NoBucket { name: String, bucket: String },
-    #[error("{name} is not there; check its name, and that nothing removed it")]
+    #[error("{name} does not exist; check its name, and that nothing removed it")]
     Missing { name: String },
     #[error("{name} changed while it was in use; run the same command again")]
     Changed { name: String },
     #[error(
-        "{name}: the server ignores which bytes are asked for (it does not obey ranges); use an endpoint that does"
+        "{name}: the server ignores byte ranges and sends the whole object; use an endpoint that \
+         supports range requests"
     )]
     NoRanges { name: String },
     #[error(
-        "{name}: the server replaces an object also when told not to (it does not obey If-None-Match); use an endpoint that does, and \
-         remove the object"
+        "{name}: the server overwrites an existing object despite If-None-Match; use an endpoint \
+         that supports conditional writes, and remove the object"
     )]
     NoConditions { name: String },
     #[error(
-        "{name}: the server delivers {got} bytes of {wanted} again and again; run the same command later, or tell who runs the server"
+        "{name}: the server keeps sending {got} bytes instead of {wanted}; run the same command \
+         later, or report it to the server's operator"
     )]
     Short { name: String, got: u64, wanted: u64 },
     #[error(
-        "{name}: the server's list of what is there does not end ({count} names so far); use another prefix, or tell who runs the server"
+        "{name}: the server's object listing does not end ({count} names so far); use another \
+         prefix, or report it to the server's operator"
     )]
     EndlessList { name: String, count: usize },
     #[error(
-        "{name}: the server sends more than the {most} bytes that such an answer can have; use another endpoint, or tell who runs the server"
+        "{name}: the server sends more than {most} bytes, the maximum for such an answer; use \
+         another endpoint, or report it to the server's operator"
     )]
     TooMuchSent { name: String, most: u64 },
     #[error(
-        "{name}: the server's answer cannot be right ({what}); use another endpoint, or tell who runs the server"
+        "{name}: the server sends an invalid answer ({what}); use another endpoint, or report it \
+         to the server's operator"
     )]
     BadAnswer { name: String, what: String },
     #[error(
-        "{name}: the server says that it has stored it, but {found}; use another endpoint, or tell who runs the server"
+        "{name}: the server confirmed the upload, but {found}; use another endpoint, or report it \
+         to the server's operator"
     )]
     NotStored { name: String, found: String },
-    #[error("{name} exists already; give -O to replace it")]
+    #[error("{name} already exists; pass -O to overwrite it")]
     Exists { name: String },
     #[error(
-        "cannot {doing} {name}, also not after several tries; check the network and AWS_ENDPOINT_URL, then run the same command again"
+        "cannot {doing} {name}, even after several tries; check the network and AWS_ENDPOINT_URL, then run the same command again"
     )]
     Failed { doing: &'static str, name: String, source: Box<dyn std::error::Error + Send + Sync> },
-    #[error("{name} has {length} bytes, more than an object can have")]
+    #[error("{name} has {length} bytes, more than an object can hold")]
     TooLarge { name: String, length: u64 },
-    #[error("stopped while {name} was sent; nothing of it is there")]
+    #[error("stopped while {name} was being uploaded; no part of it was stored")]
     Stopped { name: String },
     #[error("cannot {doing} {path:?}")]
     File { path: PathBuf, doing: &'static str, source: io::Error },
 }
 
 impl ObjectError {
-    /// Whether what was given cannot be used (a name, credentials), rather than that something failed.
+    /// Whether the input (a name, credentials) cannot be used, as opposed to a failed operation.
     #[must_use]
     pub fn is_unusable(&self) -> bool {
         matches!(
@@ -88,7 +95,7 @@ impl ObjectError {
         )
     }
 
-    /// The message with those of its causes, as far as they say more.
+    /// The message with the messages of its causes, as far as they add something.
     #[must_use]
     pub fn told(&self) -> String {
         let mut said = self.to_string();
@@ -104,7 +111,7 @@ impl ObjectError {
     }
 }
 
-/// An address with what may be a password in it left out.
+/// An address without the part that may contain a password.
 fn without_secret(text: &str) -> String {
     match text.rsplit_once('@') {
         Some((_, rest)) => format!("s3://…@{rest}"),
@@ -119,7 +126,7 @@ impl From<ObjectError> for StoreError {
 }
 
 impl From<ObjectError> for io::Error {
-    /// The error for readers, whose errors travel as those of files.
+    /// Converts the error to an I/O error for readers.
     fn from(error: ObjectError) -> Self {
         let kind = match &error {
             ObjectError::Missing { .. } => io::ErrorKind::NotFound,

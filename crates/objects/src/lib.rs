@@ -1,4 +1,5 @@
-//! Object storage that speaks S3: objects are read by ranges of bytes and written as a whole, and a prefix can be a store of sealed parts.
+//! Access to S3 object storage: reads objects by byte ranges, writes whole objects, and stores
+//! sealed parts under a prefix.
 //!
 //! ```text
 //!  reader ─┐              ┌─ blocks (a bounded cache)
@@ -8,11 +9,13 @@
 //!            object_store ─► watch: counts, conditions, refusals ─► HTTP
 //! ```
 //!
-//! The methods block; a small runtime behind them does the waiting. What fails for a moment (503, a cut connection, a body that is cut off) is
-//! tried again, with growing pauses. What then still fails is an error that names the object and says what to do, and holds no secret.
+//! The methods block; a small runtime behind them waits for the network. Temporary failures (503, a
+//! broken connection, a truncated body) are retried, with growing pauses. After the last try, the
+//! error names the object, says what to do, and contains no secret.
 //!
-//! This crate never changes an object: an object is written once, as a whole, or replaced as a whole. It renames nothing, because object
-//! storage cannot. It knows no tile and no road.
+//! This crate never modifies an object: it writes an object once as a whole, or replaces it as a
+//! whole. It renames nothing, because object storage cannot rename. It knows neither tiles nor
+//! roads.
 
 mod address;
 mod bucket;
@@ -24,11 +27,11 @@ mod upload;
 mod watch;
 
 pub use address::ObjectAddress;
-pub use bucket::{Bucket, Found, Storage};
+pub use bucket::{Bucket, ObjectInfo, Storage};
 pub use corniche_blocks::BlockCache;
 pub use error::ObjectError;
 pub use object_place::{ObjectPlace, block_cache};
 pub use reader::ObjectReader;
 pub use settings::{Retries, StorageSettings};
 pub use upload::Upload;
-pub use watch::Requests;
+pub use watch::StorageRequests;

@@ -6,35 +6,37 @@
 //!        parts/NAME.DIGEST.part   a sealed part
 //! ```
 //!
-//! Each is written once, on the condition that there is none. Whoever writes `plan.json` first has bound the prefix; the header comes after it and
-//! says that it is whole.
+//! Each object is written once, on the condition that none exists. The first writer of `plan.json`
+//! has bound the prefix; the header is written after it and marks the binding as complete.
 
 use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
-    sync::{Arc, Mutex, OnceLock, PoisonError},
+    sync::{Arc, Mutex, OnceLock},
 };
 
-use corniche_blocks::{BlockCache, Limits};
+use corniche_blocks::{BlockCache, CacheLimits};
 use corniche_store::{
     Existing, PARTS_NAME, PLAN_NAME, PartFile, PartsPlace, Publish, STORE_NAME, StoreError,
     StoredPlan, check_sealed, part_of_sealed, plan_of_header, store_header,
 };
+use corniche_work::locked;
 
-use crate::{Bucket, Found, ObjectAddress, ObjectError, Storage, Upload};
+use crate::{Bucket, ObjectAddress, ObjectError, ObjectInfo, Storage, Upload};
 
-/// Blocks are no larger: an answer takes longer then, and more of it is never looked at.
+/// The largest block: with larger ones, answers take longer and more of their bytes are never used.
 const LARGEST_BLOCK_BYTES: u64 = 4 << 20;
-/// Blocks are no smaller: each request costs as much as some hundred kilobytes.
+/// The smallest block: each request costs as much as some hundred kilobytes.
 const SMALLEST_BLOCK_BYTES: u64 = 256 << 10;
-/// So many blocks fit, if they need not be smaller than the smallest for that.
+/// The cache holds this many blocks, unless they would be smaller than the smallest one.
 const BLOCKS: u64 = 16;
 
-/// A cache for parts in object storage that takes at most `kept_bytes`, in blocks of 256 KiB to 4 MiB.
+/// Creates a cache for parts in object storage that takes at most `kept_bytes`, in blocks of 256
+/// KiB to 4 MiB.
 #[must_use]
 pub fn block_cache(kept_bytes: u64) -> BlockCache {
     let block_bytes = (kept_bytes / BLOCKS).clamp(SMALLEST_BLOCK_BYTES, LARGEST_BLOCK_BYTES);
-    BlockCache::new(Limits { block_bytes, kept_bytes, most_blocks: 1 })
+    BlockCache::new(CacheLimits { block_bytes, kept_bytes, most_blocks: 1 })
 }
 
 /// The store under a prefix.
@@ -42,17 +44,18 @@ pub fn block_cache(kept_bytes: u64) -> BlockCache {
 pub struct ObjectPlace {
     bucket: Bucket,
     address: ObjectAddress,
-    /// The address, where others have a path.
+    /// The address, in place of the path of other stores.
     name: PathBuf,
     blocks: Arc<BlockCache>,
-    /// What it is bound to never changes.
+    /// The plan that the store is bound to, which never changes.
     plan: OnceLock<StoredPlan>,
-    /// What was listed last, by file name: length and `ETag` come with it, so that nobody need ask for them.
-    listed: Mutex<BTreeMap<String, Found>>,
+    /// The last listing, by file name. It has length and `ETag`, so that no further requests are
+    /// needed for them.
+    listed: Mutex<BTreeMap<String, ObjectInfo>>,
 }
 
 impl ObjectPlace {
-    /// The store at an address. Nothing is asked of the server yet.
+    /// Creates the store at an address, without any request to the server.
     ///
     /// # Errors
     /// [`ObjectError::Settings`].
@@ -79,25 +82,25 @@ impl ObjectPlace {
         self.bucket.address(&self.address.beneath(STORE_NAME)).to_string().into()
     }
 
-    /// Fails if the prefix holds what no store makes.
+    /// Fails if the prefix contains objects that no store writes.
     fn refuse_others(&self) -> Result<(), StoreError> {
         let own = [PLAN_NAME, STORE_NAME].map(|name| self.address.beneath(name));
         let (found, folders) = self.bucket.list(&self.address.key)?;
         let parts = self.parts_key();
-        // Programs that show folders make an object for the prefix itself.
+        // Programs that show folders create an object for the prefix itself.
         let is_other = |key: &String| !own.contains(key) && *key != self.address.key;
         let others = found.into_iter().map(|found| found.key).filter(is_other);
         let folders = folders.into_iter().filter(|folder| *folder != parts);
         match others.chain(folders).next() {
             Some(other) => Err(StoreError::NotAStore {
                 path: self.name.clone(),
-                what: format!("it holds {}", self.bucket.address(&other)),
+                what: format!("it contains {}", self.bucket.address(&other)),
             }),
             None => Ok(()),
         }
     }
 
-    fn find_part(&self, file_name: &str) -> Result<Option<Found>, ObjectError> {
+    fn find_part(&self, file_name: &str) -> Result<Option<ObjectInfo>, ObjectError> {
         self.bucket.find(&format!("{}/{file_name}", self.parts_key()))
     }
 }
@@ -117,7 +120,7 @@ impl PartsPlace for ObjectPlace {
         let path = self.header_path();
         let Some(bytes) = self.bucket.get(&self.address.beneath(PLAN_NAME))? else {
             let what =
-                format!("{PLAN_NAME} is missing beside it; remove all objects of this prefix");
+                format!("{PLAN_NAME} is missing next to it; remove all objects with this prefix");
             return Err(StoreError::Damaged { path, what });
         };
         let plan = plan_of_header(&header, bytes, &path)?;
@@ -130,15 +133,14 @@ impl PartsPlace for ObjectPlace {
             let name = found.key.rsplit('/').next()?.to_owned();
             part_of_sealed(&name).is_some().then_some((name, found))
         });
-        let listed: BTreeMap<String, Found> = named.collect();
+        let listed: BTreeMap<String, ObjectInfo> = named.collect();
         let names = listed.keys().cloned().collect();
-        *self.listed.lock().unwrap_or_else(PoisonError::into_inner) = listed;
+        *locked(&self.listed) = listed;
         Ok(names)
     }
 
     fn open(&self, file_name: &str) -> Result<Box<dyn PartFile>, StoreError> {
-        let listed = self.listed.lock().unwrap_or_else(PoisonError::into_inner);
-        let listed = listed.get(file_name).cloned();
+        let listed = locked(&self.listed).get(file_name).cloned();
         let found = match listed {
             Some(found) => found,
             None => self
@@ -157,13 +159,14 @@ impl Publish for ObjectPlace {
         self.refuse_others()?;
         let key = self.address.beneath(PLAN_NAME);
         if self.bucket.create(&key, plan.bytes.clone())? {
-            // A server that ignores the condition would let writers replace each other's parts.
+            // A server that ignores the condition would let writers overwrite each other's parts.
             if self.bucket.create(&key, plan.bytes.clone())? {
                 let name = self.bucket.address(&key).to_string();
                 return Err(ObjectError::NoConditions { name }.into());
             }
         } else {
-            // Someone else came first, now or before, and was perhaps killed before the header.
+            // Another process was first, now or earlier, and was perhaps killed before it wrote the
+            // header.
             let bytes = self.bucket.get(&key)?.ok_or_else(|| self.bucket.missing(&key))?;
             if bytes != plan.bytes {
                 return Ok(StoredPlan { hash: [0; 32], bytes });
@@ -184,7 +187,7 @@ impl Publish for ObjectPlace {
         let address = PathBuf::from(self.bucket.address(&key).to_string());
         let upload = Upload { file: sealed, key: &key, existing: Existing::Keep, should_stop };
         if self.find_part(name)?.is_some() {
-            // Someone else sent it, perhaps after this machine had begun to.
+            // Another process uploaded the part, perhaps after this machine had started to.
             self.bucket.end_earlier(sealed)?;
         } else {
             match self.bucket.upload(&upload) {
@@ -193,7 +196,8 @@ impl Publish for ObjectPlace {
                 Err(error) => return Err(error.into()),
             }
         }
-        // Its name says what it holds. In which order threads put that may differ, so only its list can be compared.
+        // The name of a part determines its content. Threads may write the content in another
+        // order, so only its list can be compared.
         let plan =
             self.stored_plan()?.ok_or_else(|| StoreError::NoStore { path: self.name.clone() })?;
         check_sealed(&*self.open(name)?, &plan.hash)?;
@@ -201,30 +205,31 @@ impl Publish for ObjectPlace {
     }
 }
 
-/// A sealed part that is an object.
+/// A sealed part in object storage.
 #[derive(Debug)]
 pub(crate) struct ObjectPart {
     bucket: Bucket,
-    found: Found,
-    /// Its address, where others have a path.
+    found: ObjectInfo,
+    /// The address of the part, in place of a path.
     path: PathBuf,
     blocks: Arc<BlockCache>,
     number: u64,
 }
 
 impl ObjectPart {
-    pub(crate) fn new(bucket: Bucket, found: Found, blocks: Arc<BlockCache>) -> Self {
+    pub(crate) fn new(bucket: Bucket, found: ObjectInfo, blocks: Arc<BlockCache>) -> Self {
         let path = bucket.address(&found.key).to_string().into();
         let number = blocks.new_file();
         Self { bucket, found, path, blocks, number }
     }
 
-    /// Fails where bytes are asked for that it does not have: someone replaced it, or its list is wrong.
+    /// Fails if bytes beyond the end of the part are requested: another process replaced it, or its
+    /// list is wrong.
     fn check_inside(&self, length: usize, offset: u64) -> Result<(), StoreError> {
         if offset.checked_add(length as u64).is_some_and(|end| end <= self.found.length) {
             return Ok(());
         }
-        let what = format!("bytes beyond its {} are wanted", self.found.length);
+        let what = format!("bytes beyond its end ({}) were requested", self.found.length);
         Err(StoreError::Damaged { path: self.path.clone(), what })
     }
 }
@@ -240,14 +245,14 @@ impl PartFile for ObjectPart {
 
     fn read_exact_at(&self, bytes: &mut [u8], offset: u64) -> Result<(), StoreError> {
         self.check_inside(bytes.len(), offset)?;
-        let Found { key, length, etag } = &self.found;
+        let ObjectInfo { key, length, etag } = &self.found;
         let fetch = |range| self.bucket.read(key, etag.as_deref(), range);
         Ok(self.blocks.read((self.number, *length), bytes, offset, fetch)?)
     }
 
     fn read_alone_at(&self, bytes: &mut [u8], offset: u64) -> Result<(), StoreError> {
         self.check_inside(bytes.len(), offset)?;
-        let Found { key, etag, .. } = &self.found;
+        let ObjectInfo { key, etag, .. } = &self.found;
         let range = offset..offset + bytes.len() as u64;
         bytes.copy_from_slice(&self.bucket.read(key, etag.as_deref(), range)?);
         Ok(())

@@ -1,26 +1,26 @@
-//! An object is read like a file, and reading fails if the object changes meanwhile.
+//! Reads an object like a file, and fails if the object changes meanwhile.
 
 use std::io::{self, Read, Seek, SeekFrom};
 
 use bytes::Bytes;
 
-use crate::{Bucket, Found, ObjectError};
+use crate::{Bucket, ObjectError, ObjectInfo};
 
-/// How much is asked for at once.
+/// The number of bytes per request.
 const BLOCK_BYTES: u64 = 4 << 20;
 
-/// An object that is read as a file is. It fails if the object changes meanwhile.
+/// An object that is read like a file. Reading fails if the object changes meanwhile.
 #[derive(Debug)]
 pub struct ObjectReader {
     bucket: Bucket,
-    found: Found,
+    found: ObjectInfo,
     position: u64,
-    /// The block that was read last, and where it begins.
+    /// The last block, with its offset.
     block: (u64, Bytes),
 }
 
 impl ObjectReader {
-    /// The object of this key, which must be there, and have this `ETag` if one is given.
+    /// Opens the object of this key, which must exist and have this `ETag` if one is given.
     ///
     /// # Errors
     /// [`ObjectError::Missing`]; [`ObjectError::Changed`]; see [`ObjectError`].
@@ -35,7 +35,7 @@ impl ObjectReader {
 
 impl Read for ObjectReader {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let Found { key, length, etag } = &self.found;
+        let ObjectInfo { key, length, etag } = &self.found;
         if buffer.is_empty() || self.position >= *length {
             return Ok(0);
         }
@@ -57,7 +57,7 @@ impl Read for ObjectReader {
 
 impl Seek for ObjectReader {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        let before = || io::Error::new(io::ErrorKind::InvalidInput, "a place before the start");
+        let before = || io::Error::new(io::ErrorKind::InvalidInput, "a position before the start");
         self.position = match to {
             SeekFrom::Start(position) => position,
             SeekFrom::Current(by) => self.position.checked_add_signed(by).ok_or_else(before)?,

@@ -1,4 +1,4 @@
-//! What the environment says of object storage: the variables that Amazon's own programs read.
+//! Settings of object storage from the environment: the variables that the AWS tools read.
 
 use std::{env, fmt, time::Duration};
 
@@ -9,19 +9,21 @@ use object_store::{
 
 use crate::ObjectError;
 
-/// How often what fails for a moment is tried again.
+/// Retries of temporary failures.
 #[derive(Debug, Clone, Copy)]
 pub struct Retries {
-    /// The most tries after the first one.
+    /// The largest number of retries.
     pub count: usize,
-    /// The pause before the first of them. Each later pause is longer, up to twice the one before, by chance.
+    /// The pause before the first retry. Each later pause is longer by a random factor, at most
+    /// twice the pause before.
     pub first_pause: Duration,
     /// The longest pause.
     pub longest_pause: Duration,
 }
 
 impl Default for Retries {
-    /// Half a minute to two minutes in all: a server that asks for patience gets it.
+    /// Retries for half a minute to two minutes in all, for servers that are overloaded for a
+    /// while.
     fn default() -> Self {
         Self {
             count: 10,
@@ -31,30 +33,30 @@ impl Default for Retries {
     }
 }
 
-/// How object storage is reached.
+/// The access to object storage.
 #[derive(Clone)]
 pub struct StorageSettings {
-    /// Environment variables and their values; those whose names begin with `AWS_` count.
+    /// Environment variables and their values; only names that begin with `AWS_` are used.
     pub variables: Vec<(String, String)>,
-    /// How often is tried.
+    /// The retries of failed requests.
     pub retries: Retries,
 }
 
 impl fmt::Debug for StorageSettings {
-    /// The names of the variables alone: some of their values are secrets.
+    /// Prints only the names of the variables: some of their values are secrets.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let names: Vec<&str> = self.variables.iter().map(|(name, _)| name.as_str()).collect();
         f.debug_struct("StorageSettings").field("variables", &names).finish_non_exhaustive()
     }
 }
 
-/// No object takes as long as this, and no credentials live so short.
+/// The time limit of all retries: no object takes this long, and credentials are valid for longer.
 const RETRY_TIMEOUT: Duration = Duration::from_mins(4);
-/// One request with its answer, of at most some 16 MiB.
+/// The time limit of one request with its answer, of at most some 16 MiB.
 const REQUEST_TIMEOUT: Duration = Duration::from_mins(2);
 
 impl StorageSettings {
-    /// The settings that the environment of the process gives.
+    /// Reads the settings from the environment of the process.
     #[must_use]
     pub fn of_environment() -> Self {
         let variables = env::vars_os().filter_map(|(name, value)| {
@@ -64,13 +66,13 @@ impl StorageSettings {
         Self { variables: variables.collect(), retries: Retries::default() }
     }
 
-    /// The endpoint; `None` for Amazon's own.
+    /// The endpoint; `None` for AWS.
     #[must_use]
     pub fn endpoint(&self) -> Option<&str> {
         self.get("AWS_ENDPOINT_URL_S3").or_else(|| self.get("AWS_ENDPOINT_URL"))
     }
 
-    /// Whether requests are not signed: for buckets that are open to all.
+    /// Whether requests are not signed, as for public buckets.
     #[must_use]
     pub fn is_unsigned(&self) -> bool {
         self.get("AWS_SKIP_SIGNATURE")
@@ -83,13 +85,13 @@ impl StorageSettings {
         found.map(|(_, value)| value.as_str()).filter(|value| !value.is_empty())
     }
 
-    /// How a bucket is reached.
+    /// Creates the client of a bucket.
     pub(crate) fn builder(&self, bucket: &str) -> Result<AmazonS3Builder, ObjectError> {
         let endpoint = self.endpoint().unwrap_or_default();
         let authority = endpoint.split_once("://").map_or(endpoint, |(_, rest)| rest);
         let authority = authority.split('/').next().unwrap_or_default();
         if authority.contains('@') {
-            let what = "AWS_ENDPOINT_URL must not hold a user name or a password".to_owned();
+            let what = "AWS_ENDPOINT_URL must not contain a user name or a password".to_owned();
             return Err(ObjectError::Settings { what });
         }
         if !endpoint.is_empty()
@@ -103,7 +105,7 @@ impl StorageSettings {
         let mut options = ClientOptions::new()
             .with_timeout(REQUEST_TIMEOUT)
             .with_connect_timeout(Duration::from_secs(10));
-        // Whoever names an endpoint without TLS wants it so.
+        // A user who names an endpoint without TLS wants no TLS.
         if endpoint.starts_with("http://") {
             options = options.with_allow_http(true);
         }
@@ -119,7 +121,7 @@ impl StorageSettings {
                 retry_timeout: RETRY_TIMEOUT,
             });
         for (name, value) in self.variables.iter().filter(|(_, value)| !value.is_empty()) {
-            // Other programs have further variables of this kind.
+            // Other programs use further variables of this kind.
             if let Ok(key) = name.to_ascii_lowercase().parse::<AmazonS3ConfigKey>()
                 && name.starts_with("AWS_")
                 && !matches!(key, AmazonS3ConfigKey::Endpoint | AmazonS3ConfigKey::S3Endpoint)

@@ -1,4 +1,4 @@
-//! A file to an object: as a whole or not at all, in one request or in parts.
+//! Uploads a file to an object: as a whole or not at all, in one request or in parts.
 
 use std::{
     fs::{self, File},
@@ -20,38 +20,40 @@ use tokio::{task::JoinSet, time::timeout};
 
 use crate::{Bucket, ObjectError, watch::check_name};
 
-/// What is sent in one request. S3 wants at least 5 MiB of all parts but the last.
+/// The number of bytes per request. S3 requires at least 5 MiB of all parts but the last.
 const PART_BYTES: u64 = 8 << 20;
-/// The most parts of an object.
+/// The largest number of parts of an object.
 const MOST_PARTS: u64 = 10_000;
-/// The most bytes of a part.
+/// The largest number of bytes of a part.
 const LARGEST_PART_BYTES: u64 = 5 << 30;
-/// Parts that are sent at once.
+/// The number of parts that are sent at once.
 const AT_ONCE: usize = 2;
-/// `should_stop` is asked so often while parts are sent.
+/// The interval between calls of `should_stop` while parts are being sent.
 const ASKS_EVERY: Duration = Duration::from_millis(200);
 
-/// A file to be sent.
+/// A file to upload.
 #[derive(Clone, Copy)]
 pub struct Upload<'a> {
     /// The file, which nobody changes meanwhile.
     pub file: &'a Path,
     /// The object's key.
     pub key: &'a str,
-    /// What to do with an object of that name.
+    /// The action if an object of that name exists.
     pub existing: Existing,
-    /// Whether to stop.
+    /// Returns whether to stop.
     pub should_stop: &'a dyn Fn() -> bool,
 }
 
 impl Bucket {
-    /// Sends a file. Returns its length.
+    /// Uploads a file and returns its length.
     ///
-    /// While a large file is sent in parts, a small file beside it (its name and `.upload`) says which upload that is. If the process is
-    /// killed, the next one that sends the same file ends that upload first, so that its parts take no space.
+    /// While a large file is sent in parts, a small file next to it (its name and `.upload`) stores
+    /// the id of the upload. If the process is killed, the next process that sends the same file
+    /// aborts that upload first, so that its parts take no space.
     ///
     /// # Errors
-    /// [`ObjectError::Exists`] if there is such an object and it is to be kept; [`ObjectError::Stopped`]; see [`ObjectError`].
+    /// [`ObjectError::Exists`] if the object exists and is to be kept; [`ObjectError::Stopped`];
+    /// see [`ObjectError`].
     pub fn upload(&self, upload: &Upload<'_>) -> Result<u64, ObjectError> {
         let Upload { file: path, key, existing, .. } = *upload;
         let file_failed = |doing| {
@@ -59,14 +61,14 @@ impl Bucket {
             move |source| ObjectError::File { path, doing, source }
         };
         let mut file = File::open(path).map_err(file_failed("open"))?;
-        let length = file.metadata().map_err(file_failed("look at"))?.len();
+        let length = file.metadata().map_err(file_failed("check"))?.len();
         let address = self.address(key).to_string();
         if length > MOST_PARTS * LARGEST_PART_BYTES {
             return Err(ObjectError::TooLarge { name: address, length });
         }
         let (object, explain) = self.object(key, "write")?;
         let writer = random_digits();
-        let note = Note::of(path);
+        let note = UploadNote::for_file(path);
         self.end_earlier(path)?;
         let sent = if length <= PART_BYTES {
             let mut bytes = Vec::with_capacity(length as usize);
@@ -89,7 +91,7 @@ impl Bucket {
             Err(Ended::Note(source)) => {
                 Err(ObjectError::File { path: note.path, doing: "write", source })
             }
-            // The answer to an earlier try may have been lost on its way, and what is there be ours.
+            // The answer to an earlier try may have been lost, so the existing object may be ours.
             Err(Ended::Storage(
                 error @ (Error::AlreadyExists { .. }
                 | Error::Precondition { .. }
@@ -107,9 +109,10 @@ impl Bucket {
         }
     }
 
-    /// Looks for what was sent: that a server says it has stored something proves nothing. Returns its length.
+    /// Checks that the uploaded object exists, since a confirmation of the server proves nothing.
+    /// Returns its length.
     fn check_stored(&self, key: &str, length: u64, writer: &str) -> Result<u64, ObjectError> {
-        /// Not every server shows at once what it has.
+        /// Some servers list a new object only after a moment.
         const TRIES: u32 = 4;
         let name = self.address(key).to_string();
         let mut found = String::new();
@@ -118,11 +121,11 @@ impl Bucket {
                 thread::sleep(self.first_pause * (1 << pause));
             }
             found = match self.look(key)? {
-                None => "it is not there".to_owned(),
+                None => "it does not exist".to_owned(),
                 Some((there, _)) if there.length != length => {
-                    format!("it has {} bytes in place of {length}", there.length)
+                    format!("it has {} bytes instead of {length}", there.length)
                 }
-                // Not every server keeps who wrote it.
+                // Not every server stores the writer.
                 Some((_, Some(by))) if by != writer => return Err(ObjectError::Changed { name }),
                 Some(_) => return Ok(length),
             };
@@ -136,7 +139,7 @@ impl Bucket {
         (object, length): (&Key, u64),
         file: &mut File,
         writer: &str,
-        note: &Note,
+        note: &UploadNote,
     ) -> Result<(), Ended> {
         let storage = match upload.existing {
             Existing::Keep => &self.keeping,
@@ -155,7 +158,7 @@ impl Bucket {
             self.runtime.block_on(end).map(drop).map_err(Ended::Storage)
         });
         if sent.is_err() {
-            // If this fails too, the next process that sends the file ends the upload.
+            // If this fails too, the next process that sends the file aborts the upload.
             let ended = self.runtime.block_on(storage.abort_multipart(object, &id));
             if !matches!(ended, Ok(()) | Err(Error::NotFound { .. })) {
                 return sent;
@@ -165,13 +168,13 @@ impl Bucket {
         sent
     }
 
-    /// Ends the upload of a file by an earlier process that was killed.
+    /// Aborts the upload of a file by an earlier process that was killed.
     pub(crate) fn end_earlier(&self, file: &Path) -> Result<(), ObjectError> {
-        let note = Note::of(file);
+        let note = UploadNote::for_file(file);
         let Some((key, id)) = note.read() else { return Ok(()) };
-        let (object, explain) = self.object(&key, "end an earlier upload of")?;
+        let (object, explain) = self.object(&key, "abort an earlier upload of")?;
         match self.runtime.block_on(self.keeping.abort_multipart(&object, &id)) {
-            // It was complete, or ended by someone else.
+            // The upload was complete, or aborted by another process.
             Ok(()) | Err(Error::NotFound { .. }) => {
                 note.remove();
                 Ok(())
@@ -181,7 +184,7 @@ impl Bucket {
     }
 }
 
-/// Why the sending ended early.
+/// The reason why an upload ended early.
 enum Ended {
     Stopped,
     File(io::Error),
@@ -189,7 +192,7 @@ enum Ended {
     Storage(Error),
 }
 
-/// Sends all parts, some at once.
+/// Sends all parts, several at once.
 async fn send_parts(
     storage: &Arc<AmazonS3>,
     (object, id): (&Key, &String),
@@ -201,7 +204,7 @@ async fn send_parts(
     let count = length.div_ceil(part_bytes) as usize;
     let mut parts: Vec<Option<PartId>> = vec![None; count];
     let mut next = 0;
-    // Dropping it ends what is still being sent.
+    // Dropping the tasks aborts what is still being sent.
     let mut sending = JoinSet::new();
     loop {
         if should_stop() {
@@ -219,7 +222,7 @@ async fn send_parts(
             next += 1;
         }
         match timeout(ASKS_EVERY, sending.join_next()).await {
-            // Not yet.
+            // No part has finished yet.
             Err(_) => {}
             Ok(None) => break,
             Ok(Some(joined)) => {
@@ -231,13 +234,13 @@ async fn send_parts(
     Ok(parts.into_iter().flatten().collect())
 }
 
-/// The file that says which upload is under way: the object's key, and the upload's id.
-struct Note {
+/// The file that identifies the upload in progress: the object's key, and the upload's id.
+struct UploadNote {
     path: PathBuf,
 }
 
-impl Note {
-    fn of(file: &Path) -> Self {
+impl UploadNote {
+    fn for_file(file: &Path) -> Self {
         let mut path = file.as_os_str().to_owned();
         path.push(".upload");
         Self { path: path.into() }
@@ -249,7 +252,7 @@ impl Note {
         file.write_all(format!("{key}\n{id}\n").as_bytes())
     }
 
-    /// What a process left that was killed. A note that is not whole names no upload.
+    /// Reads the note of a killed process. An incomplete note names no upload.
     fn read(&self) -> Option<(String, String)> {
         let mut text = String::new();
         open_own(&self.path, OpenMode::Read).ok()?.read_to_string(&mut text).ok()?;
@@ -258,7 +261,8 @@ impl Note {
         Some((key.to_owned(), id.to_owned()))
     }
 
-    /// If it cannot be removed, the next process ends an upload that is not there, which does no harm.
+    /// If the note cannot be removed, the next process aborts an upload that does not exist, which
+    /// does no harm.
     fn remove(&self) {
         let _ = fs::remove_file(&self.path);
     }

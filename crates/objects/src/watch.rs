@@ -1,17 +1,22 @@
-//! Between `object_store` and the network: what passes is counted, and five things are done that `object_store` does not do.
+//! A layer between `object_store` and the network: it counts the traffic and does five things that
+//! `object_store` does not do.
 //!
-//! - The end of an upload in parts is made conditional (`If-None-Match: *`). S3 knows that, `object_store` asks for it only when it copies.
-//! - That two write one object at the same moment (409) is no answer yet: the request is made again, and then one of them was first.
-//! - A refusal that no repetition can change ends at once, and with the words that S3 has for it.
-//! - An answer ends with an error where it has more bytes than such an answer can have.
-//! - A request that was cut off is made again also where it may have arrived: every request of this crate can be made twice.
+//! - It makes the completion of a multipart upload conditional (`If-None-Match: *`). S3 supports
+//!   this, but `object_store` requests it only for copies.
+//! - A conflict of two writers of one object (409) is not final: the request is repeated, and then
+//!   one of the writers was first.
+//! - An error that no retry can change is returned at once, with S3's own code and message.
+//! - An answer fails if it has more bytes than this kind of answer can have.
+//! - A request whose connection broke is repeated, even if the server may have received it: every
+//!   request of this crate can be repeated safely.
 
 use std::{
     collections::BTreeMap,
-    sync::{Arc, Mutex, PoisonError},
+    sync::{Arc, Mutex},
 };
 
 use async_trait::async_trait;
+use corniche_work::locked;
 use http_body_util::{BodyExt as _, Limited};
 use object_store::{
     ClientOptions, HeaderValue,
@@ -21,46 +26,48 @@ use object_store::{
     },
 };
 
-/// What passed so far, by the name of the method: how many requests, and the bytes of their bodies there and back.
+/// The traffic so far: the number of requests per method, and the bytes of bodies in both
+/// directions.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Requests {
-    /// `GET`, `HEAD`, `PUT`, `POST`, `DELETE` and how often each was sent, repetitions included.
+pub struct StorageRequests {
+    /// The number of requests per method (`GET`, `HEAD`, `PUT`, `POST`, `DELETE`), retries
+    /// included.
     pub by_method: BTreeMap<String, u64>,
     /// Bytes of bodies sent.
     pub sent_bytes: u64,
-    /// Bytes of bodies received, as the answers announce them.
+    /// Bytes of bodies received, according to `Content-Length`.
     pub received_bytes: u64,
 }
 
 /// Counts of one [`Storage`](crate::Storage), shared by its buckets.
 #[derive(Debug, Default)]
-pub(crate) struct Counter(Mutex<Requests>);
+pub(crate) struct StorageCounter(Mutex<StorageRequests>);
 
-impl Counter {
-    pub(crate) fn so_far(&self) -> Requests {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+impl StorageCounter {
+    pub(crate) fn so_far(&self) -> StorageRequests {
+        locked(&self.0).clone()
     }
 
-    fn change(&self, change: impl FnOnce(&mut Requests)) {
-        change(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner));
+    fn change(&self, change: impl FnOnce(&mut StorageRequests)) {
+        change(&mut locked(&self.0));
     }
 }
 
-/// What an upload in parts does at its end where there is an object of that name.
+/// The action at the end of a multipart upload if an object of that name exists.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum AtTheEnd {
     Refuse,
     Replace,
 }
 
-/// Makes HTTP clients that are watched.
+/// Creates HTTP clients with this layer.
 #[derive(Debug)]
-pub(crate) struct Watch {
-    pub(crate) counter: Arc<Counter>,
+pub(crate) struct RequestWatch {
+    pub(crate) counter: Arc<StorageCounter>,
     pub(crate) at_the_end: AtTheEnd,
 }
 
-impl HttpConnector for Watch {
+impl HttpConnector for RequestWatch {
     fn connect(&self, options: &ClientOptions) -> object_store::Result<HttpClient> {
         let inner = ReqwestConnector::default().connect(options)?;
         let Self { counter, at_the_end } = self;
@@ -72,42 +79,42 @@ impl HttpConnector for Watch {
 #[derive(Debug)]
 struct Watched {
     inner: HttpClient,
-    counter: Arc<Counter>,
+    counter: Arc<StorageCounter>,
     at_the_end: AtTheEnd,
 }
 
-/// A refusal that no repetition can change.
+/// An error that no retry can change.
 #[derive(Debug, thiserror::Error)]
 #[error("{status} {code}: {message}")]
-pub(crate) struct Refusal {
+pub(crate) struct PermanentRefusal {
     pub(crate) status: u16,
-    /// S3's word for it; empty where the answer has none.
+    /// The S3 error code; empty if the answer has none.
     pub(crate) code: String,
     pub(crate) message: String,
 }
 
-/// The server sent the whole object where a part of it was asked for.
+/// The server sent the whole object instead of the requested range.
 #[derive(Debug, thiserror::Error)]
-#[error("the answer holds the whole object instead of the range that was asked for")]
+#[error("the answer contains the whole object instead of the requested range")]
 pub(crate) struct RangeIgnored;
 
-/// The answer has more bytes than it can have.
+/// The answer has more bytes than the kind of answer allows.
 #[derive(Debug, thiserror::Error)]
 #[error("the answer has more than {most} bytes")]
 pub(crate) struct AnswerTooLarge {
     pub(crate) most: u64,
 }
 
-/// The answer says what no honest one does.
+/// The answer is invalid.
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
 pub(crate) struct BadAnswer(pub(crate) String);
 
-/// Names of objects have 1024 bytes at most, names of uploads and pages fewer than this. `object_store` puts them into addresses of requests, and panics where
-/// these are too long.
+/// The limit for names of objects (at most 1024 bytes), uploads and pages. `object_store` puts them
+/// into URLs of requests, and panics if they are too long.
 const LONGEST_NAME_BYTES: usize = 8192;
 
-/// Refuses what is too long for a name.
+/// Rejects names that are too long.
 pub(crate) fn check_name(of: &str, name: &str) -> Result<(), BadAnswer> {
     if name.len() <= LONGEST_NAME_BYTES {
         return Ok(());
@@ -115,19 +122,20 @@ pub(crate) fn check_name(of: &str, name: &str) -> Result<(), BadAnswer> {
     Err(BadAnswer(format!("{of} of {} bytes", name.len())))
 }
 
-/// Whether a range of bytes ends where one can; `object_store` adds one to it.
+/// Whether the end of a byte range is possible; `object_store` adds one to it.
 fn is_possible(content_range: &HeaderValue) -> bool {
     let text = content_range.to_str().unwrap_or_default();
     let last = text.split_once('-').and_then(|(_, rest)| rest.split('/').next()?.parse().ok());
     last.is_none_or(|last: u64| i64::try_from(last).is_ok())
 }
 
-/// A list has a thousand names of 1024 bytes at most, written as XML; a whole object that is read at once is small.
+/// A list has at most a thousand names of 1024 bytes, written as XML; an object that is read as a
+/// whole is small.
 const MOST_WHOLE_BYTES: u64 = 64 << 20;
-/// All else has some words.
+/// The limit for all other answers, which are short texts.
 const MOST_WORDS_BYTES: u64 = 1 << 20;
 
-/// The most bytes that the body of an answer can have.
+/// The largest number of bytes in the body of the answer to a request.
 fn most_bytes(request: &HttpRequest) -> u64 {
     let range = request.headers().get("range").and_then(|range| range.to_str().ok());
     let ends = range.and_then(|range| range.strip_prefix("bytes=")?.split_once('-'));
@@ -141,7 +149,7 @@ fn most_bytes(request: &HttpRequest) -> u64 {
     }
 }
 
-/// The body of an answer, which fails beyond so many bytes.
+/// The body of an answer, which fails beyond this many bytes.
 fn bounded(body: HttpResponseBody, most: u64) -> HttpResponseBody {
     let limited = Limited::new(body, usize::try_from(most).unwrap_or(usize::MAX));
     HttpResponseBody::new(limited.map_err(move |error| match error.downcast() {
@@ -150,16 +158,17 @@ fn bounded(body: HttpResponseBody, most: u64) -> HttpResponseBody {
     }))
 }
 
-/// This machine gives no credentials.
+/// This machine provides no credentials.
 #[derive(Debug, thiserror::Error)]
-#[error("no credentials are set, and this machine gives none")]
+#[error("no credentials are set, and this machine provides none")]
 pub(crate) struct NoMachineCredentials;
 
 #[async_trait]
 impl HttpService for Watched {
     async fn call(&self, mut request: HttpRequest) -> Result<HttpResponse, HttpError> {
         let method = request.method().clone();
-        // Where machines of a cloud ask for credentials. Elsewhere nobody answers, however often one asks.
+        // The addresses where cloud machines request credentials. Elsewhere nothing answers,
+        // however often one asks.
         let is_metadata = request.uri().host().is_some_and(|host| host.starts_with("169.254."));
         let has_range = request.headers().contains_key("range");
         let is_end_of_upload = method.as_str() == "POST"
@@ -206,12 +215,13 @@ impl HttpService for Watched {
         if status.is_success() || status.as_u16() == 304 {
             return Ok(response);
         }
-        // One that asks for patience has credentials.
+        // A server that throttles requests does have credentials.
         if is_metadata && status.is_client_error() && status.as_u16() != 429 {
             return Err(HttpError::new(HttpErrorKind::Decode, NoMachineCredentials));
         }
         let (mut parts, body) = response.into_parts();
-        // S3: "ConditionalRequestConflict", "OperationAborted"; `object_store` would take it for an object that is there.
+        // With these S3 codes ("ConditionalRequestConflict", "OperationAborted"), `object_store`
+        // would assume an existing object.
         if status.as_u16() == 409
             && (method.as_str() == "PUT" || is_end_of_upload)
             && let Ok(busy) = 503.try_into()
@@ -227,7 +237,7 @@ impl HttpService for Watched {
             404 => code == "NoSuchBucket",
             _ => false,
         };
-        // With a request that took too long, the server asks to send it again.
+        // With this status, the server asks for the slow request to be sent again.
         if is_final && code != "RequestTimeout" {
             let message = match parts.headers.get("x-amz-bucket-region") {
                 Some(region) if status.is_redirection() || status.as_u16() == 400 => {
@@ -236,16 +246,16 @@ impl HttpService for Watched {
                 _ if message.is_empty() => status.canonical_reason().unwrap_or_default().to_owned(),
                 _ => message,
             };
-            let refusal = Refusal { status: status.as_u16(), code, message };
+            let refusal = PermanentRefusal { status: status.as_u16(), code, message };
             return Err(HttpError::new(HttpErrorKind::Decode, refusal));
         }
-        // Short, so that it fits a message.
+        // The text is short, so that it fits a message.
         let told = if code.is_empty() { String::new() } else { format!("{code}: {message}") };
         Ok(HttpResponse::from_parts(parts, HttpResponseBody::from(told)))
     }
 }
 
-/// The text of the first element of this name, on one line and not too long; empty if there is none.
+/// The text of the first element of this name, on one line and shortened; empty if there is none.
 fn element(xml: &str, name: &str) -> String {
     const LONGEST: usize = 200;
     let inside = xml

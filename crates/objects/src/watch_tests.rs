@@ -1,4 +1,4 @@
-//! The words of a server's answer are found and kept short.
+//! The message of a server's answer is found and shortened.
 
 use super::*;
 

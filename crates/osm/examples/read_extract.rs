@@ -1,13 +1,15 @@
-//! Reads the roads of an extract within so much memory, and says what that took.
+//! Reads the roads of an extract within a memory limit, and prints the time and memory used.
 //!
 //! ```sh
 //! cargo run -p corniche-osm --example read_extract -- FILE.osm.pbf MEMORY_MIB [THREADS [digest|time [TABLE]]]
 //! ```
 //!
-//! With `time` the roads are counted alone, so that the time is that of reading. `TABLE` is a file with a class table.
+//! With `time`, roads are only counted, so that the time is the time of reading. `TABLE` is a file
+//! with a class table.
 //!
-//! Scratch space is a file without a name in the system's folder for such files (`TMPDIR`). The digest is over all roads,
-//! defects and counts: the same extract has the same one with any memory and any number of threads.
+//! Scratch space is an unnamed file in the system's folder for temporary files (`TMPDIR`). The
+//! digest covers all roads, defects and counts: an extract has the same digest with any memory
+//! limit and any number of threads.
 #![expect(clippy::print_stdout, reason = "an example prints its result")]
 
 use std::{
@@ -23,7 +25,7 @@ use std::{
 use corniche_geom::LatticePoint;
 use corniche_osm::ReadRequest;
 use corniche_presets::parse_frc_table;
-use corniche_store::{Scratch, Span};
+use corniche_store::{ScratchRange, ScratchSpace};
 use roads::read_roads;
 
 #[path = "../tests/it/common/roads.rs"]
@@ -81,26 +83,26 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!(
         "{} nodes of roads, {roads} roads, {points} points, digest {digest}; {scratch_mib} MiB of scratch space, peak {}; {read_s:.3} s",
         summary.nodes_needed,
-        peak().unwrap_or_else(|| "not told by this system".to_owned()),
+        peak().unwrap_or_else(|| "not reported by this system".to_owned()),
     );
     Ok(())
 }
 
-/// A lattice of 1e-7 degrees.
+/// Converts positions to a lattice of 1e-7 degrees.
 fn to_lattice(positions_deg: &[[f64; 2]]) -> Vec<Option<LatticePoint>> {
     let round = |deg: f64| (deg * 1e7).round() as i64;
     let place = |&[lon, lat]: &[f64; 2]| Some(LatticePoint::new(round(lon), round(lat)));
     positions_deg.iter().map(place).collect()
 }
 
-/// The most memory that the process had, as the kernel says.
+/// Returns the peak memory of the process, as the kernel reports it.
 fn peak() -> Option<String> {
     let status = fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     Some(line.trim().to_owned())
 }
 
-/// A file, and its length.
+/// A file and its length, bytes.
 struct FileScratch(Mutex<(File, u64)>);
 
 impl FileScratch {
@@ -109,18 +111,18 @@ impl FileScratch {
     }
 }
 
-impl Scratch for FileScratch {
-    fn append(&self, bytes: &[u8]) -> io::Result<Span> {
+impl ScratchSpace for FileScratch {
+    fn append(&self, bytes: &[u8]) -> io::Result<ScratchRange> {
         let mut own = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let (file, end) = &mut *own;
         file.seek(SeekFrom::Start(*end))?;
         file.write_all(bytes)?;
-        let span = Span { offset: *end, length: bytes.len() as u64 };
+        let span = ScratchRange { offset: *end, length: bytes.len() as u64 };
         *end += span.length;
         Ok(span)
     }
 
-    fn read(&self, span: Span) -> io::Result<Vec<u8>> {
+    fn read(&self, span: ScratchRange) -> io::Result<Vec<u8>> {
         let mut own = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         own.0.seek(SeekFrom::Start(span.offset))?;
         let mut bytes = vec![0; span.length as usize];

@@ -1,12 +1,13 @@
-//! Copies of an extract side by side, in one sorted extract: large inputs for measuring, made of real ways.
+//! Writes copies of an extract next to each other into one sorted extract: large inputs for
+//! measurements, with real ways.
 //!
 //! ```sh
 //! cargo run -p corniche-osm --example repeat_extract -- IN.osm.pbf OUT.osm.pbf COPIES [all|roads] [EAST NORTH]
 //! ```
 //!
-//! Nodes and ways are renumbered, relations are left out. The copies lie in a square, EAST and NORTH degrees from one to the
-//! next: without them, as far as the extract is wide and high. `roads` keeps only ways with a `highway` tag and their nodes.
-//! The same arguments give the same bytes.
+//! Nodes and ways are renumbered, relations are skipped. The copies form a square, EAST and NORTH
+//! degrees apart; by default, these are the width and the height of the extract. `roads` keeps only
+//! ways with a `highway` tag and their nodes. The same arguments give the same bytes.
 #![expect(clippy::print_stdout, reason = "an example prints its result")]
 
 use std::{
@@ -17,10 +18,10 @@ use std::{
     io::{BufWriter, Write},
 };
 
-use corniche_testing::pbf::{Block, deltas, field, header, number, packed_blob, varint};
+use corniche_testing::pbf::{BlockBuilder, deltas, field, header, number, packed_blob, varint};
 use osmpbf::{Element, ElementReader};
 
-/// As many objects as usual writers put into a block.
+/// The number of objects that writers usually put into a block.
 const PER_BLOCK: usize = 8000;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -33,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         [] => (true, None),
         [what] => (what != "roads", None),
         [what, east, north] => (what != "roads", Some([east.parse::<f64>()?, north.parse()?])),
-        _ => return Err("it takes EAST and NORTH together".into()),
+        _ => return Err("EAST and NORTH must be given together".into()),
     };
     let original = Original::read(input, is_all)?;
     let step = step.map_or_else(|| original.extent(), |step| step.map(to_steps));
@@ -52,24 +53,24 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// 1e-7 degrees.
+/// Converts degrees to units of 1e-7 degrees.
 fn to_steps(deg: f64) -> i64 {
     (deg * 1e7).round() as i64
 }
 
-/// The extract that is repeated, its nodes and ways in order of their ids.
+/// The extract to repeat, with its nodes and ways in order of their ids.
 struct Original {
-    /// Longitude and latitude, 1e-7 degrees.
+    /// Longitudes and latitudes, in units of 1e-7 degrees.
     nodes: Vec<[i64; 2]>,
     ways: Vec<Way>,
     /// All keys and values.
-    texts: Block,
+    texts: BlockBuilder,
 }
 
 struct Way {
-    /// Fields of its message: keys and values.
+    /// The fields of the way's message with keys and values.
     tags: Vec<u8>,
-    /// Indices of its nodes.
+    /// The indices of the way's nodes.
     nodes: Vec<i64>,
 }
 
@@ -90,14 +91,15 @@ impl Original {
             }
             Element::Way(_) | Element::Relation(_) => {}
         })?;
-        let mut table = Block::new();
+        let mut table = BlockBuilder::new();
         for (number, (text, index)) in (1..).zip(&mut texts) {
             table.texts.push(text.clone().into_bytes());
             *index = number;
         }
         let needed: BTreeSet<i64> = ways.values().flat_map(|(_, nodes)| nodes).copied().collect();
         places.retain(|id, _| is_all || needed.contains(id));
-        // Nodes that the extract does not have get numbers after those of its own, in every copy the same.
+        // Nodes that the extract lacks are numbered after its own nodes, in the same way in every
+        // copy.
         let missing = needed.iter().filter(|id| !places.contains_key(id));
         let index: BTreeMap<i64, i64> = places.keys().chain(missing).copied().zip(0..).collect();
         let ways = ways.values().map(|(tags, nodes)| {
@@ -114,7 +116,7 @@ impl Original {
         })
     }
 
-    /// How wide and how high it is, and a little more.
+    /// Returns the width and the height of the extract, and a little more.
     fn extent(&self) -> [i64; 2] {
         [0, 1].map(|axis| {
             let along = || self.nodes.iter().map(|node| node[axis]);
@@ -122,7 +124,7 @@ impl Original {
         })
     }
 
-    /// The id of a copy's first node, missing ones of the copies before it counted.
+    /// Returns the id of a copy's first node, including the missing nodes of the copies before it.
     fn first_node(&self, copy: i64) -> i64 {
         let missing = self.ways.iter().flat_map(|way| &way.nodes).max().map_or(0, |&most| most + 1);
         1 + copy * missing.max(self.nodes.len() as i64)
@@ -142,11 +144,12 @@ impl Original {
                 .iter()
                 .any(|(_, lat, lon)| lat.abs() > 900_000_000 || lon.abs() > 1_800_000_000)
             {
-                return Err(
-                    format!("copy {copy} lies beyond the Earth; give EAST and NORTH").into()
-                );
+                return Err(format!(
+                    "copy {copy} is outside the Earth's coordinates; set EAST and NORTH"
+                )
+                .into());
             }
-            let mut block = Block::new();
+            let mut block = BlockBuilder::new();
             block.dense(&nodes);
             file.write_all(&packed_blob(b"OSMData", &block.bytes()))?;
         }
@@ -161,7 +164,7 @@ impl Original {
                 let nodes: Vec<i64> = way.nodes.iter().map(|node| first_node + node).collect();
                 field(3, &[&*number(1, id), &way.tags, &field(8, &deltas(&nodes))].concat())
             });
-            let block = Block { groups: vec![ways.collect()], ..self.texts.clone() };
+            let block = BlockBuilder { groups: vec![ways.collect()], ..self.texts.clone() };
             file.write_all(&packed_blob(b"OSMData", &block.bytes()))?;
         }
         Ok(())

@@ -1,8 +1,8 @@
-//! An iterator over records whose next record can be seen before it is taken.
+//! An iterator over records with a lookahead of one record.
 
 use std::io;
 
-/// Records of which the next one can be seen before it is taken.
+/// An iterator over records with a lookahead of one record.
 pub(crate) struct Ahead<I: Iterator> {
     records: I,
     next: Option<I::Item>,
@@ -13,7 +13,7 @@ impl<T, I: Iterator<Item = io::Result<T>>> Ahead<I> {
         Self { records, next: None }
     }
 
-    /// The next record; `None` after the last one.
+    /// Returns the next record without consuming it; `None` after the last one.
     pub(crate) fn peek(&mut self) -> io::Result<Option<&T>> {
         if self.next.is_none() {
             self.next = self.records.next();
@@ -26,12 +26,12 @@ impl<T, I: Iterator<Item = io::Result<T>>> Ahead<I> {
         Ok(self.next.as_ref().and_then(|next| next.as_ref().ok()))
     }
 
-    /// Passes over the record that was seen.
+    /// Skips the record that `peek` returned.
     pub(crate) fn take(&mut self) {
         self.next = None;
     }
 
-    /// The record that was seen; `None` if none was.
+    /// Takes the record that `peek` returned; `None` if there is none.
     pub(crate) fn take_next(&mut self) -> Option<T> {
         self.next.take().and_then(Result::ok)
     }

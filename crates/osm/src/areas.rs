@@ -7,7 +7,6 @@
 //! ```
 
 mod hand_out_areas;
-mod hand_parts;
 mod make_areas;
 mod over_seam;
 mod summary;

@@ -1,4 +1,4 @@
-//! Makes roads from ways and the places of their nodes.
+//! Builds roads from ways and the coordinates of their nodes.
 
 use std::ops::Range;
 
@@ -6,9 +6,9 @@ use corniche_geom::{LatticePoint, OnSeamedMap, Polyline, Seam, line_length_m, sp
 use corniche_roads::{FunctionalRoadClass, MetNodes, Road, RoadAttributes};
 
 use crate::{
-    Defect, LeftOutReason, ReadOsmError, location,
+    ExtractDefect, LeftOutReason, ReadOsmError, location,
     location::Location,
-    read_request::Placing,
+    read_request::LatticePlacement,
     records::Stop,
     self_crossings::self_crossings,
     to_and_fro::go_to_and_fro,
@@ -20,32 +20,32 @@ use crate::{
 pub(crate) struct PlainWay {
     pub(crate) way_id: i64,
     pub(crate) kind: WayKind,
-    /// The ids of its nodes; empty where they are not wanted.
+    /// The ids of the way's nodes; empty if ids are not requested.
     pub(crate) node_ids: Vec<i64>,
-    /// Which of the stops that it was read with are its own.
+    /// The range of stops that belong to the way, among those of its batch.
     pub(crate) stops: Range<usize>,
 }
 
-/// What became of one way.
+/// The result of assembling one way.
 #[derive(Debug, Default)]
-pub(crate) struct Assembled {
-    /// Its roads; a way that is left out has those that carry bridges and tunnels.
+pub(crate) struct AssembledWay {
+    /// The roads of the way. A skipped way has roads only if it carries bridges and tunnels.
     pub(crate) roads: Vec<Road>,
-    pub(crate) defects: Vec<Defect>,
-    /// Why a way is left out, its `highway` value and its length in micrometres.
+    pub(crate) defects: Vec<ExtractDefect>,
+    /// The reason why the way is skipped, its `highway` value and its length in micrometres.
     pub(crate) left_out: Option<(LeftOutReason, String, u64)>,
 }
 
-/// Makes roads of some ways, in their order. All their points are placed in one call.
+/// Builds the roads of some ways, in the order of the ways. All points are converted in one call.
 pub(crate) fn assemble(
     some: Vec<PlainWay>,
     all_stops: &[Stop],
-    placing: Placing<'_>,
-) -> Result<Vec<Assembled>, ReadOsmError> {
+    placing: LatticePlacement<'_>,
+) -> Result<Vec<AssembledWay>, ReadOsmError> {
     let stops_of = |way: &PlainWay| &all_stops[way.stops.clone()];
     let has_line = |way: &&PlainWay| match &way.kind {
         WayKind::Road(..) => true,
-        // It is joined to others by the ids of its nodes.
+        // Other ways join it by the ids of its nodes.
         WayKind::LeftOut(way_kind) => way_kind.carrier.is_some() && !way.node_ids.is_empty(),
     };
     let stops = some.iter().filter(has_line).flat_map(stops_of);
@@ -76,14 +76,15 @@ pub(crate) fn assemble(
                     roads = assemble_way(what, stops, &mut points, placing).roads;
                 }
                 let left_out = Some((reason, highway, length_um));
-                Assembled { roads, left_out, ..Assembled::default() }
+                AssembledWay { roads, left_out, ..AssembledWay::default() }
             }
         }
     };
     Ok(some.into_iter().map(assemble).collect())
 }
 
-/// The true length of a way that has no place on a map, micrometres: of straight segments in degrees, without those at a node that has no place.
+/// Returns the true length, in micrometres, of a way that is not on the map. Its segments are
+/// straight in degrees; segments at a node without coordinates do not count.
 pub(crate) fn length_um(locations: impl Iterator<Item = Location>) -> u64 {
     const UM: f64 = 1e6;
     let (mut sum, mut last): (u64, Option<[f64; 2]>) = (0, None);
@@ -97,14 +98,15 @@ pub(crate) fn length_um(locations: impl Iterator<Item = Location>) -> u64 {
     sum
 }
 
-/// What the roads of a way are.
+/// The properties that all roads of a way share.
 struct What<'a> {
     way_id: i64,
     class: FunctionalRoadClass,
     attributes: RoadAttributes,
-    /// One for each stop, or none.
+    /// One id per stop, or none at all.
     node_ids: &'a [i64],
-    /// Whether it is left out, and carries bridges and tunnels: then all count that it may carry or meet.
+    /// Whether the way is skipped and carries bridges and tunnels; then each node counts at which
+    /// it may carry or meet another way.
     is_carrier: bool,
 }
 
@@ -112,11 +114,12 @@ struct What<'a> {
 #[derive(Clone, Copy)]
 struct PlacedNode {
     point: LatticePoint,
-    /// Two roads name it, or one does twice; a cut at the seam must stay, too.
+    /// Whether two roads reference the node, or one road does so twice. A cut at the seam must be
+    /// preserved, too.
     is_fixed: bool,
-    /// The same of roads and ways that carry them.
+    /// The same for roads and the ways that carry them.
     is_met: bool,
-    /// `None` for a cut at the seam, and where ids are not wanted.
+    /// The OSM id; `None` at a cut on the seam, and if ids are not requested.
     id: Option<i64>,
 }
 
@@ -139,27 +142,29 @@ impl OnSeamedMap for PlacedNode {
     }
 }
 
-/// Cuts the way where points are missing, merges equal neighbours, and makes a road of each piece.
+/// Cuts the way where points are missing, merges equal neighbours, and builds a road from each
+/// piece.
 ///
 /// ```text
 ///  nodes   1 ─ 2 ─ ? ─ 4 ─ 5 ─ 5 ─ 6 ─ ?        joining 2 and 4 would draw a road where none may be
 ///  roads   1 ─ 2       4 ─ 5 ───── 6
 /// ```
 ///
-/// Where the way goes over the seam of the map, it goes on at the other end as another road. That is no defect.
+/// A way that crosses the seam of the map continues at the other end as another road. This is not a
+/// defect.
 fn assemble_way(
     way: What<'_>,
     stops: &[Stop],
     points: &mut impl Iterator<Item = Option<LatticePoint>>,
-    placing: Placing<'_>,
-) -> Assembled {
+    placing: LatticePlacement<'_>,
+) -> AssembledWay {
     let way_id = way.way_id;
-    let mut assembled = Assembled::default();
+    let mut assembled = AssembledWay::default();
     let (mut missing, mut out_of_range, mut outside, mut duplicates, mut strays) = (0, 0, 0, 0, 0);
     let mut pieces: Vec<Vec<PlacedNode>> = vec![Vec::with_capacity(stops.len())];
     let (mut same_places, mut met_places) = (Vec::new(), Vec::new());
     for (index, stop) in stops.iter().enumerate() {
-        // The node has a position: the next one of the placed points.
+        // The node has coordinates: it takes the next converted point.
         let is_known = location::degrees(stop.location).is_some();
         let point = if is_known { points.next().flatten() } else { None };
         match (point, pieces.last_mut()) {
@@ -168,7 +173,8 @@ fn assemble_way(
                     duplicates += 1;
                     let next = way.placed(point, index, stop);
                     let pair = last.id.zip(next.id).map(|(one, other)| [one, other]);
-                    // Of several nodes at one place, those count at which other roads may join.
+                    // Of several nodes at one point, those at which other roads may join take
+                    // precedence.
                     if next.is_fixed && last.is_fixed {
                         same_places.extend(pair);
                     } else if next.is_met && last.is_met {
@@ -191,7 +197,7 @@ fn assemble_way(
         }
     }
     if stops.len() < 2 {
-        assembled.defects.push(Defect::TooFewNodes { way_id, nodes: stops.len() as u32 });
+        assembled.defects.push(ExtractDefect::TooFewNodes { way_id, nodes: stops.len() as u32 });
         return assembled;
     }
     let (mut crossings, mut roads) = (0, 0);
@@ -210,7 +216,7 @@ fn assemble_way(
     if is_to_and_fro {
         assembled.roads.clear();
     }
-    // Nearly every way is one road, which needs no copy of the texts.
+    // Nearly every way is one road, so its texts need not be copied.
     if let Some((last, others)) = assembled.roads.split_last_mut() {
         for road in others {
             road.attributes.clone_from(&way.attributes);
@@ -222,15 +228,15 @@ fn assemble_way(
         first.met.same_places = met_places;
     }
     for (count, defect) in [
-        (missing, Defect::MissingNodes { way_id, points: missing }),
-        (out_of_range, Defect::OutOfRange { way_id, points: out_of_range }),
-        (outside, Defect::OutsideProjection { way_id, points: outside }),
-        (duplicates, Defect::DuplicatePoints { way_id, points: duplicates }),
-        (strays.min(roads), Defect::StrayPoints { way_id, points: strays }),
-        (roads.saturating_sub(1), Defect::Split { way_id, roads }),
-        (u32::from(roads == 0), Defect::NoLine { way_id }),
-        (u32::from(is_to_and_fro), Defect::ToAndFro { way_id }),
-        (crossings, Defect::SelfCrossing { way_id, crossings }),
+        (missing, ExtractDefect::MissingNodes { way_id, points: missing }),
+        (out_of_range, ExtractDefect::OutOfRange { way_id, points: out_of_range }),
+        (outside, ExtractDefect::OutsideProjection { way_id, points: outside }),
+        (duplicates, ExtractDefect::DuplicatePoints { way_id, points: duplicates }),
+        (strays.min(roads), ExtractDefect::StrayPoints { way_id, points: strays }),
+        (roads.saturating_sub(1), ExtractDefect::Split { way_id, roads }),
+        (u32::from(roads == 0), ExtractDefect::NoLine { way_id }),
+        (u32::from(is_to_and_fro), ExtractDefect::ToAndFro { way_id }),
+        (crossings, ExtractDefect::SelfCrossing { way_id, crossings }),
     ] {
         if count > 0 {
             assembled.defects.push(defect);
@@ -240,7 +246,7 @@ fn assemble_way(
 }
 
 impl What<'_> {
-    /// A node that was placed.
+    /// Returns the node of a stop with its point on the lattice.
     fn placed(&self, point: LatticePoint, index: usize, stop: &Stop) -> PlacedNode {
         let is_met = stop.is_met();
         let is_fixed = if self.is_carrier { is_met } else { stop.is_shared() };
@@ -248,7 +254,8 @@ impl What<'_> {
     }
 }
 
-/// One road of a piece of a way, still without attributes; `None` when the piece has less than two points.
+/// Returns the road of one piece of a way, still without attributes; `None` if the piece has fewer
+/// than two points.
 fn road(way: &What<'_>, piece: Vec<PlacedNode>) -> Option<Road> {
     let last = piece.len().checked_sub(1)?;
     let is_kept = |&index: &usize| piece[index].is_fixed || index == 0 || index == last;
@@ -264,7 +271,7 @@ fn road(way: &What<'_>, piece: Vec<PlacedNode>) -> Option<Road> {
     };
     let met =
         MetNodes { nodes: (0..piece.len()).filter_map(met).collect(), same_places: Vec::new() };
-    // Equal neighbours are merged already, so the indices stay true.
+    // Equal neighbours are already merged, so the indices stay valid.
     let line = Polyline::new(piece.into_iter().map(|node| node.point).collect()).ok()?;
     Some(Road {
         way_id: way.way_id,

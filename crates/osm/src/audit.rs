@@ -1,36 +1,38 @@
 //! Checks a block before the decoder reads it.
 //!
-//! The decoder adds up differences without a check, stops at the end of the shorter of two arrays that belong
-//! together, skips fields of the wrong kind, and makes objects of a hundred bytes and more from three bytes of input.
-//! This does not matter for a correct file; with a damaged one, roads would be lost without notice or moved, or the
-//! memory would be filled. So each block is read once before it is decoded, without keeping anything, and refused
-//! when a part of it does not follow the format (OSM wiki, *PBF Format*; `osmformat.proto`).
+//! The decoder adds up differences without overflow checks, stops at the end of the shorter of two
+//! parallel arrays, skips fields of the wrong type, and creates objects of a hundred bytes and more
+//! from three bytes of input. This does not matter for a valid file. With a corrupt file, roads
+//! would silently be lost or moved, or the memory would be exhausted. Therefore each block is
+//! scanned once before it is decoded, without storing anything, and rejected if any part of it
+//! violates the format (OSM wiki, *PBF Format*; `osmformat.proto`).
 
 use crate::{
     packed::{SHORT_LIMIT, count_short},
-    wire::{self, Field, Numbers, Value, WireError, varint, zigzag},
+    wire::{self, PackedNumbers, WireError, WireField, WireValue, varint, zigzag},
 };
 
-/// The largest record of the decoder, of a relation, has some 200 bytes; lists of records grow by doubling.
+/// The memory of a record, bytes. The decoder's largest record, a relation, has about 200; lists of
+/// records grow by doubling.
 const OBJECT_BYTES: u64 = 512;
-/// A number of eight bytes in a list that grows by doubling.
+/// The memory of a number of eight bytes in a list that grows by doubling.
 const NUMBER_BYTES: u64 = 16;
-/// A text in a list that grows by doubling, without its characters.
+/// The memory of a text in a list that grows by doubling, without its characters.
 const TEXT_BYTES: u64 = 64;
-/// What is kept of a field that is not in the format: an entry of a map, with a list.
+/// The memory of a field that is not in the format: an entry of a map, with a list.
 const UNKNOWN_BYTES: u64 = 256;
 
-/// Nodes are 0, ways 1, relations 2.
+/// The largest type of a member: nodes are 0, ways 1, relations 2.
 const LAST_MEMBER_KIND: u64 = 2;
 
-/// The words for a message without a field that it must have.
+/// The error text for a message that lacks required fields.
 const INCOMPLETE: &str = "is missing required fields";
 
-/// Far more tags than any object has.
+/// The maximum number of tags, far more than any object has.
 const MAX_TAGS: u64 = 1 << 16;
 
-/// Checks a block (message `PrimitiveBlock`). Decoding it may take at most `most_bytes` of memory, by an estimate that is
-/// never too low.
+/// Checks a block (message `PrimitiveBlock`). Decoding it may take at most `most_bytes` of memory,
+/// according to an estimate that is never too low.
 pub(crate) fn audit(block: &[u8], most_bytes: u64) -> Result<(), String> {
     let mut audit =
         Audit { granularity: 100, offsets: [0; 2], texts: 0, decoded_bytes: 0, most_bytes };
@@ -47,7 +49,7 @@ pub(crate) fn audit(block: &[u8], most_bytes: u64) -> Result<(), String> {
 struct Audit {
     /// Nanodegrees in a step of the coordinates.
     granularity: i64,
-    /// Latitude and longitude of the coordinates 0, nanodegrees.
+    /// Latitude and longitude of the coordinate 0, nanodegrees.
     offsets: [i64; 2],
     texts: u64,
     decoded_bytes: u64,
@@ -55,12 +57,13 @@ struct Audit {
 }
 
 impl Audit {
-    /// The texts to which the objects refer may come after the objects.
+    /// Checks the fields outside the groups first, because the texts to which the objects refer may
+    /// follow the objects.
     fn frame(&mut self, block: &[u8]) -> Result<(), String> {
         let mut tables = 0;
         for field in wire::fields(block) {
             let field = field?;
-            let number = |value: Value<'_>| value.varint().map(u64::cast_signed);
+            let number = |value: WireValue<'_>| value.varint().map(u64::cast_signed);
             match field.number {
                 1 => {
                     tables += 1;
@@ -78,7 +81,10 @@ impl Audit {
                 17 => {
                     self.granularity = number(field.value)?;
                     if !(1..=i64::from(i32::MAX)).contains(&self.granularity) {
-                        return Err(format!("its granularity is {}", self.granularity));
+                        return Err(format!(
+                            "the granularity of the block is {}",
+                            self.granularity
+                        ));
                     }
                 }
                 18 => drop(number(field.value)?),
@@ -89,9 +95,9 @@ impl Audit {
         }
         // If a message comes in several parts, the decoder keeps only the last part.
         match tables {
-            0 => Err(format!("it {INCOMPLETE}: a table of strings")),
+            0 => Err(format!("the block {INCOMPLETE}: a string table")),
             1 => Ok(()),
-            _ => Err(format!("it has {tables} tables of strings")),
+            _ => Err(format!("the block has {tables} string tables")),
         }
     }
 
@@ -113,7 +119,7 @@ impl Audit {
             }
         }
         if lists > 1 {
-            return Err("it has two lists of dense nodes in one group".to_owned());
+            return Err("the block has two lists of dense nodes in one group".to_owned());
         }
         Ok(())
     }
@@ -133,20 +139,20 @@ impl Audit {
             }
         }
         let (Some(id), [Some(lat), Some(lon)]) = (id, place) else {
-            return Err(format!("a node {INCOMPLETE}: its id or its place"));
+            return Err(format!("a node {INCOMPLETE}: its id or its coordinates"));
         };
         let is_placed = self.nano_deg(0, lat).and(self.nano_deg(1, lon)).is_some();
-        if is_placed { Ok(()) } else { Err(format!("the place of node {id} overflows")) }
+        if is_placed { Ok(()) } else { Err(format!("the coordinates of node {id} overflow")) }
     }
 
-    /// Arrays of ids and places, a difference for each node.
+    /// Checks arrays of ids and coordinates, which contain one difference for each node.
     fn dense(&mut self, nodes: &[u8]) -> Result<(), String> {
         let mut sums = [Sum::default(); 3];
         let mut infos = 0;
         for field in wire::fields(nodes) {
             let field = field?;
             match field.number {
-                1 => self.add_up(field.value, &mut sums[0], "the ids of its nodes")?,
+                1 => self.add_up(field.value, &mut sums[0], "the ids of dense nodes")?,
                 8 | 9 => {
                     let axis = field.number as usize - 8;
                     self.add_up_places(field.value, axis, &mut sums[1 + axis])?;
@@ -161,17 +167,17 @@ impl Audit {
         }
         let [ids, lats, lons] = sums.map(|sum| sum.count);
         if (ids, ids) != (lats, lons) {
-            Err(format!("it lists {ids} nodes, {lats} latitudes and {lons} longitudes"))
+            Err(format!("the block lists {ids} nodes, {lats} latitudes and {lons} longitudes"))
         } else if infos > 1 {
-            Err("it has two lists of what is known of its nodes".to_owned())
+            Err("the block has two metadata lists for its nodes".to_owned())
         } else {
             Ok(())
         }
     }
 
-    /// Times, changesets and users: none of them is used, but the decoder adds them up.
+    /// Checks times, changesets and users. None of them is used, but the decoder adds them up.
     fn dense_info(&mut self, info: &[u8]) -> Result<(), String> {
-        const WHAT: &str = "versions or users of its nodes";
+        const WHAT: &str = "versions or users of dense nodes";
         let mut sums = [Sum::default(); 4];
         for field in wire::fields(info) {
             let field = field?;
@@ -195,7 +201,7 @@ impl Audit {
     }
 
     fn way(&mut self, way: &[u8]) -> Result<(), String> {
-        let mut own = Tagged::of("way");
+        let mut own = Tagged::for_kind("way");
         let mut nodes = Sum::default();
         let mut places = [Sum::default(); 2];
         for field in wire::fields(way) {
@@ -222,7 +228,7 @@ impl Audit {
     }
 
     fn relation(&mut self, relation: &[u8]) -> Result<(), String> {
-        let mut own = Tagged::of("relation");
+        let mut own = Tagged::for_kind("relation");
         let (mut roles, mut kinds) = (0, 0);
         let mut members = Sum::default();
         for field in wire::fields(relation) {
@@ -239,7 +245,7 @@ impl Audit {
                         kinds += 1;
                         if kind > LAST_MEMBER_KIND {
                             return Err(format!(
-                                "a member of relation {} is of kind {kind}",
+                                "a member of relation {} has the unknown type {kind}",
                                 own.id
                             ));
                         }
@@ -254,12 +260,12 @@ impl Audit {
         if [roles as u64, kinds] == [ids; 2] {
             return Ok(());
         }
-        Err(format!("relation {id} has {ids} members, {roles} roles and {kinds} kinds of members"))
+        Err(format!("relation {id} has {ids} members, {roles} roles and {kinds} member types"))
     }
 
-    /// Takes a field that ways and relations have alike, or that is not in the format.
-    fn tagged(&mut self, own: &mut Tagged, field: Field<'_>) -> Result<(), String> {
-        let Field { number, value } = field;
+    /// Checks a field that ways and relations have in common, or one that is not in the format.
+    fn tagged(&mut self, own: &mut Tagged, field: WireField<'_>) -> Result<(), String> {
+        let WireField { number, value } = field;
         match number {
             1 => (own.id, own.has_id) = (value.varint()?.cast_signed(), true),
             2 => own.keys += self.text_numbers(own.kind, own.id, value)?,
@@ -270,21 +276,21 @@ impl Audit {
         Ok(())
     }
 
-    /// Changesets are not used, but the decoder reads them.
+    /// Checks a changeset. Changesets are not used, but the decoder reads them.
     fn other(&mut self, object: &[u8]) -> Result<(), String> {
         for field in wire::fields(object) {
             let field = field?;
             match (field.number, field.value) {
-                (1, Value::Varint(_)) => {}
+                (1, WireValue::Varint(_)) => {}
                 (2 | 3 | 8..=10, value) => self.count(value)?,
-                (4, Value::Bytes(info)) => self.message(info)?,
+                (4, WireValue::Bytes(info)) => self.message(info)?,
                 _ => self.spend(UNKNOWN_BYTES)?,
             }
         }
         Ok(())
     }
 
-    /// A message of single values that are not used.
+    /// Checks a message of single values that are not used.
     fn message(&mut self, message: &[u8]) -> Result<(), String> {
         self.spend(OBJECT_BYTES)?;
         for field in wire::fields(after_plain_numbers(message)) {
@@ -299,7 +305,7 @@ impl Audit {
     /// Adds up differences.
     fn add_up<'a>(
         &mut self,
-        value: Value<'a>,
+        value: WireValue<'a>,
         sum: &mut Sum<'a>,
         what: &str,
     ) -> Result<(), String> {
@@ -312,43 +318,44 @@ impl Audit {
         Ok(self.spend_on_numbers(value)?)
     }
 
-    /// Adds up differences of places along an axis.
+    /// Adds up differences of coordinates along one axis.
     fn add_up_places<'a>(
         &mut self,
-        value: Value<'a>,
+        value: WireValue<'a>,
         axis: usize,
         sum: &mut Sum<'a>,
     ) -> Result<(), String> {
-        // What lies between two places that do not overflow does not, either.
+        // If neither extreme overflows, nothing between them does.
         let is_placed =
             |most: i64| [most, -most].iter().all(|&at| self.nano_deg(axis, at).is_some());
         if !sum.put_off(value, is_placed) {
             sum.catch_up();
             for step in value.numbers()? {
                 let nano_deg = sum.add(zigzag(step?)).and_then(|at| self.nano_deg(axis, at));
-                nano_deg.ok_or("places of its nodes overflow")?;
+                nano_deg.ok_or("coordinates of nodes overflow")?;
             }
         }
         Ok(self.spend_on_numbers(value)?)
     }
 
-    /// Checks that the table holds the texts with these numbers; says how many there are.
-    fn text_numbers(&mut self, of: &str, id: i64, value: Value<'_>) -> Result<u64, String> {
+    /// Checks that the table contains the texts with these numbers, and returns how many numbers
+    /// there are.
+    fn text_numbers(&mut self, of: &str, id: i64, value: WireValue<'_>) -> Result<u64, String> {
         let mut count = 0;
         for number in value.numbers()? {
             let number = number?;
             count += 1;
             if number >= self.texts {
                 let texts = self.texts;
-                return Err(format!("a tag of {of} {id} is string {number} of a table of {texts}"));
+                return Err(format!("a tag of {of} {id} refers to string {number} of {texts}"));
             }
         }
         self.spend_on_numbers(value)?;
         Ok(count)
     }
 
-    fn count(&mut self, value: Value<'_>) -> Result<(), String> {
-        if let Value::Bytes(bytes) = value
+    fn count(&mut self, value: WireValue<'_>) -> Result<(), String> {
+        if let WireValue::Bytes(bytes) = value
             && count_short(bytes).is_some()
         {
             return Ok(self.spend_on_numbers(value)?);
@@ -359,16 +366,16 @@ impl Audit {
         Ok(self.spend_on_numbers(value)?)
     }
 
-    /// Each number takes a byte at least.
-    fn spend_on_numbers(&mut self, value: Value<'_>) -> Result<(), WireError> {
-        let most = if let Value::Bytes(bytes) = value { bytes.len() as u64 } else { 1 };
+    /// Counts the memory of a list of numbers; each number takes at least one byte of input.
+    fn spend_on_numbers(&mut self, value: WireValue<'_>) -> Result<(), WireError> {
+        let most = if let WireValue::Bytes(bytes) = value { bytes.len() as u64 } else { 1 };
         self.spend(most * NUMBER_BYTES)
     }
 
     fn spend(&mut self, bytes: u64) -> Result<(), WireError> {
         self.decoded_bytes += bytes;
         if self.decoded_bytes > self.most_bytes {
-            return Err("decoding it takes more memory than a block may");
+            return Err("decoding the block takes more memory than allowed");
         }
         Ok(())
     }
@@ -378,7 +385,7 @@ impl Audit {
     }
 }
 
-/// What ways and relations have alike.
+/// The fields that ways and relations have in common.
 struct Tagged {
     kind: &'static str,
     id: i64,
@@ -388,11 +395,11 @@ struct Tagged {
 }
 
 impl Tagged {
-    fn of(kind: &'static str) -> Self {
+    fn for_kind(kind: &'static str) -> Self {
         Self { kind, id: 0, has_id: false, keys: 0, values: 0 }
     }
 
-    /// Returns the id.
+    /// Checks the fields and returns the id.
     fn check(&self) -> Result<i64, String> {
         let &Self { kind, id, has_id, keys, values } = self;
         if !has_id {
@@ -407,7 +414,8 @@ impl Tagged {
     }
 }
 
-/// What follows the single numbers in the fields 1 to 6 with which a message begins: nearly always nothing.
+/// Returns the rest after the single numbers in the fields 1 to 6 with which a message begins; it
+/// is nearly always empty.
 fn after_plain_numbers(mut message: &[u8]) -> &[u8] {
     while let [0x08 | 0x10 | 0x18 | 0x20 | 0x28 | 0x30, after @ ..] = message {
         let mut rest = after;
@@ -419,19 +427,21 @@ fn after_plain_numbers(mut message: &[u8]) -> &[u8] {
     message
 }
 
-/// A sum of differences and how many there were.
+/// A sum of differences, and their number.
 #[derive(Default, Clone, Copy)]
 struct Sum<'a> {
     total: i64,
     count: u64,
-    /// Differences that were counted and are not added up yet: nobody asks for their sum, unless more of them follow.
+    /// Differences that are counted but not yet added up: their sum is needed only if more of them
+    /// follow.
     later: &'a [u8],
 }
 
 impl<'a> Sum<'a> {
-    /// Only counts the first differences, if they are so small that no sum of them can overflow, and `is_right` with what it is at most.
-    fn put_off(&mut self, value: Value<'a>, is_right: impl Fn(i64) -> bool) -> bool {
-        let Value::Bytes(bytes) = value else { return false };
+    /// Only counts the first differences if they are so small that no sum of them can overflow, and
+    /// if `is_right` accepts the largest possible sum. Returns whether they are deferred.
+    fn put_off(&mut self, value: WireValue<'a>, is_right: impl Fn(i64) -> bool) -> bool {
+        let WireValue::Bytes(bytes) = value else { return false };
         let Some(count) = count_short(bytes).filter(|_| self.count == 0) else { return false };
         let most = count.checked_mul(SHORT_LIMIT / 2).and_then(|most| i64::try_from(most).ok());
         let is_put_off = most.is_some_and(is_right);
@@ -441,9 +451,10 @@ impl<'a> Sum<'a> {
         is_put_off
     }
 
-    /// Adds up what was put off, which cannot overflow.
+    /// Adds up the deferred differences, which cannot overflow.
     fn catch_up(&mut self) {
-        let steps = Numbers::of(std::mem::take(&mut self.later)).map_while(Result::ok);
+        let steps =
+            PackedNumbers::from_packed(std::mem::take(&mut self.later)).map_while(Result::ok);
         self.total += steps.map(zigzag).sum::<i64>();
     }
 

@@ -1,7 +1,7 @@
-//! One blob: taken apart, unpacked within its limit, and handed to the decoder.
+//! One blob: parsed, unpacked within its limit, and passed to the decoder.
 //!
-//! The decoder could read blobs itself, but where a compressed block is cut off or too large, it would use the first
-//! part without an error.
+//! The decoder could read blobs itself. However, if a compressed block is truncated or too large,
+//! the decoder uses the first part without an error.
 
 use std::io::Read;
 
@@ -10,18 +10,18 @@ use zlib_rs::{Inflate, InflateFlush, Status};
 
 use crate::wire::{self, WireError, push_varint};
 
-/// A blob header is smaller than this.
+/// A blob header must be smaller than this.
 ///
-/// These two limits are those of the OSM wiki, *PBF Format*, "File format".
+/// Both limits come from the OSM wiki, *PBF Format*, "File format".
 pub(crate) const MAX_BLOB_HEADER_BYTES: u64 = 64 << 10;
-/// A blob is at most this large, and unpacked smaller than this.
+/// A blob may be at most this large. Unpacked, it must be smaller than this.
 pub(crate) const MAX_BLOB_BYTES: u64 = 32 << 20;
 
-/// Why a blob was refused.
+/// The reason why a blob is rejected.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum BlobRefusal {
     Damaged(String),
-    /// It is packed by this method.
+    /// The blob is compressed with this method, which is not supported.
     Compression(&'static str),
 }
 
@@ -31,7 +31,7 @@ impl From<WireError> for BlobRefusal {
     }
 }
 
-/// What a blob header says.
+/// The contents of a blob header.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct BlobHeader {
     pub(crate) kind: String,
@@ -39,7 +39,7 @@ pub(crate) struct BlobHeader {
 }
 
 impl BlobHeader {
-    /// Reads the message `BlobHeader` (`fileformat.proto`).
+    /// Parses the message `BlobHeader` (`fileformat.proto`).
     pub(crate) fn parse(message: &[u8]) -> Result<Self, BlobRefusal> {
         let (mut kind, mut size) = (None, None);
         for field in wire::fields(message) {
@@ -50,19 +50,20 @@ impl BlobHeader {
                 _ => {}
             }
         }
-        let kind = kind.ok_or("its header names no type")?;
-        let kind = str::from_utf8(kind).map_err(|_| "the type that its header names is no text")?;
-        let size = size.ok_or("its header gives no size")?;
+        let kind = kind.ok_or("the blob header has no type")?;
+        let kind =
+            str::from_utf8(kind).map_err(|_| "the type in the blob header is not valid UTF-8")?;
+        let size = size.ok_or("the blob header has no size")?;
         match u64::try_from(size) {
             Ok(blob_bytes) if blob_bytes <= MAX_BLOB_BYTES => {
                 Ok(Self { kind: kind.to_owned(), blob_bytes })
             }
-            _ => Err(BlobRefusal::Damaged(format!("it claims to be {size} bytes long"))),
+            _ => Err(BlobRefusal::Damaged(format!("the blob claims to be {size} bytes long"))),
         }
     }
 }
 
-/// Takes the block out of a blob (message `Blob`), unpacked. It must be smaller than `limit_bytes`.
+/// Unpacks the block in a blob (message `Blob`). The block must be smaller than `limit_bytes`.
 pub(crate) fn unpack(blob: &[u8], limit_bytes: u64) -> Result<Vec<u8>, BlobRefusal> {
     let (mut data, mut promised) = (None, None);
     for field in wire::fields(blob) {
@@ -71,16 +72,17 @@ pub(crate) fn unpack(blob: &[u8], limit_bytes: u64) -> Result<Vec<u8>, BlobRefus
             1 | 3..=7 => {
                 let earlier = data.replace((field.number, field.value.bytes()?));
                 if earlier.is_some() {
-                    return Err(BlobRefusal::Damaged("it holds its data twice".into()));
+                    return Err(BlobRefusal::Damaged("the blob contains its data twice".into()));
                 }
             }
             2 => promised = Some(field.value.varint()?.cast_signed()),
             _ => {}
         }
     }
-    let (method, data) = data.ok_or("it holds no data")?;
+    let (method, data) = data.ok_or("the blob contains no data")?;
     let too_large = |size: i64| {
-        let reason = format!("unpacked it is {size} bytes long, of at most {}", limit_bytes - 1);
+        let reason =
+            format!("the unpacked blob is {size} bytes long; the limit is {}", limit_bytes - 1);
         Err(BlobRefusal::Damaged(reason))
     };
     let limit = limit_bytes.cast_signed();
@@ -99,22 +101,23 @@ pub(crate) fn unpack(blob: &[u8], limit_bytes: u64) -> Result<Vec<u8>, BlobRefus
     };
     match promised {
         Some(promised) if promised != block.len() as i64 => Err(BlobRefusal::Damaged(format!(
-            "it promises {promised} bytes and unpacks to {}",
+            "the blob promises {promised} bytes but unpacks to {}",
             block.len()
         ))),
         _ => Ok(block),
     }
 }
 
-/// Unpacks a whole zlib stream of at most `most_bytes`; its checksum must be right and nothing may follow it.
+/// Unpacks a complete zlib stream of at most `most_bytes`. Its checksum must be right, and nothing
+/// may follow it.
 fn inflate(packed: &[u8], most_bytes: usize) -> Result<Vec<u8>, BlobRefusal> {
-    /// Deflate unpacks one byte to at most 1032 (zlib, *Technical Details*), so a buffer of this size is always large
-    /// enough.
+    /// Deflate unpacks one byte to at most 1032 bytes (zlib, *Technical Details*), so a buffer of
+    /// this size always suffices.
     const MOST_GROWTH: usize = 1032;
-    /// 2^15 bytes, the most that a zlib stream can name.
+    /// The largest window of a zlib stream: 2^15 bytes.
     const LARGEST_WINDOW: u8 = 15;
     let damaged = |reason: &str| Err(BlobRefusal::Damaged(reason.to_owned()));
-    // One byte more than allowed, so that a stream that is too long can be noticed.
+    // One byte more than allowed, so that a stream that is too long is noticed.
     let room = most_bytes.min(packed.len().saturating_mul(MOST_GROWTH)) + 1;
     let mut block = vec![0; room];
     let mut stream = Inflate::new(true, LARGEST_WINDOW);
@@ -125,27 +128,29 @@ fn inflate(packed: &[u8], most_bytes: usize) -> Result<Vec<u8>, BlobRefusal> {
         let unpacked = stream.total_out() as usize;
         match status {
             Ok(Status::StreamEnd) if stream.total_in() < packed.len() as u64 => {
-                return damaged("its packed data goes on after its end");
+                return damaged("the compressed data continues after its end");
             }
             Ok(Status::StreamEnd) if unpacked <= most_bytes => {
                 block.truncate(unpacked);
                 return Ok(block);
             }
             Ok(_) if unpacked > most_bytes => {
-                return damaged(&format!("it unpacks to more than {most_bytes} bytes"));
+                return damaged(&format!("the blob unpacks to more than {most_bytes} bytes"));
             }
             Ok(_) if (stream.total_in(), stream.total_out()) == before => {
-                return damaged("its packed data is cut off");
+                return damaged("the compressed data is truncated");
             }
             Ok(_) => {}
             Err(_) => {
-                return damaged("its packed data is no zlib stream, or its checksum is wrong");
+                return damaged(
+                    "the compressed data is not a valid zlib stream, or its checksum is wrong",
+                );
             }
         }
     }
 }
 
-/// Hands a block to the decoder, as a raw blob of its own.
+/// Passes a block to the decoder as a raw blob.
 pub(crate) fn decoder_blob(kind: &str, block: &[u8]) -> Result<osmpbf::Blob, osmpbf::Error> {
     let mut raw = vec![0x0a];
     push_varint(&mut raw, block.len() as u64);

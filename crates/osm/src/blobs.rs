@@ -1,4 +1,4 @@
-//! The file as a checked list of blobs, and the decoding of blobs in parallel.
+//! The file as a checked list of blobs, and the parallel decoding of blobs.
 
 use std::{
     io::{self, BufReader, Read, Seek, SeekFrom},
@@ -13,38 +13,41 @@ use crate::{
     ReadOsmError,
     audit::audit,
     blob::{BlobHeader, BlobRefusal, MAX_BLOB_BYTES, MAX_BLOB_HEADER_BYTES, decoder_blob, unpack},
-    block::Block,
+    block::AuditedBlock,
     failed::Failed,
     formats::{START_BYTES, other_format},
 };
 
-/// A header is a few hundred bytes; unpacked it must be smaller than this.
+/// An unpacked header must be smaller than this; real headers have a few hundred bytes.
 const MAX_HEADER_BLOCK_BYTES: u64 = 1 << 20;
 
-/// What one block may take of the memory.
+/// The memory limits of one block.
 #[derive(Debug, Clone, Copy)]
 #[expect(clippy::struct_field_names, reason = "units are in names")]
 struct Limits {
     unpacked_bytes: u64,
     decoded_bytes: u64,
-    /// Bytes for what is found in it.
+    /// The limit for everything found in the block, bytes.
     found_bytes: u64,
 }
 
-/// Limits of blocks that are decoded side by side: an ordinary one, of 8000 objects, takes 1, 10 and 3 MB.
+/// The limits of blocks that are decoded in parallel. An ordinary block, of 8000 objects, takes 1,
+/// 10 and 3 MB.
 ///
-/// 16 MiB is what the format asks of writers (OSM wiki, *PBF Format*, "File format"); twice that is what it allows.
+/// 16 MiB is what the format recommends to writers (OSM wiki, *PBF Format*, "File format"); it
+/// allows twice as much.
 const SIDE_BY_SIDE: Limits =
     Limits { unpacked_bytes: 16 << 20, decoded_bytes: 64 << 20, found_bytes: 16 << 20 };
 
-/// Limits of a block that is decoded alone: one of 32 MiB of dense nodes, the most that a writer could mean, takes 360 MiB.
+/// The limits of a block that is decoded alone. A block of 32 MiB of dense nodes, the most that a
+/// writer could produce in good faith, takes 360 MiB.
 const ALONE: Limits =
     Limits { unpacked_bytes: MAX_BLOB_BYTES, decoded_bytes: 512 << 20, found_bytes: 256 << 20 };
 
-/// An extract whose framing and header have been checked from end to end, before any work is put into it.
+/// An extract whose framing and header were checked from end to end before any other work.
 ///
 /// ```text
-///  ┌ u32, big-endian: size of … ┐┌ BlobHeader: type, size of … ┐┌ Blob: compressed block ┐ and so on to the end
+///  ┌ u32, big-endian: size of … ┐┌ BlobHeader: type, size of … ┐┌ Blob: compressed block ┐ … to the end
 /// ```
 ///
 /// Source: OSM wiki, *PBF Format*, "File format".
@@ -53,33 +56,33 @@ pub(crate) struct BlobFile<R> {
     source: BufReader<R>,
     len_bytes: u64,
     data: Vec<BlobPlace>,
-    pub(crate) header: Header,
+    pub(crate) header: ExtractHeader,
     pub(crate) blobs_passed_over: u64,
 }
 
-/// What the file's header says.
+/// The contents of the file's header.
 #[derive(Debug, Default, Serialize, Deserialize)]
-pub(crate) struct Header {
+pub(crate) struct ExtractHeader {
     pub(crate) bounds_deg: Option<[f64; 4]>,
     pub(crate) generator: Option<String>,
     pub(crate) timestamp_s: Option<i64>,
 }
 
-/// Where a blob lies.
+/// The position of a blob in the file.
 #[derive(Debug, Clone, Copy)]
 struct BlobPlace {
-    /// Where the blob's frame begins in the file.
+    /// The offset of the blob's frame in the file.
     offset: u64,
-    /// Where the blob itself begins in the file.
+    /// The offset of the blob itself in the file.
     blob_offset: u64,
     blob_bytes: u64,
 }
 
-/// What the decoding of blobs needs from the caller.
+/// The inputs that the decoding of blobs needs from the caller.
 pub(crate) struct Decoding<'a> {
     pub(crate) pool: &'a rayon::ThreadPool,
     pub(crate) should_stop: &'a (dyn Fn() -> bool + Sync),
-    /// Is told after every few blobs how many bytes of them were read since the start.
+    /// Called after every few blobs with the number of bytes of blobs read since the start.
     pub(crate) on_bytes: &'a dyn Fn(u64),
 }
 
@@ -90,7 +93,7 @@ impl Decoding<'_> {
     }
 }
 
-/// What was found in a blob, or the blob if it could not be looked at beside others.
+/// The findings in a blob, or the blob itself if it could not be scanned in parallel with others.
 struct Scanned<T> {
     number: usize,
     bytes: u64,
@@ -117,7 +120,7 @@ impl<R: Read + Seek> BlobFile<R> {
             source: BufReader::new(source),
             len_bytes,
             data: Vec::new(),
-            header: Header::default(),
+            header: ExtractHeader::default(),
             blobs_passed_over: 0,
         };
         opened.list_parts()?;
@@ -141,7 +144,7 @@ impl<R: Read + Seek> BlobFile<R> {
                     return Err(self.damaged(part.offset, "data comes before the file's header"));
                 }
                 "OSMData" => self.data.push(part),
-                // The format asks readers to pass over blobs of other types.
+                // The format requires readers to skip blobs of other types.
                 _ => self.blobs_passed_over += 1,
             }
             let skipped = self.source.seek_relative(part.blob_bytes.cast_signed());
@@ -150,14 +153,15 @@ impl<R: Read + Seek> BlobFile<R> {
         if headers > 0 { Ok(()) } else { Err(self.damaged(0, "the file has no header")) }
     }
 
-    /// Reads the frame before a blob and leaves the source at the start of the blob, which lies inside the file.
+    /// Reads the frame before a blob and leaves the source at the start of the blob. The blob ends
+    /// within the file.
     fn read_frame(&mut self, offset: u64) -> Result<(BlobPlace, String), ReadOsmError> {
         let mut size = [0; 4];
         self.check_end(offset, offset + 4)?;
         self.source.read_exact(&mut size).map_err(|source| self.unreadable(source))?;
         let header_bytes = u64::from(u32::from_be_bytes(size));
         if header_bytes >= MAX_BLOB_HEADER_BYTES {
-            let reason = format!("its header claims to be {header_bytes} bytes long");
+            let reason = format!("the blob header claims to be {header_bytes} bytes long");
             return Err(self.damaged(offset, reason));
         }
         let blob_offset = offset + 4 + header_bytes;
@@ -170,7 +174,7 @@ impl<R: Read + Seek> BlobFile<R> {
         Ok((BlobPlace { offset, blob_offset, blob_bytes }, kind))
     }
 
-    /// Reads a blob from where the source is.
+    /// Reads a blob from the current position of the source.
     fn read_part(&mut self, part: BlobPlace) -> Result<Vec<u8>, ReadOsmError> {
         let mut blob = vec![0; part.blob_bytes as usize];
         self.source.read_exact(&mut blob).map_err(|source| self.unreadable(source))?;
@@ -188,7 +192,7 @@ impl<R: Read + Seek> BlobFile<R> {
             .map_err(|refusal| self.refused(part.offset, refusal))?;
         self.check_features(&header)?;
         self.header = if is_first {
-            Header {
+            ExtractHeader {
                 bounds_deg: header
                     .bbox()
                     .map(|bbox| [bbox.left, bbox.bottom, bbox.right, bbox.top])
@@ -197,8 +201,8 @@ impl<R: Read + Seek> BlobFile<R> {
                 timestamp_s: header.osmosis_replication_timestamp(),
             }
         } else {
-            // Several files joined together: each header describes only its own part.
-            Header::default()
+            // Several concatenated files: each header describes only its own part.
+            ExtractHeader::default()
         };
         Ok(())
     }
@@ -209,7 +213,7 @@ impl<R: Read + Seek> BlobFile<R> {
             match feature.as_str() {
                 "OsmSchema-V0.6" | "DenseNodes" | "LocationsOnWays" => {}
                 "HistoricalInformation" => {
-                    let reason = format!("it asks its readers for {feature:?}");
+                    let reason = format!("the file requires {feature:?}");
                     return Err(ReadOsmError::History { path: path(), reason });
                 }
                 _ => {
@@ -220,31 +224,33 @@ impl<R: Read + Seek> BlobFile<R> {
         Ok(())
     }
 
-    /// How many data blobs there are.
+    /// Returns the number of data blobs.
     pub(crate) fn len(&self) -> usize {
         self.data.len()
     }
 
-    /// Size of the file.
+    /// Returns the size of the file, bytes.
     pub(crate) fn len_bytes(&self) -> u64 {
         self.len_bytes
     }
 
-    /// Size of each data blob, packed.
+    /// Returns the packed size of each data blob, bytes.
     pub(crate) fn sizes(&self) -> impl Iterator<Item = u64> + Clone {
         self.data.iter().map(|part| part.blob_bytes)
     }
 
-    /// Size of the data blob with this number, packed.
+    /// Returns the packed size of the data blob with this number, bytes.
     pub(crate) fn size(&self, number: usize) -> u64 {
         self.data.get(number).map_or(0, |part| part.blob_bytes)
     }
 
-    /// Unpacks and checks the data blobs with these numbers in parallel and hands on what `scan` makes of each block, in their
-    /// order. `scan` is told how many bytes it may find, and fails beyond.
+    /// Unpacks and checks the data blobs with these numbers in parallel, and passes the result of
+    /// `scan` for each block to `take`, in the order of the blobs. `scan` receives the number of
+    /// bytes that its findings may take, and fails beyond it.
     ///
-    /// A few blobs per thread are held at a time. While they are looked at, this thread hands on what was found in those before, and reads
-    /// those that follow. An error from `take` ends the reading.
+    /// A few blobs per thread are in memory at a time. While they are scanned, this thread delivers
+    /// the findings of the previous blobs and reads the next ones. An error from `take` ends the
+    /// reading.
     pub(crate) fn for_each_block<T: Send>(
         &mut self,
         numbers: &[usize],
@@ -287,7 +293,8 @@ impl<R: Read + Seek> BlobFile<R> {
             for Scanned { number, bytes, found } in waiting {
                 let found = match found {
                     Ok(found) => found,
-                    // Too large to be decoded beside others, or damaged: decoding it alone shows which.
+                    // The blob is too large to be decoded in parallel with others, or corrupt;
+                    // decoding it alone shows which.
                     Err(blob) => {
                         decoding.check_stop(&self.path)?;
                         let offset = self.data[number].offset;
@@ -321,13 +328,18 @@ impl<R: Read + Seek> BlobFile<R> {
         Ok(blobs)
     }
 
-    /// Whether the data blob with this number seems to be such a block. It is not checked.
-    pub(crate) fn seems(&mut self, number: usize, is_such: impl Fn(&Block<'_>) -> bool) -> bool {
+    /// Whether the data blob with this number seems to contain a block that `is_such` accepts. The
+    /// block is not checked.
+    pub(crate) fn seems(
+        &mut self,
+        number: usize,
+        is_such: impl Fn(&AuditedBlock<'_>) -> bool,
+    ) -> bool {
         let Some(&part) = self.data.get(number) else { return false };
         let blob = self.source.seek(SeekFrom::Start(part.blob_offset)).ok();
         let blob = blob.and_then(|_| self.read_part(part).ok());
         let block = blob.and_then(|blob| unpack(&blob, SIDE_BY_SIDE.unpacked_bytes).ok());
-        block.is_some_and(|block| is_such(&Block::new(&block)))
+        block.is_some_and(|block| is_such(&AuditedBlock::new(&block)))
     }
 
     fn check_end(&self, offset: u64, end: u64) -> Result<(), ReadOsmError> {
@@ -361,37 +373,37 @@ fn header_block(block: &[u8]) -> Result<HeaderBlock, BlobRefusal> {
     decoder_blob("OSMHeader", block).and_then(|blob| blob.to_headerblock()).map_err(of_decoder)
 }
 
-/// Unpacks a blob and checks what it holds.
+/// Unpacks a blob and checks its block.
 fn checked_block(blob: &[u8], limits: Limits) -> Result<Vec<u8>, BlobRefusal> {
     let block = unpack(blob, limits.unpacked_bytes)?;
     audit(&block, limits.decoded_bytes).map_err(BlobRefusal::Damaged)?;
     Ok(block)
 }
 
-/// Hands a block that was checked to the decoder.
+/// Passes a checked block to the decoder.
 pub(crate) fn decode(block: &[u8]) -> Result<PrimitiveBlock, BlobRefusal> {
     let blob = decoder_blob("OSMData", block).map_err(of_decoder)?;
     blob.to_primitiveblock().map_err(of_decoder)
 }
 
-/// The reason that is given for kinds of errors that the decoder does not have yet.
-const UNREADABLE: &str = "its contents cannot be decoded";
+/// The reason reported for kinds of errors that the decoder does not have yet.
+const UNREADABLE: &str = "the contents of the blob cannot be decoded";
 
 fn of_decoder(error: osmpbf::Error) -> BlobRefusal {
     BlobRefusal::Damaged(match error.into_kind() {
-        ErrorKind::Io(error) => format!("it ends early: {error}"),
+        ErrorKind::Io(error) => format!("the blob ends early: {error}"),
         ErrorKind::Protobuf { err, .. } => err.to_string(),
-        ErrorKind::StringtableUtf8 { index, .. } => format!("its string {index} is no text"),
+        ErrorKind::StringtableUtf8 { index, .. } => format!("string {index} is not valid UTF-8"),
         ErrorKind::StringtableIndexOutOfBounds { index } => {
-            format!("it names string {index}, which its table does not have")
+            format!("the block refers to string {index}, which is not in its string table")
         }
         ErrorKind::Blob(error) => match error {
-            BlobError::InvalidHeaderSize => "its header gives no size".to_owned(),
+            BlobError::InvalidHeaderSize => "the blob header has no size".to_owned(),
             BlobError::HeaderTooBig { size } => {
-                format!("its header claims to be {size} bytes long")
+                format!("the blob header claims to be {size} bytes long")
             }
-            BlobError::MessageTooBig { size } => format!("it is {size} bytes long"),
-            BlobError::Empty => "it holds no data".to_owned(),
+            BlobError::MessageTooBig { size } => format!("the blob is {size} bytes long"),
+            BlobError::Empty => "the blob contains no data".to_owned(),
             _ => UNREADABLE.to_owned(),
         },
         _ => UNREADABLE.to_owned(),
@@ -400,6 +412,6 @@ fn of_decoder(error: osmpbf::Error) -> BlobRefusal {
 
 fn is_on_earth(&[west, south, east, north]: &[f64; 4]) -> bool {
     let is_lon = |deg: f64| (-180.0..=180.0).contains(&deg);
-    // For a box across the antimeridian, west is larger than east.
+    // In a bounding box across the antimeridian, west is larger than east.
     is_lon(west) && is_lon(east) && -90.0 <= south && south <= north && north <= 90.0
 }

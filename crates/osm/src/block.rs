@@ -1,45 +1,46 @@
-//! A block read in place: nodes and ways without a copy of each.
+//! A block that is read in place: nodes and ways are not copied.
 //!
-//! Only blocks that were audited are read here. So all fields are of their kinds, arrays that belong together are equally long, sums do not
-//! overflow, and every tag is in the table.
+//! Only audited blocks are read here. So all fields have the right type, parallel arrays have the
+//! same length, sums do not overflow, and every tag is in the table.
 
 use std::{cell::OnceCell, ops::ControlFlow};
 
 use crate::{
     location::{Location, location_from_nano},
     object_info::{Info, to_version},
-    packed::Packed,
-    wire::{self, Value, zigzag},
+    packed::PackedField,
+    wire::{self, WireValue, zigzag},
 };
 
-/// A block (message `PrimitiveBlock`) that was audited.
-pub(crate) struct Block<'a> {
+/// An audited block (message `PrimitiveBlock`).
+pub(crate) struct AuditedBlock<'a> {
     texts: &'a [u8],
     groups: Vec<&'a [u8]>,
     /// Nanodegrees in a step of the coordinates.
     granularity: i64,
-    /// Latitude and longitude of the coordinates 0, nanodegrees.
+    /// Latitude and longitude of the coordinate 0, nanodegrees.
     offsets: [i64; 2],
-    /// Read when they are asked for.
+    /// The dense nodes, which are read at the first use.
     dense: OnceCell<Vec<DenseNodes<'a>>>,
 }
 
-/// The nodes of a list: their ids as numbers, the rest as it stands in the block.
+/// The nodes of a dense list: their ids as numbers, the rest as it is in the block.
 pub(crate) struct DenseNodes<'a> {
     pub(crate) ids: Vec<i64>,
-    /// Steps of latitudes and longitudes.
-    places: [Packed<'a>; 2],
-    /// May be fewer than the nodes, or none; so may the marks of those that are not deleted.
-    pub(crate) versions: Packed<'a>,
-    pub(crate) visible: Packed<'a>,
+    /// Latitudes and longitudes in steps.
+    places: [PackedField<'a>; 2],
+    /// The versions. There may be fewer versions than nodes, or none; the same applies to the marks
+    /// of visible nodes.
+    pub(crate) versions: PackedField<'a>,
+    pub(crate) visible: PackedField<'a>,
 }
 
 impl<'a> DenseNodes<'a> {
-    fn of(nodes: &'a [u8]) -> Self {
-        let [ids, lats, lons] = [1, 8, 9].map(|number| Packed::of(nodes, number));
+    fn from_message(nodes: &'a [u8]) -> Self {
+        let [ids, lats, lons] = [1, 8, 9].map(|number| PackedField::from_message(nodes, number));
         let info = parts(nodes, 5).last().unwrap_or_default();
-        let [versions, visible] = [1, 6].map(|number| Packed::of(info, number));
-        // Of its size at once: a list that grows asks for room before each number.
+        let [versions, visible] = [1, 6].map(|number| PackedField::from_message(info, number));
+        // Allocated at full size: a growing list checks for space before each number.
         let mut known = vec![0; ids.len()];
         known.iter_mut().zip(ids.sums()).for_each(|(id, sum)| *id = sum);
         Self { ids: known, places: [lats, lons], versions, visible }
@@ -51,22 +52,22 @@ pub(crate) struct BlockNode {
     pub(crate) id: i64,
     pub(crate) lon_nano_deg: i64,
     pub(crate) lat_nano_deg: i64,
-    /// 0 if it is not known.
+    /// The version; 0 if it is unknown.
     pub(crate) version: i32,
 }
 
 /// A way of a block.
 pub(crate) struct BlockWay<'b, 'a> {
-    block: &'b Block<'a>,
+    block: &'b AuditedBlock<'a>,
     pub(crate) id: i64,
     pub(crate) info: Info,
-    keys: Packed<'a>,
-    values: Packed<'a>,
-    refs: Packed<'a>,
-    places: [Packed<'a>; 2],
+    keys: PackedField<'a>,
+    values: PackedField<'a>,
+    refs: PackedField<'a>,
+    places: [PackedField<'a>; 2],
 }
 
-impl<'a> Block<'a> {
+impl<'a> AuditedBlock<'a> {
     pub(crate) fn new(message: &'a [u8]) -> Self {
         let mut block = Self {
             texts: &[],
@@ -77,67 +78,73 @@ impl<'a> Block<'a> {
         };
         for field in wire::fields(message).flatten() {
             match (field.number, field.value) {
-                (1, Value::Bytes(texts)) => block.texts = texts,
-                (2, Value::Bytes(group)) => block.groups.push(group),
-                (17, Value::Varint(number)) => block.granularity = number.cast_signed(),
-                (19, Value::Varint(number)) => block.offsets[0] = number.cast_signed(),
-                (20, Value::Varint(number)) => block.offsets[1] = number.cast_signed(),
+                (1, WireValue::Bytes(texts)) => block.texts = texts,
+                (2, WireValue::Bytes(group)) => block.groups.push(group),
+                (17, WireValue::Varint(number)) => block.granularity = number.cast_signed(),
+                (19, WireValue::Varint(number)) => block.offsets[0] = number.cast_signed(),
+                (20, WireValue::Varint(number)) => block.offsets[1] = number.cast_signed(),
                 _ => {}
             }
         }
         block
     }
 
-    /// The groups of objects (messages `PrimitiveGroup`).
+    /// Returns the groups of objects (messages `PrimitiveGroup`).
     pub(crate) fn groups(&self) -> &[&'a [u8]] {
         &self.groups
     }
 
-    /// The texts of tags, by number.
+    /// Returns the texts of tags, by number.
     pub(crate) fn texts(&self) -> Vec<&'a [u8]> {
         parts(self.texts, 1).collect()
     }
 
-    /// The numbers of the fields with its objects, which say of what kind these are.
+    /// Returns the field numbers of the block's objects, which identify their types.
     fn kinds(&self) -> impl Iterator<Item = u32> {
         self.groups.iter().flat_map(|group| wire::fields(group)).flatten().map(|field| field.number)
     }
 
-    /// Whether there is something else than nodes in it.
+    /// Whether the block contains anything other than nodes.
     pub(crate) fn has_others_than_nodes(&self) -> bool {
         self.kinds().any(|kind| !matches!(kind, 1 | 2))
     }
 
-    /// Whether there is a relation in it.
+    /// Whether the block contains a relation.
     pub(crate) fn has_relations(&self) -> bool {
         self.kinds().any(|kind| kind == 4)
     }
 
-    /// Whether there are ways in it, and nothing else.
+    /// Whether the block contains ways and nothing else.
     pub(crate) fn has_ways_alone(&self) -> bool {
         let mut kinds = self.kinds();
         kinds.next() == Some(3) && kinds.all(|kind| kind == 3)
     }
 
-    /// How many nodes there are.
+    /// Returns the number of nodes.
     pub(crate) fn nodes_count(&self) -> u64 {
         let dense = self.dense().iter().map(|nodes| nodes.ids.len() as u64).sum::<u64>();
         dense + self.groups.iter().map(|group| parts(group, 1).count() as u64).sum::<u64>()
     }
 
-    /// The nodes in lists, group by group. Of a block that was audited no group has two lists.
+    /// Returns the nodes in dense lists, group by group. In an audited block, no group has two
+    /// lists.
     pub(crate) fn dense(&self) -> &[DenseNodes<'a>] {
         self.dense.get_or_init(|| {
-            self.groups.iter().flat_map(|group| parts(group, 2)).map(DenseNodes::of).collect()
+            self.groups
+                .iter()
+                .flat_map(|group| parts(group, 2))
+                .map(DenseNodes::from_message)
+                .collect()
         })
     }
 
-    /// The nodes that are not in lists.
+    /// Returns the nodes outside dense lists.
     pub(crate) fn plain_nodes(&self) -> impl Iterator<Item = BlockNode> {
         self.groups.iter().flat_map(|group| parts(group, 1)).map(|node| self.node(node))
     }
 
-    /// Hands on the nodes for which `find` finds something by their ids, of each group first those in lists, until `take` wants no more.
+    /// Passes the nodes for whose ids `find` returns something to `take`, until `take` wants no
+    /// more. In each group, dense nodes come first.
     pub(crate) fn try_each_node<T>(
         &self,
         mut find: impl FnMut(i64) -> Option<T>,
@@ -157,14 +164,14 @@ impl<'a> Block<'a> {
         ControlFlow::Continue(())
     }
 
-    /// Places and versions are read up to the last node that is found, and not at all if none is.
+    /// Reads coordinates and versions up to the last node found, and none if no node is found.
     fn try_each_dense<T>(
         &self,
         nodes: &DenseNodes<'_>,
         mut find: impl FnMut(i64) -> Option<T>,
         take: &mut impl FnMut(T, BlockNode) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        let [mut lats, mut lons] = nodes.places.each_ref().map(Packed::sums);
+        let [mut lats, mut lons] = nodes.places.each_ref().map(PackedField::sums);
         let mut versions = nodes.versions.numbers();
         let mut passed = 0;
         for (index, &id) in nodes.ids.iter().enumerate() {
@@ -183,10 +190,10 @@ impl<'a> Block<'a> {
         let (mut id, mut place, mut info) = (0, [0; 2], Info::default());
         for field in wire::fields(node).flatten() {
             match (field.number, field.value) {
-                (1, Value::Varint(number)) => id = zigzag(number),
-                (4, Value::Bytes(message)) => info.read(message),
-                (8, Value::Varint(number)) => place[0] = zigzag(number),
-                (9, Value::Varint(number)) => place[1] = zigzag(number),
+                (1, WireValue::Varint(number)) => id = zigzag(number),
+                (4, WireValue::Bytes(message)) => info.read(message),
+                (8, WireValue::Varint(number)) => place[0] = zigzag(number),
+                (9, WireValue::Varint(number)) => place[1] = zigzag(number),
                 _ => {}
             }
         }
@@ -202,7 +209,7 @@ impl<'a> Block<'a> {
         self.offsets[axis].wrapping_add(self.granularity.wrapping_mul(steps))
     }
 
-    /// The ways, in their order.
+    /// Returns the ways, in their order.
     pub(crate) fn ways(&self) -> impl Iterator<Item = BlockWay<'_, 'a>> {
         let ways = self.groups.iter().flat_map(|group| parts(group, 3));
         ways.map(|way| BlockWay::new(self, way))
@@ -210,16 +217,16 @@ impl<'a> Block<'a> {
 }
 
 impl<'b, 'a> BlockWay<'b, 'a> {
-    fn new(block: &'b Block<'a>, way: &'a [u8]) -> Self {
+    fn new(block: &'b AuditedBlock<'a>, way: &'a [u8]) -> Self {
         let (mut id, mut info) = (0, Info::default());
-        let [mut keys, mut values, mut refs] = [(); 3].map(|()| Packed::default());
-        let mut places = [(); 2].map(|()| Packed::default());
+        let [mut keys, mut values, mut refs] = [(); 3].map(|()| PackedField::default());
+        let mut places = [(); 2].map(|()| PackedField::default());
         for field in wire::fields(way).flatten() {
             match (field.number, field.value) {
-                (1, Value::Varint(number)) => id = number.cast_signed(),
+                (1, WireValue::Varint(number)) => id = number.cast_signed(),
                 (2, value) => keys.add(value),
                 (3, value) => values.add(value),
-                (4, Value::Bytes(message)) => info.read(message),
+                (4, WireValue::Bytes(message)) => info.read(message),
                 (8, value) => refs.add(value),
                 (9, value) => places[0].add(value),
                 (10, value) => places[1].add(value),
@@ -229,37 +236,38 @@ impl<'b, 'a> BlockWay<'b, 'a> {
         Self { block, id, info, keys, values, refs, places }
     }
 
-    /// The numbers of its keys in the table of texts.
+    /// Returns the numbers of the way's keys in the table of texts.
     pub(crate) fn keys(&self) -> impl Iterator<Item = usize> {
         self.keys.numbers().map(|number| number as usize)
     }
 
-    /// The numbers of its values, in the order of the keys.
+    /// Returns the numbers of the way's values, in the order of the keys.
     pub(crate) fn values(&self) -> impl Iterator<Item = usize> {
         self.values.numbers().map(|number| number as usize)
     }
 
-    /// Its nodes.
+    /// Returns the ids of the way's nodes.
     pub(crate) fn refs(&self) -> impl Iterator<Item = i64> {
         self.refs.sums()
     }
 
-    /// Makes a list of its nodes, and adds to another one where they lie, if the way says so: in most files none does.
+    /// Writes the way's node ids to `ids`, and appends the positions of the nodes to `located` if
+    /// the way contains them. In most files no way does.
     pub(crate) fn take_nodes(&self, ids: &mut Vec<i64>, located: &mut Vec<(i64, Location)>) {
         ids.clear();
         ids.extend(self.refs());
-        // The block was checked: one place for each node, or none at all.
-        let [lats, lons] = self.places.each_ref().map(Packed::sums);
+        // The block was checked: it has one position for each node, or none at all.
+        let [lats, lons] = self.places.each_ref().map(PackedField::sums);
         located.extend(ids.iter().copied().zip(lons.zip(lats).map(|(lon, lat)| {
             location_from_nano(self.block.nano_deg(1, lon), self.block.nano_deg(0, lat))
         })));
     }
 }
 
-/// The parts of a message in fields of this number.
+/// Returns the parts of a message that are in fields with this number.
 pub(crate) fn parts(message: &[u8], number: u32) -> impl Iterator<Item = &[u8]> {
     wire::fields(message).flatten().filter_map(move |field| match field.value {
-        Value::Bytes(bytes) if field.number == number => Some(bytes),
+        WireValue::Bytes(bytes) if field.number == number => Some(bytes),
         _ => None,
     })
 }

@@ -1,14 +1,14 @@
-//! Blocks are decoded as another author's decoder does.
+//! Blocks are decoded as an independent decoder does.
 
-use corniche_testing::pbf::{Block as Made, deltas, field, number, varint, zigzags};
+use corniche_testing::pbf::{BlockBuilder as Made, deltas, field, number, varint, zigzags};
 use osmpbf::PrimitiveBlock;
 use proptest::prelude::*;
 
 use super::*;
 use crate::{audit::audit, blobs::decode};
 
-/// Id, longitude and latitude in nanodegrees, version.
-fn nodes_of(block: &Block<'_>) -> Vec<(i64, i64, i64, i32)> {
+/// Returns the id, longitude and latitude in nanodegrees, and version of each node.
+fn nodes_of(block: &AuditedBlock<'_>) -> Vec<(i64, i64, i64, i32)> {
     let mut nodes = Vec::new();
     let _ = block.try_each_node(Some, |_, node| {
         nodes.push((node.id, node.lon_nano_deg, node.lat_nano_deg, node.version));
@@ -46,11 +46,11 @@ fn made_block() -> impl Strategy<Value = Made> {
 }
 
 proptest! {
-    /// The decoder of another author is the oracle.
+    /// An independent decoder is the oracle.
     #[test]
     fn nodes_and_ways_are_those_that_the_decoder_finds(made in made_block()) {
         let bytes = made.bytes();
-        let (block, decoded) = (Block::new(&bytes), decoded(&bytes));
+        let (block, decoded) = (AuditedBlock::new(&bytes), decoded(&bytes));
         let mut expected = Vec::new();
         for group in decoded.groups() {
             expected.extend(group.dense_nodes().map(|node| (node.id(), node.nano_lon(), node.nano_lat(), 0)));
@@ -75,7 +75,7 @@ proptest! {
     }
 }
 
-/// Packed, one by one, and in parts: the same numbers.
+/// Numbers that are packed, single, or in parts are the same.
 #[test]
 fn numbers_in_several_parts_are_joined() {
     let whole = field(8, &deltas(&[5, 300, 7]));
@@ -86,13 +86,13 @@ fn numbers_in_several_parts_are_joined() {
         let mut made = Made::new();
         made.groups = vec![field(3, &[number(1, 7), refs].concat())];
         let bytes = made.bytes();
-        let block = Block::new(&bytes);
+        let block = AuditedBlock::new(&bytes);
         let refs: Vec<_> = block.ways().flat_map(|way| way.refs().collect::<Vec<_>>()).collect();
         assert_eq!(refs, [5, 300, 7]);
     }
 }
 
-/// Places are steps from an offset, and versions need no times beside them.
+/// Coordinates are steps from an offset, and versions do not require times.
 #[test]
 fn places_follow_granularity_and_offset() {
     let nodes = [
@@ -105,6 +105,6 @@ fn places_follow_granularity_and_offset() {
     made.groups = vec![field(2, &nodes.concat())];
     let bytes = [made.bytes(), number(17, 1000), number(19, 7), number(20, -7)].concat();
     audit(&bytes, u64::MAX).unwrap();
-    let block = Block::new(&bytes);
+    let block = AuditedBlock::new(&bytes);
     assert_eq!(nodes_of(&block), [(1, -1007, 10_007, 3), (2, 993, 20_007, 4)]);
 }

@@ -1,169 +1,172 @@
-//! Defects of an extract that were survived: each names its object and its reason.
+//! Defects of an extract that do not stop the reading: each names its object and its reason.
 
-use corniche_areas::ClassedLayer;
 use serde::{Deserialize, Serialize};
 
 use crate::{area_loss::AreaLoss, line_loss::LineLoss};
 
-/// Bad input in an extract that was survived: reported with the object's id, and the rest goes on.
+/// Invalid input in an extract that does not stop the reading: it is reported with the object's id,
+/// and the reading continues.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[non_exhaustive]
-pub enum Defect {
-    /// The table does not list this `highway` value; the way is left out.
+pub enum ExtractDefect {
+    /// The table does not list this `highway` value; the way is skipped.
     UnknownHighway {
         /// The way.
         way_id: i64,
         /// The value.
         value: String,
     },
-    /// `area=yes`: the outline of a surface; the way is left out.
+    /// The way has `area=yes`, so it is the outline of a surface; it is skipped.
     Area {
         /// The way.
         way_id: i64,
     },
-    /// Several ways of the file have this id; the first stays.
+    /// Several ways of the file have this id; the first is kept.
     DuplicateWay {
         /// The id.
         way_id: i64,
     },
-    /// A tag of the way is not UTF-8; what cannot be read is replaced by U+FFFD.
+    /// A tag of the way is not UTF-8; unreadable characters are replaced by U+FFFD.
     DamagedText {
         /// The way.
         way_id: i64,
     },
-    /// A tag of the way is longer than OSM allows, 255 characters; it is cut there.
+    /// A tag of the way is longer than 255 characters, OSM's limit; it is cut there.
     LongText {
         /// The way.
         way_id: i64,
     },
-    /// A tag of a road is read as another value; see [`corniche_roads::tags_taken_otherwise`].
+    /// A tag of a road is interpreted as another value; see
+    /// [`corniche_roads::tags_taken_otherwise`].
     TagTakenOtherwise {
         /// The way.
         way_id: i64,
         /// The tag as `key=value`.
         tag: String,
     },
-    /// A way of one node or none; it is left out.
+    /// The way has one node or none; it is skipped.
     TooFewNodes {
         /// The way.
         way_id: i64,
-        /// How many nodes it has.
+        /// The number of its nodes.
         nodes: u32,
     },
-    /// Nodes of the way are not in the file: it is cut there.
+    /// Nodes of the way are missing from the file; the way is cut there.
     MissingNodes {
         /// The way.
         way_id: i64,
-        /// How many of its points are affected.
+        /// The number of affected points.
         points: u32,
     },
-    /// Nodes of the way lie beyond ±180° or ±90°: it is cut there.
+    /// Nodes of the way are beyond ±180° or ±90°; the way is cut there.
     OutOfRange {
         /// The way.
         way_id: i64,
-        /// How many of its points are affected.
+        /// The number of affected points.
         points: u32,
     },
-    /// Nodes of the way cannot be placed in the working CRS: it is cut there.
+    /// Nodes of the way cannot be converted to the working CRS; the way is cut there.
     OutsideProjection {
         /// The way.
         way_id: i64,
-        /// How many of its points are affected.
+        /// The number of affected points.
         points: u32,
     },
-    /// Cuts left several pieces: each is a road of its own with the same way id.
+    /// Cuts left several pieces; each is a separate road with the same way id.
     Split {
         /// The way.
         way_id: i64,
-        /// How many roads it became.
+        /// The number of roads that the way became.
         roads: u32,
     },
-    /// Cuts left single points, which do not make a line; they are left out.
+    /// Cuts left single points, which do not form a line; they are dropped.
     StrayPoints {
         /// The way.
         way_id: i64,
-        /// How many points.
+        /// The number of dropped points.
         points: u32,
     },
-    /// Nothing is left of the way: its points are missing, cannot be placed, or are all the same.
+    /// No line is left of the way: its points are missing, cannot be converted, or are all equal.
     NoLine {
         /// The way.
         way_id: i64,
     },
-    /// The way goes to and fro over one place more often than a road can; it is left out.
+    /// The way goes to and fro over one place more often than a road can; it is skipped.
     ToAndFro {
         /// The way.
         way_id: i64,
     },
-    /// Neighbouring points of the way are the same; they are merged.
+    /// Neighbouring points of the way are equal; they are merged.
     DuplicatePoints {
         /// The way.
         way_id: i64,
-        /// How many points were removed.
+        /// The number of removed points.
         points: u32,
     },
-    /// The line crosses itself between its points; it is kept as it is.
+    /// The line crosses itself between its points; it is kept unchanged.
     SelfCrossing {
         /// The way.
         way_id: i64,
-        /// How many pairs of its segments cross; for a way of more than 2000 nodes not all of them may be found.
+        /// The number of pairs of segments that cross. In a way of more than 2000 nodes, some of
+        /// them may not be found.
         crossings: u32,
     },
-    /// Two extracts have the way in different versions, of which the newer one stays, or with different content, of which that of the first
-    /// stays.
+    /// Two extracts contain the way in different versions or with different content. The newer
+    /// version is kept; if the versions are equal, the content of the first extract is kept.
     ConflictingWay {
         /// The way.
         way_id: i64,
     },
-    /// Nothing is left of an area.
+    /// An object with area tags did not become an area.
     LostArea {
-        /// Whether it is a relation; else it is a way.
+        /// Whether the object is a relation; otherwise it is a way.
         is_relation: bool,
-        /// The object.
+        /// The id of the object.
         id: i64,
-        /// Why it is none.
+        /// The reason why it is not an area.
         loss: AreaLoss,
     },
-    /// Ways of an area's relation are not in the file; what the others surround stays.
+    /// Ways of an area's relation are missing from the file; the area that the other ways surround
+    /// is kept.
     MissingWays {
         /// The relation.
         relation_id: i64,
-        /// How many.
+        /// The number of missing ways.
         ways: u32,
     },
-    /// An area's outline has segments twice, or points in the middle of segments; these are divided, and of segments that are there
-    /// an even number of times nothing is left.
+    /// An area's outline has repeated segments, or points in the middle of segments. Such segments
+    /// are divided, and segments that occur an even number of times are removed.
     MendedOutline {
-        /// Whether it is a relation; else it is a way.
+        /// Whether the object is a relation; otherwise it is a way.
         is_relation: bool,
-        /// The object.
+        /// The id of the object.
         id: i64,
-        /// How many segments.
+        /// The number of segments.
         segments: u32,
     },
-    /// A coastline ends inside the data where no other begins. A straight line closes the sea there.
+    /// A coastline ends inside the data where no other coastline begins. A straight line closes the
+    /// sea there.
     OpenCoastline {
         /// The way.
         way_id: i64,
     },
-    /// A way of a layer of lines is left out.
+    /// A way of a boundary is skipped.
     LostLine {
-        /// The layer.
-        layer: ClassedLayer,
         /// The way.
         way_id: i64,
-        /// Why it is left out.
+        /// The reason why it is skipped.
         loss: LineLoss,
     },
-    /// A node has several different places; the first stays, or of several extracts that of the newest version.
+    /// A node has several different positions. The first is kept; of several extracts, the position
+    /// of the newest version is kept.
     ConflictingNode {
         /// The node.
         node_id: i64,
     },
 }
 
-impl Defect {
-    /// What kind of defect it is, in words: the name to count it under.
+impl ExtractDefect {
+    /// Returns the kind of the defect in words, which is the name under which it is counted.
     #[must_use]
     pub const fn reason(&self) -> &'static str {
         match self {
@@ -186,20 +189,21 @@ impl Defect {
             Self::ConflictingWay { .. } => "conflicting way",
             Self::ConflictingNode { .. } => "conflicting node",
             Self::LostArea { loss, .. } => loss.reason(),
-            Self::LostLine { layer, loss, .. } => loss.reason(*layer),
+            Self::LostLine { loss, .. } => loss.reason(),
             Self::MissingWays { .. } => "missing ways of an area",
             Self::MendedOutline { .. } => "mended outline of an area",
             Self::OpenCoastline { .. } => "open end of a coastline",
         }
     }
 
-    /// Whether it is nothing wrong with the extract, but something that lies beyond it: a boundary goes on in the country next to it.
+    /// Whether the extract is not at fault, because the missing data is outside it: a boundary
+    /// continues in a neighbouring country.
     #[must_use]
     pub const fn is_beyond_extract(&self) -> bool {
         matches!(self, Self::LostLine { loss: LineLoss::MissingWay, .. })
     }
 
-    /// What it is about: `"way"`, `"node"` or `"relation"`, and its id.
+    /// Returns the object that the defect concerns: `"way"`, `"node"` or `"relation"`, and its id.
     #[must_use]
     pub const fn object(&self) -> (&'static str, i64) {
         match *self {
@@ -231,7 +235,7 @@ impl Defect {
         }
     }
 
-    /// How many points, nodes, roads or crossings, where it has such a number.
+    /// Returns the number of points, nodes, roads or crossings, if the defect has such a number.
     #[must_use]
     pub const fn count(&self) -> Option<u32> {
         match *self {
@@ -261,7 +265,7 @@ impl Defect {
         }
     }
 
-    /// The value that it is about, where it has one.
+    /// Returns the value or tag that the defect concerns, if it has one.
     #[must_use]
     pub fn detail(&self) -> Option<&str> {
         match self {

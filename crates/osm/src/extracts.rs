@@ -1,4 +1,4 @@
-//! Several extracts as one list of blobs: their numbers go on from file to file.
+//! Several extracts as one list of blobs, which are numbered across the files.
 
 use std::{
     io::{Read, Seek},
@@ -9,19 +9,19 @@ use std::{
 use crate::{
     ReadOsmError,
     blob::BlobRefusal,
-    blobs::{BlobFile, Decoding, Header},
-    block::Block,
+    blobs::{BlobFile, Decoding, ExtractHeader},
+    block::AuditedBlock,
     failed::Failed,
     open_file::{Extract, open_file},
     read_request::ReadRequest,
-    reading::Reading,
+    reading::ExtractReading,
 };
 
-/// One extract or several, whose framing and headers have been checked.
+/// One or several extracts whose framing and headers were checked.
 pub(crate) struct Extracts<R> {
-    /// Never empty.
+    /// The files, at least one.
     files: Vec<BlobFile<R>>,
-    /// The number of each file's first blob.
+    /// The number of the first blob of each file.
     starts: Vec<usize>,
 }
 
@@ -31,12 +31,12 @@ impl Extracts<Extract> {
         let paths =
             std::iter::once(request.path).chain(request.others.iter().map(PathBuf::as_path));
         let open = |path: &Path| BlobFile::open(path, open_file(path)?);
-        Ok(Self::of(paths.map(open).collect::<Result<_, _>>()?))
+        Ok(Self::from_files(paths.map(open).collect::<Result<_, _>>()?))
     }
 }
 
 impl<R: Read + Seek> Extracts<R> {
-    pub(crate) fn of(files: Vec<BlobFile<R>>) -> Self {
+    pub(crate) fn from_files(files: Vec<BlobFile<R>>) -> Self {
         let mut next = 0;
         let start = |file: &BlobFile<R>| {
             let start = next;
@@ -47,42 +47,43 @@ impl<R: Read + Seek> Extracts<R> {
         Self { files, starts }
     }
 
-    /// How many data blobs there are.
+    /// Returns the number of data blobs.
     pub(crate) fn len(&self) -> usize {
         self.files.iter().map(BlobFile::len).sum()
     }
 
-    /// Size of all files.
+    /// Returns the size of all files, bytes.
     pub(crate) fn len_bytes(&self) -> u64 {
         self.files.iter().map(BlobFile::len_bytes).sum()
     }
 
-    /// Which file a data blob is in.
+    /// Returns the number of the file that contains a data blob.
     pub(crate) fn file_of(&self, number: usize) -> usize {
         self.starts.partition_point(|&start| start <= number).saturating_sub(1)
     }
 
-    /// Size of each data blob, packed.
+    /// Returns the packed size of each data blob, bytes.
     pub(crate) fn sizes(&self) -> impl Iterator<Item = u64> + Clone {
         self.files.iter().flat_map(BlobFile::sizes)
     }
 
-    /// Size of the data blob with this number, packed.
+    /// Returns the packed size of the data blob with this number, bytes.
     pub(crate) fn size(&self, number: usize) -> u64 {
         let file = self.file_of(number);
         self.files.get(file).map_or(0, |own| own.size(number - self.starts[file]))
     }
 
-    /// Size of the data blobs with these numbers, packed.
+    /// Returns the packed size of the data blobs with these numbers together, bytes.
     pub(crate) fn bytes_of(&self, numbers: &[usize]) -> u64 {
         numbers.iter().map(|&number| self.size(number)).sum()
     }
 
-    /// What the file's header says; of several files nothing, because each describes only its own part.
-    pub(crate) fn take_header(&mut self) -> Header {
+    /// Returns the contents of the file's header. For several files it is empty, because each
+    /// header describes only its own part.
+    pub(crate) fn take_header(&mut self) -> ExtractHeader {
         match self.files.as_mut_slice() {
             [file] => std::mem::take(&mut file.header),
-            _ => Header::default(),
+            _ => ExtractHeader::default(),
         }
     }
 
@@ -90,11 +91,11 @@ impl<R: Read + Seek> Extracts<R> {
         self.files.iter().map(|file| file.blobs_passed_over).sum()
     }
 
-    /// Does the same as [`BlobFile::for_each_block`] over all files; `take` is told the number of the file, too. The numbers of a file come one after
-    /// another.
+    /// Does the same as [`BlobFile::for_each_block`] over all files; `take` also receives the
+    /// number of the file. The numbers of one file must follow each other.
     pub(crate) fn for_each_block<T: Send>(
         &mut self,
-        reading: &Reading<'_>,
+        reading: &ExtractReading<'_>,
         numbers: &[usize],
         on_bytes: &dyn Fn(u64),
         scan: impl Fn(Vec<u8>, u64) -> Result<T, BlobRefusal> + Sync,
@@ -125,13 +126,13 @@ impl<R: Read + Seek> Extracts<R> {
         Ok(())
     }
 
-    /// Where the kinds of objects lie, if the extract is sorted by kind: they are found by bisection, and not checked. Several extracts are in no
-    /// order.
+    /// Returns where each type of object begins, if the extract is sorted by type. This is found by
+    /// bisection and not checked. Several extracts have no order.
     pub(crate) fn seemingly_sorted(&mut self, has_outlines: bool) -> BlobOrder {
         let [file] = self.files.as_mut_slice() else { return BlobOrder::NONE };
-        // Where ways come first nothing is sought.
-        let is_node = |block: &Block<'_>| !block.has_others_than_nodes();
-        let has_relation = |block: &Block<'_>| block.has_relations();
+        // If ways come first, nothing is searched.
+        let is_node = |block: &AuditedBlock<'_>| !block.has_others_than_nodes();
+        let has_relation = |block: &AuditedBlock<'_>| block.has_relations();
         let most = if file.seems(0, is_node) { file.len() } else { 0 };
         let nodes = first(0..most, |number| !file.seems(number, is_node));
         let relations = if has_outlines {
@@ -143,17 +144,17 @@ impl<R: Read + Seek> Extracts<R> {
     }
 }
 
-/// In which order the blobs of an extract can be read.
+/// The order in which the blobs of an extract can be read.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BlobOrder {
-    /// How many blobs, from the first on, seem to hold nodes alone.
+    /// The number of blobs at the start that seem to contain nodes alone.
     pub(crate) nodes: usize,
-    /// The first blob with relations; 0 if nothing is known of their order.
+    /// The first blob with relations; 0 if nothing is known about their position.
     pub(crate) relations: usize,
 }
 
 impl BlobOrder {
-    /// Anything may be anywhere.
+    /// The order of an extract in which any object may be anywhere.
     pub(crate) const NONE: Self = Self { nodes: 0, relations: 0 };
 
     pub(crate) fn is_none(self) -> bool {
@@ -161,7 +162,8 @@ impl BlobOrder {
     }
 }
 
-/// The first number of a range that is such, if all behind it are; else its end.
+/// Returns the first number of a range that `is_such` accepts, if it accepts all later ones;
+/// otherwise the end of the range.
 fn first(range: Range<usize>, mut is_such: impl FnMut(usize) -> bool) -> usize {
     let (mut low, mut high) = (range.start, range.end);
     while low < high {
@@ -175,6 +177,5 @@ fn first(range: Range<usize>, mut is_such: impl FnMut(usize) -> bool) -> usize {
     low
 }
 
-/// Why a block is refused in which a scan found more than it may.
-pub(crate) const TOO_MUCH_FOUND: &str =
-    "what is found in it takes more memory than that of a block may";
+/// The reason for rejecting a block in which a scan found more than allowed.
+pub(crate) const TOO_MUCH_FOUND: &str = "the contents of the block take more memory than allowed";

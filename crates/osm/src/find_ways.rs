@@ -1,4 +1,4 @@
-//! Pass 1: the ways of a file, or of some of its blobs, and where nodes are.
+//! Pass 1: finds the ways of a file, or of some of its blobs, and the blobs that contain nodes.
 
 use std::io::{self, Read, Seek};
 
@@ -6,79 +6,80 @@ use corniche_roads::FrcTable;
 use corniche_store::Sorter;
 
 use crate::{
-    Defect, ExtractSummary,
-    block::Block,
+    ExtractDefect, ExtractSummary,
+    block::AuditedBlock,
     extracts::{Extracts, TOO_MUCH_FOUND},
     failed::Failed,
     location::Location,
-    looked::{Looked, LookedAt, check_held},
+    looked::{BlockSurvey, LookedAt, check_held},
     outlines::{
         found::Outlines,
         judge::{self, OwnTags, WantedWays},
-        wanted::Wanted,
+        wanted::WantedObjects,
     },
-    reading::{Reading, Step},
+    reading::{ExtractReading, ReadingStep},
     records::{Located, WayRecord},
-    search::Search,
-    ways::{Counted, Judge, Ways, add_summary},
+    search::IdSearch,
+    ways::{BlockWays, Counted, WayJudge, add_summary},
 };
 
-/// What the first pass finds of roads, and of ways and blobs of all layers.
+/// The results of the first pass: roads, and the ways and blobs of all layers.
 pub(crate) struct FoundWays<'a> {
     pub(crate) ways: Sorter<'a, WayRecord>,
     pub(crate) located: Sorter<'a, Located>,
     pub(crate) summary: ExtractSummary,
     pub(crate) looked_at: LookedAt,
-    /// What the ways of roads take, by an estimate that is not too low.
+    /// The memory of the road ways, bytes, by an estimate that is never too low.
     pub(crate) held_bytes: u64,
-    /// How many nodes the ways of roads and those that are left out name, each counted as often as it is named.
+    /// The number of references to nodes in road ways and in skipped ways; repeated references
+    /// count.
     pub(crate) nodes_named: u64,
     roads_count: u64,
     located_count: u64,
 }
 
-/// What is looked for in some blobs.
+/// The ways to look for in some blobs.
 pub(crate) struct WaysWanted<'w> {
-    /// Which ways are roads, if any are wanted.
+    /// The table that says which ways are roads, if roads are requested.
     pub(crate) roads: Option<&'w FrcTable>,
-    /// What is done with ways that are objects by their own tags.
+    /// The treatment of ways that are objects by their own tags.
     pub(crate) own_tags: OwnTags,
-    /// Ways that are wanted by their ids, of each kind of objects; ascending.
+    /// Ids of requested ways for each kind of objects, ascending.
     pub(crate) way_ids: Vec<Vec<i64>>,
-    /// Whether the blobs were not looked at before.
+    /// Whether the blobs were not scanned before.
     pub(crate) is_first: bool,
-    /// What was read of ways before, and what there is in all, for the progress.
+    /// The bytes of ways that were read before, and their total, for progress reports.
     pub(crate) bytes: [u64; 2],
 }
 
-/// What was found in a block.
+/// The findings in a block.
 struct OfBlock {
-    looked: Option<Looked>,
-    roads: Ways,
+    looked: Option<BlockSurvey>,
+    roads: BlockWays,
     outlines: Vec<judge::OfBlock>,
 }
 
 impl OfBlock {
-    /// `None` if it takes more than `most_bytes`.
+    /// Scans a block; `None` if the findings take more than `most_bytes`.
     fn scan(
         message: &[u8],
         wanted: &WaysWanted<'_>,
-        (outlines, counted): (&[Wanted<'_>], Counted),
+        (outlines, counted): (&[WantedObjects<'_>], Counted),
         most_bytes: u64,
     ) -> Option<Self> {
-        let block = Block::new(message);
+        let block = AuditedBlock::new(message);
         let texts = block.texts();
-        // Of a block with ways alone each is looked at once, for all that is asked of it.
-        let mut of_ways = (wanted.is_first && block.has_ways_alone()).then(Looked::of_ways);
-        let looked = (wanted.is_first && of_ways.is_none()).then(|| Looked::scan(&block));
-        let mut found = Self { looked, roads: Ways::default(), outlines: Vec::new() };
-        let roads = wanted.roads.map(|table| Judge::new(&texts, table));
-        let judges: Vec<judge::Judge<'_>> =
-            outlines.iter().map(|&wanted| judge::Judge::new(&texts, wanted)).collect();
+        // Each way of a block with ways alone is inspected once, for all purposes together.
+        let mut of_ways = (wanted.is_first && block.has_ways_alone()).then(BlockSurvey::of_ways);
+        let looked = (wanted.is_first && of_ways.is_none()).then(|| BlockSurvey::scan(&block));
+        let mut found = Self { looked, roads: BlockWays::default(), outlines: Vec::new() };
+        let roads = wanted.roads.map(|table| WayJudge::new(&texts, table));
+        let judges: Vec<judge::OutlineJudge<'_>> =
+            outlines.iter().map(|&wanted| judge::OutlineJudge::new(&texts, wanted)).collect();
         let mut wanted_ways: Vec<WantedWays<'_>> = wanted
             .way_ids
             .iter()
-            .map(|ids| WantedWays { own_tags: wanted.own_tags, ids: Search::new(ids) })
+            .map(|ids| WantedWays { own_tags: wanted.own_tags, ids: IdSearch::new(ids) })
             .collect();
         found.outlines.resize_with(judges.len(), judge::OfBlock::default);
         for way in block.ways() {
@@ -104,7 +105,7 @@ impl OfBlock {
 }
 
 impl<'a> FoundWays<'a> {
-    pub(crate) fn new(reading: &Reading<'a>) -> Self {
+    pub(crate) fn new(reading: &ExtractReading<'a>) -> Self {
         let shares = reading.shares();
         Self {
             ways: reading.sorter(shares.ways),
@@ -118,18 +119,19 @@ impl<'a> FoundWays<'a> {
         }
     }
 
-    /// Reads the blobs with these numbers. What is wrong with tags of roads goes to `on_defect`, in the order of the file.
+    /// Reads the blobs with these numbers. Defects in the tags of roads go to `on_defect`, in the
+    /// order of the file.
     pub(crate) fn read<R: Read + Seek>(
         &mut self,
-        reading: &Reading<'a>,
+        reading: &ExtractReading<'a>,
         file: &mut Extracts<R>,
         numbers: &[usize],
         wanted: &WaysWanted<'_>,
         outlines: &mut [Outlines<'a>],
-        on_defect: &mut dyn FnMut(Defect),
+        on_defect: &mut dyn FnMut(ExtractDefect),
     ) -> Result<(), Failed> {
         let [before, all_bytes] = wanted.bytes;
-        let on_bytes = &|bytes| reading.tell(Step::Ways, before + bytes, all_bytes);
+        let on_bytes = &|bytes| reading.tell(ReadingStep::Ways, before + bytes, all_bytes);
         let counted = if reading.is_of_several() { Counted::ByWay } else { Counted::ByBlock };
         let of_outlines: Vec<_> = outlines.iter().map(|outlines| outlines.wanted).collect();
         let scan = |block: Vec<u8>, most_bytes| {
@@ -156,10 +158,10 @@ impl<'a> FoundWays<'a> {
 
     fn take_roads(
         &mut self,
-        reading: &Reading<'_>,
+        reading: &ExtractReading<'_>,
         [file, layer]: [u32; 2],
-        of_block: Ways,
-        on_defect: &mut dyn FnMut(Defect),
+        of_block: BlockWays,
+        on_defect: &mut dyn FnMut(ExtractDefect),
     ) -> Result<(), Failed> {
         self.held_bytes += of_block.held_bytes;
         check_held(reading, self.held_bytes)?;

@@ -1,30 +1,30 @@
-//! Recognises files of other formats by their first bytes, and says what to do with them.
+//! Recognises files of other formats by their first bytes, and says how to convert them.
 
 use std::path::Path;
 
-/// How many bytes of a file are examined.
+/// The number of bytes of a file that are examined.
 pub(crate) const START_BYTES: u64 = 4096;
 
 const TO_PBF: &str = "convert it with: osmium cat IN -o OUT.osm.pbf";
 const UNPACK: &str =
-    "unpack it, and if it holds OSM data convert that with: osmium cat IN -o OUT.osm.pbf";
+    "unpack it; if it contains OSM data, convert them with: osmium cat IN -o OUT.osm.pbf";
 const CHANGE: &str = "apply it to the extract that it belongs to: \
                       osmium apply-changes IN.osm.pbf CHANGES -o OUT.osm.pbf";
 const HISTORY: &str =
-    "take one point in time: osmium time-filter IN 2026-01-01T00:00:00Z -o OUT.osm.pbf";
-const FETCH: &str = "its download failed; fetch the extract again";
-const PULL: &str = "fetch the file that it stands for: git lfs pull";
-const OTHER: &str = "give an OpenStreetMap extract in the format .osm.pbf";
+    "extract one point in time: osmium time-filter IN 2026-01-01T00:00:00Z -o OUT.osm.pbf";
+const FETCH: &str = "its download failed; download the extract again";
+const PULL: &str = "download the file that it points to: git lfs pull";
+const OTHER: &str = "pass an OpenStreetMap extract in the .osm.pbf format";
 
-/// First bytes that say what a file is.
+/// The first bytes of other file formats, each with the format's name and the advice.
 const MAGIC: [(&[u8], &str, &str); 19] = [
     (b"version https://git-lfs", "a Git LFS pointer", PULL),
-    (b"\x1f\x8b", "packed with gzip", TO_PBF),
-    (b"BZh", "packed with bzip2", TO_PBF),
+    (b"\x1f\x8b", "compressed with gzip", TO_PBF),
+    (b"BZh", "compressed with bzip2", TO_PBF),
     (b"PK\x03\x04", "a zip archive", UNPACK),
-    (b"\x28\xb5\x2f\xfd", "packed with zstd", UNPACK),
-    (b"\xfd7zXZ\0", "packed with xz", UNPACK),
-    (b"\x04\x22\x4d\x18", "packed with LZ4", UNPACK),
+    (b"\x28\xb5\x2f\xfd", "compressed with zstd", UNPACK),
+    (b"\xfd7zXZ\0", "compressed with xz", UNPACK),
+    (b"\x04\x22\x4d\x18", "compressed with LZ4", UNPACK),
     (b"7z\xbc\xaf\x27\x1c", "a 7-Zip archive", UNPACK),
     (b"\xff\xe0\x04o5m2", "o5m", TO_PBF),
     (b"\xff\xe0\x04o5c2", "a change file (o5c)", CHANGE),
@@ -39,7 +39,7 @@ const MAGIC: [(&[u8], &str, &str); 19] = [
     (b"[", "JSON", OTHER),
 ];
 
-/// What the file is instead of `.osm.pbf`, and what to do; `None` if it may be one.
+/// Returns the actual format of the file and an advice; `None` if the file may be `.osm.pbf`.
 pub(crate) fn other_format(path: &Path, start: &[u8]) -> Option<(&'static str, &'static str)> {
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
     let advice = |usual| match () {
@@ -70,10 +70,10 @@ pub(crate) fn other_format(path: &Path, start: &[u8]) -> Option<(&'static str, &
         return Some(("OPL", advice(TO_PBF)));
     }
     let is_text = !start.iter().any(|&byte| byte < b'\t' || byte == 0x7f);
-    Some((if is_text { "text" } else { "a file of some other kind" }, OTHER))
+    Some((if is_text { "text" } else { "a file of unknown format" }, OTHER))
 }
 
-/// Text that says by its first two bytes that it is in UTF-16.
+/// Decodes text whose first two bytes say that it is UTF-16.
 fn utf16(start: &[u8]) -> Option<String> {
     let to_unit = match start.first_chunk()? {
         b"\xff\xfe" => u16::from_le_bytes,
@@ -89,7 +89,7 @@ fn utf16(start: &[u8]) -> Option<String> {
 /// Distinguishes files that begin with `<` by their first element.
 fn markup(text: &[u8]) -> (&'static str, &'static str) {
     let mut rest = text;
-    // Past declarations, comments and document types.
+    // Skip declarations, comments and document types.
     while let [b'<', b'?' | b'!', kind, ..] = rest {
         if kind.eq_ignore_ascii_case(&b'd') && rest[1] == b'!' {
             break;
@@ -106,11 +106,12 @@ fn markup(text: &[u8]) -> (&'static str, &'static str) {
     } else if is(b"<osm") || rest.is_empty() {
         ("XML", TO_PBF)
     } else {
-        ("XML, and not of OpenStreetMap", OTHER)
+        ("XML without OpenStreetMap data", OTHER)
     }
 }
 
-/// An object's letter and id, then a space: `w10 v1 …` (*OPL File Format*, libosmium manual).
+/// Whether the text begins like OPL: an object's letter and id, then a space: `w10 v1 …` (*OPL File
+/// Format*, libosmium manual).
 fn is_opl(text: &[u8]) -> bool {
     let line = text.split(|&byte| byte == b'\n').next().unwrap_or_default();
     let Some((b'n' | b'w' | b'r', rest)) = line.split_first() else { return false };
@@ -119,7 +120,8 @@ fn is_opl(text: &[u8]) -> bool {
     !digits.is_empty() && digits.iter().all(u8::is_ascii_digit)
 }
 
-/// Whether the file may begin with the frame of a blob and, as every writer has it, the blob's type.
+/// Whether the file may begin with the frame of a blob, followed by the blob's type, which every
+/// writer puts first.
 ///
 /// ```text
 ///  0 0 size size │ 0x0a len │ O S M H e a d e r       a file cut off before that may still be one

@@ -1,4 +1,4 @@
-//! Puts ways and the places of their nodes together, and makes roads of them.
+//! Combines ways with the positions of their nodes, and builds roads from them.
 
 use std::{io, ops::Range};
 
@@ -7,15 +7,15 @@ use corniche_store::Sorted;
 use rayon::prelude::*;
 
 use crate::{
-    Defect, ExtractSummary, ReadOsmError,
-    assemble::{Assembled, PlainWay, assemble},
+    ExtractDefect, ExtractSummary, ReadOsmError,
+    assemble::{AssembledWay, PlainWay, assemble},
     deferred::Deferred,
     failed::Failed,
     layer_sink::LayerSink,
     locate_nodes::LocatedNodes,
-    number_nodes::take_numbered,
-    read_request::Placing,
-    reading::Reading,
+    number_nodes::{NumberedWays, take_numbered},
+    read_request::LatticePlacement,
+    reading::ExtractReading,
     records::Stop,
     spool::{SpoolReader, damaged},
     way_bytes::{take_node_ids, take_way},
@@ -23,10 +23,11 @@ use crate::{
 
 const WAYS_PER_TASK: usize = 256;
 const TASKS_PER_THREAD: usize = 4;
-/// An ordinary way has about ten nodes; with more, fewer ways are taken at a time.
+/// The number of stops per thread and batch. An ordinary way has about ten nodes; if ways have
+/// more, a batch contains fewer ways.
 const STOPS_PER_THREAD: usize = 16 * WAYS_PER_TASK * TASKS_PER_THREAD;
 
-/// The ways of roads with the places of their nodes, and what is known of them.
+/// The ways of roads with the positions of their nodes, their counts and their defects.
 pub(crate) struct RoadWays<'a> {
     pub(crate) ways: SpoolReader<'a>,
     pub(crate) ways_count: u64,
@@ -36,9 +37,10 @@ pub(crate) struct RoadWays<'a> {
 }
 
 impl<'a> RoadWays<'a> {
-    /// Ways, how many there are and how many more have the id of another one, with the places of their nodes.
-    pub(crate) fn of(
-        (ways, ways_count, duplicates): (SpoolReader<'a>, u64, u64),
+    /// Combines the ways, their number and the number of duplicate ids with the positions of the
+    /// nodes.
+    pub(crate) fn from_parts(
+        NumberedWays { ways, count: ways_count, duplicates }: NumberedWays<'a>,
         nodes: LocatedNodes<'a>,
         mut summary: ExtractSummary,
         defects: Deferred<'a>,
@@ -52,17 +54,17 @@ impl<'a> RoadWays<'a> {
     }
 }
 
-/// Hands out roads and defects in the order of the ways, and counts what becomes of these.
+/// Delivers roads and defects in the order of the ways, and counts the results.
 pub(crate) fn hand_out_roads(
-    reading: &Reading<'_>,
+    reading: &ExtractReading<'_>,
     found: RoadWays<'_>,
     sink: &mut dyn LayerSink<Road, ExtractSummary>,
-    on_defect: &mut dyn FnMut(Defect),
+    on_defect: &mut dyn FnMut(ExtractDefect),
 ) -> Result<(), Failed> {
     let RoadWays { mut ways, ways_count, mut stops, mut summary, defects } = found;
     sink.begin();
     defects.tell(on_defect)?;
-    let take = |assembled: Assembled, sink: &mut dyn LayerSink<Road, ExtractSummary>| {
+    let take = |assembled: AssembledWay, sink: &mut dyn LayerSink<Road, ExtractSummary>| {
         if let Some((reason, highway, length_um)) = assembled.left_out {
             let own = summary.left_out_ways.entry((reason, highway)).or_default();
             own.ways += 1;
@@ -81,14 +83,15 @@ pub(crate) fn hand_out_roads(
     Ok(())
 }
 
-/// Hands what becomes of each way to `take`, in the order of the ways. They are made a few thousand at a time, so that the
-/// roads of a country never lie in memory at once. While some are made, this thread hands out those before, and reads those that follow.
+/// Passes the result of each way to `take`, in the order of the ways. Ways are assembled a few
+/// thousand at a time, so that the roads of a country are never in memory together. While one batch
+/// is assembled, this thread delivers the previous batch and reads the next one.
 fn hand_out(
-    reading: &Reading<'_>,
+    reading: &ExtractReading<'_>,
     (ways, ways_count): (&mut SpoolReader<'_>, u64),
     stops: &mut Sorted<'_, Stop>,
     sink: &mut dyn LayerSink<Road, ExtractSummary>,
-    mut take: impl FnMut(Assembled, &mut dyn LayerSink<Road, ExtractSummary>),
+    mut take: impl FnMut(AssembledWay, &mut dyn LayerSink<Road, ExtractSummary>),
 ) -> Result<(), Failed> {
     let pool = reading.request.pool;
     let placing = reading.request.placing();
@@ -96,7 +99,7 @@ fn hand_out(
     let mut done = 0;
     let mut next = || Batch::read(ways, stops, pool.current_num_threads());
     let mut batch = next()?;
-    let mut before: Vec<Vec<Assembled>> = Vec::new();
+    let mut before: Vec<Vec<AssembledWay>> = Vec::new();
     while !(batch.ways.is_empty() && before.is_empty()) {
         reading.check_stop()?;
         let mut assembled = Vec::new();
@@ -109,7 +112,7 @@ fn hand_out(
             before.drain(..).flatten().for_each(|assembled| take(assembled, sink));
             following
         });
-        let made = |some: Option<Result<_, _>>| -> Result<Vec<Assembled>, Failed> {
+        let made = |some: Option<Result<_, _>>| -> Result<Vec<AssembledWay>, Failed> {
             Ok(some.ok_or_else(damaged)??)
         };
         before = assembled.into_iter().map(made).collect::<Result<_, _>>()?;
@@ -120,11 +123,11 @@ fn hand_out(
     Ok(())
 }
 
-/// Some ways, and the places of all their nodes.
+/// Some ways, and the positions of all their nodes.
 #[derive(Default)]
 struct Batch {
     ways: Vec<PackedWay>,
-    /// What the ways are, as bytes.
+    /// The properties of the ways, as bytes.
     kinds: Vec<u8>,
     stops: Vec<Stop>,
 }
@@ -165,13 +168,13 @@ impl Batch {
         Ok(batch)
     }
 
-    /// `None` if what is kept of the ways is damaged.
+    /// Assembles the ways; `None` if their stored bytes are corrupt.
     fn assemble(
         &self,
         some: &[PackedWay],
         with_ids: bool,
-        placing: Placing<'_>,
-    ) -> Option<Result<Vec<Assembled>, ReadOsmError>> {
+        placing: LatticePlacement<'_>,
+    ) -> Option<Result<Vec<AssembledWay>, ReadOsmError>> {
         let plain = |way: &PackedWay| {
             let mut bytes = &self.kinds[way.kind.clone()];
             let mut node_ids = Vec::new();

@@ -1,13 +1,14 @@
-//! The rectangle that the header of an extract says it was cut for.
+//! The bounding box that an extract declares in its header, read from the first blob.
 
 use std::path::Path;
 
 use crate::{ReadOsmError, blobs::BlobFile, open_file::open_file};
 
-/// The rectangle that an extract's header says it was cut for: west, south, east and north in WGS84 degrees, the west larger than
-/// the east across ±180°. `None` where the header has none that lies on earth, or the file has several headers.
+/// Returns the bounding box in an extract's header: west, south, east and north in WGS84 degrees.
+/// Across ±180°, the west is larger than the east. `None` if the header has no box on Earth, or if
+/// the file has several headers.
 ///
-/// Ways that cross the rectangle may reach beyond it.
+/// Ways that cross the bounding box may extend beyond it.
 ///
 /// # Errors
 /// When the file cannot be read or its blobs cannot be listed.

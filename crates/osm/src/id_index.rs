@@ -1,6 +1,7 @@
-//! A list of ids that is searched in no order: a table says where in the list the ids of a range begin.
+//! An index of ids for searches in no particular order: a table says where in the list the ids of
+//! each range begin.
 
-/// Sorted ids, and where those begin of each of many equal ranges.
+/// Sorted ids, and the position in the list at which each of many equal ranges begins.
 ///
 /// ```text
 ///  starts   0 ─────── 3 3 ─── 5 …
@@ -10,15 +11,16 @@ pub(crate) struct IdIndex<'i> {
     ids: &'i [i64],
     least: i64,
     shift: u32,
-    /// One more than there are ranges.
+    /// The start of each range, and one more entry for the end.
     starts: Vec<usize>,
 }
 
-/// So many ids a range: then the table takes a byte for each, and stays in the processor's cache where a region has a million.
+/// The number of ids per range. The table then takes one byte per id, and stays in the processor's
+/// cache if a region has a million ids.
 const IDS_PER_RANGE: usize = 8;
 
 impl<'i> IdIndex<'i> {
-    /// `ids` ascend, each of them once.
+    /// Creates an index of `ids`, which ascend without duplicates.
     pub(crate) fn new(ids: &'i [i64]) -> Self {
         let (least, most) = (ids.first().copied().unwrap_or(0), ids.last().copied().unwrap_or(0));
         let span = most.wrapping_sub(least).cast_unsigned();
@@ -36,7 +38,8 @@ impl<'i> IdIndex<'i> {
         Self { ids, least, shift, starts }
     }
 
-    /// The index of an id. `after` is the one that was found last: mostly the next id follows it.
+    /// Returns the index of an id. `after` is the index that was found last, because the next id
+    /// mostly follows it.
     pub(crate) fn find(&self, id: i64, after: usize) -> Option<usize> {
         if self.ids.get(after + 1) == Some(&id) {
             return Some(after + 1);
@@ -47,9 +50,9 @@ impl<'i> IdIndex<'i> {
     }
 }
 
-/// Which range an id is in. One below the least id is taken for one above all.
+/// Returns the range of an id. An id below the smallest one is treated as larger than all others.
 fn range_of(id: i64, least: i64, shift: u32) -> usize {
-    // Ids at both ends of all numbers may need all 64 bits.
+    // Ids at both ends of the number range may need all 64 bits.
     id.wrapping_sub(least).cast_unsigned().checked_shr(shift).unwrap_or(0) as usize
 }
 

@@ -1,4 +1,4 @@
-//! The index of an id is that which a plain search finds.
+//! The index finds the same id as a plain search.
 
 use proptest::prelude::*;
 

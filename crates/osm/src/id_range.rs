@@ -1,8 +1,8 @@
-//! Between which ids the nodes of a block lie, so that pass 2 can leave out blobs.
+//! The range of node ids in a block, so that pass 2 can skip blobs.
 
 use serde::{Deserialize, Serialize};
 
-use crate::block::Block;
+use crate::block::AuditedBlock;
 
 /// The smallest and the largest id of a block's nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -12,14 +12,14 @@ pub(crate) struct IdRange {
 }
 
 impl IdRange {
-    /// `None` without nodes.
-    pub(crate) fn scan(block: &Block<'_>) -> Option<Self> {
+    /// Returns the range; `None` if the block has no nodes.
+    pub(crate) fn scan(block: &AuditedBlock<'_>) -> Option<Self> {
         let dense = block.dense().iter().flat_map(|nodes| &nodes.ids).copied();
         let all = dense.chain(block.plain_nodes().map(|node| node.id));
         all.map(|id| Self { least: id, most: id }).reduce(Self::union)
     }
 
-    /// The smallest range with both in it.
+    /// Returns the smallest range that contains both.
     pub(crate) fn union(self, other: Self) -> Self {
         Self { least: self.least.min(other.least), most: self.most.max(other.most) }
     }

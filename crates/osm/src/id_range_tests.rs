@@ -1,6 +1,6 @@
 //! The range of node ids in a block covers dense and plain nodes together.
 
-use corniche_testing::pbf::Block;
+use corniche_testing::pbf::BlockBuilder;
 use proptest::prelude::*;
 
 use super::*;
@@ -12,14 +12,14 @@ proptest! {
         plain in prop::collection::vec(prop_oneof![-60_i64..60, Just(i64::MIN), Just(i64::MAX)], 0..5),
     ) {
         let nodes = |ids: &[i64]| ids.iter().map(|&id| (id, 0, 0)).collect::<Vec<_>>();
-        let mut block = Block::new();
+        let mut block = BlockBuilder::new();
         block.dense(&nodes(&dense));
         block.plain(&nodes(&plain));
-        // The ids of ways do not count.
+        // Ids of ways do not count.
         block.track(1000, &[-1000, 1000]);
         let all = || dense.iter().chain(&plain).copied();
         let expected = all().min().zip(all().max()).map(|(least, most)| IdRange { least, most });
-        prop_assert_eq!(IdRange::scan(&crate::block::Block::new(&block.bytes())), expected);
+        prop_assert_eq!(IdRange::scan(&crate::block::AuditedBlock::new(&block.bytes())), expected);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Errors of intermediate results that shares of an extract kept.
+//! Errors of the intermediate results that shares of an extract store.
 
 use std::io;
 
@@ -6,17 +6,19 @@ use corniche_store::StoreError;
 
 use crate::share::Share;
 
-/// Why what shares kept cannot be used.
+/// The reason why the results of shares cannot be used.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
 pub enum KeptError {
     #[error(transparent)]
     Store(#[from] StoreError),
-    #[error("share {share} of the {what} of the extract is not there")]
+    #[error(
+        "chunk {share} of the extract's {what} is missing; compute it with corniche part --step {what} --share {share}"
+    )]
     Missing { what: &'static str, share: Share },
     #[error(
-        "share {share} of the extract is damaged: {what}; remove its parts and make them again"
+        "chunk {share} of the extract is corrupt: {what}; delete its parts and create them again"
     )]
     Damaged { share: Share, what: &'static str },
 }

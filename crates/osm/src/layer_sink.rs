@@ -1,24 +1,27 @@
-//! Who is handed what is in a layer of an extract.
+//! Receivers of the contents of an extract's layers.
 
-use corniche_areas::LineClass;
+use corniche_areas::BoundaryClass;
 
-/// Who is told the names of what ways bound: the id of a way, the class of what it bounds, and its name.
-pub type NamesSink<'a> = dyn FnMut(i64, LineClass, &str) + 'a;
+/// Receives the names of the objects that ways bound: the id of a way, the class of the object, and
+/// its name.
+pub type NamesSink<'a> = dyn FnMut(i64, BoundaryClass, &str) + 'a;
 
-/// Who is handed the objects of a layer. What is wrong with a layer is told between its beginning and its end.
+/// Receives the objects of a layer. Defects of a layer are reported between its beginning and its
+/// end.
 pub trait LayerSink<T, S> {
-    /// The extract was read; all objects of this layer follow.
+    /// Called when the extract was read; all objects of this layer follow.
     fn begin(&mut self) {}
 
-    /// Takes an object.
+    /// Receives an object.
     fn take(&mut self, object: T);
 
-    /// Takes a road that is left out because its class is off or not known: where ids of nodes were asked for, since it may carry bridges and tunnels.
+    /// Receives a road that is skipped because its class is off or unknown. This happens only if
+    /// ids of nodes were requested, because such a road may carry bridges and tunnels.
     fn take_carrier(&mut self, _object: T) {}
 
-    /// `done` of `all` ways or objects of this layer were looked at.
+    /// Called when `done` of `all` ways or objects of this layer were processed.
     fn reached(&mut self, _done: u64, _all: u64) {}
 
-    /// All objects of this layer were handed out.
+    /// Called when all objects of this layer were delivered.
     fn end(&mut self, summary: S);
 }

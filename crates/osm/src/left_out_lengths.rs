@@ -1,7 +1,8 @@
-//! How long the ways are that are left out, where all nodes that are sought fit in memory.
+//! The lengths of skipped ways, for extracts whose requested nodes all fit in memory.
 //!
-//! Such a way is asked for its length alone. So its nodes need no numbers, and their places need not be put in the order of the ways: each is
-//! looked up. This takes a third to a half less time than to treat them as those of roads.
+//! Only the length of a skipped way is needed. So its nodes need no numbers, and their positions
+//! need not be sorted by way: each position is looked up. This takes a third to a half less time
+//! than the treatment of road nodes.
 
 use std::{collections::BTreeMap, io, ops::Range};
 
@@ -14,28 +15,28 @@ use crate::{
     failed::Failed,
     id_index::IdIndex,
     nodes::{NodeIds, NodePlaces},
-    reading::Reading,
+    reading::ExtractReading,
     records::SoughtId,
     spool::{Spool, damaged},
     way_bytes::{LeftOutWay, take_left_out, take_node_ids},
     wire::{push_bytes, take_bytes},
 };
 
-/// How many ways there are and how long they are, by reason and `highway` value.
+/// The number and the length of ways, by reason and `highway` value.
 pub(crate) type Lengths = BTreeMap<(LeftOutReason, String), LeftOutWays>;
 
-/// Ways that are left out, and the nodes that they name.
+/// Skipped ways, and the nodes that they reference.
 pub(crate) struct LeftOutNodes<'a> {
-    /// The length of a way's bytes, and these; see [`crate::way_bytes`].
+    /// The length of each way's bytes, then the bytes; see [`crate::way_bytes`].
     pub(crate) ways: Spool<'a>,
     pub(crate) ids: Sorter<'a, SoughtId>,
     pub(crate) ids_count: u64,
 }
 
 impl<'a> LeftOutNodes<'a> {
-    pub(crate) fn new(reading: &Reading<'a>) -> Self {
+    pub(crate) fn new(reading: &ExtractReading<'a>) -> Self {
         let shares = reading.shares();
-        // What lists where ways name nodes has nothing to list for these.
+        // The memory for visits is free, because skipped ways have no visits.
         let ways = Spool::new(reading.request.scratch, shares.visits);
         Self { ways, ids: reading.sorter(shares.mentions), ids_count: 0 }
     }
@@ -52,9 +53,9 @@ impl<'a> LeftOutNodes<'a> {
     }
 }
 
-/// Adds up the lengths of ways by the places of their nodes.
+/// Adds up the lengths of ways from the positions of their nodes.
 pub(crate) fn left_out_lengths(
-    reading: &Reading<'_>,
+    reading: &ExtractReading<'_>,
     ways: Spool<'_>,
     ids: &NodeIds,
     places: &NodePlaces,
@@ -95,7 +96,7 @@ pub(crate) fn left_out_lengths(
     }
 }
 
-/// The same for some ways; `None` if their bytes are damaged.
+/// Adds up the lengths of some ways; `None` if their bytes are corrupt.
 fn add_up<'b>(
     some: &[Range<usize>],
     bytes: &'b [u8],

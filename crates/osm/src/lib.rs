@@ -1,7 +1,8 @@
-//! `OpenStreetMap` extracts (`.osm.pbf`) to roads, areas and boundaries, all in one reading.
+//! Reads roads, areas and boundaries from `OpenStreetMap` extracts (`.osm.pbf`), all in one
+//! reading.
 //!
 //! ```text
-//!  blobs with relations ──► find_objects ──► objects of areas and boundaries, ids of the ways that they name
+//!  blobs with relations ──► find_objects ──► objects of areas and boundaries, ids of the ways that they reference
 //!  blobs with ways ───────► find_ways ─────► WayRecord of each layer by way id ──► number_nodes ──► Mention by node id ─┐
 //!                                                                                     │                               ▼
 //!                                                                what the ways are ◄──┘   blobs with nodes ──► locate_nodes
@@ -11,17 +12,22 @@
 //!  blob ──► unpack, within its limit ──► audit ──► block: nodes and ways read in place; relations by osmpbf
 //! ```
 //!
-//! Of an extract that is sorted by kind each blob is unpacked once, whatever layers are wanted: relations first, nodes last
-//! (`read_extract`, `nodes_last`). Blobs are decoded in parallel inside the pool of the caller. No block is read before it was checked: what
-//! contradicts itself, would overflow or would fill the memory is refused with its reason. Ways and nodes of roads are sorted
-//! and joined within the memory that the caller allows; what does not fit goes to scratch space. There is one way through the
-//! code for extracts of every size and order, but for the lengths of ways that are left out (`left_out_lengths`).
+//! In an extract that is sorted by type, each blob is unpacked once, whatever layers are requested:
+//! relations first, nodes last (`read_extract`, `nodes_last`). Blobs are decoded in parallel in the
+//! caller's thread pool. Each block is checked before it is read: a block that contradicts itself,
+//! would overflow or would fill the memory is rejected with a reason. Ways and nodes of roads are
+//! sorted and joined within the caller's memory limit; what does not fit goes to scratch space. The
+//! same code reads extracts of every size and order, except for the lengths of skipped ways
+//! (`left_out_lengths`).
 //!
-//! Several extracts are read as one list of blobs. Of an object that is in two of them the newer version counts.
+//! Several extracts are read as one list of blobs. If an object is in two of them, the newer
+//! version counts.
 //!
-//! The two passes can also be split into shares of the blobs and made by several processes, each a [`Share`].
+//! The two passes can also be split into shares of the blobs, which several processes read; see
+//! [`Share`].
 //!
-//! This crate never judges which road matters at which level, never guesses a class, and starts no threads.
+//! This crate never judges which road matters at which level, never guesses a class, and starts no
+//! threads.
 
 mod areas;
 mod header_bounds;
@@ -85,16 +91,16 @@ mod summary;
 
 pub use area_loss::AreaLoss;
 pub use areas::{AreaSummary, KeptAreas};
-pub use defect::Defect;
+pub use defect::ExtractDefect;
 pub use error::ReadOsmError;
 pub use header_bounds::header_bounds_deg;
 pub use kept_error::KeptError;
 pub use layer_sink::{LayerSink, NamesSink};
-pub use layers::{Layers, LinesSink};
+pub use layers::Layers;
 pub use line_loss::LineLoss;
 pub use lines::{ClassedLine, LineSummary};
 pub use read_extract::{read_extract, read_extract_from};
 pub use read_request::{OnProgress, ReadRequest, RingArea, ToLattice};
 pub use share::{Share, ShareError};
-pub use shares::{Kept, KeptKinds, keep_nodes, keep_ways, read_kept_roads};
+pub use shares::{KeptKinds, ShareStore, keep_nodes, keep_ways, read_kept_roads};
 pub use summary::{ATTRIBUTION, ExtractSummary, HighwayCount, LeftOut, LeftOutReason, LeftOutWays};

@@ -1,33 +1,22 @@
-//! Reasons for which a way of a layer of lines is left out.
+//! Reasons why a way of a boundary is skipped.
 
-use corniche_areas::{ClassedLayer, line_text};
 use serde::{Deserialize, Serialize};
 
-/// Why a way of a layer of lines is left out.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[non_exhaustive]
-pub enum LineLoss {
-    /// A relation names it, and the file does not have it.
-    MissingWay,
-    /// Too few of its nodes are in the file: no two that follow each other are left.
-    MissingNodes,
-    /// No two nodes that follow each other lie on Earth, at different places.
-    OutOfRange,
-    /// No two nodes that follow each other have a place in the working CRS, or different ones.
-    OutsideProjection,
-}
-
-impl LineLoss {
-    /// The name to count it under in a layer, in words.
-    #[must_use]
-    pub const fn reason(self, layer: ClassedLayer) -> &'static str {
-        match self {
-            Self::MissingWay => line_text!(layer, "way of a " one " is missing"),
-            Self::MissingNodes => line_text!(layer, "way of a " one " lacks nodes"),
-            Self::OutOfRange => line_text!(layer, "way of a " one " is out of range"),
-            Self::OutsideProjection => {
-                line_text!(layer, "way of a " one " is outside the projection")
-            }
-        }
+corniche_roads::listed! {
+    /// The reason why a way of a boundary is skipped.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+    #[non_exhaustive]
+    pub enum LineLoss {
+        /// A relation references the way, but the file does not contain it.
+        MissingWay = "way of a boundary is missing",
+        /// Too few nodes of the way are in the file: no two consecutive nodes are left.
+        MissingNodes = "way of a boundary lacks nodes",
+        /// No two consecutive nodes are on Earth and at different positions.
+        OutOfRange = "way of a boundary is out of range",
+        /// No two consecutive nodes have positions in the working CRS that differ.
+        OutsideProjection = "way of a boundary is outside the projection",
     }
+
+    /// Returns the name under which the reason is counted, in words.
+    pub fn reason() -> &'static str;
 }

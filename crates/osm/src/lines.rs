@@ -1,4 +1,5 @@
-//! Lines with classes of extracts: the ways to which relations or their own tags give one, each once.
+//! Classified lines of extracts: each way that gets a class from relations or from its own tags,
+//! once.
 //!
 //! ```text
 //!  objects and their located ways (`outlines`) ──► members by way id ──┐

@@ -1,31 +1,33 @@
-//! Where the nodes lie that ways name.
+//! Finds the positions of the nodes that ways reference.
 //!
-//! The nodes that ways of all layers name come in ascending order of id. As many as fit in memory are a chunk; for each chunk the blobs are
-//! read that may hold its nodes. In a file that is sorted by id these are a few neighbours, so a blob is read once, or twice where
-//! a chunk ends within it. In a file that is not sorted all blobs with nodes are read for each chunk.
+//! The nodes that ways of all layers reference arrive in ascending order of ids. As many nodes as
+//! fit in memory are a chunk. For each chunk, the blobs that may contain its nodes are read. In a
+//! file that is sorted by id these are a few neighbours, so a blob is read once, or twice if a
+//! chunk ends within it. In an unsorted file, all blobs with nodes are read for each chunk.
 
 use std::io::{self, Read, Seek};
 
 use corniche_store::{Sorted, Sorter};
 
 use crate::{
-    Defect,
+    ExtractDefect,
     ahead::Ahead,
-    block::Block,
+    block::AuditedBlock,
     extracts::{Extracts, TOO_MUCH_FOUND},
     failed::Failed,
     id_range::IdRange,
     left_out_lengths::{LeftOutNodes, Lengths, left_out_lengths},
     looked::NodeBlob,
     nodes::{FoundNode, NodeIds, NodePlaces, Precedence},
-    reading::{Reading, Step},
+    reading::{ExtractReading, ReadingStep},
     records::{Located, Mention, SoughtId, Stop, WayUse},
     spool::{Spool, damaged},
     wire::{push_varint, varint},
 };
 
-/// What a node of a chunk takes at most: its id, its place, two marks, and of several extracts its version; for each further layer a mark. Where lengths of ways that are
-/// left out are looked up, the index of ids takes up to a byte more.
+/// Returns the maximum memory of a node in a chunk: its id, its position, two marks, its version if
+/// there are several extracts, and one mark for each further layer. If lengths of skipped ways are
+/// looked up, the index of ids takes up to one byte more.
 pub(crate) fn bytes_per_node(precedence: Precedence, layers: u64) -> u64 {
     match precedence {
         Precedence::First => 8 + 8 + 1 + layers,
@@ -36,36 +38,36 @@ pub(crate) fn bytes_per_node(precedence: Precedence, layers: u64) -> u64 {
 /// The nodes of all ways of a layer, in the order of the ways.
 pub(crate) struct LocatedNodes<'a> {
     pub(crate) stops: Sorter<'a, Stop>,
-    /// Different nodes that ways name which are not left out.
+    /// The number of different nodes that ways reference which are not skipped.
     pub(crate) needed: u64,
-    /// How many of them have no place.
+    /// The number of needed nodes that have no position.
     pub(crate) missing: u64,
-    /// Lengths of ways that are left out and were treated apart.
+    /// The lengths of skipped ways that were processed separately.
     pub(crate) lengths: Lengths,
 }
 
-/// The nodes that a layer asks for.
+/// The nodes that a layer requests.
 pub(crate) struct NodeQuestions<'a> {
     pub(crate) mentions: Sorted<'a, Mention>,
     pub(crate) mentions_count: u64,
-    /// Ways that are asked for their lengths alone; only where all nodes fit in a chunk.
+    /// Ways whose length alone is needed; only if all nodes fit in one chunk.
     pub(crate) left_out: Option<LeftOutNodes<'a>>,
 }
 
-/// How many nodes a chunk has at most.
-pub(crate) fn most_ids(reading: &Reading<'_>, layers: u64) -> u64 {
+/// Returns the maximum number of nodes in a chunk.
+pub(crate) fn most_ids(reading: &ExtractReading<'_>, layers: u64) -> u64 {
     (reading.shares().ids / bytes_per_node(reading.precedence(), layers)).max(1)
 }
 
-/// What a layer asks, node by node.
+/// The requests of a layer, node by node.
 struct Asking<'a> {
     mentions: Ahead<Sorted<'a, Mention>>,
-    /// Nodes that only have to be there.
+    /// Nodes that only need to be in the chunk.
     also: Option<Ahead<Sorted<'a, SoughtId>>>,
 }
 
 impl Asking<'_> {
-    /// The node with the least id.
+    /// Returns the smallest requested node id.
     fn next(&mut self) -> io::Result<Option<i64>> {
         let mention = self.mentions.peek()?.map(|mention| mention.node_id);
         let also = match &mut self.also {
@@ -76,26 +78,28 @@ impl Asking<'_> {
     }
 }
 
-/// Where the places of nodes come from.
+/// A source of node positions.
 pub(crate) trait NodeSource {
-    /// Gives the places of nodes, in the order of the file. Their ids follow those that were asked for before.
+    /// Writes the positions of nodes to `places`, in the order of the file. The ids are larger than
+    /// those of earlier calls.
     fn read(
         &mut self,
-        reading: &Reading<'_>,
+        reading: &ExtractReading<'_>,
         ids: &NodeIds,
         share: &ShareOfNodes,
         places: &mut NodePlaces,
     ) -> Result<(), Failed>;
 }
 
-/// Finds the places of all nodes that the layers name, and answers each of them. `located` are places that ways give, in order of node id.
-/// Nodes with several places go to `on_defect`, with the number of the layer, in order of id.
+/// Finds the positions of all nodes that the layers reference, and answers each reference.
+/// `located` contains positions that ways give, in order of node ids. Nodes with several positions
+/// go to `on_defect`, with the number of the layer, in order of ids.
 pub(crate) fn locate_nodes<'a>(
-    reading: &Reading<'a>,
+    reading: &ExtractReading<'a>,
     source: &mut dyn NodeSource,
     questions: Vec<NodeQuestions<'a>>,
     located: impl Iterator<Item = io::Result<Located>>,
-    on_defect: &mut dyn FnMut(usize, Defect),
+    on_defect: &mut dyn FnMut(usize, ExtractDefect),
 ) -> Result<Vec<LocatedNodes<'a>>, Failed> {
     let stops_bytes = reading.shares().stops;
     let none = || LocatedNodes {
@@ -133,14 +137,14 @@ pub(crate) fn locate_nodes<'a>(
         for (layer, ((asked, nodes), left_out)) in layers.enumerate() {
             let by_ways = by_ways.next().flatten();
             let places = by_ways.as_ref().unwrap_or(&places);
-            // What only ways name that are left out is needed by no road.
+            // No road needs a node that only skipped ways reference.
             let is_needed = |&number: &usize| asked.named[number].is_needed();
             let needed = (0..asked.named.len()).filter(is_needed);
             nodes.needed += needed.clone().count() as u64;
             nodes.missing += needed.filter(|&number| places.is_missing(number)).count() as u64;
             for number in places.conflicts().filter(is_needed) {
                 let node_id = chunk.ids.ids()[number];
-                on_defect(layer, Defect::ConflictingNode { node_id });
+                on_defect(layer, ExtractDefect::ConflictingNode { node_id });
             }
             asked.answer(reading, places, &mut nodes.stops)?;
             // All nodes are in this chunk.
@@ -150,7 +154,7 @@ pub(crate) fn locate_nodes<'a>(
         }
     }
     if !is_read {
-        // Blobs that hold nodes are checked and counted, also if no way needs one.
+        // Blobs that contain nodes are checked and counted even if no way needs a node.
         let share = ShareOfNodes { before: 0, own: 0, all: 0 };
         let (ids, mut none) = (NodeIds::new(Vec::new()), NodePlaces::new(0, reading.precedence()));
         source.read(reading, &ids, &share, &mut none)?;
@@ -161,11 +165,11 @@ pub(crate) fn locate_nodes<'a>(
             }
         }
     }
-    reading.tell(Step::Nodes, 1, 1);
+    reading.tell(ReadingStep::Nodes, 1, 1);
     Ok(nodes)
 }
 
-/// Which part of all that names nodes a chunk is; for the progress.
+/// The part of all references to nodes that belongs to a chunk; for progress reports.
 pub(crate) struct ShareOfNodes {
     pub(crate) before: u64,
     pub(crate) own: u64,
@@ -173,22 +177,28 @@ pub(crate) struct ShareOfNodes {
 }
 
 impl ShareOfNodes {
-    /// Mentions up to the end of the chunk.
+    /// Returns the number of references up to the end of the chunk.
     pub(crate) fn done(&self) -> u64 {
         self.before + self.own
     }
 }
 
-/// Tells that so many of the bytes were read that a chunk needs.
-pub(crate) fn tell_nodes(reading: &Reading<'_>, share: &ShareOfNodes, bytes: u64, all_bytes: u64) {
+/// Reports how many of the bytes that a chunk needs were read.
+pub(crate) fn tell_nodes(
+    reading: &ExtractReading<'_>,
+    share: &ShareOfNodes,
+    bytes: u64,
+    all_bytes: u64,
+) {
     let done = u128::from(share.own) * u128::from(bytes) / u128::from(all_bytes.max(1));
-    reading.tell(Step::Nodes, share.before + done as u64, share.all);
+    reading.tell(ReadingStep::Nodes, share.before + done as u64, share.all);
 }
 
-/// Reads those of some blobs that may hold some nodes, and hands on the places of these nodes by their numbers. `on_bytes` is told how
-/// many of how many bytes were read. Returns how many bytes these blobs have.
+/// Reads those of some blobs that may contain the nodes, and passes on the positions of the nodes
+/// by their numbers. `on_bytes` receives the bytes read and their total. Returns the size of these
+/// blobs in bytes.
 pub(crate) fn read_places<R: Read + Seek>(
-    reading: &Reading<'_>,
+    reading: &ExtractReading<'_>,
     file: &mut Extracts<R>,
     node_blobs: &[NodeBlob],
     ids: &NodeIds,
@@ -205,13 +215,13 @@ pub(crate) fn read_places<R: Read + Seek>(
         Ok(())
     };
     let scan = |block: Vec<u8>, most_bytes| {
-        Ok(ids.scan(&Block::new(&block), most_bytes).ok_or(TOO_MUCH_FOUND)?)
+        Ok(ids.scan(&AuditedBlock::new(&block), most_bytes).ok_or(TOO_MUCH_FOUND)?)
     };
     file.for_each_block(reading, &numbers, &|bytes| on_bytes(bytes, all_bytes), scan, take)?;
     Ok(all_bytes)
 }
 
-/// How often the ways of a layer name a node.
+/// The number of references to a node by the ways of a layer.
 ///
 /// ```text
 ///  │ by roads and ways that carry them: 2 bits │ by roads: 2 bits │      0: never, 1: once, 2: more often, a junction
@@ -233,52 +243,54 @@ impl Named {
         }
     }
 
-    /// Whether a road names it.
+    /// Whether a road references the node.
     fn is_needed(self) -> bool {
         self.0 & 3 > 0
     }
 
-    /// Whether it is a junction of roads, and whether it is one of roads and ways that carry them.
+    /// Whether the node is a junction of roads, and whether it is a junction of roads and the ways
+    /// that carry them.
     fn is_junction(self) -> [bool; 2] {
         [self.0 & 3 == 2, self.0 >> 2 == 2]
     }
 }
 
-/// Some of the nodes that ways name, with neighbouring ids.
+/// Some of the referenced nodes, with neighbouring ids.
 struct Chunk<'a> {
     ids: NodeIds,
-    layers: Vec<Asked<'a>>,
-    /// How often its nodes are named.
+    layers: Vec<RequestedNodes<'a>>,
+    /// The number of references to its nodes.
     named_count: u64,
 }
 
-/// The nodes of a chunk that a layer asks for.
-struct Asked<'a> {
-    /// How often its ways name a node.
+/// The nodes of a chunk that a layer requests.
+struct RequestedNodes<'a> {
+    /// The number of references to each node.
     named: Vec<Named>,
-    /// Numbers of the mentions, node by node.
+    /// The numbers of the references, node by node.
     ///
     /// ```text
     ///  │ number: 63 bits │ 1 if it is the first one of its node │   if it is: │ how many nodes after the one before │
     /// ```
     visits: Spool<'a>,
     mentions_count: u64,
-    /// The number of the node that was named last.
+    /// The number of the node that was referenced last.
     last: u64,
 }
 
 impl<'a> Chunk<'a> {
-    /// Takes the mentions of as many nodes as fit; `None` if there are no more. `most` mentions are to come.
+    /// Collects the references to as many nodes as fit; `None` if there are no more. `most`
+    /// references are left.
     fn gather(
-        reading: &Reading<'a>,
+        reading: &ExtractReading<'a>,
         asking: &mut [Asking<'a>],
         most: u64,
     ) -> Result<Option<Self>, Failed> {
         let most_ids = most_ids(reading, asking.len() as u64).min(most) as usize;
-        // Of this size at once: lists that grow by doubling would take up to three times as much.
+        // Allocated at full size: lists that grow by doubling would take up to three times as much.
         let mut ids: Vec<i64> = Vec::with_capacity(most_ids);
-        let mut layers: Vec<Asked<'_>> =
-            asking.iter().map(|_| Asked::new(reading, most_ids)).collect();
+        let mut layers: Vec<RequestedNodes<'_>> =
+            asking.iter().map(|_| RequestedNodes::new(reading, most_ids)).collect();
         let mut count = 0;
         while ids.len() < most_ids {
             let mut next: Option<i64> = None;
@@ -302,11 +314,11 @@ impl<'a> Chunk<'a> {
         Ok(is_any.then(|| Self { ids: NodeIds::new(ids), layers, named_count: count }))
     }
 
-    /// Takes the places that ways give for nodes of the chunk, in the order of the file: the places that hold for each layer whose ways give
-    /// some. A layer does not depend on what ways of others say.
+    /// Applies the positions that ways give for nodes of the chunk, in the order of the file, to
+    /// each layer whose ways give some. A layer does not depend on the ways of other layers.
     fn take_located(
         &self,
-        reading: &Reading<'_>,
+        reading: &ExtractReading<'_>,
         located: &mut Ahead<impl Iterator<Item = io::Result<Located>>>,
         places: &NodePlaces,
     ) -> Result<Vec<Option<NodePlaces>>, Failed> {
@@ -316,7 +328,7 @@ impl<'a> Chunk<'a> {
             if self.ids.ids().last().is_some_and(|&last| next.node_id > last) {
                 break;
             }
-            // Not there: a duplicate named the node, and was left out.
+            // The node may be missing: a duplicate that was skipped referenced it.
             if let (Some(number), Some(own)) =
                 (self.ids.number(next.node_id), by_layer.get_mut(usize::from(next.layer)))
             {
@@ -330,16 +342,16 @@ impl<'a> Chunk<'a> {
     }
 }
 
-impl<'a> Asked<'a> {
-    fn new(reading: &Reading<'a>, most_ids: usize) -> Self {
+impl<'a> RequestedNodes<'a> {
+    fn new(reading: &ExtractReading<'a>, most_ids: usize) -> Self {
         let visits = Spool::new(reading.request.scratch, reading.shares().visits);
         Self { named: Vec::with_capacity(most_ids), visits, mentions_count: 0, last: 0 }
     }
 
-    /// Takes the mentions of the node with this id, which is the chunk's next.
+    /// Collects the references to the node with this id, which is the next node of the chunk.
     fn take(
         &mut self,
-        reading: &Reading<'_>,
+        reading: &ExtractReading<'_>,
         id: i64,
         number: u64,
         mentions: &mut Ahead<Sorted<'a, Mention>>,
@@ -371,10 +383,10 @@ impl<'a> Asked<'a> {
         Ok(())
     }
 
-    /// Gives each mention the place of its node.
+    /// Answers each reference with the position of its node.
     fn answer(
         self,
-        reading: &Reading<'_>,
+        reading: &ExtractReading<'_>,
         places: &NodePlaces,
         stops: &mut Sorter<'_, Stop>,
     ) -> Result<(), Failed> {

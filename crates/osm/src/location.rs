@@ -1,17 +1,20 @@
-//! Where a node lies, as the file gives it.
+//! The position of a node as the file gives it.
 
-/// Longitude and latitude in whole 1e-7 degrees, OSM's own resolution, or one of two marks beyond ±180°.
+/// Longitude and latitude in whole 1e-7 degrees, OSM's own resolution, or one of two marks beyond
+/// ±180°.
 ///
-/// Fixed point as in libosmium's `Location` (`include/osmium/osm/location.hpp`): half the memory of two f64.
+/// Fixed point as in libosmium's `Location` (`include/osmium/osm/location.hpp`): half the memory of
+/// two f64.
 pub(crate) type Location = [i32; 2];
 
-/// No place is known.
+/// The mark for an unknown position.
 pub(crate) const MISSING: Location = [i32::MIN; 2];
-/// The file gives a place that is not on Earth.
+/// The mark for a position that is not on Earth.
 pub(crate) const OUT_OF_RANGE: Location = [i32::MAX; 2];
 
-/// What libosmium writes, in 1e-7 degrees, into ways with locations for a node that it does not have, and for deleted nodes
-/// (`undefined_coordinate` in `include/osmium/osm/location.hpp`).
+/// The coordinate that libosmium writes into ways with locations for missing and deleted nodes, in
+/// nanodegrees (`undefined_coordinate` in `include/osmium/osm/location.hpp`, there in units of 1e-7
+/// degrees).
 const UNDEFINED_NANO_DEG: i64 = 100 * (i32::MAX as i64);
 
 /// Rounds nanodegrees to a location.
@@ -25,7 +28,7 @@ pub(crate) fn location_from_nano(lon_nano_deg: i64, lat_nano_deg: i64) -> Locati
     if is_on_earth { [round(lon_nano_deg), round(lat_nano_deg)] } else { OUT_OF_RANGE }
 }
 
-/// Longitude and latitude in degrees; `None` for the marks.
+/// Returns longitude and latitude in degrees; `None` for the two marks.
 pub(crate) fn degrees(location: Location) -> Option<[f64; 2]> {
     // Dividing rounds once; a factor of 1e-7 would round twice.
     (location != MISSING && location != OUT_OF_RANGE)

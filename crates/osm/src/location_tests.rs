@@ -1,4 +1,4 @@
-//! Places are rounded to the resolution of the data, and places off the earth are marked.
+//! Positions are rounded to the resolution of the data, and positions off the Earth are marked.
 
 use super::*;
 

@@ -1,18 +1,18 @@
-//! What is asked of every blob, whatever is read of it, and what may be kept of a file.
+//! Checks that apply to every blob, and limits for the data stored from a file.
 
 use serde::{Deserialize, Serialize};
 
 use crate::{
     ReadOsmError,
-    block::{Block, BlockWay},
+    block::{AuditedBlock, BlockWay},
     id_range::IdRange,
-    reading::Reading,
+    reading::ExtractReading,
     versions::{History, Versions},
 };
 
-/// What may be kept of any file, in memory or in scratch space, …
+/// The maximum data stored from any file, in memory or in scratch space, bytes, …
 const HELD_BYTES: u64 = 64 << 20;
-/// … and on top of it for each of its bytes.
+/// … plus this for each byte of the file.
 const HELD_BYTES_PER_BYTE: u64 = 64;
 
 /// A blob with nodes.
@@ -22,8 +22,8 @@ pub(crate) struct NodeBlob {
     pub(crate) ids: IdRange,
 }
 
-/// What is asked of each block once, whatever else is read of it.
-pub(crate) struct Looked {
+/// The facts that are collected of each block once, whatever else is read from it.
+pub(crate) struct BlockSurvey {
     versions: Versions,
     ids: Option<IdRange>,
     pub(crate) has_relations: bool,
@@ -31,8 +31,8 @@ pub(crate) struct Looked {
     nodes: u64,
 }
 
-impl Looked {
-    pub(crate) fn scan(block: &Block<'_>) -> Self {
+impl BlockSurvey {
+    pub(crate) fn scan(block: &AuditedBlock<'_>) -> Self {
         Self {
             versions: Versions::scan(block),
             ids: IdRange::scan(block),
@@ -42,37 +42,38 @@ impl Looked {
         }
     }
 
-    /// What is known of a block with ways alone, before it is told any of them.
+    /// Returns the facts of a block with ways alone, before any of them is added.
     pub(crate) fn of_ways() -> Self {
         let versions = Versions::default();
         Self { versions, ids: None, has_relations: false, has_ways: true, nodes: 0 }
     }
 
-    /// Takes the next way.
+    /// Adds the next way.
     pub(crate) fn take_way(&mut self, way: &BlockWay<'_, '_>) {
         self.versions.take_way(way.id, way.info);
     }
 }
 
-/// What is known of all blobs that were looked at.
+/// The facts of all blobs that were scanned.
 #[derive(Default)]
 pub(crate) struct LookedAt {
     pub(crate) versions: Versions,
     pub(crate) node_blobs: Vec<NodeBlob>,
-    /// Numbers of those with ways.
+    /// The numbers of the blobs with ways.
     pub(crate) with_ways: Vec<usize>,
-    /// How many nodes there are.
+    /// The number of nodes.
     pub(crate) nodes_seen: u64,
     pub(crate) has_relations: bool,
 }
 
 impl LookedAt {
-    /// Takes what a later blob of an extract holds; fails if the blobs are of more than one point in time.
+    /// Adds the facts of a later blob of an extract. Fails if the blobs belong to more than one
+    /// point in time.
     pub(crate) fn take(
         &mut self,
-        reading: &Reading<'_>,
+        reading: &ExtractReading<'_>,
         [file, number]: [usize; 2],
-        looked: Looked,
+        looked: BlockSurvey,
     ) -> Result<(), ReadOsmError> {
         append_versions(reading, &mut self.versions, looked.versions.of_file(file as u32))?;
         self.node_blobs.extend(looked.ids.map(|ids| NodeBlob { number, ids }));
@@ -84,10 +85,10 @@ impl LookedAt {
         Ok(())
     }
 
-    /// Adds what is known of later blobs.
+    /// Adds the facts of later blobs.
     pub(crate) fn append(
         &mut self,
-        reading: &Reading<'_>,
+        reading: &ExtractReading<'_>,
         later: Self,
     ) -> Result<(), ReadOsmError> {
         append_versions(reading, &mut self.versions, later.versions)?;
@@ -98,9 +99,10 @@ impl LookedAt {
     }
 }
 
-/// Adds later blobs; fails if they and those before are of more than one point in time.
+/// Adds the versions of later blobs. Fails if earlier and later blobs belong to more than one point
+/// in time.
 pub(crate) fn append_versions(
-    reading: &Reading<'_>,
+    reading: &ExtractReading<'_>,
     versions: &mut Versions,
     later: Versions,
 ) -> Result<(), ReadOsmError> {
@@ -110,8 +112,11 @@ pub(crate) fn append_versions(
     })
 }
 
-/// Fails if what is found takes more than a file of this size can plausibly hold.
-pub(crate) fn check_held(reading: &Reading<'_>, held_bytes: u64) -> Result<(), ReadOsmError> {
+/// Fails if the findings take more memory than a file of this size can plausibly contain.
+pub(crate) fn check_held(
+    reading: &ExtractReading<'_>,
+    held_bytes: u64,
+) -> Result<(), ReadOsmError> {
     let len_bytes = reading.len_bytes;
     if held_bytes > HELD_BYTES.saturating_add(len_bytes.saturating_mul(HELD_BYTES_PER_BYTE)) {
         return Err(ReadOsmError::TooMuch { path: reading.request.path.to_path_buf(), len_bytes });

@@ -1,50 +1,51 @@
-//! Where the nodes lie that roads need: a table of some of them at a time.
+//! The positions of the nodes that roads need: a table for some of the nodes at a time.
 
 use std::ops::ControlFlow;
 
 use crate::{
-    block::Block,
+    block::AuditedBlock,
     location::{Location, MISSING, degrees, location_from_nano},
-    search::Search,
+    search::IdSearch,
 };
 
-/// Ids in ascending order; a node's number is its index here.
+/// Node ids in ascending order. The number of a node is its index here.
 #[derive(Debug)]
 pub(crate) struct NodeIds {
     ids: Vec<i64>,
 }
 
-/// Places by number. They are separate from the ids, so that several threads can look up ids while one thread writes
-/// places.
+/// Positions by node number. They are separate from the ids, so that several threads can look up
+/// ids while one thread writes positions.
 #[derive(Debug, Clone)]
 pub(crate) struct NodePlaces {
     locations: Vec<Location>,
-    /// Marks nodes to which the file gives different places.
+    /// Marks of the nodes to which the file gives different positions.
     is_conflicting: Vec<bool>,
-    /// The versions of the places with [`Precedence::Newest`]; else empty.
+    /// The versions of the positions with [`Precedence::Newest`]; otherwise empty.
     versions: Vec<i32>,
 }
 
-/// Which of several places of a node counts.
+/// The rule that decides which of several positions of a node counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Precedence {
-    /// The first.
+    /// The first position counts.
     First,
-    /// The place of the newest version, or of the first of these.
+    /// The position of the newest version counts, or the first of several.
     Newest,
 }
 
-/// A node that was found: its number, its place, its version or 0.
+/// A node that was found: its number, its position, and its version or 0.
 pub(crate) type FoundNode = (usize, Location, i32);
 
 impl NodeIds {
-    /// `ids` ascend, each of them once.
+    /// Creates the list from `ids`, which ascend without duplicates.
     pub(crate) fn new(ids: Vec<i64>) -> Self {
         Self { ids }
     }
 
-    /// The listed nodes of a block, by number, with their places; `None` if they take more than `most_bytes`.
-    pub(crate) fn scan(&self, block: &Block<'_>, most_bytes: u64) -> Option<Vec<FoundNode>> {
+    /// Returns the listed nodes of a block, by number, with their positions; `None` if they take
+    /// more than `most_bytes`.
+    pub(crate) fn scan(&self, block: &AuditedBlock<'_>, most_bytes: u64) -> Option<Vec<FoundNode>> {
         let mut found = Vec::new();
         let mut search = self.search();
         let end = block.try_each_node(
@@ -59,7 +60,7 @@ impl NodeIds {
         end.is_continue().then_some(found)
     }
 
-    /// The number of a node.
+    /// Returns the number of a node.
     pub(crate) fn number(&self, id: i64) -> Option<usize> {
         self.ids.binary_search(&id).ok()
     }
@@ -68,14 +69,14 @@ impl NodeIds {
         &self.ids
     }
 
-    /// Looks up the numbers of nodes that mostly ascend.
-    pub(crate) fn search(&self) -> Search<'_> {
-        Search::new(&self.ids)
+    /// Returns a search for the numbers of nodes whose ids mostly ascend.
+    pub(crate) fn search(&self) -> IdSearch<'_> {
+        IdSearch::new(&self.ids)
     }
 }
 
 impl NodePlaces {
-    /// A table of `count` nodes, none of them known.
+    /// Creates a table of `count` nodes without positions.
     pub(crate) fn new(count: usize, precedence: Precedence) -> Self {
         let versions = match precedence {
             Precedence::First => Vec::new(),
@@ -84,7 +85,8 @@ impl NodePlaces {
         Self { locations: vec![MISSING; count], is_conflicting: vec![false; count], versions }
     }
 
-    /// Takes the place of a node; the first that is on Earth stays, or of these that of the newest version. A version of 0 is not known.
+    /// Stores the position of a node. The first position on Earth is kept, or the position of the
+    /// newest version among those on Earth. A version of 0 is unknown.
     pub(crate) fn set(&mut self, number: usize, location: Location, version: i32) {
         let own = &mut self.locations[number];
         let is_newer = match self.versions.get_mut(number) {
@@ -104,7 +106,8 @@ impl NodePlaces {
         }
     }
 
-    /// Takes what is known of later places of a node: the first on Earth, or the last if none is, and whether there are several.
+    /// Adds the result of later blobs for a node: the first position on Earth, or the last position
+    /// if none is, and whether positions differ.
     pub(crate) fn add(
         &mut self,
         number: usize,
@@ -115,7 +118,7 @@ impl NodePlaces {
         self.is_conflicting[number] |= is_conflicting;
     }
 
-    /// The version of a node's place; 0 if it is not known or does not matter.
+    /// Returns the version of a node's position; 0 if it is unknown or does not matter.
     pub(crate) fn version(&self, number: usize) -> i32 {
         self.versions.get(number).copied().unwrap_or_default()
     }
@@ -128,12 +131,12 @@ impl NodePlaces {
         self.locations[number]
     }
 
-    /// Whether a node has no place.
+    /// Whether a node has no position.
     pub(crate) fn is_missing(&self, number: usize) -> bool {
         self.locations[number] == MISSING
     }
 
-    /// Numbers of nodes with several places.
+    /// Returns the numbers of nodes with several positions.
     pub(crate) fn conflicts(&self) -> impl Iterator<Item = usize> {
         (0..self.is_conflicting.len()).filter(|&number| self.is_conflicting[number])
     }

@@ -1,44 +1,47 @@
-//! Reads the nodes of an extract after its ways: also those of the blobs before the first way, which were left for it.
+//! Reads the nodes of an extract after its ways, including the nodes in the blobs before the first
+//! way, which were skipped until then.
 //!
-//! Whether these hold nodes alone is seen here: where they do not, the reading ends, and begins again in the extract's own order.
+//! This step finds out whether those blobs contain nodes alone. If they do not, the reading ends,
+//! and starts again in the order of the extract.
 
 use std::io::{Read, Seek};
 
 use crate::{
-    block::Block,
+    block::AuditedBlock,
     extracts::{Extracts, TOO_MUCH_FOUND},
     failed::Failed,
     locate_nodes::{NodeSource, ShareOfNodes, read_places, tell_nodes},
-    looked::{Looked, LookedAt},
+    looked::{BlockSurvey, LookedAt},
     nodes::{FoundNode, NodeIds, NodePlaces},
-    reading::Reading,
+    reading::ExtractReading,
 };
 
-/// Places of nodes from an extract of which the first blobs were not read yet.
+/// A source of node positions for an extract whose first blobs have not been read yet.
 pub(crate) struct NodesLast<'a, R> {
     pub(crate) file: &'a mut Extracts<R>,
-    /// How many blobs were not read: those before the ways.
+    /// The number of blobs that have not been read: the blobs before the ways.
     pub(crate) unread: usize,
-    /// What is known of the blobs that were read, then of all.
+    /// The facts of the blobs that were read, and finally of all blobs.
     pub(crate) looked_at: LookedAt,
-    /// Whether there was something else than nodes before the ways. Then the reading ends with an error that means nothing.
+    /// Whether there is anything other than nodes before the ways. Then the reading ends with an
+    /// error that its caller ignores.
     pub(crate) is_out_of_order: bool,
 }
 
 impl<R: Read + Seek> NodesLast<'_, R> {
-    /// Reads the blobs that were not read yet, all of them.
+    /// Reads all blobs that have not been read yet.
     fn read_first(
         &mut self,
-        reading: &Reading<'_>,
+        reading: &ExtractReading<'_>,
         ids: &NodeIds,
         on_bytes: &dyn Fn(u64),
         take: &mut dyn FnMut(FoundNode),
     ) -> Result<(), Failed> {
         let numbers: Vec<usize> = (0..std::mem::take(&mut self.unread)).collect();
         let scan = |block: Vec<u8>, most_bytes| {
-            let block = Block::new(&block);
+            let block = AuditedBlock::new(&block);
             let found = ids.scan(&block, most_bytes).ok_or(TOO_MUCH_FOUND)?;
-            Ok((Looked::scan(&block), block.has_others_than_nodes(), found))
+            Ok((BlockSurvey::scan(&block), block.has_others_than_nodes(), found))
         };
         let mut first = LookedAt::default();
         self.file.for_each_block(reading, &numbers, on_bytes, scan, |place, of_block| {
@@ -60,7 +63,7 @@ impl<R: Read + Seek> NodesLast<'_, R> {
 impl<R: Read + Seek> NodeSource for NodesLast<'_, R> {
     fn read(
         &mut self,
-        reading: &Reading<'_>,
+        reading: &ExtractReading<'_>,
         ids: &NodeIds,
         share: &ShareOfNodes,
         places: &mut NodePlaces,
@@ -73,7 +76,7 @@ impl<R: Read + Seek> NodeSource for NodesLast<'_, R> {
             let on_bytes = |bytes| tell_nodes(reading, share, bytes, first_bytes);
             self.read_first(reading, ids, &on_bytes, take)?;
         }
-        // Blobs with ways and nodes come after those that were read now.
+        // Blobs with ways and nodes follow the blobs that were read now.
         let rest = if unread > 0 { self.looked_at.node_blobs.len() - read } else { 0 };
         let on_bytes = |bytes, all_bytes| {
             tell_nodes(reading, share, first_bytes + bytes, first_bytes + all_bytes);

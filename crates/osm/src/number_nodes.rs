@@ -1,16 +1,17 @@
-//! Puts the ways in order of id and numbers their nodes through.
+//! Sorts the ways by id and numbers their nodes consecutively.
 
 use std::io;
 
 use corniche_store::Sorter;
 
 use crate::{
-    Defect, ExtractSummary, ReadOsmError,
+    ExtractDefect, ExtractSummary, ReadOsmError,
     failed::Failed,
     left_out_lengths::LeftOutNodes,
-    reading::Reading,
+    locate_nodes::NodeQuestions,
+    reading::ExtractReading,
     records::{Mention, WayRecord, WayUse},
-    spool::Spool,
+    spool::{Spool, SpoolReader},
     versions::{known_version, two_versions},
     way_bytes::{is_carrier, is_left_out, take_node_ids},
     way_facts::WayFacts,
@@ -18,32 +19,40 @@ use crate::{
     wire::{push_bytes, push_signed, push_varint, take_bytes, take_number, take_signed},
 };
 
-/// What is left of the ways, and the nodes that they name.
+/// The remaining ways, and the nodes that they reference.
 pub(crate) struct NumberedNodes<'a> {
-    /// Per way its id, how many nodes it has, their ids where they are wanted, and what it is, in ascending order of way id; see
-    /// [`crate::hand_out`].
+    /// Per way, in ascending order of way ids: its id, its number of nodes, their ids if requested,
+    /// and its properties; see [`crate::hand_out`].
     pub(crate) ways: Spool<'a>,
     pub(crate) mentions: Sorter<'a, Mention>,
-    /// Ways that are left out, where they are treated apart.
+    /// Skipped ways, if they are processed separately.
     pub(crate) left_out: Option<LeftOutNodes<'a>>,
     pub(crate) ways_count: u64,
     pub(crate) mentions_count: u64,
-    /// Ways with the id of another one.
+    /// The number of ways with the id of another way.
     pub(crate) duplicates: u64,
 }
 
-/// The first of several roads with one id in a file stays. Ways that are left out stay all. Of several extracts that have a way, those of the one
-/// with the newest version count, or of the first; what they count for goes to `summary`.
+/// The ways of [`NumberedNodes`], ready to be read.
+pub(crate) struct NumberedWays<'a> {
+    pub(crate) ways: SpoolReader<'a>,
+    pub(crate) count: u64,
+    pub(crate) duplicates: u64,
+}
+
+/// The first of several roads with the same id in a file is kept; skipped ways are all kept. If
+/// several extracts contain a way, the ways of the extract with the newest version count, or else
+/// of the first extract; their counts go to `summary`.
 ///
-/// Those that are left out go to `left_out`, but for those that carry bridges and tunnels where these are wanted; where there is no `left_out`, all are
-/// numbered as the others are.
+/// Skipped ways go to `left_out`, except ways that carry bridges and tunnels if these are
+/// requested. Without `left_out`, all skipped ways are numbered like the others.
 ///
-/// Fails if a way is there in two versions.
+/// Fails if a way is present in two versions.
 pub(crate) fn number_nodes<'a>(
-    reading: &Reading<'a>,
+    reading: &ExtractReading<'a>,
     ways: impl Iterator<Item = io::Result<WayRecord>>,
     summary: &mut ExtractSummary,
-    on_defect: &mut dyn FnMut(Defect),
+    on_defect: &mut dyn FnMut(ExtractDefect),
     left_out: Option<LeftOutNodes<'a>>,
 ) -> Result<NumberedNodes<'a>, Failed> {
     let (request, shares) = (reading.request, reading.shares());
@@ -61,24 +70,24 @@ pub(crate) fn number_nodes<'a>(
     for (count, way) in (0..).zip(ways) {
         reading.check_stop_at(count)?;
         let way = way?;
-        // Without several extracts nothing is counted by way.
+        // Without several extracts, nothing is counted per way.
         if !way.facts.is_empty() {
             if let Some(newest) = newest.as_mut().filter(|newest| newest.way.way_id == way.way_id) {
                 if newest.is_instead_of(&way, on_defect) {
                     continue;
                 }
             } else {
-                newest = Some(Newest::of(&way));
+                newest = Some(Newest::from_way(&way));
             }
             let facts = WayFacts::of_bytes(&way.facts)?;
             add_summary(summary, facts.counts);
             facts.defects.into_iter().for_each(&mut *on_defect);
         }
         let kind = way.take_apart(&mut node_ids)?;
-        // Where ids are wanted, they stay before what the way is.
+        // If ids are requested, they are stored before the properties of the way.
         let kept = if request.node_ids { &*way.bytes } else { kind };
         if is_left_out(kind) {
-            // Where bridges and tunnels are wanted, what may carry them is.
+            // If bridges and tunnels are requested, so are the ways that may carry them.
             let carries = request.node_ids && is_carrier(kind);
             match &mut numbered.left_out {
                 Some(apart) if !carries => apart.push(&way.bytes, &node_ids),
@@ -101,7 +110,7 @@ pub(crate) fn number_nodes<'a>(
                 }
                 *first = first.or(version);
                 numbered.duplicates += 1;
-                on_defect(Defect::DuplicateWay { way_id: way.way_id });
+                on_defect(ExtractDefect::DuplicateWay { way_id: way.way_id });
             }
             _ => {
                 last = Some((way.way_id, version));
@@ -112,34 +121,39 @@ pub(crate) fn number_nodes<'a>(
     Ok(numbered)
 }
 
-/// The newest version of a way that is in several extracts: that with which its records begin.
+/// The newest version of a way that is in several extracts; the way's records begin with it.
 struct Newest {
     way: WayRecord,
     is_told: bool,
 }
 
 impl Newest {
-    fn of(way: &WayRecord) -> Self {
+    fn from_way(way: &WayRecord) -> Self {
         let &WayRecord { way_id, origin, ref bytes, .. } = way;
         let way = WayRecord { way_id, origin, bytes: bytes.clone(), facts: Box::default() };
         Self { way, is_told: false }
     }
 
-    /// Whether another record of the way is that of another extract, and so does not count. Tells once if it differs.
-    fn is_instead_of(&mut self, other: &WayRecord, on_defect: &mut dyn FnMut(Defect)) -> bool {
+    /// Whether another record of the way is from another extract, and therefore does not count.
+    /// Reports once if it differs.
+    fn is_instead_of(
+        &mut self,
+        other: &WayRecord,
+        on_defect: &mut dyn FnMut(ExtractDefect),
+    ) -> bool {
         let Self { way, is_told } = self;
         let is_of_other = other.origin.file != way.origin.file;
         let differs = (other.origin.version, &other.bytes) != (way.origin.version, &way.bytes);
         if is_of_other && differs && !*is_told {
             *is_told = true;
-            on_defect(Defect::ConflictingWay { way_id: way.way_id });
+            on_defect(ExtractDefect::ConflictingWay { way_id: way.way_id });
         }
         is_of_other
     }
 }
 
 impl WayRecord {
-    /// Puts the ids of its nodes in a list, and returns what it is as bytes.
+    /// Writes the ids of the way's nodes to a list, and returns its properties as bytes.
     fn take_apart(&self, node_ids: &mut Vec<i64>) -> io::Result<&[u8]> {
         let mut bytes = &*self.bytes;
         node_ids.clear();
@@ -151,8 +165,15 @@ impl WayRecord {
     }
 }
 
-impl NumberedNodes<'_> {
-    /// `kept`: what stays of the way's bytes.
+impl<'a> NumberedNodes<'a> {
+    /// Returns the ways, and the requests for their nodes.
+    pub(crate) fn ask(self) -> io::Result<(NumberedWays<'a>, NodeQuestions<'a>)> {
+        let Self { ways, mentions, left_out, ways_count: count, mentions_count, duplicates } = self;
+        let ways = NumberedWays { ways: ways.read(), count, duplicates };
+        Ok((ways, NodeQuestions { mentions: mentions.finish()?, mentions_count, left_out }))
+    }
+
+    /// Adds a way; `kept` is the part of its bytes that is stored.
     fn add(&mut self, way_id: i64, node_ids: &[i64], used: WayUse, kept: &[u8]) -> io::Result<()> {
         let Self { ways, mentions, ways_count, mentions_count, .. } = self;
         let mut previous = None;
@@ -170,7 +191,8 @@ impl NumberedNodes<'_> {
     }
 }
 
-/// Takes a way of [`NumberedNodes`]: its id, how many nodes it has, and what stays of its bytes.
+/// Takes a way of [`NumberedNodes`] from the front of `bytes`: its id, its number of nodes, and the
+/// rest of its bytes.
 pub(crate) fn take_numbered<'b>(bytes: &mut &'b [u8]) -> Option<(i64, usize, &'b [u8])> {
     Some((take_signed(bytes)?, take_number(bytes)?, take_bytes(bytes)?))
 }

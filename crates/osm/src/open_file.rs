@@ -1,4 +1,4 @@
-//! An extract is opened as a file or as an object in object storage.
+//! Opens an extract as a file or as an object in object storage.
 
 use std::{
     fs::{self, File},
@@ -10,7 +10,7 @@ use corniche_objects::{ObjectAddress, ObjectError, ObjectReader, Storage, Storag
 
 use crate::ReadOsmError;
 
-/// An extract that is open: a file, or an object, of which only the ranges are fetched that are read.
+/// An open extract: a file, or an object of which only the requested ranges are fetched.
 #[derive(Debug)]
 pub(crate) enum Extract {
     File(File),
@@ -39,7 +39,7 @@ fn open_object(name: &str) -> io::Result<ObjectReader> {
         None => None,
     };
     let Some(ObjectAddress { bucket, key }) = address else {
-        let what = "an extract is read from a file or from object storage (s3://BUCKET/NAME); save it to a file first";
+        let what = "extracts are read from files or from object storage (s3://BUCKET/NAME); save this one to a file first";
         return Err(io::Error::new(io::ErrorKind::Unsupported, what));
     };
     let open = || {

@@ -1,4 +1,4 @@
-//! Objects that ways outline: those of areas, and those of boundaries.
+//! Objects whose outlines are ways: areas and boundaries.
 //!
 //! ```text
 //!  blobs with relations ──► find_objects ──► ObjectRecord by id ──────────────► numbered ──► MemberRecord by way id
@@ -6,7 +6,7 @@
 //!  blobs with ways ─────────► find_ways ──► ObjectRecord of ways, WayRecord ──► LocatedWays ─────────┴──► areas, boundaries
 //! ```
 //!
-//! Everything is sorted and joined within the memory that the caller allows, as for roads.
+//! Everything is sorted and joined within the caller's memory limit, as for roads.
 
 pub(crate) mod find_objects;
 pub(crate) mod found;

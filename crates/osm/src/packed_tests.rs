@@ -1,13 +1,14 @@
-//! Numbers that are short are counted as reading each of them counts them.
+//! Counting short numbers at once gives the same count as reading each of them.
 
 use corniche_testing::pbf::varint;
 use proptest::prelude::*;
 
 use super::*;
-use crate::wire::Numbers;
+use crate::wire::PackedNumbers;
 
 proptest! {
-    /// What is counted at once is what is read one by one, and nothing that is long or cut counts as short.
+    /// The count at once equals the count one by one, and no long or truncated number counts as
+    /// short.
     #[test]
     fn short_numbers_are_those_that_are_read(
         numbers in prop::collection::vec((any::<u64>(), 20..64_u32), 0..200),
@@ -16,7 +17,7 @@ proptest! {
         let numbers: Vec<u64> = numbers.into_iter().map(|(number, shift)| number >> shift).collect();
         let mut bytes = numbers.iter().flat_map(|&number| varint(number)).collect::<Vec<u8>>();
         bytes.truncate(bytes.len().saturating_sub(cut));
-        let read: Result<Vec<u64>, _> = Numbers::of(&bytes).collect();
+        let read: Result<Vec<u64>, _> = PackedNumbers::from_packed(&bytes).collect();
         let is_short = |read: &Vec<u64>| read.iter().all(|&number| number < SHORT_LIMIT);
         let expected = read.ok().filter(is_short).map(|read| read.len() as u64);
         let expected = expected.filter(|_| bytes.len() >= WORTHWHILE_BYTES);

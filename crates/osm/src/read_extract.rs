@@ -1,14 +1,18 @@
-//! The one reading of an extract: relations, ways and nodes once for all layers that are wanted.
+//! Reads an extract once for all requested layers: relations, ways and nodes.
 //!
 //! ```text
-//!  │ nodes … nodes │ nodes and ways │ ways … │ relations … │     an extract that is sorted by kind
-//!  └─── third ─────┴─────── second ──────────┴─── first ───┘     when what is read
+//!  │ nodes … nodes │ nodes and ways │ ways … │ relations … │     an extract that is sorted by type
+//!  └─── third ─────┴─────── second ──────────┴─── first ───┘     the order of reading
 //! ```
 //!
-//! Relations name ways, and ways name nodes, so what is read later is known to be wanted or not. Where the kinds begin is found by bisection,
-//! which is right only if the extract is sorted by kind. Whether it is, is known when its nodes are read. Until then nothing is told, and if
-//! it is not, it is read once more: all blobs for relations and objects, those with ways, those with nodes. Several extracts are read so
-//! from the beginning. So a blob is unpacked once, but for those that the bisections look at. Without objects that ways outline, relations are read with the ways, and looked at for their versions alone.
+//! Relations reference ways, and ways reference nodes. So the reader knows of each object that
+//! comes later whether it is needed. Bisection finds where each type begins, which is correct only
+//! if the extract is sorted by type. Whether it is sorted is known once its nodes are read. Nothing
+//! is delivered before. If the extract is not sorted, it is read again: all blobs for relations and
+//! objects, then those with ways, then those with nodes. Several extracts are read in this way from
+//! the beginning. So each blob of a sorted extract is unpacked once, except for the blobs that the
+//! bisections inspect. If no layer needs objects with outlines, relations are read with the ways,
+//! only to check their versions.
 
 use std::{
     cell::Cell,
@@ -18,7 +22,7 @@ use std::{
 use corniche_roads::FrcTable;
 
 use crate::{
-    Defect, ReadOsmError,
+    ExtractDefect, ReadOsmError,
     areas::hand_out_areas,
     blobs::BlobFile,
     deferred::Deferred,
@@ -29,146 +33,165 @@ use crate::{
     layers::Layers,
     left_out_lengths::LeftOutNodes,
     lines::hand_out_lines,
-    locate_nodes::{NodeQuestions, locate_nodes, most_ids},
+    locate_nodes::{locate_nodes, most_ids},
     nodes_last::NodesLast,
-    number_nodes::{NumberedNodes, number_nodes},
+    number_nodes::{NumberedNodes, NumberedWays, number_nodes},
     outlines::{
         find_objects::find_objects,
         found::{OutlineObjects, Outlines},
         judge::OwnTags,
         located_ways::LocatedWays,
-        wanted::Wanted,
+        wanted::WantedObjects,
     },
     read_request::ReadRequest,
-    reading::{LayerCount, Reading},
+    reading::{ExtractReading, LayerCount},
     sought_ids::SoughtIds,
 };
 
-/// Reads an extract once, and hands out all layers that are wanted, one after the other; each as [`Layers`] says, whatever other layers
-/// are wanted.
+/// Reads an extract once, and delivers all requested layers, one after the other. [`Layers`]
+/// describes the content of each layer, which does not depend on the other requested layers.
 ///
-/// What is wrong with a layer goes to `on_defect` between its beginning and its end, in an order that depends on the file alone, as what is
-/// handed out does.
+/// Defects of a layer go to `on_defect` between the layer's beginning and its end. The order of
+/// defects and of delivered objects depends on the file alone.
 ///
 /// With [`ReadRequest::others`], several extracts are read as one:
-/// - A node, or a way with a `highway` tag, that is in two of them counts once. Of two versions the newer one counts, else that of
-///   the extract named first. Ways that differ are a [`Defect::ConflictingWay`], nodes with different places a
-///   [`Defect::ConflictingNode`].
-/// - A way without a `highway` tag is not looked at, so it does not replace an older version that has one.
-/// - Each extract for itself must be none with several versions.
+/// - A node, or a way with a `highway` tag, that is in two of them counts once. Of two versions the
+///   newer one counts; otherwise the extract that is named first counts. Ways that differ cause an
+///   [`ExtractDefect::ConflictingWay`], nodes with different positions an
+///   [`ExtractDefect::ConflictingNode`].
+/// - A way without a `highway` tag is not considered, so it does not replace an older version that
+///   has one.
+/// - Each single extract must not contain several versions of an object.
 ///
-/// The file may be in any order, with nodes dense or plain, ids negative, blobs raw or zlib, locations in nodes or in ways
-/// (`LocationsOnWays`). An extract that is sorted by kind is read once: ways, then nodes, but for a few blobs among which the first way is
-/// sought. One that is not is read twice; if nodes come first and ways among them, blobs up to the first way are read once more, and
-/// scratch space is taken once more. If the needed nodes do not
-/// fit in a quarter of [`ReadRequest::memory_bytes`], at 18 bytes each, blobs with nodes are read anew for each part that fits: if they
-/// are sorted by id, those with nodes of that part alone, so each blob once more, and once more where a part ends within it.
-/// Areas and lines need relations, too: a sorted extract is read once, relations, ways, nodes; one that is not is read three times, for
-/// objects, for ways, for nodes. Where the ids of the ways that relations name do not fit in memory, blobs with ways are read once more for
-/// each part that fits. `should_stop` is asked every few blobs, and every 65 536 nodes or ways where these are sorted and joined.
+/// The file may be in any order. Nodes may be dense or plain, ids negative, blobs raw or zlib, and
+/// locations in nodes or in ways (`LocationsOnWays`). An extract that is sorted by type is read
+/// once: ways, then nodes, and also a few blobs in which the first way is searched. An unsorted
+/// extract is read twice. If nodes come first and ways are among them, the blobs up to the first
+/// way are read again, and scratch space is used again. If the needed nodes do not fit in a quarter
+/// of [`ReadRequest::memory_bytes`], at 18 bytes each, blobs with nodes are read again for each
+/// part that fits. If these blobs are sorted by id, only the blobs with nodes of that part are
+/// read: each blob once more, and once more if a part ends within it.
+///
+/// Areas and lines also need relations. A sorted extract is read once: relations, ways, nodes. An
+/// unsorted one is read three times: for objects, for ways, for nodes. If the ids of the ways that
+/// relations reference do not fit in memory, blobs with ways are read again for each part that
+/// fits. `should_stop` is called every few blobs, and every 65 536 nodes or ways while these are
+/// sorted and joined.
 ///
 /// # Memory
-/// Ways and nodes of all layers take about [`ReadRequest::memory_bytes`] at most; what does not fit is sorted and joined in
-/// [`ReadRequest::scratch`], where it takes some 30 bytes for each time that a road names a node, and once more as much for
-/// each time that the sorters must merge their runs in several steps. On top come
+/// Ways and nodes of all layers take about [`ReadRequest::memory_bytes`] at most. What does not fit
+/// is sorted and joined in [`ReadRequest::scratch`], where it takes some 30 bytes for each
+/// reference from a road to a node, and as much again each time that the sorters must merge their
+/// runs in several steps. In addition, there are
 /// - the blobs that are being decoded: see the limits;
-/// - a few thousand ways that are handed out, made or read at a time, 100 bytes for each of their nodes;
+/// - a few thousand ways that are delivered, assembled or read at a time, 100 bytes for each of
+///   their nodes;
 /// - 48 bytes for each blob of the file, and the texts of the summary;
-/// - a byte for each object that gives ways a class, and 16 bytes for each point of coastlines.
+/// - one byte for each object that gives ways a class, and 16 bytes for each point of coastlines.
 ///
 /// # Limits
-/// These limits hold for every file, also for one that was made to do harm; what may be kept of a file holds for each layer:
+/// These limits apply to every file, including malicious ones; the limit of stored data applies to
+/// each layer:
 ///
-/// | of | limit | beyond it |
+/// | subject | limit | above the limit |
 /// |---|---|---|
-/// | a blob header | 64 KiB | damaged |
-/// | a blob, packed and unpacked | 32 MiB, the format's own; 1 MiB for the file's header | damaged |
-/// | a block, decoded | 512 MiB | damaged |
-/// | what is found in a block | 256 MiB | damaged |
-/// | the ways, tags and node ids that are kept, in memory or in scratch space | 64 MiB and 64 times the size of the file; real extracts keep less than their own size | [`ReadOsmError::TooMuch`] |
-/// | a tag's text | 255 characters, OSM's own | cut, [`Defect::LongText`] |
-/// | tags of a way | 65 536 | damaged |
-/// | comparisons in search of a way's self-crossings | 2 million, enough for the 2000 nodes that OSM allows | not all are found |
+/// | a blob header | 64 KiB | corrupt |
+/// | a blob, packed and unpacked | 32 MiB, the format's own; 1 MiB for the file's header | corrupt |
+/// | a block, decoded | 512 MiB | corrupt |
+/// | findings in a block | 256 MiB | corrupt |
+/// | the stored ways, tags and node ids, in memory or in scratch space | 64 MiB and 64 times the size of the file; real extracts need less than their own size | [`ReadOsmError::TooMuch`] |
+/// | a tag's text | 255 characters, OSM's own | cut, [`ExtractDefect::LongText`] |
+/// | tags of a way | 65 536 | corrupt |
+/// | comparisons in the search for a way's self-crossings | 2 million, enough for the 2000 nodes that OSM allows | not all are found |
 ///
-/// Blocks of up to 16 MiB unpacked, 64 MiB decoded and 16 MiB found are decoded side by side; larger ones, which
-/// ordinary programs do not write, are decoded alone. So blobs take, together and beside what is kept, at most 256
-/// MiB and eight packed blobs per thread, and 1 GiB for one that is alone. A single way takes 100 bytes for each of its nodes, of
-/// which OSM allows 2000. In scratch space there is at most four times as much as is kept, for each step of the
-/// merging. Time, without that of reading an unsorted file anew, is proportional to the unpacked size, which deflate keeps below
-/// 1032 times that of the file.
+/// Blocks of up to 16 MiB unpacked, 64 MiB decoded and 16 MiB of findings are decoded in parallel.
+/// Larger blocks, which ordinary programs do not write, are decoded alone. So, in addition to the
+/// stored data, all blobs together take at most 256 MiB and eight packed blobs per thread, and 1
+/// GiB for one that is decoded alone. A single way takes 100 bytes for each of its nodes, of which
+/// OSM allows 2000. Scratch space contains at most four times the stored data, for each step of the
+/// merging. The time, except for rereading an unsorted file, is proportional to the unpacked size,
+/// which deflate keeps below 1032 times the size of the file.
 ///
 /// # Errors
-/// When the file cannot be read, is no `.osm.pbf`, is cut off or damaged, is a history file (its header says so, it marks an
-/// object as deleted, or holds one in two versions, neighbours or roads), uses a feature or a
-/// compression that is not supported, or when `should_stop` says so. What was handed out before is to be forgotten then.
+/// When the file cannot be read, is not `.osm.pbf`, or is truncated or corrupt; when it is a
+/// history file (its header says so, it marks an object as deleted, or it contains two versions of
+/// an object, next to each other or as roads); when it uses a feature or a compression that is not
+/// supported; or when `should_stop` returns true. The caller must then discard what was delivered
+/// before.
 pub fn read_extract(
     request: &ReadRequest<'_>,
     layers: Layers<'_>,
-    on_defect: &mut dyn FnMut(Defect),
+    on_defect: &mut dyn FnMut(ExtractDefect),
     should_stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<(), ReadOsmError> {
     let read = read_all(Extracts::open(request)?, request, layers, on_defect, should_stop);
-    read.map_err(|failed| failed.of(request.path))
+    read.map_err(|failed| failed.at_path(request.path))
 }
 
-/// Reads the layers of one extract from any source of bytes, as [`read_extract`] does from a file. `request.path` only names it in
-/// messages, and `request.others` are not read.
+/// Reads the layers of one extract from any source of bytes, as [`read_extract`] does from a file.
+/// `request.path` is only the name in messages, and `request.others` are not read.
 ///
 /// # Errors
-/// As for [`read_extract`].
+/// The same as for [`read_extract`].
 pub fn read_extract_from<R: Read + Seek>(
     source: R,
     request: &ReadRequest<'_>,
     layers: Layers<'_>,
-    on_defect: &mut dyn FnMut(Defect),
+    on_defect: &mut dyn FnMut(ExtractDefect),
     should_stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<(), ReadOsmError> {
     let request = ReadRequest { others: &[], ..*request };
     let file = BlobFile::open(request.path, source)?;
-    let read = read_all(Extracts::of(vec![file]), &request, layers, on_defect, should_stop);
-    read.map_err(|failed| failed.of(request.path))
+    let read = read_all(Extracts::from_files(vec![file]), &request, layers, on_defect, should_stop);
+    read.map_err(|failed| failed.at_path(request.path))
 }
 
 fn read_all<R: Read + Seek>(
     mut file: Extracts<R>,
     request: &ReadRequest<'_>,
     layers: Layers<'_>,
-    on_defect: &mut dyn FnMut(Defect),
+    on_defect: &mut dyn FnMut(ExtractDefect),
     should_stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<(), Failed> {
     let most = Cell::new(0);
     let told = |done: u64, all: u64| {
-        // What is read once more is told once.
+        // Bytes that are read again are reported once.
         most.set(done.max(most.get()));
         if let Some(on_progress) = request.on_progress {
             on_progress(most.get(), all);
         }
     };
     let request = &ReadRequest { on_progress: Some(&told), ..*request };
-    let of_areas = layers.areas.as_ref().map(|&(table, _)| Wanted::Areas(table));
-    let of_lines = layers.lines.iter().map(|&(layer, _)| Wanted::Lines(layer));
+    let of_areas = layers.areas.as_ref().map(|&(table, _)| WantedObjects::Areas(table));
+    let of_boundaries = layers.boundaries.is_some().then_some(WantedObjects::Boundaries);
     let wanted = LayersWanted {
-        outlines: of_areas.into_iter().chain(of_lines).collect(),
+        outlines: of_areas.into_iter().chain(of_boundaries).collect(),
         roads: layers.roads.is_some().then_some(request.table),
     };
-    let reading =
-        Reading { request, should_stop, len_bytes: file.len_bytes(), layers: wanted.count() };
+    let reading = ExtractReading {
+        request,
+        should_stop,
+        len_bytes: file.len_bytes(),
+        layers: wanted.count(),
+    };
     let order = file.seemingly_sorted(!wanted.outlines.is_empty());
-    let in_order =
-        if order.is_none() { None } else { Found::read(&reading, &mut file, order, &wanted)? };
+    let in_order = if order.is_none() {
+        None
+    } else {
+        LayerObjects::read(&reading, &mut file, order, &wanted)?
+    };
     let found = match in_order {
         Some(found) => Some(found),
-        None => Found::read(&reading, &mut file, BlobOrder::NONE, &wanted)?,
+        None => LayerObjects::read(&reading, &mut file, BlobOrder::NONE, &wanted)?,
     };
-    // Where nothing is taken for sorted, nothing can be out of order.
-    let Some(Found { outlines, roads }) = found else { return Ok(()) };
+    // If nothing is assumed to be sorted, nothing can be out of order.
+    let Some(LayerObjects { outlines, roads }) = found else { return Ok(()) };
     let mut outlines = outlines.into_iter();
     if let (Some((_, sink)), Some(found)) = (layers.areas, of_areas.and_then(|_| outlines.next())) {
         hand_out_areas(&reading, found, sink, on_defect)?;
     }
-    let mut on_name = layers.line_names;
-    for ((layer, sink), found) in layers.lines.into_iter().zip(outlines) {
-        hand_out_lines(&reading, layer, found, (sink, on_defect), on_name.as_deref_mut())?;
+    if let (Some(sink), Some(found)) = (layers.boundaries, outlines.next()) {
+        hand_out_lines(&reading, found, (sink, on_defect), layers.boundary_names)?;
     }
     if let (Some(sink), Some(mut found)) = (layers.roads, roads) {
         let header = file.take_header();
@@ -182,9 +205,9 @@ fn read_all<R: Read + Seek>(
     Ok(())
 }
 
-/// What is looked for.
+/// The layers to look for.
 struct LayersWanted<'w> {
-    outlines: Vec<Wanted<'w>>,
+    outlines: Vec<WantedObjects<'w>>,
     roads: Option<&'w FrcTable>,
 }
 
@@ -195,16 +218,16 @@ impl LayersWanted<'_> {
     }
 }
 
-/// All that an extract holds of some layers, with the places of nodes, to be handed out.
-struct Found<'a> {
+/// The contents of some layers of an extract, with the positions of nodes, ready to be delivered.
+struct LayerObjects<'a> {
     outlines: Vec<(OutlineObjects<'a>, LocatedWays<'a>)>,
     roads: Option<RoadWays<'a>>,
 }
 
-impl<'a> Found<'a> {
-    /// Reads the extract in this order; `None` if it is not in this order.
+impl<'a> LayerObjects<'a> {
+    /// Reads the extract in this order; `None` if the extract is not in this order.
     fn read<R: Read + Seek>(
-        reading: &Reading<'a>,
+        reading: &ExtractReading<'a>,
         file: &mut Extracts<R>,
         order: BlobOrder,
         wanted: &LayersWanted<'a>,
@@ -230,18 +253,16 @@ impl<'a> Found<'a> {
             let on_defect = &mut |defect| of_roads.push(&defect);
             let others: u64 =
                 numbered.iter().map(|own: &NumberedNodes<'_>| own.mentions_count).sum();
-            // Lengths are looked up where the places of all nodes are there at once.
+            // Lengths are looked up if the positions of all nodes are in memory together.
             let fits = others + nodes_named <= most_ids(reading, numbered.len() as u64 + 1);
             let left_out = fits.then(|| LeftOutNodes::new(reading));
             numbered.push(number_nodes(reading, ways, &mut summary, on_defect, left_out)?);
         }
         let mut layers = Vec::new();
         for own in numbered {
-            let NumberedNodes { ways, mentions, left_out, ways_count, mentions_count, duplicates } =
-                own;
-            let mentions = mentions.finish()?;
-            questions.push(NodeQuestions { mentions, mentions_count, left_out });
-            layers.push((ways.read(), ways_count, duplicates));
+            let (ways, asked) = own.ask()?;
+            questions.push(asked);
+            layers.push(ways);
         }
         let mut nodes = NodesLast { file, unread: order.nodes, looked_at, is_out_of_order: false };
         let located = located.finish()?;
@@ -256,13 +277,13 @@ impl<'a> Found<'a> {
         let mut layers = layers.into_iter().zip(answers?);
         let mut found = Self { outlines: Vec::new(), roads: None };
         for own in objects {
-            let Some(((ways, count, _), nodes)) = layers.next() else { break };
+            let Some((NumberedWays { ways, count, .. }, nodes)) = layers.next() else { break };
             let stops = nodes.stops.finish()?;
             found.outlines.push((own, LocatedWays { ways, stops, count, last: None }));
         }
         if let Some((ways, nodes)) = layers.next() {
             summary.nodes_seen = nodes_seen;
-            found.roads = Some(RoadWays::of(ways, nodes, summary, of_roads)?);
+            found.roads = Some(RoadWays::from_parts(ways, nodes, summary, of_roads)?);
         }
         Ok(Some(found))
     }
@@ -270,18 +291,19 @@ impl<'a> Found<'a> {
 
 /// Reads relations and ways; `None` if they are not in this order.
 fn read_ways<'a, R: Read + Seek>(
-    reading: &Reading<'a>,
+    reading: &ExtractReading<'a>,
     file: &mut Extracts<R>,
     order: BlobOrder,
     wanted: &LayersWanted<'_>,
     outlines: &mut [Outlines<'a>],
-    on_defect: &mut dyn FnMut(Defect),
+    on_defect: &mut dyn FnMut(ExtractDefect),
 ) -> Result<Option<FoundWays<'a>>, Failed> {
     let mut found = FoundWays::new(reading);
     let end = if outlines.is_empty() { file.len() } else { order.relations };
     let [relations, ways]: [Vec<usize>; 2] =
         [(end..file.len()).collect(), (order.nodes..end).collect()];
-    // Where relations come last, objects are found with the ways that they name; else all objects come before all ways.
+    // If relations come last, objects that are ways are found in the same step as the ways that
+    // objects reference; otherwise all objects are found before all ways.
     let is_sorted = end > 0;
     let [relations_bytes, ways_bytes] =
         [&relations, if is_sorted { &ways } else { &relations }].map(|blobs| file.bytes_of(blobs));
@@ -308,7 +330,7 @@ fn read_ways<'a, R: Read + Seek>(
     wanted = WaysWanted { is_first: false, bytes: [all_bytes - rest_bytes, all_bytes], ..wanted };
     let rest = &before.with_ways;
     found.read(reading, file, rest, &wanted, outlines, on_defect)?;
-    // Ways that relations name, where their ids did not fit in memory together.
+    // Ways that relations reference, if their ids did not fit in memory together.
     let blobs = [&found.looked_at.with_ways[..], rest].concat();
     loop {
         let way_ids = next_ids()?;

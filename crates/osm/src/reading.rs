@@ -1,72 +1,71 @@
-//! What every step of a reading needs.
+//! The context that every step of a reading needs.
 
 use corniche_store::{SortRecord, Sorter};
 
-use crate::{
-    ReadOsmError, failed::Failed, kept_error::KeptError, nodes::Precedence,
-    read_request::ReadRequest,
-};
+use crate::{ReadOsmError, nodes::Precedence, read_request::ReadRequest};
 
-/// What takes of the memory, as a part of the whole. At no time is there more than the whole, in sixteenths, or where there are objects that
-/// ways outline, in twentieths:
+/// The parts of the memory for each purpose. At no time do they exceed the whole: sixteen
+/// sixteenths, or twenty twentieths if there are objects with outlines:
 ///
 /// | | ways | mentions | located | defects | spool | ids | visits | stops | objects | all |
 /// |---|---|---|---|---|---|---|---|---|---|---|
 /// | ways are read | 8 | (ids of ways, twice) 8 | ½ | ½ | | | | | 4 | 21, for a moment |
 /// | nodes are numbered | 8 | 4 | ½ | ½ | 1 | | | | 4 | 18 |
 /// | nodes are located | | 4 | ½ | ½ | 1 | 4 | 2 | 4 | 4 | 20 |
-/// | a layer is handed out | (parts) 4 | (members) 4 | | | 1 | | | 4 | 4 | 17 |
+/// | a layer is delivered | (parts) 4 | (members) 4 | | | 1 | | | 4 | 4 | 17 |
 ///
-/// What is there for each layer has its part of that, in equal parts.
+/// Data that exists for each layer has an equal part of this for each layer.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Shares {
-    /// Ways that are sorted by id, bytes; so are all of these.
+    /// The memory for ways that are sorted by id, bytes; all fields are in bytes.
     pub(crate) ways: u64,
-    /// Ways that objects name and that are looked for, and later whose they are.
+    /// The memory for ids of ways that objects reference, and later for the members of objects.
     pub(crate) way_ids: u64,
-    /// Objects that ways outline.
+    /// The memory for objects with outlines.
     pub(crate) objects: u64,
-    /// Nodes of ways that are sorted by id.
+    /// The memory for references to nodes, sorted by id.
     pub(crate) mentions: u64,
-    /// The same with the places that the ways give.
+    /// The memory for node positions that ways give, sorted by id.
     pub(crate) located: u64,
-    /// Defects that are not told yet.
+    /// The memory for defects that are not reported yet.
     pub(crate) defects: u64,
-    /// What the roads are, in their order.
+    /// The memory for the properties of roads, in their order.
     pub(crate) spool: u64,
-    /// Nodes whose places are sought.
+    /// The memory for nodes whose positions are looked for.
     pub(crate) ids: u64,
-    /// Where the ways name them.
+    /// The memory for the places in ways that reference those nodes.
     pub(crate) visits: u64,
-    /// Nodes of ways with their places, which are sorted by way.
+    /// The memory for nodes of ways with their positions, sorted by way.
     pub(crate) stops: u64,
 }
 
-/// The steps that [`crate::read_request::OnProgress`] counts the file's bytes in.
+/// The steps in which [`crate::read_request::OnProgress`] counts the file's bytes.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Step {
+pub(crate) enum ReadingStep {
     Ways,
     Nodes,
 }
 
 const STEPS: u64 = 2;
 
-/// A request, what the steps ask of it, and the size of the file.
+/// A request, the caller's wish to stop, the size of the file, and the number of layers.
 #[derive(Clone, Copy)]
-pub(crate) struct Reading<'a> {
+pub(crate) struct ExtractReading<'a> {
     pub(crate) request: &'a ReadRequest<'a>,
     pub(crate) should_stop: &'a (dyn Fn() -> bool + Sync),
     pub(crate) len_bytes: u64,
     pub(crate) layers: LayerCount,
 }
 
-/// Sorts in place, in up to two to the power of `halvings` parts side by side. Records that compare equal are the same.
+/// Sorts in place, in up to 2 to the power of `halvings` parts in parallel. Records that compare
+/// equal are the same.
 ///
-/// The standard library's sort, in parts, takes three quarters of the time that `rayon`'s takes.
+/// The standard library's sort, applied to parts, takes three quarters of the time of `rayon`'s
+/// sort.
 fn sort_halves<T: Ord + Send>(records: &mut [T], halvings: u32) {
-    /// Fewer are not worth a task.
+    /// Fewer records are not worth a task.
     const LEAST: usize = 1 << 12;
-    // Ways of a sorted extract are in order already.
+    // The ways of a sorted extract are already in order.
     if records.is_sorted() {
         return;
     }
@@ -78,11 +77,11 @@ fn sort_halves<T: Ord + Send>(records: &mut [T], halvings: u32) {
     rayon::join(|| sort_halves(low, halvings - 1), || sort_halves(high, halvings - 1));
 }
 
-/// How many layers are read.
+/// The number of layers to read.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LayerCount {
     pub(crate) all: u64,
-    /// How many of them are of objects that ways outline.
+    /// The number of layers whose objects have outlines.
     pub(crate) outlines: u64,
 }
 
@@ -90,8 +89,8 @@ impl LayerCount {
     pub(crate) const ROADS: Self = Self { all: 1, outlines: 0 };
 }
 
-impl<'a> Reading<'a> {
-    /// Sorts within so much memory, in the pool.
+impl<'a> ExtractReading<'a> {
+    /// Creates a sorter that takes at most `memory_bytes` and uses the pool.
     pub(crate) fn sorter<T: SortRecord + 'a>(&self, memory_bytes: u64) -> Sorter<'a, T> {
         let ReadRequest { scratch, pool, .. } = *self.request;
         let halvings = 1 + pool.current_num_threads().ilog2();
@@ -122,12 +121,12 @@ impl<'a> Reading<'a> {
         !self.request.others.is_empty()
     }
 
-    /// Which of several places of a node counts.
+    /// Returns the rule that decides which of several positions of a node counts.
     pub(crate) fn precedence(&self) -> Precedence {
         if self.is_of_several() { Precedence::Newest } else { Precedence::First }
     }
 
-    /// Fails if the caller wants no more.
+    /// Fails if the caller wants to stop.
     pub(crate) fn check_stop(&self) -> Result<(), ReadOsmError> {
         if (self.should_stop)() { Err(self.stopped()) } else { Ok(()) }
     }
@@ -136,24 +135,15 @@ impl<'a> Reading<'a> {
         ReadOsmError::Stopped { path: self.request.path.to_path_buf() }
     }
 
-    /// The same, for loops over small things: asks once in a while. `count` counts them.
+    /// Does the same in loops over small items, but asks the caller only once in a while. `count`
+    /// counts the items.
     pub(crate) fn check_stop_at(&self, count: u64) -> Result<(), ReadOsmError> {
         const OFTEN: u64 = 1 << 16;
         if count.is_multiple_of(OFTEN) { self.check_stop() } else { Ok(()) }
     }
 
-    /// A step failed: of which extract.
-    pub(crate) fn failed(&self, failed: impl Into<Failed>) -> ReadOsmError {
-        failed.into().of(self.request.path)
-    }
-
-    /// What shares keep could not be kept or read.
-    pub(crate) fn kept_failed(&self, source: KeptError) -> ReadOsmError {
-        ReadOsmError::Kept { path: self.request.path.to_path_buf(), source }
-    }
-
-    /// Tells that `done` of `all` of a step are done, and the steps before it.
-    pub(crate) fn tell(&self, step: Step, done: u64, all: u64) {
+    /// Reports that `done` of `all` in a step are done, and all earlier steps.
+    pub(crate) fn tell(&self, step: ReadingStep, done: u64, all: u64) {
         if let Some(on_progress) = self.request.on_progress {
             let of_step =
                 u128::from(self.len_bytes) * u128::from(done.min(all)) / u128::from(all.max(1));

@@ -1,80 +1,66 @@
-//! What is sorted on the way from ways and nodes to roads.
+//! The records that are sorted on the way from ways and nodes to roads.
 //!
 //! ```text
 //!  WayRecord  by way id ──► Mention  by node id ──► Stop  in the order of the ways and of their nodes
 //!                           Located  by node id ──┘
 //! ```
 
-use corniche_store::SortRecord;
+use corniche_store::{SortRecord, append_record, take_record};
 use serde::{Deserialize, Serialize};
 
 use crate::{
     location::Location,
-    reading::Reading,
+    reading::ExtractReading,
     versions::known_version,
     wire::{
         push_bytes, push_signed, push_varint, take_array, take_bytes, take_number, take_signed,
     },
 };
 
-/// A way that a layer wants, as it stands in the file.
+/// A way that a layer needs, as it is in the file.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct WayRecord {
     pub(crate) way_id: i64,
     pub(crate) origin: Origin,
-    /// Its nodes, then what it is: see [`crate::way_bytes`].
+    /// The nodes of the way, then its properties: see [`crate::way_bytes`].
     pub(crate) bytes: Box<[u8]>,
-    /// What is counted of it, where it may be in several extracts; see [`crate::way_facts`]. Else empty.
+    /// The facts that are counted for the way, if it may be in several extracts; see
+    /// [`crate::way_facts`]. Otherwise empty.
     pub(crate) facts: Box<[u8]>,
 }
 
-/// Which version of an object a record is, and where it stands. The newest comes first where an object may be in several extracts.
+/// The version of an object in a record, and the position of the record. The newest comes first if
+/// an object may be in several extracts.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) struct Origin {
-    /// Where an object may be in several extracts: the smaller, the newer. Else 0.
+    /// The age, if an object may be in several extracts: a smaller number is newer. Otherwise 0.
     pub(crate) age: u32,
-    /// How many records of its kind come before it in the extracts.
+    /// The number of records of the same kind that come before this one in the extracts.
     pub(crate) order: u64,
-    /// 0 if it is not known.
+    /// The version; 0 if it is unknown.
     pub(crate) version: i32,
-    /// Which extract it is from.
+    /// The number of the extract that contains the object.
     pub(crate) file: u32,
 }
 
 impl Origin {
-    /// The origin of an object of a block, of which its version alone is known.
+    /// Returns the origin of an object in a block, of which only the version is known.
     pub(crate) fn of_version(version: i32) -> Self {
         Self { version: known_version(version).unwrap_or_default(), ..Self::default() }
     }
 
-    /// Puts it in its place among all of its kind, of which there were `count` before.
-    pub(crate) fn place(&mut self, reading: &Reading<'_>, file: u32, count: &mut u64) {
+    /// Sets the position of the object among all objects of its kind, of which `count` came before.
+    pub(crate) fn place(&mut self, reading: &ExtractReading<'_>, file: u32, count: &mut u64) {
         self.age = if reading.is_of_several() { i32::MAX.abs_diff(self.version) } else { 0 };
         (self.order, self.file) = (*count, file);
         *count += 1;
-    }
-
-    fn encode(self, bytes: &mut Vec<u8>) {
-        push_varint(bytes, self.age.into());
-        push_varint(bytes, self.order);
-        push_signed(bytes, self.version.into());
-        push_varint(bytes, self.file.into());
-    }
-
-    fn decode(bytes: &mut &[u8]) -> Option<Self> {
-        Some(Self {
-            age: take_number(bytes)?,
-            order: take_number(bytes)?,
-            version: take_signed(bytes)?.try_into().ok()?,
-            file: take_number(bytes)?,
-        })
     }
 }
 
 impl SortRecord for WayRecord {
     fn encode(&self, bytes: &mut Vec<u8>) {
         push_signed(bytes, self.way_id);
-        self.origin.encode(bytes);
+        append_record(bytes, self.origin);
         push_bytes(bytes, &self.bytes);
         push_bytes(bytes, &self.facts);
     }
@@ -82,14 +68,14 @@ impl SortRecord for WayRecord {
     fn decode(bytes: &mut &[u8]) -> Option<Self> {
         Some(Self {
             way_id: take_signed(bytes)?,
-            origin: Origin::decode(bytes)?,
+            origin: take_record(bytes)?,
             bytes: take_bytes(bytes)?.into(),
             facts: take_bytes(bytes)?.into(),
         })
     }
 
     fn extra_bytes(&self) -> usize {
-        /// What the allocator keeps of each list, and rounds up to.
+        /// The overhead of the allocator for each list, with rounding, bytes.
         const OF_ALLOCATOR_BYTES: usize = 16;
         let of_facts =
             if self.facts.is_empty() { 0 } else { self.facts.len() + OF_ALLOCATOR_BYTES };
@@ -97,7 +83,7 @@ impl SortRecord for WayRecord {
     }
 }
 
-/// The id of a node or a way that is looked for.
+/// The id of a node or a way to look for.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct SoughtId(pub(crate) i64);
 
@@ -111,7 +97,8 @@ impl SortRecord for SoughtId {
     }
 }
 
-/// A node that a way names. The nodes of all ways are numbered through, in the order of the ways.
+/// The reference of a way to a node. The nodes of all ways are numbered consecutively, in the order
+/// of the ways.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Mention {
     pub(crate) node_id: i64,
@@ -121,18 +108,18 @@ pub(crate) struct Mention {
     visit: u64,
 }
 
-/// What a way is used for.
+/// The use of a way.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum WayUse {
     Road = 0,
-    /// It is left out, but carries bridges and tunnels.
+    /// The way is skipped, but it carries bridges and tunnels.
     Carrier = 1,
-    /// It is left out: only its length is asked for.
+    /// The way is skipped; only its length is needed.
     Length = 2,
 }
 
 impl Mention {
-    /// `is_repeat`: the way names the same node directly before.
+    /// Creates a reference. `is_repeat`: the way references the same node directly before.
     pub(crate) fn new(node_id: i64, number: u64, used: WayUse, is_repeat: bool) -> Self {
         let marks = ((used as u64) << 1) | u64::from(is_repeat);
         Self { node_id, visit: (number << 3) | marks }
@@ -150,7 +137,8 @@ impl Mention {
         }
     }
 
-    /// A node that is repeated directly counts as one visit, not two.
+    /// Whether the way references the same node directly before. Both references count as one
+    /// visit.
     pub(crate) fn is_repeat(&self) -> bool {
         self.visit & 1 == 1
     }
@@ -167,14 +155,14 @@ impl SortRecord for Mention {
     }
 }
 
-/// Where a way says that one of its nodes lies (`LocationsOnWays`).
+/// The position that a way gives for one of its nodes (`LocationsOnWays`).
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Located {
     pub(crate) node_id: i64,
-    /// How many of these come before it in the file.
+    /// The number of such records that come before this one in the file.
     pub(crate) order: u64,
     pub(crate) location: Location,
-    /// The number of the layer whose way says so.
+    /// The number of the layer that contains the way.
     pub(crate) layer: u8,
 }
 
@@ -194,7 +182,7 @@ impl SortRecord for Located {
     }
 }
 
-/// A node of a way with its place.
+/// A node of a way with its position.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Stop {
     /// ```text
@@ -205,7 +193,8 @@ pub(crate) struct Stop {
 }
 
 impl Stop {
-    /// `is_shared`: two roads name the node, or one does twice. `is_met`: the same of roads and ways that carry them.
+    /// Creates a stop. `is_shared`: two roads reference the node, or one road does so twice.
+    /// `is_met`: the same for roads and the ways that carry them.
     pub(crate) fn new(number: u64, [is_shared, is_met]: [bool; 2], location: Location) -> Self {
         let marks = (u64::from(is_met) << 1) | u64::from(is_shared);
         Self { visit: (number << 2) | marks, location }

@@ -1,10 +1,10 @@
-//! Records come back as they were, and cut ones are refused.
+//! Records are read as they were written, and truncated records are rejected.
 
 use proptest::prelude::*;
 
 use super::*;
 
-/// A record comes back as it was, with nothing left over; cut off anywhere, it is none.
+/// A record is read as it was written, with nothing left over. Truncated anywhere, it is rejected.
 #[track_caller]
 fn check<T: SortRecord + std::fmt::Debug>(record: &T) {
     let mut bytes = Vec::new();

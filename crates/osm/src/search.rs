@@ -1,21 +1,22 @@
-//! The search in a list of ids for others that mostly ascend.
+//! A search in a list of ids for others that mostly ascend.
 
-/// Looks up ids that mostly ascend: from where the last one was found, in doubling steps.
-pub(crate) struct Search<'a> {
+/// Looks up ids that mostly ascend: the search starts at the last id found and proceeds in doubling
+/// steps.
+pub(crate) struct IdSearch<'a> {
     ids: &'a [i64],
     at: usize,
 }
 
-impl<'a> Search<'a> {
-    /// `ids` ascend, each of them once.
+impl<'a> IdSearch<'a> {
+    /// Creates a search in `ids`, which ascend without duplicates.
     pub(crate) fn new(ids: &'a [i64]) -> Self {
         Self { ids, at: 0 }
     }
 
-    /// The index of an id.
+    /// Returns the index of an id.
     #[inline]
     pub(crate) fn find(&mut self, id: i64) -> Option<usize> {
-        // Mostly it is the next one, or lies between the two.
+        // Mostly it is the next id, or one between the two.
         if let [last, next, ..] = self.ids[self.at..]
             && (last..=next).contains(&id)
         {
@@ -29,7 +30,7 @@ impl<'a> Search<'a> {
         let rest = &self.ids[self.at..];
         let (mut low, mut step) = (0, 1);
         if rest.first().is_none_or(|&first| id < first) {
-            // The id lies before the last one found, or after the end: search the whole list.
+            // The id is before the last one found, or after the end: search the whole list.
             let found = self.ids.binary_search(&id);
             self.at = found.unwrap_or_else(|before| before).min(self.ids.len().saturating_sub(1));
             return found.ok();

@@ -1,10 +1,11 @@
-//! The search for nodes finds what a plain search finds.
+//! The search for nodes finds the same nodes as a plain search.
 
 use super::*;
 
 #[test]
 fn search_finds_what_plain_search_finds_in_any_order() {
-    // A small linear congruential generator: no pattern that matters, the same every time.
+    // A small linear congruential generator: no pattern that matters, and the same numbers every
+    // time.
     let mut state = 1_u64;
     let mut next = |range: u64| {
         state =
@@ -15,7 +16,7 @@ fn search_finds_what_plain_search_finds_in_any_order() {
         let mut ids: Vec<i64> = (0..count).map(|_| next(300) as i64 - 150).collect();
         ids.sort_unstable();
         ids.dedup();
-        let mut search = Search::new(&ids);
+        let mut search = IdSearch::new(&ids);
         let mut ascending: Vec<i64> = (0..400).map(|_| next(310) as i64 - 155).collect();
         let unordered = ascending.clone();
         ascending.sort_unstable();

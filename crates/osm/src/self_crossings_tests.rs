@@ -1,4 +1,4 @@
-//! Crossings of a way with itself are those that whole numbers find.
+//! Crossings of a way with itself are the same as those found with integers.
 
 use corniche_geom::{MAX_LATTICE_STEPS, Side, side};
 use proptest::prelude::*;
@@ -16,21 +16,23 @@ fn counts_crossings_but_not_touches() {
     check_crossings(&[(0, 0), (10, 10), (10, 0), (0, 10)], 1);
     check_crossings(&[(0, 0), (10, 0), (10, 10), (0, 10), (0, 0)], 0);
     check_crossings(&[(0, 0), (10, 0), (0, 0)], 0);
-    // A loop through one of its own points, and a T into the middle of a segment.
+    // The lines are a loop through one of its own points, and a T into the middle of a segment.
     check_crossings(&[(0, 0), (10, 0), (15, 5), (20, 0), (10, 0), (10, -9)], 0);
     check_crossings(&[(0, 0), (10, 0), (10, 5), (5, 5), (5, 0)], 0);
-    // A five-pointed star.
+    // The line is a five-pointed star.
     check_crossings(&[(0, 100), (59, -81), (-95, 31), (95, 31), (-59, -81), (0, 100)], 5);
     check_crossings(&[(5, -5), (5, 5), (0, 0), (10, 0)], 1);
 }
 
-/// Whether the ends of `other` lie strictly on different sides of the line through `segment`: in whole numbers.
+/// Whether the ends of `other` are strictly on different sides of the line through `segment`,
+/// computed with integers.
 fn straddles(segment: [LatticePoint; 2], other: [LatticePoint; 2]) -> bool {
     let [from, to] = other.map(|end| side(segment[0], segment[1], end));
     from != Side::On && to != Side::On && from != to
 }
 
-/// Points close together, so that many lie on one line, around a place anywhere on the lattice.
+/// Generates points close together, so that many are on one line, around a position anywhere on the
+/// lattice.
 fn points() -> impl Strategy<Value = [LatticePoint; 4]> {
     let far = MAX_LATTICE_STEPS - 200;
     let at = (-far..far, -far..far, prop::sample::select(vec![1_i64, 7, 1 << 30]));
@@ -44,7 +46,7 @@ fn points() -> impl Strategy<Value = [LatticePoint; 4]> {
 }
 
 proptest! {
-    /// Two segments cross when the exact integer test says so, anywhere on the lattice.
+    /// Two segments cross if the exact integer test says so, anywhere on the lattice.
     #[test]
     fn crossings_are_those_of_whole_numbers([a, b, c, d] in points()) {
         prop_assume!(a != b && c != d);

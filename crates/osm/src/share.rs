@@ -1,18 +1,19 @@
-//! A share of an extract, printed `I/N`, which one process reads while others read the rest.
+//! A share of an extract, printed as `I/N`, which one process reads while others read the rest.
 
 use std::{fmt, ops::Range, str::FromStr};
 
-/// One of so many shares of an extract, printed `I/N`: its number, counted from 1, and how many there are.
+/// One of several shares of an extract, printed as `I/N`: its number, counted from 1, and the
+/// number of shares.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Share {
     of: u16,
     number: u16,
 }
 
-/// Why something is not a share.
+/// The reason why a text is not a share.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "{text:?} is not a share I/N, such as 2/8, with I from 1 to N and N at most {}",
+    "{text:?} is not a chunk I/N, such as 2/8, with I from 1 to N and N at most {}",
     Share::MOST
 )]
 pub struct ShareError {
@@ -20,12 +21,13 @@ pub struct ShareError {
 }
 
 impl Share {
-    /// More shares than this are refused: while they are put together a little of each is in memory.
+    /// The maximum number of shares. While shares are merged, a little of each is in memory.
     pub const MOST: u16 = 256;
-    /// The only one: all of the extract.
+    /// The only share of an extract that is not split.
     pub const WHOLE: Self = Self { of: 1, number: 1 };
 
-    /// `None` unless `number` is from 1 to `of`, and `of` at most [`Self::MOST`].
+    /// Creates a share; `None` unless `number` is from 1 to `of`, and `of` is at most
+    /// [`Self::MOST`].
     #[must_use]
     pub const fn new(number: u16, of: u16) -> Option<Self> {
         if number >= 1 && number <= of && of <= Self::MOST {
@@ -35,28 +37,29 @@ impl Share {
         }
     }
 
-    /// All shares of so many, in the order of the file.
+    /// Returns all shares of an extract that is split into `of`, in the order of the file.
     pub fn all(of: u16) -> impl Iterator<Item = Self> + Clone {
         (1..=of).filter_map(move |number| Self::new(number, of))
     }
 
-    /// Which share it is, counted from 1.
+    /// Returns the number of the share, counted from 1.
     #[must_use]
     pub const fn number(self) -> u16 {
         self.number
     }
 
-    /// How many there are.
+    /// Returns the number of shares.
     #[must_use]
-    pub const fn of(self) -> u16 {
+    pub const fn count(self) -> u16 {
         self.of
     }
 
-    /// Which of some things in a row are this share's, so that all shares have nearly the same size: those that begin in it.
+    /// Returns the range of this share in a sequence of items, so that all shares have nearly the
+    /// same size. An item belongs to the share in which it begins.
     pub(crate) fn part_of(self, sizes: impl Iterator<Item = u64> + Clone) -> Range<usize> {
         let total: u64 = sizes.clone().sum();
         let of = u128::from(self.of);
-        // Those of no size at the end begin behind everything, and belong to the last share.
+        // Items of size 0 at the end begin behind everything, and belong to the last share.
         let share_of = |before: u64| {
             ((u128::from(before) * of / u128::from(total.max(1))) as u16).min(self.of - 1)
         };

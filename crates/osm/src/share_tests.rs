@@ -25,7 +25,8 @@ fn what_has_no_size_at_the_end_belongs_to_the_last_share() {
 }
 
 proptest! {
-    /// The shares follow each other without a gap, and none is larger than its part by more than one thing.
+    /// The shares follow each other without a gap, and none is larger than its part by more than
+    /// one item.
     #[test]
     fn shares_cover_everything_in_order(
         sizes in prop::collection::vec(0_u64..1000, 0..60), of in 1_u16..40

@@ -1,21 +1,27 @@
-//! Ids that are looked for, sorted: as many at a time as fit in memory.
+//! Sorted ids to look for, as many at a time as fit in memory.
 
 use std::io;
 
 use corniche_store::{Sorted, Sorter};
 
-use crate::{ahead::Ahead, failed::Failed, reading::Reading, records::SoughtId};
+use crate::{ahead::Ahead, failed::Failed, reading::ExtractReading, records::SoughtId};
 
-/// Ids of nodes or ways that are looked for; one that is wanted twice may come twice in what is sorted.
+/// Ids of nodes or ways to look for. An id that is requested twice may occur twice in the sorted
+/// input.
 pub(crate) struct SoughtIds<'a>(Ahead<Sorted<'a, SoughtId>>);
 
 impl<'a> SoughtIds<'a> {
-    pub(crate) fn of(ids: Sorter<'a, SoughtId>) -> io::Result<Self> {
+    pub(crate) fn from_sorter(ids: Sorter<'a, SoughtId>) -> io::Result<Self> {
         Ok(Self(Ahead::new(ids.finish()?)))
     }
 
-    /// The next different ids, ascending, at most so many; empty after the last.
-    pub(crate) fn next(&mut self, reading: &Reading<'_>, most: usize) -> Result<Vec<i64>, Failed> {
+    /// Returns the next different ids in ascending order, up to a maximum number; empty after the
+    /// last id.
+    pub(crate) fn next(
+        &mut self,
+        reading: &ExtractReading<'_>,
+        most: usize,
+    ) -> Result<Vec<i64>, Failed> {
         let mut ids: Vec<i64> = Vec::new();
         let mut count = 0;
         while let Some(&SoughtId(id)) = self.0.peek()? {
@@ -24,7 +30,8 @@ impl<'a> SoughtIds<'a> {
                     break;
                 }
                 if ids.len() == ids.capacity() {
-                    // Doubling as lists do it would take up to three times the memory.
+                    // The doubling that lists do by themselves would take up to three times the
+                    // memory.
                     ids.reserve_exact(ids.len().max(1 << 10).min(most - ids.len()));
                 }
                 ids.push(id);

@@ -1,21 +1,22 @@
-//! Records in the order in which they came, to be read once from the first to the last.
+//! Records in the order in which they were added, to be read once from first to last.
 
 use std::io;
 
-use corniche_store::{Scratch, Span};
+use corniche_store::{ScratchRange, ScratchSpace};
 
-/// A page takes at most about this much; with little memory it takes less.
+/// The approximate maximum size of a page, bytes. With little memory, a page is smaller.
 const MOST_PAGE_BYTES: usize = 256 << 10;
 
-/// Records being written, one after another. What does not fit in memory goes to scratch space, in pages.
+/// Writes records one after another. Records that do not fit in memory go to scratch space, in
+/// pages.
 ///
 /// ```text
 ///  ┌ page: records ┐┌ page ┐┌ page ┐ …  ┌ open page ┐      no record crosses a page's end
 ///    in memory while they fit, then in scratch space
 /// ```
 pub(crate) struct Spool<'a> {
-    scratch: &'a dyn Scratch,
-    /// How much may stay in memory, the open page aside.
+    scratch: &'a dyn ScratchSpace,
+    /// The memory limit without the open page, bytes.
     memory_bytes: usize,
     page_bytes: usize,
     held_bytes: usize,
@@ -25,25 +26,26 @@ pub(crate) struct Spool<'a> {
 
 enum Page {
     Held(Vec<u8>),
-    Kept(Span),
+    Kept(ScratchRange),
 }
 
 impl<'a> Spool<'a> {
-    /// Keeps at most about `memory_bytes` in memory.
-    pub(crate) fn new(scratch: &'a dyn Scratch, memory_bytes: u64) -> Self {
+    /// Creates a spool that keeps at most about `memory_bytes` in memory.
+    pub(crate) fn new(scratch: &'a dyn ScratchSpace, memory_bytes: u64) -> Self {
         let memory_bytes = usize::try_from(memory_bytes).unwrap_or(usize::MAX);
         let page_bytes = (memory_bytes / 4).min(MOST_PAGE_BYTES);
         let pages = Vec::new();
         Self { scratch, memory_bytes, page_bytes, held_bytes: 0, pages, open: Vec::new() }
     }
 
-    /// Adds what `write` appends: one record.
+    /// Adds one record: the bytes that `write` appends.
     pub(crate) fn push(&mut self, write: impl FnOnce(&mut Vec<u8>)) -> io::Result<()> {
         write(&mut self.open);
         if self.open.len() < self.page_bytes {
             return Ok(());
         }
-        // The last record of a page reaches a little beyond its end, so that the list need not grow.
+        // The last record of a page extends a little beyond the page's end, so this reserve avoids
+        // that the list grows.
         let room = Vec::with_capacity(self.page_bytes + self.page_bytes / 8);
         let page = std::mem::replace(&mut self.open, room);
         if self.held_bytes + page.capacity() + self.open.capacity() > self.memory_bytes {
@@ -55,7 +57,7 @@ impl<'a> Spool<'a> {
         Ok(())
     }
 
-    /// The records, from the first on.
+    /// Returns a reader that starts at the first record.
     pub(crate) fn read(mut self) -> SpoolReader<'a> {
         self.pages.push(Page::Held(self.open));
         SpoolReader {
@@ -69,15 +71,16 @@ impl<'a> Spool<'a> {
 
 /// Reads the records of a [`Spool`].
 pub(crate) struct SpoolReader<'a> {
-    scratch: &'a dyn Scratch,
+    scratch: &'a dyn ScratchSpace,
     pages: std::vec::IntoIter<Page>,
     page: Vec<u8>,
-    /// Where the next record begins in the page.
+    /// The position of the next record in the page.
     at: usize,
 }
 
 impl SpoolReader<'_> {
-    /// The next record, which `decode` takes from the front of its bytes; `None` after the last one.
+    /// Returns the next record, which `decode` takes from the front of the bytes; `None` after the
+    /// last one.
     pub(crate) fn next<T>(
         &mut self,
         decode: impl FnOnce(&mut &[u8]) -> Option<T>,
@@ -97,9 +100,9 @@ impl SpoolReader<'_> {
     }
 }
 
-/// What was read back is not what was written.
+/// Returns the error for data that differs from the data that was written.
 pub(crate) fn damaged() -> io::Error {
-    io::Error::new(io::ErrorKind::InvalidData, "what was read back is not what was written")
+    io::Error::new(io::ErrorKind::InvalidData, "the data read back differs from the data written")
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Records come back in their order with any amount of memory.
+//! Records are read in their order with any memory limit.
 
 use corniche_testing::MemoryScratch;
 use proptest::prelude::*;

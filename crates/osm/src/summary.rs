@@ -1,33 +1,36 @@
-//! How many ways an extract had, how many became roads, and why the others did not.
+//! Counts of the ways of an extract: how many became roads, and why the others did not.
 
 use std::collections::BTreeMap;
 
 use corniche_roads::{FunctionalRoadClass, LossReason};
 use serde::{Deserialize, Serialize};
 
-/// What to show with anything made from an extract (`OpenStreetMap` Foundation, *Attribution Guidelines*, 2021).
+/// The attribution to display with anything made from an extract (`OpenStreetMap` Foundation,
+/// *Attribution Guidelines*, 2021).
 pub const ATTRIBUTION: &str = "© OpenStreetMap contributors, ODbL 1.0";
 
-/// What was in an extract and what became of it.
+/// The contents of an extract, and what became of them.
 ///
 /// Each way is counted: `highway_ways = road_ways + left_out.total()`.
 ///
-/// Written down is what is counted while ways are read; all else is known only later, or stands elsewhere.
+/// Only the counts that are known while ways are read are serialised. All others are known later,
+/// or are stored elsewhere.
 ///
-/// A file that was cut off exactly between two blobs looks like a smaller file: the format has no mark for its end.
-/// If nodes are lost that way, `nodes_missing` shows it; if only whole ways are lost, nothing shows it.
+/// A file that was truncated exactly between two blobs looks like a smaller file, because the
+/// format has no mark for its end. If nodes are lost in that way, `nodes_missing` shows it; if only
+/// whole ways are lost, nothing shows it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ExtractSummary {
-    /// Parts of the file of types that are not known, passed over as the format asks. Also what is left of a known part
-    /// when its type was damaged: no checksum covers it.
+    /// Blobs of unknown types, which are skipped as the format requires. A known blob whose type
+    /// was corrupted counts, too, because no checksum covers the type.
     #[serde(skip)]
     pub blobs_passed_over: u64,
     /// Nodes in the file.
     pub nodes_seen: u64,
-    /// Different nodes that the roads name.
+    /// Different nodes that roads reference.
     #[serde(skip)]
     pub nodes_needed: u64,
-    /// How many of them have no position in the file.
+    /// The number of these nodes that have no position in the file.
     #[serde(skip)]
     pub nodes_missing: u64,
     /// Ways in the file.
@@ -37,28 +40,30 @@ pub struct ExtractSummary {
     /// Ways that became roads.
     #[serde(skip)]
     pub road_ways: u64,
-    /// Roads handed out: at least one per way of `road_ways`, more where missing nodes cut it.
+    /// Delivered roads: at least one per way of `road_ways`, more if missing nodes cut the way.
     #[serde(skip)]
     pub roads: u64,
     /// Why the other ways with a `highway` tag did not become roads.
     pub left_out: LeftOut,
-    /// Ways that the table leaves out: how many, and how long they are, by reason and `highway` value.
+    /// The number and the length of ways that the table skips, by reason and `highway` value.
     #[serde(skip)]
     pub left_out_ways: BTreeMap<(LeftOutReason, String), LeftOutWays>,
-    /// Per `highway` value that the table lists: its class and how many ways have it.
+    /// The class and the number of ways, for each `highway` value that the table lists.
     pub highways: BTreeMap<String, HighwayCount>,
-    /// Per `highway` value that the table does not list: how many ways have it.
+    /// The number of ways, for each `highway` value that the table does not list.
     pub unknown_highways: BTreeMap<String, u64>,
-    /// Tags of roads that are read as another value, such as "layer=1000" and "tunnel=culvert": on how many ways.
+    /// The number of ways, for each tag of roads that is interpreted as another value, such as
+    /// "layer=1000" and "tunnel=culvert".
     pub tags_taken_otherwise: BTreeMap<String, u64>,
-    /// The box that the file's header gives: west, south, east, north, degrees. `None` without one on Earth, and, like
-    /// what else the header says, where the file is several in a row.
+    /// The bounding box in the file's header: west, south, east, north, degrees. `None` if the
+    /// header has no box on Earth, or, like the other fields of the header, if the file consists of
+    /// several concatenated files.
     #[serde(skip)]
     pub header_bounds_deg: Option<[f64; 4]>,
     /// The program that wrote the file, as its header says.
     #[serde(skip)]
     pub generator: Option<String>,
-    /// How recent the data is, in seconds since 1970, as its header says.
+    /// The age of the data according to the file's header, in seconds since 1970.
     #[serde(skip)]
     pub timestamp_s: Option<i64>,
 }
@@ -66,9 +71,9 @@ pub struct ExtractSummary {
 /// Ways with one `highway` value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct HighwayCount {
-    /// The class of the ways; `None` when the table lists the value as no road.
+    /// The class of the ways; `None` if the table lists the value as no road.
     pub class: Option<FunctionalRoadClass>,
-    /// How many ways.
+    /// The number of ways.
     pub ways: u64,
 }
 
@@ -86,52 +91,42 @@ pub struct LeftOut {
     /// Another way of the file has the same id.
     #[serde(skip)]
     pub duplicate: u64,
-    /// Too few nodes, or too few that the file holds and the projection can place; or they go to and fro over one place.
+    /// Too few nodes are in the file and can be converted to the working CRS, or the way goes to
+    /// and fro over one place.
     #[serde(skip)]
     pub without_line: u64,
 }
 
-/// Why a table leaves a way out.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum LeftOutReason {
-    /// Its class is off.
-    ClassOff,
-    /// The table lists its value as no road.
-    Listed,
-    /// The table does not know its value.
-    Unknown,
-    /// It is the outline of an area.
-    Area,
-}
-
-impl LeftOutReason {
-    /// All of them.
-    pub const ALL: [Self; 4] = [Self::ClassOff, Self::Listed, Self::Unknown, Self::Area];
-
-    /// Why, in words.
-    #[must_use]
-    pub const fn text(self) -> &'static str {
-        match self {
-            Self::ClassOff => LossReason::ClassOff,
-            Self::Listed => LossReason::Listed,
-            Self::Unknown => LossReason::Unknown,
-            Self::Area => LossReason::Area,
-        }
-        .text()
+corniche_roads::listed! {
+    /// The reason why a table skips a way.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+    pub enum LeftOutReason {
+        /// Its class is off.
+        ClassOff = LossReason::ClassOff.text(),
+        /// The table lists its value as no road.
+        Listed = LossReason::Listed.text(),
+        /// The table does not know its value.
+        Unknown = LossReason::Unknown.text(),
+        /// It is the outline of an area.
+        Area = LossReason::Area.text(),
     }
+
+    /// Returns the reason, in words.
+    pub fn text() -> &'static str;
 }
 
-/// Ways that are left out for one reason, with one `highway` value.
+/// Ways that are skipped for one reason, with one `highway` value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LeftOutWays {
-    /// How many ways.
+    /// The number of ways.
     pub ways: u64,
-    /// The true length of the ways in plan, micrometres; of areas that of the outline. Stretches beside missing nodes have none.
+    /// The true length of the ways in plan, micrometres; for areas, the length of the outline.
+    /// Stretches next to missing nodes have no length.
     pub length_um: u64,
 }
 
 impl LeftOut {
-    /// All reasons together.
+    /// Returns the total over all reasons.
     #[must_use]
     pub const fn total(&self) -> u64 {
         self.listed + self.class_off + self.unknown + self.area + self.duplicate + self.without_line

@@ -1,8 +1,9 @@
-//! A key or value of a tag as text, cut at the length that OSM allows.
+//! A key or value of a tag as text, cut at OSM's limit.
 
 use std::borrow::Cow;
 
-/// OSM allows 255 characters (OSM wiki, *API v0.6*), each of at most four bytes.
+/// The maximum number of characters that OSM allows (OSM wiki, *API v0.6*: 255), each of at most
+/// four bytes.
 const MAX_TEXT_CHARS: usize = 255;
 
 /// A tag's key or value.
@@ -13,12 +14,12 @@ pub(crate) struct Text<'a> {
 }
 
 impl<'a> Text<'a> {
-    /// Only the beginning is looked at, however long the text is: it may be that of a million ways.
+    /// Reads only the beginning, however long the text is, because a million ways may share it.
     pub(crate) fn new(bytes: &'a [u8]) -> Self {
         const MAX_BYTES: usize = 4 * MAX_TEXT_CHARS;
         let start = &bytes[..bytes.len().min(MAX_BYTES)];
         let text = match str::from_utf8(start) {
-            // The cut may have gone through a character.
+            // The cut may be within a character.
             Err(error) if error.error_len().is_none() && start.len() < bytes.len() => {
                 String::from_utf8_lossy(&start[..error.valid_up_to()])
             }

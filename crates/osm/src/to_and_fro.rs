@@ -4,29 +4,29 @@ use std::collections::HashMap;
 
 use corniche_geom::{LatticePoint, Polyline};
 
-/// A way may lie in one square for so many sides of it. A finest tile has 256 × 256 cells: on
-/// its ground such a way has some two hundred thousand vertices, a twentieth of what a tile may
-/// hold.
+/// The maximum length of a way in one square, in sides of the square. A finest tile has 256 × 256
+/// cells: on its ground such a way has some two hundred thousand vertices, a twentieth of a tile's
+/// limit.
 const MOST_SIDES: f64 = 256.0;
 
-/// A segment lies within a square for its diagonal at most, so ways of so few segments are not
-/// looked at: a few nodes in wrong places make no work.
+/// Ways with at most this many segments are not checked. A segment within a square is at most as
+/// long as the square's diagonal, so a few misplaced nodes cause no work.
 const FEW_SEGMENTS: usize = 181;
 
-/// A way of more segments may be as long as so many squares: with squares of 23 km 24 million
-/// kilometres, with those of 40 m once around the earth. That bounds work and memory.
+/// The maximum length of a way with more segments, in sides of a square: 24 million kilometres with
+/// squares of 23 km, once around the Earth with squares of 40 m. This bounds work and memory.
 const MOST_SQUARES: f64 = 1_048_576.0;
 
-/// Whether the lines of a way together go to and fro over a square, of `side` lattice steps, more
-/// often than a road can. Squares cover all the lattice, so that it does not depend on the extent
-/// of a package.
+/// Whether the lines of a way together go to and fro over a square of `side` lattice steps more
+/// often than a road can. Squares cover the whole lattice, so the result does not depend on the
+/// extent of a package.
 pub(crate) fn go_to_and_fro(lines: &[&Polyline], side: i64) -> bool {
     let side = side.max(1) as f64;
     let segments = || {
         let pairs = lines.iter().flat_map(|line| line.points().array_windows());
         pairs.map(|ends| ends.map(LatticePoint::in_steps))
     };
-    // Nearly every road ends here.
+    // Nearly every road is done here.
     if segments().nth(FEW_SEGMENTS).is_none() {
         return false;
     }
@@ -56,7 +56,8 @@ fn length_of([a, b]: [[f64; 2]; 2]) -> f64 {
     (b[0] - a[0]).hypot(b[1] - a[1])
 }
 
-/// A segment, cut at the multiples of `side` along one axis: the number of each strip, and the part within it.
+/// Cuts a segment at the multiples of `side` along one axis. Returns the number of each strip, and
+/// the part within it.
 fn strips(
     [a, b]: [[f64; 2]; 2],
     axis: usize,

@@ -1,4 +1,4 @@
-//! Ways that no road is, and roads that look a little like them.
+//! Ways that no road can be, and roads that look a little like them.
 
 #![allow(
     clippy::unwrap_used,
@@ -21,7 +21,8 @@ fn goes_to_and_fro(line: &Polyline, side: i64) -> bool {
     go_to_and_fro(&[line], side)
 }
 
-/// A way that goes `legs` times from one end of a square to the other, each time a step beside the last.
+/// Returns a way that goes `legs` times from one end of a square to the other, each time a step
+/// next to the last.
 fn zigzag(legs: i64, at: [i64; 2]) -> Polyline {
     line(
         (0..=legs).map(|k| [at[0] + if k % 2 == 0 { 0 } else { SIDE - 2 }, at[1] + k % (SIDE - 1)]),
@@ -43,7 +44,7 @@ fn long_roads_do_not() {
     let straight = line((0..100_000).map(|k| [3 * k, 2 * k]));
     let around = line((0..100_000).map(|k| [k * SIDE, (k % 7) * SIDE / 3]));
     let misplaced = line([[0, 0], [50_000 * SIDE, 200_000 * SIDE], [20, 0]].into_iter());
-    // A road up a slope, in bends that are a tenth of a square apart, over ten squares.
+    // The road goes up a slope, in bends that are a tenth of a square apart, over ten squares.
     let bends = line((0..2000).map(|k| [if k % 2 == 0 { 0 } else { 10 * SIDE }, k * SIDE / 10]));
     for road in [straight, around, misplaced, bends] {
         assert!(!goes_to_and_fro(&road, SIDE));
@@ -54,7 +55,7 @@ fn long_roads_do_not() {
     assert!(goes_to_and_fro(&far, SIDE), "longer than anything on earth");
 }
 
-/// What gaps make several roads of is one way all the same.
+/// A way that gaps divide into several roads still counts as one way.
 #[test]
 fn parts_of_a_way_count_together() {
     let parts: Vec<Polyline> = (0..30).map(|_| zigzag(100, [0, 0])).collect();
@@ -62,7 +63,7 @@ fn parts_of_a_way_count_together() {
     assert!(!go_to_and_fro(&parts[..2], SIDE) && go_to_and_fro(&parts, SIDE));
 }
 
-/// The parts of a segment lie in their strips, meet, and are as long as it together.
+/// The parts of a segment are in their strips, meet, and together are as long as the segment.
 #[test]
 fn strips_add_up() {
     let mut random = Random::new(3);

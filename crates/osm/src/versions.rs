@@ -1,37 +1,38 @@
-//! Distinguishes extracts from files that hold more than one point in time (histories, changes), where the header
-//! does not say so.
+//! Distinguishes extracts from files that contain more than one point in time (histories, changes),
+//! even if the header does not say so.
 //!
-//! An extract holds each object once, and none that is deleted. So a file is refused that
+//! An extract contains each object once, and no deleted objects. So a file is rejected if it
 //! - marks an object as deleted (`Info.visible`), or
-//! - holds an object in two versions (`Info.version`): either one after the other, as histories and merged extracts are
-//!   sorted, or, of ways, anywhere in the file if both are roads.
+//! - contains an object in two versions (`Info.version`): either one after the other, as sorted
+//!   histories and merged extracts do, or, if both are roads, anywhere in the file.
 //!
-//! Versions below 1 do not count: programs write them for unknown versions. An object without a version, or twice
-//! with the same version, is no sign of a history. The ids of all objects are not kept, so in an unsorted file only
-//! the versions of roads are compared.
+//! Versions below 1 do not count, because programs write them for unknown versions. An object
+//! without a version, or twice with the same version, does not indicate a history. The ids of all
+//! objects are not stored, so in an unsorted file only the versions of roads are compared.
 //!
-//! This reads the block in place: the decoder forgets versions and marks of dense nodes that come without times and users.
+//! This module reads the block in place, because the decoder drops versions and marks of dense
+//! nodes that come without times and users.
 
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    block::{Block, DenseNodes},
+    block::{AuditedBlock, DenseNodes},
     object_info::{Info, to_version},
-    wire::{self, Value, zigzag},
+    wire::{self, WireValue, zigzag},
 };
 
 const KINDS: [&str; 3] = ["node", "way", "relation"];
 
-/// What versions the objects of a block, or of the file so far, have.
+/// The versions of the objects in a block, or in the file so far.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Versions {
-    /// Nodes, ways, relations.
+    /// The runs of nodes, ways and relations.
     runs: [Run; 3],
-    /// Why this is no extract: the first thing found.
+    /// The first reason found why this is not an extract.
     pub(crate) history: Option<History>,
 }
 
-/// Why a file is no extract, and of several files: which.
+/// The reason why a file is not an extract, and the number of the file if there are several.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct History {
     pub(crate) file: u32,
@@ -49,36 +50,38 @@ struct Run {
 struct Versioned {
     id: i64,
     version: i32,
-    /// The number of the file, where there are several extracts.
+    /// The number of the file, if there are several extracts.
     file: u32,
 }
 
-/// A version, if it is one.
+/// Returns the version, if it is known.
 pub(crate) fn known_version(version: i32) -> Option<i32> {
     (version > 0).then_some(version)
 }
 
-/// The words for a way in two versions, or another object.
+/// Returns the message for an object in two versions.
 pub(crate) fn two_versions(kind: &str, id: i64, [first, second]: [i32; 2]) -> String {
-    format!("it holds {kind} {id} in versions {first} and {second}")
+    format!("the file contains {kind} {id} in versions {first} and {second}")
 }
 
 impl Versions {
-    /// Looks through a block.
-    pub(crate) fn scan(block: &Block<'_>) -> Self {
+    /// Scans a block.
+    pub(crate) fn scan(block: &AuditedBlock<'_>) -> Self {
         let mut versions = Self::default();
         let mut dense = block.dense().iter();
         for group in block.groups() {
             for field in wire::fields(group).flatten() {
                 match (field.number, field.value) {
-                    (1, Value::Bytes(node)) => versions.object(0, node, zigzag),
-                    (2, Value::Bytes(_)) => {
+                    (1, WireValue::Bytes(node)) => versions.object(0, node, zigzag),
+                    (2, WireValue::Bytes(_)) => {
                         if let Some(nodes) = dense.next() {
                             versions.dense(nodes);
                         }
                     }
-                    (3, Value::Bytes(way)) => versions.object(1, way, u64::cast_signed),
-                    (4, Value::Bytes(relation)) => versions.object(2, relation, u64::cast_signed),
+                    (3, WireValue::Bytes(way)) => versions.object(1, way, u64::cast_signed),
+                    (4, WireValue::Bytes(relation)) => {
+                        versions.object(2, relation, u64::cast_signed);
+                    }
                     _ => {}
                 }
             }
@@ -86,12 +89,12 @@ impl Versions {
         versions
     }
 
-    /// Takes the next way of a block.
+    /// Adds the next way of a block.
     pub(crate) fn take_way(&mut self, id: i64, info: Info) {
         self.take(1, id, info);
     }
 
-    /// The same, found in this one of several extracts.
+    /// Returns the same versions as the versions of one of several extracts.
     pub(crate) fn of_file(mut self, file: u32) -> Self {
         let ends = self.runs.iter_mut().flat_map(|run| [&mut run.first, &mut run.last]);
         ends.flatten().for_each(|object| object.file = file);
@@ -99,13 +102,13 @@ impl Versions {
         self
     }
 
-    /// Adds a later block.
+    /// Adds the versions of a later block.
     pub(crate) fn append(&mut self, later: Self) {
         for (kind, run) in later.runs.into_iter().enumerate() {
             if let Some(first) = run.first {
                 self.follow(kind, first);
             }
-            // What lies between its first and its last object was compared when it was looked through.
+            // The scan has compared the objects between the first and the last one.
             self.runs[kind].last = run.last.or(self.runs[kind].last);
         }
         if self.history.is_none() {
@@ -117,22 +120,23 @@ impl Versions {
         let (mut id, mut info) = (0, Info::default());
         for field in wire::fields(message).flatten() {
             match (field.number, field.value) {
-                (1, Value::Varint(number)) => id = to_id(number),
-                (4, Value::Bytes(message)) => info.read(message),
+                (1, WireValue::Varint(number)) => id = to_id(number),
+                (4, WireValue::Bytes(message)) => info.read(message),
                 _ => {}
             }
         }
         self.take(kind, id, info);
     }
 
-    /// Versions and marks may be fewer than the ids, or not be there at all.
+    /// Adds dense nodes. Versions and marks may be fewer than the ids, or missing.
     fn dense(&mut self, nodes: &DenseNodes<'_>) {
         let DenseNodes { ids, versions, visible, .. } = nodes;
         if versions.is_empty() && visible.is_empty() {
             return;
         }
         if visible.is_empty() && ids.array_windows().all(|[one, next]| one < next) {
-            // None is there twice: what lies between the first and the last one with a version tells nothing.
+            // No object occurs twice, so those between the first and the last one with a version do
+            // not matter.
             let versions = ids.iter().zip(versions.numbers().map(to_version));
             let mut known = versions.filter(|&(_, version)| known_version(version).is_some());
             let of = |(&id, version)| Versioned { id, version, file: 0 };
@@ -151,7 +155,7 @@ impl Versions {
 
     fn take(&mut self, kind: usize, id: i64, info: Info) {
         if info.is_deleted && self.history.is_none() {
-            let reason = format!("it marks {} {id} as deleted", KINDS[kind]);
+            let reason = format!("the file marks {} {id} as deleted", KINDS[kind]);
             self.history = Some(History { file: 0, reason });
         }
         if let Some(version) = known_version(info.version) {

@@ -1,69 +1,63 @@
-//! A road's nodes and what it is, as bytes: a fifth of what the same takes as lists and texts.
+//! A road's nodes and properties as bytes, which take a fifth of the memory of lists and texts.
 //!
 //! ```text
 //!  │ how many nodes │ their ids, as differences │ class form structure layer oneway lanes │ width │ texts │
 //! ```
 //! The texts are name, ref, surface, highway, maxspeed, `sac_scale`, tracktype.
-//! A way that is left out has a mark in place of the class, the reason, and its `highway` value:
+//! A skipped way has a mark in place of the class, then the reason and its `highway` value:
 //!
 //! ```text
 //!  │ how many nodes │ their ids, as differences │ 255 reason │ highway value │ structure layer │
 //! ```
-//! Its structure is counted from 1; 0 is that of a way that carries nothing.
-//! Counts and lengths are varints, differences zigzag varints; the width is a varint of millimetres, 0 for none; the six
+//! Its structure is counted from 1; 0 means that the way carries nothing. Counts and lengths are
+//! varints, differences zigzag varints; the width is a varint of millimetres, 0 for none; the six
 //! others are a byte each.
 
 use std::io;
 
-use corniche_roads::{AttributeParts, FunctionalRoadClass, RoadAttributes, Structure};
+use corniche_roads::{FunctionalRoadClass, RoadAttributes, Structure};
 
 use crate::{
     LeftOutReason,
     spool::damaged,
-    wire::{
-        push_bytes, push_signed, push_varint, take_array, take_number, take_text, varint, zigzag,
-    },
+    wire::{push_bytes, push_signed, push_varint, take_array, take_text, varint, zigzag},
 };
 
-/// Writes a road's nodes and what it is.
+/// Writes a road's nodes and properties.
 pub(crate) fn way_bytes(
     node_ids: &[i64],
     class: FunctionalRoadClass,
     attributes: &RoadAttributes,
 ) -> Box<[u8]> {
-    let AttributeParts { codes, width_mm, texts } = attributes.parts();
     let mut bytes = Vec::with_capacity(2 * node_ids.len() + attributes.text_bytes() + 32);
     push_node_ids(&mut bytes, node_ids);
     bytes.push(class.number());
-    bytes.extend(codes);
-    push_varint(&mut bytes, width_mm.into());
-    for text in texts {
-        push_bytes(&mut bytes, text.as_bytes());
-    }
+    attributes.push_to(&mut bytes);
     bytes.into()
 }
 
-/// Stands in place of a class where the way is left out.
+/// The mark in place of the class if the way is skipped.
 const LEFT_OUT: u8 = u8::MAX;
 
-/// What a way is.
+/// A road or a skipped way, with its properties.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum WayKind {
     Road(FunctionalRoadClass, RoadAttributes),
     LeftOut(LeftOutWay<String>),
 }
 
-/// A way that is left out.
+/// A skipped way.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LeftOutWay<T> {
     pub(crate) reason: LeftOutReason,
-    /// Its `highway` value.
+    /// The `highway` value of the way.
     pub(crate) highway: T,
-    /// What carries it, and its layer: of a way that is a road of another class. `None` for what is no road.
+    /// The structure that carries the way and its layer, if the way is a road of another class;
+    /// `None` if it is not a road.
     pub(crate) carrier: Option<(Structure, i8)>,
 }
 
-/// Writes the nodes of a way that is left out, and why.
+/// Writes the nodes of a skipped way, and the reason.
 pub(crate) fn left_out_bytes(node_ids: &[i64], way: LeftOutWay<&str>) -> Box<[u8]> {
     let LeftOutWay { reason, highway, carrier } = way;
     let mut bytes = Vec::with_capacity(2 * node_ids.len() + highway.len() + 16);
@@ -76,7 +70,7 @@ pub(crate) fn left_out_bytes(node_ids: &[i64], way: LeftOutWay<&str>) -> Box<[u8
     bytes.into()
 }
 
-/// Writes the nodes of a way of which nothing else is asked.
+/// Writes the nodes of a way of which nothing else is needed.
 pub(crate) fn node_bytes(node_ids: &[i64]) -> Box<[u8]> {
     let mut bytes = Vec::with_capacity(2 * node_ids.len() + 16);
     push_node_ids(&mut bytes, node_ids);
@@ -92,12 +86,13 @@ fn push_node_ids(bytes: &mut Vec<u8>, node_ids: &[i64]) {
     }
 }
 
-/// Whether what follows the nodes is that of a way that is left out.
+/// Whether the bytes after the nodes belong to a skipped way.
 pub(crate) fn is_left_out(after_nodes: &[u8]) -> bool {
     after_nodes.first() == Some(&LEFT_OUT)
 }
 
-/// Takes the ids of a road's nodes from the front of its bytes and hands each to `take`; returns how many there are.
+/// Takes the ids of a road's nodes from the front of its bytes and passes each to `take`; returns
+/// the number of ids.
 pub(crate) fn take_node_ids(
     bytes: &mut &[u8],
     mut take: impl FnMut(i64) -> io::Result<()>,
@@ -112,20 +107,18 @@ pub(crate) fn take_node_ids(
     Ok(count)
 }
 
-/// Takes what follows the nodes. `None` if the bytes are damaged.
+/// Takes the bytes after the nodes; `None` if they are corrupt.
 pub(crate) fn take_way(bytes: &mut &[u8]) -> Option<WayKind> {
     if is_left_out(bytes) {
         let LeftOutWay { reason, highway, carrier } = take_left_out(bytes)?;
         return Some(WayKind::LeftOut(LeftOutWay { reason, highway: highway.to_owned(), carrier }));
     }
     let [class] = take_array(bytes)?;
-    let codes = take_array(bytes)?;
-    let width_mm = take_number(bytes)?;
-    let road = RoadAttributes::from_parts(codes, width_mm, || take_text(bytes).map(str::to_owned))?;
-    Some(WayKind::Road(FunctionalRoadClass::new(class)?, road))
+    let attributes = RoadAttributes::take_from(bytes)?;
+    Some(WayKind::Road(FunctionalRoadClass::new(class)?, attributes))
 }
 
-/// The same for a way that is left out.
+/// Takes the bytes of a skipped way after its nodes.
 pub(crate) fn take_left_out<'b>(bytes: &mut &'b [u8]) -> Option<LeftOutWay<&'b str>> {
     let [_, reason] = take_array(bytes)?;
     let reason = *LeftOutReason::ALL.get(usize::from(reason))?;
@@ -138,7 +131,7 @@ pub(crate) fn take_left_out<'b>(bytes: &mut &'b [u8]) -> Option<LeftOutWay<&'b s
     Some(LeftOutWay { reason, highway, carrier })
 }
 
-/// Whether what follows the nodes is that of a way that carries bridges and tunnels, although it is left out.
+/// Whether the bytes after the nodes belong to a skipped way that carries bridges and tunnels.
 pub(crate) fn is_carrier(after_nodes: &[u8]) -> bool {
     matches!(after_nodes, [LEFT_OUT, .., structure, _] if *structure > 0)
 }

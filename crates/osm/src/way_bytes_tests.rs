@@ -1,4 +1,4 @@
-//! Ways come back from their bytes.
+//! Ways are read from their bytes as they were written.
 
 use proptest::prelude::*;
 
@@ -24,9 +24,9 @@ proptest! {
         near: Vec<i8>,
         far: Vec<i64>,
         class in 0..FunctionalRoadClass::COUNT as u8,
-        form in prop::sample::select(Form::ALL),
-        structure in prop::sample::select(Structure::ALL),
-        oneway in prop::sample::select(Oneway::ALL),
+        form in prop::sample::select(&Form::ALL),
+        structure in prop::sample::select(&Structure::ALL),
+        oneway in prop::sample::select(&Oneway::ALL),
         layer: i8,
         texts in prop::array::uniform7(".{0,20}"),
         lanes: u8,
@@ -51,7 +51,7 @@ proptest! {
     #[test]
     fn a_way_that_is_left_out_comes_back_from_its_bytes(
         ids: Vec<i64>, reason in prop::sample::select(&LeftOutReason::ALL[..]), highway in ".*",
-        carrier in prop::option::of((prop::sample::select(Structure::ALL), any::<i8>())),
+        carrier in prop::option::of((prop::sample::select(&Structure::ALL), any::<i8>())),
     ) {
         let bytes = left_out_bytes(&ids, LeftOutWay { reason, highway: &highway, carrier });
         let mut after_nodes = &*bytes;

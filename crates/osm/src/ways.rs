@@ -1,4 +1,4 @@
-//! The ways of a block that are roads, what they are, and which nodes they need.
+//! Finds the roads among the ways of a block, their properties, and the nodes that they need.
 
 use std::{borrow::Cow, cell::OnceCell, collections::BTreeMap};
 
@@ -8,7 +8,7 @@ use corniche_roads::{
 };
 
 use crate::{
-    Defect, ExtractSummary, HighwayCount, LeftOutReason,
+    ExtractDefect, ExtractSummary, HighwayCount, LeftOutReason,
     block::BlockWay,
     location::Location,
     records::{Origin, WayRecord},
@@ -17,63 +17,70 @@ use crate::{
     way_facts::WayFacts,
 };
 
-/// Where counts and defects of ways go.
+/// The destination of the counts and defects of ways.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Counted {
-    /// Counts go to those of the block: each way counts.
+    /// Counts go to the counts of the block: each way counts.
     ByBlock,
-    /// Counts go to each way's record: a way may be in another extract, too.
+    /// Counts go to each way's record, because a way may also be in another extract.
     ByWay,
 }
 
-/// The road ways of a block, with what is known of its other ways.
+/// The road ways of a block, with facts about its other ways.
 #[derive(Debug, Default)]
-pub(crate) struct Ways {
-    /// Roads, and ways that are left out, in the order of the block.
+pub(crate) struct BlockWays {
+    /// Roads and skipped ways, in the order of the block.
     pub(crate) roads: Vec<WayRecord>,
-    /// Where nodes lie, in files that say so in their ways (`LocationsOnWays`).
+    /// The positions of nodes, in files whose ways contain them (`LocationsOnWays`).
     pub(crate) located: Vec<(i64, Location)>,
-    pub(crate) defects: Vec<Defect>,
+    pub(crate) defects: Vec<ExtractDefect>,
     pub(crate) summary: ExtractSummary,
-    /// How much all this takes, in memory or in scratch space, by an estimate that is not too low.
+    /// The size of all this, in memory or in scratch space, bytes, by an estimate that is never too
+    /// low.
     pub(crate) held_bytes: u64,
-    /// How many nodes the ways name.
+    /// The number of nodes that the ways reference.
     pub(crate) nodes_named: u64,
-    /// The nodes of the way that is being looked at.
+    /// The node ids of the current way.
     node_ids: Vec<i64>,
 }
 
-/// What the ways of a block are judged by.
-pub(crate) struct Judge<'a> {
+/// The criteria for the ways of a block.
+pub(crate) struct WayJudge<'a> {
     /// Keys and values of the block's tags.
     texts: &'a [&'a [u8]],
-    /// The same as text: many ways have the same, and most are asked for by no road.
+    /// The same as text, decoded at the first use: many ways share texts, and roads use only a few
+    /// of them.
     read: Vec<OnceCell<Text<'a>>>,
-    /// Which of them are the key `highway`; usually one.
+    /// The numbers of the texts that are the key `highway`; usually one.
     highway: Vec<usize>,
     table: &'a FrcTable,
 }
 
-impl<'a> Judge<'a> {
-    /// `texts` are the keys and values of the block's tags.
+impl<'a> WayJudge<'a> {
+    /// Creates the criteria from `texts`, the keys and values of the block's tags.
     pub(crate) fn new(texts: &'a [&'a [u8]], table: &'a FrcTable) -> Self {
         let highway = (0..texts.len()).filter(|&text| texts[text] == b"highway").collect();
         Self { texts, read: vec![OnceCell::new(); texts.len()], highway, table }
     }
 
-    /// The text with this number. The block was checked: no tag is outside its table.
+    /// Returns the text with this number. The block was checked, so every tag is in its table.
     fn text(&self, index: usize) -> Option<&Text<'a>> {
         let text = self.texts.get(index)?;
         Some(self.read.get(index)?.get_or_init(|| Text::new(text)))
     }
 }
 
-/// What counts for each way, besides its nodes and texts.
+/// The memory counted for each way, besides its nodes and texts, bytes.
 const WAY_BYTES: usize = 240;
 
-impl Ways {
-    /// Looks whether a way is a road.
-    pub(crate) fn look_at(&mut self, way: &BlockWay<'_, '_>, judge: &Judge<'_>, counted: Counted) {
+impl BlockWays {
+    /// Checks whether a way is a road.
+    pub(crate) fn look_at(
+        &mut self,
+        way: &BlockWay<'_, '_>,
+        judge: &WayJudge<'_>,
+        counted: Counted,
+    ) {
         self.summary.ways_seen += 1;
         match counted {
             Counted::ByBlock => self.look_at_tags(way, judge),
@@ -81,8 +88,9 @@ impl Ways {
         }
     }
 
-    /// The same, with counts and defects in the way's record: it counts only if no other extract has it, too.
-    fn look_at_alone(&mut self, way: &BlockWay<'_, '_>, judge: &Judge<'_>) {
+    /// Checks a way like `look_at`, but puts counts and defects into the way's record, because
+    /// another extract may also contain the way.
+    fn look_at_alone(&mut self, way: &BlockWay<'_, '_>, judge: &WayJudge<'_>) {
         let mut own = Self { node_ids: std::mem::take(&mut self.node_ids), ..Self::default() };
         own.look_at_tags(way, judge);
         let Self { roads, located, defects, summary, held_bytes, nodes_named, node_ids } = own;
@@ -97,12 +105,12 @@ impl Ways {
         }
     }
 
-    fn look_at_tags(&mut self, way: &BlockWay<'_, '_>, judge: &Judge<'_>) {
+    fn look_at_tags(&mut self, way: &BlockWay<'_, '_>, judge: &WayJudge<'_>) {
         // Most ways are buildings and land cover; their tags need no decoding.
         if !way.keys().any(|key| judge.highway.contains(&key)) {
             return;
         }
-        // Room for the tags of nearly every way.
+        // Space for the tags of nearly every way.
         let mut tags: Vec<(&str, &str)> = Vec::with_capacity(16);
         let (mut is_damaged, mut is_cut) = (false, false);
         for (key, value) in way.keys().zip(way.values()) {
@@ -115,18 +123,18 @@ impl Ways {
         }
         let way_id = way.id;
         if is_damaged {
-            self.push_defect(Defect::DamagedText { way_id });
+            self.push_defect(ExtractDefect::DamagedText { way_id });
         }
         if is_cut {
-            self.push_defect(Defect::LongText { way_id });
+            self.push_defect(ExtractDefect::LongText { way_id });
         }
         self.judge(way, &tags, judge.table);
     }
 
-    fn push_defect(&mut self, defect: Defect) {
-        // Values stand in the summary too.
+    fn push_defect(&mut self, defect: ExtractDefect) {
+        // Values are also in the summary.
         let text_bytes = 2 * defect.detail().map_or(0, str::len);
-        self.held_bytes += (2 * size_of::<Defect>() + text_bytes) as u64;
+        self.held_bytes += (2 * size_of::<ExtractDefect>() + text_bytes) as u64;
         self.defects.push(defect);
     }
 
@@ -149,7 +157,7 @@ impl Ways {
             Classified::NotARoad(NotARoad::Area) => {
                 left_out.area += 1;
                 self.leave_out(way, LeftOutReason::Area, highway, None);
-                self.push_defect(Defect::Area { way_id });
+                self.push_defect(ExtractDefect::Area { way_id });
             }
             Classified::NotARoad(NotARoad::Listed | NotARoad::NoHighway) => {
                 left_out.listed += 1;
@@ -159,7 +167,7 @@ impl Ways {
                 left_out.unknown += 1;
                 self.leave_out(way, LeftOutReason::Unknown, value, Some(tags));
                 *self.summary.unknown_highways.entry(value.to_owned()).or_default() += 1;
-                self.push_defect(Defect::UnknownHighway { way_id, value: value.to_owned() });
+                self.push_defect(ExtractDefect::UnknownHighway { way_id, value: value.to_owned() });
                 return;
             }
         }
@@ -172,7 +180,7 @@ impl Ways {
             Classified::Road(class) | Classified::NotShown(class) => Some(class),
             Classified::NotARoad(_) | Classified::Unknown(_) => None,
         };
-        // Only a new value costs a copy of its text.
+        // Only a new value requires a copy of its text.
         match self.summary.highways.get_mut(highway) {
             Some(count) => count.ways += 1,
             None => drop(
@@ -185,7 +193,7 @@ impl Ways {
         for (key, value) in tags_taken_otherwise(tags) {
             let tag = format!("{key}={value}");
             *self.summary.tags_taken_otherwise.entry(tag.clone()).or_default() += 1;
-            self.push_defect(Defect::TagTakenOtherwise { way_id, tag });
+            self.push_defect(ExtractDefect::TagTakenOtherwise { way_id, tag });
         }
     }
 
@@ -198,7 +206,8 @@ impl Ways {
         self.keep(way, attributes.text_bytes(), |ids| way_bytes(ids, class, attributes));
     }
 
-    /// Keeps a way that is no road here, for its length, and, of a road of another class with these tags, for what it carries.
+    /// Stores a way that is not a road here: for its length, and, if it is a road of another class
+    /// with these tags, for what it carries.
     fn leave_out(
         &mut self,
         way: &BlockWay<'_, '_>,

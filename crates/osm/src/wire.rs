@@ -1,4 +1,5 @@
-//! The wire format of protocol buffers, read in place: no schema, no allocation, every step checked.
+//! The wire format of protocol buffers, read in place: no schema, no allocation, every step
+//! checked.
 //!
 //! Source: Google, *Protocol Buffers Documentation* (2024), "Encoding".
 
@@ -8,36 +9,38 @@ pub(crate) use corniche_varints::{
     take_text, to_zigzag, varint, zigzag,
 };
 
-/// Why bytes are no message.
+/// The reason why bytes are not a message.
 pub(crate) type WireError = &'static str;
 
-/// The number that comes next.
+const OF_ANOTHER_KIND: WireError = "a field has the wrong wire type";
+
+/// Returns the next number.
 #[inline]
 fn next_number(rest: &mut &[u8]) -> Result<u64, WireError> {
     varint(rest).map_err(|bad| match bad {
-        BadVarint::Cut => "a number has no end",
-        BadVarint::TooLarge => "a number does not fit 64 bits",
+        BadVarint::Cut => "a number is truncated",
+        BadVarint::TooLarge => "a number does not fit into 64 bits",
     })
 }
 
 /// A field of a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Field<'a> {
+pub(crate) struct WireField<'a> {
     pub(crate) number: u32,
-    pub(crate) value: Value<'a>,
+    pub(crate) value: WireValue<'a>,
 }
 
-/// What a field holds.
+/// The value of a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Value<'a> {
+pub(crate) enum WireValue<'a> {
     Varint(u64),
-    /// A message, a text, or numbers packed.
+    /// A message, a text, or packed numbers.
     Bytes(&'a [u8]),
     /// Four or eight bytes; no message of the format has such a field.
     Fixed,
 }
 
-/// The fields of a message; nothing follows an error.
+/// Returns the fields of a message; nothing follows an error.
 pub(crate) fn fields(message: &[u8]) -> Fields<'_> {
     Fields { rest: message }
 }
@@ -48,7 +51,7 @@ pub(crate) struct Fields<'a> {
 }
 
 impl<'a> Iterator for Fields<'a> {
-    type Item = Result<Field<'a>, WireError>;
+    type Item = Result<WireField<'a>, WireError>;
 
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "a field in memory takes longer than reading it")]
@@ -67,23 +70,23 @@ impl<'a> Iterator for Fields<'a> {
 impl<'a> Fields<'a> {
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "a field in memory takes longer than reading it")]
-    fn field(&mut self) -> Result<Field<'a>, WireError> {
+    fn field(&mut self) -> Result<WireField<'a>, WireError> {
         let key = next_number(&mut self.rest)?;
         let number = u32::try_from(key >> 3).map_err(|_| "a field's number is too large")?;
         if number == 0 {
             return Err("a field has the number 0");
         }
         let value = match key & 7 {
-            0 => Value::Varint(next_number(&mut self.rest)?),
-            1 => self.take(8).map(|_| Value::Fixed)?,
+            0 => WireValue::Varint(next_number(&mut self.rest)?),
+            1 => self.take(8).map(|_| WireValue::Fixed)?,
             2 => {
                 let len = next_number(&mut self.rest)?;
-                Value::Bytes(self.take(len)?)
+                WireValue::Bytes(self.take(len)?)
             }
-            5 => self.take(4).map(|_| Value::Fixed)?,
-            _ => return Err("a field is of a kind that is not in use"),
+            5 => self.take(4).map(|_| WireValue::Fixed)?,
+            _ => return Err("a field has an unknown wire type"),
         };
-        Ok(Field { number, value })
+        Ok(WireField { number, value })
     }
 
     #[inline]
@@ -91,51 +94,51 @@ impl<'a> Fields<'a> {
         let (taken, rest) = usize::try_from(len)
             .ok()
             .and_then(|len| self.rest.split_at_checked(len))
-            .ok_or("a field reaches beyond its message")?;
+            .ok_or("a field extends beyond its message")?;
         self.rest = rest;
         Ok(taken)
     }
 }
 
-impl<'a> Value<'a> {
+impl<'a> WireValue<'a> {
     pub(crate) fn bytes(self) -> Result<&'a [u8], WireError> {
         match self {
             Self::Bytes(bytes) => Ok(bytes),
-            Self::Varint(_) | Self::Fixed => Err("a field is not of the kind it should be"),
+            Self::Varint(_) | Self::Fixed => Err(OF_ANOTHER_KIND),
         }
     }
 
     pub(crate) fn varint(self) -> Result<u64, WireError> {
         match self {
             Self::Varint(number) => Ok(number),
-            Self::Bytes(_) | Self::Fixed => Err("a field is not of the kind it should be"),
+            Self::Bytes(_) | Self::Fixed => Err(OF_ANOTHER_KIND),
         }
     }
 
-    /// The numbers of a repeated field, packed or one by one.
-    pub(crate) fn numbers(self) -> Result<Numbers<'a>, WireError> {
+    /// Returns the numbers of a repeated field, packed or one by one.
+    pub(crate) fn numbers(self) -> Result<PackedNumbers<'a>, WireError> {
         match self {
-            Self::Varint(number) => Ok(Numbers { single: Some(number), rest: &[] }),
-            Self::Bytes(bytes) => Ok(Numbers::of(bytes)),
-            Self::Fixed => Err("a field is not of the kind it should be"),
+            Self::Varint(number) => Ok(PackedNumbers { single: Some(number), rest: &[] }),
+            Self::Bytes(bytes) => Ok(PackedNumbers::from_packed(bytes)),
+            Self::Fixed => Err(OF_ANOTHER_KIND),
         }
     }
 }
 
 #[derive(Debug, Clone)]
-pub(crate) struct Numbers<'a> {
+pub(crate) struct PackedNumbers<'a> {
     single: Option<u64>,
     rest: &'a [u8],
 }
 
-impl<'a> Numbers<'a> {
-    /// The numbers that are packed in these bytes.
-    pub(crate) fn of(packed: &'a [u8]) -> Self {
+impl<'a> PackedNumbers<'a> {
+    /// Returns the numbers that are packed in these bytes.
+    pub(crate) fn from_packed(packed: &'a [u8]) -> Self {
         Self { single: None, rest: packed }
     }
 }
 
-impl Iterator for Numbers<'_> {
+impl Iterator for PackedNumbers<'_> {
     type Item = Result<u64, WireError>;
 
     #[inline]

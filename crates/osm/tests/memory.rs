@@ -1,4 +1,5 @@
-//! How much memory and time a hostile extract can cost. Alone in its process, whose peak it reads.
+//! The memory and the time that a hostile extract can take. The test runs alone in its process,
+//! whose peak memory it reads.
 
 #![allow(
     clippy::unwrap_used,
@@ -12,23 +13,23 @@ mod common;
 use std::{fs, time::Instant};
 
 use common::read_bytes_in;
-use corniche_testing::pbf::{Block, field, frame, number, packed_blob, plain_header, zlib};
+use corniche_testing::pbf::{BlockBuilder, field, frame, number, packed_blob, plain_header, zlib};
 
-/// A line of the system's account of this process, MiB; `None` where it keeps none.
+/// Returns a line of the system's statistics of this process, MiB; `None` if the system has none.
 fn memory_mib(name: &str) -> Option<u64> {
     let status = fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with(name))?;
     line.split_whitespace().nth(1)?.parse::<u64>().ok().map(|kib| kib / 1024)
 }
 
-/// Resets the peak; gives the memory in use now.
+/// Resets the peak, and returns the memory in use now.
 fn reset_peak() -> Option<u64> {
     fs::write("/proc/self/clear_refs", "5").ok()?;
     memory_mib("VmRSS:")
 }
 
-/// Reads with eight threads and says by how many MiB the peak grew. The words are of the error; none for an extract without
-/// roads.
+/// Reads with eight threads, and checks by how many MiB the peak grew. The words are of the error;
+/// `None` for an extract without roads.
 #[track_caller]
 fn check(what: &str, bytes: &[u8], words: Option<&str>, most_mib: u64) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(8).build().unwrap();
@@ -42,7 +43,7 @@ fn check(what: &str, bytes: &[u8], words: Option<&str>, most_mib: u64) {
     println!("{what}: {} KiB, {:.2?}", bytes.len() / 1024, start.elapsed());
     let Some((before, peak)) = before.zip(memory_mib("VmHWM:")) else {
         corniche_testing::skip(
-            "this system does not tell the peak memory of a process, or cannot reset it",
+            "this system does not report the peak memory of a process, or cannot reset it",
         );
         return;
     };
@@ -60,7 +61,7 @@ fn no_extract_takes_more_memory_than_the_limits_allow() {
     check("64 MiB of zeros, said to be 1000", &lying, Some("more than 1000 bytes"), 80);
 
     let many = |message: &[u8], count: usize| {
-        let mut block = Block::new();
+        let mut block = BlockBuilder::new();
         block.groups.push(message.repeat(count));
         packed_blob(b"OSMData", &block.bytes())
     };
@@ -70,9 +71,9 @@ fn no_extract_takes_more_memory_than_the_limits_allow() {
     // Only one of them is unpacked at a time, with any number of threads.
     check("four times that", &of(relations.repeat(4)), None, 320);
     let nodes = many(&field(1, &[8, 0, 64, 0, 72, 0]), 2_000_000);
-    check("two million nodes", &of(nodes), Some("takes more memory than a block may"), 80);
-    // Little to decode, and much that is found: each of many roads has names of its own.
-    let mut block = Block::new();
+    check("two million nodes", &of(nodes), Some("takes more memory than allowed"), 80);
+    // There is little to decode, and much is found: each of many roads has its own names.
+    let mut block = BlockBuilder::new();
     let name = "\u{1f6e3}".repeat(255);
     let tags = [("highway", "track"), ("name", &name), ("ref", &name), ("surface", &name)];
     let message = block.way_message(1, &tags, &[1, 2]);

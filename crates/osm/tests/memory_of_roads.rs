@@ -1,4 +1,5 @@
-//! How much memory the roads of a large extract take. Alone in its process, whose peak it reads.
+//! The memory that the roads of a large extract take. The test runs alone in its process, whose
+//! peak memory it reads.
 
 #![allow(
     clippy::unwrap_used,
@@ -18,8 +19,8 @@ use std::{
 
 use common::{POOL, request, roads::read_roads_from, to_lattice};
 use corniche_osm::ReadRequest;
-use corniche_store::{Scratch, Span};
-use corniche_testing::pbf::{Block, plain_header, raw};
+use corniche_store::{ScratchRange, ScratchSpace};
+use corniche_testing::pbf::{BlockBuilder, plain_header, raw};
 
 const NODES: i64 = 3_000_000;
 const NODES_OF_WAY: i64 = 20;
@@ -27,17 +28,17 @@ const NODES_OF_WAY: i64 = 20;
 /// A file and its length.
 struct FileScratch(Mutex<(File, u64)>);
 
-impl Scratch for FileScratch {
-    fn append(&self, bytes: &[u8]) -> io::Result<Span> {
+impl ScratchSpace for FileScratch {
+    fn append(&self, bytes: &[u8]) -> io::Result<ScratchRange> {
         let mut own = self.0.lock().unwrap();
-        let span = Span { offset: own.1, length: bytes.len() as u64 };
+        let span = ScratchRange { offset: own.1, length: bytes.len() as u64 };
         own.0.seek(SeekFrom::Start(span.offset))?;
         own.0.write_all(bytes)?;
         own.1 += span.length;
         Ok(span)
     }
 
-    fn read(&self, span: Span) -> io::Result<Vec<u8>> {
+    fn read(&self, span: ScratchRange) -> io::Result<Vec<u8>> {
         let mut own = self.0.lock().unwrap();
         own.0.seek(SeekFrom::Start(span.offset))?;
         let mut bytes = vec![0; span.length as usize];
@@ -46,18 +47,19 @@ impl Scratch for FileScratch {
     }
 }
 
-/// Ways one after another; each begins where the one before it ends, so every node is needed.
+/// Returns ways one after another; each begins where the previous one ends, so every node is
+/// needed.
 fn long_row() -> Vec<u8> {
     let mut file = plain_header();
     for first in (0..NODES).step_by(8000) {
-        let mut block = Block::new();
+        let mut block = BlockBuilder::new();
         let nodes = (first..NODES.min(first + 8000)).map(|id| (id, id % 1000, id));
         block.dense(&nodes.collect::<Vec<_>>());
         file.extend(raw(b"OSMData", &block.bytes()));
     }
     let firsts: Vec<i64> = (0..NODES - 1).step_by(NODES_OF_WAY as usize).collect();
     for some in firsts.chunks(8000) {
-        let mut block = Block::new();
+        let mut block = BlockBuilder::new();
         for first in some {
             let last = (first + NODES_OF_WAY).min(NODES - 1);
             block.track(*first, &(*first..=last).collect::<Vec<_>>());
@@ -67,7 +69,7 @@ fn long_row() -> Vec<u8> {
     file
 }
 
-/// A line of the system's account of this process, MiB; `None` where it keeps none.
+/// Returns a line of the system's statistics of this process, MiB; `None` if the system has none.
 fn memory_mib(name: &str) -> Option<u64> {
     let status = fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with(name))?;
@@ -99,15 +101,15 @@ fn three_million_nodes_of_roads_are_read_within_eight_mebibytes_and_those_of_blo
     assert_eq!(roads, (NODES - 1 + NODES_OF_WAY - 1) / NODES_OF_WAY);
     assert_eq!((points, shared), (NODES + roads - 1, 2 * roads));
     let written_mib = scratch.0.into_inner().unwrap().1 >> 20;
-    assert!(written_mib > 50, "it was to lie on disk: {written_mib} MiB");
+    assert!(written_mib > 50, "the data was to be on disk: {written_mib} MiB");
     let Some((before, peak)) = before.zip(memory_mib("VmHWM:")) else {
         corniche_testing::skip(
-            "this system does not tell the peak memory of a process, or cannot reset it",
+            "this system does not report the peak memory of a process, or cannot reset it",
         );
         return;
     };
     let grown = peak.saturating_sub(before);
     println!("{grown} MiB more, {written_mib} MiB written");
-    // Without a limit, ids, places and mentions of so many nodes take 100 MiB.
+    // Without a limit, ids, positions and references of so many nodes take 100 MiB.
     assert!(grown <= 40, "{grown} MiB");
 }

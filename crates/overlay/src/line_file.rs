@@ -1,4 +1,4 @@
-//! The GeoJSON file of the lines and areas that a person draws: read, changed and written back.
+//! The GeoJSON file of the lines and areas that a user draws: reads, changes and writes it.
 
 use std::{fs, io::Read as _, path::Path};
 
@@ -8,38 +8,38 @@ use serde_json::{Map, Value, json};
 
 use crate::{OverlayError, read::MOST_POINTS};
 
-/// Far more than a person draws.
+/// The largest file that is read: far more than a user draws.
 const MOST_BYTES: u64 = 256 << 20;
 
-/// A file of lines and areas that a person draws, as GeoJSON (RFC 7946). Other features, and all
-/// properties, are kept as they are.
+/// A file of lines and areas that a user draws, as GeoJSON (RFC 7946). Other features and all
+/// properties are preserved.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LineFile {
-    /// What the collection has beside its features.
+    /// The members of the collection, without its features.
     members: Map<String, Value>,
     features: Vec<Value>,
 }
 
-/// What the points of a line are.
+/// The shape of a line's points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
-pub enum Shape {
+pub enum LineShape {
     /// A line.
     #[default]
     Line,
-    /// The outline of an area without holes: the first point comes after the last one.
+    /// The outline of an area without holes; the last point is followed by the first.
     Area,
 }
 
-/// A line as it is saved.
+/// A line to save.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SavedLine {
-    /// Which feature of the file it comes from.
+    /// The number of the feature of the file from which it comes.
     pub feature: Option<usize>,
-    /// What its points are.
-    pub shape: Shape,
+    /// The shape of its points.
+    pub shape: LineShape,
     /// Longitude and latitude, WGS84.
     pub points_deg: Vec<[f64; 2]>,
-    /// The height of each point above the ellipsoid, metres; `None` if they are not known.
+    /// The height of each point above the ellipsoid, metres; `None` if they are unknown.
     pub heights_m: Option<Vec<f64>>,
 }
 
@@ -47,7 +47,7 @@ impl LineFile {
     /// Reads a file.
     ///
     /// # Errors
-    /// When it cannot be read or is no GeoJSON.
+    /// When it cannot be read or is not valid GeoJSON.
     pub fn read(path: &Path) -> Result<Self, OverlayError> {
         let failed = |source| OverlayError::Read { path: path.to_path_buf(), source };
         if !fs::metadata(path).map_err(failed)?.is_file() {
@@ -73,19 +73,21 @@ impl LineFile {
         // RFC 8259, section 8.1: a reader may ignore a byte order mark.
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let whole: Value = serde_json::from_str(text).map_err(|error| error.to_string())?;
-        let Value::Object(mut members) = whole else { return Err("it is no object".to_owned()) };
+        let Value::Object(mut members) = whole else {
+            return Err("its top level is not a JSON object".to_owned());
+        };
         if let Some(crs) = members.get("crs").filter(|crs| !crs.is_null()) {
             let name = crs.pointer("/properties/name").and_then(Value::as_str).unwrap_or("");
             if !(name.ends_with("CRS84") || name.ends_with("EPSG::4326") || name == "EPSG:4326") {
                 return Err(format!(
-                    "its coordinates are in {name:?}; they must be longitude and latitude of WGS84 (ogr2ogr -t_srs EPSG:4326)"
+                    "its CRS is {name:?}; transform its coordinates to longitude and latitude of WGS84 (ogr2ogr -t_srs EPSG:4326)"
                 ));
             }
         }
         match members.get("type").and_then(Value::as_str) {
             Some("FeatureCollection") => match members.remove("features") {
                 Some(Value::Array(features)) => Ok(Self { members, features }),
-                _ => Err("its collection has no features".to_owned()),
+                _ => Err("its FeatureCollection has no features".to_owned()),
             },
             Some("Feature") => {
                 Ok(Self { features: vec![Value::Object(members)], ..Self::default() })
@@ -98,25 +100,25 @@ impl LineFile {
         }
     }
 
-    /// All features that are one line, or one area without holes, with their numbers. Longitude and
-    /// latitude of each point.
+    /// Returns all features that are one line, or one area without holes: their numbers, and
+    /// longitude and latitude of each point.
     #[must_use]
-    pub fn lines(&self) -> Vec<(usize, Shape, Vec<[f64; 2]>)> {
+    pub fn lines(&self) -> Vec<(usize, LineShape, Vec<[f64; 2]>)> {
         let features = self.features.iter().enumerate();
         let line =
             |(number, feature)| line_of(feature).map(|(shape, points)| (number, shape, points));
         features.filter_map(line).collect()
     }
 
-    /// How many features are not such lines.
+    /// The number of other features.
     #[must_use]
     pub fn others(&self) -> usize {
         self.features.iter().filter(|feature| line_of(feature).is_none()).count()
     }
 
-    /// The text of a file with these lines in the place of those that this one has. A line whose
-    /// points are as they were stays as it is, heights included. An area of two points is a line.
-    /// What has one point is left out.
+    /// Returns the text of this file with its lines replaced by the given ones. A line with
+    /// unchanged points is unchanged, heights included. An area of two points becomes a line. Lines
+    /// of one point are dropped.
     #[must_use]
     pub fn text_with(&self, lines: &[SavedLine]) -> String {
         let known = |number: usize| lines.iter().find(|line| line.feature == Some(number));
@@ -141,47 +143,47 @@ impl LineFile {
             self.members.iter().filter(|(name, _)| !["type", "bbox"].contains(&name.as_str()));
         members
             .extend(others.map(|(name, value)| format!("{}:{value}", Value::from(name.as_str()))));
-        // A line for each feature, so that people and version control can read it.
+        // One line per feature, which is readable for people and version control.
         format!("{{{},\"features\":[\n{}\n]}}\n", members.join(","), features.join(",\n"))
     }
 }
 
-/// The points of a feature that is one line, or one area without holes, with valid positions. An
-/// area's first point is not repeated at the end.
-fn line_of(feature: &Value) -> Option<(Shape, Vec<[f64; 2]>)> {
+/// Returns the points of a feature that is one line, or one area without holes, with valid
+/// positions. An area's first point is not repeated at the end.
+fn line_of(feature: &Value) -> Option<(LineShape, Vec<[f64; 2]>)> {
     let geometry = feature.get("geometry")?;
     let coordinates = geometry.get("coordinates")?.as_array()?;
     let (shape, positions) = match (geometry.get("type")?.as_str()?, &coordinates[..]) {
-        ("LineString", positions) => (Shape::Line, positions),
-        ("Polygon", [ring]) => (Shape::Area, ring.as_array()?.as_slice()),
+        ("LineString", positions) => (LineShape::Line, positions),
+        ("Polygon", [ring]) => (LineShape::Area, ring.as_array()?.as_slice()),
         _ => return None,
     };
     let mut points = positions.iter().map(point_of).collect::<Option<Vec<_>>>()?;
-    if shape == Shape::Area && points.len() > 1 && points.first() == points.last() {
+    if shape == LineShape::Area && points.len() > 1 && points.first() == points.last() {
         points.pop();
     }
     let least = match shape {
-        Shape::Line => 2,
-        Shape::Area => 3,
+        LineShape::Line => 2,
+        LineShape::Area => 3,
     };
     (points.len() >= least).then_some((shape, points))
 }
 
-/// Longitude and latitude of a position.
+/// Returns longitude and latitude of a position.
 fn point_of(position: &Value) -> Option<[f64; 2]> {
     let part = |index: usize| position.get(index)?.as_f64().filter(|value| value.is_finite());
     Some([part(0)?, part(1)?])
 }
 
-/// A feature with another line; `None` if that has only one point.
+/// Returns a feature with its line replaced; `None` if the new line has only one point.
 fn changed(feature: &Value, line: &SavedLine) -> Option<Value> {
     let shape = match line.points_deg.len() {
         0 | 1 => return None,
         // A corner was removed from a triangle.
-        2 => Shape::Line,
+        2 => LineShape::Line,
         _ => line.shape,
     };
-    // Positions that stay keep all that was known of them.
+    // Unchanged positions keep all their members.
     let geometry = feature.get("geometry");
     let path = match geometry.and_then(|geometry| geometry.get("type")).and_then(Value::as_str) {
         Some("Polygon") => "/coordinates/0",
@@ -205,7 +207,7 @@ fn changed(feature: &Value, line: &SavedLine) -> Option<Value> {
             let height_m = line.heights_m.as_ref().and_then(|heights_m| heights_m.get(index));
             let [lon, lat] = point;
             kept(point).unwrap_or_else(|| match height_m {
-                // Heights to the millimetre.
+                // Heights are rounded to the millimetre.
                 Some(height_m) => json!([lon, lat, (height_m * 1e3).round() / 1e3]),
                 None => json!([lon, lat]),
             })
@@ -213,8 +215,8 @@ fn changed(feature: &Value, line: &SavedLine) -> Option<Value> {
         .collect();
     let mut feature = feature.clone();
     feature["geometry"] = match shape {
-        Shape::Line => json!({"type": "LineString", "coordinates": coordinates}),
-        Shape::Area => {
+        LineShape::Line => json!({"type": "LineString", "coordinates": coordinates}),
+        LineShape::Area => {
             // Outer rings are counter-clockwise (RFC 7946, section 3.1.6).
             let ring = line.points_deg.iter().chain(line.points_deg.first()).copied();
             if ring.collect::<LineString>().is_cw() {

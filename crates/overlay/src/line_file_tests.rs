@@ -1,4 +1,4 @@
-//! A file of lines is saved with everything that was not changed as it was.
+//! A file of lines is saved with everything unchanged preserved.
 
 use super::*;
 
@@ -27,14 +27,14 @@ fn what_is_not_changed_is_saved_as_it_was() {
     assert_eq!(again, serde_json::from_str::<Value>(TEXT).unwrap());
 }
 
-/// The shortest decimal digits of an f64 that lead back to it.
+/// The shortest decimal digits of an f64 that can be parsed back to it.
 #[test]
 fn positions_come_back_to_the_last_bit() {
     let points_deg: Vec<[f64; 2]> =
         (1..500).map(|k| [f64::from(k) / 7.0, f64::from(k).sqrt() * 1.1]).collect();
-    // The way back makes the area counter-clockwise.
+    // The area becomes counter-clockwise, so its points are reversed.
     let closed: Vec<[f64; 2]> = points_deg.iter().rev().copied().collect();
-    for (shape, points_deg) in [(Shape::Line, points_deg), (Shape::Area, closed)] {
+    for (shape, points_deg) in [(LineShape::Line, points_deg), (LineShape::Area, closed)] {
         let known = points_deg.clone();
         let line = SavedLine { feature: None, shape, points_deg, heights_m: None };
         let again = LineFile::parse(&LineFile::default().text_with(&[line])).unwrap();
@@ -49,13 +49,14 @@ fn a_changed_line_keeps_its_properties_and_gets_new_heights() {
     lines[1].points_deg[0] = [8.1, 47.1];
     lines[1].heights_m = Some(vec![400.000_4, 410.0]);
     let point = vec![[1.0, 2.0]];
-    let line = SavedLine { feature: None, shape: Shape::Line, points_deg: point, heights_m: None };
+    let line =
+        SavedLine { feature: None, shape: LineShape::Line, points_deg: point, heights_m: None };
     lines.push(line);
     let again: Value = serde_json::from_str(&file.text_with(&lines)).unwrap();
     let features = again["features"].as_array().unwrap();
-    assert_eq!(features.len(), 3, "one point is no line");
+    assert_eq!(features.len(), 3, "one point is not a line");
     assert_eq!(features[2]["properties"]["name"], "b");
-    assert_eq!(features[2].get("bbox"), None, "it was that of the old line");
+    assert_eq!(features[2].get("bbox"), None, "the bbox belonged to the old line");
     assert_eq!(features[2]["geometry"]["coordinates"], json!([[8.1, 47.1, 400.0], [8.5, 47.5]]));
 }
 
@@ -72,7 +73,7 @@ fn single_features_and_geometries_are_collections_of_one() {
         r#"{"type":"LineString","coordinates":[[1,2],[3,4]]}"#,
         r#"{"type":"Feature","properties":null,"geometry":{"type":"LineString","coordinates":[[1,2],[3,4]]}}"#,
     ] {
-        let line = (0, Shape::Line, vec![[1.0, 2.0], [3.0, 4.0]]);
+        let line = (0, LineShape::Line, vec![[1.0, 2.0], [3.0, 4.0]]);
         assert_eq!(LineFile::parse(text).unwrap().lines(), [line]);
     }
 }
@@ -82,7 +83,7 @@ fn what_is_no_geojson_is_refused() {
     let crs = r#"{"type":"FeatureCollection","crs":{"type":"name","properties":{"name":"EPSG:2056"}},"features":[]}"#;
     for (text, part) in [
         ("", "EOF"),
-        ("[]", "no object"),
+        ("[]", "not a JSON object"),
         ("{}", "no features"),
         (r#"{"type":"FeatureCollection"}"#, "no features"),
         (crs, "EPSG:2056"),
@@ -92,7 +93,7 @@ fn what_is_no_geojson_is_refused() {
     }
 }
 
-/// A track with elevations, of which one point is moved where no heights are known.
+/// A track with elevations, one point of which is moved to a place without known heights.
 #[test]
 fn points_that_stay_keep_their_elevations() {
     let file = LineFile::parse(TEXT).unwrap();
@@ -116,7 +117,7 @@ fn areas_are_polygons_with_a_closed_ring() {
     let clockwise = vec![[0.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
     let area = SavedLine {
         feature: None,
-        shape: Shape::Area,
+        shape: LineShape::Area,
         points_deg: clockwise,
         heights_m: Some(vec![1.0, 2.0, 3.0]),
     };
@@ -125,17 +126,17 @@ fn areas_are_polygons_with_a_closed_ring() {
     let text = LineFile::default().text_with(&[area, two, one]);
     let written: Value = serde_json::from_str(&text).unwrap();
     let features = written["features"].as_array().unwrap();
-    assert_eq!(features.len(), 2, "one point is nothing");
-    assert_eq!(features[1]["geometry"]["type"], "LineString", "two points are no area");
+    assert_eq!(features.len(), 2, "one point is dropped");
+    assert_eq!(features[1]["geometry"]["type"], "LineString", "two points are not an area");
     let ring = json!([[1.0, 1.0, 3.0], [0.0, 1.0, 2.0], [0.0, 0.0, 1.0], [1.0, 1.0, 3.0]]);
     assert_eq!(features[0]["geometry"], json!({"type": "Polygon", "coordinates": [ring]}));
     let file = LineFile::parse(&text).unwrap();
     let points = vec![[1.0, 1.0], [0.0, 1.0], [0.0, 0.0]];
-    assert_eq!(file.lines()[0], (0, Shape::Area, points));
-    // A point that stays keeps its elevation, as an area and as a line.
+    assert_eq!(file.lines()[0], (0, LineShape::Area, points));
+    // A point that is unchanged keeps its elevation, as an area and as a line.
     let mut lines = saved(&file);
     lines[0].points_deg[0] = [2.0, 0.5];
-    for (shape, path) in [(Shape::Area, "/coordinates/0"), (Shape::Line, "/coordinates")] {
+    for (shape, path) in [(LineShape::Area, "/coordinates/0"), (LineShape::Line, "/coordinates")] {
         lines[0].shape = shape;
         let again: Value = serde_json::from_str(&file.text_with(&lines)).unwrap();
         let positions = again["features"][0]["geometry"].pointer(path).unwrap();

@@ -1,5 +1,5 @@
-//! Lines of a file are placed on the lattice of a package, whose heights are carried to the
-//! ellipsoid of WGS84.
+//! Places the lines of a file on the lattice of a package, and transforms a package's heights to
+//! the ellipsoid of WGS84.
 
 use corniche_geom::{LatticePoint, Projection as _, split_at_seam};
 use corniche_gis::{RecordedCrs, RecordedHeights};
@@ -9,20 +9,20 @@ use crate::{OverlayError, VectorLine};
 
 /// A line on the lattice of a package.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Placed {
-    /// Which line of the file, from 0.
+pub struct LatticeLine {
+    /// The number of the line in the file, from 0.
     pub line: usize,
-    /// At least two points that follow each other.
+    /// At least two consecutive points.
     pub points: Vec<LatticePoint>,
 }
 
-/// Places lines on a package's lattice. A line in whose middle points have no place there, or that
-/// goes over the end of the map, comes in several parts, and one without two neighbouring points
-/// that have a place is left out.
+/// Places lines on a package's lattice. A line is split into several parts if points in its middle
+/// cannot be placed there, or if it crosses the end of the map. A line without two consecutive
+/// points that can be placed is skipped.
 ///
 /// # Errors
 /// When the package's coordinate system cannot be used.
-pub fn place(lines: &[VectorLine], manifest: &Manifest) -> Result<Vec<Placed>, OverlayError> {
+pub fn place(lines: &[VectorLine], manifest: &Manifest) -> Result<Vec<LatticeLine>, OverlayError> {
     let crs =
         RecordedCrs::new(&manifest.crs_wkt, manifest.metres_per_unit, manifest.whole_data_bounds());
     let failed = |source| OverlayError::PackageCrs(Box::new(source));
@@ -38,22 +38,22 @@ pub fn place(lines: &[VectorLine], manifest: &Manifest) -> Result<Vec<Placed>, O
             .split(Option::is_none)
             .flat_map(|run| split_at_seam(run.iter().flatten().copied().collect(), seam))
             .filter(|points| points.len() >= 2);
-        placed.extend(runs.map(|points| Placed { line: number, points }));
+        placed.extend(runs.map(|points| LatticeLine { line: number, points }));
     }
     Ok(placed)
 }
 
-/// Carries heights of a package to the ellipsoid of WGS84, which GeoJSON wants (RFC 7946, section
-/// 4).
+/// Transforms heights of a package to the ellipsoid of WGS84, which GeoJSON requires (RFC 7946,
+/// section 4).
 pub struct EllipsoidHeights(RecordedHeights);
 
 impl EllipsoidHeights {
-    /// What carries a package's heights; `None` if its vertical datum is unknown, or nothing here
-    /// leads from it to the ellipsoid, such as a missing grid.
+    /// Returns the transformation of a package's heights; `None` if its vertical datum is unknown,
+    /// or PROJ has no transformation to the ellipsoid here, for example because a grid is missing.
     ///
     /// # Errors
     /// When the package's coordinate system cannot be used.
-    pub fn of(manifest: &Manifest) -> Result<Option<Self>, OverlayError> {
+    pub fn from_manifest(manifest: &Manifest) -> Result<Option<Self>, OverlayError> {
         let failed = |source| OverlayError::PackageCrs(Box::new(source));
         let Manifest { crs_wkt, metres_per_unit, data_bounds, vertical, settings, .. } = manifest;
         let crs = RecordedCrs::new(crs_wkt, *metres_per_unit, *data_bounds).map_err(failed)?;
@@ -65,7 +65,8 @@ impl EllipsoidHeights {
         Ok(heights.filter(|heights| heights.carry(&middle, &mut [vertical.range_m[0]])))
     }
 
-    /// Replaces heights of the package at positions in its working CRS. Whether that can be done.
+    /// Replaces heights of the package at positions in its working CRS. Returns whether this is
+    /// possible.
     #[must_use]
     pub fn carry(&self, positions_m: &[[f64; 2]], heights_m: &mut [f64]) -> bool {
         self.0.to_wgs84_m(positions_m, heights_m).is_ok()

@@ -1,4 +1,4 @@
-//! Lines are read from all layers of a vector file and carried to WGS84.
+//! Reads lines from all layers of a vector file and transforms them to WGS84.
 
 use std::{collections::HashSet, path::Path};
 
@@ -12,11 +12,11 @@ use gdal::vector::{
 
 use crate::OverlayError;
 
-/// Steps of work for a point of a line that crosses little ground, as a track of a walker does.
+/// The work for a point of a line that crosses little ground (like a walker's track), in steps.
 const STEPS_OF_POINT: u64 = 64;
 
-/// Points that the lines of a file may have, a million: as many as one tile can show, for they may
-/// all lie on one.
+/// The most points that the lines of a file may have, a million: as many as one tile can show,
+/// since all may be on one tile.
 pub const MOST_POINTS: usize = (MOST_TILE_STEPS / STEPS_OF_POINT) as usize;
 
 /// A line of a file.
@@ -24,8 +24,8 @@ pub const MOST_POINTS: usize = (MOST_TILE_STEPS / STEPS_OF_POINT) as usize;
 pub struct VectorLine {
     /// The feature's `name`, if it has one.
     pub name: Option<String>,
-    /// Longitude and latitude of each point, degrees of WGS84. NaN where a point has no such
-    /// position.
+    /// Longitude and latitude of each point, degrees of WGS84. NaN if a point cannot be
+    /// transformed.
     pub positions_deg: Vec<[f64; 2]>,
 }
 
@@ -34,38 +34,42 @@ pub struct VectorLine {
 pub struct VectorLines {
     /// All lines, and the outlines of all polygons, ring by ring, in the order of the file.
     pub lines: Vec<VectorLine>,
-    /// Features that are neither, such as points.
+    /// The number of other features, such as points.
     pub others: u64,
-    /// Lines of routes, and lines of tracks, in a GPX file that has both.
+    /// The numbers of lines in routes, and of lines in tracks, in a GPX file that has both.
     pub routes_and_tracks: Option<[usize; 2]>,
-    /// How positions came to the datum of WGS84.
+    /// The operations by which positions were transformed to the datum of WGS84.
     pub datums: FileDatums,
 }
 
 impl VectorLines {
-    /// What a user may not have meant, in whole sentences without a point.
+    /// Returns notices about properties of the file that the user may not expect: whole sentences
+    /// without a full stop.
     #[must_use]
     pub fn notices(&self) -> Vec<String> {
         let mut notices = Vec::new();
         if self.others > 0 {
-            notices.push(format!("{} features are neither lines nor outlines", self.others));
+            notices.push(format!(
+                "{} features are neither lines nor polygons and are skipped",
+                self.others
+            ));
         }
         if let Some([routes, tracks]) = self.routes_and_tracks {
             notices.push(format!(
-                "it has routes ({routes}) and tracks ({tracks}), and both are taken; programs often save one line as both, which then counts \
-                 twice; keep one of them: ogr2ogr NEW.gpx OLD.gpx tracks"
+                "it has routes ({routes}) and tracks ({tracks}), and both are read; programs often save one line as both, and the line then counts \
+                 twice; keep only the tracks with ogr2ogr NEW.gpx OLD.gpx tracks"
             ));
         }
         let repeated = self.repeated();
         if repeated > 0 {
-            notices.push(format!(
-                "{repeated} of its lines are the same as one before, and count again"
-            ));
+            notices
+                .push(format!("{repeated} of its lines repeat an earlier line, and count again"));
         }
         notices
     }
 
-    /// How many lines have the positions of one before them, in the same order or from end to begin.
+    /// Counts the lines that have the positions of an earlier one, in the same or the reverse
+    /// order.
     fn repeated(&self) -> usize {
         let mut known = HashSet::new();
         self.lines.iter().filter(|line| !known.insert(line.bits())).count()
@@ -73,7 +77,7 @@ impl VectorLines {
 }
 
 impl VectorLine {
-    /// The bits of its positions, the same whichever way it goes.
+    /// Returns the bits of the line's positions, the same for both directions.
     fn bits(&self) -> Vec<[u64; 2]> {
         let bits: Vec<_> = self.positions_deg.iter().map(|at| at.map(f64::to_bits)).collect();
         let back = bits.iter().rev().copied().collect();
@@ -82,12 +86,12 @@ impl VectorLine {
 }
 
 /// Reads the lines of all layers of a vector file, each in its own coordinate system. With
-/// `allow_ballpark` its datum may be taken for that of WGS84 where PROJ knows nothing between the
-/// two.
+/// `allow_ballpark`, PROJ's ballpark transformations (no datum shift) to WGS84 are allowed if PROJ
+/// has no other.
 ///
 /// # Errors
-/// When GDAL cannot read the file or a part of it, when it has no line, or a layer names no
-/// coordinate system, or one of an unknown datum.
+/// When GDAL cannot read the file or a part of it, when it has no line, or when a layer has no
+/// coordinate system, or one with an unknown datum.
 pub fn read(path: &Path, allow_ballpark: bool) -> Result<VectorLines, OverlayError> {
     let own = || path.to_path_buf();
     let dataset = open_vectors(path, FileUse::Lines)?;
@@ -96,7 +100,7 @@ pub fn read(path: &Path, allow_ballpark: bool) -> Result<VectorLines, OverlayErr
     let [mut routes, mut tracks] = [0; 2];
     for mut layer in dataset.layers() {
         let name = layer.name();
-        // GDAL tells the points of tracks and routes of GPX once more, in layers of their own.
+        // GDAL repeats the points of GPX tracks and routes in separate layers.
         if is_gpx && ["track_points", "route_points"].contains(&name.as_str()) {
             continue;
         }
@@ -160,7 +164,7 @@ impl Reading<'_> {
                 let (name, positions_deg) = (label.clone(), part);
                 self.found.lines.push(VectorLine { name, positions_deg });
             }
-            // What PROJ says of single points is no failure to read the file.
+            // An error of PROJ for single points is not a failure to read the file.
             forget();
             Ok(())
         })?;
@@ -180,7 +184,7 @@ fn label_of(feature: &Feature<'_>) -> Option<String> {
     feature.field_as_string(index).ok().flatten().filter(|name| !name.is_empty())
 }
 
-/// The lines and rings of a geometry, one after the other.
+/// Collects the lines and rings of a geometry, one after the other.
 fn take(geometry: &Geometry, parts: &mut Vec<Vec<[f64; 2]>>) {
     match geometry_type_flatten(geometry.geometry_type()) {
         OGRwkbGeometryType::wkbLineString | OGRwkbGeometryType::wkbLinearRing => {

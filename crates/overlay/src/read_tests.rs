@@ -34,7 +34,7 @@ fn lines_and_outlines_come_in_the_order_of_the_file() {
     assert!((lon - 9.6).abs() < 1e-12 && (lat - 47.2).abs() < 1e-12, "{lon}, {lat}");
 }
 
-/// GDAL tells points of a track in a layer of its own, too.
+/// GDAL also provides the points of a track in a separate layer.
 #[test]
 fn a_track_of_gpx_is_one_line() {
     let folder = tempfile::tempdir().unwrap();
@@ -83,7 +83,10 @@ fn a_line_that_counts_twice_is_told() {
     let both = format!(r#"{{"type":"FeatureCollection","features":[{both}]}}"#);
     let told = notices("both.geojson", &both).1;
     assert!(told.len() == 1 && told[0].starts_with("1 of its lines"), "{told:?}");
-    assert_eq!(notices("a.geojson", GEOJSON).1, ["1 features are neither lines nor outlines"]);
+    assert_eq!(
+        notices("a.geojson", GEOJSON).1,
+        ["1 features are neither lines nor polygons and are skipped"]
+    );
 }
 
 #[test]
@@ -93,7 +96,7 @@ fn what_gives_no_lines_is_told() {
         read(&written(folder.path(), name, text), false).unwrap_err().to_string()
     };
     let point = r#"{"type":"Point","coordinates":[9,47]}"#;
-    assert!(told("point.geojson", point).contains("no line and no outline, but 1 other"));
+    assert!(told("point.geojson", point).contains("no lines and no polygons, but 1 other"));
     assert!(told("no.geojson", "{}").contains("not a vector file"));
     assert!(told("half.geojson", &GEOJSON[..300]).contains("half.geojson"));
     assert!(told("empty.gpx", "").contains("not a vector file"));
@@ -101,8 +104,8 @@ fn what_gives_no_lines_is_told() {
     assert!(matches!(missing, OverlayError::Vector(VectorError::Missing { .. })), "{missing}");
 }
 
-/// As many as a file may have are read, and one more is refused; also by what takes drawn lines up
-/// again.
+/// A file may have exactly the largest number of points; one more is rejected, also when drawn
+/// lines are read again.
 #[test]
 fn a_file_has_a_million_points_at_most() {
     let folder = tempfile::tempdir().unwrap();

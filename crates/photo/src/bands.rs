@@ -1,4 +1,4 @@
-//! What the bands of a photo mean.
+//! The meaning of the bands of a photo.
 
 use std::path::Path;
 
@@ -10,16 +10,15 @@ use gdal::raster::{ColorInterpretation, GdalDataType};
 use crate::PhotoError;
 use crate::filter::Pixels;
 
-/// Which bands give red, green, blue and opacity.
+/// The bands of red, green, blue and opacity.
 #[derive(Debug, Clone)]
 pub(crate) struct Bands {
     colour: Colour,
-    /// Number of the band.
+    /// The number of the alpha band.
     alpha: Option<usize>,
-    /// The file says by a mask where it has no data.
+    /// Whether the file has a mask for missing data.
     has_mask: bool,
-    /// The value for no data of each band of the colour: pixels in which all bands have it are
-    /// none.
+    /// The nodata value of each colour band: pixels in which all bands have it are missing.
     nodata: Option<Vec<u8>>,
 }
 
@@ -32,22 +31,34 @@ enum Colour {
     Palette(Box<[[u8; 4]; 256]>),
 }
 
+/// A band as the file describes it.
+struct FoundBand {
+    /// Its number, from 1.
+    number: usize,
+    interpretation: ColorInterpretation,
+    data_type: GdalDataType,
+}
+
 impl Bands {
-    pub(crate) fn of(path: &Path, dataset: &Dataset) -> Result<Self, PhotoError> {
+    pub(crate) fn from_dataset(path: &Path, dataset: &Dataset) -> Result<Self, PhotoError> {
         let broken = |source: GdalError| opening(path, source);
         let count = dataset.raster_count();
         let mut found = Vec::with_capacity(count);
         for number in 1..=count {
             let band = dataset.rasterband(number).map_err(broken)?;
-            found.push((number, band.color_interpretation(), band.band_type()));
+            found.push(FoundBand {
+                number,
+                interpretation: band.color_interpretation(),
+                data_type: band.band_type(),
+            });
         }
         let alpha = found
             .iter()
-            .find(|(_, is, _)| *is == ColorInterpretation::AlphaBand)
-            .map(|band| band.0);
+            .find(|band| band.interpretation == ColorInterpretation::AlphaBand)
+            .map(|band| band.number);
         let colour = Self::colour(path, dataset, &found, alpha)?;
         for number in colour.bands().into_iter().chain(alpha) {
-            let kind = found[number - 1].2;
+            let kind = found[number - 1].data_type;
             if kind != GdalDataType::UInt8 {
                 let kind = kind.name();
                 return Err(PhotoError::SampleType { path: path.to_path_buf(), kind });
@@ -58,7 +69,7 @@ impl Bands {
         let mut nodata = Vec::new();
         for number in colour.bands() {
             let band = dataset.rasterband(number).map_err(broken)?;
-            // A value that no byte has marks nothing.
+            // A value that no byte can have marks nothing.
             let value = band
                 .no_data_value()
                 .filter(|value| (0.0..=255.0).contains(value) && value.fract() == 0.0);
@@ -71,12 +82,14 @@ impl Bands {
     fn colour(
         path: &Path,
         dataset: &Dataset,
-        bands: &[(usize, ColorInterpretation, GdalDataType)],
+        bands: &[FoundBand],
         alpha: Option<usize>,
     ) -> Result<Colour, PhotoError> {
         use ColorInterpretation as C;
         let own = || path.to_path_buf();
-        let with = |wanted: C| bands.iter().find(|(_, is, _)| *is == wanted).map(|band| band.0);
+        let with = |wanted: C| {
+            bands.iter().find(|band| band.interpretation == wanted).map(|band| band.number)
+        };
         if with(C::PaletteIndex) == Some(1) {
             let band = dataset.rasterband(1).map_err(|source| opening(path, source))?;
             let table = band.color_table().ok_or_else(|| PhotoError::NoPalette { path: own() })?;
@@ -96,18 +109,19 @@ impl Bands {
         }
         let colours: Vec<usize> = bands
             .iter()
-            .filter(|(number, is, _)| {
-                Some(*number) != alpha && matches!(is, C::Undefined | C::GrayIndex)
+            .filter(|band| {
+                Some(band.number) != alpha
+                    && matches!(band.interpretation, C::Undefined | C::GrayIndex)
             })
-            .map(|band| band.0)
+            .map(|band| band.number)
             .collect();
         match colours[..] {
-            // Files that do not say what their bands are have them in this order.
+            // Files without colour interpretation have the bands in this order.
             [red, green, blue, ..] => Ok(Colour::Rgb([red, green, blue])),
             [grey, ..] => Ok(Colour::Grey(grey)),
             [] => {
                 let names: Vec<String> =
-                    bands.iter().map(|(_, is, _)| is.name().to_lowercase()).collect();
+                    bands.iter().map(|band| band.interpretation.name().to_lowercase()).collect();
                 let interpretations = names.join(", ");
                 Err(PhotoError::Bands { path: own(), bands: bands.len(), interpretations })
             }

@@ -1,25 +1,25 @@
-//! From pixels to one texel.
+//! Resamples pixels to one texel.
 
 use std::ops::Range;
 
 /// Pixels of a rectangle of a photo: red, green, blue, opacity.
 pub(crate) struct Pixels {
-    /// Column and row of the first, in the photo.
+    /// Column and row of the first pixel in the photo.
     pub(crate) start: [i64; 2],
     pub(crate) columns: usize,
     pub(crate) rows: usize,
     pub(crate) rgba: Vec<[u8; 4]>,
 }
 
-/// Colour times opacity, and opacity, of what one photo gives to a texel; all from 0 to 1.
+/// The contribution of one photo to a texel: colour times opacity, and opacity, all from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct Light {
+pub(crate) struct PremultipliedColour {
     pub(crate) rgb: [f64; 3],
     pub(crate) opacity: f64,
 }
 
 /// Weights of the pixels along one axis: a tent as wide as two texels, or two pixels where these
-/// are larger. That is bilinear interpolation where the photo is coarser, and where it is finer an
+/// are larger. If the photo is coarser, this is bilinear interpolation. If it is finer, this is an
 /// average over the texel that fades into its neighbours, so that detail finer than a texel does
 /// not alias.
 #[derive(Default)]
@@ -31,7 +31,7 @@ pub(crate) struct Weights {
 }
 
 impl Weights {
-    /// Around a position, in pixels; the centre of pixel k is at k + 0.5.
+    /// Sets the weights around a position, in pixels; the centre of pixel k is at k + 0.5.
     fn set(&mut self, position: f64, radius: f64, allowed: &Range<i64>) {
         let first = (position - radius - 0.5).ceil() as i64;
         let last = (position + radius - 0.5).floor() as i64;
@@ -48,7 +48,7 @@ impl Weights {
     }
 }
 
-/// Filters texels out of pixels; keeps its buffers.
+/// Resamples pixels to texels; keeps its buffers.
 #[derive(Default)]
 pub(crate) struct Filter {
     columns: Weights,
@@ -56,17 +56,23 @@ pub(crate) struct Filter {
 }
 
 impl Filter {
-    /// What the pixels around a position give. Pixels outside the rectangle are transparent.
-    pub(crate) fn at(&mut self, pixels: &Pixels, position: [f64; 2], radius: [f64; 2]) -> Light {
+    /// Returns the contribution of the pixels around a position. Pixels outside the rectangle are
+    /// transparent.
+    pub(crate) fn at(
+        &mut self,
+        pixels: &Pixels,
+        position: [f64; 2],
+        radius: [f64; 2],
+    ) -> PremultipliedColour {
         if !(position[0].is_finite() && position[1].is_finite()) {
-            return Light::default();
+            return PremultipliedColour::default();
         }
         let end = [pixels.columns, pixels.rows];
         let allowed = [0, 1].map(|k| pixels.start[k]..pixels.start[k] + end[k] as i64);
         self.columns.set(position[0], radius[0], &allowed[0]);
         self.rows.set(position[1], radius[1], &allowed[1]);
         if self.columns.of_pixels.is_empty() || self.rows.of_pixels.is_empty() {
-            return Light::default();
+            return PremultipliedColour::default();
         }
         let mut sums = [0.0; 4];
         for (row, row_weight) in self.rows.of_pixels.iter().enumerate() {
@@ -83,12 +89,15 @@ impl Filter {
         }
         let all = self.columns.sum * self.rows.sum * 255.0;
         let [r, g, b, opacity] = sums;
-        Light { rgb: [r, g, b].map(|sum| sum / (all * 255.0)), opacity: opacity / all }
+        PremultipliedColour {
+            rgb: [r, g, b].map(|sum| sum / (all * 255.0)),
+            opacity: opacity / all,
+        }
     }
 }
 
-impl Light {
-    /// This over what lies beneath.
+impl PremultipliedColour {
+    /// Blends this colour over the one beneath.
     pub(crate) fn over(self, beneath: Self) -> Self {
         let through = 1.0 - self.opacity;
         Self {
@@ -97,7 +106,7 @@ impl Light {
         }
     }
 
-    /// The colour as a texel: none where less than half of it is covered.
+    /// Returns the colour as a texel: none if less than half of it is covered.
     pub(crate) fn texel(self) -> [u8; 4] {
         if self.opacity < 0.5 {
             return crate::texels::NONE;

@@ -1,4 +1,4 @@
-//! Aerial images (photos) to texels on a package's grid.
+//! Resamples aerial images (photos) to texels on a package's grid.
 //!
 //! ```text
 //!   files ──► Photos::open ──► Photos::on ──► PhotoReader::window ──► Texels ──► halved … coarser levels
@@ -8,8 +8,8 @@
 //! A texel has the same colour, bit for bit, whichever window it is read through: its place follows
 //! from its global index, its colour from the pixels around that place.
 //!
-//! This crate never encodes, never triangulates, and never guesses where an image lies or what its
-//! values mean.
+//! This crate never encodes, never triangulates, and never guesses the georeference of an image or
+//! the meaning of its values.
 
 mod error;
 mod photos;

@@ -1,4 +1,4 @@
-//! One photo file and its place on the grid of a package, and all photos of a build there.
+//! A photo file and its place on the grid of a package, and all photos of a build.
 
 use std::path::Path;
 
@@ -9,12 +9,12 @@ use corniche_gis::{FileUse, PlacedRaster, RasterOnGrid, stored_text};
 use crate::bands::Bands;
 use crate::{PhotoError, TexelGrid};
 
-/// One photo, described but not held open.
+/// A photo file, described but not held open.
 #[derive(Debug, Clone)]
 pub(crate) struct PhotoFile {
     pub(crate) raster: PlacedRaster,
     pub(crate) bands: Bands,
-    /// What its metadata say of its rights, as GeoTIFF's tag Copyright.
+    /// The copyright in its metadata, such as GeoTIFF's tag Copyright.
     pub(crate) credit: Option<String>,
 }
 
@@ -25,11 +25,11 @@ pub(crate) struct PlacedPhoto {
     pub(crate) on_grid: RasterOnGrid,
     /// Rectangle around its border, working metres.
     pub(crate) bounds: Bounds,
-    /// Side of a pixel in the middle, working metres: of a square of the same area.
+    /// The side of a pixel in the middle, working metres: of a square of the same area.
     pub(crate) pixel_m: f64,
 }
 
-/// Points along each side of a photo by which its rectangle is found.
+/// Points along each side of a photo from which its rectangle is computed.
 const SIDE_POINTS: usize = 33;
 
 impl PhotoFile {
@@ -38,7 +38,7 @@ impl PhotoFile {
         if dataset.raster_count() == 0 {
             return Err(PhotoError::NoBand { path: path.to_path_buf() });
         }
-        let bands = Bands::of(path, &dataset)?;
+        let bands = Bands::from_dataset(path, &dataset)?;
         let credit = stored_text(&dataset, "TIFFTAG_COPYRIGHT");
         let credit = credit.map(|text| text.trim().to_owned()).filter(|text| !text.is_empty());
         Ok(Self { raster, bands, credit })
@@ -72,7 +72,7 @@ impl PhotoFile {
     }
 }
 
-/// Photos on a package's grid. May be shared between threads.
+/// Photos on a package's grid. Threads can share it.
 #[derive(Debug, Clone)]
 pub struct PhotoGrid {
     pub(crate) photos: Vec<PlacedPhoto>,
@@ -86,14 +86,13 @@ impl PhotoGrid {
         &self.texels
     }
 
-    /// Whether a photo may lie in a rectangle, working metres.
+    /// Whether a photo may overlap a rectangle, working metres.
     #[must_use]
     pub fn touches(&self, bounds: &Bounds) -> bool {
         self.photos.iter().any(|photo| overlap(&photo.bounds, bounds))
     }
 
-    /// Area of the rectangles around the photos, square metres of the grid; where they overlap it
-    /// counts twice.
+    /// Area of the rectangles around the photos, square metres of the grid; overlaps count twice.
     #[must_use]
     pub fn area_m2(&self) -> f64 {
         self.photos.iter().map(|photo| photo.bounds.width() * photo.bounds.height()).sum()

@@ -1,5 +1,5 @@
-//! Photo files that are described but not held open, and the choice of how fine their texels
-//! become.
+//! Photo files that are described but not held open, and the choice of the resolution of their
+//! texels.
 
 use std::path::PathBuf;
 
@@ -10,14 +10,14 @@ use corniche_gis::{FileBlocks, FileUse, PlacedRaster};
 use crate::photo_file::{PhotoFile, overlap};
 use crate::{PhotoError, PhotoGrid, TexelGrid};
 
-/// The most levels finer than the finest cell that are taken where nobody says how many: a finest
-/// tile then has 2048 texels a side.
+/// The most levels finer than the finest cell by default: a finest tile then has 2048 texels per
+/// side.
 const USUAL_LEVELS: u8 = 3;
-/// The most levels at all.
+/// The most levels that can be chosen.
 const MOST_LEVELS: u8 = 16;
-/// Texels may be so many pixels large where the number of levels is chosen.
+/// The largest size of a texel in pixels when the number of levels is chosen automatically.
 const PIXELS_PER_TEXEL: f64 = 1.5;
-/// The most pixels along a texel: what one texel is made of must fit into memory.
+/// The most pixels along a texel: the pixels of one texel must fit into memory.
 const MOST_PIXELS_PER_TEXEL: f64 = 1000.0;
 
 /// Photos, described but not held open.
@@ -26,29 +26,30 @@ pub struct Photos {
     files: Vec<PhotoFile>,
 }
 
-/// How many levels of texels finer than the finest cell there are.
+/// The number of levels of texels finer than the finest cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LevelChoice {
-    /// There are as many levels as the finest photo has detail for, at most three.
+    /// Uses as many levels as the finest photo has detail for, at most three.
     OfPhotos,
-    /// There are so many levels.
+    /// Uses this number of levels.
     Given(u8),
-    /// There are as many levels as the finest photo has detail for, or as make texels of so many
-    /// metres if that is coarser; to be read by windows, not by whole tiles.
+    /// Uses as many levels as the finest photo has detail for, or fewer if that suffices for texels
+    /// of this size, metres; for reading by windows, not by whole tiles.
     NotCoarserThan(f64),
 }
 
 impl Photos {
-    /// Where each of them lies.
+    /// The georeference of each photo.
     pub fn rasters(&self) -> impl Iterator<Item = &PlacedRaster> {
         self.files.iter().map(|file| &file.raster)
     }
 
-    /// Looks into all files; reads no pixel yet. Where photos overlap, the first named lies on top.
+    /// Inspects all files without reading pixels. Where photos overlap, the first in the list is on
+    /// top.
     ///
     /// # Errors
-    /// When a file cannot be opened, lacks georeference or CRS, has other samples than 8 bits, or
-    /// bands that are no colours.
+    /// When a file cannot be opened, has no georeference or CRS, has samples of other than 8 bits,
+    /// or has bands that are not colours.
     pub fn open(files: &[PathBuf]) -> Result<Self, PhotoError> {
         if files.is_empty() {
             return Err(PhotoError::NoFiles);
@@ -57,7 +58,7 @@ impl Photos {
         Ok(Self { files })
     }
 
-    /// What the files' metadata say of their rights, each once, in the order of the files.
+    /// Returns the copyright in the files' metadata, each once, in the order of the files.
     #[must_use]
     pub fn credits(&self) -> Vec<String> {
         let mut credits: Vec<String> = Vec::new();
@@ -69,20 +70,20 @@ impl Photos {
         credits
     }
 
-    /// How each file is cut into blocks.
+    /// Returns the layout of each file's blocks.
     ///
     /// # Errors
-    /// When a file cannot be opened any more.
+    /// When a file cannot be opened again.
     pub fn file_blocks(&self) -> Result<Vec<FileBlocks>, PhotoError> {
         let blocks = |file: &PhotoFile| FileBlocks::of_file(file.raster.path(), 1, FileUse::Photo);
         Ok(self.files.iter().map(blocks).collect::<Result<Vec<_>, _>>()?.concat())
     }
 
-    /// Puts the photos on a grid.
+    /// Places the photos on a grid.
     ///
     /// # Errors
-    /// When none of them lies on the data of the grid, one has no place in the grid's CRS or far
-    /// more detail than the texels, or there are too many levels.
+    /// When none of them overlaps the data of the grid, one cannot be transformed to the grid's CRS
+    /// or has far more detail than the texels, or there are too many levels.
     pub fn on(&self, grid: &GridPlan, choice: LevelChoice) -> Result<PhotoGrid, PhotoError> {
         let mut photos = Vec::with_capacity(self.files.len());
         let mut all = Bounds::EMPTY;

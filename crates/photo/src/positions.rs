@@ -1,13 +1,13 @@
-//! Where texels lie among a photo's pixels.
+//! The positions of texels among a photo's pixels.
 
 use corniche_gis::{CrsError, RasterOnGrid};
 
 use crate::TexelGrid;
 
-/// Texels along a side of a mesh. Meshes are those of the global grid, so a texel's position
-/// depends on nothing but its index.
+/// Texels along a side of a mesh. Meshes belong to the global grid, so a texel's position depends
+/// on nothing but its index.
 pub(crate) const MESH: i64 = 32;
-/// Largest error of a position, in texels and in pixels. Where interpolation is worse, each texel
+/// The largest error of a position, in texels and in pixels. If interpolation is worse, each texel
 /// is transformed.
 const TOLERANCE: f64 = 0.05;
 
@@ -26,14 +26,14 @@ pub(crate) struct MeshPositions {
     at: [i64; 2],
     /// North-west, north-east, south-west, south-east.
     corners: [[f64; 2]; 4],
-    /// Row by row, where they cannot be interpolated.
+    /// Row by row, if they cannot be interpolated.
     exact: Option<Vec<[f64; 2]>>,
     /// Pixels along a texel, along columns and along rows of pixels; at least 1.
     pub(crate) radius: [f64; 2],
 }
 
 impl MeshPositions {
-    /// `None` where a corner or a half has no position in the photo's coordinate system.
+    /// Returns `None` if a corner or a half has no position in the photo's coordinate system.
     pub(crate) fn new(
         grid: &TexelGrid,
         photo: &RasterOnGrid,
@@ -51,7 +51,7 @@ impl MeshPositions {
             return Ok(None);
         }
         let corners = [points[0], points[2], points[6], points[8]];
-        // Of a texel, along the mesh's middle.
+        // The step of a texel along the mesh's middle.
         let step = |from: usize, to: usize| {
             [0, 1].map(|axis| (points[to][axis] - points[from][axis]) / MESH as f64)
         };
@@ -84,16 +84,16 @@ impl MeshPositions {
         self.at.map(|at| at * MESH)
     }
 
-    /// Position of the centre of a texel of the mesh, in pixels; NaN where there is none.
-    pub(crate) fn of(&self, [column, row]: [i64; 2]) -> [f64; 2] {
+    /// Returns the position of the centre of a texel of the mesh, in pixels; NaN if there is none.
+    pub(crate) fn position_at(&self, [column, row]: [i64; 2]) -> [f64; 2] {
         match &self.exact {
             Some(exact) => exact[(row * MESH + column) as usize],
             None => between(self.corners, [column, row].map(|k| (k as f64 + 0.5) / MESH as f64)),
         }
     }
 
-    /// Lowest and highest position of the mesh, with the reach of the filter: pixels outside do not
-    /// count for any texel.
+    /// The lowest and the highest position of the mesh, including the reach of the filter: pixels
+    /// outside do not contribute to any texel.
     pub(crate) fn reach(&self) -> [[f64; 2]; 2] {
         let points = || self.corners.iter().chain(self.exact.iter().flatten());
         let finite = |axis: usize| {
@@ -106,7 +106,7 @@ impl MeshPositions {
     }
 }
 
-/// The bilinear mean of four corners.
+/// Returns the bilinear mean of four corners.
 fn between([nw, ne, sw, se]: [[f64; 2]; 4], [east, south]: [f64; 2]) -> [f64; 2] {
     [0, 1].map(|axis| {
         let north = nw[axis] + (ne[axis] - nw[axis]) * east;

@@ -1,19 +1,19 @@
-//! The reader of texels: windows of them are made of the pixels of photos, block by block.
+//! Reads windows of texels from the pixels of photos, block by block.
 
 use corniche_geom::Bounds;
 use corniche_gis::{FileUse, OpenRasters, RasterError};
 
-use crate::filter::{Filter, Light, Pixels};
+use crate::filter::{Filter, Pixels, PremultipliedColour};
 use crate::photo_file::{PlacedPhoto, overlap};
 use crate::positions::{MESH, MeshPositions};
 use crate::{PhotoError, PhotoGrid, TexelGrid, TexelWindow, Texels};
 
-/// Pixels that are read at once, unless a single mesh needs more.
+/// The most pixels that are read at once, unless a single mesh needs more.
 const MOST_PIXELS: i64 = 1 << 21;
-/// Meshes along a side of the texels that are made at once.
+/// Meshes along a side of the blocks of texels that are computed at once.
 const BLOCK_MESHES: i64 = 8;
 
-/// Reads texels out of photos.
+/// Reads texels from photos.
 pub struct PhotoReader<'a> {
     grid: &'a PhotoGrid,
     open: OpenRasters,
@@ -22,19 +22,19 @@ pub struct PhotoReader<'a> {
 
 /// A rectangle of meshes: the first, and one past the last.
 #[derive(Clone, Copy)]
-struct Block {
+struct MeshRectangle {
     from: [i64; 2],
     to: [i64; 2],
 }
 
 impl<'a> PhotoReader<'a> {
-    /// Reads the texels of these photos; each thread has a reader of its own.
+    /// Returns a reader of the texels of these photos; each thread needs its own reader.
     #[must_use]
     pub fn new(grid: &'a PhotoGrid) -> Self {
         Self { grid, open: OpenRasters::default(), filter: Filter::default() }
     }
 
-    /// The texels of a window.
+    /// Returns the texels of a window.
     ///
     /// # Errors
     /// When a file cannot be read.
@@ -48,18 +48,22 @@ impl<'a> PhotoReader<'a> {
             for block_u in (first[0]..=last[0]).step_by(BLOCK_MESHES as usize) {
                 let from = [block_u, block_v];
                 let to = [0, 1].map(|axis| (from[axis] + BLOCK_MESHES).min(last[axis] + 1));
-                self.block(Block { from, to }, &mut lights)?;
-                put(&lights, Block { from, to }, &window, &mut texels);
+                self.block(MeshRectangle { from, to }, &mut lights)?;
+                put(&lights, MeshRectangle { from, to }, &window, &mut texels);
             }
         }
         Ok(texels)
     }
 
-    /// What all photos give to the texels of a block, row by row.
-    fn block(&mut self, block: Block, lights: &mut Vec<Light>) -> Result<(), PhotoError> {
+    /// Returns the contributions of all photos to the texels of a block, row by row.
+    fn block(
+        &mut self,
+        block: MeshRectangle,
+        lights: &mut Vec<PremultipliedColour>,
+    ) -> Result<(), PhotoError> {
         let size = block.texels();
         lights.clear();
-        lights.resize((size[0] * size[1]) as usize, Light::default());
+        lights.resize((size[0] * size[1]) as usize, PremultipliedColour::default());
         let bounds = block.bounds(self.grid.texels());
         for (index, photo) in self.grid.photos.iter().enumerate() {
             if overlap(&photo.bounds, &bounds) {
@@ -69,14 +73,14 @@ impl<'a> PhotoReader<'a> {
         Ok(())
     }
 
-    /// Puts a photo beneath what is in `lights`, the texels of `all`, for the meshes of `part`.
+    /// Blends a photo beneath `lights`, the texels of `all`, for the meshes of `part`.
     fn photo(
         &mut self,
         index: usize,
         photo: &PlacedPhoto,
-        part: Block,
-        all: Block,
-        lights: &mut [Light],
+        part: MeshRectangle,
+        all: MeshRectangle,
+        lights: &mut [PremultipliedColour],
     ) -> Result<(), PhotoError> {
         let mut meshes = Vec::new();
         for v in part.from[1]..part.to[1] {
@@ -102,9 +106,10 @@ impl<'a> PhotoReader<'a> {
                 let at = first[1] + row - all.from[1] * MESH;
                 for column in 0..MESH {
                     let at = (at * columns + first[0] + column - all.from[0] * MESH) as usize;
-                    // Nothing is seen through what is opaque.
+                    // Opaque texels hide everything beneath them.
                     if lights[at].opacity < 1.0 {
-                        let found = self.filter.at(&pixels, mesh.of([column, row]), mesh.radius);
+                        let found =
+                            self.filter.at(&pixels, mesh.position_at([column, row]), mesh.radius);
                         lights[at] = lights[at].over(found);
                     }
                 }
@@ -127,8 +132,8 @@ impl<'a> PhotoReader<'a> {
     }
 }
 
-/// The pixels that meshes need: first, and one past the last. `None` where that is none of the
-/// photo's.
+/// Returns the pixels that meshes need: the first, and one past the last. `None` if none of them is
+/// in the photo.
 fn pixels_of(meshes: &[MeshPositions], size: [usize; 2]) -> Option<[[i64; 2]; 2]> {
     let mut low = [f64::INFINITY; 2];
     let mut high = [f64::NEG_INFINITY; 2];
@@ -137,14 +142,19 @@ fn pixels_of(meshes: &[MeshPositions], size: [usize; 2]) -> Option<[[i64; 2]; 2]
         low = [0, 1].map(|axis| low[axis].min(from[axis]));
         high = [0, 1].map(|axis| high[axis].max(to[axis]));
     }
-    // A conversion to a whole number stays within the range of the type.
+    // Conversions to integers saturate.
     let start = [0, 1].map(|axis| (low[axis].floor() as i64).max(0));
     let end = [0, 1].map(|axis| (high[axis].ceil() as i64).min(size[axis] as i64));
     (start[0] < end[0] && start[1] < end[1]).then_some([start, end])
 }
 
-/// Puts the texels of a block that lie in a window to their place there.
-fn put(lights: &[Light], block: Block, window: &TexelWindow, texels: &mut Texels) {
+/// Copies the texels of a block that are in a window to their place in the window.
+fn put(
+    lights: &[PremultipliedColour],
+    block: MeshRectangle,
+    window: &TexelWindow,
+    texels: &mut Texels,
+) {
     let [columns, rows] = block.texels();
     for row in 0..rows {
         let v = block.from[1] * MESH + row - window.v;
@@ -161,7 +171,7 @@ fn put(lights: &[Light], block: Block, window: &TexelWindow, texels: &mut Texels
     }
 }
 
-impl Block {
+impl MeshRectangle {
     /// Texels along both sides.
     fn texels(&self) -> [i64; 2] {
         [0, 1].map(|axis| (self.to[axis] - self.from[axis]) * MESH)
@@ -171,7 +181,7 @@ impl Block {
         self.to[0] - self.from[0] <= 1 && self.to[1] - self.from[1] <= 1
     }
 
-    /// Four parts, of which some may be empty.
+    /// Returns four quarters, some of which may be empty.
     fn quarters(&self) -> impl Iterator<Item = Self> + use<> {
         let Self { from, to } = *self;
         let middle = [0, 1].map(|axis| i64::midpoint(from[axis], to[axis] + 1));
@@ -183,7 +193,7 @@ impl Block {
         })
     }
 
-    /// Working metres.
+    /// Returns the rectangle in working metres.
     fn bounds(&self, grid: &TexelGrid) -> Bounds {
         let at = |mesh: [i64; 2]| grid.position_m(mesh.map(|mesh| (mesh * MESH) as f64));
         let ([min_x, max_y], [max_x, min_y]) = (at(self.from), at(self.to));

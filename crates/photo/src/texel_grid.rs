@@ -9,8 +9,8 @@ pub const MAX_LEVELS: u8 = 4;
 
 /// Texels over the finest tiles of a package: a cell has 2^levels along each side.
 ///
-/// Texel (u, v) lies between nodes: u counts eastwards and v southwards from node (0, 0), in
-/// texels. So texels are the same for every tile that holds them.
+/// Texel (u, v) is between nodes: u counts eastwards and v southwards from node (0, 0), in texels.
+/// Texels are therefore the same for every tile that contains them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TexelGrid {
     frame: GridFrame,
@@ -42,12 +42,12 @@ impl TexelGrid {
         Ok(Self { frame, levels })
     }
 
-    /// The texels of any number of levels, to be read by windows.
+    /// Returns the texels of any number of levels, for reading by windows.
     pub(crate) fn of_any(frame: GridFrame, levels: u8) -> Self {
         Self { frame, levels }
     }
 
-    /// How many levels of texels are finer than the finest cell.
+    /// The number of levels of texels finer than the finest cell.
     #[must_use]
     pub fn levels(&self) -> u8 {
         self.levels
@@ -59,7 +59,7 @@ impl TexelGrid {
         (TILE_CELLS as usize) << self.levels
     }
 
-    /// The texels of a tile of the finest level, and `border` more on every side.
+    /// Returns the texels of a tile of the finest level, with `border` more on every side.
     ///
     /// # Panics
     /// When the tile's level is beyond the finest one.
@@ -71,12 +71,12 @@ impl TexelGrid {
         TexelWindow { u: first(corner.i), v: first(-corner.j), columns: side, rows: side }
     }
 
-    /// Position in working metres of a point, given in texels from node (0, 0) eastwards and
-    /// southwards.
+    /// Returns the position in working metres of a point, given in texels from node (0, 0)
+    /// eastwards and southwards.
     pub(crate) fn position_m(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         let [x0, y0] = self.frame.origin_m();
         let cell = self.frame.cell();
-        // A power of two: exact.
+        // A power of two, so it is exact.
         let per_cell = f64::from(1_u32 << self.levels);
         [x0 + cell.east_m * (u / per_cell), y0 - cell.north_m * (v / per_cell)]
     }

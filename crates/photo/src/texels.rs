@@ -1,15 +1,15 @@
-//! A rectangle of texels, of which some may have no photo.
+//! A rectangle of texels, some of which may have no photo.
 
 /// A rectangle of texels, row by row from the north.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Texels {
     columns: usize,
     rows: usize,
-    /// Red, green, blue, and 255 where there is a photo. Where there is none, all four are 0.
+    /// Red, green, blue, and 255 where there is a photo; all four are 0 where there is none.
     rgba: Vec<u8>,
 }
 
-/// Where no photo is.
+/// A texel without a photo.
 pub(crate) const NONE: [u8; 4] = [0; 4];
 
 impl Texels {
@@ -19,9 +19,9 @@ impl Texels {
         Self { columns, rows, rgba: vec![0; columns * rows * 4] }
     }
 
-    /// Takes red, green, blue and alpha of each texel; alpha is 255 for texels with a photo, and 0
-    /// for others, which have no colour. `None` if there are not four bytes for each texel, or
-    /// other values.
+    /// Returns texels from red, green, blue and alpha; alpha is 255 for texels with a photo, and 0
+    /// for others, which have no colour. `None` if there are not four bytes for each texel, or if
+    /// they have other values.
     #[must_use]
     pub fn new(columns: usize, rows: usize, rgba: Vec<u8>) -> Option<Self> {
         let is_texel = |texel: &[u8]| texel[3] == 255 || *texel == NONE;
@@ -47,7 +47,7 @@ impl Texels {
         &self.rgba
     }
 
-    /// The same, without a copy.
+    /// All texels: red, green, blue, alpha, without a copy.
     #[must_use]
     pub fn into_rgba(self) -> Vec<u8> {
         self.rgba
@@ -56,7 +56,7 @@ impl Texels {
     /// One texel.
     ///
     /// # Panics
-    /// Outside the rectangle.
+    /// When the texel is outside the rectangle.
     #[must_use]
     pub fn at(&self, column: usize, row: usize) -> [u8; 4] {
         let at = (row * self.columns + column) * 4;
@@ -74,8 +74,8 @@ impl Texels {
         self.rgba[at..at + 4].copy_from_slice(&texel);
     }
 
-    /// Copies a rectangle of `from`, which begins at `[column, row]` there and has `size` columns
-    /// and rows, to `to` here.
+    /// Copies the rectangle of `from` that begins at `[column, row]` there and has `size` columns
+    /// and rows, to `to` in this one.
     ///
     /// # Panics
     /// When one of the two rectangles is not inside its texels.
@@ -95,10 +95,10 @@ impl Texels {
         }
     }
 
-    /// A rectangle of them.
+    /// Returns a part of the rectangle.
     ///
     /// # Panics
-    /// When it is not inside.
+    /// When the part is not inside the rectangle.
     #[must_use]
     pub fn part(&self, start: [usize; 2], size: [usize; 2]) -> Self {
         let mut part = Self::empty(size[0], size[1]);
@@ -106,12 +106,12 @@ impl Texels {
         part
     }
 
-    /// Texels twice as large: of each square of four the mean of those that have a photo, halves
-    /// rounded up. A texel has a photo if at least two of its four have one.
+    /// Returns texels twice as large: each is the mean of those of its four texels that have a
+    /// photo, halves rounded up. A texel has a photo if at least two of its four have one.
     ///
-    /// Means are taken of the stored values, as GDAL and the makers of map tiles take them, and not
-    /// of linear light: a photo that is averaged here is the same as one that was averaged before
-    /// it came. In whole numbers, so the same on every processor.
+    /// Means are computed from the stored values, as in GDAL and tools for map tiles, rather than
+    /// from linear light: a photo that is averaged here equals one that was averaged before. The
+    /// calculation uses integers, so the result is the same on every processor.
     ///
     /// # Panics
     /// When there is an odd number of columns or rows.

@@ -2,7 +2,7 @@
 
 use super::*;
 
-fn of(columns: usize, rgba: &[[u8; 4]]) -> Texels {
+fn texels_from(columns: usize, rgba: &[[u8; 4]]) -> Texels {
     Texels::new(columns, rgba.len() / columns, rgba.concat()).unwrap()
 }
 
@@ -18,14 +18,14 @@ fn texels_without_photo_do_not_darken_the_mean() {
         ([whole, NONE, NONE, NONE], NONE),
         ([NONE; 4], NONE),
     ] {
-        assert_eq!(of(2, &four).halved().at(0, 0), expected, "{four:?}");
+        assert_eq!(texels_from(2, &four).halved().at(0, 0), expected, "{four:?}");
     }
 }
 
 #[test]
 fn a_value_between_two_is_rounded_up_and_white_stays_white() {
     let four = [[255, 0, 1, 255], [255, 1, 1, 255], [255, 0, 1, 255], [255, 1, 2, 255]];
-    assert_eq!(of(2, &four).halved().at(0, 0), [255, 1, 1, 255]);
+    assert_eq!(texels_from(2, &four).halved().at(0, 0), [255, 1, 1, 255]);
 }
 
 #[test]

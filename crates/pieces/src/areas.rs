@@ -1,4 +1,4 @@
-//! Areas of the extract: to tiles of each level, and to their sections.
+//! Areas of the extract: their distribution to the tiles of each level, and the sections of tiles.
 
 pub mod layer;
 pub(crate) mod sea;

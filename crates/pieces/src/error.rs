@@ -7,7 +7,7 @@ use corniche_gis::listed_files;
 use corniche_spec::artifacts::ArtifactError;
 use corniche_store::{LackOfRoom, StoreError};
 
-/// Why an extract could not be read, cut or laid on the ground.
+/// Why an extract could not be read, cut or draped on the ground.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
@@ -17,18 +17,18 @@ pub enum ExtractError {
     #[error("{} has no road: {why}", listed_files(.osm))]
     NoRoads { osm: Vec<PathBuf>, why: String },
     #[error(
-        "{} and the elevation data do not overlap: roads lie within {}, heights within {}",
+        "{} and the elevation data do not overlap: the roads are within {}, the heights within {}; pass files of the same region",
         listed_files(.osm), .roads_and_heights_deg[0].degrees_text(), .roads_and_heights_deg[1].degrees_text()
     )]
     NoOverlap { osm: Vec<PathBuf>, roads_and_heights_deg: Box<[Bounds; 2]> },
     #[error("the roads could not be projected into the working CRS")]
     Project(#[source] corniche_geom::ProjectError),
     #[error(
-        "roads could not be sorted on the disk{}",
-        LackOfRoom::advice(LackOfRoom::of(.0))
+        "roads could not be sorted on disk{}",
+        LackOfRoom::advice(LackOfRoom::from_io_error(.0))
     )]
-    Storage(#[source] io::Error),
-    #[error("the run could not be set up: {0}")]
+    Storage(#[from] io::Error),
+    #[error("cannot start: {0}")]
     Pool(#[from] rayon::ThreadPoolBuildError),
     #[error(transparent)]
     Artifact(#[from] ArtifactError),
@@ -53,7 +53,7 @@ impl From<StoreError> for ExtractError {
 }
 
 impl ExtractError {
-    /// Whether the cause is an unusable input, rather than a failure while it was read or kept.
+    /// Whether the cause is an unusable input, rather than a failure while it was read or stored.
     #[must_use]
     pub fn is_unusable_input(&self) -> bool {
         match self {

@@ -1,4 +1,4 @@
-//! What is read of the extract, and kept for tiles.
+//! Reads the extract and stores what tiles need of it.
 
 pub mod kept;
 mod no_road;
@@ -7,7 +7,7 @@ pub mod placed_reading;
 
 use crate::ExtractError;
 
-/// Threads for the reading of an extract.
+/// Returns the threads that read an extract.
 ///
 /// # Errors
 /// When the threads cannot be started.

@@ -1,12 +1,13 @@
-//! The extract cut into pieces: what each tile of each level needs of its roads, areas, lines, bridges and tunnels.
+//! Cuts the extract into pieces: the roads, areas, lines, bridges and tunnels that each tile of
+//! each level needs.
 //!
 //! ```text
 //!   extract ─► roads ─► pieces of tiles           ─┐
 //!           ─► areas, lines ─► sections of tiles  ─┴─► store
-//!           ─► bridges and tunnels ─► runs, once the ground is there
+//!           ─► bridges and tunnels ─► runs, when the ground is complete
 //! ```
 //!
-//! This crate makes no TIN; lines are laid on those that it is given.
+//! This crate creates no TINs; it drapes lines on the TINs that it receives.
 
 pub mod areas;
 pub mod extract;

@@ -1,3 +1,3 @@
-//! Layers of lines of the extract: their parts by tile.
+//! Boundaries of the extract, split by tile.
 
 pub mod layer;

@@ -1,4 +1,5 @@
-//! Roads of the extract, split into pieces by tile and laid on tiles: for the build, and once more for `verify`.
+//! Roads of the extract, split into pieces by tile and draped on tiles: for the build, and again
+//! for `verify`.
 
 pub mod ground_lines;
 pub mod lay;

@@ -1,4 +1,5 @@
-//! Bridges and tunnels above and below the ground: what is read of them, the ground beneath them, and the runs that tiles hold.
+//! Spans, that is bridges and tunnels above and below the ground: their data in the extract, the
+//! ground beneath them, and the runs stored in tiles.
 //!
 //! ```text
 //!  pieces of roads ─► roads near spans ─► network ─► spans, crossings ─┐

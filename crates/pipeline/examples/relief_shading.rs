@@ -1,21 +1,25 @@
-//! How well a package's ground can be shaded: from the reliefs of its tiles, and from the normals of its triangles' corners.
+//! Measures how well a package's ground can be shaded: from the reliefs of its tiles, and from the
+//! normals at its triangles' corners.
 //!
 //! ```sh
 //! cargo run --release -p corniche-pipeline --example relief_shading -- PACKAGE DEM…
 //! ```
 //!
-//! For each level: bytes of a relief, milliseconds to decode one, and, at all nodes with ground, shading (light from the north-west,
-//! 45° high, 0 to 255) beside that of the level's own raster, which is what `gdaldem hillshade` computes of it but for the shape of its
-//! filter: root mean square of the difference in grey levels, and local contrast, the median over blocks of 8 × 8 nodes of the
-//! standard deviation within the block. On the finest level the raster is the DEM at full resolution. The DEM must be read with the
-//! settings that the package records; only those of the grid are taken over here.
+//! For each level it prints the bytes of a relief, the milliseconds to decode one, and, at all
+//! nodes with ground, how the shading (light from the north-west, 45° high, 0 to 255) compares with
+//! that of the level's own raster. The raster's shading is what `gdaldem hillshade` computes, apart
+//! from the shape of the filter. Two figures are compared: the root mean square of the difference
+//! in grey levels, and the local contrast, which is the median over blocks of 8 × 8 nodes of the
+//! standard deviation within the block. On the finest level the raster is the DEM at full
+//! resolution. The DEM must be read with the settings that the package records; this example
+//! applies only those of the grid.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program to run by hand")]
 
 use std::{error::Error, path::PathBuf, process::ExitCode, time::Instant};
 
 use corniche_dem::{Dem, OpenOptions, PlanOptions};
 use corniche_geom::{HeightGrid, LatticePoint, NodeIndex, NodeWindow, TILE_NODES, barycentric};
-use corniche_tileset::{FilePackage, Sections, Terrain, decode, payload_sizes};
+use corniche_tileset::{FilePackage, Sections, TileTerrain, decode, payload_sizes};
 use corniche_tin::{Placement, Surface, decode_normal};
 
 fn main() -> ExitCode {
@@ -33,17 +37,17 @@ fn main() -> ExitCode {
     }
 }
 
-/// Greys at the nodes of a tile; NaN where there is none.
+/// Grey levels at the nodes of a tile; NaN at nodes without one.
 type Greys = Vec<f64>;
 
-/// What is added up over the tiles of a level.
+/// Sums over the tiles of a level.
 #[derive(Default)]
 struct Level {
     tiles: u32,
     most_bytes: u64,
     bytes: u64,
     decode_s: f64,
-    /// Squares of differences, and how many: of the relief, of the triangles.
+    /// Sum and number of squared differences: of the relief, of the triangles.
     squares: [(f64, u64); 2],
     /// Contrasts of blocks: of the raster, the relief, the triangles.
     contrasts: [Vec<f64>; 3],
@@ -67,7 +71,7 @@ fn run(path: &std::path::Path, files: &[PathBuf]) -> Result<(), Box<dyn Error>> 
         ..PlanOptions::default()
     })?;
     if plan.frame != *frame {
-        return Err("the elevation files make another grid than the package has".into());
+        return Err("the grid of the elevation files differs from the package's grid".into());
     }
     let mut reader = dem.reader(&plan);
     let mut levels: Vec<Level> = (0..=frame.max_level()).map(|_| Level::default()).collect();
@@ -83,7 +87,7 @@ fn run(path: &std::path::Path, files: &[PathBuf]) -> Result<(), Box<dyn Error>> 
         };
         let window = frame.tile_window(id);
         let NodeIndex { i, j } = window.corner;
-        // The raster of a level has every so many nodes of the finest one.
+        // The raster of a level has every `stride`-th node of the finest one.
         let (side, stride) = (TILE_NODES + 2, window.stride as usize);
         let all = (side - 1) * stride + 1;
         let corner = NodeIndex { i: i - window.stride, j: j + window.stride };
@@ -152,16 +156,17 @@ fn nodes() -> impl Iterator<Item = [usize; 2]> {
     (1..TILE_NODES - 1).flat_map(|row| (1..TILE_NODES - 1).map(move |column| [column, row]))
 }
 
-/// Shading of ground that rises by so many metres per metre east and north.
+/// Shading of ground with these slopes east and north, in metres per metre.
 fn grey([east, north]: [f64; 2]) -> f64 {
     let length = (east * east + north * north + 1.0).sqrt();
-    // Towards the light: (−1, 1, √2) / 2.
+    // The direction towards the light: (−1, 1, √2) / 2.
     let lit = (east - north + std::f64::consts::SQRT_2) / (2.0 * length);
     255.0 * lit.max(0.0)
 }
 
-/// Shading at the nodes from the normals at the corners of the triangles, as graphics cards mix them.
-fn of_triangles(terrain: &Terrain, placement: Placement) -> Greys {
+/// Shading at the nodes from the normals at the corners of the triangles, interpolated as a GPU
+/// does.
+fn of_triangles(terrain: &TileTerrain, placement: Placement) -> Greys {
     let surface = Surface::new(&terrain.tin, placement);
     let corner = placement.corner;
     let [u_step, v_step] = placement.node_steps;

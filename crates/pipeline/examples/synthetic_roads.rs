@@ -1,30 +1,31 @@
-//! A made-up net of roads for an elevation raster that has none, as an extract: for measuring, not for maps.
+//! Generates a network of synthetic roads for an elevation raster, as an extract: for measurements,
+//! not for maps.
 //!
 //! ```sh
 //! cargo run -p corniche-pipeline --example synthetic_roads -- DEM OUT.osm.pbf
 //! ```
 //!
-//! Sixty roads, each from a random place in a random direction, wind over the raster with a node every eight cells. The
-//! net depends on the raster's size and place alone: the same raster gives the same bytes. All ways carry
-//! `note=synthetic`.
+//! Sixty roads, each from a random position in a random direction, wind over the raster with a node
+//! every eight cells. The network depends only on the raster's size and position: the same raster
+//! gives the same bytes. All ways have the tag `note=synthetic`.
 #![allow(clippy::print_stderr, reason = "a program to run by hand")]
 
 use std::{error::Error, fs, process::ExitCode};
 
 use corniche_testing::{
     Random,
-    pbf::{self, Line},
+    pbf::{self, WayToWrite},
 };
 use gdal::{
     Dataset,
     spatial_ref::{AxisMappingStrategy, CoordTransform, SpatialRef},
 };
 
-/// Their values of `highway`, in turn.
+/// The roads' values of `highway`, in turn.
 const KINDS: [&str; 5] = ["secondary", "tertiary", "unclassified", "residential", "track"];
 const ROADS: usize = 60;
 const POINTS: usize = 60;
-/// From one node to the next.
+/// The distance from one node to the next.
 const STEP_CELLS: f64 = 8.0;
 
 fn main() -> ExitCode {
@@ -36,7 +37,7 @@ fn main() -> ExitCode {
     match lines_on(dem).and_then(|lines| Ok(fs::write(out, extract(lines))?)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: no synthetic roads on {dem}: {error}");
+            eprintln!("error: cannot write synthetic roads for {dem}: {error}");
             ExitCode::FAILURE
         }
     }
@@ -67,7 +68,7 @@ fn lines_on(dem: &str) -> Result<Vec<Vec<[f64; 2]>>, Box<dyn Error>> {
     Ok(lines)
 }
 
-/// A line within a raster of this size, in cells; it turns back into it where it would leave.
+/// A line within a raster of this size, in cells; it turns back where it would leave the raster.
 fn winding(size: [f64; 2], random: &mut Random) -> Vec<[f64; 2]> {
     let mut at = size.map(|side| side * (0.1 + 0.8 * random.share()));
     let mut heading = std::f64::consts::TAU * random.share();
@@ -86,16 +87,16 @@ fn winding(size: [f64; 2], random: &mut Random) -> Vec<[f64; 2]> {
     points
 }
 
-/// The lines as an extract: ways of all kinds in turn.
+/// Encodes the lines as an extract: ways of all kinds in turn.
 fn extract(lines: Vec<Vec<[f64; 2]>>) -> Vec<u8> {
     let texts: Vec<&str> = ["highway", "note", "synthetic"].into_iter().chain(KINDS).collect();
     let kinds = KINDS.iter().cycle();
-    let ways: Vec<Line<'_>> = lines
+    let ways: Vec<WayToWrite<'_>> = lines
         .into_iter()
         .zip(kinds)
         .map(|(points_deg, kind)| {
             let tags = vec![("highway", *kind), ("note", "synthetic")];
-            Line { tags, points_deg }
+            WayToWrite { tags, points_deg }
         })
         .collect();
     pbf::extract(&texts, &ways)

@@ -1,13 +1,15 @@
-//! From inputs to a package: the steps in order, and the file's way to its place.
+//! Builds a package from inputs: the steps in order, and moving the finished file to its path.
 //!
 //! ```text
 //!  hashes   roads ────────┐
 //!  heights ─► tiles ──────┴─► merge ─► package
 //! ```
 //!
-//! Where the terrain comes from a package, the step *heights* reads photos alone, and the tiles are made from those of the package.
+//! If the terrain comes from a package, the step *heights* reads only photos, and the tiles are
+//! built from those of the package.
 //!
-//! Each step is a module of [`steps`](crate::steps). What one step hands to the next are artifacts in a store beside the target.
+//! Each step is a module of [`steps`](crate::steps). Steps pass their results on as artifacts in a
+//! store next to the target.
 
 pub(crate) mod destination;
 pub(crate) mod work_store;
@@ -20,7 +22,7 @@ use corniche_gis::DatumOperation;
 use corniche_ground::terrain::ground::GroundSource;
 use corniche_plan::{BuildPlan, Opened, check_room, network_differences};
 use corniche_spec::{
-    BuildSettings, Observer, PlanSettings, TerrainSettings, memory_shares::MemoryShares,
+    BuildObserver, BuildSettings, PlanSettings, TerrainSettings, memory_shares::MemoryShares,
     settings_record,
 };
 use corniche_store::{Disk, LocalStore, SYNC_INTERVAL, SystemDisk};
@@ -29,7 +31,7 @@ use corniche_tileset::Manifest;
 use self::destination::Destination;
 use crate::{
     BuildError,
-    context::Context,
+    context::BuildContext,
     steps::{hashes, heights, merge, roads, tiles, top},
 };
 
@@ -42,36 +44,39 @@ pub struct BuildSummary {
     pub package_bytes: u64,
 }
 
-/// Builds a package. At the target there is either what was there before or the complete package.
+/// Builds a package. The target path always holds the old file or the complete new package.
 ///
-/// Intermediate results are kept in a store beside the package, or in `settings.tmp`. When the build is interrupted or the disk
-/// fails, they stay, and a build with [`Leftovers::Resume`](corniche_spec::Leftovers::Resume) goes on from them.
+/// Intermediate results are stored next to the package, or in `settings.tmp`. When the build is
+/// interrupted or the disk fails, they are preserved, and a build with
+/// [`Leftovers::Resume`](corniche_spec::Leftovers::Resume) continues from them.
 ///
 /// # Errors
 /// See [`BuildError`].
 pub fn build(
     settings: &BuildSettings,
-    observer: &dyn Observer,
+    observer: &dyn BuildObserver,
 ) -> Result<BuildSummary, BuildError> {
     let disk: Arc<dyn Disk> = Arc::new(SystemDisk);
     build_on(&disk, SYNC_INTERVAL, settings, observer)
 }
 
-/// Does the same as [`build`] with the store on any disk, made durable as often as wanted: tests let it fail.
+/// Builds as [`build`] does, with the store on any disk and synced at any interval: tests let the
+/// disk fail.
 #[doc(hidden)]
 pub fn build_on(
     disk: &Arc<dyn Disk>,
     sync_interval: Duration,
     settings: &BuildSettings,
-    observer: &dyn Observer,
+    observer: &dyn BuildObserver,
 ) -> Result<BuildSummary, BuildError> {
-    let destination = Destination::of(&settings.output, settings.existing)?;
+    let destination = Destination::resolve(&settings.output, settings.existing)?;
     destination.refuse_inputs(&settings.plan)?;
     MemoryShares::limit_raster_cache(settings.resources)?;
     let opened = Opened::new(&settings.plan)?;
-    let plan = BuildPlan::of(&settings.plan, &opened)?;
+    let plan = BuildPlan::from_settings(&settings.plan, &opened)?;
     let store_folder = work_store::folder_of(&destination.target, settings.tmp.as_deref());
-    // Before the store is looked at: what another build is at work on is no leftover.
+    // The claim comes before the check of the store: the store of another running build is not a
+    // leftover.
     let claim = destination.claim(observer)?;
     let held_bytes = work_store::look(disk, &store_folder, &plan, settings.leftovers)?;
     if !settings.force {
@@ -79,13 +84,13 @@ pub fn build_on(
         let store = settings.tmp.as_deref().unwrap_or(folder);
         check_room(&opened, settings.resources, [store, folder], held_bytes, observer)?;
     }
-    let place = (disk, &*store_folder, sync_interval);
+    let place = work_store::StorePlace { disk, folder: &store_folder, sync_interval };
     let store = work_store::open(place, &plan, settings.leftovers, observer)?;
     observer.keeps(&store_folder);
     let finished = destination.begin(claim)?;
     let finished_path = finished.path().to_path_buf();
-    let context = Context::new(&settings.plan, settings.resources, &opened, &store, observer);
-    let wanted = merge::Target { finished: &finished_path, named: &settings.output };
+    let context = BuildContext::new(&settings.plan, settings.resources, &opened, &store, observer);
+    let wanted = merge::MergeTarget { finished: &finished_path, named: &settings.output };
     let built = run(&context, &store, &wanted)
         .and_then(|manifest| Ok((manifest, destination::place(finished)?)));
     match built {
@@ -105,8 +110,8 @@ pub fn build_on(
     }
 }
 
-/// Warns of what a user may not have meant, before any work.
-pub(crate) fn warn(context: &Context<'_>) {
+/// Warns of settings that the user may not have intended, before any work.
+pub(crate) fn warn(context: &BuildContext<'_>) {
     warn_of_other_grids(context.grid, context.observer);
     if let GroundSource::Dem(dem) = context.source {
         let of_datums = context.grid.datum_operations.iter().filter_map(DatumOperation::warning);
@@ -119,63 +124,67 @@ pub(crate) fn warn(context: &Context<'_>) {
     warn_of_other_network(context);
 }
 
-/// Warns if the package that gives the terrain has roads or areas that were made with other settings: who brings new ones onto it each
-/// week may have forgotten an option.
-fn warn_of_other_network(context: &Context<'_>) {
+/// Warns if the package that provides the terrain has roads or areas that were built with other
+/// settings: users who put new roads on it each week may have forgotten an option.
+fn warn_of_other_network(context: &BuildContext<'_>) {
     let GroundSource::Package(terrain) = context.source else { return };
-    let PlanSettings { terrain: of_terrain, roads, areas, lines, osm, .. } = context.settings;
+    let PlanSettings { terrain: of_terrain, roads, areas, boundaries, osm, .. } = context.settings;
     let manifest = terrain.manifest();
     if osm.is_empty() || !manifest.has_extract() {
         return;
     }
-    let ours = settings_record::of(
+    let ours = settings_record::record_settings(
         of_terrain,
         roads,
         context.opened.max_error_m,
         None,
-        (areas.as_ref(), lines),
+        (areas.as_ref(), *boundaries),
     );
     let differences = network_differences(&ours, &manifest.settings);
     if !differences.is_empty() {
         context.observer.warning(&format!(
-            "roads and areas are made with other settings than those of {}: {}",
-            terrain.path().display(),
+            "roads and areas are built with settings that differ from those of {:?}: {}",
+            terrain.path(),
             differences.join("; ")
         ));
     }
 }
 
 /// Warns of files that are resampled onto the grid of the first one.
-fn warn_of_other_grids(plan: &GridPlan, observer: &dyn Observer) {
+fn warn_of_other_grids(plan: &GridPlan, observer: &dyn BuildObserver) {
     if let Some([files, first]) = &plan.resampled_onto_first {
         observer.warning(&format!(
-            "{files}: samples lie on another grid than those of {first}, named first; they are resampled onto its grid"
+            "{files}: samples are not on the grid of {first}, the first file named; they are resampled onto its grid"
         ));
     }
 }
 
 /// Warns if `--scale-latitude` was given and has no effect.
-fn warn_of_unused_latitude(terrain: &TerrainSettings, plan: &GridPlan, observer: &dyn Observer) {
+fn warn_of_unused_latitude(
+    terrain: &TerrainSettings,
+    plan: &GridPlan,
+    observer: &dyn BuildObserver,
+) {
     if let Some(latitude_deg) =
         terrain.plan.scale_latitude_deg.filter(|_| !plan.has_standard_latitude())
     {
         observer.warning(&format!(
-            "--scale-latitude {latitude_deg} changes nothing: lengths in {} are taken as they are",
+            "--scale-latitude {latitude_deg} has no effect: lengths in {} are not rescaled",
             plan.crs
         ));
     }
 }
 
-/// All steps in order; the package is written to `finished`.
+/// Runs all steps in order; the package is written to `finished`.
 fn run(
-    context: &Context<'_>,
+    context: &BuildContext<'_>,
     store: &LocalStore,
-    target: &merge::Target<'_>,
+    target: &merge::MergeTarget<'_>,
 ) -> Result<Manifest, BuildError> {
     warn(context);
     hashes::make(context)?;
     // Roads come before the long work on heights, so that an unusable extract is reported at once.
-    // Scratch space is given back when a step ends, and what the step made is durable.
+    // A step releases its scratch space when it ends, and its results are durable.
     roads::make(context, &store.scratch()?)?;
     store.flush()?;
     heights::make(context, TileId::ROOT)?;

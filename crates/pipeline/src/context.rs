@@ -1,4 +1,5 @@
-//! What every step of a build needs: the elevation files as opened, the grid, the levels, and the store.
+//! The context of every step of a build: the open elevation files, the grid, the levels, and the
+//! store.
 
 use corniche_dem::{Dem, GridPlan};
 use corniche_geom::{GridFrame, LatticeBounds, LatticeRegion, TileId};
@@ -8,8 +9,8 @@ use corniche_ground::{
 };
 use corniche_plan::Opened;
 use corniche_spec::{
-    Observer, PlanSettings, Resources, artifacts::Kind, data_outline::data_outline,
-    data_tiles::DataTiles, extent::Outline, levels::Levels, memory_shares::MemoryShares,
+    BuildObserver, PlanSettings, Resources, artifacts::ArtifactKind, data_outline::data_outline,
+    data_tiles::DataTiles, extent::ExtentOutline, levels::Levels, memory_shares::MemoryShares,
     true_lengths::TrueLengths,
 };
 use corniche_store::Artifacts;
@@ -17,8 +18,9 @@ use corniche_work::{Stage, workers};
 
 use crate::BuildError;
 
-/// What the steps of a build share. It is made from the settings alone, so every process that works on one build has the same.
-pub(crate) struct Context<'a> {
+/// The context that the steps of a build share. It is derived from the settings alone, so every
+/// process of a build has the same context.
+pub(crate) struct BuildContext<'a> {
     pub(crate) settings: &'a PlanSettings,
     pub(crate) resources: Resources,
     pub(crate) opened: &'a Opened,
@@ -28,23 +30,23 @@ pub(crate) struct Context<'a> {
     /// WGS84 ⇄ the grid's working CRS.
     pub(crate) projection: &'a DemProjection,
     pub(crate) store: &'a dyn Artifacts,
-    pub(crate) observer: &'a dyn Observer,
+    pub(crate) observer: &'a dyn BuildObserver,
 }
 
-impl<'a> Context<'a> {
-    /// What was opened, with a store for the results.
+impl<'a> BuildContext<'a> {
+    /// Creates the context from open inputs, with a store for the results.
     pub(crate) fn new(
         settings: &'a PlanSettings,
         resources: Resources,
         opened: &'a Opened,
         store: &'a dyn Artifacts,
-        observer: &'a dyn Observer,
+        observer: &'a dyn BuildObserver,
     ) -> Self {
         let Opened { source, grid, levels, projection, .. } = opened;
         Self { settings, resources, opened, source, grid, levels, projection, store, observer }
     }
 
-    /// How roads are measured.
+    /// Measures roads.
     pub(crate) fn lengths(&self) -> TrueLengths<'a> {
         TrueLengths::new(*self.frame(), &self.opened.coordinates, self.projection)
     }
@@ -58,10 +60,11 @@ impl<'a> Context<'a> {
         self.settings.terrain.relief.has(id.z(), self.frame().max_level())
     }
 
-    /// Makes what some tiles lack of a kind of artifacts, in their order: a stage. `work` keeps what it makes.
+    /// Creates the missing artifacts of one kind for some tiles, in their order, as one stage.
+    /// `work` creates and stores them.
     pub(crate) fn make_missing<S>(
         &self,
-        (stage, kind): (Stage, Kind),
+        (stage, kind): (Stage, ArtifactKind),
         mut ids: Vec<TileId>,
         start: impl Fn() -> Result<S, BuildError> + Sync,
         work: impl Fn(&mut S, TileId) -> Result<(), BuildError> + Sync,
@@ -73,40 +76,40 @@ impl<'a> Context<'a> {
     }
 
     pub(crate) fn data(&self) -> DataTiles {
-        DataTiles::of(self.grid)
+        DataTiles::from_plan(self.grid)
     }
 
-    /// The rectangle of all nodes at which data can lie.
+    /// The rectangle of all nodes at which there can be data.
     pub(crate) fn node_bounds(&self) -> LatticeBounds {
         self.frame().lattice_bounds([self.grid.south_west, self.grid.north_east])
     }
 
-    /// The outline of the elevation files, where they fill no rectangle.
-    pub(crate) fn data_outline(&self) -> Result<Option<Outline>, CrsError> {
+    /// The outline of the elevation files, if they do not fill a rectangle.
+    pub(crate) fn data_outline(&self) -> Result<Option<ExtentOutline>, CrsError> {
         match self.source {
             GroundSource::Dem(dem) => data_outline(dem, self.grid, self.projection),
             GroundSource::Package(package) => Ok(package.manifest().data_outline()),
         }
     }
 
-    /// Where textures of photos come from and go to.
+    /// The sources of photo textures, and the store for them.
     pub(crate) fn textures(&self) -> TextureStore<'_> {
         let Self { store, source, opened, .. } = *self;
         let photo = &opened.photo;
         TextureStore { store, source, photo, frame: self.frame(), data: self.data() }
     }
 
-    /// The bounds that were asked for.
+    /// The requested bounds.
     pub(crate) fn clip(&self) -> Option<LatticeBounds> {
         Some(self.frame().lattice_bounds(self.grid.clip?.nodes))
     }
 
-    /// The polygon that was asked for.
+    /// The requested polygon.
     pub(crate) fn polygon(&self) -> Option<&LatticeRegion> {
         self.grid.polygon.as_deref()
     }
 
-    /// The heights of the DEM; `None` where the terrain comes from a package.
+    /// The heights of the DEM; `None` if the terrain comes from a package.
     pub(crate) fn pyramid(&self) -> Option<Pyramid<'_>> {
         match self.source {
             GroundSource::Dem(dem) => Some(self.pyramid_of(dem)),
@@ -130,8 +133,8 @@ impl<'a> Context<'a> {
         self.resources.threads
     }
 
-    /// How the memory that a run may use is shared out.
+    /// The distribution of the memory that a run may use.
     pub(crate) fn memory(&self) -> MemoryShares {
-        MemoryShares::of(self.resources.memory_bytes)
+        MemoryShares::from_memory(self.resources.memory_bytes)
     }
 }

@@ -15,11 +15,11 @@ use corniche_tileset::{OpenError, WriteError};
 #[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
 pub enum BuildError {
-    #[error("{path:?} exists already; give -O to replace it")]
+    #[error("{path:?} already exists; pass -O to overwrite it")]
     Exists { path: PathBuf },
     #[error("the package cannot be written")]
     NoTarget(#[from] TargetError),
-    #[error("cannot write in {folder:?}; choose another place for the package")]
+    #[error("cannot write in {folder:?}; choose another folder for the package")]
     Target { folder: PathBuf, source: io::Error },
     #[error(
         "{path:?} is both an input and the package to write; choose another name for the package"
@@ -39,46 +39,47 @@ pub enum BuildError {
     Extract(ExtractError),
     #[error(transparent)]
     Artifact(#[from] ArtifactError),
-    #[error("no node of {} has a height: every node is void, or outside --polygon", listed_files(.dem))]
+    #[error("no node of {} has a height: every node is void, or outside --polygon; pass other files, or check --nodata and --polygon", listed_files(.dem))]
     NoHeights { dem: Vec<PathBuf> },
     #[error(
-        "{} hold heights at {nodes} nodes, but no cell has one at each of its four corners, so there is no \
-         ground; give rasters with heights side by side",
+        "{} hold heights at {nodes} nodes, but no cell has a height at each of its four corners, so there is no ground; pass rasters with heights at adjacent nodes",
         listed_files(.dem)
     )]
     NoCell { dem: Vec<PathBuf>, nodes: u64 },
     #[error(
-        "no {what} of {} lies on ground: all are beside the elevation data, over its voids, or outside --bounds or --polygon; without --osm the package is terrain alone",
+        "no {what} of {} is on ground: all are outside the elevation data, over its voids, or outside --bounds or --polygon; omit --osm to build terrain alone",
         listed_files(.osm)
     )]
     NoGround { osm: Vec<PathBuf>, what: &'static str },
     #[error(transparent)]
     Terrain(#[from] TerrainError),
-    #[error("the run could not be set up: {what}")]
+    #[error("cannot start: {what}")]
     Start { what: String },
     #[error(
-        "an earlier build of this package ended early and left {store:?}; give --resume to go on from there, or -O to start again"
+        "an earlier build of this package ended early and left {store:?}; pass --resume to continue it, or -O to start again"
     )]
     Leftovers { store: PathBuf },
     #[error(
-        "{store:?} is of another build: {differences}; give the inputs and settings of that build, or -O to start again"
+        "{store:?} belongs to another build: {differences}; use the inputs and settings of that build, or pass -O to start again"
     )]
     OtherBuild { store: PathBuf, differences: String },
     #[error(
-        "{store:?} is of another plan: {differences}; give the plan that it was made with, or another --store"
+        "{store:?} belongs to another plan: {differences}; pass the plan that it was created with, or another --store"
     )]
     OtherPlan { store: PathBuf, differences: String },
-    #[error("{folder:?} holds no store; nothing was kept there yet, or the name is wrong")]
+    #[error(
+        "{folder:?} contains no store; check the path, or compute the parts first with corniche part"
+    )]
     NoStore { folder: PathBuf },
     #[error("--subtree {subtree}: {why}")]
     Subtree { subtree: corniche_geom::TileId, why: String },
     #[error("--share {share}: {why}")]
     Share { share: corniche_osm::Share, why: String },
     #[error(
-        "{folder:?} holds {kept:?}, which is not Corniche's; move it away or choose another --tmp"
+        "{folder:?} contains {kept:?}, which was not created by Corniche; move it away or choose another --tmp"
     )]
     NotOurs { folder: PathBuf, kept: PathBuf },
-    #[error("{path:?} is being built by another process; wait until it has ended")]
+    #[error("{path:?} is being built by another process; wait until that process has ended")]
     AtWork { path: PathBuf },
     #[error(transparent)]
     Objects(#[from] corniche_objects::ObjectError),
@@ -86,9 +87,9 @@ pub enum BuildError {
     Triangulate { id: corniche_geom::TileId, source: corniche_tin::TriangulateError },
     #[error("a tile could not be encoded")]
     Encode(#[from] corniche_tileset::EncodeError),
-    #[error("{path:?} could not be written{}", room_of(.source))]
+    #[error("cannot write {path:?}{}", room_of(.source))]
     Write { path: PathBuf, source: WriteError },
-    #[error("{path:?} could not be put in its place")]
+    #[error("the finished file could not be moved to {path:?}")]
     Rename { path: PathBuf, source: io::Error },
     #[error("interrupted; no package was written")]
     Interrupted,
@@ -96,10 +97,10 @@ pub enum BuildError {
 
 corniche_dem::from_dem_errors!(BuildError);
 
-/// What is lacking where a package could not be written.
+/// The advice about missing space for a package that could not be written.
 fn room_of(error: &WriteError) -> String {
     LackOfRoom::advice(match error {
-        WriteError::Io(error) => LackOfRoom::of(error),
+        WriteError::Io(error) => LackOfRoom::from_io_error(error),
         _ => None,
     })
 }
@@ -118,7 +119,8 @@ impl From<OpenError> for BuildError {
     }
 }
 
-// What more than one of these can fail with is one variant here, so that no cause has two shapes.
+// A cause that several of these errors can have is one variant here, so that no cause has two
+// forms.
 
 impl From<InputError> for BuildError {
     fn from(error: InputError) -> Self {
@@ -172,7 +174,7 @@ impl From<ExtractError> for BuildError {
 }
 
 impl BuildError {
-    /// Whether the cause is an unusable input or setting, rather than a failure while the build ran.
+    /// Whether the cause is an unusable input or setting, rather than a failure during the build.
     #[must_use]
     pub fn is_unusable_input(&self) -> bool {
         match self {

@@ -1,4 +1,4 @@
-//! A cause has one shape in the error of a build, wherever it comes from.
+//! A cause has one form in the error of a build, whichever step reports it.
 
 use corniche_dem::DemError;
 
@@ -6,7 +6,7 @@ use corniche_work::Interrupted;
 
 use super::*;
 
-/// The same cause from heights, inputs, the plan and the extract.
+/// The same cause, reported by heights, inputs, the plan and the extract.
 fn through_all<C>(cause: impl Fn() -> C, is_it: impl Fn(&BuildError) -> bool)
 where
     GroundError: From<C>,

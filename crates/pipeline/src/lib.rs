@@ -1,7 +1,8 @@
-//! Builds packages: the order of the steps, their threads and memory, alone or in parts that many machines make.
+//! Builds packages: the order of the steps, their threads and memory, in one process or in parts on
+//! many machines.
 //!
-//! This crate never parses arguments and never prints. Its threads are those of `corniche-work`; which crates start
-//! threads stands in `tidy/tests/it/invariants.rs`.
+//! This crate never parses arguments and never prints. Its threads come from `corniche-work`;
+//! `tidy/tests/it/invariants.rs` lists the crates that start threads.
 
 mod build;
 mod context;
@@ -15,6 +16,6 @@ pub use build::{BuildSummary, build, build_on};
 pub use error::BuildError;
 pub use objects::is_in_object_storage;
 pub use parts::{
-    Job, JobSettings, MergeSettings, MergeSummary, PartSettings, PartSummary, Step, jobs,
+    Job, JobSettings, MergeSettings, MergeSummary, PartSettings, PartStep, PartSummary, jobs,
     make_part, merge, plan_with_jobs,
 };

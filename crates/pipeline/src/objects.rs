@@ -1,14 +1,15 @@
-//! Object storage as a run uses it: one access for all names, within the memory that the run may use.
+//! Access to object storage for a run: one client for all names, within the memory that the run may
+//! use.
 
 use std::{path::Path, sync::Arc};
 
 use corniche_objects::{
-    BlockCache, Bucket, ObjectAddress, ObjectError, ObjectPlace, Requests, Storage,
+    BlockCache, Bucket, ObjectAddress, ObjectError, ObjectPlace, Storage, StorageRequests,
     StorageSettings, block_cache,
 };
 use corniche_spec::{Resources, memory_shares::MemoryShares};
 
-/// The address that a name is; `None` for names of files.
+/// Parses a name as an address; `None` for names of files.
 pub(crate) fn address(name: &Path) -> Result<Option<ObjectAddress>, ObjectError> {
     match name.to_str() {
         Some(text) => ObjectAddress::parse(text),
@@ -16,13 +17,13 @@ pub(crate) fn address(name: &Path) -> Result<Option<ObjectAddress>, ObjectError>
     }
 }
 
-/// Whether a name begins as an address in object storage, where no file is.
+/// Whether a name begins like an address in object storage, which is not a file.
 #[must_use]
 pub fn is_in_object_storage(name: &Path) -> bool {
     !matches!(address(name), Ok(None))
 }
 
-/// Access to object storage, made when it is first needed: without one, no thread is.
+/// Access to object storage, opened when it is first needed: without it, no thread is started.
 pub(crate) struct ObjectAccess {
     storage: Option<Storage>,
     blocks: Arc<BlockCache>,
@@ -30,7 +31,7 @@ pub(crate) struct ObjectAccess {
 
 impl ObjectAccess {
     pub(crate) fn new(resources: Resources) -> Self {
-        let blocks = MemoryShares::of(resources.memory_bytes).blocks;
+        let blocks = MemoryShares::from_memory(resources.memory_bytes).blocks;
         Self { storage: None, blocks: Arc::new(block_cache(blocks)) }
     }
 
@@ -44,8 +45,8 @@ impl ObjectAccess {
         self.storage()?.bucket(name)
     }
 
-    /// What was asked of it so far; `None` if nothing is there.
-    pub(crate) fn requests(&self) -> Option<Requests> {
+    /// The number of requests so far; `None` if object storage is not used.
+    pub(crate) fn requests(&self) -> Option<StorageRequests> {
         self.storage.as_ref().map(Storage::requests)
     }
 

@@ -1,4 +1,5 @@
-//! A build in parts: one step for one subtree by a process of its own, and the package from all parts.
+//! A build in parts: a separate process runs one step for one subtree, and a merge writes the
+//! package from all parts.
 //!
 //! ```text
 //!  plan ─┬─ hashes ──────────────────────────────────────┐
@@ -6,8 +7,10 @@
 //!        └─ heights of each subtree ─ top ─ tiles of each subtree ─ merge ─► package
 //! ```
 //!
-//! Parts of one column may be made at once, in any order, on any machine that has the inputs at the paths of the plan. What is in the
-//! stores already is not made again, so a part may be made twice. Stores are folders, or prefixes in object storage; the package, too, may go there.
+//! Parts of one column may be built at the same time, in any order, on any machine that has the
+//! inputs at the paths of the plan. Artifacts in the stores are not computed again, so it is
+//! harmless to build a part twice. Stores are folders, or prefixes in object storage; the package
+//! may be written to object storage, too.
 
 mod jobs;
 mod merge;
@@ -21,4 +24,4 @@ mod stores;
 pub use jobs::{Job, JobSettings, jobs, plan_with_jobs};
 pub use merge::{MergeSettings, MergeSummary, merge};
 pub use single_part::{PartSettings, PartSummary, make_part};
-pub use step::Step;
+pub use step::PartStep;

@@ -1,7 +1,8 @@
-//! The steps of a build. Each makes what is not yet in the store, and may be done again, by any process, for any subtree.
+//! The steps of a build. Each step creates the artifacts that are missing from the store. Any
+//! process may run it again, for any subtree.
 //!
 //! ```text
-//!  hashes   ways ─► nodes ─► roads ─┐      (build leaves out ways and nodes: roads reads the extract itself)
+//!  hashes   ways ─► nodes ─► roads ─┐      (build skips ways and nodes: roads reads the extract itself)
 //!  heights ─► top ─► tiles ─────────┴─► merge
 //! ```
 

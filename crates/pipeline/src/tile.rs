@@ -1,4 +1,5 @@
-//! The work on one tile: heights to TIN, TIN to deviations, roads on the TIN, all of it to bytes and to a record.
+//! The work on one tile: heights to TIN, TIN to deviations, roads on the TIN, and encoding of
+//! payload and record.
 
 pub(crate) mod encode;
 pub(crate) mod measure;

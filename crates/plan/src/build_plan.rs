@@ -1,10 +1,10 @@
-//! Everything that decides what a build makes, as one value that can be written down.
+//! Everything that determines the result of a build, as one value that can be stored.
 
 use std::path::PathBuf;
 
 use corniche_areas::{AreaTable, AreaTableError};
 use corniche_geom::{Bounds, Cell, GridFrame, NodeIndex, TileId};
-use corniche_gis::Polygon;
+use corniche_gis::RegionPolygons;
 use corniche_roads::{FrcTable, FrcTableError};
 use corniche_spec::{
     PhotoChoice, PhotoSettings, PlanSettings, data_tiles::DataTiles, hex::hex,
@@ -20,10 +20,11 @@ use crate::{
     error::{PLAN_VERSION, PlanFileError},
 };
 
-/// Everything that a worker needs to know to make its part of a package, and nothing about how it works: neither threads nor
-/// memory nor where results are kept.
+/// Everything that a worker needs to build its part of a package. A plan does not say how the
+/// worker runs: it has neither threads, nor memory, nor the folder of results.
 ///
-/// Two plans with the same [hash](Self::hash) make the same artifacts, so a store is bound to it.
+/// Two plans with the same [hash](Self::hash) give the same artifacts, so a store is bound to this
+/// hash.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BuildPlan {
@@ -33,40 +34,40 @@ pub struct BuildPlan {
     pub generator: String,
     /// Releases of GDAL and PROJ, on which the last bits of heights depend.
     pub(crate) libraries: String,
-    /// The files, in the order in which they have precedence.
+    /// The files, in order of precedence.
     pub inputs: Vec<PlannedInput>,
     /// Settings as a package records them; `max_error_m` is given or derived from the cell.
     pub settings: SettingsRecord,
-    /// The FRC table, whole.
+    /// The complete FRC (functional road class) table.
     pub(crate) frc_table: FrcTableRecord,
-    /// The table of areas, whole; left out without areas.
+    /// The complete area table; omitted if there are no areas.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) area_table: Option<AreaTableText>,
-    /// Credits that were given, without those that the inputs call for.
+    /// Attribution given by the user, without that of the inputs.
     pub attribution: Vec<String>,
-    /// What follows for the grid.
+    /// The grid that results from inputs and settings.
     pub grid: PlannedGrid,
-    /// What follows for each level, root first.
+    /// The values that result for each level, root first.
     pub levels: Vec<PlannedLevel>,
 }
 
-/// A table of areas as it is written down.
+/// An area table as it is stored.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct AreaTableText {
-    /// Its name.
+    /// Name of the table.
     pub name: String,
-    /// Whether the sea is made.
+    /// Whether the sea is included.
     pub(crate) sea: bool,
-    /// Each tag, `key=value`, in the order in which they decide, with the number of its class.
+    /// Each tag, `key=value`, in order of precedence, with the number of its class.
     pub(crate) tags: Vec<(String, u8)>,
 }
 
-/// An FRC table as it is written down.
+/// An FRC table as it is stored.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrcTableRecord {
-    /// Its name.
+    /// Name of the table.
     pub name: String,
     /// Least important class that is on.
     pub least_class: u8,
@@ -80,19 +81,19 @@ pub struct FrcTableRecord {
 pub struct PlannedGrid {
     /// Nodes, tiles and levels.
     pub frame: GridFrame,
-    /// South-westernmost node at which data can lie.
+    /// South-westernmost node at which there can be data.
     pub south_west: NodeIndex,
-    /// North-easternmost node at which data can lie.
+    /// North-easternmost node at which there can be data.
     pub north_east: NodeIndex,
-    /// Working CRS: "EPSG:…" where it has a code, else its name.
+    /// Working CRS: "EPSG:…" if it has a code, otherwise its name.
     pub crs: String,
     /// Working CRS as WKT2.
     pub crs_wkt: String,
-    /// Working metres to a unit of the CRS's coordinates, east and north.
+    /// Working metres per unit of the CRS's coordinates, east and north.
     pub metres_per_unit: [f64; 2],
-    /// Working metres to a true metre, at the centre.
+    /// Working metres per true metre, at the centre.
     pub(crate) point_scale: f64,
-    /// Rectangle of the nodes at which data can lie, working metres.
+    /// Rectangle of the nodes at which there can be data, working metres.
     pub data_bounds: Bounds,
     /// Rectangle around the files, WGS84 degrees.
     pub(crate) wgs84_bounds: Bounds,
@@ -100,65 +101,66 @@ pub struct PlannedGrid {
     pub(crate) nodes_are_samples: bool,
     /// How nodes relate to samples, in words.
     pub resampling: String,
-    /// What heights are measured from.
+    /// The vertical datum to which heights refer.
     pub(crate) vertical_datum: String,
-    /// What is done to the files' heights, in words.
+    /// How the files' heights are treated, in words.
     pub vertical_treatment: String,
-    /// How positions come from one datum to another.
+    /// How positions are transformed from one datum to another.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub datum_operations: Vec<DatumOperationRecord>,
-    /// One step of heights, metres.
+    /// The height step, metres.
     pub quantum_m: f64,
 }
 
-/// What the tiles of a level are made with.
+/// The values with which the tiles of a level are built.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlannedLevel {
     /// The level.
     pub level: u8,
-    /// Its cell, metres.
+    /// Cell of the level, metres.
     pub cell_m: Cell,
-    /// Tolerance of its TINs against its own raster, metres.
+    /// Tolerance of the level's TINs against its own raster, metres.
     pub max_error_m: f64,
-    /// Least important class that it shows; `None`: no road.
+    /// Least important class that the level shows; `None`: no road.
     pub least_class: Option<u8>,
-    /// Tolerance of the simplification of its roads, metres; 0 keeps every point.
+    /// Tolerance of the simplification of the level's roads, metres; 0 keeps every point.
     pub(crate) simplify_tolerance_m: f64,
-    /// How far outside a tile its SV lines reach, metres.
+    /// Distance that SV lines (of roads drawn by shadow volumes) reach beyond a tile, metres.
     pub(crate) width_margin_m: f64,
 }
 
 impl BuildPlan {
-    /// Looks into the files and plans the grid; no height is read.
+    /// Opens the files and plans the grid; no height is read.
     ///
     /// # Errors
-    /// When a file cannot be used, the files make no grid, or a setting does not fit them.
+    /// When a file cannot be used, the files do not form a grid, or a setting does not match them.
     pub fn make(settings: &PlanSettings) -> Result<Self, PlanError> {
-        Self::of(settings, &Opened::new(settings)?)
+        Self::from_settings(settings, &Opened::new(settings)?)
     }
 
-    /// The plan for what was opened.
+    /// Creates the plan for inputs that are open.
     ///
     /// # Errors
     /// See [`PlanError`].
-    pub fn of(settings: &PlanSettings, opened: &Opened) -> Result<Self, PlanError> {
+    pub fn from_settings(settings: &PlanSettings, opened: &Opened) -> Result<Self, PlanError> {
         let grid = &opened.grid;
-        let PlanSettings { terrain, roads, areas, lines, attribution, generator, .. } = settings;
+        let PlanSettings { terrain, roads, areas, boundaries, attribution, generator, .. } =
+            settings;
         Ok(Self {
             plan_version: PLAN_VERSION,
             generator: generator.clone(),
             libraries: grid.libraries.clone(),
             inputs: opened.inputs.planned()?,
-            settings: settings_record::of(
+            settings: settings_record::record_settings(
                 terrain,
                 roads,
                 opened.max_error_m,
                 opened.photo.record(),
-                (areas.as_ref(), lines),
+                (areas.as_ref(), *boundaries),
             ),
-            frc_table: FrcTableRecord::of(&roads.table),
-            area_table: areas.as_ref().map(AreaTableText::of),
+            frc_table: FrcTableRecord::from_table(&roads.table),
+            area_table: areas.as_ref().map(AreaTableText::from_table),
             attribution: attribution.clone(),
             grid: PlannedGrid {
                 frame: grid.frame,
@@ -181,8 +183,8 @@ impl BuildPlan {
         })
     }
 
-    /// The tiles of a level on which data can lie, in package order: subtrees that a build can be split into. None below the finest
-    /// level.
+    /// The tiles of a level in which there can be data, in package order: the subtrees into which a
+    /// build can be split. Empty below the finest level.
     #[must_use]
     pub fn subtrees(&self, level: u8) -> Vec<TileId> {
         let PlannedGrid { frame, south_west, north_east, .. } = &self.grid;
@@ -194,10 +196,10 @@ impl BuildPlan {
             .in_order_within(TileId::ROOT)
     }
 
-    /// The settings to plan it again with, with the paths of the plan.
+    /// The settings with which the build can be planned again, with the paths of the plan.
     ///
     /// # Errors
-    /// When the plan was changed by hand so that it makes no sense, or its polygon cannot be read.
+    /// When the plan was edited by hand and is invalid, or its polygon cannot be read.
     pub fn settings(&self) -> Result<PlanSettings, PlanFileError> {
         let paths = |kind: &'static str| {
             let of_kind = self.inputs.iter().filter(move |input| input.kind == kind);
@@ -212,7 +214,7 @@ impl BuildPlan {
         let table = if tells_labels { table.with_recorded_labels() } else { table };
         let mut terrain = settings_record::terrain(&self.settings);
         terrain.plan.polygon =
-            paths("polygon").next().map(|path| Polygon::read(&path)).transpose()?;
+            paths("polygon").next().map(|path| RegionPolygons::read(&path)).transpose()?;
         let photos: Vec<PathBuf> = paths("photo").collect();
         Ok(PlanSettings {
             photo: match self.settings.photo {
@@ -228,23 +230,24 @@ impl BuildPlan {
             osm: paths("osm").collect(),
             terrain,
             areas: self.area_table.as_ref().map(AreaTableText::table).transpose()?,
-            lines: self.settings.lines(),
+            boundaries: self.settings.boundaries,
             roads: settings_record::roads(&self.settings, table).ok_or(PlanFileError::Filter)?,
             attribution: self.attribution.clone(),
             generator: self.generator.clone(),
         })
     }
 
-    /// Fails if `again`, made from this plan's own settings on this machine by this program, is another plan.
+    /// Fails if `again`, created from this plan's own settings on this machine by this program, is
+    /// another plan.
     ///
     /// # Errors
-    /// [`PlanFileError::Differs`], naming what differs.
+    /// [`PlanFileError::Differs`], which names the differences.
     pub fn check_same(&self, again: &Self) -> Result<(), PlanFileError> {
         let differences = again.differences(self);
         if differences.is_empty() { Ok(()) } else { Err(PlanFileError::Differs { differences }) }
     }
 
-    /// The plan as text, indented; the same for the same plan.
+    /// The plan as indented text; equal plans give equal texts.
     ///
     /// # Errors
     /// When a number is not finite.
@@ -252,12 +255,12 @@ impl BuildPlan {
         Ok(serde_json::to_string_pretty(self)? + "\n")
     }
 
-    /// Reads a text of [`BuildPlan::to_json`].
+    /// Reads a text written by [`BuildPlan::to_json`].
     ///
     /// # Errors
-    /// When the text is no plan, or one of another version.
+    /// When the text is not a plan, or is a plan of another version.
     pub fn from_json(text: &str) -> Result<Self, PlanFileError> {
-        /// What all versions have.
+        /// The fields that all versions have.
         #[derive(Deserialize)]
         struct Version {
             plan_version: u32,
@@ -269,17 +272,19 @@ impl BuildPlan {
         Ok(serde_json::from_str(text)?)
     }
 
-    /// SHA-256 of the plan's JSON without spaces. Fields come in the order of their declaration.
+    /// SHA-256 of the plan's JSON without spaces. Fields are in the order of their declaration.
     ///
-    /// Sizes and times of the inputs count: they bind a store to the files as they are. They never reach a package.
+    /// Sizes and times of the inputs are included: they bind a store to the files as they are. They
+    /// are never written to a package.
     #[must_use]
     pub fn digest(&self) -> [u8; 32] {
-        // A record of numbers and texts can always be written as JSON; if not, its debugging form is as unique.
+        // A record of numbers and texts can always be written as JSON; if it cannot, its debug form
+        // is just as unique.
         let json = serde_json::to_string(self).unwrap_or_else(|_| format!("{self:?}"));
         Sha256::digest(json).into()
     }
 
-    /// The digest, lower-case hexadecimal.
+    /// The digest as lower-case hexadecimal.
     #[must_use]
     pub fn hash(&self) -> String {
         hex(&self.digest())
@@ -287,7 +292,7 @@ impl BuildPlan {
 }
 
 impl AreaTableText {
-    fn of(table: &AreaTable) -> Self {
+    fn from_table(table: &AreaTable) -> Self {
         let tag = |(key, value, class): (&str, &str, corniche_areas::AreaClass)| {
             (format!("{key}={value}"), class.number())
         };
@@ -311,7 +316,7 @@ impl AreaTableText {
 }
 
 impl FrcTableRecord {
-    fn of(table: &FrcTable) -> Self {
+    fn from_table(table: &FrcTable) -> Self {
         Self {
             name: table.name().to_owned(),
             least_class: table.own_least_class().number(),

@@ -1,17 +1,18 @@
-//! The table of longitudes and latitudes that a package carries.
+//! The table of longitudes and latitudes that a package contains.
 
 use corniche_dem::{Dem, GridPlan};
 use corniche_geom::{CoordinateTable, CoordinateTableError};
 
 use crate::PlanError;
 
-/// How far positions that are interpolated from the manifest may be off.
+/// The largest error of positions that are interpolated from the manifest.
 const COORDINATE_TOLERANCE_M: f64 = 0.01;
 
 /// Longitudes and latitudes over the data's rectangle, for readers without PROJ.
 ///
-/// The table has a margin around the rectangle, but does not reach to the root's far corners, which can be very far away.
-/// The margin ends at the poles; if a projection ends within the margin, there is no margin.
+/// The table has a margin around the rectangle, but does not extend to the root's far corners,
+/// which can be very far away. The margin ends at the poles; if a projection ends within the
+/// margin, there is no margin.
 pub(crate) fn coordinates(dem: &Dem, plan: &GridPlan) -> Result<CoordinateTable, PlanError> {
     let projection = dem.projection(plan)?;
     let data = plan.data_bounds;

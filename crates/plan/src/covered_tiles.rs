@@ -1,24 +1,25 @@
-//! The tiles of a level in which data can lie, as runs of columns.
+//! The tiles of a level in which there can be data, as runs of columns.
 
 use std::collections::BTreeMap;
 
 use corniche_geom::{GridFrame, NodeIndex, TILE_CELLS, TileId};
 
-/// The tiles of a level that data can lie in, as runs of columns.
+/// The tiles of a level in which there can be data, stored as runs of columns.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct CoveredTiles {
     level: u8,
-    /// Row from the north → first and last column of each run, in order, apart from each other.
+    /// Row from the north → first and last column of each run, in order and without contact.
     rows: BTreeMap<u32, Vec<[u32; 2]>>,
 }
 
 impl CoveredTiles {
-    /// The finest tiles that have a cell in one of the rectangles, each given by its south-western and north-eastern node.
+    /// The finest tiles that have a cell in one of the rectangles. Each rectangle is given by its
+    /// south-western and north-eastern node.
     pub(crate) fn finest(frame: &GridFrame, rectangles: &[[NodeIndex; 2]]) -> Self {
         let size = TILE_CELLS;
         let corner = frame.root_corner();
         let most = (1_i64 << frame.max_level()) - 1;
-        // A node on a border belongs to both tiles, but a cell to one only.
+        // A node on a border belongs to both tiles, but a cell to only one.
         let range = |first: i64, last: i64| {
             let (low, high) = (first.div_euclid(size), (last - 1).max(first).div_euclid(size));
             (low <= most && high >= 0)
@@ -36,7 +37,7 @@ impl CoveredTiles {
         Self::new(frame.max_level(), rows)
     }
 
-    /// Joins runs that overlap or touch.
+    /// Merges runs that overlap or touch.
     fn new(level: u8, mut rows: BTreeMap<u32, Vec<[u32; 2]>>) -> Self {
         for runs in rows.values_mut() {
             runs.sort_unstable();
@@ -52,7 +53,7 @@ impl CoveredTiles {
         Self { level, rows }
     }
 
-    /// The tiles that these are the children of; `None` above the root.
+    /// The parents of these tiles; `None` above the root.
     pub(crate) fn parents(&self) -> Option<Self> {
         let level = self.level.checked_sub(1)?;
         let mut rows: BTreeMap<u32, Vec<[u32; 2]>> = BTreeMap::new();
@@ -63,12 +64,12 @@ impl CoveredTiles {
         Some(Self::new(level, rows))
     }
 
-    /// How many they are.
+    /// The number of these tiles.
     pub(crate) fn count(&self) -> u64 {
         self.rows.values().flatten().map(|[first, last]| u64::from(last - first) + 1).sum()
     }
 
-    /// At most `wanted` of them, spread evenly over all.
+    /// At most `wanted` of these tiles, spread evenly over all.
     pub(crate) fn spread(&self, wanted: u64) -> Vec<TileId> {
         let count = self.count();
         let picks: Vec<u64> =

@@ -1,4 +1,4 @@
-//! Tiles that data only touch at a border are not counted.
+//! Tiles that the data only touch at a border are not counted.
 
 use super::*;
 
@@ -6,7 +6,7 @@ fn node(i: i64, j: i64) -> NodeIndex {
     NodeIndex { i, j }
 }
 
-/// The tiles of each level, root first.
+/// The number of tiles on each level, root first.
 fn counts(finest: &CoveredTiles) -> Vec<u64> {
     let mut levels = vec![finest.clone()];
     while let Some(parents) = levels.last().and_then(CoveredTiles::parents) {
@@ -36,7 +36,7 @@ fn what_lies_between_files_is_not_counted_and_what_they_share_once() {
     assert_eq!(covered.spread(10).len(), 2);
     let whole = CoveredTiles::finest(&frame, &[[south_west, north_east], corner]);
     assert_eq!(whole.count(), 64 * 64);
-    // Spread over all rows, each once.
+    // The picked tiles are spread over all rows, each once.
     let picked = whole.spread(8);
     assert_eq!(picked.len(), 8);
     assert!(picked.windows(2).all(|two| two[0].y() < two[1].y()), "{picked:?}");

@@ -1,4 +1,4 @@
-//! In what two plans differ, in the words of the command line.
+//! The differences between two plans, in the words of the command line.
 
 use corniche_settings::SettingValue as _;
 use corniche_spec::{inputs::PlannedInput, manifest_texts};
@@ -9,11 +9,12 @@ use super::{
 };
 
 impl BuildPlan {
-    /// What differs between this plan and `store`, the plan that a store was made with: what the user can change first (program,
-    /// files, settings), and only if that is the same, what was derived from it. Empty where the plans are the same.
+    /// Returns the differences between this plan and `store`, the plan with which a store was
+    /// created. Differences that the user can change (program, files, settings) come first; derived
+    /// values are compared only if these are the same. Empty if the plans are the same.
     #[must_use]
     pub fn differences(&self, store: &Self) -> Vec<String> {
-        // Every field is named, so that a new one cannot be forgotten here.
+        // Every field is named, so that a new field cannot be forgotten here.
         let Self {
             plan_version,
             generator,
@@ -21,7 +22,7 @@ impl BuildPlan {
             inputs: _,
             settings,
             frc_table,
-            // Its hash is among the settings.
+            // The hash of the area table is among the settings.
             area_table: _,
             attribution,
             grid: _,
@@ -31,12 +32,12 @@ impl BuildPlan {
         if plan_version != &store.plan_version {
             let other = store.plan_version;
             said.push(format!(
-                "plans are of version {plan_version}, the store's plan is of version {other}"
+                "this plan has version {plan_version}, the store's plan has version {other}"
             ));
         }
         for (ours, theirs) in [(generator, &store.generator), (libraries, &store.libraries)] {
             if ours != theirs {
-                said.push(format!("this is {ours}, the store was made by {theirs}"));
+                said.push(format!("this is {ours}, but the store was created by {theirs}"));
             }
         }
         said.extend(self.input_differences(store));
@@ -51,7 +52,7 @@ impl BuildPlan {
             said.extend(different_facts(&level_facts(&self.levels), &level_facts(&store.levels)));
         }
         if said.is_empty() && self.hash() != store.hash() {
-            said.push("the store's plan contradicts itself: it was changed by hand".to_owned());
+            said.push("the store's plan contradicts itself: it was edited by hand".to_owned());
         }
         said
     }
@@ -71,7 +72,7 @@ impl BuildPlan {
             .zip(&store.inputs)
             .filter_map(|(now, then)| {
                 let change = now.change_since(then)?;
-                Some(format!("{} was changed since the store was made: {change}", now.path))
+                Some(format!("{} has changed since the store was created: {change}", now.path))
             })
             .collect()
     }
@@ -83,7 +84,7 @@ impl FrcTableRecord {
             return None;
         }
         let Self { name, least_class, values } = self;
-        // Tables of different names differ in the name of the setting already.
+        // Tables with different names already differ in the setting's name.
         let mut said = Vec::new();
         if least_class != &store.least_class {
             said.push(format!("least class {least_class} instead of {}", store.least_class));
@@ -106,9 +107,9 @@ impl FrcTableRecord {
                 said.push(format!("highway={value} is {ours} instead of {theirs}"));
             }
         }
-        // The names of two tables with the same entries are told among the settings.
+        // The names of two tables with the same entries are reported among the settings.
         (!said.is_empty()).then(|| {
-            format!("--frc-table {name} is not the table of the store: {}", said.join(", "))
+            format!("--frc-table {name} differs from the table of the store: {}", said.join(", "))
         })
     }
 }
@@ -149,7 +150,7 @@ fn grid_facts(grid: &PlannedGrid) -> Vec<Fact> {
             "PROJ's operation between datums",
             &datum_operations.iter().map(manifest_texts::operation_words).collect::<Vec<_>>(),
         ),
-        fact("the step of heights in metres", quantum_m),
+        fact("the height step in metres", quantum_m),
     ]
 }
 

@@ -1,4 +1,4 @@
-//! Whether a build can succeed with the memory and the disk space that there are.
+//! Whether the available memory and disk space are sufficient for a build.
 
 use std::{
     fs, io,
@@ -7,24 +7,25 @@ use std::{
 
 use corniche_spec::machine::{FileSystem, MIN_MEMORY_BYTES, machine_memory_bytes};
 
-use super::{Estimate, MemoryEstimate};
+use super::{BuildEstimate, MemoryEstimate};
 use crate::PlanError;
 
-/// What a build may use.
-pub(crate) struct Room {
-    /// The memory of `--memory`.
+/// The memory and disk space that a build may use.
+pub(crate) struct AvailableSpace {
+    /// The limit of `--memory`.
     pub memory_bytes: u64,
-    /// The machine's; `None` where it is not known.
+    /// The machine's memory; `None` if it is unknown.
     pub(crate) machine_bytes: Option<u64>,
-    /// Where intermediate results go.
+    /// The folder and file system of intermediate results.
     pub store: (PathBuf, FileSystem),
-    /// Where the package goes.
+    /// The folder and file system of the package.
     pub target: (PathBuf, FileSystem),
 }
 
-impl Room {
-    /// The room of this machine. `held_bytes` is what a store that is there takes already: the build goes on from it, or removes it first.
-    pub(crate) fn of(
+impl AvailableSpace {
+    /// Measures the space on this machine. `held_bytes` is the space that an existing store
+    /// occupies: the build continues from it, or deletes it first.
+    pub(crate) fn measure(
         memory_bytes: u64,
         [store, target]: [&Path; 2],
         held_bytes: u64,
@@ -32,7 +33,7 @@ impl Room {
         let place = |folder: &Path| -> Result<_, PlanError> {
             let failed = |source| PlanError::Target { folder: folder.to_path_buf(), source };
             let there = nearest_folder(folder).map_err(failed)?;
-            Ok((folder.to_path_buf(), FileSystem::of(&there).map_err(failed)?))
+            Ok((folder.to_path_buf(), FileSystem::containing(&there).map_err(failed)?))
         };
         let (mut store, mut target) = (place(store)?, place(target)?);
         if store.1.device == target.1.device {
@@ -42,13 +43,13 @@ impl Room {
         Ok(Self { memory_bytes, machine_bytes: machine_memory_bytes(), store, target })
     }
 
-    /// Fails where the need is greater than what there is.
-    pub(crate) fn check(&self, estimate: &Estimate) -> Result<(), PlanError> {
+    /// Fails if the build needs more than is available.
+    pub(crate) fn check(&self, estimate: &BuildEstimate) -> Result<(), PlanError> {
         self.check_memory(estimate)?;
         self.check_disk(estimate)
     }
 
-    fn check_memory(&self, estimate: &Estimate) -> Result<(), PlanError> {
+    fn check_memory(&self, estimate: &BuildEstimate) -> Result<(), PlanError> {
         let need = estimate.memory.least_bytes.max(MIN_MEMORY_BYTES);
         let machine_bytes = self.machine_bytes.filter(|machine| *machine < self.memory_bytes);
         if need <= machine_bytes.unwrap_or(self.memory_bytes) {
@@ -58,11 +59,11 @@ impl Room {
             Some(machine) => format!("this machine has {}", size(machine)),
             None => format!("--memory allows {}", size(self.memory_bytes)),
         };
-        let more = machine_bytes.is_none().then(|| format!("give --memory {}", size(need)));
+        let more = machine_bytes.is_none().then(|| format!("pass --memory {}", size(need)));
         Err(PlanError::NoMemory { why: memory_text(&estimate.memory, need, &have, more) })
     }
 
-    fn check_disk(&self, estimate: &Estimate) -> Result<(), PlanError> {
+    fn check_disk(&self, estimate: &BuildEstimate) -> Result<(), PlanError> {
         let (store, package) = (estimate.store_bytes, estimate.package_bytes);
         let refuse = |folder: &Path, need: u64, what: String, free: u64| PlanError::NoRoom {
             folder: folder.to_path_buf(),
@@ -89,10 +90,10 @@ impl Room {
     }
 }
 
-/// The need of memory, what it is made of, and what to do.
+/// The message about the required memory: its parts, and what the user can do.
 fn memory_text(memory: &MemoryEstimate, need: u64, have: &str, more: Option<String>) -> String {
     let threads = memory.threads;
-    // Blocks are worth a word when they are more than a thread's other work.
+    // Blocks are mentioned if they need more memory than a thread's other work.
     let has_large_blocks = memory.block_bytes > memory.thread_bytes;
     let mut parts = vec![
         format!("{} for the program and its lists", size(memory.base_bytes + memory.tiles_bytes)),
@@ -100,7 +101,7 @@ fn memory_text(memory: &MemoryEstimate, need: u64, have: &str, more: Option<Stri
     ];
     let mut ways: Vec<String> = more.into_iter().collect();
     if threads > 1 {
-        ways.push("take fewer --threads".to_owned());
+        ways.push("use fewer --threads".to_owned());
     }
     if has_large_blocks {
         let block = size(memory.block_bytes);
@@ -112,7 +113,7 @@ fn memory_text(memory: &MemoryEstimate, need: u64, have: &str, more: Option<Stri
             "store the file in tiles (gdal_translate -co TILED=YES -co COMPRESS=DEFLATE)";
         ways.push(store_tiled.to_owned());
     }
-    ways.push("begin anyway with --force".to_owned());
+    ways.push("start anyway with --force".to_owned());
     format!(
         "the build needs at least {} of memory, and {have}: {}; {}",
         size(need),
@@ -121,14 +122,14 @@ fn memory_text(memory: &MemoryEstimate, need: u64, have: &str, more: Option<Stri
     )
 }
 
-/// The folder itself, or the nearest one above it that exists.
+/// The folder itself, or its nearest existing ancestor.
 fn nearest_folder(folder: &Path) -> io::Result<PathBuf> {
     let whole = std::path::absolute(folder)?;
     let existing = whole.ancestors().find(|ancestor| fs::metadata(ancestor).is_ok());
     Ok(existing.unwrap_or(&whole).to_path_buf())
 }
 
-/// A number of bytes as `--memory` takes it, rounded up.
+/// A number of bytes in the form that `--memory` accepts, rounded up.
 fn size(bytes: u64) -> String {
     const G: u64 = 1 << 30;
     match bytes {

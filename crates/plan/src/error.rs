@@ -6,34 +6,34 @@ use corniche_ground::{GroundError, TerrainError};
 use corniche_roads::FrcTableError;
 use corniche_spec::inputs::InputError;
 
-/// Version of a plan's JSON; other versions are refused.
-pub const PLAN_VERSION: u32 = 8;
+/// Version of a plan's JSON; other versions are rejected.
+pub const PLAN_VERSION: u32 = 9;
 
-/// Why a text is no plan, or a plan cannot be used here.
+/// Why a text is not a plan, or a plan cannot be used here.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
 pub enum PlanFileError {
-    #[error("this is no plan of a build: make one with corniche plan -o FILE")]
+    #[error("this is not a build plan; create one with corniche plan -o FILE")]
     Json(#[from] serde_json::Error),
     #[error(
-        "the plan is of version {found}, and this program reads version {PLAN_VERSION}; make the plan again with this program: corniche plan -o FILE"
+        "the plan has version {found}, but this program reads version {PLAN_VERSION}; create the plan again with this program: corniche plan -o FILE"
     )]
     Version { found: u32 },
-    #[error("the plan's FRC table makes no sense; make the plan again")]
+    #[error("the plan's FRC table is invalid; create the plan again")]
     FrcTable(#[from] FrcTableError),
     #[error(
-        "the plan says on which levels classes of roads are shown, and this makes no sense; make the plan again"
+        "the plan's list of the levels on which each road class is shown is invalid; create the plan again"
     )]
     Filter,
-    #[error("the plan's table of areas makes no sense; make the plan again")]
+    #[error("the plan's area table is invalid; create the plan again")]
     AreaTable(#[from] corniche_areas::AreaTableError),
-    #[error("the plan's table of areas names a class that does not exist; make the plan again")]
+    #[error("the plan's area table names a class that does not exist; create the plan again")]
     AreaClass,
     #[error(transparent)]
     Polygon(#[from] corniche_gis::PolygonError),
     #[error(
-        "the plan does not fit this machine or its files any more: {}; make the plan again, or use the files and the program that it was made with",
+        "the plan no longer matches this machine or its files: {}; create the plan again, or use the files and the program that it was created with",
         differences.join("; ")
     )]
     Differs { differences: Vec<String> },
@@ -55,16 +55,15 @@ pub enum PlanError {
     #[error("--max-error must be from 1e-9 to 1e9 metres, not {max_error_m}")]
     MaxError { max_error_m: f64 },
     #[error(
-        "the data do not fit one package, their longitudes and latitudes cannot be tabulated: give files of one region without a pole inside; a DEM in degrees fits as a whole with --crs dem"
+        "the data does not fit one package, because its longitudes and latitudes cannot be tabulated; pass files of one region without a pole inside; a DEM in degrees fits as a whole with --crs dem"
     )]
     Coordinates(#[from] corniche_geom::CoordinateTableError),
-    #[error("cannot write in {folder:?}; choose another place for the package")]
+    #[error("cannot write in {folder:?}; choose another folder for the package")]
     Target { folder: PathBuf, source: io::Error },
     #[error("{why}")]
     NoMemory { why: String },
     #[error(
-        "the build needs about {need} of disk space in {folder:?} ({what}), and {free} are free; make room, give --tmp a \
-         folder on another disk for intermediate results, or begin anyway with --force"
+        "the build needs about {need} of disk space in {folder:?} ({what}), and {free} are free; free some space, pass --tmp with a folder on another disk for intermediate results, or start anyway with --force"
     )]
     NoRoom { folder: PathBuf, need: String, what: String, free: String },
     #[error("tile {id} could not be triangulated")]
@@ -78,7 +77,8 @@ corniche_dem::from_dem_errors!(PlanError);
 corniche_work::from_interrupted!(PlanError);
 
 impl PlanError {
-    /// Whether the cause is an unusable input or setting, rather than a failure while it was looked at.
+    /// Whether the cause is an unusable input or setting, rather than a failure while the input was
+    /// read.
     #[must_use]
     pub fn is_unusable_input(&self) -> bool {
         match self {

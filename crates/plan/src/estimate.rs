@@ -1,4 +1,4 @@
-//! What a build will take, before it begins.
+//! Estimates of the memory, disk space and time of a build, before it starts.
 
 use std::time::Duration;
 
@@ -7,7 +7,7 @@ use corniche_geom::TILE_CELLS;
 use corniche_gis::FileBlocks;
 use corniche_ground::photos::source::PhotoSource;
 use corniche_ground::terrain::ground::GroundSource;
-use corniche_spec::{Observer, Resources, machine::thread_time};
+use corniche_spec::{BuildObserver, Resources, machine::thread_time};
 use corniche_tileset::{LevelRecord, Manifest, ReliefLevels};
 use corniche_tin::TinSpec;
 use serde::Serialize;
@@ -15,17 +15,19 @@ use serde::Serialize;
 use super::{Opened, covered_tiles::CoveredTiles, rates};
 use crate::PlanError;
 
-/// The number of finest tiles from which on some are triangulated to see how the ground is. Less work is estimated well enough without.
+/// The number of finest tiles from which some tiles are triangulated as samples of the ground. For
+/// smaller builds, recorded rates are accurate enough.
 const LEAST_TILES_TO_SAMPLE: u64 = 256;
-/// How many tiles are triangulated to see how the ground is.
+/// The number of tiles that are triangulated as samples of the ground.
 const SAMPLED_TILES: u64 = 12;
-/// Files with larger blocks are not sampled, because each sample would take as long as reading a large part of a file.
+/// Files with larger blocks are not sampled, because each sample would take as long as reading a
+/// large part of a file.
 const MOST_SAMPLED_BLOCK_BYTES: u64 = 64 << 20;
 
-/// What a build will take. All but the counts are estimates.
+/// The estimated size, memory and time of a build. All values but the counts are estimates.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Estimate {
-    /// Nodes of the finest level in the files' rectangles; where files overlap they count twice.
+pub struct BuildEstimate {
+    /// Nodes of the finest level in the files' rectangles; nodes where files overlap count twice.
     pub nodes: u64,
     /// Tiles per level, root first, if no tile is void.
     pub tiles: Vec<u64>,
@@ -37,64 +39,64 @@ pub struct Estimate {
     pub package_bytes: u64,
     /// Time on one core.
     pub core_seconds: f64,
-    /// Time on as many threads as the build has.
+    /// Time on the build's number of threads.
     pub seconds: f64,
-    /// Where the numbers of triangles, bytes and seconds come from.
+    /// The source of the estimated triangles, bytes and seconds.
     pub rates: Rates,
 }
 
 /// Memory that a build needs, bytes.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct MemoryEstimate {
-    /// Whatever is being built.
+    /// Memory that every build needs.
     pub base_bytes: u64,
-    /// Memory for what is remembered of every tile.
+    /// Memory for the data kept about every tile.
     pub tiles_bytes: u64,
     /// Number of threads.
     pub threads: u64,
     /// Memory for the work of each thread.
     pub thread_bytes: u64,
-    /// Memory for the largest block of a file, which GDAL decodes whole for each thread.
+    /// Memory for the largest block of a file, which GDAL decodes as a whole for each thread.
     pub block_bytes: u64,
-    /// The file with that block.
+    /// The file that contains this block.
     pub block_file: String,
-    /// All blocks from the west to the east side of a file, the most of any file. With less memory for GDAL the build takes longer:
-    /// blocks are read more than once.
+    /// All blocks from the west to the east side of a file, the most of any file. If GDAL has less
+    /// memory, the build takes longer, because blocks are read more than once.
     pub block_row_bytes: u64,
-    /// The sum that no build can do with less of.
+    /// The sum of the memory that every build of this data needs at least.
     pub least_bytes: u64,
 }
 
-/// Where an estimate's rates come from.
+/// The source of an estimate's rates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Rates {
-    /// The rates come from builds of other data on another machine, as `docs/lab/build-costs.md` says.
+    /// The rates come from builds of other data on another machine; see `docs/lab/build-costs.md`.
     Recorded,
-    /// The rates come from so many tiles of these data, triangulated on this machine.
+    /// The rates come from tiles of this data, triangulated on this machine.
     Sampled {
-        /// How many.
+        /// The number of tiles.
         tiles: u64,
     },
 }
 
 impl Rates {
-    /// Where the rates come from, in words for people.
+    /// Describes the source of the rates in words.
     #[must_use]
     pub fn text(self) -> String {
         match self {
             Self::Recorded => {
-                "from recorded rates of other data on another machine (docs/lab/build-costs.md)"
+                "from recorded rates, measured with other data on another machine (docs/lab/build-costs.md)"
                     .to_owned()
             }
             Self::Sampled { tiles } => {
-                format!("from {tiles} tiles of these data, triangulated on this machine")
+                format!("from {tiles} tiles of this data, triangulated on this machine")
             }
         }
     }
 }
 
-/// How much there is of the ground of the finest level.
+/// The amount of ground on the finest level.
 struct Ground {
     triangles_per_node: f64,
     /// Time of all steps for the ground of all levels, on one core.
@@ -102,26 +104,26 @@ struct Ground {
     rates: Rates,
 }
 
-/// What the ground of all levels takes.
+/// The cost of the ground of all levels.
 #[derive(Clone, Copy)]
 struct GroundCosts {
     package_bytes: f64,
-    /// What is kept of it beside what goes into the package.
+    /// Bytes of intermediate results that are not part of the package.
     store_bytes: f64,
     /// Time of all steps, on one core.
     core_seconds: f64,
     rates: Rates,
 }
 
-impl Estimate {
-    /// What a build of `opened` will take. Where the data are many, some of their tiles are read.
+impl BuildEstimate {
+    /// Estimates the build of `opened`. If there are many data, some of their tiles are read.
     ///
     /// # Errors
     /// See [`PlanError`].
-    pub fn of(
+    pub fn from_opened(
         opened: &Opened,
         resources: Resources,
-        observer: &dyn Observer,
+        observer: &dyn BuildObserver,
     ) -> Result<Self, PlanError> {
         let extract_bytes = opened.extract_bytes()?;
         let dem = match &opened.source {
@@ -129,7 +131,7 @@ impl Estimate {
             GroundSource::Package(terrain) => {
                 let manifest = terrain.manifest();
                 let tiles = manifest.levels.iter().map(|level| level.tiles).sum();
-                let memory = MemoryEstimate::of(Vec::new(), opened, tiles, resources);
+                let memory = MemoryEstimate::from_blocks(Vec::new(), opened, tiles, resources);
                 let estimate = Self::of_recorded(manifest, memory, extract_bytes, opened.relief);
                 return Ok(estimate.with_photos(opened));
             }
@@ -147,7 +149,8 @@ impl Estimate {
             side(south_west.i, north_east.i).saturating_mul(side(south_west.j, north_east.j))
         });
         let nodes = sides.fold(0, u64::saturating_add);
-        let memory = MemoryEstimate::of(dem.file_blocks()?, opened, tiles.iter().sum(), resources);
+        let memory =
+            MemoryEstimate::from_blocks(dem.file_blocks()?, opened, tiles.iter().sum(), resources);
         let is_sampled = finest.count() >= LEAST_TILES_TO_SAMPLE
             && memory.block_bytes <= MOST_SAMPLED_BLOCK_BYTES
             && memory.least_bytes <= resources.memory_bytes;
@@ -164,7 +167,8 @@ impl Estimate {
         Ok(estimate.with_relief(opened.relief).with_photos(opened))
     }
 
-    /// The same with photos: of each finest tile that one may lie on, as if it were covered. Those of a package are as large as there.
+    /// Adds photos to the estimate. Each finest tile that a photo may touch counts as covered.
+    /// Photos of a package are as large as they are there.
     fn with_photos(mut self, opened: &Opened) -> Self {
         let photos = match &opened.photo {
             PhotoSource::Nothing => return self,
@@ -185,7 +189,7 @@ impl Estimate {
         let texels = covered.min(finest as f64) * rates::photo_texels(photos.levels());
         let package = texels * rates::ALL_PER_FINEST_PHOTO * rates::PHOTO_BYTES_PER_TEXEL;
         self.package_bytes += package.ceil() as u64;
-        // Textures of finest tiles are kept beside their payloads.
+        // Textures of finest tiles are stored in addition to their payloads.
         let rasters = all * rates::PHOTO_RASTER_BYTES;
         self.store_bytes += 2 * package.ceil() as u64 + rasters;
         self.add_work(texels * rates::SECONDS_PER_PHOTO_TEXEL);
@@ -198,7 +202,7 @@ impl Estimate {
         self.seconds += core_seconds / self.memory.cores();
     }
 
-    /// The estimate of a build that takes the terrain of a package.
+    /// Estimates a build that reuses the terrain of a package.
     fn of_recorded(
         manifest: &Manifest,
         memory: MemoryEstimate,
@@ -222,7 +226,7 @@ impl Estimate {
         Self::put_together(manifest.counts.samples.nodes, tiles, memory, extract_bytes, costs)
     }
 
-    /// The same with the reliefs of these levels.
+    /// Adds the reliefs of these levels.
     fn with_relief(mut self, relief: ReliefLevels) -> Self {
         let finest = self.tiles.len() as u8 - 1;
         let has = |level: &u8| relief.has(*level, finest);
@@ -234,7 +238,7 @@ impl Estimate {
         self
     }
 
-    /// What the ground takes, with what the extract takes.
+    /// Combines the cost of the ground with the cost of the extract.
     fn put_together(
         nodes: u64,
         tiles: Vec<u64>,
@@ -244,7 +248,7 @@ impl Estimate {
     ) -> Self {
         let extract = extract_bytes as f64;
         let package = ground.package_bytes + rates::ROADS_PER_EXTRACT_BYTE * extract;
-        // What is sorted is gone before heights come.
+        // Sorted pieces are deleted before the heights are read.
         let pieces = rates::PIECES_PER_EXTRACT_BYTE * extract;
         let while_sorted = pieces + rates::SORTED_PER_EXTRACT_BYTE * extract;
         let store = (ground.store_bytes + package + pieces).max(while_sorted);
@@ -263,8 +267,13 @@ impl Estimate {
 }
 
 impl MemoryEstimate {
-    /// The memory that is needed for elevation files with these blocks, and for the photos.
-    fn of(mut blocks: Vec<FileBlocks>, opened: &Opened, tiles: u64, resources: Resources) -> Self {
+    /// The memory for elevation files with these blocks, and for the photos.
+    fn from_blocks(
+        mut blocks: Vec<FileBlocks>,
+        opened: &Opened,
+        tiles: u64,
+        resources: Resources,
+    ) -> Self {
         blocks.extend(
             opened.photo.files().into_iter().flat_map(|photo| photo.blocks.iter().cloned()),
         );
@@ -295,12 +304,12 @@ impl MemoryEstimate {
         }
     }
 
-    /// How many cores the threads keep busy.
+    /// The number of cores that the threads keep busy.
     fn cores(&self) -> f64 {
         self.threads.max(1) as f64 * rates::CORES_BUSY
     }
 
-    /// Adds what a thread needs to make a tile's photo.
+    /// Adds the memory that a thread needs to create a tile's photo.
     fn add_photos(&mut self, levels: u8) {
         let texels = rates::photo_texels(levels).ceil() as u64;
         let photo_bytes = texels * rates::THREAD_BYTES_PER_PHOTO_TEXEL + rates::PHOTO_PIXELS_BYTES;
@@ -310,7 +319,7 @@ impl MemoryEstimate {
 }
 
 impl Ground {
-    /// What it takes on so many tiles of each level.
+    /// The cost of this many tiles on each level.
     fn costs(&self, nodes: u64, tiles: &[u64]) -> GroundCosts {
         let all: u64 = tiles.iter().sum();
         let finest = tiles.last().copied().unwrap_or(0);
@@ -329,7 +338,7 @@ impl Ground {
         }
     }
 
-    /// `tolerance_cells` is the tolerance as a share of the cell.
+    /// The recorded rates; `tolerance_cells` is the tolerance as a fraction of the cell.
     fn recorded(nodes: u64, tolerance_cells: f64) -> Self {
         let triangles_per_node = rates::triangles_per_node(tolerance_cells);
         let nodes = nodes as f64;
@@ -342,13 +351,13 @@ impl Ground {
         }
     }
 
-    /// The ground as the average of some tiles has it, void ones included.
+    /// The average ground of some tiles, void tiles included.
     fn sampled(
         opened: &Opened,
         dem: &Dem,
         finest: &CoveredTiles,
         nodes: u64,
-        observer: &dyn Observer,
+        observer: &dyn BuildObserver,
     ) -> Result<Self, PlanError> {
         let Opened { grid, levels, max_error_m, .. } = opened;
         let mut reader = dem.reader(grid);
@@ -360,7 +369,7 @@ impl Ground {
             observer.check()?;
             let window = reader.window(grid.frame.tile_window(id).with_halo(1))?;
             let begun = thread_time();
-            // Values that are no heights are found, and told, when all samples are looked at.
+            // Samples that cannot be heights are found and reported when all samples are checked.
             let Ok(tin) = corniche_tin::triangulate(&window.heights, spec) else {
                 return Ok(Self::recorded(nodes, opened.tolerance_cells()));
             };

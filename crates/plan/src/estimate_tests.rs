@@ -1,4 +1,4 @@
-//! Estimates grow with the work and fit the packages that the rates were taken from.
+//! Estimates grow with the work and match the packages from which the rates were derived.
 
 use std::path::PathBuf;
 
@@ -9,16 +9,16 @@ use corniche_work::Silent;
 
 use super::*;
 
-/// A file of one band with so many columns and rows, in blocks.
+/// A file of one band with this number of columns and rows, in blocks.
 pub(crate) fn file(size: [u64; 2], block: [u64; 2], file_bytes: u64) -> FileBlocks {
     FileBlocks { path: PathBuf::from("dem.tif"), size, block, sample_bytes: 4, file_bytes }
 }
 
-pub(crate) fn estimate(tiles: Vec<u64>, files: &[FileBlocks], threads: u64) -> Estimate {
+pub(crate) fn estimate(tiles: Vec<u64>, files: &[FileBlocks], threads: u64) -> BuildEstimate {
     let memory = MemoryEstimate::new(files, tiles.iter().sum(), threads);
     let nodes = tiles.last().copied().unwrap_or(0) << 16;
     let costs = Ground::recorded(nodes, 0.25).costs(nodes, &tiles);
-    Estimate::put_together(nodes, tiles, memory, 0, costs)
+    BuildEstimate::put_together(nodes, tiles, memory, 0, costs)
 }
 
 #[test]
@@ -39,7 +39,7 @@ fn a_file_in_tiles_needs_little_and_a_row_of_blocks_is_as_wide_as_the_file() {
     let memory = MemoryEstimate::new(&[tiled], 0, 4);
     assert_eq!(memory.block_bytes, 1 << 20);
     assert_eq!(memory.block_row_bytes, 196 << 20);
-    // The least memory that may be asked for is enough for four threads and usual files.
+    // The smallest value that `--memory` accepts is enough for four threads and ordinary files.
     assert!(memory.least_bytes <= corniche_spec::machine::MIN_MEMORY_BYTES, "{memory:?}");
 }
 
@@ -62,14 +62,15 @@ fn the_extract_takes_disk_too() {
     let memory = || MemoryEstimate::new(&[], 1, 2);
     let put = |extract_bytes| {
         let costs = Ground::recorded(1, 0.25).costs(1, &[1]);
-        Estimate::put_together(1, vec![1], memory(), extract_bytes, costs)
+        BuildEstimate::put_together(1, vec![1], memory(), extract_bytes, costs)
     };
     let extract = 1_u64 << 30;
     assert!(put(extract).store_bytes > put(0).store_bytes + extract);
     assert!(put(extract).package_bytes > put(0).package_bytes + extract / 4);
 }
 
-/// The packages that the rates were taken from (docs/lab/build-costs.md): nodes, triangles of all levels and bytes of ground.
+/// The packages from which the rates were derived (docs/lab/build-costs.md): nodes, triangles of
+/// all levels and bytes of ground.
 #[test]
 fn recorded_rates_fit_what_they_were_taken_from() {
     for (name, nodes, tolerance_cells, triangles, bytes) in [
@@ -86,17 +87,18 @@ fn recorded_rates_fit_what_they_were_taken_from() {
         assert!((0.75..1.35).contains(&(all / triangles)), "{name}: {all}");
         let memory = MemoryEstimate::new(&[], 39, 1);
         let costs = ground.costs(nodes, &[39]);
-        let package = Estimate::put_together(nodes, vec![39], memory, 0, costs).package_bytes;
+        let package = BuildEstimate::put_together(nodes, vec![39], memory, 0, costs).package_bytes;
         assert!((0.75..1.35).contains(&(package as f64 / bytes)), "{name}: {package}");
     }
 }
 
-/// Half of the tiles of the sample tell how many triangles the finest level has: 158 772 (`corniche info`).
+/// Half of the tiles of the sample are enough to estimate the triangles of the finest level: 158
+/// 772 (`corniche info`).
 #[test]
 fn some_tiles_tell_how_the_ground_is() {
     let table = FrcTable::new("one", vec![("motorway".to_owned(), 0)], Vec::new(), 0).unwrap();
     let settings = PlanSettings {
-        lines: Vec::new(),
+        boundaries: false,
         dem: vec![corniche_testing::sample("pass/pass-dem.tif")],
         terrain_of: None,
         osm: Vec::new(),
@@ -127,11 +129,11 @@ fn some_tiles_tell_how_the_ground_is() {
     assert!((triangles / 158_772.0 - 1.0).abs() < 0.2, "{triangles}");
     assert!(ground.core_seconds > 0.0);
 
-    // All of it, as it is done: the sample is too small to be sampled.
+    // The complete estimate, as the program makes it: the data are too small to be sampled.
     let resources = Resources { threads: 2, memory_bytes: 1 << 30 };
-    let estimate = Estimate::of(&opened, resources, &Silent).unwrap();
+    let estimate = BuildEstimate::from_opened(&opened, resources, &Silent).unwrap();
     assert_eq!((estimate.nodes, estimate.tiles.as_slice()), (1_000_000, &[1, 4, 9, 25][..]));
     assert_eq!(estimate.rates, Rates::Recorded);
-    // It was 352 kB of ground.
+    // The real package has 352 kB of ground.
     assert!((0.8..1.2).contains(&(estimate.package_bytes as f64 / 352_000.0)), "{estimate:?}");
 }

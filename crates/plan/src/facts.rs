@@ -1,4 +1,5 @@
-//! What is compared of two plans, as pairs of a name that users know and a value in words.
+//! The values that are compared between two plans, as pairs of a name that users know and a value
+//! in words.
 
 use corniche_settings::{SettingSection, SettingValue, SettingsRecord};
 use corniche_tileset::ReliefLevels;
@@ -6,9 +7,9 @@ use corniche_tileset::ReliefLevels;
 /// A setting's name, and its value in words.
 pub(crate) type Fact = (String, String);
 
-/// The sentence about one value.
+/// The sentence about one value that differs.
 pub(crate) fn different(name: &str, ours: &str, theirs: &str) -> String {
-    format!("{name} is {ours}, the store was made with {theirs}")
+    format!("{name} is {ours}, but the store was created with {theirs}")
 }
 
 pub(crate) fn different_facts(ours: &[Fact], theirs: &[Fact]) -> Vec<String> {
@@ -19,32 +20,37 @@ pub(crate) fn different_facts(ours: &[Fact], theirs: &[Fact]) -> Vec<String> {
         .map(|((name, ours), (_, theirs))| different(name, ours, theirs))
         .collect();
     if ours.len() != theirs.len() {
-        said.push(format!("{} values are compared with {}", ours.len(), theirs.len()));
+        said.push(format!(
+            "there are {} values here and {} in the store",
+            ours.len(),
+            theirs.len()
+        ));
     }
     said
 }
 
-/// How the settings for the ground differ from those that a package records, in words; those for
-/// roads do not count, and photos are taken with the terrain.
+/// Returns in words how the settings for the ground differ from those that a package records.
+/// Settings for roads are not compared, and photos are reused with the terrain.
 pub(crate) fn terrain_differences(ours: &SettingsRecord, package: &SettingsRecord) -> Vec<String> {
     let mut theirs = package.clone();
-    // A polygon is the same under another name.
+    // A polygon with another name is the same polygon.
     if let (Some(own), Some(recorded)) = (&ours.polygon, &mut theirs.polygon)
         && own.sha256 == recorded.sha256
     {
         recorded.name.clone_from(&own.name);
     }
-    // Relief that a package has may be left out.
+    // The relief of a package may be omitted.
     if ours.relief == ReliefLevels::Off {
         theirs.relief = ReliefLevels::Off;
     }
     differences_from(ours, &theirs, &[SettingSection::Terrain])
 }
 
-/// How the settings for roads and areas differ from those that a package records, in words; those for the ground do not count.
+/// Returns in words how the settings for roads and areas differ from those that a package records.
+/// Settings for the ground are not compared.
 #[must_use]
 pub fn network_differences(ours: &SettingsRecord, package: &SettingsRecord) -> Vec<String> {
-    // The names of classes change no road.
+    // The labels of classes do not change roads.
     let theirs = SettingsRecord { class_labels: ours.class_labels.clone(), ..package.clone() };
     differences_from(ours, &theirs, &[SettingSection::Roads, SettingSection::Areas])
 }
@@ -58,7 +64,7 @@ fn differences_from(
     pairs
         .filter(|(ours, theirs)| ours != theirs && sections.contains(&ours.section))
         .map(|(ours, theirs)| {
-            format!("{} is {}, it was made with {}", ours.name, ours.value, theirs.value)
+            format!("{} is {}, but it was built with {}", ours.name, ours.value, theirs.value)
         })
         .collect()
 }

@@ -1,8 +1,8 @@
-//! What a build is going to make, and what it will need for it, before the work begins.
+//! The plan of a build and the resources that it needs, before the work begins.
 //!
 //! ```text
 //!   settings ─► Opened ─┬─► BuildPlan: what every worker must know, with a hash
-//!                       └─► Estimate ─► Room: can it succeed here?
+//!                       └─► BuildEstimate ─► AvailableSpace: can it succeed here?
 //! ```
 
 mod build_plan;
@@ -18,31 +18,32 @@ pub mod rates;
 
 use std::path::Path;
 
-use corniche_spec::{Observer, PlanSettings, Resources, memory_shares::MemoryShares};
+use corniche_spec::{BuildObserver, PlanSettings, Resources, memory_shares::MemoryShares};
 
 pub use build_plan::{BuildPlan, FrcTableRecord, PlannedGrid, PlannedLevel};
 pub use error::{PLAN_VERSION, PlanError, PlanFileError};
-pub use estimate::{Estimate, MemoryEstimate, Rates};
+pub use estimate::{BuildEstimate, MemoryEstimate, Rates};
 pub use facts::network_differences;
 pub use opened_inputs::Opened;
 
-/// Plans a build and estimates what it will take. Of many data some tiles are read for it.
+/// Plans a build and estimates its cost. If there are many data, some of their tiles are read for
+/// the estimate.
 ///
 /// # Errors
-/// When a file cannot be used, the files make no grid, or a setting does not fit them.
+/// When a file cannot be used, the files do not form a grid, or a setting does not match them.
 pub fn plan(
     settings: &PlanSettings,
     resources: Resources,
-    observer: &dyn Observer,
-) -> Result<(BuildPlan, Estimate), PlanError> {
+    observer: &dyn BuildObserver,
+) -> Result<(BuildPlan, BuildEstimate), PlanError> {
     MemoryShares::limit_raster_cache(resources)?;
     let opened = Opened::new(settings)?;
-    let estimate = Estimate::of(&opened, resources, observer)?;
-    Ok((BuildPlan::of(settings, &opened)?, estimate))
+    let estimate = BuildEstimate::from_opened(&opened, resources, observer)?;
+    Ok((BuildPlan::from_settings(settings, &opened)?, estimate))
 }
 
-/// Fails if memory or disk space cannot suffice. Intermediate results go to the first folder, where they take `held_bytes` already; the
-/// package goes to the second.
+/// Fails if memory or disk space are insufficient. Intermediate results are written to the first
+/// folder, where they already occupy `held_bytes`; the package is written to the second folder.
 ///
 /// # Errors
 /// See [`PlanError`].
@@ -51,8 +52,9 @@ pub fn check_room(
     resources: Resources,
     folders: [&Path; 2],
     held_bytes: u64,
-    observer: &dyn Observer,
+    observer: &dyn BuildObserver,
 ) -> Result<(), PlanError> {
-    let estimate = Estimate::of(opened, resources, observer)?;
-    enough_room::Room::of(resources.memory_bytes, folders, held_bytes)?.check(&estimate)
+    let estimate = BuildEstimate::from_opened(opened, resources, observer)?;
+    enough_room::AvailableSpace::measure(resources.memory_bytes, folders, held_bytes)?
+        .check(&estimate)
 }

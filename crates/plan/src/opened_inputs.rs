@@ -1,15 +1,15 @@
-//! The inputs of a build are opened, and what follows from them before any height is read is worked out.
+//! Opens the inputs of a build, and derives everything that is known before any height is read.
 
 use std::path::Path;
 
 use corniche_dem::{Dem, GridPlan};
 use corniche_geom::CoordinateTable;
-use corniche_gis::{DemProjection, FileDatums, Polygon};
+use corniche_gis::{DemProjection, FileDatums, RegionPolygons};
 use corniche_ground::terrain::{ground::GroundSource, recorded::RecordedTerrain};
 use corniche_ground::{TerrainError, photos::source::PhotoSource};
 use corniche_spec::{
     PlanSettings, TerrainSettings,
-    inputs::{Inputs, OtherInputs, PlannedInput},
+    inputs::{InputFiles, OtherInputs, PlannedInput},
     levels::{Levels, most_scale},
     settings_record, usual_max_error_m,
 };
@@ -18,15 +18,16 @@ use corniche_tileset::{InputKind, ReliefLevels};
 use super::{coordinates::coordinates, facts::terrain_differences};
 use crate::PlanError;
 
-/// Tolerances that the finest level can have. Outside this range a package cannot hold the root's tolerance or the height
-/// quantum.
+/// Tolerances that the finest level can have. Outside this range a package cannot hold the root's
+/// tolerance or the height quantum.
 const MAX_ERRORS_M: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 
-/// The inputs, opened, and what follows from them and from the settings before a height is read.
+/// The open inputs, with the values that follow from them and from the settings before a height is
+/// read.
 pub struct Opened {
-    /// All input files, as they were found.
-    pub inputs: Inputs,
-    /// Where the ground comes from.
+    /// All input files, in the state in which they were found.
+    pub inputs: InputFiles,
+    /// The source of the ground.
     pub source: GroundSource,
     /// The grid of nodes.
     pub grid: GridPlan,
@@ -42,7 +43,7 @@ pub struct Opened {
     pub photo: PhotoSource,
     /// Which levels have relief sections.
     pub relief: ReliefLevels,
-    /// How polygons and photos come to the datum of the grid.
+    /// How polygons and photos are transformed to the datum of the grid.
     pub file_datums: FileDatums,
 }
 
@@ -50,14 +51,14 @@ impl Opened {
     /// Opens the elevation files and plans the grid.
     ///
     /// # Errors
-    /// When a file cannot be used, the files make no grid, or a setting does not fit them.
+    /// When a file cannot be used, the files do not form a grid, or a setting does not match them.
     pub fn new(settings: &PlanSettings) -> Result<Self, PlanError> {
-        // The state of the files is noted before anything of them is read.
-        let polygon = settings.terrain.plan.polygon.as_ref().map(Polygon::path);
+        // The state of the files is recorded before any of them is read.
+        let polygon = settings.terrain.plan.polygon.as_ref().map(RegionPolygons::path);
         let others = OtherInputs { photo: settings.photo.files(), polygon, osm: &settings.osm };
         let mut inputs = match &settings.terrain_of {
-            Some(package) => Inputs::find_with_package(package, others)?,
-            None => Inputs::find(&settings.dem, others)?,
+            Some(package) => InputFiles::find_with_package(package, others)?,
+            None => InputFiles::find(&settings.dem, others)?,
         };
         let planned = match &settings.terrain_of {
             Some(package) => Self::recorded(settings, package),
@@ -110,13 +111,13 @@ impl Opened {
         Ok(planned.iter().filter(is_extract).map(|input| input.bytes).sum())
     }
 
-    /// The tolerance of the finest level as a share of the cell's shorter side.
+    /// The tolerance of the finest level as a fraction of the cell's shorter side.
     #[must_use]
     pub fn tolerance_cells(&self) -> f64 {
         self.max_error_m / self.grid.frame.cell().shorter_m()
     }
 
-    /// What follows from elevation files.
+    /// Derives the values from elevation files.
     fn plan(settings: &PlanSettings) -> Result<Planned, PlanError> {
         let terrain = &settings.terrain;
         let dem = Dem::open(&settings.dem, &terrain.open)?;
@@ -133,13 +134,18 @@ impl Opened {
         Ok(Planned { source: GroundSource::Dem(Box::new(dem)), grid, max_error_m, coordinates })
     }
 
-    /// What follows from a package whose terrain is taken.
+    /// Derives the values from a package whose terrain is reused.
     fn recorded(settings: &PlanSettings, package: &Path) -> Result<Planned, PlanError> {
         let terrain = RecordedTerrain::open(package, &settings.generator)?;
         let manifest = terrain.manifest();
         let max_error_m = settings.terrain.max_error_m.unwrap_or(manifest.settings.max_error_m);
-        let ours =
-            settings_record::of(&settings.terrain, &settings.roads, max_error_m, None, (None, &[]));
+        let ours = settings_record::record_settings(
+            &settings.terrain,
+            &settings.roads,
+            max_error_m,
+            None,
+            (None, false),
+        );
         let differences = terrain_differences(&ours, &manifest.settings);
         if !differences.is_empty() {
             let differences = differences.join("; ");
@@ -147,7 +153,7 @@ impl Opened {
         }
         let quantum_m = corniche_tin::height_quantum_m(max_error_m);
         if quantum_m.to_bits() != manifest.vertical.quantum_m.to_bits() {
-            return Err(terrain.damaged("its step of heights does not fit its settings").into());
+            return Err(terrain.damaged("its height step does not match its settings").into());
         }
         let coordinates = manifest.coordinates.clone();
         let mut grid = terrain.grid();
@@ -159,7 +165,7 @@ impl Opened {
     }
 }
 
-/// What is opened, without the inputs.
+/// The open inputs and the derived values, without the list of files.
 struct Planned {
     source: GroundSource,
     grid: GridPlan,

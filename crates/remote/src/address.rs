@@ -1,4 +1,4 @@
-//! Addresses of files on web servers, told without passwords.
+//! Addresses of files on web servers, displayed without passwords.
 
 use std::fmt;
 
@@ -8,18 +8,22 @@ use crate::AddressError;
 
 /// The address of a file on a web server: `http://…` or `https://…`.
 ///
-/// It may hold secrets: a user name and a password, or a question that is a signature. Neither `Display` nor `Debug` shows them.
+/// The address may contain secrets: a user name and a password, or a signature in the query.
+/// Neither `Display` nor `Debug` shows them.
 #[derive(Clone, PartialEq, Eq)]
 pub struct HttpAddress {
-    url: Url,
-    shown: String,
+    /// The URL for requests, with user name and password if there are some.
+    pub(crate) url: Url,
+    /// The address without secrets.
+    pub(crate) shown: String,
 }
 
 impl HttpAddress {
-    /// The address in a text that begins as one does; `None` for other texts, which are names of files.
+    /// Parses a text that begins like an address; returns `None` for other texts, which are file
+    /// names.
     ///
     /// # Errors
-    /// [`AddressError`] where it begins as an address and is none, or one that cannot be read.
+    /// [`AddressError`] for an invalid or unsupported address.
     pub fn parse(text: &str) -> Result<Option<Self>, AddressError> {
         let Some((scheme, _)) = text.split_once("://") else { return Ok(None) };
         let is_scheme_char = |c: char| c.is_ascii_alphanumeric() || matches!(c, '+' | '-' | '.');
@@ -42,29 +46,19 @@ impl HttpAddress {
         Ok(Some(Self { url, shown }))
     }
 
-    /// The last part of its path: the name of a file, most likely.
+    /// The last segment of the path, usually a file name.
     #[must_use]
     pub fn file_name(&self) -> &str {
         self.url.path().rsplit('/').find(|part| !part.is_empty()).unwrap_or(&self.shown)
     }
-
-    /// Where to ask, with user name and password if there are some.
-    pub(crate) fn url(&self) -> &Url {
-        &self.url
-    }
-
-    /// The address without secrets.
-    pub(crate) fn shown(&self) -> &str {
-        &self.shown
-    }
 }
 
-/// An address without user name, password and what follows a question mark, which may be a signature.
+/// An address without user name, password and query, which may contain a signature.
 pub(crate) fn shown(url: &Url) -> String {
     let mut clean = url.clone();
     clean.set_fragment(None);
     clean.set_query(None);
-    // These fail only for addresses without a host, which have neither.
+    // These calls fail only for addresses without a host, which have neither.
     let _ = clean.set_username("");
     let _ = clean.set_password(None);
     if url.query().is_some() { format!("{clean}?…") } else { clean.to_string() }

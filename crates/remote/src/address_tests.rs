@@ -1,4 +1,4 @@
-//! Addresses on web servers are told from file names, and secrets are not shown.
+//! Addresses on web servers are distinguished from file names, and secrets are not shown.
 
 use super::*;
 
@@ -26,8 +26,8 @@ fn addresses_are_told_from_names_of_files() {
 #[test]
 fn what_begins_as_an_address_and_cannot_be_read_is_refused() {
     for (text, said) in [
-        ("s3://maps/li.pmtiles", "not by s3://"),
-        ("ftp://maps.example/li.pmtiles", "not by ftp://"),
+        ("s3://maps/li.pmtiles", "not over s3://"),
+        ("ftp://maps.example/li.pmtiles", "not over ftp://"),
         ("http://", "empty host"),
         ("http://maps.example:port/x", "invalid port"),
         ("https://maps.example/x#part", "%23"),
@@ -37,7 +37,7 @@ fn what_begins_as_an_address_and_cannot_be_read_is_refused() {
     }
 }
 
-/// Messages, lists and pictures name the address.
+/// Messages, lists and images show the address.
 #[test]
 fn secrets_are_not_shown() {
     for text in [
@@ -49,7 +49,7 @@ fn secrets_are_not_shown() {
             assert!(!shown.contains("tell-nobody") && !shown.contains('@'), "{shown}");
             assert!(shown.contains("li.pmtiles"), "{shown}");
         }
-        assert!(address.url().as_str().contains("tell-nobody"), "the server is told");
+        assert!(address.url.as_str().contains("tell-nobody"), "the server is told");
     }
     let refused = [
         "https://me:tell-nobody@maps.example:x/li.pmtiles",

@@ -1,4 +1,4 @@
-//! What the head of an answer says, before any of its body is read.
+//! The head of an HTTP answer, before its body is read.
 
 use std::{ops::Range, time::Duration};
 
@@ -11,26 +11,27 @@ use reqwest::{
 
 use crate::HttpError;
 
-/// Which version of a file an answer is of: what must be the same in all answers.
+/// The version of the file in an answer, which must be the same in all answers.
 ///
-/// A weak `ETag` is compared like a strong one: it changes at the latest when the content does so that it matters. It is not sent to the
-/// server, which must not use it for ranges (RFC 9110, section 13.1.5).
+/// A weak `ETag` is compared like a strong one: it changes at the latest with a significant change
+/// of the content. It is not sent to the server, which must not use it for ranges (RFC 9110,
+/// section 13.1.5).
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Version {
     pub(crate) length: u64,
     etag: Option<String>,
-    /// Only where there is no `ETag`.
+    /// The modification date; only used if there is no `ETag`.
     modified: Option<String>,
 }
 
 impl Version {
-    fn of(headers: &HeaderMap, length: u64) -> Self {
+    fn from_headers(headers: &HeaderMap, length: u64) -> Self {
         let etag = text(headers, &ETAG);
         let modified = if etag.is_none() { text(headers, &LAST_MODIFIED) } else { None };
         Self { length, etag, modified }
     }
 
-    /// Fails if `now` is of another version than this one.
+    /// Fails if the version `now` differs from this one.
     pub(crate) fn check_same(&self, now: &Self) -> Result<(), HttpError> {
         let told = |value: &Option<String>| value.clone().unwrap_or_else(|| "none".to_owned());
         let what = if self.length != now.length {
@@ -46,7 +47,8 @@ impl Version {
     }
 }
 
-/// Checks the head of an answer to a request for a range. Gives the version of the file, and which of its bytes the body holds.
+/// Checks the head of an answer to a range request. Returns the version of the file, and the range
+/// of the file that the body contains.
 ///
 /// `asked` may end beyond the file.
 pub(crate) fn check(
@@ -58,7 +60,7 @@ pub(crate) fn check(
         let reason = status.canonical_reason().unwrap_or_default();
         format!("{} {reason}", status.as_u16()).trim_end().to_owned()
     };
-    // Before all else: it explains other oddities.
+    // This check comes first, because compression explains other oddities.
     if status.is_success()
         && let Some(encoding) = text(headers, &CONTENT_ENCODING)
         && !encoding.eq_ignore_ascii_case("identity")
@@ -73,17 +75,17 @@ pub(crate) fn check(
         408 | 425 | 429 | 500 | 502..=504 => {
             return Err(HttpError::Busy { status: told(), tries: 1 });
         }
-        // Nothing lies in this range: the file is empty, or has become shorter.
+        // The file has no bytes in this range: it is empty, or has become shorter.
         416 => {
             let length = text(headers, &CONTENT_RANGE)
                 .and_then(|range| range.strip_prefix("bytes */")?.parse().ok());
             let Some(length) = length.filter(|&length| length <= asked.start) else {
                 return Err(HttpError::Status { status: told() });
             };
-            return Ok((Version::of(headers, length), asked.start..asked.start));
+            return Ok((Version::from_headers(headers, length), asked.start..asked.start));
         }
         300..=399 => {
-            let why = format!("{}, without the address of another place", told());
+            let why = format!("{}, without a Location", told());
             return Err(HttpError::BadRedirection { why });
         }
         _ => return Err(HttpError::Status { status: told() }),
@@ -103,16 +105,17 @@ pub(crate) fn check(
     if first != asked.start || last.checked_add(1) != Some(end) {
         return Err(other());
     }
-    Ok((Version::of(headers, length), first..end))
+    Ok((Version::from_headers(headers, length), first..end))
 }
 
-/// How long a server asks to wait. A date in place of seconds is not understood; then the usual pause holds.
+/// The time that a server asks to wait (`Retry-After`). Dates are not supported; then the default
+/// pause applies.
 pub(crate) fn retry_after(headers: &HeaderMap) -> Option<Duration> {
     text(headers, &RETRY_AFTER)?.trim().parse().ok().map(Duration::from_secs)
 }
 
 fn text(headers: &HeaderMap, name: &HeaderName) -> Option<String> {
-    /// More would fill a message.
+    /// A longer text would fill a message.
     const LONGEST: usize = 200;
     let value = headers.get(name)?;
     let text = String::from_utf8_lossy(value.as_bytes());

@@ -1,4 +1,4 @@
-//! Answers of servers are taken only if they are the range and the version that were asked for.
+//! Answers of servers are accepted only if they have the requested range and version.
 
 use reqwest::header::HeaderValue;
 
@@ -17,7 +17,7 @@ fn checked(
 fn a_range_is_taken_as_it_was_asked_for_and_no_other() {
     let range = |value| checked(206, &[(CONTENT_RANGE, value)], 100..200);
     assert_eq!(range("bytes 100-199/1000").unwrap().1, 100..200);
-    // The file ends there.
+    // The end of the range is the end of the file.
     assert_eq!(range("bytes 100-149/150").unwrap().1, 100..150);
     for wrong in [
         "bytes 0-99/1000",

@@ -1,4 +1,4 @@
-//! Packages on web servers: bytes by HTTP range requests, for threads that wait.
+//! Packages on web servers: reads bytes by HTTP range requests, for threads that block.
 //!
 //! ```text
 //!   PackagePlace ── a file ───────────────────────────────────────────► FileSource ──► FilePackage
@@ -6,12 +6,13 @@
 //!                                          (kept, read ahead)   (checked, tried again)
 //! ```
 //!
-//! What is read comes in blocks of 64 KiB, and those that were used last are kept. Where reads follow each other, more and more is read
-//! ahead, so that neighbouring ranges become one request. What fails for a moment is tried again, with growing pauses. Every answer is
-//! checked: the range that was asked for, of the same version of the same file, as it is. What is not so is an error that says what to do,
-//! and holds no secret.
+//! Files are read in blocks of 64 KiB, and the most recently used blocks are cached. Sequential
+//! reads are read ahead, farther and farther, so that neighbouring ranges become one request.
+//! Temporary failures are retried, with growing pauses. Every answer is checked: it must contain
+//! the requested range, uncompressed, of the same version of the file. Otherwise the error says
+//! what to do, and contains no secret.
 //!
-//! This crate never writes, keeps nothing on disk, and knows no tile.
+//! This crate never writes, stores nothing on disk, and does not know tiles.
 
 mod address;
 mod answer;
@@ -27,7 +28,7 @@ mod web;
 pub use address::HttpAddress;
 pub use error::{AddressError, HttpError};
 pub use package_place::PackagePlace;
-pub use requests::Requests;
+pub use requests::ServerRequests;
 pub use secrets::without_secrets;
 pub use settings::HttpSettings;
 pub use source::HttpSource;

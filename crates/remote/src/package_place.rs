@@ -1,4 +1,4 @@
-//! Where a package is: in a file or at an address on a web server.
+//! The location of a package: a file, or an address on a web server.
 
 use std::{
     ffi::OsString,
@@ -8,7 +8,7 @@ use std::{
 
 use crate::{AddressError, HttpAddress};
 
-/// Where a package is: a file, or an address on a web server.
+/// The location of a package: a file, or an address on a web server.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PackagePlace {
     /// A file.
@@ -18,22 +18,22 @@ pub enum PackagePlace {
 }
 
 impl PackagePlace {
-    /// The place that a word of the command line names. What begins like `http://` is an address, whether a file is called so or not
-    /// (`./http://…` is the file).
+    /// Parses an argument of the command line. A text that begins like `http://` is an address,
+    /// even if a file has this name (the file is `./http://…`).
     ///
     /// # Errors
-    /// [`AddressError`] for addresses that cannot be read.
+    /// [`AddressError`] for invalid or unsupported addresses.
     pub fn parse(word: OsString) -> Result<Self, AddressError> {
         let address = word.to_str().map(HttpAddress::parse).transpose()?.flatten();
         Ok(address.map_or_else(|| Self::File(word.into()), Self::Address))
     }
 
-    /// The path of the file, or what stands for it: the address without secrets.
+    /// The path of the file, or the address without secrets in place of a path.
     #[must_use]
     pub fn name(&self) -> &Path {
         match self {
             Self::File(path) => path,
-            Self::Address(address) => Path::new(address.shown()),
+            Self::Address(address) => Path::new(&address.shown),
         }
     }
 

@@ -1,4 +1,4 @@
-//! One range of a file: asked for, checked, asked for again.
+//! Requests one range of a file, checks the answer, and retries.
 
 use std::{
     error::Error,
@@ -19,22 +19,8 @@ use tokio::{runtime::Runtime, time::timeout};
 use crate::{
     HttpAddress, HttpError, HttpSettings,
     answer::{self, Version},
-    requests::Counter,
+    requests::RequestCounter,
 };
-
-/// A server may redirect so often.
-pub(crate) const MOST_REDIRECTIONS: usize = 10;
-
-/// Why a redirection is not followed.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum Redirection {
-    #[error("a circle")]
-    Circle { to: String },
-    #[error("too many")]
-    TooMany,
-    #[error("unprotected")]
-    Unprotected { to: String },
-}
 
 /// The ranges of one file on a web server.
 #[derive(Debug)]
@@ -42,15 +28,17 @@ pub(crate) struct Ranges {
     client: Client,
     runtime: Arc<Runtime>,
     settings: HttpSettings,
-    address: HttpAddress,
-    /// Where redirections led, so that each range takes one request. Such places may be valid for minutes only.
+    pub(crate) address: HttpAddress,
+    /// The target of redirections, so that each range takes one request. A target may be valid for
+    /// minutes only.
     redirected: Mutex<Option<Url>>,
-    /// All tries of the last request failed. Until one succeeds, each has one try: waiting was of no use.
+    /// Whether all tries of the last request failed. Until a request succeeds, each has only one
+    /// try, since waiting did not help.
     is_down: AtomicBool,
-    pub(crate) counter: Counter,
+    pub(crate) counter: RequestCounter,
 }
 
-/// A request that failed, and how long the server asks to wait.
+/// A failed request, and the time that the server asks to wait.
 struct Failed {
     error: HttpError,
     wait: Option<Duration>,
@@ -70,15 +58,12 @@ impl Ranges {
         address: HttpAddress,
     ) -> Self {
         let (redirected, is_down) = (Mutex::default(), AtomicBool::new(false));
-        let counter = Counter::default();
+        let counter = RequestCounter::default();
         Self { client, runtime, settings, address, redirected, is_down, counter }
     }
 
-    pub(crate) fn address(&self) -> &HttpAddress {
-        &self.address
-    }
-
-    /// Bytes of the file, all that there are of `asked`, and of which version they are: of `known`, if it is given.
+    /// Returns the bytes of the file in `asked` up to its end, and their version, which must be
+    /// `known` if that is given.
     pub(crate) fn get(
         &self,
         asked: &Range<u64>,
@@ -89,7 +74,7 @@ impl Ranges {
         let mut tries = 0;
         loop {
             let redirected = self.redirected().clone();
-            let url = redirected.as_ref().unwrap_or(self.address.url());
+            let url = redirected.as_ref().unwrap_or(&self.address.url);
             let got = self.runtime.block_on(self.in_time(url, asked, known));
             let Failed { error, wait } = match got {
                 Ok(got) => {
@@ -103,7 +88,8 @@ impl Ranges {
                 HttpError::Missing { .. } | HttpError::Refused { .. } | HttpError::Status { .. }
             );
             tries += 1;
-            // Where a redirection led may be over, or down, while the address itself leads elsewhere by now.
+            // The target of a redirection may have expired or be down, and the address itself may
+            // lead elsewhere by now.
             if redirected.is_some() {
                 *self.redirected() = None;
                 if is_denied && tries <= retries.max(1) {
@@ -133,7 +119,7 @@ impl Ranges {
         self.redirected.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Does the same as `once`, and ends it where the server is too slow.
+    /// Does the same as `once`, with a time limit for slow servers.
     async fn in_time(
         &self,
         url: &Url,
@@ -161,17 +147,18 @@ impl Ranges {
         let mut response = request.send().await.map_err(explain)?;
         let (version, range) = answer::check(response.status(), response.headers(), asked)
             .map_err(|error| Failed { error, wait: answer::retry_after(response.headers()) })?;
-        // Before the body: then nothing more of another version is read.
+        // The check comes before the body: no more bytes of another version are read.
         known.map_or(Ok(()), |known| known.check_same(&version))?;
         let length = (range.end - range.start) as usize;
         if length == 0 {
-            // Nothing lies there. A server may send words with that.
+            // The file has no bytes there. A server may send a text with this status.
             return Ok((version, Bytes::new()));
         }
         let said = response.content_length();
         let mut body = BytesMut::with_capacity(length);
         while body.len() < length {
-            // By what has come so far, not by what is still to come: a large answer that drips ends as soon as a small one.
+            // The limit depends on the bytes received so far, not on those to come: a large answer
+            // that drips ends as soon as a small one.
             let within = self.settings.longest(body.len() as u64);
             let least = self.settings.least_bytes_per_second;
             let left = within.saturating_sub(begun.elapsed());
@@ -181,7 +168,7 @@ impl Ranges {
             self.counter.received(chunk.len());
             body.extend_from_slice(&chunk);
         }
-        // A body that goes on is told, and so is one that its own header says to be longer.
+        // A body that is longer than expected is an error, whether or not its header says so.
         let is_more = match said {
             Some(said) => said > length as u64,
             None => response.chunk().await.map_err(explain)?.is_some_and(|more| !more.is_empty()),
@@ -193,7 +180,7 @@ impl Ranges {
         if body.len() < length {
             return Err(HttpError::Short { asked, got: body.len() as u64, tries: 1 }.into());
         }
-        // The library takes user name and password out of the address that it tells.
+        // The library removes user name and password from the address that it reports.
         let came_from = self.with_credentials(response.url().clone());
         if came_from != *url {
             *self.redirected() = Some(came_from);
@@ -201,34 +188,28 @@ impl Ranges {
         Ok((version, body.freeze()))
     }
 
-    /// The address that a redirection led to, with user name and password if it is on the same server.
+    /// The target of a redirection, with user name and password if it is on the same server.
     fn with_credentials(&self, mut to: Url) -> Url {
-        let own = self.address.url();
+        let own = &self.address.url;
         if to.origin() == own.origin() {
-            // These fail only for addresses without a host.
+            // These calls fail only for addresses without a host.
             let _ = to.set_username(own.username());
             let _ = to.set_password(own.password());
         }
         to
     }
 
-    /// What an error of the library means.
+    /// Translates an error of the library.
     fn explain(&self, error: reqwest::Error) -> HttpError {
-        // It would show secrets.
+        // The address would show secrets.
         let error = error.without_url();
         let HttpSettings { connect_timeout, idle_timeout, .. } = self.settings;
         let reason = last_cause(&error);
         if error.is_redirect() {
-            return match find::<Redirection>(&error) {
-                Some(Redirection::Circle { to }) => HttpError::Circle { to: to.clone() },
-                Some(Redirection::TooMany) => {
-                    HttpError::TooManyRedirections { most: MOST_REDIRECTIONS }
-                }
-                Some(Redirection::Unprotected { to }) => HttpError::Unprotected { to: to.clone() },
-                None => HttpError::BadRedirection { why: reason },
-            };
+            let refused = find::<HttpError>(&error).cloned();
+            return refused.unwrap_or(HttpError::BadRedirection { why: reason });
         }
-        // A scheme that is not HTTP, say; our own addresses were checked.
+        // For example a scheme other than HTTP in a redirection; our own addresses were checked.
         if error.is_builder() {
             return HttpError::BadRedirection { why: reason };
         }
@@ -249,7 +230,7 @@ impl Ranges {
         if kinds.map(io::Error::kind).any(|kind| kind == io::ErrorKind::ConnectionRefused) {
             return HttpError::NobodyListens;
         }
-        // The library has no kind for it.
+        // The library has no kind for this error.
         let is_of_name = causes(&error).any(|cause| cause.to_string().contains("dns error"));
         if is_of_name {
             HttpError::UnknownHost { reason }
@@ -267,7 +248,8 @@ fn find<'a, T: Error + 'static>(error: &'a (dyn Error + 'static)) -> Option<&'a 
     causes(error).find_map(<dyn Error>::downcast_ref)
 }
 
-/// What TLS says, which may be wrapped in errors of input and output, which do not name what they wrap as their source.
+/// The error of TLS. It may be wrapped in I/O errors, which do not return what they wrap as their
+/// source.
 fn tls_error<'a>(error: &'a (dyn Error + 'static)) -> Option<&'a rustls::Error> {
     let wrapped = |cause: &'a (dyn Error + 'static)| -> Option<&'a (dyn Error + 'static)> {
         let inner = cause.downcast_ref::<io::Error>()?.get_ref()?;
@@ -276,7 +258,7 @@ fn tls_error<'a>(error: &'a (dyn Error + 'static)) -> Option<&'a rustls::Error> 
     causes(error).find_map(|cause| cause.downcast_ref().or_else(|| tls_error(wrapped(cause)?)))
 }
 
-/// What lies at the bottom of an error, which says most.
+/// The innermost cause of an error, which says most.
 fn last_cause(error: &(dyn Error + 'static)) -> String {
     causes(error).last().map(ToString::to_string).unwrap_or_default()
 }

@@ -1,21 +1,22 @@
-//! Texts in which addresses stand, whoever wrote them, without user names, passwords and signatures.
+//! Removes user names, passwords and signatures from addresses in any text.
 
 use std::borrow::Cow;
 
-/// What stands in place of a secret.
+/// The replacement of a secret.
 const HIDDEN: char = '…';
 
-/// Schemes of addresses of people, which have no password.
+/// Schemes of personal addresses, which have no password.
 const OF_PEOPLE: [&str; 5] = ["mailto:", "acct:", "sip:", "sips:", "xmpp:"];
 
-/// Where an address stands in a text: where its scheme begins, and where it goes on behind the scheme and its slashes.
-struct Found {
+/// An address found in a text: the start of its scheme, and the position after the scheme and its
+/// slashes.
+struct FoundAddress {
     scheme: usize,
     begin: usize,
 }
 
-/// A text without what stands before the `@` of an address, or behind its question mark: what a server redirects to, what a library says, what
-/// a person has typed and mistyped (`http:/…`).
+/// Removes what precedes the `@` of an address and what follows its question mark, from any text:
+/// targets of redirections, messages of libraries, and typed text with mistakes (`http:/…`).
 #[must_use]
 pub fn without_secrets(text: &str) -> Cow<'_, str> {
     let mut clean = String::new();
@@ -29,7 +30,8 @@ pub fn without_secrets(text: &str) -> Cow<'_, str> {
     if clean == text { Cow::Borrowed(text) } else { Cow::Owned(clean) }
 }
 
-/// Adds a text in which `name:password@host` may stand without a scheme, as libraries tell of connections.
+/// Adds a text that may contain `name:password@host` without a scheme, as in libraries' messages
+/// about connections.
 fn hide_without_scheme(text: &str, clean: &mut String) {
     let is_outside = |c: char| is_end(c) || matches!(c, '(' | ')' | '[' | ']' | ',' | '/' | '\\');
     let mut rest = text;
@@ -57,7 +59,8 @@ fn has_password(word: &str) -> bool {
     !ends_in_time(name, password)
 }
 
-/// Whether a word, parted at its first colon, ends in a time, as names of files do (`2026-01-01T12:30`).
+/// Whether a word, split at its first colon, ends in a time, like some file names
+/// (`2026-01-01T12:30`).
 fn ends_in_time(before: &str, after: &str) -> bool {
     let date = before.trim_end_matches(|c: char| c.is_ascii_digit());
     let hours = before.len() - date.len();
@@ -67,7 +70,7 @@ fn ends_in_time(before: &str, after: &str) -> bool {
     matches!(hours, 1 | 2) && is_separated && whole_seconds.split(':').all(is_pair)
 }
 
-/// Whether a text begins with what can only be a host: it has a dot, a port or a path.
+/// Whether a text begins with something that can only be a host: it has a dot, a port or a path.
 fn begins_with_host(text: &str) -> bool {
     let is_name = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '-');
     let length = text.find(|c| !is_name(c)).unwrap_or(text.len());
@@ -84,23 +87,23 @@ fn is_number(text: &str) -> bool {
     text.bytes().all(|c| c.is_ascii_digit())
 }
 
-/// Whether an address ends before this.
+/// Whether this character ends an address.
 fn is_end(c: char) -> bool {
     c.is_whitespace() || matches!(c, '"' | '\'' | '<' | '>' | '`')
 }
 
-/// Whether user name, password and host end before this.
+/// Whether this character ends user name, password and host.
 fn ends_host(c: char) -> bool {
     is_end(c) || matches!(c, '/' | '\\' | '?' | '#')
 }
 
-/// The letters and digits before a place in a text.
+/// The letters and digits before a position in a text.
 fn scheme_before(text: &str, at: usize) -> &str {
     text[..at].rsplit(|c: char| !c.is_ascii_alphanumeric()).next().unwrap_or_default()
 }
 
-/// The first address in a text, also a mistyped one.
-fn address_in(text: &str) -> Option<Found> {
+/// The first address in a text, even a mistyped one.
+fn address_in(text: &str) -> Option<FoundAddress> {
     let is_slash = |c: char| matches!(c, '/' | '\\');
     let mut from = 0;
     loop {
@@ -111,34 +114,35 @@ fn address_in(text: &str) -> Option<Found> {
         let (scheme, begin) = (at - name.len(), at + length);
         let is_web = name.eq_ignore_ascii_case("http") || name.eq_ignore_ascii_case("https");
         let is_address = if run.starts_with(':') {
-            // A drive of Windows is one letter.
+            // A single letter is a drive of Windows.
             is_web || (name.len() > 1 && run[..length].contains(is_slash))
         } else {
-            // Folders are called so, too.
+            // Some folders have such names, too.
             let is_word = !text[..scheme].ends_with(['/', '\\', '.', '-', '_', ':', '~']);
             let host = text[begin..].split(ends_host).next().unwrap_or_default();
             is_web && is_word && (length > 1 || host.contains(':'))
         };
         if is_address {
-            return Some(Found { scheme, begin });
+            return Some(FoundAddress { scheme, begin });
         }
         from = begin;
     }
 }
 
-/// The first address that begins in an address or behind it.
-fn further_address_in(text: &str) -> Option<Found> {
+/// The first address that begins inside or after another one.
+fn further_address_in(text: &str) -> Option<FoundAddress> {
     let mut marks = text.match_indices("://");
     marks.find_map(|(at, mark)| {
         let name = scheme_before(text, at);
         let scheme = at - name.len();
-        // Behind a colon it is part of a password.
+        // After a colon it is part of a password.
         let is_address = name.len() > 1 && !text[..scheme].ends_with(':');
-        is_address.then_some(Found { scheme, begin: at + mark.len() })
+        is_address.then_some(FoundAddress { scheme, begin: at + mark.len() })
     })
 }
 
-/// Adds an address, from its user name or host on, without secrets, and those that stand in it; the answer is what follows.
+/// Adds an address from its user name or host on, without secrets, and the addresses inside it.
+/// Returns the rest of the text.
 fn hide<'a>(text: &'a str, clean: &mut String) -> &'a str {
     let mut rest = text;
     loop {
@@ -152,13 +156,13 @@ fn hide<'a>(text: &'a str, clean: &mut String) -> &'a str {
         let end = from + address_length(&rest[from..]);
         let question = rest[from..end].find('?').map(|at| from + at);
         match further {
-            Some(Found { scheme, begin }) if scheme < question.unwrap_or(end) => {
+            Some(FoundAddress { scheme, begin }) if scheme < question.unwrap_or(end) => {
                 clean.push_str(&rest[from..begin]);
                 rest = &rest[begin..];
             }
             _ => {
                 match question {
-                    // That may be a signature. A sentence can end in a question mark, too.
+                    // The query may be a signature. A sentence can end in a question mark, too.
                     Some(question) if question + 1 < end => {
                         clean.push_str(&rest[from..=question]);
                         clean.push(HIDDEN);
@@ -171,14 +175,14 @@ fn hide<'a>(text: &'a str, clean: &mut String) -> &'a str {
     }
 }
 
-/// How long an address is that a text begins with.
+/// The length of the address at the beginning of a text.
 fn address_length(text: &str) -> usize {
     let end = text.find(is_end).unwrap_or(text.len());
-    // In JSON a backslash before a quotation mark belongs to that.
+    // In JSON, a backslash before a quotation mark belongs to the quotation mark.
     text[..end].trim_end_matches('\\').len()
 }
 
-/// Where in an address the `@` is behind user name and password.
+/// The position of the `@` after user name and password in an address.
 fn secret_in(address: &str) -> Option<usize> {
     let host = address.split(ends_host).next().unwrap_or_default();
     if let Some(at) = host.rfind('@') {
@@ -187,20 +191,22 @@ fn secret_in(address: &str) -> Option<usize> {
     if !is_cut(host) {
         return behind_number(address, host);
     }
-    // A password with a slash, a blank or a quotation mark in it would have to be written otherwise, but may have been typed so.
+    // A slash, a blank or a quotation mark in a password should be escaped, but may have been typed
+    // unescaped.
     let length = address_length(address);
     address[..length].rfind('@').or_else(|| next_at(address, length))
 }
 
-/// Whether what should be a host is a name and the begin of a password.
+/// Whether a supposed host is a name and the beginning of a password.
 fn is_cut(host: &str) -> bool {
     let bare = host.trim_end_matches([',', ';', '.', ':', '!', ')', ']']);
     let port = if host.starts_with('[') { bare.rsplit_once("]:") } else { bare.split_once(':') };
     port.is_some_and(|(_, port)| !is_number(port))
 }
 
-/// The `@` behind a password of digits and a blank, such as `me:12 34@host`. A host may have such a port, but seldom is a word with an `@` among
-/// the next three, and of a host with a dot it is a person's address then.
+/// The position of the `@` after a password of digits and a blank, such as `me:12 34@host`. A host
+/// may have such a port, but a word with an `@` is rarely among the next three, and after a host
+/// with a dot it is a person's address.
 fn behind_number(address: &str, host: &str) -> Option<usize> {
     let (name, port) = host.split_once(':')?;
     let is_host = name.is_empty() || name == "localhost" || name.contains('[');
@@ -217,8 +223,9 @@ fn behind_number(address: &str, host: &str) -> Option<usize> {
     (is_near && !(name.contains('.') && is_of_person(between, &address[at + 1..]))).then_some(at)
 }
 
-/// Whether what stands around an `@` is a person's address and no end of a password and a host: its name begins with a letter, the host has a
-/// dot and nothing behind it, and no quotation mark that was set before the name ends there.
+/// Whether the text around an `@` is a person's address, and not the end of a password and a host:
+/// the name begins with a letter, the host has a dot and nothing after it, and no quotation that
+/// began before the name ends there.
 fn is_of_person(before: &str, after: &str) -> bool {
     let name = before.rsplit(is_end).next().unwrap_or_default();
     let is_of_host = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '-');
@@ -229,7 +236,7 @@ fn is_of_person(before: &str, after: &str) -> bool {
         && !behind.starts_with(|c| matches!(c, '/' | ':' | '?' | '#' | '\\') || closes(c))
 }
 
-/// The `@` before the next host in the same line, and in JSON in the same text.
+/// The position of the `@` before the next host in the same line, and in JSON in the same string.
 fn next_at(text: &str, from: usize) -> Option<usize> {
     let line = text[from..].lines().next()?;
     let ends_text = |&(at, _): &(usize, &str)| {

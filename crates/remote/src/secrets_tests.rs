@@ -1,4 +1,4 @@
-//! No secret of an address is left in a text, and other texts stay as they are.
+//! No secret of an address is left in a text, and other texts are unchanged.
 
 use super::*;
 

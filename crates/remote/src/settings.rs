@@ -1,26 +1,28 @@
-//! How long requests wait and how often they are tried again.
+//! Timeouts and retries of requests.
 
 use std::time::Duration;
 
-/// How patient requests are.
+/// The timeouts and retries of requests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct HttpSettings {
-    /// The most tries after the first one, of a request that failed for a moment.
+    /// The largest number of retries of a request that failed temporarily.
     pub retries: u32,
-    /// The pause before the first of them; each later one is twice as long.
+    /// The pause before the first retry; each later pause is twice as long.
     pub first_pause: Duration,
-    /// The longest time that a server may ask for (`Retry-After`). One that asks for more is not waited for.
+    /// The longest accepted `Retry-After`. A server that requests a longer pause is not waited for.
     pub longest_pause: Duration,
-    /// Time to connect.
+    /// The time limit for connecting.
     pub connect_timeout: Duration,
-    /// Time without a byte, while an answer is awaited or read.
+    /// The time limit without a byte, before and during an answer.
     pub idle_timeout: Duration,
-    /// The least bytes a second, on average over an answer: what is slower ends, however often a byte comes.
+    /// The lowest average transfer rate of an answer, in bytes per second: a slower answer is
+    /// ended, even if bytes keep arriving.
     pub least_bytes_per_second: u64,
 }
 
 impl HttpSettings {
-    /// The longest time of a request for so many bytes: twice that of a pause, for the head and for a pause on the way, and what the bytes take.
+    /// The time limit of a request for this many bytes: twice `idle_timeout`, for the head
+    /// and for one pause in between, plus the time for the bytes.
     pub(crate) fn longest(&self, bytes: u64) -> Duration {
         let share = bytes as f64 / self.least_bytes_per_second.max(1) as f64;
         self.idle_timeout * 2 + Duration::from_secs_f64(share)
@@ -28,7 +30,7 @@ impl HttpSettings {
 }
 
 impl Default for HttpSettings {
-    /// Pauses of 6 seconds in all, unless the server asks for more.
+    /// Pauses of 6 seconds in all, unless the server requests more.
     fn default() -> Self {
         Self {
             retries: 5,

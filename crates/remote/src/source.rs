@@ -1,34 +1,37 @@
-//! The bytes of a file on a web server, for readers that wait for them.
+//! The bytes of a file on a web server, for readers that block.
 
 use std::sync::{Mutex, OnceLock, PoisonError};
 
 use bytes::Bytes;
-use corniche_blocks::{BlockCache, Limits};
+use corniche_blocks::{BlockCache, CacheLimits};
 use corniche_tileset::{BlockingSource, SourceError};
 
-use crate::{HttpAddress, HttpError, Requests, answer::Version, range::Ranges};
+use crate::{HttpAddress, HttpError, ServerRequests, answer::Version, range::Ranges};
 
-/// Bytes of a block; the last one of a file has fewer.
+/// Bytes per block; the last block of a file has fewer.
 ///
-/// The first one holds header, root directory and manifest of most packages, so one request opens them. In the packages that were measured
-/// a tile has 10 to 350 kB. With smaller blocks a picture takes more requests, with larger ones more bytes (`docs/lab/remote.md`).
+/// The first block contains header, root directory and manifest of most packages, so that one
+/// request opens them. In the measured packages, a tile has 10 to 350 kB. With smaller blocks an
+/// image takes more requests, with larger ones more bytes (`docs/lab/remote.md`).
 const BLOCK_BYTES: u64 = 64 << 10;
-/// A request has 4 MiB at most, a second at 32 Mbit/s.
-const LIMITS: Limits = Limits { block_bytes: BLOCK_BYTES, kept_bytes: 64 << 20, most_blocks: 64 };
-/// The one file of its cache.
+/// A request has at most 4 MiB, which takes a second at 32 Mbit/s.
+const LIMITS: CacheLimits =
+    CacheLimits { block_bytes: BLOCK_BYTES, kept_bytes: 64 << 20, most_blocks: 64 };
+/// The number of the only file in its cache.
 const FILE: u64 = 0;
 
-/// The bytes of a file on a web server. Threads wait for them, and many may do so at once.
+/// The bytes of a file on a web server. Reads block, and many threads can read at once.
 ///
-/// All bytes are of the version of the file that the first answer had. If that changes, all further reads fail.
+/// All bytes belong to the version of the file in the first answer. If the version changes, all
+/// further reads fail.
 #[derive(Debug)]
 pub struct HttpSource {
     ranges: Ranges,
     blocks: BlockCache,
     version: OnceLock<Version>,
-    /// Held by the one that asks first.
+    /// The lock for the first request.
     first: Mutex<()>,
-    /// The file is another one now.
+    /// The error after the file has changed.
     changed: OnceLock<HttpError>,
 }
 
@@ -43,25 +46,25 @@ impl HttpSource {
         }
     }
 
-    /// Where it is.
+    /// The address of the file.
     #[must_use]
     pub fn address(&self) -> &HttpAddress {
-        self.ranges.address()
+        &self.ranges.address
     }
 
-    /// What was asked of the server so far.
+    /// The traffic of the server so far.
     #[must_use]
-    pub fn requests(&self) -> Requests {
+    pub fn requests(&self) -> ServerRequests {
         self.ranges.counter.so_far()
     }
 
-    /// How many bytes the file has, if that is known already.
+    /// The length of the file in bytes, if it is already known.
     #[must_use]
     pub fn known_length(&self) -> Option<u64> {
         self.version.get().map(|version| version.length)
     }
 
-    /// The version of the file: of the first block, which is kept.
+    /// The version of the file, from its first block, which is cached.
     fn version(&self) -> Result<&Version, HttpError> {
         if let Some(version) = self.version.get() {
             return Ok(version);
@@ -76,7 +79,7 @@ impl HttpSource {
             found = Some(version);
             Ok::<Bytes, HttpError>(bytes)
         })?;
-        // The first block can only be there if it was fetched here.
+        // The first block can only be cached if it was fetched here.
         let version =
             found.ok_or_else(|| HttpError::Setup { what: "no first block".to_owned() })?;
         Ok(self.version.get_or_init(|| version))
@@ -94,7 +97,7 @@ impl HttpSource {
             }
             let got = self.ranges.get(&asked, Some(version)).inspect_err(|error| {
                 if matches!(error, HttpError::Changed { .. }) {
-                    // Another thread may have seen it first.
+                    // Another thread may have noticed the change first.
                     let _ = self.changed.set(error.clone());
                 }
             });
@@ -109,11 +112,11 @@ impl BlockingSource for HttpSource {
         let version = self.version();
         version
             .map(|version| version.length)
-            .map_err(|error| error.of_source(self.address().shown(), 0, 0))
+            .map_err(|error| error.of_source(&self.address().shown, 0, 0))
     }
 
     fn read(&self, offset: u64, length: usize) -> Result<Vec<u8>, SourceError> {
         self.bytes(offset, length)
-            .map_err(|error| error.of_source(self.address().shown(), offset, length))
+            .map_err(|error| error.of_source(&self.address().shown, offset, length))
     }
 }

@@ -11,12 +11,14 @@ use reqwest::{
 use tokio::runtime::{Builder, Runtime};
 
 use crate::{
-    HttpAddress, HttpError, HttpSettings, HttpSource, PackagePlace,
-    address::shown,
-    range::{MOST_REDIRECTIONS, Ranges, Redirection},
+    HttpAddress, HttpError, HttpSettings, HttpSource, PackagePlace, address::shown, range::Ranges,
 };
 
-/// What asks web servers: connections, which are kept for a while, and a thread that waits for the network.
+/// The largest number of redirections.
+const MOST_REDIRECTIONS: usize = 10;
+
+/// The client for web servers: connections, which are kept open for a while, and a thread that
+/// waits for the network.
 #[derive(Debug, Clone)]
 pub struct Web {
     client: Client,
@@ -25,12 +27,14 @@ pub struct Web {
 }
 
 impl Web {
-    /// Nothing is asked of any server yet. Proxies are those of the environment (`HTTP_PROXY`, `HTTPS_PROXY`, `NO_PROXY`).
+    /// Creates the client without any request. Proxies are taken from the environment
+    /// (`HTTP_PROXY`, `HTTPS_PROXY`, `NO_PROXY`).
     ///
     /// # Errors
     /// [`HttpError::Setup`].
     pub fn new(settings: HttpSettings) -> Result<Self, HttpError> {
-        // A second client in this process that chose otherwise is as good: then this does nothing.
+        // If a second client in this process has chosen another provider, it works as well: then
+        // this call does nothing.
         let _ = rustls::crypto::ring::default_provider().install_default();
         let setup = |error: &dyn std::fmt::Display| HttpError::Setup { what: error.to_string() };
         let runtime = Builder::new_multi_thread()
@@ -40,7 +44,7 @@ impl Web {
             .build()
             .map_err(|error| setup(&error))?;
         let mut headers = HeaderMap::new();
-        // Ranges must be those of the file itself.
+        // Compression is off, because ranges must be those of the file itself.
         headers.insert(ACCEPT_ENCODING, HeaderValue::from_static("identity"));
         let HttpSettings { connect_timeout, idle_timeout, .. } = settings;
         let client = Client::builder()
@@ -59,7 +63,7 @@ impl Web {
         Ok(Self { client, runtime: Arc::new(runtime), settings })
     }
 
-    /// The bytes at an address. Nothing is asked of the server yet.
+    /// Returns the bytes at an address, without any request to the server.
     #[must_use]
     pub fn source(&self, address: &HttpAddress) -> HttpSource {
         let Self { client, runtime, settings } = self.clone();
@@ -69,7 +73,7 @@ impl Web {
     /// Opens the package at a place.
     ///
     /// # Errors
-    /// As [`FilePackage::open`].
+    /// The errors of [`FilePackage::open`].
     pub fn open(&self, place: &PackagePlace) -> Result<FilePackage, OpenError> {
         match place {
             PackagePlace::File(path) => FilePackage::open(path),
@@ -82,16 +86,16 @@ impl Web {
     }
 }
 
-/// Whether a redirection is followed.
+/// Decides whether a redirection is followed.
 fn follow(attempt: Attempt<'_>) -> reqwest::redirect::Action {
     let to = attempt.url();
     let is_http = |url: &Url| url.scheme() == "http";
     let refusal = if attempt.previous().contains(to) {
-        Redirection::Circle { to: shown(to) }
+        HttpError::Circle { to: shown(to) }
     } else if attempt.previous().len() > MOST_REDIRECTIONS {
-        Redirection::TooMany
+        HttpError::TooManyRedirections { most: MOST_REDIRECTIONS }
     } else if is_http(to) && attempt.previous().last().is_some_and(|from| !is_http(from)) {
-        Redirection::Unprotected { to: shown(to) }
+        HttpError::Unprotected { to: shown(to) }
     } else {
         return attempt.follow();
     };

@@ -2,22 +2,26 @@
 
 use std::num::{NonZeroU8, NonZeroU32};
 
+use corniche_varints::{push_bytes, push_varint, take_array, take_number, take_text};
+
 use crate::{Form, Oneway, RoadAttributes, Structure};
 
-/// Attributes as numbers and texts, for whoever writes them as bytes in an encoding of its own. Each field stands in one list here, and in
-/// [`RoadAttributes::from_parts`]; both do not compile until a new one is added.
+/// Road attributes as numbers and texts, for code that writes them as bytes in its own encoding.
+/// Each field is in one list here and in one in [`RoadAttributes::from_parts`]; neither compiles
+/// until a new field is added.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AttributeParts<'a> {
-    /// Form, structure, layer, oneway and lanes; 0 lanes where there are none.
+    /// The numbers of form, structure, layer and oneway, and the number of lanes, which is 0 if it
+    /// is unknown.
     pub codes: [u8; 5],
-    /// Millimetres, 0 where there is no width.
+    /// The width in millimetres; 0 if it is unknown.
     pub width_mm: u32,
     /// Name, reference, surface, highway, speed limit, `sac_scale` and tracktype.
     pub texts: [&'a str; 7],
 }
 
 impl RoadAttributes {
-    /// The attributes as numbers and texts.
+    /// Returns the attributes as numbers and texts.
     #[must_use]
     pub fn parts(&self) -> AttributeParts<'_> {
         let Self {
@@ -43,8 +47,8 @@ impl RoadAttributes {
         }
     }
 
-    /// The attributes of which these are the parts; `next_text` gives the texts in their order. `None` where a code has no meaning or a text
-    /// is missing.
+    /// Returns the attributes from their parts; `next_text` supplies the texts in their order.
+    /// `None` if a code has no meaning or a text is missing.
     pub fn from_parts(
         codes: [u8; 5],
         width_mm: u32,
@@ -68,7 +72,24 @@ impl RoadAttributes {
         })
     }
 
-    /// Bytes of all texts together.
+    /// Appends the parts to bytes: the codes, the width and the texts.
+    pub fn push_to(&self, bytes: &mut Vec<u8>) {
+        let AttributeParts { codes, width_mm, texts } = self.parts();
+        bytes.extend(codes);
+        push_varint(bytes, width_mm.into());
+        for text in texts {
+            push_bytes(bytes, text.as_bytes());
+        }
+    }
+
+    /// Takes from the front of `bytes` what [`push_to`](Self::push_to) appended; `None` if the
+    /// bytes are invalid.
+    pub fn take_from(bytes: &mut &[u8]) -> Option<Self> {
+        let (codes, width_mm) = (take_array(bytes)?, take_number(bytes)?);
+        Self::from_parts(codes, width_mm, || take_text(bytes).map(str::to_owned))
+    }
+
+    /// Returns the number of bytes of all texts together.
     #[must_use]
     pub fn text_bytes(&self) -> usize {
         self.parts().texts.map(str::len).iter().sum()

@@ -1,4 +1,4 @@
-//! Road attributes are read from the tags of a way.
+//! Reads road attributes from the tags of a way.
 
 use crate::{
     Form, Oneway, RoadAttributes, Structure,
@@ -6,22 +6,26 @@ use crate::{
     quantities::{lanes, max_speed, width_mm},
 };
 
-/// What is kept of a way's `(key, value)` tags, besides its class. Of a key that occurs twice the first counts.
+/// Reads the attributes of a way from its `(key, value)` tags, without its class. If a key occurs
+/// twice, the first value counts.
 ///
-/// - **Form**: `junction=roundabout|circular`, else a link by its `highway` value, else one of two carriageways when
-///   `dual_carriageway=yes` or when a motorway or trunk road is one-way.
-/// - **Structure**: any `bridge` but `no`, `boardwalk` (planks on soft ground) and `low_water_crossing` (a ford that is paved); any `tunnel` but `no`, `culvert` (the water is in it, not the road) and
-///   `building_passage` (at ground level). `covered` is a roof and changes nothing. Where both are tagged, the way is
-///   a tunnel if its layer is below 0, else a bridge.
-/// - **Oneway**: as tagged; motorways and roundabouts are one-way unless tagged otherwise. Roads open to one direction
-///   at a time (`reversible`, `alternating`) are open to both.
+/// - **Form**: `junction=roundabout|circular`, else a link by its `highway` value, else one of two
+///   carriageways when `dual_carriageway=yes` or when a motorway or trunk road is one-way.
+/// - **Structure**: any `bridge` except `no`, `boardwalk` (planks on soft ground) and
+///   `low_water_crossing` (a paved ford); any `tunnel` except `no`, `culvert` (the water is in it,
+///   not the road) and `building_passage` (at ground level). `covered` means a roof and changes
+///   nothing. If both are tagged, the way is a tunnel if its layer is below 0, otherwise a bridge.
+/// - **Oneway**: as tagged. Motorways and roundabouts are one-way unless tagged otherwise. Roads
+///   that are open to one direction at a time (`reversible`, `alternating`) are open to both.
 /// - **Lanes**: a whole number from 1 to 255.
-/// - **Width**: metres without a unit, else its unit; above 0 and at most 1 km.
-/// - **Speed limit**: whole numbers of km/h or miles an hour in one spelling; all else stays as tagged.
-/// - **Texts**, such as names, stay as tagged, spaces around them included. Around all other values spaces do not count.
+/// - **Width**: metres if there is no unit, otherwise in the tagged unit; above 0 and at most 1 km.
+/// - **Speed limit**: whole numbers of km/h or miles per hour are written in one way; any other
+///   value stays as tagged.
+/// - **Texts**, such as names, stay as tagged, including spaces around them. For all other values,
+///   surrounding spaces are ignored.
 ///
-/// Source: OSM wiki, *Key:oneway*, *Key:junction*, *Key:bridge*, *Key:tunnel*, *Key:layer*, *Key:lanes*, *Key:width*,
-/// *Key:maxspeed*.
+/// Source: OSM wiki, *Key:oneway*, *Key:junction*, *Key:bridge*, *Key:tunnel*, *Key:layer*,
+/// *Key:lanes*, *Key:width*, *Key:maxspeed*.
 #[must_use]
 pub fn attributes(tags: &[(&str, &str)]) -> RoadAttributes {
     let text = |key| tag(tags, key).unwrap_or_default();
@@ -57,7 +61,8 @@ pub fn attributes(tags: &[(&str, &str)]) -> RoadAttributes {
     }
 }
 
-/// What carries a way with these tags, and its layer, as [`attributes`] has them.
+/// Returns the structure that carries a way with these tags, and its layer, as [`attributes`] reads
+/// them.
 #[must_use]
 pub fn structure_and_layer(tags: &[(&str, &str)]) -> (Structure, i8) {
     let value = |key| tag(tags, key).unwrap_or_default().trim();
@@ -65,9 +70,10 @@ pub fn structure_and_layer(tags: &[(&str, &str)]) -> (Structure, i8) {
     (structure(value("bridge"), value("tunnel"), layer), layer)
 }
 
-/// The tags that [`attributes`] reads as another value, as `(key, value)` with the value as tagged: a `layer` that is no whole number or too
-/// large, which is taken for 0 or the largest; a `bridge` or a `tunnel` that leaves the road on the ground, `lanes` that are no count and a
-/// `width` that is none (0, for example), which are taken for none.
+/// Returns the tags that [`attributes`] interprets as another value, as `(key, value)` with the
+/// value as tagged: a `layer` that is not a whole number or too large (read as 0 or as the largest
+/// number); a `bridge` or a `tunnel` that leaves the road on the ground; `lanes` that are not a
+/// count, and a `width` that is not a width, for example 0 (both read as unknown).
 pub fn tags_taken_otherwise<'t>(
     tags: &[(&'t str, &'t str)],
 ) -> impl Iterator<Item = (&'static str, &'t str)> + use<'t> {
@@ -86,12 +92,13 @@ pub fn tags_taken_otherwise<'t>(
         .map(|(key, text, _)| (key, text))
 }
 
-/// Whether the value of a tag is read as it stands.
+/// Whether the value of a tag is read as it is written.
 type IsRead = fn(&str) -> bool;
 
-/// Values of `bridge` that leave the road on the ground: its heights are the ground's.
+/// Values of `bridge` that leave the road on the ground, so that it has the ground's heights.
 const BESIDE_BRIDGES: [&str; 2] = ["boardwalk", "low_water_crossing"];
-/// Values of `tunnel` that do not put the road underground: the water is in a culvert, a building passage is at ground level.
+/// Values of `tunnel` that do not put the road underground: in a culvert is water, and a building
+/// passage is at ground level.
 const BESIDE_TUNNELS: [&str; 2] = ["culvert", "building_passage"];
 
 fn structure(bridge: &str, tunnel: &str, layer: i8) -> Structure {
@@ -116,7 +123,8 @@ fn oneway(tagged: &str, is_implied: bool) -> Oneway {
     }
 }
 
-/// Whole numbers, clamped to what fits; anything else is layer 0, as for a way without the tag.
+/// Reads a whole number, clamped to what fits. Any other value is layer 0, as for a way without the
+/// tag.
 fn layer(tagged: &str) -> i8 {
     let clamped = tagged.parse::<i64>().map(|layer| layer.clamp(i8::MIN.into(), i8::MAX.into()));
     clamped.map_or(0, |layer| layer as i8)

@@ -1,10 +1,11 @@
-//! Road attributes are read from tags as documented, and what is read differently is named.
+//! Road attributes are read from tags as documented, and tags that are interpreted differently are
+//! named.
 
 use std::num::{NonZeroU8, NonZeroU32};
 
 use super::*;
 
-fn of(text: &str) -> RoadAttributes {
+fn attributes_from(text: &str) -> RoadAttributes {
     let tags: Vec<(&str, &str)> =
         text.split_whitespace().map(|tag| tag.split_once('=').unwrap()).collect();
     attributes(&tags)
@@ -12,7 +13,7 @@ fn of(text: &str) -> RoadAttributes {
 
 #[test]
 fn form_follows_junction_then_link_then_carriageway() {
-    let check = |tags, expected| assert_eq!(of(tags).form, expected, "{tags}");
+    let check = |tags, expected| assert_eq!(attributes_from(tags).form, expected, "{tags}");
     check("highway=primary", Form::Ordinary);
     check("highway=primary oneway=yes", Form::Ordinary);
     check("highway=primary oneway=yes dual_carriageway=yes", Form::DualCarriageway);
@@ -28,7 +29,7 @@ fn form_follows_junction_then_link_then_carriageway() {
 
 #[test]
 fn oneway_is_as_tagged_or_implied() {
-    let check = |tags, expected| assert_eq!(of(tags).oneway, expected, "{tags}");
+    let check = |tags, expected| assert_eq!(attributes_from(tags).oneway, expected, "{tags}");
     check("highway=primary", Oneway::No);
     for yes in ["yes", "true", "1"] {
         assert_eq!(attributes(&[("oneway", yes)]).oneway, Oneway::Forward);
@@ -45,7 +46,7 @@ fn oneway_is_as_tagged_or_implied() {
 
 #[test]
 fn structure_is_what_carries_the_road() {
-    let check = |tags, expected| assert_eq!(of(tags).structure, expected, "{tags}");
+    let check = |tags, expected| assert_eq!(attributes_from(tags).structure, expected, "{tags}");
     check("highway=primary covered=yes", Structure::Ground);
     check("bridge=yes", Structure::Bridge);
     check("bridge=viaduct", Structure::Bridge);
@@ -80,7 +81,8 @@ fn layers_are_whole_numbers_that_fit() {
     }
 }
 
-/// What the values above come to is told, and what is as it says is not.
+/// Tags whose values are interpreted differently are named, and tags that are read as written are
+/// not.
 #[test]
 fn tags_that_are_taken_for_something_else_are_named() {
     let told = |tags: &[(&'static str, &'static str)]| -> Vec<(&'static str, &'static str)> {
@@ -121,7 +123,7 @@ fn what_a_road_is_like_is_kept() {
     assert_eq!(road.text_bytes(), 5 + 2 + 15 + 6);
 }
 
-/// Around numbers and keywords spaces do not count; texts are what the tag has.
+/// Spaces around numbers and keywords do not count; texts stay as tagged.
 #[test]
 fn texts_stay_as_tagged_with_the_spaces_around_them() {
     let road = attributes(&[
@@ -157,4 +159,17 @@ fn the_names_of_a_road_are_kept() {
     ]);
     assert_eq!((&*road.name, &*road.reference, &*road.surface), ("Hauptstraße", "16", "asphalt"));
     assert_eq!(attributes(&[]), RoadAttributes::default());
+}
+
+/// Records of attributes hold the index of a direction in this list.
+#[test]
+fn all_directions_are_listed() {
+    for direction in Oneway::ALL {
+        let index = match direction {
+            Oneway::No => 0,
+            Oneway::Forward => 1,
+            Oneway::Backward => 2,
+        };
+        assert_eq!(Oneway::ALL.get(index), Some(&direction));
+    }
 }

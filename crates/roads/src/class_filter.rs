@@ -1,36 +1,39 @@
-//! The filter that says from which level on each road class is shown.
+//! The filter that says on which levels each road class is shown.
 
 use crate::FunctionalRoadClass;
 
-/// From which level on each class is shown, as the coarsest cell at which it still is.
+/// The levels on which each class is shown, given as the coarsest cell size at which it is still
+/// shown.
 ///
-/// The finest level of a package shows every class that is on, whatever its cell: the caller does not ask there.
+/// The finest level of a package shows every class that is on, whatever its cell size; callers do
+/// not consult the filter there.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ClassFilter {
     class_max_cell_m: [Option<f64>; FunctionalRoadClass::COUNT],
 }
 
-/// Why cells do not make a [`ClassFilter`].
+/// The reason why cell sizes do not form a [`ClassFilter`].
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
 pub enum ClassFilterError {
     #[error(
-        "{class} is shown up to a cell of {cell_m} m; give a length above 0, or none for always"
+        "{class} is shown up to a cell size of {cell_m} m; set a length above 0, or none to show it always"
     )]
     Cell { class: FunctionalRoadClass, cell_m: f64 },
     #[error(
-        "{class} is shown on coarser levels than the more important class before it; lower its cell"
+        "{class} is shown on coarser levels than the more important class before it; reduce its cell size"
     )]
     Order { class: FunctionalRoadClass },
 }
 
 impl ClassFilter {
-    /// Takes for each class the coarsest cell, in metres, at which it is shown; `None`: always.
+    /// Creates a filter from the coarsest cell size, in metres, at which each class is shown;
+    /// `None` means always.
     ///
     /// # Errors
-    /// When a cell is not a length, or a class is shown on coarser levels than a more important one (this would be a
-    /// mistake, and such a level has no least class).
+    /// When a cell size is not a length, or when a class is shown on coarser levels than a more
+    /// important one. Such a level would have no least class, so this must be a mistake.
     pub fn new(
         class_max_cell_m: [Option<f64>; FunctionalRoadClass::COUNT],
     ) -> Result<Self, ClassFilterError> {
@@ -48,10 +51,11 @@ impl ClassFilter {
         Ok(Self { class_max_cell_m })
     }
 
-    /// The usual choice: class 0 always, then up to cells of 2000, 1000, 400, 200, 120, 60, 60 and 30 m.
+    /// Returns the default filter: class 0 always, then up to cell sizes of 2000, 1000, 400, 200,
+    /// 120, 60, 60 and 30 m.
     ///
-    /// These numbers were chosen by eye: with them, the roads in a tile are about as dense as on the next finer
-    /// level.
+    /// These numbers were chosen by eye: with them, the roads in a tile are about as dense as on
+    /// the next finer level.
     #[must_use]
     pub const fn usual() -> Self {
         Self {
@@ -69,27 +73,27 @@ impl ClassFilter {
         }
     }
 
-    /// Every class on every level.
+    /// Returns a filter that shows every class on every level.
     #[must_use]
     pub const fn all() -> Self {
         Self { class_max_cell_m: [None; FunctionalRoadClass::COUNT] }
     }
 
-    /// The coarsest cell per class, in metres; `None`: always shown.
+    /// Returns the coarsest cell size per class, in metres; `None` means always shown.
     #[must_use]
     pub const fn class_max_cell_m(&self) -> &[Option<f64>; FunctionalRoadClass::COUNT] {
         &self.class_max_cell_m
     }
 
-    /// Whether a level with this cell shows `class`.
+    /// Whether a level with this cell size shows `class`.
     #[must_use]
     pub fn shows(&self, class: FunctionalRoadClass, level_cell_m: f64) -> bool {
         self.class_max_cell_m[usize::from(class.number())]
             .is_none_or(|max_cell_m| level_cell_m <= max_cell_m)
     }
 
-    /// The least important class that a level with this cell shows; all classes above it are shown, too.
-    /// `None` when the level shows no roads.
+    /// Returns the least important class that a level with this cell size shows; all more important
+    /// classes are shown, too. `None` if the level shows no roads.
     #[must_use]
     pub fn least_class(&self, level_cell_m: f64) -> Option<FunctionalRoadClass> {
         FunctionalRoadClass::all().rev().find(|&class| self.shows(class, level_cell_m))

@@ -1,4 +1,4 @@
-//! The usual filter of classes thins out as cells grow, and disordered ones are refused.
+//! The default filter shows fewer classes as cells grow, and filters with wrong order are rejected.
 
 use super::*;
 

@@ -1,8 +1,8 @@
-//! What people call the roads of each class of a table, for legends and panels.
+//! Labels for the classes of a table, for legends and panels.
 
 use crate::{FrcTable, FunctionalRoadClass};
 
-/// Values of `highway` that people know, the most important first.
+/// Well-known values of `highway`, the most important first.
 const KNOWN: [&str; 14] = [
     "motorway",
     "trunk",
@@ -20,18 +20,19 @@ const KNOWN: [&str; 14] = [
     "cycleway",
 ];
 
-/// More values than these make a label too long.
+/// The maximum number of values in a label; more values would make it too long.
 const MOST_VALUES: usize = 2;
 
-/// Longer values are not named.
+/// The maximum number of characters of a value; longer values are omitted.
 const MOST_CHARACTERS: usize = 64;
 
 impl FrcTable {
-    /// The most characters of a label.
+    /// The maximum number of characters in a label.
     pub const LONGEST_LABEL: usize = MOST_VALUES * (MOST_CHARACTERS + 2);
 
-    /// What people call the roads of each class, 0 first: the values of `highway` that the table puts there, those that people know
-    /// before others. "class 5" where it puts none.
+    /// Returns a label for each class, from class 0 on: the values of `highway` that the table
+    /// assigns to the class, well-known values first. A class without values gets a label such as
+    /// "class 5".
     #[must_use]
     pub fn class_labels(&self) -> [String; FunctionalRoadClass::COUNT] {
         std::array::from_fn(|class| {

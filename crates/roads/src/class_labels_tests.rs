@@ -1,4 +1,4 @@
-//! Classes of a table are called by its values, those that people know first.
+//! The classes of a table are labelled by their values, well-known values first.
 
 use crate::FrcTable;
 
@@ -36,6 +36,6 @@ fn classes_are_called_by_what_their_table_puts_there() {
         ]
     );
     assert!(labels.iter().all(|label| label.chars().count() <= FrcTable::LONGEST_LABEL));
-    // A choice of classes changes no name.
+    // A choice of classes changes no label.
     assert_eq!(table.with_classes(&[1]).unwrap().class_labels(), labels);
 }

@@ -1,35 +1,38 @@
-//! A table says which value of `highway` has which functional road class; it is checked when it is made.
+//! A table that assigns a functional road class (FRC) to each value of `highway`; it is validated
+//! when it is created.
 
 use std::{collections::BTreeMap, fmt::Write as _};
 
 use crate::FunctionalRoadClass;
 
-/// Which `highway` value has which functional class. A table is checked when it is made.
+/// The functional road class (FRC) of each `highway` value. A table is validated when it is
+/// created.
 ///
-/// A table lists every value it knows, those that are *no* road included. A value it does not list is
-/// [`Classified::Unknown`], never guessed; the one rule beyond the list is that `X_link` has the class of `X`
-/// unless it is listed itself.
+/// A table lists every value it knows, including values that are *not* roads. A value that it does
+/// not list is [`Classified::Unknown`] and never guessed. The only rule beyond the list: `X_link`
+/// has the class of `X` unless it is listed itself.
 ///
-/// Source of the classes: OpenLR White Paper v1.5 (names 0–7); no standard says which OSM value is which, hence tables.
+/// Source of the classes: OpenLR White Paper v1.5 (names 0–7). No standard assigns OSM values to
+/// them, hence tables.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FrcTable {
     name: String,
-    /// `None`: known, and not a road.
+    /// The class of each value; `None` for a known value that is not a road.
     values: BTreeMap<String, Option<FunctionalRoadClass>>,
     least_class: FunctionalRoadClass,
-    /// Which classes are on, where that is not what `least_class` says.
+    /// The classes that are on, if they differ from what `least_class` says.
     chosen: Option<[bool; FunctionalRoadClass::COUNT]>,
-    /// Whether packages record what its classes are called.
+    /// Whether packages record the labels of the classes.
     tells_labels: bool,
 }
 
-/// Why entries do not make an [`FrcTable`].
+/// The reason why entries do not form an [`FrcTable`].
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
 pub enum FrcTableError {
     #[error(
-        "an FRC table needs a name of 1 to 64 characters out of a-z, A-Z, 0-9, '.', '-' and '_', got {name:?}"
+        "the name of an FRC table must have 1 to 64 characters from a-z, A-Z, 0-9, '.', '-' and '_', got {name:?}"
     )]
     Name { name: String },
     #[error("FRC table {name:?} lists no highway value with a class")]
@@ -38,47 +41,48 @@ pub enum FrcTableError {
     Class { name: String, value: String, class: u8 },
     #[error("FRC table {name:?} has least class {class}; classes are 0 to 8")]
     LeastClass { name: String, class: u8 },
-    #[error("no class is chosen, or one that does not exist; classes are 0 to 8")]
+    #[error("no class is chosen, or a chosen class does not exist; classes are 0 to 8")]
     Choice,
     #[error("FRC table {name:?} lists highway={value} twice; keep one of the entries")]
     Twice { name: String, value: String },
     #[error(
-        "FRC table {name:?} lists {value:?}, which is not a highway value: it is empty or holds spaces or control characters"
+        "FRC table {name:?} lists {value:?}, which is not a highway value: it is empty or contains spaces or control characters"
     )]
     Value { name: String, value: String },
 }
 
-/// What a table says about the tags of a way.
+/// The result of looking up the tags of a way in a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Classified<'t> {
-    /// A road of this class, and the class is on.
+    /// The way is a road of this class, and the class is on.
     Road(FunctionalRoadClass),
-    /// A road of this class, and the class is off.
+    /// The way is a road of this class, and the class is off.
     NotShown(FunctionalRoadClass),
-    /// The way is no road, and the table knows it.
+    /// The way is not a road, and the table knows it.
     NotARoad(NotARoad),
     /// The table does not list this `highway` value.
     Unknown(&'t str),
 }
 
-/// Why a way is not a road.
+/// The reason why a way is not a road.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum NotARoad {
-    /// No `highway` tag.
+    /// The way has no `highway` tag.
     NoHighway,
-    /// The table lists its value as no road (`construction`, `platform`, …).
+    /// The table lists the way's value as no road (`construction`, `platform`, …).
     Listed,
-    /// A known `highway` value with `area=yes`: the outline of a surface, not an axis.
+    /// The way has a known `highway` value and `area=yes`: it is the outline of a surface, not an
+    /// axis.
     Area,
 }
 
 impl FrcTable {
-    /// Takes the table `name`: `classes` gives `highway` values their class (0–8), `not_roads` lists the values that
-    /// are not roads, and classes above `least_class` are off.
+    /// Creates the table `name`: `classes` assigns a class (0–8) to `highway` values, `not_roads`
+    /// lists the values that are not roads, and classes above `least_class` are off.
     ///
     /// # Errors
-    /// When the name cannot stand in a package's metadata, a class is above 8, a value is listed twice or cannot be a
-    /// value of a tag, or nothing has a class.
+    /// When the name is not valid in a package's metadata, a class is above 8, a value is listed
+    /// twice or cannot be the value of a tag, or nothing has a class.
     pub fn new(
         name: impl Into<String>,
         classes: Vec<(String, u8)>,
@@ -117,20 +121,21 @@ impl FrcTable {
         Ok(Self { name, values, least_class: least, chosen: None, tells_labels: false })
     }
 
-    /// Its name, as packages record it.
+    /// Returns the name of the table, as packages record it.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// The least important class that is on.
+    /// Returns the least important class that is on.
     #[must_use]
     pub fn least_class(&self) -> FunctionalRoadClass {
         let least = FunctionalRoadClass::all().rev().find(|&class| self.shows(class));
         least.unwrap_or(self.least_class)
     }
 
-    /// The least important class that the table itself has on, without a choice of classes.
+    /// Returns the least important class that the table itself turns on, without a choice of
+    /// classes.
     #[must_use]
     pub const fn own_least_class(&self) -> FunctionalRoadClass {
         self.least_class
@@ -145,10 +150,10 @@ impl FrcTable {
         }
     }
 
-    /// The same table with these classes on, and no others.
+    /// Returns the same table with these classes on, and no others.
     ///
     /// # Errors
-    /// When there is none, or one above 8.
+    /// When `classes` is empty, or contains a class above 8.
     pub fn with_classes(self, classes: &[u8]) -> Result<Self, FrcTableError> {
         let mut on = [false; FunctionalRoadClass::COUNT];
         for &class in classes {
@@ -163,7 +168,8 @@ impl FrcTable {
         Ok(Self { chosen: (!is_own).then_some(on), ..plain })
     }
 
-    /// The classes that are on, ascending, where that is not what the table itself has on.
+    /// Returns the classes that are on, ascending, if they differ from those that the table itself
+    /// turns on.
     #[must_use]
     pub fn chosen_classes(&self) -> Option<Vec<u8>> {
         self.chosen?;
@@ -171,31 +177,33 @@ impl FrcTable {
         Some(on.map(FunctionalRoadClass::number).collect())
     }
 
-    /// The same table with another least class.
+    /// Returns the same table with another least class.
     #[must_use]
     pub fn with_least_class(self, least_class: FunctionalRoadClass) -> Self {
         Self { least_class, chosen: None, ..self }
     }
 
-    /// The same table, of which packages record what its classes are called: those who read them do not know it by its name.
+    /// Returns the same table, but packages record the labels of its classes, because their readers
+    /// do not know the table by its name.
     #[must_use]
     pub fn with_recorded_labels(self) -> Self {
         Self { tells_labels: true, ..self }
     }
 
-    /// What packages record of the names of its classes.
+    /// Returns the labels of the classes that packages record.
     #[must_use]
     pub fn recorded_labels(&self) -> Option<[String; FunctionalRoadClass::COUNT]> {
         self.tells_labels.then(|| self.class_labels())
     }
 
-    /// All listed values with their class, by value; `None` for those that are no roads.
+    /// Returns all listed values with their class, ordered by value; `None` for values that are not
+    /// roads.
     pub fn values(&self) -> impl Iterator<Item = (&str, Option<FunctionalRoadClass>)> {
         self.values.iter().map(|(value, &class)| (value.as_str(), class))
     }
 
-    /// The whole table as text, one entry a line, sorted: equal tables give the same text, whatever their files look
-    /// like, so this text is what is hashed.
+    /// Returns the whole table as text, one entry per line, sorted. Equal tables give the same
+    /// text, whatever their files look like, so this text is hashed.
     #[must_use]
     pub fn canonical_text(&self) -> String {
         let mut text = format!("name={}\nleast_class={}\n", self.name, self.least_class.number());
@@ -213,7 +221,8 @@ impl FrcTable {
         text
     }
 
-    /// What a way with these `(key, value)` tags is. Of a key that occurs twice the first counts.
+    /// Classifies a way with these `(key, value)` tags. If a key occurs twice, the first value
+    /// counts.
     #[must_use]
     pub fn classify<'t>(&self, tags: &[(&'t str, &'t str)]) -> Classified<'t> {
         let Some(highway) = tag(tags, "highway") else {
@@ -228,10 +237,10 @@ impl FrcTable {
         }
     }
 
-    /// The entry for this value, by itself or by the link rule.
+    /// Returns the entry for this value, directly or by the link rule.
     fn entry(&self, highway: &str) -> Option<&Option<FunctionalRoadClass>> {
         let of_parent = || self.values.get(highway.strip_suffix("_link")?);
-        // A link to something that is not a road counts as unknown.
+        // A link to a value that is not a road counts as unknown.
         self.values.get(highway).or_else(|| of_parent().filter(|class| class.is_some()))
     }
 }
@@ -242,7 +251,7 @@ pub fn is_area(tags: &[(&str, &str)]) -> bool {
     tag(tags, "area").is_some_and(is_yes)
 }
 
-/// The value of the first tag with this key.
+/// Returns the value of the first tag with this key.
 pub(crate) fn tag<'t>(tags: &[(&'t str, &'t str)], key: &str) -> Option<&'t str> {
     tags.iter().find(|(k, _)| *k == key).map(|&(_, value)| value)
 }

@@ -1,4 +1,4 @@
-//! FRC tables classify by their list and the rule for links, and refuse entries that make no table.
+//! FRC tables classify by their list and by the rule for links, and reject invalid entries.
 
 use super::*;
 
@@ -50,7 +50,7 @@ fn areas_are_not_roads_but_area_no_is() {
     check(&[("highway", "motorway"), ("area", "yes")], Classified::NotARoad(NotARoad::Area));
     check(&[("area", "yes"), ("highway", "footway")], Classified::NotARoad(NotARoad::Area));
     check(&[("highway", "motorway"), ("area", "no")], Classified::Road(motorway));
-    // The value is what needs reporting first.
+    // The value is reported first.
     check(&[("highway", "what"), ("area", "yes")], Classified::Unknown("what"));
 }
 
@@ -83,7 +83,7 @@ fn any_classes_can_be_on() {
     assert_eq!(some.classify(&[("highway", "trunk")]), Classified::NotShown(class(1)));
     assert_eq!(some.classify(&[("highway", "footway")]), Classified::Road(class(8)));
     assert!(some.canonical_text().starts_with("name=test\nleast_class=7\nclasses=0,5,8\n"));
-    // The table's own classes are no choice.
+    // The table's own classes do not count as a choice.
     let own = some.with_classes(&[0, 1, 2, 3, 4, 5, 6, 7]).unwrap();
     assert_eq!((&own, own.chosen_classes()), (&small(), None));
     for none in [&[][..], &[9], &[0, 200]] {

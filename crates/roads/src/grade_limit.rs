@@ -1,13 +1,15 @@
-//! The steepest grade that a road of a kind is built with.
+//! The steepest grade with which roads of each kind are built.
 
-/// A slip road may be so much steeper, percent.
+/// The additional grade that a slip road may have, percent.
 const LINK_MORE_PCT: f64 = 2.0;
 
-/// The steepest grade by OSM's `highway`, percent; `None` for ways that are no roads for cars.
+/// Returns the steepest grade by OSM's `highway`, percent; `None` for ways that are not roads for
+/// cars.
 ///
-/// Source: the limits that held on seven regions when bridges and grades were tried for this program, in the order of magnitude of design guides for
-/// difficult ground, such as AASHTO, *A Policy on Geometric Design of Highways and Streets*, 2018, chapters 5 to 8. Steeper roads exist: a grade above
-/// its limit is worth a look, not an error.
+/// Source: limits that proved right on seven regions when bridges and grades were tested for this
+/// program. They are in the order of magnitude of design guides for difficult terrain, such as
+/// AASHTO, *A Policy on Geometric Design of Highways and Streets*, 2018, chapters 5 to 8. Steeper
+/// roads exist: a grade above its limit is worth a check, but is not an error.
 #[must_use]
 pub fn grade_limit(highway: &str) -> Option<f64> {
     if let Some(of_link) = highway.strip_suffix("_link") {

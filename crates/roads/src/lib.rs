@@ -1,4 +1,5 @@
-//! What a road is: its functional class, its attributes, its line, and its simplification per level.
+//! The roads of a package: their functional road class (FRC), attributes and lines, and their
+//! simplification per level.
 //!
 //! ```text
 //!  tags ──► FrcTable::classify ──► class, or why it is no road
@@ -6,7 +7,7 @@
 //!  Road ──► ClassFilter ──► shown on this level?  ──► simplify ──► Polyline
 //! ```
 //!
-//! This crate never sees terrain or a file, and never joins ways.
+//! This crate never reads terrain or files, and never joins ways.
 
 mod attribute_parts;
 mod attributes;
@@ -14,6 +15,7 @@ mod class_filter;
 mod class_labels;
 mod frc_table;
 mod grade_limit;
+mod listed;
 mod loss_reason;
 mod quantities;
 mod road;
@@ -26,6 +28,7 @@ pub use class_filter::{ClassFilter, ClassFilterError};
 pub use frc_table::{Classified, FrcTable, FrcTableError, NotARoad, is_area};
 pub use grade_limit::grade_limit;
 pub use loss_reason::LossReason;
+pub use quantities::number_and_unit;
 pub use road::{
     Form, FunctionalRoadClass, MetNodes, Oneway, OwnWidth, Road, RoadAttributes, Structure,
 };

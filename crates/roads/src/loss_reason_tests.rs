@@ -1,4 +1,4 @@
-//! Words of packages name one reason each.
+//! Each text in packages names exactly one reason.
 
 use super::*;
 

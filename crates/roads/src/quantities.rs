@@ -2,18 +2,19 @@
 
 use std::num::{NonZeroU8, NonZeroU32};
 
-/// The number of lanes: a whole number from 1 to 255. `None` for anything else.
+/// Reads the number of lanes: a whole number from 1 to 255. `None` for anything else.
 ///
 /// Source: OSM wiki, *Key:lanes*.
 pub(crate) fn lanes(tagged: &str) -> Option<NonZeroU8> {
     is_digits(tagged).then(|| tagged.parse().ok()).flatten()
 }
 
-/// Wider than any road: what is tagged beyond it was meant in another unit.
+/// The maximum width, millimetres: a larger number was meant in another unit.
 const WIDEST_MM: f64 = 1e6;
 
-/// A width in whole millimetres, more than 0 and at most 1 km: metres without a unit, else `m`, `cm`, `mm`, `km`, `mi`, `ft`,
-/// or feet and inches as `12'6"`. `None` for anything else, decimal commas and ranges included.
+/// Reads a width in whole millimetres, more than 0 and at most 1 km: metres without a unit,
+/// otherwise `m`, `cm`, `mm`, `km`, `mi`, `ft`, or feet and inches as `12'6"`. `None` for anything
+/// else, including decimal commas and ranges.
 ///
 /// Source: OSM wiki, *Key:width*, *Map features/Units*.
 pub(crate) fn width_mm(tagged: &str) -> Option<NonZeroU32> {
@@ -43,8 +44,8 @@ pub(crate) fn width_mm(tagged: &str) -> Option<NonZeroU32> {
     (mm <= WIDEST_MM).then(|| NonZeroU32::new(mm as u32)).flatten()
 }
 
-/// A speed limit as text: whole numbers of km/h as the number alone, of miles an hour as `30 mph`; anything else, such as `none`,
-/// `walk` or `CH:urban`, as it is tagged.
+/// Returns a speed limit as text: whole numbers of km/h as the number alone, whole numbers of miles
+/// per hour as `30 mph`, and anything else, such as `none`, `walk` or `CH:urban`, as tagged.
 ///
 /// Source: OSM wiki, *Key:maxspeed*.
 pub(crate) fn max_speed(tagged: &str) -> String {
@@ -57,14 +58,17 @@ pub(crate) fn max_speed(tagged: &str) -> String {
     }
 }
 
-/// A number and what follows it, spaces between them left out.
-fn number_and_unit(text: &str) -> Option<(f64, &str)> {
+/// Splits a text into a number and the unit after it, without the spaces between them. The number
+/// has digits and at most one point: no sign, no exponent and no decimal comma.
+#[must_use]
+pub fn number_and_unit(text: &str) -> Option<(f64, &str)> {
     let end = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
     let (value, unit) = text.split_at(end);
     Some((number(value)?, unit.trim_start()))
 }
 
-/// Digits, with one point at most: no sign, no exponent, none of the words that Rust reads as numbers.
+/// Reads digits with at most one point: no sign, no exponent, and no words that Rust reads as
+/// numbers.
 fn number(text: &str) -> Option<f64> {
     let text = text.trim();
     let is_number = match text.split_once('.') {

@@ -1,4 +1,4 @@
-//! Widths, speeds and lanes are read with their units, and no text breaks a reader.
+//! Widths, speeds and lanes are read with their units, and no text crashes a reader.
 
 use proptest::prelude::*;
 
@@ -13,7 +13,7 @@ fn lanes_are_a_count() {
     }
 }
 
-/// The examples of the wiki, and the ways in which numbers are no width.
+/// These are the examples of the wiki, and numbers that are not widths.
 #[test]
 fn widths_are_in_metres_or_in_their_unit() {
     for (text, mm) in [
@@ -91,7 +91,7 @@ fn speeds_are_numbers_with_units_or_words() {
 }
 
 proptest! {
-    /// No text breaks a reader, and what a package holds is read as the same again.
+    /// No text crashes a reader, and values in a package are read unchanged again.
     #[test]
     fn any_text_can_be_read(text in ".{0,20}", odd in "[0-9.'\" mftk/hp]{0,10}") {
         for text in [&text, &odd] {
@@ -102,7 +102,7 @@ proptest! {
         }
     }
 
-    /// Metres and millimetres are the same width.
+    /// Metres and millimetres give the same width.
     #[test]
     fn a_width_in_millimetres_comes_back(mm in 1_u32..=1_000_000) {
         let metres = format!("{}.{:03}", mm / 1000, mm % 1000);

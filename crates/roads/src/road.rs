@@ -8,7 +8,8 @@ use std::{
 
 use corniche_geom::Polyline;
 
-/// Functional road class, 0 to 8: 0 is for motorways, 7 for the least of the roads for cars, 8 for paths, steps and cycleways.
+/// Functional road class (FRC), 0 to 8: 0 is for motorways, 7 for the least important roads for
+/// cars, 8 for paths, steps and cycleways.
 ///
 /// Lower is more important. Source: OpenLR White Paper v1.5 names 0 to 7; TomTom's products add 8.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -30,24 +31,24 @@ impl From<FunctionalRoadClass> for u8 {
 }
 
 impl FunctionalRoadClass {
-    /// How many classes there are.
+    /// The number of classes.
     pub const COUNT: usize = 9;
-    /// The least important one.
+    /// The least important class.
     pub const LEAST: Self = Self(Self::COUNT as u8 - 1);
 
-    /// The class with this number; `None` above 8.
+    /// Returns the class with this number; `None` above 8.
     #[must_use]
     pub const fn new(class: u8) -> Option<Self> {
         if (class as usize) < Self::COUNT { Some(Self(class)) } else { None }
     }
 
-    /// Its number.
+    /// Returns the number of the class.
     #[must_use]
     pub const fn number(self) -> u8 {
         self.0
     }
 
-    /// All classes, most important first.
+    /// Returns all classes, most important first.
     pub fn all() -> impl DoubleEndedIterator<Item = Self> {
         (0..Self::COUNT as u8).map(Self)
     }
@@ -59,96 +60,60 @@ impl fmt::Display for FunctionalRoadClass {
     }
 }
 
-/// Declares an enum together with the list of its variants, so that the list has all of them.
-macro_rules! listed {
-    (
-        $(#[$about:meta])*
-        pub enum $name:ident {
-            $($(#[$of_variant:meta])* $variant:ident,)+
-        }
-    ) => {
-        $(#[$about])*
-        pub enum $name {
-            $($(#[$of_variant])* $variant,)+
-        }
-
-        impl $name {
-            /// All of them, in the order of their numbers, which are their indices here.
-            pub const ALL: &'static [Self] = &[$(Self::$variant),+];
-        }
-    };
-}
-
-listed! {
+crate::listed! {
     /// How a road is built, as far as the tags say.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
     pub enum Form {
         /// One carriageway, or unknown.
         #[default]
-        Ordinary,
+        Ordinary = "ordinary",
         /// One of two separate carriageways.
-        DualCarriageway,
+        DualCarriageway = "dual_carriageway",
         /// A slip road (`*_link`).
-        Link,
+        Link = "link",
         /// A roundabout.
-        Roundabout,
+        Roundabout = "roundabout",
     }
+
+    /// Returns the form in one word.
+    pub fn name() -> &'static str;
 }
 
-impl Form {
-    /// How a road is built, in one word.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Ordinary => "ordinary",
-            Self::DualCarriageway => "dual_carriageway",
-            Self::Link => "link",
-            Self::Roundabout => "roundabout",
-        }
-    }
-}
-
-listed! {
-    /// What carries a road where the ground does not.
+crate::listed! {
+    /// The structure that carries a road where it is not on the ground.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, Serialize, Deserialize)]
     pub enum Structure {
         /// The ground.
         #[default]
-        Ground,
+        Ground = "ground",
         /// A bridge.
-        Bridge,
+        Bridge = "bridge",
         /// A tunnel.
-        Tunnel,
+        Tunnel = "tunnel",
     }
+
+    /// Returns the structure in one word.
+    pub fn name() -> &'static str;
 }
 
-impl Structure {
-    /// What carries a road, in one word.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Ground => "ground",
-            Self::Bridge => "bridge",
-            Self::Tunnel => "tunnel",
-        }
-    }
+/// Permitted direction of travel relative to the direction of the way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+pub enum Oneway {
+    /// Both directions.
+    #[default]
+    No,
+    /// Along the way.
+    Forward,
+    /// Against the way.
+    Backward,
 }
 
-listed! {
-    /// Permitted direction relative to the way's own.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
-    pub enum Oneway {
-        /// Both directions.
-        #[default]
-        No,
-        /// Along the way.
-        Forward,
-        /// Against the way.
-        Backward,
-    }
+impl Oneway {
+    /// All directions, in the order of their numbers, which are their indices here.
+    pub const ALL: [Self; 3] = [Self::No, Self::Forward, Self::Backward];
 }
 
-/// What the tags of a road say of its width.
+/// The width of a road according to its tags.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, Serialize, Deserialize)]
 pub enum OwnWidth {
     /// Nothing is known of the width.
@@ -160,45 +125,47 @@ pub enum OwnWidth {
     Lanes(NonZeroU8),
 }
 
-/// What is kept of a way's tags.
+/// The attributes of a road, from its tags.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Hash)]
 pub struct RoadAttributes {
-    /// How it is built.
+    /// The form of the road.
     pub form: Form,
-    /// What carries it.
+    /// The structure that carries the road.
     pub structure: Structure,
     /// OSM's `layer`, −5…5 as a rule.
     pub layer: i8,
     /// Permitted direction.
     pub oneway: Oneway,
-    /// `name`, empty without.
+    /// `name`, or empty.
     pub name: String,
-    /// `ref`, empty without.
+    /// `ref`, or empty.
     pub reference: String,
-    /// `surface`, empty without.
+    /// `surface`, or empty.
     pub surface: String,
-    /// `highway`; empty only where a package does not say it.
+    /// `highway`; empty only if a package does not contain it.
     pub highway: String,
-    /// `lanes`: how many, in both directions together.
+    /// `lanes`: the number of lanes in both directions together.
     pub lanes: Option<NonZeroU8>,
-    /// `width`, whole millimetres.
+    /// `width` in whole millimetres.
     pub width_mm: Option<NonZeroU32>,
-    /// `maxspeed`: a number is km/h, `30 mph` miles an hour; else as tagged, such as `none` or `walk`. Empty without.
+    /// `maxspeed`: a number is km/h, `30 mph` is miles per hour; any other value is as tagged, such
+    /// as `none` or `walk`. Empty if there is no tag.
     pub max_speed: String,
-    /// `sac_scale`, empty without.
+    /// `sac_scale`, or empty.
     pub sac_scale: String,
-    /// `tracktype`, empty without.
+    /// `tracktype`, or empty.
     pub tracktype: String,
 }
 
 impl RoadAttributes {
-    /// `width` in metres.
+    /// Returns `width` in metres.
     #[must_use]
     pub fn width_m(&self) -> Option<f64> {
         self.width_mm.map(|mm| f64::from(mm.get()) / 1e3)
     }
 
-    /// The same without spaces around its texts, as packages of before have them.
+    /// Returns the same attributes without spaces around their texts, as packages of earlier
+    /// versions contain them.
     #[must_use]
     pub fn trimmed(&self) -> Self {
         let mut trimmed = self.clone();
@@ -210,7 +177,7 @@ impl RoadAttributes {
         trimmed
     }
 
-    /// What the tags say of the road's width: `width`, or else `lanes`.
+    /// Returns the road's width according to its tags: `width`, or else `lanes`.
     #[must_use]
     pub fn own_width(&self) -> OwnWidth {
         match (self.width_mm, self.lanes) {
@@ -228,28 +195,32 @@ pub struct Road {
     pub way_id: i64,
     /// Functional road class.
     pub class: FunctionalRoadClass,
-    /// What else the tags say.
+    /// The attributes of the road.
     pub attributes: RoadAttributes,
     /// The centre-line on the package's lattice.
     pub line: Polyline,
-    /// Indices into the line's points that no simplification may remove: its ends and every node that
+    /// Indices of the line's points that simplification must keep: the ends and every node that
     /// another road shares (junctions). Ascending.
     pub fixed: Vec<u32>,
-    /// For each of `fixed` OSM's id of the node there, by which roads are joined; `None` for a place that is no node. Empty where ids were not
-    /// asked for.
+    /// OSM's id of the node at each of `fixed`, which joins roads; `None` for a point that is not a
+    /// node. Empty if ids were not requested.
     pub node_ids: Vec<Option<i64>>,
-    /// Pairs of nodes of the way that lie at one place of the lattice, and may both join other roads. Of each pair one stands in `node_ids`.
+    /// Pairs of nodes of the way that are at the same point of the lattice and may both join other
+    /// roads. One node of each pair is in `node_ids`.
     pub same_places: Vec<[i64; 2]>,
-    /// Where ways join it that are no roads because their classes are off or not known.
+    /// The nodes at which ways join the road that are not roads here, because their classes are off
+    /// or unknown.
     pub met: MetNodes,
 }
 
-/// Nodes of a road at which only ways join whose classes are off or not known: they carry bridges and tunnels, too.
+/// Nodes of a road that only ways share whose classes are off or unknown. Such ways carry bridges
+/// and tunnels, too.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct MetNodes {
-    /// Which points of the line they are, ascending, and their ids; none of them is one of [`Road::fixed`] but for its ends.
+    /// The indices of these nodes among the line's points, ascending, and their ids. Except for the
+    /// ends of the line, none of them is in [`Road::fixed`].
     pub nodes: Vec<(u32, i64)>,
-    /// Pairs of nodes that lie at one place, of which at least one is such a node.
+    /// Pairs of nodes at the same point of which at least one is such a node.
     pub same_places: Vec<[i64; 2]>,
 }
 

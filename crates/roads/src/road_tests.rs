@@ -1,4 +1,4 @@
-//! The numbers of road attributes are those that packages store.
+//! The numbers of road attributes are the numbers that packages store.
 
 use super::*;
 

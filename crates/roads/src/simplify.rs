@@ -1,26 +1,31 @@
-//! Road lines lose points within a tolerance, the same points in whichever direction a line runs.
+//! Simplifies road lines within a tolerance; the result does not depend on a line's direction.
 
 use corniche_geom::{LatticePoint, Polyline, cross, dot};
 
-/// A stretch is cut so often, each time in all its parts at once. Then all points stay that are left: a line that goes forth and back loses none of them
-/// anyway, and would be looked at as often as it has points.
+/// The maximum number of rounds in which a stretch is divided, each time in all its parts at once.
+/// Then all remaining points are kept. A line that goes back and forth loses no points anyway, and
+/// would be scanned once for each of its points.
 const MOST_ROUNDS: usize = 128;
 
-/// A line with fewer points: no point of the source lies farther than `tolerance_steps` (lattice steps) from
-/// the segment that replaces its stretch.
+/// Returns a line with fewer points: no point of the source is farther than `tolerance_steps`
+/// (lattice steps) from the segment that replaces its stretch.
 ///
-/// Points whose indices are in `fixed` and both ends stay. A tolerance of 0 (or below, or NaN) keeps every point. The
-/// result does not depend on the direction of the way: a way and its reverse keep the same points (except where it
-/// runs back over itself point by point and so has no direction). Of a stretch that returns to its start (a ring
-/// between junctions) the farthest point always stays, so that the line never vanishes; a ring smaller than the
-/// tolerance becomes one segment forth and back.
+/// The ends and the points whose indices are in `fixed` are kept. A tolerance of 0 (or below, or
+/// NaN) keeps every point. The result does not depend on the direction of the way: a way and its
+/// reverse keep the same points, except where a way runs back over itself point by point and so has
+/// no direction. In a stretch that returns to its start (a ring between junctions), the farthest
+/// point is always kept, so that the line never vanishes. A ring smaller than the tolerance becomes
+/// one segment back and forth.
 ///
-/// Lines may come to cross themselves or others where they did not, as with any simplification by distance alone.
+/// After simplification, lines may cross themselves or others where they did not before, as with
+/// any simplification by distance alone.
 ///
-/// Source: Douglas & Peucker 1973, *Algorithms for the Reduction of the Number of Points Required to Represent a
-/// Digitized Line*. Changed: distance to the *segment*, not to its infinite line, since a stretch may run past its ends;
-/// a stretch that returns to its start keeps its farthest point; and of points equally far away the choice does not depend
-/// on the direction of the way. `geo`'s implementation promises neither of the last two; tests compare with it elsewhere.
+/// Source: Douglas & Peucker 1973, *Algorithms for the Reduction of the Number of Points Required
+/// to Represent a Digitized Line*. Changes: the distance is measured to the *segment*, not to its
+/// infinite line, because a stretch may run past its ends; a stretch that returns to its start
+/// keeps its farthest point; and among points at equal distance the choice does not depend on the
+/// direction of the way. `geo`'s implementation does not promise the last two; tests compare with
+/// it in all other cases.
 #[must_use]
 pub fn simplify(line: &Polyline, fixed: &[u32], tolerance_steps: f64) -> Polyline {
     let kept = kept_points(line, fixed, tolerance_steps);
@@ -28,12 +33,12 @@ pub fn simplify(line: &Polyline, fixed: &[u32], tolerance_steps: f64) -> Polylin
     if kept.len() == points.len() {
         return line.clone();
     }
-    // A polyline has two different neighbours somewhere; each stretch keeps one such pair if it has one.
+    // A polyline has two different neighbours somewhere; each stretch with such a pair keeps one.
     let kept = kept.into_iter().map(|index| points[index]).collect();
     Polyline::new(kept).unwrap_or_else(|_| line.clone())
 }
 
-/// The indices of the points that [`simplify`] keeps, ascending.
+/// Returns the indices of the points that [`simplify`] keeps, ascending.
 #[must_use]
 pub fn kept_points(line: &Polyline, fixed: &[u32], tolerance_steps: f64) -> Vec<usize> {
     // With this comparison NaN keeps every point, too.
@@ -61,7 +66,7 @@ pub fn kept_points(line: &Polyline, fixed: &[u32], tolerance_steps: f64) -> Vec<
     (0..points.len()).filter(|&index| keep[index]).collect()
 }
 
-/// Marks the points of `points[first..=last]` that stay, its ends being kept already.
+/// Marks the points of `points[first..=last]` to keep; its ends are already marked.
 fn thin_stretch(
     points: &[LatticePoint],
     first: usize,
@@ -78,7 +83,8 @@ fn thin_stretch(
             else {
                 continue;
             };
-            // If both ends are equal there is no segment: without this point the stretch would vanish.
+            // If both ends are equal, there is no segment: without this point the stretch would
+            // vanish.
             if distance_steps > tolerance_steps || points[first] == points[last] {
                 keep[farthest] = true;
                 parts.extend([(first, farthest), (farthest, last)]);
@@ -94,15 +100,16 @@ fn thin_stretch(
     }
 }
 
-/// The point strictly between `first` and `last` that lies farthest from the segment between them; among equals the
-/// first in canonical direction.
+/// Returns the point strictly between `first` and `last` that is farthest from the segment between
+/// them; among equals, the first in canonical direction.
 fn farthest(
     points: &[LatticePoint],
     first: usize,
     last: usize,
     is_reversed: bool,
 ) -> Option<(usize, f64)> {
-    // Both directions must compute the same numbers, so the segment too runs in canonical direction.
+    // Both directions must compute the same numbers, so the segment also runs in canonical
+    // direction.
     let (a, b) =
         if is_reversed { (points[last], points[first]) } else { (points[first], points[last]) };
     let mut best = None;
@@ -118,14 +125,16 @@ fn farthest(
     best
 }
 
-/// Whether the canonical direction of this stretch is from its end to its start: that direction whose points come
-/// first in lexicographic order. A stretch that equals its reverse has no direction.
+/// Whether the canonical direction of this stretch is from its end to its start. The canonical
+/// direction is the one whose points come first in lexicographic order. A stretch that equals its
+/// reverse has no direction.
 fn is_reversed(stretch: &[LatticePoint]) -> bool {
     stretch.iter().rev().lt(stretch.iter())
 }
 
-/// Distance from `p` to the segment between `a` and `b`, in lattice steps: products are exact integers, so the result is
-/// off by a few units in the last place at most, however far the points are apart.
+/// Returns the distance from `p` to the segment between `a` and `b`, in lattice steps. Products are
+/// exact integers, so the result is off by at most a few units in the last place, however far apart
+/// the points are.
 fn distance_to_segment_steps(p: LatticePoint, a: LatticePoint, b: LatticePoint) -> f64 {
     let along = dot(a, b, p);
     if along <= 0 {

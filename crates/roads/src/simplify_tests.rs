@@ -1,4 +1,4 @@
-//! Simplified lines stay within their tolerance and keep what is fixed.
+//! Simplified lines stay within their tolerance and keep fixed points.
 
 use super::*;
 use crate::{FunctionalRoadClass, MetNodes, Road, RoadAttributes};
@@ -61,7 +61,8 @@ fn zero_and_senseless_tolerances_keep_every_point() {
 
 #[test]
 fn measures_to_the_segment_where_a_line_overshoots() {
-    // On the infinite line through both ends nothing sticks out; past the end, 40 steps do.
+    // Measured to the infinite line through both ends, no point is far away; past the end, one is
+    // 40 steps away.
     check(&[(0, 0), (140, 0), (100, 0)], &[], 10.0, &[(0, 0), (140, 0), (100, 0)]);
     check(&[(0, 0), (140, 0), (100, 0)], &[], 40.0, &[(0, 0), (100, 0)]);
 }
@@ -76,7 +77,7 @@ fn a_ring_never_vanishes() {
     let ring = [(0, 0), (10, 0), (10, 10), (0, 10), (0, 0)];
     check(&ring, &[], 1e9, &[(0, 0), (10, 10), (0, 0)]);
     check(&ring, &[], 5.0, &ring);
-    // A lollipop whose ring hangs between two visits of one junction.
+    // The shape is a lollipop whose ring is between two visits of one junction.
     let lollipop = [(-100, 0), (0, 0), (5, 5), (9, 0), (5, -5), (0, 0)];
     check(&lollipop, &[1], 50.0, &[(-100, 0), (0, 0), (9, 0), (0, 0)]);
 }
@@ -88,7 +89,7 @@ fn stays_right_for_country_long_segments() {
     check(&[(0, 0), (far / 2, 2), (far, 0)], &[], 2.0, &[(0, 0), (far, 0)]);
 }
 
-/// Whether p lies within whole `tolerance` of segment a–b, in integers alone: the oracle.
+/// Whether p is within an integer `tolerance` of segment a–b, with integers alone: the oracle.
 fn is_within(p: LatticePoint, a: LatticePoint, b: LatticePoint, tolerance: i128) -> bool {
     let square = |p: LatticePoint, q: LatticePoint| {
         i128::from(p.u - q.u).pow(2) + i128::from(p.v - q.v).pow(2)
@@ -105,14 +106,15 @@ fn is_within(p: LatticePoint, a: LatticePoint, b: LatticePoint, tolerance: i128)
     }
 }
 
-/// Indices in `source` of the points of `thin`, matched greedily from the front such that fixed points are hit.
+/// Returns the indices in `source` of the points of `thin`, matched greedily from the front so that
+/// fixed points are matched.
 fn is_subsequence(thin: &[LatticePoint], source: &[LatticePoint]) -> bool {
     let mut rest = source.iter();
     thin.iter().all(|point| rest.any(|other| other == point))
 }
 
-/// Whether the source can be cut at its points into stretches, one per segment of `thin`, each within the tolerance of
-/// its segment: dynamic programming over all ways of cutting.
+/// Whether the source can be cut at its points into stretches, one per segment of `thin`, each
+/// within the tolerance of its segment. Dynamic programming tries all ways of cutting.
 fn is_near(thin: &[LatticePoint], source: &[LatticePoint], tolerance: i128) -> bool {
     let mut reached = vec![false; source.len()];
     reached[0] = thin[0] == source[0];
@@ -142,8 +144,8 @@ fn points() -> impl Strategy<Value = Vec<LatticePoint>> {
 }
 
 proptest! {
-    /// No source point lies farther than the tolerance from the segment that replaces its stretch; ends and fixed
-    /// points stay; the result is made of the source's points in their order.
+    /// No source point is farther than the tolerance from the segment that replaces its stretch.
+    /// Ends and fixed points stay, and the result consists of the source's points in their order.
     #[test]
     fn stays_within_the_tolerance(points in points(), fixed in vec(1..40_u32, 0..5), tolerance in 1..50_000_i64) {
         if let Some(road) = road(points, &fixed) {
@@ -174,7 +176,7 @@ proptest! {
         }
     }
 
-    /// Simplifying again with the same tolerance and the kept junctions never makes the line invalid.
+    /// Simplifying again with the same tolerance and junctions never makes the line invalid.
     #[test]
     fn always_leaves_a_polyline(points in points(), tolerance in prop_oneof![Just(f64::INFINITY), Just(f64::MAX), 0.0..10.0]) {
         if let Some(road) = road(points, &[]) {
@@ -184,7 +186,8 @@ proptest! {
 }
 
 proptest! {
-    /// Stretch by stretch the points that `geo` keeps, where no two distances are equal and no stretch returns to its start.
+    /// In each stretch, the result has the points that `geo` keeps, if no two distances are equal
+    /// and no stretch returns to its start.
     #[test]
     fn keeps_the_points_that_geo_keeps(
         steps in vec((1_i64..1_000_000_000, -1_000_000_000_i64..1_000_000_000), 3..60),
@@ -213,7 +216,8 @@ proptest! {
     }
 }
 
-/// A line that goes forth and back keeps its points and is not looked at as often as it has points, whichever way it runs.
+/// A line that goes back and forth keeps its points and is not scanned once for each point,
+/// whichever way it runs.
 #[test]
 fn work_follows_the_points_of_a_zigzag() {
     let zigzag = |k: i64| (1000 * k, if k % 2 == 0 { 0 } else { 1_000_000_000 });
@@ -234,7 +238,7 @@ fn work_follows_the_points_of_a_zigzag() {
         let source: Vec<LatticePoint> =
             points.iter().map(|&(u, v)| LatticePoint::new(u, v)).collect();
         assert!(is_subsequence(there.points(), &source));
-        // Looking at each point as often as there are points takes minutes.
+        // One scan per point would take minutes.
         assert!(begun.elapsed().as_secs() < 20, "{:?}", begun.elapsed());
     }
 }

@@ -1,8 +1,9 @@
-//! How thick the slab of a bridge is shown, in pictures and models alike.
+//! The displayed thickness of a bridge's slab, in images and models alike.
 
 use crate::road::FunctionalRoadClass;
 
-/// How thick the slab under a bridge of a class is, true metres. A tile does not know how long a bridge is that goes on in others, so its class alone tells.
+/// Returns the thickness of the slab under a bridge of a class, true metres. It depends on the
+/// class alone, because a tile does not know the length of a bridge that continues in other tiles.
 #[must_use]
 pub fn slab_thickness_m(class: FunctionalRoadClass) -> f64 {
     match class.number() {

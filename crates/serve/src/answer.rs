@@ -1,4 +1,4 @@
-//! From a request to an answer.
+//! Answers requests for served files.
 
 use std::{io, sync::Arc};
 
@@ -16,16 +16,16 @@ use tokio::fs::File;
 
 use crate::{
     body::{Body, of_bytes, of_file},
-    conditions::Wanted,
+    conditions::RequestedRange,
     host::Hosts,
     media_type::media_type,
     on_disk::{self, OpenedFile},
     packed,
-    refusal::{METHODS, Refusal},
-    routes::{Content, Readers, Route, Routes},
+    refusal::{METHODS, ServeRefusal},
+    routes::{FileContent, Readers, Routes, ServedRoute},
 };
 
-/// What is served, and to whom.
+/// The served files, and the clients that may read them.
 #[derive(Debug)]
 pub(crate) struct Site {
     pub(crate) routes: Routes,
@@ -33,45 +33,45 @@ pub(crate) struct Site {
 }
 
 impl Site {
-    /// The answer to a request, whose body is not looked at.
+    /// The answer to a request, whose body is ignored.
     pub(crate) async fn answer<B>(&self, request: &Request<B>) -> Response<Body> {
         if let Err(refusal) = self.check_host(request) {
             return finished(refusal.answer(), Readers::OwnPages);
         }
         let Some((path, route)) = self.routes.find(request.uri().path()) else {
-            // A page that names a file wrongly is told so, wherever it comes from.
-            return finished(Refusal::Unknown.answer(), Readers::AnyPage);
+            // A page that requests a missing file gets this error, whatever its origin.
+            return finished(ServeRefusal::Unknown.answer(), Readers::AnyPage);
         };
         let answered = match *request.method() {
             Method::GET | Method::HEAD => send(request, path, route).await,
             Method::OPTIONS => Ok(methods(route.readers)),
-            _ => Err(Refusal::Method),
+            _ => Err(ServeRefusal::Method),
         };
         finished(answered.unwrap_or_else(|refusal| refusal.answer()), route.readers)
     }
 
-    fn check_host<B>(&self, request: &Request<B>) -> Result<(), Refusal> {
+    fn check_host<B>(&self, request: &Request<B>) -> Result<(), ServeRefusal> {
         let named = request.headers().get_all(HOST);
         if named.iter().next().is_none() && request.version() == Version::HTTP_11 {
-            return Err(Refusal::NoHost);
+            return Err(ServeRefusal::NoHost);
         }
-        // A whole address may stand in place of a path, and then counts.
+        // A request may have a whole URL instead of a path; then its host counts.
         let in_address = request.uri().authority().map(|authority| Ok(authority.as_str()));
         let hosts = named.iter().map(HeaderValue::to_str).chain(in_address);
         for host in hosts {
             if !host.is_ok_and(|host| self.hosts.allow(host)) {
-                return Err(Refusal::OtherHost);
+                return Err(ServeRefusal::OtherHost);
             }
         }
         Ok(())
     }
 }
 
-/// What all answers have.
+/// Adds the headers of all answers.
 fn finished(mut answer: Response<Body>, readers: Readers) -> Response<Body> {
     let headers = answer.headers_mut();
     headers.insert(X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff"));
-    // A browser may keep what it gets, and asks each time whether it is still so.
+    // A browser may cache the answer, but must revalidate it each time.
     headers.insert(CACHE_CONTROL, HeaderValue::from_static("no-cache"));
     if readers == Readers::AnyPage {
         headers.insert(ACCESS_CONTROL_ALLOW_ORIGIN, HeaderValue::from_static("*"));
@@ -81,7 +81,8 @@ fn finished(mut answer: Response<Body>, readers: Readers) -> Response<Body> {
     answer
 }
 
-/// What can be asked: the answer to a browser that asks before a page of another server may ask.
+/// The allowed methods and headers: the answer to a preflight request of a browser for a page of
+/// another server.
 fn methods(readers: Readers) -> Response<Body> {
     let mut answer = Response::new(of_bytes(Bytes::new()));
     *answer.status_mut() = StatusCode::NO_CONTENT;
@@ -112,18 +113,19 @@ enum Source {
 async fn send<B>(
     request: &Request<B>,
     path: &str,
-    route: &Route,
-) -> Result<Response<Body>, Refusal> {
+    route: &ServedRoute,
+) -> Result<Response<Body>, ServeRefusal> {
     let unreadable = |error: io::Error| match error.kind() {
-        io::ErrorKind::NotFound => Refusal::Gone { path: path.to_owned() },
-        _ => Refusal::Unreadable { path: path.to_owned(), reason: error.to_string() },
+        io::ErrorKind::NotFound => ServeRefusal::Gone { path: path.to_owned() },
+        _ => ServeRefusal::Unreadable { path: path.to_owned(), reason: error.to_string() },
     };
     let opened = open(request.headers(), route).await.map_err(unreadable)?;
     let Opened { length_bytes, tag, is_packed, source } = opened;
-    let wanted = Wanted::of(request.method(), request.headers(), length_bytes, &tag);
+    let wanted =
+        RequestedRange::from_request(request.method(), request.headers(), length_bytes, &tag);
     let mut headers = HeaderMap::new();
     let mut set = |name: HeaderName, value: &str| {
-        // Numbers and our own tags are always such values.
+        // Numbers and our own tags are always valid header values.
         if let Ok(value) = value.parse() {
             headers.insert(name, value);
         }
@@ -131,11 +133,11 @@ async fn send<B>(
     set(ETAG, &tag);
     set(ACCEPT_RANGES, "bytes");
     let (status, range) = match wanted {
-        Wanted::Changed => return Err(Refusal::Changed),
-        Wanted::NoSuchBytes => return Err(Refusal::NoSuchBytes { length_bytes }),
-        Wanted::Unchanged => (StatusCode::NOT_MODIFIED, None),
-        Wanted::Whole => (StatusCode::OK, length_bytes.checked_sub(1).map(|last| 0..=last)),
-        Wanted::Part(range) => {
+        RequestedRange::Changed => return Err(ServeRefusal::Changed),
+        RequestedRange::NoSuchBytes => return Err(ServeRefusal::NoSuchBytes { length_bytes }),
+        RequestedRange::Unchanged => (StatusCode::NOT_MODIFIED, None),
+        RequestedRange::Whole => (StatusCode::OK, length_bytes.checked_sub(1).map(|last| 0..=last)),
+        RequestedRange::Part(range) => {
             set(CONTENT_RANGE, &format!("bytes {}-{}/{length_bytes}", range.start(), range.end()));
             (StatusCode::PARTIAL_CONTENT, Some(range))
         }
@@ -169,14 +171,14 @@ async fn send<B>(
     Ok(answer)
 }
 
-async fn open(headers: &HeaderMap, route: &Route) -> io::Result<Opened> {
+async fn open(headers: &HeaderMap, route: &ServedRoute) -> io::Result<Opened> {
     match &route.content {
-        Content::Memory(bytes) => {
+        FileContent::Memory(bytes) => {
             let way = route.packed.clone().filter(|_| packed::is_wanted(headers));
             let packed = match way {
                 Some(way) => {
                     let bytes = bytes.clone();
-                    let packed = tokio::task::spawn_blocking(move || way.of(&bytes));
+                    let packed = tokio::task::spawn_blocking(move || way.compressed(&bytes));
                     packed.await.map_err(io::Error::other)?
                 }
                 None => None,
@@ -188,7 +190,7 @@ async fn open(headers: &HeaderMap, route: &Route) -> io::Result<Opened> {
             let length_bytes = bytes.len() as u64;
             Ok(Opened { length_bytes, tag, is_packed, source: Source::Memory(bytes) })
         }
-        Content::Disk(on_disk) => {
+        FileContent::Disk(on_disk) => {
             let (on_disk, known) = (Arc::clone(on_disk), Arc::clone(&route.known));
             let opened = tokio::task::spawn_blocking(move || on_disk::open(&*on_disk, &known));
             let OpenedFile { file, length_bytes, tag } =

@@ -12,17 +12,18 @@ use tokio::{
 };
 use tokio_util::io::ReaderStream;
 
-/// What an answer sends.
+/// The body of an answer.
 pub(crate) type Body = UnsyncBoxBody<Bytes, io::Error>;
 
-/// How much of a file is read at once.
+/// The number of bytes of a file that are read at once.
 const CHUNK_BYTES: usize = 256 * 1024;
 
 pub(crate) fn of_bytes(bytes: impl Into<Bytes>) -> Body {
     Full::new(bytes.into()).map_err(|never| match never {}).boxed_unsync()
 }
 
-/// These bytes of a file. If it ends before them the connection is closed, which tells the client that bytes are missing.
+/// A range of a file. If the file ends early, the connection is closed, which tells the client that
+/// bytes are missing.
 pub(crate) async fn of_file(mut file: File, range: &RangeInclusive<u64>) -> io::Result<Body> {
     file.seek(SeekFrom::Start(*range.start())).await?;
     let part = file.take(range.end() - range.start() + 1);

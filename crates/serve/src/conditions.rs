@@ -1,4 +1,5 @@
-//! Which part of a file a request asks for, and on which conditions (RFC 9110, *HTTP Semantics*, 2022, sections 13 and 14).
+//! Range requests and conditional requests (RFC 9110, *HTTP Semantics*, 2022, sections 13 and
+//! 14).
 
 use std::ops::RangeInclusive;
 
@@ -8,26 +9,33 @@ use hyper::{
     header::{HeaderName, IF_MATCH, IF_NONE_MATCH, IF_RANGE, RANGE},
 };
 
-/// What of a file is to be sent.
+/// The part of a file to send.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum Wanted {
-    /// All of it.
+pub(crate) enum RequestedRange {
+    /// The whole file.
     Whole,
     /// These bytes.
     Part(RangeInclusive<u64>),
-    /// Nothing: the client has this version.
+    /// Nothing: the client already has this version.
     Unchanged,
-    /// Nothing: the client wants another version.
+    /// Nothing: the client requests another version.
     Changed,
-    /// Nothing: it has no such bytes, or they are not said as they must be.
+    /// Nothing: the file has no such bytes, or the range is invalid.
     NoSuchBytes,
 }
 
-impl Wanted {
-    /// What is wanted of a file with so many bytes and this `ETag`, which is a strong one.
+impl RequestedRange {
+    /// The part of a file of this length and this `ETag`, which must be a strong one, that a
+    /// request asks for.
     ///
-    /// Several ranges in one request are answered by the whole file, and dates as conditions are not known: no answer of ours has one.
-    pub(crate) fn of(method: &Method, headers: &HeaderMap, length_bytes: u64, tag: &str) -> Self {
+    /// A request for several ranges is answered with the whole file. Conditions with dates are
+    /// ignored, because our answers have no dates.
+    pub(crate) fn from_request(
+        method: &Method,
+        headers: &HeaderMap,
+        length_bytes: u64,
+        tag: &str,
+    ) -> Self {
         let text = |name: HeaderName| headers.get(name)?.to_str().ok();
         if headers.contains_key(IF_MATCH)
             && !headers
@@ -44,7 +52,7 @@ impl Wanted {
         {
             return Self::Unchanged;
         }
-        // A range is for GET alone, and for the version that it was meant for.
+        // A range applies only to GET, and only to the version that the client expects.
         let is_of_this = text(IF_RANGE).is_none_or(|version| version == tag);
         let range = text(RANGE).filter(|_| *method == Method::GET && is_of_this);
         range.map_or(Self::Whole, |range| Self::of_range(range, length_bytes))
@@ -53,7 +61,7 @@ impl Wanted {
     fn of_range(range: &str, length_bytes: u64) -> Self {
         let ranges = match parse_range_header(range) {
             Ok(ranges) => ranges,
-            // Another unit than bytes is not looked at.
+            // Other units than bytes are ignored.
             Err(RangeUnsatisfiableError::Invalid(RangeInvalid::DoesNotStartWithToken)) => {
                 return Self::Whole;
             }
@@ -67,14 +75,14 @@ impl Wanted {
     }
 }
 
-/// Whether a version that is only said to be much the same (`W/"…"`) is the same.
+/// Whether a weak tag (`W/"…"`) matches.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Weak {
     IsSame,
     Differs,
 }
 
-/// Whether a list of versions names this one. Our tags have no commas.
+/// Whether a list of tags contains this one. Our tags have no commas.
 fn names(list: Option<&str>, tag: &str, weak: Weak) -> bool {
     list.unwrap_or_default().split(',').map(str::trim).any(|named| {
         named == "*"

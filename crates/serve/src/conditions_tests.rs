@@ -1,22 +1,22 @@
-//! Ranges and conditions of requests are understood as the standard says.
+//! Ranges and conditions of requests are interpreted as in the standard.
 
 use hyper::{HeaderMap, Method, header::HeaderName};
 
-use super::Wanted;
+use super::RequestedRange;
 
 const TAG: &str = "\"one\"";
 
-fn wanted(method: &Method, headers: &[(&str, &str)], length_bytes: u64) -> Wanted {
+fn wanted(method: &Method, headers: &[(&str, &str)], length_bytes: u64) -> RequestedRange {
     let headers: HeaderMap = headers
         .iter()
         .map(|(name, value)| (name.parse::<HeaderName>().unwrap(), value.parse().unwrap()))
         .collect();
-    Wanted::of(method, &headers, length_bytes, TAG)
+    RequestedRange::from_request(method, &headers, length_bytes, TAG)
 }
 
 #[test]
 fn ranges_are_those_of_the_standard() {
-    use Wanted::{NoSuchBytes, Part, Whole};
+    use RequestedRange::{NoSuchBytes, Part, Whole};
     for (range, length, expected) in [
         ("bytes=0-0", 10, Part(0..=0)),
         ("bytes=2-5", 10, Part(2..=5)),
@@ -48,12 +48,12 @@ fn ranges_are_those_of_the_standard() {
 
 #[test]
 fn conditions_hold_for_one_version() {
-    use Wanted::{Changed, Part, Unchanged, Whole};
+    use RequestedRange::{Changed, Part, Unchanged, Whole};
     let range = ("range", "bytes=2-5");
     for (condition, expected) in [
         (("if-range", TAG), Part(2..=5)),
         (("if-range", "\"two\""), Whole),
-        // Much the same is not enough for a part.
+        // A weak tag is not sufficient for a range.
         (("if-range", "W/\"one\""), Whole),
         (("if-range", "Sun, 22 Nov 2026 10:00:00 GMT"), Whole),
         (("if-none-match", TAG), Unchanged),

@@ -1,7 +1,9 @@
-//! The connections that are open, and which of them gives way where there are too many: the one on which nothing was asked for longest.
+//! The open connections, and which of them is closed when there are too many: the one that has
+//! been idle for longest.
 //!
-//! What is idle follows from what was read and answered alone: a connection is busy from the head of a request until the body of its answer has been
-//! taken. So one on which a client says half a request and then nothing is idle, too.
+//! A connection is busy from the head of a request until the client has received the body of
+//! the answer; otherwise it is idle. So a connection on which a client sends half a request and
+//! then nothing is idle, too.
 
 use std::{
     collections::BTreeMap,
@@ -21,7 +23,7 @@ use tokio::sync::Notify;
 
 use crate::body::Body;
 
-/// All that are open, by their numbers.
+/// All open connections, by number.
 #[derive(Debug, Default)]
 pub(crate) struct Connections(Mutex<Open>);
 
@@ -31,14 +33,14 @@ struct Open {
     next: u64,
 }
 
-/// How a connection that was told to end does so.
+/// How a connection that was told to close does so.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum End {
-    /// Nothing is being answered on it.
+pub(crate) enum ConnectionEnd {
+    /// At once, because nothing is being answered on it.
     Now,
-    /// Once what is being answered has been taken.
+    /// After the current answer has been sent.
     AfterAnswer,
-    /// It has become busy.
+    /// Not, because it has become busy.
     Not,
 }
 
@@ -47,7 +49,7 @@ impl Connections {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Adds one and returns its number.
+    /// Adds a connection and returns its number.
     pub(crate) fn add(&self, connection: &Arc<Connection>) -> u64 {
         let mut open = self.open();
         open.next += 1;
@@ -60,19 +62,20 @@ impl Connections {
         self.open().by_number.remove(&number);
     }
 
-    /// Tells the one to end that has been idle for longest and was not told yet, if there is one.
+    /// Tells the connection to close that has been idle for longest and was not told before, if
+    /// there is one.
     pub(crate) fn close_idlest(&self) {
         let open = self.open();
         let idle = open.by_number.values();
         let idle = idle.filter_map(|one| Some((one.idle_since()?, one)));
         if let Some((_, idlest)) = idle.min_by_key(|(since, _)| *since) {
-            idlest.tell(Told::GiveWay);
+            idlest.tell(ShutdownStage::GiveWay);
         }
     }
 
-    /// Tells all to end: idle ones at once, the others after their answers.
+    /// Tells all connections to close: idle ones at once, the others after their answers.
     pub(crate) fn end_all(&self) {
-        self.open().by_number.values().for_each(|one| one.tell(Told::End));
+        self.open().by_number.values().for_each(|one| one.tell(ShutdownStage::End));
     }
 }
 
@@ -80,34 +83,34 @@ impl Connections {
 #[derive(Debug)]
 pub(crate) struct Connection {
     state: Mutex<State>,
-    /// Whether what was answered waits for its reader.
+    /// Whether the answer waits for its reader.
     is_waiting: Arc<AtomicBool>,
     told: Notify,
 }
 
 #[derive(Debug)]
 struct State {
-    /// Answers that were begun and not taken yet.
+    /// Answers that were begun and are not sent yet.
     answers: usize,
-    /// Since when it is as it is.
+    /// The time of the last change of state.
     since: Instant,
-    told: Option<Told>,
+    told: Option<ShutdownStage>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Told {
+enum ShutdownStage {
     GiveWay,
     End,
 }
 
 impl Connection {
-    /// One on which nothing was asked yet.
+    /// A connection without requests so far.
     pub(crate) fn new(is_waiting: Arc<AtomicBool>) -> Self {
         let state = State { answers: 0, since: Instant::now(), told: None };
         Self { state: Mutex::new(state), is_waiting, told: Notify::new() }
     }
 
-    /// Since when nothing is answered; `None` if something is, or it was told to end.
+    /// The time since which the connection is idle; `None` if it is busy, or was told to close.
     fn idle_since(&self) -> Option<Instant> {
         let state = self.state();
         (self.is_idle(&state) && state.told.is_none()).then_some(state.since)
@@ -121,30 +124,30 @@ impl Connection {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn tell(&self, what: Told) {
+    fn tell(&self, what: ShutdownStage) {
         self.state().told = Some(what);
         self.told.notify_one();
     }
 
-    /// Ends when it is told to end.
+    /// Returns when the connection is told to close.
     pub(crate) async fn is_told(&self) {
         self.told.notified().await;
     }
 
-    /// How it ends, once it was told to.
-    pub(crate) fn end(&self) -> End {
+    /// How to close the connection, after it was told to.
+    pub(crate) fn end(&self) -> ConnectionEnd {
         let mut state = self.state();
         match state.told {
-            Some(_) if self.is_idle(&state) => End::Now,
-            Some(Told::End) => End::AfterAnswer,
-            Some(Told::GiveWay) | None => {
+            Some(_) if self.is_idle(&state) => ConnectionEnd::Now,
+            Some(ShutdownStage::End) => ConnectionEnd::AfterAnswer,
+            Some(ShutdownStage::GiveWay) | None => {
                 state.told = None;
-                End::Not
+                ConnectionEnd::Not
             }
         }
     }
 
-    /// Something is answered from now on, until what this returns is dropped.
+    /// Marks the connection as busy until the returned value is dropped.
     pub(crate) fn begin_answer(self: &Arc<Self>) -> Answering {
         let mut state = self.state();
         (state.answers, state.since) = (state.answers + 1, Instant::now());
@@ -152,11 +155,11 @@ impl Connection {
     }
 }
 
-/// An answer that has been begun.
+/// A begun answer.
 pub(crate) struct Answering(Arc<Connection>);
 
 impl Answering {
-    /// The body, which ends the answer when it has been taken.
+    /// The body, which ends the answer when it has been sent.
     pub(crate) fn with_body(self, body: Body) -> AnswerBody {
         AnswerBody { body, _answering: self }
     }
@@ -169,7 +172,7 @@ impl Drop for Answering {
     }
 }
 
-/// The body of an answer. While there is some of it, its connection is busy.
+/// The body of an answer. Until it has been sent, its connection is busy.
 pub(crate) struct AnswerBody {
     body: Body,
     _answering: Answering,

@@ -4,45 +4,45 @@ use std::{io, net::SocketAddr};
 
 use thiserror::Error;
 
-/// Why nothing can be served.
+/// The reason why nothing can be served.
 #[derive(Debug, Error)]
 pub enum ServeError {
-    /// The name or number of the place to listen at means nothing here.
+    /// The name or IP address to listen at does not belong to this machine.
     #[error(
-        "there is no address {host}; give one of this machine, such as 127.0.0.1, ::1 or 0.0.0.0 (all of them)"
+        "{host} is not an address of this machine; use one such as 127.0.0.1, ::1 or 0.0.0.0 (all addresses)"
     )]
     NoAddress {
-        /// The name as it was given.
+        /// The name as given.
         host: String,
-        /// What the system says.
+        /// The system's error.
         source: io::Error,
     },
     /// Another program has the port.
     #[error(
-        "port {port} of {host} is in use by another program; give another one, or 0 for one that is free"
+        "port {port} of {host} is in use by another program; use another port, or 0 for a free one"
     )]
     InUse {
-        /// The name as it was given.
+        /// The name as given.
         host: String,
         /// The port.
         port: u16,
     },
-    /// The system does not let this program listen there.
+    /// The system does not allow this program to listen there.
     #[error("cannot listen at port {port} of {host}")]
     Listen {
-        /// The name as it was given.
+        /// The name as given.
         host: String,
         /// The port.
         port: u16,
-        /// What the system says.
+        /// The system's error.
         source: io::Error,
     },
     /// The threads of the server cannot be started.
-    #[error("cannot start to serve at {address}")]
+    #[error("cannot start the server at {address}")]
     Start {
-        /// The address at which it should have listened.
+        /// The address for listening.
         address: SocketAddr,
-        /// What the system says.
+        /// The system's error.
         source: io::Error,
     },
 }

@@ -1,28 +1,30 @@
-//! The names under which the server is asked.
+//! The host names to which the server responds.
 //!
-//! A page from elsewhere may make its own name lead to 127.0.0.1 once it is loaded (DNS rebinding); a browser then takes this server for
-//! the page's own, and lets the page read all of it. Such a request says the page's name in `Host`. An address of numbers, and
-//! `localhost`, cannot be such a name.
+//! A web page may point its own domain name to 127.0.0.1 after it is loaded (DNS rebinding). A
+//! browser then treats this server as the page's own, and lets the page read everything. Such a
+//! request has the page's domain name in its `Host` header. IP addresses and `localhost` cannot be
+//! such names.
 
 use std::net::{IpAddr, SocketAddr};
 
 use hyper::http::uri::Authority;
 
-/// The names that are answered.
+/// The accepted host names.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Hosts {
-    /// All: the server is open to the network, where it may be asked by any name.
+    /// All names: the server is open to the network, where clients may use any name for it.
     Any,
-    /// Addresses of numbers, `localhost`, and the one that was named.
+    /// IP addresses, `localhost`, and the given name.
     Local {
-        /// The name in lower case; a number, too, if that was given.
+        /// The name in lower case; it may also be an IP address.
         named: String,
     },
 }
 
 impl Hosts {
-    /// The names of a server that was told to listen at `named`, which turned out to be `bound`.
-    pub(crate) fn of(named: &str, bound: SocketAddr) -> Self {
+    /// The accepted names of a server that was told to listen at `named`, which was resolved to
+    /// `bound`.
+    pub(crate) fn from_names(named: &str, bound: SocketAddr) -> Self {
         if bound.ip().is_loopback() {
             Self::Local { named: named.to_lowercase() }
         } else {
@@ -30,7 +32,7 @@ impl Hosts {
         }
     }
 
-    /// Whether a request to this host, with or without a port, is answered.
+    /// Whether requests to this host, with or without a port, are accepted.
     pub(crate) fn allow(&self, host: &str) -> bool {
         let Self::Local { named } = self else { return true };
         let Ok(authority) = host.parse::<Authority>() else { return false };

@@ -1,10 +1,10 @@
-//! A server on the loopback answers only to names that cannot be made to lead there.
+//! A server on the loopback accepts only host names that nobody else can point to it.
 
 use super::Hosts;
 
 #[test]
 fn on_the_loopback_only_names_are_answered_that_cannot_be_made_to_lead_here() {
-    let hosts = Hosts::of("Map.Example", "127.0.0.1:8080".parse().unwrap());
+    let hosts = Hosts::from_names("Map.Example", "127.0.0.1:8080".parse().unwrap());
     for host in [
         "127.0.0.1:8080",
         "127.0.0.1",
@@ -33,6 +33,6 @@ fn on_the_loopback_only_names_are_answered_that_cannot_be_made_to_lead_here() {
 
 #[test]
 fn a_server_of_the_network_is_asked_by_any_name() {
-    let hosts = Hosts::of("0.0.0.0", "0.0.0.0:8080".parse().unwrap());
+    let hosts = Hosts::from_names("0.0.0.0", "0.0.0.0:8080".parse().unwrap());
     assert!(hosts.allow("maps.example.org"));
 }

@@ -1,16 +1,18 @@
-//! A small web server for a fixed table of files, which are read by ranges of bytes.
+//! A small web server for a fixed table of files, with range requests.
 //!
 //! ```text
 //!   Routes: path ─► bytes in memory, or a file on disk
 //!      │
 //!      ▼
-//!   Server ─► a request ─► host ─► path ─► method ─► conditions ─► whole file, part of it, or why not
+//!   Server ─► a request ─► host ─► path ─► method ─► conditions ─► whole file, part of it, or error
 //! ```
 //!
-//! Only what is in the table is answered: a path is looked up as a word, and never joined to the path of a folder. A file on disk is
-//! opened anew for each request, so that a new version gets a new `ETag`, and one that is gone is said to be gone.
+//! Only the files in the table are served: a path is looked up as a key, and never joined to
+//! the path of a folder. A file on disk is reopened for each request, so that a new version gets a
+//! new `ETag`, and a missing file is reported.
 //!
-//! This crate never lists a folder, writes a file or follows a path that a request names, and knows no package and no tile.
+//! This crate never lists a folder, writes a file or follows a path in a request, and has no
+//! knowledge of packages and tiles.
 
 mod answer;
 mod body;
@@ -29,5 +31,5 @@ mod server;
 
 pub use error::ServeError;
 pub use on_disk::OnDisk;
-pub use routes::{Content, Readers, Routes};
-pub use server::{Answered, Server, Watch};
+pub use routes::{FileContent, Readers, Routes};
+pub use server::{Answered, Server, ServerWatch};

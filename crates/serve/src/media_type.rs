@@ -1,6 +1,6 @@
-//! What a file is, told by the ending of its name.
+//! The media type of a file, by its extension.
 
-/// The `Content-Type` of a file. Browsers load modules and WebAssembly only under these names.
+/// The `Content-Type` of a file. Browsers require these types for modules and WebAssembly.
 pub(crate) fn media_type(path: &str) -> &'static str {
     let ending = path.rsplit_once('.').map_or("", |(_, ending)| ending);
     match ending.to_ascii_lowercase().as_str() {

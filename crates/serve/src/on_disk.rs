@@ -1,4 +1,4 @@
-//! Files on disk that may change: which version an open one is.
+//! Files on disk that may change, and the versions of open files.
 
 use std::{
     fmt,
@@ -11,21 +11,22 @@ use std::{
 
 use sha2::{Digest as _, Sha256};
 
-/// So much of one range is hashed at most.
+/// The largest number of bytes of one range that are hashed.
 const MOST_BYTES: u64 = 64 << 20;
 
-/// A file on disk, as whoever starts a server knows it.
+/// A file on disk, provided by the program that starts the server.
 pub trait OnDisk: fmt::Debug + Send + Sync {
-    /// Opens it as it is now.
+    /// Opens the current version of the file.
     ///
     /// # Errors
-    /// Of kind `NotFound` where it is gone, or is none that may be sent; what else is said is sent to whoever asks.
+    /// Returns `NotFound` if the file is missing or must not be sent; texts of other errors are
+    /// sent to the client.
     fn open(&self) -> io::Result<File>;
 
-    /// Which bytes of the open file tell its versions apart; they are hashed once for each version.
+    /// The ranges of the open file that distinguish its versions; they are hashed once per version.
     ///
     /// # Errors
-    /// As [`OnDisk::open`].
+    /// The same as those of [`OnDisk::open`].
     fn telling(&self, file: &File) -> io::Result<Vec<Range<u64>>>;
 }
 
@@ -36,18 +37,18 @@ pub(crate) struct Known {
     tag: String,
 }
 
-/// What the file system says of a version. That alone could be the same for two.
+/// The state of a version in the file system, which alone could be the same for two versions.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct State {
     length_bytes: u64,
     modified: SystemTime,
-    /// Device, number, and when the system noted the last change, which no program can set.
+    /// The device, the inode number, and the time of the last change, which programs cannot set.
     #[cfg(unix)]
     identity: [i64; 4],
 }
 
 impl State {
-    fn of(found: &Metadata) -> io::Result<Self> {
+    fn from_metadata(found: &Metadata) -> io::Result<Self> {
         #[cfg(unix)]
         use std::os::unix::fs::MetadataExt as _;
         Ok(Self {
@@ -71,10 +72,11 @@ pub(crate) struct OpenedFile {
     pub(crate) tag: String,
 }
 
-/// Opens a file; length and tag are those of what was opened, whatever is at its path by then.
+/// Opens a file; length and tag are those of the opened file, even if its path leads to another
+/// file by then.
 pub(crate) fn open(on_disk: &dyn OnDisk, known: &Mutex<Option<Known>>) -> io::Result<OpenedFile> {
     let file = on_disk.open()?;
-    let state = State::of(&file.metadata()?)?;
+    let state = State::from_metadata(&file.metadata()?)?;
     let length_bytes = state.length_bytes;
     let of_known = |known: &Known| (known.state == state).then(|| known.tag.clone());
     let tag = known.lock().unwrap_or_else(PoisonError::into_inner).as_ref().and_then(of_known);
@@ -87,7 +89,7 @@ pub(crate) fn open(on_disk: &dyn OnDisk, known: &Mutex<Option<Known>>) -> io::Re
     Ok(OpenedFile { file, length_bytes, tag })
 }
 
-/// Length, time and half of a hash of the bytes that tell versions apart, in quotes.
+/// The tag: length, time and half of a hash of the bytes that distinguish versions, in quotes.
 fn tag_of(on_disk: &dyn OnDisk, file: &File, state: &State) -> io::Result<String> {
     let mut digest = Sha256::new();
     let mut chunk = vec![0; 1 << 16];
@@ -104,7 +106,7 @@ fn tag_of(on_disk: &dyn OnDisk, file: &File, state: &State) -> io::Result<String
             }
         }
     }
-    // Times before 1970 are told apart, too.
+    // Times before 1970 are distinguished, too.
     let (sign, since) = match state.modified.duration_since(UNIX_EPOCH) {
         Ok(since) => ("", since),
         Err(before) => ("-", before.duration()),

@@ -1,4 +1,4 @@
-//! Files of a page, packed for clients that unpack them.
+//! Compressed files of a page, for clients that accept them.
 
 use std::{
     io::{self, Write as _},
@@ -12,23 +12,26 @@ use hyper::{
     header::{ACCEPT_ENCODING, HeaderValue, RANGE},
 };
 
-/// Shorter files fit into a packet or two as they are.
+/// Shorter files fit into a packet or two without compression.
 const LEAST_BYTES: usize = 1 << 11;
-/// The quality, of brotli's 0 to 11. The highest gives a tenth fewer bytes, and the first page would wait for seconds (docs/lab/browser.md).
+/// The quality, of brotli's 0 to 11. The highest saves a tenth more bytes, but the first request
+/// would wait for seconds (docs/lab/browser.md).
 const QUALITY: u32 = 9;
-/// The window's logarithm: that of all browsers.
+/// The logarithm of the window size, which all browsers support.
 const WINDOW: u32 = 22;
 const BUFFER_BYTES: usize = 1 << 16;
 
-/// A file in memory, packed once, when it is asked for first.
+/// A file in memory, compressed once, at the first request.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Packed(Arc<OnceLock<Option<Bytes>>>);
+pub(crate) struct CompressedFile(Arc<OnceLock<Option<Bytes>>>);
 
-impl Packed {
-    /// The packed file, or `None` where that is not shorter. It takes some tenths of a second for a megabyte.
-    pub(crate) fn of(&self, bytes: &Bytes) -> Option<Bytes> {
+impl CompressedFile {
+    /// The compressed file, or `None` if it is not shorter. Compression takes some tenths of a
+    /// second per megabyte.
+    pub(crate) fn compressed(&self, bytes: &Bytes) -> Option<Bytes> {
         let shorter = |packed: &Bytes| packed.len() < bytes.len();
-        // Of those who ask at once, one packs, and the others wait. Packing into memory does not fail.
+        // Of concurrent requests, one compresses, and the others wait. Compression into memory
+        // cannot fail.
         self.0.get_or_init(|| pack(bytes).ok().filter(shorter)).clone()
     }
 }
@@ -40,22 +43,23 @@ fn pack(bytes: &[u8]) -> io::Result<Bytes> {
     Ok(writer.into_inner().into())
 }
 
-/// Whether a file is worth it: text or a program, and not short. Pictures and packages are packed already, and packages are read by ranges.
+/// Whether compression pays off: for text and programs that are not short. Images and packages are
+/// already compressed, and packages are read by ranges.
 pub(crate) fn is_worth_it(media_type: &str, length_bytes: usize) -> bool {
     let is_text = media_type.starts_with("text/")
         || matches!(media_type, "application/json" | "application/wasm" | "image/svg+xml");
     is_text && length_bytes >= LEAST_BYTES
 }
 
-/// Whether a client wants a whole file, and unpacks it (RFC 9110, *HTTP Semantics*, 2022, section 12.5.3; RFC 7932, *Brotli Compressed Data
-/// Format*, 2016).
+/// Whether a client requests a whole file, and accepts brotli (RFC 9110, *HTTP Semantics*, 2022,
+/// section 12.5.3; RFC 7932, *Brotli Compressed Data Format*, 2016).
 pub(crate) fn is_wanted(headers: &HeaderMap) -> bool {
     let lists = headers.get_all(ACCEPT_ENCODING).into_iter().filter_map(|list| list.to_str().ok());
     let mut ways = lists.flat_map(|list| list.split(','));
     !headers.contains_key(RANGE) && ways.any(names_brotli)
 }
 
-/// Whether one way of packing is brotli, and not refused by a weight of 0.
+/// Whether an accepted encoding is brotli, without a weight of 0.
 fn names_brotli(way: &str) -> bool {
     let mut parts = way.split(';').map(str::trim);
     let is_brotli = parts.next().is_some_and(|name| name.eq_ignore_ascii_case("br"));
@@ -66,12 +70,12 @@ fn names_brotli(way: &str) -> bool {
     is_brotli && parts.all(|part| weight(part).is_none_or(|weight| weight > 0.0))
 }
 
-/// The tag of the packed bytes, which are others than those of the file.
+/// The tag of the compressed bytes, which differ from those of the file.
 pub(crate) fn tag_of(tag: &str) -> String {
     format!("{}-br\"", tag.trim_end_matches('"'))
 }
 
-/// What a cache must know: answers differ by what the client unpacks.
+/// The header for caches: answers depend on the encodings that the client accepts.
 pub(crate) const VARIES_BY: HeaderValue = HeaderValue::from_static("accept-encoding");
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Which clients get packed files, which files are worth it, and that nothing is lost.
+//! The right clients get compressed files, the right files are compressed, and nothing is lost.
 
 use std::io::Read as _;
 
@@ -23,10 +23,10 @@ fn clients_say_what_they_unpack() {
 #[test]
 fn packed_bytes_are_those_of_the_file() {
     let bytes: Bytes = "The road climbs the cliff, turn by turn. ".repeat(1000).into();
-    let packed = Packed::default();
-    let found = packed.of(&bytes).unwrap();
+    let packed = CompressedFile::default();
+    let found = packed.compressed(&bytes).unwrap();
     assert!(found.len() < bytes.len() / 10);
-    assert_eq!(packed.of(&bytes), Some(found.clone()));
+    assert_eq!(packed.compressed(&bytes), Some(found.clone()));
     let mut unpacked = Vec::new();
     brotli::Decompressor::new(&*found, 4096).read_to_end(&mut unpacked).unwrap();
     assert_eq!(unpacked, bytes);
@@ -34,7 +34,7 @@ fn packed_bytes_are_those_of_the_file() {
 
 #[test]
 fn what_does_not_become_shorter_stays() {
-    // A multiplicative generator: brotli finds nothing in it.
+    // A multiplicative generator, whose output brotli cannot compress.
     let mut state = 1_u32;
     let noise: Vec<u8> = (0..5000)
         .map(|_| {
@@ -42,7 +42,7 @@ fn what_does_not_become_shorter_stays() {
             (state >> 16) as u8
         })
         .collect();
-    assert_eq!(Packed::default().of(&noise.into()), None);
+    assert_eq!(CompressedFile::default().compressed(&noise.into()), None);
 }
 
 #[test]

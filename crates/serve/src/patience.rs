@@ -1,4 +1,4 @@
-//! A connection that ends when its client does not read what it asked for.
+//! A connection that ends when its client does not read the answer.
 
 use std::{
     future::Future as _,
@@ -17,23 +17,25 @@ use tokio::{
     time::{Sleep, sleep},
 };
 
-/// A client that takes fewer bytes a second, on average, is not waited for.
+/// The least rate of a client, in bytes per second on average; slower clients are disconnected.
 const LEAST_BYTES_PER_SECOND: u64 = 4096;
-/// For a client that reads it is waited so many times as long: the system asks for more only when much room is free.
+/// The factor for the waiting time of clients that read, because the system accepts more data only
+/// when much of its buffer is free.
 const MOST_TIMES: u32 = 4;
 
-/// A stream whose writing waits for its reader only so long in all: some time, and more for what was taken.
+/// A stream that waits for its reader only for a limited time in total: a fixed time, and more for
+/// received bytes.
 pub(crate) struct Patient<S> {
     stream: S,
-    /// How much longer is waited, and how long at most.
+    /// The remaining waiting time, and its limit.
     left: Duration,
     most: Duration,
-    /// What taken bytes may still earn: so many times what was waited for them. What fills the buffers of both sides, whoever reads, is not waited
-    /// for long.
+    /// The time that received bytes may still add: a multiple of the time that was waited for them.
+    /// The buffers of both sides fill without a reader, so they add little.
     may_earn: Duration,
-    /// Since when is waited, and what ends it.
+    /// The begin of the current wait, and the timer that ends it.
     waits: Option<(Instant, Pin<Box<Sleep>>)>,
-    /// Whether its reader is waited for, for others.
+    /// Whether the stream waits for its reader, for other parts of the server.
     is_waiting: Arc<AtomicBool>,
 }
 
@@ -44,12 +46,12 @@ impl<S> Patient<S> {
         Self { stream, left: patience, most, may_earn: Duration::ZERO, waits: None, is_waiting }
     }
 
-    /// Tells at any time whether its reader is waited for: then something is sent.
+    /// A shared flag: whether the stream waits for its reader. Then a part of an answer is unsent.
     pub(crate) fn is_waiting(&self) -> Arc<AtomicBool> {
         Arc::clone(&self.is_waiting)
     }
 
-    /// Counts what a call did that may have to wait.
+    /// Counts the result of a call that may wait.
     fn count(
         &mut self,
         context: &mut Context<'_>,

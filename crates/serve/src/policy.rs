@@ -1,9 +1,11 @@
-//! What a page of ours may load and do (`Content-Security-Policy`, W3C, *CSP Level 3*).
+//! What a page of ours may load and run (`Content-Security-Policy`, W3C, *CSP Level 3*).
 
 use sha2::{Digest as _, Sha256};
 
-/// The policy of a page. It runs scripts of this server and its own, WebAssembly, and workers, also of an address that the element made itself; it
-/// reads packages of any server, the still pictures beside them, and files that a person opens. Other pages may show it in a frame.
+/// The policy of a page. The page may run its own scripts, scripts of this server, WebAssembly, and
+/// workers, including those from URLs that the element created; it may read packages of any server,
+/// the still images next to them, and files that the user opens. Other pages may show it in a
+/// frame.
 pub(crate) fn policy(page: &[u8]) -> String {
     let mut scripts = String::from("'self' 'wasm-unsafe-eval'");
     for script in own_scripts(&String::from_utf8_lossy(page)) {
@@ -15,7 +17,7 @@ pub(crate) fn policy(page: &[u8]) -> String {
     )
 }
 
-/// The texts of the scripts that stand in a page itself, as browsers hash them: with one character for each end of a line.
+/// The inline scripts of a page, as browsers hash them: with one character per line break.
 fn own_scripts(page: &str) -> Vec<String> {
     let mut scripts = Vec::new();
     let mut rest = page;
@@ -30,7 +32,7 @@ fn own_scripts(page: &str) -> Vec<String> {
     scripts
 }
 
-/// Bytes as text (RFC 4648, section 4).
+/// Encodes bytes in Base64 (RFC 4648, section 4).
 fn base64(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::new();

@@ -1,4 +1,5 @@
-//! Scripts in a page get the hashes that browsers compute, and the texts of RFC 4648 its digits.
+//! Scripts in a page get the hashes that browsers compute, and Base64 matches the examples of RFC
+//! 4648.
 
 use super::*;
 
@@ -25,7 +26,7 @@ fn scripts_in_a_page_may_run_and_no_others() {
     let policy = policy(page);
     let scripts = "script-src 'self' 'wasm-unsafe-eval' 'sha256-qznLcsROx4GACP2dm0UCKCzCG+HiZ1guq6ZZDob/Tng=';";
     assert!(policy.contains(scripts), "{policy}");
-    // A package of another server may have its still picture there.
+    // A package of another server may have its still image there.
     assert!(policy.contains("img-src * data: blob:;"), "{policy}");
     assert!(!policy.contains("frame-ancestors"), "{policy}");
     assert_eq!(own_scripts("<script>a\r\nb\rc</script>"), ["a\nb\nc"]);

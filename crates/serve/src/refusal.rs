@@ -1,4 +1,4 @@
-//! Answers that say, in words, why a file is not sent.
+//! Error answers, with the reason why a file is not sent.
 
 use hyper::{
     Response, StatusCode,
@@ -7,42 +7,42 @@ use hyper::{
 
 use crate::body::{Body, of_bytes};
 
-/// The methods that are answered.
+/// The supported methods.
 pub(crate) const METHODS: &str = "GET, HEAD, OPTIONS";
 
-/// Why a file is not sent.
+/// The reason why a file is not sent.
 #[derive(Debug)]
-pub(crate) enum Refusal {
-    /// The request does not say which host it asks.
+pub(crate) enum ServeRefusal {
+    /// The request has no host.
     NoHost,
-    /// The request is meant for a host that is not this one.
+    /// The request is for another host.
     OtherHost,
     /// Nothing is served at the path.
     Unknown,
-    /// The file on disk is gone.
+    /// The file on disk is missing.
     Gone {
-        /// Its path in the table.
+        /// The path in the table.
         path: String,
     },
     /// The file on disk cannot be read.
     Unreadable {
-        /// Its path in the table.
+        /// The path in the table.
         path: String,
-        /// What the system says.
+        /// The system's error.
         reason: String,
     },
     /// The method changes things.
     Method,
-    /// The client wants a version that is not there any more.
+    /// The client requests a version that no longer exists.
     Changed,
     /// The file has no such bytes.
     NoSuchBytes {
-        /// How many bytes the file has.
+        /// The length of the file.
         length_bytes: u64,
     },
 }
 
-impl Refusal {
+impl ServeRefusal {
     fn status(&self) -> StatusCode {
         match self {
             Self::NoHost => StatusCode::BAD_REQUEST,
@@ -55,12 +55,12 @@ impl Refusal {
         }
     }
 
-    /// Words for whoever reads the answer. What the request said is not repeated.
+    /// The text for readers of the answer. It never repeats parts of the request.
     fn text(&self) -> String {
         match self {
             Self::NoHost => "The request has no Host header, which HTTP/1.1 requires.".to_owned(),
             Self::OtherHost => {
-                "This server answers to numbers (127.0.0.1), to localhost and to the name that it was given with --address, and the \
+                "This server responds to IP addresses (127.0.0.1), to localhost and to the name in --address, but the \
                  request is for another name. Open the address that the server printed when it started."
                     .to_owned()
             }
@@ -68,14 +68,14 @@ impl Refusal {
                 "Nothing is served at this path. The page is at /, and the packages are listed in /packages.json.".to_owned()
             }
             Self::Gone { path } => format!(
-                "{path} was there when the server started, and its file is gone now. Put it back, or start the server again with the \
-                 files that are to be shown."
+                "The file of {path} existed when the server started, but is missing now. Restore it, or restart the server with the \
+                 files to serve."
             ),
             Self::Unreadable { path, reason } => format!("The file of {path} cannot be read: {reason}."),
-            Self::Method => format!("This server only reads files: {METHODS}."),
-            Self::Changed => "The file has changed: it is not the version that was asked for. Load it again.".to_owned(),
+            Self::Method => format!("The method is not supported. This server only reads files: {METHODS}."),
+            Self::Changed => "The file has changed since the requested version. Load it again.".to_owned(),
             Self::NoSuchBytes { length_bytes } => {
-                format!("The file has no such bytes: it has {length_bytes}.")
+                format!("The requested range is outside the file, which has {length_bytes} bytes.")
             }
         }
     }

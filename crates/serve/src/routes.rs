@@ -1,4 +1,4 @@
-//! The table of what is served.
+//! The table of served files.
 
 use std::{
     collections::BTreeMap,
@@ -12,68 +12,70 @@ use sha2::{Digest as _, Sha256};
 use crate::{
     media_type::media_type,
     on_disk::{Known, OnDisk, half_in_hex},
-    packed::{Packed, is_worth_it},
+    packed::{CompressedFile, is_worth_it},
     policy::policy,
 };
 
-/// Where the bytes of a file come from.
+/// The source of a file's bytes.
 #[derive(Debug, Clone)]
-pub enum Content {
-    /// They are known.
+pub enum FileContent {
+    /// Bytes in memory.
     Memory(Bytes),
-    /// They are on disk, and may change or go.
+    /// A file on disk, which may change or disappear.
     Disk(Arc<dyn OnDisk>),
 }
 
-/// Which pages may read a file.
+/// The pages that may read a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Readers {
-    /// Pages of any server may read it: `Access-Control-Allow-Origin: *`.
+    /// Pages of any server: `Access-Control-Allow-Origin: *`.
     AnyPage,
-    /// Pages of this server alone may read it.
+    /// Only pages of this server.
     OwnPages,
 }
 
-/// What is served at one path.
+/// The file that is served at one path.
 #[derive(Debug, Clone)]
-pub(crate) struct Route {
-    pub(crate) content: Content,
+pub(crate) struct ServedRoute {
+    pub(crate) content: FileContent,
     pub(crate) readers: Readers,
-    /// The `ETag` of what is in memory.
+    /// The `ETag` of a file in memory.
     pub(crate) tag_in_memory: String,
-    /// What is in memory, packed; `None` for what is sent as it is.
-    pub(crate) packed: Option<Packed>,
-    /// What a page may load and do; `None` for what is no page.
+    /// The compressed form of a file in memory; `None` for files that are sent uncompressed.
+    pub(crate) packed: Option<CompressedFile>,
+    /// The content security policy; `None` for files that are not pages.
     pub(crate) policy: Option<String>,
     /// The version on disk that was hashed last.
     pub(crate) known: Arc<Mutex<Option<Known>>>,
 }
 
-/// What is served, by path. A path has no slash at its beginning: `examples/fly.html`.
+/// The served files, by path. A path has no slash at its beginning: `examples/fly.html`.
 #[derive(Debug, Clone, Default)]
 pub struct Routes {
-    by_path: BTreeMap<String, Route>,
+    by_path: BTreeMap<String, ServedRoute>,
 }
 
 impl Routes {
-    /// Adds a file. One that was added at the same path before is replaced.
-    pub fn add(&mut self, path: impl Into<String>, content: Content, readers: Readers) {
+    /// Adds a file. It replaces one at the same path.
+    pub fn add(&mut self, path: impl Into<String>, content: FileContent, readers: Readers) {
         let path = path.into();
         let (tag_in_memory, packed, policy) = match &content {
-            Content::Memory(bytes) => {
+            FileContent::Memory(bytes) => {
                 let media_type = media_type(&path);
                 let is_page = media_type.starts_with("text/html");
-                let packed = is_worth_it(media_type, bytes.len()).then(Packed::default);
+                let packed = is_worth_it(media_type, bytes.len()).then(CompressedFile::default);
                 (tag_of(bytes), packed, is_page.then(|| policy(bytes)))
             }
-            Content::Disk(_) => (String::new(), None, None),
+            FileContent::Disk(_) => (String::new(), None, None),
         };
         let known = Arc::default();
-        self.by_path.insert(path, Route { content, readers, tag_in_memory, packed, policy, known });
+        self.by_path
+            .insert(path, ServedRoute { content, readers, tag_in_memory, packed, policy, known });
     }
 
-    /// What is served at the path of an address, with the path as it is in the table. A folder's own path means its `index.html`.
-    pub(crate) fn find(&self, path_of_address: &str) -> Option<(&str, &Route)> {
+    /// The file at a URL path, with its path in the table. The path of a folder means its
+    /// `index.html`.
+    pub(crate) fn find(&self, path_of_address: &str) -> Option<(&str, &ServedRoute)> {
         let path = percent_decode_str(path_of_address.strip_prefix('/')?).decode_utf8().ok()?;
         let named = if path.is_empty() || path.ends_with('/') {
             self.by_path.get_key_value(&format!("{path}index.html"))
@@ -84,7 +86,7 @@ impl Routes {
     }
 }
 
-/// Half of a hash of the bytes, in quotes.
+/// The tag: half of a hash of the bytes, in quotes.
 fn tag_of(bytes: &[u8]) -> String {
     format!("\"{}\"", half_in_hex(Sha256::new_with_prefix(bytes)))
 }

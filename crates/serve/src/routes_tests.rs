@@ -1,21 +1,21 @@
-//! Only the paths in the table are found, and tags tell contents apart.
+//! Only the paths in the table are found, and tags distinguish contents.
 
 use bytes::Bytes;
 
-use super::{Content, Readers, Routes};
+use super::{FileContent, Readers, Routes};
 
 fn found<'a>(routes: &'a Routes, path: &str) -> Option<&'a str> {
     routes.find(path).map(|(path, _)| path)
 }
 
-/// A path is a word in the table: no way to write another one leads to something else.
+/// A path is a key in the table: no other spelling leads to another file.
 #[test]
 fn only_what_is_in_the_table_is_found() {
     let mut routes = Routes::default();
     for path in
         ["index.html", "examples/index.html", "examples/fly.html", "packages/Zürich 1%.pmtiles"]
     {
-        routes.add(path, Content::Memory(Bytes::from_static(b"x")), Readers::AnyPage);
+        routes.add(path, FileContent::Memory(Bytes::from_static(b"x")), Readers::AnyPage);
     }
     for (asked, path) in [
         ("/", "index.html"),
@@ -53,11 +53,11 @@ fn only_what_is_in_the_table_is_found() {
 fn tags_tell_contents_apart_and_a_later_file_replaces_an_earlier_one() {
     let mut routes = Routes::default();
     let tag = |routes: &Routes| routes.find("/a").unwrap().1.tag_in_memory.clone();
-    routes.add("a", Content::Memory(Bytes::from_static(b"one")), Readers::AnyPage);
+    routes.add("a", FileContent::Memory(Bytes::from_static(b"one")), Readers::AnyPage);
     let one = tag(&routes);
-    routes.add("a", Content::Memory(Bytes::from_static(b"two")), Readers::AnyPage);
+    routes.add("a", FileContent::Memory(Bytes::from_static(b"two")), Readers::AnyPage);
     assert_ne!(tag(&routes), one);
-    routes.add("a", Content::Memory(Bytes::from_static(b"one")), Readers::OwnPages);
+    routes.add("a", FileContent::Memory(Bytes::from_static(b"one")), Readers::OwnPages);
     assert_eq!(tag(&routes), one);
     assert!(one.len() == 34 && one.starts_with('"') && one.ends_with('"'), "{one}");
 }

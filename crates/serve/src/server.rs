@@ -1,4 +1,4 @@
-//! Connections and the time they may take.
+//! The connections of the server, and their time limits.
 
 use std::{
     convert::Infallible,
@@ -22,34 +22,36 @@ use tokio::{
 use crate::{
     ServeError,
     answer::Site,
-    connections::{Connection, Connections, End},
+    connections::{Connection, ConnectionEnd, Connections},
     host::Hosts,
     patience::Patient,
     routes::Routes,
 };
 
-/// How often it is asked whether to stop.
+/// Interval of the checks whether to stop.
 const ASKS_EVERY: Duration = Duration::from_millis(100);
-/// What answers that were begun may take when the server is stopped.
+/// Time for begun answers after the server is stopped.
 const ENDS_WITHIN: Duration = Duration::from_secs(2);
-/// What a client may take to say what it wants; also how long a connection stays open on which nothing is said.
+/// Time for a client to send a request; also the time that an idle connection stays open.
 const REQUEST_WITHIN: Duration = Duration::from_mins(1);
-/// How long is waited in all, on a connection, for a client that does not read what it asked for.
+/// Total waiting time on a connection for a client that does not read the answer.
 const READS_WITHIN: Duration = Duration::from_secs(30);
-/// What the system keeps for a client that has not taken it yet. Linux takes twice as much, and asks for more when a third of that is free: a client
-/// of [`patience`](crate::patience)'s least rate gets so far in [`READS_WITHIN`].
+/// The system's buffer for bytes that a client has not received yet. Linux allocates twice as much,
+/// and accepts more when a third of that is free: a client with the least rate of
+/// [`patience`](crate::patience) reads that much in [`READS_WITHIN`].
 const SEND_BUFFER_BYTES: u32 = 128 << 10;
-/// Connections at once; where there are as many, the one on which nothing was asked for longest gives way. A browser opens six.
+/// The largest number of connections; beyond it, the connection that has been idle for longest is
+/// closed. A browser opens six.
 const MOST_CONNECTIONS: usize = 256;
-/// Threads that answer; files are read by others.
+/// Threads for answers; files are read by other threads.
 const THREADS: usize = 2;
 
-/// What was asked and answered.
+/// A request and its answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Answered {
     /// `GET`, `HEAD` and so on.
     pub method: String,
-    /// The path of the address.
+    /// The path of the URL.
     pub path: String,
     /// The `Range` header.
     pub range: Option<String>,
@@ -57,15 +59,15 @@ pub struct Answered {
     pub status: u16,
 }
 
-/// What whoever started a server has to do with it while it runs.
-pub struct Watch<'a> {
-    /// Asked every tenth of a second: whether to stop.
+/// The callbacks of the program that starts a server.
+pub struct ServerWatch<'a> {
+    /// Called every tenth of a second: returns whether to stop.
     pub is_stopped: &'a dyn Fn() -> bool,
-    /// Told of every answer, from other threads.
+    /// Called for every answer, from other threads.
     pub observer: Arc<dyn Fn(&Answered) + Send + Sync>,
 }
 
-/// A server that listens, and answers when [`Server::serve`] is called.
+/// A server that listens, and answers after [`Server::serve`] is called.
 #[derive(Debug)]
 pub struct Server {
     listener: TcpListener,
@@ -76,10 +78,10 @@ pub struct Server {
 }
 
 impl Server {
-    /// Listens at a port of an address or name of this machine; port 0 is any that is free.
+    /// Listens at a port of an address or name of this machine; port 0 selects any free port.
     ///
     /// # Errors
-    /// [`ServeError`], when the address is none of this machine or the port is in use.
+    /// [`ServeError`], when the address does not belong to this machine or the port is in use.
     pub fn bind(host: &str, port: u16) -> Result<Self, ServeError> {
         let bare = host.strip_prefix('[').and_then(|host| host.strip_suffix(']')).unwrap_or(host);
         let no_address = |source| ServeError::NoAddress { host: host.to_owned(), source };
@@ -92,29 +94,30 @@ impl Server {
         let listener = TcpListener::bind(&found[..]).map_err(listen)?;
         let address = listener.local_addr().map_err(listen)?;
         listener.set_nonblocking(true).map_err(listen)?;
-        let hosts = Hosts::of(bare, address);
+        let hosts = Hosts::from_names(bare, address);
         let (patience, most_connections) = (READS_WITHIN, MOST_CONNECTIONS);
         Ok(Self { listener, address, hosts, patience, most_connections })
     }
 
-    /// Waits so long for clients that do not read, and has so many at once: for tests.
+    /// Sets the waiting time for clients that do not read, and the largest number of connections:
+    /// for tests.
     #[doc(hidden)]
     #[must_use]
     pub fn with_limits(self, patience: Duration, most_connections: usize) -> Self {
         Self { patience, most_connections, ..self }
     }
 
-    /// Where it listens.
+    /// The address of the server.
     #[must_use]
     pub fn address(&self) -> SocketAddr {
         self.address
     }
 
-    /// Answers requests until it is stopped. Answers that were begun then may still end, for two seconds.
+    /// Answers requests until the server is stopped. Begun answers may still end, for two seconds.
     ///
     /// # Errors
     /// [`ServeError::Start`].
-    pub fn serve(self, routes: Routes, watch: &Watch<'_>) -> Result<(), ServeError> {
+    pub fn serve(self, routes: Routes, watch: &ServerWatch<'_>) -> Result<(), ServeError> {
         let Self { listener, address, hosts, patience, most_connections } = self;
         let start = |source| ServeError::Start { address, source };
         let runtime = Builder::new_multi_thread()
@@ -126,7 +129,7 @@ impl Server {
         let site = Arc::new(Site { routes, hosts });
         let limits = (patience, most_connections);
         runtime.block_on(accept(listener, &site, limits, watch)).map_err(start)?;
-        // A read that hangs must not keep the program.
+        // A hanging read must not keep the program alive.
         runtime.shutdown_background();
         Ok(())
     }
@@ -136,18 +139,19 @@ async fn accept(
     listener: TcpListener,
     site: &Arc<Site>,
     (patience, most_connections): (Duration, usize),
-    watch: &Watch<'_>,
+    watch: &ServerWatch<'_>,
 ) -> io::Result<()> {
     let listener = tokio::net::TcpListener::from_std(listener)?;
     let connections = Arc::new(Connections::default());
     let free = Arc::new(Semaphore::new(most_connections));
-    // One that has come and has no room yet.
+    // A connection that is accepted and still waits for a free place.
     let mut next: Option<TcpStream> = None;
     while !(watch.is_stopped)() {
         let Some(stream) = next.take() else {
             match timeout(ASKS_EVERY, listener.accept()).await {
                 Ok(Ok((stream, _))) => next = Some(stream),
-                // Too many open files, or a client that is gone already: neither ends the server.
+                // Too many open files, or a client that has already disconnected: neither ends the
+                // server.
                 Ok(Err(_)) => sleep(ASKS_EVERY).await,
                 Err(_) => {}
             }
@@ -160,7 +164,7 @@ async fn accept(
             next = Some(stream);
             continue;
         };
-        // Without it small answers may wait for each other.
+        // Without this option, small answers may wait for each other.
         let _ = stream.set_nodelay(true);
         let Ok(stream) = with_small_buffer(stream) else { continue };
         begin(Patient::new(stream, patience), permit, site, watch, &connections);
@@ -172,20 +176,22 @@ async fn accept(
     Ok(())
 }
 
-/// The connection with a buffer that a slow client empties in time. A large one would be filled before its client is waited for at all.
+/// The connection with a buffer that a slow client empties in time. A large buffer would be filled
+/// before the server waits for the client at all.
 fn with_small_buffer(stream: TcpStream) -> io::Result<TcpStream> {
     let stream = stream.into_std()?;
-    // The option is one of the connection, which both handles have. Without it only slow clients are worse off.
+    // The option belongs to the connection, which both handles share. Without it, only slow clients
+    // are worse off.
     let _ = TcpSocket::from_std_stream(stream.try_clone()?).set_send_buffer_size(SEND_BUFFER_BYTES);
     TcpStream::from_std(stream)
 }
 
-/// Answers what is asked on a connection.
+/// Serves the requests on a connection.
 fn begin(
     stream: Patient<TcpStream>,
     permit: OwnedSemaphorePermit,
     site: &Arc<Site>,
-    watch: &Watch<'_>,
+    watch: &ServerWatch<'_>,
     connections: &Arc<Connections>,
 ) {
     let (site, observer) = (Arc::clone(site), Arc::clone(&watch.observer));
@@ -215,14 +221,14 @@ fn begin(
     tokio::spawn(async move {
         let mut served = pin!(served);
         loop {
-            // What has been asked meanwhile is answered: the first of both is looked at first.
+            // A request that has arrived meanwhile is answered: the first branch is polled first.
             match select(served.as_mut(), pin!(own.is_told())).await {
-                // A client that goes away is no concern of ours.
+                // A client that disconnects is not an error.
                 Either::Left(_) => break,
                 Either::Right(_) => match own.end() {
-                    End::Now => break,
-                    End::AfterAnswer => served.as_mut().graceful_shutdown(),
-                    End::Not => {}
+                    ConnectionEnd::Now => break,
+                    ConnectionEnd::AfterAnswer => served.as_mut().graceful_shutdown(),
+                    ConnectionEnd::Not => {}
                 },
             }
         }

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!                    ┌─► presets: options of the command line and of settings files, merged and checked
-//!   settings! ───────┼─► SettingsRecord: the manifest's keys, facts for comparisons, limits for what is read
+//!   settings! ───────┼─► SettingsRecord: the manifest's keys, facts for comparisons, limits for readers
 //!   (the table)      ├─► placed!: options ─► checked settings (cli) ⇄ record (spec)
 //!                    └─► the schema of `corniche info --json` (tests of cli)
 //! ```
@@ -20,8 +20,8 @@ pub use relief_levels::ReliefLevels;
 pub use value::SettingValue;
 pub use value_records::{AreaTableRecord, PhotoRecord, PolygonRecord};
 
-/// No length, height or coordinate of a package is larger: far beyond every planet, and its square
-/// still fits an f32.
+/// The upper limit of lengths, heights and coordinates of a package: far beyond every planet, and
+/// its square still fits an f32.
 pub const MAX_MEASURE_M: f64 = 1e18;
-/// More values that mean "no data" than any set of files has.
+/// The upper limit of the number of nodata values, more than any set of files has.
 pub const MAX_NODATA: usize = 64;

@@ -1,6 +1,5 @@
-//! The settings that determine the bytes of a package, as its manifest has them.
+//! The settings that determine the bytes of a package, as stored in its manifest.
 
-use corniche_areas::ClassedLayer;
 use corniche_geom::Cell;
 use corniche_roads::FunctionalRoadClass;
 use serde::{Deserialize, Serialize, Serializer, ser::SerializeStruct as _};
@@ -13,26 +12,26 @@ use crate::{
 /// A section of settings files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SettingSection {
-    /// How the ground is made.
+    /// How the terrain is built.
     Terrain,
-    /// Which roads there are, and how exactly they are kept.
+    /// Which roads a package has, and how exact they are.
     Roads,
-    /// Which areas and boundaries there are.
+    /// Which areas and boundaries a package has.
     Areas,
-    /// How photos are made.
+    /// How photos are stored.
     Photo,
 }
 
-/// What is compared of a setting.
+/// A setting in the form in which settings are compared.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SettingFact {
-    /// The section that it is in.
+    /// The section of the setting.
     pub section: SettingSection,
     /// Its key in the manifest.
     pub key: &'static str,
     /// The name that users know, such as `--crs`.
     pub name: &'static str,
-    /// Its value in words.
+    /// Its value as text.
     pub value: String,
 }
 
@@ -63,7 +62,7 @@ macro_rules! record {
         }
 
         impl SettingsRecord {
-            /// What is compared of each setting, in the order of the manifest.
+            /// The facts to compare of each setting, in the order of the manifest.
             #[must_use]
             pub fn facts(&self) -> Vec<SettingFact> {
                 let record = self;
@@ -77,7 +76,7 @@ macro_rules! record {
                 facts
             }
 
-            /// A number that no settings have, with its key.
+            /// The first number that is not a valid setting, with its key.
             #[must_use]
             pub fn wrong_number(&self) -> Option<(&'static str, f64)> {
                 $($(
@@ -89,7 +88,7 @@ macro_rules! record {
                 None
             }
 
-            /// The manifest's keys in their order.
+            /// The manifest's keys, in their order.
             #[must_use]
             pub fn keys() -> Vec<&'static str> {
                 let mut keys = vec![$(stringify!($key)),*];
@@ -97,8 +96,8 @@ macro_rules! record {
                 keys
             }
 
-            /// Writes the settings with all keys in their order, but for those that are left out
-            /// where they have their default. The keys in `always` are there in any case.
+            /// Writes the settings with all keys in their order. Keys that are omitted at their
+            /// default are written only if `always` has them.
             fn write<S: Serializer>(&self, to: S, always: &[&str]) -> Result<S::Ok, S::Error> {
                 let mut keys = Self::keys();
                 keys.retain(|key| match *key {
@@ -123,7 +122,7 @@ macro_rules! record {
 
 crate::recorded! { [record] }
 
-/// Where a key comes in the manifest.
+/// The position of a key in the manifest.
 fn place(key: &str) -> usize {
     KEYS_IN_ORDER.split(' ').position(|known| known == key).unwrap_or(usize::MAX)
 }
@@ -140,8 +139,8 @@ impl Serialize for SettingsRecord {
 }
 
 impl SettingsRecord {
-    /// Writes the settings as `corniche info --json` has them: with their levels of relief also
-    /// where there are none.
+    /// Writes the settings as `corniche info --json` prints them: with their levels of relief even
+    /// if no level has relief.
     ///
     /// # Errors
     /// When the serializer fails.
@@ -149,16 +148,7 @@ impl SettingsRecord {
         self.write(serializer, &["relief"])
     }
 
-    /// The layers of lines that there are.
-    #[must_use]
-    pub fn lines(&self) -> Vec<ClassedLayer> {
-        let has = |layer: &ClassedLayer| match layer {
-            ClassedLayer::Boundaries => self.boundaries,
-        };
-        ClassedLayer::ALL.into_iter().filter(has).collect()
-    }
-
-    /// What the roads of each class are called, 0 first, where it is recorded.
+    /// The labels of the road classes, class 0 first, where they are recorded.
     #[must_use]
     pub fn recorded_labels(&self) -> Option<[String; FunctionalRoadClass::COUNT]> {
         self.class_labels.clone()?.try_into().ok()

@@ -1,8 +1,10 @@
-//! The record is written with the same bytes as before there was a table, and every key can be compared.
+//! The record is written with the same bytes as before the table existed, and every key can be
+//! compared.
 
 use super::*;
 
-/// A record with every key that there was before the table, as packages have it: their hashes depend on every byte.
+/// A record with every key that existed before the table, as stored in packages: their hashes
+/// depend on every byte.
 const EVERY_KEY: &str = r#"{"max_error_m":5.0,"fill_voids":32,"nodata":[-9999.0,0.5],
 "height_range_m":[-500.0,9000.0],"dem_band":2,"dem_crs":"EPSG:2056",
 "dem_vertical_crs":"EPSG:5728","vertical_crs":"EPSG:5773","vertical_shift_m":-1.5,
@@ -13,7 +15,7 @@ const EVERY_KEY: &str = r#"{"max_error_m":5.0,"fill_voids":32,"nodata":[-9999.0,
 "photo":{"levels":2,"quality":80},"areas":{"table":"default","sha256":"22"},
 "boundaries":true,"spans":true}"#;
 
-/// What is left of it where nothing is asked for.
+/// The record without any given setting.
 const DEFAULT: &str = r#"{"max_error_m":0.0,"fill_voids":0,"nodata":[],"height_range_m":null,
 "dem_crs":null,"dem_vertical_crs":null,"vertical_crs":null,"vertical_shift_m":0.0,"crs":null,
 "cell_m":null,"cell_every":null,"scale_latitude_deg":null,"frc_table":"","frc_table_sha256":"",
@@ -35,8 +37,8 @@ fn keys_come_in_the_order_of_the_first_packages_and_new_ones_are_left_out() {
     assert!(known.eq(SettingsRecord::keys().into_iter().take(27)));
 }
 
-/// Each key but the hash of the table, whose entries are compared one by one, has a fact, which
-/// changes with the value.
+/// Each key has a fact that changes with the value. The hash of the table is the exception: the
+/// entries of the table are compared one by one.
 #[test]
 fn every_key_has_a_fact() {
     let facts = whole().facts();

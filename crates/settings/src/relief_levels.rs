@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ReliefLevels {
-    /// None: packages of the first programs have none.
+    /// No level, as in packages of the first versions.
     #[default]
     Off,
-    /// The finest level alone.
+    /// The finest level only.
     Finest,
     /// All levels.
     Full,

@@ -4,12 +4,12 @@ use corniche_geom::Cell;
 
 use crate::{AreaTableRecord, PolygonRecord, ReliefLevels};
 
-/// A value as comparisons tell it.
+/// A value in the form in which settings are compared.
 pub trait SettingValue {
-    /// The value in words, for people.
+    /// The value as text for people.
     fn text(&self) -> String;
 
-    /// The numbers in it that must lie within limits.
+    /// The numbers in it that must be within limits.
     fn numbers(&self) -> Vec<f64> {
         Vec::new()
     }
@@ -90,7 +90,7 @@ impl SettingValue for AreaTableRecord {
     }
 }
 
-/// A file by its name and the beginning of its hash, which tells it from others.
+/// The name of a file and the beginning of its hash, which identifies its contents.
 fn named(name: &str, sha256: &str) -> String {
     format!("{name} ({}…)", sha256.get(..12).unwrap_or(sha256))
 }

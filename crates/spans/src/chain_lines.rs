@@ -1,4 +1,4 @@
-//! The lines of chains, with what is to be known of them where they meet other lines.
+//! The lines of chains, with the data needed where they meet other lines.
 
 use corniche_geom::{IndexLists, LatticePoint, along};
 use corniche_network::{ChainNumber, Chains, Network, NodeNumber};
@@ -9,7 +9,7 @@ use crate::{
     spans::SpanKind,
 };
 
-/// So many chains that meet at a node are looked at; no real node has as many.
+/// The maximum number of chains at a node that are considered; no real node has as many.
 const MOST_RAYS: usize = 16;
 
 /// The line of a chain.
@@ -19,55 +19,57 @@ pub(crate) struct ChainLine {
     pub(crate) points: Vec<LatticePoint>,
     /// The node of each point at which roads may join.
     nodes: Vec<Option<NodeNumber>>,
-    /// How far each point is along the chain, metres; on the ground nobody needs it, and it is 0.
+    /// The distance of each point along the chain, metres. It is 0 on the ground, where it is not
+    /// needed.
     alongs_m: Vec<f64>,
-    /// What its segments are, each with the first of them.
+    /// The properties of its segments, each with the first segment to which they apply.
     parts: Vec<(usize, CrossingPlace)>,
 }
 
-/// Where a place lies on a line.
+/// A position on a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum OnLine {
-    /// At a point of it.
+    /// At a point of the line.
     Point(usize),
-    /// Within a segment.
+    /// Within a segment of the line.
     Segment(usize),
 }
 
-/// One direction in which a line leaves a place: at an end of a chain there are those of the other chains of its kind, too.
+/// One direction in which a line leaves a position. At an end of a chain, the other chains of its
+/// kind also count.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Ray {
-    /// The chain that leaves in it.
+pub(crate) struct ChainRay {
+    /// The chain that leaves in this direction.
     pub(crate) chain: ChainNumber,
-    /// The next point there.
+    /// The next point in this direction.
     pub(crate) to: LatticePoint,
     pub(crate) onward: Onward,
 }
 
-/// Where a line goes on.
+/// The continuation of a line.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Onward {
-    /// At a point of itself.
-    Own(Next),
-    /// On another chain, from its first or its last point.
+    /// The line continues at one of its own points.
+    Own(NextPoint),
+    /// The line continues on another chain, from that chain's first or last point.
     Other { is_from_last: bool },
 }
 
-/// A point of a line that is come to from a place of it.
+/// A point of a line, as reached from another position on it.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Next {
+pub(crate) struct NextPoint {
     pub(crate) point: usize,
     pub(crate) is_forward: bool,
 }
 
-impl Next {
-    /// The segment that ends there.
+impl NextPoint {
+    /// Returns the segment that ends at the point.
     pub(crate) fn segment(self) -> usize {
         if self.is_forward { self.point - 1 } else { self.point }
     }
 }
 
-/// Makes lines of chains.
+/// Builds the lines of chains.
 pub(crate) struct ChainLines<'a> {
     network: &'a Network,
     chains: &'a Chains,
@@ -85,7 +87,7 @@ impl<'a> ChainLines<'a> {
     }
 
     pub(crate) fn kind_of(&self, chain: ChainNumber) -> Option<SpanKind> {
-        SpanKind::of(self.network.structure_of(&self.chains.get(chain)))
+        SpanKind::from_structure(self.network.structure_of(&self.chains.get(chain)))
     }
 
     pub(crate) fn line(&self, chain: ChainNumber) -> ChainLine {
@@ -133,14 +135,14 @@ impl<'a> ChainLines<'a> {
         line
     }
 
-    /// The directions in which a line leaves a place of it.
-    pub(crate) fn rays(&self, line: &ChainLine, at: OnLine) -> Vec<Ray> {
+    /// Returns the directions in which a line leaves a position.
+    pub(crate) fn rays(&self, line: &ChainLine, at: OnLine) -> Vec<ChainRay> {
         let chain = line.chain;
         let last = line.points.len() - 1;
-        let ray = |point: usize, is_forward: bool| Ray {
+        let ray = |point: usize, is_forward: bool| ChainRay {
             chain,
             to: line.points[point],
-            onward: Onward::Own(Next { point, is_forward }),
+            onward: Onward::Own(NextPoint { point, is_forward }),
         };
         match at {
             OnLine::Segment(first) => vec![ray(first, false), ray(first + 1, true)],
@@ -157,13 +159,13 @@ impl<'a> ChainLines<'a> {
                     rays.push(ray(last - 1, false));
                 }
                 let ends =
-                    node.map_or(&[][..], |node| self.ends_at.of(self.network.index_of(node)));
+                    node.map_or(&[][..], |node| self.ends_at.list(self.network.index_of(node)));
                 let others = ends.iter().take(MOST_RAYS).filter_map(|&end| {
                     let other = ChainNumber(end as usize / 2);
                     let is_other = other != chain && self.kind_of(other) == line.kind;
                     let is_from_last = end % 2 == 1;
                     let to = is_other.then(|| self.beside(other, is_from_last))??;
-                    Some(Ray { chain: other, to, onward: Onward::Other { is_from_last } })
+                    Some(ChainRay { chain: other, to, onward: Onward::Other { is_from_last } })
                 });
                 rays.extend(others);
                 rays
@@ -171,14 +173,14 @@ impl<'a> ChainLines<'a> {
         }
     }
 
-    /// The line of a chain, unless it has more points.
+    /// Returns the line of a chain, unless the chain has more than `most_points`.
     pub(crate) fn line_within(&self, chain: ChainNumber, most_points: usize) -> Option<ChainLine> {
         let links = self.chains.get(chain).links;
         let points = links.iter().flat_map(|&link| self.network.points_of_link(link));
         (points.take(most_points + 1).count() <= most_points).then(|| self.line(chain))
     }
 
-    /// The point next to an end of a chain.
+    /// Returns the point next to an end of a chain.
     fn beside(&self, chain: ChainNumber, is_last: bool) -> Option<LatticePoint> {
         let links = self.chains.get(chain).links;
         if is_last {
@@ -188,7 +190,7 @@ impl<'a> ChainLines<'a> {
         }
     }
 
-    /// The way of a chain that has the most points.
+    /// Returns the way of a chain that has the most points.
     pub(crate) fn largest_way(&self, chain: ChainNumber) -> i64 {
         let links = self.chains.get(chain).links;
         let own = links.iter().map(|&link| {
@@ -200,17 +202,18 @@ impl<'a> ChainLines<'a> {
 }
 
 impl ChainLine {
-    /// How many segments it has.
+    /// Returns the number of segments.
     pub(crate) fn segments(&self) -> usize {
         self.points.len() - 1
     }
 
-    /// The ends of a segment.
+    /// Returns the ends of a segment.
     pub(crate) fn segment(&self, first: usize) -> [LatticePoint; 2] {
         [self.points[first], self.points[first + 1]]
     }
 
-    /// Where a place on a segment, which may be one of its ends, lies on the line. Both ends of a ring are one place.
+    /// Returns the position on the line of a point on a segment, which may be one of the segment's
+    /// ends. Both ends of a ring are one position.
     pub(crate) fn on(&self, segment: usize, at: LatticePoint) -> OnLine {
         let [from, to] = self.segment(segment);
         if at == from {
@@ -222,13 +225,13 @@ impl ChainLine {
         }
     }
 
-    /// A point as a place.
+    /// Returns the position of a point.
     pub(crate) fn at_point(&self, point: usize) -> OnLine {
         let last = self.points.len() - 1;
         OnLine::Point(if point == last && self.nodes[0] == self.nodes[last] { 0 } else { point })
     }
 
-    /// The node at a place.
+    /// Returns the node at a position.
     pub(crate) fn node(&self, at: OnLine) -> Option<NodeNumber> {
         match at {
             OnLine::Point(point) => self.nodes[point],
@@ -236,12 +239,12 @@ impl ChainLine {
         }
     }
 
-    /// Whether a place is an end of the line.
+    /// Whether a position is an end of the line.
     pub(crate) fn is_end(&self, at: OnLine) -> bool {
         at == OnLine::Point(0) || at == OnLine::Point(self.segments())
     }
 
-    /// A segment that has a place.
+    /// Returns a segment that contains a position.
     pub(crate) fn segment_at(&self, at: OnLine) -> usize {
         match at {
             OnLine::Point(point) => point.min(self.segments() - 1),
@@ -249,25 +252,25 @@ impl ChainLine {
         }
     }
 
-    /// What the line is at a distance along it, which lies on a segment.
+    /// Returns the crossing place at a distance along the line, which is on a segment.
     pub(crate) fn place(&self, segment: usize, along_m: f64) -> CrossingPlace {
         let part = self.parts.partition_point(|(first, _)| *first <= segment);
         CrossingPlace { along_m, ..self.parts[part - 1].1 }
     }
 
-    /// The distance along it of what lies at a share of a segment.
+    /// Returns the distance along the line of the position at a fraction of a segment.
     pub(crate) fn along_m(&self, segment: usize, share: f64) -> f64 {
         let [from_m, to_m] = [segment, segment + 1].map(|point| self.alongs_m[point]);
         from_m + share * (to_m - from_m)
     }
 
-    /// The distance along it of a place on a segment.
+    /// Returns the distance along the line of a point on a segment.
     pub(crate) fn along_of_m(&self, segment: usize, at: LatticePoint) -> f64 {
         let [from, to] = self.segment(segment);
         self.along_m(segment, from.distance_steps(at) / from.distance_steps(to))
     }
 
-    /// The segment at a distance along it, and the place there.
+    /// Returns the segment at a distance along the line, and the position there.
     pub(crate) fn at_m(&self, along_m: f64) -> (usize, [f64; 2]) {
         let after = self.alongs_m.partition_point(|&own_m| own_m <= along_m);
         let segment = after.clamp(1, self.segments()) - 1;

@@ -1,31 +1,33 @@
-//! Which roads on bridges and in tunnels may depend on each other: those that share a node, and those that may cross.
+//! Groups roads on bridges and in tunnels that may depend on each other, because they share a node
+//! or may cross.
 
 use std::collections::HashMap;
 
-use corniche_geom::{DisjointSets, LatticePoint, Work};
+use corniche_geom::{DisjointSets, LatticePoint, StepBudget};
 use rstar::{
     AABB, RTree,
     primitives::{GeomWithData, Rectangle},
 };
 
-/// A line is looked at in so many boxes at most.
+/// The maximum number of boxes into which a line is divided.
 const MOST_BOXES: usize = 256;
-/// Pairs of boxes that are looked at, at least and for each box.
+/// The maximum number of pairs of boxes to compare: a base, and an addition for each box.
 const MOST_PAIRS: u64 = 1 << 22;
 const MOST_PAIRS_OF_BOX: u64 = 1 << 8;
 
 /// A road on a bridge or in a tunnel.
 #[derive(Debug, Clone, Copy)]
 pub struct SpanLine<'a> {
-    /// Its points.
+    /// The points of the road.
     pub points: &'a [LatticePoint],
-    /// Its nodes at which roads may join: which points they are, and their ids.
+    /// The nodes of the road at which others may join: the indices of their points, and their ids.
     pub nodes: &'a [(u32, i64)],
 }
 
-/// The number of the group of each line. Lines of different groups do not share a node and do not cross; pairs of nodes in `same_places` are one.
+/// Returns the number of the group of each line. Lines of different groups do not share a node and
+/// do not cross. Pairs of nodes in `same_places` count as one node.
 ///
-/// Of lines that lie over each other more than any real ones all are one group.
+/// If lines overlap each other more than any real lines, all lines form one group.
 #[must_use]
 pub fn connected(lines: &[SpanLine<'_>], same_places: &[[i64; 2]]) -> Vec<usize> {
     let mut groups = DisjointSets::new(lines.len());
@@ -43,7 +45,7 @@ pub fn connected(lines: &[SpanLine<'_>], same_places: &[[i64; 2]]) -> Vec<usize>
     }
     let boxes: Vec<GeomWithData<Rectangle<[f64; 2]>, usize>> =
         lines.iter().enumerate().flat_map(|(number, line)| boxes_of(number, line.points)).collect();
-    let work = Work::new(MOST_PAIRS + MOST_PAIRS_OF_BOX * boxes.len() as u64);
+    let work = StepBudget::new(MOST_PAIRS + MOST_PAIRS_OF_BOX * boxes.len() as u64);
     let tree = RTree::bulk_load(boxes.clone());
     for own in &boxes {
         let (low, high) = (own.geom().lower(), own.geom().upper());
@@ -60,7 +62,7 @@ pub fn connected(lines: &[SpanLine<'_>], same_places: &[[i64; 2]]) -> Vec<usize>
     (0..lines.len()).map(|number| groups.first_of(number)).collect()
 }
 
-/// Boxes around the segments of a line.
+/// Returns boxes around the segments of a line.
 fn boxes_of(
     number: usize,
     points: &[LatticePoint],

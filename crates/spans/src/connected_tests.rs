@@ -1,4 +1,4 @@
-//! Lines hang together by nodes, by places in common, and where they may cross.
+//! Lines form groups by shared nodes, by common points, and where they may cross.
 
 use super::*;
 
@@ -7,13 +7,13 @@ fn lines_hang_together_by_nodes_places_and_crossings() {
     let at = |u, v| LatticePoint::new(u, v);
     let lines = [
         (vec![at(0, 0), at(100, 0)], vec![(0, 1), (1, 2)]),
-        // Shares a node with the first one.
+        // Shares a node with the first line.
         (vec![at(100, 0), at(200, 0)], vec![(0, 2), (1, 3)]),
-        // Crosses the second one.
+        // Crosses the second line.
         (vec![at(150, -50), at(150, 50)], vec![(0, 4), (1, 5)]),
-        // Begins at a node that lies at the place of node 5, beside all boxes.
+        // Begins at a node at the position of node 5, outside all boxes.
         (vec![at(150, 1000), at(150, 2000)], vec![(0, 6)]),
-        // Alone.
+        // Has no contact.
         (vec![at(900, 900), at(990, 990)], vec![(0, 7), (1, 8)]),
     ];
     let lines: Vec<SpanLine<'_>> =
@@ -22,7 +22,7 @@ fn lines_hang_together_by_nodes_places_and_crossings() {
     assert_eq!(connected(&lines, &[]), [0, 0, 0, 3, 4]);
 }
 
-/// A line of very many points is not looked at point by point with all others.
+/// A line of very many points is not compared point by point with all others.
 #[test]
 fn a_zigzag_of_a_million_points_is_one_group() {
     let points: Vec<LatticePoint> =

@@ -1,41 +1,48 @@
-//! Whether lines that touch, or lie on each other for a while, change sides there.
+//! Decides whether lines that touch, or share a stretch, change sides there.
 //!
 //! ```text
-//!    a      a'         a                a    a'        A node of each at one place, a node of one on the other line, or a stretch
-//!     ╲    ╱            ╲                ╲  ╱          that both share: they cross where one comes from one side of the other
-//!   b ─●━━●─ b'      b ──●── b'        b ─●●─ b'       and leaves on the other side.
+//!    a      a'         a                a    a'
+//!     ╲    ╱            ╲                ╲  ╱
+//!   b ─●━━●─ b'      b ──●── b'        b ─●●─ b'
 //!                         ╲
 //!   no crossing        a crossing      no crossing
 //! ```
+//!
+//! Two lines touch if a node of each is at one position, if a node of one is on the other line, or
+//! if they share a stretch. They cross there if one comes from one side of the other and leaves on
+//! the other side.
 
 use corniche_geom::{LatticePoint, cross, dot};
 
-use crate::chain_lines::{ChainLine, ChainLines, Next, OnLine, Onward, Ray};
+use crate::chain_lines::{ChainLine, ChainLines, ChainRay, NextPoint, OnLine, Onward};
 
-/// Points of other chains along which lines are followed; no real ones have as many.
+/// The maximum number of points of other chains along which lines are followed; no real lines need
+/// as many.
 const MOST_BEYOND: usize = 4096;
 
-/// What two lines have in common where they cross.
+/// The stretch that two lines share where they cross.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Contact {
-    /// The segments of both at its beginning.
+    /// The segments of both lines at the beginning of the stretch.
     pub(crate) segments: [usize; 2],
-    /// From where to where it is along both, metres.
+    /// The start and the end of the stretch along both lines, metres.
     pub(crate) along_m: [[f64; 2]; 2],
 }
 
-/// A place on both lines.
+/// A position on both lines.
 #[derive(Clone, Copy)]
 struct Shared {
     at: LatticePoint,
     on: [OnLine; 2],
 }
 
-/// The crossings of two lines at a place: that of a part in common that is only this place, and those of parts that begin here. None where they do not
-/// change sides, where both have the same node, and from the other end of a part. A part ends where one of both chains does; they change sides along all
-/// that they and the chains after them have in common.
+/// Returns the crossings of two lines at a position: of a shared part that is only this position,
+/// and of shared parts that begin here. There is none where the lines do not change sides, where
+/// both have the same node, or at the other end of a part. A part ends where one of both chains
+/// ends. Whether the lines change sides depends on everything that the chains and their
+/// continuations share.
 ///
-/// What is walked along other chains is added to `walked`.
+/// The number of points visited along other chains is added to `walked`.
 pub(crate) fn contacts(
     lines: &ChainLines<'_>,
     both: [&ChainLine; 2],
@@ -47,7 +54,7 @@ pub(crate) fn contacts(
         return Vec::new();
     }
     let [own, others] = shared.rays(lines, both);
-    let common: Vec<[&Ray; 2]> = own
+    let common: Vec<[&ChainRay; 2]> = own
         .iter()
         .flat_map(|one| others.iter().map(move |other| [one, other]))
         .filter(|[one, other]| is_along(at, one.to, other.to))
@@ -57,17 +64,17 @@ pub(crate) fn contacts(
         [] => return Vec::from_iter(crossed_at(both, &shared, [&own, &others])),
         [only] => [None, Some(only)],
         [one, other] if is_end => [Some(one), Some(other)],
-        // In the middle of it.
+        // The position is in the middle of a shared part.
         _ => return Vec::new(),
     };
-    let mut walk = |rays: [&Ray; 2]| Walk::new(lines, both, &shared).follow(rays, walked);
+    let mut walk = |rays: [&ChainRay; 2]| Walk::new(lines, both, &shared).follow(rays, walked);
     let mut found = Vec::new();
     for (forward, backward) in [(ways_on[1], ways_on[0]), (ways_on[0], ways_on[1])] {
         let Some(forward) = forward else { continue };
         let [Onward::Own(one), Onward::Own(other)] = forward.map(|ray| ray.onward) else {
             continue;
         };
-        // Each is found from both of its ends.
+        // Each part is found from both of its ends.
         let Some((part, end)) = walk(forward).filter(|(part, _)| part.at > at) else { continue };
         let begin = match backward {
             Some(backward) => walk(backward).map(|(_, end)| end),
@@ -77,7 +84,7 @@ pub(crate) fn contacts(
         let begins = sides(begin.after, |a, b| is_between(begin.at, [begin.before, b], a));
         let ends = sides(end.after, |a, b| is_between(end.at, [b, end.before], a));
         if (begins[0] && ends[1]) || (begins[1] && ends[0]) {
-            let segments = [one, other].map(Next::segment);
+            let segments = [one, other].map(NextPoint::segment);
             let along_m = [0, 1].map(|k| {
                 let end_m = both[k].along_of_m(part.segments[k], part.at);
                 [both[k].along_of_m(segments[k], at), end_m]
@@ -88,14 +95,15 @@ pub(crate) fn contacts(
     found
 }
 
-/// The crossing of two lines that have nothing in common but a place.
+/// Returns the crossing of two lines that share nothing but one position.
 fn crossed_at(
     both: [&ChainLine; 2],
     &Shared { at, on }: &Shared,
-    [own, others]: [&[Ray]; 2],
+    [own, others]: [&[ChainRay]; 2],
 ) -> Option<Contact> {
-    // Where several chains meet, the first of them has the crossing.
-    let is_first = |line: &ChainLine, rays: &[Ray]| rays.iter().all(|ray| line.chain <= ray.chain);
+    // Where several chains meet, the crossing belongs to the first of them.
+    let is_first =
+        |line: &ChainLine, rays: &[ChainRay]| rays.iter().all(|ray| line.chain <= ray.chain);
     let is_crossing = is_first(both[0], own)
         && is_first(both[1], others)
         && pairs(others).filter(|[from, to]| !is_along(at, from.to, to.to)).any(|[from, to]| {
@@ -116,30 +124,30 @@ impl Shared {
         own.is_some() && own == other
     }
 
-    fn rays(&self, lines: &ChainLines<'_>, both: [&ChainLine; 2]) -> [Vec<Ray>; 2] {
+    fn rays(&self, lines: &ChainLines<'_>, both: [&ChainLine; 2]) -> [Vec<ChainRay>; 2] {
         [0, 1].map(|k| lines.rays(both[k], self.on[k]))
     }
 }
 
-/// Where a part in common of two chains ends.
+/// The end of a part that two chains share.
 struct PartEnd {
     at: LatticePoint,
-    /// The segments of both that end there.
+    /// The segments of both chains that end there.
     segments: [usize; 2],
 }
 
-/// Where all that lines have in common ends.
+/// The end of everything that two lines share.
 struct End {
     at: LatticePoint,
-    /// A point of it before its end.
+    /// A shared point before the end.
     before: LatticePoint,
-    /// Where both lines go on.
+    /// The points at which both lines continue.
     after: [Vec<LatticePoint>; 2],
 }
 
 impl End {
-    /// The one from which two lines go on in common along two rays of those that leave.
-    fn before(at: LatticePoint, along: [&Ray; 2], leaving: [&[Ray]; 2]) -> Self {
+    /// Returns the end from which two lines continue together along two of the rays that leave it.
+    fn before(at: LatticePoint, along: [&ChainRay; 2], leaving: [&[ChainRay]; 2]) -> Self {
         let after = [0, 1].map(|k| {
             let rays = leaving[k].iter().map(|ray| ray.to);
             rays.filter(|&to| !is_along(at, to, along[k].to)).collect()
@@ -148,11 +156,11 @@ impl End {
     }
 }
 
-/// Follows two lines along what they have in common.
+/// Follows two lines along the stretch that they share.
 struct Walk<'a> {
     lines: &'a ChainLines<'a>,
     both: [&'a ChainLine; 2],
-    /// The chains on which they go on, once they have left their own.
+    /// The chains on which the lines continue after they have left their own chain.
     beyond: [Option<ChainLine>; 2],
     before: LatticePoint,
 }
@@ -166,9 +174,10 @@ impl<'a> Walk<'a> {
         [0, 1].map(|k| self.beyond[k].as_ref().unwrap_or(self.both[k]))
     }
 
-    /// Where the part of the first chains ends, and where all does. `None` where both have a node in common, where it has no end, and where it is longer than
-    /// any real one.
-    fn follow(mut self, rays: [&Ray; 2], walked: &mut u64) -> Option<(PartEnd, End)> {
+    /// Returns the end of the part that the first chains share, and the end of the whole shared
+    /// stretch. `None` if both have a node in common, if the stretch has no end, or if it is longer
+    /// than any real one.
+    fn follow(mut self, rays: [&ChainRay; 2], walked: &mut u64) -> Option<(PartEnd, End)> {
         let mut left = MOST_BEYOND;
         let mut next = self.onto(rays, &mut left)?;
         let mut part = None;
@@ -176,10 +185,10 @@ impl<'a> Walk<'a> {
         for _ in 0..most {
             let both = self.now();
             let points = [0, 1].map(|k| both[k].points[next[k].point]);
-            // Both lie in the same direction: the nearer one comes first.
+            // Both points are in the same direction: the nearer one comes first.
             let [own, other] = points.map(|point| square(self.before, point));
             let at = if own <= other { points[0] } else { points[1] };
-            let segments = next.map(Next::segment);
+            let segments = next.map(NextPoint::segment);
             let on = [0, 1].map(|k| {
                 if points[k] == at {
                     both[k].at_point(next[k].point)
@@ -204,7 +213,7 @@ impl<'a> Walk<'a> {
                 let part = part.unwrap_or(PartEnd { at, segments });
                 return Some((part, End { at, before: self.before, after }));
             };
-            // Distances along a ring do not go on at its beginning, either.
+            // Distances along a ring do not continue across its beginning, either.
             if [0, 1].iter().any(|&k| both[k].is_end(on[k])) {
                 part.get_or_insert(PartEnd { at, segments });
             }
@@ -216,9 +225,9 @@ impl<'a> Walk<'a> {
         None
     }
 
-    /// The next points along two rays. Takes what other chains have of points.
-    fn onto(&mut self, rays: [&Ray; 2], left: &mut usize) -> Option<[Next; 2]> {
-        let mut next = [Next { point: 0, is_forward: true }; 2];
+    /// Returns the next points along two rays, and loads points of other chains.
+    fn onto(&mut self, rays: [&ChainRay; 2], left: &mut usize) -> Option<[NextPoint; 2]> {
+        let mut next = [NextPoint { point: 0, is_forward: true }; 2];
         for k in 0..2 {
             next[k] = match rays[k].onward {
                 Onward::Own(next) => next,
@@ -227,7 +236,7 @@ impl<'a> Walk<'a> {
                     *left -= line.points.len();
                     let point = if is_from_last { line.segments() - 1 } else { 1 };
                     self.beyond[k] = Some(line);
-                    Next { point, is_forward: !is_from_last }
+                    NextPoint { point, is_forward: !is_from_last }
                 }
             };
         }
@@ -235,7 +244,8 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// Whether some line of the first is on the right of some of the second, and whether some is on the left.
+/// Whether any of the first points is on the right of any of the second, and whether any is on the
+/// left.
 fn sides(
     [own, others]: [Vec<LatticePoint>; 2],
     is_left: impl Fn(LatticePoint, LatticePoint) -> bool,
@@ -249,12 +259,13 @@ fn sides(
     found
 }
 
-/// Whether two points lie in the same direction from a place.
+/// Whether two points are in the same direction from a position.
 fn is_along(at: LatticePoint, one: LatticePoint, other: LatticePoint) -> bool {
     cross(at, one, other) == 0 && dot(at, one, other) > 0
 }
 
-/// Whether a point lies in the sector that one turns through counterclockwise from a direction to another one. It lies in neither of them.
+/// Whether a point is in the sector that a counterclockwise turn from one direction to another
+/// covers. The point is in neither of the two directions.
 fn is_between(at: LatticePoint, [from, to]: [LatticePoint; 2], point: LatticePoint) -> bool {
     let is_left = |of: LatticePoint, other: LatticePoint| cross(at, of, other) > 0;
     match cross(at, from, to) {
@@ -268,7 +279,7 @@ fn square(at: LatticePoint, to: LatticePoint) -> i128 {
     dot(at, to, to)
 }
 
-fn pairs(rays: &[Ray]) -> impl Iterator<Item = [&Ray; 2]> {
+fn pairs(rays: &[ChainRay]) -> impl Iterator<Item = [&ChainRay; 2]> {
     (1..rays.len()).flat_map(move |k| rays[..k].iter().map(move |one| [one, &rays[k]]))
 }
 

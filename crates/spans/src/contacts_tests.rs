@@ -1,4 +1,5 @@
-//! Lines that touch, drawn by hand: whether they cross does not depend on their directions, nor on which way up the map is.
+//! Whether hand-drawn lines that touch also cross depends neither on their directions nor on the
+//! orientation of the map.
 
 use corniche_roads::Structure::{Bridge, Ground};
 
@@ -7,20 +8,21 @@ use crate::{
     network_tests::{Way, distance_m, network, way},
 };
 
-/// Places of a line, metres; nodes of different lines are different ones.
+/// The positions along a line, metres; nodes of different lines are different nodes.
 type Places<'a> = &'a [(i64, i64)];
 
-/// Along a stretch that both share there are several places, of one crossing.
+/// Returns the crossings. A stretch that both lines share has several places, but is one crossing.
 fn found(ways: &[Way<'_>]) -> Vec<Vec<Crossing>> {
     let (network, chains) = network(ways);
     let all = crossings(&network, &chains, &distance_m).all;
     all.chunk_by(|_, next| next.continues).map(<[Crossing]>::to_vec).collect()
 }
 
-/// Turns a place around the origin.
+/// A function that turns a position around the origin.
 type Turn = fn((i64, i64)) -> (i64, i64);
 
-/// How often a bridge and roads on the ground cross, in all directions, turned and mirrored; always the same.
+/// Counts the crossings of a bridge with roads on the ground, in all directions, turned and
+/// mirrored; the number is always the same.
 fn count(bridge: Places<'_>, roads: &[Places<'_>]) -> usize {
     let turns: [Turn; 4] =
         [|at| at, |(u, v)| (-v, u), |(u, v)| (u, -v), |(u, v)| (u + 3 * v, v - u)];
@@ -56,7 +58,8 @@ fn nodes_at_one_place_cross_where_the_sides_change() {
     assert_eq!(count(BRIDGE, &[&[(60, -50), (100, 0), (140, 50)]]), 1);
     assert_eq!(count(BRIDGE, &[&[(60, 50), (100, 0), (140, 50)]]), 0, "it touches");
     assert_eq!(count(BRIDGE, &[&[(100, -50), (100, 0)]]), 0, "it ends there");
-    // A bend of the bridge: what passes outside it touches, what goes in crosses.
+    // The bridge has a bend: a road that passes outside it touches it, and a road that goes inside
+    // crosses it.
     let bent: Places<'_> = &[(0, 0), (100, 0), (100, 100)];
     assert_eq!(count(bent, &[&[(150, -50), (100, 0), (50, 50)]]), 1);
     assert_eq!(count(bent, &[&[(50, -50), (100, 0), (150, 50)]]), 0);
@@ -77,7 +80,7 @@ fn stretches_in_common_cross_once_where_the_sides_change() {
         let with = |first: (i64, i64), last: (i64, i64), ends: [(i64, i64); 2]| {
             [&[first, ends[0]][..], inner, &[ends[1], last]].concat()
         };
-        // Both begin and end at nodes of the bridge, or between them.
+        // Both begin and end at nodes of the bridge, or between nodes.
         for ends in [[(100, 0), (250, 0)], [(90, 0), (300 - 60, 0)]] {
             assert_eq!(count(BRIDGE, &[&with((50, -50), (280, 50), ends)]), 1, "{ends:?}");
             assert_eq!(count(BRIDGE, &[&with((50, -50), (280, -50), ends)]), 0, "{ends:?}");
@@ -85,13 +88,14 @@ fn stretches_in_common_cross_once_where_the_sides_change() {
     }
     assert_eq!(count(BRIDGE, &[&[(50, -50), (100, 0), (200, 0)]]), 0, "it ends on the bridge");
     assert_eq!(count(BRIDGE, &[&[(20, 0), (80, 0)]]), 0, "it lies on the bridge");
-    // Around a corner.
+    // The bridge goes around a corner.
     let bent: Places<'_> = &[(0, 0), (100, 0), (100, 100), (200, 100)];
     assert_eq!(count(bent, &[&[(20, -50), (60, 0), (100, 0), (100, 40), (50, 60)]]), 1);
     assert_eq!(count(bent, &[&[(20, -50), (60, 0), (100, 0), (100, 40), (150, 60)]]), 0);
 }
 
-/// A street with side streets lies beneath a bridge for a while: it has junctions there, and crosses in each part between them or in none.
+/// A street with side streets shares a stretch beneath a bridge. It has junctions there, and
+/// crosses in each part between them or in none.
 #[test]
 fn stretches_in_common_go_on_over_junctions() {
     let bridge = [(1, 0, 0), (2, 100, 0), (3, 200, 0), (4, 300, 0)];
@@ -117,7 +121,7 @@ fn stretches_in_common_go_on_over_junctions() {
     }
 }
 
-/// Both have the same node: what that means is not asked here.
+/// Both lines have the same node; the meaning of that is not decided here.
 #[test]
 fn with_a_node_in_common_lines_do_not_cross() {
     let bridge = || way(1, Bridge, &[(1, 0, 0), (2, 100, 0), (3, 200, 0), (4, 300, 0)]);
@@ -128,7 +132,7 @@ fn with_a_node_in_common_lines_do_not_cross() {
     assert!(found(&[bridge(), within]).is_empty(), "within a stretch that both share");
 }
 
-/// Where several chains meet in one node, the road beneath has one crossing.
+/// If several chains meet at one node, the road beneath has one crossing.
 #[test]
 fn a_junction_on_a_bridge_is_crossed_once() {
     let fork = || {
@@ -146,7 +150,7 @@ fn a_junction_on_a_bridge_is_crossed_once() {
     assert_eq!(beneath(&[(5, 100, -50), (6, 100, 0), (7, 100, 50)]), 1);
     assert_eq!(beneath(&[(5, 100, -50), (7, 100, 50)]), 1, "without a node of its own");
     assert_eq!(beneath(&[(5, 50, 50), (6, 100, 0), (7, 90, 60)]), 0);
-    // A fork on the ground beneath a node of a bridge, and both forks above each other.
+    // A fork on the ground is beneath a node of a bridge, and then both forks are above each other.
     let mut ways = vec![way(1, Bridge, &[(1, 0, 0), (2, 100, 0), (3, 200, 0)])];
     let arms = [(8, 100, -50), (9, 70, 50), (10, 130, 50)];
     ways.extend((2..).zip(arms).map(|(id, arm)| way(id, Ground, &[(7, 100, 0), arm])));
@@ -156,7 +160,8 @@ fn a_junction_on_a_bridge_is_crossed_once() {
     assert_eq!(found(&ways).len(), 1);
 }
 
-/// A stretch of 100 m in common is told in ten places that cover it, along the bridge and along the road.
+/// A shared stretch of 100 m is listed as ten places that cover it, along the bridge and along the
+/// road.
 #[test]
 fn a_stretch_is_covered_by_its_places() {
     let nodes = [(11, 50, -50), (12, 100, 0), (13, 200, 0), (14, 250, 50)];

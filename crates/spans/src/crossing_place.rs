@@ -1,4 +1,4 @@
-//! Places at which chains cross: what lies there.
+//! The places at which chains cross, with the properties of the chains there.
 
 use std::cmp::Ordering;
 
@@ -7,7 +7,8 @@ use corniche_roads::grade_limit;
 
 use crate::spans::SpanKind;
 
-/// Ways for which no grade is known may be as steep as service roads, percent.
+/// The grade assumed for ways without a known limit, which may be as steep as service roads,
+/// percent.
 const OTHER_LIMIT_PCT: f64 = 20.0;
 
 /// A place on a chain.
@@ -17,25 +18,28 @@ pub struct CrossingPlace {
     pub chain: ChainNumber,
     /// OSM's id of the way there.
     pub way_id: i64,
-    /// The distance along the chain, metres; on the ground nobody needs it, and it is 0.
+    /// The distance along the chain, metres. It is 0 on the ground, where it is not needed.
     pub along_m: f64,
-    /// What it is there; `None` on the ground.
+    /// The kind of span there; `None` on the ground.
     pub kind: Option<SpanKind>,
-    /// OSM's `layer` of a bridge or a tunnel, which orders it among its kind; on the ground 0.
+    /// OSM's `layer` of a bridge or a tunnel, which orders it among spans of its kind; 0 on the
+    /// ground.
     pub layer: i8,
-    /// The steepest grade with which roads of its kind are built, rise over run.
+    /// The steepest grade with which roads of the way's kind are built, rise over run.
     pub steepest: f64,
 }
 
 impl CrossingPlace {
-    /// What is above what: bridges above the ground, tunnels below it, whatever their layers; of two of a kind the higher `layer`.
+    /// Returns which of two places is above the other: bridges are above the ground and tunnels
+    /// below it, whatever their layers; of two spans of one kind, the one with the higher `layer`
+    /// is above.
     pub(crate) fn order(&self, other: &Self) -> Ordering {
         let rank = |own: &Self| (own.kind.map_or(0.0, SpanKind::away) as i8, own.layer);
         rank(self).cmp(&rank(other))
     }
 }
 
-/// The steepest grade with which roads of a way's kind are built, rise over run.
+/// Returns the steepest grade with which roads of a way's kind are built, rise over run.
 pub(crate) fn steepest_of(network: &Network, way: &NetworkWay) -> f64 {
     grade_limit(network.highway_of(way)).unwrap_or(OTHER_LIMIT_PCT) / 100.0
 }

@@ -1,4 +1,4 @@
-//! Where bridges and tunnels cross other roads without a node in common.
+//! Finds where bridges and tunnels cross other roads without a common node.
 
 use std::collections::BTreeMap;
 
@@ -17,60 +17,67 @@ use crate::{
     spans::SpanKind,
 };
 
-/// Whether it is known what is above.
+/// Whether it is known which of two chains is above.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Order {
-    /// It is, by what they are or by their layers.
+    /// The order is known, from the kinds of the chains or from their layers.
     Known,
-    /// Both are bridges, or both tunnels, of one layer.
+    /// The order is unknown: both are bridges, or both are tunnels, of the same layer.
     Tie,
 }
 
-/// Where two chains cross, of which one at least is a bridge or a tunnel.
+/// A crossing of two chains, at least one of which is a bridge or a tunnel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Crossing {
-    /// Where on the lattice.
+    /// The position on the lattice.
     pub at: [f64; 2],
-    /// The upper one; where that is not known, either.
+    /// The upper chain; either chain if the order is unknown.
     pub upper: CrossingPlace,
-    /// The lower one.
+    /// The lower chain.
     pub lower: CrossingPlace,
-    /// Whether it is known which is which.
+    /// Whether it is known which chain is above.
     pub order: Order,
-    /// How far along both it reaches to either side, metres; 0 where they cross in one place.
+    /// The distance that the crossing extends along both chains to either side, metres; 0 if they
+    /// cross at one point.
     pub half_m: f64,
-    /// Whether it is one crossing with the one before: a stretch that both share is told in several places.
+    /// Whether this belongs to the same crossing as the previous entry: a stretch that both share
+    /// has several entries.
     pub continues: bool,
 }
 
-/// What was found of crossings.
+/// The crossings of a network.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Crossings {
-    /// In the order of their chains.
+    /// All crossings, in the order of their chains.
     pub all: Vec<Crossing>,
-    /// Ways that cross others more often than any real ones: crossings with the chains that they are in are left out.
+    /// Ways that cross others more often than any real way. The crossings of their chains are
+    /// omitted.
     pub left_out: Vec<i64>,
 }
 
-/// Pairs of segments that are looked at for each segment of a chain, and beyond that for each chain: in a city it is a handful. A chain for which
-/// there are more is left out.
+/// The maximum number of segment pairs to compare, for each segment of a chain and in addition for
+/// each chain; in a city there are a handful. A chain with more pairs is omitted.
 const MOST_PAIRS_OF_SEGMENT: u64 = 64;
 const MOST_PAIRS_OF_CHAIN: u64 = 1 << 16;
-/// The latter for all chains together, at least and for each segment of bridges and tunnels.
+/// The maximum of the additional pairs for all chains together: a base, and an addition for each
+/// segment of bridges and tunnels.
 const MOST_PAIRS: u64 = 1 << 22;
 const MORE_PAIRS_OF_SEGMENT: u64 = 1 << 6;
-/// Crossings of two chains; no real ones have as many.
+/// The maximum number of crossings of two chains; no real chains have as many.
 const MOST_CROSSINGS: usize = 256;
-/// A stretch that two lines share is told in places that are so far apart, metres, but in so many at most.
+/// The distance between the entries of a stretch that two lines share, metres, and the maximum
+/// number of entries.
 const SPACING_M: f64 = 10.0;
 const MOST_PLACES: f64 = 64.0;
 
-/// All crossings of a network's bridges and tunnels with its roads and with each other.
+/// Returns all crossings of a network's bridges and tunnels with its roads and with each other.
 ///
-/// Orientations are exact. Lines cross where one changes from one side of the other to the other side: also at a place where each has a point, or along a
-/// stretch that both share, but not where they have a node in common. Roads that end on one another do not cross there.
+/// Orientations are exact. Lines cross where one changes from one side of the other to its other
+/// side. They may do so at a position where each has a point, or along a stretch that both share,
+/// but not where they have a node in common. Roads that end on one another do not cross there.
 ///
-/// Work follows the number of points: chains that cross others more often than any real ones are left out.
+/// The work is proportional to the number of points: chains that cross others more often than any
+/// real chains are omitted.
 #[must_use]
 pub fn crossings(network: &Network, chains: &Chains, distance_m: &Distance<'_>) -> Crossings {
     let lines = ChainLines::new(network, chains, distance_m);
@@ -96,7 +103,7 @@ pub fn crossings(network: &Network, chains: &Chains, distance_m: &Distance<'_>) 
     finder.finish()
 }
 
-/// The numbers of a line of a bridge or a tunnel, and of one of its segments.
+/// The number of a line of a bridge or a tunnel, and the number of one of its segments.
 type OfSegment = (u32, u32);
 type Boxed = GeomWithData<Rectangle<[f64; 2]>, OfSegment>;
 
@@ -104,38 +111,40 @@ struct Finder<'a> {
     lines: &'a ChainLines<'a>,
     of_spans: &'a [ChainLine],
     tree: RTree<Boxed>,
-    /// For each line of `of_spans` whether it is left out. It stays in the tree until so many of its boxes were met as a new tree costs.
+    /// For each line of `of_spans`, whether it is omitted. It stays in the tree until the cost of
+    /// meeting its boxes reaches the cost of a new tree.
     is_out: Vec<bool>,
     met_out: usize,
     found: Vec<Crossing>,
-    /// Chains that are left out, with the way that is told.
+    /// Omitted chains, each with the way to report.
     left_out: BTreeMap<ChainNumber, i64>,
-    /// Pairs that may be looked at beyond those for each segment.
+    /// The number of pairs that may be compared in addition to the pairs for each segment.
     pairs: u64,
 }
 
-/// How many segments of bridges and tunnels were met.
+/// The number of segments of bridges and tunnels that were met.
 #[derive(Default)]
 struct Met {
     pairs: u64,
-    /// How many more were met of lines that are left out.
+    /// The number of further segments that belong to omitted lines.
     left_out: usize,
 }
 
-/// What was found between a line and one of a bridge or a tunnel.
+/// The findings between a line and a line of a bridge or a tunnel.
 #[derive(Default)]
 struct Between {
     pairs: u64,
-    /// Where they cross, by the segments of both; of a stretch that both share there are several.
+    /// The crossings of the two lines, by the segments of both; a stretch that both share has
+    /// several entries.
     crossings: BTreeMap<[usize; 2], Vec<Crossing>>,
-    /// Where they touch.
+    /// The positions where the lines touch.
     touching: BTreeMap<[OnLine; 2], LatticePoint>,
 }
 
-/// A line that crosses others more often than any real one.
+/// A line that crosses others more often than any real line.
 enum Culprit {
     Own,
-    /// The line of a bridge or a tunnel with a number.
+    /// The line of a bridge or a tunnel with this number.
     Other(usize),
 }
 
@@ -149,7 +158,8 @@ impl<'a> Finder<'a> {
         Self { lines, of_spans, tree, is_out, met_out, found, left_out, pairs }
     }
 
-    /// Finds the crossings of a line with the first `count` lines of bridges and tunnels, and with itself if it is the next of them.
+    /// Finds the crossings of a line with the first `count` lines of bridges and tunnels, and also
+    /// with itself if it is the next of them.
     fn find(&mut self, line: &ChainLine, count: usize) {
         let for_segments = MOST_PAIRS_OF_SEGMENT * line.segments() as u64;
         while !self.left_out.contains_key(&line.chain) {
@@ -188,7 +198,7 @@ impl<'a> Finder<'a> {
         for segment in 0..line.segments() {
             let [a, b] = line.segment(segment).map(LatticePoint::in_steps);
             let near = self.tree.locate_in_envelope_intersecting(&AABB::from_corners(a, b));
-            // Two segments are compared once.
+            // Each pair of segments is compared once.
             let place = (count as u32, segment as u32);
             for (number, other) in near.map(|of| of.data) {
                 if self.is_out[number as usize] {
@@ -205,7 +215,8 @@ impl<'a> Finder<'a> {
                     return Err(self.larger(line, number as usize));
                 }
                 if met.pairs > most {
-                    // One that has most of them is looked at; else there are too many for this line.
+                    // If one other line has most of the pairs, that line is examined; otherwise
+                    // this line has too many.
                     let half = all.iter().find(|(_, between)| 2 * between.pairs > met.pairs);
                     return Err(
                         half.map_or(Culprit::Own, |(&of, _)| self.larger(line, of as usize))
@@ -230,7 +241,7 @@ impl<'a> Finder<'a> {
         Ok(all)
     }
 
-    /// Makes a tree without the lines that are left out, once these cost as much.
+    /// Builds a new tree without the omitted lines, once they cost as much as building it.
     fn forget_left_out(&mut self) {
         if self.met_out > self.tree.size() {
             let left = self.of_spans.iter().enumerate().filter(|(number, _)| !self.is_out[*number]);
@@ -239,7 +250,7 @@ impl<'a> Finder<'a> {
         }
     }
 
-    /// Which of a line and one of a bridge or a tunnel has more points.
+    /// Returns the one of a line and a line of a bridge or a tunnel that has more points.
     fn larger(&self, line: &ChainLine, other: usize) -> Culprit {
         let is_other = self.of_spans[other].points.len() > line.points.len();
         if is_other { Culprit::Other(other) } else { Culprit::Own }
@@ -264,7 +275,7 @@ fn boxes(line: &ChainLine, number: usize) -> impl Iterator<Item = Boxed> + '_ {
 }
 
 impl Between {
-    /// Looks at a pair of segments.
+    /// Compares a pair of segments.
     fn add(&mut self, both: [(&ChainLine, usize); 2]) {
         let [(own, own_segment), (other, other_segment)] = both;
         let [[a, b], [c, d]] = both.map(|(line, segment)| line.segment(segment));
@@ -288,7 +299,7 @@ impl Between {
     }
 }
 
-/// The crossing of two segments of which each is on both sides of the other.
+/// Returns the crossing of two segments, each of which extends to both sides of the other.
 fn crossed(both: [(&ChainLine, usize); 2]) -> Crossing {
     let [[a, b], [c, d]] = both.map(|(line, segment)| line.segment(segment));
     let share = |[from, to]: [LatticePoint; 2], [one, two]: [LatticePoint; 2]| {
@@ -305,7 +316,8 @@ fn crossed(both: [(&ChainLine, usize); 2]) -> Crossing {
     Crossing::new(at, places, 0.0, false)
 }
 
-/// The places of what two lines share, which cross there; the second is a bridge or a tunnel.
+/// Returns the entries of a stretch that two crossing lines share; the second line is a bridge or a
+/// tunnel.
 fn shared(both: [&ChainLine; 2], contact: &Contact) -> Vec<Crossing> {
     let [_, [from_m, to_m]] = contact.along_m;
     let length_m = (to_m - from_m).abs();
@@ -326,8 +338,9 @@ fn shared(both: [&ChainLine; 2], contact: &Contact) -> Vec<Crossing> {
 }
 
 impl Crossing {
-    /// The one that makes room, and the one that it goes around: a bridge is lifted; over a tunnel, of two tunnels, and beneath the ground, the lower one
-    /// is lowered. Heights of the first depend on those of the second.
+    /// Returns the place that moves to make space, and the place that it avoids. A bridge is
+    /// lifted. Above a tunnel, of two tunnels, and beneath the ground, the lower one is lowered.
+    /// Heights of the first place depend on those of the second.
     #[must_use]
     pub fn moved(&self) -> [CrossingPlace; 2] {
         match (self.upper.kind, self.lower.kind) {

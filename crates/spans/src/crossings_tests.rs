@@ -1,11 +1,11 @@
-//! Crossings are found where lines cross without a common node, in the right order.
+//! Crossings are found where lines cross without a common node, and their order is right.
 
 use corniche_roads::Structure::{self, Bridge, Ground, Tunnel};
 
 use super::*;
 use crate::network_tests::{Way, distance_m, network, way};
 
-/// Upper way, lower way, whether the order is known, and the place in metres.
+/// Returns the upper way, the lower way, whether the order is known, and the position in metres.
 fn found(ways: &[Way<'_>]) -> Vec<(i64, i64, bool, [i64; 2])> {
     let (network, chains) = network(ways);
     let mut found: Vec<_> = crossings(&network, &chains, &distance_m)
@@ -63,7 +63,8 @@ fn spans_are_ordered_by_layer() {
     assert_eq!(all, expected);
 }
 
-/// A road that passes through a point of a bridge, which is no node of it, crosses once; one that has the node does not cross.
+/// A road through a point of a bridge that is not a node of the road crosses once. A road with that
+/// node does not cross.
 #[test]
 fn points_on_lines_count_once_and_common_nodes_never() {
     let bridge = || way(1, Bridge, &[(1, 0, 0), (2, 100, 0), (3, 200, 10)]);
@@ -86,7 +87,7 @@ fn places_are_told_along_chains() {
     assert!(is(upper.along_m, 120.0) && is(lower.along_m, 0.0), "{upper:?} {lower:?}");
 }
 
-/// Without a layer a bridge lies under one with layer 1, and over one with layer −1.
+/// A bridge without a layer is below one with layer 1, and above one with layer −1.
 #[test]
 fn layers_are_compared_as_they_are_tagged() {
     let ways = [along(1, Bridge, 0), across(2, 10, Bridge, 1), across(3, 20, Bridge, -1)];
@@ -95,7 +96,8 @@ fn layers_are_compared_as_they_are_tagged() {
     assert_eq!(found(&ways), [(1, 2, true, [10, 0]), (3, 1, true, [20, 0])]);
 }
 
-/// A road that goes to and fro over a bridge thousands of times, or a bridge over a road, is left out; other crossings stay.
+/// A road that goes to and fro over a bridge thousands of times, or a bridge over a road, is
+/// omitted; other crossings stay.
 #[test]
 fn what_crosses_too_often_is_left_out_and_told() {
     let zigzag = |id: i64, structure| {
@@ -115,7 +117,8 @@ fn what_crosses_too_often_is_left_out_and_told() {
     }
 }
 
-/// The boxes of parallel diagonals lie over each other, though no two cross: work follows the points.
+/// The boxes of parallel diagonals overlap although no two diagonals cross: the work is
+/// proportional to the number of points.
 #[test]
 fn lines_over_each_other_end_soon() {
     let diagonal = |k: i64| {

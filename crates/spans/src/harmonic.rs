@@ -1,31 +1,32 @@
-//! Heights of free joints between those that are held.
+//! Solves the heights of free joints between joints with fixed heights.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Joints with more neighbours than this, when they are left out one after the other, are not solved: real spans have a handful, and time grows with
-/// the square.
+/// The maximum number of neighbours of a joint at its elimination; joints with more are not solved.
+/// Real spans have a handful, and the time grows with the square.
 const MOST_NEIGHBOURS: usize = 256;
 
 /// A network of straight lines between joints.
 #[derive(Debug, Default)]
 pub(crate) struct Harmonic {
-    /// How strongly each joint is tied to others: one over the length between them, added up where there are several lines.
+    /// The strength of each joint's ties to others: one over the length between them, added up if
+    /// there are several lines.
     ties: Vec<BTreeMap<usize, f64>>,
 }
 
-/// A joint that was left out, with its ties to what was there still.
+/// An eliminated joint, with its ties to the joints that remained at that time.
 struct LeftOut {
     joint: usize,
     ties: BTreeMap<usize, f64>,
 }
 
 impl Harmonic {
-    /// A network of so many joints.
+    /// Creates a network of this many joints.
     pub(crate) fn new(joints: usize) -> Self {
         Self { ties: vec![BTreeMap::new(); joints] }
     }
 
-    /// Adds a line between two joints. One that comes back to where it begins ties nothing.
+    /// Adds a line between two joints. A line that returns to its first joint adds no tie.
     pub(crate) fn tie(&mut self, [one, other]: [usize; 2], length_m: f64) {
         if one != other {
             self.add([one, other], 1.0 / length_m.max(1e-3));
@@ -37,14 +38,16 @@ impl Harmonic {
         *self.ties[other].entry(one).or_default() += tie;
     }
 
-    /// The height of each joint: as held, and at free joints such that the differences to its neighbours, each over the length between
-    /// them, add up to nothing. NaN where nothing holds it, and of
-    /// those that are too intricate.
+    /// Returns the height of each joint: fixed heights stay, and at free joints the differences to
+    /// the neighbours, each over the length between them, add up to zero. NaN for joints that
+    /// depend on no fixed height, and for joints that are too intricate.
     ///
-    /// Free joints are left out one after the other, those with the fewest neighbours first, and their neighbours tied to each other instead; then
-    /// each gets the mean of its neighbours, in the opposite order.
+    /// Free joints are eliminated one after the other, those with the fewest neighbours first, and
+    /// their neighbours are tied to each other instead. Then, in the opposite order, each joint
+    /// gets the mean of its neighbours.
     ///
-    /// Source: the star-mesh transform (A. Rosen, *A New Network Theorem*, 1924), which is Gaussian elimination on a Laplacian.
+    /// Source: the star-mesh transform (A. Rosen, *A New Network Theorem*, 1924), which is Gaussian
+    /// elimination on a Laplacian.
     pub(crate) fn solve(mut self, held_m: &[f64]) -> Vec<f64> {
         let is_free = |joint: usize| held_m[joint].is_nan();
         let mut order: BTreeSet<(usize, usize)> = (0..self.ties.len())
@@ -82,7 +85,7 @@ impl Harmonic {
         let mut heights_m = held_m.to_vec();
         for LeftOut { joint, ties } in left_out.into_iter().rev() {
             let sum: f64 = ties.values().sum();
-            // Neighbours that are as high to the bit give that height to the bit.
+            // If all neighbours have exactly the same height, this joint gets exactly that height.
             let first_m = ties.keys().next().map_or(f64::NAN, |&other| heights_m[other]);
             let above = |(&other, &tie): (&usize, &f64)| tie * (heights_m[other] - first_m);
             heights_m[joint] = first_m + ties.iter().map(above).sum::<f64>() / sum;

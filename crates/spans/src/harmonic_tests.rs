@@ -1,4 +1,5 @@
-//! Heights between held joints are those of closed forms, lie between them, and satisfy what defines them.
+//! Heights between fixed joints match closed formulas, are between the fixed heights, and satisfy
+//! the defining equation.
 
 use proptest::prelude::*;
 
@@ -23,7 +24,7 @@ fn between_two_supports_it_is_straight() {
     }
 }
 
-/// The centre of a star: the mean of the ends, weighted by one over the lengths of the arms.
+/// The centre of a star has the mean of the ends, weighted by one over the lengths of the arms.
 #[test]
 fn a_star_with_three_arms() {
     let (lengths_m, ends_m): ([f64; 3], [f64; 3]) = ([20.0, 50.0, 80.0], [300.0, 310.0, 290.0]);
@@ -42,7 +43,8 @@ fn one_support_is_level_to_the_bit_and_none_has_no_height() {
     assert!(found[4].is_nan() && found[5].is_nan());
 }
 
-/// What no real span is, but a hostile file can be, is given up and does not take for ever.
+/// A network that no real span forms, but that a hostile file can contain, is rejected and does not
+/// take forever.
 #[test]
 fn what_is_tied_to_all_else_is_not_solved() {
     let count = 600;

@@ -1,4 +1,4 @@
-//! Bridges and tunnels as networks of their own, and how high they are.
+//! Bridges and tunnels as separate networks, and their heights.
 //!
 //! ```text
 //!             B ───────●─────── C       ●  joints of a span: where chains of it meet or end
@@ -7,11 +7,13 @@
 //!   ground
 //! ```
 //!
-//! A *span* is all chains of one kind, bridge or tunnel, that are connected by shared nodes. Elevation models say nothing of a deck but where it
-//! ends: there it has the ground's height, and between its supports it is harmonic, the shape of least bends that needs no further number. Where
-//! decks cross other roads, they are lifted a little, so that what is above lies above; tunnels are lowered. Heights are estimates.
+//! A *span* consists of all chains of one kind, bridge or tunnel, that shared nodes connect. An
+//! elevation model says nothing about a deck except where it ends: there, the deck has the ground's
+//! height. Between its supports a deck is harmonic, which is the shape with the least bends that
+//! needs no further parameter. Where decks cross other roads, they are lifted a little, so that the
+//! upper road is above the lower one; tunnels are lowered. Heights are estimates.
 //!
-//! This crate never reads a height: callers bring the ground.
+//! This crate never reads heights: callers supply the ground.
 
 mod chain_lines;
 mod connected;
@@ -35,5 +37,5 @@ pub use spans::{Joint, SpanChain, SpanKind, SpanProblem, SpanReason, Spans, Supp
 pub use structure_heights::{Decks, FreeHeight};
 pub use vicinity::Vicinity;
 
-/// The true distance between two places of the lattice in plan, metres.
+/// Returns the true distance between two positions of the lattice in plan, metres.
 pub type Distance<'a> = dyn Fn([f64; 2], [f64; 2]) -> f64 + 'a;

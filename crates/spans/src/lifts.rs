@@ -1,37 +1,42 @@
-//! How far decks are lifted, and tunnels lowered, so that what crosses keeps its order.
+//! How far decks are lifted, and tunnels lowered, so that crossing roads keep their order.
 //!
 //! ```text
-//!                  ╱╲            a tent: highest at the crossing, down to nothing at the nearest support, and as far along all
-//!     ●━━━━━━━━━━━╱━━╲━━━━━━●    other chains
+//!                  ╱╲
+//!     ●━━━━━━━━━━━╱━━╲━━━━━━●
 //!     support      crossing
 //! ```
+//!
+//! Each lift is a *tent*: it is highest at the crossing and comes down to zero at the nearest
+//! support, and at the same distance along all other chains.
 
 use std::{
     cmp::Reverse,
     collections::{BTreeMap, BinaryHeap, btree_map::Entry},
 };
 
-use crate::spans::{Edge, Spans};
+use crate::spans::Spans;
 
-/// How many joints a tent may stand over. Real spans have some hundred at most, and all of their lifts could stand over all.
+/// The maximum number of joints that a tent may cover. Real spans have some hundred at most, so all
+/// of their lifts could cover all of their joints.
 const MOST_JOINTS: usize = 1024;
-/// So many tents may stand on one edge; no real one needs a tenth.
+/// The maximum number of tents on one edge; no real edge needs a tenth.
 const MOST_TENTS: usize = 256;
 
-/// A tent, as far as it stands on one edge.
+/// The part of a tent that is on one edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Tent {
     apex_m: f64,
-    /// Where it has come down to nothing.
+    /// The distance at which the tent has come down to zero.
     reach_m: f64,
-    /// How far its apex is from the ends of the edge.
+    /// The distances of the apex from the ends of the edge.
     from_ends_m: [f64; 2],
-    /// From where to where along the edge it is highest, metres, if it is there.
+    /// The stretch of the edge where the tent is highest, from and to, metres; `None` if the apex
+    /// is elsewhere.
     apex_at: Option<[f64; 2]>,
 }
 
 impl Tent {
-    /// How high it is at a distance along its edge.
+    /// Returns the height of the tent at a distance along its edge.
     pub(crate) fn height_m(&self, along_m: f64, length_m: f64) -> f64 {
         let [first_m, last_m] = self.from_ends_m;
         let around_m = (first_m + along_m).min(last_m + length_m - along_m);
@@ -41,7 +46,7 @@ impl Tent {
         self.apex_m * (1.0 - around_m.min(direct_m) / self.reach_m).max(0.0)
     }
 
-    /// Whether it is a lower tent over the same place than another one.
+    /// Whether this is a lower tent over the same place than another one.
     pub(crate) fn is_below(&self, other: &Self) -> bool {
         let place = |tent: &Self| {
             (tent.from_ends_m.map(f64::to_bits), tent.apex_at.map(|at| at.map(f64::to_bits)))
@@ -49,7 +54,7 @@ impl Tent {
         place(self) == place(other) && self.apex_m < other.apex_m
     }
 
-    /// Where it bends along its edge.
+    /// Returns the distances along the edge at which the tent bends.
     pub(crate) fn bends_m(&self, length_m: f64) -> impl Iterator<Item = f64> + use<> {
         let [first_m, last_m] = self.from_ends_m;
         let feet_m = [self.reach_m - first_m, length_m - (self.reach_m - last_m)];
@@ -67,34 +72,34 @@ impl Tent {
     }
 }
 
-/// A place on an edge.
+/// A position on an edge.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct OnEdge {
     pub(crate) edge: usize,
     pub(crate) along_m: f64,
 }
 
-/// How far joints are from a stretch of an edge, up to the nearest support.
+/// The distances of joints from a stretch of an edge, up to the nearest support.
 pub(crate) struct Reach {
     edge: usize,
-    /// Where it begins and ends along the edge, metres.
+    /// The start and the end of the stretch along the edge, metres.
     stretch_m: [f64; 2],
     /// The distance of the nearest support.
     pub(crate) support_m: f64,
-    /// Joints that are nearer, with their distances.
+    /// The joints that are nearer, with their distances.
     joints: BTreeMap<u32, f64>,
 }
 
 impl Reach {
-    /// Goes along edges from a place, and what is so near to it on its edge, until it comes to a support; `None` where there is none within
-    /// [`MOST_JOINTS`].
-    pub(crate) fn of(
+    /// Searches along edges from a position, and from the stretch around it, until it reaches a
+    /// support; `None` if there is none within [`MOST_JOINTS`].
+    pub(crate) fn around(
         spans: &Spans,
         held: &dyn Fn(usize) -> bool,
         (at, half_m): (OnEdge, f64),
     ) -> Option<Self> {
         let mut joints = BTreeMap::new();
-        // Distances are not negative: as bits they are in the order of their values.
+        // Distances are not negative, so their bits have the same order as their values.
         let mut waiting = BinaryHeap::new();
         let edge = &spans.edges[at.edge];
         let stretch_m = [at.along_m - half_m, at.along_m + half_m];
@@ -114,20 +119,20 @@ impl Reach {
                 Entry::Occupied(_) => continue,
                 Entry::Vacant(entry) => entry.insert(to_m),
             };
-            for &end in spans.edges_at.of(joint as usize) {
-                let Edge { joints, length_m, .. } = &spans.edges[end as usize / 2];
-                waiting.push(Reverse(((to_m + length_m).to_bits(), joints[1 - end as usize % 2])));
+            for (other, length_m) in spans.neighbours(joint as usize) {
+                waiting.push(Reverse(((to_m + length_m).to_bits(), other)));
             }
         }
         None
     }
 
-    /// The tents that stand on edges within reach when the apex is so high, with the numbers of the edges.
+    /// Returns the tents on edges within reach if the apex has this height, with the numbers of the
+    /// edges.
     pub(crate) fn tents(&self, spans: &Spans, apex_m: f64) -> Vec<(usize, Tent)> {
         let to_m = |joint: u32| self.joints.get(&joint).copied().unwrap_or(self.support_m);
         let mut edges: Vec<usize> = vec![self.edge];
         for &joint in self.joints.keys() {
-            edges.extend(spans.edges_at.of(joint as usize).iter().map(|end| *end as usize / 2));
+            edges.extend(spans.edges_at.list(joint as usize).iter().map(|end| *end as usize / 2));
         }
         edges.sort_unstable();
         edges.dedup();
@@ -141,7 +146,8 @@ impl Reach {
     }
 }
 
-/// Puts up tents, all or none: without some of them a deck would be torn at its joints. Returns whether there is room for them.
+/// Adds tents, all or none: without some of them a deck would be torn at its joints. Returns
+/// whether they were added, which requires that there is space for all of them.
 pub(crate) fn put_up(tents: &mut [Vec<Tent>], all: Vec<(usize, Tent)>) -> bool {
     if all.iter().any(|(edge, _)| tents[*edge].len() >= MOST_TENTS) {
         return false;

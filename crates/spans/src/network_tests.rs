@@ -1,4 +1,4 @@
-//! Small networks drawn by hand, in metres, for tests of this crate.
+//! Small hand-drawn networks, in metres, for the tests of this crate.
 
 use corniche_geom::{LatticePoint, Polyline};
 use corniche_network::{Breaks, Chains, Network, NetworkBuilder};
@@ -43,16 +43,16 @@ pub(crate) fn network(ways: &[Way<'_>]) -> (Network, Chains) {
         });
     }
     let network = builder.finish();
-    let chains = Chains::of(&network, Breaks::JunctionsAndStructures);
+    let chains = Chains::from_network(&network, Breaks::JunctionsAndStructures);
     (network, chains)
 }
 
-/// Metres between two places.
+/// Returns the distance between two positions, metres.
 pub(crate) fn distance_m(from: [f64; 2], to: [f64; 2]) -> f64 {
     (to[0] - from[0]).hypot(to[1] - from[1]) / 1000.0
 }
 
-/// Solves the spans of ways over the ground, and hands them to a test.
+/// Solves the spans of ways over the ground, and passes them to a test.
 pub(crate) fn solved<T>(
     ways: &[Way<'_>],
     ground_m: impl Fn([f64; 2]) -> Option<f64>,
@@ -68,7 +68,7 @@ pub(crate) fn solved<T>(
     test(&decks, &network, &chains)
 }
 
-/// The height of a way of one chain at a distance from its first node.
+/// Returns the height of a way of one chain at a distance from its first node.
 pub(crate) fn at(
     decks: &Decks,
     network: &Network,

@@ -1,10 +1,15 @@
-//! Joints at which the ground does not carry a span, although a road on the ground has a node in common with it.
+//! Finds joints at which the ground does not carry a span, although a road on the ground shares a
+//! node with it.
 //!
 //! ```text
-//!   ●━━━━━━━━━━━●━━━━━━━━━━━●      A viaduct and the street in the valley beneath it share a node, as thousands of places in OpenStreetMap do. The
-//!                               ground there is far from the line between the other supports: farther than a road of that kind climbs from the
-//!    ╲____ ─────●───── ____╱       nearest of them. So it is refused as a support.
+//!   ●━━━━━━━━━━━●━━━━━━━━━━━●
+//!
+//!    ╲____ ─────●───── ____╱
 //! ```
+//!
+//! A viaduct and the street in the valley beneath it may share a node, as in thousands of places in
+//! OpenStreetMap. The ground there is far from the line between the other supports: farther than a
+//! road of that kind climbs from the nearest of them. So the joint is refused as a support.
 
 use std::{
     cmp::Reverse,
@@ -19,41 +24,43 @@ use crate::{
     spans::{Spans, Support},
 };
 
-/// Joints that are free between supports; real spans have some hundred at most.
+/// The maximum number of free joints between supports; real spans have some hundred at most.
 const MOST_JOINTS: usize = 1024;
-/// Joints and chains that are looked at, at least and for each joint.
+/// The maximum number of joints and chains to visit: a base, and an addition for each joint.
 const MOST_STEPS: usize = 1 << 20;
 const MOST_STEPS_OF_JOINT: usize = 1 << 6;
-/// Differences are compared in whole micrometres: what is left of rounding decides nothing.
+/// Differences are compared in whole micrometres, so that rounding errors decide nothing.
 const STEP_M: f64 = 1e-6;
 
-/// What was found of all joints.
+/// The results for all joints.
 pub(crate) struct Refusals {
     pub(crate) is_refused: Vec<bool>,
-    /// Joints between so many others that it was not found out.
+    /// Joints with so many others around them that they were not solved.
     pub(crate) unsolved: Vec<usize>,
 }
 
-/// The joint that is farther from the line, or that with the smaller node, comes last.
+/// The order of joints: the one that is farther from the line, or that has the smaller node, comes
+/// last.
 type Key = (u64, Reverse<NodeNumber>, usize);
 
 struct Finder<'a> {
     spans: &'a Spans,
-    /// The height of each joint that carries its span, NaN of others.
+    /// The height of each joint that carries its span; NaN for other joints.
     held_m: Vec<f64>,
     steps: usize,
     found: Refusals,
-    /// Joints that are to be refused if no other one is first, and what they have there.
+    /// Joints to refuse unless another one is refused first, with the keys that order them.
     waiting: BTreeSet<Key>,
     keys: BTreeMap<usize, Key>,
 }
 
 impl Refusals {
-    /// Which supports are refused on ground that is known at all joints and crossings.
+    /// Decides which supports are refused, with the ground known at all joints and crossings.
     ///
-    /// Of the joints that a span passes through, the one whose ground is farthest from the line that is solved without it is refused if the difference,
-    /// over the distance of the nearest other support, is more than the gentlest of its ways is built with; then those left are looked at again. Ends
-    /// are never refused.
+    /// Among the joints through which a span passes, the candidate is the one whose ground is
+    /// farthest from the line that is solved without it. It is refused if the difference, divided
+    /// by the distance to the nearest other support, exceeds the limit of the gentlest of its ways.
+    /// Then the remaining joints are checked again. Ends are never refused.
     pub(crate) fn find(
         spans: &Spans,
         crossings: &[Crossing],
@@ -92,8 +99,9 @@ impl Refusals {
     }
 }
 
-/// Joints of spans that only touching roads carry, at which the deck would be so low, so near to what it crosses, that no road climbs from there to
-/// `free_height_m` above it. If that holds for all of a span, none is.
+/// Returns the joints of spans carried only by touching roads at which the deck would be too low:
+/// so near to what it crosses that no road climbs from there to `free_height_m` above it. If this
+/// applies to all joints of a span, it applies to none.
 ///
 /// ```text
 ///   ground ━●━━━━━━━━━━━━━━━●   the deck
@@ -126,32 +134,29 @@ fn touching_too_low(
         }
     }
     let mut has_other = vec![false; spans.count];
-    let span_of = |joint: usize| {
-        spans.edges_at.of(joint).first().map(|end| spans.edges[*end as usize / 2].span as usize)
-    };
     for (number, joint) in spans.joints.iter().enumerate() {
         let carries = joint.support.is_some() && of_joints_m[number].is_some() && !too_low[number];
-        if let Some(span) = span_of(number).filter(|_| carries) {
+        if let Some(span) = spans.span_of_joint(number).filter(|_| carries) {
             has_other[span] = true;
         }
     }
     for (number, is_too_low) in too_low.iter_mut().enumerate() {
-        *is_too_low &= span_of(number).is_some_and(|span| has_other[span]);
+        *is_too_low &= spans.span_of_joint(number).is_some_and(|span| has_other[span]);
     }
     too_low
 }
 
-/// The joints around one, as far as the next supports.
+/// The joints around a joint, as far as the next supports.
 struct Around {
-    /// The joint itself, then those that nothing carries.
+    /// The joint itself, then the joints that nothing carries.
     free: Vec<usize>,
     supports: Vec<usize>,
-    /// How far the nearest support is, metres.
+    /// The distance to the nearest support, metres.
     nearest_m: f64,
 }
 
 impl Finder<'_> {
-    /// Finds out whether a joint is to be refused.
+    /// Decides whether a joint is to be refused.
     fn look_at(&mut self, joint: usize) {
         if let Some(key) = self.keys.remove(&joint) {
             self.waiting.remove(&key);
@@ -167,10 +172,8 @@ impl Finder<'_> {
             return;
         }
         let off_m = (self.line_m(&around) - self.held_m[joint]).abs();
-        let ends = self.spans.edges_at.of(joint).iter();
-        let steepest = ends
-            .map(|end| self.spans.edges[*end as usize / 2].steepest)
-            .fold(f64::INFINITY, f64::min);
+        let grades = self.spans.edges_of(joint).map(|edge| edge.steepest);
+        let steepest = grades.fold(f64::INFINITY, f64::min);
         if off_m > steepest * around.nearest_m + STEP_M {
             let off = (off_m / STEP_M).round() as u64;
             let key = (off, Reverse(self.spans.joints[joint].node), joint);
@@ -179,19 +182,18 @@ impl Finder<'_> {
         }
     }
 
-    /// What lies around a joint; `None` where that is too much.
+    /// Returns the surroundings of a joint; `None` if they are too large.
     fn around(&mut self, joint: usize) -> Option<Around> {
         let mut around =
             Around { free: Vec::new(), supports: Vec::new(), nearest_m: f64::INFINITY };
         let mut known = BTreeSet::new();
-        // Distances are not negative: as bits they are in the order of their values.
+        // Distances are not negative, so their bits have the same order as their values.
         let mut waiting = BinaryHeap::from([Reverse((0_u64, joint))]);
         while let Some(Reverse((bits, here))) = waiting.pop() {
             if !known.insert(here) {
                 continue;
             }
-            let ends = self.spans.edges_at.of(here);
-            self.steps = self.steps.checked_sub(1 + ends.len())?;
+            self.steps = self.steps.checked_sub(1 + self.spans.edges_at.list(here).len())?;
             if known.len() > MOST_JOINTS {
                 return None;
             }
@@ -202,22 +204,21 @@ impl Finder<'_> {
                 continue;
             }
             around.free.push(here);
-            for &end in ends {
-                let edge = &self.spans.edges[end as usize / 2];
-                let other = edge.joints[1 - end as usize % 2] as usize;
-                waiting.push(Reverse(((to_m + edge.length_m).to_bits(), other)));
+            for (other, length_m) in self.spans.neighbours(here) {
+                waiting.push(Reverse(((to_m + length_m).to_bits(), other as usize)));
             }
         }
         Some(around)
     }
 
-    /// The height of the line between the supports around a joint that is not held itself, NaN where it is not solved.
+    /// Returns the height of the line between the supports around a joint that is not fixed itself;
+    /// NaN if it is not solved.
     fn line_m(&self, Around { free, supports, .. }: &Around) -> f64 {
         let all = || free.iter().chain(supports).copied();
         let places: BTreeMap<usize, usize> = all().zip(0..).collect();
         let mut held_m = vec![f64::NAN; free.len()];
         held_m.extend(supports.iter().map(|&joint| self.held_m[joint]));
-        let ends = free.iter().flat_map(|&joint| self.spans.edges_at.of(joint));
+        let ends = free.iter().flat_map(|&joint| self.spans.edges_at.list(joint));
         let edges: BTreeSet<usize> = ends.map(|end| *end as usize / 2).collect();
         let mut harmonic = Harmonic::new(held_m.len());
         for edge in edges {

@@ -1,4 +1,4 @@
-//! Which supports are refused, on networks for which the line without them is known.
+//! The right supports are refused on networks whose line without these supports is known.
 
 use corniche_roads::Structure::{Bridge, Ground};
 use proptest::prelude::*;
@@ -8,7 +8,8 @@ use crate::{
     network_tests::{Way, at, solved, way},
 };
 
-/// A motorway's viaduct of 1000 m, at 600 m above sea at both ends, with nodes of streets in the valley at distances from its first node.
+/// Returns a motorway viaduct of 1000 m, at 600 m above sea level at both ends, with nodes of
+/// streets in the valley at distances from its first node.
 fn viaduct(streets: &[i64]) -> Vec<Way<'static>> {
     let mut deck = vec![(1, 0, 0)];
     deck.extend((10..).zip(streets).map(|(id, &east)| (id, east, 0)));
@@ -27,7 +28,7 @@ fn viaduct(streets: &[i64]) -> Vec<Way<'static>> {
     ways
 }
 
-/// The ground of the ends, and a valley between them.
+/// Returns the ground: the height of the ends, and a valley between them.
 fn valley(depth_m: f64) -> impl Fn([f64; 2]) -> Option<f64> + Copy {
     move |[east, _]: [f64; 2]| {
         Some(if east <= 0.0 || east >= 1000.0 { 600.0 } else { 600.0 - depth_m })
@@ -64,7 +65,8 @@ fn a_street_in_the_valley_that_shares_a_node_with_a_viaduct_does_not_carry_it() 
     assert_eq!(problems, [(GroundWayOnDeck, 2, Some(10))]);
 }
 
-/// Of several streets one is refused after the other: the next one holds a line down until it is refused itself.
+/// Several streets are refused one after the other: the next one holds the line down until it is
+/// refused, too.
 #[test]
 fn streets_beside_each_other_are_refused_one_after_the_other() {
     for streets in [&[500, 550][..], &[300, 350, 400, 700], &[100, 200, 300, 400, 500, 600, 900]] {
@@ -75,7 +77,8 @@ fn streets_beside_each_other_are_refused_one_after_the_other() {
     }
 }
 
-/// What a motorway climbs, 6 %, decides: 400 m from the nearer end a street may be 24 m off the line, and no more.
+/// The grade that a motorway climbs, 6 %, decides: 400 m from the nearer end, a street may be 24 m
+/// away from the line, and no more.
 #[test]
 fn a_support_counts_up_to_the_grade_that_its_road_is_built_with() {
     for (depth_m, is_refused) in [(23.9, false), (24.1, true)] {
@@ -91,7 +94,7 @@ fn a_support_counts_up_to_the_grade_that_its_road_is_built_with() {
     assert!((found(&ways, valley(61.0)).0[4] - 600.0).abs() < 1e-9);
 }
 
-/// An end that lies in the valley stays an end.
+/// An end in the valley stays an end.
 #[test]
 fn ends_are_never_refused() {
     let ground = |[east, _]: [f64; 2]| Some(if east < 1000.0 { 600.0 } else { 500.0 });
@@ -100,7 +103,8 @@ fn ends_are_never_refused() {
     assert_eq!(problems, [(SpanReason::GradeOverLimit, 2, None)]);
 }
 
-/// A ring on a bridge over a cutting has no end: the roads that touch it carry it, but for one in the cutting.
+/// A ring on a bridge over a cutting has no end: the roads that touch it carry it, except for one
+/// in the cutting.
 #[test]
 fn a_ring_is_carried_by_the_roads_that_touch_it() {
     let ring = [
@@ -128,17 +132,18 @@ fn a_ring_is_carried_by_the_roads_that_touch_it() {
         assert_eq!(*problems, nodes);
     };
     is_level(&found(&ways, cutting), &[]);
-    // One that leaves in the cutting, where the road beneath passes.
+    // One road leaves in the cutting, where the road beneath passes.
     ways.push(way(6, Ground, &[(1, 30, 0), (13, 100, 0)]));
     is_level(&found(&ways, cutting), &[1]);
-    // One alone carries it, too.
+    // A single road also carries the ring.
     ways.truncate(2);
     let (heights_m, problems) = found(&ways, cutting);
     assert!(heights_m.iter().all(|height_m| (height_m - 100.0).abs() < 1e-9), "{heights_m:?}");
     assert_eq!(problems, [(SpanReason::OneSupport, 2, None)]);
 }
 
-/// Of two roads alone that touch a ring each is as far from the other: that with the smaller node is refused, whichever way comes first.
+/// If only two roads touch a ring, each is equally far from the other: the one with the smaller
+/// node is refused, whichever way comes first.
 #[test]
 fn of_two_that_are_as_far_off_the_node_decides() {
     let corners = [(21, 0, 0), (22, 50, 0), (23, 100, 0), (24, 100, 50), (25, 100, 100)];
@@ -168,7 +173,8 @@ fn a_support_that_is_refused_carries_on_no_level() {
     });
 }
 
-/// What no real span is, but a hostile file can be: thousands of streets that meet a star of decks. Work follows their number.
+/// Thousands of streets meet a star of decks, which no real span does, but a hostile file can
+/// contain. The work is proportional to their number.
 #[test]
 fn thousands_of_streets_take_no_longer_than_their_number() {
     let count = 3000_i64;
@@ -195,7 +201,8 @@ fn thousands_of_streets_take_no_longer_than_their_number() {
 }
 
 proptest! {
-    /// Which supports are refused does not depend on the order, the direction and the splitting of ways, nor on their ids.
+    /// Which supports are refused does not depend on the order, the direction, the splitting or the
+    /// ids of ways.
     #[test]
     fn order_and_splitting_decide_nothing(
         streets in prop::collection::btree_set(1..40_i64, 1..6),

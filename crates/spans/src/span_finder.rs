@@ -1,4 +1,4 @@
-//! Spans are found in a network, and where they are carried.
+//! Finds the spans of a network, and where they are carried.
 
 use std::collections::BTreeMap;
 
@@ -8,19 +8,23 @@ use corniche_network::{ChainNumber, Chains, Network, NodeNumber};
 use crate::{
     Distance,
     crossing_place::steepest_of,
-    spans::{Edge, Joint, SpanKind, Spans, Support},
+    spans::{Joint, SpanEdge, SpanKind, Spans, Support},
 };
 
-/// The direction in which a chain leaves its node is that of its first metres.
+/// The length, in metres, at a chain's end that gives the direction in which the chain leaves its
+/// node.
 const DIRECTION_M: f64 = 10.0;
-/// So many ends at a node are compared with each other; no real node has as many.
+/// The maximum number of ends at a node that are compared with each other; no real node has as
+/// many.
 const MOST_ENDS: usize = 64;
 
 impl Spans {
-    /// The spans of a network. `chains` are those of [`corniche_network::Breaks::JunctionsAndStructures`], so it does not matter how ways are split.
+    /// Returns the spans of a network. `chains` are the chains of
+    /// [`corniche_network::Breaks::JunctionsAndStructures`], so the splitting of ways does not
+    /// matter.
     ///
-    /// A joint is a support where the span ends and something else goes on. Where it passes through, a way on the ground that touches it, steps
-    /// for example, carries nothing:
+    /// A joint is a support where the span ends and something else continues. Where the span passes
+    /// through, a way on the ground that touches it, such as steps, carries nothing:
     ///
     /// ```text
     ///    ═══════●─── ground        ═══●═══        ═════╗                        │
@@ -28,15 +32,18 @@ impl Spans {
     ///                                 free        ═════╝  a support            │         a support
     /// ```
     ///
-    /// Only a span that nothing else carries, such as a roundabout on a bridge, is carried by the roads that touch it.
+    /// Only a span that nothing else carries, such as a roundabout on a bridge, is carried by the
+    /// roads that touch it.
     #[must_use]
     pub fn find(network: &Network, chains: &Chains, distance_m: &Distance<'_>) -> Self {
         let mut finder = Finder { network, chains, distance_m, numbers: BTreeMap::new() };
         let mut joints: Vec<Joint> = Vec::new();
-        let mut edges: Vec<Edge> = Vec::new();
+        let mut edges: Vec<SpanEdge> = Vec::new();
         for chain in chains.numbers() {
             let found = chains.get(chain);
-            let Some(kind) = SpanKind::of(network.structure_of(&found)) else { continue };
+            let Some(kind) = SpanKind::from_structure(network.structure_of(&found)) else {
+                continue;
+            };
             let points = network.points_of_chain(&found);
             let ends = [points.first(), points.last()].map(Option::<&LatticePoint>::copied);
             let [Some(first), Some(last)] = ends else { continue };
@@ -48,7 +55,7 @@ impl Spans {
             let ways = || found.links.iter().map(|&link| network.way_of(link));
             let way_id = ways().map(|way| way.way_id).min().unwrap_or_default();
             let steepest = ways().map(|way| steepest_of(network, way)).fold(0.0, f64::max);
-            edges.push(Edge { chain, kind, span: 0, joints: own, length_m, way_id, steepest });
+            edges.push(SpanEdge { chain, kind, span: 0, joints: own, length_m, way_id, steepest });
         }
         let edges_at = IndexLists::new(joints.len(), 2 * edges.len(), |end| {
             std::iter::once(edges[end / 2].joints[end % 2] as usize)
@@ -56,11 +63,12 @@ impl Spans {
         let count = number_spans(&mut edges, &edges_at);
         let ends_at = chains.ends_at(network, |_| true);
         for (number, joint) in joints.iter_mut().enumerate() {
-            let Some(&first) = edges_at.of(number).first() else { continue };
+            let Some(&first) = edges_at.list(number).first() else { continue };
             let kind = edges[first as usize / 2].kind;
-            finder.support(kind, ends_at.of(network.index_of(joint.node)), joint);
+            finder.support(kind, ends_at.list(network.index_of(joint.node)), joint);
         }
-        let span_of = |number: usize| Some(edges[*edges_at.of(number).first()? as usize / 2].span);
+        let span_of =
+            |number: usize| Some(edges[*edges_at.list(number).first()? as usize / 2].span);
         let mut is_carried = vec![false; count];
         for (number, joint) in joints.iter().enumerate() {
             if let Some(span) = span_of(number) {
@@ -100,11 +108,11 @@ impl Finder<'_> {
         })
     }
 
-    /// Finds out how a joint of a kind carries its span; `ends` are all that lie at its node.
+    /// Finds out how a joint of a kind carries its span; `ends` are all chain ends at its node.
     fn support(&self, kind: SpanKind, ends: &[u32], joint: &mut Joint) {
         let kind_of = |end: u32| {
             let chain = self.chains.get(ChainNumber(end as usize / 2));
-            SpanKind::of(self.network.structure_of(&chain))
+            SpanKind::from_structure(self.network.structure_of(&chain))
         };
         let of_kind = |wanted: Option<SpanKind>| {
             ends.iter().copied().filter(move |&end| kind_of(end) == wanted)
@@ -124,7 +132,7 @@ impl Finder<'_> {
         let own = of_kind(Some(kind)).count();
         let has_ground = of_kind(None).next().is_some();
         joint.is_passed = passes_through(Some(kind));
-        // Where a street passes through, too, it lies between two bridges, and carries both.
+        // If a street also passes through, it is between two bridges and carries both.
         if joint.is_passed && !passes_through(None) {
             joint.is_touched = has_ground;
             return;
@@ -136,12 +144,14 @@ impl Finder<'_> {
         } else if own == 1 && kind == SpanKind::Bridge {
             Some(Support::OpenEnd)
         } else {
-            // The end of a tunnel where nothing goes on lies inside the mountain as well as anywhere: the ground says nothing of it.
+            // A tunnel that ends where nothing continues may end inside the mountain, so the ground
+            // gives no height.
             None
         };
     }
 
-    /// From the node at an end of a chain to where the chain is ten metres away, or to its other end.
+    /// Returns the vector from the node at an end of a chain to the point ten metres along the
+    /// chain, or to the chain's other end.
     fn direction(&self, end: u32) -> [f64; 2] {
         let chain = self.chains.get(ChainNumber(end as usize / 2));
         let mut points = self.network.points_of_chain(&chain);
@@ -162,8 +172,9 @@ fn is_last(end: u32) -> bool {
     end % 2 == 1
 }
 
-/// Gives each edge the number of its span: edges that share a joint have the same. Returns how many spans there are.
-fn number_spans(edges: &mut [Edge], edges_at: &IndexLists) -> usize {
+/// Assigns to each edge the number of its span: edges that share a joint have the same number.
+/// Returns the number of spans.
+fn number_spans(edges: &mut [SpanEdge], edges_at: &IndexLists) -> usize {
     const NONE: u32 = u32::MAX;
     let mut of_edge = vec![NONE; edges.len()];
     let mut count = 0;
@@ -176,7 +187,7 @@ fn number_spans(edges: &mut [Edge], edges_at: &IndexLists) -> usize {
         waiting.push(first);
         while let Some(edge) = waiting.pop() {
             for joint in edges[edge].joints {
-                for &end in edges_at.of(joint as usize) {
+                for &end in edges_at.list(joint as usize) {
                     let other = end as usize / 2;
                     if of_edge[other] == NONE {
                         of_edge[other] = count;

@@ -1,4 +1,4 @@
-//! Spans are what is connected, and are carried where they end on something.
+//! Spans consist of connected chains, and are carried where they end on something.
 
 use corniche_roads::Structure::{Bridge, Ground, Tunnel};
 
@@ -8,7 +8,7 @@ use crate::{
     network_tests::{Way, distance_m, network, way},
 };
 
-/// How many spans there are, the supports by node id, and the reasons with their ways.
+/// The number of spans, the supports by node id, and the reasons with their ways.
 type Found = (usize, Vec<(i64, Option<Support>)>, Vec<(SpanReason, i64)>);
 
 fn found(ways: &[Way<'_>]) -> Found {
@@ -44,7 +44,7 @@ fn a_bridge_of_several_ways_is_one_span_however_they_are_split_and_turned() {
 
 #[test]
 fn a_way_that_touches_a_deck_carries_nothing_but_where_the_deck_ends() {
-    // Steps meet the deck at 3; at 5 two decks come together and end.
+    // Steps meet the deck at 3; at 5, two decks meet and end.
     let ways = [
         way(1, Ground, &[(1, 0, 0), (2, 100, 0)]),
         way(2, Bridge, &[(2, 100, 0), (3, 150, 0), (5, 300, 0)]),
@@ -57,7 +57,7 @@ fn a_way_that_touches_a_deck_carries_nothing_but_where_the_deck_ends() {
     assert_eq!(found(&ways), (1, joints, vec![(GroundWayOnDeck, 2)]));
 }
 
-/// A street that passes through between two bridges lies on ground and carries both.
+/// A street that passes between two bridges is on the ground and carries both.
 #[test]
 fn a_street_between_two_bridges_carries_them() {
     let ways = [

@@ -1,10 +1,11 @@
-//! Reasons to look at a span are listed, named and explained, each once.
+//! Every reason to check a span is listed, named and explained exactly once.
 
 use std::collections::BTreeSet;
 
 use super::SpanReason;
 
-/// The place of a reason in the list; a new one must be added here, or this does not compile.
+/// Returns the index of a reason in the list. A new reason must be added here, or this does not
+/// compile.
 fn place(reason: SpanReason) -> usize {
     match reason {
         SpanReason::NoSupport => 0,

@@ -10,68 +10,76 @@ use crate::{
     harmonic::Harmonic,
     lifts::{OnEdge, Reach, Tent, put_up},
     refusals::Refusals,
-    spans::{Edge, SpanProblem, SpanReason, Spans},
+    spans::{SpanEdge, SpanProblem, SpanReason, Spans},
 };
 
-/// What is wanted between what crosses, metres.
+/// The desired height between crossing roads, metres.
 const FREE_HEIGHT_M: f64 = 1.0;
-/// What is made between them, however steep it is, metres.
+/// The height that is always created between crossing roads, however steep it is, metres.
 const LEAST_FREE_HEIGHT_M: f64 = 0.3;
-/// The flanks of a lift may have at least this grade.
+/// The flanks of a lift may always have this grade.
 const LEAST_FLANK: f64 = 0.02;
-/// What is lifted may be in the way of what is above it, so all are looked at again, as often at most.
+/// The maximum number of passes. A lifted span may be in the way of the span above it, so all
+/// crossings are checked again.
 const MOST_PASSES: usize = 8;
-/// Where decks are lifted, heights are given so often along them, metres: between the bends of a tent another one may be higher.
+/// The spacing of height samples along lifted decks, metres: between the bends of one tent, another
+/// tent may be higher.
 const STATION_M: f64 = 10.0;
-/// But so many at most along an edge: 40 km of it.
+/// The maximum number of samples on an edge, enough for 40 km.
 const MOST_STATIONS: f64 = 4096.0;
-/// What is nearer to an end of an edge is at it, metres.
+/// The distance from an end of an edge below which a position counts as the end, metres.
 const END_M: f64 = 1e-6;
-/// What is shorter has no grade, metres.
+/// The minimum length for which a grade is computed, metres.
 const SHORTEST_M: f64 = 1.0;
-/// Less is no reason to lift, and makes no grade too steep: what is left of rounding, metres.
+/// The minimum difference that is a reason to lift, or that makes a grade too steep; smaller
+/// differences are rounding errors, metres.
 const ENOUGH_M: f64 = 1e-6;
 
-/// How much room there is between what crosses.
+/// The free height at a crossing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FreeHeight {
-    /// The crossing; of a stretch that both share the place at which there is least room.
+    /// The crossing; for a stretch that both roads share, the place with the least free height.
     pub crossing: Crossing,
-    /// How far the upper is above the lower, metres; `None` where a height is not known, or which is which.
+    /// The height of the upper above the lower, metres; `None` if a height or the order is unknown.
     pub free_m: Option<f64>,
 }
 
-/// How high bridges and tunnels are.
+/// The heights of bridges and tunnels.
 #[derive(Debug)]
 pub struct Decks {
     spans: Arc<Spans>,
-    /// At which joints the ground does not carry them.
+    /// For each joint, whether the ground does not carry it.
     is_refused: Vec<bool>,
-    /// The height of each joint, NaN where it is not known.
+    /// The height of each joint; NaN if unknown.
     joints_m: Vec<f64>,
     /// The tents on each edge.
     tents: Vec<Vec<Tent>>,
-    /// The crossings, in their order.
+    /// The free heights at the crossings, in the order of the crossings.
     free_heights: Vec<FreeHeight>,
-    /// What is to be told of joints and ways.
+    /// The problems of joints and ways.
     problems: Vec<SpanProblem>,
-    /// What is to be told of crossings, with the ways of the spans there.
+    /// The problems of crossings, with the ways of the spans there.
     of_crossings: Vec<(SpanReason, [Option<i64>; 2])>,
 }
 
 impl Decks {
-    /// The places of the lattice whose ground [`Decks::solve`] needs, in this order.
+    /// Returns the positions on the lattice whose ground [`Decks::solve`] needs, in the required
+    /// order.
     pub fn places(spans: &Spans, crossings: &Crossings) -> impl Iterator<Item = [f64; 2]> {
         let joints = spans.joints.iter().map(|joint| joint.at.in_steps());
         joints.chain(crossings.all.iter().map(|crossing| crossing.at))
     }
 
-    /// Solves the heights of spans over the ground, whose heights at [`Decks::places`] are given; `None` where there is none.
+    /// Solves the heights of spans over the ground. `grounds_m` are the ground's heights at
+    /// [`Decks::places`]; `None` where there is no ground.
     ///
-    /// At supports they are the ground's; between them they are harmonic along the chains, which for two supports is a straight line. Where a span passes
-    /// through a node of the ground that is far from that line, the ground carries nothing (see [`SpanReason::GroundWayOnDeck`]). At crossings bridges are
-    /// lifted and tunnels lowered until there is a metre between them and what they cross, with flanks no steeper than roads of that kind are built, less
-    /// what the span itself has, and 2 % at least; 0.3 m are always made.
+    /// At supports, the heights are the ground's. Between supports they are harmonic along the
+    /// chains, which for two supports means a straight line. If a span passes through a node of the
+    /// ground that is far from that line, the ground does not carry it there (see
+    /// [`SpanReason::GroundWayOnDeck`]). At crossings, bridges are lifted and tunnels lowered until
+    /// there is a metre between them and the road that they cross. The flanks are at most as steep
+    /// as roads of that kind are built, minus the span's own grade, and always at least 2 %; 0.3 m
+    /// are always created.
     #[must_use]
     pub fn solve(spans: Arc<Spans>, crossings: &Crossings, grounds_m: &[Option<f64>]) -> Self {
         let (of_joints_m, of_crossings_m) = grounds_m.split_at(spans.joints.len());
@@ -108,8 +116,8 @@ impl Decks {
         decks
     }
 
-    /// The same decks on another ground, as coarse levels have it, whose heights at the joints are given: solved anew, with the supports and the lifts
-    /// that they have.
+    /// Returns the same decks on another ground, such as the ground of a coarse level, from its
+    /// heights at the joints. The heights are solved again, with the same supports and lifts.
     #[must_use]
     pub fn on(&self, grounds_m: &[Option<f64>]) -> Self {
         let held_m = held_m(&self.spans, &self.is_refused, grounds_m);
@@ -124,7 +132,8 @@ impl Decks {
         }
     }
 
-    /// The nodes at which spans are carried, with their heights; those without ground are left out.
+    /// Returns the nodes at which spans are carried, with their heights; nodes without ground are
+    /// omitted.
     pub fn supports(&self) -> impl Iterator<Item = (NodeNumber, f64)> + '_ {
         let all = self.spans.joints.iter().zip(&self.joints_m).zip(&self.is_refused);
         all.filter(|((joint, height_m), is_refused)| {
@@ -133,19 +142,20 @@ impl Decks {
         .map(|((joint, &height_m), _)| (joint.node, height_m))
     }
 
-    /// The spans.
+    /// Returns the spans.
     #[must_use]
     pub fn spans(&self) -> &Spans {
         &self.spans
     }
 
-    /// What is between bridges and tunnels and what they cross.
+    /// Returns the free heights between bridges or tunnels and the roads that they cross.
     #[must_use]
     pub fn free_heights(&self) -> &[FreeHeight] {
         &self.free_heights
     }
 
-    /// What is to be told of the ways that `is_told` chooses, in order; of a crossing with the smallest of these.
+    /// Returns the problems of the ways that `is_told` accepts, in order; a problem of a crossing
+    /// has the smallest of these ways.
     #[must_use]
     pub fn problems(&self, is_told: &dyn Fn(i64) -> bool) -> Vec<SpanProblem> {
         let own = self.problems.iter().copied().filter(|problem| is_told(problem.way_id));
@@ -158,14 +168,16 @@ impl Decks {
         all
     }
 
-    /// The height at a distance along a chain, as if there were no ground; `None` on the ground, and where it is not known.
+    /// Returns the height at a distance along a chain, as if there were no ground; `None` on the
+    /// ground, and if the height is unknown.
     #[must_use]
     pub fn height_m(&self, chain: ChainNumber, along_m: f64) -> Option<f64> {
         let edge = self.spans.edge_of(chain)?;
         Some(self.raised_m(OnEdge { edge, along_m })).filter(|height_m| height_m.is_finite())
     }
 
-    /// The distances between two places of a chain at which its deck may bend, ascending, without these places.
+    /// Returns the distances, ascending, between two positions of a chain at which its deck may
+    /// bend, without these positions.
     #[must_use]
     pub fn bends_m(&self, chain: ChainNumber, [from_m, to_m]: [f64; 2]) -> Vec<f64> {
         let Some(edge) = self.spans.edge_of(chain) else { return Vec::new() };
@@ -183,11 +195,12 @@ impl Decks {
         bends_m
     }
 
-    /// The height at a place without any lift.
+    /// Returns the height at a position without any lift.
     fn base_m(&self, OnEdge { edge, along_m }: OnEdge) -> f64 {
         let edge = &self.spans.edges[edge];
         let [from_m, to_m] = edge.joints.map(|joint| self.joints_m[joint as usize]);
-        // Sums of lengths are rounded: near enough to an end is the end, whose height is the support's to the bit.
+        // Sums of lengths are rounded. A position near enough to the end is the end, which has
+        // exactly the support's height.
         if along_m >= edge.length_m - END_M {
             to_m
         } else if along_m > END_M {
@@ -204,7 +217,8 @@ impl Decks {
         self.base_m(at) + edge.kind.away() * heights_m.fold(0.0, f64::max)
     }
 
-    /// The height of what crosses: of a bridge or a tunnel that the ground does not let through, the ground's.
+    /// Returns the height at a crossing: for a bridge or a tunnel that would be on the wrong side
+    /// of the ground, the ground's height.
     fn crossing_m(&self, place: &CrossingPlace, ground_m: f64) -> f64 {
         let edge = self.spans.edge_of(place.chain);
         match (edge, place.kind) {
@@ -217,7 +231,8 @@ impl Decks {
         }
     }
 
-    /// Lifts bridges over what they cross, from the lowest layer upwards, and lowers tunnels from the highest downwards.
+    /// Lifts bridges over the roads that they cross, from the lowest layer upwards, and lowers
+    /// tunnels from the highest layer downwards.
     fn lift(&mut self, crossings: &[Crossing], grounds_m: &[Option<f64>], held_m: &[f64]) {
         let known = |(number, crossing): (usize, &Crossing)| {
             if crossing.order != Order::Known {
@@ -246,7 +261,7 @@ impl Decks {
                 if room_m.is_nan() || room_m >= FREE_HEIGHT_M - ENOUGH_M {
                     continue;
                 }
-                let Some(reach) = Reach::of(&self.spans, &is_held, (*at, *half_m)) else {
+                let Some(reach) = Reach::around(&self.spans, &is_held, (*at, *half_m)) else {
                     continue;
                 };
                 let wanted_m = FREE_HEIGHT_M - away * (base_m - other_m);
@@ -265,7 +280,7 @@ impl Decks {
         }
     }
 
-    /// For each span the grade that half of its length has at most.
+    /// Returns, for each span, the grade that half of its length does not exceed.
     fn median_grades(&self) -> Vec<f64> {
         let mut of_spans: Vec<Vec<(f64, f64)>> = vec![Vec::new(); self.spans.count];
         for edge in &self.spans.edges {
@@ -288,13 +303,13 @@ impl Decks {
         of_spans.into_iter().map(median).collect()
     }
 
-    /// Says what there is between what crosses; of a stretch that both share, where it is least.
+    /// Determines the free height at each crossing; for a stretch that both share, the least.
     fn judge(&mut self, crossings: &[Crossing], grounds_m: &[Option<f64>]) {
         let all: Vec<FreeHeight> = crossings
             .iter()
             .zip(grounds_m)
             .map(|(crossing, ground_m)| {
-                // Where there is no ground, two bridges have their heights yet.
+                // Where there is no ground, two bridges still have heights.
                 let ground_m = ground_m.unwrap_or(f64::NAN);
                 let [upper_m, lower_m] =
                     [crossing.upper, crossing.lower].map(|place| self.crossing_m(&place, ground_m));
@@ -322,7 +337,7 @@ impl Decks {
         }
     }
 
-    /// Tells which ways of spans are steeper than roads of their kind are built, each once.
+    /// Reports the ways of spans that are steeper than roads of their kind are built, each once.
     fn judge_grades(&mut self) {
         let mut steep = BTreeSet::new();
         for (number, edge) in self.spans.edges.iter().enumerate() {
@@ -344,13 +359,13 @@ impl Decks {
     }
 }
 
-/// Spans that are carried, and yet have joints without a height.
+/// Returns spans that are carried but have joints without a height.
 fn too_intricate<'a>(
     spans: &'a Spans,
     held_m: &'a [f64],
     joints_m: &'a [f64],
 ) -> impl Iterator<Item = SpanProblem> + use<'a> {
-    let has = |of_joints: &[f64], edge: &Edge, is: fn(f64) -> bool| {
+    let has = |of_joints: &[f64], edge: &SpanEdge, is: fn(f64) -> bool| {
         edge.joints.iter().any(|joint| is(of_joints[*joint as usize]))
     };
     let mut ways: Vec<(Option<i64>, bool)> = vec![(None, false); spans.count];
@@ -368,7 +383,7 @@ fn too_intricate<'a>(
         .map(problem)
 }
 
-/// The ground's height at the joints that carry their spans, NaN at others.
+/// Returns the ground's height at the joints that carry their spans; NaN at others.
 fn held_m(spans: &Spans, is_refused: &[bool], grounds_m: &[Option<f64>]) -> Vec<f64> {
     let all = spans.joints.iter().zip(is_refused).zip(grounds_m);
     all.map(|((joint, &is_refused), own_m)| {
@@ -377,7 +392,8 @@ fn held_m(spans: &Spans, is_refused: &[bool], grounds_m: &[Option<f64>]) -> Vec<
     .collect()
 }
 
-/// The heights of all joints between those that are held; NaN where nothing holds them.
+/// Returns the heights of all joints between the fixed ones; NaN where no fixed height has an
+/// influence.
 fn solved(spans: &Spans, held_m: &[f64]) -> Vec<f64> {
     let mut harmonic = Harmonic::new(held_m.len());
     for edge in &spans.edges {

@@ -1,4 +1,4 @@
-//! Decks between supports, lifts at crossings, and what is told of them.
+//! Decks between supports, lifts at crossings, and the problems reported for them.
 
 use corniche_roads::Structure::{Bridge, Ground, Tunnel};
 use proptest::prelude::*;
@@ -9,7 +9,8 @@ use crate::{
     network_tests::{Way, at, solved, way},
 };
 
-/// A bridge of 200 m over a gorge, and a road beneath it at a distance from its beginning.
+/// Returns a bridge of 200 m over a gorge, and a road beneath it at a distance from the bridge's
+/// beginning.
 fn over_gorge(crossed_at: i64) -> [Way<'static>; 4] {
     [
         way(1, Ground, &[(1, -50, 0), (2, 0, 0)]),
@@ -40,7 +41,8 @@ fn a_deck_is_straight_between_its_ends_and_its_free_height_is_told() {
     });
 }
 
-/// On flat ground a bridge over a road is lifted to a metre, as a tent to the nearest support, and not beyond.
+/// On flat ground, a bridge over a road is lifted to a metre, as a tent to the nearest support and
+/// not beyond.
 #[test]
 fn a_lift_is_a_tent_with_its_apex_over_the_crossing() {
     solved(
@@ -64,7 +66,8 @@ fn a_lift_is_a_tent_with_its_apex_over_the_crossing() {
     );
 }
 
-/// Near a support the flank would be too steep: for a secondary road 12 %, so 3 m away 0.36 m are made; a metre away the least.
+/// Near a support the flank would be too steep. A secondary road may have 12 %, so 3 m away 0.36 m
+/// are created, and a metre away the minimum.
 #[test]
 fn a_lift_is_no_steeper_than_its_class_but_never_less_than_the_least() {
     for (from_m, expected) in [(3, 100.36), (1, 100.3)] {
@@ -82,7 +85,7 @@ fn a_lift_is_no_steeper_than_its_class_but_never_less_than_the_least() {
     }
 }
 
-/// Three bridges of layers 1 to 3 over each other, each a metre above the one below.
+/// Three bridges of layers 1 to 3 cross each other, each a metre above the one below.
 #[test]
 fn stacked_bridges_are_lifted_from_below() {
     let bridge = |id: i64, layer: i8, [east, north]: [i64; 2]| {
@@ -134,7 +137,7 @@ fn tunnels_are_lowered_beneath_roads() {
     );
 }
 
-/// A secondary road has 12 % at most, a service road 20 %.
+/// A secondary road may have 12 %, a service road 20 %.
 #[test]
 fn decks_steeper_than_their_class_are_told() {
     let mut ways = over_gorge(100);
@@ -235,7 +238,7 @@ proptest! {
     }
 }
 
-/// A bridge over a tunnel that lies as high keeps room: the tunnel goes down.
+/// A bridge over a tunnel at the same height keeps its free height: the tunnel goes down.
 #[test]
 fn a_tunnel_is_lowered_beneath_a_bridge() {
     let mut ways = over_gorge(100).to_vec();
@@ -253,7 +256,8 @@ fn a_tunnel_is_lowered_beneath_a_bridge() {
     );
 }
 
-/// Along a stretch that both share the deck is a metre above the road everywhere, and one crossing is told.
+/// Along a stretch that both share, the deck is a metre above the road everywhere, and one crossing
+/// is reported.
 #[test]
 fn a_deck_clears_the_whole_stretch_that_it_shares_with_a_road() {
     let mut ways = over_gorge(100).to_vec();
@@ -276,7 +280,8 @@ fn a_deck_clears_the_whole_stretch_that_it_shares_with_a_road() {
 }
 
 proptest! {
-    /// Flanks as steep as the class allows are not told as steeper, whatever is left of rounding.
+    /// Flanks as steep as the class allows are not reported as too steep, whatever the rounding
+    /// errors.
     #[test]
     fn lifts_are_not_told_as_too_steep(
         crossed_at in 11..30_i64,

@@ -1,4 +1,4 @@
-//! What lies near bridges and tunnels: the roads that can carry, touch or cross them.
+//! The surroundings of bridges and tunnels: the roads that can carry, touch or cross them.
 
 use corniche_geom::LatticePoint;
 use rstar::{AABB, RTree, primitives::Rectangle};
@@ -8,7 +8,8 @@ use rstar::{AABB, RTree, primitives::Rectangle};
 pub struct Vicinity(RTree<Rectangle<[f64; 2]>>);
 
 impl Vicinity {
-    /// What lies near `segments`, or within `reach` lattice steps of `nodes`, along both axes.
+    /// Returns the surroundings: everything near `segments`, or within `reach` lattice steps of
+    /// `nodes` along both axes.
     #[must_use]
     pub fn new(
         segments: impl Iterator<Item = [LatticePoint; 2]>,
@@ -24,7 +25,7 @@ impl Vicinity {
         Self(RTree::bulk_load(segments.map(of_segment).chain(nodes.map(around)).collect()))
     }
 
-    /// Whether a segment of a road may cross or touch one of them.
+    /// Whether a segment of a road may cross or touch one of the bridges or tunnels.
     #[must_use]
     pub fn may_meet(&self, [a, b]: [LatticePoint; 2]) -> bool {
         let own = AABB::from_corners(a.in_steps(), b.in_steps());

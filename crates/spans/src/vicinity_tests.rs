@@ -1,4 +1,4 @@
-//! Segments near a bridge, and others.
+//! Segments near a bridge are in its vicinity, and others are not.
 
 use corniche_geom::LatticePoint;
 

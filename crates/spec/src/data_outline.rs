@@ -1,4 +1,4 @@
-//! The outline of the elevation files, where they fill no rectangle.
+//! The outline of the elevation files, if they do not fill a rectangle.
 //!
 //! ```text
 //!   ●──●──●┄┄●──●──●      ●  samples of three files of one grid
@@ -16,11 +16,12 @@ use corniche_geom::{LatticeBounds, LatticePoint, Projection};
 use corniche_gis::CrsError;
 
 use crate::extent::AreaExtent;
+use crate::extent::ExtentOutline;
 use crate::extent::Imaging;
-use crate::extent::Outline;
 
-/// The outline of all elevation files within the rectangle of nodes that a plan is of; `None` where they fill it, and where they reach beyond what the
-/// working CRS can show. Samples without a height count, too.
+/// Returns the outline of all elevation files, clipped to the rectangle of the plan's nodes.
+/// Returns `None` if the files fill this rectangle, or if they reach beyond the area that the
+/// working CRS can show. Samples without a height count as data.
 ///
 /// # Errors
 /// See [`CrsError`].
@@ -28,11 +29,11 @@ pub fn data_outline(
     dem: &Dem,
     plan: &GridPlan,
     projection: &(dyn Projection + Sync),
-) -> Result<Option<Outline>, CrsError> {
+) -> Result<Option<ExtentOutline>, CrsError> {
     let frame = &plan.frame;
     let imaging = Imaging { frame, seam: projection.seam() };
     let nodes = frame.lattice_bounds([plan.south_west, plan.north_east]);
-    let mut outline = Outline::new();
+    let mut outline = ExtentOutline::new();
     for footprint in dem.footprints(plan) {
         let Ok(cells) = cells(&footprint.rects) else { return Ok(None) };
         for polygon in cells {
@@ -61,7 +62,8 @@ fn image(
     failed.into_inner().map_or(Ok(image), Err)
 }
 
-/// The cells between samples that have all of their corners in one of the rectangles, united: column and row as coordinates.
+/// The cells whose four corners are all samples of one of the rectangles, united; coordinates are
+/// column and row.
 fn cells(rects: &[[[i64; 2]; 2]]) -> Result<Vec<Polygon>, OutlineError> {
     let rectangle = |[min, max]: [[i64; 2]; 2]| {
         let [min, max] = [min, max].map(|[column, row]| LatticePoint::new(column, row));
@@ -70,13 +72,16 @@ fn cells(rects: &[[[i64; 2]; 2]]) -> Result<Vec<Polygon>, OutlineError> {
     if let [only] = rects {
         return Ok(Vec::from_iter(Polygon::rectangle(rectangle(*only))));
     }
-    // A sample as the cell south-east of it: what is left after moving all by a cell, along both axes, has its corners.
+    // Each sample is replaced by the cell south-east of it. After a shift by one cell along both
+    // axes, what remains has all its corners.
     let squares: Vec<Polygon> = rects
         .iter()
         .filter_map(|&[min, max]| Polygon::rectangle(rectangle([min, max.map(|end| end + 1)])))
         .collect();
     let whole = squares.iter().flat_map(|square| square.outer().points()).copied();
-    let Some(around) = LatticeBounds::of(&whole.collect::<Vec<_>>()) else { return Ok(Vec::new()) };
+    let Some(around) = LatticeBounds::around(&whole.collect::<Vec<_>>()) else {
+        return Ok(Vec::new());
+    };
     let mut left = Vec::from_iter(Polygon::rectangle(around));
     for moved in [[0, 0], [1, 0], [0, 1], [1, 1]] {
         let rings: Vec<Vec<LatticePoint>> = squares

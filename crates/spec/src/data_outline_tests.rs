@@ -2,13 +2,13 @@
 
 use super::*;
 
-/// Twice the area of cells, and how many polygons they are.
+/// Twice the area of the cells, and the number of polygons that they form.
 fn found(rects: &[[[i64; 2]; 2]]) -> (i128, usize) {
     let cells = cells(rects).unwrap();
     (cells.iter().map(Polygon::doubled_area).sum::<i128>(), cells.len())
 }
 
-/// The same, cell by cell.
+/// The same result, computed cell by cell.
 fn counted(rects: &[[[i64; 2]; 2]]) -> i128 {
     let is_sample = |column: i64, row: i64| {
         let within = |[min, max]: &[[i64; 2]; 2]| {
@@ -27,24 +27,24 @@ fn counted(rects: &[[[i64; 2]; 2]]) -> i128 {
 fn cells_have_all_of_their_corners() {
     let single = [[[3, 4], [9, 12]]];
     assert_eq!(found(&single), (2 * 6 * 8, 1));
-    // Three of four beside each other, once with a common row and column of samples.
+    // Three of four files next to each other, once with a common row and column of samples.
     let beside = [[[0, 0], [9, 9]], [[10, 0], [19, 9]], [[0, 10], [9, 19]]];
     assert_eq!(found(&beside), (counted(&beside), 1));
     let common = [[[0, 0], [10, 10]], [[10, 0], [20, 10]], [[0, 10], [10, 20]]];
     assert_eq!(found(&common), (counted(&common), 1));
-    // Four, of which the cell in the middle has a corner each.
+    // Four files; the cell in the middle has one corner in each of them.
     let four = [[[0, 0], [9, 9]], [[10, 0], [19, 9]], [[0, 10], [9, 19]], [[10, 10], [19, 19]]];
     assert_eq!(found(&four), (2 * 19 * 19, 1));
-    // Apart by one column that nobody has.
+    // Two files that are separated by one column without samples.
     let apart = [[[0, 0], [9, 9]], [[11, 0], [19, 9]]];
     assert_eq!(found(&apart), (counted(&apart), 2));
-    // Around a hole.
+    // Files around a hole.
     let around: Vec<[[i64; 2]; 2]> = (0..9)
         .filter(|k| *k != 4)
         .map(|k| [[10 * (k % 3), 10 * (k / 3)], [10 * (k % 3) + 9, 10 * (k / 3) + 9]])
         .collect();
     assert_eq!(found(&around), (counted(&around), 1));
-    // A corner in common is a sample, and no cell.
+    // A common corner is a sample but not a cell.
     let corner = [[[0, 0], [9, 9]], [[9, 9], [20, 20]]];
     assert_eq!(found(&corner), (counted(&corner), 2));
 }

@@ -1,4 +1,4 @@
-//! The finest tiles on which the DEM's rectangle lies.
+//! The finest tiles that the DEM's rectangle touches.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -6,7 +6,7 @@ use corniche_dem::GridPlan;
 use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, NodeIndex, TILE_CELLS, TileId};
 use corniche_tileset::pmtiles_order;
 
-/// A rectangle of finest tiles; both ends belong to it.
+/// A rectangle of finest tiles; first and last tiles are included.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DataTiles {
     level: u8,
@@ -17,14 +17,14 @@ pub struct DataTiles {
 }
 
 impl DataTiles {
-    /// The tiles of a plan. Nodes on a border belong to the tile in the east or south; on the root's own east or south border, to
-    /// its last tiles.
+    /// Returns the tiles of a plan. Nodes on a border belong to the tile in the east or south;
+    /// nodes on the root's own east or south border belong to its last tiles.
     #[must_use]
-    pub fn of(plan: &GridPlan) -> Self {
+    pub fn from_plan(plan: &GridPlan) -> Self {
         Self::between(&plan.frame, plan.south_west, plan.north_east)
     }
 
-    /// The tiles on which the nodes between two corners lie.
+    /// The tiles that contain the nodes between two corners.
     #[must_use]
     pub fn between(frame: &GridFrame, south_west: NodeIndex, north_east: NodeIndex) -> Self {
         let corner = frame.root_corner();
@@ -43,7 +43,7 @@ impl DataTiles {
         Self { level: first.z(), columns: [first.x(), last.x()], rows: [first.y(), last.y()] }
     }
 
-    /// The level of these tiles: the finest one, but for those of [`DataTiles::above`].
+    /// The level of these tiles: the finest one, or the level passed to [`DataTiles::above`].
     #[must_use]
     pub fn level(&self) -> u8 {
         self.level
@@ -57,7 +57,7 @@ impl DataTiles {
             && (self.rows[0]..=self.rows[1]).contains(&id.y())
     }
 
-    /// The tile to which a point belongs; beside the data, the tile nearest to it.
+    /// The tile to which a point belongs; for a point outside the data, the nearest tile.
     #[must_use]
     pub fn owner(&self, frame: &GridFrame, point: LatticePoint) -> TileId {
         let [x, y] = frame.tile_column_row(self.level, point);
@@ -68,7 +68,7 @@ impl DataTiles {
         TileId::new(self.level, x, y).unwrap_or(TileId::ROOT)
     }
 
-    /// The same on a level above.
+    /// The tiles of a coarser level above these tiles.
     #[must_use]
     pub fn above(&self, level: u8) -> Self {
         let up = self.level.saturating_sub(level);
@@ -76,7 +76,7 @@ impl DataTiles {
         Self { level: self.level - up, columns: raise(self.columns), rows: raise(self.rows) }
     }
 
-    /// The tiles that lie beneath `scope` or are it, row by row from the north.
+    /// The tiles beneath `scope`, or `scope` itself, row by row from the north.
     #[must_use]
     pub fn within(&self, scope: TileId) -> Vec<TileId> {
         let Some(down) = self.level.checked_sub(scope.z()) else { return Vec::new() };
@@ -90,7 +90,7 @@ impl DataTiles {
             .collect()
     }
 
-    /// The same in package order.
+    /// The tiles beneath `scope`, or `scope` itself, in package order.
     #[must_use]
     pub fn in_order_within(&self, scope: TileId) -> Vec<TileId> {
         let mut tiles = self.within(scope);
@@ -98,7 +98,8 @@ impl DataTiles {
         tiles
     }
 
-    /// The tiles that `is_missing` says are missing, of these and those above: the largest of which nothing is there.
+    /// Returns the missing tiles, as `is_missing` reports them, among these tiles and those above
+    /// them. If a whole subtree is missing, only its root is returned.
     pub fn missing(&self, is_missing: impl Fn(TileId) -> bool) -> Vec<TileId> {
         let mut level = *self;
         let mut missing: BTreeSet<TileId> =
@@ -125,7 +126,7 @@ impl DataTiles {
         largest
     }
 
-    /// The rectangle of all of them.
+    /// The rectangle around all these tiles.
     #[must_use]
     pub fn bounds(&self, frame: &GridFrame) -> LatticeBounds {
         let corner = |x: u32, y: u32| {

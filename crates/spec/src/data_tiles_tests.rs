@@ -1,4 +1,4 @@
-//! Missing tiles are named by the largest subtrees of which nothing is there.
+//! Missing tiles are named by the largest subtrees that are missing as a whole.
 
 use super::*;
 
@@ -10,13 +10,14 @@ fn tile(text: &str) -> TileId {
     text.parse().unwrap()
 }
 
-/// What is missing is named by the largest tiles of which nothing is there, whatever lies beside the data.
+/// Missing tiles are named by the largest subtrees that are missing as a whole, whatever is outside
+/// the data.
 #[test]
 fn missing_tiles_are_named_by_the_largest_subtrees() {
     let data = data(3, [1, 5], [0, 4]);
     assert_eq!(data.missing(|_| false), []);
     assert_eq!(data.missing(|_| true), [TileId::ROOT]);
-    // Of 1/1/0 only the tiles with columns 4 and 5 are data: they are all of it.
+    // Of 1/1/0 only the tiles with columns 4 and 5 have data, so they stand for all of it.
     let east = data.missing(|id| id.x() >= 4);
     assert_eq!(east, [tile("1/1/0"), tile("1/1/1")]);
     let some = data.missing(|id| id.y() == 0 && id.x() >= 3);
@@ -26,7 +27,7 @@ fn missing_tiles_are_named_by_the_largest_subtrees() {
     assert_eq!(mixed, [tile("2/0/0"), tile("3/3/3")]);
 }
 
-/// The tiles that are named hold exactly the tiles that are missing.
+/// The subtrees that are named contain exactly the tiles that are missing.
 #[test]
 fn missing_subtrees_hold_what_is_missing() {
     let data = data(4, [2, 12], [3, 14]);

@@ -1,53 +1,54 @@
-//! Defects of a build: bad input that was skipped and counted, and roads that were lost by it.
+//! Defects of a build: invalid input that was skipped and counted, and roads that were lost because
+//! of it.
 
 use corniche_roads::LossReason;
 use corniche_spans::SpanReason;
 use corniche_work::Silent;
 use serde::{Deserialize, Serialize};
 
-/// Bad input that was skipped and counted, or what was lost by it.
+/// Invalid input that was skipped and counted, or what was lost because of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Defect {
     /// A defect of the extract.
-    Osm(corniche_osm::Defect),
-    /// A road, or a part of it, that no tile of the finest level holds.
+    Osm(corniche_osm::ExtractDefect),
+    /// A road, or a part of it, that is in no tile of the finest level.
     LostRoad {
-        /// Its way.
+        /// The id of its way.
         way_id: i64,
-        /// Why it was lost.
+        /// The reason why it was lost.
         loss: Loss,
         /// Length in plan.
         length_m: f64,
-        /// Whether nothing of the road is kept.
+        /// Whether the whole road was lost.
         is_whole: bool,
     },
-    /// Something to know of a bridge or a tunnel.
+    /// A note about a bridge or a tunnel.
     Span {
-        /// A way of it.
+        /// The id of one of its ways.
         way_id: i64,
-        /// The node at which it is so, if it is so at a node.
+        /// The node concerned, if the note concerns a node.
         node_id: Option<i64>,
-        /// The name of the reason.
+        /// The name of the note's reason.
         reason: String,
     },
 }
 
-/// Why a road was lost.
+/// The reason why a road was lost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Loss {
-    /// It lies beside the elevation data.
+    /// The road is outside the elevation data.
     OutsideData,
-    /// It lies on the elevation data, but where they have no ground.
+    /// The road is on the elevation data, but there is no ground.
     NoGround,
-    /// It lies outside the bounds that were asked for. It is counted, but it is no defect.
+    /// The road is outside the requested bounds. It is counted, but it is not a defect.
     OutsideBounds,
 }
 
 impl Loss {
-    /// All of them, in the order of the manifest.
+    /// All reasons, in the order of the manifest.
     pub const ALL: [Self; 3] = [Self::OutsideData, Self::NoGround, Self::OutsideBounds];
 
-    /// Why, in words: the name under which it is counted.
+    /// The reason in words: the name under which it is counted.
     #[must_use]
     pub const fn reason(self) -> &'static str {
         match self {
@@ -60,7 +61,7 @@ impl Loss {
 }
 
 impl Defect {
-    /// What kind of defect it is, in words: the name under which it is counted.
+    /// The kind of defect in words: the name under which it is counted.
     #[must_use]
     pub fn name(&self) -> String {
         match self {
@@ -71,27 +72,29 @@ impl Defect {
     }
 }
 
-/// The reasons to look at a bridge or a tunnel by their names, with what they mean.
+/// The names of all reasons to inspect a bridge or a tunnel, with their meanings.
 pub fn span_reasons() -> impl Iterator<Item = (&'static str, &'static str)> {
     SpanReason::ALL.into_iter().map(|reason| (reason.id(), reason.words()))
 }
 
-/// What a reason to look at a bridge or a tunnel means, by its name.
+/// The meaning of a reason to inspect a bridge or a tunnel, by its name.
 #[must_use]
 pub fn span_reason_words(name: &str) -> &'static str {
     span_reasons().find(|(own, _)| *own == name).map_or("a bridge or a tunnel", |(_, words)| words)
 }
 
-/// What a build or a check reports to its caller: its stages, as all work does, and the defects of its inputs.
-pub trait Observer: corniche_work::Observer {
-    /// A defect of the input was skipped and counted. The order of reports depends on the inputs alone.
+/// What a build or a check reports to its caller: its stages, as every task does, and the defects
+/// of its inputs.
+pub trait BuildObserver: corniche_work::Observer {
+    /// Reports a defect of the input, which was skipped and counted. The order of reports depends
+    /// on the inputs alone.
     fn defect(&self, _: &Defect) {}
 }
 
-impl Observer for Silent {}
+impl BuildObserver for Silent {}
 
-impl From<corniche_osm::Defect> for Defect {
-    fn from(defect: corniche_osm::Defect) -> Self {
+impl From<corniche_osm::ExtractDefect> for Defect {
+    fn from(defect: corniche_osm::ExtractDefect) -> Self {
         Self::Osm(defect)
     }
 }

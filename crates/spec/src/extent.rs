@@ -1,67 +1,71 @@
-//! Where the sea and areas can lie: what the data, the boxes of the extracts and the bounds that were asked for have in common.
+//! The extent of the sea and areas: the intersection of the data, the bounding boxes of the
+//! extracts and the requested bounds.
 
 use corniche_areas::{OutlineError, Polygon, intersection};
 use corniche_geom::{
     Bounds, GridFrame, LatticeBounds, LatticePoint, LatticeRegion, Projection, Seam, along,
 };
 
-/// Boxes in degrees are looked at this far around the data, as a share of their size and in degrees at least: what is farther away
-/// need not have a place in the working CRS.
+/// Boxes in degrees are followed up to this distance around the data, as a fraction of the data's
+/// size, and at least this many degrees. Farther away, a point need not have a position in the
+/// working CRS.
 const AROUND: f64 = 0.05;
 const LEAST_AROUND_DEG: f64 = 0.01;
-/// Sides of boxes that are bent in the working CRS are followed this closely, in cells, …
+/// Sides of boxes that are curved in the working CRS are approximated to this many cells, …
 const TOLERANCE_CELLS: f64 = 0.01;
-/// … in so many pieces at first, and at most.
+/// … with this many segments at first, and at most.
 const PIECES: std::ops::RangeInclusive<usize> = 16..=4096;
-/// A side that bends less than this, metres, is straight.
+/// A side that bends by less than this, metres, is straight.
 const STRAIGHT_M: f64 = 1e-6;
-/// What is computed with PROJ and rounded to the lattice may be off by so many steps.
+/// Positions computed with PROJ and rounded to the lattice may be off by this many steps.
 const ROUNDING_STEPS: i64 = 2;
-/// Coordinates that outlines can be overlaid with.
+/// Largest coordinates of outlines that can be overlaid.
 const MOST_OVERLAID: i64 = 1 << 30;
 
-/// Polygons, each of its outer ring and its holes.
-pub type Outline = Vec<Vec<Vec<LatticePoint>>>;
+/// Polygons, each with its outer ring and its holes.
+pub type ExtentOutline = Vec<Vec<Vec<LatticePoint>>>;
 
-/// What is asked for and what is known, of which the sea and areas have the common part.
+/// The parts whose intersection is the extent of the sea and areas.
 pub struct ExtentParts<'a> {
     /// The package's grid.
     pub frame: &'a GridFrame,
     /// WGS84 ⇄ the grid's working CRS.
     pub projection: &'a (dyn Projection + Sync),
-    /// The rectangle of all nodes at which data can lie.
+    /// The rectangle of all nodes at which there can be data.
     pub nodes: LatticeBounds,
-    /// The outline of the elevation files, where they fill no rectangle.
-    pub data: Option<&'a Outline>,
+    /// The outline of the elevation files, if they do not fill a rectangle.
+    pub data: Option<&'a ExtentOutline>,
     /// The rectangle around all elevation files, degrees.
     pub area_deg: Bounds,
-    /// The bounds that were asked for, degrees.
+    /// The requested bounds, degrees.
     pub bounds_deg: Option<[f64; 4]>,
-    /// The boxes in the headers of the extracts, if all have one.
+    /// The bounding boxes in the headers of the extracts, if all extracts have one.
     pub boxes_deg: &'a [[f64; 4]],
 }
 
-/// Where the sea and areas can lie.
+/// The extent of the sea and areas.
 #[derive(Debug, Clone)]
 pub struct AreaExtent {
-    /// The rectangle around it.
+    /// The rectangle around the extent.
     pub bounds: LatticeBounds,
-    /// Its outline, where it is no rectangle.
+    /// The outline of the extent, if it is not a rectangle.
     pub region: Option<LatticeRegion>,
-    /// The same as polygons; none have inner points in common.
+    /// The extent as polygons whose interiors do not overlap.
     pub polygons: Vec<Polygon>,
 }
 
 impl AreaExtent {
-    /// A rectangle.
+    /// Returns an extent that is a rectangle.
     #[must_use]
     pub fn of_rectangle(bounds: LatticeBounds) -> Self {
         let polygons = Polygon::rectangle(bounds).into_iter().collect();
         Self { bounds, region: None, polygons }
     }
 
-    /// What all parts have in common. Bounds and data count where the rectangle around their image in the working CRS, which the ground fills, goes a cell
-    /// and more beyond it: bounds are rounded outwards to cells. Boxes that have nothing in common with the data say nothing.
+    /// Returns the intersection of all parts. Bounds and data are considered only if the rectangle
+    /// around their image in the working CRS, which the ground fills, extends a cell or more beyond
+    /// the image: bounds are rounded outwards to cells. Boxes that do not overlap the data are
+    /// ignored.
     ///
     /// # Errors
     /// When outlines cannot be overlaid.
@@ -72,7 +76,7 @@ impl AreaExtent {
         if let Some(data) = parts.data {
             extent.cut(data, rounded)?;
         } else {
-            // Packages of before have no outline: of data in degrees the box counts.
+            // Older packages record no outline; for data in degrees, the box is used instead.
             let Bounds { min_x, min_y, max_x, max_y } = parts.area_deg;
             extent.cut(&parts.images(&[[min_x, min_y, max_x, max_y]]), rounded)?;
         }
@@ -85,17 +89,18 @@ impl AreaExtent {
         Ok(extent)
     }
 
-    /// Rounding to a cell.
+    /// The size of a rounding to a cell, in lattice steps.
     pub(crate) fn rounded_steps(frame: &GridFrame) -> i64 {
         let cell = frame.node_steps(frame.max_level());
         cell[0].max(cell[1])
     }
 
-    /// Leaves what lies in one of the polygons, unless all but `rounded` steps along the sides does, or nothing. Returns whether there was something to cut.
+    /// Clips the extent to the polygons, unless nothing would remain, or all of it but `rounded`
+    /// steps along the sides. Returns whether anything was clipped.
     ///
     /// # Errors
     /// See [`OutlineError`].
-    pub fn cut(&mut self, within: &Outline, rounded: i64) -> Result<bool, OutlineError> {
+    pub fn cut(&mut self, within: &ExtentOutline, rounded: i64) -> Result<bool, OutlineError> {
         let Some(region) = LatticeRegion::new(within) else { return Ok(false) };
         let inner = self.bounds.expanded(-rounded);
         let is_narrow = inner.min.u >= inner.max.u || inner.min.v >= inner.max.v;
@@ -119,19 +124,19 @@ impl AreaExtent {
         Ok(true)
     }
 
-    /// The rings of its polygons.
+    /// The rings of the extent's polygons.
     #[must_use]
-    pub fn outline(&self) -> Outline {
+    pub fn outline(&self) -> ExtentOutline {
         outline(&self.polygons)
     }
 }
 
-fn outline(polygons: &[Polygon]) -> Outline {
+fn outline(polygons: &[Polygon]) -> ExtentOutline {
     let rings = |polygon: &Polygon| polygon.rings().map(|ring| ring.points().to_vec()).collect();
     polygons.iter().map(rings).collect()
 }
 
-/// Whether a polygon is a rectangle along the axes.
+/// Whether a polygon is an axis-aligned rectangle.
 fn is_along_axes(polygon: &Polygon) -> bool {
     let is_straight = |[from, to]: [LatticePoint; 2]| from.u == to.u || from.v == to.v;
     polygon.holes().is_empty()
@@ -140,8 +145,9 @@ fn is_along_axes(polygon: &Polygon) -> bool {
 }
 
 impl ExtentParts<'_> {
-    /// The images of boxes on the lattice, as far as they lie near the data; those without a place in the working CRS are left out.
-    fn images(&self, boxes_deg: &[[f64; 4]]) -> Outline {
+    /// The images of boxes on the lattice, as far as the boxes are near the data. Boxes without a
+    /// position in the working CRS are skipped.
+    fn images(&self, boxes_deg: &[[f64; 4]]) -> ExtentOutline {
         let imaging = Imaging { frame: self.frame, seam: self.projection.seam() };
         let near = boxes_deg.iter().flat_map(|&own| near_data(own, self.area_deg));
         let image = |[west, south, east, north]: [f64; 4]| {
@@ -154,14 +160,15 @@ impl ExtentParts<'_> {
     }
 }
 
-/// How outlines come onto the lattice.
+/// Projects outlines onto the lattice.
 pub(crate) struct Imaging<'a> {
     pub frame: &'a GridFrame,
     pub seam: Option<Seam>,
 }
 
 impl Imaging<'_> {
-    /// A rectangle as far as the map of the earth goes: where it is cut open, coastlines end.
+    /// The part of a rectangle that is on the map of the earth: coastlines end where this map is
+    /// cut open.
     pub(crate) fn on_map(&self, nodes: LatticeBounds) -> LatticeBounds {
         let Some(seam) = self.seam else { return nodes };
         let [west, east] = seam.on_lattice(self.frame).ends().map(|end| end as i64);
@@ -172,7 +179,8 @@ impl Imaging<'_> {
         }
     }
 
-    /// The image of a ring, whose sides follow those of the ring; `None` where a part of it has no place in the working CRS.
+    /// The image of a ring, whose sides follow those of the ring; `None` where a part of it has no
+    /// position in the working CRS.
     pub(crate) fn image(
         &self,
         corners: &[[f64; 2]],
@@ -214,8 +222,8 @@ impl Imaging<'_> {
     }
 }
 
-/// How far every second corner of a ring lies beside the line between its neighbours, along the sides; a quarter of this is how far
-/// a side bends between two corners.
+/// The largest distance between every second corner of a ring and the line between the corner's
+/// neighbours. A quarter of this is how far a side bends between two corners.
 fn bend_m(ring: &[[f64; 2]]) -> f64 {
     let count = ring.len();
     let off = |index: usize| {
@@ -225,7 +233,8 @@ fn bend_m(ring: &[[f64; 2]]) -> f64 {
     (1..count).step_by(2).map(off).fold(0.0, f64::max)
 }
 
-/// What of a box lies near the data, with the longitudes of the data: all of it around the earth, one part or two.
+/// The part of a box that is near the data, with the longitudes of the data: all of it around the
+/// earth, in one part or two.
 fn near_data([west, south, east, north]: [f64; 4], area_deg: Bounds) -> Vec<[f64; 4]> {
     let around = |size_deg: f64| (AROUND * size_deg).max(LEAST_AROUND_DEG);
     let [aside, up] = [around(area_deg.width()), around(area_deg.height())];

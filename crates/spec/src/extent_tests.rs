@@ -1,4 +1,5 @@
-//! Areas end where the data, the boxes of extracts and the bounds end, whatever shape these have in the working CRS.
+//! Areas end at the edges of the data, the boxes of extracts and the bounds, whatever shape these
+//! edges have in the working CRS.
 
 use corniche_areas::Polygon;
 use corniche_geom::{NodeIndex, wgs84};
@@ -7,7 +8,7 @@ use corniche_gis::RecordedCrs;
 use super::*;
 use crate::true_areas::lattice_ring_m2;
 
-/// A box in degrees with this middle and these sides.
+/// A box in degrees with this centre and these sides.
 fn around([lon, lat]: [f64; 2], [width, height]: [f64; 2]) -> [f64; 4] {
     let on_earth = |lon: f64| Seam::of_degrees().image_from_west(lon);
     [
@@ -31,7 +32,8 @@ struct Data {
 }
 
 impl Data {
-    /// Data that fill a box in degrees, on a grid in another CRS: the nodes fill the rectangle around its image.
+    /// Data that fill a box in degrees, on a grid in another CRS: the nodes fill the rectangle
+    /// around the box's image.
     fn new(crs: &str, middle: [f64; 2], sides: [f64; 2]) -> Self {
         let area_deg = Bounds {
             min_x: middle[0] - sides[0] / 2.0,
@@ -89,7 +91,7 @@ impl Data {
     }
 }
 
-/// CRSs with the middle of data in them: turned, bent, and over 180°.
+/// CRSs, each with the centre of some data: turned, bent, and across 180°.
 const PLACES: [(&str, [f64; 2]); 5] = [
     ("EPSG:32633", [20.0, 60.0]),
     ("EPSG:3031", [-120.0, -75.0]),
@@ -111,7 +113,8 @@ fn extents_are_those_of_boxes_in_degrees() {
         };
         let whole_m2 = of_box_m2(around(middle, [1.0, 0.8]));
         let small = around(middle, [0.4, 0.2]);
-        // Data, bounds, and a box each end where they end; what is larger, or goes around the earth, changes nothing there.
+        // Data, bounds and a box each end at their own edges; a larger box, or one around the
+        // earth, changes nothing.
         check(&data.extent(None, &[]), whole_m2);
         check(&data.extent(Some(small), &[]), of_box_m2(small));
         check(&data.extent(None, &[small]), of_box_m2(small));
@@ -121,12 +124,12 @@ fn extents_are_those_of_boxes_in_degrees() {
         check(&data.extent(None, &[[-180.0, south, 180.0, north]]), band_m2);
         check(&data.extent(Some([-180.0, south, 180.0, north]), &[]), band_m2);
         check(&data.extent(Some([-180.0, -90.0, 180.0, 90.0]), &[]), whole_m2);
-        // Two boxes at opposite corners are no rectangle, and two that overlap count once.
+        // Two boxes at opposite corners are not a rectangle, and overlapping boxes count once.
         let [west, east] =
             [-0.3, 0.3].map(|by| around([middle[0] + by, middle[1] + by], [0.3, 0.2]));
         check(&data.extent(None, &[west, east]), of_box_m2(west) + of_box_m2(east));
         check(&data.extent(None, &[small, around(middle, [0.2, 0.4])]), of_box_m2(small) * 1.5);
-        // A box that lies elsewhere says nothing.
+        // A box elsewhere is ignored.
         check(&data.extent(None, &[around([middle[0] + 40.0, 0.0], [1.0, 1.0])]), whole_m2);
     }
 }

@@ -1,14 +1,14 @@
-//! The box in the header of an extract.
+//! The bounding box in the header of an extract.
 
 use std::path::PathBuf;
 
 use corniche_geom::Seam;
 
-/// How much farther the bounds reach than the extract's own box, on each side and in degrees. Ways that cross the box are whole in
-/// most extracts, and their ends need ground.
+/// The margin between an extract's box and the bounds, on each side and in degrees. Most extracts
+/// contain ways that cross their box as a whole, and the ends of these ways need ground.
 const MARGIN: f64 = 0.01;
 const LEAST_MARGIN_DEG: f64 = 0.002;
-/// Bounds are whole numbers of these in a degree, some 10 m, so that they can be read.
+/// The bounds are rounded to this many steps in a degree, some 10 m, so that they are readable.
 const STEPS_PER_DEGREE: f64 = 1e4;
 
 /// Why `--bounds osm` gives no bounds.
@@ -19,13 +19,13 @@ pub enum ExtractBoundsError {
     #[error(transparent)]
     Osm(#[from] corniche_osm::ReadOsmError),
     #[error(
-        "--bounds osm: the header of {osm:?} does not say where the extract is; give --bounds W,S,E,N (osmium fileinfo -e tells them)"
+        "--bounds osm: the header of {osm:?} has no bounding box; pass --bounds W,S,E,N (osmium fileinfo -e prints them)"
     )]
     NoBox { osm: PathBuf },
 }
 
-/// The rectangle around the boxes that extracts have in their headers, with a margin: west, south, east and north in WGS84 degrees, the
-/// west larger than the east across ±180°.
+/// Returns the rectangle around the boxes in the headers of the extracts, with a margin: west,
+/// south, east and north in WGS84 degrees. Across ±180° the west is larger than the east.
 ///
 /// # Errors
 /// When an extract cannot be read, or its header has no box.
@@ -38,13 +38,13 @@ pub fn extract_bounds(extracts: &[PathBuf]) -> Result<[f64; 4], ExtractBoundsErr
     Ok(with_margin(around(&boxes)))
 }
 
-/// The rectangle around all of them; across ±180° the east is larger than 180.
+/// The rectangle around all boxes; across ±180° the east is larger than 180.
 pub(crate) fn around(boxes: &[[f64; 4]]) -> [f64; 4] {
     let mut all: Option<[f64; 4]> = None;
     for &[west, south, east, north] in boxes {
         let mut own = [west, south, if west > east { east + 360.0 } else { east }, north];
         if let Some([first_west, _, first_east, _]) = all {
-            // Next to the others, on the shorter way around the earth.
+            // The box is moved next to the others, on the shorter way around the earth.
             let seam = Seam::of_degrees().around(f64::midpoint(first_west, first_east));
             let away = seam.turn() * seam.turns(f64::midpoint(own[0], own[2]));
             (own[0], own[2]) = (own[0] - away, own[2] - away);
@@ -68,7 +68,7 @@ fn with_margin([west, south, east, north]: [f64; 4]) -> [f64; 4] {
     }
     let on_earth = |deg: f64| Seam::of_degrees().image_from_west(deg);
     let east = on_earth(east);
-    // 180° as an east is the end of the earth, and not its beginning.
+    // An eastern edge of 180° is the end of the earth, not its beginning.
     [on_earth(west), south, if east <= -180.0 { 180.0 } else { east }, north]
 }
 

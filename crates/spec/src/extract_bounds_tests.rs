@@ -1,4 +1,4 @@
-//! The bounds of several extracts are around all their boxes, also across the antimeridian.
+//! The bounds of several extracts contain all their boxes, also across the antimeridian.
 
 use super::*;
 
@@ -11,7 +11,7 @@ fn check(boxes: &[[f64; 4]], wanted: [f64; 4]) {
 #[test]
 fn bounds_are_around_all_boxes_with_a_margin() {
     check(&[[9.0, 47.0, 10.0, 48.0]], [8.99, 46.99, 10.01, 48.01]);
-    // At least 0.002 degrees.
+    // The margin is at least 0.002 degrees.
     check(&[[9.0, 47.0, 9.01, 47.02]], [8.998, 46.998, 9.012, 47.022]);
     check(&[[9.0, 47.0, 10.0, 48.0], [11.0, 46.0, 12.0, 47.0]], [8.97, 45.98, 12.03, 48.02]);
 }

@@ -1,8 +1,10 @@
-//! The files that a run reads: what they are called, their content's hash, and whether they stayed as they were.
+//! The files that a run reads: their names, the hashes of their content, and whether they stayed
+//! unchanged.
 //!
-//! GDAL reads a raster's blocks in any order, and an extract ways first, so content is not hashed while it is used. It is
-//! hashed once, in a pass before. The file system then proves that the bytes used are the bytes hashed: size, times and
-//! inode are noted before a file is first read and compared after it was last read.
+//! GDAL reads a raster's blocks in any order, and an extract is read ways first, so content is not
+//! hashed while it is used. It is hashed once, in an earlier pass. The file system then proves that
+//! the bytes used are the bytes hashed: size, times and inode are recorded before the first read of
+//! a file, and compared after the last read.
 //!
 //! ```text
 //!   stamp ─► open ─► hash ─► roads, heights … ─► stamp again ─► package
@@ -30,11 +32,11 @@ pub use self::{
     servers::{elevation_names, extract_names, input_name, photo_names},
 };
 use self::{servers::reach_servers, stamp::Stamp};
-use crate::{Observer, hex::hex};
+use crate::{BuildObserver, hex::hex};
 
-/// All files of a run, as they were before anything of them was read.
+/// All files of a run, as they were before any of them was read.
 #[derive(Debug)]
-pub struct Inputs {
+pub struct InputFiles {
     files: Vec<Input>,
 }
 
@@ -46,22 +48,23 @@ struct Input {
     name: String,
     content: Content,
     stamp: Stamp,
-    /// False for an elevation file outside the bounds that were asked for: no sample of it is used, so it is not hashed.
+    /// False for an elevation file outside the requested bounds: its samples are not used, so it is
+    /// not hashed.
     is_used: bool,
 }
 
-/// What is hashed of an input.
+/// The content of an input that is hashed.
 #[derive(Debug)]
 enum Content {
     File(PathBuf),
-    /// What GDAL's virtual file system delivers by this name.
+    /// The content that GDAL's virtual file system delivers under this name.
     Virtual(PathBuf),
-    /// A folder, which has no bytes of its own; its files are parts.
+    /// A folder, which has no bytes of its own; the files in it are parts.
     Folder,
 }
 
-impl Inputs {
-    /// Finds all files and notes what they are, before anything of them is read for use.
+impl InputFiles {
+    /// Finds all files and records their state, before any of them is read for use.
     ///
     /// # Errors
     /// See [`InputError`].
@@ -74,7 +77,7 @@ impl Inputs {
         Ok(Self { files })
     }
 
-    /// The same where the terrain comes from a package.
+    /// Finds all files, as [`Self::find`] does, where the terrain comes from a package.
     ///
     /// # Errors
     /// See [`InputError`].
@@ -85,14 +88,15 @@ impl Inputs {
         Ok(Self { files })
     }
 
-    /// Says which elevation files are used, in their order; the parts of each go with it.
+    /// Sets which elevation files are used, in their order; the parts of each file go with it.
     pub fn use_only(&mut self, is_used: &[bool]) {
         for (index, is_used) in self.of_elevation(is_used, true) {
             self.files[index].is_used = is_used;
         }
     }
 
-    /// The places of elevation files, each with what is said of it in their order, and of their parts, which go with them.
+    /// Returns the indices of elevation files, each with its value of `said` in their order, and of
+    /// their parts, which have the value of their file.
     fn of_elevation(&self, said: &[bool], otherwise: bool) -> Vec<(usize, bool)> {
         let mut said = said.iter();
         let mut last = otherwise;
@@ -108,7 +112,7 @@ impl Inputs {
         found
     }
 
-    /// How many files there are.
+    /// The number of files.
     #[must_use]
     pub fn count(&self) -> usize {
         self.files.len()
@@ -120,7 +124,7 @@ impl Inputs {
         &self.files[index].name
     }
 
-    /// What a plan says of every file, in their order.
+    /// The records of all files for a plan, in their order.
     ///
     /// # Errors
     /// See [`InputError`].
@@ -132,7 +136,7 @@ impl Inputs {
     ///
     /// # Errors
     /// See [`InputError`].
-    pub fn hash(&self, observer: &dyn Observer) -> Result<Vec<InputRecord>, InputError> {
+    pub fn hash(&self, observer: &dyn BuildObserver) -> Result<Vec<InputRecord>, InputError> {
         let mut records: Vec<InputRecord> = Vec::new();
         self.hash_each(
             |_| false,
@@ -146,14 +150,14 @@ impl Inputs {
         Ok(records)
     }
 
-    /// Hashes the files that are not done yet and hands on what each of them is.
+    /// Hashes the files that are not yet hashed, and passes the record of each to `take`.
     ///
     /// # Errors
-    /// See [`InputError`]; what `take` fails with.
+    /// See [`InputError`]; also the errors of `take`.
     pub fn hash_each<E: From<InputError>>(
         &self,
         is_done: impl Fn(usize) -> bool,
-        observer: &dyn Observer,
+        observer: &dyn BuildObserver,
         mut take: impl FnMut(usize, InputRecord) -> Result<(), E>,
     ) -> Result<(), E> {
         let used = self.files.iter().filter(|input| input.is_used);
@@ -170,15 +174,16 @@ impl Inputs {
         Ok(())
     }
 
-    /// Hashes those elevation files that were not said to be used, but are needed after all: told in their order; the parts of each go with it. Returns the
-    /// place of each, and what it is.
+    /// Hashes those elevation files that were not marked as used but are needed after all, given in
+    /// their order; the parts of each file go with it. Returns the index of each file and its
+    /// record.
     ///
     /// # Errors
     /// See [`InputError`].
     pub fn hash_unused(
         &self,
         is_needed: &[bool],
-        observer: &dyn Observer,
+        observer: &dyn BuildObserver,
     ) -> Result<Vec<(u32, InputRecord)>, InputError> {
         let mut found = Vec::new();
         for (index, is_needed) in self.of_elevation(is_needed, false) {
@@ -190,7 +195,7 @@ impl Inputs {
         Ok(found)
     }
 
-    /// Sorts the parts of each raster, which GDAL lists in any order.
+    /// Sorts the parts of each raster, because GDAL lists them in any order.
     pub fn in_order(records: &mut [InputRecord]) {
         let is_part = |record: &InputRecord| {
             InputKind::DemPart.is_of(record) || InputKind::PhotoPart.is_of(record)
@@ -200,8 +205,8 @@ impl Inputs {
         }
     }
 
-    /// The error to report after a failure: a changed input may be the cause of any other error. One that cannot be looked at says
-    /// nothing.
+    /// The error to report after a failure: a changed input may be the cause of any other error. An
+    /// input whose state cannot be read does not replace the error.
     pub fn changed_instead_of<E: From<InputError>>(&self, error: E) -> E {
         match self.check_unchanged() {
             Err(changed @ InputError::Changed { .. }) => changed.into(),
@@ -209,7 +214,7 @@ impl Inputs {
         }
     }
 
-    /// Fails if a file is no longer what it was when it was found, or cannot be looked at.
+    /// Fails if a file has changed since it was found, or if its state cannot be read.
     ///
     /// # Errors
     /// See [`InputError`].
@@ -225,7 +230,7 @@ impl Inputs {
     }
 }
 
-/// Adds rasters and, after each, the files that it refers to or that belong to it.
+/// Adds rasters and, after each raster, the files that it refers to or that belong to it.
 fn add_rasters(
     paths: &[PathBuf],
     [kind, part]: [InputKind; 2],
@@ -248,12 +253,12 @@ fn add_rasters(
     Ok(())
 }
 
-/// What is read beside the terrain.
+/// The inputs other than the terrain.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct OtherInputs<'a> {
     /// Photos.
     pub photo: &'a [PathBuf],
-    /// The polygon that cuts the package.
+    /// The polygon that clips the package.
     pub polygon: Option<&'a Path>,
     /// Extracts.
     pub osm: &'a [PathBuf],
@@ -280,7 +285,7 @@ impl<'a> OtherInputs<'a> {
 impl Input {
     fn new(kind: InputKind, path: &Path) -> Result<Self, InputError> {
         let failed = |source| InputError::Read { path: path.to_path_buf(), source };
-        // Opening a pipe waits for the program that writes into it, and a pipe cannot be read twice.
+        // Opening a pipe waits for the program that writes to it, and a pipe cannot be read twice.
         if fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir()) {
             return Err(InputError::Stream { path: path.to_path_buf() });
         }
@@ -299,10 +304,10 @@ impl Input {
         let text = self.path.to_str();
         let text = text.ok_or_else(|| InputError::Name { path: self.path.clone() })?;
         let (bytes, modified_ns, etag) = match &self.stamp {
-            Stamp::File(_, state) => (state.size(), state.modified_ns(), None),
+            Stamp::File(_, state) => (state.size, state.modified_ns(), None),
             Stamp::Remote { bytes, etag, .. } => (*bytes, None, etag.clone()),
         };
-        // The size of a folder is that of the list of its files, and no matter.
+        // The size of a folder is the size of its list of files, which does not matter.
         let bytes = if matches!(self.content, Content::Folder) { 0 } else { bytes };
         Ok(PlannedInput {
             kind: self.kind.name().to_owned(),
@@ -314,18 +319,18 @@ impl Input {
         })
     }
 
-    /// Size of what is hashed, as far as it is known before it is read.
+    /// The size of the content that is hashed, if it is known before the content is read.
     fn content_bytes(&self) -> Option<u64> {
         match (&self.content, &self.stamp) {
             (Content::Folder, _) => Some(0),
-            (Content::File(_), Stamp::File(_, state)) => Some(state.size()),
+            (Content::File(_), Stamp::File(_, state)) => Some(state.size),
             (_, Stamp::Remote { bytes, .. }) => Some(*bytes),
-            // Inside an archive: only the archive's own size is known.
+            // For a file inside an archive, only the archive's own size is known.
             (Content::Virtual(_), Stamp::File(..)) => None,
         }
     }
 
-    fn hash(&self, observer: &dyn Observer) -> Result<InputRecord, InputError> {
+    fn hash(&self, observer: &dyn BuildObserver) -> Result<InputRecord, InputError> {
         if self.is_used {
             return self.hash_content(observer);
         }
@@ -336,7 +341,7 @@ impl Input {
         InputRecord { kind: self.kind.name().to_owned(), name: self.name.clone(), bytes, sha256 }
     }
 
-    fn hash_content(&self, observer: &dyn Observer) -> Result<InputRecord, InputError> {
+    fn hash_content(&self, observer: &dyn BuildObserver) -> Result<InputRecord, InputError> {
         let failed = |source: io::Error| InputError::Read { path: self.path.clone(), source };
         let mut hasher = Sha256::new();
         let bytes = match &self.content {
@@ -354,11 +359,11 @@ impl Input {
     }
 }
 
-/// How many bytes were hashed; `None` when the run was interrupted.
+/// The number of hashed bytes; `None` when the run was interrupted.
 fn digest(
     file: &mut dyn Read,
     hasher: &mut Sha256,
-    observer: &dyn Observer,
+    observer: &dyn BuildObserver,
 ) -> io::Result<Option<u64>> {
     let mut buffer = vec![0; 1 << 20];
     let mut bytes = 0;
@@ -379,9 +384,11 @@ fn digest(
     }
 }
 
-/// What holds the bytes of an input, and the input's name without folders; `None` where the name is not UTF-8.
+/// The source of an input's bytes, and the input's name without folders; `None` if the name is not
+/// UTF-8.
 ///
-/// They differ for a raster inside a container, as GDAL names it (`GPKG:dem.gpkg:heights`, `NETCDF:"dem.nc":Band1`).
+/// The two differ for a raster inside a container, as GDAL names it (`GPKG:dem.gpkg:heights`,
+/// `NETCDF:"dem.nc":Band1`).
 fn named(path: &Path) -> Option<(Content, String)> {
     let short = |path: &Path| path.file_name().unwrap_or_default().to_str().map(str::to_owned);
     if path.is_dir() {
@@ -391,9 +398,10 @@ fn named(path: &Path) -> Option<(Content, String)> {
         return Some((Content::File(path.to_path_buf()), short(path)?));
     }
     let text = path.to_str()?;
-    // As text, because `Path::starts_with` compares whole components, and these are /vsizip, /vsicurl and so on.
+    // The path is compared as text, because `Path::starts_with` compares whole components, and
+    // prefixes are /vsizip, /vsicurl and so on.
     if text.starts_with("/vsi") {
-        // The part after a question mark may hold a secret key for the server.
+        // The part after a question mark may contain a secret key for the server.
         let shown = short(Path::new(text.split('?').next().unwrap_or(text)))?;
         return Some((Content::Virtual(path.to_path_buf()), shown));
     }

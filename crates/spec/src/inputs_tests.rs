@@ -4,7 +4,8 @@ use std::sync::Mutex;
 
 use super::*;
 
-/// The match has no `_`, so a new kind does not compile here until it has a place in the list or is known to be in no manifest.
+/// The match has no `_`, so a new kind does not compile here until it is added to the list or is
+/// known to be in no manifest.
 #[test]
 fn every_kind_of_input_of_a_manifest_is_listed_once() {
     for (place, kind) in InputKind::RECORDED.into_iter().enumerate() {
@@ -22,7 +23,7 @@ fn every_kind_of_input_of_a_manifest_is_listed_once() {
     assert_eq!(InputKind::RECORDED.len(), 6);
 }
 
-/// Keeps what `begin` was told, and the steps.
+/// Records the argument of `begin`, and the steps.
 #[derive(Default)]
 struct Counted(Mutex<(Option<u64>, u64)>);
 
@@ -37,9 +38,9 @@ impl corniche_work::Observer for Counted {
     }
 }
 
-impl Observer for Counted {}
+impl BuildObserver for Counted {}
 
-/// Hashing counts bytes, and knows their number before it begins; of a part of an archive it does not.
+/// Hashing counts bytes, and knows their number in advance, except for a part of an archive.
 #[test]
 fn hashing_counts_the_bytes_of_the_files() {
     const BYTES: u64 = (3 << 20) + 5;
@@ -49,7 +50,7 @@ fn hashing_counts_the_bytes_of_the_files() {
     let inside = PathBuf::from(format!("/vsisubfile/3_100,{}", file.display()));
     for (path, total, bytes) in [(&file, Some(BYTES), BYTES), (&inside, None, 100)] {
         let counted = Counted::default();
-        let records = Inputs::find(
+        let records = InputFiles::find(
             &[],
             OtherInputs { osm: std::slice::from_ref(path), polygon: None, photo: &[] },
         )

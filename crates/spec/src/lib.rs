@@ -1,11 +1,12 @@
-//! What a package is made from, and how: settings, input files, grid and levels. The build and its check start from the same.
+//! The inputs and rules of a package: settings, input files, grid and levels. The build and its
+//! check use the same ones.
 //!
 //! ```text
 //!   settings ─► record of the manifest        inputs ─► hashes, changes
 //!   grid ─► levels, tiles with data, true lengths and areas
 //! ```
 //!
-//! This crate makes no plan, reads no height and no road.
+//! This crate creates no plan, and reads neither heights nor roads.
 
 pub mod artifacts;
 pub mod data_outline;
@@ -28,7 +29,7 @@ mod extract_bounds;
 mod open_package;
 mod settings;
 
-pub use defect::{Defect, Loss, Observer, span_reason_words, span_reasons};
+pub use defect::{BuildObserver, Defect, Loss, span_reason_words, span_reasons};
 pub use extract_bounds::{ExtractBoundsError, extract_bounds};
 pub use open_package::open_package;
 pub use settings::{

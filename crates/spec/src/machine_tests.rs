@@ -24,9 +24,9 @@ fn the_memory_of_the_machine_is_read() {
 fn this_machine_has_memory_and_disks() {
     assert!(machine_memory_bytes().unwrap() > 1 << 20);
     let folder = tempfile::tempdir().unwrap();
-    let own = FileSystem::of(folder.path()).unwrap();
+    let own = FileSystem::containing(folder.path()).unwrap();
     let inner = folder.path().join("inner");
     std::fs::create_dir(&inner).unwrap();
-    assert_eq!(FileSystem::of(&inner).unwrap().device, own.device);
-    assert!(FileSystem::of(&folder.path().join("none")).is_err());
+    assert_eq!(FileSystem::containing(&inner).unwrap().device, own.device);
+    assert!(FileSystem::containing(&folder.path().join("none")).is_err());
 }

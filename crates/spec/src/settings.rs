@@ -1,15 +1,15 @@
-//! The settings of a build: inputs, outputs and everything that decides what is made.
+//! The settings of a build: inputs, outputs and everything that determines its result.
 
 use std::path::PathBuf;
 
-use corniche_areas::{AreaTable, ClassedLayer};
+use corniche_areas::AreaTable;
 use corniche_dem::{OpenOptions, PlanOptions};
 use corniche_geom::Cell;
 use corniche_roads::{ClassFilter, FrcTable};
 use corniche_store::Existing;
 use corniche_tileset::ReliefLevels;
 
-/// Sets one setting to its default, where that is not the default of its type.
+/// Sets one setting to its default, if that is not the default of its type.
 macro_rules! set_usual {
     ($settings:ident $name:ident $key:ident $path:tt []) => {};
     ($settings:ident $name:ident $key:ident [$($path:tt)+] [$usual:expr]) => {
@@ -17,53 +17,55 @@ macro_rules! set_usual {
     };
 }
 
-/// What to build, from what, and how: checked, ready to run.
+/// The settings of a build, checked and ready to run.
 #[derive(Debug, Clone)]
 pub struct BuildSettings {
-    /// What is made.
+    /// The settings that determine the result.
     pub plan: PlanSettings,
     /// The package to write.
     pub output: PathBuf,
     /// What to do when the package exists.
     pub existing: Existing,
-    /// The folder for intermediate results; `None`: that of the package.
+    /// The folder for intermediate results; `None`: the folder of the package.
     pub tmp: Option<PathBuf>,
     /// What to do with intermediate results of an earlier build of the same package.
     pub leftovers: Leftovers,
-    /// Whether to begin although memory or disk space are not expected to suffice.
+    /// Whether to start even if memory or disk space is expected to be insufficient.
     pub force: bool,
-    /// What the run may use.
+    /// The resources that the run may use.
     pub resources: Resources,
 }
 
-/// The part of the settings that decides what is made: the same for every worker that takes part in a build.
+/// The settings that determine the result: the same for every worker that takes part in a build.
 #[derive(Debug, Clone)]
 pub struct PlanSettings {
     /// Elevation rasters; where they overlap, the first has precedence.
     pub dem: Vec<PathBuf>,
-    /// A package whose terrain is taken as it is; then `dem` is empty, and `terrain` what the package records.
+    /// A package whose terrain is reused; then `dem` is empty, and `terrain` has the settings that
+    /// the package records.
     pub terrain_of: Option<PathBuf>,
-    /// OpenStreetMap extracts, read as one; in the order of [`extract_names`](crate::inputs::extract_names), so that nothing depends on the order in
-    /// which they were named. Without any, terrain alone is planned.
+    /// OpenStreetMap extracts, read as one. They are in the order of
+    /// [`extract_names`](crate::inputs::extract_names), so that nothing depends on the order in
+    /// which they were named. Without any, only terrain is planned.
     pub osm: Vec<PathBuf>,
-    /// How the ground is made.
+    /// How the ground is built.
     pub terrain: TerrainSettings,
-    /// How roads are made.
+    /// How roads are built.
     pub roads: RoadSettings,
-    /// Which objects of the extracts are areas, if any are wanted.
+    /// Which objects of the extracts are areas, if areas are requested.
     pub areas: Option<AreaTable>,
-    /// The layers of lines of the extracts that are wanted, in their order.
-    pub lines: Vec<ClassedLayer>,
+    /// Whether boundaries of the extracts are requested.
+    pub boundaries: bool,
     /// Photos of the ground.
     pub photo: PhotoChoice,
-    /// Credits beside those that the inputs call for, such as a DEM's.
+    /// Attribution in addition to that of the inputs, such as a DEM's.
     pub attribution: Vec<String>,
     /// Program and version.
     pub generator: String,
 }
 
 impl PlanSettings {
-    /// The files that the terrain comes from: rasters, or a package.
+    /// The files that provide the terrain: rasters, or a package.
     #[must_use]
     pub fn terrain_files(&self) -> Vec<PathBuf> {
         self.dem.iter().chain(&self.terrain_of).cloned().collect()
@@ -75,9 +77,10 @@ impl PlanSettings {
 pub enum PhotoChoice {
     /// The package has no photos.
     Off,
-    /// The package has the photos of the package whose terrain is taken, as they are there; none if it has none, or if no package gives the terrain.
+    /// The package gets the photos of the package whose terrain is reused, unchanged. It gets none
+    /// if that package has none, or if no terrain is reused.
     OfTerrain,
-    /// The package has the photos of files.
+    /// The package gets photos from files.
     Files(PhotoSettings),
 }
 
@@ -92,74 +95,80 @@ impl PhotoChoice {
     }
 }
 
-/// How photos are read from files and coded.
+/// How photos are read from files and encoded.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PhotoSettings {
-    /// The files; where they overlap, the first lies on top.
+    /// The files; where they overlap, the first is on top.
     pub files: Vec<PathBuf>,
-    /// How many levels of texels are finer than the finest cell; `None`: as many as the photos have detail for, at most three.
+    /// The number of texel levels finer than the finest cell; `None`: as many as the photos have
+    /// detail for, at most three.
     pub levels: Option<u8>,
     /// JPEG's quality, from 1 to 100.
     pub quality: u8,
 }
 
-/// What to do with intermediate results that an earlier build of the same package left.
+/// What to do with intermediate results of an earlier build of the same package.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Leftovers {
-    /// Name them and refuse to build.
+    /// Name them and stop.
     Refuse,
-    /// Go on from them.
+    /// Continue from them.
     Resume,
-    /// Remove them and begin from nothing.
+    /// Delete them and start over.
     Discard,
 }
 
-/// How the ground is made. The default asks for nothing, and fills no voids.
+/// How the ground is built. The default sets no option, and fills no voids.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TerrainSettings {
-    /// How the elevation files are understood.
+    /// How the elevation files are interpreted.
     pub open: OpenOptions,
     /// The grid of nodes, and how voids in it are filled.
     pub plan: PlanOptions,
-    /// Lowest and highest height that samples may have, metres, as the files give them. `None` allows what the earth's
-    /// surface has, and no repeated value far beyond all others.
+    /// Lowest and highest height that samples may have, metres, in the files' own heights. `None`
+    /// allows the heights that the earth's surface has, and no repeated value far beyond all
+    /// others.
     pub height_range_m: Option<[f64; 2]>,
-    /// Whether a cell may be far smaller than the spacing of samples. It changes no byte of a package: it only lets a build begin.
+    /// Whether a cell may be far smaller than the spacing of samples. This changes no byte of a
+    /// package; it only allows the build to start.
     pub allow_fine_cell: bool,
-    /// Whether one datum may be taken for another where PROJ knows nothing between them. It changes no byte of a package: it only lets a
-    /// build begin.
+    /// Whether one datum may be treated as another if PROJ knows no transformation between them.
+    /// This changes no byte of a package; it only allows the build to start.
     pub allow_ballpark: bool,
-    /// Largest vertical error of the finest level; `None` takes a sixteenth of the cell, but where cells are small not less than 0.25 m.
+    /// Largest vertical error of the finest level; `None` uses a sixteenth of the cell, but not
+    /// less than 0.25 m where cells are small.
     pub max_error_m: Option<f64>,
     /// Which levels store their rasters for shading.
     pub relief: ReliefLevels,
 }
 
-/// The largest vertical error of the finest level where none is asked for, metres: a sixteenth of the cell's shorter side. Elevation data of
-/// small cells are themselves wrong by decimetres, so there it is 0.25 m, or a quarter of the cell where that is less.
+/// The default for the largest vertical error of the finest level, metres: a sixteenth of the
+/// cell's shorter side. Elevation data of small cells are themselves wrong by decimetres, so the
+/// default there is 0.25 m, or a quarter of the cell if that is less.
 #[must_use]
 pub fn usual_max_error_m(cell: Cell) -> f64 {
     let cell_m = cell.shorter_m();
     (cell_m / 16.0).max((cell_m / 4.0).min(0.25))
 }
 
-/// How roads are made.
+/// How roads are built.
 #[derive(Debug, Clone)]
 pub struct RoadSettings {
     /// `highway` value → class.
     pub table: FrcTable,
     /// On which levels each class is shown.
     pub filter: ClassFilter,
-    /// Simplification tolerance, in cells of the level; 0 keeps every point. The finest level always does.
+    /// Simplification tolerance, in cells of the level; 0 keeps every point. The finest level
+    /// always keeps every point.
     pub simplify_cells: f64,
-    /// Whether bridges and tunnels leave the ground: tiles then tell how high they are.
+    /// Whether bridges and tunnels leave the ground: tiles then store their heights.
     pub spans: bool,
 }
 
 impl RoadSettings {
-    /// The usual settings for roads with these classes.
+    /// The default settings for roads with these classes.
     #[must_use]
-    pub fn of(table: FrcTable) -> Self {
+    pub fn from_table(table: FrcTable) -> Self {
         let filter = ClassFilter::usual();
         let mut usual = Self { table, filter, simplify_cells: 0.0, spans: false };
         corniche_settings::placed! { Roads [set_usual] usual }
@@ -168,7 +177,7 @@ impl RoadSettings {
 }
 
 impl TerrainSettings {
-    /// The settings of whoever gives no option.
+    /// The settings of a run without options.
     #[must_use]
     pub fn usual() -> Self {
         let mut usual = Self::default();
@@ -177,7 +186,7 @@ impl TerrainSettings {
     }
 }
 
-/// What a run may use. It changes no byte of a package.
+/// The resources that a run may use. They change no byte of a package.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Resources {
     /// Worker threads, at least 1.

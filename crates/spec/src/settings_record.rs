@@ -1,19 +1,21 @@
-//! The settings that determine, for given inputs, the tiles of a package and the heights in them: those of [`SettingsRecord`].
+//! The settings that determine, for given inputs, the tiles of a package and the heights in them:
+//! those of [`SettingsRecord`].
 //!
-//! The other settings change the manifest at most: the credits, the name of the program, and the names of the input files.
+//! The other settings change at most the manifest: the attribution, the name of the program, and
+//! the names of the input files.
 //!
-//! The build records them with [`of`]; `verify` takes them back with [`terrain`] and [`roads`] to open the elevation files
-//! and the extract as the build did.
+//! The build records the settings with [`record_settings`]; `verify` converts them back with
+//! [`terrain`] and [`roads`] to open the elevation files and the extract as the build did.
 
-use corniche_areas::{AreaTable, ClassedLayer};
-use corniche_gis::Polygon;
+use corniche_areas::AreaTable;
+use corniche_gis::RegionPolygons;
 use corniche_roads::{ClassFilter, FrcTable};
 use corniche_tileset::{AreaTableRecord, PhotoRecord, PolygonRecord, SettingsRecord};
 use sha2::{Digest, Sha256};
 
 use crate::{RoadSettings, TerrainSettings, hex::hex};
 
-/// Takes one setting from the checked settings into a record, or from there.
+/// Copies one setting from the checked settings into a record, or back.
 macro_rules! take {
     (($record:ident from $settings:ident) $name:ident $key:ident [$($path:tt)+] $usual:tt) => {
         $record.$key.clone_from(&$settings.$($path)+);
@@ -23,14 +25,14 @@ macro_rules! take {
     };
 }
 
-/// The record of a build. `max_error_m` is the tolerance of the finest level, given or derived from the cell; the levels of `photo`
-/// are given or derived from the photos.
-pub fn of(
+/// The record of a build. `max_error_m` is the tolerance of the finest level, given or derived from
+/// the cell; the levels of `photo` are given or derived from the photos.
+pub fn record_settings(
     terrain: &TerrainSettings,
     roads: &RoadSettings,
     max_error_m: f64,
     photo: Option<PhotoRecord>,
-    (areas, lines): (Option<&AreaTable>, &[ClassedLayer]),
+    (areas, boundaries): (Option<&AreaTable>, bool),
 ) -> SettingsRecord {
     let RoadSettings { table, filter, .. } = roads;
     let mut record = SettingsRecord {
@@ -43,7 +45,7 @@ pub fn of(
         class_max_cell_m: filter.class_max_cell_m().to_vec(),
         photo,
         areas: areas.map(area_table_record),
-        boundaries: lines.contains(&ClassedLayer::Boundaries),
+        boundaries,
         ..SettingsRecord::default()
     };
     corniche_settings::placed! { Terrain [take] (record from terrain) }
@@ -51,31 +53,31 @@ pub fn of(
     record
 }
 
-/// What is recorded of a table of areas.
+/// The record of an area table.
 #[must_use]
 pub fn area_table_record(table: &AreaTable) -> AreaTableRecord {
     let sha256 = hex(&Sha256::digest(table.canonical_text()));
     AreaTableRecord { table: table.name().to_owned(), sha256 }
 }
 
-/// What is recorded of a polygon: the name of its file, and the hash of what it encloses.
-fn polygon_record(polygon: &Polygon) -> PolygonRecord {
+/// The record of a polygon: the name of its file, and the hash of the region that it encloses.
+fn polygon_record(polygon: &RegionPolygons) -> PolygonRecord {
     let name = polygon.path().file_name().unwrap_or(polygon.path().as_os_str());
     PolygonRecord { name: name.to_string_lossy().into_owned(), sha256: polygon_sha256(polygon) }
 }
 
 /// SHA-256 of a polygon's coordinate system and corners, whatever the format of its file.
 #[must_use]
-pub fn polygon_sha256(polygon: &Polygon) -> String {
+pub fn polygon_sha256(polygon: &RegionPolygons) -> String {
     hex(&Sha256::digest(polygon.canonical_bytes()))
 }
 
-/// The settings for the ground that a package records. Of a polygon only the hash is recorded, so it is left out here: it comes from its
-/// file.
+/// The settings for the ground that a package records. Only the hash of a polygon is recorded, so
+/// the polygon is omitted here: it comes from its file.
 #[must_use]
 pub fn terrain(record: &SettingsRecord) -> TerrainSettings {
     let mut terrain = TerrainSettings {
-        // The build has begun already.
+        // The build has already started.
         allow_fine_cell: true,
         allow_ballpark: true,
         max_error_m: Some(record.max_error_m),
@@ -85,15 +87,16 @@ pub fn terrain(record: &SettingsRecord) -> TerrainSettings {
     terrain
 }
 
-/// The settings for roads that a package records, with its table of classes; `None` where the record makes no filter.
+/// The settings for roads that a package records, with its table of classes; `None` if the record
+/// has no valid filter.
 #[must_use]
 pub fn roads(record: &SettingsRecord, table: FrcTable) -> Option<RoadSettings> {
-    let mut roads = RoadSettings { filter: filter(record)?, ..RoadSettings::of(table) };
+    let mut roads = RoadSettings { filter: filter(record)?, ..RoadSettings::from_table(table) };
     corniche_settings::placed! { Roads [take] (record into roads) }
     Some(roads)
 }
 
-/// Which levels show which class; `None` where the record makes no filter.
+/// Which levels show which class; `None` if the record has no valid filter.
 #[must_use]
 pub fn filter(record: &SettingsRecord) -> Option<ClassFilter> {
     ClassFilter::new(record.class_max_cell_m.as_slice().try_into().ok()?).ok()
@@ -102,7 +105,8 @@ pub fn filter(record: &SettingsRecord) -> Option<ClassFilter> {
 /// SHA-256 of a record as JSON.
 #[must_use]
 pub fn sha256(record: &SettingsRecord) -> String {
-    // A record of numbers and texts can always be written as JSON; if not, its debugging form is as unique.
+    // A record of numbers and texts can always be written as JSON; if it cannot, its debug form is
+    // just as unique.
     let json = serde_json::to_string(record).unwrap_or_else(|_| format!("{record:?}"));
     hex(&Sha256::digest(json))
 }

@@ -1,4 +1,4 @@
-//! Each setting that decides bytes changes the record and its hash.
+//! Each setting that determines bytes changes the record and its hash.
 
 use corniche_dem::PlanOptions;
 use corniche_geom::Cell;
@@ -36,10 +36,16 @@ fn table(name: &str) -> FrcTable {
 
 fn record((terrain, roads): &Settings) -> SettingsRecord {
     let photo = Some(PhotoRecord { levels: 2, quality: 80 });
-    of(terrain, roads, terrain.max_error_m.unwrap_or(MAX_ERROR_M), photo, (None, &[]))
+    record_settings(
+        terrain,
+        roads,
+        terrain.max_error_m.unwrap_or(MAX_ERROR_M),
+        photo,
+        (None, false),
+    )
 }
 
-/// Every setting that determines bytes, and another value of it.
+/// Every setting that determines bytes, with another value for it.
 const CHANGES: [Change; 18] = [
     ("dem_crs", |(terrain, _)| terrain.open.dem_crs = Some("EPSG:4326".to_owned())),
     ("nodata", |(terrain, _)| terrain.open.nodata = vec![-9999.0]),

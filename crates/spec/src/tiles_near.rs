@@ -1,11 +1,12 @@
-//! Which tiles a segment may meet.
+//! The tiles that a segment may touch.
 
 use corniche_geom::{LatticeBounds, LatticePoint, TileId};
 
 use crate::levels::Levels;
 
-/// Visits the tiles of `level` whose margin the segment may meet, borders included. Row by row of tiles, so that one endless
-/// segment (a misplaced node) names the tiles along it and not all those of its bounding box.
+/// Visits the tiles of `level` whose margin the segment may touch, borders included. It works row
+/// by row of tiles, so that one endless segment (a misplaced node) visits the tiles along it and
+/// not all those of its bounding box.
 pub fn for_each_tile_near(
     segment: [LatticePoint; 2],
     level: u8,
@@ -15,15 +16,17 @@ pub fn for_each_tile_near(
     let frame = levels.frame();
     let margin = levels.margin_steps(level);
     let last = (1_i64 << level) - 1;
-    let Some(bounds) = LatticeBounds::of(&segment) else { return };
-    // A point on a border counts as south of it. One step more to the north names the tile that ends there, too.
+    let Some(bounds) = LatticeBounds::around(&segment) else { return };
+    // A point on a border belongs to the tile south of it. One more step to the north includes the
+    // tile that ends there.
     let bounds = bounds.expanded(margin + 1);
     let [_, south] = frame.tile_column_row(level, bounds.min);
     let [_, north] = frame.tile_column_row(level, bounds.max);
     for y in north.max(0)..=south.min(last) {
         let Ok(row) = TileId::new(level, 0, y as u32) else { continue };
         let row = frame.tile_lattice_bounds(row);
-        // The stretch of the segment between the row's borders, margins and a step of rounding included.
+        // The stretch of the segment between the row's borders, with margins and one step of
+        // rounding.
         let reach = [row.min.v - margin - 1, row.max.v + margin + 1];
         let [low, high] = stretch_u(segment, reach);
         let column = |u: i64| frame.tile_column_row(level, LatticePoint::new(u, row.min.v))[0];
@@ -47,7 +50,8 @@ fn stretch_u([a, b]: [LatticePoint; 2], reach: [i64; 2]) -> [i64; 2] {
         a.u as f64 + share * (b.u - a.u) as f64
     };
     let [one, other] = reach.map(at);
-    // f64 holds lattice coordinates to 2^53; a step of slack per 2^50 covers what it rounds away.
+    // f64 represents lattice coordinates exactly up to 2^53; one step of slack per 2^50 covers the
+    // rounding.
     let slack = (one.abs().max(other.abs()) / (1_i64 << 50) as f64).ceil() + 1.0;
     [(one.min(other) - slack) as i64, (one.max(other) + slack) as i64]
 }

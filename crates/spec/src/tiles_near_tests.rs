@@ -1,4 +1,4 @@
-//! A stretch between two heights holds its segment.
+//! A stretch between two heights contains its part of the segment.
 
 use super::*;
 

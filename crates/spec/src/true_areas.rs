@@ -15,12 +15,13 @@ pub fn lattice_ring_m2(
             let side = |side: [usize; 2]| side.map(|corner| corners_m[corner]);
             ring_area_m2(&corners_deg, &side, &|at| degrees(projection, at))
         }
-        // What was projected from degrees goes back.
+        // Positions that were projected from degrees can be projected back.
         Err(_) => 0.0,
     }
 }
 
-/// True area inside a ring of longitudes and latitudes, square metres; negative for a clockwise one.
+/// True area inside a ring of longitudes and latitudes, square metres; negative for a clockwise
+/// one.
 pub fn degrees_ring_m2(ring_deg: &[[f64; 2]], projection: &dyn Projection) -> f64 {
     let side = |side: [usize; 2]| {
         let mut ends_m = side.map(|corner| ring_deg[corner]);
@@ -35,7 +36,7 @@ pub fn degrees_ring_m2(ring_deg: &[[f64; 2]], projection: &dyn Projection) -> f6
     ring_area_m2(ring_deg, &side, &|at| degrees(projection, at))
 }
 
-/// Longitude and latitude of a place; no numbers where it has none.
+/// Longitude and latitude of a position; NaN if it has none.
 pub(crate) fn degrees(projection: &dyn Projection, at: [f64; 2]) -> [f64; 2] {
     let mut places = [at];
     match projection.wgs84_from_working(&mut places) {

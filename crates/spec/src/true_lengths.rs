@@ -8,26 +8,28 @@ use corniche_geom::{
 
 use crate::true_areas::degrees;
 
-/// Micrometres in a metre.
+/// Micrometres per metre.
 pub const UM: f64 = 1e6;
 
-/// A cut may lie this far from its true place along a segment that counts as even.
+/// The largest error of a cut along an even segment, metres.
 const EVEN_M: f64 = 1e-3;
-/// Segments of no more working metres are even: over them the scale of no map changes by more.
+/// Segments of at most this many working metres are even: no map's scale changes by more over this
+/// length.
 const SHORT_M: f64 = 100.0;
 
-/// True lengths of roads. Each segment has one length, that of the straight line on the map. Its pieces are cut at whole micrometres
-/// along it: where the scale hardly changes, at their shares of it, else at the true lengths from its start. Pieces that meet share the
-/// cut, so the lengths of all pieces of a segment add up to its length exactly.
+/// True lengths of roads. Each segment has one length: the length of the straight line on the map.
+/// Its pieces are cut at whole micrometres along it: where the scale hardly changes, in proportion;
+/// elsewhere, at the true lengths from its start. Adjacent pieces share the cut, so the lengths of
+/// all pieces of a segment add up to its length exactly.
 pub struct TrueLengths<'a> {
     frame: GridFrame,
-    /// Longitudes and latitudes inside its bounds come from this table, others from PROJ.
+    /// Longitudes and latitudes inside the table's bounds come from this table, others from PROJ.
     table: Option<&'a CoordinateTable>,
     projection: &'a (dyn Projection + Sync),
 }
 
 impl<'a> TrueLengths<'a> {
-    /// How lengths are measured on a package's lattice.
+    /// Measures lengths on a package's lattice.
     pub fn new(
         frame: GridFrame,
         table: &'a CoordinateTable,
@@ -36,7 +38,8 @@ impl<'a> TrueLengths<'a> {
         Self { frame, table: Some(table), projection }
     }
 
-    /// Lengths by PROJ alone: they do not depend on the extent of a package, as its table does.
+    /// Measures lengths by PROJ alone: such lengths do not depend on the extent of a package, as
+    /// the package's table does.
     pub fn projected(frame: GridFrame, projection: &'a (dyn Projection + Sync)) -> Self {
         Self { frame, table: None, projection }
     }
@@ -68,16 +71,17 @@ impl<'a> TrueLengths<'a> {
             .zip(line.points().array_windows::<2>())
             .map(|((&ends_deg, &ends), [from, to])| {
                 let true_m = known_line_length_m(ends, ends_deg, &degrees);
-                // Far outside the area of the CRS a position may have no longitude and latitude; then the length in working metres is taken.
+                // Far outside the area of the CRS a position may have no longitude and latitude;
+                // then the length in working metres is used.
                 let plain_m = from.distance_steps(*to) * self.frame.lattice_step_m();
                 ((if true_m.is_finite() { true_m } else { plain_m }) * UM).round() as u64
             })
             .collect()
     }
 
-    /// The table, if all these points lie within its bounds.
+    /// The table, if all these points are within its bounds.
     fn table_of(&self, points: &[LatticePoint]) -> Option<&'a CoordinateTable> {
-        let (table, own) = (self.table?, LatticeBounds::of(points)?);
+        let (table, own) = (self.table?, LatticeBounds::around(points)?);
         let is_within =
             |&point: &LatticePoint| table.bounds().contains(self.frame.position_m(point));
         [own.min, own.max].iter().all(is_within).then_some(table)
@@ -90,9 +94,10 @@ impl<'a> TrueLengths<'a> {
         degrees(self.projection, at)
     }
 
-    /// Where a share of a segment of this length ends, in whole micrometres from its start.
+    /// The end of a fraction `share` of a segment of this length, in whole micrometres from its
+    /// start.
     fn cut_um(&self, segment: [LatticePoint; 2], share: f64, segment_um: u64) -> u64 {
-        // A point is rounded to the lattice and may lie a little beyond the end.
+        // A point is rounded to the lattice and may be slightly beyond the end.
         let share = share.clamp(0.0, 1.0);
         let is_end = share <= 0.0 || share >= 1.0;
         let working_m = segment[0].distance_steps(segment[1]) * self.frame.lattice_step_m();
@@ -104,11 +109,12 @@ impl<'a> TrueLengths<'a> {
         let ends = segment.map(|point| self.frame.position_m(point));
         let at =
             |share: f64| [0, 1].map(|axis| ends[0][axis] + share * (ends[1][axis] - ends[0][axis]));
-        // Quarters, because both halves are as long where the scale is the same on both sides of the middle.
+        // Quarters are compared, because both halves have equal lengths if the scale is the same on
+        // both sides of the middle.
         let places = [ends[0], at(0.25), at(0.5), at(0.75), ends[1]].map(degrees);
         let quarters_m = [0, 1, 2, 3].map(|k| wgs84::short_distance_m(places[k], places[k + 1]));
         let [least_m, most_m] = [f64::min, f64::max].map(|of| quarters_m.into_iter().reduce(of));
-        // What has no longitude and latitude is not even, and nothing better is known of it.
+        // A segment without longitude and latitude is not even, but no better cut is known.
         if least_m.zip(most_m).is_some_and(|(least_m, most_m)| most_m - least_m <= EVEN_M) {
             return part_um(share, segment_um);
         }
@@ -118,14 +124,15 @@ impl<'a> TrueLengths<'a> {
         part_um(if true_share.is_finite() { true_share } else { share }, segment_um)
     }
 
-    /// How far along a segment of this length, whose true length is `segment_um`, a place on it lies, in whole micrometres.
+    /// The distance of a point on a segment from the segment's start, in whole micrometres;
+    /// `segment_um` is the segment's true length.
     #[must_use]
     pub fn along_um(&self, segment: [LatticePoint; 2], at: LatticePoint, segment_um: u64) -> u64 {
         self.cut_um(segment, share(segment, at), segment_um)
     }
 
-    /// Where each segment of a part begins and ends along the segment of the line that it belongs to, micrometres.
-    /// `segments_um` are the true lengths of the line's segments.
+    /// The start and end of each segment of a part along the line's segment to which it belongs,
+    /// micrometres. `segments_um` are the true lengths of the line's segments.
     pub fn pieces_um(
         &self,
         line: &Polyline,
@@ -141,8 +148,8 @@ impl<'a> TrueLengths<'a> {
         })
     }
 
-    /// How much of a part lies over the gaps that were found when it was draped, micrometres. `pieces` are those of
-    /// [`Self::pieces_um`]: a gap is cut out of them.
+    /// The length of a part that is over the gaps found when the part was draped, micrometres.
+    /// `pieces` are those of [`Self::pieces_um`]: a gap is cut out of them.
     #[must_use]
     pub fn gaps_um(&self, part: &ClippedPart, pieces: &[[u64; 2]], gaps: &[Gap]) -> u64 {
         gaps.iter()
@@ -156,7 +163,8 @@ impl<'a> TrueLengths<'a> {
     }
 }
 
-/// Where each segment of a line begins along a road, micrometres, the first one at `from_um`.
+/// The start of each segment of a line along a road, micrometres; the first segment starts at
+/// `from_um`.
 #[must_use]
 pub fn starts_um(from_um: u64, segments_um: &[u64]) -> Vec<u64> {
     let next = |along_um: &mut u64, length_um: &u64| {
@@ -167,8 +175,8 @@ pub fn starts_um(from_um: u64, segments_um: &[u64]) -> Vec<u64> {
     segments_um.iter().scan(from_um, next).collect()
 }
 
-/// How far along a segment from p to q a point on it lies, as a share of the segment: 0 at p, 1 at q, and the same from
-/// whichever tile it is asked.
+/// The position of a point on a segment from p to q, as a fraction of the segment: 0 at p, 1 at q.
+/// The result is the same for every tile.
 #[must_use]
 pub fn share([p, q]: [LatticePoint; 2], at: LatticePoint) -> f64 {
     let along = |point: LatticePoint| {

@@ -1,4 +1,5 @@
-//! The true lengths of pieces add up to that of the segment, exactly, and each cut lies at its true place.
+//! The true lengths of pieces add up to the true length of the segment, exactly, and each cut is at
+//! its true position.
 
 use corniche_geom::{Bounds, NodeIndex};
 use corniche_gis::{DemProjection, RecordedCrs};
@@ -45,7 +46,7 @@ impl Map {
         self.frame.snap(at[0]).unwrap()
     }
 
-    /// The length up to a share of a segment by many short pieces, PROJ alone.
+    /// The length up to a fraction of a segment, measured in many short pieces with PROJ alone.
     fn dense_m(&self, segment: [LatticePoint; 2], share: f64) -> f64 {
         let ends = segment.map(|end| self.frame.position_m(end));
         let count = 100_000;
@@ -59,7 +60,8 @@ impl Map {
     }
 }
 
-/// A segment within the data, one to 0°, 0°, and one within a tile: cuts lie where the line is truly so long, and pieces add up.
+/// A segment within the data, one to 0°, 0°, and one within a tile: cuts are at the right true
+/// lengths, and pieces add up.
 #[test]
 fn cuts_lie_at_their_true_places() {
     let (ross, utm33) = (Map::ross(), Map::utm33());
@@ -69,7 +71,8 @@ fn cuts_lie_at_their_true_places() {
         (&utm33, [13.682_330_6, 70.121_829], [15.263_575_9, 70.126_483_7], 0.02),
         (&utm33, [13.682_330_6, 70.121_829], [0.0, 0.0], 0.2),
         (&utm33, [13.682_330_6, 70.121_829], [13.683, 70.1228], 0.002),
-        // Both halves are as long: the ends lie on one parallel, and on both sides of the central meridian.
+        // Both halves have equal lengths: the ends are on one parallel, and on both sides of the
+        // central meridian.
         (&ross, [-170.0, -78.0], [170.0, -78.0], 0.05),
         (&utm33, [13.7, 70.1], [16.3, 70.1], 0.02),
     ] {
@@ -88,7 +91,7 @@ fn cuts_lie_at_their_true_places() {
 }
 
 proptest! {
-    /// Whatever cuts a segment, its pieces add up to it, exactly, and none ends before it begins.
+    /// However a segment is cut, its pieces add up to it, exactly, and none ends before it begins.
     #[test]
     fn pieces_add_up(ends in [0.0..1.0_f64, 0.0..1.0, 0.0..1.0, 0.0..1.0], cuts in proptest::collection::vec(0.0..1.0_f64, 0..20), is_near in any::<bool>()) {
         let map = Map::utm33();

@@ -1,44 +1,45 @@
-//! Artifacts: immutable bytes by key, and the interface of what keeps them.
+//! Artifacts: immutable bytes by key, and the interface of the stores that hold them.
 
 use crate::StoreError;
 
 /// The name of an artifact. Keys sort by kind first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Key {
-    /// What the artifact holds; the list of kinds is the caller's.
+pub struct ArtifactKey {
+    /// The kind of the artifact; the caller defines the kinds.
     pub kind: u8,
-    /// Which one of its kind: a tile, a partition, an ordinal.
+    /// The number of the artifact within its kind: a tile, a partition, an ordinal.
     pub item: u64,
 }
 
-/// Immutable artifacts by key.
+/// A store of immutable artifacts by key.
 ///
-/// What is stored under a key is decided by the key and by what the store is bound to (a plan), so it does not matter who made it,
-/// or how often.
+/// The key, and the plan to which the store is bound, determine the bytes of an artifact. So it
+/// does not matter who computed it, or how often.
 pub trait Artifacts: Send + Sync {
-    /// Keeps `bytes` under `key`. If the key is there already, nothing changes.
+    /// Stores `bytes` under `key`. If the key already exists, nothing changes.
     ///
     /// # Errors
-    /// When there is no room or the device fails.
-    fn put(&self, key: Key, bytes: &[u8]) -> Result<(), StoreError>;
+    /// When there is no space or the device fails.
+    fn put(&self, key: ArtifactKey, bytes: &[u8]) -> Result<(), StoreError>;
 
-    /// What is kept under `key`, its checksum compared; `None` if there is nothing.
+    /// Returns the artifact under `key` after verifying its checksum; `None` if there is none.
     ///
     /// # Errors
-    /// When the device fails, or the bytes are not those that were kept.
-    fn get(&self, key: Key) -> Result<Option<Vec<u8>>, StoreError>;
+    /// When the device fails, or the bytes are not those that were stored.
+    fn get(&self, key: ArtifactKey) -> Result<Option<Vec<u8>>, StoreError>;
 
-    /// How many bytes are kept under `key`; `None` if there is nothing. They need not be read for it.
+    /// Returns the number of bytes under `key`; `None` if there is no artifact. The bytes need not
+    /// be read for this.
     ///
     /// # Errors
-    /// As [`Self::get`], where it is made with that.
-    fn length(&self, key: Key) -> Result<Option<u64>, StoreError> {
+    /// Same as [`Self::get`], if the implementation calls it.
+    fn length(&self, key: ArtifactKey) -> Result<Option<u64>, StoreError> {
         Ok(self.get(key)?.map(|bytes| bytes.len() as u64))
     }
 
-    /// Whether there is something under `key`.
-    fn has(&self, key: Key) -> bool;
+    /// Whether there is an artifact under `key`.
+    fn has(&self, key: ArtifactKey) -> bool;
 
-    /// The items of a kind that are there, ascending.
+    /// Returns the existing items of a kind, in ascending order.
     fn items(&self, kind: u8) -> Vec<u64>;
 }

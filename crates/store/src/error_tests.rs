@@ -1,4 +1,4 @@
-//! Errors of a store give advice that the command at hand can follow.
+//! Errors of a store give advice that the current command can follow.
 
 use super::*;
 
@@ -17,7 +17,7 @@ fn too_many_open_files_says_what_to_do() {
     assert!(!said.contains("ulimit"), "{said}");
 }
 
-/// `part`, `merge` and `verify` have neither `--resume` nor `--tmp` nor `-O` for a store.
+/// For a store, `part`, `merge` and `verify` have none of `--resume`, `--tmp` and `-O`.
 #[test]
 fn options_of_build_are_named_as_such() {
     use io::ErrorKind::{PermissionDenied, ReadOnlyFilesystem, StorageFull, Unsupported};

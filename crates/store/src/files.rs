@@ -1,5 +1,5 @@
-//! Files as the rest of the crate uses them: interrupted calls are made again, short writes and reads are completed, and
-//! an error says which file it is about.
+//! Files as the rest of the crate uses them: interrupted calls are repeated, short writes and reads
+//! are completed, and errors name their file.
 
 use std::{
     io,
@@ -7,7 +7,7 @@ use std::{
     sync::Arc,
 };
 
-use crate::{Disk, DiskFile, Hold, Listed, OpenMode, PartFile, StoreError};
+use crate::{Disk, DiskFile, FolderItem, Hold, OpenMode, PartFile, StoreError};
 
 /// A disk.
 #[derive(Debug)]
@@ -20,7 +20,7 @@ impl Files {
         Arc::new(Self { disk })
     }
 
-    /// Opens a file. Of kind `AlreadyExists` the caller may make sense; see [`is_kind`].
+    /// Opens a file. The caller may handle errors of kind `AlreadyExists`; see [`is_kind`].
     pub(crate) fn open(
         self: &Arc<Self>,
         path: &Path,
@@ -31,7 +31,7 @@ impl Files {
         Ok(OpenFile { file, path: path.to_owned(), files: Arc::clone(self) })
     }
 
-    /// The same for a file that need not be there; `None` where it is not.
+    /// Opens a file that need not exist; `None` if it does not.
     pub(crate) fn open_if_there(
         self: &Arc<Self>,
         path: &Path,
@@ -40,7 +40,7 @@ impl Files {
         absent_is_none(self.open(path, mode))
     }
 
-    /// Makes a folder unless it is there.
+    /// Creates a folder unless it exists.
     pub(crate) fn create_folder(&self, path: &Path) -> Result<(), StoreError> {
         match named(path, "create the folder", || self.disk.create_folder(path)) {
             Err(error) if is_kind(&error, io::ErrorKind::AlreadyExists) => Ok(()),
@@ -48,8 +48,8 @@ impl Files {
         }
     }
 
-    /// What a folder holds, by name; `None` if the folder is not there.
-    pub(crate) fn list(&self, folder: &Path) -> Result<Option<Vec<Listed>>, StoreError> {
+    /// Lists the content of a folder, sorted by name; `None` if the folder does not exist.
+    pub(crate) fn list(&self, folder: &Path) -> Result<Option<Vec<FolderItem>>, StoreError> {
         let mut listed = absent_is_none(named(folder, "list", || self.disk.list(folder)))?;
         if let Some(listed) = &mut listed {
             listed.sort();
@@ -61,26 +61,26 @@ impl Files {
         named(from, "rename", || self.disk.rename(from, to))
     }
 
-    /// Removes a file, if it is there.
+    /// Deletes a file if it exists.
     pub(crate) fn remove(&self, path: &Path) -> Result<(), StoreError> {
         absent_is_none(named(path, "remove", || self.disk.remove(path))).map(drop)
     }
 
-    /// Removes an empty folder, if it is there.
+    /// Deletes an empty folder if it exists.
     pub(crate) fn remove_folder(&self, path: &Path) -> Result<(), StoreError> {
         absent_is_none(named(path, "remove the folder", || self.disk.remove_folder(path))).map(drop)
     }
 
     pub(crate) fn sync_folder(&self, folder: &Path) -> Result<(), StoreError> {
-        named(folder, "make durable", || self.disk.sync_folder(folder))
+        named(folder, "sync", || self.disk.sync_folder(folder))
     }
 
     pub(crate) fn exists(&self, path: &Path) -> Result<bool, StoreError> {
-        Ok(named(path, "look for", || self.disk.identity(path))?.is_some())
+        Ok(named(path, "inspect", || self.disk.identity(path))?.is_some())
     }
 }
 
-/// An open file and its name.
+/// An open file and its path.
 #[derive(Debug)]
 pub(crate) struct OpenFile {
     file: Box<dyn DiskFile>,
@@ -105,14 +105,14 @@ impl OpenFile {
         Ok(())
     }
 
-    /// Its first bytes, so many or all.
+    /// Reads at most the first `most` bytes of the file.
     pub(crate) fn read_start(&self, most: u64) -> Result<Vec<u8>, StoreError> {
         let mut bytes = vec![0; self.length()?.min(most) as usize];
         self.read_exact_at(&mut bytes, 0)?;
         Ok(bytes)
     }
 
-    /// Reads what is there, up to the end of `bytes` or of the file; returns how many bytes that are.
+    /// Reads up to the end of `bytes` or of the file; returns the number of bytes read.
     pub(crate) fn read_up_to(&self, bytes: &mut [u8], offset: u64) -> Result<usize, StoreError> {
         let mut length = 0;
         while length < bytes.len() {
@@ -132,18 +132,18 @@ impl OpenFile {
     }
 
     pub(crate) fn sync(&self) -> Result<(), StoreError> {
-        named(&self.path, "make durable", || self.file.sync())
+        named(&self.path, "sync", || self.file.sync())
     }
 
-    /// Takes its lock; `false` if another holds it.
+    /// Takes the lock of the file; `false` if another process holds it.
     pub(crate) fn try_lock(&self, hold: Hold) -> Result<bool, StoreError> {
         named(&self.path, "lock", || self.file.try_lock(hold))
     }
 
-    /// Whether its name still leads to it.
+    /// Whether the path still leads to this file.
     pub(crate) fn is_in_place(&self) -> Result<bool, StoreError> {
-        let own = named(&self.path, "look at", || self.file.identity())?;
-        let named_so = named(&self.path, "look for", || self.files.disk.identity(&self.path))?;
+        let own = named(&self.path, "inspect", || self.file.identity())?;
+        let named_so = named(&self.path, "inspect", || self.files.disk.identity(&self.path))?;
         Ok(named_so == Some(own))
     }
 }
@@ -165,7 +165,7 @@ impl PartFile for OpenFile {
     }
 }
 
-/// Whether an error is about a file and of this kind.
+/// Whether an error is about a file and has this kind.
 pub(crate) fn is_kind(error: &StoreError, kind: io::ErrorKind) -> bool {
     matches!(error, StoreError::Io { source, .. } if source.kind() == kind)
 }
@@ -177,7 +177,7 @@ fn absent_is_none<T>(result: Result<T, StoreError>) -> Result<Option<T>, StoreEr
     }
 }
 
-/// Makes a call again as long as it is interrupted; an error gets the name of the file.
+/// Repeats a call as long as it is interrupted, and adds the name of the file to an error.
 fn named<T>(
     path: &Path,
     doing: &'static str,

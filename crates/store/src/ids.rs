@@ -1,30 +1,31 @@
-//! Ids that nobody has had before, and the line by which a file of ours is known: a mark and an id.
+//! Unique ids, and the line by which Corniche recognises its own files: a mark and an id.
 
 use std::hash::{BuildHasher as _, Hasher as _, RandomState};
 
-/// So many digits an id has.
+/// Number of digits of an id.
 const DIGITS: usize = 16;
 
-/// Sixteen hexadecimal digits that nobody has had before.
+/// Returns sixteen hexadecimal digits that have never been used before.
 #[must_use]
 pub fn random_digits() -> String {
     // Each `RandomState` has new keys from the system.
     format!("{:0DIGITS$x}", RandomState::new().build_hasher().finish())
 }
 
-/// Whether a text can come from [`random_digits`].
+/// Whether a text can be a result of [`random_digits`].
 pub(crate) fn is_id(text: &str) -> bool {
     text.len() == DIGITS && is_hexadecimal(text)
 }
 
-/// What a file says whose first line is to be a mark and an id.
+/// The content of a file whose first line should be a mark and an id.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Marked<'a> {
-    /// The id, and what follows its line.
+    /// The id, and the text after its line.
     Id(&'a str, &'a str),
-    /// Nothing, or a line that was begun and never ended, by a kill on a full disk: nothing was made yet that is known by it.
+    /// Nothing, or an incomplete first line, left by a kill or by a full disk: there are no files
+    /// yet that belong to this id.
     Begun,
-    /// Something that is not ours.
+    /// Something that Corniche did not write.
     Other,
 }
 

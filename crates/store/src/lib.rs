@@ -1,18 +1,19 @@
-//! What a build keeps on disk: immutable artifacts by key ([`Artifacts`]), and scratch space in which more records can be
-//! sorted than fit in memory ([`Scratch`], [`Sorter`]).
+//! The artifacts of a build on disk, which are immutable bytes by key ([`Artifacts`]), and scratch
+//! space for sorting more records than fit in memory ([`ScratchSpace`], [`Sorter`]).
 //!
-//! [`LocalStore`] keeps artifacts in a folder such that a crash at any moment loses the last seconds and nothing else; [`MemoryStore`] keeps them in
-//! memory. All input and output goes through [`Disk`], so that tests can let any call fail.
+//! [`LocalStore`] keeps artifacts in a folder; a crash at any moment loses only the last seconds.
+//! [`MemoryStore`] keeps artifacts in memory. All input and output uses [`Disk`], so that tests can
+//! let any call fail.
 //!
 //! ```
 //! # fn main() -> Result<(), corniche_store::StoreError> {
 //! # let temporary = tempfile::tempdir().unwrap();
 //! # let folder = temporary.path().join("store");
 //! use std::sync::Arc;
-//! use corniche_store::{Artifacts, Key, LocalStore, SYNC_INTERVAL, StoredPlan, SystemDisk};
+//! use corniche_store::{ArtifactKey, Artifacts, LocalStore, SYNC_INTERVAL, StoredPlan, SystemDisk};
 //!
 //! let plan = StoredPlan { hash: [0; 32], bytes: b"{}".to_vec() };
-//! let heights = Key { kind: 0, item: 17 };
+//! let heights = ArtifactKey { kind: 0, item: 17 };
 //! let store = LocalStore::create(Arc::new(SystemDisk), &folder, &plan, SYNC_INTERVAL)?;
 //! store.put(heights, b"made at some cost")?;
 //! drop(store); // or the process is killed two seconds later
@@ -24,10 +25,11 @@
 //! # }
 //! ```
 //!
-//! A store reads sealed parts from any number of [places](PartsPlace): folders, or what another crate makes one, such as object storage.
+//! A store reads sealed parts from any number of [places](PartsPlace): folders, or places of other
+//! crates, such as object storage.
 //!
-//! This crate knows no tile and no road: a key is two numbers, an artifact is bytes. It never changes what was put, makes no threads, and
-//! removes no file that it did not make.
+//! This crate knows no tiles and no roads: a key consists of two numbers, an artifact is bytes. It
+//! never changes a stored artifact, starts no threads, and deletes no file that it did not create.
 
 mod artifacts;
 mod disk;
@@ -44,8 +46,8 @@ mod sorter;
 mod stored_plan;
 mod system_disk;
 
-pub use artifacts::{Artifacts, Key};
-pub use disk::{Disk, DiskFile, FileId, Hold, Listed, OpenMode};
+pub use artifacts::{ArtifactKey, Artifacts};
+pub use disk::{Disk, DiskFile, FileId, FolderItem, Hold, OpenMode};
 pub use error::StoreError;
 pub use ids::random_digits;
 pub use in_memory_store::MemoryStore;
@@ -59,7 +61,7 @@ pub use output_target::{
 };
 pub use parts_place::{PartFile, PartsPlace, Publish};
 pub use record_bytes::{append_record, record_bytes, take_record};
-pub use scratch::{Scratch, Span};
+pub use scratch::{ScratchRange, ScratchSpace};
 pub use sorter::{Groups, SerdeRecord, SortRecord, Sorted, Sorter};
 pub use stored_plan::{PlanHash, StoredPlan};
 pub use system_disk::SystemDisk;

@@ -3,15 +3,16 @@
 //! ```text
 //! FOLDER/store                       header: format, plan's hash                    binding.rs, header.rs
 //!        plan.json                   the plan, as the caller wrote it
-//!        lock                        held by who works here                         lock.rs
-//!        NAME.PID-RANDOM.data        an open part: artifacts, one after the other   open_part.rs
-//!        NAME.PID-RANDOM.journal     what of them is durable                        entry.rs
+//!        lock                        held by the process that works here            lock.rs
+//!        NAME.PID-RANDOM.data        an open part: artifacts, one after another     open_part.rs
+//!        NAME.PID-RANDOM.journal     the list of its durable artifacts              entry.rs
 //!        parts/NAME.DIGEST.part      a sealed part: artifacts, then their list      sealed_part.rs
 //!        PID-RANDOM.scratch          scratch space                                  scratch.rs
 //! ```
 //!
-//! What is durable when: the data of an artifact before the journal's entry of it; all of a part before its name; the plan before the header. So
-//! after a crash at any moment, whatever is there is right, and only the last seconds are missing.
+//! The order of durability: the data of an artifact before its journal entry; a whole part before
+//! its name; the plan before the header. So after a crash at any moment, everything in the store is
+//! correct, and only the last seconds are missing.
 
 mod binding;
 mod entry;
@@ -38,24 +39,24 @@ pub use scratch::LocalScratch;
 pub use sealed_part::check_sealed;
 
 use crate::{
-    Artifacts, Disk, Hold, Key, Listed, PartFile, PartsPlace, PlanHash, Publish, StoreError,
-    StoredPlan,
+    ArtifactKey, Artifacts, Disk, FolderItem, Hold, PartFile, PartsPlace, PlanHash, Publish,
+    StoreError, StoredPlan,
     files::{Files, OpenFile},
 };
 use binding::FolderState;
-use entry::Entry;
+use entry::ArtifactEntry;
 use header::FileKind;
-use index::{Index, Location};
+use index::{ArtifactLocation, Index};
 use layout::Role;
 use open_part::{OPEN_PART, OpenPart};
 
-/// How often artifacts are made durable, unless one asks for something else: this much work is lost at most.
+/// The default interval at which artifacts are made durable: a crash loses at most this much work.
 pub const SYNC_INTERVAL: Duration = Duration::from_secs(2);
 
-/// The name of the part that a whole build makes.
+/// The name of the part of a whole build.
 const BUILD: &str = "build";
 
-/// Artifacts in files of a folder: one part that is being written, and sealed ones.
+/// Artifacts in files of a folder: one part that is being written, and sealed parts.
 #[derive(Debug)]
 pub struct LocalStore {
     files: Arc<Files>,
@@ -65,45 +66,53 @@ pub struct LocalStore {
     own: Option<Own>,
 }
 
-/// The part that is written, and where.
+/// The part that is being written, and its folder.
 #[derive(Debug)]
 struct Own {
     folder: PathBuf,
     part: OpenPart,
     dropped: u64,
-    /// Dropped last: until then nobody else may touch the folder.
+    /// Dropped last: until then no other process may use the folder.
     lock: OpenFile,
 }
 
-/// A part to be written by [`LocalStore::open_places`].
+/// A part that [`LocalStore::open_places`] writes.
 #[derive(Debug, Clone, Copy)]
 pub struct OwnPart<'a> {
-    /// The store's folder; made where it is not there, within one that is.
+    /// The store's folder, which is created if it does not exist; the folder around it must exist.
     pub folder: &'a Path,
-    /// What the part is: step and subtree, for instance. Letters, digits, `-` and `_`.
+    /// The name of the part, for example step and subtree. Letters, digits, `-` and `_`.
     pub name: &'a str,
-    /// What the store is bound to.
+    /// The plan to which the store is bound.
     pub plan: &'a StoredPlan,
-    /// How often artifacts are made durable.
+    /// The interval at which artifacts are made durable.
     pub interval: Duration,
 }
 
 /// The sealed parts that [`LocalStore::open_places`] reads.
 #[derive(Clone, Copy)]
 pub struct SealedParts<'a> {
-    /// Where they lie.
+    /// The places that contain them.
     pub places: &'a [&'a dyn PartsPlace],
-    /// Which of them are needed, by their names without digest. The others are not even opened, and neither are those in the folder of the
-    /// own part.
+    /// Selects the needed parts by their names without digest. Other parts are not even opened,
+    /// including those in the folder of the own part.
     pub is_needed: &'a dyn Fn(&str) -> bool,
 }
 
+/// The part that a process writes, and the lock on its folder.
+struct LockedPart<'a> {
+    folder: &'a Path,
+    name: &'a str,
+    lock: OpenFile,
+}
+
 impl LocalStore {
-    /// The plan that the store in `folder` is bound to; `None` if the folder is not there, empty, or only what is left of making or removing a store.
-    /// Changes nothing.
+    /// Returns the plan to which the store in `folder` is bound; `None` if the folder does not
+    /// exist, is empty, or only has the remains of creating or deleting a store. Changes nothing.
     ///
     /// # Errors
-    /// [`StoreError::NotAStore`] if it holds something else; [`StoreError::OtherVersion`]; [`StoreError::Damaged`].
+    /// [`StoreError::NotAStore`] if it contains something else; [`StoreError::OtherVersion`];
+    /// [`StoreError::Damaged`].
     pub fn stored_plan(
         disk: Arc<dyn Disk>,
         folder: &Path,
@@ -111,10 +120,12 @@ impl LocalStore {
         Folder::new(disk, folder).stored_plan()
     }
 
-    /// Makes a store for a build of its own, in a folder that is empty or not there. The folder around it must be there.
+    /// Creates a store for a single build, in a folder that is empty or does not exist. The folder
+    /// around it must exist.
     ///
     /// # Errors
-    /// [`StoreError::Exists`], [`StoreError::NotAStore`] or [`StoreError::Locked`], and where the disk fails.
+    /// [`StoreError::Exists`], [`StoreError::NotAStore`] or [`StoreError::Locked`], and when the
+    /// disk fails.
     pub fn create(
         disk: Arc<dyn Disk>,
         folder: &Path,
@@ -125,17 +136,25 @@ impl LocalStore {
         refuse_store(&files, folder)?;
         files.create_folder(folder)?;
         let lock = lock::lock_store(&files, folder, Hold::Alone)?;
-        // Another may have made one before the lock was ours.
+        // Another process may have created a store before this process got the lock.
         refuse_store(&files, folder)?;
         remove_own_files(&files, folder)?;
         binding::bind(&files, folder, plan)?;
-        Self::assemble(files, NO_PARTS, Some((folder, BUILD, lock)), &plan.hash, interval)
+        Self::assemble(
+            files,
+            NO_PARTS,
+            Some(LockedPart { folder, name: BUILD, lock }),
+            &plan.hash,
+            interval,
+        )
     }
 
-    /// Goes on with the store of a build. What a crash left half is cut off ([`Self::repaired`]).
+    /// Resumes the store of a build. Incomplete artifacts of a crash are truncated
+    /// ([`Self::repaired`]).
     ///
     /// # Errors
-    /// [`StoreError::NoStore`], [`StoreError::OtherPlan`], [`StoreError::Locked`] and others, and where the disk fails.
+    /// [`StoreError::NoStore`], [`StoreError::OtherPlan`], [`StoreError::Locked`] and others, and
+    /// when the disk fails.
     pub fn open(
         disk: Arc<dyn Disk>,
         folder: &Path,
@@ -146,19 +165,26 @@ impl LocalStore {
         binding::check_hash(&files, folder, plan)?;
         let lock = lock::lock_store(&files, folder, Hold::Alone)?;
         binding::check_hash(&files, folder, plan)?;
-        let place = Folder::of(&files, folder);
+        let place = Folder::at_path(&files, folder);
         let sealed = SealedParts { places: &[&place], ..NO_PARTS };
-        Self::assemble(files, sealed, Some((folder, BUILD, lock)), plan, interval)
+        Self::assemble(
+            files,
+            sealed,
+            Some(LockedPart { folder, name: BUILD, lock }),
+            plan,
+            interval,
+        )
     }
 
-    /// Opens the sealed parts of several places as one, and a part of its own to write if asked. Without one the store can only be read.
-    /// The sealed parts in the own part's folder are read too. `Hold::Shared` lets other processes make their parts in that folder at the same
-    /// time.
+    /// Opens the sealed parts of several places together, and a part to write if requested. Without
+    /// that part the store is read-only. The sealed parts in the own part's folder are read, too.
+    /// With `Hold::Shared` other processes can write their parts in that folder at the same time.
     ///
     /// # Errors
-    /// [`StoreError::NoStore`], [`StoreError::OtherPlan`], [`StoreError::OtherVersion`] or [`StoreError::Damaged`] with the name of the part;
-    /// [`StoreError::Differs`] where two parts contradict each other; [`StoreError::Locked`] where the folder of the own part is in use;
-    /// and where the disk or a place fails.
+    /// [`StoreError::NoStore`], [`StoreError::OtherPlan`], [`StoreError::OtherVersion`] or
+    /// [`StoreError::Damaged`] with the name of the part; [`StoreError::Differs`] if two parts
+    /// contradict each other; [`StoreError::Locked`] if the folder of the own part is in use; and
+    /// when the disk or a place fails.
     pub fn open_places(
         disk: Arc<dyn Disk>,
         sealed: SealedParts<'_>,
@@ -178,21 +204,27 @@ impl LocalStore {
         if !matches!(binding::state(&files, own.folder)?.0, FolderState::Store) {
             binding::bind(&files, own.folder, own.plan)?;
         }
-        let own_folder = Folder::of(&files, own.folder);
+        let own_folder = Folder::at_path(&files, own.folder);
         let mut places = places.to_vec();
         if !places.iter().any(|place| place.name() == own.folder) {
             places.push(&own_folder);
         }
         check_plans(&places, plan)?;
         let sealed = SealedParts { places: &places, is_needed };
-        Self::assemble(files, sealed, Some((own.folder, own.name, lock)), plan, own.interval)
+        Self::assemble(
+            files,
+            sealed,
+            Some(LockedPart { folder: own.folder, name: own.name, lock }),
+            plan,
+            own.interval,
+        )
     }
 
-    /// Reads what the places hold and opens the own part.
+    /// Reads the lists of the places and opens the own part.
     fn assemble(
         files: Arc<Files>,
         parts: SealedParts<'_>,
-        own: Option<(&Path, &str, OpenFile)>,
+        own: Option<LockedPart<'_>>,
         plan: &PlanHash,
         interval: Duration,
     ) -> Result<Self, StoreError> {
@@ -211,7 +243,7 @@ impl LocalStore {
             }
         }
         let mut store = Self { files, index: RwLock::default(), sealed, own: None };
-        if let Some((folder, name, lock)) = own {
+        if let Some(LockedPart { folder, name, lock }) = own {
             open_part::remove_data_without_journal(&store.files, folder)?;
             remove_scratch(&store.files, folder)?;
             let visit =
@@ -224,37 +256,41 @@ impl LocalStore {
         Ok(store)
     }
 
-    /// Makes durable all that was put before.
+    /// Makes all stored artifacts durable.
     ///
     /// # Errors
-    /// Where the disk fails; [`StoreError::Gone`] if the store was removed.
+    /// When the disk fails; [`StoreError::Gone`] if the store was deleted.
     pub fn flush(&self) -> Result<(), StoreError> {
         self.own.as_ref().map_or(Ok(()), |own| own.part.flush())
     }
 
-    /// From here on nothing is kept: dropping the store writes nothing more. For a store that is removed with its folder.
+    /// Stops storing: from now on, nothing more is written, even when the store is dropped. For a
+    /// store that is deleted together with its folder.
     pub fn give_up(&self) {
         if let Some(own) = &self.own {
-            own.part.give_up("the store was given up".to_owned());
+            own.part.give_up("the store was abandoned".to_owned());
         }
     }
 
-    /// Ends the own part: makes it durable under a name that says what it holds, and returns that; `None` if nothing was put. If the
-    /// same part is there already, this copy is dropped.
+    /// Seals the own part: makes it durable under a name that depends on its content, and returns
+    /// the path; `None` if nothing was stored. If the same part already exists, this copy is
+    /// deleted.
     ///
     /// # Errors
-    /// [`StoreError::ReadOnly`]; where the disk fails. The part then stays open and can be gone on with.
+    /// [`StoreError::ReadOnly`]; when the disk fails. The part then stays open and can be resumed.
     pub fn seal(mut self) -> Result<Option<PathBuf>, StoreError> {
         let own = self.own.take().ok_or_else(|| self.read_only())?;
         own.part.seal(&own.folder, &self.index())
     }
 
-    /// Ends the own part as [`Self::seal`] does, and sends it to a place, with whatever an earlier process left sealed in the folder. Returns where
-    /// the part is then; `None` if there was nothing to send. If that fails, everything stays in the folder, and the same part sends it when it
-    /// is published again. What is sent is removed; the folder can then be [discarded](Self::discard).
+    /// Seals the own part like [`Self::seal`] and sends it to a place, together with the parts that
+    /// earlier processes left sealed in the folder. Returns the location of the part; `None` if
+    /// there was nothing to send. If sending fails, everything stays in the folder, and publishing
+    /// the same part again sends it. Parts that were sent are deleted from the folder, which can
+    /// then be [discarded](Self::discard).
     ///
     /// # Errors
-    /// [`StoreError::ReadOnly`]; where the disk or the place fails.
+    /// [`StoreError::ReadOnly`]; when the disk or the place fails.
     pub fn publish(
         mut self,
         place: &dyn Publish,
@@ -270,44 +306,47 @@ impl LocalStore {
         Ok(published)
     }
 
-    /// Gives the own part up: what was put into it is removed. Sealed parts stay as they are.
+    /// Abandons the own part: its artifacts are deleted. Sealed parts do not change.
     ///
     /// # Errors
-    /// [`StoreError::ReadOnly`]; where the disk fails.
+    /// [`StoreError::ReadOnly`]; when the disk fails.
     pub fn abandon(mut self) -> Result<(), StoreError> {
         let own = self.own.take().ok_or_else(|| self.read_only())?;
         own.part.abandon()
     }
 
-    /// Scratch space in the store's folder.
+    /// Creates scratch space in the store's folder.
     ///
     /// # Errors
-    /// [`StoreError::ReadOnly`] without a part of its own; where the disk fails.
+    /// [`StoreError::ReadOnly`] without an own part; when the disk fails.
     pub fn scratch(&self) -> Result<LocalScratch, StoreError> {
         let own = self.own.as_ref().ok_or_else(|| self.read_only())?;
         let file = lock::create_owned(&self.files, |suffix| layout::scratch(&own.folder, suffix))?;
         Ok(LocalScratch::new(file))
     }
 
-    /// Removes the store. Only what a store makes is removed: where the folder holds something else, it stays, and what stays is returned.
+    /// Deletes the store. Only files that a store creates are deleted: other files and their folder
+    /// stay, and their paths are returned.
     ///
     /// # Errors
-    /// [`StoreError::ReadOnly`] without a part of its own; [`StoreError::Locked`] if others make parts here; where the disk fails.
+    /// [`StoreError::ReadOnly`] without an own part; [`StoreError::Locked`] if other processes
+    /// write parts here; when the disk fails.
     pub fn remove(mut self) -> Result<Vec<PathBuf>, StoreError> {
         let own = self.own.take().ok_or_else(|| self.read_only())?;
         if !own.lock.try_lock(Hold::Alone)? {
-            let owner = "another process that makes a part".to_owned();
+            let owner = "another process that writes a part".to_owned();
             return Err(StoreError::Locked { path: own.folder.clone(), owner });
         }
         own.part.give_up("the store was removed".to_owned());
         remove_all(&self.files, &own.folder)
     }
 
-    /// Removes the store in a folder without opening it: it may be damaged, or of another plan or version. Where the folder holds something
-    /// else, nothing is removed, and what it is is returned.
+    /// Deletes the store in a folder without opening it: the store may be damaged, or have another
+    /// plan or version. If the folder contains something else, nothing is deleted, and the paths of
+    /// the other files are returned.
     ///
     /// # Errors
-    /// [`StoreError::NotAStore`], [`StoreError::Locked`], and where the disk fails.
+    /// [`StoreError::NotAStore`], [`StoreError::Locked`], and when the disk fails.
     pub fn discard(disk: Arc<dyn Disk>, folder: &Path) -> Result<Vec<PathBuf>, StoreError> {
         let files = Files::new(disk);
         binding::clear_damaged_lock(&files, folder)?;
@@ -319,7 +358,8 @@ impl LocalStore {
         if foreign.is_empty() { remove_all(&files, folder) } else { Ok(foreign) }
     }
 
-    /// How many artifacts were cut off when the own part was opened: torn, damaged, or put after such a one.
+    /// Number of artifacts that were truncated when the own part was opened: incomplete, damaged,
+    /// or stored after such an artifact.
     #[must_use]
     pub fn repaired(&self) -> u64 {
         self.own.as_ref().map_or(0, |own| own.dropped)
@@ -336,7 +376,7 @@ impl LocalStore {
 }
 
 impl Artifacts for LocalStore {
-    fn put(&self, key: Key, bytes: &[u8]) -> Result<(), StoreError> {
+    fn put(&self, key: ArtifactKey, bytes: &[u8]) -> Result<(), StoreError> {
         if self.has(key) {
             return Ok(());
         }
@@ -344,7 +384,7 @@ impl Artifacts for LocalStore {
         own.part.put(&self.index, key, bytes)
     }
 
-    fn get(&self, key: Key) -> Result<Option<Vec<u8>>, StoreError> {
+    fn get(&self, key: ArtifactKey) -> Result<Option<Vec<u8>>, StoreError> {
         let Some(place) = self.index().get(key) else { return Ok(None) };
         let (is_sealed, file) = match (&self.own, self.sealed.get(place.part as usize)) {
             (_, Some(file)) => (true, &**file),
@@ -354,13 +394,14 @@ impl Artifacts for LocalStore {
         let mut bytes = vec![0; place.length as usize];
         file.read_exact_at(&mut bytes, place.offset)?;
         if crc32fast::hash(&bytes) != place.crc {
-            let Key { kind, item } = key;
-            let what =
-                format!("artifact {item} of kind {kind} has another checksum than when it was put");
+            let ArtifactKey { kind, item } = key;
+            let what = format!(
+                "artifact {item} of kind {kind} does not have the checksum with which it was stored"
+            );
             return Err(if is_sealed {
                 FileKind::Sealed.damaged(file.path(), &what)
             } else {
-                // What is damaged is cut off when the part is opened again.
+                // The damaged artifact is truncated when the part is opened again.
                 let what = format!("{what}; run the same command again (build: with --resume)");
                 StoreError::Damaged { path: file.path().to_owned(), what }
             });
@@ -368,11 +409,11 @@ impl Artifacts for LocalStore {
         Ok(Some(bytes))
     }
 
-    fn length(&self, key: Key) -> Result<Option<u64>, StoreError> {
+    fn length(&self, key: ArtifactKey) -> Result<Option<u64>, StoreError> {
         Ok(self.index().get(key).map(|place| u64::from(place.length)))
     }
 
-    fn has(&self, key: Key) -> bool {
+    fn has(&self, key: ArtifactKey) -> bool {
         self.index().get(key).is_some()
     }
 
@@ -381,10 +422,10 @@ impl Artifacts for LocalStore {
     }
 }
 
-/// No part; for all of some places.
+/// No places, and every part is needed: the default for reading all parts of some places.
 const NO_PARTS: SealedParts<'static> = SealedParts { places: &[], is_needed: &|_| true };
 
-/// Fails unless all places are of this plan.
+/// Fails unless all places are bound to this plan.
 fn check_plans(places: &[&dyn PartsPlace], plan: &PlanHash) -> Result<(), StoreError> {
     for place in places {
         let path = place.name().to_owned();
@@ -397,16 +438,16 @@ fn check_plans(places: &[&dyn PartsPlace], plan: &PlanHash) -> Result<(), StoreE
     Ok(())
 }
 
-/// Adds an entry of a part. What another part holds too must be the same there.
+/// Adds an entry of a part. If another part has the same artifact, both must be equal.
 fn add(
     index: &mut Index,
     sealed: &[Box<dyn PartFile>],
     part: u32,
     path: &Path,
-    entry: Entry,
+    entry: ArtifactEntry,
 ) -> Result<(), StoreError> {
-    let Entry { key, offset, length, crc } = entry;
-    if index.insert(key, Location { part, offset, length, crc }) {
+    let ArtifactEntry { key, offset, length, crc } = entry;
+    if index.insert(key, ArtifactLocation { part, offset, length, crc }) {
         return Ok(());
     }
     match index.get(key) {
@@ -423,7 +464,7 @@ fn add(
     }
 }
 
-/// The number of the next sealed part.
+/// Returns the number of the next sealed part.
 fn part_number(path: &Path, count: usize) -> Result<u32, StoreError> {
     match u32::try_from(count) {
         Ok(number) if number < OPEN_PART => Ok(number),
@@ -436,7 +477,7 @@ fn part_number(path: &Path, count: usize) -> Result<u32, StoreError> {
     }
 }
 
-/// Refuses a folder that is a store already, or holds something else.
+/// Fails if a folder already is a store or contains something else.
 fn refuse_store(files: &Arc<Files>, folder: &Path) -> Result<(), StoreError> {
     match binding::state(files, folder)?.0 {
         FolderState::Store => Err(StoreError::Exists { path: folder.to_owned() }),
@@ -444,16 +485,16 @@ fn refuse_store(files: &Arc<Files>, folder: &Path) -> Result<(), StoreError> {
     }
 }
 
-/// The paths of the sealed parts of a folder, by name.
+/// Returns the paths of the sealed parts of a folder, by name.
 fn sealed_paths(files: &Arc<Files>, folder: &Path) -> Result<Vec<PathBuf>, StoreError> {
-    let names = Folder::of(files, folder).parts()?;
+    let names = Folder::at_path(files, folder).parts()?;
     Ok(names.into_iter().map(|name| folder.join(layout::PARTS).join(name)).collect())
 }
 
-/// Removes the scratch space of dead processes.
+/// Deletes the scratch space of dead processes.
 fn remove_scratch(files: &Arc<Files>, folder: &Path) -> Result<(), StoreError> {
     let found = layout::look(files, folder)?.unwrap_or_default();
-    for name in found.of(Role::Scratch) {
+    for name in found.files_with_role(Role::Scratch) {
         let path = folder.join(name);
         if lock::adopt(files, &path)?.is_some() {
             files.remove(&path)?;
@@ -462,14 +503,16 @@ fn remove_scratch(files: &Arc<Files>, folder: &Path) -> Result<(), StoreError> {
     Ok(())
 }
 
-/// Removes a store whose lock is held; returns what is left because no store makes it.
+/// Deletes a store whose lock is held; returns the paths of files that no store creates.
 fn remove_all(files: &Arc<Files>, folder: &Path) -> Result<Vec<PathBuf>, StoreError> {
     let mut left = remove_own_files(files, folder)?;
-    // The lock says whose the rest is. After a crash none of the rest may be there without it.
+    // The lock proves that the other files belong to the store. After a crash none of them may
+    // exist without the lock.
     files.sync_folder(folder)?;
     files.remove(&folder.join(layout::LOCK))?;
     if left.is_empty() {
-        // Something may have come in between: then the folder is not empty, and stays.
+        // Another process may have created something in between: then the folder is not empty, and
+        // stays.
         if let Err(error) = files.remove_folder(folder) {
             left = layout::look(files, folder)?
                 .unwrap_or_default()
@@ -485,13 +528,13 @@ fn remove_all(files: &Arc<Files>, folder: &Path) -> Result<Vec<PathBuf>, StoreEr
     Ok(left)
 }
 
-/// What a store's folder holds that no store makes.
+/// Returns the files of a store's folder that no store creates.
 fn foreign(files: &Arc<Files>, folder: &Path) -> Result<Vec<PathBuf>, StoreError> {
     let found = layout::look(files, folder)?.unwrap_or_default();
     let mut foreign: Vec<PathBuf> = found.foreign.iter().map(|name| folder.join(name)).collect();
-    if found.of(Role::Parts).next().is_some() {
+    if found.files_with_role(Role::Parts).next().is_some() {
         let parts = folder.join(layout::PARTS);
-        let is_part = |entry: &Listed| {
+        let is_part = |entry: &FolderItem| {
             !entry.is_folder
                 && entry.name.to_str().is_some_and(|n| layout::part_of_sealed(n).is_some())
         };
@@ -501,13 +544,13 @@ fn foreign(files: &Arc<Files>, folder: &Path) -> Result<Vec<PathBuf>, StoreError
     Ok(foreign)
 }
 
-/// Removes all files of a store but the lock; returns what is left. The header goes before the plan: at any moment the folder is a store that
-/// can be read, or none.
+/// Deletes all files of a store except the lock; returns the other files of the folder. The header
+/// is deleted before the plan: at any moment the folder is either a readable store, or not a store.
 fn remove_own_files(files: &Arc<Files>, folder: &Path) -> Result<Vec<PathBuf>, StoreError> {
     let found = layout::look(files, folder)?.unwrap_or_default();
     let left = foreign(files, folder)?;
     let parts = folder.join(layout::PARTS);
-    if found.of(Role::Parts).next().is_some() {
+    if found.files_with_role(Role::Parts).next().is_some() {
         for path in sealed_paths(files, folder)? {
             files.remove(&path)?;
         }

@@ -1,18 +1,18 @@
-//! What places an output file safely: at a target lies what was there before, or the whole new
-//! file.
+//! Places an output file safely: the target path always holds the old file or the complete new
+//! file, never a partial one.
 //!
 //! ```text
-//!   file_target      where it goes: the file, or what a link there leads to; a folder, a device or a
-//!        │           dead link is refused
-//!   Claim            the right to write there: of two programs one is refused, and what a killed run
-//!        │           left is known for ours
-//!   UnfinishedFile, UnfinishedFolder    what is made beside it; gone when it is dropped
+//!   file_target      the target: the file, or the target of a link there; a folder, a device or a
+//!        │           dead link is rejected
+//!   Claim            the right to write there: one of two programs is rejected, and leftovers of a
+//!        │           killed run are recognised
+//!   UnfinishedFile, UnfinishedFolder    written next to the target; deleted when dropped
 //!        │
-//!   place            durably in its place, over what was there only with Existing::Replace
+//!   place            durably at the target, over an existing file only with Existing::Replace
 //! ```
 //!
-//! All files of ours are opened by [`open_own`]: no link is followed, and nothing of another user
-//! is written. What a full disk says of itself is [`LackOfRoom`].
+//! All files of Corniche are opened by [`open_own`]: no link is followed, and no file of another
+//! user is written. [`LackOfRoom`] describes a full disk.
 
 mod claim;
 mod file_target;

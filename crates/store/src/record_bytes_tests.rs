@@ -1,4 +1,4 @@
-//! Records come back one after the other, and cut or damaged ones do not.
+//! Records round-trip one after another, and truncated or damaged ones are rejected.
 
 use super::{append_record, record_bytes, take_record};
 
@@ -23,7 +23,7 @@ fn records_come_back_and_cut_ones_do_not() {
     }
 }
 
-/// A length of four thousand million is not believed.
+/// A length of four thousand million is rejected.
 #[test]
 fn a_length_that_lies_is_refused() {
     let mut bytes = record_bytes(0_i64);

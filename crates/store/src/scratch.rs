@@ -2,17 +2,18 @@
 
 use std::io;
 
-/// Where something was put.
+/// The location of bytes in scratch space.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Span {
-    /// Bytes before it.
+pub struct ScratchRange {
+    /// The offset of the first byte.
     pub offset: u64,
-    /// Bytes of it.
+    /// The number of bytes.
     pub length: u64,
 }
 
-impl Span {
-    /// The part of this span that starts `from` bytes in and is `length` long, cut at its end.
+impl ScratchRange {
+    /// The part of this range that starts after `from` bytes and has `length` bytes, cut at the end
+    /// of the range.
     #[must_use]
     pub fn part(self, from: u64, length: u64) -> Self {
         let from = from.min(self.length);
@@ -20,17 +21,18 @@ impl Span {
     }
 }
 
-/// Space for bytes that nobody needs after the step that wrote them: appended and read back, gone when it is dropped.
-pub trait Scratch: Send + Sync {
-    /// Keeps `bytes`.
+/// Space for bytes that are only needed by the step that wrote them: appended and read back, and
+/// deleted when it is dropped.
+pub trait ScratchSpace: Send + Sync {
+    /// Appends `bytes`.
     ///
     /// # Errors
-    /// When there is no room or the device fails.
-    fn append(&self, bytes: &[u8]) -> io::Result<Span>;
+    /// When there is no space or the device fails.
+    fn append(&self, bytes: &[u8]) -> io::Result<ScratchRange>;
 
-    /// Reads back what `append` kept.
+    /// Reads bytes that `append` wrote.
     ///
     /// # Errors
-    /// When the device fails or the span was never written.
-    fn read(&self, span: Span) -> io::Result<Vec<u8>>;
+    /// When the device fails or the range was never written.
+    fn read(&self, span: ScratchRange) -> io::Result<Vec<u8>>;
 }

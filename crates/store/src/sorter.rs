@@ -1,7 +1,7 @@
 //! Sorting more records than fit in memory.
 //!
-//! Source: Knuth 1998, *The Art of Computer Programming*, volume 3, section 5.4 (external sorting): sorted runs, merged; in passes where
-//! there are too many runs for one.
+//! Source: Knuth 1998, *The Art of Computer Programming*, volume 3, section 5.4 (external sorting):
+//! sorted runs, which are merged, in several passes if there are too many runs.
 
 use std::{
     cmp::Reverse,
@@ -9,25 +9,28 @@ use std::{
     io, mem,
 };
 
+use corniche_varints::{push_varint, take_number};
 use serde::{Serialize, de::DeserializeOwned};
 
-use crate::{Scratch, Span, append_record, take_record};
+use crate::{ScratchRange, ScratchSpace, append_record, take_record};
 
-/// A record that can be sorted outside memory. Records that compare equal come back in any order, so they must be the same.
+/// A record that can be sorted outside memory. Records that compare equal are returned in any
+/// order, so they must be equal.
 pub trait SortRecord: Ord + Sized + Send {
     /// Appends the record's bytes.
     fn encode(&self, bytes: &mut Vec<u8>);
 
-    /// Takes a record from the front of `bytes`; `None` where they hold none. `bytes` are never cut within a record.
+    /// Takes a record from the front of `bytes`; `None` if there is no record. `bytes` never end
+    /// within a record.
     fn decode(bytes: &mut &[u8]) -> Option<Self>;
 
-    /// The memory that it takes, bytes, beside its own size: that of its lists and texts.
+    /// The memory in bytes that the record takes in addition to its own size: its lists and texts.
     fn extra_bytes(&self) -> usize {
         0
     }
 }
 
-/// A record that can be sorted, whose bytes are those that serde makes.
+/// A record that can be sorted and that serde converts to bytes.
 pub trait SerdeRecord: Ord + Send + Serialize + DeserializeOwned {
     /// See [`SortRecord::extra_bytes`].
     fn extra_bytes(&self) -> usize {
@@ -49,16 +52,18 @@ impl<T: SerdeRecord> SortRecord for T {
     }
 }
 
-/// At most this many runs are merged at once: more pages than that make each so short that reading is mostly seeking.
+/// The largest number of runs that are merged at once: with more runs, pages become so short that
+/// reading is mostly seeking.
 const RUNS_AT_ONCE: usize = 64;
-/// Pages are no longer than this: more saves no seeks.
+/// The largest length of pages: longer ones save no seeks.
 const LONGEST_PAGE: usize = 1 << 20;
-/// Pages are no shorter than this, unless the memory is too small for two of them.
+/// The smallest length of pages, unless the memory is too small for two of them.
 const SHORTEST_PAGE: usize = 4096;
 
-/// Sorts records. What does not fit in memory goes to scratch space in sorted runs, which are merged at the end.
+/// Sorts records. Records that do not fit in memory go to scratch space in sorted runs, which are
+/// merged at the end.
 pub struct Sorter<'a, T> {
-    scratch: &'a dyn Scratch,
+    scratch: &'a dyn ScratchSpace,
     memory_bytes: usize,
     records: Vec<T>,
     extra_bytes: usize,
@@ -66,19 +71,20 @@ pub struct Sorter<'a, T> {
     sort: Sort<'a, T>,
 }
 
-/// What puts the records that are in memory in order.
+/// Sorts the records in memory.
 type Sort<'a, T> = Box<dyn Fn(&mut [T]) + 'a>;
 
 impl<'a, T: SortRecord> Sorter<'a, T> {
-    /// Keeps at most about `memory_bytes` in memory; a single record may be larger.
-    pub fn new(scratch: &'a dyn Scratch, memory_bytes: u64) -> Self {
+    /// Creates a sorter that keeps at most about `memory_bytes` in memory; a single record may be
+    /// larger.
+    pub fn new(scratch: &'a dyn ScratchSpace, memory_bytes: u64) -> Self {
         let memory_bytes = usize::try_from(memory_bytes).unwrap_or(usize::MAX);
         let sort = Box::new(|records: &mut [T]| records.sort_unstable());
         let (records, runs) = (Vec::new(), VecDeque::new());
         Self { scratch, memory_bytes, records, extra_bytes: 0, runs, sort }
     }
 
-    /// Lets `sort` put records in order that are in memory: side by side in several threads, for example. It must do so in place.
+    /// Sorts records in memory with `sort`, for example in several threads. It must sort in place.
     #[must_use]
     pub fn sorted_by(self, sort: impl Fn(&mut [T]) + 'a) -> Self {
         Self { sort: Box::new(sort), ..self }
@@ -103,7 +109,7 @@ impl<'a, T: SortRecord> Sorter<'a, T> {
         Ok(())
     }
 
-    /// Makes room for a record. Doubling as `Vec` does it would take up to twice the limit.
+    /// Reserves memory for a record. Doubling, as `Vec` does it, would take up to twice the limit.
     fn grow(&mut self, limit: usize) {
         let length = self.records.len();
         if length == self.records.capacity() {
@@ -112,11 +118,12 @@ impl<'a, T: SortRecord> Sorter<'a, T> {
         }
     }
 
-    /// Writes what is in memory as a run.
+    /// Writes the records in memory as a run.
     fn spill(&mut self) -> io::Result<()> {
         (self.sort)(&mut self.records);
         let mut writer = RunWriter::new(self.scratch, page_bytes(self.memory_bytes, 8));
-        // A new list for the next run: the pages of this one that were used would stay, beside what the records hold next time.
+        // The next run gets a new list: the used memory pages of this one would remain in addition
+        // to the content of the next records.
         for record in mem::take(&mut self.records) {
             writer.push(&record)?;
         }
@@ -125,7 +132,7 @@ impl<'a, T: SortRecord> Sorter<'a, T> {
         Ok(())
     }
 
-    /// Ends the adding.
+    /// Ends the adding of records.
     ///
     /// # Errors
     /// When the scratch space fails.
@@ -139,7 +146,8 @@ impl<'a, T: SortRecord> Sorter<'a, T> {
         }
         let most = (self.memory_bytes / SHORTEST_PAGE).saturating_sub(1).clamp(2, RUNS_AT_ONCE);
         while self.runs.len() > most {
-            // The oldest runs are the shortest; as many as needed, so that the last merge is a full one.
+            // The oldest runs are the shortest; merge as many as needed, so that the last merge is
+            // a full one.
             let count = (self.runs.len() - most + 1).min(most);
             let runs = self.runs.drain(..count).collect();
             let page = page_bytes(self.memory_bytes, count + 1);
@@ -154,7 +162,7 @@ impl<'a, T: SortRecord> Sorter<'a, T> {
     }
 }
 
-/// The length of a page where `pages` of them share the memory.
+/// The length of a page if `pages` of them share the memory.
 fn page_bytes(memory_bytes: usize, pages: usize) -> usize {
     (memory_bytes / pages.max(1)).clamp(SHORTEST_PAGE.min(memory_bytes / 2), LONGEST_PAGE)
 }
@@ -178,15 +186,16 @@ impl<T: SortRecord> Iterator for Sorted<'_, T> {
     }
 }
 
-/// A sorted run: where its pages are. Each record has its length before it; a record may go on in the next page.
+/// A sorted run: the locations of its pages. Each record has its length before it; a record may
+/// continue in the next page.
 #[derive(Debug, Default)]
 struct Run {
-    pages: Vec<Span>,
+    pages: Vec<ScratchRange>,
 }
 
 /// Writes a run.
 struct RunWriter<'a> {
-    scratch: &'a dyn Scratch,
+    scratch: &'a dyn ScratchSpace,
     page_bytes: usize,
     page: Vec<u8>,
     record: Vec<u8>,
@@ -194,7 +203,7 @@ struct RunWriter<'a> {
 }
 
 impl<'a> RunWriter<'a> {
-    fn new(scratch: &'a dyn Scratch, page_bytes: usize) -> Self {
+    fn new(scratch: &'a dyn ScratchSpace, page_bytes: usize) -> Self {
         let page = Vec::with_capacity(page_bytes);
         Self { scratch, page_bytes, page, record: Vec::new(), run: Run::default() }
     }
@@ -205,7 +214,7 @@ impl<'a> RunWriter<'a> {
         if self.page.len() + self.record.len() + LONGEST_LENGTH > self.page_bytes {
             self.write_page()?;
         }
-        write_length(&mut self.page, self.record.len());
+        push_varint(&mut self.page, self.record.len() as u64);
         self.page.extend(&self.record);
         Ok(())
     }
@@ -224,24 +233,25 @@ impl<'a> RunWriter<'a> {
     }
 }
 
-/// Reads a run with a buffer of one page, which may be shorter than the pages it was written in.
+/// Reads a run with a buffer of one page, which may be shorter than the pages in which the run was
+/// written.
 struct RunReader<'a> {
-    scratch: &'a dyn Scratch,
+    scratch: &'a dyn ScratchSpace,
     page_bytes: u64,
-    pages: std::vec::IntoIter<Span>,
-    /// What is not read yet of the page that is being read.
-    rest: Span,
+    pages: std::vec::IntoIter<ScratchRange>,
+    /// The rest of the current page that has not been read yet.
+    rest: ScratchRange,
     buffer: Vec<u8>,
     used: usize,
 }
 
 impl<'a> RunReader<'a> {
-    fn new(scratch: &'a dyn Scratch, run: Run, page_bytes: usize) -> Self {
+    fn new(scratch: &'a dyn ScratchSpace, run: Run, page_bytes: usize) -> Self {
         Self {
             scratch,
             page_bytes: page_bytes.max(1) as u64,
             pages: run.pages.into_iter(),
-            rest: Span { offset: 0, length: 0 },
+            rest: ScratchRange { offset: 0, length: 0 },
             buffer: Vec::new(),
             used: 0,
         }
@@ -251,20 +261,24 @@ impl<'a> RunReader<'a> {
         loop {
             let mut unread = &self.buffer[self.used..];
             let start = unread.len();
-            if let Some(length) = read_length(&mut unread)
+            if let Some(length) = take_number::<usize>(&mut unread)
                 && let Some(mut record) = unread.get(..length)
             {
                 let decoded = T::decode(&mut record).filter(|_| record.is_empty());
                 self.used += start - unread.len() + length;
-                return decoded.map(Some).ok_or_else(|| broken("a record is not what was written"));
+                return decoded.map(Some).ok_or_else(|| broken("a record cannot be decoded"));
             }
             if !self.read_more()? {
-                return if start == 0 { Ok(None) } else { Err(broken("a run ends in a record")) };
+                return if start == 0 {
+                    Ok(None)
+                } else {
+                    Err(broken("a run ends within a record"))
+                };
             }
         }
     }
 
-    /// Reads the next bytes behind what is still unread; `false` at the end of the run.
+    /// Reads the next bytes after the unread ones; `false` at the end of the run.
     fn read_more(&mut self) -> io::Result<bool> {
         if self.rest.length == 0 {
             match self.pages.next() {
@@ -289,12 +303,12 @@ impl<'a> RunReader<'a> {
 /// Merges runs.
 struct Merge<'a, T> {
     readers: Vec<RunReader<'a>>,
-    /// The next record of each run, and which run it is of.
+    /// The next record of each run, with the number of the run.
     heads: BinaryHeap<Reverse<(T, usize)>>,
 }
 
 impl<'a, T: SortRecord> Merge<'a, T> {
-    fn new(scratch: &'a dyn Scratch, runs: Vec<Run>, page_bytes: usize) -> io::Result<Self> {
+    fn new(scratch: &'a dyn ScratchSpace, runs: Vec<Run>, page_bytes: usize) -> io::Result<Self> {
         let mut readers: Vec<_> =
             runs.into_iter().map(|run| RunReader::new(scratch, run, page_bytes)).collect();
         let mut heads = BinaryHeap::with_capacity(readers.len());
@@ -310,7 +324,7 @@ impl<'a, T: SortRecord> Merge<'a, T> {
 impl<T: SortRecord> Iterator for Merge<'_, T> {
     type Item = io::Result<T>;
 
-    /// After an error nothing follows.
+    /// After an error the iteration ends.
     fn next(&mut self) -> Option<Self::Item> {
         let Reverse((record, number)) = self.heads.pop()?;
         match self.readers[number].next() {
@@ -325,30 +339,8 @@ impl<T: SortRecord> Iterator for Merge<'_, T> {
     }
 }
 
-/// The most bytes that a length takes.
+/// The largest number of bytes of an encoded length.
 const LONGEST_LENGTH: usize = 10;
-
-/// Seven bits a byte, lowest first; the highest bit says that more follow.
-fn write_length(bytes: &mut Vec<u8>, mut length: usize) {
-    while length >= 0x80 {
-        bytes.push(length as u8 | 0x80);
-        length >>= 7;
-    }
-    bytes.push(length as u8);
-}
-
-/// Takes a length from the front; `None` where it is not whole.
-fn read_length(bytes: &mut &[u8]) -> Option<usize> {
-    let mut length = 0_usize;
-    for (place, &byte) in bytes.iter().take(LONGEST_LENGTH).enumerate() {
-        length |= usize::from(byte & 0x7F).checked_shl(7 * place as u32)?;
-        if byte < 0x80 {
-            *bytes = &bytes[place + 1..];
-            return Some(length);
-        }
-    }
-    None
-}
 
 fn broken(what: &str) -> io::Error {
     io::Error::new(
@@ -359,23 +351,23 @@ fn broken(what: &str) -> io::Error {
     )
 }
 
-/// Takes together what follows each other in sorted records and belongs to one object.
+/// Groups successive sorted records that belong to one object.
 pub struct Groups<'a, R: SortRecord> {
     sorted: Sorted<'a, R>,
     next: Option<R>,
 }
 
 impl<'a, R: SortRecord> Groups<'a, R> {
-    /// The groups of sorted records.
+    /// Creates the groups of sorted records.
     #[must_use]
-    pub const fn of(sorted: Sorted<'a, R>) -> Self {
+    pub const fn from_sorted(sorted: Sorted<'a, R>) -> Self {
         Self { sorted, next: None }
     }
 
-    /// All records of the next object, in their order; `None` after the last.
+    /// Returns all records of the next object, in their order; `None` after the last object.
     ///
     /// # Errors
-    /// When what was sorted cannot be read back.
+    /// When the sorted records cannot be read back.
     pub fn next_by<K: PartialEq>(
         &mut self,
         object_of: impl Fn(&R) -> K,

@@ -1,4 +1,4 @@
-//! Records are sorted as `Vec::sort` sorts them, however little memory there is.
+//! Records are sorted like by `Vec::sort`, however little memory there is.
 
 use std::sync::{
     Mutex,
@@ -9,19 +9,20 @@ use proptest::prelude::*;
 
 use super::*;
 
-/// Scratch space in memory. That of `corniche_testing` is one of another version of this crate.
+/// Scratch space in memory. The type of `corniche_testing` belongs to another compilation of this
+/// crate.
 #[derive(Debug, Default)]
 struct MemoryScratch(Mutex<Vec<u8>>);
 
-impl Scratch for MemoryScratch {
-    fn append(&self, bytes: &[u8]) -> io::Result<Span> {
+impl ScratchSpace for MemoryScratch {
+    fn append(&self, bytes: &[u8]) -> io::Result<ScratchRange> {
         let mut all = self.0.lock().unwrap();
         all.extend(bytes);
         let length = bytes.len() as u64;
-        Ok(Span { offset: all.len() as u64 - length, length })
+        Ok(ScratchRange { offset: all.len() as u64 - length, length })
     }
 
-    fn read(&self, span: Span) -> io::Result<Vec<u8>> {
+    fn read(&self, span: ScratchRange) -> io::Result<Vec<u8>> {
         let from = span.offset as usize;
         let all = self.0.lock().unwrap();
         let read = all.get(from..from + span.length as usize);
@@ -29,7 +30,7 @@ impl Scratch for MemoryScratch {
     }
 }
 
-/// A record of changing length.
+/// A record of varying length.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 struct Line {
     tile: u64,
@@ -54,7 +55,7 @@ impl SortRecord for Line {
     }
 }
 
-/// Counts what goes through it.
+/// Scratch space that counts the bytes that are read.
 #[derive(Debug, Default)]
 struct Counting {
     scratch: MemoryScratch,
@@ -63,14 +64,14 @@ struct Counting {
     read_bytes: AtomicU64,
 }
 
-impl Scratch for Counting {
-    fn append(&self, bytes: &[u8]) -> io::Result<Span> {
+impl ScratchSpace for Counting {
+    fn append(&self, bytes: &[u8]) -> io::Result<ScratchRange> {
         self.appends.fetch_add(1, Ordering::Relaxed);
         self.longest.fetch_max(bytes.len() as u64, Ordering::Relaxed);
         self.scratch.append(bytes)
     }
 
-    fn read(&self, span: Span) -> io::Result<Vec<u8>> {
+    fn read(&self, span: ScratchRange) -> io::Result<Vec<u8>> {
         self.read_bytes.fetch_add(span.length, Ordering::Relaxed);
         self.scratch.read(span)
     }
@@ -78,7 +79,7 @@ impl Scratch for Counting {
 
 fn sorted<T: SortRecord>(
     records: impl IntoIterator<Item = T>,
-    scratch: &dyn Scratch,
+    scratch: &dyn ScratchSpace,
     memory_bytes: u64,
 ) -> io::Result<Vec<T>> {
     let mut sorter = Sorter::new(scratch, memory_bytes);
@@ -95,7 +96,7 @@ fn lines() -> impl Strategy<Value = Vec<Line>> {
 }
 
 proptest! {
-    /// The records come back as `Vec::sort` orders them, however little memory there is.
+    /// The records are returned in the order of `Vec::sort`, however little memory there is.
     #[test]
     fn sorts_like_vec_sort(lines in lines(), memory_bytes in 0_u64..20_000) {
         let mut expected = lines.clone();
@@ -103,17 +104,17 @@ proptest! {
         prop_assert_eq!(sorted(lines, &MemoryScratch::default(), memory_bytes).unwrap(), expected);
     }
 
-    /// A length comes back, and is not taken from bytes that end in it.
+    /// A length round-trips, and is not read from bytes that end within it.
     #[test]
     fn a_length_comes_back(length in any::<usize>()) {
         let mut bytes = Vec::new();
-        write_length(&mut bytes, length);
+        push_varint(&mut bytes, length as u64);
         prop_assert!(bytes.len() <= LONGEST_LENGTH);
         for cut in 0..bytes.len() {
-            prop_assert_eq!(read_length(&mut &bytes[..cut]), None);
+            prop_assert_eq!(take_number::<usize>(&mut &bytes[..cut]), None);
         }
         let mut rest = &bytes[..];
-        prop_assert_eq!(read_length(&mut rest), Some(length));
+        prop_assert_eq!(take_number(&mut rest), Some(length));
         prop_assert!(rest.is_empty());
     }
 }
@@ -140,12 +141,14 @@ fn many_runs_are_merged_in_passes() {
     expected.sort();
     assert_eq!(lines, expected);
     assert!(scratch.longest.into_inner() <= 8192);
-    // Two runs at once of some 120: about 7 passes over 12 to 28 bytes a record, and not one a run.
+    // Two of about 120 runs at once: about 7 passes over 12 to 28 bytes per record, and not one
+    // pass per run.
     let read_bytes = scratch.read_bytes.into_inner();
     assert!((20_000 * 12 * 4..20_000 * 28 * 12).contains(&read_bytes), "{read_bytes}");
 }
 
-/// 75 runs, of which 64 are merged at once: only 12 of them are merged before, so that a sixth is written twice.
+/// 75 runs, of which 64 are merged at once: only 12 of them are merged before, so a sixth of the
+/// records is written twice.
 #[test]
 fn no_more_runs_are_merged_twice_than_must_be() {
     let scratch = Counting::default();
@@ -181,7 +184,7 @@ fn a_record_larger_than_the_memory_is_sorted_too() {
     assert_eq!(sorted(lines, &MemoryScratch::default(), 1000).unwrap(), expected);
 }
 
-/// Never more than its share is in memory, the growth of the list included.
+/// The records in memory never take more than their limit, including the growth of the list.
 #[test]
 fn the_list_stays_within_its_share() {
     let scratch = MemoryScratch::default();
@@ -213,19 +216,19 @@ impl Failing {
     }
 }
 
-impl Scratch for Failing {
-    fn append(&self, bytes: &[u8]) -> io::Result<Span> {
+impl ScratchSpace for Failing {
+    fn append(&self, bytes: &[u8]) -> io::Result<ScratchRange> {
         self.call()?;
         self.scratch.append(bytes)
     }
 
-    fn read(&self, span: Span) -> io::Result<Vec<u8>> {
+    fn read(&self, span: ScratchRange) -> io::Result<Vec<u8>> {
         self.call()?;
         self.scratch.read(span)
     }
 }
 
-/// Whichever call fails, the error arrives and no record is missing in silence.
+/// Whichever call fails, the error is returned and no record is lost silently.
 #[test]
 fn any_failing_call_is_an_error() {
     for bad_call in 0.. {
@@ -242,16 +245,16 @@ fn any_failing_call_is_an_error() {
     }
 }
 
-/// Scratch space that gives back other bytes is noticed.
+/// Scratch space that returns other bytes than were written is detected.
 #[test]
 fn damaged_scratch_space_is_an_error() {
     struct Cutting(MemoryScratch);
-    impl Scratch for Cutting {
-        fn append(&self, bytes: &[u8]) -> io::Result<Span> {
+    impl ScratchSpace for Cutting {
+        fn append(&self, bytes: &[u8]) -> io::Result<ScratchRange> {
             self.0.append(&bytes[..bytes.len() - 1])
         }
 
-        fn read(&self, span: Span) -> io::Result<Vec<u8>> {
+        fn read(&self, span: ScratchRange) -> io::Result<Vec<u8>> {
             self.0.read(span)
         }
     }

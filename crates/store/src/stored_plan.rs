@@ -1,13 +1,13 @@
 //! The plan that a store is bound to, and its hash.
 
-/// SHA-256 of what a store is bound to.
+/// The SHA-256 of the plan to which a store is bound.
 pub type PlanHash = [u8; 32];
 
-/// What a store is bound to.
+/// The plan to which a store is bound.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StoredPlan {
-    /// Says whether two plans are the same.
+    /// Plans are equal if their hashes are equal.
     pub hash: PlanHash,
-    /// The plan as the caller writes it; the store only keeps it.
+    /// The plan as the caller writes it; the store only stores it.
     pub bytes: Vec<u8>,
 }

@@ -8,12 +8,13 @@ use std::{
 
 #[cfg(unix)]
 use crate::output_target::own_files::system::OwnFolder;
-use crate::{Disk, DiskFile, FileId, Hold, Listed, OpenMode, sync_folder};
+use crate::{Disk, DiskFile, FileId, FolderItem, Hold, OpenMode, sync_folder};
 
 /// The file system of the machine.
 ///
-/// On Unix each call about a file opens the folder around it anew, without following a link at the folder's name. No handle is kept from one
-/// call to the next: see the head of `own_files.rs` for what that does not protect from.
+/// On Unix each call about a file opens the folder around it again, without following a link at the
+/// folder's name. No handle is kept from one call to the next: the head of `own_files.rs` describes
+/// what this does not protect from.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct SystemDisk;
 
@@ -34,16 +35,16 @@ impl Disk for SystemDisk {
     }
 
     #[cfg(unix)]
-    fn list(&self, folder: &Path) -> io::Result<Vec<Listed>> {
+    fn list(&self, folder: &Path) -> io::Result<Vec<FolderItem>> {
         OwnFolder::open(folder)?.list()
     }
 
     #[cfg(not(unix))]
-    fn list(&self, folder: &Path) -> io::Result<Vec<Listed>> {
+    fn list(&self, folder: &Path) -> io::Result<Vec<FolderItem>> {
         fs::read_dir(folder)?
             .map(|entry| {
                 let entry = entry?;
-                Ok(Listed { name: entry.file_name(), is_folder: entry.file_type()?.is_dir() })
+                Ok(FolderItem { name: entry.file_name(), is_folder: entry.file_type()?.is_dir() })
             })
             .collect()
     }
@@ -84,7 +85,7 @@ impl Disk for SystemDisk {
         absent_is_none(found)
     }
 
-    /// Elsewhere only that something of this name is there can be told.
+    /// On other systems only the existence of a file of this name can be determined.
     #[cfg(not(unix))]
     fn identity(&self, path: &Path) -> io::Result<Option<FileId>> {
         absent_is_none(fs::symlink_metadata(path).map(|_| FileId(0, 0)))
@@ -98,7 +99,7 @@ fn absent_is_none(found: io::Result<FileId>) -> io::Result<Option<FileId>> {
     }
 }
 
-/// A file of the machine.
+/// A file on the file system of the machine.
 #[derive(Debug)]
 struct SystemFile(File);
 
@@ -158,7 +159,7 @@ fn file_id(metadata: &Metadata) -> FileId {
     FileId(metadata.dev(), metadata.ino())
 }
 
-/// Elsewhere only that something of this name is there can be told.
+/// On other systems only the existence of a file of this name can be determined.
 #[cfg(not(unix))]
 fn file_id(_: &Metadata) -> FileId {
     FileId(0, 0)

@@ -1,4 +1,5 @@
-//! Alone in its process: a child that is about to begin shares the locks of other tests for a moment.
+//! Runs alone in its process: a child process that is about to start shares the locks of other
+//! tests for a moment.
 #![allow(clippy::unwrap_used, reason = "tests may unwrap")]
 
 #[path = "it/common.rs"]
@@ -13,13 +14,14 @@ use std::{
 use common::*;
 use corniche_store::{Artifacts, LocalStore};
 
-/// A real process, killed at some moment: the kernel gives its lock back, and what it kept is there. Ten times in one store.
+/// A real process is killed at some moment: the kernel releases its lock, and its artifacts exist.
+/// Ten times with one store.
 #[test]
 fn a_process_that_is_killed_leaves_a_store_to_go_on_from() {
     const FOLDER: &str = "CORNICHE_TEST_STORE";
     const NAME: &str = "a_process_that_is_killed_leaves_a_store_to_go_on_from";
     if let Some(folder) = std::env::var_os(FOLDER) {
-        // This is the process to be killed.
+        // This is the process that is killed.
         let store = LocalStore::open(system(), Path::new(&folder), &plan().hash, ALWAYS).unwrap();
         for item in store.items(1).len() as u64..100_000 {
             store.put(key(1, item), &artifact(key(1, item))).unwrap();

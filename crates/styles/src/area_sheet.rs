@@ -1,4 +1,4 @@
-//! The part of a style's text that is about areas.
+//! The `[areas]` part of a style's text.
 
 use std::collections::BTreeMap;
 
@@ -16,13 +16,13 @@ use crate::{
 pub(crate) struct AreaSheet {
     /// Colour.
     color: Rgb8,
-    /// How much of the ground it hides, 0 to 1; 0 does not draw the class.
+    /// How much of the ground an area hides, 0 to 1; 0 does not draw the class.
     opacity: f64,
-    /// Ground steeper than this is not painted, 1 to 89 degrees; left out: all ground is.
+    /// Ground steeper than this is not painted, 1 to 89 degrees. Default: all ground is painted.
     steepest_deg: Option<f64>,
 }
 
-/// The areas by class, of which a whole style names each.
+/// Returns the area styles by class. A complete style defines every class.
 pub(crate) fn areas(
     sheets: &BTreeMap<String, AreaSheet>,
 ) -> Result<[AreaStyle; AreaClass::COUNT], StyleError> {

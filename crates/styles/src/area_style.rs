@@ -1,4 +1,4 @@
-//! The looks of areas: a colour and an opacity for each class.
+//! The styles of areas: a colour and an opacity for each class.
 
 use corniche_areas::AreaClass;
 use serde::{Deserialize, Serialize};
@@ -10,20 +10,23 @@ use crate::Rgb;
 pub struct AreaStyle {
     /// Colour.
     pub color: Rgb,
-    /// How much of the ground it hides: 1 hides it, with 0 the class is not drawn.
+    /// How much of the ground an area hides: 1 hides it completely, 0 does not draw the class.
     pub opacity: f32,
-    /// Ground steeper than this is not painted, degrees; from 0.7 of its tangent on less and less is. `None`: all ground is.
+    /// Ground steeper than this is not painted, degrees. From 0.7 times its tangent on, the paint
+    /// fades. `None`: all ground is painted.
     pub steepest_deg: Option<f32>,
 }
 
 impl AreaStyle {
-    /// From this share of the tangent of [`AreaStyle::steepest_deg`] on the ground shows through.
+    /// From this share of the tangent of [`AreaStyle::steepest_deg`] on, the ground shows through.
     pub const STEEP_SHARE: f64 = 0.7;
 
-    /// All classes, the topmost first. Where areas of several classes that are drawn overlap, the first of them is seen alone:
-    /// colours of classes are never mixed. Within a class areas are a union.
+    /// All classes, the topmost first. Where drawn areas of several classes overlap, only the first
+    /// of these classes is visible: colours of classes are never mixed. Areas of one class form a
+    /// union.
     ///
-    /// What is drawn small and sharp on maps lies above what is wide: water in a forest is water, a park in a town is a park.
+    /// Classes that maps draw small and sharp are above classes that cover wide ground: water in a
+    /// forest is water, a park in a town is a park.
     pub const TOP_FIRST: [AreaClass; AreaClass::COUNT] = [
         AreaClass::Sea,
         AreaClass::Water,

@@ -1,9 +1,9 @@
-//! A style that says only what it has otherwise than one that comes along: `base = "road-atlas"`.
+//! Styles that contain only their differences from a built-in style: `base = "road-atlas"`.
 //!
 //! ```text
-//!  text of one's own ──► table ──┐
-//!                                ├─ inherit ──► whole table ──► StyleFile
-//!  style_preset(base) ─► table ──┘
+//!  text of the style ───► table ──┐
+//!                                 ├─ inherit ──► whole table ──► StyleFile
+//!  style_preset(base) ──► table ──┘
 //! ```
 
 use toml::{
@@ -13,8 +13,8 @@ use toml::{
 
 use crate::{StyleError, style_preset};
 
-/// Entries that go together: whoever says the first one takes none of the others from the base, where they would contradict it or
-/// hide it.
+/// Entries that belong together: a style that sets the first one inherits none of the others from
+/// the base, where they would contradict or hide it.
 const TOGETHER: [(&str, &[&str]); 7] = [
     ("width_m", &["carriageway_width_m"]),
     ("color", &["bands", "center", "thin"]),
@@ -25,11 +25,12 @@ const TOGETHER: [(&str, &[&str]); 7] = [
     ("own_width", &["lane_width_m"]),
 ];
 
-/// The style that has what another one leaves out.
+/// The style that supplies the entries that another style may omit.
 pub(crate) const USUAL: &str = "road-atlas";
 
-/// The table of a style's text, with what it leaves out from the style that it names as its base, if it names one. Places in the
-/// table are those of the text: what comes from the base is right, so no error is about it.
+/// Returns the table of a style's text. Entries that the text omits come from the style that it
+/// names as its base, if any. Positions in the table refer to the text: the entries of the base are
+/// valid, so no error is about them.
 pub(crate) fn table(text: &str) -> Result<Spanned<DeTable<'_>>, StyleError> {
     let mut table = DeTable::parse(text)?;
     if let Some(base) = table.get_mut().remove("base") {
@@ -39,7 +40,7 @@ pub(crate) fn table(text: &str) -> Result<Spanned<DeTable<'_>>, StyleError> {
         };
         let base = style_preset(&name).ok_or(StyleError::Base { text: name })?;
         inherit(table.get_mut(), DeTable::parse(base)?.into_inner());
-        // A style that comes along may leave out areas and boundaries, too.
+        // A built-in style may omit areas and boundaries, too.
         let mut usual = usual()?;
         for part in ["areas", "boundaries"] {
             if let Some((name, entries)) = usual.remove_entry(part) {
@@ -55,8 +56,9 @@ fn usual() -> Result<DeTable<'static>, StyleError> {
     Ok(DeTable::parse(style_preset(USUAL).unwrap_or_default())?.into_inner())
 }
 
-/// Puts what every style may leave out into `own`, as the usual style has it: classes of areas and
-/// boundaries as a whole, and some of what is said of light and background where these are there.
+/// Fills `own` with the entries that every style may omit, taken from the default style: whole
+/// classes of areas and boundaries, and some entries of light and background if `own` has these
+/// tables.
 fn complete<'t>(own: &mut DeTable<'t>, usual: DeTable<'t>) {
     for (part, entries) in usual {
         let names: Option<&[&str]> = match part.get_ref().as_ref() {
@@ -82,7 +84,8 @@ fn complete<'t>(own: &mut DeTable<'t>, usual: DeTable<'t>) {
     }
 }
 
-/// Puts what is in `base` and not in `own` into `own`; tables entry by entry, lists as a whole.
+/// Copies the entries of `base` that `own` lacks into `own`: tables entry by entry, lists as a
+/// whole.
 fn inherit<'t>(own: &mut DeTable<'t>, mut base: DeTable<'t>) {
     for (given, others) in TOGETHER {
         if own.contains_key(given) {

@@ -1,4 +1,5 @@
-//! A style with a base is the base with what it says itself; a wrong base and wrong entries are named.
+//! A style with a base equals the base with the style's own entries; errors name a wrong base and
+//! wrong entries.
 
 use corniche_areas::{AreaClass, BoundaryClass};
 
@@ -12,7 +13,7 @@ fn style(text: &str) -> Style {
     parse_style(text).unwrap_or_else(|error| panic!("{text}: {error}"))
 }
 
-/// What a text with a base is refused for.
+/// Returns the error for a text with a base.
 fn refusal(text: &str) -> String {
     parse_style(&format!("base = \"road-atlas\"\n{text}")).expect_err(text).to_string()
 }
@@ -32,16 +33,17 @@ fn what_is_said_goes_before_the_base_and_the_rest_is_the_bases() {
     let mut expected = preset("dark");
     expected.photo = 0.5;
     expected.light.hillshade = 0.25;
-    // Half of another width would be no carriageway of this one.
+    // Half of another width would not be a carriageway of this width.
     (expected.roads[3].width_m, expected.roads[3].carriageway_width_m) = (77.0, 77.0);
     expected.areas[usize::from(AreaClass::Water.number())].opacity = 0.125;
     assert_eq!(own, expected);
-    // Each part of the base may be replaced by that of another style, and the whole is then that style.
+    // Another style may replace every part of the base; the result is that style.
     let dark = style_preset("dark").unwrap();
     assert_eq!(style(&format!("base = \"relief\"\n{dark}")), preset("dark"));
 }
 
-/// Colours of a road, dashes and patterns, a tint and its climate, widths and lanes do not contradict those of the base.
+/// Colours of a road, dashes and patterns, a tint and its climate, widths and lanes do not
+/// contradict the entries of the base.
 #[test]
 fn entries_that_exclude_each_other_are_not_mixed() {
     let bands =
@@ -71,7 +73,8 @@ fn entries_that_exclude_each_other_are_not_mixed() {
     assert_eq!(style("base = \"road-atlas\"\nown_width = false\n"), Style::road_atlas());
 }
 
-/// A base is a style that comes along: no file, so that none is its own base, by whatever way.
+/// A base must be a built-in style, not a file. So no style can be its own base, directly or
+/// indirectly.
 #[test]
 fn a_base_that_does_not_come_along_is_refused_with_those_that_do() {
     for base in [

@@ -1,13 +1,14 @@
-//! How high up ground looks like high mountains, by latitude.
+//! Height of the snow line by latitude.
 
-/// The latitude at which a tint's heights are meant: that of the central Alps.
+/// The latitude to which the heights of a tint refer: that of the central Alps.
 pub const REFERENCE_LATITUDE_DEG: f64 = 47.0;
 
 /// The snow line: latitude north or south of the equator, and metres.
 ///
-/// The values are rounded from what is known of mountain ranges: 4700 m at the equator (Mount Kenya, New Guinea), 5000 to
-/// 6000 m in the dry subtropics (Himalaya, Andes), 2900 m in the central Alps, 1200 m where the polar circle crosses
-/// Scandinavia, 450 m in Svalbard. They vary by a thousand metres with rain and snow; a tint needs no more.
+/// The values are rounded from observations of mountain ranges: 4700 m at the equator (Mount Kenya,
+/// New Guinea), 5000 to 6000 m in the dry subtropics (Himalaya, Andes), 2900 m in the central Alps,
+/// 1200 m at the polar circle in Scandinavia, 450 m in Svalbard. Real values vary by a thousand
+/// metres with rain and snow; this is precise enough for a tint.
 const SNOW_LINE: [(f64, f64); 8] = [
     (0.0, 4700.0),
     (20.0, 5300.0),

@@ -1,4 +1,4 @@
-//! The snow line meets its table and is the same north and south.
+//! The snow line has the values of its table and is symmetric about the equator.
 
 use super::*;
 

@@ -1,39 +1,39 @@
-//! The type of colours in styles, and their text.
+//! Colours in styles, and how they are written.
 
 /// A colour as red, green, blue in sRGB, 0 to 1.
 pub type Rgb = [f32; 3];
 
-/// The same as whole numbers, 0 to 255.
+/// Converts a colour to whole numbers, 0 to 255.
 #[must_use]
 pub fn to_bytes(color: Rgb) -> [u8; 3] {
     color.map(|channel| (channel * 255.0).round().clamp(0.0, 255.0) as u8)
 }
 
-/// A text that is no colour.
+/// Why a text is not a valid colour.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ColorError {
-    /// No colour of CSS.
-    #[error("{text:?} is no colour; write it like #D93A2B, or by its name in CSS, such as tomato")]
+    /// The text is not a CSS colour.
+    #[error("{text:?} is not a colour; write it like #D93A2B, or use a CSS name such as tomato")]
     Unknown {
-        /// The text, or its beginning.
+        /// The text, or its first characters.
         text: String,
     },
-    /// A colour that can be seen through.
-    #[error("{text:?} can be seen through; give a colour without that, and the opacity beside it")]
+    /// The colour is transparent.
+    #[error("{text:?} is transparent; write an opaque colour and set the opacity separately")]
     SeenThrough {
         /// The text.
         text: String,
     },
 }
 
-/// A colour from its text: "#D93A2B", or as CSS has it otherwise, such as by its name. Lines and areas have their opacity beside it, so none is taken
-/// here.
+/// Parses a colour such as "#D93A2B", in any notation of CSS, including names. The opacity of lines
+/// and areas is a separate entry, so transparent colours are rejected.
 ///
 /// # Errors
-/// When it is no colour of CSS, or one that can be seen through.
+/// When the text is not a CSS colour, or the colour is transparent.
 pub fn parse_color(text: &str) -> Result<Rgb, ColorError> {
     let own = || text.chars().take(64).collect();
-    // CSS has both spellings of each grey.
+    // CSS accepts both spellings of every grey.
     let color = ::color::parse_color(&text.to_ascii_lowercase().replace("grey", "gray"))
         .map_err(|_| ColorError::Unknown { text: own() })?;
     let color = color.to_alpha_color::<::color::Srgb>().to_rgba8();

@@ -1,4 +1,4 @@
-//! Colours are what CSS says, and what is none is refused with words for what to write.
+//! Colours follow CSS; the error for an invalid colour says what to write.
 
 use super::*;
 
@@ -34,7 +34,7 @@ fn what_is_no_opaque_colour_is_refused() {
         "#D93A2B x",
     ] {
         let said = parse_color(text).unwrap_err().to_string();
-        let hint = ["tomato", "the opacity beside it"].iter().any(|hint| said.contains(hint));
+        let hint = ["tomato", "the opacity separately"].iter().any(|hint| said.contains(hint));
         assert!(said.contains(&format!("{text:?}")) && hint, "{text}: {said}");
     }
     let said = parse_color(&"x".repeat(66_000)).unwrap_err().to_string();

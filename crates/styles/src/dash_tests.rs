@@ -1,4 +1,4 @@
-//! Patterns are divided into shares, and what is no pattern is refused.
+//! Patterns are divided into shares, and invalid patterns are rejected.
 
 #![expect(clippy::float_cmp, reason = "these numbers are exact")]
 
@@ -26,7 +26,7 @@ fn a_texture_says_how_wide_the_line_is() {
     assert_eq!((even.widths, even.least_px), (Some([0.5; Dash::WIDTHS]), 20.0));
     let own: Vec<f32> = (0..16).map(|place| place as f32 / 15.0).collect();
     assert_eq!(Dash::textured(20.0, &own).unwrap().widths.unwrap()[..], own[..]);
-    // Two shares: a step between them that is as long as the distance between their middles.
+    // Two shares give a step that is as long as the distance between their middles.
     let step = Dash::textured(20.0, &[0.0, 1.0]).unwrap().widths.unwrap();
     assert!(
         step[..4].iter().all(|share| *share == 0.0) && step[12..].iter().all(|share| *share == 1.0)
@@ -38,7 +38,7 @@ fn a_texture_says_how_wide_the_line_is() {
 #[test]
 fn shapes_are_symmetric_or_point_ahead() {
     let dots = Dash::dots(12.0).unwrap().widths.unwrap();
-    // With what is before and after it: between places widths change evenly.
+    // Widths change linearly between the given shares.
     for place in 0..10 {
         assert!((dots[place] - dots[9 - place]).abs() < 1e-6, "{dots:?}");
     }

@@ -2,41 +2,41 @@
 
 use crate::style_preset_names;
 
-/// Why a text is no style. The caller knows which file the text came from.
+/// Why a text is not a valid style. The caller knows which file the text came from.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
 pub enum StyleError {
-    #[error("it holds {bytes} bytes, far more than any settings; at most {limit} are read")]
+    #[error("the text has {bytes} bytes; a style may have at most {limit}")]
     TooLong { bytes: usize, limit: usize },
     #[error(transparent)]
     Toml(#[from] toml::de::Error),
     #[error(
-        "base: {text:?} is no style that comes along; these are {}, and a file cannot be one: begin with a copy of it instead",
+        "base: {text:?} is not a built-in style; choose one of {}. A file cannot be a base: copy its contents instead",
         style_preset_names().collect::<Vec<_>>().join(", ")
     )]
     Base { text: String },
     #[error("{entry} of {value} is out of range; it must be {least} to {most}")]
     Range { entry: String, value: f64, least: f64, most: f64 },
-    #[error("roads.{text:?} is no class; classes are 0 to 8")]
+    #[error("roads.{text:?} is not a road class; classes are 0 to 8")]
     Class { text: String },
     #[error(
-        "[roads.{class}] is missing; a style says of every class, 0 to 8, how it looks, or begins with base = \"road-atlas\""
+        "[roads.{class}] is missing; define every class from 0 to 8, or start the style with base = \"road-atlas\""
     )]
     MissingClass { class: String },
     #[error(
-        "areas.{text:?} is no class of areas; these are sea, water, glacier, forest, meadow, settlement, park, rock"
+        "areas.{text:?} is not an area class; classes are sea, water, glacier, forest, meadow, settlement, park, rock"
     )]
     AreaClass { text: String },
     #[error(
-        "boundaries.{text:?} is no class of boundaries; these are admin-2 to admin-8 and protected"
+        "boundaries.{text:?} is not a boundary class; classes are admin-2 to admin-8 and protected"
     )]
     BoundaryClass { text: String },
     #[error(
-        "a pattern of dashes has two or four lengths, dash and gap in turn, or none for a solid line; not {count}"
+        "a dash pattern needs two or four lengths (dash, gap, dash, gap), or none for a solid line; {count} were given"
     )]
     DashCount { count: usize },
-    #[error("a line has either dashes or a pattern of widths; leave one of them out")]
+    #[error("a line can have dash or pattern, not both; remove one of the two")]
     DashAndPattern,
     #[error("a pattern has 1 to {most} widths, not {count}")]
     PatternCount { count: usize, most: usize },
@@ -51,7 +51,7 @@ pub enum StyleError {
     #[error("a style has 2 to {most} [[tint]] entries, not {count}")]
     TintCount { count: usize, most: usize },
     #[error(
-        "every [[tint]] entry needs a height: either share in all of them, or height_m in all of them"
+        "every [[tint]] entry needs a height: write either share in all entries or height_m in all entries"
     )]
     TintUnit,
     #[error(
@@ -60,16 +60,16 @@ pub enum StyleError {
     TintClimate,
     #[error("the heights of [[tint]] must ascend, by 1 m or more")]
     TintHeightOrder,
-    #[error("[roads.{class}] needs either color, with or without center, or bands")]
+    #[error("[roads.{class}] needs either color (center is optional) or bands")]
     RoadColor { class: usize },
     #[error("[roads.{class}]: {source}")]
     Bands { class: usize, source: Box<StyleError> },
     #[error("a road has 1 to {most} bands, not {count}")]
     BandCount { count: usize, most: usize },
-    #[error("the first band has a width of {width}; it is the whole road, and has 1")]
+    #[error("the first band must have a width of 1 (the whole road), not {width}")]
     FirstBand { width: f32 },
     #[error(
-        "band {number} has a width of {width} after one of {before}; widths must fall, down to 0.01 at least"
+        "band {number} has a width of {width} after one of {before}; widths must decrease, and none may be below 0.01"
     )]
     BandOrder { number: usize, width: f32, before: f32 },
     #[error("lane_width_m has no effect without own_width = true")]

@@ -1,4 +1,4 @@
-//! How the ground looks: its colours by height, and the light on it.
+//! The style of the ground: its colours by height, and the light on it.
 
 use crate::{Rgb, climate};
 use serde::{Deserialize, Serialize};
@@ -16,7 +16,8 @@ pub enum TintHeights {
     Shares,
     /// Metres, everywhere on earth.
     Metres,
-    /// Metres at [`climate::REFERENCE_LATITUDE_DEG`]; elsewhere, heights above 0 are moved like the snow line.
+    /// Metres at [`climate::REFERENCE_LATITUDE_DEG`]; elsewhere, heights above 0 are moved like the
+    /// snow line.
     MetresByClimate,
 }
 
@@ -25,12 +26,13 @@ pub enum TintHeights {
 pub struct Tint {
     /// What the heights of the stops mean.
     pub heights: TintHeights,
-    /// Lowest first, at least two and at most [`MOST_TINT_STOPS`].
+    /// The stops, lowest first: at least two and at most [`MOST_TINT_STOPS`].
     pub stops: Vec<TintStop>,
 }
 
 impl Tint {
-    /// The stops with their heights in metres, for a package with this range of heights at this latitude.
+    /// Returns the stops with heights in metres, for a package with this range of heights at this
+    /// latitude.
     #[must_use]
     pub fn stops_m(&self, range_m: [f64; 2], latitude_deg: f64) -> Vec<TintStop> {
         let [lowest_m, highest_m] = range_m;
@@ -46,7 +48,8 @@ impl Tint {
 }
 
 impl Tint {
-    /// The colour at a height, for a package with this range of heights at this latitude: linear between stops.
+    /// Returns the colour at a height, for a package with this range of heights at this latitude.
+    /// Colours are linear between stops.
     #[must_use]
     pub fn color_at(&self, height_m: f64, range_m: [f64; 2], latitude_deg: f64) -> Rgb {
         let stops = self.stops_m(range_m, latitude_deg);
@@ -62,9 +65,9 @@ impl Tint {
 
 /// The light on the ground.
 ///
-/// Shading follows the rules of Imhof, *Cartographic Relief Presentation* (1965; English edition 1982), chapters 9 and 10:
-/// light from the upper left that turns where a slope runs along it, darker steep slopes, colours of the shadow that are
-/// not grey, and less contrast in valleys.
+/// Shading follows the rules of Imhof, *Cartographic Relief Presentation* (1965; English edition
+/// 1982), chapters 9 and 10: light from the upper left that turns where a slope runs parallel to
+/// it, darker steep slopes, shadow colours that are not grey, and less contrast in valleys.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Light {
     /// Compass direction the light comes from.
@@ -73,14 +76,16 @@ pub struct Light {
     pub altitude_deg: f64,
     /// How strongly slopes are shaded, 0 to 1.
     pub hillshade: f32,
-    /// How much darker steep slopes are than level ground, whichever way they face, 0 to 1: the light of the sky.
+    /// How much darker steep slopes are than level ground, whichever way they face, 0 to 1. This
+    /// models the light of the sky.
     pub sky: f32,
-    /// How many times steeper the gentlest slopes are shaded than they are, 1 to 10. Steep slopes are shaded as they are.
+    /// How many times steeper than they are the gentlest slopes are shaded, 1 to 10. Steep slopes
+    /// are shaded as they are.
     pub gentle: f32,
-    /// How much of the haze's colour far valleys take, 0 to 1.
+    /// How strongly far valleys take the colour of the haze, 0 to 1.
     pub valley_haze: f32,
-    /// The ground's colour is multiplied by this one in shadow.
+    /// In shadow, the ground's colour is multiplied by this colour.
     pub shadow: Rgb,
-    /// Slopes that face the light take this colour in part.
+    /// Slopes that face the light are tinted with this colour.
     pub sunlit: Rgb,
 }

@@ -1,4 +1,4 @@
-//! What a style's text says of the ground.
+//! The part of a style's text about the ground.
 
 use serde::Deserialize;
 
@@ -7,31 +7,31 @@ use crate::{
     sheet_values::{Rgb8, within},
 };
 
-/// Least difference between one share of the tint and the next. The shaders divide by it, in f32.
+/// Minimum difference between consecutive shares of the tint. The shaders divide by it, in f32.
 const LEAST_STEP: f64 = 0.001;
 
-/// Least difference between one height of the tint and the next, metres.
+/// Minimum difference between consecutive heights of the tint, metres.
 const LEAST_STEP_M: f64 = 1.0;
 
-/// Where the light comes from, and what it does.
+/// The direction of the light and its effect.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct LightSheet {
-    /// Clockwise from north, 0 to 360.
+    /// Compass direction of the light, clockwise from north, 0 to 360.
     pub(crate) azimuth_deg: f64,
-    /// The angle above the horizon, 0 to 90.
+    /// Angle of the light above the horizon, 0 to 90.
     pub(crate) altitude_deg: f64,
     /// How strongly slopes are shaded, 0 to 1.
     pub(crate) hillshade: f64,
     /// How much darker steep slopes are than level ground, 0 to 1.
     pub(crate) sky: f64,
-    /// How many times steeper the gentlest slopes are shaded than they are, 1 to 10.
+    /// How many times steeper than they are the gentlest slopes are shaded, 1 to 10.
     pub(crate) gentle: f64,
-    /// How much of the haze's colour far valleys take, 0 to 1.
+    /// How strongly far valleys take the colour of the haze, 0 to 1.
     pub(crate) valley_haze: f64,
-    /// The ground's colour is multiplied by this one in shadow.
+    /// In shadow, the ground's colour is multiplied by this colour.
     pub(crate) shadow: Rgb8,
-    /// Slopes that face the light take this colour in part.
+    /// Slopes that face the light are tinted with this colour.
     pub(crate) sunlit: Rgb8,
 }
 
@@ -62,7 +62,7 @@ impl From<LightSheet> for Light {
     }
 }
 
-/// One colour of the tint, at a share of the range of heights (0 to 1) or at a height in metres.
+/// A colour of the tint, at a share of the range of heights (0 to 1) or at a height in metres.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct TintSheet {
@@ -71,7 +71,7 @@ pub(crate) struct TintSheet {
     color: Rgb8,
 }
 
-/// The tint of these entries, if all of them have shares, or all heights, and they ascend.
+/// Creates a tint. All entries must have shares, or all must have heights, and they must ascend.
 pub(crate) fn tint(entries: &[TintSheet], by_climate: bool) -> Result<Tint, StyleError> {
     let count = entries.len();
     if !(2..=MOST_TINT_STOPS).contains(&count) {

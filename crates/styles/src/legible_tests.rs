@@ -1,14 +1,17 @@
-//! Classes of roads in the styles that come along: told apart by all eyes, and the more important, the more contrast.
+//! Road classes in the built-in styles: distinguishable for all kinds of colour vision, with more
+//! contrast for more important classes.
 
 use corniche_areas::AreaClass;
 use corniche_roads::FunctionalRoadClass;
 
 use crate::{Rgb, RoadStyle, Style, parse_style, style_preset, style_preset_names};
 
-/// How people see colours: with three kinds of cones; without those for long waves (protanopia), and without those for middle ones (deuteranopia).
+/// Kinds of colour vision: normal, without cones for long waves (protanopia), and without cones for
+/// middle waves (deuteranopia).
 ///
-/// Source of the matrices, for linear RGB: Machado, Oliveira & Fernandes 2009, A Physiologically-based Model for Simulation of Color
-/// Vision Deficiency, IEEE Transactions on Visualization and Computer Graphics 15 (6), severity 1.0.
+/// Source of the matrices, for linear RGB: Machado, Oliveira & Fernandes 2009, A
+/// Physiologically-based Model for Simulation of Color Vision Deficiency, IEEE Transactions on
+/// Visualization and Computer Graphics 15 (6), severity 1.0.
 const EYES: [(&str, [[f64; 3]; 3], f64); 3] = [
     ("three cones", [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], 20.0),
     (
@@ -37,7 +40,7 @@ fn linear(color: Rgb) -> [f64; 3] {
         .map(|part| if part <= 0.04045 { part / 12.92 } else { ((part + 0.055) / 1.055).powf(2.4) })
 }
 
-/// CIELAB of linear sRGB under D65.
+/// Converts linear sRGB under D65 to CIELAB.
 fn lab([red, green, blue]: [f64; 3]) -> [f64; 3] {
     let xyz = [
         (0.4124564 * red + 0.3575761 * green + 0.1804375 * blue) / 0.95047,
@@ -50,7 +53,7 @@ fn lab([red, green, blue]: [f64; 3]) -> [f64; 3] {
     [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
 }
 
-/// A colour as an eye sees it.
+/// Returns a colour as an eye of this kind perceives it.
 fn seen(color: Rgb, eye: [[f64; 3]; 3]) -> [f64; 3] {
     let color = linear(color);
     lab(eye.map(|row| row.iter().zip(color).map(|(a, b)| a * b).sum::<f64>().clamp(0.0, 1.0)))
@@ -58,8 +61,8 @@ fn seen(color: Rgb, eye: [[f64; 3]; 3]) -> [f64; 3] {
 
 /// The difference ΔE₀₀ of two colours in CIELAB.
 ///
-/// Source: Sharma, Wu & Dalal 2005, The CIEDE2000 Color-Difference Formula: Implementation Notes, Supplementary Test Data, and Mathematical
-/// Observations, Color Research and Application 30 (1).
+/// Source: Sharma, Wu & Dalal 2005, The CIEDE2000 Color-Difference Formula: Implementation Notes,
+/// Supplementary Test Data, and Mathematical Observations, Color Research and Application 30 (1).
 fn difference(one: [f64; 3], other: [f64; 3]) -> f64 {
     let power = |of: f64| (of.powi(7) / (of.powi(7) + 25_f64.powi(7))).sqrt();
     let mean_chroma = f64::midpoint(one[1].hypot(one[2]), other[1].hypot(other[2]));
@@ -99,7 +102,7 @@ fn difference(one: [f64; 3], other: [f64; 3]) -> f64 {
     (by_light.powi(2) + by_chroma.powi(2) + by_hue.powi(2) + both).sqrt()
 }
 
-/// Pairs that are published with the formula.
+/// Pairs of colours that were published with the formula.
 #[test]
 fn differences_are_those_of_the_published_pairs() {
     for (one, other, expected) in [
@@ -113,7 +116,8 @@ fn differences_are_those_of_the_published_pairs() {
     }
 }
 
-/// The ratio of two colours' luminances, as the Web Content Accessibility Guidelines (W3C 2018) define contrast.
+/// Returns the contrast of two colours: the ratio of their luminances, as the Web Content
+/// Accessibility Guidelines (W3C 2018) define it.
 fn contrast(one: Rgb, other: Rgb) -> f64 {
     let luminance = |color| {
         let [red, green, blue] = linear(color);
@@ -123,7 +127,8 @@ fn contrast(one: Rgb, other: Rgb) -> f64 {
     one.max(other) / one.min(other)
 }
 
-/// All colours that level ground has in a style: tints of heights, and areas over them. Water is no ground that roads lie on.
+/// Returns all colours of level ground in a style: tints of heights, and areas over them. Water is
+/// not included, because no roads are on it.
 fn grounds(style: &Style) -> Vec<Rgb> {
     let tints = || style.tint.stops.iter().map(|(_, color)| *color);
     let dry = AreaClass::ALL
@@ -145,7 +150,8 @@ fn classes(style: &Style) -> impl Iterator<Item = (u8, &RoadStyle)> {
     FunctionalRoadClass::all().map(|class| (class.number(), style.road(class)))
 }
 
-/// Neighbouring classes are told apart by what is seen of wide roads: by their fill, or where it is alike by their edge.
+/// Neighbouring classes are distinguishable on wide roads: by their fill, or, where fills are
+/// alike, by their edge.
 #[test]
 fn neighbouring_classes_are_told_apart_by_all_eyes() {
     for (name, style) in presets() {
@@ -165,14 +171,15 @@ fn neighbouring_classes_are_told_apart_by_all_eyes() {
     }
 }
 
-/// The contrasts of a road with a ground: as a wide road, whose fill and edge are seen, and as a thin one.
+/// The contrasts of a road with a ground: as a wide road, whose fill and edge are visible, and as a
+/// thin one.
 fn contrasts(road: &RoadStyle, ground: Rgb) -> [f64; 2] {
     let fills = road.bands.all().iter().map(|band| band.color);
     let wide = fills.chain([road.outline]).map(|color| contrast(color, ground)).fold(1.0, f64::max);
     [wide, contrast(road.thin.unwrap_or(road.bands.main_color()), ground)]
 }
 
-/// The least contrasts of each class: of wide roads and of thin ones.
+/// The minimum contrasts of each class, for wide roads and for thin ones.
 const LEAST: [[f64; 2]; FunctionalRoadClass::COUNT] = [
     [4.3, 2.6],
     [4.2, 2.3],
@@ -185,7 +192,8 @@ const LEAST: [[f64; 2]; FunctionalRoadClass::COUNT] = [
     [1.2, 1.2],
 ];
 
-/// On every ground a class has no more contrast than the one above it. What is under a photo is not known, so its style is not asked.
+/// On every ground a class has at most the contrast of the class above it. The ground under a photo
+/// is unknown, so the style `photo` is not checked.
 #[test]
 fn contrast_falls_with_the_class_on_every_ground() {
     for (name, style) in presets().filter(|(name, _)| *name != "photo") {
@@ -206,7 +214,7 @@ fn contrast_falls_with_the_class_on_every_ground() {
     }
 }
 
-/// Water is told from every ground and from where there is none.
+/// Water is distinguishable from every ground and from voids.
 #[test]
 fn water_is_told_from_ground() {
     for (name, style) in presets() {

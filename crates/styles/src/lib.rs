@@ -1,5 +1,5 @@
-//! How the map looks: the values that the viewer draws with, the TOML text in which people write them, and the styles that
-//! come with the program.
+//! Map styles: the values that the viewer draws with, the TOML text in which people write them, and
+//! the built-in styles.
 //!
 //! ```text
 //!  text (TOML) ──► parse_style ──► Style ──► viewer, window
@@ -7,7 +7,8 @@
 //!  style_preset ─────┘ base
 //! ```
 //!
-//! This crate never opens a file, never draws and knows no graphics card, so that it also builds for WebAssembly.
+//! This crate never opens a file, never draws and does not access a GPU, so that it also builds for
+//! WebAssembly.
 
 mod area_sheet;
 mod area_style;

@@ -1,4 +1,4 @@
-//! The part of a style's text that is about boundaries.
+//! The `[boundaries]` part of a style's text.
 
 use std::collections::BTreeMap;
 
@@ -16,26 +16,27 @@ use crate::{
 pub(crate) struct LineSheet {
     /// Colour.
     color: Rgb8,
-    /// Width on the picture, 0.5 to 50 pixels.
+    /// Width of the line on the picture, 0.5 to 50 pixels.
     width_px: f64,
-    /// Colour of an edge of one pixel on both sides; left out: without.
+    /// Colour of an edge of one pixel on both sides. Default: no edge.
     casing: Option<Rgb8>,
-    /// How much of the map it hides, 0 to 1; 0 does not draw the class. Left out: 1.
+    /// How much of the map the line hides, 0 to 1; 0 does not draw the class. Default: 1.
     opacity: Option<f64>,
-    /// Dash and gap in pixels, twice if wanted; left out: a solid line.
+    /// Dash and gap in pixels, optionally followed by a second dash and gap. Default: a solid line.
     #[serde(default)]
     dash: Vec<f32>,
-    /// How wide it is along a pattern; not together with `dash`.
+    /// The width along a pattern; not allowed together with `dash`.
     pattern: Option<PatternSheet>,
-    /// Drawn in full up to this many metres of ground in a pixel, 0.01 to 1e6; left out: always.
+    /// The line is fully drawn up to this many metres of ground per pixel, 0.01 to 1e6. Default:
+    /// always.
     max_pixel_m: Option<f64>,
 }
 
-/// A texture with one row along a line.
+/// A pattern along a line, like a texture with one row.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct PatternSheet {
-    /// Its length on the picture, 2 to 800 pixels.
+    /// Length of the pattern on the picture, 2 to 800 pixels.
     length_px: f32,
     /// 1 to 16 shares of the line's width, at equal distances.
     widths: Vec<f32>,
@@ -51,7 +52,7 @@ impl LineSheet {
     }
 }
 
-/// The boundaries by class, of which a whole style names each.
+/// Returns the boundary styles by class. A complete style defines every class.
 pub(crate) fn boundaries(
     sheets: &BTreeMap<String, LineSheet>,
 ) -> Result<[LineStyle; LineStyle::MOST], StyleError> {

@@ -1,11 +1,12 @@
-//! Lines take the places of roads, and areas that a person draws that of a class: the viewer draws them as it draws those.
+//! Lines in the slots of roads, and user-drawn areas in the slot of a class: the viewer draws both
+//! with the code for roads and areas.
 
 use corniche_areas::AreaClass;
 
 use crate::{AreaStyle, LineStyle, RoadBand, RoadBands, RoadStyle, Style};
 
 impl LineStyle {
-    /// The same look as that of a road.
+    /// Returns a road style with the same look.
     fn as_road(&self) -> RoadStyle {
         let inner = RoadBands::one(self.color);
         let (bands, width_px) = match self.casing {
@@ -18,7 +19,7 @@ impl LineStyle {
             }
         };
         RoadStyle {
-            // Far less than a pixel: the least width is what is drawn.
+            // Far less than a pixel, so that the minimum width in pixels applies.
             width_m: 1e-3,
             carriageway_width_m: 1e-3,
             min_width_px: width_px,
@@ -36,8 +37,8 @@ impl LineStyle {
 }
 
 impl Style {
-    /// This style for a picture whose roads are lines in these styles: what has the place of class 0 is drawn in the first one. Places
-    /// without a style are not drawn.
+    /// Returns this style for a picture that draws lines instead of roads: the lines of class 0
+    /// have the first of these line styles, and so on. Classes without a line style are not drawn.
     #[must_use]
     pub fn with_lines_as_roads(&self, lines: &[LineStyle]) -> Self {
         let mut roads = self.roads.map(|road| RoadStyle { opacity: 0.0, ..road });
@@ -49,13 +50,14 @@ impl Style {
 }
 
 impl Style {
-    /// The class whose place areas have that a person draws.
+    /// The class whose slot holds the areas that a user draws.
     pub const DRAWN_AREAS: AreaClass = AreaClass::Settlement;
 
-    /// How much of the map they hide.
+    /// How much of the map user-drawn areas hide.
     const DRAWN_AREAS_OPACITY: f32 = 0.3;
 
-    /// This style for a picture whose only areas are drawn by a person: inside in the colour of their outlines, and the map shows through.
+    /// Returns this style for a picture whose only areas are drawn by a user: they are filled with
+    /// the colour of their outlines, and the map shows through.
     #[must_use]
     pub fn with_drawn_areas(&self) -> Self {
         let mut areas = self.areas.map(|area| AreaStyle { opacity: 0.0, ..area });

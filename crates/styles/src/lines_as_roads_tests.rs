@@ -1,4 +1,4 @@
-//! The styles of lines take the places of roads.
+//! Line styles replace road styles.
 
 use super::*;
 

@@ -1,13 +1,13 @@
-//! The styles that come with the program.
+//! The built-in styles, read from their TOML files.
 
 use corniche_config::STYLES;
 
-/// Names of the styles that come with the program, the default one first.
+/// Names of the built-in styles, the default one first.
 pub fn style_preset_names() -> impl Iterator<Item = &'static str> {
     STYLES.iter().map(|(name, _)| *name)
 }
 
-/// The text of the style of this name that comes with the program, for [`parse_style`](crate::parse_style).
+/// Returns the text of the built-in style of this name, for [`parse_style`](crate::parse_style).
 #[must_use]
 pub fn style_preset(name: &str) -> Option<&'static str> {
     STYLES.iter().find(|(preset, _)| *preset == name).map(|(_, text)| *text)

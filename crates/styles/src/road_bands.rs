@@ -1,9 +1,10 @@
-//! The stripes of a road, such as casing, fill and centre line, one upon the other.
+//! The stripes of a road, such as casing, fill and centre line, drawn on top of each other.
 
 use crate::{Rgb, StyleError};
 use serde::{Deserialize, Serialize};
 
-/// Stripes along a road, one upon the other, each narrower than the one below: from the road's whole width to its middle.
+/// Stripes along a road, drawn on top of each other, each narrower than the one below: from the
+/// road's whole width to its middle.
 ///
 /// ```text
 ///   ├────────── 1.0 ──────────┤   the first band is the road
@@ -12,7 +13,7 @@ use serde::{Deserialize, Serialize};
 ///             ├ 0.2 ┤
 /// ```
 ///
-/// It has at least one band and at most [`RoadBands::MOST`].
+/// There is at least one band and at most [`RoadBands::MOST`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct RoadBands {
     bands: [RoadBand; Self::MOST],
@@ -22,19 +23,20 @@ pub struct RoadBands {
 /// One of the [`RoadBands`] of a road.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct RoadBand {
-    /// Share of the road's width.
+    /// Width of the band as a share of the road's width.
     pub width_share: f32,
-    /// Its colour.
+    /// Colour of the band.
     pub color: Rgb,
 }
 
 impl RoadBands {
-    /// The most bands of a road. The viewer stores class and band of each sample of a picture in 8 bits, which is what every graphics
-    /// card can blend: four bits for nine classes and four for the bands. A road of 16 bands is 31 stripes across; with a
-    /// pixel for each it fills more of the picture than any style lets it.
+    /// The maximum number of bands of a road. The viewer stores class and band of each sample of a
+    /// picture in 8 bits, the format that every GPU can blend: four bits for nine classes and four
+    /// for the bands. A road of 16 bands has 31 stripes across; with one pixel per stripe it is
+    /// wider on the picture than any style allows.
     pub const MOST: usize = 16;
 
-    /// The narrowest band.
+    /// The minimum width of a band, as a share of the road's width.
     pub const LEAST_SHARE: f32 = 0.01;
 
     /// A road of one colour.
@@ -43,7 +45,7 @@ impl RoadBands {
         Self { bands: [RoadBand { width_share: 1.0, color }; Self::MOST], count: 1 }
     }
 
-    /// A road of one colour with a line along its middle, the width of which is a share below 1.
+    /// A road of one colour with a line along its middle, whose width is a share below 1.
     pub(crate) fn with_center(mut self, center: RoadBand) -> Self {
         self.bands[1] = center;
         Self { count: 2, ..self }
@@ -52,13 +54,14 @@ impl RoadBands {
     /// A road of these bands, the widest first.
     ///
     /// # Errors
-    /// When there is none or more than [`RoadBands::MOST`]; when the first is not as wide as the road; when another one is not
-    /// narrower than the one before it, or narrower than [`RoadBands::LEAST_SHARE`].
+    /// When there are no bands or more than [`RoadBands::MOST`]; when the first band is not as wide
+    /// as the road; when another band is not narrower than the previous one, or is narrower than
+    /// [`RoadBands::LEAST_SHARE`].
     pub fn new(bands: &[RoadBand]) -> Result<Self, StyleError> {
         let Some(first) = bands.first().filter(|_| bands.len() <= Self::MOST) else {
             return Err(StyleError::BandCount { count: bands.len(), most: Self::MOST });
         };
-        // Both questions also refuse NaN.
+        // Both comparisons also reject NaN.
         if !(1.0..=1.0).contains(&first.width_share) {
             return Err(StyleError::FirstBand { width: first.width_share });
         }
@@ -80,14 +83,15 @@ impl RoadBands {
         &self.bands[..self.count]
     }
 
-    /// How many bands slip roads have: those that take at least half of the width. So a slip road has no line along its middle.
+    /// How many bands slip roads have: those that are at least half as wide as the road. So a slip
+    /// road has no line along its middle.
     #[must_use]
     pub fn of_slip_roads(&self) -> usize {
         self.all().iter().filter(|band| band.width_share >= 0.5).count()
     }
 
-    /// The colour of which most is seen, where a road has one colour only: that of a tunnel, of a swatch, and of a road that is
-    /// too thin for its bands. Of two colours seen equally it is the outer one.
+    /// The dominant colour, for roads that have one colour only: tunnels, swatches, and roads that
+    /// are too thin for their bands. If two colours cover the same width, the outer one counts.
     #[must_use]
     pub fn main_color(&self) -> Rgb {
         let bands = self.all();

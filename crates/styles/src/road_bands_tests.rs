@@ -1,4 +1,4 @@
-//! Bands are nested from the whole road to its middle.
+//! Bands are nested, from the whole road to its middle.
 
 use super::*;
 
@@ -19,7 +19,7 @@ fn bands_are_nested_from_the_whole_road_to_its_middle() {
     for (parts, words) in [
         (&[][..], "1 to 16 bands, not 0"),
         (&[(1.0, RED); 17], "1 to 16 bands, not 17"),
-        (&[(0.9, RED)], "first band has a width of 0.9"),
+        (&[(0.9, RED)], "first band must have a width of 1 (the whole road), not 0.9"),
         (&[(f32::NAN, RED)], "first band"),
         (&[(1.0, RED), (1.0, PALE)], "band 2"),
         (&[(1.0, RED), (0.5, PALE), (0.6, DARK)], "band 3"),

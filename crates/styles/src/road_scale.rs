@@ -4,11 +4,13 @@ use corniche_roads::FunctionalRoadClass;
 
 use crate::{RoadStyle, Style};
 
-/// How much coarser than a class's last full scale the picture is where the class has faded away: half a zoom step.
+/// Half a zoom step: a class has faded out when pixels are this many times coarser than its last
+/// full scale.
 pub const FADE_FACTOR: f64 = std::f64::consts::SQRT_2;
 
 impl RoadStyle {
-    /// The metres of ground in a pixel from which on the road is not drawn at all; infinite for one that always is.
+    /// The metres of ground per pixel from which on the road is not drawn at all; infinite for a
+    /// road that is always drawn.
     #[must_use]
     pub fn last_pixel_m(&self) -> f64 {
         self.max_pixel_m.map_or(f64::INFINITY, |max_pixel_m| f64::from(max_pixel_m) * FADE_FACTOR)

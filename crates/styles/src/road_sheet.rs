@@ -1,4 +1,4 @@
-//! The part of a style's text that is about the roads of one class.
+//! The part of a style's text about the roads of one class.
 
 use serde::Deserialize;
 
@@ -13,9 +13,9 @@ use crate::{
 pub(crate) struct RoadSheet {
     /// Width on the ground, 0.1 to 500 m.
     pub(crate) width_m: f64,
-    /// Width of one of two carriageways on the ground, 0.1 m to `width_m`, which it is if it is left out.
+    /// Width of one of two carriageways on the ground, 0.1 m to `width_m`. Default: `width_m`.
     pub(crate) carriageway_width_m: Option<f64>,
-    /// Roads are never drawn thinner than this, 0.1 to 50 pixels.
+    /// Minimum width on the picture, 0.1 to 50 pixels.
     pub(crate) min_width_px: f64,
     /// Colour of the surface, for roads of one or two colours.
     pub(crate) color: Option<Rgb8>,
@@ -25,17 +25,19 @@ pub(crate) struct RoadSheet {
     pub(crate) center: Option<CenterSheet>,
     /// Colours of the surface from the edges to the middle, instead of `color` and `center`.
     pub(crate) bands: Option<Vec<BandSheet>>,
-    /// Drawn in full up to this many metres of ground in a pixel, 0.01 to 1e6; left out: always.
+    /// The road is fully drawn up to this many metres of ground per pixel, 0.01 to 1e6. Default:
+    /// always.
     pub(crate) max_pixel_m: Option<f64>,
-    /// Roads grow no wider with distance than this, 0.1 to 500 pixels; left out: without end.
+    /// Roads grow with distance up to this width, 0.1 to 500 pixels. Default: no limit.
     pub(crate) max_width_px: Option<f64>,
-    /// How widths grow with distance, 0 to 1; left out: as in `width_scaling`.
+    /// How widths grow with distance, 0 to 1. Default: as in `width_scaling`.
     pub(crate) exponent: Option<f64>,
-    /// With its edge in full up to this many metres of ground in a pixel, 0.01 to 1e6; left out: always.
+    /// The edge is fully drawn up to this many metres of ground per pixel, 0.01 to 1e6. Default:
+    /// always.
     pub(crate) edge_max_pixel_m: Option<f64>,
-    /// The colour of a road without an edge; left out: that of which most is seen.
+    /// Colour of a road without an edge. Default: the dominant colour of its bands.
     pub(crate) thin: Option<Rgb8>,
-    /// How much of the ground a road hides, 0.01 to 1; left out: 1.
+    /// How much of the ground a road hides, 0.01 to 1. Default: 1.
     pub(crate) opacity: Option<f64>,
 }
 
@@ -43,9 +45,9 @@ pub(crate) struct RoadSheet {
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct CenterSheet {
-    /// Share of the road's width, 0.01 to 0.99.
+    /// Width of the line as a share of the road's width, 0.01 to 0.99.
     pub(crate) width_share: f64,
-    /// Its colour.
+    /// Colour of the line.
     pub(crate) color: Rgb8,
 }
 
@@ -53,14 +55,14 @@ pub(crate) struct CenterSheet {
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct BandSheet {
-    /// Share of the road's width.
+    /// Width of the band as a share of the road's width.
     pub(crate) width: f64,
-    /// Its colour.
+    /// Colour of the band.
     pub(crate) color: Rgb8,
 }
 
 impl RoadSheet {
-    /// How roads of this class are drawn, if every number is in its range.
+    /// Returns the style of this road class, if every number is within its range.
     pub(crate) fn checked(&self, class: usize) -> Result<RoadStyle, StyleError> {
         let entry = |name| format!("roads.{class}.{name}");
         within(&entry("width_m"), self.width_m, 0.1..=500.0)?;

@@ -1,4 +1,5 @@
-//! The text of a style: TOML, checked entry by entry, and then turned into the values that are drawn with.
+//! The TOML text of a style: it is checked entry by entry, then converted to the values that the
+//! viewer draws with.
 
 use std::{collections::BTreeMap, sync::LazyLock};
 
@@ -16,16 +17,16 @@ use crate::{
     style_preset,
 };
 
-/// Longest text that is read. The longest preset has some 3 kB.
+/// Maximum length of a style's text. The longest preset has some 3 kB.
 const MAX_TEXT_BYTES: usize = 1 << 20;
 
 /// How roads widen with distance.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct WidthScalingSheet {
-    /// Distance from the eye up to which widths are true, 1 to 1e7 m.
+    /// Up to this distance from the eye, roads have their true width, 1 to 1e7 m.
     threshold_m: f64,
-    /// 0 to 1.
+    /// Exponent of the growth with distance, 0 to 1.
     exponent: f64,
     /// Factor on all widths where they are multiplied by a constant, 0.1 to 100.
     constant: f64,
@@ -35,35 +36,37 @@ struct WidthScalingSheet {
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct BackgroundSheet {
-    /// Far ground and the sky at the horizon.
+    /// Colour of far ground and of the sky at the horizon.
     haze: Rgb8,
-    /// The sky far above the horizon.
+    /// Colour of the sky far above the horizon.
     sky: Rgb8,
-    /// Where there is no ground, below the horizon.
+    /// Colour below the horizon where there is no ground.
     void: Rgb8,
-    /// Level ground at or below 0 m.
+    /// Colour of level ground at or below 0 m.
     water: Rgb8,
-    /// The wall along the edge of the data.
+    /// Colour of the wall along the edge of the data.
     wall: Rgb8,
-    /// Ground at this many times the distance of what is looked at has lost two thirds of its colour; 0.1 to 1000.
+    /// Ground at this many times the distance of the camera's target has lost two thirds of its
+    /// colour, 0.1 to 1000.
     haze_reach: f64,
 }
 
 /// A style in the units and types of its text, not yet checked: lists and tables of any length.
-/// `config/styles/road-atlas.toml` tells what each entry means.
+/// `config/styles/road-atlas.toml` explains every entry.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct StyleFile {
-    /// 0 to 4 pixels.
+    /// Width of the edge of roads, 0 to 4 pixels.
     outline_px: u32,
-    /// 0 to 1000 pixels.
+    /// Minimum length on the picture of parts of the road network without connections, 0 to 1000
+    /// pixels.
     #[serde(default)]
     shortest_part_px: f64,
     #[serde(default)]
     own_width: bool,
-    /// 1 to 10 m.
+    /// Width of a lane, 1 to 10 m.
     lane_width_m: Option<f64>,
-    /// 0 to 1.
+    /// Visibility of photos, 0 to 1.
     #[serde(default = "photos_alone")]
     photo: f64,
     width_scaling: WidthScalingSheet,
@@ -79,7 +82,7 @@ struct StyleFile {
     roads: BTreeMap<String, RoadSheet>,
 }
 
-/// Photos hide the height tint, where a style does not say how strongly they are seen.
+/// Visibility of photos in a style that does not set it: they hide the height tint.
 fn photos_alone() -> f64 {
     1.0
 }
@@ -99,11 +102,13 @@ impl Style {
     }
 }
 
-/// Reads a style's text. With `base`, the name of a style that comes along, it has the entries of that style where it says nothing.
+/// Parses a style's text. If the text names a built-in style as its `base`, that style supplies the
+/// entries that the text omits.
 ///
 /// # Errors
-/// When it is no TOML, leaves something out or says something unknown (the message names the line); when a number is
-/// out of its range, a class or the base is missing, or the tint does not ascend from 0 to 1 (the message names the entry).
+/// When the text is not valid TOML, lacks an entry or has an unknown one (the message names the
+/// line); when a number is out of range, a class or the base does not exist, or the tint does not
+/// ascend from 0 to 1 (the message names the entry).
 pub fn parse_style(text: &str) -> Result<Style, StyleError> {
     if text.len() > MAX_TEXT_BYTES {
         return Err(StyleError::TooLong { bytes: text.len(), limit: MAX_TEXT_BYTES });
@@ -150,7 +155,7 @@ pub fn parse_style(text: &str) -> Result<Style, StyleError> {
     })
 }
 
-/// The roads by class, if there are all of them and no others, and each is right.
+/// Returns the roads by class, if the classes are complete, no others exist, and each is valid.
 fn all_classes(
     roads: &BTreeMap<String, RoadSheet>,
 ) -> Result<[RoadStyle; FunctionalRoadClass::COUNT], StyleError> {
@@ -176,7 +181,7 @@ impl StyleFile {
     fn check(&self) -> Result<(), StyleError> {
         let Self { outline_px, lane_width_m, width_scaling: scaling, .. } = self;
         let Self { light, background, .. } = self;
-        // The kernel looks at (2 r + 1)² places for every pixel.
+        // The kernel reads (2 r + 1)² samples for every pixel.
         within("outline_px", f64::from(*outline_px), 0.0..=4.0)?;
         within("shortest_part_px", self.shortest_part_px, 0.0..=1000.0)?;
         if let Some(lane_width_m) = lane_width_m {

@@ -1,4 +1,4 @@
-//! The styles that come with the program keep their rules, and mistakes in a style are named.
+//! The built-in styles follow their rules, and errors name the mistakes in a style.
 
 use corniche_areas::AreaClass;
 
@@ -9,10 +9,11 @@ fn atlas() -> &'static str {
     style_preset("road-atlas").expect("the default style is there")
 }
 
-/// Refuses the atlas with one text in it replaced, and with all these words.
+/// Checks that the road atlas with `from` replaced by `to` is rejected with a message that has all
+/// these words.
 fn refuses(from: &str, to: &str, words: &[&str]) {
     let text = atlas().replacen(from, to, 1);
-    assert_ne!(text, atlas(), "{from:?} does not stand there");
+    assert_ne!(text, atlas(), "{from:?} is not in the style");
     let error = parse_style(&text).expect_err(to).to_string();
     for word in words {
         assert!(error.contains(word), "{to:?}: no {word:?} in {error}");
@@ -44,7 +45,7 @@ fn luminance(color: Rgb) -> f64 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
-/// The contrast of main roads, tracks and edges with ground that lies flat in the light.
+/// The contrast of main roads, tracks and edges with level ground in the light.
 #[test]
 fn dark_roads_glow_and_their_edges_are_darker_than_any_ground() {
     let style = parse_style(style_preset("dark").unwrap()).unwrap();
@@ -52,12 +53,13 @@ fn dark_roads_glow_and_their_edges_are_darker_than_any_ground() {
         let [a, b] = [a, b].map(luminance);
         (a.max(b) + 0.05) / (a.min(b) + 0.05)
     };
-    // The two highest tints are rock and snow; roads there are few and low classes fade into them.
+    // The two highest tints are rock and snow; roads there are rare, and low classes blend into
+    // these colours.
     let ground = &style.tint.stops[..style.tint.stops.len() - 2];
     for (class, road) in style.roads.iter().enumerate() {
         for (height_m, tint) in ground {
             let least = if class <= 4 { 4.5 } else { 1.7 };
-            // Motorways have a pale line along their middle.
+            // Motorways have a pale centre line.
             let bands = road.bands.all().iter().map(|band| band.color);
             let reached = bands.map(|color| contrast(color, *tint)).fold(1.0, f64::max);
             assert!(reached >= least, "class {class} at {height_m} m: {reached:.2}");
@@ -84,7 +86,8 @@ fn the_default_style_is_the_viewers_own() {
     assert_ne!(parsed("dark"), Style::road_atlas());
 }
 
-/// Refuses the atlas with another value of this entry, whatever its own is, and with all these words.
+/// Checks that the road atlas with another value of this entry is rejected with a message that has
+/// all these words.
 fn refuses_value(table: &str, key: &str, value: &str, words: &[&str]) {
     let all = atlas();
     let start = if table.is_empty() {
@@ -189,8 +192,8 @@ fn bands_may_be_written_instead_of_a_colour_and_a_centre_line() {
         (bands(&[]), &["[roads.0]", "1 to 16 bands, not 0"]),
         (bands(&[1.0; 17]), &["1 to 16 bands, not 17"]),
         (bands(&[0.8, 0.5]), &["[roads.0]", "first band", "0.8"]),
-        (bands(&[1.0, 0.5, 0.5]), &["band 3", "must fall"]),
-        (bands(&[1.0, 0.001]), &["band 2", "0.01 at least"]),
+        (bands(&[1.0, 0.5, 0.5]), &["band 3", "must decrease"]),
+        (bands(&[1.0, 0.001]), &["band 2", "below 0.01"]),
         (bands(&[1.0, f64::NAN]), &["band 2"]),
     ] {
         let error = with(&text.replace("NaN", "nan")).unwrap_err().to_string();
@@ -200,7 +203,7 @@ fn bands_may_be_written_instead_of_a_colour_and_a_centre_line() {
     }
 }
 
-/// The atlas with this tint in place of its own.
+/// Returns the road atlas with its tint replaced by this one.
 fn with_tint(entries: &[&str], by_climate: bool) -> Result<Style, StyleError> {
     let mut text = String::new();
     let mut is_tint = false;
@@ -239,7 +242,7 @@ fn tints_ascend_by_shares_or_by_metres() {
         (&["share = 0", "share = 0.9"], false, order),
         (&["share = 0"], false, "2 to 12 [[tint]] entries, not 1"),
         (&many, false, "2 to 12 [[tint]] entries, not 13"),
-        (&["share = 0", "height_m = 100"], false, "either share in all of them"),
+        (&["share = 0", "height_m = 100"], false, "either share in all entries"),
         (&["share = 0\nheight_m = 0", "share = 1\nheight_m = 9"], false, "either share"),
         (&["share = 0", "share = 1"], true, "tint_by_climate"),
         (&["height_m = 100", "height_m = 100.5"], false, "ascend, by 1 m"),
@@ -251,7 +254,7 @@ fn tints_ascend_by_shares_or_by_metres() {
     }
 }
 
-/// Styles of before these entries came keep working.
+/// Styles that are older than these entries are still valid.
 #[test]
 fn new_entries_of_light_and_background_may_be_left_out() {
     let added = [
@@ -271,7 +274,7 @@ fn new_entries_of_light_and_background_may_be_left_out() {
     assert_eq!(parse_style(&text).unwrap(), Style::road_atlas());
 }
 
-/// Without a word about it, and with `own_width = false`, classes alone decide.
+/// Without the entry, and with `own_width = false`, only the class sets the width of a road.
 #[test]
 fn own_widths_are_off_unless_the_style_turns_them_on() {
     let with = |lines: &str| {

@@ -1,4 +1,4 @@
-//! Colours and numbers of a style's text.
+//! Colours and numbers in a style's text.
 
 use std::ops::RangeInclusive;
 
@@ -25,13 +25,13 @@ impl From<Rgb8> for Rgb {
     }
 }
 
-/// Refuses a number outside its range.
+/// Rejects a number outside its range.
 pub(crate) fn within(
     entry: &str,
     value: f64,
     range: RangeInclusive<f64>,
 ) -> Result<(), StyleError> {
-    // NaN is in no range.
+    // NaN is not in any range.
     if range.contains(&value) {
         return Ok(());
     }

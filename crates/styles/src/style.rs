@@ -1,4 +1,4 @@
-//! How the map looks: plain values, no GPU.
+//! The style of the map as plain values, without GPU.
 
 use corniche_areas::AreaClass;
 use corniche_roads::{Form, FunctionalRoadClass, OwnWidth, RoadAttributes};
@@ -11,37 +11,39 @@ use crate::{AreaStyle, Dash, Light, LineStyle, Rgb, RoadBands, Tint};
 pub struct RoadStyle {
     /// Width on the ground near the eye.
     pub width_m: f32,
-    /// Width of one of two carriageways, there.
+    /// Width on the ground near the eye of one of two carriageways.
     pub carriageway_width_m: f32,
-    /// Roads are never drawn thinner than this.
+    /// Minimum width on the picture.
     pub min_width_px: f32,
     /// Colours of the surface, from the edges to the middle.
     pub bands: RoadBands,
     /// Colour of the edge.
     pub outline: Rgb,
-    /// The most true metres of ground in a pixel at which roads are drawn in full; beyond, they become fainter. `None`:
-    /// they always are.
+    /// The most true metres of ground per pixel at which roads are fully drawn; beyond that they
+    /// fade. `None`: they are always fully drawn.
     pub max_pixel_m: Option<f32>,
-    /// Where widths grow with distance, roads grow no wider than this; `None`: without end. What is wider near the eye stays so.
+    /// The width up to which roads grow with distance; `None`: no limit. Roads that are wider near
+    /// the eye keep their width.
     pub max_width_px: Option<f32>,
-    /// How widths grow with distance, instead of [`WidthScaling::exponent`].
+    /// How widths grow with distance. It overrides [`WidthScaling::exponent`].
     pub exponent: Option<f32>,
-    /// The most true metres of ground in a pixel at which roads have their edge in full; at twice as many they have none. `None`: they
-    /// always have it.
+    /// The most true metres of ground per pixel at which the edge of roads is fully drawn; at twice
+    /// as many there is no edge. `None`: the edge is always drawn.
     pub edge_max_pixel_m: Option<f32>,
-    /// Colour where a road has no edge; [`RoadBands::main_color`] where it is `None`.
+    /// Colour of a road without an edge; `None`: [`RoadBands::main_color`].
     pub thin: Option<Rgb>,
-    /// How much of the ground a road hides, edge included: 1 hides it.
+    /// How much of the ground a road hides, edge included: 1 hides it completely.
     pub opacity: f32,
-    /// Dashes along it.
+    /// The dash pattern of the road.
     pub dash: Dash,
 }
 
 impl RoadStyle {
-    /// Width of service roads as a share of that of their class, and of slip roads as a share of a carriageway of theirs.
+    /// Width of service roads as a share of the width of their class, and of slip roads as a share
+    /// of a carriageway of their class.
     pub const NARROW_WIDTH_SHARE: f32 = 0.6;
 
-    /// The same with other widths on the ground.
+    /// Returns the style with its widths on the ground multiplied by `factor`.
     #[must_use]
     pub fn widened(mut self, factor: f32) -> Self {
         self.width_m *= factor;
@@ -49,7 +51,7 @@ impl RoadStyle {
         self
     }
 
-    /// Width on a flat map: the most that roads grow to with distance. Thinner than a pixel is not seen.
+    /// Width on a flat map: the maximum to which roads grow with distance, at least one pixel.
     #[must_use]
     pub fn flat_width_px(&self) -> f32 {
         self.max_width_px.unwrap_or(self.min_width_px).max(1.0)
@@ -59,20 +61,21 @@ impl RoadStyle {
 /// How much roads widen with distance (the paper, section 6.2 and Fig. 10).
 ///
 /// Up to `threshold_m` a road has its true width. Beyond, the width is multiplied by
-/// `(distance / threshold_m) ^ exponent`. With exponent 0, roads become smaller with distance like everything else; with 1,
-/// they keep their width in pixels. In between, far roads remain visible and still look far.
+/// `(distance / threshold_m) ^ exponent`. With exponent 0, roads become smaller with distance like
+/// everything else; with 1, they keep their width in pixels. In between, far roads remain visible
+/// and still look far.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct WidthScaling {
-    /// Distance from the eye up to which widths are true.
+    /// Up to this distance from the eye, roads have their true width.
     pub threshold_m: f32,
-    /// 0 to 1.
+    /// Exponent of the growth with distance, 0 to 1.
     pub exponent: f32,
     /// Factor on all widths; 1 is true.
     pub constant: f32,
 }
 
 impl WidthScaling {
-    /// Factor on the width at a distance from the eye.
+    /// Returns the factor on the width at a distance from the eye.
     #[must_use]
     pub fn factor(&self, distance_m: f64) -> f64 {
         let growth = (distance_m / f64::from(self.threshold_m)).max(1.0);
@@ -80,21 +83,23 @@ impl WidthScaling {
     }
 }
 
-/// Roads are drawn by their own tags, where they have some.
+/// How the `width` and `lanes` tags of roads set their widths.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct OwnWidths {
-    /// Width of one lane: roads with `lanes` and without `width` are so many times as wide. `None`: `lanes` are not looked at.
+    /// Width of one lane: it sets the width of roads with `lanes` and without `width`. `None`:
+    /// `lanes` is ignored.
     pub lane_m: Option<f32>,
 }
 
 impl OwnWidths {
-    /// Tags make no road wider than this: what is tagged beyond it is rather an error, or the width of a square.
+    /// Maximum width from tags: a larger tagged width is rather an error, or the width of a square.
     pub const WIDEST_M: f32 = 60.0;
 
-    /// The widest lane that a style may have.
+    /// Maximum width of a lane in a style.
     pub const WIDEST_LANE_M: f32 = 10.0;
 
-    /// The width that a road's tags ask for, metres, before it is capped; `None` if they do not say.
+    /// The width that a road's tags request, metres, before it is capped; `None` if the tags do not
+    /// set one.
     #[must_use]
     pub fn asked_m(self, own: OwnWidth) -> Option<f32> {
         match own {
@@ -110,77 +115,80 @@ impl OwnWidths {
 pub struct Style {
     /// The roads of each class, 0 first.
     pub roads: [RoadStyle; FunctionalRoadClass::COUNT],
-    /// The areas of each class, in order of their numbers. Which lies above which is said by [`AreaStyle::TOP_FIRST`].
+    /// The areas of each class, in order of their numbers. [`AreaStyle::TOP_FIRST`] sets which
+    /// class is drawn above which.
     pub areas: [AreaStyle; AreaClass::COUNT],
-    /// Boundaries, by class.
+    /// The styles of boundaries, by class.
     pub boundaries: [LineStyle; LineStyle::MOST],
-    /// Lines of people's own files, in the order of the files.
+    /// The styles of lines from users' files, in the order of the files.
     pub overlays: [LineStyle; LineStyle::MOST],
-    /// Lines that a person draws.
+    /// The style of lines that a user draws.
     pub drawn: LineStyle,
-    /// Whether roads are drawn by their own tags; `None`: all roads of a class are equally wide.
+    /// Whether tags set the widths of roads; `None`: all roads of a class have the same width.
     pub own_widths: Option<OwnWidths>,
     /// How roads widen with distance.
     pub width_scaling: WidthScaling,
-    /// Width of the edge of roads; the kernel has this radius.
+    /// Width of the edge of roads, and the radius of its kernel.
     pub outline_px: u32,
-    /// Roads that stand alone, with no more of their class and above around them, are drawn where together they are at least so long.
-    /// 0: everywhere.
+    /// Minimum length on the picture of a part of the road network that has no connection to roads
+    /// of its class or above. Shorter parts are not drawn. 0: all parts are drawn.
     pub shortest_part_px: f32,
     /// Colours of the ground by its height.
     pub tint: Tint,
     /// The light on the ground.
     pub light: Light,
-    /// How strongly photos are seen where a package has some, 0 (not) to 1 (instead of the height tint).
+    /// How strongly photos are visible, if the package has some: 0 (not at all) to 1 (instead of
+    /// the height tint).
     pub photo: f32,
     /// Colour of far ground and of the sky at the horizon.
     pub haze: Rgb,
     /// Colour of the sky far above the horizon.
     pub sky: Rgb,
-    /// Colour where there is no ground, below the horizon.
+    /// Colour below the horizon where there is no ground.
     pub void: Rgb,
     /// Colour of level ground at or below 0 m.
     pub water: Rgb,
     /// Colour of the wall along the edge of the data.
     pub wall: Rgb,
-    /// Ground at this many times the distance of what is looked at has lost two thirds of its colour.
+    /// Ground at this many times the distance of the camera's target has lost two thirds of its
+    /// colour.
     pub haze_reach: f32,
 }
 
 impl Style {
-    /// The same without any areas.
+    /// Returns the style without areas.
     #[must_use]
     pub fn without_areas(self) -> Self {
         let areas = self.areas.map(|area| AreaStyle { opacity: 0.0, ..area });
         Self { areas, ..self }
     }
 
-    /// Whether areas of some class are drawn.
+    /// Whether areas of any class are drawn.
     #[must_use]
     pub fn has_areas(&self) -> bool {
         self.areas.iter().any(AreaStyle::is_drawn)
     }
 
-    /// The same without any boundaries.
+    /// Returns the style without boundaries.
     #[must_use]
     pub fn without_boundaries(self) -> Self {
         let boundaries = self.boundaries.map(|line| LineStyle { opacity: 0.0, ..line });
         Self { boundaries, ..self }
     }
 
-    /// Whether boundaries of some class are drawn.
+    /// Whether boundaries of any class are drawn.
     #[must_use]
     pub fn has_boundaries(&self) -> bool {
         self.boundaries.iter().any(LineStyle::is_drawn)
     }
 
-    /// How areas of a class are drawn.
+    /// Returns the style of an area class.
     #[must_use]
     pub fn area(&self, class: AreaClass) -> &AreaStyle {
         &self.areas[usize::from(class.number())]
     }
 
-    /// Width on the ground near the eye of a road of this class whose tags say `own`.
+    /// Width on the ground near the eye of a road of this class whose tags give `own`.
     #[must_use]
     pub fn width_m(&self, class: FunctionalRoadClass, own: OwnWidth) -> f32 {
         match self.own_widths.and_then(|widths| widths.asked_m(own)) {
@@ -189,8 +197,9 @@ impl Style {
         }
     }
 
-    /// Width on the ground near the eye of a road of this class with these attributes: service roads are narrower than others,
-    /// and so is one of two carriageways, where its tags do not say how wide it is, and slip roads than that.
+    /// Width on the ground near the eye of a road of this class with these attributes. Service
+    /// roads are narrower than others. So is one of two carriageways, unless its tags set its
+    /// width; slip roads are narrower than a carriageway.
     #[must_use]
     pub fn width_of_m(&self, class: FunctionalRoadClass, attributes: &RoadAttributes) -> f32 {
         let own = attributes.own_width();
@@ -205,7 +214,7 @@ impl Style {
         if is_narrow { width_m * RoadStyle::NARROW_WIDTH_SHARE } else { width_m }
     }
 
-    /// Whether a road's tags ask for more than [`OwnWidths::WIDEST_M`].
+    /// Whether a road's tags request more than [`OwnWidths::WIDEST_M`].
     #[must_use]
     pub fn is_capped(&self, own: OwnWidth) -> bool {
         let asked_m = self.own_widths.and_then(|widths| widths.asked_m(own));

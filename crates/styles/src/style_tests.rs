@@ -25,7 +25,8 @@ fn hex_is_red_green_blue() {
     assert_eq!(crate::parse_color("#FF0033").unwrap(), [1.0, 0.0, 0.2]);
 }
 
-/// A road's width: by its tag, by its lanes, by its class; at most 60 m from tags, and whatever the style says from classes.
+/// The width of a road comes from its `width` tag, its lanes or its class; tags give at most 60 m,
+/// a class gives any width of the style.
 #[test]
 fn tags_decide_the_width_where_the_style_looks_at_them() {
     let class = FunctionalRoadClass::new(4).unwrap();
@@ -61,7 +62,7 @@ fn colours_of_a_tint_are_linear_between_stops() {
     }
 }
 
-/// Every class has a place in the order, and the order is the documented one.
+/// Every class is in the order, and the order is the documented one.
 #[test]
 fn water_lies_above_forest_and_forest_above_settlements() {
     let mut classes = AreaStyle::TOP_FIRST;
@@ -81,7 +82,8 @@ fn a_style_without_areas_keeps_all_else() {
     assert_eq!(Style { areas: style.areas, ..without }, style);
 }
 
-/// A share is a place in the package's range; metres are metres; by climate, they move with the snow line, but not at sea.
+/// A share is a position in the package's range of heights; metres are metres; by climate, heights
+/// move with the snow line, but not at sea level.
 #[test]
 fn heights_of_a_tint_are_what_its_unit_says() {
     let colors = [[0.0; 3], [1.0; 3]];
@@ -95,7 +97,8 @@ fn heights_of_a_tint_are_what_its_unit_says() {
     assert_eq!(stops(TintHeights::MetresByClimate, [-10.0, 2900.0], -67.0), [-10.0, 1200.0]);
 }
 
-/// As roads are drawn: a carriageway has its own width, a slip road 0.6 of that, a service road 0.6 of its class; tags go before the style.
+/// Drawn widths: a carriageway has a width of its own, a slip road 0.6 of that, a service road 0.6
+/// of its class; tags override the style.
 #[test]
 fn widths_follow_what_a_road_is() {
     let mut style = Style::road_atlas();

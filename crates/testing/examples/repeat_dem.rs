@@ -1,13 +1,14 @@
-//! A large elevation raster out of a small real one: for measuring, not for maps.
+//! Creates a large elevation raster from a small real one: for measuring, not for maps.
 //!
 //! ```sh
 //! cargo run -p corniche-testing --features rasters --example repeat_dem -- SOURCE OUT.tif SIDE [SEED]
 //! ```
 //!
-//! `OUT.tif` has `SIDE` × `SIDE` samples with the spacing of the source: 20000 gives 400 million. The source lies in the
-//! middle, and mirrored beside itself, again and again, so that there are no steps. A smooth field of ±60 m over it differs
-//! everywhere, so no two tiles are the same. Voids stay voids. The same arguments give the same bytes. Samples are 16-bit whole
-//! metres in tiles of 512 × 512, compressed.
+//! `OUT.tif` has `SIDE` × `SIDE` samples with the spacing of the source: 20000 results in 400
+//! million. The source is in the middle, surrounded by mirrored copies, so that there are no steps.
+//! A smooth field of ±60 m over it differs everywhere, so no two tiles are the same. Voids remain
+//! voids. The same arguments give the same bytes. Samples are 16-bit integers in metres, in
+//! compressed tiles of 512 × 512.
 #![allow(clippy::print_stderr, reason = "a program to run by hand")]
 
 use std::{error::Error, process::ExitCode};
@@ -18,9 +19,9 @@ use gdal::{
     raster::{Buffer, GdalDataType},
 };
 
-/// Stands for no data, in the source too if it declares nothing else.
+/// The nodata value of the output, and of the source if it declares none.
 const VOID: i16 = i16::MIN;
-/// Side of a tile of the file, samples.
+/// Side of a tile of the file in samples.
 const BLOCK: usize = 512;
 
 fn main() -> ExitCode {
@@ -40,7 +41,7 @@ fn main() -> ExitCode {
     match Source::open(source).and_then(|source| source.repeat(out, side, &Field { seed })) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {out} could not be made from {source}: {error}");
+            eprintln!("error: cannot create {out} from {source}: {error}");
             ExitCode::FAILURE
         }
     }
@@ -51,7 +52,7 @@ struct Source {
     dataset: Dataset,
     columns: usize,
     rows: usize,
-    /// Metres, row by row from the north.
+    /// Heights in metres, row by row from the north.
     heights_m: Vec<f32>,
     nodata: f32,
 }
@@ -78,7 +79,7 @@ impl Source {
         let options = raster_creation_options(&options);
         let mut target =
             driver.create_with_band_type_with_options::<i16, _>(out, side, side, 1, &options)?;
-        // Samples north and west of the source.
+        // The number of samples north and west of the source.
         let before = [self.columns, self.rows].map(|source| (side as i64 - source as i64) / 2);
         let mut place = self.dataset.geo_transform()?;
         let [west, north] = before.map(|samples| samples as f64);
@@ -110,23 +111,25 @@ impl Source {
     }
 }
 
-/// Which of `count` samples stands at `index` of a line that is mirrored at both ends, again and again.
+/// Returns the index of the sample, out of `count`, at `index` of a line that is mirrored at both
+/// ends, again and again.
 fn mirrored(index: i64, count: usize) -> usize {
     let last = count as i64 - 1;
     let at = index.rem_euclid(2 * last);
     at.min(2 * last - at) as usize
 }
 
-/// What is added to heights: random values at the knots of two lattices, and a smooth transition in between.
+/// The field that is added to heights: random values at the knots of two lattices, with a smooth
+/// transition in between.
 struct Field {
     seed: u64,
 }
 
 impl Field {
-    /// Samples from one knot to the next, and the largest value at a knot, metres.
+    /// The spacing of the knots in samples, and the largest value at a knot in metres.
     const OCTAVES: [(u64, f64); 2] = [(311, 52.0), (41, 8.0)];
 
-    /// The first `count` values of a row.
+    /// Returns the first `count` values of a row.
     fn row(&self, row: u64, count: usize) -> Vec<f64> {
         let mut sums = vec![0.0; count];
         for (octave, (spacing, height_m)) in (0..).zip(Self::OCTAVES) {
@@ -151,7 +154,7 @@ impl Field {
     }
 }
 
-/// From 0 at a knot to 1 at the next, flat at both.
+/// Rises from 0 at a knot to 1 at the next, flat at both.
 fn smooth(index: u64, spacing: u64) -> f64 {
     let share = (index % spacing) as f64 / spacing as f64;
     share * share * share * (share * (share * 6.0 - 15.0) + 10.0)

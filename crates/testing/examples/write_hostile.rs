@@ -1,4 +1,4 @@
-//! Writes every package that is made to do harm into a folder, for programs that are no tests of ours: `write_hostile FOLDER`.
+//! Writes every hostile package into a folder, for tests of other programs: `write_hostile FOLDER`.
 #![allow(clippy::unwrap_used, reason = "a tool of developers")]
 
 use std::{fs, path::PathBuf};

@@ -1,21 +1,23 @@
-//! A small extract with areas, some of which cannot be made.
+//! A small extract with areas, some of which are invalid.
 
 use std::{
     fs,
     path::{Path, PathBuf},
 };
 
-use crate::pbf::{Block, file};
+use crate::pbf::{BlockBuilder, file};
 
-/// An extract with a road, a lake (way 2), a wood with a clearing (relation 7), and two outlines of which nothing comes.
+/// Writes an extract with a road, a lake (way 2), a wood with a clearing (relation 7), and two
+/// outlines that do not become areas.
 ///
-/// Nodes in a lattice over the sample `pass`, whose roads lie there too: number 100 + 20 y + x at (x, y), 0.005 and 0.004 degrees apart.
+/// The nodes form a lattice over the sample `pass`, whose roads are there, too: number 100 + 20 y +
+/// x at (x, y), 0.005 and 0.004 degrees apart.
 ///
 /// # Panics
-/// When it cannot be written.
+/// When the file cannot be written.
 #[must_use]
 pub fn extract_with_areas(folder: &Path) -> PathBuf {
-    let mut block = Block::new();
+    let mut block = BlockBuilder::new();
     let place =
         |x: i64, y: i64| (100 + 20 * y + x, 468_700_000 + 40_000 * y, 95_000_000 + 50_000 * x);
     block.dense(&(0..400).map(|n| place(n % 20, n / 20)).collect::<Vec<_>>());
@@ -28,7 +30,7 @@ pub fn extract_with_areas(folder: &Path) -> PathBuf {
     block.way(2, &[("natural", "water"), ("name", "Lake")], &square(2, 2, 3));
     block.way(3, &[], &square(6, 3, 6));
     block.way(4, &[], &square(8, 5, 2));
-    // Not closed; crossing itself.
+    // The first outline is not closed; the second crosses itself.
     block.way(5, &[("landuse", "meadow")], &square(1, 8, 2)[..4]);
     block.way(
         6,

@@ -5,16 +5,17 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::pbf::{Block, file};
+use crate::pbf::{BlockBuilder, file};
 
-/// Writes a road and boundaries: way 2 is a border of a country and of a district, 3 of the district alone, 4 is a park by its own tags, and
-/// way 9 of the country is missing.
+/// Writes an extract with a road and boundaries: way 2 is a border of a country and of a district,
+/// way 3 only of the district, way 4 is a park by its own tags, and way 9 of the country is
+/// missing.
 ///
 /// # Panics
 /// When the file cannot be written.
 #[must_use]
 pub fn extract_with_boundaries(folder: &Path) -> PathBuf {
-    let mut block = Block::new();
+    let mut block = BlockBuilder::new();
     let place =
         |x: i64, y: i64| (100 + 20 * y + x, 468_700_000 + 40_000 * y, 95_000_000 + 50_000 * x);
     block.dense(&(0..400).map(|n| place(n % 20, n / 20)).collect::<Vec<_>>());

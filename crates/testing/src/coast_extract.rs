@@ -5,16 +5,17 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::pbf::{Block, file};
+use crate::pbf::{BlockBuilder, file};
 
-/// An extract with a road and a coast over the sample `pass`: sea in the south of a line from west to east, with an island and, where
-/// `is_whole` is false, a way of the coast that is missing.
+/// Writes an extract with a road and a coast over the sample `pass`: the sea is south of a line
+/// from west to east, with an island and, if `is_whole` is false, a missing way of the coast.
 ///
-/// The coast runs along 46.9° north from 9.4° to 9.7° east, sea on its right; the way that may be missing reaches from 9.53° to 9.55°. The
-/// island lies from 9.52° to 9.54° east and from 46.87° to 46.88° north.
+/// The coast runs along 46.9° north from 9.4° to 9.7° east, with the sea on its right; the way that
+/// may be missing extends from 9.53° to 9.55°. The island is between 9.52° and 9.54° east and
+/// between 46.87° and 46.88° north.
 #[must_use]
 pub fn extract_with_coast(folder: &Path, is_whole: bool) -> PathBuf {
-    let mut block = Block::new();
+    let mut block = BlockBuilder::new();
     let mut nodes = Vec::new();
     let mut node = |lon: i64, lat: i64| {
         nodes.push((1 + nodes.len() as i64, lat * 100_000, lon * 100_000));

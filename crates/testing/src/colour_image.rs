@@ -1,4 +1,4 @@
-//! Colour images with a place on the earth, written as GeoTIFF for tests.
+//! Georeferenced colour images, written as GeoTIFF for tests.
 
 use std::path::{Path, PathBuf};
 
@@ -8,17 +8,17 @@ use gdal::{
     spatial_ref::SpatialRef,
 };
 
-/// A `GeoTIFF` of bytes in several bands to write, by GDAL.
+/// A `GeoTIFF` of bytes in several bands, which GDAL writes.
 pub struct ColourImage<'a> {
     /// EPSG code of the CRS; 0 for none.
     pub epsg: u32,
-    /// Columns and rows.
+    /// Number of columns and rows.
     pub size: [usize; 2],
-    /// In GDAL's order, of the corner of the first pixel.
+    /// The geotransform in GDAL's order, for the corner of the first pixel.
     pub transform: [f64; 6],
-    /// One value for each band from the CRS position of a pixel's centre.
+    /// Returns one value per band for the CRS position of a pixel's centre.
     pub value: &'a dyn Fn([f64; 2]) -> Vec<u8>,
-    /// What each band is.
+    /// The colour interpretation of each band.
     pub interpretations: &'a [ColorInterpretation],
 }
 
@@ -30,7 +30,7 @@ impl ColourImage<'_> {
         ColorInterpretation::BlueBand,
     ];
 
-    /// Writes it; `tag` does what else is to be done to the dataset before its values are written.
+    /// Writes the image; `tag` may change the dataset before its values are written.
     pub fn write(&self, folder: &Path, name: &str, tag: impl Fn(&mut Dataset)) -> PathBuf {
         let path = folder.join(name);
         let driver = DriverManager::get_driver_by_name("GTiff").unwrap();

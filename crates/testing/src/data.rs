@@ -1,4 +1,4 @@
-//! Where sample data and real data lie.
+//! The paths of sample data and real data.
 
 use std::{
     fs,
@@ -9,21 +9,22 @@ use corniche_geom::HeightGrid;
 
 use crate::skip;
 
-/// The repository's root.
+/// The root of the repository.
 #[must_use]
 pub fn root() -> PathBuf {
     let crates = Path::new(env!("CARGO_MANIFEST_DIR")).parent();
     crates.and_then(Path::parent).map(Path::to_path_buf).unwrap_or_default()
 }
 
-/// A file of the bundled samples, such as `pass/pass-dem.tif`.
+/// Returns the path of a bundled sample, such as `pass/pass-dem.tif`.
 #[must_use]
 pub fn sample(path: &str) -> PathBuf {
     root().join("data-samples").join(path)
 }
 
-/// A file of the real data, which are not part of the repository: under the folder that `CORNICHE_DATA` names, else
-/// under `../shared/data`. Where it does not exist, the result is `None`, and the test counts as skipped.
+/// Returns the path of a file of the real data, which are not part of the repository: in the folder
+/// that `CORNICHE_DATA` names, else in `../shared/data`. If the file does not exist, the result is
+/// `None`, and the test counts as skipped.
 #[must_use]
 pub fn real_data(path: &str) -> Option<PathBuf> {
     let folder = std::env::var_os("CORNICHE_DATA").map_or_else(
@@ -34,12 +35,12 @@ pub fn real_data(path: &str) -> Option<PathBuf> {
     if file.exists() {
         return Some(file);
     }
-    eprintln!("{} is not here; set CORNICHE_DATA to a folder that has it", file.display());
+    eprintln!("{} is missing; set CORNICHE_DATA to a folder that contains it", file.display());
     skip(&format!("need {} that are not in the repository", kind_of(path)));
     None
 }
 
-/// What kind of data a file is, for whoever does not have it.
+/// Describes the kind of data of a file, for users who do not have it.
 fn kind_of(path: &str) -> &'static str {
     let name = path.to_lowercase();
     let ends = |endings: &[&str]| endings.iter().any(|ending| name.ends_with(ending));
@@ -54,8 +55,9 @@ fn kind_of(path: &str) -> &'static str {
     }
 }
 
-/// 259 × 259 samples (a tile with a halo of one node) of an SRTM file of 1201 × 1201 samples, the first at
-/// `column` and `row`; voids are NaN. `None` without the data, as [`real_data`] says.
+/// Reads 259 × 259 samples (a tile with a halo of one node) from an SRTM file of 1201 × 1201
+/// samples, beginning at `column` and `row`; voids are NaN. Returns `None` without the data, like
+/// [`real_data`].
 #[must_use]
 pub fn srtm_heights(path: &str, column: usize, row: usize) -> Option<HeightGrid> {
     let bytes = fs::read(real_data(path)?).ok()?;

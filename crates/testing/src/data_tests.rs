@@ -1,4 +1,4 @@
-//! What is told of data that are not there.
+//! The messages about missing data describe the data.
 
 use super::*;
 

@@ -1,14 +1,16 @@
-//! A disk in memory that fails when it is told to, and that forgets at a crash what was not made durable.
+//! A disk in memory that can fail at any call, and that loses everything that is not durable in a
+//! crash.
 //!
 //! ```text
-//!              every call is counted; the one of a given number fails ─► errors
-//! code ─► MemoryDisk ─► what the code sees
+//!              every call is counted; a planned one fails ─► errors
+//! code ─► MemoryDisk ─► the content that the code sees
 //!              │ sync of a file, of a folder
 //!              ▼
-//!         what is durable ─► crash(random): that, and some of the rest, torn ─► another MemoryDisk
+//!         durable content ─► crash(random): plus a torn part of the rest ─► another MemoryDisk
 //! ```
 //!
-//! Source: the test files `test6.c` and `ioerr*.test` of `SQLite` (D. Richard Hipp and others); its page *How `SQLite` Is Tested*.
+//! Source: the test files `test6.c` and `ioerr*.test` of `SQLite` (D. Richard Hipp and others); its
+//! page *How `SQLite` Is Tested*.
 
 mod crash;
 mod failure;
@@ -20,73 +22,73 @@ use std::{
     sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError},
 };
 
-use corniche_store::{Disk, DiskFile, FileId, Hold, Listed, OpenMode};
+use corniche_store::{Disk, DiskFile, FileId, FolderItem, Hold, OpenMode};
 
-pub use failure::Failure;
+pub use failure::DiskFailure;
 
 use crate::Random;
-use state::{NameChange, Node, Owner, State};
+use state::{DiskNode, FileOwner, NameChange, State};
 
 /// A disk in memory. Clones are the same disk.
 #[derive(Debug, Clone)]
 pub struct MemoryDisk {
     state: Arc<Mutex<State>>,
-    /// Something about held syncs has changed.
+    /// Notified when a sync begins to wait or syncs are released.
     syncs: Arc<Condvar>,
 }
 
 impl MemoryDisk {
-    /// A disk that holds one folder, those around it, and nothing else.
+    /// Creates a disk with one folder and its parent folders, and nothing else.
     #[must_use]
     pub fn with_folder(folder: &Path) -> Self {
-        Self::of(State::with_folder(folder))
+        Self::from_state(State::with_folder(folder))
     }
 
-    fn of(state: State) -> Self {
+    fn from_state(state: State) -> Self {
         Self { state: Arc::new(Mutex::new(state)), syncs: Arc::default() }
     }
 
-    /// What the store takes.
+    /// Returns the disk as the interface of the store.
     #[must_use]
     pub fn disk(&self) -> Arc<dyn Disk> {
         Arc::new(self.clone())
     }
 
-    /// How many calls there were so far, failed ones included.
+    /// The number of calls so far, including failed ones.
     #[must_use]
     pub fn calls(&self) -> u64 {
         self.state().calls
     }
 
-    /// Lets the call fail that comes after `calls` more have been made. One failure can be planned at a time.
-    pub fn fail_after(&self, calls: u64, failure: Failure) {
+    /// Lets a call fail after `calls` more calls. One failure can be planned at a time.
+    pub fn fail_after(&self, calls: u64, failure: DiskFailure) {
         let mut state = self.state();
         state.planned = Some((state.calls + calls, failure));
     }
 
-    /// Whether the planned failure has not come yet.
+    /// Whether the planned failure has not occurred yet.
     #[must_use]
     pub fn is_failure_to_come(&self) -> bool {
         self.state().planned.is_some()
     }
 
-    /// Ends [`Failure::Full`].
+    /// Ends [`DiskFailure::Full`].
     pub fn make_room(&self) {
         self.state().is_full = false;
     }
 
-    /// From here on syncs of files wait until [`Self::release_syncs`], as on a slow device.
+    /// From now on, syncs of files wait until [`Self::release_syncs`], as on a slow device.
     pub fn hold_syncs(&self) {
         self.state().holds_syncs = true;
     }
 
-    /// Lets held syncs go on.
+    /// Lets waiting syncs continue.
     pub fn release_syncs(&self) {
         self.state().holds_syncs = false;
         self.syncs.notify_all();
     }
 
-    /// Waits until a thread is held in a sync.
+    /// Waits until a thread waits in a sync.
     pub fn wait_for_held_sync(&self) {
         let mut state = self.state();
         while state.held_syncs == 0 {
@@ -94,34 +96,37 @@ impl MemoryDisk {
         }
     }
 
-    /// The disk as another process finds it when all that used it were killed, but the machine went on: nothing is lost, no lock is held.
+    /// Returns the disk as another process finds it after all its users were killed while the
+    /// machine continued: nothing is lost, no lock is held.
     #[must_use]
     pub fn after_kill(&self) -> Self {
-        Self::of(self.state().after_kill())
+        Self::from_state(self.state().after_kill())
     }
 
-    /// The disk after a loss of power: what was made durable, and of the rest whatever `random` likes.
+    /// Returns the disk after a loss of power: everything that was durable, and a random part of
+    /// the rest.
     #[must_use]
     pub fn after_crash(&self, random: &mut Random) -> Self {
-        Self::of(crash::crashed(&self.state(), random))
+        Self::from_state(crash::crashed(&self.state(), random))
     }
 
     /// The paths of all files, ascending.
     #[must_use]
     pub fn paths(&self) -> Vec<PathBuf> {
         let state = self.state();
-        let files = state.names.iter().filter(|(_, node)| matches!(node, Node::File(_)));
+        let files = state.names.iter().filter(|(_, node)| matches!(node, DiskNode::File(_)));
         files.map(|(path, _)| path.clone()).collect()
     }
 
-    /// What a file holds; `None` if it is not there. Not counted as a call.
+    /// The content of a file; `None` if it does not exist. Not counted as a call.
     #[must_use]
     pub fn content(&self, path: &Path) -> Option<Vec<u8>> {
         let state = self.state();
         state.file_at(path).map(|number| state.files[number].bytes.clone())
     }
 
-    /// Sets what a file holds, durably; makes it where it is not there. Not counted as a call.
+    /// Sets the content of a file durably, and creates the file if it does not exist. Not counted
+    /// as a call.
     pub fn set_content(&self, path: &Path, bytes: &[u8]) {
         let mut state = self.state();
         let number = match state.file_at(path) {
@@ -129,7 +134,7 @@ impl MemoryDisk {
             None => state.add_file(path),
         };
         state.files[number].set(bytes);
-        state.durable_names.insert(path.to_owned(), Node::File(number));
+        state.durable_names.insert(path.to_owned(), DiskNode::File(number));
         state.changes.retain(|change| !change.names(path));
     }
 
@@ -137,7 +142,7 @@ impl MemoryDisk {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Counts a call and lets it fail if it is its turn.
+    /// Counts a call, and fails if its failure is planned.
     fn call(&self, need: Need) -> io::Result<(MutexGuard<'_, State>, bool)> {
         let mut state = self.state();
         let is_short = state.count(need == Need::Room)?;
@@ -145,7 +150,7 @@ impl MemoryDisk {
     }
 }
 
-/// Whether a call takes room on the disk.
+/// Whether a call needs disk space.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Need {
     Room,
@@ -159,8 +164,8 @@ impl Disk for MemoryDisk {
         let (mut state, _) = self.call(if makes { Need::Room } else { Need::Nothing })?;
         let number = match state.names.get(path) {
             Some(_) if mode == OpenMode::New => return Err(io::ErrorKind::AlreadyExists.into()),
-            Some(Node::Folder) => return Err(io::ErrorKind::IsADirectory.into()),
-            Some(Node::File(number)) => *number,
+            Some(DiskNode::Folder) => return Err(io::ErrorKind::IsADirectory.into()),
+            Some(DiskNode::File(number)) => *number,
             None if !makes => return Err(io::ErrorKind::NotFound.into()),
             None => {
                 state.check_parent(path)?;
@@ -178,17 +183,17 @@ impl Disk for MemoryDisk {
         if state.names.contains_key(path) {
             return Err(io::ErrorKind::AlreadyExists.into());
         }
-        state.change(NameChange::Add { path: path.to_owned(), node: Node::Folder });
+        state.change(NameChange::Add { path: path.to_owned(), node: DiskNode::Folder });
         Ok(())
     }
 
-    fn list(&self, folder: &Path) -> io::Result<Vec<Listed>> {
+    fn list(&self, folder: &Path) -> io::Result<Vec<FolderItem>> {
         let (state, _) = self.call(Need::Nothing)?;
         state.check_folder(folder)?;
         let within = state.names.iter().filter(|(path, _)| path.parent() == Some(folder));
-        let listed = within.map(|(path, node)| Listed {
+        let listed = within.map(|(path, node)| FolderItem {
             name: path.file_name().unwrap_or_default().to_owned(),
-            is_folder: *node == Node::Folder,
+            is_folder: *node == DiskNode::Folder,
         });
         Ok(listed.collect())
     }
@@ -228,8 +233,8 @@ impl Disk for MemoryDisk {
     fn identity(&self, path: &Path) -> io::Result<Option<FileId>> {
         let (state, _) = self.call(Need::Nothing)?;
         Ok(match state.names.get(path) {
-            Some(Node::File(number)) => Some(FileId(0, *number as u64)),
-            Some(Node::Folder) => Some(FileId(1, 0)),
+            Some(DiskNode::File(number)) => Some(FileId(0, *number as u64)),
+            Some(DiskNode::Folder) => Some(FileId(1, 0)),
             None => None,
         })
     }
@@ -240,7 +245,7 @@ impl Disk for MemoryDisk {
 struct MemoryFile {
     disk: MemoryDisk,
     number: usize,
-    owner: Owner,
+    owner: FileOwner,
     can_write: bool,
 }
 

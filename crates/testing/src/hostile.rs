@@ -1,5 +1,5 @@
-//! Packages made to do harm, what a reader must make of each, and in how much memory.
-#![allow(clippy::too_many_lines, reason = "tables of cases are as long as they are")]
+//! Hostile packages, with the expected outcome of reading each of them, and its memory limit.
+#![allow(clippy::too_many_lines, reason = "tables of cases are long")]
 
 mod case;
 mod file_cases;
@@ -11,15 +11,15 @@ mod span_cases;
 mod text_cases;
 mod tile_cases;
 
-pub use case::{Case, Outcome};
+pub use case::{Case, ReadOutcome};
 pub use lie_cases::{COMMANDING, commanding_texts};
 pub use span_cases::{ATTACKS as SPAN_ATTACKS, attack as span_attack};
 pub use text_cases::{TextCase, text_cases};
 
-/// A name, and how its cases are made.
+/// A name, and the function that creates its cases.
 type Family = (&'static str, fn() -> Vec<Case>);
 
-/// The cases by what is wrong, each family made when it is asked for: some are large.
+/// The cases by kind of damage; each family is created on request, because some are large.
 pub const FAMILIES: [Family; 6] = [
     ("file", file_cases::all),
     ("metadata", metadata_cases::all),

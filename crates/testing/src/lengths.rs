@@ -1,4 +1,4 @@
-//! Lengths of lines, by plain means.
+//! Lengths of lines, computed with simple methods.
 
 use corniche_geom::Polyline;
 

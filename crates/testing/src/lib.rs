@@ -1,17 +1,18 @@
-//! What the tests, benchmarks and examples of several crates share: extracts, packages and rasters made by hand,
-//! projections of closed form, reproducible random numbers, and the places of sample data.
+//! Code that tests, benchmarks and examples of several crates share: generated extracts, packages
+//! and rasters, projections of closed form, reproducible random numbers, and the paths of sample
+//! data.
 //!
-//! No product crate depends on this crate except under `[dev-dependencies]`; `tidy` checks it. A unit test
-//! within `src/` of a crate must not take from here what holds types of that same crate: it would see two versions
-//! of them.
+//! No product crate depends on this crate except under `[dev-dependencies]`; `tidy` checks this. A
+//! unit test in `src/` of a crate must not use functions from here that return types of the same
+//! crate: it would see two versions of them.
 //!
-//! What stays beside a test: oracles, which must share nothing with each other or with the code under test, and what
-//! only one crate needs.
+//! Two kinds of code stay next to their test: oracles, which must share nothing with each other or
+//! with the tested code, and code that only one crate needs.
 #![allow(
     clippy::unwrap_used,
     clippy::missing_panics_doc,
     clippy::print_stderr,
-    reason = "this is test code: it may unwrap, and says what is skipped"
+    reason = "this is test code: it may unwrap, and prints what is skipped"
 )]
 
 mod area_extract;

@@ -5,7 +5,7 @@ use std::{
     sync::{Mutex, PoisonError},
 };
 
-use corniche_store::{Scratch, Span};
+use corniche_store::{ScratchRange, ScratchSpace};
 
 /// Scratch space in memory.
 #[derive(Debug, Default)]
@@ -13,15 +13,15 @@ pub struct MemoryScratch {
     bytes: Mutex<Vec<u8>>,
 }
 
-impl Scratch for MemoryScratch {
-    fn append(&self, bytes: &[u8]) -> io::Result<Span> {
+impl ScratchSpace for MemoryScratch {
+    fn append(&self, bytes: &[u8]) -> io::Result<ScratchRange> {
         let mut all = self.bytes.lock().unwrap_or_else(PoisonError::into_inner);
         let offset = all.len() as u64;
         all.extend(bytes);
-        Ok(Span { offset, length: bytes.len() as u64 })
+        Ok(ScratchRange { offset, length: bytes.len() as u64 })
     }
 
-    fn read(&self, span: Span) -> io::Result<Vec<u8>> {
+    fn read(&self, span: ScratchRange) -> io::Result<Vec<u8>> {
         let all = self.bytes.lock().unwrap_or_else(PoisonError::into_inner);
         let from = usize::try_from(span.offset).unwrap_or(usize::MAX);
         let to = from.saturating_add(usize::try_from(span.length).unwrap_or(usize::MAX));

@@ -1,4 +1,5 @@
-//! A small package of four tiles with all sections, what it is made of, and a manifest for packages of other frames.
+//! A small package of four tiles with all sections, its components, and a manifest for packages of
+//! other frames.
 
 use std::io::Cursor;
 
@@ -8,33 +9,33 @@ use corniche_geom::{
 };
 use corniche_roads::{FunctionalRoadClass, RoadAttributes, Structure};
 use corniche_tileset::{
-    Counts, FORMAT_VERSION, GeoRoad, GrowthRow, LevelRecord, Manifest, PayloadBuilder,
-    PayloadContext, RoadRecord, SampleErrorRecord, ScaleRecord, Section, SettingsRecord,
-    SpanHeight, SpanPoint, SpanRun, SvRoad, Terrain, TilePayload, VerticalRecord, Writer, encode,
-    encode_spans, pmtiles_order,
+    FORMAT_VERSION, GeoRoad, GrowthRow, LevelRecord, Manifest, ManifestCounts, PackageWriter,
+    PayloadBuilder, PayloadContext, RoadRecord, SampleErrorRecord, ScaleRecord, Section,
+    SettingsRecord, SpanHeight, SpanPoint, SpanRun, SvRoad, TilePayload, TileTerrain,
+    VerticalRecord, encode, encode_spans, pmtiles_order,
 };
 use corniche_tin::{Placement, Surface, Tin, TinVertex};
 
 use crate::FlatProjection;
 
-/// Height quantum of the small package.
+/// The height quantum of the small package.
 pub const QUANTUM_M: f64 = 0.25;
-/// Finest level of the small package.
+/// The finest level of the small package.
 pub const MAX_LEVEL: u8 = 2;
 
-/// Grid of the small package.
+/// The grid of the small package.
 #[must_use]
 pub fn frame() -> GridFrame {
     GridFrame::new([0.5, 0.25], 10.0, NodeIndex { i: -512, j: 1024 }, MAX_LEVEL).unwrap()
 }
 
-/// What the tiles of the small package are encoded with.
+/// The context in which the tiles of the small package are encoded.
 #[must_use]
 pub fn context() -> PayloadContext {
     PayloadContext { frame: frame(), quantum_m: QUANTUM_M, metres_per_unit: [1.0; 2] }
 }
 
-/// The tiles of the small package, in its order.
+/// The tiles of the small package, in their order in the package.
 #[must_use]
 pub fn ids() -> Vec<TileId> {
     let mut ids: Vec<TileId> =
@@ -49,7 +50,8 @@ pub fn manifest() -> Manifest {
     manifest_of(frame())
 }
 
-/// The same manifest for another grid; its world is flat, 100 km to a degree. Tests set the fields they are about.
+/// The manifest of the small package for another grid; its world is flat, with 100 km per degree.
+/// Tests set the fields that they need.
 #[must_use]
 pub fn manifest_of(frame: GridFrame) -> Manifest {
     let projection = FlatProjection::new([1e5; 2]);
@@ -93,7 +95,7 @@ pub fn manifest_of(frame: GridFrame) -> Manifest {
         settings_sha256: String::new(),
         inputs: vec![],
         attribution: vec!["© OpenStreetMap contributors".to_owned()],
-        counts: Counts { roads_in: 2, roads_kept: 2, ..Counts::default() },
+        counts: ManifestCounts { roads_in: 2, roads_kept: 2, ..ManifestCounts::default() },
         growth: vec![GrowthRow::default()],
         photos: Vec::new(),
         areas: None,
@@ -103,7 +105,7 @@ pub fn manifest_of(frame: GridFrame) -> Manifest {
     }
 }
 
-/// A level of `frame` with a root tile of the small package.
+/// The record of a level of `frame`, with a root tile of the small package.
 #[must_use]
 pub fn level(frame: &GridFrame, level: u8) -> LevelRecord {
     LevelRecord {
@@ -126,14 +128,15 @@ pub fn level(frame: &GridFrame, level: u8) -> LevelRecord {
     }
 }
 
-/// A package's JSON metadata: the manifest under a key of its own.
+/// Returns a package's JSON metadata, with the manifest under its own key.
 #[must_use]
 pub fn metadata(manifest: &Manifest) -> serde_json::Value {
     let manifest = serde_json::to_value(manifest).unwrap();
     serde_json::json!({ "name": "test", "corniche": manifest })
 }
 
-/// A tile of the small package, with all sections but the relief, which would make most of its bytes.
+/// Returns a tile of the small package, with all sections except the relief, which would be most of
+/// its bytes.
 #[must_use]
 pub fn payload(id: TileId) -> TilePayload {
     let mut vertices = Vec::new();
@@ -168,7 +171,7 @@ pub fn payload(id: TileId) -> TilePayload {
         roads_geo: roads_geo.collect(),
         roads_sv: vec![SvRoad { way_id: 7, part: 0, class, line }],
         attributes: vec![RoadRecord { way_id: 7, attributes }],
-        terrain: Some(Terrain {
+        terrain: Some(TileTerrain {
             normals: vec![[3, -4]; tin.vertices().len()],
             tin,
             geometric_error_m: 1.75,
@@ -178,13 +181,14 @@ pub fn payload(id: TileId) -> TilePayload {
     }
 }
 
-/// The same tile as bytes.
+/// Returns the same tile as bytes.
 #[must_use]
 pub fn encoded(id: TileId) -> Vec<u8> {
     encode(&payload(id), &context()).unwrap().bytes
 }
 
-/// Spans of a tile of the small package: a bridge from a vertex of the ground to one in the air, and a tunnel below the ground.
+/// Returns spans of a tile of the small package: a bridge from a vertex of the ground to a point in
+/// the air, and a tunnel below the ground.
 #[must_use]
 pub fn spans(id: TileId) -> Vec<SpanRun> {
     let placement = Placement::of_tile(&frame(), id, QUANTUM_M);
@@ -208,14 +212,14 @@ pub fn spans(id: TileId) -> Vec<SpanRun> {
     ]
 }
 
-/// A tile of the small package with these spans, as bytes.
+/// Returns a tile of the small package with these spans, as bytes.
 #[must_use]
 pub fn encoded_with_spans(id: TileId) -> Vec<u8> {
     let section = encode_spans(id, &frame(), &spans(id)).unwrap().unwrap();
     with_section(&encoded(id), id, section)
 }
 
-/// A payload of a tile with a section more.
+/// Adds a section to the payload of a tile.
 #[must_use]
 pub fn with_section(payload: &[u8], id: TileId, section: Section) -> Vec<u8> {
     let mut builder = PayloadBuilder::with_all_of(payload, id).unwrap();
@@ -223,20 +227,21 @@ pub fn with_section(payload: &[u8], id: TileId, section: Section) -> Vec<u8> {
     builder.seal().unwrap().bytes
 }
 
-/// The small package as the writer writes it.
+/// Returns the small package as the writer writes it.
 #[must_use]
 pub fn written() -> Vec<u8> {
     written_with(&manifest(), ids().into_iter().map(|id| (id, encoded(id))))
 }
 
-/// A package as the writer writes it, of encoded tiles in the order of packages.
+/// Returns a package of encoded tiles as the writer writes it; tiles must be in the order of
+/// packages.
 #[must_use]
 pub fn written_with(
     manifest: &Manifest,
     tiles: impl IntoIterator<Item = (TileId, Vec<u8>)>,
 ) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
-    let mut writer = Writer::new(&mut bytes, manifest, usize::MAX).unwrap();
+    let mut writer = PackageWriter::new(&mut bytes, manifest, usize::MAX).unwrap();
     for (id, tile) in tiles {
         writer.add(id, &tile).unwrap();
     }
@@ -244,7 +249,7 @@ pub fn written_with(
     bytes.into_inner()
 }
 
-/// A TIN with a vertex at each node, as rough ground has that nothing simplifies.
+/// Returns a TIN with a vertex at each node, like rough ground that cannot be simplified.
 #[must_use]
 pub fn full_tin() -> Tin {
     let node = |row, column| TinVertex { row, column, height_q: i32::from(row % 7 * (column % 5)) };

@@ -1,34 +1,35 @@
-//! A tile's payload put together from `crates/tileset/FORMAT.md` alone, so that each part can be wrong by itself.
+//! A tile's payload assembled only according to `crates/tileset/FORMAT.md`, so that each part can
+//! be invalid by itself.
 
 use corniche_geom::TileId;
 
-/// Bytes before the section table.
+/// Number of bytes before the section table.
 const HEADER_BYTES: usize = 16;
-/// Bytes of one entry of the section table.
+/// Number of bytes of an entry of the section table.
 const ENTRY_BYTES: usize = 20;
 
 /// A section as it is stored.
 #[derive(Debug, Clone)]
 #[expect(missing_docs, reason = "FORMAT.md's own fields")]
-pub struct Section {
+pub struct RawSection {
     pub kind: u16,
-    /// 0: none; 1: one zstd frame.
+    /// 0 is none; 1 is one zstd frame.
     pub compression: u8,
     pub raw_length: u32,
     pub stored: Vec<u8>,
 }
 
-impl Section {
-    /// Without compression.
+impl RawSection {
+    /// Returns a section without compression.
     #[must_use]
     pub fn plain(kind: u16, raw: Vec<u8>) -> Self {
         Self { kind, compression: 0, raw_length: raw.len() as u32, stored: raw }
     }
 }
 
-/// A payload with right offsets and checksums; of at most 255 sections.
+/// Returns a payload with correct offsets and checksums, of at most 255 sections.
 #[must_use]
-pub fn payload(id: TileId, sections: &[Section]) -> Vec<u8> {
+pub fn payload(id: TileId, sections: &[RawSection]) -> Vec<u8> {
     let mut bytes = b"CRNT\x01\0".to_vec();
     bytes.extend([sections.len() as u8, id.z()]);
     bytes.extend(id.x().to_le_bytes());
@@ -50,7 +51,8 @@ pub fn payload(id: TileId, sections: &[Section]) -> Vec<u8> {
     bytes
 }
 
-/// The payload with a right checksum of its header and section table, where it is long enough to have one.
+/// Corrects the checksum of a payload's header and section table, if the payload is long enough to
+/// have one.
 #[must_use]
 pub fn with_right_table_checksum(mut payload: Vec<u8>) -> Vec<u8> {
     if payload.len() < HEADER_BYTES {
@@ -64,7 +66,7 @@ pub fn with_right_table_checksum(mut payload: Vec<u8>) -> Vec<u8> {
     payload
 }
 
-/// The payload with right checksums of its sections and of its table, as far as the table can be followed.
+/// Corrects the checksums of a payload's sections and of its table, as far as the table is usable.
 #[must_use]
 pub fn with_right_checksums(mut payload: Vec<u8>) -> Vec<u8> {
     if payload.len() < HEADER_BYTES {
@@ -86,7 +88,7 @@ pub fn with_right_checksums(mut payload: Vec<u8>) -> Vec<u8> {
     with_right_table_checksum(payload)
 }
 
-/// Where the section table ends, by the count of sections in the header.
+/// The end of the section table, according to the number of sections in the header.
 fn table_end(payload: &[u8]) -> usize {
     HEADER_BYTES + ENTRY_BYTES * usize::from(payload[6])
 }

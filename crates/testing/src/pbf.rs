@@ -1,12 +1,13 @@
-//! A writer of OpenStreetMap extracts (PBF) that writes what it is given, right or wrong.
+//! A writer of OpenStreetMap extracts (PBF) that writes any input, valid or invalid.
 //!
-//! Source: OpenStreetMap's `fileformat.proto` and `osmformat.proto`, and the wire format of Protocol Buffers.
+//! Source: OpenStreetMap's `fileformat.proto` and `osmformat.proto`, and the wire format of
+//! Protocol Buffers.
 
 use std::io::Write as _;
 
 use flate2::{Compression, write::ZlibEncoder};
 
-/// Seven bits per byte, the lowest first.
+/// Encodes a number with seven bits per byte, the lowest first.
 #[must_use]
 pub fn varint(mut value: u64) -> Vec<u8> {
     let mut bytes = Vec::new();
@@ -18,31 +19,31 @@ pub fn varint(mut value: u64) -> Vec<u8> {
     bytes
 }
 
-/// A field that holds a number.
+/// Encodes a field with a number.
 #[must_use]
 pub fn number(field: u64, value: i64) -> Vec<u8> {
     [varint(field << 3), varint(value.cast_unsigned())].concat()
 }
 
-/// A field that holds bytes: a text, a message, packed numbers.
+/// Encodes a field with bytes: a text, a message, packed numbers.
 #[must_use]
 pub fn field(number: u64, content: &[u8]) -> Vec<u8> {
     [varint(number << 3 | 2), varint(content.len() as u64), content.to_vec()].concat()
 }
 
-/// A signed number as Protocol Buffers write it: the sign is the lowest bit.
+/// Encodes a signed number like Protocol Buffers: the sign is the lowest bit.
 #[must_use]
 pub fn zigzag(value: i64) -> Vec<u8> {
     varint(((value << 1) ^ (value >> 63)).cast_unsigned())
 }
 
-/// Zigzag numbers as they are.
+/// Encodes zigzag numbers without differences.
 #[must_use]
 pub fn zigzags(values: &[i64]) -> Vec<u8> {
     values.iter().flat_map(|&value| zigzag(value)).collect()
 }
 
-/// Differences of neighbours as zigzag numbers; they may wrap.
+/// Encodes differences of neighbours as zigzag numbers; they may wrap.
 #[must_use]
 pub fn deltas(values: &[i64]) -> Vec<u8> {
     let mut previous = 0_i64;
@@ -54,25 +55,25 @@ fn packed(values: &[u64]) -> Vec<u8> {
     values.iter().flat_map(|&value| varint(value)).collect()
 }
 
-/// A frame: the blob header for a blob of this kind, then the blob, whatever it holds.
+/// Returns a frame: the blob header for a blob of this kind, then the blob, whatever its content.
 #[must_use]
 pub fn frame(kind: &[u8], blob: &[u8]) -> Vec<u8> {
     frame_with([field(1, kind), number(3, blob.len() as i64)].concat(), blob)
 }
 
-/// A frame with this blob header.
+/// Returns a frame with this blob header.
 #[must_use]
 pub fn frame_with(header: Vec<u8>, blob: &[u8]) -> Vec<u8> {
     [(header.len() as u32).to_be_bytes().to_vec(), header, blob.to_vec()].concat()
 }
 
-/// A frame with an uncompressed blob.
+/// Returns a frame with an uncompressed blob.
 #[must_use]
 pub fn raw(kind: &[u8], block: &[u8]) -> Vec<u8> {
     frame(kind, &field(1, block))
 }
 
-/// The bytes, compressed by zlib.
+/// Compresses bytes with zlib.
 #[must_use]
 pub fn zlib(content: &[u8]) -> Vec<u8> {
     let mut encoder = ZlibEncoder::new(Vec::new(), Compression::default());
@@ -80,66 +81,68 @@ pub fn zlib(content: &[u8]) -> Vec<u8> {
     encoder.finish().unwrap()
 }
 
-/// A frame with a blob compressed by zlib.
+/// Returns a frame with a blob that is compressed with zlib.
 #[must_use]
 pub fn packed_blob(kind: &[u8], block: &[u8]) -> Vec<u8> {
     frame(kind, &[number(2, block.len() as i64), field(3, &zlib(block))].concat())
 }
 
-/// The header blob of a file that asks for these features.
+/// Returns the header blob of a file that requires these features.
 #[must_use]
 pub fn header(features: &[&str]) -> Vec<u8> {
     let block: Vec<u8> = features.iter().flat_map(|name| field(4, name.as_bytes())).collect();
     raw(b"OSMHeader", &block)
 }
 
-/// The usual header.
+/// Returns the usual header.
 #[must_use]
 pub fn plain_header() -> Vec<u8> {
     header(&["OsmSchema-V0.6", "DenseNodes"])
 }
 
-/// A file of the usual header and one raw block.
+/// Returns a file of the usual header and one raw block.
 #[must_use]
-pub fn file(block: &Block) -> Vec<u8> {
+pub fn file(block: &BlockBuilder) -> Vec<u8> {
     [plain_header(), raw(b"OSMData", &block.bytes())].concat()
 }
 
 /// A way to write: its tags, and its points as longitude and latitude.
 #[derive(Debug, Clone)]
-#[expect(missing_docs, reason = "the type's own line tells both")]
-pub struct Line<'a> {
+#[expect(missing_docs, reason = "the doc comment of the type describes both fields")]
+pub struct WayToWrite<'a> {
     pub tags: Vec<(&'a str, &'a str)>,
     pub points_deg: Vec<[f64; 2]>,
 }
 
-/// Ways as a file of two blocks: the nodes, then the ways. Every point is a node of its own. Ids of nodes and of ways
-/// count from 1. Coordinates are rounded to 1e-7 degrees. `texts` come first in the blocks' table of texts.
+/// Returns ways as a file of two blocks: the nodes, then the ways. Every point is a node of its
+/// own. Ids of nodes and of ways count from 1. Coordinates are rounded to 1e-7 degrees. `texts`
+/// come first in the blocks' table of texts.
 #[must_use]
-pub fn extract(texts: &[&str], lines: &[Line<'_>]) -> Vec<u8> {
+pub fn extract(texts: &[&str], lines: &[WayToWrite<'_>]) -> Vec<u8> {
     let (mut nodes, mut ways) = (Vec::new(), Vec::new());
     for (id, line) in (1..).zip(lines) {
         let first = nodes.len() as i64 + 1;
         nodes.extend((first..).zip(line.points_deg.iter().copied()));
         let node_ids = (first..=nodes.len() as i64).collect();
-        ways.push(Way { id, tags: line.tags.clone(), node_ids });
+        ways.push(PbfWay { id, tags: line.tags.clone(), node_ids });
     }
     network(texts, &nodes, &ways)
 }
 
 /// A way to write: its id, its tags and the ids of its nodes.
 #[derive(Debug, Clone)]
-#[expect(missing_docs, reason = "the type's own line tells all")]
-pub struct Way<'a> {
+#[expect(missing_docs, reason = "the doc comment of the type describes all fields")]
+pub struct PbfWay<'a> {
     pub id: i64,
     pub tags: Vec<(&'a str, &'a str)>,
     pub node_ids: Vec<i64>,
 }
 
-/// Nodes, with their longitudes and latitudes, and ways through them, as a file of two blocks; else as [`extract`].
+/// Returns nodes, with their longitudes and latitudes, and ways through them, as a file of two
+/// blocks; otherwise like [`extract`].
 #[must_use]
-pub fn network(texts: &[&str], nodes: &[(i64, [f64; 2])], ways: &[Way<'_>]) -> Vec<u8> {
-    let mut block = Block::new();
+pub fn network(texts: &[&str], nodes: &[(i64, [f64; 2])], ways: &[PbfWay<'_>]) -> Vec<u8> {
+    let mut block = BlockBuilder::new();
     for text in texts {
         block.text(text.as_bytes());
     }
@@ -157,10 +160,11 @@ pub fn network(texts: &[&str], nodes: &[(i64, [f64; 2])], ways: &[Way<'_>]) -> V
     [header(&["OsmSchema-V0.6"]), data.concat()].concat()
 }
 
-/// A block that grows. Places are in units of its granularity: 1e-7 degrees unless `frame` says otherwise.
+/// A block that grows. Positions are in units of its granularity: 1e-7 degrees unless `frame` sets
+/// another.
 #[derive(Debug, Clone, Default)]
-pub struct Block {
-    /// The table of texts; text 0 is empty, as the format demands.
+pub struct BlockBuilder {
+    /// The table of texts; text 0 is empty, as the format requires.
     pub texts: Vec<Vec<u8>>,
     /// Groups of primitives, encoded.
     pub groups: Vec<Vec<u8>>,
@@ -168,14 +172,15 @@ pub struct Block {
     pub frame: Vec<u8>,
 }
 
-impl Block {
-    /// Without nodes and ways.
+impl BlockBuilder {
+    /// Begins a block without nodes and ways.
     #[must_use]
     pub fn new() -> Self {
         Self { texts: vec![Vec::new()], groups: Vec::new(), frame: Vec::new() }
     }
 
-    /// Nodes 1, 2, 3, … in a row to the east, 1e-5 degrees apart, at latitude 47 and longitude 9.
+    /// Begins a block with nodes 1, 2, 3, … in a row to the east, 1e-5 degrees apart, at latitude
+    /// 47 and longitude 9.
     #[must_use]
     pub fn with_row_of_nodes(count: i64) -> Self {
         let mut block = Self::new();
@@ -185,7 +190,7 @@ impl Block {
         block
     }
 
-    /// Index of a text in the table of texts, where it is added if it is missing.
+    /// Returns the index of a text in the table of texts, and adds the text if it is missing.
     pub fn text(&mut self, text: &[u8]) -> u64 {
         let found = self.texts.iter().position(|own| own == text);
         let index = found.unwrap_or_else(|| {
@@ -195,7 +200,7 @@ impl Block {
         index as u64
     }
 
-    /// A group of dense nodes: id, latitude, longitude.
+    /// Adds a group of dense nodes: id, latitude, longitude.
     pub fn dense(&mut self, nodes: &[(i64, i64, i64)]) {
         let column =
             |of: fn(&(i64, i64, i64)) -> i64| deltas(&nodes.iter().map(of).collect::<Vec<_>>());
@@ -207,7 +212,7 @@ impl Block {
         self.groups.push(field(2, &dense.concat()));
     }
 
-    /// A group of plain nodes: id, latitude, longitude.
+    /// Adds a group of plain nodes: id, latitude, longitude.
     pub fn plain(&mut self, nodes: &[(i64, i64, i64)]) {
         let node = |&(id, lat, lon): &(i64, i64, i64)| {
             let key = |number: u8| vec![number << 3];
@@ -216,7 +221,7 @@ impl Block {
         self.groups.push(nodes.iter().flat_map(node).collect());
     }
 
-    /// The message of a way.
+    /// Returns the message of a way.
     pub fn way_message(&mut self, id: i64, tags: &[(&str, &str)], node_ids: &[i64]) -> Vec<u8> {
         let keys: Vec<u64> = tags.iter().map(|(key, _)| self.text(key.as_bytes())).collect();
         let values: Vec<u64> = tags.iter().map(|(_, value)| self.text(value.as_bytes())).collect();
@@ -229,13 +234,13 @@ impl Block {
         .concat()
     }
 
-    /// A way in a group of its own.
+    /// Adds a way in a group of its own.
     pub fn way(&mut self, id: i64, tags: &[(&str, &str)], node_ids: &[i64]) {
         let message = self.way_message(id, tags, node_ids);
         self.groups.push(field(3, &message));
     }
 
-    /// A relation of ways with these roles, in a group of its own.
+    /// Adds a relation of ways with these roles, in a group of its own.
     pub fn relation(&mut self, id: i64, tags: &[(&str, &str)], members: &[(i64, &str)]) {
         let keys: Vec<u64> = tags.iter().map(|(key, _)| self.text(key.as_bytes())).collect();
         let values: Vec<u64> = tags.iter().map(|(_, value)| self.text(value.as_bytes())).collect();
@@ -252,12 +257,12 @@ impl Block {
         self.groups.push(field(4, &message.concat()));
     }
 
-    /// A way with the tag `highway=track`.
+    /// Adds a way with the tag `highway=track`.
     pub fn track(&mut self, id: i64, node_ids: &[i64]) {
         self.way(id, &[("highway", "track")], node_ids);
     }
 
-    /// The block, encoded.
+    /// Returns the encoded block.
     #[must_use]
     pub fn bytes(&self) -> Vec<u8> {
         let texts: Vec<u8> = self.texts.iter().flat_map(|text| field(1, text)).collect();

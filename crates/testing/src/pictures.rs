@@ -1,22 +1,23 @@
-//! Pictures that were looked at and found right, against pictures drawn now.
+//! Compares rendered images with golden images, which were inspected and found correct.
 
 use std::path::PathBuf;
 
 use image::{Rgba, RgbaImage};
 
-/// Steps of 255 by which a channel may differ: rounding of another version of the driver.
+/// The number of steps (of 255) by which a channel may differ, because of rounding in another
+/// version of the driver.
 const TOLERANCE: u8 = 2;
-/// Share of the pixels that may differ by more: centres that lie on an edge.
+/// The fraction of the pixels that may differ by more, because their centres are on an edge.
 const SHARE: f64 = 1e-4;
 
-/// How two pictures differ.
+/// The difference between two images.
 #[derive(Debug)]
 pub struct Mismatch {
-    /// Pixels that differ by more than the tolerance, and all.
+    /// The number of pixels that differ by more than the tolerance, and of all pixels.
     pixels: (usize, usize),
-    /// Steps of 255 by which a channel differs at most.
+    /// The largest difference of a channel, in steps of 255.
     worst: u8,
-    /// Pixels that differ in red, the others pale.
+    /// Differing pixels in red, the others pale.
     picture: RgbaImage,
 }
 
@@ -35,7 +36,7 @@ impl Mismatch {
         Self { pixels: (count, expected.pixels().len()), worst, picture }
     }
 
-    /// Whether the pictures count as equal.
+    /// Whether the images count as equal.
     #[must_use]
     pub fn is_match(&self) -> bool {
         self.pixels.0 as f64 <= SHARE * self.pixels.1 as f64
@@ -49,13 +50,13 @@ impl std::fmt::Display for Mismatch {
     }
 }
 
-/// Whether the pictures drawn now become the golden ones.
+/// Whether the rendered images replace the golden ones.
 #[must_use]
 pub fn is_blessing() -> bool {
     std::env::var_os("CORNICHE_BLESS").is_some_and(|value| value == "1")
 }
 
-/// The golden pictures of a crate.
+/// The golden images of a crate.
 #[derive(Debug)]
 pub struct Golden {
     folder: PathBuf,
@@ -63,8 +64,9 @@ pub struct Golden {
 }
 
 impl Golden {
-    /// The pictures in `tests/golden` of the crate with this `CARGO_MANIFEST_DIR`. What differs is left in the folder
-    /// `differences`: `CARGO_TARGET_TMPDIR`, which Cargo sets for integration tests only, or else one for temporary files.
+    /// Returns the images in `tests/golden` of the crate with this `CARGO_MANIFEST_DIR`. Differing
+    /// images are written to the folder `differences`: `CARGO_TARGET_TMPDIR`, which Cargo only sets
+    /// for integration tests, or else a folder for temporary files.
     #[must_use]
     pub fn of_crate(manifest_dir: &str, differences: Option<&str>) -> Self {
         let folder = PathBuf::from(manifest_dir).join("tests/golden");
@@ -76,10 +78,10 @@ impl Golden {
         self.folder.join(format!("{name}.png"))
     }
 
-    /// Compares a picture with the golden one of this name.
+    /// Compares an image with the golden one of this name.
     ///
     /// # Errors
-    /// When there is no such picture or its size differs.
+    /// When there is no image of this name or its size differs.
     pub fn mismatch(&self, name: &str, found: &RgbaImage) -> Result<Mismatch, String> {
         let path = self.path(name);
         let expected =
@@ -95,8 +97,8 @@ impl Golden {
         Ok(Mismatch::between(&expected, found))
     }
 
-    /// Fails unless a picture is as the golden one of this name. What was drawn, and where it differs, is then left in
-    /// the folder for differences.
+    /// Fails unless an image equals the golden one of this name. The rendered image and its
+    /// differences are then written to the folder for differences.
     ///
     /// # Panics
     /// When they differ.
@@ -119,7 +121,7 @@ impl Golden {
             Err(what) => what,
         };
         panic!(
-            "{name}: {what}; look at {name}.png and {name}-differs.png in {}, and if that is how it should be, run again \
+            "{name}: {what}; inspect {name}.png and {name}-differs.png in {}, and if the new image is correct, run again \
              with CORNICHE_BLESS=1",
             folder.display()
         );

@@ -1,4 +1,5 @@
-//! A PMTiles file in pieces, put together from the specification alone, so that each piece can be wrong by itself.
+//! A PMTiles file in pieces, assembled only according to the specification, so that each piece can
+//! be invalid by itself.
 //!
 //! Source: PMTiles version 3 specification.
 
@@ -6,20 +7,22 @@ use std::io::Write as _;
 
 use flate2::{Compression, write::GzEncoder};
 
-/// Length of PMTiles' header.
+/// The length of PMTiles' header.
 pub const HEADER_BYTES: usize = 127;
 
-/// One entry of a directory, in the numbers that are written: the step from the tile id before, and the offset plus one.
+/// An entry of a directory with its encoded numbers: the difference from the tile id before, and
+/// the offset plus one.
 #[derive(Debug, Clone, Copy)]
 #[expect(missing_docs, reason = "the specification's own columns")]
-pub struct Entry {
+pub struct RawDirectoryEntry {
     pub step: u64,
     pub run: u64,
     pub length: u64,
     pub offset: u64,
 }
 
-/// A number of seven bits per byte, the lowest first; all bytes but the last have the highest bit set.
+/// Appends a number with seven bits per byte, the lowest first; all bytes but the last have the
+/// highest bit set.
 pub fn put_varint(out: &mut Vec<u8>, mut value: u64) {
     while value >= 0x80 {
         out.push(value as u8 | 0x80);
@@ -28,12 +31,13 @@ pub fn put_varint(out: &mut Vec<u8>, mut value: u64) {
     out.push(value as u8);
 }
 
-/// A directory before compression.
+/// Returns a directory before compression.
 #[must_use]
-pub fn directory(entries: &[Entry]) -> Vec<u8> {
+pub fn directory(entries: &[RawDirectoryEntry]) -> Vec<u8> {
     let mut out = Vec::new();
     put_varint(&mut out, entries.len() as u64);
-    let columns: [fn(&Entry) -> u64; 4] = [|e| e.step, |e| e.run, |e| e.length, |e| e.offset];
+    let columns: [fn(&RawDirectoryEntry) -> u64; 4] =
+        [|e| e.step, |e| e.run, |e| e.length, |e| e.offset];
     for column in columns {
         for entry in entries {
             put_varint(&mut out, column(entry));
@@ -42,7 +46,8 @@ pub fn directory(entries: &[Entry]) -> Vec<u8> {
     out
 }
 
-/// A file of these stored parts (root directory, metadata, leaf directories, tile data), whose header counts so many tiles.
+/// Returns a file of these stored parts (root directory, metadata, leaf directories, tile data),
+/// with this number of tiles in its header.
 #[must_use]
 pub fn file(parts: [&[u8]; 4], tiles: u64) -> Vec<u8> {
     let mut header = b"PMTiles\x03".to_vec();
@@ -52,15 +57,15 @@ pub fn file(parts: [&[u8]; 4], tiles: u64) -> Vec<u8> {
         header.extend((part.len() as u64).to_le_bytes());
         offset += part.len();
     }
-    // Tiles addressed, entries, contents.
+    // The numbers of addressed tiles, of entries and of contents.
     [tiles; 3].iter().for_each(|count| header.extend(count.to_le_bytes()));
-    // Clustered; gzip for directories and metadata; no compression of tiles; tiles of an "other" type.
+    // Clustered; gzip for directories and metadata; no compression of tiles; tiles of type "other".
     header.extend([1, 2, 1, 0]);
     header.resize(HEADER_BYTES, 0);
     [&header, parts[0], parts[1], parts[2], parts[3]].concat()
 }
 
-/// The bytes, compressed by gzip.
+/// Compresses bytes with gzip.
 #[must_use]
 pub fn gzip(bytes: &[u8]) -> Vec<u8> {
     let mut encoder = GzEncoder::new(Vec::new(), Compression::default());

@@ -1,8 +1,9 @@
-//! A projection of a flat world, exact enough for closed forms in tests.
+//! A projection of a flat world, which is exact enough for closed forms in tests.
 
 use corniche_geom::{ProjectError, Projection};
 
-/// A flat world: working metres are degrees from an origin times a factor per axis, plus the origin's metres.
+/// A flat world: working metres are degrees from an origin times a factor per axis, plus the
+/// origin's metres.
 #[derive(Debug, Clone, Copy)]
 pub struct FlatProjection {
     /// Working metres of the origin.
@@ -14,7 +15,7 @@ pub struct FlatProjection {
 }
 
 impl FlatProjection {
-    /// 0 m lie at 0°.
+    /// Creates a projection in which 0 m is at 0°.
     #[must_use]
     pub fn new(metres_per_degree: [f64; 2]) -> Self {
         Self { origin_m: [0.0; 2], origin_deg: [0.0; 2], metres_per_degree }

@@ -9,13 +9,13 @@ pub struct Random {
 }
 
 impl Random {
-    /// The numbers that follow from `seed`.
+    /// Creates the generator for a seed.
     #[must_use]
     pub fn new(seed: u64) -> Self {
         Self { state: seed }
     }
 
-    /// All 64 bits.
+    /// Returns 64 random bits.
     pub fn bits(&mut self) -> u64 {
         self.state = self.state.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.state;
@@ -24,22 +24,22 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// From 0 to below 1.
+    /// Returns a number from 0 to below 1.
     pub fn share(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// From 0 to below `limit`, which must be above 0.
+    /// Returns a number from 0 to below `limit`, which must be above 0.
     pub fn below(&mut self, limit: i64) -> i64 {
         (self.bits() % limit as u64) as i64
     }
 
-    /// From −`reach` to `reach`.
+    /// Returns a number from −`reach` to `reach`.
     pub fn around(&mut self, reach: i64) -> i64 {
         self.below(2 * reach + 1) - reach
     }
 
-    /// One of `list`, which must not be empty.
+    /// Returns an element of `list`, which must not be empty.
     pub fn one_of<T: Copy>(&mut self, list: &[T]) -> T {
         list[self.below(list.len() as i64) as usize]
     }

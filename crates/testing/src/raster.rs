@@ -8,57 +8,57 @@ use gdal::{
     spatial_ref::SpatialRef,
 };
 
-/// A `GeoTIFF` to write, by GDAL.
+/// A `GeoTIFF` of heights, which GDAL writes.
 pub struct Raster<'a> {
     /// EPSG code of the CRS; 0 for none.
     pub epsg: u32,
-    /// Columns and rows.
+    /// Number of columns and rows.
     pub size: [usize; 2],
-    /// In GDAL's order, of the corner of the first pixel; all zeros for none.
+    /// The geotransform in GDAL's order, for the corner of the first pixel; all zeros for none.
     pub geo_transform: [f64; 6],
-    /// The value that stands for no data.
+    /// The nodata value.
     pub nodata: Option<f64>,
     /// Creation options of GDAL's GeoTIFF driver.
     pub creation: &'a [&'a str],
     /// Number of bands; heights are in the first.
     pub bands: usize,
-    /// What else is done to the dataset before the heights are written.
+    /// Changes the dataset before the heights are written.
     pub tag: Box<dyn Fn(&mut Dataset) + 'a>,
 }
 
 impl<'a> Raster<'a> {
-    /// One band, no nodata value, no options.
+    /// Creates a raster with one band, without a nodata value, without options.
     #[must_use]
     pub fn new(epsg: u32, size: [usize; 2], geo_transform: [f64; 6]) -> Self {
         let tag = Box::new(|_: &mut Dataset| {});
         Self { epsg, size, geo_transform, nodata: None, creation: &[], bands: 1, tag }
     }
 
-    /// With something done to the dataset before the heights are written.
+    /// Sets a function that changes the dataset before the heights are written.
     #[must_use]
     pub fn tagged(self, tag: impl Fn(&mut Dataset) + 'a) -> Self {
         Self { tag: Box::new(tag), ..self }
     }
 
-    /// With creation options of GDAL's driver.
+    /// Sets creation options of GDAL's driver.
     #[must_use]
     pub fn created(self, creation: &'a [&'a str]) -> Self {
         Self { creation, ..self }
     }
 
-    /// With so many bands.
+    /// Sets the number of bands.
     #[must_use]
     pub fn bands(self, bands: usize) -> Self {
         Self { bands, ..self }
     }
 
-    /// With a value that stands for no data.
+    /// Sets the nodata value.
     #[must_use]
     pub fn nodata(self, nodata: f64) -> Self {
         Self { nodata: Some(nodata), ..self }
     }
 
-    /// CRS position of a sample: the centre of its pixel.
+    /// Returns the CRS position of a sample: the centre of its pixel.
     #[must_use]
     pub fn sample_at(&self, column: usize, row: usize) -> [f64; 2] {
         let g = self.geo_transform;
@@ -104,7 +104,7 @@ impl<'a> Raster<'a> {
     }
 }
 
-/// Creation options for GDAL, each `NAME=VALUE`.
+/// Returns creation options for GDAL, each of the form `NAME=VALUE`.
 #[must_use]
 pub fn raster_creation_options(options: &[&str]) -> RasterCreationOptions {
     options.iter().copied().collect()

@@ -1,12 +1,14 @@
-//! Tests that cannot run here say so, and are counted.
+//! Tests that cannot run on this machine report this, and are counted.
 
 use std::{env, fs::OpenOptions, io::Write as _, thread};
 
-/// Says that the test that runs in this thread, or a part of it, is skipped, and why.
+/// Reports that the test in this thread, or a part of it, is skipped, and why.
 ///
-/// The reason goes on after the number of tests: "need elevation files that are not in the repository"; it names no file, so that tests with one reason
-/// are counted together. `libtest` hides what a test prints and counts it as passed. So a line `binary test: reason` is appended to the file that
-/// `CORNICHE_SKIPPED` names; `scripts/test` counts these lines and shows them at its end.
+/// The reason continues a sentence that begins with the number of tests: "need elevation files that
+/// are not in the repository"; it names no file, so that tests with one reason are counted
+/// together. `libtest` hides the output of a test and counts it as passed. So a line
+/// `binary test: reason` is appended to the file that `CORNICHE_SKIPPED` names; `scripts/test`
+/// counts these lines and prints them at its end.
 ///
 /// # Panics
 /// When that file cannot be written.
@@ -19,7 +21,7 @@ pub fn skip(reason: &str) {
     eprintln!("skipped: {reason}");
     if let Some(list) = env::var_os("CORNICHE_SKIPPED") {
         let file = OpenOptions::new().append(true).create(true).open(&list);
-        // One write, so that lines of several processes do not mix.
+        // The line is written at once, so that lines of several processes do not mix.
         file.and_then(|mut file| file.write_all(format!("{binary} {test}: {reason}\n").as_bytes()))
             .unwrap_or_else(|error| panic!("{}: {error}", list.display()));
     }

@@ -1,25 +1,25 @@
-//! How much a run of the tests looks at: after each change, in CI, or everything.
+//! The extent of a run of the tests: after each change, in CI, or complete.
 
 use std::env;
 
 use crate::skip;
 
-/// How many cases the tests look at, as `CORNICHE_TIER` says.
+/// The number of cases in a run of the tests, set by `CORNICHE_TIER`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Tier {
-    /// After each change: `scripts/test`.
+    /// The run after each change: `scripts/test`.
     Quick,
-    /// Before a change lands: `scripts/test ci`.
+    /// The run before a change is merged: `scripts/test ci`.
     Ci,
-    /// Now and then: `scripts/test full`.
+    /// The complete run, now and then: `scripts/test full`.
     Full,
 }
 
 impl Tier {
-    /// The tier of this run; quick without `CORNICHE_TIER`.
+    /// Returns the tier of this run; quick without `CORNICHE_TIER`.
     ///
     /// # Panics
-    /// When the variable names no tier.
+    /// When the variable is not the name of a tier.
     #[must_use]
     pub fn of_this_run() -> Self {
         match env::var("CORNICHE_TIER").as_deref() {
@@ -31,7 +31,7 @@ impl Tier {
     }
 }
 
-/// The number of cases for the tier of this run.
+/// Returns the number of cases for the tier of this run.
 #[must_use]
 pub fn cases<T>(quick: T, ci: T, full: T) -> T {
     match Tier::of_this_run() {
@@ -41,11 +41,12 @@ pub fn cases<T>(quick: T, ci: T, full: T) -> T {
     }
 }
 
-/// Each so many-th of some cases: `every` is for the quick tier, for CI and for full. `CORNICHE_TURN`, a number, says with which to
-/// begin, so that runs of CI on different days look at different ones.
+/// Selects one in a number of cases: `every` has the numbers for the quick tier, for CI and for
+/// full. `CORNICHE_TURN`, a number, sets the first case, so that CI runs on different days test
+/// different cases.
 ///
 /// # Panics
-/// When the variable is no number.
+/// When the variable is not a number.
 pub fn some_of<I: IntoIterator>(
     cases_of_all: I,
     every: [usize; 3],
@@ -56,7 +57,8 @@ pub fn some_of<I: IntoIterator>(
     cases_of_all.into_iter().skip(turn % step).step_by(step)
 }
 
-/// Whether this run looks at everything; where it does not, the test that asks is skipped. `reason` says what it takes.
+/// Whether this run is complete; if it is not, the calling test is skipped. `reason` describes the
+/// cost of the test.
 #[must_use]
 pub fn is_full(reason: &str) -> bool {
     let is_full = Tier::of_this_run() == Tier::Full;

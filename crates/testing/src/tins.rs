@@ -1,16 +1,16 @@
-//! What every TIN promises, checked by plain means.
+//! Checks the invariants of a TIN with simple methods.
 
 use std::collections::HashSet;
 
 use corniche_geom::HeightGrid;
 use corniche_tin::Tin;
 
-/// Checks what every TIN must be: canonical order, distinct nodes, triangles counter-clockwise, every directed
-/// edge at most once (so that two triangles at most meet in an edge, from both sides), and no vertex without a
-/// triangle.
+/// Checks the invariants of every TIN: canonical order, distinct nodes, counter-clockwise
+/// triangles, every directed edge at most once (so that at most two triangles meet in an edge, from
+/// both sides), and no vertex without a triangle.
 ///
 /// # Panics
-/// When a promise is broken, saying which.
+/// When an invariant is violated; the message names it.
 pub fn check_tin(tin: &Tin) {
     let again = Tin::from_canonical(tin.vertices().to_vec(), tin.triangles().to_vec());
     assert_eq!(again.as_ref(), Ok(tin), "not canonical");
@@ -26,9 +26,10 @@ pub fn check_tin(tin: &Tin) {
     assert_eq!(unused, None, "a vertex without a triangle");
 }
 
-/// Checks that `tin` covers exactly the ground of `heights` (with its halo, as
-/// [`triangulate`](corniche_tin::triangulate) takes it): as much area as the ground cells have, and every node on an
-/// edge with a triangle on one side only lies beside a cell without ground, or on the tile's border.
+/// Checks that `tin` covers exactly the ground of `heights` (with its halo, as for
+/// [`triangulate`](corniche_tin::triangulate)): the TIN has the area of the ground cells, and every
+/// node on an edge with a triangle on only one side is next to a cell without ground, or on the
+/// tile's border.
 ///
 /// # Panics
 /// When it does not.
@@ -59,7 +60,7 @@ pub fn check_covers_ground(tin: &Tin, heights: &HeightGrid) {
     for &(from, to) in edges.iter().filter(|&&(from, to)| !edges.contains(&(to, from))) {
         let (p, q) = (at(from), at(to));
         assert!(p[0] == q[0] || p[1] == q[1], "the boundary {p:?}–{q:?} runs across cells");
-        // One side of every unit step of a boundary is ground, the other is not.
+        // On every unit step of a boundary, one side is ground and the other is not.
         let (low, high) = (p.min(q), p.max(q));
         for step in 0..(high[0] - low[0]).max(high[1] - low[1]) {
             let sides = if p[1] == q[1] {

@@ -1,4 +1,5 @@
-//! Times what a viewer does to every tile, and a build at its end: reading and writing its sections.
+//! Times what a viewer does with every tile, and what a build does at its end: reading and writing
+//! the sections of a tile.
 
 #![expect(missing_docs, reason = "criterion_group! makes a public function without documentation")]
 
@@ -55,7 +56,7 @@ fn writing(c: &mut Criterion) {
     group.sample_size(10);
     for name in PACKAGES {
         let (package, tiles) = package(name);
-        let context = PayloadContext::of(package.manifest());
+        let context = PayloadContext::from_manifest(package.manifest());
         let PayloadContext { frame, quantum_m, .. } = context;
         let decoded = tiles.iter().map(|(id, payload)| {
             decode(payload, *id, &frame, quantum_m, Sections::ALL).expect("a sound tile")

@@ -1,4 +1,5 @@
-//! Reads a package without GDAL: its tiles, the longest named road of the largest one with heights, the ground at the tile's middle.
+//! Reads a package without GDAL: prints its tiles, the longest named road of the largest tile with
+//! heights, and the ground at the middle of that tile.
 //!
 //! ```sh
 //! cargo run -p corniche-tileset --example read_package -- out.pmtiles
@@ -23,7 +24,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("level {}: {tiles} tiles, at most {} m off", level.level, level.max_error_m);
     }
 
-    // A finest tile holds every road at full detail. Which is the most interesting one? That with the most bytes.
+    // A finest tile contains every road at full detail. The tile with the most bytes is probably
+    // the most interesting one.
     let mut largest = None;
     for &id in ids.iter().filter(|id| id.z() == frame.max_level()) {
         let bytes = package.tile(id)?.map_or(0, |bytes| bytes.len());
@@ -38,7 +40,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         tile.roads_geo.len()
     );
 
-    // The tile's triangles on the lattice, on which ground and roads have whole coordinates.
+    // The tile's triangles on the lattice, on which ground and roads have integer coordinates.
     let quantum_m = manifest.vertical.quantum_m;
     let surface = Surface::new(&terrain.tin, Placement::of_tile(frame, id, quantum_m));
     let lines = tile.roads_geo.iter().filter_map(|road| {
@@ -48,7 +50,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     if let Some((road, name)) = lines.max_by_key(|(road, _)| road.line.vertices.len()) {
         println!("{name} (way {}):", road.way_id);
         for [u, v, height_m] in positions(&road.line, &surface)? {
-            // Working metres; divided by metres_per_unit they are coordinates of the CRS.
+            // The position is in working metres; divided by metres_per_unit it is in coordinates of
+            // the CRS.
             let [x_m, y_m] = frame.position_of_fraction_m([u, v]);
             let [unit_x, unit_y] = manifest.metres_per_unit;
             println!("  {:.6} {:.6} {height_m:.2} m", x_m / unit_x, y_m / unit_y);

@@ -1,4 +1,4 @@
-//! What the sections of packages are made of: bytes of each kind, then of the parts of photos.
+//! Prints the bytes of packages by kind of section, and then the parts of photos.
 //!
 //! ```sh
 //! cargo run --release -p corniche-tileset --features write --example section_bytes -- A.pmtiles B.pmtiles
@@ -7,7 +7,6 @@
 
 use std::{env, error::Error, path::Path};
 
-use corniche_areas::ClassedLayer;
 use corniche_tileset::{FilePackage, PayloadSizes, payload_sizes, photo_section};
 
 const PHOTO_PARTS: [&str; 3] = ["coverage", "heads and tables", "coded blocks"];
@@ -60,20 +59,20 @@ fn stored(sizes: &PayloadSizes) -> [u64; 10] {
         sizes.relief,
         sizes.photo,
         sizes.areas,
-        sizes.lines[ClassedLayer::Boundaries as usize],
+        sizes.boundaries,
         sizes.spans,
     ]
     .map(|size| size.stored)
 }
 
-/// What is before the JPEG picture, its markers with their content, and what its scans hold.
+/// Counts the bytes before the JPEG image, of its markers with their content, and of its scans.
 fn photo_parts(section: &[u8]) -> [usize; 3] {
     let begin = section.windows(2).position(|two| two == [0xff, 0xd8]).unwrap_or(section.len());
     let (mut at, mut heads) = (begin, 0);
     let jpeg_end = section.len();
     while at + 4 <= jpeg_end {
         let marker = section[at + 1];
-        // A restart or an escaped 255 is part of a scan.
+        // A restart marker or an escaped 255 belongs to a scan.
         let is_marker = section[at] == 0xff && !matches!(marker, 0 | 0xd0..=0xd7 | 0xff);
         let has_length = !matches!(marker, 0xd8 | 0xd9);
         let length = match (is_marker, has_length) {

@@ -1,4 +1,5 @@
-//! Where the bytes of the ground are, and how fast they are written and read: a line for each package.
+//! Prints where the bytes of the ground are, and how fast they are written and read: one line per
+//! package.
 //!
 //! ```sh
 //! cargo run --release -p corniche-tileset --features write --example terrain_bytes -- A.pmtiles B.pmtiles
@@ -9,7 +10,7 @@ use std::{env, error::Error, path::Path, time::Instant};
 
 use corniche_tileset::{FilePackage, PayloadContext, Sections, decode, encode, payload_sizes};
 
-/// Each tile is written and read so many times; the fastest counts.
+/// Each tile is written and read this many times; the fastest run counts.
 const TIMES: usize = 5;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -18,7 +19,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     for file in env::args().skip(1) {
         let package = FilePackage::open(Path::new(&file))?;
-        let context = PayloadContext::of(package.manifest());
+        let context = PayloadContext::from_manifest(package.manifest());
         let PayloadContext { frame, quantum_m, .. } = context;
         let (mut tiles, mut vertices, mut triangles, mut bytes) = (0, 0, 0, 0);
         let mut seconds = [0.0; 2];

@@ -1,16 +1,18 @@
-//! Tile payloads and packages: values to bytes and back.
+//! Tile payloads and packages: encodes values as bytes and decodes them.
 //!
 //! ```text
 //!   TilePayload ── encode ──► bytes ── Writer ──► package.pmtiles ── Package ──► bytes ── decode ──► TilePayload
 //!                  (feature "write")                                  (always; no C dependency, also wasm32)
 //! ```
 //!
-//! `FORMAT.md` beside this crate specifies every byte.
+//! `FORMAT.md` in this crate's folder specifies every byte.
 //!
-//! This crate never computes geometry: its guesses of triangles, heights and roads serve compression only, and a
-//! wrong guess costs bytes but changes no value. Its reading side has no C dependency and builds for wasm32.
+//! This crate never computes geometry: its guesses of triangles, heights and roads only serve
+//! compression, and a wrong guess costs bytes but changes no value. The reading part has no C
+//! dependency and builds for wasm32.
 //!
-//! A package's tiles, and the ground and the roads of each (`examples/read_package.rs` also gives positions and heights):
+//! The following example lists a package's tiles with their triangles and roads.
+//! (`examples/read_package.rs` also prints positions and heights.)
 //!
 //! ```no_run
 //! use std::path::Path;
@@ -35,12 +37,13 @@ mod payload;
 mod tile_order;
 
 pub use manifest::{
-    AreaClassRecord, AreaCounts, AreaLevelRecord, AreaTableRecord, AreasRecord, ClipRecord, Counts,
+    AreaClassRecord, AreaCounts, AreaLevelRecord, AreaTableRecord, AreasRecord, ClipRecord,
     CreditError, DatumOperationRecord, Distribution, GrowthRow, InputKind, InputRecord,
     LeftOutRecord, LevelRecord, LineClassRecord, LineCounts, LineLevelRecord, LinesRecord,
-    Manifest, OuterGround, PhotoLevelRecord, PhotoRecord, PolygonRecord, ReliefLevels, RoadLoss,
-    SampleCounts, SampleErrorRecord, SampleSums, ScaleRecord, SettingsRecord, SpanCounts,
-    SpansRecord, SvTail, SvTails, VerticalRecord, check_credit, to_credit,
+    Manifest, ManifestCounts, OuterGround, PhotoLevelRecord, PhotoRecord, PolygonRecord,
+    ReliefLevels, RoadLoss, SampleCounts, SampleErrorRecord, SampleSums, ScaleRecord,
+    SettingsRecord, SpanCounts, SpansRecord, SvTail, SvTails, VerticalRecord, check_credit,
+    to_credit,
 };
 #[cfg(not(target_arch = "wasm32"))]
 pub use package::{AnySource, BlockingSource, FilePackage, FileSource};
@@ -49,16 +52,16 @@ pub use package::{
     ToolRecord, telling_ranges,
 };
 #[cfg(feature = "write")]
-pub use package::{WriteError, Writer};
+pub use package::{PackageWriter, WriteError};
 pub use payload::{
     AreaRecord, AreaRings, Damage, DecodeError, EncodeError, GeoRoad, LineRecord, PHOTO_BORDER,
     PayloadSizes, Photo, Relief, RoadRecord, SectionSize, Sections, SpanHeight, SpanPoint, SpanRun,
-    SvRoad, Terrain, TerrainSummary, TilePayload, decode, decode_areas, decode_lines, decode_photo,
-    decode_spans, payload_sizes, terrain_summary,
+    SvRoad, TerrainSummary, TilePayload, TileTerrain, decode, decode_areas, decode_boundaries,
+    decode_photo, decode_spans, payload_sizes, terrain_summary,
 };
 #[cfg(feature = "write")]
 pub use payload::{
-    EncodedTile, PayloadBuilder, PayloadContext, Section, encode, encode_areas, encode_lines,
+    EncodedTile, PayloadBuilder, PayloadContext, Section, encode, encode_areas, encode_boundaries,
     encode_photo, encode_sections, encode_spans, photo_section,
 };
 pub use tile_order::{pmtiles_order, tile_of_order};

@@ -1,4 +1,4 @@
-//! The table of contents of a package.
+//! The manifest: the table of contents of a package.
 
 mod contents;
 mod counts;
@@ -19,7 +19,7 @@ pub use corniche_geom::{ClipRecord, DatumOperationRecord, ScaleRecord};
 pub use corniche_settings::{
     AreaTableRecord, PhotoRecord, PolygonRecord, ReliefLevels, SettingsRecord,
 };
-pub use counts::{Counts, GrowthRow, LeftOutRecord, RoadLoss, SampleCounts};
+pub use counts::{GrowthRow, LeftOutRecord, ManifestCounts, RoadLoss, SampleCounts};
 pub use credits::{CreditError, check_credit, to_credit};
 pub use inputs::{InputKind, InputRecord};
 pub use levels::{Distribution, LevelRecord, SampleErrorRecord};

@@ -1,4 +1,4 @@
-//! Packages: PMTiles files of payloads with a manifest.
+//! Packages: PMTiles files that contain payloads and a manifest.
 
 #[cfg(feature = "write")]
 mod close_up;
@@ -25,4 +25,4 @@ pub use source::{AnySource, BlockingSource, FileSource};
 pub use source::{ByteSource, MemorySource, SourceError};
 pub use tool_record::ToolRecord;
 #[cfg(feature = "write")]
-pub use writer::{WriteError, Writer};
+pub use writer::{PackageWriter, WriteError};

@@ -1,4 +1,4 @@
-//! A tile's payload: what it holds, and its bytes.
+//! A tile's payload: its content and its bytes.
 
 mod section_kind;
 mod tile_payload;
@@ -53,8 +53,8 @@ pub use decode::decode;
 pub use encode::{PayloadContext, encode, encode_sections};
 pub use envelope::SectionSize;
 #[cfg(feature = "write")]
-pub use lines::encode_lines;
-pub use lines::{LineRecord, decode_lines};
+pub use lines::encode_boundaries;
+pub use lines::{LineRecord, decode_boundaries};
 pub use photo::{PHOTO_BORDER, Photo, decode_photo};
 #[cfg(feature = "write")]
 pub use photo::{encode_photo, photo_section};
@@ -65,7 +65,7 @@ pub use sizes::{PayloadSizes, payload_sizes};
 pub use spans::encode_spans;
 pub use spans::{SpanHeight, SpanPoint, SpanRun, decode_spans};
 pub use summary::terrain_summary;
-pub use tile_payload::{GeoRoad, RoadRecord, SvRoad, Terrain, TerrainSummary, TilePayload};
+pub use tile_payload::{GeoRoad, RoadRecord, SvRoad, TerrainSummary, TilePayload, TileTerrain};
 
 #[cfg(test)]
 #[path = "payload_tests.rs"]

@@ -1,4 +1,4 @@
-//! A tile with all its sections comes back whole, and any damage is noticed.
+//! A tile with all its sections round-trips, and any damage is detected.
 
 use corniche_testing::some_of;
 use std::num::{NonZeroU8, NonZeroU32};
@@ -11,8 +11,9 @@ use corniche_tin::{Surface, Tin, TinVertex};
 use proptest::prelude::*;
 
 use super::{
-    Damage, EncodeError, GeoRoad, PayloadContext, Relief, RoadRecord, Sections, SvRoad, Terrain,
-    TilePayload, context::Context, decode, encode, number_codes::Cursor, source_grid::SourceGrid,
+    Damage, EncodeError, GeoRoad, PayloadContext, Relief, RoadRecord, Sections, SvRoad,
+    TilePayload, TileTerrain, context::CodingContext, decode, encode, number_codes::Cursor,
+    source_grid::SourceGrid,
 };
 
 const QUANTUM_M: f64 = 0.25;
@@ -25,7 +26,7 @@ fn context() -> PayloadContext {
     PayloadContext { frame: frame(), quantum_m: QUANTUM_M, metres_per_unit: [1.0; 2] }
 }
 
-/// As if the CRS were in degrees: OSM's grid has steps of 1/256 m, and the points of [`geo_roads`] are on it.
+/// A context in degrees: OSM's grid has steps of 1/256 m, with the points of [`geo_roads`] on it.
 fn context_in_degrees() -> PayloadContext {
     PayloadContext { metres_per_unit: [39_062.5; 2], ..context() }
 }
@@ -46,7 +47,7 @@ fn class(number: u8) -> FunctionalRoadClass {
     FunctionalRoadClass::new(number).unwrap()
 }
 
-/// A grid of `side` × `side` nodes, `gap` apart, without the cells of `holes`; diagonals as `diagonal` says.
+/// A grid of `side` × `side` nodes, `gap` apart, without the cells of `holes`.
 fn grid_tin(
     side: usize,
     gap: u16,
@@ -83,9 +84,9 @@ fn grid_tin(
     Tin::new(vertices, &triangles).unwrap()
 }
 
-fn terrain(tin: Tin) -> Terrain {
+fn terrain(tin: Tin) -> TileTerrain {
     let normals = (0..tin.vertices().len()).map(|k| [(k * 37) as i8, (k * 11) as i8]).collect();
-    Terrain {
+    TileTerrain {
         tin,
         normals,
         geometric_error_m: 1.75,
@@ -95,10 +96,11 @@ fn terrain(tin: Tin) -> Terrain {
 }
 
 fn surface(tin: &Tin) -> Surface {
-    Surface::new(tin, Context::new(id(), &frame(), QUANTUM_M).unwrap().placement)
+    Surface::new(tin, CodingContext::new(id(), &frame(), QUANTUM_M).unwrap().placement)
 }
 
-/// Lays lines, given by points in thousandths of the tile's side from its north-west corner, on the ground.
+/// Drapes lines, which are given by points in thousandths of the tile's side from its north-west
+/// corner, on the ground.
 fn geo_roads(tin: &Tin, lines: &[Vec<[i64; 2]>]) -> Vec<GeoRoad> {
     let bounds = frame().tile_lattice_bounds(id());
     let side = bounds.max.u - bounds.min.u;
@@ -132,7 +134,7 @@ fn relief() -> Relief {
     Relief::of_heights(&heights, &heights, frame().level_cell(1), QUANTUM_M).unwrap()
 }
 
-/// One tile with all sections, small enough to try every damage.
+/// A tile with all sections, which is small enough to try every kind of damage.
 fn sample() -> TilePayload {
     let tin = grid_tin(
         5,
@@ -263,7 +265,7 @@ fn every_cut_and_every_flipped_bit_is_noticed() {
     let payload = sample();
     for context in [context(), context_in_degrees()] {
         let bytes = encode(&payload, &context).unwrap().bytes;
-        // Odd steps come to every bit of a byte.
+        // Odd steps reach every bit of a byte.
         for length in some_of(0..bytes.len(), [61, 9, 1]) {
             assert!(read(&bytes[..length], Sections::ALL).is_err(), "cut to {length} bytes");
         }
@@ -276,7 +278,7 @@ fn every_cut_and_every_flipped_bit_is_noticed() {
     }
 }
 
-/// On OSM's grid lines are range-coded bits, off it planes; both say the same, and tell the same sizes afterwards.
+/// On OSM's grid lines are range-coded bits, off it planes; both give the same lines and sizes.
 #[test]
 fn lines_on_the_grid_of_osm_are_coded_and_come_back() {
     let mut payload = sample();
@@ -295,13 +297,14 @@ fn lines_on_the_grid_of_osm_are_coded_and_come_back() {
     }
 }
 
-/// Damage behind a right checksum: what a hostile writer could do. No panic, and an error or some tile.
+/// Damage behind a correct checksum results in an error or some tile, and never in a panic.
 #[test]
 fn hostile_sections_do_not_panic() {
     let payload = sample();
     let mut reached = [0_u32; 2];
     let surface = surface(&payload.terrain.as_ref().unwrap().tin);
-    let Context { corner, scale, .. } = Context::new(id(), &frame(), QUANTUM_M).unwrap();
+    let CodingContext { corner, scale, .. } =
+        CodingContext::new(id(), &frame(), QUANTUM_M).unwrap();
     let sections = [
         super::terrain::encode(payload.terrain.as_ref().unwrap(), scale).unwrap(),
         super::roads_geo::encode(&payload.roads_geo, None, corner, &surface).unwrap().0,
@@ -351,7 +354,7 @@ fn bombs_and_foreign_bytes_are_refused() {
     let resealed = |at: usize, value: &[u8]| {
         let mut bytes = bytes.clone();
         bytes[at..at + value.len()].copy_from_slice(value);
-        // Behind a table of six sections.
+        // The checksum follows a table of six sections.
         let sum = crc32fast::hash(&bytes[..136]);
         bytes[136..140].copy_from_slice(&sum.to_le_bytes());
         bytes
@@ -380,7 +383,7 @@ fn bombs_and_foreign_bytes_are_refused() {
     let smaller = part(&resealed(48, &1_u32.to_le_bytes()), Sections::ROADS_GEO);
     let what = "the length of a compressed section";
     assert_eq!(smaller, Err(("GEO roads section", Damage::Invalid(what))));
-    // A section of a kind that this version does not know is passed over.
+    // A section of a kind that this version does not know is skipped.
     let unknown = part(&resealed(16, &99_u16.to_le_bytes()), Sections::TERRAIN).unwrap();
     assert_eq!(unknown.terrain, None);
     assert!(part(&resealed(16, &99_u16.to_le_bytes()), Sections::ROADS_GEO).is_err());
@@ -388,16 +391,17 @@ fn bombs_and_foreign_bytes_are_refused() {
     assert!(decode(&bytes, deep, &frame(), QUANTUM_M, Sections::ALL).is_err());
 }
 
-/// The decompressor, too, meets bytes that no compressor wrote.
+/// The decompressor, too, reads bytes that no compressor wrote.
 #[test]
 fn hostile_compressed_bytes_do_not_panic() {
     let raw: Vec<u8> = (0..3000_u32).map(|k| (k * k / 1000) as u8 & 0x1f).collect();
-    // Terrain is dense already, and stored as it is.
-    let kind = super::section_kind::Kind::Attributes;
+    // Terrain is dense already, and is stored without compression.
+    let kind = super::section_kind::SectionKind::Attributes;
     let sealed = super::builder::payload_of(id(), [(kind, raw.clone())]);
     let open = |bytes: &[u8]| {
         let mut bytes = bytes.to_vec();
-        // Offset, stored length, raw length, checksum: the table's only entry, made right again.
+        // The offset, the stored length, the raw length and the checksum: the table's only entry,
+        // corrected.
         let sum = crc32fast::hash(&bytes[40..]);
         bytes[32..36].copy_from_slice(&sum.to_le_bytes());
         let sum = crc32fast::hash(&bytes[..36]);
@@ -435,7 +439,7 @@ fn what_cannot_be_encoded_is_an_error() {
     check(&|payload| payload.terrain.as_mut().unwrap().normals.clear());
 }
 
-/// A line need not be what the guesses say, only what a line can be.
+/// A line need not follow the guesses; any valid line round-trips.
 #[test]
 fn lines_against_all_guesses_come_back() {
     let mut payload = sample();
@@ -461,7 +465,8 @@ fn lines_against_all_guesses_come_back() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// Any ground with holes, either diagonal and any heights, with lines along, through and off it.
+    /// Any ground with holes, either diagonal and any heights, with lines along, through and off
+    /// it.
     #[test]
     fn tiles_come_back(
         gap in 1..32_u16,
@@ -479,7 +484,7 @@ proptest! {
             |c, r| holes[8 * r + c],
             |c, r| diagonals[8 * r + c],
         );
-        // Coarse lines run through vertices and along edges.
+        // Coarse lines pass through vertices and along edges.
         let coarse = lines.iter().map(|line| line.iter().map(|p| p.map(|k| k * 4 * i64::from(gap))).collect());
         let lines: Vec<Vec<[i64; 2]>> = coarse.chain(fine).collect();
         let roads_geo = geo_roads(&tin, &lines);
@@ -499,7 +504,8 @@ proptest! {
         }
     }
 
-    /// Roads for shadow volumes and their attributes come back; ranges hold what they held.
+    /// Roads for shadow volumes and their attributes round-trip; ranges still contain what they
+    /// contained.
     #[test]
     fn plan_lines_come_back(
         lines in prop::collection::btree_map(
@@ -538,11 +544,11 @@ proptest! {
         }
     }
 
-    /// Bytes of any kind: an error, not a panic.
+    /// Any bytes result in an error, and never in a panic.
     #[test]
     fn any_bytes_are_survived(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
         prop_assert!(read(&bytes, Sections::ALL).is_err());
-        let Context { corner, scale, .. } = Context::new(id(), &frame(), QUANTUM_M).unwrap();
+        let CodingContext { corner, scale, .. } = CodingContext::new(id(), &frame(), QUANTUM_M).unwrap();
         let _ = super::terrain::decode(&bytes, scale);
         let _ = super::roads_sv::decode(&bytes, None, corner, QUANTUM_M);
         let _ = super::roads_sv::decode(&bytes, Some(&FRAME), corner, QUANTUM_M);
@@ -550,8 +556,9 @@ proptest! {
     }
 }
 
-/// One triangle and one road over it, byte by byte: what `FORMAT.md` shows. When this fails, the format has
-/// changed: say so in the changelog, raise the version, and put the new bytes into the page.
+/// One triangle and one road over it, byte by byte, as `FORMAT.md` shows them. If this test fails,
+/// the format has changed: describe the change in the changelog, raise the version, and put the new
+/// bytes into the page.
 #[test]
 fn the_smallest_tile_has_these_bytes() {
     let vertex = |row, column, height_q| TinVertex { row, column, height_q };
@@ -559,7 +566,7 @@ fn the_smallest_tile_has_these_bytes() {
         Tin::new(vec![vertex(0, 0, 400), vertex(0, 256, 480), vertex(256, 0, 360)], &[[0, 2, 1]])
             .unwrap();
     let roads_geo = geo_roads(&tin, &[vec![[64, 64], [128, 256]]]);
-    let terrain = Terrain {
+    let terrain = TileTerrain {
         tin,
         normals: vec![[-1, -1]; 3],
         geometric_error_m: 1.5,
@@ -574,7 +581,8 @@ fn the_smallest_tile_has_these_bytes() {
         roads_sv: vec![],
         attributes: vec![],
     };
-    let Context { corner, scale, .. } = Context::new(id(), &frame(), QUANTUM_M).unwrap();
+    let CodingContext { corner, scale, .. } =
+        CodingContext::new(id(), &frame(), QUANTUM_M).unwrap();
     let ground = payload.terrain.as_ref().unwrap();
     let geo = super::roads_geo::encode(&payload.roads_geo, None, corner, &surface(&ground.tin))
         .unwrap()

@@ -2,17 +2,18 @@
 
 use corniche_geom::TileId;
 
-/// Place of a tile in a package: PMTiles' tile id, which counts tiles level by level along a Hilbert curve.
+/// Position of a tile in a package: PMTiles' tile id, which counts tiles level by level along a
+/// Hilbert curve.
 ///
 /// Source: PMTiles version 3 specification, section 4.1.
 #[must_use]
 pub fn pmtiles_order(id: TileId) -> u64 {
-    // A tile id is valid from construction, and PMTiles knows more levels than we do.
+    // A tile id is valid from construction, and PMTiles has more levels than this format.
     pmtiles::TileCoord::new(id.z(), id.x(), id.y())
         .map_or(u64::MAX, |coord| pmtiles::TileId::from(coord).value())
 }
 
-/// The tile at a place; `None` for places beyond the deepest level.
+/// Returns the tile at a position; `None` for positions beyond the deepest level.
 #[must_use]
 pub fn tile_of_order(order: u64) -> Option<TileId> {
     let coord = pmtiles::TileCoord::from(pmtiles::TileId::new(order).ok()?);

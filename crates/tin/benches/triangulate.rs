@@ -1,4 +1,5 @@
-//! Times what a build does to every tile: triangulating it, and measuring TINs against the finest raster.
+//! Times the work of a build on every tile: triangulating it, and measuring TINs against the finest
+//! raster.
 
 #![expect(missing_docs, reason = "criterion_group! makes a public function without documentation")]
 
@@ -11,7 +12,8 @@ use corniche_tin::{
 };
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 
-/// Mountains: sines over seven octaves, falling by half, with directions that do not repeat.
+/// Mountains: sines over seven octaves with amplitudes that halve, in directions that do not
+/// repeat.
 fn mountains(nodes: usize) -> HeightGrid {
     HeightGrid::from_fn(nodes, nodes, |column, row| {
         (0_u8..7)
@@ -43,7 +45,8 @@ fn triangulating(c: &mut Criterion) {
             });
         }
     }
-    // A tile of the Alps with gaps; `scripts/bench-tin` compares more of them with another triangulator.
+    // A tile of the Alps with gaps; `scripts/bench-tin` compares more of them with another
+    // triangulator.
     if let Some(heights) = srtm_heights("liechtenstein/N47E010.hgt", 600, 400) {
         group.throughput(Throughput::Elements(257 * 257));
         for max_error_m in [2.0, 5.0, 20.0] {

@@ -1,8 +1,9 @@
 //! Times triangulation of real grids, for `scripts/bench-tin`.
 //!
-//! `time_triangulate FILE SIDE` reads square grids of SIDE × SIDE nodes, halo included, one after the other: 32-bit floats,
-//! little-endian, row by row from the north, NaN in gaps. For every tolerance that comes on a line of standard input it triangulates
-//! all of them and answers with a line: CPU time in seconds, vertices, triangles.
+//! `time_triangulate FILE SIDE` reads square grids of SIDE × SIDE nodes, halo included, one after
+//! another: 32-bit floats, little-endian, row by row from the north, NaN in gaps. For every
+//! tolerance on a line of standard input it triangulates all of them and prints one line: CPU time
+//! in seconds, vertices, triangles.
 
 use std::io::{BufRead, Write};
 
@@ -43,7 +44,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// CPU time of this process so far, seconds.
+/// The CPU time of this process so far, in seconds.
 fn cpu_s() -> f64 {
     let time = clock_gettime(ClockId::ProcessCPUTime);
     time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9

@@ -1,14 +1,17 @@
-//! Chooses vertices on the tile's border and on the boundaries of voids, before greedy insertion starts.
+//! Chooses vertices on the tile's border and on the boundaries of voids, before greedy insertion
+//! begins.
 
 use crate::tile_raster::TileRaster;
 
-/// A straight stretch of border or boundary, simplified: nodes `[column, row]`, west to east or north to south.
-pub(crate) type Stretch = Vec<[usize; 2]>;
+/// A straight, simplified stretch of border or boundary: nodes `[column, row]`, west to east or
+/// north to south.
+pub(crate) type BorderStretch = Vec<[usize; 2]>;
 
-/// All stretches of the tile's border and of the boundaries of its voids, each simplified on its own.
+/// Returns all stretches of the tile's border and of the boundaries of its voids, each simplified
+/// separately.
 ///
-/// A grid line is cut where ground begins or ends on either side of it. On the border of the tile, the halo tells
-/// this for the outer side:
+/// A grid line is cut where ground begins or ends on either side of it. On the border of the tile,
+/// the halo has the outer side:
 ///
 /// ```text
 ///          outer:  ground   ground   void    void
@@ -16,10 +19,15 @@ pub(crate) type Stretch = Vec<[usize; 2]>;
 ///          inner:  ground   ground   ground  ground
 /// ```
 ///
-/// The neighbour sees the same two sides with their names exchanged, cuts at the same nodes, and simplifies the same
-/// heights in the same direction: both get the same vertices wherever both have ground. Each end of a stretch becomes
-/// a vertex; these include the corners of boundaries and of the tile.
-pub(crate) fn stretches(tile: &TileRaster<'_>, max_error_m: f64, quantum_m: f64) -> Vec<Stretch> {
+/// The neighbour sees the same two sides with their names swapped, cuts at the same nodes, and
+/// simplifies the same heights in the same direction: both tiles get the same vertices wherever
+/// both have ground. Each end of a stretch becomes a vertex, including the corners of boundaries
+/// and of the tile.
+pub(crate) fn stretches(
+    tile: &TileRaster<'_>,
+    max_error_m: f64,
+    quantum_m: f64,
+) -> Vec<BorderStretch> {
     let (columns, rows) = (tile.columns(), tile.rows());
     let mut found = Vec::new();
     let mut line = |length: usize,
@@ -67,11 +75,13 @@ pub(crate) fn stretches(tile: &TileRaster<'_>, max_error_m: f64, quantum_m: f64)
     found
 }
 
-/// Greedy insertion in one dimension: the node farthest from the line between two kept ones is kept too, until none
-/// is farther than `max_error_m`. Of several equally far nodes the first is taken. The ends are kept.
+/// Greedy insertion in one dimension: the node farthest from the line between two kept nodes is
+/// also kept, until no node is farther than `max_error_m`. Among equally distant nodes the first is
+/// chosen. The ends are kept.
 ///
-/// Source: Garland & Heckbert 1995, *Fast Polygonal Approximation of Terrains and Height Fields*, applied to
-/// one dimension, where it is the algorithm of Ramer 1972 and Douglas & Peucker 1973 with vertical distances.
+/// Source: Garland & Heckbert 1995, *Fast Polygonal Approximation of Terrains and Height Fields*,
+/// applied to one dimension, where it is the algorithm of Ramer 1972 and Douglas & Peucker 1973
+/// with vertical distances.
 fn simplify(
     tile: &TileRaster<'_>,
     start: usize,
@@ -79,14 +89,15 @@ fn simplify(
     node: &dyn Fn(usize) -> [usize; 2],
     max_error_m: f64,
     quantum_m: f64,
-) -> Stretch {
+) -> BorderStretch {
     let stored_m = |index: usize| f64::from(tile.height_q(node(index))) * quantum_m;
     let mut kept = vec![node(start)];
-    // Spans still to look at, the first on top.
+    // The intervals that are still to be examined, the next one on top.
     let mut spans = vec![[start, end]];
     while let Some([from, to]) = spans.pop() {
         let (from_m, to_m, length) = (stored_m(from), stored_m(to), (to - from) as f64);
-        // Everything is multiplied by the length, so that the numbers are exact, as in the residuals of triangles.
+        // Everything is multiplied by the length, so that the numbers are exact, as in the
+        // residuals of triangles.
         let mut worst = (max_error_m * length, None);
         for index in from + 1..to {
             let on_line = from_m * length + (to_m - from_m) * (index - from) as f64;

@@ -1,15 +1,16 @@
-//! The queue of candidates for the next vertex of a TIN, the greatest error first.
+//! The queue of candidates for the next vertex of a TIN, the largest error first.
 
 use std::collections::BinaryHeap;
 
-/// A face that has a node too far from it. Candidates compare by that distance, then by face (of equals the first is
-/// the greater): insertion takes the same way on every run.
+/// A face with a node too far from it. Candidates are compared by this distance, then by face
+/// (among equal distances the first face is the greater one), so that insertion has the same order
+/// in every run.
 ///
 /// ```text
 ///   bits  63 … 32            31 … 0
 ///         distance as f32    face, flipped
 /// ```
-/// A distance is not negative, and such floats order like their bits.
+/// A distance is never negative, and non-negative floats have the same order as their bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Candidate(u64);
 
@@ -22,12 +23,14 @@ impl Candidate {
         !(self.0 as u32)
     }
 
-    /// The distance when the candidate was made: if the face has another one now, the candidate is outdated.
+    /// The distance at the time when the candidate was created: if the face has another distance
+    /// now, the candidate is outdated.
     pub(crate) fn far_m(self) -> f32 {
         f32::from_bits((self.0 >> 32) as u32)
     }
 
-    /// Exponent and upper bits of the mantissa: errors of one band differ by at most an eighth.
+    /// The exponent and the upper bits of the mantissa: errors in one band differ by at most an
+    /// eighth.
     fn band(self) -> usize {
         (self.0 >> (32 + 20)) as usize
     }
@@ -35,10 +38,10 @@ impl Candidate {
 
 /// Candidates, the greatest first.
 ///
-/// Most candidates are outdated before they are taken. So only the uppermost band of errors is a heap, and the bands
-/// below are unsorted: when the next band is needed, the candidates that are still valid become the new heap. The
-/// order is the same as with one heap for all candidates, but the heap is small enough for the caches of the
-/// processor.
+/// Most candidates are outdated before they are taken. So only the uppermost band of errors is a
+/// heap, and the bands below are unsorted: when the next band is needed, its candidates that are
+/// still valid become the new heap. The order is the same as with one heap for all candidates, but
+/// the heap is small enough for the processor's caches.
 pub(crate) struct CandidateQueue {
     heap: BinaryHeap<Candidate>,
     /// Candidates below the heap's band, by band.
@@ -64,7 +67,7 @@ impl CandidateQueue {
         self.waiting[band].push(candidate);
     }
 
-    /// Takes the greatest candidate that is `fresh`.
+    /// Takes the greatest candidate for which `fresh` returns true.
     pub(crate) fn pop(&mut self, fresh: impl Fn(Candidate) -> bool) -> Option<Candidate> {
         loop {
             while let Some(candidate) = self.heap.pop() {

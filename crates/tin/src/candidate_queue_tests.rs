@@ -1,10 +1,10 @@
-//! The queue of candidates pops in the order of one heap.
+//! The queue of candidates has the order of a single heap.
 
 use super::*;
 use proptest::prelude::*;
 
 proptest! {
-    /// The order is that of one heap, also when candidates arrive in between.
+    /// The order is that of a single heap, even if candidates are added in between.
     #[test]
     fn pops_like_one_heap(errors in prop::collection::vec((0.0_f32..1e4, any::<bool>()), 0..300)) {
         let (mut queue, mut heap) = (CandidateQueue::new(), BinaryHeap::new());

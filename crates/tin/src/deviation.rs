@@ -1,4 +1,4 @@
-//! How far a TIN lies from heights, measured window by window.
+//! The distance of a TIN from heights, measured window by window.
 
 use std::ops::Range;
 
@@ -7,10 +7,11 @@ use corniche_geom::{HeightGrid, IndexLists};
 use crate::Tin;
 use crate::triangle_rows::for_each_row;
 
-/// How far a TIN lies from heights, and how many of them it covers.
+/// The distance of a TIN from heights, and the number of heights that it covers.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Deviation {
-    /// Largest vertical distance between the TIN and a node it covers, metres; 0 when it covers none.
+    /// Largest vertical distance between the TIN and a node that it covers, in metres; 0 if it
+    /// covers none.
     pub max_abs_m: f64,
     /// Nodes with a height that the TIN covers, its boundary included.
     pub covered_nodes: u64,
@@ -19,7 +20,7 @@ pub struct Deviation {
 }
 
 impl Deviation {
-    /// Adds the nodes of the other. The order of merging does not matter.
+    /// Adds the nodes of `other`. The order of merging does not matter.
     pub fn merge(&mut self, other: Self) {
         self.max_abs_m = self.max_abs_m.max(other.max_abs_m);
         self.covered_nodes += other.covered_nodes;
@@ -27,40 +28,40 @@ impl Deviation {
     }
 }
 
-/// Where a window of finest nodes lies beneath a tile.
+/// The position of a window of finest nodes in a tile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct WindowPlacement {
-    /// Finest cells from the tile's west edge to the window's first column.
+    /// Number of finest cells from the tile's west edge to the window's first column.
     pub column: i64,
-    /// Finest cells from the tile's north edge to the window's first row.
+    /// Number of finest cells from the tile's north edge to the window's first row.
     pub row: i64,
-    /// Finest cells to one cell of the tile: 1 for a finest tile, else a power of two.
+    /// Number of finest cells per cell of the tile: 1 for a finest tile, else a power of two.
     pub stride: i64,
 }
 
-/// The triangles of a TIN, sorted into squares of nodes, to be measured against many windows.
+/// The triangles of a TIN, sorted into squares of nodes, for measuring them against many windows.
 #[derive(Debug, Clone)]
 pub struct TriangleBuckets {
     planes: Vec<Triangle>,
-    /// Buckets from west to east and from north to south.
+    /// Number of buckets from west to east and from north to south.
     size: [usize; 2],
     /// The triangles of each bucket, row by row.
     members: IndexLists,
 }
 
-/// Nodes on a side of a bucket. The window of a finest tile, many levels below, lies in one bucket; testing a hundred
-/// triangles is little work compared with its 66 000 nodes.
+/// Number of nodes on a side of a bucket. The window of a finest tile, many levels below, is in one
+/// bucket; testing a hundred triangles is little work compared with its 66 000 nodes.
 const BUCKET_NODES: usize = 16;
 
-/// A triangle and the buckets its bounding box meets.
+/// A triangle with the buckets that its bounding box meets.
 #[derive(Debug, Clone, Copy)]
 struct Triangle {
     /// `[column, row]`.
     corners: [[u16; 2]; 3],
-    /// Height of the first corner, metres, then its rise per cell of the tile to the east and to the south,
-    /// both times `double_area`: exact, without a division.
+    /// Height of the first corner in metres, then the rise per cell of the tile to the east and to
+    /// the south, both multiplied by `double_area`: exact, without a division.
     plane: [f64; 3],
-    /// Twice the area in square cells of the tile, negative when clockwise in columns and rows.
+    /// Twice the area in square cells of the tile; negative if clockwise in columns and rows.
     double_area: f64,
     low: [u16; 2],
     high: [u16; 2],
@@ -117,7 +118,8 @@ impl TriangleBuckets {
         Self { planes, size, members }
     }
 
-    /// Calls `each` once for every triangle whose bounding box may meet the nodes `low` to `high` of the tile.
+    /// Calls `each` once for every triangle whose bounding box may meet the nodes `low` to `high`
+    /// of the tile.
     fn for_each_near(&self, low: [i64; 2], high: [i64; 2], mut each: impl FnMut(&Triangle)) {
         let bucket = |node: i64, axis: usize| {
             node.div_euclid(BUCKET_NODES as i64).min(self.size[axis] as i64 - 1)
@@ -127,9 +129,9 @@ impl TriangleBuckets {
         for row in first[1] as i64..=last[1] {
             for column in first[0] as i64..=last[0] {
                 let (row, column) = (row as usize, column as usize);
-                for &member in self.members.of(row * self.size[0] + column) {
+                for &member in self.members.list(row * self.size[0] + column) {
                     let triangle = &self.planes[member as usize];
-                    // A triangle is in all buckets that it meets: use it in the first of them only.
+                    // A triangle is in all buckets that it meets: use it only in the first of them.
                     let taken_at =
                         [0, 1].map(|axis| usize::from(triangle.low[axis]).max(first[axis]));
                     if taken_at == [column, row] {
@@ -141,15 +143,16 @@ impl TriangleBuckets {
     }
 }
 
-/// Measures a tile's TIN at every node with a height of `window`, a rectangle of the finest raster.
+/// Measures a tile's TIN at every node with a height in `window`, a rectangle of the finest raster.
 ///
-/// Heights are compared in f64, at the quantized TIN. A node is counted once, also where triangles meet;
-/// `each` is told column and row (in the window, row by row) of each node with a height, and how far the TIN is from it,
-/// metres: `None` where there is no triangle.
+/// Heights are compared in f64, with the quantized TIN. A node is counted once, even where
+/// triangles meet. `each` is called with the column and row (in the window, row by row) of each
+/// node with a height, and with the distance of the TIN from it in metres, which is `None` without
+/// a triangle.
 ///
 /// # Panics
-/// When `placement.stride` is not above 0, or puts the tile's far corner or the window beyond 2^30 finest
-/// cells: a caller's bug, as a quadtree of 256-cell tiles has 22 levels at most.
+/// When `placement.stride` is not above 0, or puts the tile's far corner or the window beyond 2^30
+/// finest cells, which is a bug of the caller: a quadtree of 256-cell tiles has at most 22 levels.
 pub fn measure(
     buckets: &TriangleBuckets,
     window: &HeightGrid,
@@ -179,36 +182,39 @@ pub fn measure(
     deviation
 }
 
-/// The distance of each node of a window from the TIN; negative where there is no triangle or no height.
+/// The distance of each node of a window from the TIN; negative without a triangle or a height.
 fn distances_m(
     buckets: &TriangleBuckets,
     window: &HeightGrid,
     placement: WindowPlacement,
 ) -> Vec<f64> {
     let heights_m = window.raw();
-    // Where several triangles meet, the largest distance is taken: their planes differ by rounding.
+    // If several triangles meet, the largest distance is taken: their planes differ by rounding.
     let mut distances_m = vec![-1.0_f64; heights_m.len()];
     buckets.for_each_stretch(placement, [window.columns(), window.rows()], |nodes, plane| {
         let scale = plane.scale.abs();
         let nodes = heights_m[nodes.clone()].iter().zip(&mut distances_m[nodes]);
-        // Division does not change the order, so the largest distance of a finest tile is exact except for this one
-        // rounding.
+        // Division does not change the order, so the largest distance of a finest tile is exact
+        // except for this one rounding.
         for (step, (&height_m, most_m)) in (0_i32..).zip(nodes) {
             let scaled = f64::from(height_m) * plane.scale - plane.scaled_m(step);
             let distance_m = scaled.abs() / scale;
-            // Written so, and not with `max`, it is one instruction for several nodes; NaN is never larger.
+            // In this form, without `max`, it is one instruction for several nodes; NaN is never
+            // larger.
             *most_m = if distance_m > *most_m { distance_m } else { *most_m };
         }
     });
     distances_m
 }
 
-/// Heights of a tile's TIN at the nodes of a window of the finest raster, `size` columns and rows, row by row; NaN where no triangle lies.
+/// Returns the heights of a tile's TIN at the nodes of a window of the finest raster, `size`
+/// columns and rows, row by row; NaN without a triangle.
 ///
-/// On finest tiles each is the plane's height, rounded once: the same in all triangles that meet at a node.
+/// On finest tiles each value is the plane's height, rounded once: the same in all triangles that
+/// meet at a node.
 ///
 /// # Panics
-/// As [`measure`] does.
+/// Same as [`measure`].
 #[must_use]
 pub fn heights_m(
     buckets: &TriangleBuckets,
@@ -234,7 +240,7 @@ struct RowOfPlane {
 }
 
 impl RowOfPlane {
-    /// The height some nodes after the first, times the scale.
+    /// The height `step` nodes after the first, multiplied by the scale.
     #[inline]
     fn scaled_m(&self, step: i32) -> f64 {
         self.first_m + self.step_m * f64::from(step)
@@ -242,7 +248,8 @@ impl RowOfPlane {
 }
 
 impl TriangleBuckets {
-    /// Calls `each` for all stretches of nodes of a window that a triangle covers, with their places in the window.
+    /// Calls `each` for all stretches of nodes of a window that a triangle covers, with their
+    /// positions in the window.
     #[inline]
     fn for_each_stretch(
         &self,

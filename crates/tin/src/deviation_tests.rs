@@ -1,4 +1,4 @@
-//! Deviations of a TIN are those that a look at each node finds.
+//! Deviations of a TIN agree with a computation node by node.
 
 use proptest::prelude::*;
 
@@ -9,7 +9,7 @@ fn spec(max_error_m: f64) -> TinSpec {
     TinSpec { max_error_m, quantum_m: height_quantum_m(max_error_m) }
 }
 
-/// Node heights of a bumpy raster with some gaps.
+/// Heights of the nodes of a bumpy raster with some gaps.
 fn bumpy_m(column: i64, row: i64) -> f32 {
     if (column / 5 + row / 7) % 11 == 3 {
         return f32::NAN;
@@ -18,7 +18,7 @@ fn bumpy_m(column: i64, row: i64) -> f32 {
         + ((column * 7 + row * 13) % 5) as f32
 }
 
-/// What `measure` says, found node by node with barycentric coordinates.
+/// The result of `measure`, computed node by node with barycentric coordinates.
 fn by_hand(
     tin: &Tin,
     quantum_m: f64,
@@ -56,7 +56,8 @@ fn by_hand(
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 
-    /// Windows anywhere, of any stride, over the tile's edge too, are measured as node by node.
+    /// Windows anywhere, of any stride, even across the tile's edge, give the same result as node
+    /// by node.
     #[test]
     fn equals_node_by_node(stride in 1_i64..9, column in -20_i64..150, row in -20_i64..150) {
         let spec = spec(3.0);
@@ -79,7 +80,8 @@ proptest! {
         prop_assert!((found.max_abs_m - wanted.max_abs_m).abs() < 1e-9, "{found:?} {wanted:?}");
     }
 
-    /// A tile's own nodes are within its tolerance, to the last bit; counts are those of the ground.
+    /// A tile's own nodes are within its tolerance, to the last bit; counts are those of the
+    /// ground.
     #[test]
     fn finest_tiles_keep_their_tolerance(max_error_m in 0.25_f64..40.0) {
         let spec = spec(max_error_m);
@@ -130,7 +132,8 @@ fn merging_takes_the_worst_and_adds_the_counts() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
 
-    /// Heights of a TIN at any window's nodes are as far from other heights as is measured, and are missing where no triangle lies.
+    /// Heights of a TIN at any window's nodes have the measured distances from other heights, and
+    /// are missing without a triangle.
     #[test]
     fn heights_are_those_that_are_measured(
         stride in 1_i64..9,

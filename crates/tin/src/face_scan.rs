@@ -1,4 +1,4 @@
-//! The node of a face that lies farthest from it.
+//! Finds the node of a face that is farthest from it.
 
 use crate::TinVertex;
 use crate::half_edges::Farthest;
@@ -6,50 +6,54 @@ use crate::lanes::{AFTER_ROW, LANES, Lanes, STEPS, lanes, less};
 use crate::tile_raster::TileRaster;
 use crate::triangle_rows::for_each_row;
 
-/// What faces are scanned against.
+/// The heights against which faces are scanned.
 pub(crate) struct FaceScan {
-    /// NaN where no vertex is allowed: comparisons with NaN are false. After the last node come `LANES` more, so that all lanes
-    /// can be read from any node.
+    /// NaN where no vertex is allowed: comparisons with NaN are false. `LANES` more values follow
+    /// the last node, so that all lanes can be read from any node.
     heights_m: Vec<f32>,
     columns: usize,
     max_error_m: f64,
-    /// The first 32-bit float that is farther than allowed.
+    /// The first 32-bit float that exceeds the tolerance.
     beyond_m: f32,
     quantum_m: f64,
 }
 
-/// A face that is scanned, with the plane through it. Heights of the plane are counted from `base_m`, so that they are small.
+/// A face that is being scanned, with the plane through it. Heights of the plane are relative to
+/// `base_m`, so that they are small.
 struct Scanned {
     /// Counter-clockwise in columns and rows.
     corners: [[i32; 2]; 3],
     double_area: i64,
     base_m: f32,
-    /// The plane at the first corner.
+    /// The plane's height at the first corner.
     first_m: f64,
     per_column_m: f64,
     per_row_m: f64,
 }
 
-/// Rows and columns that may hold nodes of a face, both ends included.
+/// Rows and columns that may contain nodes of a face, both ends included.
 struct Window {
     columns: [i32; 2],
     rows: [i32; 2],
 }
 
-/// Faces of at most so many rows and columns are scanned in blocks of all their rows.
+/// Faces of at most this many rows and columns are scanned in blocks of all their rows.
 const SMALL: i32 = 16;
 
-/// The lowest bits of a distance in a block, which tell its place there: from all bits set down, row by row.
+/// The lowest bits of a distance in a block, which encode its position there: from all bits set
+/// downwards, row by row.
 const PLACE_BITS: u32 = (SMALL as usize * LANES) as u32 - 1;
 
-/// How far a distance in 32-bit floats may be off, in parts of the greatest height that occurs on the way to it.
+/// The largest error of a distance in 32-bit floats, relative to the greatest height that occurs
+/// during its computation.
 ///
-/// A float rounds to 2^-24 of itself. Of a plane's height, its start, slopes, products and sums round: twice a row and twice
-/// four columns in a block, and six times besides, 46 times at most. The distance rounds three times, counted from the same
-/// height, and the bits of its place are 2^-17 of it, as much as 128 roundings. All together are less than 2^8 · 2^-24.
+/// A float rounds to 2^-24 of itself. The plane's height, its start, slopes, products and sums are
+/// rounded: twice per row and twice per four columns in a block, and six more times, which is at
+/// most 46 times. The distance is rounded three times, relative to the same height, and the bits of
+/// its position are 2^-17 of it, as much as 128 roundings. All together are less than 2^8 · 2^-24.
 const DOUBT: f64 = 1.0 / (1 << 16) as f64;
 
-/// Heights beyond this could overflow 32-bit floats.
+/// Heights above this could overflow 32-bit floats.
 const FLOATS_REACH_M: f64 = 1e30;
 
 impl FaceScan {
@@ -62,22 +66,24 @@ impl FaceScan {
         Self { heights_m, columns: tile.columns(), max_error_m, beyond_m, quantum_m }
     }
 
-    /// The least distance that is farther than allowed.
+    /// The smallest distance that exceeds the tolerance.
     pub(crate) fn beyond_m(&self) -> f32 {
         self.beyond_m
     }
 
-    /// The node of all that the face holds, edges included, that lies farthest from the plane through `corners`, as far as 32-bit
-    /// floats can tell. Corners are counter-clockwise in columns and rows.
+    /// Returns the node in the face, edges included, that is farthest from the plane through
+    /// `corners`, as far as 32-bit floats can distinguish. Corners are counter-clockwise in columns
+    /// and rows.
     ///
-    /// Whether it lies farther than allowed is decided exactly: where rounding could matter, the face is scanned again by
-    /// [`farthest_exactly`](Self::farthest_exactly).
+    /// Whether the node exceeds the tolerance is decided exactly: if rounding could matter, the
+    /// face is scanned again by [`farthest_exactly`](Self::farthest_exactly).
     #[inline]
     pub(crate) fn farthest_node(&self, corners: [TinVertex; 3]) -> Farthest {
         let [a, b, c] = [place(corners[0]), place(corners[1]), place(corners[2])];
         let (ab, ac) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
         let double_area = cross(ab, ac);
-        // Pick's theorem: 2 · area = 2 · nodes inside + nodes on the boundary − 2. At 1 there are but three.
+        // Pick's theorem: 2 · area = 2 · nodes inside + nodes on the boundary − 2. If twice the
+        // area is 1, there are only three nodes.
         if double_area <= 1 {
             return Farthest::default();
         }
@@ -104,15 +110,16 @@ impl FaceScan {
         let reach_m = face.per_column_m.abs() * f64::from(columns + 2)
             + face.per_row_m.abs() * f64::from(rows + 2)
             + self.max_error_m;
-        // Floats below the least positive normal one have fewer bits.
+        // Floats below the smallest positive normal one have fewer bits.
         let doubt_m = (reach_m + f64::from(f32::MIN_POSITIVE)) * DOUBT;
         let certain = ((f64::from(far_m) - self.max_error_m).abs() > doubt_m)
             & (reach_m + a_m.abs() < FLOATS_REACH_M);
         if certain { Farthest { far_m, node } } else { self.farthest_exactly(corners) }
     }
 
-    /// The farthest node of a small face. Every edge and the plane are functions of the node that grow by a fixed amount from
-    /// row to row; a node is in the face where those of all three edges are at least 0.
+    /// Returns the farthest node of a small face. Every edge and the plane are functions of the
+    /// node that grow by a fixed amount from row to row; a node is in the face if the functions of
+    /// all three edges are at least 0.
     #[inline]
     fn farthest_of_small(&self, face: &Scanned, window: &Window) -> (f32, u32) {
         let ([west, east], [north, south]) = (window.columns, window.rows);
@@ -120,7 +127,7 @@ impl FaceScan {
         let start_m = face.first_m
             + face.per_column_m * f64::from(west - a[0])
             + face.per_row_m * f64::from(north - a[1]);
-        let mut block = Block {
+        let mut block = ColumnBlock {
             ab: Growing::of_edge(a, b, [west, north]),
             bc: Growing::of_edge(b, c, [west, north]),
             plane_m: Growing::new(start_m as f32, face.per_column_m as f32, face.per_row_m as f32),
@@ -148,12 +155,14 @@ impl FaceScan {
         (farthest, (farthest_in + code / LANES * self.columns + code % LANES) as u32)
     }
 
-    /// The greatest distances of the nodes of a block that lie in the face, in each lane. `first` is the block's first node.
+    /// Returns the greatest distances of the nodes of a block that are in the face, in each lane.
+    /// `first` is the block's first node.
     ///
-    /// A function of its own: together with what uses its result, the compiler takes the lanes apart.
+    /// This is a separate function because the compiler would split the lanes if it were inlined
+    /// together with the code that uses its result.
     #[inline(never)]
-    fn farthest_in_block(&self, first: usize, block: &Block) -> Lanes {
-        let Block { ab, bc, plane_m, .. } = block;
+    fn farthest_in_block(&self, first: usize, block: &ColumnBlock) -> Lanes {
+        let ColumnBlock { ab, bc, plane_m, .. } = block;
         let mut left_of_ab = ab.column;
         let mut left_of_bc = bc.column;
         let mut in_plane_m = plane_m.column;
@@ -182,7 +191,7 @@ impl FaceScan {
         most
     }
 
-    /// The farthest node of any face, row by row.
+    /// Returns the farthest node of any face, row by row.
     fn farthest_by_rows(&self, face: &Scanned) -> (f32, u32) {
         let [a, ..] = face.corners;
         let per_column_m = face.per_column_m as f32;
@@ -211,7 +220,8 @@ impl FaceScan {
         farthest
     }
 
-    /// Compares the nodes of a row, from node `from` on, with the farthest so far. A function of its own for the same reason.
+    /// Compares the nodes of a row, from node `from` on, with the farthest so far. It is a separate
+    /// function for the same reason.
     #[inline(never)]
     fn look_at_row(&self, mut from: usize, nodes: usize, in_row: &InRow, farthest: &mut InLanes) {
         let &InRow { start_m, per_column_m, base_m } = in_row;
@@ -237,15 +247,17 @@ impl FaceScan {
         *farthest = InLanes { most, places };
     }
 
-    /// The farthest node, of equals the first, if it lies farther than allowed: without any rounding, and slower.
+    /// Returns the farthest node (the first among equal ones) if it exceeds the tolerance: without
+    /// any rounding, and slower.
     #[cold]
     #[inline(never)]
     fn farthest_exactly(&self, corners: [TinVertex; 3]) -> Farthest {
         let [a, b, c] = corners.map(place);
         let (ab, ac) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
         let [a_m, b_m, c_m] = corners.map(|corner| f64::from(corner.height_q) * self.quantum_m);
-        // Everything is multiplied by twice the area: heights have few binary digits and areas are integers, so every
-        // product and sum below is exact, and a node exactly at the tolerance is left out on every machine.
+        // Everything is multiplied by twice the area: heights have few binary digits and areas are
+        // integers, so every product and sum below is exact, and a node exactly at the tolerance is
+        // accepted on every machine.
         let scale = cross(ab, ac) as f64;
         let (ab_m, ac_m) = (b_m - a_m, c_m - a_m);
         let per_column = ab_m * f64::from(ac[1]) - ac_m * f64::from(ab[1]);
@@ -273,8 +285,8 @@ impl FaceScan {
     }
 }
 
-/// A number that grows evenly from node to node: in the first row of a block's columns, and what is added for the next row and
-/// for the next block.
+/// A number that grows linearly from node to node: its values in the first row of a block's
+/// columns, and its increments for the next row and for the next block.
 struct Growing {
     column: Lanes,
     per_row: Lanes,
@@ -291,8 +303,8 @@ impl Growing {
         }
     }
 
-    /// On which side of the edge from `p` to `q` nodes are, from the node `start` on: more than 0 to its left, 0 on it. Whole
-    /// numbers below 2^24, as edges are short.
+    /// The side of the edge from `p` to `q` on which nodes are, from the node `start` on: more than
+    /// 0 to its left, 0 on it. The values are whole numbers below 2^24, because edges are short.
     #[inline]
     fn of_edge(p: [i32; 2], q: [i32; 2], start: [i32; 2]) -> Self {
         let (per_column, per_row) = (p[1] - q[1], q[0] - p[0]);
@@ -301,8 +313,8 @@ impl Growing {
     }
 }
 
-/// The farthest nodes so far, in each lane: distance, and the index of the first lane's node as the bits of a float, because
-/// numbers of one type stay in the same registers.
+/// The farthest nodes so far in each lane: the distance, and the index of the first lane's node as
+/// the bits of a float, because numbers of one type stay in the same registers.
 struct InLanes {
     most: Lanes,
     places: Lanes,
@@ -316,12 +328,12 @@ struct InRow {
     base_m: f32,
 }
 
-/// Columns of a small face, as many as there are lanes.
-struct Block {
+/// The columns of a small face, as many as there are lanes.
+struct ColumnBlock {
     ab: Growing,
     bc: Growing,
     plane_m: Growing,
-    /// What the three functions of edges add up to, everywhere.
+    /// The sum of the three edge functions, which is the same everywhere.
     double_area: Lanes,
     base_m: Lanes,
     rows: u32,
@@ -337,7 +349,8 @@ fn cross(p: [i32; 2], q: [i32; 2]) -> i64 {
     i64::from(p[0]) * i64::from(q[1]) - i64::from(p[1]) * i64::from(q[0])
 }
 
-/// First and last of three columns or rows, without those that hold nothing of a face but one corner.
+/// Returns the first and the last of three columns or rows, without those that contain only a
+/// corner of the face.
 #[inline]
 fn ends([a, b, c]: [i32; 3]) -> [i32; 2] {
     let (first, last) = (a.min(b).min(c), a.max(b).max(c));

@@ -7,7 +7,8 @@ use super::*;
 
 const SIDE: usize = 40;
 
-/// A scan over heights of a tile of `SIDE` × `SIDE` nodes, with a tolerance of 1 m and steps of 1/32 m.
+/// A scan of heights of a tile of `SIDE` × `SIDE` nodes, with a tolerance of 1 m and steps of 1/32
+/// m.
 fn scan(height_m: impl Fn(usize, usize) -> f32) -> FaceScan {
     let heights = HeightGrid::from_fn(SIDE + 2, SIDE + 2, |c, r| {
         height_m(c.wrapping_sub(1), r.wrapping_sub(1))
@@ -23,8 +24,9 @@ fn turn(p: [i64; 2], q: [i64; 2], r: [i64; 2]) -> i64 {
     (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
 }
 
-/// How much the plane through three nodes, with heights in steps of 1/32 m, rises for a row and for a column, metres; the sign is not told. The share that a
-/// corner has of a place changes by the opposite side, turned by a right angle, over twice the area.
+/// The rise of the plane through three nodes per row and per column, in metres, with heights in
+/// steps of 1/32 m and without sign. The weight of a corner at a position changes by the opposite
+/// side, turned by a right angle, divided by twice the area.
 fn slopes_m(at: [[i64; 2]; 3], heights_q: [i32; 3]) -> [f64; 2] {
     let double_area = turn(at[0], at[1], at[2]) as f64;
     [0, 1].map(|axis| {
@@ -35,7 +37,7 @@ fn slopes_m(at: [[i64; 2]; 3], heights_q: [i32; 3]) -> [f64; 2] {
 }
 
 fn corner() -> impl Strategy<Value = [i64; 2]> {
-    // Faces below and above the limit of small ones, and level edges, must all be common.
+    // Faces below and above the limit of small faces, and level edges, must all be common.
     (0_i64..40, 0_i64..40, prop_oneof![Just(4_i64), Just(12), Just(40)])
         .prop_map(|(column, row, most)| [column % most, row % most])
 }
@@ -43,15 +45,16 @@ fn corner() -> impl Strategy<Value = [i64; 2]> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
-    /// A node is too far exactly if one is in whole numbers, edges included; and then it is one of the farthest, but for
-    /// rounding.
+    /// A node is reported exactly if a node exceeds the tolerance in integer arithmetic, edges
+    /// included; and then it is one of the farthest, except for rounding.
     #[test]
     fn finds_the_farthest(at in [corner(), corner(), corner()], heights_q in [-500..500, -500..500, -500..500], base_m in prop_oneof![Just(0_i32), Just(-300), Just(8000)], seed in any::<u32>()) {
         let at = if turn(at[0], at[1], at[2]) < 0 { [at[0], at[2], at[1]] } else { at };
         let area = turn(at[0], at[1], at[2]);
         prop_assume!(area > 0);
         let heights_q = heights_q.map(|height_q| height_q + 32 * base_m);
-        // In steps of 1/128 m. Few different heights, so that equals are common, and distances of just what is allowed.
+        // Heights are in steps of 1/128 m. Few different heights make equal distances, and
+        // distances exactly at the tolerance, common.
         let height = |c: usize, r: usize| match at.iter().position(|&corner| corner == [c as i64, r as i64]) {
             Some(k) => 4 * i64::from(heights_q[k]),
             None => i64::from((seed ^ c.wrapping_mul(1000).wrapping_add(r) as u32).wrapping_mul(0x9e37_79b9) >> 28) * 256 + 128 * i64::from(base_m),
@@ -71,7 +74,8 @@ proptest! {
             let far = far_of([i64::from(found.node) % SIDE as i64, i64::from(found.node) / SIDE as i64]);
             let far_m = far.map(|far| far as f64 / 128.0 / area as f64).unwrap();
             let farthest_m = farthest as f64 / 128.0 / area as f64;
-            // Slopes of slivers are steep, and then floats tell less. What the plane rises over the tile's columns and rows bounds every number on the way.
+            // Slopes of slivers are steep, and then floats are less accurate. The rise of the plane
+            // over the tile's columns and rows limits every intermediate number.
             let reach_m = (SIDE + 2) as f64 * slopes_m(at, heights_q).into_iter().map(f64::abs).sum::<f64>() + farthest_m;
             prop_assert!(far.unwrap() > 128 * area, "{} m is not too far", far_m);
             prop_assert!(farthest_m - far_m <= 2.0 * reach_m * DOUBT, "{} m instead of {} m", far_m, farthest_m);
@@ -79,7 +83,8 @@ proptest! {
         }
     }
 
-    /// Nodes of equal heights on a gentle plane: the one found is the farthest within a thousandth.
+    /// Nodes of equal heights on a gentle plane: the node found is the farthest to within a
+    /// thousandth.
     #[test]
     fn finds_the_farthest_on_gentle_ground(columns in 2_i64..39, rows in 2_i64..39, seed in any::<u32>()) {
         let height = |c: usize, r: usize| (seed ^ c.wrapping_mul(1000).wrapping_add(r) as u32).wrapping_mul(0x9e37_79b9) >> 20;
@@ -93,7 +98,7 @@ proptest! {
         }
     }
 
-    /// Of the faces around a node in a rectangle, all that hold a spike find it, on their edges too.
+    /// All faces around a node in a rectangle that contain a spike find it, even on their edges.
     #[test]
     fn a_spike_is_found_from_all_sides(west in 0_i64..4, north in 0_i64..4, columns in 2_i64..36, rows in 2_i64..36, places in [0.0_f64..1.0, 0.0..1.0, 0.0..1.0, 0.0..1.0]) {
         let inner = |k: usize| [
@@ -115,7 +120,7 @@ proptest! {
     }
 }
 
-/// Rows fill all 16 bits.
+/// The rows use all 16 bits.
 #[test]
 fn finds_a_spike_in_far_rows() {
     for row in [10_usize, 32_766, 32_767, 32_768, 40_000, 65_500] {
@@ -130,7 +135,8 @@ fn finds_a_spike_in_far_rows() {
     }
 }
 
-/// A node exactly at the tolerance is not too far, one a little beyond is: small faces and large ones.
+/// A node exactly at the tolerance is accepted, one slightly above is not: for small faces and
+/// large ones.
 #[test]
 fn the_tolerance_itself_is_allowed() {
     for size in [6, 30] {

@@ -1,34 +1,36 @@
-//! The mesh before the first insertion: border and boundaries, triangulated by spade and carried over.
+//! The mesh before the first insertion: border and boundaries, triangulated by spade and converted.
 
 use spade::{
     ConstrainedDelaunayTriangulation, DelaunayTriangulation, InsertionError, Triangulation,
 };
 
-use crate::boundary::Stretch;
+use crate::boundary::BorderStretch;
 use crate::half_edges::{Face, HalfEdges, NO_TWIN};
-use crate::node::Node;
+use crate::node::GridNode;
 use crate::tile_raster::TileRaster;
 
-/// The (constrained) Delaunay triangulation of the vertices of `fixed`, as far as it is ground.
+/// Returns the (constrained) Delaunay triangulation of the vertices of `fixed`, as far as it is
+/// ground.
 pub(crate) fn fixed_mesh(
     tile: &TileRaster<'_>,
-    fixed: &[Stretch],
+    fixed: &[BorderStretch],
 ) -> Result<HalfEdges, InsertionError> {
     let (nodes, edges) = fixed_graph(fixed);
     let ground_everywhere = tile.count_ground_cells() == (tile.columns() - 1) * (tile.rows() - 1);
     if ground_everywhere {
-        // The convex hull is the border of the tile: no constraint is needed.
-        Ok(carried_over(&DelaunayTriangulation::<Node>::bulk_load(nodes)?, tile))
+        // The convex hull is the border of the tile, so no constraint is needed.
+        Ok(carried_over(&DelaunayTriangulation::<GridNode>::bulk_load(nodes)?, tile))
     } else {
         Ok(carried_over(
-            &ConstrainedDelaunayTriangulation::<Node>::bulk_load_cdt(nodes, edges)?,
+            &ConstrainedDelaunayTriangulation::<GridNode>::bulk_load_cdt(nodes, edges)?,
             tile,
         ))
     }
 }
 
-/// The vertices of all stretches, each once, sorted by row and column, and the edges between them.
-fn fixed_graph(fixed: &[Stretch]) -> (Vec<Node>, Vec<[usize; 2]>) {
+/// Returns the vertices of all stretches, each of them once, sorted by row and column, and the
+/// edges between them.
+fn fixed_graph(fixed: &[BorderStretch]) -> (Vec<GridNode>, Vec<[usize; 2]>) {
     let mut keys: Vec<[usize; 2]> =
         fixed.iter().flatten().map(|&[column, row]| [row, column]).collect();
     keys.sort_unstable();
@@ -38,22 +40,23 @@ fn fixed_graph(fixed: &[Stretch]) -> (Vec<Node>, Vec<[usize; 2]>) {
         .iter()
         .flat_map(|stretch| stretch.windows(2).map(|pair| [index(pair[0]), index(pair[1])]));
     let edges = edges.collect();
-    (keys.iter().map(|&[row, column]| Node::new(column as u16, row as u16)).collect(), edges)
+    (keys.iter().map(|&[row, column]| GridNode::new(column as u16, row as u16)).collect(), edges)
 }
 
-/// The faces of `mesh` on the ground of `tile`.
+/// Returns the faces of `mesh` on the ground of `tile`.
 fn carried_over<T>(mesh: &T, tile: &TileRaster<'_>) -> HalfEdges
 where
-    T: Triangulation<Vertex = Node>,
+    T: Triangulation<Vertex = GridNode>,
 {
     let mut faces = Vec::with_capacity(mesh.num_inner_faces());
-    // The number that each directed edge of the other mesh has here.
+    // The number of each directed edge of the other mesh in this mesh.
     let mut half_edges = vec![NO_TWIN; mesh.num_directed_edges()];
     for face in mesh.inner_faces() {
         let edges = face.adjacent_edges();
         let corners = edges.map(|edge| *edge.from().data());
-        // Boundaries are edges, so a face is all ground or all void, and so is every cell that its inside
-        // meets: the one around its centroid decides, exactly, also when the centroid is on a cell's edge.
+        // Boundaries are edges, so a face is completely ground or completely void, and so is every
+        // cell that its interior meets: the cell at its centroid decides, exactly, even if the
+        // centroid is on a cell's edge.
         let (column, row) = corners.iter().fold((0, 0), |(column, row), corner| {
             (column + usize::from(corner.column()), row + usize::from(corner.row()))
         });

@@ -1,4 +1,4 @@
-//! The mesh that greedy insertion works on: faces in one flat vector, Delaunay by exact integer arithmetic.
+//! The mesh for greedy insertion: faces in one flat vector, Delaunay by exact integer arithmetic.
 
 use crate::TinVertex;
 pub(crate) use crate::surface::NO_TWIN;
@@ -17,7 +17,8 @@ pub(crate) use crate::surface::NO_TWIN;
 pub(crate) struct Face {
     pub(crate) corners: [TinVertex; 3],
     pub(crate) twins: [u32; 3],
-    /// What was found in the face, kept here because it is read where the face is. 0 m until the face is scanned.
+    /// The farthest node of the face, stored here because it is read together with the face. 0 m
+    /// until the face is scanned.
     pub(crate) farthest: Farthest,
 }
 
@@ -25,7 +26,7 @@ pub(crate) struct Face {
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct Farthest {
     pub(crate) far_m: f32,
-    /// Index of the node, row by row.
+    /// The index of the node, row by row.
     pub(crate) node: u32,
 }
 
@@ -38,29 +39,29 @@ impl Face {
 /// The faces on the ground of a tile.
 ///
 /// The mesh begins as the (constrained) Delaunay triangulation of border and boundaries, see
-/// [`fixed_mesh`](crate::fixed_mesh), and [`insert`](Self::insert) keeps it one. Faces of voids are left out, so an edge
-/// that must stay is an edge without a twin.
+/// [`fixed_mesh`](crate::fixed_mesh), and [`insert`](Self::insert) preserves this property. Faces
+/// of voids are omitted, so an edge that must be preserved is an edge without a twin.
 #[derive(Debug, Default)]
 pub(crate) struct HalfEdges {
     faces: Vec<Face>,
     /// Whether no two nodes are more than [`NARROW`] columns or rows apart.
     narrow: bool,
-    /// The faces around the vertex inserted last, counter-clockwise.
+    /// The faces around the last inserted vertex, counter-clockwise.
     star: Vec<u32>,
-    /// The edges around that star, as many.
+    /// The edges around that star, one per face.
     rim: Vec<RimEdge>,
-    /// Edges still to be looked at.
+    /// The edges that are still to be examined.
     ahead: Vec<Edge>,
 }
 
-/// An edge of the rim: the half-edge outside, and the corner where it starts, seen from inside.
+/// An edge of the rim: the half-edge outside, and the corner at its start, seen from inside.
 #[derive(Debug, Clone, Copy)]
 struct RimEdge {
     outside: u32,
     from: TinVertex,
 }
 
-/// An edge that perhaps has to go.
+/// An edge that may have to be removed.
 #[derive(Debug, Clone, Copy)]
 struct Edge {
     outside: u32,
@@ -69,7 +70,7 @@ struct Edge {
     to: Away,
 }
 
-/// A corner as seen from the node that is inserted, and the square of its distance.
+/// A corner relative to the node that is being inserted, and the square of its distance.
 #[derive(Debug, Clone, Copy)]
 struct Away {
     x: i64,
@@ -78,18 +79,19 @@ struct Away {
 }
 
 impl Away {
-    fn of(corner: TinVertex, seen_from: TinVertex) -> Self {
+    fn from_corner(corner: TinVertex, seen_from: TinVertex) -> Self {
         let x = i64::from(corner.column) - i64::from(seen_from.column);
         let y = i64::from(corner.row) - i64::from(seen_from.row);
         Self { x, y, squared: x * x + y * y }
     }
 }
 
-/// Below this distance of columns and rows, 64 bits hold the determinant of [`holds_origin`].
+/// For smaller differences of columns and rows, the determinant of [`holds_origin`] fits in 64
+/// bits.
 const NARROW: usize = 1 << 15;
 
 impl HalfEdges {
-    /// Takes faces with their twins, of a tile that has at most `side` columns and rows.
+    /// Creates a mesh of faces with their twins, for a tile of at most `side` columns and rows.
     pub(crate) fn new(faces: Vec<Face>, side: usize) -> Self {
         let star = (0..faces.len() as u32).collect();
         Self { faces, star, narrow: side <= NARROW, ..Self::default() }
@@ -99,7 +101,7 @@ impl HalfEdges {
         &self.faces
     }
 
-    /// Notes what `scan` finds in each face that the last insertion made.
+    /// Stores the result of `scan` in each face that the last insertion created.
     #[inline]
     pub(crate) fn scan_star(&mut self, scan: impl Fn([TinVertex; 3]) -> Farthest) {
         for &face in &self.star {
@@ -108,22 +110,25 @@ impl HalfEdges {
         }
     }
 
-    /// The faces that the last insertion made, around its vertex and counter-clockwise; before the first, all.
+    /// The faces that the last insertion created, around its vertex and counter-clockwise; before
+    /// the first insertion, all faces.
     pub(crate) fn star(&self) -> &[u32] {
         &self.star
     }
 
-    /// Makes `at` a vertex; the new faces are those around it. `face` holds it, inside or on an edge with a twin.
+    /// Makes `at` a vertex; the new faces are those around it. `face` contains the node, inside or
+    /// on an edge with a twin.
     ///
-    /// What Lawson's flips would end with is built at once: the faces whose circles hold the node make a star-shaped
-    /// hole, found from face to face, and the new faces run from its rim to the node. Each flip would remove one edge of
-    /// that hole, in any order, so both give the same faces. A node on an edge is no case of its own: the
-    /// circle of the face behind that edge holds it, too. Faces of the hole are used again, so a face keeps its number
-    /// as long as it is not changed.
+    /// The final result of Lawson's flips is built at once: the faces whose circles contain the
+    /// node form a star-shaped hole, found from face to face, and the new faces extend from its rim
+    /// to the node. Each flip would remove one edge of that hole, in any order, so both methods
+    /// give the same faces. A node on an edge needs no special case: the circle of the face behind
+    /// that edge contains it, too. Faces of the hole are reused, so a face keeps its number as long
+    /// as it does not change.
     ///
-    /// Sources: Bowyer 1981, *Computing Dirichlet tessellations*; Watson 1981, *Computing the n-dimensional Delaunay
-    /// tessellation*; Lawson 1977, *Software for C¹ surface interpolation*, whose criterion leaves the edge of four
-    /// nodes on one circle where it is.
+    /// Sources: Bowyer 1981, *Computing Dirichlet tessellations*; Watson 1981, *Computing the
+    /// n-dimensional Delaunay tessellation*; Lawson 1977, *Software for C¹ surface interpolation*,
+    /// whose criterion keeps the edge between four nodes on one circle.
     pub(crate) fn insert(&mut self, face: u32, at: TinVertex) {
         self.open_hole(face, at);
         let first_new = self.faces.len() as u32;
@@ -151,13 +156,13 @@ impl HalfEdges {
         }
     }
 
-    /// Finds the faces whose circles hold `at` and the rim around them, counter-clockwise.
+    /// Finds the faces whose circles contain `at`, and the rim around them, counter-clockwise.
     fn open_hole(&mut self, face: u32, at: TinVertex) {
         self.star.clear();
         self.rim.clear();
         self.star.push(face);
         let Face { corners, twins, .. } = self.faces[face as usize];
-        let away = corners.map(|corner| Away::of(corner, at));
+        let away = corners.map(|corner| Away::from_corner(corner, at));
         let edge = |k: usize| Edge {
             outside: twins[k],
             from_corner: corners[k],
@@ -173,7 +178,7 @@ impl HalfEdges {
                 let k = outside as usize % 4;
                 let (after, before) = (AFTER[k], BEFORE[k]);
                 let corner = beyond.corners[before];
-                let apex = Away::of(corner, at);
+                let apex = Away::from_corner(corner, at);
                 if holds_origin(to, from, apex, self.narrow) {
                     self.star.push(outside / 4);
                     self.ahead.push(Edge {
@@ -192,16 +197,17 @@ impl HalfEdges {
     }
 }
 
-/// The place of the next corner, and of the one before it.
+/// The index of the next corner, and of the previous one.
 const AFTER: [usize; 4] = [1, 2, 0, 0];
 const BEFORE: [usize; 4] = [2, 0, 1, 0];
 
-/// Whether the circle through three counter-clockwise corners holds the origin, not only on its edge. Exact.
+/// Whether the circle through three counter-clockwise corners contains the origin in its interior.
+/// Exact.
 ///
-/// The determinant of the rows (x, y, x² + y²) is a sum of three products. Where all four nodes lie in a square of side
-/// L, the square of a distance is at most 2 L², and two corners and the origin span a triangle of at most half the square,
-/// so their cross product is at most L². So every sum along the way is at most 6 L⁴: below 2^63 for L ≤ 2^15, and below
-/// 2^67 for any tile.
+/// The determinant of the rows (x, y, x² + y²) is a sum of three products. If all four nodes are in
+/// a square of side L, the square of a distance is at most 2 L², and two corners and the origin
+/// form a triangle of at most half the square, so their cross product is at most L². So every
+/// intermediate sum is at most 6 L⁴: below 2^63 for L ≤ 2^15, and below 2^67 for any tile.
 #[inline]
 fn holds_origin(a: Away, b: Away, c: Away, narrow: bool) -> bool {
     let cross = |p: Away, q: Away| p.x * q.y - p.y * q.x;

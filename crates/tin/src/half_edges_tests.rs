@@ -1,4 +1,4 @@
-//! The mesh stays a Delaunay triangulation of its ground, whatever is inserted.
+//! The mesh remains a Delaunay triangulation of its ground, whatever is inserted.
 
 use std::collections::BTreeSet;
 
@@ -9,7 +9,7 @@ use spade::{DelaunayTriangulation, Triangulation};
 use super::*;
 use crate::boundary::stretches;
 use crate::fixed_mesh::fixed_mesh;
-use crate::node::Node;
+use crate::node::GridNode;
 use crate::tile_raster::TileRaster;
 
 fn vertex([column, row]: [u16; 2]) -> TinVertex {
@@ -21,7 +21,7 @@ fn turn(p: TinVertex, q: TinVertex, r: TinVertex) -> i64 {
     (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
 }
 
-/// A square of two faces with `last` as its last column and row.
+/// A square of two faces, with `last` as the last column and row.
 fn square(last: u16) -> HalfEdges {
     let [a, b, c, d] = [[0, 0], [last, 0], [last, last], [0, last]].map(vertex);
     let faces = vec![
@@ -31,7 +31,7 @@ fn square(last: u16) -> HalfEdges {
     HalfEdges::new(faces, usize::from(last) + 1)
 }
 
-/// Inserts `at` where it may be inserted: not at a vertex, not off the ground, and not on its boundary.
+/// Inserts `at` if it is allowed: not at a vertex, not off the ground, and not on its boundary.
 fn insert(mesh: &mut HalfEdges, at: TinVertex) -> bool {
     let sides =
         |face: &Face| [0, 1, 2].map(|k| turn(face.corners[k], face.corners[(k + 1) % 3], at));
@@ -50,7 +50,7 @@ fn insert(mesh: &mut HalfEdges, at: TinVertex) -> bool {
     true
 }
 
-/// Everything that a mesh promises, and twice the area it covers.
+/// Checks all invariants of a mesh; returns twice the area that it covers.
 fn check(mesh: &HalfEdges) -> i64 {
     let mut double_area = 0;
     for (index, face) in mesh.faces().iter().enumerate() {
@@ -77,7 +77,8 @@ fn check(mesh: &HalfEdges) -> i64 {
     double_area
 }
 
-/// More than 0 if the circle of a face holds `at`: by coordinates as they are, in the other form of the determinant.
+/// Whether the circle of a face contains `at` (more than 0), by absolute coordinates in another
+/// form of the determinant.
 fn circle(corners: [TinVertex; 3], at: TinVertex) -> i128 {
     let rows = [corners[0], corners[1], corners[2], at].map(|v| {
         let (x, y) = (i128::from(v.column), i128::from(v.row));
@@ -96,7 +97,7 @@ fn circle(corners: [TinVertex; 3], at: TinVertex) -> i128 {
     minor(3) - minor(2) + minor(1) - minor(0)
 }
 
-/// The corners of all triangles, in one order.
+/// Returns the corners of all triangles in a canonical order.
 fn triangles(corners: impl Iterator<Item = [[u16; 2]; 3]>) -> BTreeSet<[[u16; 2]; 3]> {
     corners
         .map(|mut corners| {
@@ -123,8 +124,8 @@ fn node(last: u16) -> impl Strategy<Value = [u16; 2]> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
-    /// Whatever is inserted, in tiles of all sizes: the mesh keeps its promises and covers the square, and where only one
-    /// triangulation is possible it is that of spade.
+    /// Whatever is inserted, in tiles of all sizes: the mesh keeps its invariants and covers the
+    /// square, and if only one triangulation is possible, it equals that of spade.
     #[test]
     fn is_the_delaunay_triangulation(
         (last, nodes) in prop_oneof![Just(6_u16), Just(40), Just(1024), Just(32_767), Just(32_768), Just(65_535)]
@@ -132,13 +133,13 @@ proptest! {
     ) {
         let mut mesh = square(last);
         let corners = [[0, 0], [last, 0], [last, last], [0, last]];
-        let mut oracle = DelaunayTriangulation::<Node>::new();
+        let mut oracle = DelaunayTriangulation::<GridNode>::new();
         for [column, row] in corners {
-            oracle.insert(Node::new(column, row)).unwrap();
+            oracle.insert(GridNode::new(column, row)).unwrap();
         }
         for at in nodes {
             if insert(&mut mesh, vertex(at)) {
-                oracle.insert(Node::new(at[0], at[1])).unwrap();
+                oracle.insert(GridNode::new(at[0], at[1])).unwrap();
                 prop_assert!(mesh.star().iter().all(|&face| mesh.faces()[face as usize].corners[0] == vertex(at)));
             }
         }
@@ -152,7 +153,7 @@ proptest! {
         }
     }
 
-    /// With voids, the boundary stays as it is, no edge crosses it, and the area stays.
+    /// With voids, the boundary does not change, no edge crosses it, and the area does not change.
     #[test]
     fn boundaries_stay(
         gaps in prop::collection::vec((0_usize..6, 0_usize..6), 0..6),
@@ -176,17 +177,18 @@ proptest! {
         prop_assert_eq!(boundary(&mesh), before);
     }
 
-    /// The determinant has the sign of the same one in wide numbers, as far as 64 bits are used and beyond.
+    /// The determinant has the same sign as the one computed in wide integers, for nodes that use
+    /// 64 bits and for others.
     #[test]
     fn the_circle_is_exact(nodes in prop_oneof![Just(NARROW as u16 - 1), Just(300), Just(65_535)]
         .prop_flat_map(|last| {
-            // Ends of the range are common: there numbers are the greatest.
+            // The ends of the range are common: there the numbers are largest.
             let place = prop_oneof![Just(0_u16), Just(last), 0..=last];
             prop::array::uniform4((place.clone(), place))
         }),
     ) {
         let [a, b, c, at] = nodes.map(|(column, row)| vertex([column, row]));
-        let away = [a, b, c].map(|corner| Away::of(corner, at));
+        let away = [a, b, c].map(|corner| Away::from_corner(corner, at));
         let is_narrow = nodes.iter().all(|&(column, row)| usize::from(column.max(row)) < NARROW);
         for narrow in [false, is_narrow] {
             prop_assert_eq!(holds_origin(away[0], away[1], away[2], narrow), circle([a, b, c], at) > 0);
@@ -200,7 +202,7 @@ fn a_node_on_an_edge_splits_both_faces() {
     assert!(insert(&mut mesh, vertex([4, 4])));
     assert_eq!((mesh.faces().len(), mesh.star().len()), (4, 4));
     assert_eq!(check(&mesh), 2 * 8 * 8);
-    // Again on the edges between those, which have four nodes on a circle.
+    // Then nodes on the edges between these, which have four nodes on a circle.
     for at in [[2, 2], [6, 2], [2, 6], [6, 6]] {
         assert!(insert(&mut mesh, vertex(at)));
         assert_eq!(check(&mesh), 2 * 8 * 8);

@@ -1,10 +1,11 @@
-//! Height grid → TIN within an error bound.
+//! Converts a grid of heights to a TIN (triangulated irregular network) within an error bound.
 //!
-//! [`triangulate`] turns the heights of one tile into a [`Tin`]; [`normals`] gives its vertices normals;
-//! [`TriangleBuckets`] and [`measure`] compare it with finer heights, [`heights_m`] gives its own; [`Surface`] places it on the lattice.
+//! [`triangulate`] converts the heights of one tile to a [`Tin`]; [`normals`] computes normals at
+//! its vertices; [`TriangleBuckets`] and [`measure`] compare it with finer heights; [`heights_m`]
+//! computes its own heights; [`Surface`] places it on the lattice.
 //!
-//! This crate never sees a road or a file, and never looks at a neighbouring tile's result: what two tiles
-//! share they both compute from the same nodes.
+//! This crate never reads a road or a file, and never uses the result of a neighbouring tile: what
+//! two tiles share, they both compute from the same nodes.
 
 mod tin;
 mod triangulate;

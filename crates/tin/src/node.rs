@@ -2,11 +2,12 @@
 
 use spade::{HasPosition, Point2};
 
-/// Where a node lies, as `row << 16 | column`: so nodes compare as the vertices of a TIN do.
+/// The position of a node as `row << 16 | column`, so that nodes have the same order as the
+/// vertices of a TIN.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(crate) struct Node(u32);
+pub(crate) struct GridNode(u32);
 
-impl Node {
+impl GridNode {
     pub(crate) fn new(column: u16, row: u16) -> Self {
         Self(u32::from(row) << 16 | u32::from(column))
     }
@@ -20,8 +21,8 @@ impl Node {
     }
 }
 
-/// spade's x is the column, and its y the row, which grows to the south.
-impl HasPosition for Node {
+/// For spade, x is the column and y is the row, which grows to the south.
+impl HasPosition for GridNode {
     type Scalar = f64;
 
     #[inline]

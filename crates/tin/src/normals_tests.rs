@@ -1,11 +1,11 @@
-//! Decoded normals are within a degree of the ground's, and of unit length.
+//! Decoded normals are within a degree of the ground's normals, and have unit length.
 
 use super::*;
 use crate::{TinSpec, triangulate};
 use proptest::prelude::*;
 
 proptest! {
-    /// A decoded normal is of unit length and within a degree of the direction encoded.
+    /// A decoded normal has unit length and is within a degree of the encoded direction.
     #[test]
     fn decodes_what_was_encoded(x in -3.0_f64..3.0, y in -3.0_f64..3.0) {
         let length = (x * x + y * y + 1.0).sqrt();
@@ -18,7 +18,8 @@ proptest! {
 
 #[test]
 fn a_plane_has_one_normal_also_beside_gaps() {
-    // Rises 3 m a cell of 10 m to the east, falls 1 m a cell of 20 m to the south: rises to the north.
+    // The ground rises 3 m per cell of 10 m to the east, and falls 1 m per cell of 20 m to the
+    // south, so it rises to the north.
     let heights = HeightGrid::from_fn(9, 9, |c, r| {
         if (c, r) == (0, 4) || r == 8 { f32::NAN } else { 3.0 * c as f32 - r as f32 }
     });
@@ -33,7 +34,7 @@ fn level_ground_points_up() {
     assert_eq!(decode_normal([0, 0]).map(f32::to_bits), [0.0_f32, 0.0, 1.0].map(f32::to_bits));
 }
 
-/// A level's normals are no finer than its tolerance asks for, and rounded to the nearest step.
+/// A level's normals are no finer than its tolerance requires, and rounded to the nearest step.
 #[test]
 fn steps_follow_the_tolerance() {
     let cell = Cell { east_m: 32.0, north_m: 64.0 };

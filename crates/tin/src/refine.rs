@@ -1,15 +1,17 @@
-//! Greedy insertion: the node farthest from the TIN becomes a vertex, until none is too far.
+//! Greedy insertion: the node farthest from the TIN becomes a vertex, until no node is too far.
 
 use crate::candidate_queue::{Candidate, CandidateQueue};
 use crate::face_scan::FaceScan;
 use crate::half_edges::HalfEdges;
 use crate::tile_raster::TileRaster;
 
-/// Inserts nodes of `tile` into `mesh` until none inside its ground is farther than `max_error_m` from it.
+/// Inserts nodes of `tile` into `mesh` until no node inside its ground is farther than
+/// `max_error_m` from it.
 ///
-/// The mesh holds border and boundaries, which insertion never touches. After an insertion, the changed faces
-/// are those around the new vertex, its star. Only they are scanned again, each once. All are scanned before the first result
-/// is looked at, so that the mesh is borrowed once.
+/// The mesh contains border and boundaries, which insertion never changes. After an insertion, the
+/// changed faces are those around the new vertex, its star. Only these are scanned again, each of
+/// them once. All of them are scanned before the first result is used, so that the mesh is borrowed
+/// once.
 pub(crate) fn refine(
     mesh: &mut HalfEdges,
     tile: &TileRaster<'_>,
@@ -27,7 +29,8 @@ pub(crate) fn refine(
                 candidates.push(Candidate::new(far_m, face));
             }
         }
-        // A face that was made again has another farthest node; or one as far, and then it is as good a candidate.
+        // A face that was created again has another farthest node, or one at the same distance,
+        // which is an equally good candidate.
         let farthest = |candidate: Candidate| mesh.faces()[candidate.face() as usize].farthest;
         let is_fresh = |candidate: Candidate| {
             farthest(candidate).far_m.to_bits() == candidate.far_m().to_bits()

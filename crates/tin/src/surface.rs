@@ -7,25 +7,26 @@ use corniche_geom::{GridFrame, IndexLists, LatticeBounds, LatticePoint, TileId, 
 use crate::Tin;
 use buckets::Buckets;
 
-/// Marks a half-edge without a neighbour in [`Surface::twin`]'s table: it lies on the boundary of the ground.
+/// Marks a half-edge without a neighbour in [`Surface::twin`]'s table: it is on the boundary of the
+/// ground.
 pub const NO_TWIN: u32 = u32::MAX;
 
-/// Where a tile's TIN lies on the lattice and how high its steps are.
+/// The position of a tile's TIN on the lattice, and the height of its steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Placement {
-    /// Lattice point of node column 0, row 0: the north-west corner.
+    /// The lattice point of node column 0, row 0: the north-west corner.
     pub corner: LatticePoint,
-    /// Lattice steps from one node to the next, east and north.
+    /// Number of lattice steps from one node to the next, east and north.
     pub node_steps: [i64; 2],
-    /// Height of one step of `height_q`, metres; a power of two, so heights in f64 are exact.
+    /// The height of one step of `height_q` in metres; a power of two, so heights in f64 are exact.
     pub quantum_m: f64,
 }
 
 impl Placement {
-    /// Where the TIN of tile `id` lies, its heights in steps of `quantum_m`.
+    /// Returns the placement of the TIN of tile `id`, with heights in steps of `quantum_m`.
     ///
     /// # Panics
-    /// When the tile's level is beyond the frame's finest one.
+    /// When the tile's level is beyond the frame's finest level.
     #[must_use]
     pub fn of_tile(frame: &GridFrame, id: TileId, quantum_m: f64) -> Self {
         Self {
@@ -36,9 +37,11 @@ impl Placement {
     }
 }
 
-/// A TIN with positions on the lattice, twins of its half-edges and a grid of buckets to find triangles.
+/// A TIN with positions on the lattice, twins of its half-edges and a grid of buckets to find
+/// triangles.
 ///
-/// Half-edge `3 · triangle + k` runs from corner k of the triangle to corner k + 1, its triangle on its left:
+/// Half-edge `3 · triangle + k` runs from corner k of the triangle to corner k + 1, its triangle on
+/// its left:
 ///
 /// ```text
 ///            corner 2
@@ -59,15 +62,15 @@ pub struct Surface {
     /// Half-edges without a twin, ascending.
     boundary: Vec<u32>,
     triangle_buckets: Buckets,
-    /// Over indices into `boundary`.
+    /// Buckets of indices into `boundary`.
     boundary_buckets: Buckets,
 }
 
 impl Surface {
-    /// Places the TIN of tile `id`, its heights in steps of `quantum_m`.
+    /// Places the TIN of tile `id`, with heights in steps of `quantum_m`.
     ///
     /// # Panics
-    /// When the tile's level is beyond the frame's finest one.
+    /// When the tile's level is beyond the frame's finest level.
     #[must_use]
     pub fn of_tile(tin: &Tin, frame: &GridFrame, id: TileId, quantum_m: f64) -> Self {
         Self::new(tin, Placement::of_tile(frame, id, quantum_m))
@@ -104,7 +107,7 @@ impl Surface {
         };
         surface.twins = vec![NO_TWIN; 3 * surface.triangles.len()];
         for half_edge in 0..surface.twins.len() {
-            // Twins are mutual, so each pair is looked for once.
+            // Twins are mutual, so each pair is searched once.
             if surface.twins[half_edge] == NO_TWIN {
                 let twin = surface.find_twin(half_edge as u32);
                 surface.twins[half_edge] = twin;
@@ -125,26 +128,26 @@ impl Surface {
         surface
     }
 
-    /// Lattice points of the vertices, as indexed by the TIN.
+    /// The lattice points of the vertices, with the indices of the TIN.
     #[must_use]
     pub fn points(&self) -> &[LatticePoint] {
         &self.points
     }
 
-    /// Heights of the vertices.
+    /// The heights of the vertices in metres.
     #[must_use]
     pub fn heights_m(&self) -> &[f64] {
         &self.heights_m
     }
 
-    /// Triangles as in the TIN.
+    /// The triangles of the TIN.
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
 
-    /// The half-edge on the other side of half-edge `3 · triangle + k` (from corner k to corner k + 1);
-    /// [`NO_TWIN`] on the boundary of the ground.
+    /// The half-edge on the other side of half-edge `3 · triangle + k` (from corner k to corner k +
+    /// 1); [`NO_TWIN`] on the boundary of the ground.
     #[must_use]
     #[inline]
     pub fn twin(&self, half_edge: u32) -> u32 {
@@ -160,16 +163,18 @@ impl Surface {
         [corners[k], corners[(k + 1) % 3]]
     }
 
-    /// Half-edges that start at `vertex`, ascending: one for each triangle around it.
+    /// The half-edges that start at `vertex`, ascending: one per triangle around it.
     #[must_use]
     pub fn fan(&self, vertex: u32) -> &[u32] {
-        self.fans.of(vertex as usize)
+        self.fans.list(vertex as usize)
     }
 
-    /// The triangle with the smallest index that holds `point`, borders included; `None` off the ground.
+    /// The triangle with the smallest index that contains `point`, borders included; `None` off the
+    /// ground.
     #[must_use]
     pub fn locate(&self, point: LatticePoint) -> Option<u32> {
-        // A bucket lists its triangles in ascending order, and every triangle around `point` is in it.
+        // A bucket lists its triangles in ascending order, and contains every triangle around
+        // `point`.
         self.triangle_buckets
             .at(point)
             .iter()
@@ -177,7 +182,7 @@ impl Surface {
             .find(|&triangle| self.triangle_holds(triangle, point))
     }
 
-    /// Whether `point` lies in `triangle`, its border included, exactly.
+    /// Whether `point` is in `triangle`, its border included, exactly.
     #[must_use]
     pub fn triangle_holds(&self, triangle: u32, point: LatticePoint) -> bool {
         let [a, b, c] =
@@ -185,24 +190,26 @@ impl Surface {
         cross(a, b, point) >= 0 && cross(b, c, point) >= 0 && cross(c, a, point) >= 0
     }
 
-    /// Height of the plane of `triangle` above a position in (fractional) lattice steps.
+    /// The height of the plane of `triangle` above a position in (fractional) lattice steps.
     ///
-    /// Exact at the triangle's corners. For positions beyond 2^53 steps, where f64 has no whole steps any
-    /// more, use [`Surface::height_at_point_m`].
+    /// Exact at the triangle's corners. For positions beyond 2^53 steps, where f64 no longer
+    /// represents whole steps, use [`Surface::height_at_point_m`].
     #[must_use]
     pub fn height_in_triangle_m(&self, triangle: u32, at: [f64; 2]) -> f64 {
         let a = self.points[self.triangles[triangle as usize][0] as usize];
         self.height_from_corner_m(triangle, [at[0] - a.u as f64, at[1] - a.v as f64])
     }
 
-    /// Height of the plane of `triangle` above a lattice point; exact at the triangle's corners.
+    /// The height of the plane of `triangle` above a lattice point; exact at the triangle's
+    /// corners.
     #[must_use]
     pub fn height_at_point_m(&self, triangle: u32, point: LatticePoint) -> f64 {
         let a = self.points[self.triangles[triangle as usize][0] as usize];
         self.height_from_corner_m(triangle, [(point.u - a.u) as f64, (point.v - a.v) as f64])
     }
 
-    /// How many metres the plane of `triangle` rises per lattice step east and per lattice step north.
+    /// The rise in metres of the plane of `triangle` per lattice step east and per lattice step
+    /// north.
     #[must_use]
     pub fn gradient_m(&self, triangle: u32) -> [f64; 2] {
         let corners = self.triangles[triangle as usize].map(|vertex| vertex as usize);
@@ -214,8 +221,8 @@ impl Surface {
         [(b_m * c[1] - c_m * b[1]) / doubled_area, (b[0] * c_m - c[0] * b_m) / doubled_area]
     }
 
-    /// All triangles whose bounding boxes meet `bounds`, in ascending order, without repetition, put
-    /// into `out` in place of what it held.
+    /// Finds all triangles whose bounding boxes meet `bounds`, in ascending order, without
+    /// repetition; replaces the content of `out`.
     pub fn triangles_near(&self, bounds: LatticeBounds, out: &mut Vec<u32>) {
         self.triangle_buckets.near(bounds, out);
         out.retain(|&triangle| {
@@ -223,14 +230,16 @@ impl Surface {
         });
     }
 
-    /// Visits all triangles whose bounding boxes meet `bounds`, and perhaps others, perhaps more than once, in a
-    /// fixed order: several times faster than [`Surface::triangles_near`], for callers that accept this.
+    /// Visits all triangles whose bounding boxes meet `bounds`, and perhaps others, perhaps more
+    /// than once, in a fixed order: several times faster than [`Surface::triangles_near`], for
+    /// callers that accept this.
     pub fn visit_triangles_near(&self, bounds: LatticeBounds, visit: impl FnMut(u32)) {
         self.triangle_buckets.visit(bounds, visit);
     }
 
-    /// All triangles of which some may lie within `around` steps of a segment along each axis, and perhaps others, in ascending order, without
-    /// repetition, put into `out` in place of what it held. `around` is 1 at least, for rounding.
+    /// Finds all triangles that may be within `around` steps of a segment along each axis, and
+    /// perhaps others, in ascending order, without repetition; replaces the content of `out`.
+    /// `around` must be at least 1, for rounding.
     pub fn triangles_along(&self, ends: [[f64; 2]; 2], around: f64, out: &mut Vec<u32>) {
         out.clear();
         self.triangle_buckets.visit_along(ends, around, |triangle| out.push(triangle));
@@ -238,8 +247,8 @@ impl Surface {
         out.dedup();
     }
 
-    /// All half-edges without a twin whose bounding boxes meet `bounds`, in ascending order, without
-    /// repetition, put into `out` in place of what it held.
+    /// Finds all half-edges without a twin whose bounding boxes meet `bounds`, in ascending order,
+    /// without repetition; replaces the content of `out`.
     pub fn boundary_near(&self, bounds: LatticeBounds, out: &mut Vec<u32>) {
         self.boundary_buckets.near(bounds, out);
         for index in out.iter_mut() {
@@ -248,10 +257,10 @@ impl Surface {
         out.retain(|&half_edge| self.bounds_of(&self.ends(half_edge)).intersects(&bounds));
     }
 
-    /// Height at an offset, in lattice steps, from corner 0 of `triangle`.
+    /// The height at an offset, in lattice steps, from corner 0 of `triangle`.
     ///
-    /// Offsets from a corner keep the products small wherever the tile lies; at a corner the weights are
-    /// exactly 0 and 1.
+    /// Offsets from a corner keep the products small wherever the tile is; at a corner the weights
+    /// are exactly 0 and 1.
     fn height_from_corner_m(&self, triangle: u32, [du, dv]: [f64; 2]) -> f64 {
         let corners = self.triangles[triangle as usize];
         let [a, b, c] = corners.map(|vertex| self.points[vertex as usize]);
@@ -269,11 +278,11 @@ impl Surface {
         vertices.iter().map(at).fold(first, |bounds, point| bounds.union(&point))
     }
 
-    /// Looks for the twin around that end of the edge which has fewer triangles: linear in all for a
-    /// planar TIN, and far from quadratic even for one that is not.
+    /// Searches for the twin around the end of the edge that has fewer triangles: linear in total
+    /// for a planar TIN, and far from quadratic even for others.
     ///
-    /// An edge that more than two triangles share, or two on the same side, has no twins: such a TIN is damaged, but
-    /// every method must still end on it.
+    /// An edge of more than two triangles, or of two on the same side, has no twins: such a TIN is
+    /// damaged, but every method must still end on it.
     fn find_twin(&self, half_edge: u32) -> u32 {
         let [a, b] = self.ends(half_edge);
         let (hub, rim) = if self.fan(a).len() <= self.fan(b).len() { (a, b) } else { (b, a) };

@@ -1,11 +1,12 @@
-//! The search on a surface finds what trying every triangle finds.
+//! The search on a surface agrees with trying every triangle.
 
 use super::*;
 use crate::TinVertex;
 use proptest::prelude::*;
 
 impl Surface {
-    /// Asserts what every other method relies on: twins are mutual and run opposite ways, and fans list half-edges that start at their vertex.
+    /// Asserts the invariants on which every other method relies: twins are mutual and run in
+    /// opposite directions, and fans list half-edges that start at their vertex.
     fn check_invariants(&self) {
         for half_edge in 0..self.twins.len() as u32 {
             let twin = self.twin(half_edge);
@@ -23,8 +24,8 @@ impl Surface {
     }
 }
 
-/// A grid of `columns` × `rows` nodes; bit n of `diagonals` turns the diagonal of cell n, bit n of `holes`
-/// takes the cell away.
+/// A grid of `columns` × `rows` nodes; bit n of `diagonals` flips the diagonal of cell n, bit n of
+/// `holes` removes the cell.
 fn grid(columns: u16, rows: u16, diagonals: &[bool], holes: &[bool], heights: &[i32]) -> Tin {
     let mut vertices = Vec::new();
     for row in 0..rows {
@@ -68,13 +69,14 @@ prop_compose! {
         node_steps in 1_i64..40,
     ) -> (Surface, LatticeBounds, i64) {
         let surface = Surface::new(&grid(columns, rows, &diagonals, &holes, &heights), placement(node_steps));
-        let bounds = LatticeBounds::of(surface.points()).unwrap();
+        let bounds = LatticeBounds::around(surface.points()).unwrap();
         (surface, bounds, node_steps)
     }
 }
 
 proptest! {
-    /// The located triangle is the first of all that hold the point, found by trying every one.
+    /// The located triangle is the first of all that contain the point, found by trying every
+    /// triangle.
     #[test]
     fn locate_finds_the_first_triangle((surface, bounds, steps) in any_surface(), picks in prop::collection::vec((0_u32..1000, 0_u32..1000), 40)) {
         surface.check_invariants();
@@ -87,7 +89,8 @@ proptest! {
         }
     }
 
-    /// Searching by rectangle finds what trying every triangle and half-edge finds, in the same order.
+    /// Searching by rectangle gives the same result as trying every triangle and half-edge, in the
+    /// same order.
     #[test]
     fn near_finds_all_that_meet((surface, bounds, _) in any_surface(), a in (0_i64..300, 0_i64..300), size in (0_i64..200, 0_i64..200)) {
         let min = LatticePoint::new(bounds.min.u - 20 + a.0, bounds.min.v - 20 + a.1);
@@ -105,7 +108,7 @@ proptest! {
         prop_assert_eq!(found, expected);
     }
 
-    /// Searching along a segment finds every triangle with a corner, or a middle, near it.
+    /// Searching along a segment finds every triangle with a corner, or a middle, near the segment.
     #[test]
     fn along_finds_all_that_lie_near((surface, bounds, _) in any_surface(), ends in prop::array::uniform4(-100_i64..400), around in 1_i64..60) {
         let at = |k: usize| [(bounds.min.u + ends[k]) as f64, (bounds.min.v + ends[k + 1]) as f64];
@@ -138,7 +141,7 @@ proptest! {
             if twin != NO_TWIN {
                 let at = [p.u as f64 + part * (q.u - p.u) as f64, p.v as f64 + part * (q.v - p.v) as f64];
                 let gap_m = surface.height_in_triangle_m(half_edge / 3, at) - surface.height_in_triangle_m(twin / 3, at);
-                // Half an ulp of a coordinate of 10^9 steps, on a slope of 8000 quanta a step.
+                // Half an ulp of a coordinate of 10^9 steps, on a slope of 8000 quanta per step.
                 prop_assert!(gap_m.abs() < 1e-3, "{} m", gap_m);
             }
         }
@@ -147,7 +150,7 @@ proptest! {
 
 #[test]
 fn a_plane_is_reproduced_at_tile_scale() {
-    // 257 nodes of 2^15 steps: 30 m cells; heights rise by 3 and 5 quanta a node.
+    // 257 nodes at a distance of 2^15 steps: 30 m cells; heights rise by 3 and 5 quanta per node.
     let rows = 0..257_u16;
     let heights: Vec<i32> =
         rows.flat_map(|row| (0..257).map(move |c| 3 * c - 5 * i32::from(row))).collect();

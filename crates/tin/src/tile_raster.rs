@@ -30,51 +30,52 @@ impl<'a> TileRaster<'a> {
             let north = &raw[row * width..(row + 1) * width];
             let south = &raw[(row + 1) * width..(row + 2) * width];
             ground.extend(north.windows(2).zip(south.windows(2)).map(|(n, s)| {
-                // A sum is NaN exactly if one of its terms is: other heights are finite, and their sum is within the
-                // range of f64.
+                // A sum is NaN exactly if one of its terms is NaN: other heights are finite, and
+                // their sum is within the range of f64.
                 !(f64::from(n[0]) + f64::from(n[1]) + f64::from(s[0]) + f64::from(s[1])).is_nan()
             }));
         }
         Self { heights, quantum_m, ground }
     }
 
-    /// Nodes of the tile from west to east.
+    /// Number of nodes of the tile from west to east.
     pub(crate) fn columns(&self) -> usize {
         self.heights.columns() - 2
     }
 
-    /// Nodes of the tile from north to south.
+    /// Number of nodes of the tile from north to south.
     pub(crate) fn rows(&self) -> usize {
         self.heights.rows() - 2
     }
 
-    /// Heights of one row of the tile's nodes, NaN in gaps.
+    /// The heights of one row of the tile's nodes, NaN in gaps.
     pub(crate) fn row_m(&self, row: usize) -> &[f32] {
         let start = (row + 1) * self.heights.columns() + 1;
         &self.heights.raw()[start..start + self.columns()]
     }
 
-    /// Height of a node, metres; NaN in a gap.
+    /// The height of a node in metres; NaN in a gap.
     pub(crate) fn height_m(&self, [column, row]: [usize; 2]) -> f64 {
         f64::from(self.row_m(row)[column])
     }
 
-    /// Height of a node in whole steps of the quantum. The caller has checked that heights fit.
+    /// The height of a node in whole steps of the quantum. The caller has checked that heights fit.
     pub(crate) fn height_q(&self, node: [usize; 2]) -> i32 {
         let steps = self.height_m(node) / self.quantum_m;
-        // As `f64::round`, halves away from zero, but without a call: what is cut off is exact.
+        // Rounds like `f64::round`, halves away from zero, but without a function call: the cast is
+        // exact.
         let whole = steps as i32;
         let rest = steps - f64::from(whole);
         whole + i32::from(rest >= 0.5) - i32::from(rest <= -0.5)
     }
 
-    /// A node as a vertex.
+    /// Returns a node as a vertex.
     pub(crate) fn vertex(&self, [column, row]: [u16; 2]) -> TinVertex {
         TinVertex { row, column, height_q: self.height_q([usize::from(column), usize::from(row)]) }
     }
 
-    /// Whether the cell south-east of node (`column` − 1, `row` − 1) has ground: `[0, 0]` is the halo cell
-    /// at the north-west corner, `[1, 1]` the tile's first.
+    /// Whether the cell south-east of node (`column` − 1, `row` − 1) has ground: `[0, 0]` is the
+    /// halo cell at the north-west corner, `[1, 1]` the tile's first.
     pub(crate) fn halo_cell(&self, [column, row]: [usize; 2]) -> bool {
         self.ground[row * (self.columns() + 1) + column]
     }
@@ -84,7 +85,7 @@ impl<'a> TileRaster<'a> {
         self.halo_cell([column + 1, row + 1])
     }
 
-    /// How many of the tile's own cells have ground.
+    /// The number of the tile's own cells that have ground.
     pub(crate) fn count_ground_cells(&self) -> usize {
         let width = self.columns() + 1;
         (1..self.rows())
@@ -95,8 +96,9 @@ impl<'a> TileRaster<'a> {
             .sum()
     }
 
-    /// Heights of the nodes that may be inserted: those inside the ground. NaN on the tile's border, on
-    /// boundaries of voids and off the ground. Row by row, `columns` × `rows`.
+    /// The heights of the nodes that may be inserted, which are those in the interior of the
+    /// ground. NaN on the tile's border, on boundaries of voids and off the ground. Row by row,
+    /// `columns` × `rows`.
     pub(crate) fn inner_heights_m(&self) -> Vec<f32> {
         let (columns, rows) = (self.columns(), self.rows());
         let width = columns + 1;

@@ -15,26 +15,29 @@ pub struct TinVertex {
 
 /// A triangulated irregular network over the nodes of one tile.
 ///
-/// Vertices are sorted by row, then column, and are distinct nodes. Triangles are counter-clockwise seen from above,
-/// each starts with its smallest vertex index, and they are sorted: so equal ground gives equal bytes. Topology
-/// (`triangles`) and position (`vertices`) are separate; a void has no triangles.
+/// Vertices are sorted by row, then column, and are distinct nodes. Triangles are counter-clockwise
+/// seen from above, each of them starts with its smallest vertex index, and they are sorted: so
+/// equal ground results in equal bytes. Topology (`triangles`) and position (`vertices`) are
+/// separate; a void has no triangles.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Tin {
     vertices: Vec<TinVertex>,
     triangles: Vec<[u32; 3]>,
 }
 
-/// Why vertices and triangles do not make a [`Tin`].
+/// Why vertices and triangles cannot form a [`Tin`].
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum TinError {
-    /// A triangle names a vertex that does not exist.
-    #[error("triangle {triangle} names vertex {vertex} of {vertices}")]
+    /// A triangle refers to a vertex that does not exist.
+    #[error(
+        "triangle {triangle} refers to vertex {vertex}, but there are only {vertices} vertices"
+    )]
     NoSuchVertex {
         /// Index of the triangle.
         triangle: usize,
-        /// The vertex it names.
+        /// The index of the vertex.
         vertex: u32,
-        /// How many vertices there are.
+        /// The number of vertices.
         vertices: usize,
     },
     /// A triangle has no area or is clockwise.
@@ -46,20 +49,18 @@ pub enum TinError {
     /// Vertices or triangles are not in canonical order, or one occurs twice.
     #[error("{what} are not in canonical order")]
     Order {
-        /// Which of the two.
+        /// Vertices or triangles.
         what: &'static str,
     },
 }
 
 impl Tin {
-    /// Puts vertices and triangles, in any order and any rotation, into canonical order.
+    /// Sorts vertices and triangles, given in any order and any rotation, into canonical order.
     ///
     /// # Errors
-    /// When a triangle names a missing vertex or is not counter-clockwise, or a node or triangle occurs twice.
-    #[expect(
-        clippy::needless_pass_by_value,
-        reason = "whoever made them has no other use for them"
-    )]
+    /// When a triangle refers to a missing vertex or is not counter-clockwise, or a node or
+    /// triangle occurs twice.
+    #[expect(clippy::needless_pass_by_value, reason = "callers have no other use for the vectors")]
     pub fn new(vertices: Vec<TinVertex>, triangles: &[[u32; 3]]) -> Result<Self, TinError> {
         // Rows are many and short, so vertices are sorted in two steps.
         let rows = vertices.iter().map(|vertex| usize::from(vertex.row) + 1).max().unwrap_or(0);
@@ -69,7 +70,7 @@ impl Tin {
         let mut order: Vec<u32> = Vec::with_capacity(vertices.len());
         for row in 0..rows {
             let from = order.len();
-            order.extend_from_slice(by_row.of(row));
+            order.extend_from_slice(by_row.list(row));
             order[from..].sort_unstable_by_key(|&vertex| vertices[vertex as usize]);
         }
         let mut new_index = vec![0_u32; vertices.len()];
@@ -92,10 +93,11 @@ impl Tin {
         Self::with_vertices_in_order(in_order, renamed)
     }
 
-    /// Puts triangles, in any order and any rotation, into canonical order. That of the vertices is kept.
+    /// Sorts triangles, given in any order and any rotation, into canonical order. The order of the
+    /// vertices does not change.
     ///
     /// # Errors
-    /// As [`from_canonical`](Self::from_canonical).
+    /// Same as [`from_canonical`](Self::from_canonical).
     pub(crate) fn with_vertices_in_order(
         vertices: Vec<TinVertex>,
         mut triangles: Vec<[u32; 3]>,
@@ -114,23 +116,25 @@ impl Tin {
             let (vertex, vertices) = (triangles[triangle][0], vertices.len());
             return Err(TinError::NoSuchVertex { triangle, vertex, vertices });
         }
-        // Triangles around a vertex are few, so they are sorted in two steps.
+        // There are few triangles around a vertex, so triangles are sorted in two steps.
         let by_first = IndexLists::new(vertices.len(), triangles.len(), |triangle| {
             std::iter::once(triangles[triangle][0] as usize)
         });
         let mut sorted: Vec<[u32; 3]> = Vec::with_capacity(triangles.len());
         for vertex in 0..vertices.len() {
             let from = sorted.len();
-            sorted.extend(by_first.of(vertex).iter().map(|&triangle| triangles[triangle as usize]));
+            sorted
+                .extend(by_first.list(vertex).iter().map(|&triangle| triangles[triangle as usize]));
             sorted[from..].sort_unstable();
         }
         Self::from_canonical(vertices, sorted)
     }
 
-    /// Takes vertices and triangles that are in canonical order already, as a package stores them.
+    /// Creates a TIN from vertices and triangles that are already in canonical order, as a package
+    /// stores them.
     ///
     /// # Errors
-    /// When they are not, or a triangle names a missing vertex or is not counter-clockwise.
+    /// When they are not, or a triangle refers to a missing vertex or is not counter-clockwise.
     pub fn from_canonical(
         vertices: Vec<TinVertex>,
         triangles: Vec<[u32; 3]>,

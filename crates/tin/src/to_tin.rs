@@ -1,17 +1,17 @@
-//! The faces of a mesh as a TIN.
+//! Converts the faces of a mesh to a TIN.
 
 use crate::half_edges::HalfEdges;
 use crate::tile_raster::TileRaster;
 use crate::{Tin, TinError, TinVertex};
 
-/// Less than any height that is accepted.
+/// A value below any accepted height.
 const NO_VERTEX: i32 = i32::MIN;
 
-/// All faces of `mesh`, in canonical order.
+/// Returns all faces of `mesh` as a TIN in canonical order.
 pub(crate) fn to_tin(mesh: &HalfEdges, tile: &TileRaster<'_>) -> Result<Tin, TinError> {
     let columns = tile.columns();
     let index = |corner: TinVertex| usize::from(corner.row) * columns + usize::from(corner.column);
-    // On a raster vertices are found and put in order at once: it holds their heights, then their indices.
+    // A raster finds and sorts vertices at once: it first holds their heights, then their indices.
     let mut raster = vec![NO_VERTEX; columns * tile.rows()];
     for corner in mesh.faces().iter().flat_map(|face| face.corners) {
         raster[index(corner)] = corner.height_q;
@@ -34,7 +34,7 @@ pub(crate) fn to_tin(mesh: &HalfEdges, tile: &TileRaster<'_>) -> Result<Tin, Tin
         .faces()
         .iter()
         .map(|face| {
-            // Rows count to the south: what is counter-clockwise to the mesh is clockwise seen from above.
+            // Rows count to the south: counter-clockwise in the mesh is clockwise seen from above.
             let [a, c, b] = face.corners;
             [a, b, c].map(|corner| raster[index(corner)] as u32)
         })

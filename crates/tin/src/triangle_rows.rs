@@ -1,9 +1,10 @@
-//! The nodes in a triangle, found row by row in whole numbers.
+//! The nodes in a triangle, found row by row in integer arithmetic.
 
-/// Calls `each(row, first_column, last_column)` for every row of nodes that the triangle `corners`
-/// (`[column, row]`) holds, edges included, within `rows` and from north to south.
+/// Calls `each(row, first_column, last_column)` for every row of nodes in the triangle `corners`
+/// (`[column, row]`), edges included, within `rows` and from north to south.
 ///
-/// Columns are exact: a node on an edge belongs to both triangles beside it. Corners must lie within ±2^30.
+/// Columns are exact: a node on an edge belongs to both adjacent triangles. Corners must be within
+/// ±2^30.
 #[inline]
 pub(crate) fn for_each_row(
     corners: [[i64; 2]; 3],
@@ -43,24 +44,25 @@ pub(crate) fn for_each_row(
     }
 }
 
-/// An edge that is not level, as columns over rows.
+/// An edge that is not level: columns as a function of rows.
 struct Edge {
     from: [i64; 2],
     columns: i64,
     rows: i64,
-    /// Whether the numbers below find columns: see [`Edge::floor`].
+    /// Whether the fields below are used for finding columns: see [`Edge::floor`].
     is_short: bool,
-    /// In parts of 2^-32: the column of the first corner, columns a row, and half a step.
+    /// In units of 2^-32: the column of the first corner, the columns per row, and half a step.
     start: i64,
     slope: i64,
     half_step: i64,
 }
 
-/// An edge over fewer rows than this, and fewer columns than `SHORT_COLUMNS`, is followed in fixed point.
+/// An edge over fewer rows than this, and fewer columns than `SHORT_COLUMNS`, is followed in
+/// fixed-point arithmetic.
 const SHORT_ROWS: i64 = 1 << 14;
 const SHORT_COLUMNS: i64 = 1 << 20;
 
-/// The bits behind the point.
+/// The number of fractional bits.
 const FRACTION_BITS: u32 = 32;
 const ONE: i64 = 1 << FRACTION_BITS;
 
@@ -68,7 +70,7 @@ impl Edge {
     #[inline]
     fn new(from: [i64; 2], to: [i64; 2]) -> Self {
         let (columns, rows) = (to[0] - from[0], to[1] - from[1]);
-        // Without a division of integers, which is slow.
+        // This avoids a division of integers, which is slow.
         let inverse = ONE as f64 / rows as f64;
         Self {
             from,
@@ -83,9 +85,11 @@ impl Edge {
 
     /// The last column at or west of the edge.
     ///
-    /// Columns of an edge are whole steps of 1 / `rows`. Half a step more keeps a column away from whole numbers by as much:
-    /// by 2^-15 or more, as a short edge has fewer than 2^14 rows. Its slope is below 2^52 parts, so two roundings of floats
-    /// and the cut make it wrong by 2 parts at most, and the column by less than 2^15 parts of 2^-32 and those of half a step.
+    /// Columns of an edge are multiples of 1 / `rows`. Half a step more keeps a column away from
+    /// whole numbers by this distance, which is at least 2^-15, because a short edge has fewer than
+    /// 2^14 rows. Its slope is below 2^52 units, so two roundings of floats and the truncation
+    /// cause an error of at most 2 units in the slope, and less than 2^15 units of 2^-32 in the
+    /// column, plus those of half a step.
     #[inline]
     fn floor(&self, row: i64) -> i64 {
         let down = row - self.from[1];
@@ -96,7 +100,8 @@ impl Edge {
         }
     }
 
-    /// The first column at or east of the edge: the last at or west of what lies a column less a step farther east.
+    /// The first column at or east of the edge: the last column at or west of a position that is a
+    /// column minus a step farther east.
     #[inline]
     fn ceil(&self, row: i64) -> i64 {
         let down = row - self.from[1];

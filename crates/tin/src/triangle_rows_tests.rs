@@ -1,4 +1,4 @@
-//! The rows of a triangle hold exactly the nodes in it.
+//! The rows of a triangle contain exactly its nodes.
 
 use super::*;
 use proptest::prelude::*;
@@ -8,7 +8,7 @@ fn corner() -> impl Strategy<Value = [i64; 2]> {
 }
 
 proptest! {
-    /// The rows hold exactly the nodes whose three edge functions do not differ in sign.
+    /// The rows contain exactly the nodes whose three edge functions do not differ in sign.
     #[test]
     fn holds_the_nodes_inside(
         shift in prop_oneof![Just(0_i64), Just(25), Just(60_000), Just(-60_000), Just(1 << 24), Just(1 << 29), Just(-(1 << 29))],
@@ -37,7 +37,8 @@ proptest! {
         prop_assert_eq!(found, wanted);
     }
 
-    /// Fixed point and division find the same columns, also of edges as long as fixed point may take.
+    /// Fixed-point arithmetic and division find the same columns, even for the longest edges in
+    /// fixed point.
     #[test]
     fn fixed_point_is_exact(
         from in (-(1_i64 << 29)..1 << 29, -(1_i64 << 29)..1 << 29),

@@ -1,10 +1,12 @@
-//! Whole numbers of variable length: seven bits a byte, least first, the top bit set on all bytes but the last.
+//! Integers of variable length: seven bits per byte, lowest bits first, the top bit set on all
+//! bytes but the last.
 //!
-//! Extracts, the directories of packages, tiles and what a build keeps have them. A signed number has its sign in the lowest bit (zigzag).
+//! They are used in extracts, directories of packages, tiles and the intermediate results of a
+//! build. A signed number has its sign in the lowest bit (zigzag).
 //!
 //! Source: Google, *Protocol Buffers Documentation* (2024), "Encoding".
 //!
-//! This crate knows no file and no message.
+//! This crate knows no files and no messages.
 
 mod records;
 
@@ -15,19 +17,19 @@ pub use records::{
 /// Why bytes do not begin with a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BadVarint {
-    /// They end before it does.
+    /// The bytes end within the number.
     Cut,
-    /// It does not fit 64 bits.
+    /// The number does not fit in 64 bits.
     TooLarge,
 }
 
-/// Takes a number off the front of some bytes.
+/// Takes a number from the front of some bytes.
 ///
 /// # Errors
-/// See [`BadVarint`]; the bytes stay as they are.
+/// See [`BadVarint`]; the bytes do not change.
 #[inline]
 pub fn varint(rest: &mut &[u8]) -> Result<u64, BadVarint> {
-    // Most numbers are small, and this much is worth a place in every loop.
+    // Most numbers are small, so this much code is worth inlining in every loop.
     match **rest {
         [first, ref after @ ..] if first < 0x80 => {
             *rest = after;
@@ -44,7 +46,8 @@ pub fn varint(rest: &mut &[u8]) -> Result<u64, BadVarint> {
 /// A number of three bytes or more.
 fn long_varint(rest: &mut &[u8]) -> Result<u64, BadVarint> {
     const TOP_BITS: u64 = 0x8080_8080_8080_8080;
-    // Up to eight bytes are read at once: how many there are differs from number to number, and a loop over them is guessed wrongly.
+    // Up to eight bytes are read at once: their number differs from number to number, so a
+    // processor would mispredict a loop over them.
     if let Some(&eight) = rest.first_chunk::<8>() {
         let word = u64::from_le_bytes(eight);
         let ends = !word & TOP_BITS;
@@ -59,7 +62,7 @@ fn long_varint(rest: &mut &[u8]) -> Result<u64, BadVarint> {
     }
     let mut number = 0;
     for (place, &byte) in rest.iter().take(10).enumerate() {
-        // The tenth byte has room for one bit.
+        // The tenth byte has space for one bit.
         if place == 9 && byte > 1 {
             return Err(BadVarint::TooLarge);
         }
@@ -82,14 +85,14 @@ pub fn push_varint(bytes: &mut Vec<u8>, mut number: u64) {
     bytes.push(number as u8);
 }
 
-/// The signed number behind 0, 1, 2, 3 …: 0, −1, 1, −2 …
+/// Decodes the zigzag code 0, 1, 2, 3 … of a signed number: 0, −1, 1, −2 …
 #[must_use]
 #[inline]
 pub const fn zigzag(number: u64) -> i64 {
     (number >> 1).cast_signed() ^ -(number & 1).cast_signed()
 }
 
-/// The number that stands for a signed one: the inverse of [`zigzag`].
+/// Returns the zigzag code of a signed number: the inverse of [`zigzag`].
 #[must_use]
 #[inline]
 pub const fn to_zigzag(number: i64) -> u64 {

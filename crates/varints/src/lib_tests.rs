@@ -1,11 +1,11 @@
-//! Varints and zigzag numbers come back, and what is cut or too large is refused.
+//! Varints and zigzag numbers round-trip, and truncated or too large ones are rejected.
 
 use proptest::prelude::*;
 
 use super::*;
 
 proptest! {
-    /// Numbers of all lengths come back; a cut takes the last of them away and nothing else.
+    /// Numbers of all lengths round-trip; truncation only removes the last of them.
     #[test]
     fn numbers_come_back(values in prop::collection::vec((any::<i64>(), 0..64_u32), 1..40)) {
         let values: Vec<i64> = values.into_iter().map(|(value, shift)| value >> shift).collect();
@@ -32,7 +32,7 @@ fn signs_come_back_to_the_very_ends() {
 #[test]
 fn what_does_not_fit_is_refused() {
     let read = |bytes: &[u8]| varint(&mut &*bytes);
-    // The example of the documentation.
+    // The example in the documentation.
     assert_eq!(read(b"\x96\x01"), Ok(150));
     let nine = [0xff; 9];
     assert_eq!(read(&[&nine[..], &[1]].concat()), Ok(u64::MAX));

@@ -1,11 +1,11 @@
-//! Numbers and texts come back, and cut bytes give nothing.
+//! Numbers and texts round-trip, and truncated bytes result in `None`.
 
 use proptest::prelude::*;
 
 use super::*;
 
 proptest! {
-    /// Numbers and texts come back, and a cut makes the last of them nothing.
+    /// Numbers and texts round-trip, and truncation turns the last of them into `None`.
     #[test]
     fn numbers_and_texts_come_back(unsigned in any::<u64>(), signed in any::<i64>(), text in ".{0,20}") {
         let mut bytes = Vec::new();

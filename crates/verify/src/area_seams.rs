@@ -1,7 +1,8 @@
-//! What of the line between two tiles an area covers on both sides of it.
+//! Compares what an area covers of the border between two tiles on both sides of the border.
 //!
-//! Where an area goes on beyond the line, both tiles cover the same of it. Where its outline runs along the line, the area is on one side alone,
-//! and only the tile on that side covers it:
+//! Where an area continues across the border, both tiles cover the same part of it. Where the
+//! outline of the area runs along the border, the area is on one side only, and only the tile on
+//! that side covers the border:
 //!
 //! ```text
 //!    tile in the west │ tile in the east
@@ -15,9 +16,10 @@
 //!                     the outline crosses the line, anywhere
 //! ```
 //!
-//! On coarse levels outlines often run there, because points of their lattice lie on the lines. Where a tile lacks a part of an area, its neighbour
-//! covers the line alone, too. The ends tell which it is: an outline that runs along the line has corners there, on the lattice of the level,
-//! and where it crosses the line that is so by chance only.
+//! On coarse levels outlines often run along borders, because points of their lattice lie there. If
+//! a tile lacks a part of an area, only its neighbour covers the border, too. The ends of the
+//! stretch show the difference: an outline that runs along the border has corners there, on the
+//! lattice of the level; an outline that crosses the border meets a lattice point only by chance.
 
 use std::collections::BTreeMap;
 
@@ -26,10 +28,10 @@ use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, TileId};
 use corniche_spec::points_step::points_step;
 use corniche_tileset::AreaRecord;
 
-/// A piece of a line: the coordinates of its ends along it, the smaller one first.
-pub(crate) type Stretch = [i64; 2];
+/// A stretch of a border: the coordinates of its ends along the border, the smaller one first.
+pub(crate) type SeamStretch = [i64; 2];
 
-/// On which side of a tile its neighbour is.
+/// The side of a tile on which its neighbour is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Beside {
     /// The border to the next tile in the east.
@@ -39,7 +41,7 @@ pub enum Beside {
 }
 
 impl Beside {
-    /// The tile beyond the border.
+    /// The tile on the other side of the border.
     #[must_use]
     pub fn neighbour(self, tile: TileId) -> Option<TileId> {
         match self {
@@ -49,22 +51,22 @@ impl Beside {
     }
 }
 
-/// The line between a tile and its neighbour.
+/// The border between a tile and its neighbour.
 #[derive(Debug, Clone, Copy)]
-pub struct Seam {
+pub struct TileSeam {
     beside: Beside,
-    /// The coordinate that all of its points have.
+    /// The coordinate that all points of the border share.
     at: i64,
-    /// The line from end to end.
-    whole: Stretch,
+    /// The whole border, from end to end.
+    whole: SeamStretch,
     /// The spacing of the corners of outlines on this level.
     step: i64,
-    /// Between which coordinates along the line there are areas, if bounds were asked for.
-    clip: Option<Stretch>,
+    /// The range along the border that can have areas, if the build had bounds.
+    clip: Option<SeamStretch>,
 }
 
-impl Seam {
-    /// The two sides of a border.
+impl TileSeam {
+    /// The border between a tile and its neighbour on the given side.
     #[must_use]
     pub fn new(
         frame: &GridFrame,
@@ -85,10 +87,10 @@ impl Seam {
         Self { beside, at, whole: along(bounds), step, clip: clip.map(along) }
     }
 
-    /// What each object covers of the line: stretches that do not touch, in order.
+    /// The stretches of the border that each object covers: sorted, and without common points.
     #[must_use]
-    pub fn covered(&self, areas: &[AreaRecord]) -> BTreeMap<AreaObject, Vec<Stretch>> {
-        let mut covered: BTreeMap<AreaObject, Vec<Stretch>> = BTreeMap::new();
+    pub fn covered(&self, areas: &[AreaRecord]) -> BTreeMap<AreaObject, Vec<SeamStretch>> {
+        let mut covered: BTreeMap<AreaObject, Vec<SeamStretch>> = BTreeMap::new();
         for area in areas {
             for ring in area.rings() {
                 let next = ring.iter().cycle().skip(1);
@@ -112,7 +114,7 @@ impl Seam {
         covered
     }
 
-    /// Where along the line a point lies; `None` beside it.
+    /// The coordinate along the border of a point; `None` if the point is not on the border.
     fn along(&self, point: LatticePoint) -> Option<i64> {
         match self.beside {
             Beside::East => (point.u == self.at).then_some(point.v),
@@ -120,12 +122,13 @@ impl Seam {
         }
     }
 
-    /// The stretches that one tile alone covers although no outline can run along them.
+    /// The stretches that only one tile covers although no outline can run along them.
     ///
-    /// One that ends where the line does is not asked for a corner there: the outline may run on, along the next line. A whole line without any
-    /// corner is always told, because it is what a tile leaves that lies inside an area and lacks it.
+    /// An end of a stretch at the end of the border needs no corner of an outline, because the
+    /// outline may continue along the next border. A whole border without any corner is always
+    /// reported: a tile leaves exactly this if it lies inside an area and lacks the area.
     #[must_use]
-    pub fn broken(&self, covered: [&[Stretch]; 2]) -> Vec<Stretch> {
+    pub fn broken(&self, covered: [&[SeamStretch]; 2]) -> Vec<SeamStretch> {
         let [one, other] = covered;
         let mut alone = without(one, other);
         alone.extend(without(other, one));
@@ -133,7 +136,7 @@ impl Seam {
         alone
     }
 
-    fn can_be_outline(&self, stretch: Stretch) -> bool {
+    fn can_be_outline(&self, stretch: SeamStretch) -> bool {
         let is_corner = |place: i64| {
             place % self.step == 0 || self.clip.is_some_and(|clip| clip.contains(&place))
         };
@@ -144,8 +147,9 @@ impl Seam {
     }
 }
 
-/// What is left of stretches without others. Both are in order, and those of each do not touch.
-fn without(stretches: &[Stretch], mut others: &[Stretch]) -> Vec<Stretch> {
+/// The parts of `stretches` outside of `others`. Both are sorted, and stretches of one list do not
+/// touch.
+fn without(stretches: &[SeamStretch], mut others: &[SeamStretch]) -> Vec<SeamStretch> {
     let mut left = Vec::new();
     for &[mut from, to] in stretches {
         let past = others.iter().take_while(|[_, end]| *end <= from).count();

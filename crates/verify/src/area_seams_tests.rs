@@ -1,4 +1,4 @@
-//! The check of area seams finds an area that a tile lacks, and no outline along a border.
+//! The check of area seams finds an area that a tile lacks, and reports no outline along a border.
 
 use corniche_areas::AreaClass;
 use corniche_geom::NodeIndex;
@@ -6,7 +6,7 @@ use corniche_tileset::AreaRings;
 
 use super::*;
 
-/// Three levels of tiles around a corner of all of them, cells of 10 m.
+/// Three levels of tiles around a common corner, with cells of 10 m.
 fn frame() -> GridFrame {
     GridFrame::new([0.0, 0.0], 10.0, NodeIndex { i: -512, j: 512 }, 2).unwrap()
 }
@@ -16,9 +16,9 @@ fn tile() -> TileId {
     TileId::new(2, 1, 1).unwrap()
 }
 
-/// On which side of which line.
-fn seams() -> [Seam; 2] {
-    [Beside::East, Beside::South].map(|beside| Seam::new(&frame(), tile(), beside, None))
+/// The seams of the tile in the east and in the south.
+fn seams() -> [TileSeam; 2] {
+    [Beside::East, Beside::South].map(|beside| TileSeam::new(&frame(), tile(), beside, None))
 }
 
 fn record(object: AreaObject, rings: &[&[[i64; 2]]]) -> AreaRecord {
@@ -30,7 +30,7 @@ fn record(object: AreaObject, rings: &[&[[i64; 2]]]) -> AreaRecord {
 #[test]
 fn what_an_area_covers_of_a_line() {
     let object = AreaObject::Way(1);
-    // Two parts that touch on the line, one beside it, and a corner on it.
+    // Two parts that touch on the line, one next to the line, and a corner on the line.
     let areas = [record(
         object,
         &[
@@ -61,7 +61,8 @@ fn stretches_without_others() {
     }
 }
 
-/// As in the drawing of the module: the first tile covers the line alone from a corner of the outline to another one.
+/// Like in the drawing of the module: only the first tile covers the line from one corner of the
+/// outline to another.
 #[test]
 fn an_outline_that_runs_along_the_line_is_not_broken() {
     for seam in seams() {
@@ -99,18 +100,18 @@ fn an_area_that_a_tile_lacks_is_broken() {
     }
 }
 
-/// A line that has no points of the lattice of the level has no outline along it.
+/// A line without points of the level's lattice has no outline along it.
 #[test]
 fn no_outline_runs_along_a_line_beside_the_lattice() {
     for seam in seams() {
         let corners = [seam.whole[0] + seam.step, seam.whole[0] + 2 * seam.step];
         assert_eq!(seam.broken([&[corners], &[]]), [[0; 2]; 0]);
-        let beside = Seam { at: seam.at + 1, ..seam };
+        let beside = TileSeam { at: seam.at + 1, ..seam };
         assert_eq!(beside.broken([&[corners], &[]]), [corners]);
     }
 }
 
-/// Outlines are cut at the bounds that were asked for, which are nodes of the finest level.
+/// Outlines are cut at the bounds of the build, which are nodes of the finest level.
 #[test]
 fn outlines_end_at_the_edge_of_the_bounds() {
     for (seam, beside) in seams().into_iter().zip([Beside::East, Beside::South]) {
@@ -118,7 +119,7 @@ fn outlines_end_at_the_edge_of_the_bounds() {
         assert_eq!(seam.broken([&[[corner, edge]], &[]]), [[corner, edge]]);
         let max = LatticePoint::new(edge, edge);
         let clip = LatticeBounds { min: LatticePoint::new(i64::MIN, i64::MIN), max };
-        let seam = Seam::new(&frame(), tile(), beside, Some(clip));
+        let seam = TileSeam::new(&frame(), tile(), beside, Some(clip));
         assert_eq!(seam.broken([&[[corner, edge]], &[]]), [[0; 2]; 0]);
     }
 }

@@ -1,32 +1,30 @@
-//! The areas of tiles: decoded, and compared with those of neighbours.
+//! Decodes the areas of tiles, and compares them with those of neighbouring tiles.
 
 use std::collections::BTreeSet;
 
 use corniche_areas::AreaObject;
-use corniche_geom::{LatticeBounds, LatticePoint, TileId, cross};
+use corniche_geom::{LatticePoint, TileId, cross};
 use corniche_pieces::layers::tile_section::{SectionOfTile, SectionSums};
-use corniche_spec::Observer;
 use corniche_tileset::{
     AreaCounts, AreaLevelRecord, AreaRecord, FilePackage, decode_areas, payload_sizes,
 };
+use corniche_work::Stage;
 
 use super::{
-    area_seams::{Beside, Seam},
+    area_seams::{Beside, TileSeam},
     checks::{CheckId, Findings},
-    each_tile::{OfTile, check_totals, look_at_layer},
+    derived_records::clip_of,
+    each_tile::{OfTile, VerifyRun, check_totals, look_at_layer},
     error::VerifyError,
 };
 
-pub(crate) fn verify(
-    package: &FilePackage,
-    threads: usize,
-    findings: &mut Findings,
-    observer: &dyn Observer,
-) -> Result<(), VerifyError> {
+pub(crate) fn verify(run: &VerifyRun<'_>, findings: &mut Findings) -> Result<(), VerifyError> {
+    let package = run.package;
     let manifest = package.manifest();
     let is_counted = manifest.areas.is_some();
     findings.look(CheckId::AreaSums, is_counted == manifest.settings.areas.is_some(), || {
-        "areas are counted without a table of areas, or there is a table and they are not counted".to_owned()
+        "areas are counted but the settings name no table of areas, or the other way round"
+            .to_owned()
     });
     let levels = manifest.areas.iter().flat_map(|areas| &areas.levels);
     let level =
@@ -34,30 +32,26 @@ pub(crate) fn verify(
             (level, SectionSums { tiles, parts, points, bytes })
         };
     let recorded = (CheckId::AreaSums, levels.map(level).collect());
-    let look_at = |id| look_at(package, id);
-    look_at_layer((package, threads), look_at, recorded, findings, observer)?;
+    look_at_layer(run, Stage::VerifyAreas, |id| look_at(package, id), recorded, findings)?;
     if let Some(areas) = &manifest.areas {
         let AreaCounts { objects, kept, lost } = &areas.counts;
         let kept = kept.iter().map(|kept| kept.areas);
-        check_totals(CheckId::AreaSums, "objects", (*objects, kept, lost), findings);
+        check_totals(CheckId::AreaSums, "objects", *objects, kept, lost, findings);
     }
     Ok(())
 }
 
 fn look_at(package: &FilePackage, id: TileId) -> OfTile {
     let mut found = OfTile::default();
-    // Tiles that cannot be read are told elsewhere.
+    // Unreadable tiles are reported by the check of tiles.
     let Some(payload) = package.tile(id).ok().flatten() else { return found };
     let manifest = package.manifest();
     let frame = &manifest.frame;
-    let clip = manifest.clip.as_ref().map(|clip| {
-        let [min, max] = clip.nodes.map(|node| frame.lattice_of_node(node));
-        LatticeBounds { min, max }
-    });
+    let clip = clip_of(manifest);
     let Ok(areas) = decode_areas(&payload, id, frame) else { return found };
     for area in &areas {
         found.findings.look(CheckId::AreaRings, rings_are_right(area), || {
-            format!("a ring of {} on tile {id}", area.object)
+            format!("a ring of {} in tile {id}", area.object)
         });
     }
     let points = areas.iter().flat_map(AreaRecord::rings);
@@ -72,7 +66,7 @@ fn look_at(package: &FilePackage, id: TileId) -> OfTile {
         else {
             continue;
         };
-        let seam = Seam::new(frame, id, beside, clip);
+        let seam = TileSeam::new(frame, id, beside, clip);
         let [own, other] = [&areas, &other].map(|areas| seam.covered(areas));
         let all: BTreeSet<&AreaObject> = own.keys().chain(other.keys()).collect();
         for object in all {
@@ -80,14 +74,15 @@ fn look_at(package: &FilePackage, id: TileId) -> OfTile {
             let broken = seam.broken(covered);
             found.findings.look(CheckId::AreaSeams, broken.is_empty(), || {
                 let pieces = broken.len();
-                format!("{object} between the tiles {id} and {neighbour}: one of them alone covers {pieces} pieces of the line")
+                format!("{object} on the border of tiles {id} and {neighbour}: {pieces} stretches are covered by one tile only")
             });
         }
     }
     found
 }
 
-/// Outer rings run counter-clockwise, others clockwise, and no point of a ring comes twice.
+/// Whether outer rings run counter-clockwise, others clockwise, and no point occurs twice in a
+/// ring.
 fn rings_are_right(area: &AreaRecord) -> bool {
     area.polygons.iter().all(|part| {
         part.rings.iter().enumerate().all(|(number, ring)| {

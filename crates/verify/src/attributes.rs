@@ -1,4 +1,4 @@
-//! Each way has one class and one set of attributes, the same in every tile.
+//! Checks that each way has one class and one set of attributes, the same in every tile.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -11,20 +11,21 @@ use corniche_tileset::TilePayload;
 
 use super::checks::{CheckId, Findings, or_none};
 
-/// What one tile says of a way: 24 bytes, so that all ways of a country can be held.
+/// The class and the attributes of a way in one tile: 24 bytes, so that all ways of a country fit
+/// into memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct WayFacts {
+pub(crate) struct StoredWay {
     class: u8,
-    /// Hash of the attributes.
+    /// A hash of the attributes.
     attributes: u64,
 }
 
-/// Checks a tile by itself, and gives what it says about each way.
+/// Checks a tile by itself, and returns the class and the attributes of each way.
 pub(crate) fn of_tile(
     payload: &TilePayload,
     least_class: Option<u8>,
     findings: &mut Findings,
-) -> Vec<(i64, WayFacts)> {
+) -> Vec<(i64, StoredWay)> {
     let id = payload.id;
     let geo = payload.roads_geo.iter().map(|road| (road.way_id, road.class.number()));
     let sv = payload.roads_sv.iter().map(|road| (road.way_id, road.class.number()));
@@ -32,7 +33,7 @@ pub(crate) fn of_tile(
     for &(way_id, class) in &ways {
         findings.look(CheckId::Classes, least_class.is_some_and(|least| class <= least), || {
             format!(
-                "tile {id} has way {way_id} of class {class}, its level shows up to {}",
+                "tile {id} has way {way_id} of class {class}, but its level shows classes up to {}",
                 or_none(least_class)
             )
         });
@@ -54,7 +55,7 @@ pub(crate) fn of_tile(
     ways.into_iter()
         .map(|(way_id, class)| {
             let attributes = attributes.get(&way_id).copied().unwrap_or_default();
-            (way_id, WayFacts { class, attributes })
+            (way_id, StoredWay { class, attributes })
         })
         .collect()
 }
@@ -66,15 +67,20 @@ fn hash(attributes: &RoadAttributes) -> u64 {
     hasher.finish()
 }
 
-/// What the first tile with a way says about this way.
+/// The class and the attributes of each way in the first tile that has the way.
 #[derive(Default)]
-pub(crate) struct Ways {
-    by_id: BTreeMap<i64, (TileId, WayFacts)>,
+pub(crate) struct FirstWays {
+    by_id: BTreeMap<i64, (TileId, StoredWay)>,
 }
 
-impl Ways {
-    /// Compares what a tile says about its ways with what earlier tiles say.
-    pub(crate) fn add(&mut self, id: TileId, facts: Vec<(i64, WayFacts)>, findings: &mut Findings) {
+impl FirstWays {
+    /// Compares the ways of a tile with those of earlier tiles.
+    pub(crate) fn add(
+        &mut self,
+        id: TileId,
+        facts: Vec<(i64, StoredWay)>,
+        findings: &mut Findings,
+    ) {
         for (way_id, found) in facts {
             let &mut (first, said) = self.by_id.entry(way_id).or_insert((id, found));
             findings.look(CheckId::Classes, said.class == found.class, || {
@@ -84,7 +90,7 @@ impl Ways {
                 )
             });
             findings.look(CheckId::Attributes, said.attributes == found.attributes, || {
-                format!("way {way_id} has other attributes in tile {id} than in tile {first}")
+                format!("the attributes of way {way_id} differ between tiles {id} and {first}")
             });
         }
     }

@@ -1,6 +1,7 @@
-//! All checks: for each its short id, the promise that it checks, and the inputs that it needs.
+//! The list of all checks: the id of each check, the promise that it checks, and the inputs that it
+//! needs.
 
-/// The input that a check needs beside the package.
+/// An input that a check needs in addition to the package.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Needs {
     /// The package alone.
@@ -18,7 +19,7 @@ impl Needs {
     #[must_use]
     pub fn text(self) -> &'static str {
         match self {
-            Self::Package => "the package",
+            Self::Package => "package",
             Self::Dem => "`--dem`",
             Self::Photo => "`--photo`",
             Self::Osm => "`--osm`",
@@ -28,7 +29,7 @@ impl Needs {
 
 macro_rules! checks {
     ($($variant:ident $id:literal $needs:ident $promise:literal)*) => {
-        /// A check. Reports list checks in this order.
+        /// The id of a check. Reports list checks in this order.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum CheckId {
             $(#[doc = $promise] $variant,)*
@@ -38,19 +39,19 @@ macro_rules! checks {
             /// All checks.
             pub const ALL: &'static [Self] = &[$(Self::$variant),*];
 
-            /// Its name: short, and the same in every version.
+            /// The stable name of the check: short, and the same in every version.
             #[must_use]
             pub fn id(self) -> &'static str {
                 match self { $(Self::$variant => $id),* }
             }
 
-            /// What the check makes sure of.
+            /// The promise that the check verifies.
             #[must_use]
             pub fn promise(self) -> &'static str {
                 match self { $(Self::$variant => $promise),* }
             }
 
-            /// The input that it needs.
+            /// The input that the check needs.
             #[must_use]
             pub fn needs(self) -> Needs {
                 match self { $(Self::$variant => Needs::$needs),* }
@@ -60,125 +61,125 @@ macro_rules! checks {
 }
 
 checks! {
-    Whole "tiles.whole" Package "every tile's sections are whole and match their checksums"
-    Header "package.header" Package "what the file says for PMTiles tools follows from manifest and tiles"
-    Order "roads.order" Package "the roads of a tile are sorted by class, way and part, and parts are counted from 0"
-    OnTin "P1" Package "every edge of a GEO road lies on one triangle of its tile"
-    Seams "P3" Package "neighbours of one level share bit-identical border vertices"
-    ReliefThere "relief.there" Package "the tiles with ground of the levels that the settings name, and no others, have a relief"
-    ReliefSeams "relief.seams" Package "the reliefs of neighbours of one level have the same slopes at the nodes that both have"
-    Nested "P2.nested" Package "a parent's error and height range are never below its children's"
-    Levels "P2.levels" Package "at nodes that both cover, a child's TIN and its parent's TIN differ by no more than the sum of their errors"
+    Whole "tiles.whole" Package "every tile's sections can be read and match their checksums"
+    Header "package.header" Package "the PMTiles header and metadata match the manifest and the tiles"
+    Order "roads.order" Package "each tile's roads are sorted by class, way and part, and the parts are numbered from 0"
+    OnTin "P1" Package "every edge of a GEO road lies on one triangle of its tile, so no road floats or is buried"
+    Seams "P3" Package "neighbouring tiles of a level have bit-identical vertices on their border, so the ground has no cracks"
+    ReliefThere "relief.there" Package "a tile has a relief (heights for shading) exactly if it has ground and the settings request one on its level"
+    ReliefSeams "relief.seams" Package "the reliefs of neighbouring tiles of a level have the same slopes on their border, so shading has no seams"
+    Nested "P2.nested" Package "a parent tile's stored error is never smaller than its children's, and its height range contains theirs"
+    Levels "P2.levels" Package "at nodes that both cover, the TINs of a tile and its parent differ by no more than the sum of their errors"
     Vertices "heights.vertices" Package "TIN vertices lie within their tile's height range"
-    RootHeights "heights.root" Package "the lowest and the highest height of the package are those of the root tile"
-    Methods "sv.line" Package "within a tile, the GEO line and the SV line of a way coincide wherever there is ground"
-    SvRange "sv.range" Package "the height range of an SV segment is that of the ground within the margin around it, rounded outwards"
-    Shown "roads.levels" Package "a road is on every level that shows its class, within the simplification tolerance"
-    Classes "roads.classes" Package "a way has one class, and a level has no road of a class that it does not show"
-    Attributes "roads.attributes" Package "a way has one set of attributes, and exactly the ways of a tile have them there"
-    Length "P6.length" Package "GEO roads of the finest level are as long as the manifest says"
-    Structures "P6.structures" Package "the GEO roads of the finest level on the ground, those of bridges and those of tunnels are each as long as the manifest says, together as long as all"
-    RoadSums "P6.roads" Package "the roads read are the roads kept plus the roads lost, by reason"
-    SampleSums "P6.samples" Package "the nodes are those with data, those that were filled and those that are void, together"
-    LevelSums "levels.sums" Package "tiles, triangles, vertices, bytes and errors of each level are those of its tiles"
-    Growth "growth.sums" Package "the rows of the growth table are sums over the tiles"
-    SvTails "sv.tails" Package "the manifest lists the tiles that end with most SV roads, with their bytes there"
-    LevelRecords "levels.derived" Package "cells, tolerances, margins and classes of the levels follow from grid and settings"
-    PhotoWhole "photo.whole" Package "every photo can be decoded and has the size that level and settings give it"
-    PhotoSeams "photo.seams" Package "neighbours of one level agree, within the loss of their coding, on the texels that they share"
-    PhotoLevels "photo.levels" Package "a photo of a coarse level is, within the loss of its coding, that of the tiles beneath it, averaged"
-    PhotoSums "photo.sums" Package "photos and their bytes on each level are those of the tiles"
-    AreaRings "areas.rings" Package "the outer rings of areas run counter-clockwise, those around holes clockwise, and no point of a ring comes twice"
-    AreaSeams "areas.seams" Package "what an area covers of a line between two tiles is the same in both, but where its outline can run along the line"
-    AreaSums "areas.sums" Package "areas, points and bytes on each level are those of the tiles, and objects are kept or lost"
-    BoundaryPlaces "boundaries.places" Package "each segment of a boundary comes into its tile or the margin around it"
-    BoundaryOrder "boundaries.order" Package "boundaries of a tile are in order of class and way"
-    BoundarySums "boundaries.sums" Package "parts, points and bytes of boundaries on each level are those of the tiles, and ways are kept or lost"
-    SpanEnds "spans.ends" Package "a run of a bridge or a tunnel ends on the ground of its way, or where the way's line ends"
-    SpanSide "spans.side" Package "a bridge is nowhere below the ground of its level, and a tunnel nowhere above it, along its centre-line"
-    SpanOrder "spans.order" Package "on the finest level bridges that cross bridges, and tunnels that cross tunnels, are in the order of their layers, but as often as the manifest tells that they are not (`order_reversed`)"
-    SpanSeams "spans.seams" Package "where a bridge or a tunnel goes over a border, the tiles on both sides have the same height there"
-    SpanSums "spans.sums" Package "runs, points and bytes of bridges and tunnels on each level are those of the tiles"
-    SettingsHash "settings.hash" Package "the recorded hash is that of the recorded settings"
-    Grid "manifest.grid" Package "the grid is the smallest that covers the rectangle of the data, and the corners of this rectangle are nodes"
-    Crs "manifest.crs" Package "the CRS's code or name is that of its WKT, and its way to WGS84 is the one that is recorded"
-    Scale "manifest.scale" Package "the scale is one that the CRS has over the data"
-    Bounds "manifest.bounds" Package "the rectangle in the working CRS and the rectangle in degrees are around the same place"
-    Coordinates "manifest.coordinates" Package "the table of longitudes and latitudes is what the CRS says, to a centimetre"
-    Texts "manifest.texts" Package "fixed texts are as the format has them, kinds of inputs are known, and extracts are credited"
-    DemInputs "dem.inputs" Dem "the elevation files are as long as the manifest says"
-    DemPlan "dem.plan" Dem "the elevation files and the settings give the grid, CRS and heights that the manifest tells of"
-    DemCounts "dem.counts" Dem "nodes with data, filled and void, and the lowest and highest, are those of the elevation files, and the settings allow them"
-    Bound "P2.bound" Dem "no stored error is below the true one"
-    Tight "P2.tight" Dem "stored errors are at most twice the true ones, for 95 % of tiles"
-    Recorded "P2.recorded" Dem "the recorded distributions of stored over true errors hold"
-    Finest "P2.finest" Dem "the finest level stays within --max-error"
-    Samples "P2.samples" Dem "the error at the DEM's own samples is what the levels say"
-    SampleBound "P2.bounded" Dem "where nodes are samples, samples are within --max-error of the finest level"
-    Stray "P2.stray" Dem "nodes without ground lie within one cell of a void or an edge"
-    Uncovered "P2.uncovered" Dem "uncovered nodes are as many as tiles and levels say"
-    Ranges "heights.ranges" Dem "the height range of a tile reaches from the lowest to the highest node beneath the tile"
-    Nodes "heights.nodes" Dem "the height of a TIN vertex is the DEM's at its node, rounded to the height quantum"
-    Normals "heights.normals" Dem "the normal of a TIN vertex is that of the heights' gradient on its level"
-    Relief "heights.relief" Dem "no height of a relief is farther from its level's than the relief says, gaps and water are the same, and slopes on the border are those of the heights, to half a 256th"
-    PhotoInputs "photo.inputs" Photo "the photos are as long as the manifest says"
-    PhotoCover "photo.cover" Photo "the texels that have a photo are those that the photos cover"
-    PhotoPlace "photo.place" Photo "no photo of a tile fits the photos better when it is moved by one texel"
-    PhotoColours "photo.colours" Photo "colours are off the photos' by no more than coding them again loses, over a tile and over each of its blocks of 16 × 16 texels"
-    OsmInputs "osm.inputs" Osm "the extracts are as long as the manifest says, and the FRC table is the one it names"
-    OsmGeo "osm.geo" Osm "the GEO roads are those of the extract, clipped and laid on the ground again; they are compared to the lattice step"
-    OsmSv "osm.sv" Osm "the SV roads are those of the extract, clipped again; they are compared to the lattice step"
-    OsmAttributes "osm.attributes" Osm "classes and attributes of ways are those of the extract"
-    OsmCounts "osm.counts" Osm "counts and lengths of roads are those of the extract"
-    OsmGrowth "osm.growth" Osm "source and simplified points of the growth table are those of the extract"
-    OsmAreas "osm.areas" Osm "the areas of each tile are those of the extract, split again; their points are compared to the lattice step"
-    OsmAreaCounts "osm.areas.counts" Osm "areas by class, their square kilometres and the objects lost are those of the extract"
-    OsmBoundaries "osm.boundaries" Osm "the boundaries of each tile are those of the extract, split again"
-    OsmBoundaryCounts "osm.boundaries.counts" Osm "ways that are boundaries by class, their lengths and the ways lost are those of the extract"
-    OsmSpans "osm.spans" Osm "the runs of bridges and tunnels of each tile are those of the extract, solved again on the ground of the tiles"
-    OsmSpanCounts "osm.spans.counts" Osm "bridges, tunnels, crossings and what is told of them are those of the extract"
-    AreaPolygon "areas.polygon" Osm "areas of a package that was cut with a polygon end at it"
-    BoundaryPolygon "boundaries.polygon" Osm "boundaries of a package that was cut with a polygon end at it"
+    RootHeights "heights.root" Package "the height range recorded for the package is that of the root tile"
+    Methods "sv.line" Package "within a tile, the GEO and SV roads of a way follow the same line wherever there is ground"
+    SvRange "sv.range" Package "an SV segment's height range is that of the ground within the margin around it, rounded outwards, so the road has no gaps"
+    Shown "roads.levels" Package "a road is on every level that shows its class, and its lines on two levels agree within the simplification tolerance"
+    Classes "roads.classes" Package "a way has the same class in all tiles, and no level has roads of a class that it does not show"
+    Attributes "roads.attributes" Package "a way has the same attributes in all tiles, and a tile stores attributes for exactly its own ways"
+    Length "P6.length" Package "the GEO roads of the finest level have the total length that the manifest records"
+    Structures "P6.structures" Package "on the finest level, GEO roads on the ground, bridges and tunnels have the recorded lengths, which add up to that of all roads"
+    RoadSums "P6.roads" Package "the roads kept and the roads lost, by reason, add up to the roads read, in number and length"
+    SampleSums "P6.samples" Package "nodes with data, filled nodes and void nodes add up to all nodes of the grid"
+    LevelSums "levels.sums" Package "the tiles, triangles, vertices, bytes and errors recorded for each level match its tiles"
+    Growth "growth.sums" Package "the growth table (what clipping to triangles adds to roads) matches the tiles"
+    SvTails "sv.tails" Package "the manifest correctly lists the tiles that end with the largest SV sections, which readers of GEO roads can skip"
+    LevelRecords "levels.derived" Package "the cells, tolerances, margins and classes of the levels follow from the grid and the settings"
+    PhotoWhole "photo.whole" Package "every photo can be decoded and has the size that its level and the settings require"
+    PhotoSeams "photo.seams" Package "the photos of neighbouring tiles of a level agree where they overlap, within the loss of compression"
+    PhotoLevels "photo.levels" Package "the photo of a coarse tile is the average of the photos beneath it, within the loss of compression"
+    PhotoSums "photo.sums" Package "the numbers and bytes of photos recorded for each level match the tiles"
+    AreaRings "areas.rings" Package "outer rings of areas run counter-clockwise, rings around holes run clockwise, and no ring has a point twice"
+    AreaSeams "areas.seams" Package "an area covers the same stretches of a tile border on both sides, except where its outline can run along the border"
+    AreaSums "areas.sums" Package "the areas, points and bytes recorded for each level match the tiles, and each object is counted as kept or lost"
+    BoundaryPlaces "boundaries.places" Package "each segment of a boundary reaches into its tile or the margin around it"
+    BoundaryOrder "boundaries.order" Package "each tile's boundaries are sorted by class and way"
+    BoundarySums "boundaries.sums" Package "the parts, points and bytes of boundaries recorded for each level match the tiles, and each way is counted as kept or lost"
+    SpanEnds "spans.ends" Package "a bridge or tunnel ends on the ground of its way, or where the way's line ends, so roads have no steps there"
+    SpanSide "spans.side" Package "along its centre line, a bridge is nowhere below the ground of its level, and a tunnel nowhere above it"
+    SpanOrder "spans.order" Package "the manifest counts all crossings of two bridges or two tunnels on the finest level whose heights contradict their OSM layer tags"
+    SpanSeams "spans.seams" Package "where a bridge or tunnel crosses a tile border, both tiles store the same height"
+    SpanSums "spans.sums" Package "the stretches, points and bytes of bridges and tunnels recorded for each level match the tiles"
+    SettingsHash "settings.hash" Package "the recorded settings match their recorded hash"
+    Grid "manifest.grid" Package "the grid is the smallest that covers the data's rectangle, and the corners of this rectangle are nodes"
+    Crs "manifest.crs" Package "the code or name of the CRS matches its WKT, and the recorded coordinate operation leads from the CRS to WGS84"
+    Scale "manifest.scale" Package "the recorded scales (working metres divided by true metres), on which road widths depend, occur within the data's rectangle"
+    Bounds "manifest.bounds" Package "the data's rectangles in the working CRS and in degrees enclose the same region"
+    Coordinates "manifest.coordinates" Package "the table that converts positions to longitude and latitude agrees with the CRS to a centimetre"
+    Texts "manifest.texts" Package "fixed texts are those of the format, the kinds of inputs are known, and the attribution of extracts is present"
+    DemInputs "dem.inputs" Dem "the elevation files have the sizes that the manifest records"
+    DemPlan "dem.plan" Dem "the elevation files and the settings give the grid, CRS, bounds, datum operations and treatment of heights that the manifest records"
+    DemCounts "dem.counts" Dem "the recorded numbers of nodes with data, filled and void, and the height range match the elevation files, and the settings allow these heights"
+    Bound "P2.bound" Dem "no tile's stored error is smaller than its true one, the largest vertical distance of its TIN from the finest grid"
+    Tight "P2.tight" Dem "in 95 % of the tiles, the stored error is at most twice the true one"
+    Recorded "P2.recorded" Dem "the recorded distributions of stored errors divided by true errors are correct"
+    Finest "P2.finest" Dem "the finest level stays within --max-error of the heights"
+    Samples "P2.samples" Dem "the errors recorded for each level at the DEM's own samples are correct"
+    SampleBound "P2.bounded" Dem "the finest level stays within --max-error of the DEM's samples, if these are the nodes of the grid"
+    Stray "P2.stray" Dem "uncovered nodes (with a height, but without a triangle) lie within one cell of a void or of the edge of the data"
+    Uncovered "P2.uncovered" Dem "the numbers of uncovered nodes recorded for tiles and levels are correct"
+    Ranges "heights.ranges" Dem "the height range of a tile is that of the nodes beneath it"
+    Nodes "heights.nodes" Dem "a TIN vertex has the DEM's height at its node, rounded to the step in which heights are stored"
+    Normals "heights.normals" Dem "the normal of a TIN vertex follows from the slope of its level's heights"
+    Relief "heights.relief" Dem "a relief is as close to its level's heights as it states, with the same gaps and water, and the same slopes on the border to within 1/512"
+    PhotoInputs "photo.inputs" Photo "the photo files have the sizes that the manifest records"
+    PhotoCover "photo.cover" Photo "tiles have coloured texels exactly where the photo files cover them"
+    PhotoPlace "photo.place" Photo "no tile's photo matches the photo files better when shifted by one texel"
+    PhotoColours "photo.colours" Photo "colours differ from the photo files by no more than the loss of compressing them again, over a tile and over each of its blocks of 16 × 16 texels"
+    OsmInputs "osm.inputs" Osm "the extracts have the sizes that the manifest records, and the FRC table (road classes) is the one that it names"
+    OsmGeo "osm.geo" Osm "clipping and draping the extract again gives the same GEO roads, to within the lattice step (at most 1 mm)"
+    OsmSv "osm.sv" Osm "clipping the extract again gives the same SV roads, to within the lattice step"
+    OsmAttributes "osm.attributes" Osm "the classes and attributes of ways are those of the extract"
+    OsmCounts "osm.counts" Osm "the counts and lengths of roads are those of the extract"
+    OsmGrowth "osm.growth" Osm "the growth table's numbers of source and simplified points are those of the extract"
+    OsmAreas "osm.areas" Osm "splitting the extract's areas at tile borders again gives the same areas, to within the lattice step"
+    OsmAreaCounts "osm.areas.counts" Osm "the numbers of areas by class, their square kilometres and the lost objects are those of the extract"
+    OsmBoundaries "osm.boundaries" Osm "splitting the extract's boundaries at tile borders again gives the same lines"
+    OsmBoundaryCounts "osm.boundaries.counts" Osm "the numbers of boundary ways by class, their lengths and the lost ways are those of the extract"
+    OsmSpans "osm.spans" Osm "computing the extract's bridges and tunnels again above the tiles' ground gives the same stretches and heights"
+    OsmSpanCounts "osm.spans.counts" Osm "the counts of bridges, tunnels, crossings and reported problems are those of the extract"
+    AreaPolygon "areas.polygon" Osm "if the package was clipped to a polygon, no area reaches beyond it"
+    BoundaryPolygon "boundaries.polygon" Osm "if the package was clipped to a polygon, no boundary reaches beyond it"
 }
 
-/// One check, how often it was made, and where it failed.
+/// The result of one check: how many cases it checked, and how many of them failed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Check {
-    /// Which check.
+    /// The check.
     pub id: CheckId,
-    /// How many things were looked at.
+    /// The number of checked cases.
     pub checked: u64,
-    /// How many of them break it.
+    /// The number of cases that break the promise.
     pub broken: u64,
-    /// The first few of those, in words.
+    /// Descriptions of the first few broken cases.
     pub examples: Vec<String>,
 }
 
-/// Examples kept of each broken promise.
+/// The number of examples kept for each broken promise.
 const EXAMPLES: usize = 5;
 
 impl Check {
-    /// A check of which nothing was seen.
+    /// A check without any case yet.
     #[must_use]
     pub fn new(id: CheckId) -> Self {
         Self { id, checked: 0, broken: 0, examples: Vec::new() }
     }
 
-    /// Whether nothing breaks it.
+    /// Whether no case is broken.
     #[must_use]
     pub fn holds(&self) -> bool {
         self.broken == 0
     }
 
-    /// Whether nothing breaks it. `None` if it needs the elevation files or the extract and was not made: another check on
-    /// which it depends is broken, or the package has nothing of this kind.
+    /// Whether no case is broken. `None` if a check that needs an input has no case: another check,
+    /// on which this one depends, is broken, or the package has nothing to check.
     #[must_use]
     pub fn verdict(&self) -> Option<bool> {
         let made = self.id.needs() == Needs::Package || self.checked > 0;
         made.then(|| self.holds())
     }
 
-    /// Counts a case; `example` tells of the first that does not hold.
+    /// Counts a case; `example` describes the case if it is one of the first broken ones.
     pub fn look(&mut self, holds: bool, example: impl FnOnce() -> String) {
         self.checked += 1;
         if !holds {
@@ -197,25 +198,25 @@ impl Check {
     }
 }
 
-/// The checks made so far, each of them once in the list.
+/// The checks so far, each once.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Findings {
     checks: Vec<Check>,
 }
 
-/// A value in an example of what is broken, where there may be none.
+/// A value as text in an example; "none" if it is absent.
 pub(crate) fn or_none<T: ToString>(value: Option<T>) -> String {
     value.map_or_else(|| "none".to_owned(), |value| value.to_string())
 }
 
 impl Findings {
-    /// Counts one more thing that was looked at.
+    /// Counts a case of the check with this id.
     pub(crate) fn look(&mut self, id: CheckId, holds: bool, example: impl FnOnce() -> String) {
-        self.of(id).look(holds, example);
+        self.check_mut(id).look(holds, example);
     }
 
-    /// The check with this id; it is added if the list does not have it.
-    pub(crate) fn of(&mut self, id: CheckId) -> &mut Check {
+    /// The check with this id, which is added if the list lacks it.
+    pub(crate) fn check_mut(&mut self, id: CheckId) -> &mut Check {
         let at = match self.checks.binary_search_by_key(&id, |check| check.id) {
             Ok(at) => at,
             Err(at) => {
@@ -226,17 +227,17 @@ impl Findings {
         &mut self.checks[at]
     }
 
-    /// Adds what others found.
+    /// Adds the results of other checks.
     pub(crate) fn merge(&mut self, checks: impl IntoIterator<Item = Check>) {
         for check in checks {
-            self.of(check.id).merge(check);
+            self.check_mut(check.id).merge(check);
         }
     }
 
-    /// All checks that can be made with the given inputs, in the order of [`CheckId::ALL`].
+    /// All checks that are possible with the given inputs, in the order of [`CheckId::ALL`].
     pub(crate) fn into_checks(mut self, given: &[Needs]) -> Vec<Check> {
         for &id in CheckId::ALL.iter().filter(|id| given.contains(&id.needs())) {
-            self.of(id);
+            self.check_mut(id);
         }
         self.checks
     }
@@ -251,7 +252,7 @@ impl IntoIterator for Findings {
     }
 }
 
-/// A record as examples of broken checks show it.
+/// A record as JSON, as examples of broken checks show it.
 pub(crate) fn as_json(record: &impl serde::Serialize) -> String {
     serde_json::to_string(record).unwrap_or_else(|error| error.to_string())
 }

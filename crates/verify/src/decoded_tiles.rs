@@ -1,4 +1,4 @@
-//! The tiles of a package, decoded once for all checks that follow each other.
+//! A cache of decoded tiles, shared by all checks.
 
 use std::{
     convert::Infallible,
@@ -9,20 +9,22 @@ use std::{
 use corniche_drape::DrapedVertex;
 use corniche_geom::{LatticePoint, TileId};
 use corniche_tileset::{
-    FilePackage, PayloadSizes, Relief, Sections, Terrain, TilePayload, payload_sizes,
+    FilePackage, PayloadSizes, Relief, Sections, TilePayload, TileTerrain, payload_sizes,
 };
 use corniche_tin::{Tin, TinVertex};
 use corniche_work::Recent;
 
 use super::{tile_place::TilePlace, triangle_soup::TriangleSoup};
 
-/// What of the package stays in memory, decoded. Tiles are looked at along a curve that fills the plane, so those above them and beside
-/// them were used shortly before; packages of some ten megabytes stay whole from one check to the next.
+/// The size of the cache of decoded tiles. Tiles are visited along a curve that fills the plane, so
+/// the tiles above and next to a tile were used shortly before; packages of some ten megabytes stay
+/// in memory as a whole.
 const TILE_BYTES: u64 = 64 << 20;
-/// What stays of grounds: those of a tile, of those above it and of those beside it. They take more, and less time to make.
+/// The size of the cache of triangle lookups: those of a tile, its ancestors and its neighbours.
+/// They take more memory than tiles, and less time to create.
 const GROUND_BYTES: u64 = 32 << 20;
 
-/// Tiles of a package, those that were used last.
+/// The tiles of a package, of which the last used ones are kept.
 pub(crate) struct DecodedTiles<'a> {
     pub package: &'a FilePackage,
     recent: Recent<TileId, DecodedTile>,
@@ -35,20 +37,21 @@ impl<'a> DecodedTiles<'a> {
         Self { package, recent, grounds }
     }
 
-    /// A tile, also one that is not there.
-    pub(crate) fn of(&self, id: TileId) -> Arc<DecodedTile> {
+    /// The tile with this id, or the reason why it cannot be read.
+    pub(crate) fn tile_at(&self, id: TileId) -> Arc<DecodedTile> {
         let make = || Ok::<_, Infallible>(DecodedTile::read(self.package, id));
         let Ok(tile) = self.recent.get(id, make, DecodedTile::bytes);
         tile
     }
 
-    /// The ground of a tile, to look up heights; without triangles where there is none.
+    /// The ground of a tile, for the lookup of heights; without triangles if the tile has no
+    /// ground.
     pub(crate) fn ground(&self, id: TileId) -> Arc<TriangleSoup> {
         let make = || {
-            let (tile, none) = (self.of(id), Tin::default());
+            let (tile, none) = (self.tile_at(id), Tin::default());
             let tin = tile.terrain().map_or(&none, |terrain| &terrain.tin);
             let manifest = self.package.manifest();
-            let steps = TilePlace::of(&manifest.frame, id).steps;
+            let steps = TilePlace::from_frame(&manifest.frame, id).steps;
             Ok::<_, Infallible>(TriangleSoup::new(tin, manifest.vertical.quantum_m, steps))
         };
         let Ok(ground) = self.grounds.get(id, make, |ground| ground.bytes() as u64);
@@ -56,12 +59,12 @@ impl<'a> DecodedTiles<'a> {
     }
 }
 
-/// What was read of a tile.
+/// The result of reading a tile.
 pub(crate) struct DecodedTile {
-    /// All of it, or why it cannot be read.
+    /// The whole payload, or the reason why it cannot be read.
     pub whole: Result<(TilePayload, PayloadSizes), String>,
-    /// Where only other sections than the ground are damaged.
-    ground_alone: Option<Terrain>,
+    /// The terrain, if only other sections are damaged.
+    ground_alone: Option<TileTerrain>,
 }
 
 impl DecodedTile {
@@ -71,17 +74,18 @@ impl DecodedTile {
         Self { ground_alone: if whole.is_err() { ground_alone() } else { None }, whole }
     }
 
-    /// All of it; `None` for a tile that is not there or cannot be read, which is told where tiles are looked at one by one.
+    /// The payload; `None` for a tile that does not exist or cannot be read, which the check of
+    /// tiles reports.
     pub(crate) fn payload(&self) -> Option<&TilePayload> {
         self.whole.as_ref().ok().map(|(payload, _)| payload)
     }
 
-    /// What it has of ground. Damage of its other sections does not count.
-    pub(crate) fn terrain(&self) -> Option<&Terrain> {
+    /// The terrain of the tile, even if its other sections are damaged.
+    pub(crate) fn terrain(&self) -> Option<&TileTerrain> {
         self.payload().and_then(|payload| payload.terrain.as_ref()).or(self.ground_alone.as_ref())
     }
 
-    /// What it takes in memory, about.
+    /// The approximate size in memory.
     fn bytes(&self) -> u64 {
         let ground = self.terrain().map_or(0, |terrain| {
             let vertices = terrain.tin.vertices().len() * size_of::<(TinVertex, [i8; 2])>();
@@ -107,7 +111,7 @@ fn read_whole(package: &FilePackage, id: TileId) -> Result<(TilePayload, Payload
     let manifest = package.manifest();
     let bytes = match package.tile(id) {
         Ok(Some(bytes)) => bytes,
-        Ok(None) => return Err(format!("tile {id} is listed but not there")),
+        Ok(None) => return Err(format!("tile {id} is listed but missing")),
         Err(error) => return Err(with_causes(&error)),
     };
     manifest

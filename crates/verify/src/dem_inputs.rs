@@ -1,33 +1,32 @@
-//! Checks that the elevation files are those of the build, and that they give its grid.
+//! Checks that the elevation files are those of the build, and that they give the package's grid.
 
 use std::path::PathBuf;
 
 use corniche_dem::{Dem, GridPlan, OpenDemError, OpenOptions};
 use corniche_spec::{
-    Observer, data_outline::data_outline, inputs::Inputs, manifest_texts, settings_record,
+    BuildObserver, data_outline::data_outline, inputs::InputFiles, manifest_texts, settings_record,
 };
 use corniche_tileset::{InputKind, InputRecord, Manifest, SampleSums};
 
 use super::{
     checks::{Check, CheckId, Findings, as_json},
-    decoded_tiles::DecodedTiles,
     deviations,
+    each_tile::VerifyRun,
     error::VerifyError,
     report::VerifyReport,
     samples,
-    verify_settings::GivenFiles,
-    verify_settings::VerifySettings,
+    verify_settings::{GivenFiles, VerifySettings},
     vertices_against_dem,
 };
 
-/// Opens the DEM as the build did and makes sure that it is the same one. If its grid is not that of the package, a check
-/// is broken and the result is `None`, because nothing can be compared.
+/// Opens the DEM as the build did, and checks that it is the same one. If its grid is not that of
+/// the package, a check is broken and the result is `None`, because nothing can be compared.
 pub(crate) fn open(
     settings: &VerifySettings,
-    inputs: &Inputs,
+    inputs: &InputFiles,
     manifest: &Manifest,
     checks: &mut Vec<Check>,
-    observer: &dyn Observer,
+    observer: &dyn BuildObserver,
 ) -> Result<Option<(Dem, GridPlan)>, VerifyError> {
     let is_dem =
         |input: &&InputRecord| InputKind::Dem.is_of(input) || InputKind::DemPart.is_of(input);
@@ -41,7 +40,7 @@ pub(crate) fn open(
     let dem = open_as_recorded(&settings.dem, &terrain.open)?;
     let given = inputs.hash(observer)?;
     let mut sizes = Check::new(CheckId::DemInputs);
-    let kinds = [InputKind::Dem, InputKind::DemPart];
+    let kinds = &[InputKind::Dem, InputKind::DemPart];
     if !are_recorded(kinds, &manifest.inputs, &given, are_same, &mut sizes) {
         return Err(other());
     }
@@ -49,16 +48,17 @@ pub(crate) fn open(
     let plan = dem.plan(&terrain.plan)?;
     let mut check = check_plan(&plan, manifest);
     let outline = data_outline(&dem, &plan, &dem.projection(&plan)?)?;
-    // Packages of before have none.
+    // Older packages have no outline.
     let recorded = manifest.data_outline();
     check.look(recorded.is_none() || outline == recorded, || {
-        "the outline of the elevation files is not the one that is recorded".to_owned()
+        "the outline of the elevation files differs from the recorded one".to_owned()
     });
     checks.push(check);
     Ok((plan.frame == manifest.frame).then_some((dem, plan)))
 }
 
-/// Opens elevation files with recorded options. Packages of before the band was recorded were made of the first one, also of files with several.
+/// Opens elevation files with the recorded options. Older packages, which did not record the band,
+/// used the first band of files with several bands.
 fn open_as_recorded(files: &[PathBuf], options: &OpenOptions) -> Result<Dem, OpenDemError> {
     match Dem::open(files, options) {
         Err(OpenDemError::SeveralBands { .. }) => {
@@ -68,12 +68,14 @@ fn open_as_recorded(files: &[PathBuf], options: &OpenOptions) -> Result<Dem, Ope
     }
 }
 
-/// Whether the given files of two kinds are those that are recorded, by `are_same`, and whether these are as long as recorded.
+/// Checks whether the given files are the recorded ones, by `are_same`, and whether their sizes
+/// match the record.
 ///
-/// Files are compared by content, not by name: a file may have been moved or renamed. Parts, the second kind, are sorted by their hash, because their
-/// recorded order is that of their names.
+/// Files are compared by content, not by name: a file may have been moved or renamed. Extracts and
+/// parts are sorted by their hash: extracts may be given in any order, and the recorded order of
+/// parts is that of their names.
 pub(crate) fn are_recorded(
-    kinds: [InputKind; 2],
+    kinds: &[InputKind],
     recorded: &[InputRecord],
     given: &[InputRecord],
     are_same: impl Fn(&[InputRecord], &[InputRecord]) -> bool,
@@ -83,7 +85,7 @@ pub(crate) fn are_recorded(
         let of_kind = |records: &[InputRecord]| {
             let of_kind = records.iter().filter(|record| kind.is_of(record));
             let mut of_kind: Vec<InputRecord> = of_kind.cloned().collect();
-            if *kind == kinds[1] {
+            if !matches!(kind, InputKind::Dem | InputKind::Photo) {
                 of_kind.sort_by(|a, b| a.sha256.cmp(&b.sha256));
             }
             of_kind
@@ -100,27 +102,29 @@ pub(crate) fn are_recorded(
     })
 }
 
-/// Whether files are those that are recorded, by their content. Of files that were not used, outside the bounds of the package, there is no
-/// hash; then the others must be there, as many as are recorded.
+/// Whether files are the recorded ones, by their content. Unused files, outside the bounds of the
+/// package, have no hash; only their number is compared.
 fn are_same(said: &[InputRecord], found: &[InputRecord]) -> bool {
-    let hashes = |records: &[InputRecord]| -> Vec<String> {
-        records.iter().map(|record| record.sha256.clone()).collect()
-    };
-    let (said, found) = (hashes(said), hashes(found));
-    if said.iter().all(|hash| !hash.is_empty()) {
-        return said == found;
+    let mut used = said.iter().filter(|input| !input.sha256.is_empty());
+    if used.clone().count() == said.len() {
+        return have_same_hashes(said, found);
     }
     said.len() == found.len()
-        && said.iter().filter(|hash| !hash.is_empty()).all(|hash| found.contains(hash))
+        && used.all(|used| found.iter().any(|input| input.sha256 == used.sha256))
 }
 
-/// Compares the plan with what the build recorded of it in the manifest.
+/// Whether files have the recorded content, one by one.
+pub(crate) fn have_same_hashes(said: &[InputRecord], found: &[InputRecord]) -> bool {
+    said.iter().map(|input| &input.sha256).eq(found.iter().map(|input| &input.sha256))
+}
+
+/// Compares the plan with the manifest.
 fn check_plan(plan: &GridPlan, manifest: &Manifest) -> Check {
     let mut check = Check::new(CheckId::DemPlan);
     let vertical = &manifest.vertical;
     let mut same = |what: &str, said: String, found: String| {
         check.look(said == found, || {
-            format!("{what} is recorded as {said}, but comes out as {found}")
+            format!("{what} is recorded as {said}, but the inputs give {found}")
         });
     };
     same("frame", as_json(&manifest.frame), as_json(&plan.frame));
@@ -155,36 +159,29 @@ fn check_plan(plan: &GridPlan, manifest: &Manifest) -> Check {
 }
 
 pub(crate) fn verify(
-    tiles: &DecodedTiles<'_>,
+    run: &VerifyRun<'_>,
     files: &GivenFiles<Option<(Dem, GridPlan)>>,
-    settings: &VerifySettings,
-    report: &mut VerifyReport,
-    observer: &dyn Observer,
+    (report, findings): (&mut VerifyReport, &mut Findings),
 ) -> Result<(), VerifyError> {
     let Some(opened) = &files.found else { return Ok(()) };
-    let compared = compare_all(tiles, opened, settings, report, observer);
+    let compared = compare_all(run, opened, (report, findings));
     VerifyError::unless_changed(&files.inputs, compared)
 }
 
 fn compare_all(
-    tiles: &DecodedTiles<'_>,
-    (dem, plan): &(Dem, GridPlan),
-    settings: &VerifySettings,
-    report: &mut VerifyReport,
-    observer: &dyn Observer,
+    run: &VerifyRun<'_>,
+    opened: &(Dem, GridPlan),
+    (report, findings): (&mut VerifyReport, &mut Findings),
 ) -> Result<(), VerifyError> {
-    let manifest = tiles.package.manifest();
-    let measured = deviations::measure(tiles, dem, plan, settings.threads, observer)?;
-    let at_samples = if plan.nodes_are_samples() {
+    let measured = deviations::measure(run, opened)?;
+    let at_samples = if opened.1.nodes_are_samples() {
         measured.at_samples
     } else {
-        samples::measure(tiles, dem, plan, settings, observer)?
+        samples::measure(run, opened)?
     };
-    let mut findings = Findings::default();
-    report.errors = deviations::verify(tiles, &measured.by_tile, &mut findings)?;
-    report.checks.extend(findings);
-    vertices_against_dem::verify(tiles, dem, plan, settings.threads, report, observer)?;
-    report.checks.extend(samples::judge(manifest, &at_samples));
+    report.errors = deviations::verify(&run.tiles, &measured.by_tile, findings)?;
+    vertices_against_dem::verify(run, opened, findings)?;
+    findings.merge(samples::judge(run.package.manifest(), &at_samples));
     report.samples = at_samples.last().map(SampleSums::record);
     Ok(())
 }

@@ -1,5 +1,6 @@
-//! What the manifest says, by itself: levels follow from the settings, the grid from the data's rectangle, some texts are always the same, and (P6) its
-//! sums add up, so nothing was dropped without being counted.
+//! Checks of the manifest alone: levels follow from the settings, the grid follows from the data's
+//! rectangle, some texts are fixed, and (P6) the sums add up, so that nothing is dropped without
+//! being counted.
 
 use corniche_geom::{GridFrame, LatticeBounds, TILE_CELLS, TileId};
 use corniche_spec::{Loss, levels::Levels, manifest_texts, settings_record};
@@ -16,13 +17,14 @@ pub(crate) fn verify(manifest: &Manifest, findings: &mut Findings) {
     texts(manifest, findings);
 }
 
-/// Tolerances follow from the settings. Otherwise a larger recorded tolerance would weaken every check that uses it.
+/// Checks that tolerances follow from the settings. Otherwise a larger recorded tolerance would
+/// weaken every check that uses the tolerance.
 fn levels(manifest: &Manifest, findings: &mut Findings) {
     let Some(levels) = Levels::recorded(manifest) else {
         findings.look(CheckId::LevelRecords, false, || {
             let cells = manifest.settings.class_max_cell_m.iter().map(|&cell_m| or_none(cell_m));
             format!(
-                "no classes can be shown by cells of {} m and a least class of {}",
+                "no class can be shown with cells of {} m and a lowest class of {}",
                 cells.collect::<Vec<_>>().join(", "),
                 or_none(manifest.levels.last().and_then(|level| level.least_class))
             )
@@ -75,7 +77,7 @@ fn texts(manifest: &Manifest, findings: &mut Findings) {
     let has_roads = manifest.has_extract();
     let credits = manifest.attribution.iter().any(|text| text == corniche_osm::ATTRIBUTION);
     look(credits || !has_roads, &|| {
-        format!("no credit for the extract: {}", manifest.attribution.join("; "))
+        format!("no attribution of the extract: {}", manifest.attribution.join("; "))
     });
     let reasons = Loss::ALL.map(Loss::reason);
     for loss in &manifest.counts.roads_lost {
@@ -85,11 +87,12 @@ fn texts(manifest: &Manifest, findings: &mut Findings) {
     }
 }
 
-/// Lengths that are measured again over the edges of TINs agree to this share: every crossing moves a point by less than
-/// a millimetre.
+/// The relative tolerance of lengths that are measured again over the edges of TINs: every crossing
+/// moves a point by less than a millimetre.
 pub(crate) const LENGTH_SHARE: f64 = 1e-5;
 
-/// And each line may differ by this, because both of its ends may be cuts, which are put on a lattice of a millimetre.
+/// The additional tolerance of each line, in metres: both of its ends may be cuts, which are
+/// rounded to a lattice of a millimetre.
 pub(crate) const CUT_M: f64 = 0.002;
 
 pub(crate) fn verify_sums(manifest: &Manifest, findings: &mut Findings) {
@@ -98,15 +101,18 @@ pub(crate) fn verify_sums(manifest: &Manifest, findings: &mut Findings) {
     findings.look(
         CheckId::SampleSums,
         samples.nodes == samples.with_data + samples.filled + samples.void,
-        || format!("{} nodes, but {samples:?}", samples.nodes),
+        || format!("{} nodes, but counts of {samples:?}", samples.nodes),
     );
     let lost: u64 = counts.roads_lost.iter().map(|loss| loss.roads).sum();
     findings.look(CheckId::RoadSums, counts.roads_in == counts.roads_kept + lost, || {
-        format!("{} roads in, {} kept, {lost} lost", counts.roads_in, counts.roads_kept)
+        format!("{} roads read, {} kept, {lost} lost", counts.roads_in, counts.roads_kept)
     });
     let lost_um: u64 = counts.roads_lost.iter().map(|loss| loss.length_um).sum();
     findings.look(CheckId::RoadSums, counts.roads_in_um == counts.roads_kept_um + lost_um, || {
-        format!("{} µm in, {} µm kept, {lost_um} µm lost", counts.roads_in_um, counts.roads_kept_um)
+        format!(
+            "{} µm read, {} µm kept, {lost_um} µm lost",
+            counts.roads_in_um, counts.roads_kept_um
+        )
     });
     let by_class: u64 = counts.classes.iter().map(|&(count, _)| count).sum();
     let by_class_um: u64 = counts.classes.iter().map(|&(_, length_um)| length_um).sum();
@@ -137,23 +143,24 @@ pub(crate) fn verify_grid(manifest: &Manifest, findings: &mut Findings) {
     });
     let wanted = GridFrame::covering(frame.origin_m(), frame.cell(), south_west, north_east);
     findings.look(CheckId::Grid, wanted.as_ref() == Ok(frame), || {
-        format!("the grid is {frame:?}, the smallest over the data is {wanted:?}")
+        format!("the grid is {frame:?}, the smallest one that covers the data is {wanted:?}")
     });
     let counted = |low: i64, high: i64| u64::try_from(high - low + 1).unwrap_or_default();
     let nodes =
         counted(south_west.i, north_east.i).saturating_mul(counted(south_west.j, north_east.j));
     let said = manifest.counts.samples.nodes;
     findings.look(CheckId::SampleSums, said == nodes, || {
-        format!("{said} nodes are counted, the data's rectangle has {nodes}")
+        format!("{said} nodes are recorded, the data's rectangle has {nodes}")
     });
 }
 
-/// The bounds that were asked for.
+/// The bounds that the build was given.
 pub(crate) fn clip_of(manifest: &Manifest) -> Option<LatticeBounds> {
     Some(manifest.frame.lattice_bounds(manifest.clip.as_ref()?.nodes))
 }
 
-/// First and last of the finest tiles on which the data's rectangle lies: its north-western and south-eastern one.
+/// The first and the last of the finest tiles over the data's rectangle: the north-western and the
+/// south-eastern one.
 pub(crate) fn data_tiles(manifest: &Manifest) -> Option<[TileId; 2]> {
     let frame = &manifest.frame;
     let [south_west, north_east] = manifest.data_nodes();

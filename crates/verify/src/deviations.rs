@@ -1,35 +1,37 @@
-//! How far the TINs of all levels are from the full resolution: measured at every finest node with data, and compared with what the package states.
+//! Measures the deviation of the TINs of all levels from the full resolution at every finest node
+//! with data, and compares it with the numbers in the package.
 
 use std::collections::BTreeMap;
 
-use corniche_dem::{Dem, DemWindow, GridPlan, Reader};
+use corniche_dem::{Dem, DemWindow, GridPlan, HeightReader};
 use corniche_geom::{HeightGrid, NodeIndex, NodeWindow, TileId};
 use corniche_ground::heights::{finest::own_size, patch::union};
-use corniche_spec::{Observer, data_tiles::DataTiles};
+use corniche_spec::data_tiles::DataTiles;
 use corniche_tileset::{Distribution, Manifest, SampleSums, VerticalRecord};
 use corniche_work::{Stage, workers};
 
 use super::{
     checks::{CheckId, Findings},
     decoded_tiles::DecodedTiles,
+    each_tile::VerifyRun,
     error::VerifyError,
     report::ErrorFigures,
     samples,
     triangle_soup::{HEIGHT_ROUNDING_M, TriangleSoup},
 };
 
-/// How far a tile's TIN is from the nodes looked at so far.
+/// The deviation of a tile's TIN from the nodes compared so far.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct TrueDeviation {
-    /// The largest distance.
+    /// The largest deviation.
     pub largest_m: f64,
-    /// Nodes that the TIN covers.
+    /// The number of nodes that the TIN covers.
     pub nodes: u64,
-    /// Nodes with data that it does not cover.
+    /// The number of nodes with data that the TIN does not cover.
     pub(crate) uncovered: u64,
-    /// Lowest and highest node with data beneath.
+    /// The lowest and the highest node with data beneath the tile.
     pub range_m: Option<[f32; 2]>,
-    /// Uncovered nodes farther than one cell of the level from any void or edge.
+    /// The number of uncovered nodes farther than one cell of the level from any void or edge.
     pub(crate) stray: u64,
 }
 
@@ -43,32 +45,30 @@ impl TrueDeviation {
     }
 }
 
-/// What was measured.
+/// The result of the measurement.
 pub(crate) struct Measured {
-    /// The deviation of every tile over the data, also of those without ground.
+    /// The deviation of every tile over the data, including tiles without ground.
     pub(crate) by_tile: BTreeMap<TileId, TrueDeviation>,
-    /// Per level, root first: distances at samples where nodes are samples; otherwise empty sums.
+    /// Per level, root first: distances at samples, if the nodes are samples; otherwise empty sums.
     pub(crate) at_samples: Vec<SampleSums>,
 }
 
 /// Compares the TINs of all levels with the elevation files.
 pub(crate) fn measure(
-    tiles: &DecodedTiles<'_>,
-    dem: &Dem,
-    plan: &GridPlan,
-    threads: usize,
-    observer: &dyn Observer,
+    run: &VerifyRun<'_>,
+    (dem, plan): &(Dem, GridPlan),
 ) -> Result<Measured, VerifyError> {
-    let manifest = tiles.package.manifest();
+    let manifest = run.package.manifest();
     let max_level = manifest.frame.max_level();
-    // All finest tiles of the data, also those without ground: a coarser level may cover their nodes.
-    let finest = DataTiles::of(plan).within(corniche_geom::TileId::ROOT);
+    // All finest tiles of the data, including those without ground: a coarser level may cover their
+    // nodes.
+    let finest = DataTiles::from_plan(plan).within(corniche_geom::TileId::ROOT);
     let mut truths: BTreeMap<TileId, TrueDeviation> = BTreeMap::new();
     let nodes_are_samples = plan.nodes_are_samples();
     let mut at_samples = samples::none(manifest);
     workers::side_by_side(
-        (observer, Stage::Deviations),
-        threads,
+        (run.observer, Stage::Deviations),
+        run.threads,
         &finest,
         || Ok::<_, VerifyError>(dem.reader(plan)),
         |reader, &id| {
@@ -78,8 +78,9 @@ pub(crate) fn measure(
             let mut found = Vec::new();
             for level in 0..=max_level {
                 let ancestor = id.ancestor(level);
-                // A tile that does not exist or cannot be read covers nothing: all its nodes count as uncovered.
-                let ground = tiles.ground(ancestor);
+                // A tile that does not exist or cannot be read covers nothing: all its nodes count
+                // as uncovered.
+                let ground = run.tiles.ground(ancestor);
                 let sums = &mut found_at_samples[usize::from(level)];
                 let mut look = |[column, row]: [usize; 2], distance_m: Option<f64>| {
                     if nodes_are_samples && is_own_sample(id, &read, [column, row]) {
@@ -107,8 +108,9 @@ pub(crate) fn measure(
     Ok(Measured { by_tile: truths, at_samples })
 }
 
-/// Compares an ancestor's TIN with the full resolution over one finest tile. Also gives the cells of the
-/// ancestor's level, by north-west node, in which nodes with data are not covered, and how many each has.
+/// Compares an ancestor's TIN with the full resolution over one finest tile. Also returns the cells
+/// of the ancestor's level, by north-west node, that have uncovered nodes with data, with the
+/// number of these nodes.
 fn compare(
     ground: &TriangleSoup,
     [finest, ancestor]: [TileId; 2],
@@ -149,20 +151,20 @@ fn compare(
     (truth, bare)
 }
 
-/// Whether a node of a finest tile's window is a sample, no filled void, that no other tile counts: those on the east and
-/// south border belong to the next tile, if there can be one.
+/// Whether a node of a finest tile's window is a sample (not a filled void) that no other tile
+/// counts: nodes on the east and south borders belong to the next tile, if one can exist.
 fn is_own_sample(id: TileId, read: &DemWindow, [column, row]: [usize; 2]) -> bool {
     let [columns, rows] = own_size(id);
     let is_filled = read.is_filled.get(row * read.heights.columns() + column);
     column < columns && row < rows && is_filled != Some(&true)
 }
 
-/// Whether a cell of a level lacks ground because one of its corners is void or beyond the data: then every node
-/// in it lies within one cell of that level from a void or an edge.
+/// Whether a cell of a level lacks ground because one of its corners is void or beyond the data:
+/// then every node in the cell lies within one cell of that level from a void or an edge.
 fn has_void_corner(
     cell: NodeIndex,
     stride: i64,
-    reader: &mut Reader<'_>,
+    reader: &mut HeightReader<'_>,
 ) -> Result<bool, VerifyError> {
     for (i, j) in [(0, 0), (stride, 0), (0, stride), (stride, stride)] {
         let corner = NodeIndex { i: cell.i + i, j: cell.j - j };
@@ -174,13 +176,13 @@ fn has_void_corner(
     Ok(false)
 }
 
-/// Slack for comparing ratios of heights that were computed in two ways.
+/// The tolerance for ratios of heights that were computed in two ways.
 const RATIO_ROUNDING: f64 = 1e-3;
-/// P2's tightness: stored ≤ this × true + a quantum, for this share of tiles.
+/// The factor of P2's tightness: stored ≤ this × true + a quantum, for most tiles.
 const TIGHTNESS: f64 = 2.0;
 const TIGHT_SHARE: f64 = 0.95;
 
-/// Compares stored errors with true ones; gives the figures of each level.
+/// Compares stored errors with true ones; returns the figures of each level.
 pub(crate) fn verify(
     tiles: &DecodedTiles<'_>,
     truths: &BTreeMap<TileId, TrueDeviation>,
@@ -190,21 +192,24 @@ pub(crate) fn verify(
     let stored_m = check_tiles(tiles, truths, findings)?;
     let mut levels: BTreeMap<u8, TrueDeviation> = BTreeMap::new();
     for (&id, truth) in truths {
-        // Tiles that are not there count too: what lies beneath them must lie at a void or an edge.
+        // Tiles that do not exist count too: the nodes beneath them must be near a void or an edge.
         findings.look(CheckId::Stray, truth.stray == 0, || {
-            format!("{} nodes of tile {id}", truth.stray)
+            format!("tile {id}: {} uncovered nodes are farther away", truth.stray)
         });
         levels.entry(id.z()).or_default().merge(*truth);
     }
     for level in &manifest.levels {
         let found = levels.get(&level.level).map_or(0, |truth| truth.uncovered);
         findings.look(CheckId::Uncovered, found == level.uncovered_nodes, || {
-            format!("level {} says {}, {found} were found", level.level, level.uncovered_nodes)
+            format!(
+                "level {} records {} uncovered nodes, {found} were found",
+                level.level, level.uncovered_nodes
+            )
         });
     }
     let mut ratios = check_errors(manifest, &stored_m, truths, findings);
     let figures = levels.into_iter().map(|(level, truth)| {
-        let tightness = Distribution::of(ratios.remove(&level).unwrap_or_default());
+        let tightness = Distribution::from_values(ratios.remove(&level).unwrap_or_default());
         let said = manifest.levels.get(usize::from(level)).and_then(|record| record.tightness);
         findings.look(CheckId::Recorded, agree(said, tightness), || {
             format!("level {level} records {said:?}, found {tightness:?}")
@@ -221,7 +226,7 @@ pub(crate) fn verify(
     Ok(figures.collect())
 }
 
-/// Looks at what tiles with ground say of the nodes beneath them; gives their stored errors.
+/// Checks what tiles with ground record about the nodes beneath them; returns their stored errors.
 fn check_tiles(
     tiles: &DecodedTiles<'_>,
     truths: &BTreeMap<TileId, TrueDeviation>,
@@ -229,26 +234,29 @@ fn check_tiles(
 ) -> Result<BTreeMap<TileId, f64>, VerifyError> {
     let mut stored_m = BTreeMap::new();
     for id in tiles.package.tile_ids()? {
-        let tile = tiles.of(id);
+        let tile = tiles.tile_at(id);
         let Some(terrain) = tile.terrain() else { continue };
         let said = terrain.uncovered_nodes;
         let truth = truths.get(&id).copied().unwrap_or_default();
         findings.look(CheckId::Uncovered, said == truth.uncovered, || {
-            format!("tile {id} says {said}, {} were found", truth.uncovered)
+            format!("tile {id} records {said} uncovered nodes, {} were found", truth.uncovered)
         });
         let [low, high] = terrain.height_range_m;
         let said = [low, high].map(f64::to_bits);
         let holds = truth.range_m.is_none_or(|range| range.map(|m| f64::from(m).to_bits()) == said);
         findings.look(CheckId::Ranges, holds, || {
-            format!("tile {id} says {low} to {high} m, nodes beneath: {:?}", truth.range_m)
+            format!(
+                "tile {id} records {low} to {high} m, the nodes beneath have {:?}",
+                truth.range_m
+            )
         });
         stored_m.insert(id, terrain.geometric_error_m);
     }
     Ok(stored_m)
 }
 
-/// Compares each stored error with the true one; gives, per level, the stored error over the true one where that can be
-/// measured.
+/// Compares each stored error with the true one; returns, per level, the ratios of stored to true
+/// errors, where the true error is large enough to be measured.
 fn check_errors(
     manifest: &Manifest,
     stored_m: &BTreeMap<TileId, f64>,
@@ -261,7 +269,10 @@ fn check_errors(
     for (&id, &stored_m) in stored_m {
         let truth = truths.get(&id).copied().unwrap_or_default();
         findings.look(CheckId::Bound, stored_m >= truth.largest_m - HEIGHT_ROUNDING_M, || {
-            format!("tile {id} stores {stored_m} m, but is off by {} m", truth.largest_m)
+            format!(
+                "tile {id} stores an error of {stored_m} m, but is off by {} m",
+                truth.largest_m
+            )
         });
         if id.z() == manifest.frame.max_level() {
             let most_m = manifest.settings.max_error_m + HEIGHT_ROUNDING_M;
@@ -281,11 +292,14 @@ fn check_errors(
     }
     let count = stored_m.len() as u64;
     let is_tight = loose as f64 <= (1.0 - TIGHT_SHARE) * count as f64;
-    findings.look(CheckId::Tight, is_tight, || format!("{loose} of {count} tiles are loose"));
+    findings.look(CheckId::Tight, is_tight, || {
+        format!("{loose} of {count} tiles store more than twice the true error")
+    });
     ratios
 }
 
-/// Whether two distributions of ratios are the same but for rounding: their errors were computed in two ways.
+/// Whether two distributions of ratios are equal apart from rounding: their errors were computed in
+/// two ways.
 fn agree(said: Option<Distribution>, found: Option<Distribution>) -> bool {
     let near = |a: f64, b: f64| (a - b).abs() <= RATIO_ROUNDING * a.max(b);
     match (said, found) {

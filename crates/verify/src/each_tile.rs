@@ -1,50 +1,61 @@
-//! What several checks do alike: look at all tiles side by side, take what is found in their order, and add up what they have of a layer.
+//! Helpers that several checks share: visiting all tiles in parallel with results in order, and
+//! summing up a layer.
 
 use std::{collections::BTreeMap, fmt::Display};
 
 use corniche_geom::TileId;
 use corniche_pieces::layers::tile_section::{SectionOfTile, SectionSums};
-use corniche_spec::Observer;
+use corniche_spec::BuildObserver;
 use corniche_tileset::{FilePackage, LineLevelRecord};
 use corniche_work::{Stage, workers};
 
 use super::{
     checks::{CheckId, Findings},
+    decoded_tiles::DecodedTiles,
     error::VerifyError,
 };
 
-/// Fails if some bytes of a package could not be read. That says nothing about the package; but checks take a tile that cannot be read for
-/// one that is not there, or is damaged.
+/// A running verification.
+pub(crate) struct VerifyRun<'a> {
+    pub(crate) package: &'a FilePackage,
+    pub(crate) tiles: DecodedTiles<'a>,
+    pub(crate) threads: usize,
+    pub(crate) observer: &'a dyn BuildObserver,
+}
+
+/// Fails if some bytes of a package could not be read. An unreadable file says nothing about the
+/// package; but checks treat a tile that cannot be read as missing or damaged.
 pub(crate) fn check_readable(package: &FilePackage) -> Result<(), VerifyError> {
     package.failed_read().map_or(Ok(()), |error| Err(VerifyError::Read(error.clone())))
 }
 
-/// Looks at each tile of a package, on so many threads, and takes what is found in the order of tiles.
-pub(crate) fn each_tile<T: Send>(
-    package: &FilePackage,
-    threads: usize,
-    observer: &dyn Observer,
-    look: impl Fn(TileId) -> Result<T, VerifyError> + Sync,
-    mut take: impl FnMut(TileId, T),
-) -> Result<(), VerifyError> {
-    workers::side_by_side(
-        (observer, Stage::Verify),
-        threads,
-        &package.tile_ids()?,
-        || Ok(()),
-        |(), &id| {
-            let found = look(id)?;
-            check_readable(package)?;
-            Ok(found)
-        },
-        |&id, found| {
-            take(id, found);
-            Ok(())
-        },
-    )
+impl VerifyRun<'_> {
+    /// Visits each tile as a step of `stage`, and takes the results in the order of tiles.
+    pub(crate) fn each_tile<T: Send>(
+        &self,
+        stage: Stage,
+        look: impl Fn(TileId) -> Result<T, VerifyError> + Sync,
+        mut take: impl FnMut(TileId, T),
+    ) -> Result<(), VerifyError> {
+        workers::side_by_side(
+            (self.observer, stage),
+            self.threads,
+            &self.package.tile_ids()?,
+            || Ok(()),
+            |(), &id| {
+                let found = look(id)?;
+                check_readable(self.package)?;
+                Ok(found)
+            },
+            |&id, found| {
+                take(id, found);
+                Ok(())
+            },
+        )
+    }
 }
 
-/// Compares what a tile has with what the extract gives, one by one. `name` says what something is.
+/// Compares the items of a tile with those of the extract, one by one. `name` describes an item.
 pub(crate) fn compare_in_order<T: PartialEq, N: Display>(
     check: CheckId,
     id: TileId,
@@ -62,32 +73,30 @@ pub(crate) fn compare_in_order<T: PartialEq, N: Display>(
     }
 }
 
-/// What is found of a layer in one tile.
+/// The findings and the sums of a layer in one tile.
 #[derive(Default)]
 pub(crate) struct OfTile {
     pub(crate) findings: Findings,
     pub counts: SectionOfTile,
 }
 
-/// What is recorded of a layer of lines, or of spans, on a level.
+/// The recorded sums of a layer of lines, or of spans, on a level.
 pub(crate) fn recorded(of: &LineLevelRecord) -> (u8, SectionSums) {
     let &LineLevelRecord { level, tiles, parts, points, bytes } = of;
     (level, SectionSums { tiles, parts, points, bytes })
 }
 
-/// Looks at the layer in each tile, and compares what all have with what is recorded by level.
+/// Visits the layer in each tile, and compares the sums with the recorded ones of each level.
 pub(crate) fn look_at_layer(
-    (package, threads): (&FilePackage, usize),
+    run: &VerifyRun<'_>,
+    stage: Stage,
     look_at: impl Fn(TileId) -> OfTile + Sync,
     (check, recorded): (CheckId, Vec<(u8, SectionSums)>),
     findings: &mut Findings,
-    observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
     let mut levels: BTreeMap<u8, SectionSums> = BTreeMap::new();
-    each_tile(
-        package,
-        threads,
-        observer,
+    run.each_tile(
+        stage,
         |id| Ok(look_at(id)),
         |id, found| {
             findings.merge(found.findings);
@@ -103,11 +112,13 @@ pub(crate) fn look_at_layer(
     Ok(())
 }
 
-/// Looks whether each object counts once.
+/// Checks that each object counts once, as kept or as lost.
 pub(crate) fn check_totals(
     check: CheckId,
     what: &str,
-    (all, kept, lost): (u64, impl Iterator<Item = u64>, &[(String, u64)]),
+    all: u64,
+    kept: impl Iterator<Item = u64>,
+    lost: &[(String, u64)],
     findings: &mut Findings,
 ) {
     let (kept, lost): (u64, u64) = (kept.sum(), lost.iter().map(|(_, lost)| lost).sum());

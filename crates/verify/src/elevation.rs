@@ -1,12 +1,12 @@
-//! The elevation files of a package, for who compares with them.
+//! The elevation files of a package, for callers that compare something with them.
 
 use std::path::PathBuf;
 
 use corniche_dem::{Dem, GridPlan};
-use corniche_gis::Polygon;
+use corniche_gis::RegionPolygons;
 use corniche_spec::{
-    Observer,
-    inputs::{Inputs, OtherInputs},
+    BuildObserver,
+    inputs::{InputFiles, OtherInputs},
 };
 use corniche_tileset::FilePackage;
 
@@ -14,29 +14,30 @@ use super::{
     checks::Check, dem_inputs, error::VerifyError, polygon, verify_settings::VerifySettings,
 };
 
-/// The elevation files that a package was made from, opened as its build did.
+/// The elevation files from which a package was built, opened as its build did.
 #[derive(Debug)]
 pub struct RecordedElevation {
     /// The files.
     pub dem: Dem,
     /// The package's grid.
     pub plan: GridPlan,
-    inputs: Inputs,
+    inputs: InputFiles,
 }
 
 impl RecordedElevation {
-    /// Opens the files and makes sure that they are those of the build. `polygon` is the one that the package was cut with, if it was.
+    /// Opens the files, and checks that they are those of the build. `polygon` is the polygon to
+    /// which the package was clipped, if any.
     ///
     /// # Errors
-    /// When a file cannot be read, or they are not those of the build.
+    /// When a file cannot be read, or the files are not those of the build.
     pub fn open(
         package: &FilePackage,
         files: &[PathBuf],
-        polygon: Option<Polygon>,
-        observer: &dyn Observer,
+        polygon: Option<RegionPolygons>,
+        observer: &dyn BuildObserver,
     ) -> Result<Self, VerifyError> {
         polygon::check(package.manifest(), polygon.as_ref())?;
-        let inputs = Inputs::find(files, OtherInputs::default())?;
+        let inputs = InputFiles::find(files, OtherInputs::default())?;
         let settings = VerifySettings {
             dem: files.to_vec(),
             photo: Vec::new(),
@@ -53,10 +54,10 @@ impl RecordedElevation {
         }
     }
 
-    /// Makes sure that no file changed since it was opened: to be asked when all is read.
+    /// Checks that no file has changed since it was opened. Call it when everything is read.
     ///
     /// # Errors
-    /// When one did.
+    /// When a file has changed.
     pub fn check_unchanged(&self) -> Result<(), VerifyError> {
         Ok(self.inputs.check_unchanged()?)
     }

@@ -1,4 +1,4 @@
-//! Why a package could not be verified.
+//! Errors that prevent the verification of a package.
 
 use std::path::PathBuf;
 
@@ -7,12 +7,12 @@ use corniche_ground::GroundError;
 use corniche_pieces::ExtractError;
 use corniche_spec::{
     artifacts::ArtifactError,
-    inputs::{InputError, Inputs},
+    inputs::{InputError, InputFiles},
 };
 use corniche_store::{LackOfRoom, StoreError};
 use corniche_tileset::{OpenError, SourceError};
 
-/// Why a package could not be verified.
+/// An error that prevents the verification of a package.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
@@ -24,68 +24,68 @@ pub enum VerifyError {
     #[error(transparent)]
     Dem(#[from] corniche_dem::DemError),
     #[error(
-        "{}: not the elevation files that the package was made from; give {}, the same files in the same order",
+        "{}: not the elevation files that the package was built from; pass {}, the same files in the same order",
         listed_files(.given), listed_files(.expected)
     )]
     OtherDem { given: Vec<PathBuf>, expected: Vec<String> },
     #[error(
-        "the elevation files do not give the package's grid or heights; corniche verify PACKAGE --dem FILE... says what differs"
+        "the elevation files do not result in the package's grid or heights; corniche verify PACKAGE --dem FILE... lists the differences"
     )]
     OtherGrid,
     #[error("the name of {path:?} is not UTF-8; rename the file")]
     InputName { path: PathBuf },
     #[error(
-        "{path:?} changed while it was read; run the same command again when no program writes to the file"
+        "{path:?} changed while it was read; run the command again when no program is writing to the file"
     )]
     Changed { path: PathBuf },
     #[error(
-        "{} is not what the package was made from; give {}, the same files",
+        "{} is not what the package was built from; pass {}, the same files",
         listed_files(.paths), listed_files(.expected)
     )]
     OtherOsm { paths: Vec<PathBuf>, expected: Vec<String> },
     #[error(
-        "the FRC table {given:?} is not the one that the package was made with; give {expected:?} with --frc-table"
+        "the FRC table {given:?} is not the one that the package was built with; pass {expected:?} with --frc-table"
     )]
     OtherTable { given: String, expected: String },
     #[error("{}", other_area_table(given.as_deref(), expected))]
     OtherAreaTable { given: Option<String>, expected: String },
     #[error(
-        "the package was cut with the polygon {expected:?}; give the same polygon with --polygon"
+        "the package was clipped to the polygon {expected:?}; pass the same polygon with --polygon"
     )]
     PolygonMissing { expected: String },
     #[error(
-        "{path:?} is not the polygon that the package was cut with; give {expected:?}, the same coordinate system and corners"
+        "{path:?} is not the polygon that the package was clipped to; pass {expected:?}, with the same coordinate system and corners"
     )]
     OtherPolygon { path: PathBuf, expected: String },
-    #[error("the package was made without a polygon; leave --polygon out")]
+    #[error("the package was built without a polygon; omit --polygon")]
     NoPolygon,
     #[error(
-        "{} are not the photos that the package was made from; give {}, the same files in the same order",
+        "{} are not the photos that the package was built from; pass {}, the same files in the same order",
         listed_files(.paths), listed_files(.expected)
     )]
     OtherPhotos { paths: Vec<PathBuf>, expected: Vec<String> },
-    #[error("the package was made without photos; leave --photo out")]
+    #[error("the package was built without photos; omit --photo")]
     NoPhotos,
     #[error(transparent)]
     Photo(#[from] corniche_photo::PhotoError),
-    #[error("the package was made without an extract; leave --osm out")]
+    #[error("the package was built without an extract; omit --osm")]
     NoExtract,
     #[error(
-        "the package was made with another FRC table that is called {name:?}, too, read from a file; give that file with \
+        "the package was built with another FRC table, read from a file and also called {name:?}; pass that file with \
          --frc-table"
     )]
     OtherTableOfThatName { name: String },
-    #[error("the extract could not be laid on the package's tiles")]
+    #[error("the roads of the extract could not be clipped and draped on the package's tiles")]
     Extract(#[source] ExtractError),
     #[error("the ground of the package could not be compared")]
     Ground(#[source] GroundError),
-    #[error("intermediate results could not be kept in the folder for temporary files")]
+    #[error("intermediate results could not be stored in the folder for temporary files")]
     Kept(#[source] ArtifactError),
     #[error(transparent)]
     Setup(InputError),
     #[error(
-        "intermediate results could not be kept in the folder for temporary files{}",
-        LackOfRoom::advice(LackOfRoom::of(.0))
+        "intermediate results could not be stored in the folder for temporary files{}",
+        LackOfRoom::advice(LackOfRoom::from_io_error(.0))
     )]
     Work(#[source] std::io::Error),
     #[error("interrupted")]
@@ -144,22 +144,27 @@ impl From<InputError> for VerifyError {
     }
 }
 
-/// A name may be that of two tables.
+/// The error for a table of areas that is missing or not that of the build. Two tables can have the
+/// same name.
 fn other_area_table(given: Option<&str>, expected: &str) -> String {
     match given {
         Some(given) if given == expected => format!(
-            "the package was made with another table of areas that is called {expected:?}, too, read from a file; give that file with --areas"
+            "the package was built with another table of areas, read from a file and also called {expected:?}; pass that file with --areas"
         ),
         Some(given) => format!(
-            "the table of areas {given:?} is not the one that the package was made with; give {expected:?} with --areas"
+            "the table of areas {given:?} is not the one that the package was built with; pass {expected:?} with --areas"
         ),
-        None => format!("the package has areas; give their table, {expected:?}, with --areas"),
+        None => format!("the package has areas; pass their table {expected:?} with --areas"),
     }
 }
 
 impl VerifyError {
-    /// What came of a comparison with these files. A changed file may be the cause of any other error, so it is reported instead.
-    pub(crate) fn unless_changed<T>(inputs: &Inputs, compared: Result<T, Self>) -> Result<T, Self> {
+    /// Returns `result`, unless one of these files has changed: a changed file may be the cause of
+    /// any other error, so it is reported instead.
+    pub(crate) fn unless_changed<T>(
+        inputs: &InputFiles,
+        compared: Result<T, Self>,
+    ) -> Result<T, Self> {
         match &compared {
             Err(Self::Interrupted) => compared,
             _ => inputs.check_unchanged().map_err(Self::from).and(compared),

@@ -1,10 +1,11 @@
-//! Compares a tile's GEO lines with its SV lines: the GEO lines lie on the SV lines, and wherever there is ground beneath an
-//! SV line, there is a GEO line on it. Also checks the height ranges of SV segments.
+//! Compares a tile's GEO lines with its SV lines: the GEO lines lie on the SV lines, and wherever
+//! there is ground beneath an SV line, a GEO line lies on it. Also checks the height ranges of SV
+//! segments.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use corniche_drape::{DrapedLine, DrapedVertex};
-use corniche_geom::{LatticePoint, TileId, TooMuchWork, Work};
+use corniche_geom::{LatticePoint, StepBudget, TileId, TooMuchWork};
 use corniche_tileset::TilePayload;
 
 use super::{
@@ -14,52 +15,55 @@ use super::{
     triangle_soup::TriangleSoup,
 };
 
-/// How far apart two lines that coincide may lie, in lattice steps: each is rounded where it is cut.
+/// The distance of two lines that still count as coinciding, in lattice steps: each is rounded
+/// where it is cut.
 pub(crate) const SAME_LINE_STEPS: f64 = 2.0;
-/// Shorter pieces are ignored.
+/// Shorter pieces are ignored, in lattice steps.
 const LEAST_STEPS: f64 = 8.0;
-/// Ranges are widened by this part of the heights before they are rounded outwards (FORMAT.md, section 8) …
+/// The build widens ranges by this part of the heights before it rounds them outwards (FORMAT.md,
+/// section 8).
 const RANGE_PAD: f64 = 1e-6;
-/// … to this part of it: two ways of computing the same heights.
+/// The relative tolerance of that widening, because the heights are computed in two ways.
 const PAD_ROUNDING: f64 = 1e-3;
 
-/// Steps that comparing a tile's lines with each other may take, and looking for the ground along them: a pair of segments or a triangle is one.
-/// Real tiles take a few million, and those with the finest cells and the most roads a hundred times as many: a margin there holds all triangles.
+/// The limit of work for a tile, in steps: comparing a pair of segments or reading a triangle is
+/// one step. Real tiles take a few million steps, and those with the finest cells and the most
+/// roads a hundred times as many, because their margins contain all triangles.
 pub(crate) const MOST_STEPS: u64 = 1 << 30;
 
 /// A segment in local steps.
-pub(crate) type Segment = [[f64; 2]; 2];
+pub(crate) type LocalSegment = [[f64; 2]; 2];
 
-/// What a tile has of one way.
+/// The lines of one way in a tile.
 #[derive(Default)]
 struct Way {
-    /// Source points and leads of its GEO lines.
+    /// The source points and leads of its GEO lines.
     points: BTreeSet<LatticePoint>,
-    /// Straight pieces of its GEO lines, as far as there is ground.
-    geo: Vec<Segment>,
-    /// Points of its SV lines.
+    /// The straight pieces of its GEO lines, where there is ground.
+    geo: Vec<LocalSegment>,
+    /// The points of its SV lines.
     sv_points: BTreeSet<LatticePoint>,
-    sv: Vec<Segment>,
+    sv: Vec<LocalSegment>,
 }
 
 /// A tile with its ground, and the place of both on the lattice.
-pub(crate) struct View<'a> {
+pub(crate) struct TileView<'a> {
     pub payload: &'a TilePayload,
     pub(crate) ground: &'a TriangleSoup,
     pub place: TilePlace,
-    /// How far around an SV segment its range reaches, in lattice steps.
+    /// The distance around an SV segment that its height range covers, in lattice steps.
     pub(crate) margin_steps: i64,
     pub quantum_m: f64,
 }
 
-/// Compares the lines of both methods; `positions` are those of the GEO lines' vertices.
+/// Compares the lines of both methods; `positions` are the vertices of the GEO lines.
 pub(crate) fn verify_lines(
-    view: &View<'_>,
+    view: &TileView<'_>,
     positions: &[Option<Vec<[f64; 3]>>],
     findings: &mut Findings,
 ) {
     let id = view.payload.id;
-    let work = Work::new(MOST_STEPS);
+    let work = StepBudget::new(MOST_STEPS);
     let is_within = || work.check().is_ok();
     for ((class, way_id), way) in ways(view, positions) {
         let Way { points, geo, sv_points, sv } = way;
@@ -69,7 +73,7 @@ pub(crate) fn verify_lines(
             let at = view.place.local(point);
             let holds = sv_points.contains(&point) || sv.is_on(at, SAME_LINE_STEPS, &work);
             findings.look(CheckId::Methods, holds, || {
-                format!("{}: the GEO line is at {point:?}, no SV line is", name())
+                format!("{}: the GEO line passes {point:?}, where there is no SV line", name())
             });
         }
         for &segment in sv.segments.iter().take_while(|_| is_within()) {
@@ -80,13 +84,13 @@ pub(crate) fn verify_lines(
             });
             findings.look(CheckId::Methods, bare.is_none(), || {
                 format!(
-                    "{}: ground without a GEO line beneath the SV line from {:?}",
+                    "{}: no GEO line on the ground beneath the SV line from {:?}",
                     name(),
                     segment[0]
                 )
             });
         }
-        // Lines of which not all were looked at prove nothing, and may have been told to be bare.
+        // Lines that were compared only in part prove nothing, and may have been reported as bare.
         if let Err(error) = work.check() {
             findings.look(CheckId::Methods, false, || too_much(id, error));
             return;
@@ -94,12 +98,14 @@ pub(crate) fn verify_lines(
     }
 }
 
-/// What is told of a tile whose lines lie on each other without end.
+/// The finding for a tile whose lines overlap too often.
 pub(crate) fn too_much(id: TileId, error: TooMuchWork) -> String {
-    format!("tile {id}: so many segments lie near each other that no writer has made them: {error}")
+    format!(
+        "tile {id}: so many segments lie near each other that no writer can have created them: {error}"
+    )
 }
 
-fn ways(view: &View<'_>, positions: &[Option<Vec<[f64; 3]>>]) -> BTreeMap<(u8, i64), Way> {
+fn ways(view: &TileView<'_>, positions: &[Option<Vec<[f64; 3]>>]) -> BTreeMap<(u8, i64), Way> {
     let place = view.place;
     let mut ways: BTreeMap<(u8, i64), Way> = BTreeMap::new();
     for (road, positions) in view.payload.roads_geo.iter().zip(positions) {
@@ -133,11 +139,11 @@ fn ways(view: &View<'_>, positions: &[Option<Vec<[f64; 3]>>]) -> BTreeMap<(u8, i
 pub(crate) fn segments(
     points: &[LatticePoint],
     place: TilePlace,
-) -> impl Iterator<Item = Segment> + '_ {
+) -> impl Iterator<Item = LocalSegment> + '_ {
     points.windows(2).map(move |pair| [place.local(pair[0]), place.local(pair[1])])
 }
 
-/// The source points of a GEO line, those beyond its ground included.
+/// The source points of a GEO line, including those beyond its ground.
 pub(crate) fn source_points(line: &DrapedLine) -> impl Iterator<Item = LatticePoint> + '_ {
     let own = line.vertices.iter().filter_map(|vertex| match vertex {
         DrapedVertex::Source { point, .. } => Some(*point),
@@ -146,46 +152,51 @@ pub(crate) fn source_points(line: &DrapedLine) -> impl Iterator<Item = LatticePo
     line.lead_in.into_iter().chain(own).chain(line.lead_out)
 }
 
-/// The segments of a way, found by where they are.
+/// The segments of a way, indexed by position.
 pub(crate) struct NearSegments {
-    segments: Vec<Segment>,
+    segments: Vec<LocalSegment>,
     index: NearIndex,
 }
 
 impl NearSegments {
-    pub(crate) fn new(segments: Vec<Segment>) -> Self {
+    pub(crate) fn new(segments: Vec<LocalSegment>) -> Self {
         let index = NearIndex::new(segments.iter().copied());
         Self { segments, index }
     }
 
-    /// All segments within `reach` of the box around two places, and perhaps others.
-    fn near(&self, corners: Segment, reach: f64, work: &Work) -> impl Iterator<Item = Segment> {
+    /// All segments within `reach` of the box around two points, and perhaps others.
+    fn near(
+        &self,
+        corners: LocalSegment,
+        reach: f64,
+        work: &StepBudget,
+    ) -> impl Iterator<Item = LocalSegment> {
         self.index.near(corners, reach, work).map(|number| self.segments[number])
     }
 
-    /// Whether a point lies within so many steps of one of them.
-    pub(crate) fn is_on(&self, point: [f64; 2], steps: f64, work: &Work) -> bool {
+    /// Whether a point lies within `steps` of one of the segments.
+    pub(crate) fn is_on(&self, point: [f64; 2], steps: f64, work: &StepBudget) -> bool {
         self.near([point; 2], steps, work).any(|segment| distance(point, segment) <= steps)
     }
 }
 
 /// The distance of a point from a segment.
-pub(crate) fn distance(point: [f64; 2], [a, b]: Segment) -> f64 {
+pub(crate) fn distance(point: [f64; 2], [a, b]: LocalSegment) -> f64 {
     let (du, dv) = (b[0] - a[0], b[1] - a[1]);
     let squared = du * du + dv * dv;
     let ahead = (point[0] - a[0]) * du + (point[1] - a[1]) * dv;
-    // One without length is a point.
+    // A segment of length 0 is a point.
     let part = if squared > 0.0 { (ahead / squared).clamp(0.0, 1.0) } else { 0.0 };
     (a[0] + part * du - point[0]).hypot(a[1] + part * dv - point[1])
 }
 
-/// The pieces of a segment that lie in the tile but on none of the lines. A segment along a border has none, because its
-/// line may belong to the neighbour.
+/// The pieces of a segment that lie in the tile but on none of the lines. A segment along a border
+/// has no such pieces, because its line may belong to the neighbour.
 fn bare_pieces(
     place: TilePlace,
-    segment: Segment,
-    lines: impl Iterator<Item = Segment>,
-) -> Vec<Segment> {
+    segment: LocalSegment,
+    lines: impl Iterator<Item = LocalSegment>,
+) -> Vec<LocalSegment> {
     let [p, q] = segment;
     let (du, dv) = (q[0] - p[0], q[1] - p[1]);
     let length = du.hypot(dv);
@@ -234,18 +245,18 @@ fn bare_pieces(
 }
 
 /// Checks the height range of every SV segment.
-pub(crate) fn verify_ranges(view: &View<'_>, findings: &mut Findings) {
+pub(crate) fn verify_ranges(view: &TileView<'_>, findings: &mut Findings) {
     let id = view.payload.id;
     // One step more than the margin, because ground exactly at the margin counts.
     let margin = view.margin_steps as f64 + 1.0;
-    let work = Work::new(MOST_STEPS);
+    let work = StepBudget::new(MOST_STEPS);
     for road in &view.payload.roads_sv {
         let lines = segments(&road.line.points, view.place).zip(&road.line.ground_range_m);
         for (segment, &[low_m, high_m]) in lines {
             let ends = segment.map(|point| view.place.cells(point));
             if let Err(error) = work.check() {
                 findings.look(CheckId::SvRange, false, || {
-                    format!("tile {id}: its segments lie over so much ground that no writer has made them: {error}")
+                    format!("tile {id}: its segments lie over so much ground that no writer can have created them: {error}")
                 });
                 return;
             }

@@ -6,7 +6,7 @@ use super::*;
 
 fn place() -> TilePlace {
     let frame = GridFrame::new([0.0; 2], 1.0, NodeIndex { i: 0, j: 0 }, 0).unwrap();
-    TilePlace::of(&frame, TileId::ROOT)
+    TilePlace::from_frame(&frame, TileId::ROOT)
 }
 
 #[test]
@@ -30,7 +30,7 @@ fn along_a_border_nothing_is_asked() {
 fn a_point_is_on_a_segment_and_not_beyond_its_end() {
     let segments = [[[0.0, 0.0], [100.0, 0.0]]];
     let segments = NearSegments::new(segments.to_vec());
-    let is_on = |point| segments.is_on(point, 2.0, &Work::unlimited());
+    let is_on = |point| segments.is_on(point, 2.0, &StepBudget::unlimited());
     assert!(is_on([50.0, 1.5]) && is_on([101.0, 0.0]));
     assert!(!is_on([50.0, 2.5]) && !is_on([103.0, 0.0]));
 }

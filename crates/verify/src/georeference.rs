@@ -1,4 +1,4 @@
-//! Where on Earth a package lies: its CRS, and what it says in degrees.
+//! Checks the georeference of a package: its CRS, and its positions in degrees.
 
 use corniche_geom::{Bounds, Projection, Seam};
 use corniche_gis::{CrsError, RecordedCrs};
@@ -7,17 +7,18 @@ use corniche_tileset::Manifest;
 
 use super::checks::{CheckId, Findings};
 
-/// Accuracy of the coordinate table, at its samples and between them.
+/// The accuracy of the coordinate table, at its samples and between them.
 const TABLE_M: f64 = 0.01;
-/// Metres in a degree of latitude, exact enough for a tolerance.
+/// The metres in a degree of latitude, exact enough for a tolerance.
 const METRES_PER_DEGREE: f64 = 111_320.0;
-/// Positions along each side at which rectangles and scales are looked at.
+/// The number of positions along each side at which rectangles and scales are checked.
 const ALONG: usize = 33;
-/// Data over more than this range of longitude are taken to contain a pole.
+/// Data over more than this range of longitude are assumed to contain a pole.
 const ALL_AROUND_DEG: f64 = 350.0;
-/// Rounding of a scale measured over a kilometre.
+/// The rounding error of a scale that is measured over a kilometre.
 const SCALE_ROUNDING: f64 = 1e-6;
-/// A rectangle around samples reaches half a pixel beyond them, nodes beyond the data one cell, and both are rounded.
+/// The tolerance of rectangles, in cells: samples reach half a pixel beyond their positions, nodes
+/// one cell beyond the data, and both are rounded.
 const RIM_CELLS: f64 = 3.0;
 
 pub(crate) fn verify(manifest: &Manifest, findings: &mut Findings) {
@@ -33,11 +34,12 @@ pub(crate) fn verify(manifest: &Manifest, findings: &mut Findings) {
     });
     let looked_at = datum_operations(manifest, &crs, findings);
     if let Err(error) = looked_at.and_then(|()| positions(manifest, &crs, findings)) {
-        findings.look(CheckId::Crs, false, || format!("positions cannot be carried: {error}"));
+        findings.look(CheckId::Crs, false, || format!("positions cannot be transformed: {error}"));
     }
 }
 
-/// The operations between the package's datum and WGS84 are recorded first, those of elevation files after them.
+/// Checks that the operations between the package's datum and WGS84 are recorded first, and those
+/// of elevation files after them.
 fn datum_operations(
     manifest: &Manifest,
     crs: &RecordedCrs,
@@ -66,7 +68,7 @@ fn datum_operations(
     Ok(())
 }
 
-/// The CRS with the factors of the package.
+/// The CRS with the factors that the package records.
 pub(crate) fn recorded(manifest: &Manifest) -> Result<RecordedCrs, CrsError> {
     RecordedCrs::new(&manifest.crs_wkt, manifest.metres_per_unit, manifest.whole_data_bounds())
 }
@@ -76,10 +78,11 @@ fn positions(
     crs: &RecordedCrs,
     findings: &mut Findings,
 ) -> Result<(), CrsError> {
-    // Scales are those of all elevation files, also of a package of a part of them.
+    // Scales are those of all elevation files, even if the package covers only a part of them.
     let data = manifest.whole_data_bounds();
     let projection = crs.projection(manifest.area_deg())?;
-    // Scales are recorded at the corners of files, which may lie up to a cell beyond the outermost nodes.
+    // Scales are recorded at the corners of files, which may lie up to a cell beyond the outermost
+    // nodes.
     let files = data.expanded(manifest.frame.cell().to_array());
     let scales = crs.scales(&grid(files), manifest.area_deg())?;
     check_scales(manifest, &scales, findings);
@@ -93,7 +96,8 @@ const POLAR_DEG: f64 = 89.0;
 /// The largest scale that a package can record.
 const LARGEST_SCALE: f64 = 1000.0;
 
-/// Checks that the recorded scales lie within those over the data; `scales` are at the positions of [`grid`].
+/// Checks that the recorded scales lie within those over the data; `scales` are at the positions of
+/// [`grid`].
 fn check_scales(manifest: &Manifest, scales: &[Option<[f64; 2]>], findings: &mut Findings) {
     let scale = &manifest.scale;
     for axis in 0..2 {
@@ -102,23 +106,24 @@ fn check_scales(manifest: &Manifest, scales: &[Option<[f64; 2]>], findings: &mut
         let least = of_axis().fold(f64::INFINITY, f64::min) - slack;
         let most = of_axis().fold(f64::NEG_INFINITY, f64::max) + slack;
         let said = [scale.least[axis], scale.center[axis], scale.largest[axis]];
-        // The scale of degrees grows without limit towards a pole; there the record holds the largest scale that the format allows.
+        // The scale of degrees grows without limit towards a pole; there the package records the
+        // largest scale that the format allows.
         let degrees = manifest.area_deg();
         let is_at_pole = degrees.max_y >= POLAR_DEG || degrees.min_y <= -POLAR_DEG;
         let most = if is_at_pole { most.max(LARGEST_SCALE) } else { most };
         let holds = least <= said[0] && said.is_sorted() && said[2] <= most;
         findings.look(CheckId::Scale, holds, || {
-            format!("axis {axis}: scales {said:?} are recorded, there are {least} to {most} over the data")
+            format!("axis {axis}: scales {said:?} are recorded, the data has {least} to {most}")
         });
     }
     let mean = (scale.center[0] * scale.center[1]).sqrt();
     findings.look(CheckId::Scale, manifest.point_scale.to_bits() == mean.to_bits(), || {
-        format!("the scale is {}, its parts make {mean}", manifest.point_scale)
+        format!("the recorded scale is {}, the one of its axes is {mean}", manifest.point_scale)
     });
 }
 
-/// How far an extreme between positions of [`grid`] may lie beyond the values at them: of a parabola an eighth of the
-/// second difference, in each direction.
+/// The distance of an extreme between positions of [`grid`] from the values at these positions: for
+/// a parabola an eighth of the second difference, in each direction.
 fn between(scales: &[Option<[f64; 2]>], axis: usize) -> f64 {
     let value = |row: usize, column: usize| scales[row * ALONG + column].map(|along| along[axis]);
     let mut largest = 0.0_f64;
@@ -136,8 +141,9 @@ fn between(scales: &[Option<[f64; 2]>], axis: usize) -> f64 {
     largest / 4.0
 }
 
-/// The rectangle in degrees is around the data, and the data's rectangle is around the one in degrees: each holds the
-/// other's border to a few cells, less what the one shape reaches beyond the other by being turned or bent.
+/// Checks that the rectangle in degrees encloses the data, and the data's rectangle encloses the
+/// one in degrees: each contains the other's border to within a few cells, apart from the parts
+/// where one shape exceeds the other because it is rotated or curved.
 fn rectangles(manifest: &Manifest, projection: &dyn Projection, findings: &mut Findings) {
     let (data, degrees) = (manifest.data_bounds, manifest.wgs84_bounds);
     if degrees.width() >= ALL_AROUND_DEG {
@@ -175,7 +181,7 @@ fn rectangles(manifest: &Manifest, projection: &dyn Projection, findings: &mut F
     });
 }
 
-/// Whether `outer`, widened by `rim`, holds `inner`.
+/// Whether `outer`, widened by `rim`, contains `inner`.
 fn holds(outer: Bounds, inner: Bounds, rim: [f64; 2]) -> bool {
     outer.min_x - rim[0] <= inner.min_x
         && outer.min_y - rim[1] <= inner.min_y
@@ -183,14 +189,16 @@ fn holds(outer: Bounds, inner: Bounds, rim: [f64; 2]) -> bool {
         && outer.max_y + rim[1] >= inner.max_y
 }
 
-/// Samples of the table, by their places in it, and what readers make of them halfway between.
+/// Compares the samples of the table with the CRS, and the interpolated positions halfway between
+/// them.
 fn table(manifest: &Manifest, projection: &dyn Projection, findings: &mut Findings) {
     let table = &manifest.coordinates;
     let (bounds, data) = (table.bounds(), manifest.data_bounds);
     findings.look(CheckId::Coordinates, holds(bounds, data, [0.0; 2]), || {
         format!("the table covers {bounds:?}, the data lie in {data:?}")
     });
-    // Samples are at every second of these, the worst places halfway between them at the others.
+    // Samples are at every second position, and the least accurate positions, halfway between them,
+    // at the others.
     let last = 2 * (table.size() - 1);
     let mut truth: Vec<[f64; 2]> = (0..=last)
         .flat_map(|row| (0..=last).map(move |column| [column, row]))
@@ -204,13 +212,13 @@ fn table(manifest: &Manifest, projection: &dyn Projection, findings: &mut Findin
         let off_m = east_deg.hypot(found[1] - lat) * METRES_PER_DEGREE;
         if off_m.is_nan() { f64::INFINITY } else { worst_m.max(off_m) }
     });
-    // A little more than the tolerance: the build looks at the middles of meshes alone.
+    // A little more than the tolerance, because the build checks only the middles of meshes.
     findings.look(CheckId::Coordinates, carried && worst_m <= 1.5 * TABLE_M, || {
         format!("the table is off by {worst_m} m")
     });
 }
 
-/// A position in a rectangle, `of` steps along each side.
+/// A position in a rectangle that is divided into `of` steps along each side.
 fn at(bounds: Bounds, [column, row]: [usize; 2], of: usize) -> [f64; 2] {
     let share = |index: usize| index as f64 / of as f64;
     [bounds.min_x + bounds.width() * share(column), bounds.min_y + bounds.height() * share(row)]

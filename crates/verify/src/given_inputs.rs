@@ -1,11 +1,11 @@
-//! The files that a verification is given, found to be those of the build before the long work begins.
+//! The given input files, checked to be those of the build before the long work begins.
 
 use std::path::PathBuf;
 
 use corniche_dem::{Dem, GridPlan};
 use corniche_spec::{
-    Observer,
-    inputs::{Inputs, OtherInputs},
+    BuildObserver,
+    inputs::{InputFiles, OtherInputs},
 };
 use corniche_tileset::Manifest;
 
@@ -17,28 +17,29 @@ use super::{
     verify_settings::{GivenFiles, VerifySettings},
 };
 
-/// What was given beside the package.
+/// The given inputs in addition to the package.
 pub(crate) struct GivenInputs {
-    /// The elevation files as the build opened them; `None` inside where their grid is not the package's.
+    /// The elevation files, opened as by the build; the inner `None` means that their grid is not
+    /// the package's.
     pub dem: Option<GivenFiles<Option<(Dem, GridPlan)>>>,
     pub photo: Option<GivenFiles<()>>,
     /// The extracts, in the order in which the build read them.
     pub osm: Option<GivenFiles<Vec<PathBuf>>>,
-    /// What was seen of them.
+    /// The findings about the files.
     pub(crate) findings: Findings,
 }
 
 impl GivenInputs {
-    /// Fails where one of the files, or a table, is not that of the build.
+    /// Fails if one of the files, or a table, is not that of the build.
     pub(crate) fn open(
         manifest: &Manifest,
         settings: &VerifySettings,
-        observer: &dyn Observer,
+        observer: &dyn BuildObserver,
     ) -> Result<Self, VerifyError> {
         let mut findings = Findings::default();
         let mut checks: Vec<Check> = Vec::new();
         let dem = (!settings.dem.is_empty()).then(|| {
-            looked_at(Inputs::find(&settings.dem, OtherInputs::default())?, |inputs| {
+            looked_at(InputFiles::find(&settings.dem, OtherInputs::default())?, |inputs| {
                 dem_inputs::open(settings, inputs, manifest, &mut checks, observer)
             })
         });
@@ -46,7 +47,7 @@ impl GivenInputs {
         findings.merge(checks);
         let photo = (!settings.photo.is_empty()).then(|| {
             let others = OtherInputs { photo: &settings.photo, ..OtherInputs::default() };
-            looked_at(Inputs::find(&[], others)?, |inputs| {
+            looked_at(InputFiles::find(&[], others)?, |inputs| {
                 let given = inputs.hash(observer)?;
                 photo_files::check_inputs(manifest, &settings.photo, &given, &mut findings)
             })
@@ -54,7 +55,7 @@ impl GivenInputs {
         let photo = photo.transpose()?;
         let osm = settings.osm.as_ref().map(|asked| {
             let others = OtherInputs { osm: &asked.paths, ..OtherInputs::default() };
-            looked_at(Inputs::find(&[], others)?, |inputs| {
+            looked_at(InputFiles::find(&[], others)?, |inputs| {
                 let paths = osm::check_inputs(manifest, asked, inputs, &mut findings, observer)?;
                 osm_layers::table(asked.areas.as_ref(), manifest)?;
                 Ok(paths)
@@ -66,8 +67,8 @@ impl GivenInputs {
 }
 
 fn looked_at<T>(
-    inputs: Inputs,
-    look: impl FnOnce(&Inputs) -> Result<T, VerifyError>,
+    inputs: InputFiles,
+    look: impl FnOnce(&InputFiles) -> Result<T, VerifyError>,
 ) -> Result<GivenFiles<T>, VerifyError> {
     let found = look(&inputs);
     let found = VerifyError::unless_changed(&inputs, found)?;

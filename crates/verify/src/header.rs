@@ -1,4 +1,4 @@
-//! The header and metadata for PMTiles tools follow from manifest and tiles.
+//! Checks that the header and the metadata for PMTiles tools match the manifest and the tiles.
 
 use corniche_tileset::{FilePackage, ToolRecord};
 
@@ -7,13 +7,13 @@ use super::{
     error::VerifyError,
 };
 
-/// Number of characters of a text that a finding shows.
+/// The number of characters of a text that a finding shows.
 const SHOWN: usize = 200;
 
 pub(crate) fn verify(package: &FilePackage, findings: &mut Findings) -> Result<(), VerifyError> {
     let tiles = package.tile_ids()?.len() as u64;
     let said = fields(&package.tool_record()?);
-    let wanted = fields(&ToolRecord::of(package.manifest(), tiles));
+    let wanted = fields(&ToolRecord::from_manifest(package.manifest(), tiles));
     for ((name, said), (_, wanted)) in said.into_iter().zip(wanted) {
         let shown = |text: &str| text.chars().take(SHOWN).collect::<String>();
         findings.look(CheckId::Header, said == wanted, || {
@@ -23,7 +23,7 @@ pub(crate) fn verify(package: &FilePackage, findings: &mut Findings) -> Result<(
     Ok(())
 }
 
-/// All fields as text. The pattern names every one, so that a new one is compared, too.
+/// All fields as text. The pattern names every field, so that a new field is compared, too.
 fn fields(record: &ToolRecord) -> [(&'static str, String); 11] {
     let ToolRecord {
         addressed_tiles,

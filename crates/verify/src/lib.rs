@@ -1,4 +1,4 @@
-//! Checks whether a package keeps its promises, by looking at every tile.
+//! Verifies packages: checks every tile and every recorded number of a package.
 
 pub mod area_seams;
 mod areas;
@@ -43,11 +43,11 @@ mod triangle_soup;
 mod verify_settings;
 mod vertices_against_dem;
 
-use corniche_areas::ClassedLayer;
-use corniche_spec::Observer;
+use corniche_spec::BuildObserver;
 use corniche_tileset::FilePackage;
 
 use decoded_tiles::DecodedTiles;
+use each_tile::VerifyRun;
 use given_inputs::GivenInputs;
 
 pub use self::{
@@ -55,24 +55,25 @@ pub use self::{
     elevation::RecordedElevation,
     error::VerifyError,
     network::network,
-    read_again::line_names,
+    read_again::boundary_names,
     report::{ErrorFigures, GapFigures, VerifyReport},
     verify_settings::{VerifyOsm, VerifySettings},
 };
 
-/// Verifies a package. Without other inputs it checks what the package says about itself; with the elevation files, the photos or
-/// the extract it also checks what the package says about them. [`CheckId`] lists the checks.
+/// Verifies a package. Without other inputs it checks whether the package is consistent; with the
+/// elevation files, the photos or the extract it also compares the package with them. [`CheckId`]
+/// lists the checks.
 ///
 /// # Errors
-/// When the package, the DEM, a photo or the extract cannot be read at all, or is not the one of the build. A broken promise is a
-/// finding, not an error.
+/// When the package, the DEM, a photo or the extract cannot be read at all, or is not the one of
+/// the build. A broken promise is a finding, not an error.
 pub fn verify(
     package: &FilePackage,
     settings: &VerifySettings,
-    observer: &dyn Observer,
+    observer: &dyn BuildObserver,
 ) -> Result<VerifyReport, VerifyError> {
     let report = look_at_all(package, settings, observer);
-    // Not all checks look after each tile.
+    // Not all checks read every tile to its end.
     each_tile::check_readable(package)?;
     report
 }
@@ -80,24 +81,27 @@ pub fn verify(
 fn look_at_all(
     package: &FilePackage,
     settings: &VerifySettings,
-    observer: &dyn Observer,
+    observer: &dyn BuildObserver,
 ) -> Result<VerifyReport, VerifyError> {
-    // Before the long work.
+    // Checked before the long work.
     if !settings.dem.is_empty() || settings.osm.is_some() || settings.polygon.is_some() {
         polygon::check(package.manifest(), settings.polygon.as_ref())?;
     }
     let GivenInputs { dem, photo, osm, findings: of_inputs } =
         GivenInputs::open(package.manifest(), settings, observer)?;
     let mut given = vec![Needs::Package];
-    let tiles = DecodedTiles::new(package);
-    let (mut report, mut findings) = tiles::verify(&tiles, settings.threads, observer)?;
+    let run = &VerifyRun {
+        package,
+        tiles: DecodedTiles::new(package),
+        threads: settings.threads,
+        observer,
+    };
+    let (mut report, mut findings) = tiles::verify(run)?;
     findings.merge(of_inputs);
-    photos::verify(package, settings.threads, &mut findings, observer)?;
-    areas::verify(package, settings.threads, &mut findings, observer)?;
-    for layer in ClassedLayer::ALL {
-        lines::verify(package, layer, settings.threads, &mut findings, observer)?;
-    }
-    spans::verify(&tiles, settings.threads, &mut findings, observer)?;
+    photos::verify(run, &mut findings)?;
+    areas::verify(run, &mut findings)?;
+    lines::verify(run, &mut findings)?;
+    spans::verify(run, &mut findings)?;
     derived_records::verify_sums(package.manifest(), &mut findings);
     derived_records::verify(package.manifest(), &mut findings);
     header::verify(package, &mut findings)?;
@@ -105,17 +109,16 @@ fn look_at_all(
     georeference::verify(package.manifest(), &mut findings);
     if let Some(files) = &dem {
         given.push(Needs::Dem);
-        dem_inputs::verify(&tiles, files, settings, &mut report, observer)?;
+        dem_inputs::verify(run, files, (&mut report, &mut findings))?;
     }
     if let Some(files) = &photo {
         given.push(Needs::Photo);
-        photo_files::verify(package, files, settings, &mut findings, observer)?;
+        photo_files::verify(run, files, &settings.photo, &mut findings)?;
     }
     if let (Some(asked), Some(files)) = (&settings.osm, &osm) {
         given.push(Needs::Osm);
-        osm::verify(&tiles, asked, files, settings, &mut findings, observer)?;
+        osm::verify(run, asked, files, settings.polygon.as_ref(), &mut findings)?;
     }
-    findings.merge(std::mem::take(&mut report.checks));
     report.checks = findings.into_checks(&given);
     Ok(report)
 }

@@ -1,22 +1,22 @@
-//! Boxes in a plane, found by where they are: what is looked at grows with what lies there, not with all there is.
+//! A spatial index of boxes: a query takes time for the boxes nearby, not for all boxes.
 
-use corniche_geom::Work;
+use corniche_geom::StepBudget;
 use rstar::{
     AABB, RTree,
     primitives::{GeomWithData, Rectangle},
 };
 
-/// So few boxes are looked at one by one: a tree of them costs more than it saves.
+/// Up to this number, boxes are scanned one by one, which is faster than a tree.
 const FEW: usize = 32;
 
-/// The boxes around some things, which are numbered from 0.
+/// An index of boxes, which are numbered from 0.
 pub(crate) enum NearIndex {
     Few(usize),
     Many(RTree<GeomWithData<Rectangle<[f64; 2]>, usize>>),
 }
 
 impl NearIndex {
-    /// Each thing is given by two places; its box is the one around both.
+    /// Builds the index. Each item is given by two points, and its box encloses both.
     pub(crate) fn new(corners: impl ExactSizeIterator<Item = [[f64; 2]; 2]>) -> Self {
         if corners.len() <= FEW {
             return Self::Few(corners.len());
@@ -27,12 +27,13 @@ impl NearIndex {
         Self::Many(RTree::bulk_load(boxes.collect()))
     }
 
-    /// The numbers of all things within `reach` of the box around two places, along both axes, and perhaps of others. Each is a step of `work`.
+    /// The numbers of all boxes within `reach` of the box around two points, along both axes, and
+    /// perhaps of others. Each is a step of `work`.
     pub(crate) fn near(
         &self,
         [a, b]: [[f64; 2]; 2],
         reach: f64,
-        work: &Work,
+        work: &StepBudget,
     ) -> impl Iterator<Item = usize> {
         let lows = [a[0].min(b[0]) - reach, a[1].min(b[1]) - reach];
         let highs = [a[0].max(b[0]) + reach, a[1].max(b[1]) + reach];

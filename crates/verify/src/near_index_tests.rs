@@ -1,13 +1,14 @@
-//! What is found is what a scan finds.
+//! Queries of the index find the same boxes as a scan.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
-use corniche_geom::Work;
+use corniche_geom::StepBudget;
 use corniche_testing::Random;
 
 use super::NearIndex;
 
-/// What a scan of all boxes finds is found, however many there are; of many, little else is.
+/// The index finds all boxes that a scan of all boxes finds, in any number; of many boxes, it
+/// returns few others.
 #[test]
 fn all_that_lie_there_are_found() {
     let mut random = Random::new(7);
@@ -32,7 +33,7 @@ fn all_that_lie_there_are_found() {
             let scanned: Vec<usize> = (0..count)
                 .filter(|&number| is_there(0, boxes[number]) && is_there(1, boxes[number]))
                 .collect();
-            let work = Work::unlimited();
+            let work = StepBudget::unlimited();
             let mut found: Vec<usize> = index.near(asked, reach, &work).collect();
             found.sort_unstable();
             assert_eq!(work.done(), found.len() as u64);

@@ -1,4 +1,4 @@
-//! The roads of a package's extract as a network, for who measures along them.
+//! The roads of a package's extract as a network, for measurements along roads.
 
 use std::collections::HashSet;
 
@@ -16,7 +16,7 @@ use corniche_pieces::{
     spans::outer_ground::whole_rectangle,
 };
 use corniche_roads::Road;
-use corniche_spec::{Observer, levels::most_scale};
+use corniche_spec::{BuildObserver, levels::most_scale};
 use corniche_store::MemoryStore;
 use corniche_tileset::FilePackage;
 
@@ -25,20 +25,22 @@ use super::{
     verify_settings::VerifyOsm,
 };
 
-/// Roads are read as far as this around the data, true metres: what lies farther away has no part in how a road is smoothed.
+/// Roads are read as far as this around the data, in true metres: roads farther away have no
+/// influence on how a road is smoothed.
 const AROUND_M: f64 = 10_000.0;
 
-/// Reads the extracts that a package was made from again, and makes a network of their roads, with their points on the package's lattice, and of the
-/// ways of all classes near bridges and tunnels. Roads go on beyond the bounds of a package, as far as there are elevation data; they are cut
-/// at the rectangle of these.
+/// Reads the extracts from which a package was built again, and builds a network of their roads,
+/// with points on the package's lattice, and of the ways of all classes near bridges and tunnels.
+/// Roads continue beyond the bounds of a package, to the rectangle of all elevation data, at which
+/// they are cut.
 ///
 /// # Errors
-/// When a file cannot be read, changes meanwhile, or they are not those of the build.
+/// When a file cannot be read, changes meanwhile, or the files are not those of the build.
 pub fn network(
     package: &FilePackage,
     extract: &VerifyOsm,
     threads: usize,
-    observer: &dyn Observer,
+    observer: &dyn BuildObserver,
 ) -> Result<Network, VerifyError> {
     let manifest = package.manifest();
     let frame = &manifest.frame;
@@ -46,7 +48,7 @@ pub fn network(
     let data = frame.lattice_bounds(manifest.data_nodes());
     let work = TemporaryStore::new(observer)?;
     let scratch = work.scratch()?;
-    let mut found = Found {
+    let mut found = RelevantRoads {
         data,
         around: data.expanded(steps(AROUND_M) as i64),
         whole: whole_rectangle(frame, &manifest.whole_data_bounds()),
@@ -56,7 +58,7 @@ pub fn network(
     };
     let layers = Layers { roads: Some(&mut found), ..Layers::default() };
     read_again(package, (extract, layers), threads, observer)?;
-    let Found { whole, roads, mut near_spans, failed, .. } = found;
+    let RelevantRoads { whole, roads, mut near_spans, failed, .. } = found;
     failed.map_or(Ok(()), Err)?;
     let roads = roads.finish();
     let of_edges = ways_of_edges(&roads, &data);
@@ -72,16 +74,17 @@ pub fn network(
     Ok(roads.with_spans(of_spans.finish()))
 }
 
-/// The ways of the edges that reach the data: an edge is exported whole, with bridges that lie beyond.
+/// The ways of the edges that reach the data: an edge is exported whole, with its bridges outside
+/// the data.
 fn ways_of_edges(network: &Network, data: &LatticeBounds) -> HashSet<i64> {
-    let edges = Chains::of(network, Breaks::Junctions);
+    let edges = Chains::from_network(network, Breaks::Junctions);
     let all = edges.numbers().map(|number| edges.get(number));
     all.filter(|edge| network.reaches(edge, data))
         .flat_map(|edge| edge.links.iter().map(|&link| network.way_of(link).way_id))
         .collect()
 }
 
-/// Adds a road to a network, as far as it lies within the data.
+/// Adds the parts of a road inside the data to a network.
 fn push(roads: &mut NetworkBuilder, road: &Road, whole: &LatticeBounds) {
     if road.line.points().iter().all(|point| whole.contains(*point)) {
         roads.push(road);
@@ -92,10 +95,10 @@ fn push(roads: &mut NetworkBuilder, road: &Road, whole: &LatticeBounds) {
     }
 }
 
-struct Found<'a> {
+struct RelevantRoads<'a> {
     /// The rectangle of the package's data.
     data: LatticeBounds,
-    /// What lies outside costs nothing.
+    /// The rectangle around the data from which roads are read; roads outside take no memory.
     around: LatticeBounds,
     /// The rectangle of all elevation data.
     whole: LatticeBounds,
@@ -104,11 +107,11 @@ struct Found<'a> {
     failed: Option<ExtractError>,
 }
 
-impl Found<'_> {
+impl RelevantRoads<'_> {
     fn take_near(&mut self, road: &Road, ordinal: Option<u32>) {
-        let bounds = LatticeBounds::of(road.line.points());
+        let bounds = LatticeBounds::around(road.line.points());
         let is_reached = bounds.is_some_and(|bounds| bounds.intersects(&self.data));
-        let near = NearRoad::of(road, ordinal, &[], is_reached);
+        let near = NearRoad::from_road(road, ordinal, &[], is_reached);
         if self.failed.is_none()
             && let Err(error) = self.near_spans.push(near)
         {
@@ -117,10 +120,10 @@ impl Found<'_> {
     }
 }
 
-impl LayerSink<Road, ExtractSummary> for Found<'_> {
+impl LayerSink<Road, ExtractSummary> for RelevantRoads<'_> {
     fn take(&mut self, road: Road) {
         self.take_near(&road, Some(0));
-        let bounds = LatticeBounds::of(road.line.points());
+        let bounds = LatticeBounds::around(road.line.points());
         if bounds.is_some_and(|bounds| bounds.intersects(&self.around)) {
             push(&mut self.roads, &road, &self.whole);
         }

@@ -1,4 +1,4 @@
-//! Parts of roads know the nodes of the whole road.
+//! Parts of roads have the nodes of the whole road.
 
 use corniche_geom::{LatticePoint, Polyline};
 use corniche_roads::{FunctionalRoadClass, MetNodes, RoadAttributes};

@@ -1,9 +1,11 @@
-//! Reads the extract again, clips its roads and lays them on the package's own ground, and compares the result with the
-//! package, tile by tile. Whether roads lie on the ground is checked elsewhere, without the extract and with other geometry.
+//! Reads the extract again, clips its roads, drapes them on the package's own ground, and compares
+//! the result with the package, tile by tile. Other checks verify that roads lie on the ground,
+//! without the extract and with other geometry code.
 
 use std::{collections::BTreeMap, path::PathBuf};
 
 use corniche_geom::TileId;
+use corniche_gis::RegionPolygons;
 use corniche_pieces::{
     extract::{
         partition::{ExtractInput, partition},
@@ -20,9 +22,9 @@ use corniche_pieces::{
 };
 use corniche_roads::FrcTable;
 use corniche_spec::{
-    Observer,
+    BuildObserver,
     data_tiles::DataTiles,
-    inputs::Inputs,
+    inputs::InputFiles,
     levels::{Levels, most_scale},
     settings_record,
     true_lengths::TrueLengths,
@@ -32,42 +34,40 @@ use corniche_tileset::{InputKind, InputRecord, Manifest, pmtiles_order};
 use corniche_work::{Silent, Stage, workers};
 
 use super::{
-    checks::{CheckId, Findings, as_json},
-    decoded_tiles::DecodedTiles,
+    checks::{Check, CheckId, Findings, as_json},
+    dem_inputs::{are_recorded, have_same_hashes},
     derived_records,
+    each_tile::VerifyRun,
     error::VerifyError,
     georeference, osm_layers,
-    osm_tile::{Found, Laying, look_at},
+    osm_tile::{Laying, OsmTileFindings, look_at},
     polygon_cut,
     temporary_store::TemporaryStore,
-    verify_settings::GivenFiles,
-    verify_settings::{VerifyOsm, VerifySettings},
+    verify_settings::{GivenFiles, VerifyOsm},
 };
 
 pub(crate) fn verify(
-    tiles: &DecodedTiles<'_>,
+    run: &VerifyRun<'_>,
     osm: &VerifyOsm,
     files: &GivenFiles<Vec<PathBuf>>,
-    settings: &VerifySettings,
+    polygon: Option<&RegionPolygons>,
     findings: &mut Findings,
-    observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
-    let compared = compare_all(tiles, osm, settings, &files.found, findings, observer);
+    let compared = compare_all(run, osm, &files.found, polygon, findings);
     VerifyError::unless_changed(&files.inputs, compared)
 }
 
 fn compare_all(
-    tiles: &DecodedTiles<'_>,
+    run: &VerifyRun<'_>,
     osm: &VerifyOsm,
-    request: &VerifySettings,
     paths: &[PathBuf],
+    polygon: Option<&RegionPolygons>,
     findings: &mut Findings,
-    observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
-    let package = tiles.package;
-    let manifest = package.manifest();
+    let manifest = run.package.manifest();
     let area_table = osm_layers::table(osm.areas.as_ref(), manifest)?;
-    // If one of them is missing, the check `levels.derived` or `manifest.crs` is broken, and roads cannot be laid.
+    // If one of them is missing, the check `levels.derived` or `manifest.crs` is broken, and roads
+    // cannot be draped.
     let (Some(settings), Some([first, last])) = (
         settings_record::roads(&manifest.settings, chosen(&osm.table, manifest)),
         derived_records::data_tiles(manifest),
@@ -77,23 +77,21 @@ fn compare_all(
     let Ok(crs) = georeference::recorded(manifest) else { return Ok(()) };
     let projection = crs.projection(manifest.area_deg())?;
     let frame = manifest.frame;
-    let polygon = request.polygon.as_ref();
     let polygon = polygon
         .map(|polygon| crs.working().polygon_on_lattice(polygon, manifest.area_deg(), &frame))
         .transpose()?;
     let widest = most_scale(manifest.scale.largest);
     let levels = Levels::new(frame, manifest.settings.max_error_m, &settings, widest);
-    let lines = manifest.settings.lines();
     let lengths = TrueLengths::new(frame, &manifest.coordinates, &projection);
-    let work = TemporaryStore::new(observer)?;
+    let work = TemporaryStore::new(run.observer)?;
     let (store, scratch) = (&work.store, work.scratch()?);
-    let pool = reading_pool(request.threads)?;
+    let pool = reading_pool(run.threads)?;
     let outline = manifest.data_outline();
     let input = ExtractInput {
         osm: paths,
         settings: &settings,
         areas: area_table,
-        lines: &lines,
+        boundaries: manifest.settings.boundaries,
         data: DataTiles::spanning(first, last),
         projection: &projection,
         levels: &levels,
@@ -107,73 +105,62 @@ fn compare_all(
         pool: &pool,
         memory_bytes: osm.memory_bytes,
     };
-    let roads = partition(&input, store, &scratch, observer)?;
+    let roads = partition(&input, store, &scratch, run.observer)?;
     let mut fates = LossFold::new(&scratch, osm.memory_bytes);
     let spans = settings.spans;
-    let laying = Laying { tiles, levels: &levels, data: [first, last], spans, lengths: &lengths };
-    let classes = lay(&laying, store, &mut fates, request.threads, findings, observer)?;
+    let (data, tiles) = ([first, last], &run.tiles);
+    let laying = Laying { tiles, levels: &levels, data, spans, lengths: &lengths };
+    let classes = lay(&laying, store, &mut fates, run, findings)?;
     let losses = fates.finish(&roads, store, &Silent)?;
     check_counts(manifest, &roads, &losses, findings);
     if area_table.is_some() {
-        osm_layers::compare_areas(package, store, request.threads, findings, observer)?;
+        osm_layers::compare_areas(run, store, findings)?;
     }
-    for &layer in &lines {
-        osm_layers::compare_lines(package, layer, store, request.threads, findings, observer)?;
+    if manifest.settings.boundaries {
+        osm_layers::compare_boundaries(run, store, findings)?;
     }
     if settings.spans {
         let whole = whole_rectangle(&frame, &manifest.whole_data_bounds());
         let inputs = SpanInputs { store, frame: &frame, projection: &projection, whole };
-        let spans = (inputs, &losses);
-        osm_layers::compare_spans(tiles, spans, request.threads, findings, observer)?;
+        osm_layers::compare_spans(run, (inputs, &losses), findings)?;
     }
     if let Some(region) = &polygon {
-        polygon_cut::verify(package, region, request.threads, findings, observer)?;
+        polygon_cut::verify(run, region, findings)?;
     }
     check_growth(manifest, &classes, findings);
     Ok(())
 }
 
-/// The table with the classes on that the package has chosen.
+/// The FRC table with the classes that the package chose.
 pub(crate) fn chosen(table: &FrcTable, manifest: &Manifest) -> FrcTable {
     let classes = manifest.settings.classes.as_deref();
-    // Classes that make no choice are not those of the table's hash either.
+    // An invalid choice of classes does not match the hash of the table either.
     let chosen = classes.and_then(|classes| table.clone().with_classes(classes).ok());
     chosen.unwrap_or_else(|| table.clone())
 }
 
-/// Checks that the extracts and the table of classes are those of the build. Returns the extracts in the order in which they were
-/// read: where versions are the same, the first one counts, and files may have other names now.
+/// Checks that the extracts and the FRC table are those of the build. Returns the extracts in the
+/// order of the build: of equal versions of an object the first one counts, and files may have
+/// other names now.
 pub(crate) fn check_inputs(
     manifest: &Manifest,
     osm: &VerifyOsm,
-    inputs: &Inputs,
+    inputs: &InputFiles,
     findings: &mut Findings,
-    observer: &dyn Observer,
+    observer: &dyn BuildObserver,
 ) -> Result<Vec<PathBuf>, VerifyError> {
     if !manifest.has_extract() {
         return Err(VerifyError::NoExtract);
     }
     let given = inputs.hash(observer)?;
     let extracts = || manifest.inputs_of(InputKind::Osm);
-    // By content, not by name or order: files may have been renamed.
-    let in_order = |records: &mut dyn Iterator<Item = &InputRecord>| {
-        let mut records: Vec<InputRecord> = records.cloned().collect();
-        records.sort_by(|a, b| a.sha256.cmp(&b.sha256));
-        records
-    };
-    let (said, found) = (in_order(&mut extracts()), in_order(&mut given.iter()));
-    let hashes = |records: &[InputRecord]| -> Vec<String> {
-        records.iter().map(|record| record.sha256.clone()).collect()
-    };
-    if hashes(&said) != hashes(&found) {
+    let mut sizes = Check::new(CheckId::OsmInputs);
+    let kinds = &[InputKind::Osm];
+    if !are_recorded(kinds, &manifest.inputs, &given, have_same_hashes, &mut sizes) {
         let expected = extracts().map(|input| input.name.clone()).collect();
         return Err(VerifyError::OtherOsm { paths: osm.paths.clone(), expected });
     }
-    for (said, found) in said.iter().zip(&found) {
-        findings.look(CheckId::OsmInputs, said.bytes == found.bytes, || {
-            format!("{:?} has {} bytes, {} are recorded", said.name, found.bytes, said.bytes)
-        });
-    }
+    findings.merge([sizes]);
     let settings = &manifest.settings;
     if settings_record::table_sha256(&chosen(&osm.table, manifest)) != settings.frc_table_sha256 {
         let (given, expected) = (osm.table.name().to_owned(), settings.frc_table.clone());
@@ -183,11 +170,14 @@ pub(crate) fn check_inputs(
             VerifyError::OtherTable { given, expected }
         });
     }
-    // Packages of before recorded no names of classes.
+    // Older packages did not record the names of classes.
     let names_of_classes = settings.class_labels.as_ref();
     let is_so_called = names_of_classes.is_none_or(|labels| osm.table.class_labels() == **labels);
     findings.look(CheckId::OsmInputs, is_so_called, || {
-        format!("the classes of FRC table {:?} are not called as recorded", settings.frc_table)
+        format!(
+            "the class names of FRC table {:?} differ from the recorded ones",
+            settings.frc_table
+        )
     });
     findings.look(CheckId::OsmInputs, osm.table.name() == settings.frc_table, || {
         format!("the FRC table is {:?}, {:?} is recorded", osm.table.name(), settings.frc_table)
@@ -200,18 +190,17 @@ pub(crate) fn check_inputs(
     Ok(in_order.collect())
 }
 
-/// Lays all roads again and compares each tile with the package. What becomes of the roads goes to `fates`; the sums by level
-/// and class are those of the roads laid again.
+/// Drapes all roads again and compares each tile with the package. The fate of each road goes to
+/// `fates`; the sums by level and class are those of the draped roads.
 fn lay(
     laying: &Laying<'_>,
     store: &dyn Artifacts,
     fates: &mut LossFold<'_>,
-    threads: usize,
+    run: &VerifyRun<'_>,
     findings: &mut Findings,
-    observer: &dyn Observer,
 ) -> Result<BTreeMap<(u8, u8), ClassSums>, VerifyError> {
     let [first, last] = laying.data;
-    let mut ids = laying.tiles.package.tile_ids()?;
+    let mut ids = run.package.tile_ids()?;
     for y in first.y()..=last.y() {
         for x in first.x()..=last.x() {
             ids.extend(TileId::new(first.z(), x, y).ok());
@@ -221,12 +210,12 @@ fn lay(
     ids.dedup();
     let mut classes: BTreeMap<(u8, u8), ClassSums> = BTreeMap::new();
     workers::side_by_side(
-        (observer, Stage::Tiles),
-        threads,
+        (run.observer, Stage::CompareRoads),
+        run.threads,
         &ids,
         || Ok::<_, VerifyError>(()),
         |(), &id| Ok(look_at(laying, id, &TilePieces::load(store, id)?)),
-        |id, found: Found| {
+        |id, found: OsmTileFindings| {
             findings.merge(found.findings);
             fates.add(&found.fates)?;
             ground_lines::put(&found.ground_lines, store, *id)?;
@@ -245,7 +234,7 @@ fn check_counts(manifest: &Manifest, roads: &RoadTotals, losses: &Sums, findings
     let wanted = road_counts(said.samples, roads, losses);
     let mut same = |what: &str, said: String, found: String| {
         findings.look(CheckId::OsmCounts, said == found, || {
-            format!("{what}: {said} are recorded, {found} are in the extract")
+            format!("{what}: recorded {said}, in the extract {found}")
         });
     };
     same("roads_in", as_json(&said.roads_in), as_json(&wanted.roads_in));
@@ -263,7 +252,7 @@ fn check_counts(manifest: &Manifest, roads: &RoadTotals, losses: &Sums, findings
     same("left_out", as_json(&said.left_out), as_json(&wanted.left_out));
     same("roads_in_um", as_json(&said.roads_in_um), as_json(&wanted.roads_in_um));
     same("roads_kept_um", as_json(&said.roads_kept_um), as_json(&wanted.roads_kept_um));
-    // Packages of before count otherwise what is lost in the padding of tiles.
+    // Older packages count losses in the padding of tiles differently.
     let is_of_before = said.roads_lost == losses.lost_by_tiles;
     let lost = if is_of_before { &losses.lost_by_tiles } else { &wanted.roads_lost };
     same("roads_lost", as_json(&said.roads_lost), as_json(lost));

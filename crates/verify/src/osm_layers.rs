@@ -1,6 +1,7 @@
-//! Layers of the extract that have sections, split again, against those of the package, tile by tile.
+//! Splits the layers of the extract that have sections again, and compares them with those of the
+//! package, tile by tile.
 
-use corniche_areas::{AreaTable, ClassedLayer};
+use corniche_areas::AreaTable;
 use corniche_geom::TileId;
 use corniche_pieces::ExtractError;
 use corniche_pieces::{
@@ -12,24 +13,24 @@ use corniche_pieces::{
     roads::losses,
     spans::{solving::SpanSolving, span_network::SpanInputs},
 };
-use corniche_spec::{Observer, settings_record};
+use corniche_spec::settings_record;
 use corniche_store::Artifacts;
 use corniche_tileset::{
-    AreaRecord, FilePackage, LineRecord, Manifest, Section, SpanRun, decode_areas, decode_lines,
+    AreaRecord, LineRecord, Manifest, Section, SpanRun, decode_areas, decode_boundaries,
 };
+use corniche_work::Stage;
 use serde::Serialize;
 
 use super::{
     checks::{CheckId, Findings, as_json},
-    decoded_tiles::DecodedTiles,
-    each_tile::{compare_in_order, each_tile},
+    each_tile::{VerifyRun, compare_in_order},
     error::VerifyError,
-    lines::LineChecks,
 };
 
-/// The table that the package's areas were made with, out of the one that is given; `None` if the package has no areas.
+/// The table of areas with which the package was built, taken from the given one; `None` if the
+/// package has no areas.
 ///
-/// Fails if it is another table.
+/// Fails if the given table is another one.
 pub(crate) fn table<'a>(
     given: Option<&'a AreaTable>,
     manifest: &Manifest,
@@ -45,16 +46,16 @@ pub(crate) fn table<'a>(
     }
 }
 
-/// Compares the areas of each tile, and their counts, with those that the store has now.
+/// Compares the areas of each tile, and their counts, with those in the store.
 pub(crate) fn compare_areas(
-    package: &FilePackage,
+    run: &VerifyRun<'_>,
     store: &dyn Artifacts,
-    threads: usize,
     findings: &mut Findings,
-    observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
-    let frame = &package.manifest().frame;
+    let manifest = run.package.manifest();
+    let frame = &manifest.frame;
     let how = HowCompared {
+        stage: Stage::CompareAreas,
         layer: SectionLayer::Areas,
         check: CheckId::OsmAreas,
         recorded: |payload: &[u8], id| decode_areas(payload, id, frame).ok(),
@@ -64,51 +65,47 @@ pub(crate) fn compare_areas(
             format!("{} {} with {points} points", area.class, area.object)
         },
     };
-    compare(package, store, threads, &how, findings, observer)?;
+    compare(run, store, &how, findings)?;
     let found = AreaTotals::get(how.layer, store)?.map(|totals| totals.counts());
-    let recorded = package.manifest().areas.as_ref().map(|areas| &areas.counts);
+    let recorded = manifest.areas.as_ref().map(|areas| &areas.counts);
     look_at_counts(CheckId::OsmAreaCounts, recorded, found.as_ref(), findings);
     Ok(())
 }
 
-/// Compares the lines of a layer of each tile, and their counts, with those that the store has now.
-pub(crate) fn compare_lines(
-    package: &FilePackage,
-    layer: ClassedLayer,
+/// Compares the boundaries of each tile, and their counts, with those in the store.
+pub(crate) fn compare_boundaries(
+    run: &VerifyRun<'_>,
     store: &dyn Artifacts,
-    threads: usize,
     findings: &mut Findings,
-    observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
-    let checks = LineChecks::of(layer);
     let how = HowCompared {
-        layer: SectionLayer::Lines(layer),
-        check: checks.osm,
-        recorded: |payload: &[u8], id| decode_lines(payload, id, layer).ok(),
-        expected: |section: Section, id| section.lines(layer, id).ok(),
+        stage: Stage::CompareBoundaries,
+        layer: SectionLayer::Boundaries,
+        check: CheckId::OsmBoundaries,
+        recorded: |payload: &[u8], id| decode_boundaries(payload, id).ok(),
+        expected: |section: Section, id| section.boundaries(id).ok(),
         name: |of: &LineRecord| {
             format!("{} way {} with {} points", of.class, of.way_id, of.points.len())
         },
     };
-    compare(package, store, threads, &how, findings, observer)?;
+    compare(run, store, &how, findings)?;
     let found = LineTotals::get(how.layer, store)?.map(|totals| totals.counts());
-    let recorded = package.manifest().lines(layer).map(|of| &of.counts);
-    look_at_counts(checks.osm_counts, recorded, found.as_ref(), findings);
+    let recorded = run.package.manifest().boundaries.as_ref().map(|of| &of.counts);
+    look_at_counts(CheckId::OsmBoundaryCounts, recorded, found.as_ref(), findings);
     Ok(())
 }
 
-/// Solves bridges and tunnels again on the ground of the package, and compares them with those of each tile.
+/// Computes bridges and tunnels again on the ground of the package, and compares them with those of
+/// each tile.
 pub(crate) fn compare_spans(
-    tiles: &DecodedTiles<'_>,
+    run: &VerifyRun<'_>,
     (of, kept): (SpanInputs<'_>, &losses::Sums),
-    threads: usize,
     findings: &mut Findings,
-    observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
-    let package = tiles.package;
+    let &VerifyRun { package, ref tiles, threads, observer } = run;
     let manifest = package.manifest();
     let (frame, quantum_m) = (&manifest.frame, manifest.vertical.quantum_m);
-    let tin = |id| Ok(tiles.of(id).terrain().map(|terrain| terrain.tin.clone()));
+    let tin = |id| Ok(tiles.tile_at(id).terrain().map(|terrain| terrain.tin.clone()));
     let outer = manifest.spans.as_ref().map_or(&[][..], |spans| &spans.outer_grounds);
     let outer = &outer;
     let solving = SpanSolving { of, quantum_m, tin: &tin, outer, threads, observer };
@@ -121,6 +118,7 @@ pub(crate) fn compare_spans(
         Err(error) => return Err(error.into()),
     };
     let how = HowCompared {
+        stage: Stage::CompareSpans,
         layer: SectionLayer::Spans,
         check: CheckId::OsmSpans,
         recorded: |payload: &[u8], id| manifest.decode_spans(payload, id).ok(),
@@ -129,13 +127,13 @@ pub(crate) fn compare_spans(
             format!("a run of way {} with {} points", run.way_id, run.points.len())
         },
     };
-    compare(package, of.store, threads, &how, findings, observer)?;
+    compare(run, of.store, &how, findings)?;
     let recorded = manifest.spans.as_ref().map(|spans| &spans.counts);
     look_at_counts(CheckId::OsmSpanCounts, recorded, Some(&counts), findings);
     Ok(())
 }
 
-/// Looks whether the counts of a layer are those of the extract.
+/// Checks that the counts of a layer are those of the extract.
 fn look_at_counts<T: PartialEq + Serialize>(
     check: CheckId,
     recorded: Option<&T>,
@@ -143,12 +141,14 @@ fn look_at_counts<T: PartialEq + Serialize>(
     findings: &mut Findings,
 ) {
     findings.look(check, found == recorded, || {
-        format!("{} are recorded, {} are in the extract", as_json(&recorded), as_json(&found))
+        format!("recorded {}, in the extract {}", as_json(&recorded), as_json(&found))
     });
 }
 
-/// How the objects of a layer are compared: what a payload has of it, what a section has that was made anew, and what an object is called.
+/// How the objects of a layer are compared: the stage, the items of a payload, the items of a newly
+/// encoded section, and a text for an object.
 struct HowCompared<R, E, N> {
+    stage: Stage,
     layer: SectionLayer,
     check: CheckId,
     recorded: R,
@@ -157,21 +157,19 @@ struct HowCompared<R, E, N> {
 }
 
 fn compare<T: PartialEq>(
-    package: &FilePackage,
+    run: &VerifyRun<'_>,
     store: &dyn Artifacts,
-    threads: usize,
     how: &HowCompared<
         impl Fn(&[u8], TileId) -> Option<Vec<T>> + Sync,
         impl Fn(Section, TileId) -> Option<Vec<T>> + Sync,
         impl Fn(&T) -> String + Sync,
     >,
     findings: &mut Findings,
-    observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
     let look_at = |id: TileId| {
         let mut findings = Findings::default();
-        // Tiles that cannot be read are told elsewhere.
-        let payload = package.tile(id).ok().flatten();
+        // Unreadable tiles are reported by the check of tiles.
+        let payload = run.package.tile(id).ok().flatten();
         let Some(recorded) = payload.and_then(|payload| (how.recorded)(&payload, id)) else {
             return Ok(findings);
         };
@@ -181,5 +179,5 @@ fn compare<T: PartialEq>(
         compare_in_order(how.check, id, [&recorded, &expected], &how.name, &mut findings);
         Ok(findings)
     };
-    each_tile(package, threads, observer, look_at, |_, found| findings.merge(found))
+    run.each_tile(how.stage, look_at, |_, found| findings.merge(found))
 }

@@ -1,12 +1,12 @@
-//! Clips and lays one tile's roads again, and compares them with those of the package.
+//! Clips and drapes one tile's roads again, and compares them with those of the package.
 
 use std::collections::BTreeMap;
 
 use corniche_drape::{Neighbours, OwnedBorders};
 use corniche_geom::TileId;
 use corniche_pieces::roads::{
-    ground_lines::GroundLine,
-    lay::{self, ClassSums, Laid, RoadFate, TileToLayOn},
+    ground_lines::SpanGroundLine,
+    lay::{self, ClassSums, DrapedRoads, RoadFate, TileToLayOn},
     pieces::TilePieces,
 };
 use corniche_roads::RoadAttributes;
@@ -19,29 +19,29 @@ use super::{
     derived_records::clip_of,
 };
 
-/// What is needed to lay roads again.
+/// The inputs for draping roads again.
 pub(crate) struct Laying<'a> {
     pub tiles: &'a DecodedTiles<'a>,
     pub levels: &'a Levels,
-    /// First and last of the finest tiles of the data.
+    /// The first and the last of the finest tiles of the data.
     pub(crate) data: [TileId; 2],
     /// Whether the package has spans.
     pub spans: bool,
     pub(crate) lengths: &'a TrueLengths<'a>,
 }
 
-/// What a worker found in a tile.
-pub(crate) struct Found {
+/// The findings of a worker in one tile.
+pub(crate) struct OsmTileFindings {
     pub(crate) findings: Findings,
     pub(crate) fates: Vec<(u32, RoadFate)>,
     /// Sums by class, for a tile with ground.
     pub classes: BTreeMap<u8, ClassSums>,
     /// The ground beneath bridges and tunnels.
-    pub(crate) ground_lines: Vec<GroundLine>,
+    pub(crate) ground_lines: Vec<SpanGroundLine>,
 }
 
-pub(crate) fn look_at(laying: &Laying<'_>, id: TileId, pieces: &TilePieces) -> Found {
-    let mut found = Found {
+pub(crate) fn look_at(laying: &Laying<'_>, id: TileId, pieces: &TilePieces) -> OsmTileFindings {
+    let mut found = OsmTileFindings {
         findings: Findings::default(),
         fates: Vec::new(),
         classes: BTreeMap::new(),
@@ -49,7 +49,7 @@ pub(crate) fn look_at(laying: &Laying<'_>, id: TileId, pieces: &TilePieces) -> F
     };
     let manifest = laying.tiles.package.manifest();
     let frame = &manifest.frame;
-    let tile = laying.tiles.of(id);
+    let tile = laying.tiles.tile_at(id);
     let payload = tile.payload();
     let terrain = payload.and_then(|payload| payload.terrain.as_ref());
     let (Some(payload), Some(terrain)) = (payload, terrain) else {
@@ -69,7 +69,7 @@ pub(crate) fn look_at(laying: &Laying<'_>, id: TileId, pieces: &TilePieces) -> F
     let owned = laying.owned_borders(id, !pieces.roads.is_empty());
     let (clip, spans, lengths) = (clip_of(manifest), laying.spans, laying.lengths);
     let on = TileToLayOn { id, surface: &surface, owned, clip, spans, lengths };
-    let mut laid = Laid::of_tile(pieces, &on, laying.levels);
+    let mut laid = DrapedRoads::of_tile(pieces, &on, laying.levels);
     laid.sort();
     compare(payload, &laid, &mut found.findings);
     (found.fates, found.classes) = (laid.fates, laid.classes);
@@ -77,7 +77,7 @@ pub(crate) fn look_at(laying: &Laying<'_>, id: TileId, pieces: &TilePieces) -> F
     found
 }
 
-fn compare(payload: &TilePayload, laid: &Laid, findings: &mut Findings) {
+fn compare(payload: &TilePayload, laid: &DrapedRoads, findings: &mut Findings) {
     let id = payload.id;
     let geo = |geo: &[corniche_tileset::GeoRoad]| -> Vec<_> {
         geo.iter().map(|road| ((road.class, road.way_id, road.part), road.line.clone())).collect()
@@ -93,7 +93,7 @@ fn compare(payload: &TilePayload, laid: &Laid, findings: &mut Findings) {
     each(CheckId::OsmSv, id, &said, &wanted, findings);
     let wanted: BTreeMap<i64, &RoadAttributes> =
         laid.attributes.values().map(|record| (record.way_id, &record.attributes)).collect();
-    // Packages of before have no spaces around texts.
+    // Older packages keep no spaces around texts.
     let is_same =
         |found: &RoadAttributes, own: &RoadAttributes| found == own || found.trimmed() == *own;
     let said: Vec<_> = payload
@@ -121,7 +121,7 @@ fn each<K: Ord + Copy + std::fmt::Debug, V: PartialEq>(
     for (key, value) in wanted {
         let own = said_by.get(key);
         findings.look(check, own == Some(&value), || match own {
-            Some(_) => format!("{key:?} in tile {id} is not what the extract has"),
+            Some(_) => format!("{key:?} in tile {id} differs from the extract"),
             None => format!("{key:?} of the extract is not in tile {id}"),
         });
     }
@@ -132,7 +132,8 @@ fn each<K: Ord + Copy + std::fmt::Debug, V: PartialEq>(
 }
 
 impl Laying<'_> {
-    /// What a tile owns of its borders, by the cells on both sides that TINs cover: these are exactly the cells with ground.
+    /// The parts of its borders that a tile owns, by the cells on both sides that TINs cover: these
+    /// are exactly the cells with ground.
     fn owned_borders(&self, id: TileId, has_roads: bool) -> OwnedBorders {
         if !has_roads {
             return OwnedBorders::ALL;
@@ -141,7 +142,7 @@ impl Laying<'_> {
         let around =
             [(0, 0), (1, 0), (0, 1), (-1, 0), (0, -1)].map(|(dx, dy)| id.neighbour(dx, dy));
         let grounds = around.map(|other| {
-            let other = other.filter(|&other| self.tiles.of(other).terrain().is_some())?;
+            let other = other.filter(|&other| self.tiles.tile_at(other).terrain().is_some())?;
             Some((other, self.tiles.ground(other)))
         });
         let ground_of = |other: Option<TileId>| {

@@ -1,18 +1,19 @@
-//! Reads the photos again and compares each tile's own with what they give there.
+//! Reads the photos again, and compares each tile's photo with the result.
 //!
 //! ```text
 //!   files ─► texels of a finest tile ─┬─► compared with the tile's
 //!                                     └─► raster ─► rasters above, with those of neighbours ─► compared with coarse tiles'
 //! ```
 //!
-//! Rasters are kept in a temporary folder: they have a texel for each cell, uncoded, so the loss of one level is never another's.
+//! Rasters are stored in a temporary folder, uncompressed, with a texel for each cell, so that
+//! compression losses do not accumulate over levels.
 
 use std::path::PathBuf;
 
 use corniche_geom::TileId;
 use corniche_ground::{photos::rasters, terrain::recorded_grid};
 use corniche_photo::{LevelChoice, PhotoGrid, PhotoReader, Photos, Texels};
-use corniche_spec::{Observer, data_tiles::DataTiles};
+use corniche_spec::data_tiles::DataTiles;
 use corniche_tileset::{
     FilePackage, InputKind, InputRecord, Manifest, PHOTO_BORDER, Photo, PhotoRecord, decode_photo,
     encode_photo,
@@ -21,47 +22,46 @@ use corniche_work::{Stage, workers};
 
 use super::{
     checks::{Check, CheckId, Findings},
-    dem_inputs::are_recorded,
+    dem_inputs::{are_recorded, have_same_hashes},
+    each_tile::VerifyRun,
     error::VerifyError,
     georeference,
     temporary_store::TemporaryStore,
     verify_settings::GivenFiles,
-    verify_settings::VerifySettings,
 };
 
 pub(crate) fn verify(
-    package: &FilePackage,
+    run: &VerifyRun<'_>,
     files: &GivenFiles<()>,
-    settings: &VerifySettings,
+    paths: &[PathBuf],
     findings: &mut Findings,
-    observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
-    let compared = compare_all(package, settings, findings, observer);
+    let compared = compare_all(run, paths, findings);
     VerifyError::unless_changed(&files.inputs, compared)
 }
 
 fn compare_all(
-    package: &FilePackage,
-    settings: &VerifySettings,
+    run: &VerifyRun<'_>,
+    paths: &[PathBuf],
     findings: &mut Findings,
-    observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
-    let manifest = package.manifest();
+    let manifest = run.package.manifest();
     let Some(record) = manifest.settings.photo else { return Ok(()) };
-    // If one of them fails, the check `manifest.crs` or `manifest.grid` is broken, and photos have no place.
+    // If one of them fails, the check `manifest.crs` or `manifest.grid` is broken, and photos
+    // cannot be placed.
     let (Ok(crs), Ok(())) = (georeference::recorded(manifest), recorded_grid::check(manifest))
     else {
         return Ok(());
     };
     let grid = recorded_grid::plan(&crs, manifest);
-    let photos = Photos::open(&settings.photo)?.on(&grid, LevelChoice::Given(record.levels))?;
-    let data = DataTiles::of(&grid);
-    let work = TemporaryStore::new(observer)?;
-    let comparison = Comparison { package, photos: &photos, record, data: &data, work: &work };
-    comparison.run(settings.threads, findings, observer)
+    let photos = Photos::open(paths)?.on(&grid, LevelChoice::Given(record.levels))?;
+    let data = DataTiles::from_plan(&grid);
+    let work = TemporaryStore::new(run.observer)?;
+    Comparison { run, photos: &photos, record, data: &data, work: &work }.compare(findings)
 }
 
-/// Fails unless the files have the content that is recorded, in the same order: the first lies on top. Names do not count.
+/// Fails unless the files have the recorded content, in the same order: the first lies on top.
+/// Names do not count.
 pub(crate) fn check_inputs(
     manifest: &Manifest,
     paths: &[PathBuf],
@@ -71,12 +71,9 @@ pub(crate) fn check_inputs(
     if manifest.settings.photo.is_none() {
         return Err(VerifyError::NoPhotos);
     }
-    let are_same = |said: &[InputRecord], found: &[InputRecord]| {
-        said.iter().map(|of| &of.sha256).eq(found.iter().map(|of| &of.sha256))
-    };
-    let kinds = [InputKind::Photo, InputKind::PhotoPart];
+    let kinds = &[InputKind::Photo, InputKind::PhotoPart];
     let mut sizes = Check::new(CheckId::PhotoInputs);
-    if !are_recorded(kinds, &manifest.inputs, given, are_same, &mut sizes) {
+    if !are_recorded(kinds, &manifest.inputs, given, have_same_hashes, &mut sizes) {
         let photos = manifest.inputs.iter().filter(|input| InputKind::Photo.is_of(input));
         let expected = photos.map(|input| input.name.clone()).collect();
         return Err(VerifyError::OtherPhotos { paths: paths.to_vec(), expected });
@@ -85,10 +82,10 @@ pub(crate) fn check_inputs(
     Ok(())
 }
 
-/// What all tiles are compared with.
+/// The inputs of the comparison of all tiles.
 #[derive(Clone, Copy)]
 struct Comparison<'a> {
-    package: &'a FilePackage,
+    run: &'a VerifyRun<'a>,
     photos: &'a PhotoGrid,
     record: PhotoRecord,
     data: &'a DataTiles,
@@ -96,13 +93,9 @@ struct Comparison<'a> {
 }
 
 impl Comparison<'_> {
-    /// The finest level, then each level above from the rasters of the one beneath.
-    fn run(
-        &self,
-        threads: usize,
-        findings: &mut Findings,
-        observer: &dyn Observer,
-    ) -> Result<(), VerifyError> {
+    /// Compares the finest level, then each coarser level from the rasters of the level beneath.
+    fn compare(&self, findings: &mut Findings) -> Result<(), VerifyError> {
+        let &VerifyRun { threads, observer, .. } = self.run;
         let finest = self.data.level();
         let all = |level: u8| self.data.above(level).in_order_within(TileId::ROOT);
         let count = (0..=finest).map(|level| all(level).len() as u64).sum();
@@ -130,7 +123,7 @@ impl Comparison<'_> {
         let texels = reader.window(self.photos.texels().tile(id, PHOTO_BORDER))?;
         let raster = rasters::of_texels(&texels, self.record.levels);
         rasters::put(&self.work.store, id, &raster)?;
-        Ok(look_at(self.package, id, self.record, &texels))
+        Ok(look_at(self.run.package, id, self.record, &texels))
     }
 
     fn coarse(&self, id: TileId) -> Result<Findings, VerifyError> {
@@ -140,26 +133,29 @@ impl Comparison<'_> {
         let found = rasters::of_children(store, self.data, id, border)?;
         let Some(texels) = found else {
             rasters::put(store, id, &Texels::empty(0, 0))?;
-            return Ok(look_at(self.package, id, self.record, &Texels::empty(0, 0)));
+            return Ok(look_at(self.run.package, id, self.record, &Texels::empty(0, 0)));
         };
         let inner = texels.part([border; 2], [2 * rasters::SIDE; 2]);
         rasters::put(store, id, &inner.halved())?;
         let texels = if levels == 0 { texels.halved() } else { texels };
-        Ok(look_at(self.package, id, self.record, &texels))
+        Ok(look_at(self.run.package, id, self.record, &texels))
     }
 }
 
-/// Texels along a side of the blocks whose mean colours are compared: what differs only here and there is no coding's loss.
+/// Texels along a side of the blocks whose mean colours are compared: a difference that is confined
+/// to a few blocks is not a loss of compression.
 const BLOCK: usize = 16;
-/// Colours may be off by so much more than coding again loses, in grey levels: decoders differ in their rounding.
+/// The additional tolerance of colours, in grey levels, because decoders differ in their rounding.
 const ROUNDING: f64 = 0.5;
-/// And by this part of the loss.
+/// The tolerance of colours, as a factor of the loss of compressing the photo again.
 const MORE_LOSS: f64 = 1.05;
-/// A moved photo fits better only if it does so by more than this part: where a photo has one colour, all places fit.
+/// A shifted photo fits better only if its difference is below this part of the original: in a
+/// photo of one colour, all positions fit.
 const BETTER: f64 = 0.99;
 
-/// Compares the photo of a tile with `texels`, those of the files with the border that tiles have; none at all where the files have
-/// none. Of a tile without ground nothing is compared. What cannot be decoded, or has another size, is told elsewhere.
+/// Compares the photo of a tile with `texels`, which are read from the files, with the border of
+/// the tile, and are empty if the files have none here. A tile without ground is not compared.
+/// Photos that cannot be decoded or have the wrong size are reported by another check.
 pub(crate) fn look_at(
     package: &FilePackage,
     id: TileId,
@@ -171,7 +167,7 @@ pub(crate) fn look_at(
     let Ok(photo) = decode_photo(&payload, id) else { return findings };
     let Some(photo) = photo else {
         findings.look(CheckId::PhotoCover, texels.is_empty(), || {
-            format!("tile {id} has no photo, and the photos lie on it")
+            format!("tile {id} has no photo, but the photos cover it")
         });
         return findings;
     };
@@ -180,14 +176,14 @@ pub(crate) fn look_at(
     }
     if texels.is_empty() {
         findings.look(CheckId::PhotoCover, false, || {
-            format!("tile {id} has a photo, and no photo lies on it")
+            format!("tile {id} has a photo, but no photo covers it")
         });
         return findings;
     }
     let side = photo.side();
     let wrong = covers(texels.rgba()).zip(covers(&photo.rgba)).filter(|(a, b)| a != b).count();
     findings.look(CheckId::PhotoCover, wrong == 0, || {
-        format!("{wrong} of {} texels of tile {id} have a photo or none wrongly", side * side)
+        format!("{wrong} of {} texels of tile {id} have a photo where there is none, or the other way round", side * side)
     });
     let files = Picture { side, rgba: texels.rgba() };
     let own = Picture { side, rgba: &photo.rgba };
@@ -212,8 +208,8 @@ impl Picture<'_> {
         &self.rgba[at..at + 4]
     }
 
-    /// Root mean square difference of the colours from those of `other` beside it, over the texels inside that both have; `None` where
-    /// there are none.
+    /// The root mean square difference of the colours from those of `other`, which is shifted, over
+    /// the texels inside that both have; `None` without common texels.
     fn difference(&self, other: &Self, [east, south]: [isize; 2]) -> Option<f64> {
         let inside = 1..self.side - 1;
         let (mut squares, mut count) = (0_u64, 0_u64);
@@ -234,7 +230,8 @@ impl Picture<'_> {
         (count > 0).then(|| (squares as f64 / count as f64).sqrt())
     }
 
-    /// The largest difference of the mean colours of a block from those of `other`, of one of the three colours.
+    /// The largest difference between the mean colours of a block and those of `other`, over the
+    /// three colours.
     fn block_difference(&self, other: &Self) -> f64 {
         let starts = || (0..self.side).step_by(BLOCK);
         let blocks = starts().flat_map(|row| starts().map(move |column| [column, row]));
@@ -260,7 +257,7 @@ impl Picture<'_> {
     }
 }
 
-/// Looks whether one of the eight places around fits better than the photo's own.
+/// Checks that none of the eight shifted positions fits better than the photo's own.
 fn look_at_place(id: TileId, files: &Picture<'_>, own: &Picture<'_>, findings: &mut Findings) {
     let around = (-1..=1).flat_map(|south| (-1..=1).map(move |east| [east, south]));
     let around = around.filter(|&place| place != [0, 0]);
@@ -270,13 +267,13 @@ fn look_at_place(id: TileId, files: &Picture<'_>, own: &Picture<'_>, findings: &
     let Some((moved, [east, south])) = best else { return };
     findings.look(CheckId::PhotoPlace, moved >= BETTER * here - ROUNDING, || {
         format!(
-            "the photo of tile {id} differs by {here:.1} grey levels, and by {moved:.1} when it is moved by {} texels east and {} south",
+            "the photo of tile {id} differs by {here:.1} grey levels, and by {moved:.1} when shifted by {} texels east and {} south",
             -east, -south
         )
     });
 }
 
-/// Looks whether colours are off by no more than coding the files' texels again loses.
+/// Checks that colours differ by no more than the loss of compressing the files' texels again.
 fn look_at_colours(
     id: TileId,
     quality: u8,
@@ -287,7 +284,7 @@ fn look_at_colours(
 ) {
     let again = Photo { levels, rgba: files.rgba.to_vec() };
     let coded = encode_photo(id, &again, quality).ok().flatten();
-    // They have a photo; a quality that no coder has is no coding's loss.
+    // The photo exists; an invalid quality gives no loss.
     let coded = coded.and_then(|section| section.photo(id).ok());
     let coded = coded.as_ref().map(|photo| Picture { side: files.side, rgba: &photo.rgba });
     let losses = |of: &Picture<'_>| {
@@ -299,7 +296,7 @@ fn look_at_colours(
         [("", found[0], most[0]), ("the mean of a block of ", found[1], most[1])]
     {
         findings.look(CheckId::PhotoColours, found <= most, || {
-            format!("{what}the photo of tile {id} is off by {found:.1} grey levels, its coding allows {most:.1}")
+            format!("{what}the photo of tile {id} is off by {found:.1} grey levels, compression explains {most:.1}")
         });
     }
 }

@@ -1,60 +1,57 @@
-//! The photos of tiles: decoded, compared with those of neighbours and with those of the tiles above.
+//! Decodes the photos of tiles, and compares them with those of neighbouring and parent tiles.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use corniche_geom::TileId;
 use corniche_photo::Texels;
-use corniche_spec::Observer;
 use corniche_tileset::{
     FilePackage, PHOTO_BORDER, Photo, PhotoLevelRecord, PhotoRecord, decode_photo, payload_sizes,
 };
+use corniche_work::Stage;
 
 use super::{
     checks::{CheckId, Findings, as_json},
-    each_tile::each_tile,
+    each_tile::VerifyRun,
     error::VerifyError,
 };
 
-/// The largest root mean square difference of two codings of the same texels, in grey levels, over some hundreds of texels.
+/// The largest root mean square difference between two compressed versions of the same texels, in
+/// grey levels, over some hundreds of texels.
 ///
-/// The steps of JPEG's coefficients are proportional to this scale. At a scale of 1 (quality 50) the standard tables have steps of 65 (root
-/// mean square) for brightness and 93 for colours. Errors spread evenly over a step are 1/√12 of it: 19 and 27, with the weights of
-/// the three colours up to 44 grey levels, and √2 as much between two codings. Natural photos have a fifth of it.
+/// The quantization steps of JPEG are proportional to this scale. At a scale of 1 (quality 50) the
+/// standard tables have steps of 65 (root mean square) for brightness and 93 for colours. Errors
+/// spread evenly over a step are 1/√12 of the step: 19 and 27, with the weights of the three
+/// colours up to 44 grey levels, and √2 times as much between two compressed versions. Natural
+/// photos have a fifth of this difference.
 fn most_difference(quality: u8) -> f64 {
     let quality = f64::from(quality);
     let scale = if quality < 50.0 { 50.0 / quality } else { 2.0 - quality / 50.0 };
     3.0 + 62.0 * scale
 }
 
-/// What is found in one tile.
+/// The findings in one tile.
 #[derive(Default)]
-struct Found {
+struct PhotoFindings {
     findings: Findings,
-    /// Stored bytes of its photo; 0 without one.
+    /// Stored bytes of the tile's photo; 0 without a photo.
     bytes: u64,
 }
 
-pub(crate) fn verify(
-    package: &FilePackage,
-    threads: usize,
-    findings: &mut Findings,
-    observer: &dyn Observer,
-) -> Result<(), VerifyError> {
+pub(crate) fn verify(run: &VerifyRun<'_>, findings: &mut Findings) -> Result<(), VerifyError> {
+    let package = run.package;
     let manifest = package.manifest();
     let Some(record) = manifest.settings.photo else {
         findings.look(CheckId::PhotoSums, manifest.photos.is_empty(), || {
-            "photos are counted, and there is no setting for photos".to_owned()
+            "photos are counted, but the settings have no photos".to_owned()
         });
         return Ok(());
     };
     let all: BTreeSet<TileId> = package.tile_ids()?.into_iter().collect();
     let mut sums: BTreeMap<u8, [u64; 2]> = BTreeMap::new();
-    each_tile(
-        package,
-        threads,
-        observer,
+    run.each_tile(
+        Stage::VerifyPhotos,
         |id| Ok(look_at(package, &all, id, record)),
-        |id, found: Found| {
+        |id, found: PhotoFindings| {
             findings.merge(found.findings);
             if found.bytes > 0 {
                 let [tiles, bytes] = sums.entry(id.z()).or_default();
@@ -72,7 +69,8 @@ pub(crate) fn verify(
     Ok(())
 }
 
-/// The photo of a tile. `None` where it has none or cannot be decoded; the latter is told when the tile itself is looked at.
+/// The photo of a tile. `None` if the tile has none or the photo cannot be decoded, which is
+/// reported when the tile itself is checked.
 fn photo_of(package: &FilePackage, all: &BTreeSet<TileId>, id: TileId) -> Option<Photo> {
     let bytes = package.tile(id).ok().flatten().filter(|_| all.contains(&id))?;
     decode_photo(&bytes, id).ok().flatten()
@@ -83,10 +81,10 @@ fn look_at(
     all: &BTreeSet<TileId>,
     id: TileId,
     record: PhotoRecord,
-) -> Found {
-    let mut found = Found::default();
+) -> PhotoFindings {
+    let mut found = PhotoFindings::default();
     let findings = &mut found.findings;
-    // Tiles that cannot be read are told elsewhere.
+    // Unreadable tiles are reported by the check of tiles.
     let Some(payload) = package.tile(id).ok().flatten() else { return found };
     found.bytes = payload_sizes(&payload, id).map_or(0, |sizes| sizes.photo.stored);
     let photo = match decode_photo(&payload, id) {
@@ -130,17 +128,18 @@ fn look_at(
     found
 }
 
-/// A photo's texels; those without a photo have no colour.
+/// The texels of a photo; texels without a photo have no colour.
 fn texels(photo: &Photo) -> Texels {
     let mut rgba = photo.rgba.clone();
     for texel in rgba.chunks_exact_mut(4).filter(|texel| texel[3] == 0) {
         texel.fill(0);
     }
-    // It is a square of whole texels.
+    // A photo is a square of whole texels.
     Texels::new(photo.side(), photo.side(), rgba).unwrap_or_else(|| Texels::empty(0, 0))
 }
 
-/// The texels that two neighbours share, without the corners, which are those of others, too: as each of them has them.
+/// The texels that two neighbours share, as stored by each of them, without the corners, which
+/// belong to other tiles, too.
 fn shared(own: &Texels, other: &Texels, side: usize, [east, south]: [i32; 2]) -> [Texels; 2] {
     let (wide, border) = (2 * PHOTO_BORDER, PHOTO_BORDER);
     let place = |along: i32, at: usize| if along == 1 { at } else { border };
@@ -158,7 +157,8 @@ fn quadrant(parent: &Texels, side: usize, child: TileId) -> Texels {
     parent.part(start, [half; 2])
 }
 
-/// Looks whether two codings are of the same texels: the same have a photo, and their colours differ by no more than their loss.
+/// Checks that two compressed photos show the same: the same texels are covered, and their colours
+/// differ by no more than the compression loss.
 fn look_alike(
     id: CheckId,
     [a, b]: &[Texels; 2],
@@ -183,6 +183,6 @@ fn look_alike(
     let worst = squares.into_iter().max().unwrap_or_default();
     let rms = (worst as f64 / count.max(1) as f64).sqrt();
     findings.look(id, rms <= most, || {
-        format!("{} differ by {rms:.1} grey levels, their coding allows {most:.1}", what())
+        format!("{} differ by {rms:.1} grey levels, compression explains {most:.1}", what())
     });
 }

@@ -1,13 +1,16 @@
-//! Whether the polygon that is given is the one that the package was cut with.
+//! Checks that the given polygon is the one to which the package was clipped.
 
-use corniche_gis::Polygon;
+use corniche_gis::RegionPolygons;
 use corniche_spec::settings_record::polygon_sha256;
 use corniche_tileset::Manifest;
 
 use super::error::VerifyError;
 
-/// Fails if a polygon is needed and not given, or another one is given.
-pub(crate) fn check(manifest: &Manifest, polygon: Option<&Polygon>) -> Result<(), VerifyError> {
+/// Fails if a polygon is needed and missing, or another one is given.
+pub(crate) fn check(
+    manifest: &Manifest,
+    polygon: Option<&RegionPolygons>,
+) -> Result<(), VerifyError> {
     match (&manifest.settings.polygon, polygon) {
         (None, None) => Ok(()),
         (Some(recorded), None) => {

@@ -1,64 +1,62 @@
-//! Whether areas and lines with classes end at the polygon that the package was cut with.
+//! Checks that areas and boundaries end at the polygon to which the package was clipped.
 //!
-//! The build cuts outlines with a library that splits them at their crossings. Here nothing is cut: points are asked on which side of the polygon
-//! they lie, and how far from its outline.
+//! The build cuts outlines with a library that splits them at their crossings. This check cuts
+//! nothing: for points it determines the side of the polygon and the distance from its outline.
 
 use std::f64::consts::TAU;
 
-use corniche_areas::ClassedLayer;
 use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, LatticeRegion, TileId, cross};
-use corniche_spec::Observer;
-use corniche_tileset::{AreaRecord, FilePackage, decode_areas, decode_lines};
+use corniche_tileset::{AreaRecord, decode_areas, decode_boundaries};
+use corniche_work::Stage;
 
 use super::{
     checks::{CheckId, Findings},
-    each_tile::each_tile,
+    each_tile::VerifyRun,
     error::VerifyError,
     geo_against_sv::distance,
-    lines::LineChecks,
 };
 
-/// How far something may reach beyond the polygon on coarse levels, in cells of the level. Points lie on a lattice of at most a quarter of a cell, on
-/// which the polygon's outline is put, too, and lines are simplified by a quarter.
+/// The tolerance beyond the polygon on coarse levels, in cells of the level. Points lie on a
+/// lattice of at most a quarter of a cell, to which the polygon's outline is rounded, too, and
+/// lines are simplified by a quarter of a cell.
 const BEYOND_CELLS: f64 = 0.75;
-/// The same on the finest level, metres: its lattice has at most 0.1 m.
+/// The tolerance on the finest level, in metres: the step of its lattice is at most 0.1 m.
 const BEYOND_FINEST_M: f64 = 0.3;
-/// Where the lattice of the package is coarser than that, so many of its steps.
+/// The tolerance in lattice steps, if the package's lattice is coarser than that.
 const BEYOND_STEPS: f64 = 3.0;
 
-/// Looks at the areas and lines of all tiles. `region` is the polygon.
+/// Checks the areas and lines of all tiles. `region` is the polygon.
 pub(crate) fn verify(
-    package: &FilePackage,
+    run: &VerifyRun<'_>,
     region: &LatticeRegion,
-    threads: usize,
     findings: &mut Findings,
-    observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
+    let package = run.package;
     let frame = &package.manifest().frame;
     let look_at = |id: TileId| {
         let mut findings = Findings::default();
-        // Tiles that cannot be read are told elsewhere.
+        // Unreadable tiles are reported by the check of tiles.
         let Some(payload) = package.tile(id).ok().flatten() else { return Ok(findings) };
         let cut = Cut { region, beyond: beyond_steps(frame, id.z()) };
         for area in decode_areas(&payload, id, frame).unwrap_or_default() {
             findings.look(CheckId::AreaPolygon, cut.holds_area(&area), || {
-                format!("{} {} of tile {id} lies beyond it", area.class, area.object)
+                format!("{} {} of tile {id} reaches beyond the polygon", area.class, area.object)
             });
         }
-        for layer in ClassedLayer::ALL {
-            for line in decode_lines(&payload, id, layer).unwrap_or_default() {
-                let check = LineChecks::of(layer).polygon;
-                findings.look(check, cut.holds_line(&line.points), || {
-                    format!("{} way {} of tile {id} lies beyond it", line.class, line.way_id)
-                });
-            }
+        for line in decode_boundaries(&payload, id).unwrap_or_default() {
+            findings.look(CheckId::BoundaryPolygon, cut.holds_line(&line.points), || {
+                format!(
+                    "{} way {} of tile {id} reaches beyond the polygon",
+                    line.class, line.way_id
+                )
+            });
         }
         Ok(findings)
     };
-    each_tile(package, threads, observer, look_at, |_, found| findings.merge(found))
+    run.each_tile(Stage::ComparePolygon, look_at, |_, found| findings.merge(found))
 }
 
-/// How far something on a level may reach beyond the polygon, lattice steps.
+/// The tolerance beyond the polygon on a level, in lattice steps.
 fn beyond_steps(frame: &GridFrame, level: u8) -> f64 {
     let beyond_m = if level == frame.max_level() {
         BEYOND_FINEST_M
@@ -68,21 +66,21 @@ fn beyond_steps(frame: &GridFrame, level: u8) -> f64 {
     (beyond_m / frame.lattice_step_m()).max(BEYOND_STEPS)
 }
 
-/// A polygon, and how far something may reach beyond it, lattice steps.
+/// A polygon, and the tolerance beyond it in lattice steps.
 struct Cut<'a> {
     region: &'a LatticeRegion,
     beyond: f64,
 }
 
 impl Cut<'_> {
-    /// Whether an area keeps to the polygon: all its outlines do, and no corner of the polygon or of its holes, with ground beyond it, lies deep
-    /// in the area.
+    /// Whether an area stays within the polygon: all its outlines do, and no corner of the polygon
+    /// or of its holes, with ground beyond the corner, lies deep inside the area.
     ///
     /// ```text
-    ///   ┌───────── area ──┐      The outlines of an area around a hole of the polygon lie inside; a corner of the hole tells that
-    ///   │    ┌──────┐     │      the area covers it.
-    ///   │    │ hole │     │
-    ///   │    └──────×     │
+    ///   ┌───────── area ──┐      The outlines of an area around a hole
+    ///   │    ┌──────┐     │      of the polygon lie inside the polygon;
+    ///   │    │ hole │     │      a corner of the hole shows that the
+    ///   │    └──────×     │      area covers the hole.
     ///   └─────────────────┘
     /// ```
     fn holds_area(&self, area: &AreaRecord) -> bool {
@@ -94,7 +92,7 @@ impl Cut<'_> {
             return false;
         }
         let points: Vec<LatticePoint> = outlines().map(|(point, _)| point).collect();
-        let Some(bounds) = LatticeBounds::of(&points) else { return true };
+        let Some(bounds) = LatticeBounds::around(&points) else { return true };
         let deep = 4.0 * self.beyond;
         let lies_deep = |corner: LatticePoint| {
             is_within(corner, outlines())
@@ -104,12 +102,13 @@ impl Cut<'_> {
         !corners.any(|corner| self.has_ground_beyond(corner, deep) && lies_deep(corner))
     }
 
-    /// Whether a line keeps to the polygon.
+    /// Whether a line stays within the polygon.
     fn holds_line(&self, points: &[LatticePoint]) -> bool {
         points.array_windows().all(|&[from, to]| self.holds(from, to))
     }
 
-    /// Whether a segment keeps to the polygon: both ends do, and the middle of each stretch between places where it crosses the outline.
+    /// Whether a segment stays within the polygon: both ends do, and the middle of each stretch
+    /// between crossings with the outline.
     fn holds(&self, from: LatticePoint, to: LatticePoint) -> bool {
         let [start, way] = [at(from), [0, 1].map(|axis| at(to)[axis] - at(from)[axis])];
         let near = self.edges_near([start, at(to)]);
@@ -128,13 +127,14 @@ impl Cut<'_> {
         })
     }
 
-    /// Whether a place is in the polygon, or near enough to one of these edges of it.
+    /// Whether a point is in the polygon, or near enough to one of these edges of the polygon.
     fn holds_point(&self, place: [f64; 2], near: &[[LatticePoint; 2]]) -> bool {
         self.region.contains_half(place.map(|steps| (2.0 * steps).round() as i64))
             || near.iter().any(|ends| distance(place, ends.map(at)) <= self.beyond)
     }
 
-    /// Whether ground so many steps from a corner of the polygon lies beyond it by more than is allowed. Where polygons overlap, corners lie inside.
+    /// Whether the ground around a corner of the polygon, at this many steps, lies beyond the
+    /// polygon by more than the tolerance. Where polygons overlap, corners lie inside.
     fn has_ground_beyond(&self, corner: LatticePoint, steps: f64) -> bool {
         let [u, v] = at(corner);
         let around = [[u - steps, v - steps], [u + steps, v + steps]];
@@ -145,7 +145,8 @@ impl Cut<'_> {
         })
     }
 
-    /// The edges of the polygon that may be within the allowed distance of the rectangle between two places.
+    /// The edges of the polygon that may be within the tolerance of the rectangle between two
+    /// points.
     fn edges_near(&self, [one, other]: [[f64; 2]; 2]) -> Vec<[LatticePoint; 2]> {
         let corner = |of: fn(f64, f64) -> f64, beyond: f64| {
             let [u, v] = [0, 1].map(|axis| (of(one[axis], other[axis]) + beyond).round() as i64);
@@ -161,7 +162,7 @@ fn at(point: LatticePoint) -> [f64; 2] {
     [point.u as f64, point.v as f64]
 }
 
-/// Whether a point lies in what outlines are around: a ray to the east crosses them an odd number of times.
+/// Whether a point lies inside the outlines: a ray to the east crosses them an odd number of times.
 fn is_within(
     point: LatticePoint,
     outlines: impl Iterator<Item = (LatticePoint, LatticePoint)>,

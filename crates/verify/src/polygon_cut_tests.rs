@@ -1,4 +1,5 @@
-//! What a build does that cuts nothing, forgets holes, or joins what a notch parts, lies beyond the polygon; what is rounded does not.
+//! Lines and areas beyond the polygon are found: uncut ones, filled holes and closed notches.
+//! Rounding is tolerated.
 
 use corniche_areas::{AreaClass, AreaObject};
 use corniche_tileset::AreaRings;
@@ -20,8 +21,8 @@ fn clockwise(mut ring: Ring) -> Ring {
     ring
 }
 
-/// A square of 1000 steps with a hole, a notch from the north to the middle, two notches from the south; and another square, which laps over its
-/// north-eastern corner.
+/// A square of 1000 steps with a hole, a notch from the north to the middle, two notches from the
+/// south; and another square, which overlaps its north-eastern corner.
 fn region() -> LatticeRegion {
     let outer = [
         [0, 0],
@@ -113,7 +114,8 @@ fn lines_are_looked_at_between_their_points() {
     assert!(!holds(&[[500, 650], [500, 800]]), "into a notch");
 }
 
-/// Cells of 16 m on level 0 of two levels, on a lattice of some millimetres; and so wide ones that a lattice step is a metre.
+/// Cells of 16 m on level 0 of two levels, on a lattice of some millimetres; and cells so wide that
+/// a lattice step is a metre.
 #[test]
 fn what_is_allowed_follows_the_cells() {
     let frame = corniche_testing::package::frame();

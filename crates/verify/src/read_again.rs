@@ -1,11 +1,12 @@
-//! The extracts that a package was made from, read again for what it does not store, such as the names of what its lines bound.
+//! Reads the extracts from which a package was built again, for data that the package does not
+//! store, such as the names of areas that boundaries enclose.
 
-use corniche_areas::{ClassedLayer, LineNames};
+use corniche_areas::BoundaryNames;
 use corniche_osm::{ClassedLine, LayerSink, Layers, LineSummary, read_extract};
 use corniche_pieces::extract::{placed_reading::PlacedReading, reading_pool};
 use corniche_spec::{
-    Observer,
-    inputs::{Inputs, OtherInputs},
+    BuildObserver,
+    inputs::{InputFiles, OtherInputs},
 };
 use corniche_tileset::FilePackage;
 use corniche_work::Stage;
@@ -15,18 +16,19 @@ use super::{
     verify_settings::VerifyOsm,
 };
 
-/// Hands out layers of the extracts, with points on the package's lattice; roads come with the ids of their nodes.
+/// Passes on layers of the extracts, with points on the package's lattice; roads come with the ids
+/// of their nodes.
 ///
 /// # Errors
-/// When a file cannot be read, changes meanwhile, or they are not those of the build.
+/// When a file cannot be read, changes meanwhile, or the files are not those of the build.
 pub(crate) fn read_again(
     package: &FilePackage,
     (extract, layers): (&VerifyOsm, Layers<'_>),
     threads: usize,
-    observer: &dyn Observer,
+    observer: &dyn BuildObserver,
 ) -> Result<(), VerifyError> {
     let others = OtherInputs { osm: &extract.paths, polygon: None, photo: &[] };
-    let inputs = Inputs::find(&[], others)?;
+    let inputs = InputFiles::find(&[], others)?;
     let read = read(package, (extract, layers), (&inputs, threads), observer);
     VerifyError::unless_changed(&inputs, read)
 }
@@ -34,8 +36,8 @@ pub(crate) fn read_again(
 fn read(
     package: &FilePackage,
     (extract, layers): (&VerifyOsm, Layers<'_>),
-    (inputs, threads): (&Inputs, usize),
-    observer: &dyn Observer,
+    (inputs, threads): (&InputFiles, usize),
+    observer: &dyn BuildObserver,
 ) -> Result<(), VerifyError> {
     let manifest = package.manifest();
     let mut findings = Findings::default();
@@ -58,39 +60,39 @@ fn read(
     let on_progress = |done, total| observer.reached(Stage::Extract, done, total);
     let should_stop = || observer.is_cancelled();
     reading.read(&scratch, (observer, &on_progress), |request| {
-        // What is wrong with the extract was told when the package was built.
+        // The build already reported the problems of the extract.
         read_extract(request, layers, &mut |_| {}, &should_stop)
     })?;
     observer.end(Stage::Extract);
     Ok(())
 }
 
-/// Reads the extracts that a package was made from again, for the names of what the ways of a layer bound: of relations, and of closed ways.
+/// Reads the extracts from which a package was built again, for the names of what boundaries
+/// enclose: of relations, and of closed ways.
 ///
 /// # Errors
-/// When a file cannot be read, changes meanwhile, or they are not those of the build.
-pub fn line_names(
+/// When a file cannot be read, changes meanwhile, or the files are not those of the build.
+pub fn boundary_names(
     package: &FilePackage,
-    layer: ClassedLayer,
     extract: &VerifyOsm,
     threads: usize,
-    observer: &dyn Observer,
-) -> Result<LineNames, VerifyError> {
-    let mut names = LineNames::default();
+    observer: &dyn BuildObserver,
+) -> Result<BoundaryNames, VerifyError> {
+    let mut names = BoundaryNames::default();
     let mut on_name = |way_id, class, name: &str| {
         names.entry(way_id).or_default().entry(class).or_default().insert(name.to_owned());
     };
     let mut lines = Unneeded;
     let layers = Layers {
-        lines: vec![(layer, &mut lines)],
-        line_names: Some(&mut on_name),
+        boundaries: Some(&mut lines),
+        boundary_names: Some(&mut on_name),
         ..Layers::default()
     };
     read_again(package, (extract, layers), threads, observer)?;
     Ok(names)
 }
 
-/// The package has the lines.
+/// A receiver of boundaries that ignores them: the package has the lines.
 struct Unneeded;
 
 impl LayerSink<ClassedLine, LineSummary> for Unneeded {

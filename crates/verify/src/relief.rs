@@ -1,4 +1,4 @@
-//! Reliefs: beside the rasters of their levels, and beside each other.
+//! Compares reliefs with the rasters of their levels, and with those of neighbouring tiles.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -7,13 +7,14 @@ use corniche_tileset::Relief;
 
 use super::checks::{CheckId, Findings};
 
-/// Slopes are rounded to 256ths; this much more is allowed, because they were computed in two ways.
+/// Half of a step of slopes, which are rounded to 256ths, plus a little, because slopes were
+/// computed in two ways.
 const HALF_STEP: f64 = 0.5 / 256.0 + 1e-9;
-/// Steeper slopes are cut.
+/// Slopes steeper than this are capped.
 const STEEPEST: f64 = 4095.0;
 
-/// A number for the slopes along each border: north, south, west, east. They are equal on both sides exactly if all slopes are,
-/// but for one case in 2^64.
+/// A hash of the slopes along each border: north, south, west, east. The hashes of two tiles are
+/// equal exactly if all slopes are, except in one case of 2^64.
 pub(crate) fn borders(relief: &Relief) -> [u64; 4] {
     let last = TILE_NODES - 1;
     let of = |node: &dyn Fn(usize) -> [usize; 2]| {
@@ -26,17 +27,17 @@ pub(crate) fn borders(relief: &Relief) -> [u64; 4] {
     [of(&|k| [k, 0]), of(&|k| [k, last]), of(&|k| [0, k]), of(&|k| [last, k])]
 }
 
-/// Heights that are shown are at most this many of the DEM's steps from the raster.
+/// The largest distance of displayed heights from the raster, in steps of the DEM's heights.
 const MOST_STEPS: f64 = 0.4;
 
-/// How far slopes that are shown may be from the raster's, east and north, because both heights of a slope were low-passed by the step
-/// of the DEM. At gaps a slope is that to the next node.
+/// The tolerance of displayed slopes, east and north: both heights of a slope were low-pass
+/// filtered over the step of the DEM. At gaps, a slope is the one to the next node.
 pub(crate) fn may_move(step_m: f64, cell: Cell) -> [f64; 2] {
     cell.to_array().map(|side_m| 2.0 * MOST_STEPS * step_m / side_m)
 }
 
-/// Compares a relief with the raster of its level, which has one node of halo on every side; `slope_at` gives the slopes of the
-/// raster's ground, and slopes may differ by `may_move`.
+/// Compares a relief with the raster of its level, which has a halo of one node on every side;
+/// `slope_at` returns the slopes of the raster's ground, and slopes may differ by `may_move`.
 pub(crate) fn verify(
     id: TileId,
     relief: &Relief,
@@ -59,14 +60,16 @@ pub(crate) fn verify(
             };
             findings.look(CheckId::Relief, holds, || {
                 format!(
-                    "tile {id}: the relief has {found_m:?} at node {column}, {row}, the DEM {wanted_m:?}; it promises {} m",
+                    "tile {id}: the relief has {found_m:?} at node {column}, {row}, the DEM {wanted_m:?}; the relief states a bound of {} m",
                     relief.greatest_error_m()
                 )
             });
             let found = relief.water().is_some_and(|water| water[row * TILE_NODES + column]);
             findings.look(CheckId::Relief, found == is_water(with_halo, [column, row]), || {
                 let found = if found { "water" } else { "land" };
-                format!("tile {id}: node {column}, {row} is {found} in the relief; the DEM says otherwise")
+                format!(
+                    "tile {id}: node {column}, {row} is {found} in the relief, but not in the DEM"
+                )
             });
             let Some(found) = relief.border_slope(column, row) else { continue };
             let wanted = slope_at([column + 1, row + 1]);
@@ -83,8 +86,8 @@ pub(crate) fn verify(
     }
 }
 
-/// Whether a node of the tile is water by its heights: it lies at or below 0, and so do all nodes around it that have a height, at
-/// least three, at the same height.
+/// Whether a node of the tile is water according to its heights: it lies at or below 0, and all
+/// nodes around it that have a height, at least three, have the same height.
 fn is_water(with_halo: &HeightGrid, [column, row]: [usize; 2]) -> bool {
     let around: Vec<f32> =
         (0..9).filter_map(|k| with_halo.height(column + k % 3, row + k / 3)).collect();

@@ -1,4 +1,4 @@
-//! The check of reliefs finds another height, gap or slope.
+//! The check of reliefs finds a changed height, gap or slope.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may unwrap")]
 
@@ -18,30 +18,30 @@ fn hills(east: f64, south: f64) -> f64 {
     300.0 + 50.0 * (east / 19.0).sin() * (south / 27.0).sin()
 }
 
-/// Whether this is the node of the raster.
+/// Whether this is the given node of the raster.
 fn is(east: f64, south: f64, node: [i64; 2]) -> bool {
     [east as i64, south as i64] == node
 }
 
-/// How many findings there are when the relief of one raster is compared with another raster.
+/// The number of findings if the relief of one raster is compared with another raster.
 fn broken(of: &HeightGrid, beside: &HeightGrid) -> u64 {
     let relief = Relief::of_heights(of, of, CELL, 0.125).unwrap();
     let mut findings = Findings::default();
     let slope_at = |at: [usize; 2]| corniche_tin::gradient(beside, at, CELL);
     verify(TileId::ROOT, &relief, (beside, [0.0; 2]), slope_at, &mut findings);
-    findings.of(CheckId::Relief).broken
+    findings.check_mut(CheckId::Relief).broken
 }
 
 #[test]
 fn another_height_gap_or_slope_is_found() {
     let sound = raster(hills);
     assert_eq!(broken(&sound, &sound), 0);
-    // One node, far more than the greatest error.
+    // One node is off by far more than the greatest error.
     let node = raster(|e, s| hills(e, s) + if is(e, s, [90, 70]) { 30.0 } else { 0.0 });
     assert_eq!(broken(&sound, &node), 1);
     let gap = raster(|e, s| if is(e, s, [90, 70]) { f64::NAN } else { hills(e, s) });
     assert_eq!(broken(&sound, &gap), 1);
-    // A slope on the border alone: the height that changes is in the halo.
+    // Only a slope on the border: the changed height is in the halo.
     let halo = raster(|e, s| hills(e, s) + if is(e, s, [0, 70]) { 1.0 } else { 0.0 });
     assert_eq!(broken(&sound, &halo), 1);
 }

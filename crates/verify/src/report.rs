@@ -1,4 +1,4 @@
-//! The report of `corniche verify`: what each check found.
+//! The report of `corniche verify`: the results of all checks.
 
 use corniche_tileset::{Distribution, SampleErrorRecord};
 use serde::Serialize;
@@ -10,7 +10,7 @@ use super::checks::Check;
 pub struct GapFigures {
     /// Level.
     pub level: u8,
-    /// Edges looked at.
+    /// The number of checked edges.
     pub edges: u64,
     /// Largest gap.
     pub largest_m: f64,
@@ -19,40 +19,40 @@ pub struct GapFigures {
 /// Geometric errors and deviations of one level.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ErrorFigures {
-    /// Level.
+    /// The level.
     pub level: u8,
-    /// Tiles measured.
+    /// The number of measured tiles.
     pub tiles: u64,
-    /// Nodes with data that were compared.
+    /// The number of compared nodes with data.
     pub nodes: u64,
     /// Largest deviation: distance of a TIN from a node.
     pub largest_true_m: f64,
-    /// Geometric error divided by the largest deviation of the tile and its children, for the tiles where that can be
-    /// measured.
+    /// Geometric error divided by the largest deviation of the tile and its children, for the tiles
+    /// where that can be measured.
     pub tightness: Option<Distribution>,
     /// Nodes with data that the TINs do not cover.
     pub uncovered_nodes: u64,
 }
 
-/// What verification found.
+/// The result of a verification.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VerifyReport {
-    /// Tiles looked at.
+    /// The number of checked tiles.
     pub tiles: u64,
-    /// The checks that were made.
+    /// The results of the checks.
     pub checks: Vec<Check>,
     /// Gaps between GEO roads and TINs, per level.
     pub gaps: Vec<GapFigures>,
-    /// Borders between tiles of one level that were compared.
+    /// The number of compared borders between tiles of one level.
     pub borders: u64,
-    /// Geometric errors and deviations per level, where the DEM was given.
+    /// Geometric errors and deviations per level, if the DEM was given.
     pub errors: Vec<ErrorFigures>,
-    /// How far the finest level is from the DEM's own samples, where the DEM was given.
+    /// The errors of the finest level at the DEM's own samples, if the DEM was given.
     pub samples: Option<SampleErrorRecord>,
 }
 
 impl VerifyReport {
-    /// Whether every promise holds.
+    /// Whether no promise is broken.
     #[must_use]
     pub fn holds(&self) -> bool {
         self.checks.iter().all(Check::holds)

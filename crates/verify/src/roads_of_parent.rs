@@ -1,47 +1,50 @@
-//! Checks that a road is on every level that shows its class, by comparing each tile with its parent.
+//! Checks that a road is on every level that shows its class, by comparing each tile with its
+//! parent.
 
 use std::collections::BTreeMap;
 
-use corniche_geom::{LatticeBounds, LatticePoint, TileId, Work};
+use corniche_geom::{LatticeBounds, LatticePoint, StepBudget, TileId};
 use corniche_spec::levels::Levels;
 use corniche_tileset::TilePayload;
 
 use super::{
     checks::{CheckId, Findings},
     geo_against_sv::{
-        MOST_STEPS, NearSegments, SAME_LINE_STEPS, Segment, segments, source_points, too_much,
+        LocalSegment, MOST_STEPS, NearSegments, SAME_LINE_STEPS, segments, source_points, too_much,
     },
     tile_place::TilePlace,
     triangle_soup::TriangleSoup,
 };
 
-/// One of the two tiles.
-pub(crate) struct Side<'a> {
+/// One of two compared tiles.
+pub(crate) struct ComparedTile<'a> {
     pub payload: &'a TilePayload,
     pub(crate) ground: &'a TriangleSoup,
 }
 
 /// Compares the roads of a tile with those of its parent.
 ///
-/// Simplification moves no point of the source farther than the level's tolerance from the line, so wherever both
-/// tiles have ground, points of the one lie beside the line of the other, on the level of that line's tolerance.
+/// Simplification moves no point of the source farther than the level's tolerance from the line.
+/// Therefore, wherever both tiles have ground, points of one tile lie near the line of the other,
+/// within the tolerance of that line's level.
 pub(crate) fn verify(
-    child: &Side<'_>,
-    parent: &Side<'_>,
+    child: &ComparedTile<'_>,
+    parent: &ComparedTile<'_>,
     levels: &Levels,
     findings: &mut Findings,
 ) {
     let (id, above) = (child.payload.id, parent.payload.id);
     let frame = levels.frame();
     let bounds = frame.tile_lattice_bounds(id);
-    // Points on a border were made by cutting; the source does not have them.
+    // Points on a border come from cutting; the source does not have them.
     let is_inside = |point: LatticePoint| {
         let LatticeBounds { min, max } = bounds;
         (min.u + 1..max.u).contains(&point.u) && (min.v + 1..max.v).contains(&point.v)
     };
 
-    let work = Work::new(MOST_STEPS);
-    // Looks for points of a way of one tile beside the lines of the other, which has ground there.
+    let work = StepBudget::new(MOST_STEPS);
+    // Looks for points of a way in one tile near the lines of the other tile, if the other has
+    // ground there.
     let mut look =
         |way_id: i64, points: &mut dyn Iterator<Item = LatticePoint>, in_other: &Lines| {
             let line = in_other.by_way.get(&way_id);
@@ -64,7 +67,8 @@ pub(crate) fn verify(
         is_known.then_some(tolerance + SAME_LINE_STEPS)
     };
     if let Some(reach) = reach(above.z()) {
-        let lines = Lines::of(parent, TilePlace::of(frame, above), reach, [id, above]);
+        let lines =
+            Lines::from_side(parent, TilePlace::from_frame(frame, above), reach, [id, above]);
         for road in &child.payload.roads_geo {
             if levels.shows(above.z(), road.class) {
                 look(road.way_id, &mut source_points(&road.line), &lines);
@@ -72,7 +76,7 @@ pub(crate) fn verify(
         }
     }
     if let Some(reach) = reach(id.z()) {
-        let lines = Lines::of(child, TilePlace::of(frame, id), reach, [above, id]);
+        let lines = Lines::from_side(child, TilePlace::from_frame(frame, id), reach, [above, id]);
         for road in &parent.payload.roads_sv {
             look(road.way_id, &mut road.line.points.iter().copied(), &lines);
         }
@@ -82,20 +86,25 @@ pub(crate) fn verify(
     }
 }
 
-/// The SV lines of a tile, beside which points of the other one are looked for.
+/// The SV lines of a tile, near which points of the other tile are searched for.
 struct Lines<'a> {
-    side: &'a Side<'a>,
+    side: &'a ComparedTile<'a>,
     place: TilePlace,
     by_way: BTreeMap<i64, NearSegments>,
-    /// How far beside them points may lie, steps.
+    /// The allowed distance of points, in lattice steps.
     reach: f64,
-    /// The tile that has the points, and the one that has the lines.
+    /// The tile of the points, and the tile of the lines.
     names: [TileId; 2],
 }
 
 impl<'a> Lines<'a> {
-    fn of(side: &'a Side<'a>, place: TilePlace, reach: f64, names: [TileId; 2]) -> Self {
-        let mut by_way: BTreeMap<i64, Vec<Segment>> = BTreeMap::new();
+    fn from_side(
+        side: &'a ComparedTile<'a>,
+        place: TilePlace,
+        reach: f64,
+        names: [TileId; 2],
+    ) -> Self {
+        let mut by_way: BTreeMap<i64, Vec<LocalSegment>> = BTreeMap::new();
         for road in &side.payload.roads_sv {
             by_way.entry(road.way_id).or_default().extend(segments(&road.line.points, place));
         }

@@ -1,5 +1,5 @@
-//! P1: every vertex and edge of a geometric road lies on the TIN of its tile, as stored and decoded; and the order
-//! of roads.
+//! P1: every vertex and edge of a GEO road lies on the TIN of its tile, as stored and decoded. Also
+//! checks the order of roads.
 
 use std::collections::BTreeMap;
 
@@ -15,29 +15,30 @@ use super::{
     triangle_soup::TriangleSoup,
 };
 
-/// What was found about the GEO roads of a tile.
+/// The findings about the GEO roads of a tile.
 #[derive(Default)]
 pub(crate) struct OnTin {
     pub gaps: GapFigures,
-    /// True length in plan of the lines, and how many there are.
+    /// The true horizontal lengths of the lines, and their number.
     pub(crate) lengths: RoadLengths,
-    /// Where the vertices of each line lie, as a reader computes them; `None` for a line that is none.
+    /// The positions of the vertices of each line, as a reader computes them; `None` for an invalid
+    /// line.
     pub(crate) positions: Vec<Option<Vec<[f64; 3]>>>,
 }
 
-/// How long roads are by what carries them, in the order of [`Structure::ALL`].
+/// The lengths of roads by structure, in the order of [`Structure::ALL`].
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct RoadLengths {
-    /// True metres in plan.
+    /// True horizontal metres.
     pub(crate) by_structure_m: [f64; Structure::ALL.len()],
-    /// How many lines that is: each part of a way in a tile is one.
+    /// The number of lines: each part of a way in a tile is one.
     pub lines: [u64; Structure::ALL.len()],
-    /// What all together may be longer or shorter because vertices are put on the lattice.
+    /// The total tolerance of lengths, because vertices are rounded to the lattice.
     rounding_m: f64,
 }
 
 impl RoadLengths {
-    /// Adds those of another tile.
+    /// Adds the lengths of another tile.
     pub(crate) fn add(&mut self, other: Self) {
         for (own, other) in self.by_structure_m.iter_mut().zip(other.by_structure_m) {
             *own += other;
@@ -48,26 +49,26 @@ impl RoadLengths {
         self.rounding_m += other.rounding_m;
     }
 
-    /// Adds an edge. Its ends may each be half a lattice step off along both axes. Across the
-    /// edge that lengthens it by the square of a step over its length.
+    /// Adds an edge. Its ends may each be half a lattice step off along both axes. Across the edge,
+    /// this lengthens the edge by the square of a step divided by its length.
     fn add_edge(&mut self, structure: usize, length_m: f64, step_m: f64) {
         self.by_structure_m[structure] += length_m;
         self.rounding_m += step_m * (step_m / length_m).min(1.0);
     }
 
-    /// What lengths may differ by because vertices are put on the lattice, never more than a
-    /// hundredth of them: a package must not allow itself any length.
+    /// The tolerance of a length, because vertices are rounded to the lattice. It is capped at a
+    /// hundredth of the length: a package must not get an unlimited tolerance.
     pub(crate) fn rounding_m(&self, length_m: f64) -> f64 {
         self.rounding_m.min(length_m / 100.0)
     }
 
-    /// The length of all.
+    /// The total length.
     pub(crate) fn length_m(&self) -> f64 {
         self.by_structure_m.iter().sum()
     }
 }
 
-/// What roads of a section are sorted by: class, way id, part.
+/// The sort key of roads in a section: class, way id, part.
 type Key = (FunctionalRoadClass, i64, u32);
 
 /// The gap that P1 allows on a level with this tolerance.
@@ -75,7 +76,7 @@ fn allowed_gap_m(max_error_m: f64) -> f64 {
     (max_error_m / 100.0).max(0.01)
 }
 
-/// Looks at the order of roads and at the parts of ways.
+/// Checks the order of roads and of the parts of ways.
 pub(crate) fn verify_order(payload: &TilePayload, findings: &mut Findings) {
     let id = payload.id;
     let geo = payload.roads_geo.iter().map(|road| (road.class, road.way_id, road.part));
@@ -94,7 +95,7 @@ pub(crate) fn verify_order(payload: &TilePayload, findings: &mut Findings) {
     }
 }
 
-/// Lays every GEO line beside the ground.
+/// Compares every GEO line with the ground.
 pub(crate) fn verify_on_tin(
     payload: &TilePayload,
     tin: &Tin,
@@ -107,9 +108,10 @@ pub(crate) fn verify_on_tin(
         manifest.levels.get(usize::from(id.z())).map_or(0.0, |level| level.max_error_m);
     let mut found =
         OnTin { gaps: GapFigures { level: id.z(), ..GapFigures::default() }, ..OnTin::default() };
-    // The surface turns stored lines into positions, as a reader does; the ground judges them by itself.
+    // The surface converts stored lines to positions, like a reader; the ground then checks the
+    // positions independently.
     let surface = manifest.surface(id, tin);
-    let place = TilePlace::of(frame, id);
+    let place = TilePlace::from_frame(frame, id);
     let [least_x, least_y] = manifest.scale.least;
     let step_m = frame.lattice_step_m() / least_x.min(least_y);
     let position_m = |[u, v, _]: [f64; 3]| frame.position_of_fraction_m([u, v]);
@@ -136,7 +138,8 @@ pub(crate) fn verify_on_tin(
         };
         for pair in positions.windows(2) {
             if counts_for_sums(id, frame) {
-                // The same formula as the build's: beside a pole it is off the geodesic by more than the sums may differ.
+                // The same formula as in the build: near a pole it deviates from the geodesic by
+                // more than the tolerance of the sums.
                 let ends = [pair[0], pair[1]].map(position_m);
                 let length_m = manifest.coordinates.line_length_m(ends);
                 found.lengths.add_edge(structure, length_m, step_m);
@@ -148,8 +151,8 @@ pub(crate) fn verify_on_tin(
                 CheckId::OnTin,
                 gap_m.is_some_and(|gap_m| gap_m <= allowed_gap_m(max_error_m)),
                 || match gap_m {
-                    Some(gap_m) => format!("{} is {gap_m} m off", name()),
-                    None => format!("{} has an edge on no single triangle", name()),
+                    Some(gap_m) => format!("{} is {gap_m} m off the TIN", name()),
+                    None => format!("{} has an edge that is not on one triangle", name()),
                 },
             );
         }
@@ -158,7 +161,8 @@ pub(crate) fn verify_on_tin(
     found
 }
 
-/// Whether a tile is at the finest level, where the lengths of roads add up to what the manifest says.
+/// Whether a tile is on the finest level, where the lengths of roads add up to those in the
+/// manifest.
 pub(crate) fn counts_for_sums(id: TileId, frame: &GridFrame) -> bool {
     id.z() == frame.max_level()
 }

@@ -1,19 +1,17 @@
-//! P2 at the DEM's own samples: computes again the figures that the package states.
+//! P2 at the DEM's own samples: computes the figures that the package states again.
 
 use std::sync::Arc;
 
 use corniche_dem::{Dem, GridPlan};
 use corniche_geom::{GridFrame, TileId};
-use corniche_spec::Observer;
 use corniche_tileset::{Manifest, SampleErrorRecord, SampleSums};
 use corniche_work::{Stage, workers};
 
 use super::{
     checks::{Check, CheckId, as_json},
-    decoded_tiles::DecodedTiles,
+    each_tile::VerifyRun,
     error::VerifyError,
     triangle_soup::{HEIGHT_ROUNDING_M, TriangleSoup},
-    verify_settings::VerifySettings,
 };
 
 /// Empty sums for every level, root first.
@@ -29,20 +27,17 @@ pub(crate) fn merge(sums: &mut [SampleSums], others: &[SampleSums]) {
     }
 }
 
-/// Measures every level at every sample used; for a DEM whose samples are not the nodes.
+/// Measures every level at every used sample; for a DEM whose samples are not the nodes.
 pub(crate) fn measure(
-    tiles: &DecodedTiles<'_>,
-    dem: &Dem,
-    plan: &GridPlan,
-    settings: &VerifySettings,
-    observer: &dyn Observer,
+    run: &VerifyRun<'_>,
+    (dem, plan): &(Dem, GridPlan),
 ) -> Result<Vec<SampleSums>, VerifyError> {
-    let manifest = tiles.package.manifest();
+    let manifest = run.package.manifest();
     let ranges = dem.sample_ranges(plan)?;
     let mut sums = none(manifest);
     workers::side_by_side(
-        (observer, Stage::Samples),
-        settings.threads,
+        (run.observer, Stage::Samples),
+        run.threads,
         &ranges,
         || {
             Ok::<_, VerifyError>((
@@ -54,10 +49,10 @@ pub(crate) fn measure(
             let block = reader.used_samples(range)?;
             let mut found = none(manifest);
             for (&position_m, &height_m) in block.positions_m.iter().zip(&block.heights_m) {
-                // The point of the lattice is taken, as in the build: at the boundary of the ground half a millimetre decides
-                // whether a sample lies on it.
+                // The position is rounded to the lattice, as in the build: at the edge of the
+                // ground, half a millimetre decides whether a sample lies on the ground.
                 let frame = &manifest.frame;
-                // A sample without a place in the working CRS is not used.
+                // A sample without a position in the working CRS is not used.
                 let Some(position_m) = frame.snap(position_m).map(|point| frame.position_m(point))
                 else {
                     continue;
@@ -66,7 +61,7 @@ pub(crate) fn measure(
                     let ground_m = tile_at(frame, level as u8, position_m).and_then(|id| {
                         let last: &mut Option<(TileId, Arc<TriangleSoup>)> = &mut last[level];
                         if last.as_ref().is_none_or(|(of, _)| *of != id) {
-                            *last = Some((id, tiles.ground(id)));
+                            *last = Some((id, run.tiles.ground(id)));
                         }
                         let (_, ground) = last.as_ref()?;
                         ground.height_m(cells(frame, id, position_m))
@@ -84,29 +79,29 @@ pub(crate) fn measure(
     Ok(sums)
 }
 
-/// The tile of a level to which a position belongs: on a border, the tile in the east or south; on the root's own east or
-/// south border, the last tile.
+/// The tile of a level to which a position belongs: on a border, the tile in the east or south; on
+/// the root's own east or south border, the last tile.
 fn tile_at(frame: &GridFrame, level: u8, [x, y]: [f64; 2]) -> Option<TileId> {
     let root = frame.tile_bounds(TileId::ROOT);
     let tiles = f64::from(1_u32 << level);
     let column = (x - root.min_x) / root.width() * tiles;
     let row = (root.max_y - y) / root.height() * tiles;
     let index = |at: f64| {
-        // In nodes, borders are exact. Here a position is a sum of rounded numbers.
+        // Borders are exact in nodes. Here, a position is a sum of rounded numbers.
         let at = if (at - at.round()).abs() < 1e-10 * tiles { at.round() } else { at };
         (0.0..=tiles).contains(&at).then(|| at.min(tiles - 1.0) as u32)
     };
     TileId::new(level, index(column)?, index(row)?).ok()
 }
 
-/// Where a position lies in a tile, in its own cells: column, row.
+/// The position in a tile in the tile's own cells: column, row.
 fn cells(frame: &GridFrame, id: TileId, [x, y]: [f64; 2]) -> [f64; 2] {
     let corner = frame.tile_corner(id);
     let cell = frame.level_cell(id.z());
     [(x - frame.x_m(corner.i)) / cell.east_m, (frame.y_m(corner.j) - y) / cell.north_m]
 }
 
-/// Compares the figures found with those that the package states.
+/// Compares the computed figures with those in the package.
 pub(crate) fn judge(manifest: &Manifest, sums: &[SampleSums]) -> [Check; 2] {
     let mut stated = Check::new(CheckId::Samples);
     let mut bound = Check::new(CheckId::SampleBound);
@@ -114,7 +109,7 @@ pub(crate) fn judge(manifest: &Manifest, sums: &[SampleSums]) -> [Check; 2] {
     for (record, sums) in manifest.levels.iter().zip(sums) {
         let (said, found) = (record.sample_error, sums.record());
         stated.look(agree(said, found, quantum_m), || {
-            format!("level {} says {}, found {}", record.level, as_json(&said), as_json(&found))
+            format!("level {} records {}, found {}", record.level, as_json(&said), as_json(&found))
         });
     }
     if manifest.nodes_are_samples
@@ -128,7 +123,7 @@ pub(crate) fn judge(manifest: &Manifest, sums: &[SampleSums]) -> [Check; 2] {
     [stated, bound]
 }
 
-/// Whether two figures are the same but for rounding: distances were computed in two ways.
+/// Whether two figures are equal apart from rounding: distances were computed in two ways.
 fn agree(said: SampleErrorRecord, found: SampleErrorRecord, quantum_m: f64) -> bool {
     let near = |a: f64, b: f64, slack: f64| (a - b).abs() <= slack + 1e-9 * a.max(b);
     said.on_tin == found.on_tin

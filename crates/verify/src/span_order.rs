@@ -1,29 +1,30 @@
-//! Which is above where bridges cross bridges, and tunnels tunnels.
+//! The height order of bridges that cross bridges, and of tunnels that cross tunnels.
 
 use std::{
     collections::BTreeMap,
     ops::Bound::{Excluded, Included},
 };
 
-use corniche_geom::{LatticePoint, TooMuchWork, Work};
+use corniche_geom::{LatticePoint, StepBudget, TooMuchWork};
 use corniche_spans::SpanKind;
 
 use super::near_index::NearIndex;
 
-/// Points of runs are rounded to the lattice. So a run that ends on another one may end so many steps beyond it.
+/// The points of runs are rounded to the lattice, so a run that ends on another one may end this
+/// many steps beyond it.
 const ROUNDING_STEPS: f64 = 2.0;
-/// A crossing that is kept counts for so many steps of work: it takes memory, too.
+/// The work for a stored crossing, in steps: it takes memory, too.
 const STEPS_OF_A_CROSSING: usize = 64;
 
 /// A straight piece of a run.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Piece {
+pub(crate) struct RunPiece {
     pub way_id: i64,
     pub kind: SpanKind,
-    /// OSM's `layer`, which orders it among its kind.
+    /// OSM's `layer`, which orders the piece among pieces of its kind.
     pub layer: i8,
     pub(crate) ends: [LatticePoint; 2],
-    /// Whether the run ends there.
+    /// Whether the run ends at the first and at the second end of the piece.
     pub(crate) is_end: [bool; 2],
     pub heights_m: [f64; 2],
 }
@@ -31,29 +32,31 @@ pub(crate) struct Piece {
 /// Two runs of one kind and of different layers that cross.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct OrderedCrossing {
-    /// The ways, that of the upper layer first.
+    /// The two ways; the way with the upper layer is the first.
     pub(crate) way_ids: [i64; 2],
-    /// How far the first is above the second, metres.
+    /// The height of the first above the second, in metres.
     pub(crate) free_m: f64,
 }
 
-/// Where pieces of the same kind and of different layers cross. Pieces that share a point are joined there, and do not cross, nor do runs that end on one another.
+/// The crossings of pieces of the same kind and of different layers. Pieces that share a point are
+/// joined there and do not cross; runs that end on one another do not cross either.
 ///
 /// # Errors
-/// When more of them lie over each other than in any real tile.
+/// When more pieces overlap than in any real tile.
 pub(crate) fn crossings(
-    pieces: &[Piece],
-    work: &Work,
+    pieces: &[RunPiece],
+    work: &StepBudget,
 ) -> Result<Vec<OrderedCrossing>, TooMuchWork> {
-    // Pieces of one layer are not ordered. So a way that lies over itself is never asked about itself.
-    let mut layers: BTreeMap<(SpanKind, i8), Vec<&Piece>> = BTreeMap::new();
+    // Pieces of one layer have no order. Therefore a way that crosses itself is never compared with
+    // itself.
+    let mut layers: BTreeMap<(SpanKind, i8), Vec<&RunPiece>> = BTreeMap::new();
     for piece in pieces {
         layers.entry((piece.kind, piece.layer)).or_default().push(piece);
     }
     let mut found = Vec::new();
     for (&(kind, layer), below) in &layers {
         let above = layers.range((Excluded((kind, layer)), Included((kind, i8::MAX))));
-        let above: Vec<&Piece> = above.flat_map(|(_, of_layer)| of_layer).copied().collect();
+        let above: Vec<&RunPiece> = above.flat_map(|(_, of_layer)| of_layer).copied().collect();
         if above.is_empty() {
             continue;
         }
@@ -74,12 +77,12 @@ pub(crate) fn crossings(
     Ok(found)
 }
 
-impl Piece {
+impl RunPiece {
     fn line(&self) -> [[f64; 2]; 2] {
         self.ends.map(LatticePoint::in_steps)
     }
 
-    /// Where it crosses one of a lower layer.
+    /// The crossing with a piece of a lower layer.
     fn crossing(&self, other: &Self) -> Option<OrderedCrossing> {
         if self.ends.iter().any(|end| other.ends.contains(end)) {
             return None;

@@ -1,68 +1,64 @@
-//! The bridges and tunnels of all tiles: where they end, on which side of the ground they are, which is above, and what neighbours have of them.
+//! Checks the bridges and tunnels of all tiles: their ends, the side of the ground they are on,
+//! their height order, and their agreement across tile borders.
 
 use std::{
     collections::BTreeMap,
     sync::{Mutex, PoisonError},
 };
 
-use corniche_geom::{LatticeBounds, LatticePoint, TileId, Work};
+use corniche_geom::{LatticeBounds, LatticePoint, StepBudget, TileId};
 use corniche_pieces::layers::tile_section::SectionOfTile;
 use corniche_roads::{FunctionalRoadClass, Structure};
 use corniche_spans::{SpanKind, SpanReason};
-use corniche_spec::Observer;
 use corniche_tileset::{
     Manifest, Sections, SpanHeight, SpanPoint, SpanRun, TilePayload, payload_sizes,
 };
 use corniche_tin::Surface;
-use corniche_work::locked;
+use corniche_work::{Stage, locked};
 
 use super::{
     checks::{CheckId, Findings},
     decoded_tiles::DecodedTiles,
-    each_tile::{OfTile, look_at_layer, recorded},
+    each_tile::{OfTile, VerifyRun, look_at_layer, recorded},
     error::VerifyError,
     near_index::NearIndex,
-    span_order::{self, OrderedCrossing, Piece},
+    span_order::{self, OrderedCrossing, RunPiece},
     tile_place::TilePlace,
     triangle_soup::TriangleSoup,
 };
 
-/// A bridge may be below the ground by this, and a tunnel above it: points are put on a lattice of a millimetre.
+/// The tolerance of a bridge below the ground, and of a tunnel above the ground: points are rounded
+/// to a lattice of a millimetre.
 const SIDE_M: f64 = 0.01;
-/// The upper one of two spans that cross may be below the other by this: their lines are simplified, and the crossing moves.
+/// The tolerance of the height order of two crossing spans: their lines are simplified, which moves
+/// the crossing.
 const LEVEL_M: f64 = 0.05;
-/// Places on the lattice are the same within so many steps.
+/// Two positions on the lattice within this many steps are the same.
 const NEAR_STEPS: f64 = 2.0;
 
-/// Steps of work on a tile: each vertex that is compared with a segment of a run is one.
+/// The limit of work for a tile, in steps: comparing a vertex with a segment of a run is one step.
 const MOST_STEPS: u64 = 1 << 28;
 
-/// An end of a way's line on the border of a tile: its level, way and place.
+/// An end of a way's line on the border of a tile: its level, way and position.
 type BorderEnd = (u8, i64, LatticePoint);
-/// What a tile has there: the height of a run in steps, `None` on the ground.
+/// The ends at each position: the height of a run in steps, or `None` on the ground.
 type EndsByPlace = BTreeMap<BorderEnd, Vec<(TileId, Option<i64>)>>;
 
-pub(crate) fn verify(
-    tiles: &DecodedTiles<'_>,
-    threads: usize,
-    findings: &mut Findings,
-    observer: &dyn Observer,
-) -> Result<(), VerifyError> {
-    let package = tiles.package;
-    let manifest = package.manifest();
+pub(crate) fn verify(run: &VerifyRun<'_>, findings: &mut Findings) -> Result<(), VerifyError> {
+    let manifest = run.package.manifest();
     let record = manifest.spans.as_ref();
     let is_wanted = manifest.settings.spans && manifest.has_extract();
     findings.look(CheckId::SpanSums, record.is_some() == is_wanted, || {
-        "spans are counted and were not asked for, or the other way round".to_owned()
+        "spans are counted but the settings do not include them, or the other way round".to_owned()
     });
     let levels = record.iter().flat_map(|record| &record.levels);
     let recorded = (CheckId::SpanSums, levels.map(recorded).collect());
     let ends: Mutex<EndsByPlace> = Mutex::default();
     let crossings: Mutex<Vec<(TileId, OrderedCrossing)>> = Mutex::default();
-    // Heights of both are rounded away from the ground.
+    // The heights of both spans are rounded away from the ground.
     let least_m = LEVEL_M.max(2.0 * manifest.vertical.quantum_m);
-    let look_at = |id| look_at(tiles, id, least_m, (&ends, &crossings));
-    look_at_layer((package, threads), look_at, recorded, findings, observer)?;
+    let look_at = |id| look_at(&run.tiles, id, least_m, (&ends, &crossings));
+    look_at_layer(run, Stage::VerifySpans, look_at, recorded, findings)?;
     let crossings = crossings.into_inner().unwrap_or_else(PoisonError::into_inner);
     look_at_reversed(told(manifest, SpanReason::OrderReversed), crossings, findings);
     let ends = ends.into_inner().unwrap_or_else(PoisonError::into_inner);
@@ -70,13 +66,14 @@ pub(crate) fn verify(
         let [(first, height), others @ ..] = &of_tiles[..] else { continue };
         let agree = others.iter().all(|(_, other)| other == height);
         findings.look(CheckId::SpanSeams, agree, || {
-            format!("way {way_id} at {at:?} of level {level}: {height:?} steps in tile {first}, {others:?} beside it")
+            format!("way {way_id} at {at:?} of level {level}: height {height:?} (in steps) in tile {first}, {others:?} in its neighbours")
         });
     }
     Ok(())
 }
 
-/// The crossings against the order of layers: only these are kept. The others are counted.
+/// The crossings that contradict the order of layers: only these are returned. The others are
+/// counted.
 fn reversed(
     all: Vec<OrderedCrossing>,
     least_m: f64,
@@ -90,7 +87,7 @@ fn reversed(
     reversed
 }
 
-/// Bridges cross against the order of their layers as often as the manifest tells.
+/// Checks that as many crossings contradict the order of their layers as the manifest records.
 fn look_at_reversed(
     told: u64,
     mut crossings: Vec<(TileId, OrderedCrossing)>,
@@ -108,16 +105,18 @@ fn look_at_reversed(
     }
 }
 
-/// How often the manifest tells a reason to look at bridges or tunnels.
+/// The number of bridges or tunnels that the manifest lists for this reason.
 fn told(manifest: &Manifest, wanted: SpanReason) -> u64 {
     let reasons = manifest.spans.iter().flat_map(|record| &record.counts.reasons);
     reasons.filter(|(reason, _)| reason == wanted.id()).map(|(_, count)| count).sum()
 }
 
-/// What is collected of all tiles: what lies on borders, and where spans cross on the finest level against the order of their layers.
+/// The data collected from all tiles: ends on borders, and crossings on the finest level that
+/// contradict the order of layers.
 type Collected<'a> = (&'a Mutex<EndsByPlace>, &'a Mutex<Vec<(TileId, OrderedCrossing)>>);
 
-/// The upper one of two spans that cross may be below the other by `least_m`.
+/// Checks the bridges and tunnels of a tile. The upper one of two crossing spans may be below the
+/// other by `least_m`.
 fn look_at(
     tiles: &DecodedTiles<'_>,
     id: TileId,
@@ -125,7 +124,7 @@ fn look_at(
     (ends, crossings): Collected<'_>,
 ) -> OfTile {
     let mut found = OfTile::default();
-    // Tiles that cannot be read are told elsewhere.
+    // Unreadable tiles are reported by the check of tiles.
     let Some(bytes) = tiles.package.tile(id).ok().flatten() else { return found };
     let manifest = tiles.package.manifest();
     let quantum_m = manifest.vertical.quantum_m;
@@ -134,12 +133,12 @@ fn look_at(
     if runs.is_empty() && of_structures.is_empty() {
         return found;
     }
-    let whole = tiles.of(id);
+    let whole = tiles.tile_at(id);
     let alone;
     let payload = if let Some(payload) = whole.payload() {
         payload
     } else {
-        // Damage of other sections is told elsewhere.
+        // Damage of other sections is reported by the check of tiles.
         let wanted = Sections::TERRAIN.and(Sections::ROADS_GEO);
         let Ok(read) = manifest.decode(&bytes, id, wanted) else { return found };
         alone = read;
@@ -150,9 +149,9 @@ fn look_at(
     let lines = lines_of_structures(payload, &of_structures, &surface);
     let bounds = manifest.frame.tile_lattice_bounds(id);
     put_ends((id, &bounds), &lines, &runs, ends);
-    let place = TilePlace::of(&manifest.frame, id);
+    let place = TilePlace::from_frame(&manifest.frame, id);
     let ground = tiles.ground(id);
-    let work = Work::new(MOST_STEPS);
+    let work = StepBudget::new(MOST_STEPS);
     let tile = Tile { id, place, ground: &ground, surface: &surface, quantum_m, work: &work };
     for run in &runs {
         let own = lines.get(&(run.way_id, run.class, run.structure == Structure::Tunnel));
@@ -161,7 +160,7 @@ fn look_at(
         if let Err(error) = work.check() {
             found.findings.look(CheckId::SpanSide, false, || {
                 format!(
-                    "tile {id}: it has more runs over more ground than any writer has made: {error}"
+                    "tile {id}: it has more runs over more ground than any writer can have created: {error}"
                 )
             });
             break;
@@ -176,7 +175,7 @@ fn look_at(
                 locked(crossings).extend(reversed);
             }
             Err(error) => found.findings.look(CheckId::SpanOrder, false, || {
-                format!("tile {id}: more of its runs lie over each other than any writer has made: {error}")
+                format!("tile {id}: more of its runs lie over each other than any writer can have created: {error}")
             }),
         }
     }
@@ -186,9 +185,9 @@ fn look_at(
     found
 }
 
-/// The GEO lines of a bridge or a tunnel: places in lattice steps, with heights.
+/// The GEO lines of a bridge or a tunnel: positions in lattice steps, with heights.
 struct WayLines {
-    /// First and last place of each line.
+    /// The first and the last position of each line.
     ends: Vec<[[f64; 2]; 2]>,
     /// The straight pieces of all lines.
     pieces: Vec<[[f64; 3]; 2]>,
@@ -205,9 +204,13 @@ impl WayLines {
         Self { ends: lines.iter().filter_map(ends_of).collect(), pieces, near }
     }
 
-    /// The pieces that come near a box, and perhaps others.
-    fn near(&self, corners: [[f64; 2]; 2], work: &Work) -> impl Iterator<Item = [[f64; 3]; 2]> {
-        // Places along a line are measured as far beyond its ends as across it.
+    /// The pieces near a box, and perhaps others.
+    fn near(
+        &self,
+        corners: [[f64; 2]; 2],
+        work: &StepBudget,
+    ) -> impl Iterator<Item = [[f64; 3]; 2]> {
+        // Positions along a line have the same tolerance beyond its ends as across the line.
         self.near.near(corners, 2.0 * NEAR_STEPS, work).map(|number| self.pieces[number])
     }
 }
@@ -241,7 +244,7 @@ fn lines_of_structures(
     lines.into_iter().map(|(key, own)| (key, WayLines::new(&own))).collect()
 }
 
-/// Adds what a tile has on its border: ends of lines, and the heights of runs that end there.
+/// Adds the ends of lines on the border of a tile, with the heights of runs that end there.
 fn put_ends(
     (id, bounds): (TileId, &LatticeBounds),
     lines: &Lines,
@@ -270,18 +273,19 @@ fn put_ends(
     }
 }
 
-/// The ground of a tile.
+/// A tile with its ground.
 struct Tile<'a> {
     id: TileId,
     place: TilePlace,
     ground: &'a TriangleSoup,
     surface: &'a Surface,
     quantum_m: f64,
-    work: &'a Work,
+    work: &'a StepBudget,
 }
 
 impl Tile<'_> {
-    /// A run ends on the ground of its way, in the triangle that it names, or where the line of its way ends.
+    /// Checks that a run ends on the ground of its way, in the triangle that it names, or at an end
+    /// of the way's line.
     fn look_at_ends(&self, run: &SpanRun, lines: Option<&WayLines>, findings: &mut Findings) {
         for end in [run.points.first(), run.points.last()].into_iter().flatten() {
             let [u, v] = end.at.in_steps();
@@ -306,7 +310,8 @@ impl Tile<'_> {
         }
     }
 
-    /// Whether a triangle of the tile holds a point. Where two triangles meet, a point that was rounded may lie a step beside its own.
+    /// Whether a triangle of the tile contains a point. Where two triangles meet, a rounded point
+    /// may lie a step outside its own triangle.
     fn holds(&self, triangle: u32, at: LatticePoint) -> bool {
         let is_there = (triangle as usize) < self.surface.triangles().len();
         let around =
@@ -314,10 +319,10 @@ impl Tile<'_> {
         is_there && around.into_iter().flatten().any(|at| self.surface.triangle_holds(triangle, at))
     }
 
-    /// The pieces of runs, where their heights are known.
-    fn pieces(&self, runs: &[SpanRun], ways: &BTreeMap<i64, (Structure, i8)>) -> Vec<Piece> {
+    /// The pieces of runs with known heights.
+    fn pieces(&self, runs: &[SpanRun], ways: &BTreeMap<i64, (Structure, i8)>) -> Vec<RunPiece> {
         let of_run = |run: &SpanRun| {
-            let kind = SpanKind::of(run.structure);
+            let kind = SpanKind::from_structure(run.structure);
             let tagged = ways.get(&run.way_id).map_or(0, |(_, layer)| *layer);
             let last = run.points.len().saturating_sub(2);
             let pairs = run.points.array_windows().enumerate().map(move |(index, [from, to])| {
@@ -325,7 +330,7 @@ impl Tile<'_> {
                 let is_end = [index == 0, index == last];
                 let heights_m = [self.height_m(from)?, self.height_m(to)?];
                 let (ends, layer) = ([from.at, to.at], tagged);
-                Some(Piece { way_id: run.way_id, kind, layer, ends, is_end, heights_m })
+                Some(RunPiece { way_id: run.way_id, kind, layer, ends, is_end, heights_m })
             });
             pairs.flatten().collect::<Vec<_>>()
         };
@@ -339,7 +344,8 @@ impl Tile<'_> {
         }
     }
 
-    /// Between its ends a bridge is above the ground, and a tunnel below, at all places at which the ground beneath bends.
+    /// Checks that between its ends a bridge is above the ground and a tunnel below it, wherever
+    /// the slope of the ground beneath changes.
     fn look_at_side(&self, run: &SpanRun, lines: Option<&WayLines>, findings: &mut Findings) {
         let away = if run.structure == Structure::Tunnel { -1.0 } else { 1.0 };
         let mut lowest_m = f64::INFINITY;
@@ -353,7 +359,8 @@ impl Tile<'_> {
                 |of: [f64; 2], [u, v]: [f64; 2]| (of[0] - u).hypot(of[1] - v) <= NEAR_STEPS;
             let near = lines.into_iter().flat_map(|lines| lines.near([a, b], self.work));
             let inner = near.flatten().filter_map(|[u, v, ground_m]| {
-                // The ends are looked at themselves: beside a wall the ground is another one within a step.
+                // The ends are checked separately: next to a cliff the ground changes within a
+                // step.
                 let share = share_of(ends, [u, v])
                     .filter(|_| !is_beside(a, [u, v]) && !is_beside(b, [u, v]))?;
                 Some(away * (from_m + share * (to_m - from_m) - ground_m))
@@ -378,7 +385,8 @@ impl Tile<'_> {
     }
 }
 
-/// Where a place lies on a straight line in plan, as a share of it; `None` where it is not on it.
+/// The position of a point on a straight line in plan, as a fraction of the line; `None` if the
+/// point is not on the line.
 fn share_of([[au, av, _], [bu, bv, _]]: [[f64; 3]; 2], [u, v]: [f64; 2]) -> Option<f64> {
     let [du, dv] = [bu - au, bv - av];
     let length = du.hypot(dv);

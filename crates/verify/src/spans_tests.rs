@@ -1,4 +1,4 @@
-//! Crossings in the wrong order are told, but those that the manifest tells of.
+//! Crossings in the wrong order are found, except those that the manifest records.
 
 use super::*;
 
@@ -11,7 +11,7 @@ fn reversed_crossings_beyond_those_that_are_told_break_the_order() {
         let kept = reversed(all(), 0.05, &mut findings);
         let kept = kept.into_iter().map(|crossing| (TileId::ROOT, crossing)).collect();
         look_at_reversed(told, kept, &mut findings);
-        let check = findings.of(CheckId::SpanOrder);
+        let check = findings.check_mut(CheckId::SpanOrder);
         assert_eq!((check.checked, check.broken), (4, broken), "{told}");
     }
 }

@@ -1,24 +1,24 @@
-//! Where `verify` keeps what does not fit in memory.
+//! The temporary store for data of `verify` that does not fit into memory.
 
 use std::{io, sync::Arc, time::Duration};
 
-use corniche_spec::Observer;
+use corniche_spec::BuildObserver;
 use corniche_store::{LocalScratch, LocalStore, StoreError, StoredPlan, SystemDisk};
 use tempfile::TempDir;
 
 use super::error::VerifyError;
 
-/// A store in a temporary folder, which is removed with it.
+/// A store in a temporary folder, which is removed with the store.
 pub(crate) struct TemporaryStore {
     pub(crate) store: LocalStore,
     _folder: TempDir,
 }
 
 impl TemporaryStore {
-    pub(crate) fn new(observer: &dyn Observer) -> Result<Self, VerifyError> {
+    pub(crate) fn new(observer: &dyn BuildObserver) -> Result<Self, VerifyError> {
         let folder = private_folder().map_err(VerifyError::Work)?;
         observer.temporary(folder.path());
-        // Nothing is gone on from here, so it is bound to nothing, and nothing has to be durable.
+        // The store is never resumed, so it belongs to no plan, and nothing has to be durable.
         let plan = StoredPlan { hash: [0; 32], bytes: Vec::new() };
         let store = LocalStore::create(Arc::new(SystemDisk), folder.path(), &plan, Duration::MAX)
             .map_err(failed)?;
@@ -30,7 +30,7 @@ impl TemporaryStore {
     }
 }
 
-/// A folder that its owner alone can look into.
+/// Creates a folder that only its owner can read.
 fn private_folder() -> io::Result<TempDir> {
     let mut builder = tempfile::Builder::new();
     #[cfg(unix)]
@@ -39,7 +39,7 @@ fn private_folder() -> io::Result<TempDir> {
 }
 
 impl Drop for TemporaryStore {
-    /// Nothing has to reach the disk any more.
+    /// Pending writes need not reach the disk any more.
     fn drop(&mut self) {
         self.store.give_up();
     }

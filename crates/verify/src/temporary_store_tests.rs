@@ -1,4 +1,4 @@
-//! What is kept meanwhile is nobody else's to read.
+//! Only the owner can read the temporary store.
 
 use std::os::unix::fs::PermissionsExt as _;
 

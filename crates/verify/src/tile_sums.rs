@@ -1,4 +1,4 @@
-//! Sums over tiles, beside those that the manifest has of each level and class.
+//! Sums over tiles, which are compared with the manifest's sums for each level and class.
 
 use std::collections::BTreeMap;
 
@@ -13,18 +13,18 @@ use super::{
     seams::Borders,
 };
 
-/// What is kept of a tile to compare it with others.
-pub(crate) struct Kept {
+/// The data of a tile that are kept for comparisons with other tiles.
+pub(crate) struct TileSummary {
     pub vertices: u64,
     pub triangles: u64,
     pub geometric_error_m: f64,
     pub height_range_m: [f64; 2],
     pub borders: Borders,
-    /// `None` without a relief.
+    /// The hashes of the relief's borders; `None` without a relief.
     pub(crate) relief_borders: Option<[u64; 4]>,
 }
 
-/// What of a tile goes into the manifest's sums.
+/// The contribution of a tile to the manifest's sums.
 #[derive(Default)]
 pub(crate) struct TileSums {
     terrain_bytes: u64,
@@ -33,19 +33,23 @@ pub(crate) struct TileSums {
     classes: BTreeMap<u8, Row>,
 }
 
-/// What of a growth row follows from the tiles.
+/// The part of a row of the growth table that follows from the tiles.
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize)]
 pub(crate) struct Row {
     geo_vertices: u64,
     sv_vertices: u64,
     geo_stored_bytes: u64,
     sv_stored_bytes: u64,
-    /// Source points of GEO lines inside the tiles: where there is one, there is a row.
+    /// Source points of GEO lines inside the tiles: if there is one, the table has a row.
     inner_points: u64,
 }
 
 impl TileSums {
-    pub(crate) fn of(payload: &TilePayload, sizes: &PayloadSizes, bounds: LatticeBounds) -> Self {
+    pub(crate) fn from_payload(
+        payload: &TilePayload,
+        sizes: &PayloadSizes,
+        bounds: LatticeBounds,
+    ) -> Self {
         let terrain = payload.terrain.as_ref();
         let mut sums = Self {
             terrain_bytes: sizes.terrain.stored,
@@ -57,7 +61,7 @@ impl TileSums {
         for road in &payload.roads_geo {
             let row = sums.classes.entry(road.class.number()).or_default();
             row.geo_vertices += road.line.vertices.len() as u64;
-            // On a border a point may be a cut.
+            // A point on a border may come from cutting.
             let is_inside = |point: &LatticePoint| {
                 (min.u + 1..max.u).contains(&point.u) && (min.v + 1..max.v).contains(&point.v)
             };
@@ -92,11 +96,11 @@ impl TileSums {
     }
 }
 
-/// Tiles, triangles, bytes and errors of each level.
+/// Checks the tiles, triangles, bytes and errors of each level.
 pub(crate) fn check_levels(
     package: &FilePackage,
     ids: &[TileId],
-    kept: &BTreeMap<TileId, Kept>,
+    kept: &BTreeMap<TileId, TileSummary>,
     sums: &BTreeMap<u8, TileSums>,
     findings: &mut Findings,
 ) {
@@ -109,7 +113,8 @@ pub(crate) fn check_levels(
         let tiles = || kept.iter().filter(|(id, _)| id.z() == level.level).map(|(_, tile)| tile);
         let triangles: u64 = tiles().map(|tile| tile.triangles).sum();
         let vertices: u64 = tiles().map(|tile| tile.vertices).sum();
-        let errors_m = Distribution::of(tiles().map(|tile| tile.geometric_error_m).collect());
+        let errors_m =
+            Distribution::from_values(tiles().map(|tile| tile.geometric_error_m).collect());
         let largest_m = errors_m.map_or(0.0, |errors_m| errors_m.max);
         let sums = sums.get(&level.level).unwrap_or(&nothing);
         let stored = [sums.terrain_bytes, sums.relief_bytes];
@@ -117,7 +122,7 @@ pub(crate) fn check_levels(
         let said = (level.triangles, level.vertices, said_stored, level.errors_m);
         let agrees = (triangles, vertices, stored, errors_m) == said
             && largest_m.to_bits() == level.geometric_error_m.to_bits()
-            // Nodes where there is no tile count for the level alone.
+            // Nodes without a tile count only for the level.
             && sums.uncovered_nodes <= level.uncovered_nodes;
         findings.look(CheckId::LevelSums, agrees, || {
             format!(
@@ -129,7 +134,7 @@ pub(crate) fn check_levels(
     }
 }
 
-/// The rows of the growth table, as far as they follow from the tiles.
+/// Checks the rows of the growth table, as far as they follow from the tiles.
 pub(crate) fn check_growth(
     rows: &[GrowthRow],
     sums: &BTreeMap<u8, TileSums>,
@@ -162,18 +167,25 @@ pub(crate) fn check_growth(
             )
         });
         last = Some(key);
-        // Pairs and triples of f64; the level's lines have no point that the source has not.
+        // Points are pairs or triples of f64; the level's lines have no more points than the
+        // source.
         let plain = [row.source_vertices * 16, row.simplified_vertices * 16, row.geo_vertices * 24];
         let bytes = [row.source_bytes, row.simplified_bytes, row.geo_raw_bytes];
         let thinned = row.simplified_vertices <= row.source_vertices;
         findings.look(CheckId::Growth, plain == bytes && thinned, || {
-            format!("level {} class {}: {bytes:?} bytes for {plain:?}", row.level, row.class)
+            format!(
+                "level {} class {}: {bytes:?} bytes are recorded, the points take {plain:?}",
+                row.level, row.class
+            )
         });
     }
-    // A class of which no point lies in a tile with ground has no row.
+    // A class has no row if none of its points lies in a tile with ground.
     for ((level, class), row) in left {
         findings.look(CheckId::Growth, row.inner_points == 0, || {
-            format!("level {level} class {class} has no row, but {} in the tiles", as_json(&row))
+            format!(
+                "level {level} class {class} has no row in the growth table, but {} in the tiles",
+                as_json(&row)
+            )
         });
     }
 }

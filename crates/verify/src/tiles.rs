@@ -1,18 +1,20 @@
-//! Checks every tile by itself and beside the tiles above it, then compares all tiles with their neighbours, their parents and the manifest.
+//! Checks every tile by itself and against its ancestors, then compares all tiles with their
+//! neighbours, their parents and the manifest.
 
 use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
 use corniche_roads::Structure;
-use corniche_spec::{Observer, levels::Levels};
-use corniche_tileset::{Manifest, SvTail, SvTails, Terrain};
+use corniche_spec::levels::Levels;
+use corniche_tileset::{Manifest, SvTail, SvTails, TileTerrain};
+use corniche_work::Stage;
 
 use super::{
-    attributes::{self, WayFacts, Ways},
+    attributes::{self, FirstWays, StoredWay},
     checks::{CheckId, Findings},
     decoded_tiles::DecodedTiles,
     derived_records::{CUT_M, LENGTH_SHARE},
-    each_tile::each_tile,
+    each_tile::VerifyRun,
     error::VerifyError,
     geo_against_sv, relief,
     report::{GapFigures, VerifyReport},
@@ -20,34 +22,28 @@ use super::{
     roads_on_tin::{self, RoadLengths, counts_for_sums},
     seams,
     tile_place::TilePlace,
-    tile_sums::{Kept, TileSums, check_growth, check_levels},
+    tile_sums::{TileSummary, TileSums, check_growth, check_levels},
     tin_against_parent::{self, Level},
 };
 
-pub(crate) fn verify(
-    tiles: &DecodedTiles<'_>,
-    threads: usize,
-    observer: &dyn Observer,
-) -> Result<(VerifyReport, Findings), VerifyError> {
-    let package = tiles.package;
+pub(crate) fn verify(run: &VerifyRun<'_>) -> Result<(VerifyReport, Findings), VerifyError> {
+    let package = run.package;
     let manifest = package.manifest();
     let frame = manifest.frame;
-    // `None` if the record is not valid; then the check `levels.derived` is broken.
+    // `None` if the record is invalid; then the check `levels.derived` is broken.
     let levels = Levels::recorded(manifest);
     let ids = package.tile_ids()?;
     let mut findings = Findings::default();
     let mut kept = BTreeMap::new();
     let mut gaps: BTreeMap<u8, GapFigures> = BTreeMap::new();
     let mut finest = RoadLengths::default();
-    let mut ways = Ways::default();
+    let mut ways = FirstWays::default();
     let mut sums: BTreeMap<u8, TileSums> = BTreeMap::new();
     let mut sv_tails = SvTails::new();
-    each_tile(
-        package,
-        threads,
-        observer,
-        |id| Ok(look_at(tiles, id, levels.as_ref())),
-        |id, found: Found| {
+    run.each_tile(
+        Stage::Verify,
+        |id| Ok(look_at(&run.tiles, id, levels.as_ref())),
+        |id, found: TileFindings| {
             findings.look(CheckId::Whole, found.damage.is_none(), || {
                 found.damage.clone().unwrap_or_default()
             });
@@ -86,7 +82,7 @@ pub(crate) fn verify(
         let mut pairs = (0..longest).map(|k| [sv_tails.get(k), recorded.get(k)]);
         let differ = pairs.find(|[found, told]| found != told).unwrap_or_default();
         let [found, told] = differ.map(in_words);
-        format!("{counts}; the first that differ: {found}, {told}")
+        format!("{counts}; the first difference: {found} found, {told} recorded")
     });
     let report = VerifyReport {
         tiles: ids.len() as u64,
@@ -105,11 +101,12 @@ fn check_length(found: &RoadLengths, recorded_um: u64, findings: &mut Findings) 
     let allowed_m = LENGTH_SHARE * expected_m.max(1.0) + found.rounding_m(expected_m);
     let holds = (found_m - expected_m).abs() <= allowed_m;
     findings.look(CheckId::Length, holds, || {
-        format!("{found_m} m lie in the tiles, {expected_m} m are recorded")
+        format!("{found_m} m are in the tiles, {expected_m} m are recorded")
     });
 }
 
-/// Compares the lengths of roads on the ground, of bridges and of tunnels on the finest level with the recorded ones, which make up all that was kept.
+/// Compares the lengths of roads on the ground, of bridges and of tunnels on the finest level with
+/// the recorded ones, which add up to the length of all kept roads.
 fn check_structures(found: &RoadLengths, manifest: &Manifest, findings: &mut Findings) {
     let Some(spans) = &manifest.spans else { return };
     let (all_um, [bridges_um, tunnels_um]) =
@@ -129,13 +126,13 @@ fn check_structures(found: &RoadLengths, manifest: &Manifest, findings: &mut Fin
             + found.rounding_m(recorded_m);
         let holds = (found_m - recorded_m).abs() <= allowed_m;
         findings.look(CheckId::Structures, holds, || {
-            format!("{found_m} m of {name} lie in the tiles, {recorded_m} m are recorded")
+            format!("{found_m} m of {name} are in the tiles, {recorded_m} m are recorded")
         });
     }
 }
 
-/// Compares all neighbours, and gives the number of borders compared.
-fn check_seams(kept: &BTreeMap<TileId, Kept>, findings: &mut Findings) -> u64 {
+/// Compares all neighbours, and returns the number of compared borders.
+fn check_seams(kept: &BTreeMap<TileId, TileSummary>, findings: &mut Findings) -> u64 {
     for (&id, tile) in kept {
         for (other, own_edge, other_edge) in seams::neighbours(id) {
             let Some(neighbour) = kept.get(&other) else { continue };
@@ -154,22 +151,23 @@ fn check_seams(kept: &BTreeMap<TileId, Kept>, findings: &mut Findings) -> u64 {
             });
         }
     }
-    findings.of(CheckId::Seams).checked
+    findings.check_mut(CheckId::Seams).checked
 }
 
 /// Checks that the height range of the package is that of the root tile.
-fn check_heights(said_m: [f64; 2], kept: &BTreeMap<TileId, Kept>, findings: &mut Findings) {
+fn check_heights(said_m: [f64; 2], kept: &BTreeMap<TileId, TileSummary>, findings: &mut Findings) {
     let Some(root) = kept.get(&TileId::ROOT) else { return };
     let root_m = root.height_range_m;
     let same = said_m.iter().zip(root_m).all(|(said_m, m)| (said_m - m).abs() <= 0.0);
     findings.look(CheckId::RootHeights, same, || {
-        format!("heights from {said_m:?} are recorded, the root tile has {root_m:?}")
+        format!("the height range {said_m:?} is recorded, the root tile has {root_m:?}")
     });
 }
 
-fn check_nesting(kept: &BTreeMap<TileId, Kept>, findings: &mut Findings) {
+fn check_nesting(kept: &BTreeMap<TileId, TileSummary>, findings: &mut Findings) {
     for (&id, tile) in kept {
-        // An island too small for a cell of the parent leaves it without ground; the next tile above counts.
+        // An island too small for a cell of the parent leaves the parent without ground; the next
+        // ancestor counts.
         let above = (0..id.z()).rev().find_map(|level| {
             let above = id.ancestor(level);
             kept.get(&above).map(|tile| (above, tile))
@@ -178,44 +176,53 @@ fn check_nesting(kept: &BTreeMap<TileId, Kept>, findings: &mut Findings) {
         let nested = above.geometric_error_m >= tile.geometric_error_m
             && above.height_range_m[0] <= tile.height_range_m[0]
             && above.height_range_m[1] >= tile.height_range_m[1];
-        findings.look(CheckId::Nested, nested, || format!("tile {id} exceeds its parent {parent}"));
+        findings.look(CheckId::Nested, nested, || {
+            format!("the error or height range of tile {id} exceeds that of its parent {parent}")
+        });
     }
 }
 
-/// What a worker found in a tile.
+/// The findings of a worker in one tile.
 #[derive(Default)]
-pub(crate) struct Found {
-    pub kept: Option<Kept>,
+pub(crate) struct TileFindings {
+    pub kept: Option<TileSummary>,
     pub(crate) findings: Findings,
     pub gaps: GapFigures,
     pub(crate) lengths: RoadLengths,
-    pub(crate) ways: Vec<(i64, WayFacts)>,
+    pub(crate) ways: Vec<(i64, StoredWay)>,
     pub sums: TileSums,
     pub(crate) sv_tail_bytes: u64,
     pub(crate) damage: Option<String>,
 }
 
-pub(crate) fn look_at(tiles: &DecodedTiles<'_>, id: TileId, levels: Option<&Levels>) -> Found {
+pub(crate) fn look_at(
+    tiles: &DecodedTiles<'_>,
+    id: TileId,
+    levels: Option<&Levels>,
+) -> TileFindings {
     let manifest = tiles.package.manifest();
     let quantum_m = manifest.vertical.quantum_m;
-    let tile = tiles.of(id);
+    let tile = tiles.tile_at(id);
     let (payload, sizes) = match &tile.whole {
         Ok(read) => read,
-        Err(damage) => return Found { damage: Some(damage.clone()), ..Found::default() },
+        Err(damage) => {
+            return TileFindings { damage: Some(damage.clone()), ..TileFindings::default() };
+        }
     };
     let mut findings = Findings::default();
     let least_class = manifest.levels.get(usize::from(id.z())).and_then(|level| level.least_class);
     let ways = attributes::of_tile(payload, least_class, &mut findings);
     roads_on_tin::verify_order(payload, &mut findings);
     let bounds = manifest.frame.tile_lattice_bounds(id);
-    let sums = TileSums::of(payload, sizes, bounds);
-    let mut found = Found { ways, sums, sv_tail_bytes: sizes.sv_tail, ..Found::default() };
+    let sums = TileSums::from_payload(payload, sizes, bounds);
+    let mut found =
+        TileFindings { ways, sums, sv_tail_bytes: sizes.sv_tail, ..TileFindings::default() };
     let Some(terrain) = &payload.terrain else {
         let bare = payload.roads_geo.is_empty() && payload.roads_sv.is_empty();
         findings.look(CheckId::OnTin, bare, || format!("tile {id} has roads but no ground"));
-        return Found { findings, ..found };
+        return TileFindings { findings, ..found };
     };
-    let place = TilePlace::of(&manifest.frame, id);
+    let place = TilePlace::from_frame(&manifest.frame, id);
     let ground = &*tiles.ground(id);
     let on_tin =
         roads_on_tin::verify_on_tin(payload, &terrain.tin, ground, manifest, &mut findings);
@@ -226,26 +233,26 @@ pub(crate) fn look_at(tiles: &DecodedTiles<'_>, id: TileId, levels: Option<&Leve
     let wants_relief = settings.relief.has(id.z(), manifest.frame.max_level());
     findings.look(CheckId::ReliefThere, has_relief == wants_relief, || {
         let found = if has_relief { "a" } else { "no" };
-        format!("tile {id} has {found} relief; the settings say {}", settings.relief.name())
+        format!("tile {id} has {found} relief; the setting is {}", settings.relief.name())
     });
     if let Some(levels) = levels {
         let margin_steps = levels.margin_steps(id.z());
-        let view = geo_against_sv::View { payload, ground, place, margin_steps, quantum_m };
+        let view = geo_against_sv::TileView { payload, ground, place, margin_steps, quantum_m };
         geo_against_sv::verify_lines(&view, &on_tin.positions, &mut findings);
         geo_against_sv::verify_ranges(&view, &mut findings);
-        let parent = id.parent().map(|parent| tiles.of(parent));
+        let parent = id.parent().map(|parent| tiles.tile_at(parent));
         let parent = parent.as_ref().and_then(|parent| parent.payload());
         if let Some(parent) = parent.filter(|parent| parent.terrain.is_some()) {
             let ground_above = &*tiles.ground(parent.id);
-            let above = roads_of_parent::Side { payload: parent, ground: ground_above };
-            let own = roads_of_parent::Side { payload, ground };
+            let above = roads_of_parent::ComparedTile { payload: parent, ground: ground_above };
+            let own = roads_of_parent::ComparedTile { payload, ground };
             roads_of_parent::verify(&own, &above, levels, &mut findings);
         }
     }
     if id.z() == manifest.frame.max_level() {
         check_ancestors(tiles, id, &mut findings);
     }
-    found.kept = Some(Kept {
+    found.kept = Some(TileSummary {
         vertices: terrain.tin.vertices().len() as u64,
         triangles: terrain.tin.triangles().len() as u64,
         geometric_error_m: terrain.geometric_error_m,
@@ -253,11 +260,11 @@ pub(crate) fn look_at(tiles: &DecodedTiles<'_>, id: TileId, levels: Option<&Leve
         borders: seams::borders(&terrain.tin),
         relief_borders: payload.relief.as_ref().map(relief::borders),
     });
-    Found { findings, ..found }
+    TileFindings { findings, ..found }
 }
 
-/// Looks at the heights of a TIN's vertices.
-fn check_vertices(id: TileId, terrain: &Terrain, quantum_m: f64, findings: &mut Findings) {
+/// Checks the heights of a TIN's vertices.
+fn check_vertices(id: TileId, terrain: &TileTerrain, quantum_m: f64, findings: &mut Findings) {
     let [low_m, high_m] = terrain.height_range_m;
     // The height of a vertex is that of a node, rounded to the quantum.
     let range_m = low_m - quantum_m / 2.0..=high_m + quantum_m / 2.0;
@@ -269,14 +276,15 @@ fn check_vertices(id: TileId, terrain: &Terrain, quantum_m: f64, findings: &mut 
     }
 }
 
-/// Compares the TIN of a finest tile, and those above it, each with that of its parent. Tiles above that have no ground or cannot be read
-/// are passed over; the latter are told when they are looked at themselves.
+/// Compares the TIN of a finest tile, and of each of its ancestors, with that of its parent.
+/// Ancestors without ground and unreadable ones are skipped; the latter are reported when they are
+/// checked themselves.
 fn check_ancestors(tiles: &DecodedTiles<'_>, id: TileId, findings: &mut Findings) {
     let levels: Vec<Level> = (0..=id.z())
         .rev()
         .filter_map(|level| {
             let id = id.ancestor(level);
-            let error_m = tiles.of(id).payload()?.terrain.as_ref()?.geometric_error_m;
+            let error_m = tiles.tile_at(id).payload()?.terrain.as_ref()?.geometric_error_m;
             Some(Level { id, ground: tiles.ground(id), error_m })
         })
         .collect();

@@ -16,8 +16,9 @@ pub(crate) struct Level {
     pub(crate) error_m: f64,
 }
 
-/// Compares the TINs above a finest tile: `levels` are that tile and all of its ancestors that have ground, from the
-/// finest up. Nodes that the finest level does not cover may be void, and nothing is promised there.
+/// Compares the TINs above a finest tile: `levels` are this tile and all of its ancestors that have
+/// ground, from the finest up. Nodes that the finest level does not cover may be void, and are not
+/// compared.
 pub(crate) fn verify(frame: &GridFrame, levels: &[Level], findings: &mut Findings) {
     let Some(finest) = levels.first() else { return };
     let corner = frame.tile_corner(finest.id);
@@ -30,7 +31,7 @@ pub(crate) fn verify(frame: &GridFrame, levels: &[Level], findings: &mut Finding
         let heights_m = level.ground.raster(first, 1.0 / stride, TILE_NODES);
         match &below {
             None => has_data = heights_m.iter().map(|height_m| !height_m.is_nan()).collect(),
-            // If a level between the two has no ground, they are not child and parent.
+            // If a level between the two has no ground, the two are not child and parent.
             Some((child, child_m)) if child.id.z() == id.z() + 1 => {
                 let allowed_m = level.error_m + child.error_m + HEIGHT_ROUNDING_M;
                 let worst_m = heights_m
@@ -38,7 +39,7 @@ pub(crate) fn verify(frame: &GridFrame, levels: &[Level], findings: &mut Finding
                     .zip(child_m)
                     .zip(&has_data)
                     .filter(|&(_, &has_data)| has_data)
-                    // Not a number where one of the two has no ground, which is no maximum.
+                    // NaN where one of the two has no ground; `f64::max` ignores NaN.
                     .map(|((above_m, below_m), _)| (above_m - below_m).abs())
                     .fold(0.0, f64::max);
                 findings.look(CheckId::Levels, worst_m <= allowed_m, || {

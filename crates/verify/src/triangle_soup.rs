@@ -1,8 +1,9 @@
-//! Geometry of TINs for checks. It shares no code with the build: f64 in cells of the tile, a grid of buckets, no adjacency.
+//! Geometry of TINs for checks. It shares no code with the build: it uses f64 in cells of the tile
+//! and a grid of buckets, without adjacency.
 
 use std::{mem::size_of_val, ops::RangeInclusive};
 
-use corniche_geom::{IndexLists, Work};
+use corniche_geom::{IndexLists, StepBudget};
 use corniche_tin::Tin;
 
 /// Buckets along one side of a tile.
@@ -10,26 +11,29 @@ const BUCKETS: usize = 64;
 const TILE_CELLS: f64 = 256.0;
 /// Tolerance for comparing heights that were computed in two ways, metres.
 pub(crate) const HEIGHT_ROUNDING_M: f64 = 1e-6;
-/// How far outside a triangle, in cells, a point may lie and still count as in it: rounding of f64 at the scale
-/// of a tile, far below the millimetre.
+/// The distance outside a triangle, in cells, at which a point still counts as inside: the rounding
+/// error of f64 at the scale of a tile, far below a millimetre.
 const SLACK_CELLS: f64 = 1e-7;
 
-/// Parts of triangles shorter than this are not met by a line: a line is rounded to the lattice where it is cut.
+/// The least length, in lattice steps, that a line must run inside a triangle to meet it: lines are
+/// rounded to the lattice where they are cut.
 const MET_STEPS: f64 = 8.0;
-/// How far inside a triangle a line must run to meet it, for the same reason.
+/// The distance from the edges at which a line must run inside a triangle to meet it, for the same
+/// reason.
 const INSIDE_STEPS: f64 = 2.0;
 
-/// A tile's triangles, prepared for the lookup of heights. Positions are (column, row) in the tile's own cells.
+/// A tile's triangles, prepared for the lookup of heights. Positions are (column, row) in the
+/// tile's own cells.
 pub(crate) struct TriangleSoup {
     /// Corners of each triangle: column, row, height in metres.
     triangles: Vec<Corners>,
     /// Triangles by bucket.
     buckets: IndexLists,
-    /// First and last row and column of each triangle's buckets.
+    /// The first and the last row and column of each triangle's buckets.
     boxes: Vec<BucketBox>,
-    /// Lowest and highest corner of the triangles of each bucket.
+    /// The lowest and the highest corner of the triangles in each bucket.
     heights_m: Vec<[f64; 2]>,
-    /// Lattice steps to a cell, east and north.
+    /// Lattice steps per cell, east and north.
     steps: [f64; 2],
 }
 
@@ -41,7 +45,7 @@ struct BucketBox {
     columns: [u8; 2],
 }
 
-/// A segment, and how far what is looked for may lie from it along each axis, in cells.
+/// A segment, with the distance around it to search along each axis, in cells.
 #[derive(Clone, Copy)]
 struct Strip {
     ends: [[f64; 2]; 2],
@@ -49,7 +53,7 @@ struct Strip {
 }
 
 impl TriangleSoup {
-    /// `steps` are the lattice steps of a cell, which queries about lengths need.
+    /// `steps` are the lattice steps per cell, which queries about lengths need.
     pub(crate) fn new(tin: &Tin, quantum_m: f64, steps: [f64; 2]) -> Self {
         let triangles: Vec<Corners> = tin
             .triangles()
@@ -81,7 +85,7 @@ impl TriangleSoup {
         });
         let heights_m = (0..BUCKETS * BUCKETS).map(|bucket| {
             let none = [f64::INFINITY, f64::NEG_INFINITY];
-            buckets.of(bucket).iter().fold(none, |[low, high], &triangle| {
+            buckets.list(bucket).iter().fold(none, |[low, high], &triangle| {
                 let [low_m, high_m] = extent(triangle as usize, 2);
                 [low.min(low_m), high.max(high_m)]
             })
@@ -90,7 +94,7 @@ impl TriangleSoup {
         Self { triangles, buckets, boxes, heights_m, steps }
     }
 
-    /// What it takes in memory.
+    /// The size in memory.
     pub(crate) fn bytes(&self) -> usize {
         let [starts, indices] = self.buckets.parts();
         size_of_val(starts)
@@ -100,24 +104,26 @@ impl TriangleSoup {
             + size_of_val(&*self.heights_m)
     }
 
-    /// All triangles that hold the point, borders included.
+    /// All triangles that contain the point, borders included.
     fn holding(&self, at: [f64; 2]) -> impl Iterator<Item = &Corners> + '_ {
         self.buckets
-            .of(bucket(at[1]) * BUCKETS + bucket(at[0]))
+            .list(bucket(at[1]) * BUCKETS + bucket(at[0]))
             .iter()
             .map(|&triangle| &self.triangles[triangle as usize])
             .filter(move |corners| holds(corners, at))
     }
 
-    /// Height of the ground; `None` where there is none. Where triangles meet, the first one's.
+    /// The height of the ground, in metres; `None` without ground. Where triangles meet, the first
+    /// one counts.
     pub(crate) fn height_m(&self, at: [f64; 2]) -> Option<f64> {
         self.holding(at).next().map(|corners| height(corners, at))
     }
 
-    /// How far the edge from `a` to `b` (column, row, height) is from lying on one triangle: the smallest, over
-    /// all triangles that hold both ends, of the larger gap at the two ends. `None` when none holds both.
+    /// The gap between the edge from `a` to `b` (column, row, height) and the closest single
+    /// triangle: the smallest, over all triangles that contain both ends, of the larger gap at the
+    /// two ends. `None` if no triangle contains both.
     ///
-    /// A triangle is convex and flat, so what holds for both ends holds for the edge between them.
+    /// A triangle is convex and flat, so the gap along the edge is never larger than at its ends.
     pub(crate) fn edge_gap_m(&self, a: [f64; 3], b: [f64; 3]) -> Option<f64> {
         let middle = [f64::midpoint(a[0], b[0]), f64::midpoint(a[1], b[1])];
         self.holding(middle)
@@ -129,10 +135,10 @@ impl TriangleSoup {
             .reduce(f64::min)
     }
 
-    /// The buckets of a strip, and of each the triangles that no bucket before it had.
+    /// The buckets of a strip, each with the triangles that no earlier bucket had.
     ///
-    /// A strip is convex, so the rows in which a triangle's columns meet those of the strip follow each other. A triangle is given in the
-    /// first of them, in the first bucket there.
+    /// A strip is convex, so the rows in which a triangle's columns meet those of the strip are
+    /// consecutive. A triangle is returned in the first of these rows, in the first bucket there.
     fn near(
         &self,
         strip: Strip,
@@ -153,7 +159,7 @@ impl TriangleSoup {
                     };
                     let bucket = row * BUCKETS + column;
                     let triangles =
-                        self.buckets.of(bucket).iter().map(|&triangle| triangle as usize);
+                        self.buckets.list(bucket).iter().map(|&triangle| triangle as usize);
                     let given =
                         triangles.filter(is_first).map(|triangle| &self.triangles[triangle]);
                     (bucket, given)
@@ -162,16 +168,16 @@ impl TriangleSoup {
         })
     }
 
-    /// Lowest and highest ground in the rectangle along a segment that reaches `margin` lattice steps beyond it on
-    /// every side. `None` without ground there. Looking at a bucket or a triangle is a step of `work`.
+    /// The lowest and the highest ground in the rectangle that reaches `margin` lattice steps
+    /// beyond a segment on every side. `None` without ground there. Reading a bucket or a triangle
+    /// is a step of `work`.
     pub(crate) fn range_near(
         &self,
         [a, b]: [[f64; 2]; 2],
         margin: f64,
-        work: &Work,
+        work: &StepBudget,
     ) -> Option<[f64; 2]> {
-        let in_steps = |[column, row]: [f64; 2]| [column * self.steps[0], -row * self.steps[1]];
-        let (p, q) = (in_steps(a), in_steps(b));
+        let (p, q) = (self.in_steps(a), self.in_steps(b));
         let length = (q[0] - p[0]).hypot(q[1] - p[1]);
         let way = if length > 0.0 {
             [(q[0] - p[0]) / length, (q[1] - p[1]) / length]
@@ -183,14 +189,14 @@ impl TriangleSoup {
         let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
         let mut widen = |corners: &Corners| {
             let turned = corners.map(|[column, row, height]| {
-                let at = in_steps([column, row]);
+                let at = self.in_steps([column, row]);
                 let (du, dv) = (at[0] - p[0], at[1] - p[1]);
                 [du * way[0] + dv * way[1], dv * way[0] - du * way[1], height]
             });
             let is_inside = |[along, across, _]: &[f64; 3]| {
                 (-margin..=length + margin).contains(along) && across.abs() <= margin
             };
-            // Most triangles of a bucket are beside the rectangle, on one side of it.
+            // Most triangles of a bucket are outside the rectangle, on one side of it.
             let is_beside = turned.iter().all(|[along, ..]| *along < -margin)
                 || turned.iter().all(|[along, ..]| *along > length + margin)
                 || turned.iter().all(|[_, across, _]| *across < -margin)
@@ -212,7 +218,7 @@ impl TriangleSoup {
             [lowest, highest]
         };
         let mut range = [f64::INFINITY, f64::NEG_INFINITY];
-        // What lies within the range cannot widen it.
+        // Heights within the range cannot widen it.
         let is_within =
             |[low, high]: [f64; 2], range: [f64; 2]| range[0] <= low && high <= range[1];
         for (bucket, triangles) in self.near(Strip { ends: [a, b], reach }) {
@@ -231,19 +237,24 @@ impl TriangleSoup {
         (range[0] <= range[1]).then_some(range)
     }
 
-    /// Whether the segment runs inside a triangle for more than a few lattice steps. Looking at a triangle is a step of `work`.
-    pub(crate) fn meets(&self, [a, b]: [[f64; 2]; 2], work: &Work) -> bool {
-        let in_steps = |[column, row]: [f64; 2]| [column * self.steps[0], -row * self.steps[1]];
-        let (p, q) = (in_steps(a), in_steps(b));
+    /// A position in lattice steps, with north up.
+    fn in_steps(&self, [column, row]: [f64; 2]) -> [f64; 2] {
+        [column * self.steps[0], -row * self.steps[1]]
+    }
+
+    /// Whether the segment runs inside a triangle for more than a few lattice steps. Reading a
+    /// triangle is a step of `work`.
+    pub(crate) fn meets(&self, [a, b]: [[f64; 2]; 2], work: &StepBudget) -> bool {
+        let (p, q) = (self.in_steps(a), self.in_steps(b));
         let length = (q[0] - p[0]).hypot(q[1] - p[1]);
         let strip = Strip { ends: [a, b], reach: [0.0; 2] };
         self.near(strip).flat_map(|(_, triangles)| triangles).any(|corners| {
             work.add(1);
-            let at = corners.map(|corner| in_steps(flat(corner)));
+            let at = corners.map(|corner| self.in_steps(flat(corner)));
             let (mut from, mut to) = (0.0_f64, 1.0_f64);
             for k in 0..3 {
                 let (c, d) = (at[k], at[(k + 1) % 3]);
-                // In steps north is up, so the inside is on the left.
+                // North is up, so the inside is on the left.
                 let inside =
                     |point| area(c, d, point) / (d[0] - c[0]).hypot(d[1] - c[1]) - INSIDE_STEPS;
                 let (here, there) = (inside(p), inside(q));
@@ -260,8 +271,8 @@ impl TriangleSoup {
         })
     }
 
-    /// Heights at a square of nodes, row by row: the first at (column, row) `first`, neighbours `step` cells apart.
-    /// NaN where there is no ground.
+    /// The heights at a square of nodes, row by row: the first node is at (column, row) `first`,
+    /// neighbours are `step` cells apart. NaN without ground.
     pub(crate) fn raster(&self, first: [f64; 2], step: f64, side: usize) -> Vec<f64> {
         let mut heights = vec![f64::NAN; side * side];
         let last = (side - 1) as f64;
@@ -292,7 +303,7 @@ impl TriangleSoup {
                     let (a, b) = (flat(at[k]), flat(at[(k + 1) % 3]));
                     let (rise, reach) = (b[1] - a[1], (b[0] - a[0]) * (row - a[1]));
                     let slack = SLACK_CELLS * length[k];
-                    // As in `holds`: reach − rise · (column − a) is at most the slack.
+                    // Like in `holds`: reach − rise · (column − a) is at most the slack.
                     if rise > 0.0 {
                         west = west.max(a[0] + (reach - slack) / rise);
                     } else if rise < 0.0 {
@@ -315,20 +326,21 @@ impl TriangleSoup {
 }
 
 impl Strip {
-    /// What rounding may hide of the segment's place.
+    /// The tolerance for rounding of the segment's position.
     fn slack(&self) -> f64 {
         let size = self.ends.as_flattened().iter().fold(0.0_f64, |size, at| size.max(at.abs()));
         SLACK_CELLS + size * 1e-12
     }
 
-    /// Rows of buckets that it may touch.
+    /// The rows of buckets that the strip may touch.
     fn rows(&self) -> RangeInclusive<usize> {
         let [a, b] = self.ends.map(|end| end[1]);
         let reach = self.reach[1] + self.slack();
         bucket(a.min(b) - reach)..=bucket(a.max(b) + reach)
     }
 
-    /// The first and the last column that it may touch in a row of buckets. What lies beyond the tile counts for the buckets at its border.
+    /// The first and the last column that the strip may touch in a row of buckets. Parts outside
+    /// the tile count for the buckets at its border.
     fn columns(&self, row: usize) -> Option<[usize; 2]> {
         let [a, b] = self.ends;
         let slack = self.slack();
@@ -352,7 +364,7 @@ impl Strip {
     }
 }
 
-/// What of a convex polygon lies where `inside`, an affine function, is at least 0.
+/// The part of a convex polygon where `inside`, an affine function, is at least 0.
 fn cut(corners: &[[f64; 3]], inside: impl Fn([f64; 3]) -> f64) -> Vec<[f64; 3]> {
     let mut kept = Vec::with_capacity(corners.len() + 1);
     for (k, &this) in corners.iter().enumerate() {
@@ -369,7 +381,7 @@ fn cut(corners: &[[f64; 3]], inside: impl Fn([f64; 3]) -> f64) -> Vec<[f64; 3]> 
     kept
 }
 
-/// The first and the last row or column of the buckets that hold what reaches from one place to another, in cells.
+/// The first and the last row or column of the buckets that a range contains, in cells.
 fn buckets_of([low, high]: [f64; 2]) -> [u8; 2] {
     [bucket(low - SLACK_CELLS), bucket(high + SLACK_CELLS)].map(|bucket| bucket as u8)
 }
@@ -378,7 +390,8 @@ fn bucket(cells: f64) -> usize {
     ((cells / TILE_CELLS * BUCKETS as f64).max(0.0) as usize).min(BUCKETS - 1)
 }
 
-/// Twice the signed area; rows grow southwards, so the TIN's counter-clockwise triangles are negative here.
+/// Twice the signed area; rows grow southwards, so the TIN's counter-clockwise triangles are
+/// negative here.
 fn area(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
@@ -391,7 +404,7 @@ fn holds(corners: &Corners, at: [f64; 2]) -> bool {
     (0..3).all(|k| {
         let (a, b) = (flat(corners[k]), flat(corners[(k + 1) % 3]));
         let area = area(a, b, at);
-        // Nearly all points are on one side or the other, and need no length.
+        // Nearly all points are on one side or the other, and do not need the length.
         area <= 0.0 || area <= SLACK_CELLS * (b[0] - a[0]).hypot(b[1] - a[1])
     })
 }

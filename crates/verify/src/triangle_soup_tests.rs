@@ -6,7 +6,7 @@ use corniche_tin::TinVertex;
 use super::*;
 
 fn roof() -> Tin {
-    // A roof: ridge of height 8 along column 128, eaves at 0.
+    // A roof: the ridge of height 8 is along column 128, the eaves are at 0.
     let node = |row, column, height_q| TinVertex { row, column, height_q };
     let vertices = vec![
         node(0, 0, 0),
@@ -47,19 +47,24 @@ fn the_range_around_a_segment_holds_the_ridge_only_where_it_reaches_it() {
     let ground = TriangleSoup::new(&roof, 0.5, [3.0, 2.0]);
     let along = [[100.0, 10.0], [100.0, 40.0]];
     // 20 cells east: 60 steps.
-    let [low_m, high_m] = ground.range_near(along, 60.0, &Work::unlimited()).unwrap();
+    let [low_m, high_m] = ground.range_near(along, 60.0, &StepBudget::unlimited()).unwrap();
     assert!((low_m - 80.0 / 32.0).abs() < 1e-9 && (high_m - 120.0 / 32.0).abs() < 1e-9);
-    assert_eq!(ground.range_near(along, 90.0, &Work::unlimited()).unwrap()[1], 4.0);
-    assert!(ground.range_near([[300.0, 0.0], [310.0, 0.0]], 100.0, &Work::unlimited()).is_none());
+    assert_eq!(ground.range_near(along, 90.0, &StepBudget::unlimited()).unwrap()[1], 4.0);
+    assert!(
+        ground.range_near([[300.0, 0.0], [310.0, 0.0]], 100.0, &StepBudget::unlimited()).is_none()
+    );
 }
 
 #[test]
 fn a_line_meets_ground_where_it_runs_inside_it() {
     let roof = roof();
     let ground = TriangleSoup::new(&roof, 0.5, [1000.0, 1000.0]);
-    assert!(ground.meets([[-5.0, 20.0], [3.0, 20.0]], &Work::unlimited()));
-    assert!(!ground.meets([[-5.0, 20.0], [0.005, 20.0]], &Work::unlimited()));
-    assert!(!ground.meets([[0.0, 3.0], [0.0, 200.0]], &Work::unlimited()), "along the boundary");
+    assert!(ground.meets([[-5.0, 20.0], [3.0, 20.0]], &StepBudget::unlimited()));
+    assert!(!ground.meets([[-5.0, 20.0], [0.005, 20.0]], &StepBudget::unlimited()));
+    assert!(
+        !ground.meets([[0.0, 3.0], [0.0, 200.0]], &StepBudget::unlimited()),
+        "along the boundary"
+    );
 }
 
 #[test]
@@ -76,7 +81,8 @@ fn a_raster_has_the_heights_of_its_nodes() {
     }
 }
 
-/// Every triangle with a corner or its middle in the strip is given, each once, and on fine ground no more than lie around the segment.
+/// Every triangle with a corner or its middle in the strip is returned once, and on fine ground
+/// only triangles around the segment.
 #[test]
 fn what_lies_near_a_segment_is_found_once_and_little_else() {
     let mut random = Random::new(38);

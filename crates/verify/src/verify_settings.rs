@@ -1,43 +1,47 @@
-//! With which inputs a package is verified, and how; files that were found to be those of the build.
+//! The settings of a verification: its inputs and resources; and files that are checked to be those
+//! of the build.
 
 use std::path::PathBuf;
 
 use corniche_areas::AreaTable;
-use corniche_gis::Polygon;
+use corniche_gis::RegionPolygons;
 use corniche_roads::FrcTable;
-use corniche_spec::inputs::Inputs;
+use corniche_spec::inputs::InputFiles;
 
-/// The inputs with which a package is verified.
+/// The inputs and settings of a verification.
 #[derive(Debug, Clone)]
 pub struct VerifySettings {
-    /// The elevation files it was made from, to check errors against; empty leaves that out.
+    /// The elevation files from which the package was built, to check errors; empty to skip these
+    /// checks.
     pub dem: Vec<PathBuf>,
-    /// The photos it was made from, to check the photos of tiles against; empty leaves that out.
+    /// The photos from which the package was built, to check the photos of tiles; empty to skip
+    /// these checks.
     pub photo: Vec<PathBuf>,
-    /// The extract it was made from, to check roads against; `None` leaves that out.
+    /// The extracts from which the package was built, to check roads; `None` to skip these checks.
     pub osm: Option<VerifyOsm>,
-    /// The polygon that it was cut with, if it was: needed with elevation files and with an extract.
-    pub polygon: Option<Polygon>,
+    /// The polygon to which the package was clipped, if any: needed with elevation files and with
+    /// an extract.
+    pub polygon: Option<RegionPolygons>,
     /// Worker threads, at least 1.
     pub threads: usize,
 }
 
-/// The extracts that a package was made from, and how they were read.
+/// The extracts from which a package was built, and the settings with which they were read.
 #[derive(Debug, Clone)]
 pub struct VerifyOsm {
     /// The extracts.
     pub paths: Vec<PathBuf>,
     /// The FRC table that the manifest names.
     pub table: FrcTable,
-    /// The table of areas that the manifest names; not asked for if the package has none.
+    /// The table of areas that the manifest names; not needed if the package has no areas.
     pub areas: Option<AreaTable>,
-    /// Memory for sorting roads and areas by tile, bytes.
+    /// The memory for sorting roads and areas by tile, in bytes.
     pub memory_bytes: u64,
 }
 
 /// Files that are those of the build.
 pub(crate) struct GivenFiles<T> {
-    /// The files, to see at the end that they did not change.
-    pub inputs: Inputs,
+    /// The files, to check at the end that they did not change.
+    pub inputs: InputFiles,
     pub found: T,
 }

@@ -1,38 +1,38 @@
-//! Compares TIN vertices and their normals with the DEM on each level, and counts the nodes with data.
+//! Compares TIN vertices and their normals with the DEM on each level, and counts the nodes with
+//! data.
 
 use corniche_dem::{Dem, DemError, GridPlan};
 use corniche_geom::{HeightGrid, TileId};
 use corniche_ground::GroundError;
 use corniche_ground::heights::pyramid::Pyramid;
-use corniche_spec::Observer;
-use corniche_tileset::Terrain;
+use corniche_tileset::TileTerrain;
 use corniche_tin::normal_shift;
+use corniche_work::Stage;
 
 use super::{
     checks::{CheckId, Findings, as_json},
     decoded_tiles::DecodedTiles,
-    each_tile::each_tile,
+    each_tile::VerifyRun,
     error::VerifyError,
     relief,
-    report::VerifyReport,
     temporary_store::TemporaryStore,
 };
 
 /// Steps from the centre of the octahedron's square to its edge (Meyer et al. 2010, section 3).
 const STEPS: f64 = 127.0;
-/// A code is the nearest multiple of its level's step; this much more is allowed, because it was computed in two ways.
+/// The additional tolerance of a code, which is the nearest multiple of its level's step: it was
+/// computed in two ways.
 const COMPUTED: f64 = 1e-6;
 
-/// Compares vertices and normals with the rasters of their levels, which are kept in a temporary folder.
+/// Compares vertices and normals with the rasters of their levels, which are stored in a temporary
+/// folder.
 pub(crate) fn verify(
-    tiles: &DecodedTiles<'_>,
-    dem: &Dem,
-    plan: &GridPlan,
-    threads: usize,
-    report: &mut VerifyReport,
-    observer: &dyn Observer,
+    run: &VerifyRun<'_>,
+    (dem, plan): &(Dem, GridPlan),
+    findings: &mut Findings,
 ) -> Result<(), VerifyError> {
-    let manifest = tiles.package.manifest();
+    let &VerifyRun { package, ref tiles, threads, observer } = run;
+    let manifest = package.manifest();
     let work = TemporaryStore::new(observer)?;
     let pyramid = Pyramid {
         dem,
@@ -44,7 +44,6 @@ pub(crate) fn verify(
     };
     pyramid.make(TileId::ROOT)?;
     let patches = pyramid.all_patches()?;
-    let mut findings = Findings::default();
     let refused = refusal(pyramid.check(&patches))?;
     findings.look(CheckId::DemCounts, refused.is_none(), || {
         format!("heights that the settings do not allow: {}", refused.unwrap_or_default())
@@ -57,15 +56,14 @@ pub(crate) fn verify(
     let (said_m, found_m) = (manifest.vertical.range_m, sums.range_m.map(f64::from));
     let same_range = said_m.map(f64::to_bits) == found_m.map(f64::to_bits);
     findings.look(CheckId::DemCounts, same_range, || {
-        format!("heights from {said_m:?} are recorded, {found_m:?} were found")
+        format!("the height range {said_m:?} is recorded, {found_m:?} was found")
     });
     let look_at = |id| look_at(tiles, &pyramid, id);
-    each_tile(tiles.package, threads, observer, look_at, |_, found| findings.merge(found))?;
-    report.checks.extend(findings);
-    Ok(())
+    run.each_tile(Stage::CompareHeights, look_at, |_, found| findings.merge(found))
 }
 
-/// Why the audit refuses heights, if it does. Other failures are no findings: the run ends with their cause.
+/// The message if the audit rejects heights. Other errors are no findings: they end the
+/// verification.
 fn refusal(audited: Result<(), GroundError>) -> Result<Option<String>, VerifyError> {
     match audited {
         Ok(()) => Ok(None),
@@ -81,11 +79,11 @@ fn look_at(
 ) -> Result<Findings, VerifyError> {
     let mut findings = Findings::default();
     let manifest = tiles.package.manifest();
-    let tile = tiles.of(id);
-    let Some(Terrain { tin, normals, .. }) = tile.terrain() else { return Ok(findings) };
+    let tile = tiles.tile_at(id);
+    let Some(TileTerrain { tin, normals, .. }) = tile.terrain() else { return Ok(findings) };
     let Some(heights) = pyramid.tile(id)? else {
         findings.look(CheckId::Nodes, false, || {
-            format!("tile {id} has ground, the DEM no height there")
+            format!("tile {id} has ground where the DEM has no height")
         });
         return Ok(findings);
     };
@@ -103,14 +101,15 @@ fn look_at(
         relief::verify(id, relief, (&heights, may_move), slope_at, &mut findings);
     }
     for (vertex, normal) in tin.vertices().iter().zip(normals) {
-        // The raster has the tile's own nodes and one row or column of nodes of its neighbours on each side.
+        // The raster has the tile's own nodes and one row or column of nodes of its neighbours on
+        // each side.
         let at = [usize::from(vertex.column) + 1, usize::from(vertex.row) + 1];
         let wanted = heights
             .height(at[0], at[1])
             .map(|height_m| (f64::from(height_m) / manifest.vertical.quantum_m).round());
         findings.look(CheckId::Nodes, wanted == Some(f64::from(vertex.height_q)), || {
             format!(
-                "tile {id} has {} steps at node {}, {} of the tile, the DEM {wanted:?}",
+                "tile {id} has height {} (in steps) at its node {}, {}, the DEM {wanted:?}",
                 vertex.height_q, vertex.column, vertex.row
             )
         });
@@ -124,7 +123,7 @@ fn look_at(
         });
         findings.look(CheckId::Normals, holds, || {
             format!(
-                "tile {id} has the normal {normal:?} at node {}, {} of the tile, the DEM {exact:?}",
+                "tile {id} has the normal {normal:?} at its node {}, {}, the DEM {exact:?}",
                 vertex.column, vertex.row
             )
         });
@@ -132,7 +131,8 @@ fn look_at(
     Ok(findings)
 }
 
-/// The rise in metres per metre east and per metre north, from the nearest nodes with data on either side.
+/// The rise in metres per metre east and per metre north, from the nearest nodes with data on
+/// either side.
 fn gradient(heights: &HeightGrid, [column, row]: [usize; 2], cell_m: [f64; 2]) -> [f64; 2] {
     let slope = |low: [usize; 2], high: [usize; 2], cell_m: f64| {
         let at = |[column, row]: [usize; 2]| heights.height(column, row).map(f64::from);

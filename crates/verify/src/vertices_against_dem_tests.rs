@@ -1,4 +1,4 @@
-//! Gradients beside gaps are one-sided, and only refused samples are findings.
+//! Gradients next to gaps are one-sided, and only rejected samples are findings.
 
 use corniche_dem::AuditError;
 use corniche_pieces::ExtractError;

@@ -1,11 +1,12 @@
-//! What the first picture of a package costs, stage by stage, from opening the file to pixels: an overview as `corniche render` draws it,
-//! 1600 × 1200 pixels of 2 × 2 samples, and what its tiles hold.
+//! Measures the time of the first picture of a package, stage by stage, from opening the file to
+//! pixels: an overview as `corniche render` draws it, 1600 × 1200 pixels of 2 × 2 samples. Also
+//! reports the contents of its tiles.
 //!
 //! ```sh
 //! cargo run --release -p corniche-viewer --example first_picture -- A.pmtiles
 //! ```
 //!
-//! CPU times are those of all threads, as Linux counts them; elsewhere they are 0.
+//! CPU times are the sum over all threads, as Linux counts them; on other systems they are 0.
 #![expect(clippy::print_stdout, reason = "an example prints its result")]
 
 use std::{collections::BTreeMap, env, error::Error, fs, path::Path, time::Instant};
@@ -33,7 +34,7 @@ impl Stages {
         Self { began: Instant::now(), cpu_s: cpu_s() }
     }
 
-    /// Tells what was spent since the last stage ended.
+    /// Prints the time since the end of the last stage.
     fn end(&mut self, stage: &str) {
         let (wall_ms, cpu_ms) =
             (self.began.elapsed().as_secs_f64() * 1e3, (cpu_s() - self.cpu_s) * 1e3);
@@ -42,7 +43,7 @@ impl Stages {
     }
 }
 
-/// Seconds that all threads of this process have run.
+/// CPU seconds of all threads of this process.
 fn cpu_s() -> f64 {
     let Ok(threads) = fs::read_dir("/proc/self/task") else { return 0.0 };
     let nanoseconds_of = |path: std::path::PathBuf| {
@@ -57,7 +58,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("| stage | wall ms | CPU ms |\n|---|--:|--:|");
     let mut stages = Stages::new();
     let style = Style::road_atlas();
-    let roads = RoadOptions::of(RoadMethod::ShadowVolumes);
+    let roads = RoadOptions::for_method(RoadMethod::ShadowVolumes);
     let package = PackageSource::open(Path::new(&file))?;
     let package = package.with_decoder(TileDecoder::default().for_look(roads.method, &style));
     let manifest = package.manifest();
@@ -117,7 +118,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     stages.end("drawn");
     targets.picture.read_image(&gpu)?;
     stages.end("read back");
-    // What was compiled for the first picture is there for the second.
+    // Shaders and pipelines compiled for the first picture are reused for the second.
     renderer.draw(&gpu, &view, &tiles, &targets);
     gpu.finish()?;
     stages.end("drawn again");
@@ -132,6 +133,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     let volumes = of_drawn(&|tile| tile.volumes.all().len() as u64);
     println!("\ntiles loaded {}, drawn {}", store.len(), drawn.len());
     println!("triangles {}, road segments {volumes}", count(&|tile| tile.triangles));
-    println!("bytes on the card: all {all}, slopes {slopes}, roads {}", volumes * 60);
+    println!("bytes on the GPU: all {all}, slopes {slopes}, roads {}", volumes * 60);
     Ok(())
 }

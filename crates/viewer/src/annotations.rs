@@ -1,4 +1,5 @@
-//! What is written on a finished picture: a title, credits, and a legend with scale and north arrow.
+//! Annotations on a finished picture: a title, the attribution, and a legend with scale bar and
+//! north arrow.
 
 mod credits;
 mod legend;
@@ -8,7 +9,9 @@ mod title;
 
 pub use self::{
     credits::draw_attribution,
-    legend::{Legend, LegendHeights, Taken, bar_length, bar_length_m, draw_legend, grouped},
+    legend::{
+        Legend, LegendHeights, OccupiedMargins, bar_length, bar_length_m, draw_legend, grouped,
+    },
     legend_row::{LegendEdge, LegendRoad, LegendRow, LegendSample},
     title::{TitleFlaws, WrittenTitle, draw_title},
 };

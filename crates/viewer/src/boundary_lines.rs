@@ -1,4 +1,5 @@
-//! Which classes of boundaries a package has, and how a style draws them: what legends of windows and pages list.
+//! The boundary classes of a package and how a style draws them, for the legends of windows and web
+//! pages.
 
 use corniche_areas::BoundaryClass;
 use corniche_styles::{LineStyle, Style};
@@ -7,16 +8,17 @@ use corniche_tileset::Manifest;
 /// Boundaries that are drawn alike.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoundaryLines {
-    /// What people call them.
+    /// The label of these boundaries.
     pub label: String,
-    /// How they are drawn.
+    /// How these boundaries are drawn.
     pub style: LineStyle,
 }
 
 impl BoundaryLines {
-    /// All boundaries of a package that a style draws, the most important first. Classes that are drawn alike stand together.
+    /// Returns all boundaries of a package that a style draws, the most important first. Classes
+    /// that look alike are merged.
     #[must_use]
-    pub fn of(manifest: &Manifest, style: &Style) -> Vec<Self> {
+    pub fn from_manifest(manifest: &Manifest, style: &Style) -> Vec<Self> {
         let kept = manifest.boundaries.as_ref().map_or(&[][..], |record| &record.counts.kept);
         let has =
             |class: &BoundaryClass| kept.iter().any(|of| of.class == class.number() && of.ways > 0);

@@ -4,7 +4,8 @@ use corniche_tileset::{LineClassRecord, LineCounts, LinesRecord};
 
 use super::*;
 
-/// A package with some ways of each of these classes, and none of the class of countries, of which it has a record.
+/// Returns a package with ways of each of these classes, and with an empty record for the class of
+/// countries.
 fn manifest(classes: &[u8]) -> Manifest {
     let kept = |class, ways| LineClassRecord { class, ways, length_um: 1000 * ways };
     let kept = [kept(0, 0)].into_iter().chain(classes.iter().map(|class| kept(*class, 3)));
@@ -14,7 +15,7 @@ fn manifest(classes: &[u8]) -> Manifest {
 }
 
 fn labels(manifest: &Manifest, style: &Style) -> Vec<String> {
-    BoundaryLines::of(manifest, style).into_iter().map(|lines| lines.label).collect()
+    BoundaryLines::from_manifest(manifest, style).into_iter().map(|lines| lines.label).collect()
 }
 
 #[test]

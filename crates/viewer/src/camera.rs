@@ -11,29 +11,31 @@
 //! ```
 //!
 //! The GPU never sees world positions: it gets positions *relative to the eye* in f32, taken as
-//! differences of f64 (Cozzi & Ring 2011, ch. 5). Depth is reversed with an infinite far plane, which
-//! distributes the precision of a float evenly over distance (Reed 2015, *Depth Precision Visualized*).
+//! differences of f64 (Cozzi & Ring 2011, ch. 5). Depth is reversed with an infinite far plane,
+//! which distributes the precision of a float evenly over distance (Reed 2015, *Depth Precision
+//! Visualized*).
 //!
-//! A camera from above has parallel rays, straight down. Its depth is linear: 1 above all ground, 0 beneath it, and w is 1. All
-//! that depends on the distance from the eye (levels of detail, widths, classes) is in a view from above what it is at the
-//! distance at which a perspective camera has pixels of the same size: [`Camera::seeing_distance_m`].
+//! A camera from above has parallel rays, straight down. Its depth is linear: 1 above all ground, 0
+//! below it, and w is 1. Everything that depends on the distance from the eye (levels of detail,
+//! widths, classes) uses the distance at which a perspective camera has pixels of the same size:
+//! [`Camera::seeing_distance_m`].
 
 use corniche_geom::Bounds;
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 
-/// Vertical field of view of every camera made here.
+/// Vertical field of view of every camera of this crate.
 pub(crate) const FOV_Y_RAD: f64 = std::f64::consts::FRAC_PI_4;
-/// How much farther away than necessary the camera stands from a box that it frames, as a share of the distance.
+/// Additional distance of the camera from a box that it frames, as a share of the minimum distance.
 const FRAME_MARGIN: f64 = 0.03;
-/// The near plane lies at this share of the distance to what is looked at.
+/// Distance of the near plane, as a share of the distance to the camera's target.
 const NEAR_SHARE: f64 = 1e-3;
 
-/// A box in world space with sides along the axes.
+/// An axis-aligned box in world space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WorldBox {
-    /// West, south, bottom.
+    /// West, south and bottom of the box.
     pub min: DVec3,
-    /// East, north, top.
+    /// East, north and top of the box.
     pub max: DVec3,
 }
 
@@ -47,13 +49,13 @@ impl WorldBox {
         }
     }
 
-    /// Its middle.
+    /// Middle of the box.
     #[must_use]
     pub fn center(&self) -> DVec3 {
         (self.min + self.max) * 0.5
     }
 
-    /// Its eight corners.
+    /// Eight corners of the box.
     pub fn corners(&self) -> impl Iterator<Item = DVec3> {
         let Self { min, max } = *self;
         (0..8).map(move |bits| {
@@ -63,30 +65,30 @@ impl WorldBox {
         })
     }
 
-    /// Distance from `point` to the nearest point of the box; 0 inside.
+    /// Distance from `point` to the nearest point of the box; 0 inside the box.
     #[must_use]
     pub fn distance_m(&self, point: DVec3) -> f64 {
         point.distance(point.clamp(self.min, self.max))
     }
 }
 
-/// Direction of view: where it points on the compass and how far it is tilted up from straight down.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Direction of view: its compass direction and its tilt up from straight down.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Orientation {
-    /// Clockwise from north; 0 has north at the top of the picture.
+    /// Heading, clockwise from north; 0 has north at the top of the picture.
     pub heading_deg: f64,
-    /// 0 looks straight down, 90 at the horizon (as `MapLibre` counts).
+    /// Pitch: 0 looks straight down, 90 at the horizon (as in `MapLibre`).
     pub pitch_deg: f64,
 }
 
 /// How the rays of a camera run.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Projection {
-    /// All through the eye.
+pub enum CameraProjection {
+    /// All rays start at the eye.
     Perspective,
-    /// All straight down, from a level plane through the eye.
+    /// All rays run straight down, from a level plane through the eye.
     FromAbove {
-        /// Depth beneath all ground; the near plane is above all of it.
+        /// Depth of a plane below all ground; the near plane is above all ground.
         far_m: f64,
     },
 }
@@ -94,28 +96,30 @@ pub enum Projection {
 /// A camera.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
-    /// The eye, world metres.
+    /// Position of the eye, world metres.
     pub eye_in_world: DVec3,
-    /// How the rays run.
-    pub projection: Projection,
+    /// Projection of the rays.
+    pub projection: CameraProjection,
     /// Columns: right, up, backward in world space. Orthonormal.
     pub world_from_view: DMat3,
     /// Width and height of the picture.
     pub size_px: [u32; 2],
     /// Depth of the near plane.
     pub near_m: f64,
-    /// Distance to the point that the camera looks at; from above, that at which a perspective camera has pixels of this size.
+    /// Distance to the camera's target; in a view from above, the distance at which a perspective
+    /// camera has pixels of this size.
     pub focus_m: f64,
 }
 
-/// The view volume as planes: `dot(normal, point) + offset >= 0` inside. No far plane.
+/// The view volume as planes: `dot(normal, point) + offset >= 0` inside. It has no far plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Frustum {
     planes: [DVec4; 5],
 }
 
 impl Camera {
-    /// Looks at `target_in_world` from `distance_m` away. `size_px` must not hold a 0.
+    /// A camera that looks at `target_in_world` from `distance_m` away. `size_px` must not contain
+    /// a 0.
     #[must_use]
     pub fn look_at(
         target_in_world: DVec3,
@@ -127,7 +131,7 @@ impl Camera {
         Self::at_eye(target_in_world + backward * distance_m, distance_m, orientation, size_px)
     }
 
-    /// Looks from `eye_in_world` at what is `distance_m` away.
+    /// A camera at `eye_in_world` whose target is `distance_m` away.
     #[must_use]
     pub fn at_eye(
         eye_in_world: DVec3,
@@ -137,7 +141,7 @@ impl Camera {
     ) -> Self {
         Self {
             eye_in_world,
-            projection: Projection::Perspective,
+            projection: CameraProjection::Perspective,
             world_from_view: world_from_view(orientation),
             size_px,
             near_m: distance_m * NEAR_SHARE,
@@ -145,7 +149,8 @@ impl Camera {
         }
     }
 
-    /// Looks at `subject` from the least distance at which all of it is in the picture, with a small margin, centred.
+    /// A camera that looks at `subject` from the minimum distance at which all of it is in the
+    /// picture, centred, with a small margin.
     #[must_use]
     pub fn framing(subject: WorldBox, orientation: Orientation, size_px: [u32; 2]) -> Self {
         let world_from_view = world_from_view(orientation);
@@ -153,17 +158,18 @@ impl Camera {
         let tan = half_extent_at_unit_depth(size_px);
         let corners: Vec<DVec3> =
             subject.corners().map(|corner| view_from_world * (corner - subject.center())).collect();
-        // With the eye at (ox, oy, d) in view axes around the centre, a corner (x, y, z) is inside iff
+        // With the eye at (ox, oy, d) in view axes around the centre, a corner (x, y, z) is inside
+        // iff
         // |x − ox| ≤ tan.x · (d − z), that is d ≥ z + (x − ox) / tan.x and d ≥ z − (x − ox) / tan.x; likewise for
-        // y. The least distance for which there is such an ox and oy is where both bounds are equal.
+        // y. The minimum distance for which such ox and oy exist is where both bounds are equal.
         let reach = |sign: f64| {
             let bounds = corners.iter().map(|corner| sign * corner.truncate() / tan + corner.z);
             bounds.reduce(DVec2::max).unwrap_or_default()
         };
         let least_m = ((reach(1.0) + reach(-1.0)) / 2.0).max_element();
         let distance_m = least_m.max(1.0) * (1.0 + FRAME_MARGIN);
-        // The box is centred where the free borders on both sides are equal. Moving the eye right moves everything
-        // left, so bisection finds that place.
+        // The box is centred where the free borders on both sides are equal. Moving the eye to the
+        // right moves everything to the left, so bisection finds that position.
         let middle = |axis: usize| {
             let far = corners.iter().fold(0.0_f64, |far, corner| far.max(corner[axis].abs()));
             let (mut low, mut high) = (-far, far);
@@ -187,8 +193,9 @@ impl Camera {
         Self::look_at(target, distance_m, orientation, size_px)
     }
 
-    /// Looks straight down with parallel rays. `place_in_world` is in the middle of the picture, a pixel is `pixel_m` world metres
-    /// wide, and all ground lies between `heights_in_world`; the eye is above it. `size_px` must not hold a 0.
+    /// A camera that looks straight down with parallel rays. `place_in_world` is in the middle of
+    /// the picture, a pixel is `pixel_m` world metres wide, and all ground is between
+    /// `heights_in_world`; the eye is above it. `size_px` must not contain a 0.
     #[must_use]
     pub fn from_above(
         place_in_world: DVec2,
@@ -199,20 +206,20 @@ impl Camera {
     ) -> Self {
         let orientation = Orientation { heading_deg, pitch_deg: 0.0 };
         let distance_m = pixel_m / pixel_at_unit_depth_m(size_px);
-        // Ground at the very end of the range would have the depth of nothing.
+        // Ground at the very end of the range would have the depth that means "no ground".
         let [lowest, highest] = heights_in_world;
         let margin_m = 0.01 * (highest - lowest) + 1.0;
         let eye_in_world = place_in_world.extend(highest + 2.0 * margin_m);
         Self {
             eye_in_world,
-            projection: Projection::FromAbove { far_m: eye_in_world.z - lowest + margin_m },
+            projection: CameraProjection::FromAbove { far_m: eye_in_world.z - lowest + margin_m },
             near_m: margin_m,
             ..Self::look_at(eye_in_world, distance_m, orientation, size_px)
         }
     }
 
-    /// Looks straight down with parallel rays on all of `subject`, centred, with a small margin. All ground lies between
-    /// `heights_in_world`.
+    /// A camera that looks straight down with parallel rays on all of `subject`, centred, with a
+    /// small margin. All ground is between `heights_in_world`.
     #[must_use]
     pub fn framing_from_above(
         subject: WorldBox,
@@ -237,49 +244,49 @@ impl Camera {
         )
     }
 
-    /// The distance from the eye that decides how large things look at a place, and so what is shown there. In a view from above it
-    /// is the same everywhere.
+    /// The distance from the eye that decides how large things look at a point, and so what is
+    /// shown there. In a view from above it is the same everywhere.
     #[must_use]
     pub fn seeing_distance_m(&self, point_in_world: DVec3) -> f64 {
         match self.projection {
-            Projection::Perspective => self.eye_in_world.distance(point_in_world),
-            Projection::FromAbove { .. } => self.focus_m,
+            CameraProjection::Perspective => self.eye_in_world.distance(point_in_world),
+            CameraProjection::FromAbove { .. } => self.focus_m,
         }
     }
 
-    /// The least [`Camera::seeing_distance_m`] of the points of a box.
+    /// The minimum [`Camera::seeing_distance_m`] over the points of a box.
     #[must_use]
     pub fn seeing_distance_of_box_m(&self, subject: &WorldBox) -> f64 {
         self.seeing_distance_m(self.eye_in_world.clamp(subject.min, subject.max))
     }
 
-    /// The side of a pixel, in metres, of ground at a view depth.
+    /// Side of a pixel, metres on the ground, at a view depth.
     #[must_use]
     pub fn pixel_at_depth_m(&self, depth_m: f64) -> f64 {
         self.pixel_at_unit_depth_m()
             * match self.projection {
-                Projection::Perspective => depth_m,
-                Projection::FromAbove { .. } => self.focus_m,
+                CameraProjection::Perspective => depth_m,
+                CameraProjection::FromAbove { .. } => self.focus_m,
             }
     }
 
-    /// The point that the camera looks at; from above, one in the middle of the heights.
+    /// The camera's target; in a view from above, a point in the middle of the heights.
     #[must_use]
     pub fn target_in_world(&self) -> DVec3 {
         let depth_m = match self.projection {
-            Projection::Perspective => self.focus_m,
-            Projection::FromAbove { far_m } => f64::midpoint(self.near_m, far_m),
+            CameraProjection::Perspective => self.focus_m,
+            CameraProjection::FromAbove { far_m } => f64::midpoint(self.near_m, far_m),
         };
         self.eye_in_world - self.world_from_view.z_axis * depth_m
     }
 
-    /// The same view with `factor` times as many pixels on each side.
+    /// Returns the same view with `factor` times as many pixels on each side.
     #[must_use]
     pub fn supersampled(&self, factor: u32) -> Self {
         Self { size_px: self.size_px.map(|side| side * factor), ..*self }
     }
 
-    /// Half width and half height of what is seen at depth 1.
+    /// Half width and half height of the visible rectangle at depth 1.
     pub(crate) fn half_extent_at_unit_depth(&self) -> DVec2 {
         half_extent_at_unit_depth(self.size_px)
     }
@@ -290,34 +297,35 @@ impl Camera {
         pixel_at_unit_depth_m(self.size_px)
     }
 
-    /// Half width and half height of what is seen at depth 1, or from above at any depth.
+    /// Half width and half height of the visible rectangle at depth 1, or in a view from above at
+    /// any depth.
     pub(crate) fn half_extent(&self) -> DVec2 {
         self.half_extent_at_unit_depth()
             * match self.projection {
-                Projection::Perspective => 1.0,
-                Projection::FromAbove { .. } => self.focus_m,
+                CameraProjection::Perspective => 1.0,
+                CameraProjection::FromAbove { .. } => self.focus_m,
             }
     }
 
-    /// The view depth that a value in the depth buffer stands for.
+    /// Converts a value of the depth buffer to view depth.
     #[must_use]
     pub fn depth_m(&self, depth_buffer: f64) -> f64 {
         match self.projection {
-            Projection::Perspective => self.near_m / depth_buffer,
-            Projection::FromAbove { far_m } => far_m - depth_buffer * (far_m - self.near_m),
+            CameraProjection::Perspective => self.near_m / depth_buffer,
+            CameraProjection::FromAbove { far_m } => far_m - depth_buffer * (far_m - self.near_m),
         }
     }
 
-    /// Clip space from positions relative to the eye (world axes).
+    /// The matrix from positions relative to the eye (world axes) to clip space.
     pub(crate) fn clip_from_relative(&self) -> DMat4 {
         let half = self.half_extent();
         let columns = match self.projection {
             // Rows: x / tan.x, y / tan.y, near, −z.
-            Projection::Perspective => {
+            CameraProjection::Perspective => {
                 [DVec4::new(0.0, 0.0, 0.0, -1.0), DVec4::new(0.0, 0.0, self.near_m, 0.0)]
             }
             // Rows: x / half width, y / half height, (far + z) / (far − near), 1.
-            Projection::FromAbove { far_m } => {
+            CameraProjection::FromAbove { far_m } => {
                 let range_m = far_m - self.near_m;
                 [
                     DVec4::new(0.0, 0.0, 1.0 / range_m, 0.0),
@@ -334,15 +342,15 @@ impl Camera {
         clip_from_view * DMat4::from_mat3(self.world_from_view.transpose())
     }
 
-    /// Pixel position (0, 0 is the picture's upper left corner; pixel centres at halves) and depth of a point;
-    /// `None` behind the near plane.
+    /// Projects a point: returns its pixel position (0, 0 is the picture's upper left corner; pixel
+    /// centres are at halves) and depth; `None` behind the near plane.
     #[must_use]
     pub fn project(&self, point_in_world: DVec3) -> Option<(DVec2, f64)> {
         let from_eye = point_in_world - self.eye_in_world;
         let clip = self.clip_from_relative() * from_eye.extend(1.0);
         let depth_m = match self.projection {
-            Projection::Perspective => clip.w,
-            Projection::FromAbove { .. } => -from_eye.dot(self.world_from_view.z_axis),
+            CameraProjection::Perspective => clip.w,
+            CameraProjection::FromAbove { .. } => -from_eye.dot(self.world_from_view.z_axis),
         };
         let [width, height] = self.size_px.map(f64::from);
         (depth_m >= self.near_m).then(|| {
@@ -352,60 +360,55 @@ impl Camera {
         })
     }
 
-    /// Direction in world space through a pixel position, scaled so that its depth is 1: a point at depth d
-    /// along it is `ray_start + d · ray`.
+    /// Direction in world space through a pixel position, scaled so that its depth is 1: a point at
+    /// depth d along it is `ray_start + d · ray`.
     #[must_use]
     pub fn ray_in_world(&self, pixel: DVec2) -> DVec3 {
         match self.projection {
-            Projection::Perspective => self.world_from_view * self.in_picture(pixel).extend(-1.0),
-            Projection::FromAbove { .. } => -self.world_from_view.z_axis,
+            CameraProjection::Perspective => {
+                self.world_from_view * self.in_picture(pixel).extend(-1.0)
+            }
+            CameraProjection::FromAbove { .. } => -self.world_from_view.z_axis,
         }
     }
 
-    /// Where the ray through a pixel position begins, at depth 0.
+    /// Start of the ray through a pixel position, at depth 0.
     #[must_use]
     pub fn ray_start_in_world(&self, pixel: DVec2) -> DVec3 {
         match self.projection {
-            Projection::Perspective => self.eye_in_world,
-            Projection::FromAbove { .. } => {
+            CameraProjection::Perspective => self.eye_in_world,
+            CameraProjection::FromAbove { .. } => {
                 self.eye_in_world + self.world_from_view * self.in_picture(pixel).extend(0.0)
             }
         }
     }
 
-    /// A pixel position along the right and up axes of the view, from the middle of the picture; metres at depth 1, from above at any
-    /// depth.
+    /// A pixel position along the right and up axes of the view, from the middle of the picture:
+    /// metres at depth 1, in a view from above at any depth.
     fn in_picture(&self, pixel: DVec2) -> DVec2 {
         let half = self.half_extent();
         let [width, height] = self.size_px.map(f64::from);
         DVec2::new((2.0 * pixel.x / width - 1.0) * half.x, (1.0 - 2.0 * pixel.y / height) * half.y)
     }
 
-    /// What the picture can show.
+    /// The view volume of the camera.
     pub(crate) fn frustum(&self) -> Frustum {
         let plane = |normal_in_view: DVec3, offset: f64| {
             let normal = self.world_from_view * normal_in_view;
             normal.extend(offset - normal.dot(self.eye_in_world))
         };
-        if self.projection != Projection::Perspective {
-            let half = self.half_extent();
-            return Frustum {
-                planes: [
-                    plane(DVec3::X, half.x),
-                    plane(DVec3::NEG_X, half.x),
-                    plane(DVec3::Y, half.y),
-                    plane(DVec3::NEG_Y, half.y),
-                    plane(DVec3::NEG_Z, -self.near_m),
-                ],
-            };
-        }
-        let tan = self.half_extent_at_unit_depth();
+        // The sides meet in the eye, or run straight down next to it.
+        let half = self.half_extent();
+        let (spread, aside) = match self.projection {
+            CameraProjection::Perspective => (half, DVec2::ZERO),
+            CameraProjection::FromAbove { .. } => (DVec2::ZERO, half),
+        };
         Frustum {
             planes: [
-                plane(DVec3::new(1.0, 0.0, -tan.x), 0.0),
-                plane(DVec3::new(-1.0, 0.0, -tan.x), 0.0),
-                plane(DVec3::new(0.0, 1.0, -tan.y), 0.0),
-                plane(DVec3::new(0.0, -1.0, -tan.y), 0.0),
+                plane(DVec3::new(1.0, 0.0, -spread.x), aside.x),
+                plane(DVec3::new(-1.0, 0.0, -spread.x), aside.x),
+                plane(DVec3::new(0.0, 1.0, -spread.y), aside.y),
+                plane(DVec3::new(0.0, -1.0, -spread.y), aside.y),
                 plane(DVec3::NEG_Z, -self.near_m),
             ],
         }
@@ -413,10 +416,11 @@ impl Camera {
 }
 
 impl Frustum {
-    /// Whether some part of the box may be in view. Never false for a box that is in view; true for some that are not.
+    /// Whether a part of the box may be in view. It is never false for a box that is in view, but
+    /// true for some boxes that are not.
     ///
-    /// Source: Assarsson & Möller 2000, *Optimized View Frustum Culling Algorithms for Bounding Boxes*: only the
-    /// corner farthest along each plane's normal is tested.
+    /// Source: Assarsson & Möller 2000, *Optimized View Frustum Culling Algorithms for Bounding
+    /// Boxes*: only the corner farthest along each plane's normal is tested.
     pub(crate) fn may_see(&self, subject: &WorldBox) -> bool {
         self.planes.iter().all(|plane| {
             let normal = plane.truncate();
@@ -436,8 +440,8 @@ fn half_extent_at_unit_depth([width, height]: [u32; 2]) -> DVec2 {
 }
 
 fn world_from_view(Orientation { heading_deg, pitch_deg }: Orientation) -> DMat3 {
-    // Looking straight down with north up, view axes equal world axes. Tilting up turns about the right axis,
-    // heading about the vertical, clockwise seen from above.
+    // Looking straight down with north up, view axes equal world axes. Tilting up turns about the
+    // right axis, heading about the vertical, clockwise seen from above.
     DMat3::from_rotation_z(-heading_deg.to_radians())
         * DMat3::from_rotation_x(pitch_deg.to_radians())
 }

@@ -1,4 +1,4 @@
-//! The camera looks where it is told to, and depths lie between 0 and 1.
+//! The camera has the requested view, and depths are between 0 and 1.
 
 use proptest::prelude::*;
 
@@ -46,7 +46,7 @@ fn a_tilted_camera_stands_behind_and_above_its_target() {
     assert!((eye.z - (800.0 + 5_000.0)).abs() < 1e-6);
 }
 
-/// x = width / 2 + east / pixel, y = height / 2 − north / pixel, whatever the height.
+/// x = width / 2 + east / pixel, y = height / 2 − north / pixel, at any height.
 #[test]
 fn a_place_seen_from_above_is_where_the_scale_says() {
     let target = DVec3::new(500_000.0, 5_000_000.0, 800.0);

@@ -1,4 +1,4 @@
-//! A level is too coarse for a picture that shows a class which the level lacks.
+//! A level is too coarse for a picture that shows a class that is missing on the level.
 
 use corniche_geom::Cell;
 use corniche_tileset::SampleErrorRecord;
@@ -42,8 +42,9 @@ fn a_level_is_too_coarse_where_a_class_is_shown_that_it_has_not() {
     let style = Style::road_atlas();
     let last = |class: usize| style.roads[class].last_pixel_m();
     assert!(last(1) > last(2) && last(2) > last(7));
-    // Motorways are always shown, so no scale is fine enough for them, and they are not waited for.
-    assert_eq!(scales(&style, RoadOptions::of(METHOD)), [last(1), last(2), last(7), 0.0]);
+    // Motorways are always shown, so no scale is fine enough for them, and tiles are not refined
+    // for them.
+    assert_eq!(scales(&style, RoadOptions::for_method(METHOD)), [last(1), last(2), last(7), 0.0]);
 }
 
 #[test]
@@ -52,19 +53,21 @@ fn roads_that_are_not_drawn_are_not_waited_for() {
     let class = |number| FunctionalRoadClass::new(number).unwrap();
     let few = RoadOptions {
         classes: ClassSet::NONE.with(class(1)).with(class(8)),
-        ..RoadOptions::of(METHOD)
+        ..RoadOptions::for_method(METHOD)
     };
     assert_eq!(scales(&style, few), [style.roads[1].last_pixel_m(), 0.0, 0.0, 0.0]);
-    assert_eq!(scales(&style, RoadOptions::of(RoadMethod::None)), [0.0; 4]);
+    assert_eq!(scales(&style, RoadOptions::for_method(RoadMethod::None)), [0.0; 4]);
     let mut always = style;
     always.roads.iter_mut().for_each(|road| road.max_pixel_m = None);
-    assert_eq!(scales(&always, RoadOptions::of(METHOD)), [0.0; 4]);
+    assert_eq!(scales(&always, RoadOptions::for_method(METHOD)), [0.0; 4]);
 }
 
-/// The usual classes of a build's levels have, on every cell that is refined no further, all that the usual style shows.
+/// With the default classes per level, cells that are not refined further have all roads that the
+/// default style shows.
 #[test]
 fn usual_packages_have_what_the_usual_style_shows() {
-    // A tile whose cells look no larger than this is refined no further, so a pixel covers at least the cell divided by it.
+    // A tile whose cells look no larger than this is not refined further, so a pixel covers at
+    // least the cell divided by this number.
     const CELL_PX: f64 = 2.0;
     let filter = corniche_roads::ClassFilter::usual();
     let style = Style::road_atlas();

@@ -1,4 +1,4 @@
-//! The near plane does not reach the ground beneath the eye.
+//! The near plane does not reach the ground below the eye.
 
 use glam::DVec3;
 

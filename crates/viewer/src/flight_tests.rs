@@ -1,4 +1,4 @@
-//! Flights are read from text in any CRS and are flown smoothly.
+//! Flights are parsed from text in any CRS and run smoothly.
 
 use corniche_geom::{Bounds, CoordinateTable};
 use corniche_testing::FlatProjection;
@@ -12,9 +12,10 @@ const CRS: WorkingCrs<'_> = WorkingCrs { crs: NAME, metres_per_unit: [1.0, 1.0] 
 const PLAN: Bounds = Bounds { min_x: 5000.0, min_y: 20_000.0, max_x: 15_000.0, max_y: 45_000.0 };
 
 fn table() -> CoordinateTable {
-    // One degree is 1000 m along both axes. Coordinates are linear, so a table of any size keeps this tolerance.
+    // One degree is 1000 m along both axes. Coordinates are linear, so a table of any size keeps
+    // this tolerance.
     let flat = FlatProjection::new([1e3; 2]);
-    CoordinateTable::sample(&flat, PLAN, 1.0).expect("straight lines are in reach of a table")
+    CoordinateTable::sample(&flat, PLAN, 1.0).expect("a table can represent straight lines")
 }
 
 fn keyframe(time_s: f64, eye_m: [f64; 3], heading_deg: f64, pitch_deg: f64) -> Keyframe {
@@ -56,7 +57,7 @@ fn metres_of_another_crs_are_refused_and_degrees_are_not() {
     assert!(Flight::parse(&anywhere, CRS, &table()).is_ok());
 }
 
-/// Two packages whose metres differ by a factor have the same flight in degrees, which leads over the same ground.
+/// A flight in degrees leads over the same ground in two packages whose metres differ by a factor.
 #[test]
 fn metres_of_other_factors_are_carried_to_those_of_the_package() {
     let degrees = |metres_per_unit| WorkingCrs { crs: "EPSG:4326", metres_per_unit };
@@ -67,14 +68,14 @@ fn metres_of_other_factors_are_carried_to_those_of_the_package() {
     let flight = Flight::new(&[0.0, 1.0].map(flown)).unwrap();
     let text = flight.to_text(other).unwrap();
     let same = Flight::parse(&text, other, &table()).unwrap();
-    assert_eq!(same, flight, "to the bit where the factors are the same");
+    assert_eq!(same, flight, "bit for bit if the factors are the same");
     let carried = Flight::parse(&text, own, &table()).unwrap();
     for (t, [lon, lat]) in [0.0, 1.0].into_iter().zip(places) {
         let [x, y, height_m] = carried.at(t).eye_m;
         assert!((x - lon * 75_000.0).abs() < 1e-6 && (y - lat * 111_000.0).abs() < 1e-6);
         assert_eq!(height_m, 900.0);
     }
-    // Without degrees, x_m and y_m are in the metres of the package that is shown.
+    // Without degrees, x_m and y_m are in the metres of the displayed package.
     let bare: String = text
         .lines()
         .filter(|line| !line.starts_with("metres"))
@@ -103,9 +104,12 @@ fn texts_that_make_no_sense_say_what_and_where() {
     check(&line(&format!("time_s = 0\n{place}{rest}")), "times must ascend");
     check(&line(&format!("time_s = -1\n{place}{rest}")), "keyframe 2 is at -1 s");
     check(&line(&format!("time_s = nan\n{place}{rest}")), "keyframe 2: time_s of NaN");
-    check(&line(&format!("time_s = 1\n{rest}")), "keyframe 2 needs a place");
-    check(&line(&format!("time_s = 1\nx_m = 1\nlat_deg = 1\n{rest}")), "keyframe 2 needs a place");
-    check(&line(&format!("time_s = 1\n{place}lat_deg = 1\n{rest}")), "keyframe 2 needs a place");
+    check(&line(&format!("time_s = 1\n{rest}")), "keyframe 2 needs a position");
+    check(
+        &line(&format!("time_s = 1\nx_m = 1\nlat_deg = 1\n{rest}")),
+        "keyframe 2 needs a position",
+    );
+    check(&line(&format!("time_s = 1\n{place}lat_deg = 1\n{rest}")), "keyframe 2 needs a position");
     check(&line(&format!("time_s = 1\nlon_deg = 1\nlat_deg = 91\n{rest}")), "lat_deg of 91");
     check(&line(&format!("time_s = 1\nlon_deg = nan\nlat_deg = 1\n{rest}")), "lon_deg of NaN");
     check(&line(&format!("time_s = 1\nx_m = 1e300\ny_m = 2\n{rest}")), "x_m of 1");
@@ -142,8 +146,8 @@ fn an_even_way_is_flown_evenly() {
     }
 }
 
-/// The step before the keyframe takes 1 s at 1 m/s, the step after it 2 s at 2 m/s. The formula of Fritsch & Butland gives
-/// (5 + 4) / (5 / 1 + 4 / 2).
+/// The step before the keyframe takes 1 s at 1 m/s, the step after it 2 s at 2 m/s. The formula of
+/// Fritsch & Butland gives (5 + 4) / (5 / 1 + 4 / 2).
 #[test]
 fn the_speed_at_a_keyframe_is_the_weighted_harmonic_mean_of_both_sides() {
     let keyframes = [[0.0, 0.0], [1.0, 1.0], [3.0, 5.0]]
@@ -153,7 +157,7 @@ fn the_speed_at_a_keyframe_is_the_weighted_harmonic_mean_of_both_sides() {
     assert!(((after - before) / 2e-6 - 9.0 / 7.0).abs() < 1e-5);
 }
 
-/// Ground that is the sum of two waves, so steep that an eye at the wrong height would be under it.
+/// Ground that is the sum of two waves, so steep that an eye at a wrong height would be below it.
 fn ground_m([x, y]: [f64; 2]) -> f64 {
     1500.0 + 900.0 * (x / 1700.0).sin() + 500.0 * (y / 2300.0).cos()
 }
@@ -171,8 +175,8 @@ fn the_pass_taken_when_none_is_given_goes_over_the_data_and_clears_the_ground() 
             assert!(
                 (plan.min_x..=plan.max_x).contains(&x) && (plan.min_y..=plan.max_y).contains(&y)
             );
-            // The flight is 5 % of the shorter side above the ground. The ground is sampled every 40 m and may be higher
-            // between samples.
+            // The flight is 5 % of the shorter side above the ground. The ground is sampled every
+            // 40 m and may be higher between samples.
             assert!(height_m - ground_m([x, y]) > 480.0, "{k}");
             heights = [heights[0].min(height_m), heights[1].max(height_m)];
         }
@@ -218,8 +222,8 @@ proptest! {
             }
         }
         for three in keyframes.windows(3) {
-            // Where two pieces meet, the speeds before and after are equal, except for the change by acceleration
-            // within h.
+            // Where two pieces meet, the speeds before and after are equal, except for the change
+            // by acceleration within h.
             let least_s = (three[1].time_s - three[0].time_s).min(three[2].time_s - three[1].time_s);
             let h = 1e-4 * least_s;
             let [before, at, after] = [-h, 0.0, h].map(|dt| flight.at(three[1].time_s + dt).eye_m);

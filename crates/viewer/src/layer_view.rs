@@ -1,4 +1,4 @@
-//! Lines beside the roads are drawn as roads of another style: what is told here is which.
+//! Lines that are not roads are drawn as roads of another style; this module chooses the style.
 
 use corniche_roads::FunctionalRoadClass;
 use corniche_styles::{LineStyle, Style};
@@ -10,7 +10,7 @@ use crate::{
 };
 
 impl LineLayer {
-    /// How lines of the layer are drawn in a style.
+    /// The styles of the lines of the layer.
     #[must_use]
     pub fn lines_of(self, style: &Style) -> &[LineStyle] {
         match self {
@@ -26,8 +26,8 @@ impl LineLayer {
     }
 }
 
-/// The view of a picture of the lines alone, in a style of [`LineLayer::style_of`]. Where roads are not drawn, lines are drawn as
-/// volumes.
+/// The view of a picture that shows lines only, in a style from [`LineLayer::style_of`]. If roads
+/// are not drawn, lines are drawn as shadow volumes.
 pub(crate) fn view_of_lines<'a>(view: &FrameView<'a>, style: &'a Style) -> FrameView<'a> {
     let method = match view.roads.method {
         RoadMethod::Geometry => RoadMethod::Geometry,
@@ -35,5 +35,5 @@ pub(crate) fn view_of_lines<'a>(view: &FrameView<'a>, style: &'a Style) -> Frame
     };
     let is_drawn = |class: &FunctionalRoadClass| style.road(*class).opacity > 0.0;
     let classes = FunctionalRoadClass::all().filter(is_drawn).collect();
-    FrameView { style, roads: RoadOptions { classes, ..RoadOptions::of(method) }, ..*view }
+    FrameView { style, roads: RoadOptions { classes, ..RoadOptions::for_method(method) }, ..*view }
 }

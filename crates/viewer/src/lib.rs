@@ -6,23 +6,26 @@
 //!                 └─ requests ─┘
 //! ```
 //!
-//! [`render`] makes one picture of a package without a window. Its parts are usable alone: [`camera`] and [`lod`]
-//! are values and pure functions; [`tiles`] decodes; [`gpu`] draws the tiles that it is
-//! given.
-//! [`Replay`] draws a [`flight`], frame by frame; [`stream`] chooses which tiles are loaded and kept.
+//! [`render`] draws one picture of a package without a window. Its parts can be used separately:
+//! [`camera`] and [`lod`] are values and pure functions; [`tiles`] decodes; [`gpu`] draws given
+//! tiles. [`Replay`] draws a [`flight`], frame by frame; [`stream`] chooses which tiles are loaded
+//! and kept.
 //!
-//! It also builds for WebAssembly, without the parts that wait for files or devices: [`render`], [`Replay`],
-//! [`tiles::PackageSource`] and [`gpu::Gpu::new`]. In a browser, where no thread may wait, [`tiles::PackageTiles`],
-//! [`gpu::Gpu::request`] and, for pixels, [`gpu::ReadBack`] take their place.
+//! The crate also builds for WebAssembly, without the parts that wait for files or devices:
+//! [`render`], [`Replay`], [`tiles::PackageSource`] and [`gpu::Gpu::new`]. In a browser, where no
+//! thread may wait, use [`tiles::PackageTiles`], [`gpu::Gpu::request`] and, for pixels,
+//! [`gpu::ReadBack`] instead.
 //!
-//! This crate never depends on `pipeline`, `dem` or `osm`: it learns everything from the package. It never
-//! writes a file.
+//! This crate never depends on `pipeline`, `dem` or `osm`: all its data comes from the package. It
+//! never writes a file.
 
 #[cfg(feature = "annotations")]
 mod annotations;
 mod boundary_lines;
 pub mod camera;
 mod class_scale;
+#[cfg(all(feature = "annotations", not(target_arch = "wasm32")))]
+mod draw_error;
 pub mod eye_height;
 pub mod flight;
 mod frame_view;
@@ -34,6 +37,8 @@ mod options;
 pub mod pick;
 #[cfg(all(feature = "annotations", not(target_arch = "wasm32")))]
 mod picture_legend;
+#[cfg(all(feature = "annotations", not(target_arch = "wasm32")))]
+mod picture_options;
 pub mod range;
 #[cfg(all(feature = "annotations", not(target_arch = "wasm32")))]
 mod render;
@@ -49,7 +54,7 @@ mod viewpoint;
 pub mod for_tests {
     pub use crate::{
         gpu::{
-            inspection::Owner,
+            inspection::TileOwner,
             labels::{class_of, is_service, is_tunnel},
         },
         scene::{capped_ways, draw_list, may_be_clamped, settle},
@@ -62,21 +67,26 @@ pub mod for_tests {
 
 #[cfg(feature = "annotations")]
 pub use annotations::{
-    Legend, LegendEdge, LegendHeights, LegendRoad, LegendRow, LegendSample, Taken, TitleFlaws,
-    WrittenTitle, bar_length, bar_length_m, draw_attribution, draw_legend, draw_title, grouped,
+    Legend, LegendEdge, LegendHeights, LegendRoad, LegendRow, LegendSample, OccupiedMargins,
+    TitleFlaws, WrittenTitle, bar_length, bar_length_m, draw_attribution, draw_legend, draw_title,
+    grouped,
 };
 pub use boundary_lines::BoundaryLines;
 pub use class_scale::LevelScales;
+#[cfg(all(feature = "annotations", not(target_arch = "wasm32")))]
+pub use draw_error::DrawError;
 pub use frame_view::FrameView;
 pub use lon_lat::{LonLatError, parse_lon_lat};
 pub use options::{
-    CapTest, Caps, ClassSet, Mapping, Outline, Quads, RoadMethod, RoadOptions, WidthGrowth,
+    CapTest, Caps, ClassSet, Mapping, Quads, RoadMethod, RoadOptions, RoadOutline, WidthGrowth,
 };
 #[cfg(all(feature = "annotations", not(target_arch = "wasm32")))]
 pub use picture_legend::LegendRequest;
+#[cfg(all(feature = "annotations", not(target_arch = "wasm32")))]
+pub use picture_options::PictureOptions;
 pub use range::OutOfRange;
 #[cfg(all(feature = "annotations", not(target_arch = "wasm32")))]
-pub use render::{RenderError, RenderReport, RenderRequest, Rendered, render};
+pub use render::{RenderReport, RenderRequest, Rendered, render};
 #[cfg(all(feature = "annotations", not(target_arch = "wasm32")))]
-pub use replay::{Detail, FrameRecord, Lifted, Replay, ReplayError, ReplayOptions, default_flight};
-pub use viewpoint::{CameraRequest, OffGround, SightedGround};
+pub use replay::{Detail, FrameRecord, Lifted, Replay, ReplayOptions, default_flight};
+pub use viewpoint::{CameraRequest, SightedGround, ViewpointOffGround};

@@ -1,4 +1,4 @@
-//! Tiles are refined by their errors and cells as the closed forms say.
+//! Tiles are refined by their errors and cells, as closed forms predict.
 
 use std::collections::BTreeSet;
 
@@ -18,11 +18,11 @@ struct Square {
 }
 
 impl TileTree for Square {
-    fn node(&self, id: TileId) -> Node {
+    fn node(&self, id: TileId) -> TreeNode {
         let error_m = 10.0 * f64::from(1_u32 << (MAX_LEVEL - id.z()));
         match &self.loaded {
-            Some(loaded) if !loaded.contains(&id) => Node::Listed,
-            _ => Node::Loaded(Some(GroundSummary {
+            Some(loaded) if !loaded.contains(&id) => TreeNode::Listed,
+            _ => TreeNode::Loaded(Some(GroundSummary {
                 geometric_error_m: error_m,
                 height_range_m: [0.0, 900.0],
             })),
@@ -40,7 +40,8 @@ impl TileTree for Square {
     }
 }
 
-/// The square with another error for each tile, as real ground has; a tile's is still above those of its children.
+/// The square with a different error for each tile, as in real ground; the error of a tile is still
+/// above the errors of its children.
 struct Rough(Square);
 
 impl Rough {
@@ -51,10 +52,10 @@ impl Rough {
 }
 
 impl TileTree for Rough {
-    fn node(&self, id: TileId) -> Node {
+    fn node(&self, id: TileId) -> TreeNode {
         let of_tile = |ground| GroundSummary { geometric_error_m: Self::error_m(id), ..ground };
         match self.0.node(id) {
-            Node::Loaded(ground) => Node::Loaded(ground.map(of_tile)),
+            TreeNode::Loaded(ground) => TreeNode::Loaded(ground.map(of_tile)),
             other => other,
         }
     }
@@ -97,7 +98,7 @@ fn an_unknown_root_is_asked_for_and_nothing_is_drawn() {
 fn from_very_far_the_root_is_enough() {
     let selection = select(&Square { loaded: None }, &camera(3.2e4, 3.2e4, 1e8, 0.0, 0.0), QUALITY);
     assert_eq!(ids(&selection), BTreeSet::from([TileId::ROOT]));
-    assert!(selection.drawn[0].skirt_depth_m.abs() < 1e-12, "nobody beside it");
+    assert!(selection.drawn[0].skirt_depth_m.abs() < 1e-12, "no neighbours");
 }
 
 #[test]
@@ -127,14 +128,14 @@ fn the_cell_of_a_tile_follows_its_closed_form() {
     assert!(cell_side_px(plan, 0.0, &camera).is_infinite());
 }
 
-/// A square of which no tile has any error, as on a lake.
+/// A square whose tiles have no error, as on a lake.
 struct Flat(Square);
 
 impl TileTree for Flat {
-    fn node(&self, id: TileId) -> Node {
+    fn node(&self, id: TileId) -> TreeNode {
         match self.0.node(id) {
-            Node::Loaded(Some(ground)) => {
-                Node::Loaded(Some(GroundSummary { geometric_error_m: 0.0, ..ground }))
+            TreeNode::Loaded(Some(ground)) => {
+                TreeNode::Loaded(Some(GroundSummary { geometric_error_m: 0.0, ..ground }))
             }
             other => other,
         }
@@ -169,7 +170,7 @@ fn any_camera() -> impl Strategy<Value = Camera> {
     )
 }
 
-/// The root and any tiles whose parents are all loaded, as a loader would leave them.
+/// The root and any tiles whose ancestors are all loaded, as a loader would leave them.
 fn any_loaded() -> impl Strategy<Value = BTreeSet<TileId>> {
     prop::collection::vec(any::<u8>(), 1365).prop_map(|dice| {
         let mut loaded = BTreeSet::from([TileId::ROOT]);
@@ -218,14 +219,15 @@ proptest! {
         }
     }
 
-    /// Every drawn tile is fine enough, or the tiles that would replace it are not loaded. Every refined tile was too coarse.
+    /// Every drawn tile is fine enough, or the tiles that would replace it are not loaded. Every
+    /// refined tile was too coarse.
     #[test]
     fn errors_decide(camera in any_camera()) {
         let tree = Square { loaded: None };
         let selection = select(&tree, &camera, QUALITY);
         prop_assert!(selection.requests.is_empty());
         let error_px = |id: TileId| {
-            let Node::Loaded(Some(ground)) = tree.node(id) else { unreachable!() };
+            let TreeNode::Loaded(Some(ground)) = tree.node(id) else { unreachable!() };
             let distance_m =
                 WorldBox::new(tree.plan_bounds(id), ground.height_range_m).distance_m(camera.eye_in_world);
             screen_space_error_px(ground.geometric_error_m, distance_m, &camera)
@@ -244,7 +246,7 @@ proptest! {
         let tree = Square { loaded: None };
         let selection = select(&tree, &camera, Quality { cell_px, ..QUALITY });
         let is_fine = |id: TileId| {
-            let Node::Loaded(Some(ground)) = tree.node(id) else { unreachable!() };
+            let TreeNode::Loaded(Some(ground)) = tree.node(id) else { unreachable!() };
             let plan = tree.plan_bounds(id);
             let distance_m =
                 WorldBox::new(plan, ground.height_range_m).distance_m(camera.eye_in_world);
@@ -259,7 +261,8 @@ proptest! {
         }
     }
 
-    /// If every requested tile is loaded, requests end, and the selection is that of a fully loaded tree.
+    /// If every requested tile is loaded, requests end, and the selection is that of a fully loaded
+    /// tree.
     #[test]
     fn loading_what_is_asked_for_converges(camera in any_camera()) {
         let mut loaded = BTreeSet::new();
@@ -270,7 +273,7 @@ proptest! {
                 break;
             }
             for request in selection.requests {
-                prop_assert!(loaded.insert(request.id), "{} asked for twice", request.id);
+                prop_assert!(loaded.insert(request.id), "{} requested twice", request.id);
             }
         }
     }

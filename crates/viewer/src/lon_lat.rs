@@ -1,6 +1,6 @@
-//! Positions on the earth as people write them.
+//! Positions on the earth as users write them.
 
-/// Why a text is no position. The message says what to write.
+/// Why a text is not a valid position. The message says what to write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]
 pub enum LonLatError {
@@ -10,15 +10,16 @@ pub enum LonLatError {
     Range,
 }
 
-/// Longitude and latitude, in degrees (WGS84), from a text such as `9.52,47.14`; spaces around the numbers are allowed.
+/// Parses longitude and latitude, in degrees (WGS84), from a text such as `9.52,47.14`; spaces
+/// around the numbers are allowed.
 ///
 /// # Errors
-/// When the text is not two numbers with a comma between them, or no such place is on the earth.
+/// When the text is not two numbers with a comma between them, or the position does not exist.
 pub fn parse_lon_lat(text: &str) -> Result<[f64; 2], LonLatError> {
     let (lon, lat) = text.split_once(',').ok_or(LonLatError::Form)?;
     let number = |text: &str| text.trim().parse().map_err(|_| LonLatError::Form);
     let (lon, lat) = (number(lon)?, number(lat)?);
-    // This form also refuses NaN.
+    // This form also rejects NaN.
     if (-360.0..=360.0).contains(&lon) && (-90.0..=90.0).contains(&lat) {
         Ok([lon, lat])
     } else {

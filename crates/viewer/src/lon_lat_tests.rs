@@ -1,4 +1,4 @@
-//! Positions in degrees are read or refused.
+//! Positions in degrees are parsed or rejected.
 
 use super::*;
 

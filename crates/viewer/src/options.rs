@@ -5,13 +5,13 @@ use serde::{Deserialize, Serialize};
 
 use corniche_styles::{RoadStyle, Style, WidthScaling};
 
-/// How roads are drawn.
+/// The method by which roads are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum RoadMethod {
-    /// Roads are geometry lying on the TIN of their level (GEO).
+    /// Roads are geometry on the TIN of their level (GEO).
     #[serde(rename = "geo")]
     Geometry,
-    /// Roads are volumes that are intersected with the ground (SV).
+    /// Roads are shadow volumes that are intersected with the ground (SV).
     #[serde(rename = "sv")]
     ShadowVolumes,
     /// No roads are drawn.
@@ -19,43 +19,48 @@ pub enum RoadMethod {
     None,
 }
 
-/// How a road begins, ends and bends.
+/// The ends and bends of roads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Caps {
     /// Roads have a half disc around every point of the line.
     Round,
-    /// Roads have no caps: every segment is a rectangle, and there are gaps at the outer side of bends.
+    /// Roads have no caps: every segment is a rectangle, and there are gaps at the outer side of
+    /// bends.
     None,
 }
 
 /// How the fragment shader of volumes decides whether the ground at its pixel is road.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CapTest {
-    /// The distance in plan from that ground to the segment decides. It is exact to some hundredths of a pixel at any distance.
+    /// The distance in plan from that ground to the segment decides. It is exact to some hundredths
+    /// of a pixel at any distance.
     Distance,
-    /// The paper's formula decides: where the ray of view enters and leaves the volume, as the roots of a quadratic.
-    /// It is imprecise far from the eye and is kept for comparison. Only for volumes.
+    /// The paper's formula decides: where the ray of view enters and leaves the volume, as the
+    /// roots of a quadratic. It is imprecise far from the eye and is kept for comparison. Only for
+    /// volumes.
     PaperQuadratic,
 }
 
-/// What the quad of a piece of road covers (GEO).
+/// The ground that the quad of a piece of road covers (GEO).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quads {
-    /// All ground beside the piece, within the road's width.
+    /// All ground next to the piece, within the road's width.
     Beds,
-    /// What lies as high as the piece: the quad is level across the road, as in the paper (section 4.2), so a road on a slope is too
-    /// narrow (its Fig. 15). Kept for comparison. Only for geometry.
+    /// Only ground as high as the piece: the quad is level across the road, as in the paper
+    /// (section 4.2), so a road on a slope is too narrow (Fig. 15 of the paper). Kept for
+    /// comparison. Only for geometry.
     Level,
 }
 
-/// What roads as geometry are laid on.
+/// The surface that roads as geometry are draped on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Mapping {
     /// The triangles of their tile.
     #[default]
     OnTriangles,
-    /// Nothing: they are straight from each point of their source to the next, and ground between two points hides them or lies below, as in Agrawal
-    /// et al. 2006, Fig. 12. Kept for comparison.
+    /// Nothing: roads are straight from each point of their source to the next, and ground between
+    /// two points hides them or is below them, as in Agrawal et al. 2006, Fig. 12. Kept for
+    /// comparison.
     Unmapped,
 }
 
@@ -70,10 +75,10 @@ pub enum WidthGrowth {
     ByDistance,
 }
 
-/// The edge drawn around roads.
+/// The edge around roads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Outline {
-    /// Outlines are as wide as the style says.
+pub enum RoadOutline {
+    /// Width from the style.
     #[serde(rename = "style")]
     OfStyle,
     /// No edge.
@@ -87,7 +92,7 @@ pub enum Outline {
     Kernel5,
 }
 
-/// Some of the functional road classes.
+/// A set of functional road classes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ClassSet(u16);
 
@@ -98,71 +103,72 @@ impl FromIterator<FunctionalRoadClass> for ClassSet {
 }
 
 impl ClassSet {
-    /// All of them.
+    /// The set of all classes.
     pub const ALL: Self = Self((1 << FunctionalRoadClass::COUNT) - 1);
 
-    /// None of them.
+    /// The empty set.
     pub const NONE: Self = Self(0);
 
-    /// Whether a class is among them.
+    /// Whether a class is in the set.
     #[must_use]
     pub fn contains(self, class: FunctionalRoadClass) -> bool {
         self.0 >> class.number() & 1 == 1
     }
 
-    /// These classes and one more.
+    /// Returns the set with one more class.
     #[must_use]
     pub fn with(self, class: FunctionalRoadClass) -> Self {
         Self(self.0 | 1 << class.number())
     }
 
-    /// The classes that are in both.
+    /// Returns the intersection of two sets.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         Self(self.0 & other.0)
     }
 
-    /// The classes that are in one of them or in both.
+    /// Returns the union of two sets.
     #[must_use]
     pub fn or(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// These classes, as a list, the most important first.
+    /// Iterates over the classes, the most important first.
     pub fn iter(self) -> impl Iterator<Item = FunctionalRoadClass> {
         FunctionalRoadClass::all().filter(move |class| self.contains(*class))
     }
 
-    /// These classes except one.
+    /// Returns the set without one class.
     #[must_use]
     pub fn without(self, class: FunctionalRoadClass) -> Self {
         Self(self.0 & !(1 << class.number()))
     }
 }
 
-/// How the roads of a picture are drawn; colours and widths are the style's.
+/// How the roads of a picture are drawn; colours and widths come from the style.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RoadOptions {
     /// The method.
     pub method: RoadMethod,
-    /// Roads of other classes are left out.
+    /// The classes to draw; other roads are omitted.
     pub classes: ClassSet,
-    /// Ends and bends.
+    /// Ends and bends of roads.
     pub caps: Caps,
-    /// The test in the fragment shader of volumes.
+    /// Test in the fragment shader of volumes.
     pub cap_test: CapTest,
-    /// What the quads of geometry cover.
+    /// Ground that the quads of geometry cover.
     pub quads: Quads,
     /// How widths depend on distance.
     pub width_growth: WidthGrowth,
-    /// The edge around roads.
-    pub outline: Outline,
+    /// Edge around roads.
+    pub outline: RoadOutline,
 }
 
 impl RoadOptions {
-    /// The usual options of a method: all classes, round caps, the test by distance, everything else as the style says.
+    /// The usual options of a method: all classes, round caps, the test by distance, everything
+    /// else as in the style.
     #[must_use]
-    pub fn of(method: RoadMethod) -> Self {
+    pub fn for_method(method: RoadMethod) -> Self {
         Self {
             method,
             classes: ClassSet::ALL,
@@ -170,11 +176,11 @@ impl RoadOptions {
             cap_test: CapTest::Distance,
             quads: Quads::Beds,
             width_growth: WidthGrowth::ByDistance,
-            outline: Outline::OfStyle,
+            outline: RoadOutline::OfStyle,
         }
     }
 
-    /// How the widths of a style's roads of a class grow with distance, with these options.
+    /// How the widths of roads in a style grow with distance, with these options.
     #[must_use]
     pub fn width_scaling(&self, style: &Style, road: &RoadStyle) -> WidthScaling {
         let exponent = road.exponent.unwrap_or(style.width_scaling.exponent);
@@ -190,10 +196,10 @@ impl RoadOptions {
     #[must_use]
     pub fn outline_px(&self, style: &Style) -> u32 {
         match self.outline {
-            Outline::OfStyle => style.outline_px,
-            Outline::None => 0,
-            Outline::Kernel3 => 1,
-            Outline::Kernel5 => 2,
+            RoadOutline::OfStyle => style.outline_px,
+            RoadOutline::None => 0,
+            RoadOutline::Kernel3 => 1,
+            RoadOutline::Kernel5 => 2,
         }
     }
 }

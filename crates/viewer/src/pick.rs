@@ -1,6 +1,8 @@
-//! Which ground, or which bridge, lies under a pixel: rays against the triangles that are drawn and the decks, f64, no GPU.
+//! Finds the ground or the bridge under a pixel by rays against the drawn triangles and the decks,
+//! in f64, without GPU.
 //!
-//! The depth buffer has the same answer, but only some frames later; a drag with the mouse must not wait for it.
+//! The depth buffer has the same answer, but only some frames later; dragging with the mouse must
+//! not wait for it.
 
 use glam::DVec3;
 
@@ -9,23 +11,27 @@ use crate::{camera::WorldBox, tiles::TileGeometry};
 /// Where a ray meets the ground, or a bridge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GroundHit {
-    /// The place, world metres.
+    /// The position of the hit, world metres.
     pub at_in_world: DVec3,
-    /// Its distance in lengths of the ray vector; if that vector has depth 1, this is the view depth.
+    /// Distance to the hit in lengths of the ray vector; if that vector has depth 1, this is the
+    /// view depth.
     pub depth: f64,
 }
 
-/// Triangles are enlarged by this share, so that no ray passes between two neighbours: their corners were rounded to f32,
-/// that is to 2^-24 of a tile.
+/// Triangles are enlarged by this share, so that no ray passes between two neighbours: their
+/// corners were rounded to f32, that is to 2^-24 of a tile.
 const SLACK: f64 = 1e-6;
 
-/// Half the width of a bridge, true metres: how wide it is drawn depends on the style, which a drag need not know.
+/// Half the width of a bridge, true metres. The drawn width depends on the style, which dragging
+/// need not know.
 const HALF_DECK_M: f64 = 5.0;
 
-/// The first ground, or road of a bridge, that the ray from `eye_in_world` along `ray_in_world` meets, seen from above or below. Heights are
-/// `vertical_scale` times the true ones. Skirts do not count as ground.
+/// Returns the first ground, or road of a bridge, that the ray from `eye_in_world` along
+/// `ray_in_world` hits, from above or below. Heights are `vertical_scale` times the true ones.
+/// Skirts do not count as ground.
 ///
-/// Source of the intersection: Möller & Trumbore 1997, *Fast, Minimum Storage Ray/Triangle Intersection*.
+/// Source of the intersection: Möller & Trumbore 1997, *Fast, Minimum Storage Ray/Triangle
+/// Intersection*.
 pub fn ground_at<'a>(
     tiles: impl Iterator<Item = &'a TileGeometry>,
     vertical_scale: f64,
@@ -54,7 +60,8 @@ pub fn ground_at<'a>(
         .then(|| GroundHit { at_in_world: eye_in_world + ray_in_world * nearest, depth: nearest })
 }
 
-/// A ray relative to a tile's reference point, and at which depths it enters and leaves the tile's box.
+/// A ray relative to a tile's reference point, and the depths at which it enters and leaves the
+/// tile's box.
 struct Ray {
     eye: DVec3,
     way: DVec3,
@@ -63,8 +70,9 @@ struct Ray {
 }
 
 impl Ray {
-    /// Depth of the first hit; infinite without one. Tests the triangles beneath the ray, column by column of the tile's
-    /// grid of triangles, and stops when a hit is nearer than all columns that follow.
+    /// Depth of the first hit; infinite without a hit. Tests the triangles below the ray, column by
+    /// column of the tile's grid of triangles, and stops when a hit is nearer than all remaining
+    /// columns.
     fn first_in_tile(&self, tile: &TileGeometry, vertical_scale: f64) -> f64 {
         let plan = |depth: f64| (self.eye + self.way * depth).truncate().to_array();
         let mut nearest = self.first_deck(tile, vertical_scale);
@@ -86,7 +94,7 @@ impl Ray {
         nearest
     }
 
-    /// Depth of the first road of a bridge; infinite without one.
+    /// Depth of the first road of a bridge; infinite without a hit.
     fn first_deck(&self, tile: &TileGeometry, vertical_scale: f64) -> f64 {
         let hits = tile.decks.all().iter().filter_map(|piece| {
             let place = |at: [f32; 3]| {
@@ -105,7 +113,7 @@ impl Ray {
         hits.fold(f64::INFINITY, f64::min)
     }
 
-    /// Depth at which it meets a triangle.
+    /// Depth at which the ray hits a triangle.
     fn hit(&self, [a, b, c]: [DVec3; 3]) -> Option<f64> {
         let (ab, ac) = (b - a, c - a);
         let across = self.way.cross(ac);
@@ -133,9 +141,11 @@ fn world_box(tile: &TileGeometry, vertical_scale: f64) -> Option<WorldBox> {
     Some(WorldBox::new(plan, [low_m - slack_m, high_m + slack_m]))
 }
 
-/// The depths at which the ray enters the box, 0 inside it, and leaves it; `None` when it misses.
+/// The depths at which the ray enters the box (0 inside it) and leaves it; `None` if it misses the
+/// box.
 ///
-/// Source: Kay & Kajiya 1986, *Ray Tracing Complex Scenes*: the latest entry into three slabs, before the first exit.
+/// Source: Kay & Kajiya 1986, *Ray Tracing Complex Scenes*: the latest entry into three slabs,
+/// before the first exit.
 fn depths_within(subject: &WorldBox, eye: DVec3, ray: DVec3) -> Option<[f64; 2]> {
     let (mut enters, mut leaves) = (0.0_f64, f64::INFINITY);
     for axis in 0..3 {

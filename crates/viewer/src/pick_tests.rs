@@ -1,4 +1,4 @@
-//! A ray meets the nearest triangle and slips through no edge.
+//! A ray hits the nearest triangle and does not pass through any edge.
 
 use corniche_geom::TileId;
 use proptest::prelude::*;
@@ -52,7 +52,7 @@ fn tile(x: f64, y: f64, height_m: impl Fn(f64, f64) -> f64) -> TileGeometry {
 
 #[test]
 fn a_plane_is_met_where_its_equation_says() {
-    // The ground is z = 480 + 0.3 x. It is drawn with its heights doubled: z = 960 + 0.6 x.
+    // The ground is z = 480 + 0.3 x. It is drawn with doubled heights: z = 960 + 0.6 x.
     let tiles = [tile(1000.0, 2000.0, |x, _| 480.0 + 0.3 * (x - 1000.0))];
     let check = |eye: DVec3, ray: DVec3, expected_depth: Option<f64>| {
         let hit = ground_at(tiles.iter(), 2.0, eye, ray);
@@ -66,7 +66,7 @@ fn a_plane_is_met_where_its_equation_says() {
     check(DVec3::new(1010.0, 2003.0, 1200.0), DVec3::new(0.0, 0.0, -10.0), Some(23.4));
     // The eye looks up from below the ground.
     check(DVec3::new(1010.0, 2003.0, 900.0), DVec3::Z, Some(66.0));
-    // The eye looks away from the ground, and then down beside it.
+    // The eye looks away from the ground, and then down next to it.
     check(DVec3::new(1010.0, 2003.0, 1200.0), DVec3::Z, None);
     check(DVec3::new(1060.0, 2003.0, 1200.0), DVec3::NEG_Z, None);
     // The eye looks down obliquely: 1000 − t = 960 + 0.6 (t − 40) at x = 960 + t.
@@ -79,17 +79,19 @@ fn the_nearer_of_two_tiles_is_met_whatever_their_order() {
     let far = tile(100.0, 0.0, |_, _| 500.0);
     let eye = DVec3::new(-10.0, 0.0, 530.0);
     let ray = DVec3::new(10.0, 0.0, -8.0);
-    // The ray meets the near tile after two steps. It would reach the height of the far tile after six.
+    // The ray hits the near tile after two steps. It would reach the height of the far tile after
+    // six.
     for tiles in [[&near, &far], [&far, &near]] {
         let hit = ground_at(tiles.into_iter(), 1.0, eye, ray).unwrap();
         assert!((hit.depth - 2.0).abs() < 1e-6);
     }
-    // A flatter ray passes over the edge of the near tile and meets the far one: 30 m down at 0.25 m for each metre.
+    // A flatter ray passes over the edge of the near tile and hits the far one: 30 m down at 0.25 m
+    // per metre.
     let hit = ground_at([&near, &far].into_iter(), 1.0, eye, DVec3::new(10.0, 0.0, -2.5)).unwrap();
     assert!((hit.at_in_world.x - 110.0).abs() < 1e-6 && (hit.at_in_world.z - 500.0).abs() < 1e-6);
 }
 
-/// A deck 20 m above the ground, from (−40, 0) to (40, 0), drawn with its heights doubled.
+/// A deck 20 m above the ground, from (−40, 0) to (40, 0), drawn with doubled heights.
 #[test]
 fn a_bridge_is_met_before_the_ground_beneath() {
     let ground = tile(0.0, 0.0, |_, _| 500.0);
@@ -104,7 +106,7 @@ fn a_bridge_is_met_before_the_ground_beneath() {
         &crate::tiles::GroundNet::default(),
         (ground.plan_bounds(), ground.reference_m),
         &crate::tiles::PlanScale::default(),
-        &corniche_geom::Work::unlimited(),
+        &corniche_geom::StepBudget::unlimited(),
     );
     let summary = ground.summary.map(|of| GroundSummary { height_range_m: [500.0, 520.0], ..of });
     let tiles = [TileGeometry { summary, decks, ..ground }];
@@ -118,13 +120,14 @@ fn a_bridge_is_met_before_the_ground_beneath() {
 }
 
 proptest! {
-    /// A ray down on a tile always meets a triangle, even exactly on an edge or a corner of triangles.
+    /// A ray down on a tile always hits a triangle, even exactly on an edge or a corner of
+    /// triangles.
     #[test]
     fn no_ray_slips_through(x in -50.0..50.0_f64, y in -50.0..50.0_f64, on_grid in 0..3_u8, slant in -0.5..0.5_f64) {
         let tiles = [tile(0.0, 0.0, |x, y| 500.0 + (x / 7.0).sin() * 9.0 + (y / 5.0).cos() * 6.0)];
         let snap = |value: f64, wanted: bool| if wanted { (value / 10.0).round() * 10.0 } else { value };
         let target = DVec3::new(snap(x, on_grid > 0) * 0.999_999, snap(y, on_grid > 1) * 0.999_999, 500.0);
-        // The ray begins 100 m above the target, which is 500 m high, and stays over the tile on its way.
+        // The ray starts 100 m above the target, which is at 500 m, and stays over the tile.
         let ray = DVec3::new(slant * -target.x.signum(), slant * -target.y.signum(), -1.0) * 0.2;
         let eye = target - ray * 500.0;
         prop_assume!((target + ray * 80.0).truncate().abs().max_element() < 50.0);
@@ -144,7 +147,7 @@ proptest! {
         let flat = |value: f64, of: u8| if level == of { 0.0 } else { value };
         let target = DVec3::new(target[0], target[1], target[2] / 4.0);
         let eye = DVec3::from(eye);
-        // Some rays run along the columns, some are level, some are neither.
+        // Some rays run along the columns, some are level, some do neither.
         let way = DVec3::new(flat(target.x - eye.x, 1), target.y - eye.y, flat(target.z - eye.z, 2));
         let reference = DVec3::new(0.0, 0.0, 500.0 * vertical_scale);
         let found = ground_at(std::iter::once(&tile), vertical_scale, eye + reference, way);

@@ -1,4 +1,4 @@
-//! What the legend of a picture tells: that which the picture shows, as it is drawn in its middle.
+//! The legend of a picture: the features that the picture shows, as they look in its middle.
 
 use corniche_areas::BoundaryClass;
 use corniche_roads::FunctionalRoadClass;
@@ -8,37 +8,39 @@ use crate::{
     annotations::{Legend, LegendEdge, LegendHeights, LegendRoad, LegendRow, LegendSample},
     class_scale,
     frame_view::FrameView,
-    gpu::seen::{Seen, SeenArea},
+    gpu::seen::{SeenArea, ShownTiles},
     layer_view::view_of_lines,
     tiles::LineLayer,
 };
 
-/// What is left of the colours of a tunnel's surface and of its edge, as in `shaders/road_colors.wgsl`.
+/// Remaining share of the colours of a tunnel's surface and of its edge, as in
+/// `shaders/road_colors.wgsl`.
 const TUNNEL_FILL: f32 = 0.35;
 const TUNNEL_EDGE: f32 = 0.75;
-/// Edges of which less is left are not seen.
+/// Edges with a smaller share are not visible.
 const LEAST_EDGE: f32 = 0.1;
-/// At least so much of the dashes of a tunnel is seen in a legend.
+/// Minimum share of the dashes of a tunnel in a legend.
 const LEAST_DASH: f32 = 0.5;
-/// So many colours make a ramp of heights.
+/// Number of colours in a ramp of heights.
 const RAMP_COLORS: usize = 64;
-/// Colours of heights that differ by no more tell nothing.
+/// Colours of heights that differ by at most this do not show heights.
 const LEAST_TINT: f32 = 0.03;
 
-/// What a legend is to tell beside that which the picture shows.
+/// Additional data for a legend, besides the contents of the picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LegendRequest {
-    /// What the classes of roads are called, 0 first.
+    /// The labels of the road classes, 0 first.
     pub road_labels: [String; FunctionalRoadClass::COUNT],
-    /// The picture in print is so many times smaller than the ground, if that is known.
+    /// The denominator of the scale of the printed picture, if it is known.
     pub scale: Option<u32>,
 }
 
-/// The legend of a picture that shows this. `has_tint` says whether the ground of some tile has colours by its height.
+/// Returns the legend of a picture. `has_tint` tells whether the ground of any tile has colours by
+/// its height.
 pub(crate) fn legend(
     view: &FrameView<'_>,
     request: &LegendRequest,
-    seen: &Seen,
+    seen: &ShownTiles,
     has_tint: bool,
 ) -> Legend {
     let axes = view.camera.world_from_view;
@@ -54,7 +56,8 @@ pub(crate) fn legend(
     let rows = rows.chain(boundaries(view, seen)).chain(areas(view, seen)).collect();
     Legend {
         pixel_m: view.camera.pixel_at_unit_depth_m() * view.camera.focus_m / view.point_scale,
-        // The right axis of the view is level, and points as far from the east as north is from the top of the picture.
+        // The right axis of the view is level, and its angle from east is the angle of north from
+        // the top.
         north_deg: axes.x_axis.y.atan2(axes.x_axis.x).to_degrees(),
         scale: request.scale,
         ground: tint(view, middle_m(view)),
@@ -63,7 +66,8 @@ pub(crate) fn legend(
     }
 }
 
-/// How wide a road of a class is in the middle of the picture, pixels, before its least width is applied.
+/// Width of a road of a class in the middle of the picture, pixels, before the minimum width is
+/// applied.
 fn seen_px(view: &FrameView<'_>, road: &RoadStyle) -> f32 {
     let (distance_m, scaling) = (view.camera.focus_m, view.roads.width_scaling(view.style, road));
     let near_m = f64::from(road.width_m) * view.point_scale;
@@ -73,7 +77,8 @@ fn seen_px(view: &FrameView<'_>, road: &RoadStyle) -> f32 {
     (width_m / (view.camera.pixel_at_unit_depth_m() * distance_m)) as f32
 }
 
-/// How a road of a class is drawn in the middle of the picture: as `shaders/road_colors.wgsl` does it.
+/// How a road of a class looks in the middle of the picture, as `shaders/road_colors.wgsl` draws
+/// it.
 fn road(view: &FrameView<'_>, class: FunctionalRoadClass) -> LegendRoad {
     let road = view.style.road(class);
     let seen_px = seen_px(view, road);
@@ -86,13 +91,14 @@ fn road(view: &FrameView<'_>, class: FunctionalRoadClass) -> LegendRoad {
         RoadBand { color: over_ground(view, color, presence), ..*band }
     };
     let bands: Vec<RoadBand> = road.bands.all().iter().map(band).collect();
-    // What is drawn in one colour has one band.
+    // A road that is drawn in one colour has one band.
     let count = if is_wide > 0.0 { bands.len() } else { 1 };
     let edge = edge(view, road.outline, edge_presence(view, road, seen_px));
     LegendRoad { width_px: seen_px.max(least_px), bands: bands[..count].to_vec(), edge }
 }
 
-/// How much of the edge of such roads is drawn in the middle of the picture: it goes within a zoom step.
+/// The share of the edge of these roads that is drawn in the middle of the picture: it fades within
+/// a zoom step.
 fn edge_share(view: &FrameView<'_>, road: &RoadStyle) -> f32 {
     let pixel_m = view.camera.pixel_at_unit_depth_m() * view.camera.focus_m / view.point_scale;
     road.edge_max_pixel_m.map_or(1.0, |max_pixel_m| {
@@ -100,20 +106,20 @@ fn edge_share(view: &FrameView<'_>, road: &RoadStyle) -> f32 {
     })
 }
 
-/// How much of what is beneath the edge of a road of this width is hidden.
+/// How much the edge of a road of this width hides.
 fn edge_presence(view: &FrameView<'_>, road: &RoadStyle, seen_px: f32) -> f32 {
     smoothstep(1.2, 4.0, seen_px) * edge_share(view, road) * road.opacity
 }
 
-/// An edge; `None` where it is not seen.
+/// Returns an edge; `None` if it is not visible.
 fn edge(view: &FrameView<'_>, color: Rgb, presence: f32) -> Option<LegendEdge> {
     let width_px = view.roads.outline_px(view.style);
     let is_seen = presence >= LEAST_EDGE && width_px > 0;
     is_seen.then(|| LegendEdge { color: over_ground(view, color, presence), width_px })
 }
 
-/// How a tunnel of a class is drawn: paler than a road above the ground, in one colour. Where its edge is as dark as the ground, its dashes have the colour
-/// of the road.
+/// How a tunnel of a class looks: paler than a road above the ground, in one colour. If its edge is
+/// as dark as the ground, its dashes have the colour of the road.
 fn tunnel(view: &FrameView<'_>, class: FunctionalRoadClass) -> LegendRoad {
     let road = view.style.road(class);
     let (seen_px, main_color) = (seen_px(view, road), road.bands.main_color());
@@ -121,7 +127,7 @@ fn tunnel(view: &FrameView<'_>, class: FunctionalRoadClass) -> LegendRoad {
     let ground = luma(tint(view, middle_m(view)));
     let is_lost = (luma(main_color) - ground).abs() > (luma(road.outline) - ground).abs();
     let dashes = if is_lost { main_color } else { road.outline };
-    // In a legend a tunnel without its dashes would be told from nothing.
+    // Without dashes, a tunnel in a legend would look like nothing.
     let presence = (edge_presence(view, road, seen_px) * TUNNEL_EDGE).max(LEAST_DASH);
     LegendRoad {
         width_px: seen_px.max(road.min_width_px),
@@ -133,12 +139,12 @@ fn tunnel(view: &FrameView<'_>, class: FunctionalRoadClass) -> LegendRoad {
     }
 }
 
-/// The colour of the ground in the middle of the picture, as far as something of this colour and opacity lets it be seen.
+/// Blends a colour over the ground in the middle of the picture.
 fn over_ground(view: &FrameView<'_>, color: Rgb, opacity: f32) -> Rgb {
     mix(tint(view, middle_m(view)), color, opacity)
 }
 
-/// The height of what the camera looks at.
+/// Height of the camera's target.
 fn middle_m(view: &FrameView<'_>) -> f64 {
     view.camera.target_in_world().z / view.vertical_scale()
 }
@@ -148,8 +154,8 @@ fn tint(view: &FrameView<'_>, height_m: f64) -> Rgb {
     view.style.tint.color_at(height_m, view.height_range_m, view.latitude_deg)
 }
 
-/// Classes of boundaries, the most important first.
-fn boundaries(view: &FrameView<'_>, seen: &Seen) -> Vec<LegendRow> {
+/// Rows of boundary classes, the most important first.
+fn boundaries(view: &FrameView<'_>, seen: &ShownTiles) -> Vec<LegendRow> {
     let layer = LineLayer::Boundaries;
     let style = layer.style_of(view.style);
     let lines_view = view_of_lines(view, &style);
@@ -162,8 +168,8 @@ fn boundaries(view: &FrameView<'_>, seen: &Seen) -> Vec<LegendRow> {
     seen.boundaries.iter().filter_map(row).collect()
 }
 
-/// Classes of areas, the topmost first, each in its colour over the ground on which it is seen.
-fn areas(view: &FrameView<'_>, seen: &Seen) -> Vec<LegendRow> {
+/// Rows of area classes, the topmost first, each in its colour over the ground under it.
+fn areas(view: &FrameView<'_>, seen: &ShownTiles) -> Vec<LegendRow> {
     let find = |class| seen.areas.iter().find(|area| area.class == class);
     let row = |area: &SeenArea| {
         let AreaStyle { color, opacity, .. } = *view.style.area(area.class);
@@ -174,7 +180,7 @@ fn areas(view: &FrameView<'_>, seen: &Seen) -> Vec<LegendRow> {
     AreaStyle::TOP_FIRST.into_iter().filter_map(find).map(row).collect()
 }
 
-/// The colours of the ground between two heights; `None` where they tell nothing of heights.
+/// The colours of the ground between two heights; `None` if they do not show heights.
 fn heights(view: &FrameView<'_>, range_m: [f64; 2]) -> Option<LegendHeights> {
     let [low, high] = range_m;
     let color = |place: usize| {
@@ -192,7 +198,7 @@ fn mix(from: Rgb, to: Rgb, share: f32) -> Rgb {
     [0, 1, 2].map(|k| from[k] + (to[k] - from[k]) * share)
 }
 
-/// The function of the same name in WGSL.
+/// Same as the function of this name in WGSL.
 fn smoothstep(low: f32, high: f32, value: f32) -> f32 {
     let share = ((value - low) / (high - low)).clamp(0.0, 1.0);
     share * share * (3.0 - 2.0 * share)

@@ -1,4 +1,4 @@
-//! A legend lists what is seen, in the order of its importance, as it is drawn.
+//! A legend lists the visible features, in the order of their importance, as they are drawn.
 
 use corniche_areas::AreaClass;
 use corniche_styles::Style;
@@ -18,7 +18,7 @@ fn view<'a>(camera: &'a Camera, style: &'a Style) -> FrameView<'a> {
     FrameView {
         camera,
         style,
-        roads: RoadOptions::of(RoadMethod::ShadowVolumes),
+        roads: RoadOptions::for_method(RoadMethod::ShadowVolumes),
         exaggeration: 1.0,
         point_scale: 1.0,
         height_range_m: [0.0, 1000.0],
@@ -42,8 +42,8 @@ fn is_near(one: Rgb, other: Rgb) -> bool {
     one.iter().zip(other).all(|(one, other)| (one - other).abs() < 1e-6)
 }
 
-fn seen() -> Seen {
-    Seen {
+fn seen() -> ShownTiles {
+    ShownTiles {
         roads: classes(&[3, 0]),
         tunnels: classes(&[3]),
         boundaries: classes(&[7, 0]),
@@ -59,7 +59,7 @@ fn roads_come_first_then_tunnels_boundaries_and_areas() {
     let (camera, style) = (camera(1.0), Style::road_atlas());
     let told = legend(&view(&camera, &style), &labels(), &seen(), true);
     let names: Vec<&str> = told.rows.iter().map(|row| row.label.as_str()).collect();
-    // Sea and water have one colour.
+    // Sea and water have the same colour.
     let expected =
         ["zero", "three", "tunnel", "country border", "protected area", "sea, water", "forest"];
     assert_eq!(names, expected);
@@ -70,7 +70,7 @@ fn roads_come_first_then_tunnels_boundaries_and_areas() {
 #[test]
 fn nothing_is_listed_of_a_picture_that_shows_nothing() {
     let (camera, style) = (camera(1.0), Style::road_atlas());
-    let none = Seen {
+    let none = ShownTiles {
         roads: ClassSet::NONE,
         tunnels: ClassSet::NONE,
         boundaries: ClassSet::NONE,
@@ -81,7 +81,7 @@ fn nothing_is_listed_of_a_picture_that_shows_nothing() {
     assert!(told.rows.is_empty() && told.heights.is_none());
 }
 
-/// At a metre to the pixel a motorway of 24 m has 24 pixels, both its bands and its edge.
+/// At one metre per pixel, a motorway of 24 m is 24 pixels wide, and has all bands and its edge.
 #[test]
 fn near_roads_have_their_true_width() {
     let (camera, mut style) = (camera(1.0), Style::road_atlas());
@@ -97,7 +97,7 @@ fn near_roads_have_their_true_width() {
     assert!(edge.width_px == 1 && is_near(edge.color, of_style.outline), "{edge:?}");
 }
 
-/// Where a road is thinner than a pixel, it has one colour and no edge.
+/// A road that is thinner than a pixel has one colour and no edge.
 #[test]
 fn thin_roads_look_as_they_are_drawn() {
     let (camera, mut style) = (camera(1.0), Style::road_atlas());
@@ -131,21 +131,22 @@ fn heights_are_told_where_colours_tell_them() {
     assert_eq!(heights_of(&style, true), None);
 }
 
-/// A colour through which the ground shows is that over the ground on which the area is seen.
+/// A translucent colour is mixed with the ground on which the area is visible.
 #[test]
 fn areas_have_the_colour_over_their_own_ground() {
     let (camera, style) = (camera(1.0), Style::road_atlas());
     let view = view(&camera, &style);
     for height_m in [0.0, 900.0] {
         let area = SeenArea { class: AreaClass::Meadow, height_m: Some(height_m) };
-        let row = &areas(&view, &Seen { areas: vec![area], ..seen() })[0];
+        let row = &areas(&view, &ShownTiles { areas: vec![area], ..seen() })[0];
         let AreaStyle { color, opacity, .. } = *style.area(AreaClass::Meadow);
         let expected = mix(tint(&view, height_m), color, opacity);
         assert_eq!(row.sample, LegendSample::Area(expected));
     }
 }
 
-/// At the limit all of the edge is drawn, at twice as many metres to the pixel nothing, and between both half of it.
+/// At the limit the whole edge is drawn, at twice as many metres per pixel nothing, and between
+/// them a part of it.
 #[test]
 fn edges_go_within_a_zoom_step() {
     let style = Style::road_atlas();

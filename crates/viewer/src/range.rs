@@ -1,25 +1,25 @@
-//! Checks of numbers that users give for pictures, flights and windows alike.
+//! Checks of the numbers that users give for pictures, flights and windows.
 
 use std::ops::RangeInclusive;
 
 use crate::{camera::Orientation, gpu::MAX_SAMPLES_PER_SIDE, viewpoint::CameraRequest};
 
-/// A number given by the user is out of its range.
+/// A number from the user is out of its range.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("{name} of {value} is out of range; it must be {range}")]
 pub struct OutOfRange {
-    /// What the number is, with its article.
+    /// Name of the number, with its article.
     pub name: &'static str,
     /// The number.
     pub value: f64,
-    /// The range, in words.
+    /// The valid range, in words.
     pub range: &'static str,
 }
 
-/// Checks one number; NaN is in no range. `range` says the range in words.
+/// Checks one number; NaN is out of every range. `range` is the range in words.
 ///
 /// # Errors
-/// When it is not within `fits`.
+/// When the number is not within `fits`.
 pub fn within(
     name: &'static str,
     value: f64,
@@ -29,11 +29,11 @@ pub fn within(
     if fits.contains(&value) { Ok(()) } else { Err(OutOfRange { name, value, range }) }
 }
 
-/// Checks the numbers that say how finely the ground is drawn and how much its heights are exaggerated. `cell_px` may be
-/// infinite.
+/// Checks the numbers that set how finely the ground is drawn and how much its heights are
+/// exaggerated. `cell_px` may be infinite.
 ///
 /// # Errors
-/// When one of them is out of range.
+/// When a number is out of range.
 pub fn check_ground(
     screen_space_error_px: f64,
     cell_px: f64,
@@ -41,20 +41,20 @@ pub fn check_ground(
 ) -> Result<(), OutOfRange> {
     let any_above_0 = f64::MIN_POSITIVE..=f64::MAX;
     within("a screen-space error", screen_space_error_px, any_above_0, "above 0 pixels")?;
-    within("a cell", cell_px, f64::MIN_POSITIVE..=f64::INFINITY, "above 0 pixels")?;
+    within("a cell size", cell_px, f64::MIN_POSITIVE..=f64::INFINITY, "above 0 pixels")?;
     within("an exaggeration", exaggeration, 0.01..=100.0, "0.01 to 100")
 }
 
-/// Checks the samples per pixel along each side.
+/// Checks the number of samples along each side of a pixel.
 ///
 /// # Errors
-/// When they are 0 or too many.
+/// When it is 0 or too large.
 pub fn check_supersampling(samples_per_side: u32) -> Result<(), OutOfRange> {
     let fits = 1.0..=f64::from(MAX_SAMPLES_PER_SIDE);
     within("supersampling", f64::from(samples_per_side), fits, "1 to 4")
 }
 
-/// Checks where to look from.
+/// Checks the numbers of a camera.
 ///
 /// # Errors
 /// When one of the numbers is out of range.

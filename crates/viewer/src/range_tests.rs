@@ -1,4 +1,4 @@
-//! The ends of a range are in it, and what is no number is not.
+//! The ends of a range are within it, and NaN is not.
 
 use super::*;
 

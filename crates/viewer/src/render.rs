@@ -1,185 +1,142 @@
-//! One picture of a package is rendered without a window.
+//! Renders one picture of a package without a window.
 
 use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
 use corniche_styles::Style;
+use corniche_tileset::Manifest;
 use glam::DVec2;
 use image::RgbaImage;
 
 use crate::{
-    annotations::{Taken, TitleFlaws, draw_attribution, draw_legend, draw_title},
-    camera::{Camera, Projection},
+    annotations::{OccupiedMargins, TitleFlaws, draw_attribution, draw_legend, draw_title},
+    camera::{Camera, CameraProjection},
+    draw_error::DrawError,
     eye_height::{clearance_m, rounded_up_m},
     frame_view::FrameView,
-    gpu::{DrawTile, Gpu, GpuError, ReadBackError, Renderer, SlopeChain, Targets, TileBuffers},
-    lod::{Drawn, Fineness, Quality},
-    options::RoadOptions,
+    gpu::{DrawTile, Gpu, Renderer, SlopeChain, Targets, TileBuffers},
+    lod::DrawnTile,
     picture_legend::{LegendRequest, legend},
-    range::{self, OutOfRange},
-    scene,
-    tiles::{BlockingPackage, ClassVolumes, LoadTileError, MapExtent, TileGeometry, TileStore},
-    viewpoint::{CameraRequest, OffGround, SightedGround},
+    picture_options::PictureOptions,
+    range, scene,
+    tiles::{BlockingPackage, ClassVolumes, TileGeometry, TileStore},
+    viewpoint::{CameraRequest, SightedGround},
 };
 
 /// What to render.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RenderRequest {
-    /// The name of the package in messages.
+    /// Name of the package in messages.
     pub name: String,
-    /// Width and height of the picture.
-    pub size_px: [u32; 2],
-    /// How roads are drawn.
-    pub roads: RoadOptions,
-    /// Where to look from.
+    /// How the picture is drawn.
+    pub options: PictureOptions,
+    /// The requested camera.
     pub camera: CameraRequest,
-    /// A tile is refined while its error looks larger than this.
-    pub screen_space_error_px: f64,
-    /// A tile is refined while one of its cells looks larger than this, pixels.
-    pub cell_px: f64,
-    /// Factor on heights; 1 is true.
-    pub exaggeration: f64,
-    /// Samples per pixel along each side, averaged; 1 takes the pixel's centre alone.
-    pub supersampling: u32,
-    /// Colours and widths.
-    pub style: Style,
-    /// What a legend is to tell, if the picture has one.
+    /// Data for the legend, if the picture has one.
     pub legend: Option<LegendRequest>,
-    /// What is written over the picture, if anything is.
+    /// Title of the picture, if any.
     pub title: Option<String>,
     /// Whether the edges of the ground's triangles are drawn.
     pub is_wireframe: bool,
 }
 
 impl RenderRequest {
-    /// Checks the numbers of the request. This needs no package, so it can be done before one is opened; [`render`] does it,
-    /// too.
+    /// Checks the numbers of the request. This needs no package, so it can be done before opening
+    /// one; [`render`] also does it.
     ///
     /// # Errors
     /// When a number is out of its range.
-    pub fn check(&self) -> Result<(), RenderError> {
-        range::check_ground(self.screen_space_error_px, self.cell_px, self.exaggeration)?;
-        range::check_supersampling(self.supersampling)?;
+    pub fn check(&self) -> Result<(), DrawError> {
+        self.options.check()?;
         Ok(range::check_camera(self.camera)?)
     }
 }
 
-/// A picture and what went into it.
+/// A picture and a report of its contents.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rendered {
-    /// The picture, credits included.
+    /// The picture, attribution included.
     pub picture: RgbaImage,
-    /// What went into it.
+    /// The report of the contents.
     pub report: RenderReport,
 }
 
-/// What went into a picture.
+/// What a picture contains and how it was drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RenderReport {
     /// Name of the graphics adapter.
     pub adapter: String,
     /// Tiles drawn.
     pub tiles: u64,
-    /// Triangles of their ground, without those of skirts.
+    /// Triangles of the ground of these tiles, without the triangles of skirts.
     pub triangles: u64,
     /// Road segments drawn.
     pub road_segments: u64,
-    /// Polygons of areas drawn; one that lies in several tiles counts in each.
+    /// Polygons of areas drawn; a polygon in several tiles counts once per tile.
     pub area_polygons: u64,
-    /// Points of their outlines, with those on borders of tiles.
+    /// Points of the outlines of areas, including points on borders of tiles.
     pub area_points: u64,
-    /// Tiles in which some road may have been drawn narrower than its style says, because half its width is more than
-    /// the level's width margin.
+    /// Tiles in which a road may have been drawn narrower than its style says, because half its
+    /// width exceeds the level's width margin.
     pub clamped_tiles: u64,
-    /// Ways that are drawn [`OwnWidths::WIDEST_M`](corniche_styles::OwnWidths::WIDEST_M) wide because their tags ask for more.
+    /// Ways that are capped to [`OwnWidths::WIDEST_M`](corniche_styles::OwnWidths::WIDEST_M)
+    /// because their tags request a larger width.
     pub capped_ways: u64,
     /// Tiles drawn per level, coarse levels first.
     pub levels: Vec<(u8, u64)>,
-    /// Tiles read from the package to get there, drawn or not.
+    /// Tiles read from the package for the picture, drawn or not.
     pub tiles_loaded: u64,
-    /// The eye in the working CRS and its true height.
+    /// Position of the eye in the working CRS, with its true height.
     pub eye_m: [f64; 3],
-    /// Where pixels of a picture from above are: the map from columns and rows, counted from the upper left corner, to working metres. x is
-    /// `[0] + [1] · column + [2] · row`, and y is likewise that of the last three.
+    /// Georeference of a picture from above: the map from columns and rows, counted from the upper
+    /// left corner, to working metres. x is `[0] + [1] · column + [2] · row`, and y is likewise
+    /// computed from the last three.
     pub working_from_pixel: Option<[f64; 6]>,
-    /// What of the title is not seen as it was written.
+    /// The parts of the title that are not visible as they were written.
     pub title_flaws: TitleFlaws,
     /// Whether the picture is too small for its legend, so that a part is cut off.
     pub is_legend_cut: bool,
 }
 
-/// Why there is no picture.
-#[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "each message documents its variant")]
-#[non_exhaustive]
-pub enum RenderError {
-    #[error(transparent)]
-    Load(#[from] LoadTileError),
-    #[error(transparent)]
-    Gpu(#[from] GpuError),
-    #[error(transparent)]
-    ReadBack(#[from] ReadBackError),
-    #[error("{name:?} has no ground to show")]
-    NoGround { name: String },
-    #[error(transparent)]
-    OffGround(#[from] OffGround),
-    #[error(
-        "the eye would be {depth_m:.1} m too near to the ground or under it; look from farther away, from another side or more steeply down"
-    )]
-    EyeUnderGround { depth_m: f64 },
-    #[error(transparent)]
-    Range(#[from] OutOfRange),
-    #[error("interrupted")]
-    Stopped,
-}
-
 /// Renders a picture of `package`, without a window.
 ///
-/// `package` must be opened for the road method of the request: it then reads the sections that this method needs. The
-/// caller may check the request before opening it, with [`RenderRequest::check`].
+/// `package` must be opened for the road method of the request: it then reads the sections that
+/// this method needs. The caller may check the request before opening the package, with
+/// [`RenderRequest::check`].
 ///
-/// The picture is the same, byte for byte, each time on the same adapter and driver. `is_stopped` is asked with each
-/// tile of the view that is read, and once more at the end.
+/// The picture is the same, byte for byte, each time on the same adapter and driver. `is_stopped`
+/// is called for each tile of the view that is read, and once more at the end.
 ///
 /// # Errors
-/// When the request makes no sense, a tile cannot be read, there is no graphics adapter, or it was stopped.
+/// When the request is not valid, a tile cannot be read, there is no graphics adapter, or the
+/// drawing was stopped.
 pub fn render(
     request: &RenderRequest,
     package: &dyn BlockingPackage,
     is_stopped: &dyn Fn() -> bool,
-) -> Result<Rendered, RenderError> {
+) -> Result<Rendered, DrawError> {
     request.check()?;
     let mut store: TileStore<'_> = TileStore::new(package);
-    let point_scale = package.manifest().point_scale;
-    let fineness =
-        Fineness { screen_space_error_px: request.screen_space_error_px, cell_px: request.cell_px };
-    let RenderRequest { style, roads, exaggeration, .. } = request;
-    let quality = Quality::of_package(package.manifest(), fineness, style, *roads, *exaggeration);
-    let height_range_m = store
-        .coarsest_ground()?
-        .ok_or_else(|| RenderError::NoGround { name: request.name.clone() })?
-        .height_range_m;
-    let camera = camera(request, package, &mut store, height_range_m)?;
-    let check = || if is_stopped() { Err(RenderError::Stopped) } else { Ok(()) };
+    let (manifest, options) = (package.manifest(), &request.options);
+    let quality = options.quality(manifest);
+    let ground = request.camera.sighted_ground(&mut store, manifest)?;
+    let ground = ground.ok_or_else(|| DrawError::NoGround { name: request.name.clone() })?;
+    let height_range_m = ground.heights_m;
+    let camera = camera(request, manifest, &mut store, ground)?;
+    let check = || if is_stopped() { Err(DrawError::Stopped) } else { Ok(()) };
     let drawn = scene::settle(&mut store, &camera, quality, check)?;
 
     let gpu = Gpu::new()?;
-    let targets = Targets::new(&gpu, request.size_px, request.supersampling)?;
+    let targets = Targets::new(&gpu, options.size_px, options.supersampling)?;
     let view = FrameView {
-        camera: &camera,
-        style: &request.style,
-        roads: request.roads,
-        exaggeration: request.exaggeration,
-        point_scale,
-        height_range_m,
-        wall_m: FrameView::wall_beside_m(height_range_m),
-        cell_px: request.cell_px,
-        latitude_deg: package.manifest().wgs84_bounds.center()[1],
         is_wireframe: request.is_wireframe,
+        ..options.view(&camera, manifest, height_range_m)
     };
     let mut slopes = BTreeMap::new();
-    let uploaded: Vec<(TileBuffers, f64)> = scene::draw_list(&store, &drawn)
-        .map(|(tile, skirt_depth_m)| {
+    let grounds: Vec<(&TileGeometry, f64)> = scene::draw_list(&store, &drawn).collect();
+    let uploaded: Vec<(TileBuffers, f64)> = grounds
+        .iter()
+        .map(|&(tile, skirt_depth_m)| {
             let above = slopes_above(&gpu, &store, tile.id, &mut slopes);
             (TileBuffers::new(&gpu, tile, above.as_ref()), skirt_depth_m)
         })
@@ -195,13 +152,12 @@ pub fn render(
     check()?;
     let title = request.title.as_deref().map(|title| draw_title(&mut picture, title));
     let title = title.unwrap_or_default();
-    let credits_px = draw_attribution(&mut picture, &package.manifest().attribution);
+    let credits_px = draw_attribution(&mut picture, &manifest.attribution);
     let mut is_legend_cut = false;
     if let Some(asked) = &request.legend {
         let seen = renderer.seen(&gpu, &view, &tiles, &targets)?;
-        let grounds = scene::draw_list(&store, &drawn).map(|(tile, _)| tile);
-        let has_tint = has_tint(style, grounds);
-        let taken = Taken { title_px: title.height_px, credits_px };
+        let has_tint = has_tint(&options.style, grounds.iter().map(|(tile, _)| *tile));
+        let taken = OccupiedMargins { title_px: title.height_px, credits_px };
         let legend = legend(&view, asked, &seen, has_tint);
         is_legend_cut = draw_legend(&mut picture, &legend, taken);
     }
@@ -214,13 +170,9 @@ pub fn render(
         road_segments: tiles.iter().map(|tile| tile.road_segments(&view)).sum(),
         area_polygons: sum_of_areas(&tiles, &view, |volumes| u64::from(volumes.polygons)),
         area_points: sum_of_areas(&tiles, &view, |volumes| volumes.walls.len() as u64),
-        clamped_tiles: scene::draw_list(&store, &drawn)
-            .filter(|(tile, _)| scene::may_be_clamped(tile, &view))
-            .count() as u64,
-        capped_ways: scene::capped_ways(
-            scene::draw_list(&store, &drawn).map(|(tile, _)| tile),
-            &view,
-        ),
+        clamped_tiles: grounds.iter().filter(|(tile, _)| scene::may_be_clamped(tile, &view)).count()
+            as u64,
+        capped_ways: scene::capped_ways(grounds.iter().map(|(tile, _)| *tile), &view),
         levels: tiles_by_level(&drawn),
         tiles_loaded: store.len() as u64,
         eye_m: [eye.x, eye.y, eye.z / quality.vertical_scale],
@@ -231,12 +183,12 @@ pub fn render(
     Ok(Rendered { picture, report })
 }
 
-/// Whether the ground of some tiles has colours by its height, and not a photo alone.
+/// Whether the ground of any tile has colours by its height, and not only a photo.
 fn has_tint<'a>(style: &Style, mut tiles: impl Iterator<Item = &'a TileGeometry>) -> bool {
     style.photo < 1.0 || tiles.any(|tile| tile.photo.is_none())
 }
 
-/// The sum of something over the volumes of all classes of areas that are drawn.
+/// Sums a value over the volumes of all area classes that are drawn.
 fn sum_of_areas(
     tiles: &[DrawTile<'_>],
     view: &FrameView<'_>,
@@ -246,8 +198,8 @@ fn sum_of_areas(
     tiles.iter().flat_map(|tile| tile.buffers.area_classes()).filter(drawn).map(count).sum()
 }
 
-/// The slopes of the parent of a tile and of those above it, which were all read before the tile was; `uploaded` has those that are on
-/// the graphics card already.
+/// The slopes of the parent of a tile and of its other ancestors, which were all read before the
+/// tile; `uploaded` has the slopes that are already on the GPU.
 fn slopes_above(
     gpu: &Gpu,
     store: &TileStore<'_>,
@@ -264,42 +216,35 @@ fn slopes_above(
     Some(slopes)
 }
 
-/// The camera that the request asks for.
+/// Returns the requested camera.
 ///
 /// # Errors
-/// When the eye would be too near to the ground, or a tile cannot be read.
+/// When the eye would be too close to the ground, or a tile cannot be read.
 fn camera(
     request: &RenderRequest,
-    package: &dyn BlockingPackage,
+    manifest: &Manifest,
     store: &mut TileStore<'_>,
-    height_range_m: [f64; 2],
-) -> Result<Camera, RenderError> {
-    let point_scale = package.manifest().point_scale;
-    let vertical_scale = request.exaggeration * point_scale;
-    let place = request.camera.place(package.manifest())?;
-    let at_place_m = match place {
+    ground: SightedGround,
+) -> Result<Camera, DrawError> {
+    let point_scale = manifest.point_scale;
+    let vertical_scale = request.options.exaggeration * point_scale;
+    let at_place_m = match request.camera.place(manifest)? {
         Some(at) => store.ground_height_m(at)?,
         None => None,
     };
-    let no_ground = || RenderError::NoGround { name: request.name.clone() };
-    let data = package.manifest().data_bounds;
-    let extent = if request.camera.is_overview() {
-        store.map_extent(data)?.ok_or_else(no_ground)?
-    } else {
-        MapExtent::of_data(data, height_range_m)
-    };
-    let ground = SightedGround { extent, heights_m: height_range_m, at_place_m };
-    let camera =
-        request.camera.camera(package.manifest(), ground, vertical_scale, request.size_px)?;
+    let ground = SightedGround { at_place_m, ..ground };
+    let size_px = request.options.size_px;
+    let camera = request.camera.camera(manifest, ground, vertical_scale, size_px)?;
     if matches!(request.camera, CameraRequest::LookAt { .. }) {
         check_above_ground(&camera, store, vertical_scale, point_scale)?;
     }
     Ok(camera)
 }
 
-/// The map from columns and rows of the picture, counted from its upper left corner, to working metres, if each pixel has a place whatever the height there.
+/// The map from columns and rows of the picture, counted from its upper left corner, to working
+/// metres, if the position of each pixel does not depend on the height.
 fn working_from_pixel(camera: &Camera) -> Option<[f64; 6]> {
-    if camera.projection == Projection::Perspective {
+    if camera.projection == CameraProjection::Perspective {
         return None;
     }
     let [width, height] = camera.size_px.map(f64::from);
@@ -310,8 +255,8 @@ fn working_from_pixel(camera: &Camera) -> Option<[f64; 6]> {
     Some([corner.x, of_column.x, of_row.x, corner.y, of_column.y, of_row.y])
 }
 
-/// How many tiles are drawn on each level, coarse levels first.
-fn tiles_by_level(drawn: &[Drawn]) -> Vec<(u8, u64)> {
+/// The number of tiles drawn on each level, coarse levels first.
+fn tiles_by_level(drawn: &[DrawnTile]) -> Vec<(u8, u64)> {
     let mut levels: Vec<(u8, u64)> = Vec::new();
     for tile in drawn {
         match levels.last_mut() {
@@ -327,12 +272,12 @@ fn check_above_ground(
     store: &mut TileStore<'_>,
     vertical_scale: f64,
     point_scale: f64,
-) -> Result<(), RenderError> {
+) -> Result<(), DrawError> {
     let eye = camera.eye_in_world;
     let Some(ground_m) = store.ground_height_m([eye.x, eye.y])? else { return Ok(()) };
     let lacking_m = ground_m * vertical_scale + clearance_m(point_scale) - eye.z;
     if lacking_m > 0.0 {
-        return Err(RenderError::EyeUnderGround { depth_m: rounded_up_m(lacking_m) });
+        return Err(DrawError::EyeUnderGround { depth_m: rounded_up_m(lacking_m) });
     }
     Ok(())
 }

@@ -1,13 +1,13 @@
-//! A flight over a package, frame by frame, without a window: what is drawn, what is loaded, how long it takes.
+//! Draws a flight over a package, frame by frame, without a window, and reports which tiles are
+//! drawn and loaded, and how long this takes.
 //!
-//! Time steps are fixed, tiles arrive in the frame after they were asked for, and the first frame waits until no tile is
-//! missing. So the same flight gives the same tiles, numbers and pictures each time; only the milliseconds differ.
+//! Time steps are fixed, tiles arrive in the frame after their request, and the first frame waits
+//! until no tile is missing. So the same flight gives the same tiles, numbers and pictures each
+//! time; only the milliseconds differ.
 
 mod elapsed;
-mod error;
 mod eye_over_ground;
 mod finest_tiles;
-mod frame_tiles;
 mod options;
 mod record;
 mod streamed_tiles;
@@ -19,26 +19,20 @@ use glam::DVec3;
 use image::RgbaImage;
 
 use self::{
-    elapsed::ms_since,
-    eye_over_ground::Survey,
-    finest_tiles::FinestTiles,
-    frame_tiles::FrameTiles,
-    options::check,
-    streamed_tiles::{Patience, StreamedTiles},
-    timetable::Timetable,
+    elapsed::ms_since, eye_over_ground::Survey, finest_tiles::FinestTiles, options::check,
+    streamed_tiles::StreamedTiles, timetable::Timetable,
 };
 use crate::{
     annotations::draw_attribution,
     camera::Camera,
+    draw_error::DrawError,
     flight::{Flight, Pose},
-    frame_view::FrameView,
     gpu::{Gpu, PassTimer, Renderer, ResidentTiles, Targets},
-    lod::{Fineness, Quality},
+    lod::DrawnTile,
     tiles::{BlockingPackage, TileStore},
 };
 
 pub use self::{
-    error::ReplayError,
     eye_over_ground::{Lifted, default_flight},
     options::{Detail, ReplayOptions},
     record::FrameRecord,
@@ -60,16 +54,16 @@ pub struct Replay<'a> {
     timer: Option<PassTimer>,
 }
 
-/// Where the tiles that are drawn come from.
+/// The source of the tiles that are drawn.
 enum TileSupply<'a> {
-    /// [`Detail::Full`] and [`Detail::Culled`].
+    /// Tiles for [`Detail::Full`] and [`Detail::Culled`].
     Finest(FinestTiles),
-    /// [`Detail::Adaptive`].
+    /// Tiles for [`Detail::Adaptive`].
     Streamed(StreamedTiles<'a>),
 }
 
 impl TileSupply<'_> {
-    /// What is on the graphics card, and the bytes of the slopes of other tiles there.
+    /// The tiles on the GPU, and the bytes of the slopes of other tiles there.
     fn resident(&self) -> (&ResidentTiles, u64) {
         match self {
             Self::Finest(finest) => (&finest.tiles, finest.above_bytes),
@@ -79,22 +73,23 @@ impl TileSupply<'_> {
 }
 
 impl<'a> Replay<'a> {
-    /// Prepares a flight: looks up the ground beneath all of it and, for [`Detail::Full`] and [`Detail::Culled`], loads all
-    /// finest tiles. `is_stopped` is called often, here and in each frame; once it returns true, the result is
-    /// [`ReplayError::Stopped`].
+    /// Prepares a flight: looks up the ground below all of it and, for [`Detail::Full`] and
+    /// [`Detail::Culled`], loads all finest tiles. `is_stopped` is called often, here and in each
+    /// frame; once it returns true, the result is [`DrawError::FlightStopped`].
     ///
     /// # Errors
-    /// When an option is out of range, a keyframe lies under the ground, a tile cannot be read, the tiles do not fit, or it
-    /// was stopped.
+    /// When an option is out of range, a keyframe is under the ground, a tile cannot be read, the
+    /// tiles do not fit, or the flight was stopped.
     pub fn new(
         gpu: &'a Gpu,
         package: &'a dyn BlockingPackage,
         flight: &'a Flight,
         options: &'a ReplayOptions,
         is_stopped: &'a dyn Fn() -> bool,
-    ) -> Result<Self, ReplayError> {
+    ) -> Result<Self, DrawError> {
         check(options)?;
-        let coarsest = TileStore::new(package).coarsest_ground()?.ok_or(ReplayError::NoGround)?;
+        let coarsest =
+            TileStore::new(package).coarsest_ground()?.ok_or(DrawError::NothingBeneath)?;
         let timetable = Timetable { flight, frames: options.frames };
         let survey = Survey::new(package, timetable, options, coarsest, is_stopped)?;
         let tiles = match options.detail {
@@ -117,21 +112,21 @@ impl<'a> Replay<'a> {
             next: 0,
             tiles,
             renderer: Renderer::new(gpu),
-            targets: Targets::new(gpu, options.size_px, options.supersampling)?,
+            targets: Targets::new(gpu, options.picture.size_px, options.picture.supersampling)?,
             timer: PassTimer::new(gpu),
         })
     }
 
-    /// Draws the next frame, and waits until it is drawn; `None` after the last.
+    /// Draws the next frame, and waits until it is drawn; `None` after the last frame.
     ///
     /// # Errors
-    /// When a tile cannot be read, the device is lost, or it was stopped.
-    pub fn next_frame(&mut self) -> Result<Option<FrameRecord>, ReplayError> {
+    /// When a tile cannot be read, the device is lost, or the flight was stopped.
+    pub fn next_frame(&mut self) -> Result<Option<FrameRecord>, DrawError> {
         if self.next == self.options.frames {
             return Ok(None);
         }
         if (self.is_stopped)() {
-            return Err(ReplayError::Stopped);
+            return Err(DrawError::FlightStopped);
         }
         let frame = self.next;
         let time_s = self.timetable.time_s(frame);
@@ -139,23 +134,12 @@ impl<'a> Replay<'a> {
         let mut pose = self.timetable.flight.at(time_s);
         pose.eye_m[2] += stand.lift_m;
         let camera = self.camera(pose, stand.focus_m);
-        let prepared = self.prepare_tiles(frame, &camera)?;
+        let (drawn, prepared) = self.prepare_tiles(frame, &camera)?;
         let started = Instant::now();
         let (resident, above_bytes) = self.tiles.resident();
-        let tiles = resident.draw_list(&prepared.drawn);
+        let tiles = resident.draw_list(&drawn);
         let manifest = self.package.manifest();
-        let view = FrameView {
-            camera: &camera,
-            style: &self.options.style,
-            roads: self.options.roads,
-            exaggeration: self.options.exaggeration,
-            point_scale: manifest.point_scale,
-            height_range_m: self.height_range_m,
-            wall_m: FrameView::wall_beside_m(self.height_range_m),
-            cell_px: self.options.cell_px,
-            latitude_deg: manifest.wgs84_bounds.center()[1],
-            is_wireframe: false,
-        };
+        let view = self.options.picture.view(&camera, manifest, self.height_range_m);
         self.renderer.draw_timed(self.gpu, &view, &tiles, &self.targets, self.timer.as_mut());
         self.gpu.finish()?;
         let draw_ms = ms_since(started);
@@ -166,26 +150,20 @@ impl<'a> Replay<'a> {
             time_s,
             pose,
             tiles_drawn: tiles.len(),
-            tiles_loaded: prepared.loaded,
-            tiles_uploaded: prepared.uploaded,
-            tiles_evicted: prepared.evicted,
-            tiles_missing: prepared.missing,
             triangles: tiles.iter().map(|tile| tile.buffers.triangles).sum(),
             road_segments: tiles.iter().map(|tile| tile.road_segments(&view)).sum(),
             gpu_bytes: above_bytes + resident.gpu_bytes(),
-            select_ms: prepared.select_ms,
-            decode_ms: prepared.decode_ms,
-            upload_ms: prepared.upload_ms,
             draw_ms,
             passes,
+            ..prepared
         }))
     }
 
-    /// The picture of the frame drawn last, with credits.
+    /// The picture of the frame drawn last, with attribution.
     ///
     /// # Errors
     /// When the device is lost.
-    pub fn picture(&self) -> Result<RgbaImage, ReplayError> {
+    pub fn picture(&self) -> Result<RgbaImage, DrawError> {
         let mut picture = self.targets.picture.read_image(self.gpu)?;
         draw_attribution(&mut picture, &self.package.manifest().attribution);
         Ok(picture)
@@ -197,25 +175,29 @@ impl<'a> Replay<'a> {
         self.timetable.step_s()
     }
 
-    /// The frames in which the flight comes too near to the ground; the eye is lifted there, as in a window.
+    /// The frames in which the flight is too close to the ground; there the eye is lifted, as in a
+    /// window.
     #[must_use]
     pub fn lifted(&self) -> Lifted {
         self.survey.lifted
     }
 
     fn vertical_scale(&self) -> f64 {
-        self.options.exaggeration * self.package.manifest().point_scale
+        self.options.picture.exaggeration * self.package.manifest().point_scale
     }
 
     fn camera(&self, Pose { eye_m: [x, y, height_m], orientation }: Pose, focus_m: f64) -> Camera {
         let eye = DVec3::new(x, y, height_m * self.vertical_scale());
-        let size_px = self.options.size_px;
-        // Only the direction of view is needed here; it does not depend on the place of the eye.
-        Camera::at_eye(eye, focus_m, orientation, size_px)
+        // Only the direction of view matters here; it does not depend on the position of the eye.
+        Camera::at_eye(eye, focus_m, orientation, self.options.picture.size_px)
     }
 
-    /// Puts the tiles that a frame shows onto the graphics card, as far as they are there and fit.
-    fn prepare_tiles(&mut self, frame: u32, camera: &Camera) -> Result<FrameTiles, ReplayError> {
+    /// Uploads the tiles that a frame shows to the GPU, as far as they are loaded and fit.
+    fn prepare_tiles(
+        &mut self,
+        frame: u32,
+        camera: &Camera,
+    ) -> Result<(Vec<DrawnTile>, FrameRecord), DrawError> {
         let vertical_scale = self.vertical_scale();
         let ahead_s = self.options.ahead_s;
         let ahead = (ahead_s > 0.0).then(|| {
@@ -225,16 +207,9 @@ impl<'a> Replay<'a> {
         });
         match &mut self.tiles {
             TileSupply::Streamed(streamed) => {
-                let ReplayOptions { style, roads, exaggeration, .. } = &self.options;
-                let fineness = Fineness {
-                    screen_space_error_px: self.options.screen_space_error_px,
-                    cell_px: self.options.cell_px,
-                };
-                let manifest = self.package.manifest();
-                let quality = Quality::of_package(manifest, fineness, style, *roads, *exaggeration);
-                // The first frame waits until nothing is missing; the others do not wait.
-                let patience = if frame == 0 { Patience::UntilSettled } else { Patience::None };
-                streamed.advance(camera, ahead.as_ref(), quality, patience, self.is_stopped)
+                let quality = self.options.picture.quality(self.package.manifest());
+                // The first frame waits until no tile is missing; the others do not wait.
+                streamed.advance(camera, ahead.as_ref(), quality, frame == 0, self.is_stopped)
             }
             TileSupply::Finest(finest) if self.options.detail == Detail::Full => Ok(finest.all()),
             TileSupply::Finest(finest) => Ok(finest.in_view(self.package, camera, vertical_scale)),

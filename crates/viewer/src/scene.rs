@@ -1,4 +1,5 @@
-//! What one picture shows: the tiles of a selection, all loaded, and the pieces of road that connect levels.
+//! The contents of one picture: the tiles of a selection, all loaded, and the pieces of road that
+//! connect levels.
 
 mod level_connectors;
 
@@ -10,26 +11,26 @@ use crate::{
     camera::{Camera, WorldBox},
     class_scale,
     frame_view::FrameView,
-    lod::{self, Drawn, Quality},
+    lod::{self, DrawnTile, Quality},
     options::RoadMethod,
     tiles::{LoadTileError, RoadKind, TileGeometry, TileSource, TileStore, WideWay},
 };
 
 pub(crate) use self::level_connectors::{BorderTile, LevelConnector, level_connectors};
 
-/// Chooses tiles for `camera`, level by level, and says what to draw. Only tiles that are drawn are loaded; of those above them
-/// errors and heights are read, and the slopes with which finer tiles are shaded.
+/// Selects the tiles to draw for `camera`, level by level, and loads them. Of their ancestors only
+/// errors, heights and slopes are read; finer tiles are shaded with these slopes.
 ///
 /// # Errors
-/// When a tile cannot be read, or `check`, which is asked with each, fails.
+/// When a tile cannot be read, or `check`, which is called for each tile, fails.
 pub fn settle<S: TileSource + Sync + ?Sized, E: From<LoadTileError> + Send>(
     store: &mut TileStore<'_, S>,
     camera: &Camera,
     quality: Quality,
     check: impl Fn() -> Result<(), E>,
-) -> Result<Vec<Drawn>, E> {
+) -> Result<Vec<DrawnTile>, E> {
     loop {
-        let selection = lod::select(store, camera, quality);
+        let selection = lod::select(&store.tree(), camera, quality);
         for request in &selection.requests {
             check()?;
             store.pass(request.id)?;
@@ -41,16 +42,16 @@ pub fn settle<S: TileSource + Sync + ?Sized, E: From<LoadTileError> + Send>(
     }
 }
 
-/// The tiles to draw with the depths of their skirts. Tiles that are not loaded are left out.
+/// The tiles to draw with the depths of their skirts. Tiles that are not loaded are omitted.
 pub fn draw_list<'a, S: TileSource + ?Sized>(
     store: &'a TileStore<'_, S>,
-    drawn: &'a [Drawn],
+    drawn: &'a [DrawnTile],
 ) -> impl Iterator<Item = (&'a TileGeometry, f64)> {
     drawn.iter().filter_map(|drawn| Some((store.get(drawn.id)?, drawn.skirt_depth_m)))
 }
 
-/// Whether some road of a tile may be wider on the picture than its margin allows. Never false if one is; true for some
-/// tiles without such a road.
+/// Whether a road of a tile may be wider on the picture than its margin allows. It is never false
+/// if there is such a road, but true for some tiles without one.
 #[must_use]
 pub fn may_be_clamped(tile: &TileGeometry, view: &FrameView<'_>) -> bool {
     let Some(summary) = tile.summary else { return false };
@@ -78,7 +79,7 @@ pub fn may_be_clamped(tile: &TileGeometry, view: &FrameView<'_>) -> bool {
         })
 }
 
-/// The largest width near the eye that a road of a class in a tile is drawn with; `None` without such a road.
+/// The maximum width near the eye of the roads of a class in a tile; `None` if there are none.
 fn widest_m(tile: &TileGeometry, view: &FrameView<'_>, class: FunctionalRoadClass) -> Option<f32> {
     let width_m = |kind: RoadKind| view.style.width_m(class, kind.own_width);
     let widest = |kinds: &mut dyn Iterator<Item = RoadKind>| kinds.map(width_m).reduce(f32::max);
@@ -90,8 +91,8 @@ fn widest_m(tile: &TileGeometry, view: &FrameView<'_>, class: FunctionalRoadClas
     }
 }
 
-/// How many ways of some tiles the style draws narrower than their tags ask for, because these ask for more than
-/// [`OwnWidths::WIDEST_M`](corniche_styles::OwnWidths::WIDEST_M).
+/// The number of ways that the style draws narrower than their tags request, because the tags
+/// exceed [`OwnWidths::WIDEST_M`](corniche_styles::OwnWidths::WIDEST_M).
 #[must_use]
 pub fn capped_ways<'a>(tiles: impl Iterator<Item = &'a TileGeometry>, view: &FrameView<'_>) -> u64 {
     let is_capped = |way: &&WideWay| {

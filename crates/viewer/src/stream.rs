@@ -1,4 +1,4 @@
-//! Which tiles to load, to hand to the graphics card and to forget while the camera moves.
+//! Which tiles to load, to upload to the GPU and to evict while the camera moves.
 //!
 //! ```text
 //!            load                arrived               upload
@@ -7,71 +7,75 @@
 //!    └─────────────────────────────────────────┴───────────────────────┘
 //! ```
 //!
-//! [`Streamer`] decides and remembers. It holds no tile, opens no file and knows no graphics card, so that it can be tested
-//! without them; of a package it asks only which tiles there are. The caller does what a [`Plan`] says, in the order of its
-//! fields, and reports the tiles that were decoded. Time is counted in frames: the same camera and the same arrivals give
-//! the same plans.
+//! [`Streamer`] decides and remembers. It holds no tile, opens no file and does not access the GPU,
+//! so that it can be tested without them; its only question to a package is which tiles exist. The
+//! caller executes a [`Plan`] in the order of its fields, and reports the decoded tiles. Time is
+//! counted in frames: the same camera and the same arrivals give the same plans.
 //!
-//! A tile is drawn only when it is resident, and a parent is drawn until all its children that exist are resident
-//! ([`lod::select`]). Tiles that are drawn are never evicted. Nor are the tiles above them, which may have to take their
-//! place, nor the siblings of any of these: children are drawn only together, so if one were evicted it would be loaded
-//! again in the next frame, and with a budget that is too small this would never end.
+//! A tile is drawn only when it is resident, and a parent is drawn until all its existing children
+//! are resident ([`lod::select`]). Drawn tiles are never evicted. Nor are their ancestors, which
+//! may have to replace them, nor the siblings of any of these: children are drawn only together, so
+//! an evicted one would be loaded again in the next frame, and with a budget that is too small this
+//! would never end.
 //!
-//! No tile is resident without its parent: tiles are shaded by the slopes of those above them, too.
+//! No tile is resident without its parent: tiles are also shaded by the slopes of their ancestors.
 //!
-//! Source: Cozzi & Ring, *3D Engine Design for Virtual Globes* (2011), ch. 12: the least recently used tiles are evicted
-//! first, and the requests of the present view come before those of the coming one.
+//! Source: Cozzi & Ring, *3D Engine Design for Virtual Globes* (2011), ch. 12: the least recently
+//! used tiles are evicted first, and the requests of the present view come before those of the
+//! coming one.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use corniche_geom::{Bounds, TileId};
+use corniche_geom::TileId;
 
 use crate::{
     camera::Camera,
-    lod::{self, Drawn, GroundSummary, Node, Quality, Request, Selection, TileTree},
-    tiles::TileCatalog,
+    lod::{self, DrawnTile, GroundSummary, Quality, Request, Selection},
+    tiles::{CatalogTree, TileCatalog},
 };
 
-/// How much may be done in a frame, and how much may be kept.
+/// Limits per frame, and for the tiles that are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StreamBudget {
     /// At most this many tiles are decoded at once.
     pub tiles_in_flight: usize,
-    /// At most this much is uploaded to the graphics card in a frame, but always at least one tile.
+    /// At most this many bytes are uploaded to the GPU per frame, but always at least one tile.
     pub upload_bytes_per_frame: u64,
-    /// At most this much is kept on the graphics card.
+    /// At most this many bytes are kept on the GPU.
     pub gpu_bytes: u64,
 }
 
-/// What the streamer knows of a decoded tile.
+/// The streamer's data about a decoded tile.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TileFacts {
     /// Errors and heights; `None` without ground.
     pub ground: Option<GroundSummary>,
-    /// What it takes on the graphics card.
+    /// Bytes of the tile on the GPU.
     pub gpu_bytes: u64,
 }
 
-/// What to do in this frame, in this order.
+/// The actions of a frame, in this order.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Plan {
-    /// Tiles to remove from the graphics card.
+    /// Tiles to evict from the GPU.
     pub evict: Vec<TileId>,
-    /// Tiles to upload to the graphics card; all of them have arrived.
+    /// Tiles to upload to the GPU; all of them have arrived.
     pub upload: Vec<TileId>,
     /// Tiles to draw.
-    pub drawn: Vec<Drawn>,
+    pub drawn: Vec<DrawnTile>,
     /// Decoded tiles to drop, because they are no longer wanted.
     pub cancel: Vec<TileId>,
     /// Tiles to load, most urgent first.
     pub load: Vec<TileId>,
-    /// Tiles that are being loaded and are not wanted any more. Who can stop that tells [`Streamer::abandoned`]; else they arrive.
+    /// Tiles that are being loaded and are no longer wanted. A caller that cancels a load reports
+    /// it to [`Streamer::abandoned`]; otherwise the tile arrives.
     pub unwanted: Vec<TileId>,
-    /// How many tiles this view needs next that are not resident yet; the tiles beneath them are not counted.
+    /// Number of tiles that this view needs next and that are not resident yet; their descendants
+    /// are not counted.
     pub missing: usize,
 }
 
-/// Decides what is loaded, resident and drawn.
+/// Decides which tiles are loaded, resident and drawn.
 #[derive(Debug, Clone)]
 pub struct Streamer {
     budget: StreamBudget,
@@ -79,7 +83,7 @@ pub struct Streamer {
     loading: BTreeSet<TileId>,
     waiting: BTreeMap<TileId, TileFacts>,
     resident: BTreeMap<TileId, Resident>,
-    /// How many bytes of tiles are on the graphics card.
+    /// Bytes of the tiles on the GPU.
     pub resident_bytes: u64,
 }
 
@@ -90,7 +94,7 @@ struct Resident {
 }
 
 impl Streamer {
-    /// Nothing loaded yet.
+    /// A streamer without loaded tiles.
     #[must_use]
     pub fn new(budget: StreamBudget) -> Self {
         Self {
@@ -103,20 +107,20 @@ impl Streamer {
         }
     }
 
-    /// A tile of an earlier [`Plan::load`] is decoded.
+    /// Reports that a tile of an earlier [`Plan::load`] is decoded.
     pub fn arrived(&mut self, id: TileId, facts: TileFacts) {
         if self.loading.remove(&id) {
             self.waiting.insert(id, facts);
         }
     }
 
-    /// A tile of [`Plan::unwanted`] is not loaded any more and will not arrive.
+    /// Reports that a tile of [`Plan::unwanted`] is no longer being loaded and will not arrive.
     pub fn abandoned(&mut self, id: TileId) {
         self.loading.remove(&id);
     }
 
-    /// Plans the next frame, seen from `camera`. `ahead` is where the camera will be soon: tiles for it are loaded in
-    /// advance.
+    /// Plans the next frame, seen from `camera`. `ahead` is the camera's position in the near
+    /// future: tiles for it are loaded in advance.
     pub fn plan(
         &mut self,
         catalog: &dyn TileCatalog,
@@ -130,7 +134,8 @@ impl Streamer {
         self.touch(&before);
         let coming = ahead.map(|ahead| self.select(catalog, ahead, quality)).unwrap_or_default();
 
-        // Tiles of the coming view may be evicted to make room for the present view, but not for more of the coming one.
+        // Tiles of the coming view may be evicted to make space for the present view, but not for
+        // other tiles of the coming view.
         let mut left_bytes = self.budget.upload_bytes_per_frame;
         self.upload(&before.requests, &BTreeSet::new(), &mut left_bytes, &mut plan);
         let kept = self.in_use(&coming);
@@ -150,11 +155,13 @@ impl Streamer {
     }
 
     fn select(&self, catalog: &dyn TileCatalog, camera: &Camera, quality: Quality) -> Selection {
-        lod::select(&ResidentTree { catalog, resident: &self.resident }, camera, quality)
+        let ground_of = |id: TileId| self.resident.get(&id).map(|tile| tile.facts.ground);
+        lod::select(&CatalogTree { catalog, ground_of }, camera, quality)
     }
 
-    /// The resident tiles without which a selection would change: the tiles drawn, the tiles above them, and all children
-    /// of these, in view or not, because a parent is drawn in place of its children when one of them is not resident.
+    /// The resident tiles that the selection depends on: the drawn tiles, their ancestors, and all
+    /// children of these ancestors, in view or not, because a parent is drawn in place of its
+    /// children when one of them is not resident.
     fn in_use(&self, selection: &Selection) -> BTreeSet<TileId> {
         let mut refined = BTreeSet::new();
         let drawn = selection.drawn.iter().map(|drawn| drawn.id);
@@ -180,7 +187,7 @@ impl Streamer {
         }
     }
 
-    /// Tiles above one that is used are used, so that they are not evicted before it.
+    /// Marks the ancestors of a used tile as used, so that they are not evicted before it.
     fn touch_above(&mut self, id: TileId) {
         let mut next = id.parent();
         while let Some(id) = next {
@@ -200,7 +207,7 @@ impl Streamer {
     ) {
         for Request { id, .. } in requests {
             let Some(&facts) = self.waiting.get(id) else { continue };
-            // A tile of the coming view, whose parent had to make room for the present one.
+            // A tile of the coming view, whose parent was evicted for the present view.
             if id.parent().is_some_and(|parent| !self.resident.contains_key(&parent)) {
                 continue;
             }
@@ -217,7 +224,8 @@ impl Streamer {
         }
     }
 
-    /// Evicts the least recently used tiles until `wanted_bytes` more fit; evicts nothing where that is impossible.
+    /// Evicts the least recently used tiles until `wanted_bytes` more fit; evicts nothing if that
+    /// is impossible.
     fn make_room(&mut self, wanted_bytes: u64, kept: &BTreeSet<TileId>, plan: &mut Plan) -> bool {
         let excess_bytes =
             (self.resident_bytes + wanted_bytes).saturating_sub(self.budget.gpu_bytes);
@@ -230,7 +238,8 @@ impl Streamer {
             .filter(|(id, tile)| tile.last_used_frame < self.frame && !kept.contains(id))
             .map(|(id, tile)| (tile.last_used_frame, *id))
             .collect();
-        // Of tiles that were used last in the same frame, the finest is evicted first: a coarse one can replace more.
+        // Among tiles last used in the same frame, the finest is evicted first: a coarse tile can
+        // replace more.
         idle.sort_by(|a, b| a.0.cmp(&b.0).then(b.1.cmp(&a.1)));
         let mut freed_bytes = 0;
         let enough = idle.iter().position(|(_, id)| {
@@ -254,7 +263,7 @@ impl Streamer {
             self.waiting.remove(id);
         }
         plan.unwanted = self.loading.difference(&wanted).copied().collect();
-        // Tiles that wait because there is no room for them must not become more and more.
+        // The number of tiles that wait for space must not grow without limit.
         let room = self.budget.tiles_in_flight.saturating_sub(self.waiting.len());
         let coming = coming.iter().take(room);
         for Request { id, .. } in now.iter().chain(coming) {
@@ -266,30 +275,6 @@ impl Streamer {
                 plan.load.push(*id);
             }
         }
-    }
-}
-
-/// The package's tiles, of which those on the graphics card count as loaded.
-struct ResidentTree<'a> {
-    catalog: &'a dyn TileCatalog,
-    resident: &'a BTreeMap<TileId, Resident>,
-}
-
-impl TileTree for ResidentTree<'_> {
-    fn node(&self, id: TileId) -> Node {
-        match self.resident.get(&id) {
-            Some(tile) => Node::Loaded(tile.facts.ground),
-            None if self.catalog.exists(id) => Node::Listed,
-            None => Node::Absent,
-        }
-    }
-
-    fn plan_bounds(&self, id: TileId) -> Bounds {
-        self.catalog.frame().tile_bounds(id)
-    }
-
-    fn max_level(&self) -> u8 {
-        self.catalog.frame().max_level()
     }
 }
 

@@ -1,16 +1,17 @@
-//! Streaming ends with the tiles that the view needs, within its budget.
+//! Streaming converges to the tiles that the view needs, within its budget.
 
-use corniche_geom::{GridFrame, NodeIndex};
+use corniche_geom::{Bounds, GridFrame, NodeIndex};
 use glam::DVec3;
 use proptest::prelude::*;
 
 use super::*;
 use crate::camera::{Orientation, WorldBox};
+use crate::lod::{TileTree, TreeNode};
 
 const MAX_LEVEL: u8 = 5;
 const HEIGHT_RANGE_M: [f64; 2] = [0.0, 900.0];
 const QUALITY: Quality = Quality::by_error(2.0, 1.0);
-/// More than any of these tests needs.
+/// A budget that is larger than any of these tests needs.
 const PLENTY: StreamBudget =
     StreamBudget { tiles_in_flight: 64, upload_bytes_per_frame: 1 << 40, gpu_bytes: 1 << 40 };
 
@@ -32,7 +33,7 @@ fn facts(id: TileId) -> TileFacts {
     let error_m = 10.0 * f64::from(1_u32 << (MAX_LEVEL - id.z()));
     TileFacts {
         ground: Some(GroundSummary { geometric_error_m: error_m, height_range_m: HEIGHT_RANGE_M }),
-        // Any number that differs from tile to tile.
+        // Any number that differs between tiles.
         gpu_bytes: 500
             + u64::from(id.z()) * 37
             + u64::from(id.x()) * 13 % 100
@@ -54,8 +55,8 @@ impl TileCatalog for World {
 struct Complete<'a>(&'a World);
 
 impl TileTree for Complete<'_> {
-    fn node(&self, id: TileId) -> Node {
-        Node::Loaded(facts(id).ground)
+    fn node(&self, id: TileId) -> TreeNode {
+        TreeNode::Loaded(facts(id).ground)
     }
 
     fn plan_bounds(&self, id: TileId) -> Bounds {
@@ -72,12 +73,13 @@ fn camera(x: f64, y: f64, distance_m: f64, heading_deg: f64, pitch_deg: f64) -> 
     Camera::look_at(target, distance_m, Orientation { heading_deg, pitch_deg }, [800, 600])
 }
 
-/// Loads and drops tiles as the streamer says, records them independently, and checks every promise in every frame.
+/// Loads and drops tiles as the streamer plans, records them independently, and checks every
+/// guarantee in every frame.
 struct Driver {
     world: World,
     streamer: Streamer,
     budget: StreamBudget,
-    /// Frames from a request to the arrival of the tile.
+    /// Number of frames from a request to the arrival of the tile.
     delay: usize,
     under_way: Vec<(usize, TileId)>,
     arrived: BTreeSet<TileId>,
@@ -102,19 +104,19 @@ impl Driver {
     fn step(&mut self, camera: &Camera, ahead: Option<&Camera>) -> Plan {
         let plan = self.streamer.plan(&self.world, camera, ahead, QUALITY);
         for id in &plan.evict {
-            assert!(self.on_card.remove(id), "{id} is evicted, but is not there");
+            assert!(self.on_card.remove(id), "{id} is evicted, but is not resident");
         }
         for id in &plan.upload {
             assert!(self.arrived.remove(id), "{id} is uploaded, but did not arrive");
             let above = id.parent();
             assert!(
                 above.is_none_or(|id| self.on_card.contains(&id)),
-                "{id} is there before its parent"
+                "{id} is resident before its parent"
             );
-            assert!(self.on_card.insert(*id), "{id} is there already");
+            assert!(self.on_card.insert(*id), "{id} is resident already");
         }
         for id in &plan.cancel {
-            assert!(self.arrived.remove(id), "{id} is forgotten, but did not arrive");
+            assert!(self.arrived.remove(id), "{id} is dropped, but did not arrive");
         }
         self.check(camera, &plan);
         self.frame += 1;
@@ -122,7 +124,7 @@ impl Driver {
         assert!(self.under_way.len() <= self.budget.tiles_in_flight);
         for (_, id) in self.under_way.extract_if(.., |(due, _)| *due <= self.frame) {
             self.streamer.arrived(id, facts(id));
-            assert!(self.arrived.insert(id), "{id} was asked for twice");
+            assert!(self.arrived.insert(id), "{id} was requested twice");
         }
         plan
     }
@@ -140,7 +142,7 @@ impl Driver {
             |id: &TileId| id.parent().is_none_or(|parent| self.on_card.contains(&parent));
         assert!(self.on_card.iter().all(has_parent), "no tile stays longer than its parent");
         let drawn: BTreeSet<TileId> = plan.drawn.iter().map(|drawn| drawn.id).collect();
-        assert!(drawn.is_subset(&self.on_card), "what is drawn is there");
+        assert!(drawn.is_subset(&self.on_card), "drawn tiles are resident");
         for id in &drawn {
             assert!((0..id.z()).all(|z| self.on_card.contains(&id.ancestor(z))), "above {id}");
         }
@@ -148,7 +150,7 @@ impl Driver {
             assert!(drawn.is_empty());
             return;
         }
-        // No hole and no overlap: each finest tile in view is covered by exactly one that is drawn.
+        // No hole and no overlap: each finest tile in view is covered by exactly one drawn tile.
         let frustum = camera.frustum();
         for x in 0..1 << MAX_LEVEL {
             for y in 0..1 << MAX_LEVEL {
@@ -163,7 +165,7 @@ impl Driver {
         }
     }
 
-    /// Keeps the camera where it is until nothing changes any more. Returns how many frames that took.
+    /// Keeps the camera still until nothing changes any more. Returns the number of frames.
     fn settle(&mut self, camera: &Camera) -> usize {
         for frames in 0..500 {
             let waiting = self.arrived.len();
@@ -173,7 +175,7 @@ impl Driver {
                 return frames;
             }
         }
-        panic!("tiles come and go forever");
+        panic!("tiles are loaded and evicted forever");
     }
 }
 
@@ -234,8 +236,8 @@ fn what_was_used_least_recently_goes_first() {
         }
         driver.streamer.resident_bytes
     };
-    // There is room for the tiles of two of the three views, and for tiles of the first one that are also beside those of
-    // the others.
+    // There is space for the tiles of two of the three views, and for the tiles of the first view
+    // next to the tiles of the others.
     let gpu_bytes = taken_bytes(&[a, b]).max(taken_bytes(&[b, c])) + 3000;
     assert!(gpu_bytes < taken_bytes(&[a, b, c]));
     let mut driver = Driver::new(StreamBudget { gpu_bytes, ..PLENTY }, 0);
@@ -243,9 +245,9 @@ fn what_was_used_least_recently_goes_first() {
     driver.settle(&b);
     let of_b = driver.step(&b, None).drawn;
     driver.settle(&c);
-    assert!(of_b.iter().all(|tile| driver.on_card.contains(&tile.id)), "b was there after a");
+    assert!(of_b.iter().all(|tile| driver.on_card.contains(&tile.id)), "b was resident after a");
     assert!(driver.step(&b, None).load.is_empty(), "back at b nothing is missing");
-    assert!(!driver.step(&a, None).load.is_empty(), "a had to go");
+    assert!(!driver.step(&a, None).load.is_empty(), "a was evicted");
 }
 
 #[test]

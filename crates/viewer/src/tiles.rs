@@ -1,9 +1,11 @@
 //! Tiles as the renderer needs them, and where they come from.
 //!
-//! [`PackageTiles`] reads and decodes without waiting, from any source of bytes; [`PackageSource`] does so from a file for
-//! threads that wait. [`TileCatalog`] is all that choosing tiles asks of them; [`MapPackage`] adds the table of contents, and
-//! [`BlockingPackage`] tiles that can be waited for. [`TileSource::load`] is a pure function of the tile id and `&self`, so
-//! that a worker thread may call it; [`TileStore`] holds what is loaded and answers what is known.
+//! [`PackageTiles`] reads and decodes without waiting, from any source of bytes; [`PackageSource`]
+//! does so from a file, for threads that may wait. [`TileCatalog`] is the interface that tile
+//! selection needs; [`MapPackage`] adds the manifest, and [`BlockingPackage`] tiles that threads
+//! can wait for. [`TileSource::load`] is a pure function of the tile id and `&self`, so that a
+//! worker thread may call it; [`TileStore`] holds the loaded tiles and answers questions about
+//! them.
 
 pub(crate) mod areas;
 mod blocks;
@@ -48,7 +50,7 @@ pub use self::{
         DashPlace, DeckLine, DeckPiece, DeckPieces, RoadKind, RoadList, RoadLook, RoadSegment,
         RoadSegments, RoadVolume, RoadVolumes, TileLines,
     },
-    source::{BlockingPackage, LoadTileError, MapPackage, TileCatalog, TileSource},
+    source::{BlockingPackage, CatalogTree, LoadTileError, MapPackage, TileCatalog, TileSource},
     store::{MOST_LOADERS, TileStore},
 };
 pub(crate) use self::{
@@ -57,10 +59,10 @@ pub(crate) use self::{
 };
 pub(crate) use self::{
     geometry::{WideWay, plan_around},
-    ground_mesh::{GroundMesh, GroundVertex},
+    ground_mesh::{GroundMesh, GroundVertex, relative, relative_in_plan},
     plan_scale::PlanScale,
     roads::{
-        BadRoads, Bed, GroundLine, InNet, NearHeights, OPEN_M, OffGround, RoadEnd,
+        BadRoads, Bed, GroundLine, InNet, NearHeights, OPEN_M, OffGroundRoads, RoadEnd,
         dash_of_segment_m,
     },
 };

@@ -1,37 +1,40 @@
-//! The camera that a picture or a new window is asked to begin with.
+//! The requested camera of a picture or of a new window.
 
 use corniche_tileset::Manifest;
 use glam::{DVec2, DVec3};
 
 use crate::{
     camera::{Camera, Orientation, WorldBox},
-    tiles::MapExtent,
+    tiles::{LoadTileError, MapExtent, TileSource, TileStore},
 };
 
-/// Where to look from.
+/// The position from which to look.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum CameraRequest {
-    /// Where the roads are, or the whole package if it has none, obliquely from the south.
+    /// View of the roads, or of the whole package if it has no roads, obliquely from the south.
     Overview,
-    /// A place on the ground from a distance.
+    /// View of a place on the ground from a distance.
     LookAt {
         /// Longitude of the place, WGS84.
         lon_deg: f64,
         /// Latitude of the place, WGS84.
         lat_deg: f64,
-        /// True height of the place, metres; `None`: that of the ground there, which must have some.
+        /// True height of the place, metres; `None`: the height of the ground there, which must
+        /// exist.
         height_m: Option<f64>,
         /// Distance from the eye to the place, true metres.
         distance_m: f64,
         /// Direction of view.
         orientation: Orientation,
     },
-    /// Where the roads are, or the whole package, straight from above with parallel rays and north up.
+    /// View of the roads, or of the whole package, straight from above with parallel rays and north
+    /// up.
     OverviewFromAbove {
-        /// Side of a pixel, true metres: the middle of the overview is in the middle of the picture. `None`: all of it is in the picture.
+        /// Side of a pixel, true metres; the middle of the overview is in the middle of the
+        /// picture. `None`: the picture shows all of the overview.
         pixel_m: Option<f64>,
     },
-    /// A place straight from above with parallel rays. It needs no ground.
+    /// View of a place straight from above with parallel rays. It needs no ground.
     FromAbove {
         /// Longitude of the place, WGS84.
         lon_deg: f64,
@@ -39,7 +42,7 @@ pub enum CameraRequest {
         lat_deg: f64,
         /// Side of a pixel, true metres.
         pixel_m: f64,
-        /// What is at the top of the picture, clockwise from north.
+        /// Heading: the direction at the top of the picture, clockwise from north.
         heading_deg: f64,
     },
 }
@@ -47,27 +50,26 @@ pub enum CameraRequest {
 /// The place to look at has no ground.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error(
-    "longitude {lon_deg}, latitude {lat_deg} has no ground: it lies in a void, at the data's edge or outside the \
-     package, which covers {covered}"
+    "there is no ground at longitude {lon_deg}, latitude {lat_deg} (a void, the edge of the data, or outside the package); {covered}"
 )]
-pub struct OffGround {
-    /// Its longitude, WGS84.
+pub struct ViewpointOffGround {
+    /// Longitude of the place, WGS84.
     pub lon_deg: f64,
-    /// Its latitude, WGS84.
+    /// Latitude of the place, WGS84.
     pub lat_deg: f64,
-    /// What the package covers, in words.
+    /// Extent of the package, in words.
     pub covered: String,
 }
 
-/// The ground that a camera is set up by.
+/// The ground on which a camera is based.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SightedGround {
-    /// What [`CameraRequest::Overview`] shows.
+    /// The extent that [`CameraRequest::Overview`] shows.
     pub extent: MapExtent,
-    /// All ground of the package lies between these true heights.
+    /// All ground of the package is between these true heights.
     pub heights_m: [f64; 2],
-    /// True height of the ground at [`CameraRequest::place`]; `None` if there is no ground or no place. It does not count where a height
-    /// is given.
+    /// True height of the ground at [`CameraRequest::place`]; `None` if there is no ground or no
+    /// place. It is ignored if the request has a height.
     pub at_place_m: Option<f64>,
 }
 
@@ -83,18 +85,36 @@ impl CameraRequest {
         }
     }
 
-    /// Whether it shows where the roads are, and not a place that was named.
+    /// Whether the request is for an overview, not for a named place.
     #[must_use]
     pub fn is_overview(self) -> bool {
         matches!(self, Self::Overview | Self::OverviewFromAbove { .. })
     }
 
-    /// The place to look at, in the working CRS: [`CameraRequest::camera`] needs the height of the ground there. `None` for
-    /// an overview.
+    /// The ground on which the camera is based, without the height at its place; `None` if there is
+    /// no ground.
     ///
     /// # Errors
-    /// When it lies too far away from the package to have a position in the working CRS.
-    pub fn place(self, manifest: &Manifest) -> Result<Option<[f64; 2]>, OffGround> {
+    /// When a tile cannot be read.
+    pub fn sighted_ground<S: TileSource + ?Sized>(
+        self,
+        store: &mut TileStore<'_, S>,
+        manifest: &Manifest,
+    ) -> Result<Option<SightedGround>, LoadTileError> {
+        let data = manifest.data_bounds;
+        let Some(coarsest) = store.coarsest_ground()? else { return Ok(None) };
+        let heights_m = coarsest.height_range_m;
+        let extent = if self.is_overview() { store.map_extent(data)? } else { None };
+        let extent = extent.unwrap_or_else(|| MapExtent::of_data(data, heights_m));
+        Ok(Some(SightedGround { extent, heights_m, at_place_m: None }))
+    }
+
+    /// The requested place, in the working CRS: [`CameraRequest::camera`] needs the height of the
+    /// ground there. `None` for an overview.
+    ///
+    /// # Errors
+    /// When the place is too far away from the package to have a position in the working CRS.
+    pub fn place(self, manifest: &Manifest) -> Result<Option<[f64; 2]>, ViewpointOffGround> {
         let (Self::LookAt { lon_deg, lat_deg, .. } | Self::FromAbove { lon_deg, lat_deg, .. }) =
             self
         else {
@@ -104,7 +124,8 @@ impl CameraRequest {
         at.map(Some).ok_or_else(|| off_ground(lon_deg, lat_deg, manifest))
     }
 
-    /// The camera for a package with this manifest and this ground. World heights are `vertical_scale` times true ones.
+    /// Returns the camera for a package with this manifest and this ground. World heights are
+    /// `vertical_scale` times true heights.
     ///
     /// # Errors
     /// When the place has no ground, and no height is given.
@@ -114,7 +135,7 @@ impl CameraRequest {
         ground: SightedGround,
         vertical_scale: f64,
         size_px: [u32; 2],
-    ) -> Result<Camera, OffGround> {
+    ) -> Result<Camera, ViewpointOffGround> {
         let in_world =
             |heights_m: [f64; 2]| heights_m.map(|height_m: f64| height_m * vertical_scale);
         let subject = WorldBox::new(ground.extent.plan, in_world(ground.extent.heights_m));
@@ -150,6 +171,6 @@ impl CameraRequest {
     }
 }
 
-fn off_ground(lon_deg: f64, lat_deg: f64, manifest: &Manifest) -> OffGround {
-    OffGround { lon_deg, lat_deg, covered: manifest.covered_text([lon_deg, lat_deg]) }
+fn off_ground(lon_deg: f64, lat_deg: f64, manifest: &Manifest) -> ViewpointOffGround {
+    ViewpointOffGround { lon_deg, lat_deg, covered: manifest.covered_text([lon_deg, lat_deg]) }
 }

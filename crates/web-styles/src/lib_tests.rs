@@ -1,4 +1,4 @@
-//! A style arrives in the page's module as it was written.
+//! A style arrives in the page's module unchanged.
 
 use corniche_styles::{style_preset, style_preset_names};
 
@@ -18,11 +18,11 @@ fn a_style_arrives_as_it_was_written() {
         let text = style_preset(name).unwrap();
         let table = style_table("styles/mine.toml", text).unwrap();
         assert_eq!(read(&table), [("styles/mine.toml".to_owned(), parse_style(text).unwrap())]);
-        // A style of a page has its base as one of the program.
+        // A custom style can have a base like a bundled style.
         let own = format!("base = \"{name}\"\n[roads.2]\nwidth_m = 31\n");
         let arrived = read(&style_table("styles/mine.toml", &own).unwrap()).remove(0).1;
         let mut expected = parse_style(text).unwrap();
-        // The base's carriageway is left with its width.
+        // The carriageway of the base is kept with its width.
         (expected.roads[2].width_m, expected.roads[2].carriageway_width_m) = (31.0, 31.0);
         assert_eq!(arrived, expected);
     }
@@ -38,8 +38,8 @@ fn what_is_no_style_is_told_as_by_the_program() {
         ("a page, not a style", "TOML parse error at line 1"),
         (&unknown, "unknown field `neon`"),
         (&out_of_range, "outline_px of 9 is out of range; it must be 0 to 4"),
-        (&too_long, "far more than any settings"),
-        ("base = \"mine.toml\"", "no style that comes along"),
+        (&too_long, "a style may have at most"),
+        ("base = \"mine.toml\"", "not a built-in style"),
     ] {
         let why = style_table("mine.toml", text).unwrap_err();
         assert!(why.contains(told), "{why}");

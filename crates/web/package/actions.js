@@ -1,4 +1,4 @@
-// What the buttons and keys do besides moving the camera: flights, pictures, links.
+// Actions of buttons and keys other than moving the camera: flights, images, links.
 import { flightRecord, flightText } from "./flights.js";
 import { askForFile, download } from "./dom.js";
 import { pictureOf } from "./picture.js";
@@ -8,7 +8,7 @@ const fileName = (/** @type {string} */ name) => name.replace(/[^\p{L}\p{N}._-]+
 
 /**
  * @param {{ view: any, about: import("./corniche-map.js").About, canvas: HTMLCanvasElement, report: () => import("./corniche-map.js").FrameReport | null,
- *   wake: () => void, tell: (kind: "warn" | "tell", text: string) => void, hash: () => string | null }} map `hash`: the fragment with what is seen
+ *   wake: () => void, tell: (kind: "warn" | "tell", text: string) => void, hash: () => string | null }} map `hash`: the fragment with the current view
  */
 export function makeActions(map) {
   const { view, about, canvas, tell } = map;
@@ -26,14 +26,14 @@ export function makeActions(map) {
     map.wake();
   }
 
-  /** Ends the recording; the flight as text, "" where there is none. */
+  /** Ends the recording; returns the flight as text, "" if there is none. */
   function stopRecording() {
     const flight = flightText(view.command("stop-recording", now()));
     map.wake();
     return flight;
   }
 
-  /** Plays a flight; in words, why not. */
+  /** Plays a flight; returns an error message. */
   async function play(/** @type {string} */ flight) {
     let record;
     try {
@@ -46,23 +46,23 @@ export function makeActions(map) {
     return why;
   }
 
-  /** The address of the page with this view in it; `null` where the page does not keep views. */
+  /** The address of the page with this view; `null` if the page does not keep views. */
   function link() {
     const hash = map.hash();
     return hash === null ? null : new URL(hash, location.href).href;
   }
 
-  /** The same, for hands: files are saved and told. */
+  /** The same for the user: files are saved and reported. */
   const byHand = {
     async picture() {
       download(await picture(), `${fileName(about.name)}.png`);
-      tell("tell", "The picture was saved.");
+      tell("tell", "The image was saved.");
     },
     async record() {
       if (!isRecording()) {
         startRecording();
-        // From above there are no flights; the view says so itself.
-        if (!map.report()?.view?.above) tell("tell", "The flight of the camera is recorded.");
+        // There are no flights from above; the view reports this itself.
+        if (!map.report()?.view?.above) tell("tell", "A flight is being recorded.");
         return;
       }
       const flight = stopRecording();
@@ -83,7 +83,7 @@ export function makeActions(map) {
         await navigator.clipboard.writeText(address);
         tell("tell", "The link to this view was copied.");
       } catch {
-        // Without the right to write to the clipboard, the link can still be taken by hand.
+        // Without the right to write to the clipboard, the link can still be copied by hand.
         tell("warn", address);
       }
     },

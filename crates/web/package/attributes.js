@@ -4,7 +4,7 @@ const number = (/** @type {string} */ text) => (text.trim() === "" || !Number.is
 const flag = (/** @type {string} */ text) => !/^(off|false|no|none)$/i.test(text);
 const word = (/** @type {string} */ text) => text;
 
-/** Attribute, property, setting, and how the attribute's text becomes the setting's value.
+/** Attribute, property, setting, and the conversion of the attribute's text to the setting's value.
  * @type {[string, string, string, (text: string) => unknown][]} */
 export const SETTINGS = [
   ["roads", "roads", "roads", word],
@@ -23,7 +23,7 @@ export const SETTINGS = [
   ["inertia", "inertia", "inertia", flag],
 ];
 
-/** The settings that the attributes of an element ask for; what is no value of its kind is left out. */
+/** The settings in the attributes of an element; invalid values are skipped. */
 export function settingsOf(/** @type {Element} */ element) {
   /** @type {Record<string, unknown>} */
   const settings = {};
@@ -36,7 +36,7 @@ export function settingsOf(/** @type {Element} */ element) {
   return settings;
 }
 
-/** The change of settings that one attribute asks for now; `null` where it is no setting or no value of its kind. */
+/** The change of settings by one attribute; `null` if it is not a setting or its value is invalid. */
 export function changeOf(/** @type {string} */ attribute, /** @type {string | null} */ text) {
   const known = SETTINGS.find(([name]) => name === attribute);
   const value = known && text !== null ? known[3](text) : undefined;

@@ -1,4 +1,4 @@
-// The button that shows where north is, and turns the map so that north is up.
+// The button that shows where north is, and turns the map north up.
 import { drawing, make } from "./dom.js";
 
 /** @param {{ command: (name: string) => void }} map */
@@ -19,7 +19,7 @@ export function makeCompass(map) {
       const now = `${view.heading.toFixed(1)} ${view.pitch.toFixed(0)}`;
       if (now === shown) return;
       shown = now;
-      // A tilted map shows a tilted needle, but never one that is only a line.
+      // A tilted map shows a tilted needle, but never a mere line.
       needle.style.transform = `scaleY(${Math.max(0.75, Math.cos((view.pitch * Math.PI) / 180))}) rotate(${-view.heading}deg)`;
       button.setAttribute("aria-label", `North up. The map looks towards ${heading}°`);
     },

@@ -38,7 +38,7 @@ export function choice(set, name, label, choices) {
 }
 
 /**
- * Yes or no.
+ * A checkbox.
  *
  * @param {Set} set
  * @param {string} name
@@ -56,7 +56,7 @@ export function toggle(set, name, label) {
 }
 
 /**
- * One of many values.
+ * One of many values, as a list.
  *
  * @param {Set} set
  * @param {string} name
@@ -76,7 +76,7 @@ export function select(set, name, label, choices, valueOf = (text) => text) {
     element: make("div", { class: "field" }, make("label", { for: id }, label), input),
     show: (settings) => {
       const value = String(settings[name]);
-      // What a page has set may be none of the choices: an own style.
+      // The page may have set a value that is not in the list: a custom style.
       if (![...input.options].some((option) => option.value === value)) input.append(make("option", { value }, fileOf(value)));
       input.value = value;
     },
@@ -84,7 +84,7 @@ export function select(set, name, label, choices, valueOf = (text) => text) {
 }
 
 /**
- * A number between two others.
+ * A number in a range.
  *
  * @param {Set} set
  * @param {string} name
@@ -116,19 +116,19 @@ export function slider(set, name, label, range) {
     element: make("div", { class: "field slider" }, make("label", { for: id }, label), output, input),
     show: (settings) => {
       const value = range.of ? range.of(settings) : settings[name];
-      // A slider in the hand is not moved from below it.
+      // A slider that the user holds is not moved.
       if (+input.value !== value) input.value = value ?? range.min;
       say();
     },
   };
 }
 
-/** A button with a drawing and a text. */
+/** A button with an icon and a text. */
 export function action(/** @type {SVGElement} */ icon, /** @type {string} */ text, /** @type {() => void} */ act) {
   return make("button", { type: "button", class: "action", onclick: act }, icon, make("span", {}, text));
 }
 
-/** A part of the panel that folds. */
+/** A foldable part of the panel. */
 export function section(/** @type {string} */ title, /** @type {boolean} */ open, /** @type {(Node | null)[]} */ ...children) {
   return make("details", { open }, make("summary", {}, title), make("div", { class: "inside" }, ...children));
 }

@@ -1,9 +1,9 @@
-// Workers that decode tiles. All run one compiled module.
+// Workers that decode tiles. They all run the same compiled module.
 
-/** A worker needs a script of the page's own host; where the element comes from another one, a script that imports it will do. */
+/** A worker needs a script from the page's own host; if the element is on another host, the worker starts with a script that imports it. */
 function startWorker() {
   const own = import.meta.url;
-  // Bundlers know this form, written so, and bundle the worker with what it imports.
+  // Bundlers recognize exactly this form, and bundle the worker with its imports.
   if (new URL(own).origin === location.origin) return new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
   const script = own.replace(/[^/]*$/, "worker.js");
   const address = URL.createObjectURL(new Blob([`import ${JSON.stringify(script)};`], { type: "text/javascript" }));
@@ -12,11 +12,11 @@ function startWorker() {
   return worker;
 }
 
-/** Enough to hide decoding behind the network, few enough to leave the page a core. */
+/** Enough to hide decoding behind the network, and few enough to leave the page a core. */
 export const usualCount = () => Math.max(2, Math.min(4, (navigator.hardwareConcurrency || 4) - 1));
 
 /**
- * @param {Promise<WebAssembly.Module>} module where it cannot be had, workers wait until they are ended
+ * @param {Promise<WebAssembly.Module>} module if it cannot be loaded, workers wait until they are ended
  * @param {number} count
  * @param {(message: any) => void} decoded
  * @param {(error: unknown) => void} failed called once at most

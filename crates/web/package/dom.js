@@ -1,9 +1,11 @@
-// Elements made without markup in strings, so that neither a strict content security policy nor a hostile package matters.
+// Creates elements without markup in strings, so that neither a strict content security policy nor
+// a hostile package matters.
 
 const SVG = "http://www.w3.org/2000/svg";
 
 /**
- * An element with properties and children. Names with a dash, and `role`, `for` and `part`, are attributes; `on…` are listeners.
+ * An element with properties and children. Names with a dash, and `role`, `for` and `part`, are
+ * attributes; `on…` are listeners.
  *
  * @param {string} tag
  * @param {Record<string, any>} [properties]
@@ -23,7 +25,7 @@ export function make(tag, properties = {}, ...children) {
   return element;
 }
 
-/** A drawing of 24 by 24 units from the data of paths. Readers of the screen pass it over. */
+/** A drawing of 24 by 24 units from the data of paths. Screen readers skip it. */
 export function drawing(/** @type {string[]} */ ...paths) {
   const svg = document.createElementNS(SVG, "svg");
   svg.setAttribute("viewBox", "0 0 24 24");
@@ -36,26 +38,26 @@ export function drawing(/** @type {string[]} */ ...paths) {
   return svg;
 }
 
-/** Sets a text only where it changes: a live region would be read again, and layout would be done again. */
+/** Sets a text only if it changes: otherwise a live region would be read again, and layout would run again. */
 export function setText(/** @type {Element} */ element, /** @type {string} */ text) {
   if (element.textContent !== text) element.textContent = text;
 }
 
-/** A text as a sentence: messages of the library begin small and have no full stop. */
+/** A text as a sentence: messages of the library begin in lower case and have no full stop. */
 export function sentence(/** @type {string} */ text) {
   const whole = text.trim();
   return whole.charAt(0).toUpperCase() + whole.slice(1) + (/[.!?…]$/.test(whole) ? "" : ".");
 }
 
-/** Offers data as a file to keep. */
+/** Offers data as a file to download. */
 export function download(/** @type {Blob} */ data, /** @type {string} */ name) {
   const address = URL.createObjectURL(data);
   make("a", { href: address, download: name }).click();
-  // The download has begun after the click; the time is for slow disks.
+  // The download begins after the click; the delay is for slow disks.
   setTimeout(() => URL.revokeObjectURL(address), 60_000);
 }
 
-/** Asks for a file. */
+/** Asks the user for a file. */
 export function askForFile(/** @type {string} */ accept) {
   return new Promise((resolve) => {
     const input = make("input", { type: "file", accept });

@@ -12,15 +12,15 @@ import { Settings } from "./settings.js";
 const REOPEN_AFTER_MS = 4000;
 const REOPEN_TIMES = 3;
 const REOPEN_WITHIN_MS = 60_000;
-/** Browsers allow only so many changes of the address in a time, and a slider makes many. */
+/** Browsers limit the rate of changes of the address, and a slider makes many. */
 const WRITE_HASH_AFTER_MS = 400;
 const NARROW = 560;
 const WIDE = 720;
-/** Points of the screen that the panel covers, with the space beside it. */
+/** Points of the screen that the panel covers, including the space next to it. */
 const PANEL = 314;
 const USUAL_CREDIT = "© OpenStreetMap contributors";
 
-/** In words, why something cannot be; "" where it can. */
+/** The reason why something is impossible; "" if it is possible. */
 function refuse(/** @type {string} */ why) {
   if (why !== "") throw new RangeError(why);
 }
@@ -64,7 +64,7 @@ export class CornicheMap extends HTMLElement {
     this.shadowRoot?.addEventListener(
       "keydown",
       (event) => {
-        // An open dialog is closed by the browser.
+        // The browser closes an open dialog.
         const isEscape = /** @type {KeyboardEvent} */ (event).key === "Escape" && !event.defaultPrevented && !this.#layout.dialog.open;
         if (isEscape && this.#act("close")) event.preventDefault();
       },
@@ -103,7 +103,7 @@ export class CornicheMap extends HTMLElement {
     }
   }
 
-  /** The address of the package; what is no address stays as it is, as with pictures. */
+  /** The address of the package; an invalid address stays unchanged, as with images. */
   get src() {
     const text = this.getAttribute("src") ?? "";
     return text !== "" && URL.canParse(text, document.baseURI) ? new URL(text, document.baseURI).href : text;
@@ -113,7 +113,7 @@ export class CornicheMap extends HTMLElement {
     this.setAttribute("src", address);
   }
 
-  /** All settings; those assigned are changed, the others stay. */
+  /** All settings; assigned settings are changed, the others stay. */
   get settings() {
     return structuredClone(this.#settings.shown);
   }
@@ -122,17 +122,17 @@ export class CornicheMap extends HTMLElement {
     refuse(this.#settings.set(change));
   }
 
-  /** What the package is; `null` before it is open. */
+  /** Facts about the package; `null` before it is open. */
   get about() {
     return this.#session ? structuredClone(this.#session.about()) : null;
   }
 
-  /** What the last frame said; `null` before the first one. */
+  /** The report of the last frame; `null` before the first one. */
   get report() {
     return this.#session?.report() ?? null;
   }
 
-  /** What is seen: the place in the middle, the distance to it and the direction. An assignment jumps there. */
+  /** The current view: the place in the middle, the distance to it and the direction. An assignment jumps there. */
   get camera() {
     return this.report?.view ?? null;
   }
@@ -170,12 +170,12 @@ export class CornicheMap extends HTMLElement {
     return this.#need().actions.stopRecording();
   }
 
-  /** Flies a recorded flight. @param {string} flight */
+  /** Plays a recorded flight. @param {string} flight */
   async play(flight) {
     refuse(await this.#need().actions.play(flight));
   }
 
-  /** The map as a PNG with its credits. */
+  /** The map as a PNG with its attribution. */
   picture() {
     return this.#need().actions.picture();
   }
@@ -185,13 +185,13 @@ export class CornicheMap extends HTMLElement {
     return this.#need().readPixels();
   }
 
-  /** Fulfilled when nothing moves, all tiles of the view are there, and an own style has been read. */
+  /** Fulfilled when nothing moves, all tiles of the view are loaded, and a custom style has been read. */
   settled() {
     const session = this.#need();
     return this.#settings.styled.then(() => session.settled());
   }
 
-  /** Properties that were assigned before this class was there hide those of the class. */
+  /** Properties that were assigned before this class was defined hide those of the class. */
   #takeEarlyProperties() {
     const own = /** @type {any} */ (this);
     for (const name of ["src", "settings", ...SETTINGS.map(([, property]) => property)]) {
@@ -227,12 +227,12 @@ export class CornicheMap extends HTMLElement {
     if (!shown.has("panel")) this.#showPanel(false);
   }
 
-  /** A map that fills the screen has no page to scroll. */
+  /** A full-screen map has no page to scroll. */
   #gestures() {
     this.#layout.cooperate(this.getAttribute("gestures") === "cooperative" && document.fullscreenElement === null);
   }
 
-  /** Whether the panel is shown at first: where there is room beside it. */
+  /** Whether the panel is open at first: if there is space next to it. */
   #opensPanel() {
     const wish = this.getAttribute("panel");
     return (
@@ -248,12 +248,12 @@ export class CornicheMap extends HTMLElement {
     };
   }
 
-  /** What the attribute of a setting leaves where it is taken away: the usual value. */
+  /** The default value of a setting, which applies when its attribute is removed. */
   #without(/** @type {string} */ setting) {
     return setting === "inertia" ? this.#motion() : { [setting]: this.#settings.usual(setting) };
   }
 
-  /** Several attributes that are set in one turn open the package once. */
+  /** Several attributes that are set in one turn open the package only once. */
   #open() {
     if (this.#isAsked) return;
     this.#isAsked = true;
@@ -267,7 +267,7 @@ export class CornicheMap extends HTMLElement {
     });
   }
 
-  /** @param {Record<string, unknown>} settings those of the page @param {any} place @param {string} link what was changed by hand, as text */
+  /** @param {Record<string, unknown>} settings the page's settings @param {any} place @param {string} link the user's changes, as text */
   async #start(settings, place, link) {
     const { src } = this;
     if (src === "") return;
@@ -330,7 +330,7 @@ export class CornicheMap extends HTMLElement {
     layout.renewCanvas();
   }
 
-  /** The view cannot go on. A device that was lost comes back: the view is opened again where it was, but not again and again. */
+  /** The view has failed. If the device was lost, the view is reopened in its last state, but not again and again. */
   #lose(/** @type {import("./engine.js").Failure} */ failure, /** @type {any} */ session) {
     const { settings, link } = this.#settings.kept;
     const place = session.report()?.view ?? null;
@@ -342,14 +342,14 @@ export class CornicheMap extends HTMLElement {
       return this.#fail(
         new Failure(
           "device-lost",
-          "The graphics device was lost again and again.",
-          "Close other programs and pages that use the graphics card, and try again.",
+          "The graphics device keeps being lost.",
+          "Close other programs and pages that use the GPU, and try again.",
         ),
       );
     }
     const last = this.#lost.at(-1) ?? -Infinity;
     this.#lost.push(now);
-    this.#layout.notices.add("tell", "The graphics device was lost. The map is opened again.");
+    this.#layout.notices.add("tell", "The graphics device was lost. The map is reopened.");
     this.#lostTimer = setTimeout(() => void this.#start(settings, place, link), Math.max(0, last + REOPEN_AFTER_MS - now));
   }
 
@@ -373,13 +373,13 @@ export class CornicheMap extends HTMLElement {
     return this.dispatchEvent(new CustomEvent(name, { detail, cancelable }));
   }
 
-  /** The part of the page's address that is this map's. */
+  /** The part of the page's address that belongs to this map. */
   #partOfHash() {
     const name = this.#hashName();
     return name === null ? null : partInHash(location.hash, name);
   }
 
-  /** The fragment with the camera and with what was changed by hand; `null` where the page does not keep them. */
+  /** The fragment with the camera and the user's changes; `null` if the page does not keep them. */
   #hash() {
     const name = this.#hashName();
     const place = this.camera;
@@ -396,7 +396,7 @@ export class CornicheMap extends HTMLElement {
     const part = this.#partOfHash();
     const place = placeBefore(part);
     if (place) this.#session?.lookAt(place, true);
-    // A link to a place alone leaves the settings as they are.
+    // A link with a place only leaves the settings unchanged.
     const link = changesAfter(part ?? "");
     if (link !== "") this.#settings.takeLink(link);
   }
@@ -410,7 +410,7 @@ export class CornicheMap extends HTMLElement {
     if (isShown && this.clientWidth <= NARROW) place.hide();
   }
 
-  /** Does what a button or a key asks for; whether it did something. */
+  /** Executes the command of a button or a key; returns whether it did something. */
   #act(/** @type {string} */ name) {
     const session = this.#session;
     const { notices, place, dialog, panelButton } = this.#layout;

@@ -1,8 +1,8 @@
-// The renderer: its module is fetched and compiled once for a page, however many maps there are.
+// The renderer: its module is fetched and compiled once per page, however many maps there are.
 
 const ALL_FILES = "Put all files of the package corniche-map into one folder of the server.";
 
-/** What went wrong, in the words that the element shows. */
+/** A failure, with the texts that the element shows. */
 export class Failure extends Error {
   /**
    * @param {string} kind
@@ -16,23 +16,23 @@ export class Failure extends Error {
   }
 }
 
-/** A text without what only programmers read: errors of the browser come with the place in the script where they arose. */
+/** A text without its technical part: browsers add the position in the script to errors. */
 const plain = (/** @type {unknown} */ text) => String(text ?? "").replace(/JsValue\((?:\w*Error: )?([^\n)]*)[^)]*\)/g, "$1");
 
-/** Whatever was thrown, as a failure. */
+/** Converts anything that was thrown to a failure. */
 export function failureOf(/** @type {any} */ error) {
   if (error instanceof Failure) return error;
   if (error && typeof error === "object" && typeof error.kind === "string")
     return new Failure(error.kind, plain(error.message), String(error.advice ?? ""));
   if (error instanceof WebAssembly.RuntimeError)
-    return new Failure("other", `The renderer stopped: ${error.message}`, "Load the page again. If it happens again, please report it.");
+    return new Failure("other", `The renderer stopped: ${error.message}`, "Reload the page. If it happens again, please report it.");
   return new Failure("other", error instanceof Error ? error.message : String(error));
 }
 
 /** @type {{ module: Promise<WebAssembly.Module>, ready: Promise<any> } | null} */
 let engine = null;
 
-/** Says at once where this browser cannot show a map, before anything is fetched for it. */
+/** Reports at once if this browser cannot show a map, before anything is fetched. */
 export function checkBrowser() {
   if ("gpu" in navigator && navigator.gpu) return;
   if (!window.isSecureContext) {
@@ -44,8 +44,8 @@ export function checkBrowser() {
   }
   throw new Failure(
     "no-webgpu",
-    "This browser does not offer WebGPU, with which the map is drawn.",
-    "Use a current Chrome, Edge, Firefox or Safari. On Linux, WebGPU may have to be switched on in the browser's settings.",
+    "This browser does not offer WebGPU, which the map needs.",
+    "Use a current Chrome, Edge, Firefox or Safari. On Linux, you may have to enable WebGPU in the browser's settings.",
   );
 }
 
@@ -64,7 +64,7 @@ async function fetchModule() {
   }
   if (!answer.ok)
     throw new Failure("files", `The server answers ${answer.status} for ${name}.`, ALL_FILES);
-  // A server that does not know the type of the file still has its bytes; they are only compiled later.
+  // A server that sends a wrong type still sends the right bytes; they are only compiled later.
   const isTyped = (answer.headers.get("Content-Type") ?? "").startsWith("application/wasm");
   const bytes = isTyped ? null : await answer.arrayBuffer();
   if (bytes && new DataView(bytes).byteLength < 8) throw new Failure("files", `${name} is empty.`, "Copy the file to the server again.");
@@ -85,24 +85,25 @@ async function fetchModule() {
       isPolicy ? "The page's security policy forbids WebAssembly." : `${name} cannot be compiled: ${text}.`,
       isPolicy
         ? "Add 'wasm-unsafe-eval' to script-src of the Content-Security-Policy."
-        : "Copy the file to the server again: it may be cut off.",
+        : "Copy the file to the server again: it may be truncated.",
     );
   }
 }
 
-/** The module's glue, with the module in it. */
+/** The module's glue, with the module loaded. */
 async function start(/** @type {Promise<WebAssembly.Module>} */ module) {
   const script = import("./corniche_web.js").catch((error) => {
     throw new Failure("files", `corniche_web.js cannot be loaded: ${error.message}.`, ALL_FILES);
   });
-  // The browser sets up its graphics meanwhile. Whether there is an adapter is told later, by the renderer.
+  // The browser sets up its graphics meanwhile. The renderer reports later whether there is an
+  // adapter.
   /** @type {any} */ (navigator).gpu?.requestAdapter().catch(() => {});
   const [compiled, glue] = await Promise.all([module, script]);
   await glue.default({ module_or_path: compiled });
   return glue;
 }
 
-/** The renderer: `module` for workers, `ready` for views. A failure is not kept: the next call tries again. */
+/** The renderer: `module` for workers, `ready` for views. A failure is not cached: the next call tries again. */
 export function loadEngine() {
   if (!engine) {
     const module = fetchModule();

@@ -1,34 +1,34 @@
-// Failures in words, in the place of the map; a still picture of the package where there is one.
+// Shows failures in place of the map, with a still image of the package if there is one.
 import { make, sentence } from "./dom.js";
 import { icons } from "./icons.js";
 
 /** @type {Record<string, string>} */
 const HEADINGS = {
   "no-webgpu": "This browser cannot draw the map",
-  "no-adapter": "No graphics device for the map",
-  limits: "The graphics device is too small",
-  network: "The map cannot be reached",
+  "no-adapter": "No GPU for the map",
+  limits: "The GPU is too limited",
+  network: "The map cannot be loaded",
   "not-found": "There is no map at this address",
   cors: "The server does not let this page read the map",
-  "no-ranges": "The server cannot send parts of a file",
+  "no-ranges": "The server does not support range requests",
   compressed: "The server compresses the map",
-  changed: "The map was replaced",
-  damaged: "The map's file is damaged",
-  foreign: "This file is no map of Corniche",
+  changed: "The map has changed",
+  damaged: "The map's file is corrupt",
+  foreign: "This file is not a Corniche map",
   "old-format": "The map's format is too old",
   "no-ground": "The map has no ground",
   "off-ground": "The place is not on the map",
   "out-of-memory": "The graphics memory is full",
   "device-lost": "The graphics device was lost",
   files: "The map's program cannot be loaded",
-  "no-source": "No map is named",
+  "no-source": "No map is given",
   other: "The map cannot be shown",
 };
 
-/** Where a view cannot be drawn here but could be drawn elsewhere, a picture helps. */
+/** Failures for which a still image helps: the view could be drawn elsewhere. */
 const WITH_PICTURE = new Set(["no-webgpu", "no-adapter", "limits", "files", "device-lost", "out-of-memory"]);
 
-/** Pictures that may lie beside a package, the likeliest first. */
+/** Images that may be next to a package, the likeliest first. */
 export function stillsOf(/** @type {string | null} */ still, /** @type {string} */ src) {
   if (still) return [still];
   if (!src || /^(blob|data):/.test(src) || !URL.canParse(src, document.baseURI)) return [];
@@ -40,7 +40,7 @@ export function stillsOf(/** @type {string | null} */ still, /** @type {string} 
   });
 }
 
-/** An address without user name, password, query and fragment, which may hold secrets. */
+/** An address without user name, password, query and fragment, which may contain secrets. */
 export function shownAddress(/** @type {string} */ src) {
   if (/^(blob|data):/.test(src) || !URL.canParse(src, document.baseURI)) return "";
   const { origin, host, protocol, pathname, search } = new URL(src, document.baseURI);
@@ -48,7 +48,7 @@ export function shownAddress(/** @type {string} */ src) {
   return server + pathname + (search ? "?…" : "");
 }
 
-/** Shows the first of some pictures that exists. */
+/** Shows the first image that exists. */
 function tryStills(/** @type {HTMLImageElement} */ image, /** @type {string[]} */ addresses) {
   const [first, ...rest] = addresses;
   if (!first) return;
@@ -64,7 +64,7 @@ function tryStills(/** @type {HTMLImageElement} */ image, /** @type {string[]} *
  * @param {{ src: string, still: string | null, credit: string, again: () => void }} about
  */
 export function makeFailure(failure, about) {
-  const image = make("img", { class: "still", alt: "A picture of the map", hidden: true });
+  const image = make("img", { class: "still", alt: "An image of the map", hidden: true });
   if (WITH_PICTURE.has(failure.kind)) tryStills(image, stillsOf(about.still, about.src));
   const credit = make("p", { class: "still-credit pill" }, about.credit);
   const shown = about.src ? shownAddress(about.src) : "";

@@ -1,10 +1,10 @@
-// Flights as text, and as the renderer takes them: `corniche fly` reads and writes the same TOML.
+// Flights as text and as the renderer reads them: `corniche fly` reads and writes the same TOML.
 import { stringify } from "smol-toml";
 
-/** The text of a flight that the renderer has recorded. */
+/** The text of a flight that the renderer recorded. */
 export const flightText = (/** @type {string} */ recorded) => (recorded === "" ? "" : stringify(JSON.parse(recorded)));
 
-/** A flight for the renderer. Fails where the text is no TOML. Few maps play flights, so what reads them is fetched when one does. */
+/** A flight for the renderer. Fails if the text is not TOML. Few maps play flights, so the TOML parser is fetched only when one does. */
 export async function flightRecord(/** @type {string} */ text) {
   const { parse } = await import("./toml_reader.js").catch((error) => {
     console.warn(error);
@@ -13,6 +13,6 @@ export async function flightRecord(/** @type {string} */ text) {
   try {
     return JSON.stringify(parse(text));
   } catch (error) {
-    throw new Error(`this is no flight: ${/** @type {Error} */ (error).message.split("\n")[0]}`);
+    throw new Error(`invalid flight: ${/** @type {Error} */ (error).message.split("\n")[0]}`);
   }
 }

@@ -1,5 +1,5 @@
-// What a person has changed by hand, in links: NAME=VALUE;NAME=VALUE with the names and values of the attributes. Classes are those that are shown,
-// widths are CLASS:FACTOR.
+// The user's changes in links: NAME=VALUE;NAME=VALUE with the names and values of the attributes.
+// Classes are the shown ones, widths are CLASS:FACTOR.
 import { SETTINGS } from "./attributes.js";
 
 const same = (/** @type {unknown} */ a, /** @type {unknown} */ b) => JSON.stringify(a) === JSON.stringify(b);
@@ -43,7 +43,7 @@ const LISTS = [
 /** @type {[string, string, (text: string, settings: any) => unknown, (value: any) => string][]} */
 const NAMES = [...SETTINGS.map(([attribute, , setting, valueOf]) => /** @type {any} */ ([attribute, setting, valueOf, attributeText])), ...LISTS];
 
-/** Readable where an address allows it. */
+/** Readable characters stay unescaped where an address allows them. */
 const escaped = (/** @type {string} */ text) => encodeURIComponent(text).replace(/%(2C|2F|3A)/g, decodeURIComponent);
 
 /** The settings that differ from others. */
@@ -58,10 +58,10 @@ export function changesText(/** @type {Record<string, unknown>} */ changes) {
 }
 
 /**
- * What a text asks for, one setting each; parts that say nothing are told.
+ * The settings in a text, one each; invalid parts are reported.
  *
  * @param {string} text
- * @param {any} settings those that it changes
+ * @param {any} settings the settings before the change
  */
 export function changesIn(text, settings) {
   /** @type {[string, Record<string, unknown>][]} */
@@ -75,7 +75,7 @@ export function changesIn(text, settings) {
     try {
       value = known?.[2](decodeURIComponent(rest.join("=")), settings);
     } catch {
-      // What is no text in UTF-8 says nothing.
+      // A part that is not UTF-8 text is invalid.
     }
     if (known && value !== undefined) changes.push([part, { [known[1]]: value }]);
     else unknown.push(part);
@@ -83,7 +83,7 @@ export function changesIn(text, settings) {
   return { changes, unknown };
 }
 
-/** Parts of a link for a notice: anything may be in them, at any length. */
+/** Parts of a link for a notice, shortened: they may contain anything, at any length. */
 export function shortList(/** @type {string[]} */ parts) {
   const [first] = parts;
   const shown = first.length > 20 ? `${first.slice(0, 19)}…` : first;

@@ -1,10 +1,12 @@
-// The camera in the fragment of the page's address: #lon,lat,distance,heading,pitch, or #NAME=… where a page has several maps. From above with parallel
-// rays it is #lon,lat,metres in a pixel,heading,0,above. What was changed by hand follows after semicolons: #9.52,47.14,6000,30,60;roads=sv
+// The camera in the fragment of the page's address: #lon,lat,distance,heading,pitch, or #NAME=… if
+// a page has several maps. From above with parallel rays it is #lon,lat,metres per
+// pixel,heading,0,above. The user's changes follow after semicolons:
+// #9.52,47.14,6000,30,60;roads=sv
 
 const NUMBER = /^[+-]?\d+(\.\d+)?$/;
 
 /**
- * A place as text; `null` where it is none.
+ * Parses a place; returns `null` if the text is not a place.
  *
  * @param {string | null} text
  * @returns {import("./corniche-map.js").Target | null}
@@ -41,21 +43,21 @@ export function textOf(place) {
 
 const partsOf = (/** @type {string} */ hash) => hash.replace(/^#/, "").split("&").filter(Boolean);
 
-/** The part of a fragment that is a map's own: under its name or, with "", the first that is a place; `null` where there is none. */
+/** The map's own part of a fragment: under its name or, with "", the first that is a place; `null` if there is none. */
 export function partInHash(/** @type {string} */ hash, /** @type {string} */ name) {
   const part = partsOf(hash).find((one) => (name === "" ? placeOf(placeText(one)) : one.startsWith(`${name}=`)));
   return part === undefined ? null : part.slice(name === "" ? 0 : name.length + 1);
 }
 
-/** A part without its changes, and the changes. */
+/** Splits a part into the place and the changes. */
 const placeText = (/** @type {string} */ part) => part.split(";", 1)[0];
 export const changesAfter = (/** @type {string} */ part) => part.slice(placeText(part).length + 1);
 
-/** The place in a map's own part. */
+/** The place in the map's own part. */
 export const placeBefore = (/** @type {string | null} */ part) => (part === null ? null : placeOf(placeText(part)));
 
 /**
- * The fragment with the place in it, and changes of settings as text; parts that belong to others stay.
+ * The fragment with the place and changes of settings as text; parts of others are preserved.
  *
  * @param {string} hash
  * @param {string} name

@@ -14,7 +14,7 @@ export function makeHelp() {
       ...HELP.flatMap(([what, does, when = ""]) => [make("dt", { class: when }, what), make("dd", { class: when }, does)]),
     ),
   );
-  // A click beside the dialog closes it.
+  // A click outside the dialog closes it.
   dialog.addEventListener("click", (/** @type {MouseEvent} */ event) => {
     if (event.target === dialog) dialog.close();
   });

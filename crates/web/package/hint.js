@@ -1,4 +1,4 @@
-// Says how a map is moved in a page that scrolls, while somebody scrolls over the map.
+// Shows how to move a map in a page that scrolls, while the user scrolls over the map.
 import { make, setText } from "./dom.js";
 
 const SHOWN_MS = 2000;
@@ -6,7 +6,8 @@ const KEY = /Mac|iPhone|iPad/.test(navigator.platform) ? "⌘" : "Ctrl";
 const TEXTS = { wheel: `Hold ${KEY} and scroll to zoom the map`, finger: "Use two fingers to move the map" };
 
 export function makeHint() {
-  // Out of sight the text stays: put in anew with each turn of the wheel, it would be read aloud each time.
+  // The hidden text stays in place: if it were set again with each turn of the wheel, it would be
+  // read aloud each time.
   const text = make("span", { class: "card", role: "status" });
   const element = make("div", { class: "hint" }, text);
   let timer = 0;

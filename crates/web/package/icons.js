@@ -1,4 +1,4 @@
-// Drawings of the buttons: lines of two units in a square of 24.
+// Icons of the buttons: lines of two units in a square of 24.
 import { drawing, make } from "./dom.js";
 
 export const icons = {
@@ -18,6 +18,6 @@ export const icons = {
   warning: () => drawing("M12 4l9 16H3z", "M12 10v5M12 17.5v.5"),
 };
 
-/** The cross that takes something away. */
+/** The cross that removes or closes something. */
 export const closeButton = (/** @type {string} */ label, /** @type {() => void} */ onclick, /** @type {string | undefined} */ title = undefined) =>
   make("button", { type: "button", class: "icon", title, "aria-label": label, onclick }, icons.close());

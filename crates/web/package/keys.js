@@ -1,4 +1,5 @@
-// Keys on the map. Letters of commands go by what is printed on the key, keys to fly by where they are.
+// Keys on the map. Keys of commands are recognized by their labels, keys for flying by their
+// positions.
 
 /** Commands of the view and of the page, by `KeyboardEvent.key`. */
 export const COMMANDS = {
@@ -16,7 +17,7 @@ export const COMMANDS = {
   Escape: "close",
 };
 
-/** What the dialog of keys says; the third word: only where gestures are so. */
+/** The rows of the help dialog; the third entry limits a row to one kind of gestures. */
 export const HELP = [
   ["Drag", "move the map with the pointer"],
   ["Right drag, Ctrl and drag", "turn and tilt about the middle"],
@@ -27,7 +28,7 @@ export const HELP = [
   ["Two fingers", "pinch to zoom, turn, move up and down to tilt", "greedy"],
   ["Two fingers", "move the map, pinch to zoom, turn", "cooperative"],
   ["Three fingers", "move up and down to tilt", "cooperative"],
-  ["Click, tap, Enter", "what road is here; Enter asks in the middle of the map"],
+  ["Click, tap, Enter", "shows the road there; Enter: the road in the middle"],
   ["Right click, long press", "coordinates and height of the place"],
   ["Arrows", "move; with Shift turn and tilt"],
   ["+ −", "zoom; with Shift twice as far"],
@@ -42,7 +43,7 @@ export const HELP = [
   ["?", "this list"],
 ];
 
-/** Plus and minus are elsewhere on keyboards of other countries, where the view looks for them by their place. */
+/** Plus and minus have other positions on foreign keyboards, and the view identifies them by their position. */
 function zoomCode(/** @type {KeyboardEvent} */ event) {
   if (/^(Equal|Minus|Numpad|Shift)/.test(event.code)) return null;
   if (event.key === "+") return ["NumpadAdd", false];
@@ -59,7 +60,7 @@ export function watchKeys(canvas, to) {
   const now = () => performance.now() / 1000;
 
   function key(/** @type {KeyboardEvent} */ event, /** @type {boolean} */ isDown) {
-    // Shortcuts of the browser stay its own, and so does the way to the next control.
+    // Shortcuts of the browser are not intercepted, and neither is the key to the next control.
     if (event.altKey || event.metaKey || event.ctrlKey || event.key === "Tab") return;
     const name = event.key.length === 1 ? event.key.toLowerCase() : event.key;
     const command = isDown && /** @type {Record<string, string>} */ (COMMANDS)[name];

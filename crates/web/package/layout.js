@@ -1,4 +1,4 @@
-// What the shadow root holds: the canvas, and over it the controls.
+// The shadow root: the canvas, and the controls over it.
 import { makeCompass } from "./compass.js";
 import { makeDivider } from "./divider.js";
 import { drawing, make } from "./dom.js";
@@ -11,9 +11,9 @@ import { makeScaleBar } from "./scalebar.js";
 import { makeStatus } from "./status.js";
 
 const CANVAS_HELP =
-  "Arrow keys move the map, Shift and arrow keys turn and tilt it, plus and minus zoom, Enter says what road is in the middle, question mark lists all keys.";
+  "Arrow keys move the map, Shift and arrow keys turn and tilt it, plus and minus zoom, Enter shows the road in the middle, question mark lists all keys.";
 
-/** A text of credits, with the address of OpenStreetMap's copyright page as a link. Nothing is fetched for it. */
+/** A line of attribution, with the address of OpenStreetMap's copyright page as a link. Nothing is fetched for it. */
 function creditNodes(/** @type {string[]} */ credits) {
   const text = credits.join(", ");
   const name = "OpenStreetMap";
@@ -95,7 +95,7 @@ export function makeLayout(shadow, map) {
   root.append(canvas, cross, help, opening, divider.element, over, hint.element, progress, dialog);
   shadow.append(root);
 
-  /** A canvas is bound to the device with which it was drawn: after a device is lost, another one is needed. */
+  /** A canvas is bound to the device that drew on it: after the loss of a device, a new canvas is needed. */
   function newCanvas() {
     return make("canvas", { tabIndex: 0, role: "application", "aria-label": "Map", "aria-describedby": "canvas-help" });
   }
@@ -122,7 +122,7 @@ export function makeLayout(shadow, map) {
       if (hadFocus) canvas.focus({ preventScroll: true });
       return canvas;
     },
-    /** Whether the page keeps the wheel and one finger. */
+    /** Sets whether the page keeps the wheel and one finger. */
     isCooperative: () => root.classList.contains("cooperative"),
     cooperate: (/** @type {boolean} */ isSo) => root.classList.toggle("cooperative", isSo),
     label: (/** @type {string} */ text) => canvas.setAttribute("aria-label", text),
@@ -142,7 +142,7 @@ export function makeLayout(shadow, map) {
       progress.setAttribute("aria-hidden", String(share >= 1));
       bar.style.inlineSize = `${text}%`;
     },
-    /** Which groups of controls are shown; credits always are. */
+    /** Sets which groups of controls are shown; attribution always is. */
     controls(/** @type {Set<string>} */ shown) {
       tools.hidden = !shown.has("panel");
       compassGroup.hidden = !shown.has("compass");

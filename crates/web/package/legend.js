@@ -1,4 +1,5 @@
-// The legend: names of the classes with the colours of the style shown. Each class of roads can be hidden; boundaries are listed.
+// The legend: names of the classes with the colours of the shown style. Each class of roads can be
+// hidden; boundaries are listed.
 import { make } from "./dom.js";
 
 /**
@@ -40,7 +41,7 @@ export function makeLegend(set) {
   };
 }
 
-/** The boundaries of the map, with the colours of the style shown. */
+/** The boundaries of the map, with the colours of the shown style. */
 export function makeLines() {
   const element = make("ul", { class: "legend", "aria-label": "Boundaries" });
   return {

@@ -1,4 +1,5 @@
-// How the element looks. Colours follow the color-scheme of the page; custom properties that begin with --corniche- override them.
+// The style sheet of the element. Colours follow the color-scheme of the page; custom properties
+// that begin with --corniche- override them.
 
 const css = `
 :host {
@@ -184,7 +185,7 @@ dialog dt { color: inherit; font-weight: 600; }
 /** @type {CSSStyleSheet | null} */
 let sheet = null;
 
-/** One sheet for all maps of a page. */
+/** One style sheet for all maps of a page. */
 export function look() {
   if (!sheet) {
     sheet = new CSSStyleSheet();

@@ -1,7 +1,8 @@
-// When frames are drawn: only when the view wants one, and none while nobody can see them.
+// The loop of frames: it draws only when the view needs a frame, and never while the map is
+// invisible.
 
 /**
- * @param {Element} element what is drawn; out of sight it rests
+ * @param {Element} element the drawn element; no frames are drawn while it is out of view
  * @param {(now_s: number) => "now" | "asked" | null} draw returns when the next frame is wanted; `null` ends the loop
  */
 export function makeLoop(element, draw) {
@@ -25,7 +26,8 @@ export function makeLoop(element, draw) {
     isSeen = entries[entries.length - 1].isIntersecting;
     if (isSeen) wake();
   });
-  // The browser itself holds back frames of a hidden page; the page must only be woken when it is shown again.
+  // The browser itself stops frames of a hidden page; the page must only be woken when it is
+  // visible again.
   const shown = () => {
     if (!document.hidden) wake();
   };

@@ -1,4 +1,4 @@
-// Notices: what went well disappears by itself, warnings stay until they are dismissed.
+// Notices: messages of success disappear by themselves, warnings stay until they are dismissed.
 import { make, sentence } from "./dom.js";
 import { closeButton } from "./icons.js";
 
@@ -6,13 +6,14 @@ const TOLD_MS = 5000;
 const MOST = 4;
 
 export function makeNotices() {
-  // Always there, or readers of the screen would not watch it.
+  // The element always exists, since otherwise screen readers would not watch it.
   const element = make("div", { class: "notices", role: "log", "aria-live": "polite", "aria-label": "Notices" });
   return {
     element,
     /** @param {"warn" | "tell"} kind @param {string} text */
     add(kind, text) {
-      // Messages that differ only in numbers, as those of many tiles do, are one: the last of them, and how many there were.
+      // Messages that differ only in numbers, as for many tiles, are merged: the last of them is
+      // shown, with their number.
       const key = text.replace(/\d+/g, "0");
       const same = /** @type {any} */ ([...element.children].find((one) => /** @type {any} */ (one).dataset.key === key));
       const times = same ? Number(same.dataset.times) + 1 : 1;
@@ -27,7 +28,7 @@ export function makeNotices() {
       if (kind === "tell") setTimeout(() => notice.remove(), TOLD_MS);
       while (element.children.length > MOST) element.firstChild?.remove();
     },
-    /** Removes the last one; whether there was one. */
+    /** Removes the last notice; returns whether there was one. */
     dismiss() {
       const last = element.lastElementChild;
       last?.remove();

@@ -1,9 +1,10 @@
-// Own styles: files in TOML, named by their addresses. What reads them is fetched with the first one.
+// Custom styles: files in TOML, named by their addresses. Their reader is fetched with the first
+// one.
 
-/** Styles that come with the program have names; addresses hold a slash or end in .toml. */
+/** Bundled styles have names; addresses contain a slash or end in .toml. */
 export const isAddress = (/** @type {unknown} */ style) => typeof style === "string" && /\/|\.toml(\?.*)?$/i.test(style);
 
-/** The name of a style's file, for people. */
+/** The name of a style's file, for the user. */
 export function fileOf(/** @type {string} */ address) {
   const name = address.replace(/[?#].*/, "").split("/").pop() || address;
   try {
@@ -14,7 +15,8 @@ export function fileOf(/** @type {string} */ address) {
 }
 
 /**
- * Fetches and checks a style: a table for the renderer. Throws an error that tells the file and the reason.
+ * Fetches and checks a style: a table for the renderer. Throws an error with the file and the
+ * reason.
  *
  * @param {string} address
  * @returns {Promise<Uint8Array>}

@@ -1,4 +1,4 @@
-// The panel: all settings of the map, its legend, and what can be done with the camera.
+// The panel: all settings of the map, its legend, and actions of the camera.
 import { action, choice, section, select, slider, toggle } from "./controls.js";
 import { make, setText } from "./dom.js";
 import { closeButton, icons } from "./icons.js";
@@ -17,7 +17,7 @@ const power = (/** @type {(settings: any) => number} */ of, /** @type {(value: n
   change: (/** @type {number} */ value) => change(+(2 ** value).toFixed(3)),
 });
 
-/** A field for a place, which says below itself what is wrong with what was typed. */
+/** A field for a place, which shows below itself what is wrong with the text. */
 function makeGoTo(/** @type {(text: string) => string} */ goTo) {
   const wrong = make("p", { class: "wrong", id: "go-to-wrong", role: "status" });
   const input = make("input", {
@@ -46,7 +46,7 @@ function makeGoTo(/** @type {(text: string) => string} */ goTo) {
   );
 }
 
-/** What the view needs at the moment, for those who want to know. */
+/** The figures of the current view, for advanced users. */
 function makeFigures() {
   const list = make("dl", { class: "figures" });
   /** @type {Map<string, HTMLElement>} */
@@ -148,7 +148,7 @@ export function makePanel(map, about, close) {
                 min: -0.05,
                 max: 1,
                 step: 0.05,
-                text: (value) => (value < 0 ? "as the style" : percent(value)),
+                text: (value) => (value < 0 ? "as in the style" : percent(value)),
                 of: (settings) => settings.photo ?? -0.05,
                 change: (value) => (value < 0 ? null : value),
               }),
@@ -169,7 +169,7 @@ export function makePanel(map, about, close) {
           above,
           action(icons.home(), "First view", () => map.command("reset")),
           map.hasLink ? action(icons.link(), "Copy link", () => map.command("link")) : null,
-          action(icons.picture(), "Save picture", () => map.command("picture")),
+          action(icons.picture(), "Save image", () => map.command("picture")),
           record,
           action(icons.play(), "Play flight", () => map.command("play")),
         ),
@@ -179,7 +179,7 @@ export function makePanel(map, about, close) {
         false,
         use(
           select(set, "outline", "Outlines", [
-            ["style", "As the style"],
+            ["style", "As in the style"],
             ["none", "None"],
             ["3", "3 × 3"],
             ["5", "5 × 5"],
@@ -241,7 +241,7 @@ export function makePanel(map, about, close) {
         "Graphics memory": `${mega(report.gpu_bytes[0])} of ${mega(report.gpu_bytes[1])}`,
         Requests: `${report.requests}, ${mega(report.bytes)}`,
         Package: `${mega(about.bytes)}, ${about.tiles} tiles, ${about.levels} levels, format ${about.format_version}`,
-        Device: about.is_software ? `${about.adapter} (the processor draws)` : about.adapter,
+        Device: about.is_software ? `${about.adapter} (the CPU draws)` : about.adapter,
       });
     },
   };

@@ -1,8 +1,8 @@
-// The map as a PNG, with its credits in it.
+// The map as a PNG, with its attribution.
 
 const LINE = 1.4;
 
-/** Texts broken at spaces, none wider than asked. */
+/** Texts broken at spaces, none wider than the limit. */
 function linesOf(/** @type {OffscreenCanvasRenderingContext2D} */ paint, /** @type {string[]} */ texts, /** @type {number} */ most) {
   const lines = [];
   let line = "";

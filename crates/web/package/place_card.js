@@ -1,4 +1,4 @@
-// The card that says what is at a place: its coordinates, its height, and the road with its attributes.
+// The card of a place: its coordinates, its height, and the road with its attributes.
 import { make } from "./dom.js";
 import { closeButton } from "./icons.js";
 import { coordinatesText } from "./status.js";

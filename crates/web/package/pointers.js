@@ -1,5 +1,6 @@
-// Mouse, wheel and fingers. One finger is the left button; two fingers pinch, turn and tilt. Where gestures are cooperative, the wheel and one finger are left
-// to the page, which scrolls: Ctrl and the wheel zoom, two fingers move, pinch and turn, three tilt.
+// Mouse, wheel and fingers. One finger acts like the left button; two fingers pinch, rotate and
+// tilt. With cooperative gestures, the wheel and one finger are left to the page, which scrolls:
+// Ctrl and the wheel zoom, two fingers move, pinch and rotate, three tilt.
 
 const CLICK_MOVES = 5;
 const TAP_AGAIN_MS = 350;
@@ -7,13 +8,13 @@ const TAP_AGAIN_POINTS = 30;
 const LONG_PRESS_MS = 600;
 const LINES_PER_NOTCH = 3;
 const POINTS_PER_NOTCH = 100;
-/** A pinch on a touch pad comes as a wheel with Control and a delta of 100 ln(scale); three notches of the view halve the distance. */
+/** A pinch on a touch pad arrives as a wheel event with Control and a delta of 100 ln(scale); three notches of the view halve the distance. */
 const NOTCHES_PER_PINCH = 3 / (100 * Math.LN2);
 const MOST_NOTCHES = 5;
-/** Two fingers that first go so far sideways do not tilt. */
+/** Two fingers that first move this far sideways do not tilt. */
 const SIDEWAYS = 30;
 
-/** Notches of a wheel, positive away from the hand. */
+/** Notches of a wheel, positive away from the user. */
 export function notchesOf(/** @type {WheelEvent} */ event) {
   const delta = -(event.deltaY || event.deltaX);
   const points = Math.abs(delta);
@@ -40,13 +41,13 @@ export function watchPointers(canvas, to) {
   const fingers = new Map();
   /** @type {{ x: number, y: number, button: number, isStill: boolean, isLong: boolean, finger: boolean } | null} */
   let held = null;
-  /** A finger that stayed after two were down: it pans only once it moves, or its touch would be a second tap. */
+  /** A finger that remains after a gesture of two: it pans only once it moves, since otherwise its touch would count as a second tap. */
   let isWaiting = false;
   let isPinching = false;
   let lastTap = { x: 0, y: 0, at: -1e9 };
   let longPress = 0;
 
-  /** In device pixels of the canvas, whatever transforms the page has set. */
+  /** The position in device pixels of the canvas, whatever transforms the page has set. */
   function at(/** @type {{ clientX: number, clientY: number }} */ event) {
     const box = canvas.getBoundingClientRect();
     return { x: ((event.clientX - box.left) * canvas.width) / box.width, y: ((event.clientY - box.top) * canvas.height) / box.height };
@@ -96,7 +97,8 @@ export function watchPointers(canvas, to) {
   function pinch() {
     const [a, b] = [...fingers.values()];
     if (!isPinching && fingers.size === 2 && to.isCooperative()) {
-      // Up and down they are to move the map, as one finger does elsewhere. A step sideways, taken back before anything is drawn, says so.
+      // Moving two fingers up and down moves the map, as one finger does elsewhere. A step
+      // sideways, undone before anything is drawn, tells the view so.
       const aside = SIDEWAYS * perPoint();
       to.view()?.two_fingers(a.x, a.y, b.x, b.y, now());
       to.view()?.two_fingers(a.x + aside, a.y, b.x + aside, b.y, now());
@@ -126,7 +128,7 @@ export function watchPointers(canvas, to) {
       return;
     }
     const isAgain = event.timeStamp - lastTap.at < TAP_AGAIN_MS && !far(place, lastTap, TAP_AGAIN_POINTS);
-    // Fingers are less exact than a mouse: the second tap counts where the first one was.
+    // Fingers are less exact than a mouse: the second tap counts at the position of the first one.
     if (isAgain) place = { x: lastTap.x, y: lastTap.y };
     press(place, 0, event, true);
   }
@@ -158,12 +160,12 @@ export function watchPointers(canvas, to) {
 
   function fingerUp(/** @type {PointerEvent} */ event, isClick = true) {
     if (!fingers.delete(event.pointerId)) return;
-    // The browser takes the finger away when it begins to scroll.
+    // The browser takes over the finger when it begins to scroll.
     scrolled(!isClick && !isPinching && fingers.size === 0 && to.isCooperative());
     if (isPinching) {
       endPinch();
       isWaiting = fingers.size === 1;
-      // Of three fingers two are left: they go on from where they are.
+      // Two of three fingers remain: they continue from their positions.
       if (fingers.size >= 2) pinch();
       return;
     }
@@ -200,7 +202,7 @@ export function watchPointers(canvas, to) {
     to.view()?.leave();
     to.wake();
   });
-  // What the browser may scroll with, it may scroll with two fingers as well.
+  // A finger that the browser may scroll with may scroll with two fingers as well.
   for (const name of ["touchstart", "touchmove"]) {
     on(
       name,

@@ -3,14 +3,14 @@ import { make, setText } from "./dom.js";
 
 const WIDEST = 90;
 
-/** The largest of 1, 2 and 5 times a power of ten that is no larger. */
+/** The largest of 1, 2 and 5 times a power of ten that is not larger than the number. */
 export function roundLength(/** @type {number} */ most) {
   const power = 10 ** Math.floor(Math.log10(most));
   const digit = most / power;
   return power * (digit >= 5 ? 5 : digit >= 2 ? 2 : 1);
 }
 
-/** A length in the unit in which it is said. */
+/** A length in the unit of the text. */
 export function lengthText(/** @type {number} */ metres) {
   if (metres >= 1000) return `${+(metres / 1000).toPrecision(6)} km`;
   return metres >= 1 ? `${+metres.toPrecision(6)} m` : `${+(metres * 100).toPrecision(3)} cm`;

@@ -1,4 +1,4 @@
-// One opened package: the view, its workers, its frames and its input.
+// An opened package: the view, its workers, its frames and its input.
 import { makeActions } from "./actions.js";
 import { startDecoders, usualCount } from "./decoders.js";
 import { Failure, checkBrowser, failureOf, loadEngine } from "./engine.js";
@@ -12,7 +12,7 @@ import { watchSize } from "./size.js";
 const MOVE_ENDS_MS = 200;
 const MIB = 1 << 20;
 
-/** The name of a package: that of its file. A file of this computer has it behind its blob's address. */
+/** The name of a package: its file name. For a local file, the name follows the address of its blob. */
 function nameOf(/** @type {string} */ src) {
   if (!URL.canParse(src)) return src;
   const { hash, pathname, protocol } = new URL(src);
@@ -25,7 +25,7 @@ function nameOf(/** @type {string} */ src) {
 }
 const now = () => performance.now() / 1000;
 
-/** The size of the canvas, once it has one: a view is opened for a picture of some size. */
+/** The size of the canvas, once it has one: a view is opened for an image of a given size. */
 function firstSize(/** @type {HTMLCanvasElement} */ canvas, /** @type {AbortSignal} */ signal) {
   return new Promise((resolve) => {
     const end = watchSize(canvas, (...size) => {
@@ -59,7 +59,7 @@ export async function openSession(from) {
       try {
         stop();
       } catch (error) {
-        // A renderer that stopped cannot be let go; the rest can.
+        // A renderer that stopped cannot be freed; everything else can.
         console.warn(error);
       }
     }
@@ -67,7 +67,7 @@ export async function openSession(from) {
   signal.addEventListener("abort", end);
 
   checkBrowser();
-  // The package's first bytes, the workers and the module are all on their way at the same time.
+  // The package's first bytes, the workers and the module are all loaded at the same time.
   const size = firstSize(canvas, signal);
   const head = askForHead(from.src, signal);
   const engine = loadEngine();
@@ -75,7 +75,7 @@ export async function openSession(from) {
   let glue = null;
   /** @type {(error: unknown) => void} */
   let stopOpening = () => {};
-  // Rejected where a worker fails before the map is open.
+  // Rejected if a worker fails before the map is open.
   const stopped = new Promise((_, reject) => {
     stopOpening = reject;
   });
@@ -91,7 +91,7 @@ export async function openSession(from) {
       new Failure(
         "files",
         `A worker cannot decode tiles: ${error.message}.`,
-        "Check that worker.js lies beside corniche-map.js, and that the page's security policy (worker-src) allows it.",
+        "Check that worker.js is next to corniche-map.js, and that the page's security policy (worker-src) allows it.",
       ),
     );
   /** @type {ReturnType<typeof startDecoders>} */
@@ -123,7 +123,7 @@ export async function openSession(from) {
     /** @type {typeof decoders.post} */
     post(worker, message, transfer) {
       if (!isOver) decoders.post(worker, message, transfer);
-      // An opening that goes on must not wait for workers that have ended.
+      // An opening in progress must not wait for workers that have ended.
       else queueMicrotask(() => glue.decoded({ job: /** @type {any} */ (message).job, error: "the map was closed" }));
     },
     workers: decoders.count,
@@ -133,7 +133,8 @@ export async function openSession(from) {
       return isOver;
     },
   };
-  // What workers had under way when they were ended is told as failed, or it would be waited for.
+  // Pending jobs of ended workers are reported as failed, since otherwise their callers would wait
+  // forever.
   ends.push(() => Array.from({ length: host.workers }, (_, worker) => glue.worker_failed(host, worker, "the map was closed")));
   const options = {
     settings: asked,
@@ -144,7 +145,7 @@ export async function openSession(from) {
     gpu_bytes: from.memory === null ? undefined : Math.round(from.memory * MIB),
   };
   const opened = glue.MapView.open(canvas, from.src, JSON.stringify(options), host);
-  // Where a worker fails first, the view is still let go once it is there.
+  // If a worker fails first, the view is still freed once it exists.
   opened.then(
     (/** @type {any} */ one) => {
       if (isOver) one.free();
@@ -174,7 +175,7 @@ export async function openSession(from) {
   let moveTimer = 0;
   const tell = (/** @type {"warn" | "tell"} */ kind, /** @type {string} */ text) => layout.notices.add(kind, text);
 
-  /** Changes settings; in words, why not. */
+  /** Changes settings; returns an error message. */
   function set(/** @type {Record<string, unknown>} */ change) {
     if (!view) return "";
     const why = view.set(JSON.stringify(change));
@@ -202,7 +203,7 @@ export async function openSession(from) {
     return why;
   }
 
-  /** A place with what it leaves out as it is now. */
+  /** A place whose omitted fields are filled with the current values. */
   function completed(/** @type {any} */ target) {
     const { distance, heading, pitch, above, pixel_m } = report?.view ?? {};
     const isAbove = target.above ?? (above && target.distance === undefined && target.pitch === undefined);
@@ -312,7 +313,8 @@ export async function openSession(from) {
   ends.push(pointers.end);
   ends.push(watchKeys(canvas, { ...input, command: from.command }));
   loop = makeLoop(canvas, draw);
-  // A device that is lost while the map is at rest is told by the next frame, which nothing else would ask for.
+  // The next frame reports a device that was lost while the map was at rest; nothing else would
+  // request this frame.
   const watching = setInterval(() => {
     if (view && !document.hidden && !view.is_well()) wake();
   }, 1000);
@@ -320,7 +322,8 @@ export async function openSession(from) {
   ends.push(
     watchSize(canvas, (...size) => {
       view?.resize(...size);
-      // Drawn before the page is painted, or the map would flicker while it is resized.
+      // The map is drawn before the page is painted, since otherwise it would flicker during a
+      // resize.
       loop.now();
     }),
   );
@@ -328,7 +331,7 @@ export async function openSession(from) {
   show();
 
   const actions = makeActions({ view, about, canvas, report: () => report, wake, tell, hash: from.hash });
-  if (about.is_software) tell("tell", "No graphics card was found: the processor draws");
+  if (about.is_software) tell("tell", "No GPU was found: the CPU draws");
   const session = {
     end,
     set,

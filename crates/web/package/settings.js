@@ -1,11 +1,12 @@
-// The settings of one map: what the page asks for, what a person changed by hand, and own styles, whose files come later.
+// The settings of one map: those of the page, the user's changes, and custom styles, whose files
+// arrive later.
 import { settingsOf } from "./attributes.js";
 import { changed, changesIn, changesText, shortList } from "./hand_made.js";
 import { isAddress, readStyle } from "./own_styles.js";
 
 /** @typedef {Record<string, unknown>} Changes */
 
-/** Where an address leads; `null` where it is none. */
+/** The URL of an address; `null` if it is invalid. */
 function originOf(/** @type {string} */ address) {
   try {
     return new URL(address, document.baseURI).origin;
@@ -23,17 +24,17 @@ export class Settings {
   #session = null;
   /** @type {any} */
   #glue = null;
-  /** Those that were set before the package was open. @type {Changes} */
+  /** Settings from before the package was open. @type {Changes} */
   #wanted = {};
-  /** Those of them that came while it was being opened. @type {Changes} */
+  /** Settings that were assigned while the package was being opened. @type {Changes} */
   #late = {};
   /** @type {Changes} */
   #usual = {};
-  /** All of them as the program and the page ask for; what differs in the view was changed by hand. @type {Changes} */
+  /** All settings of the program and the page; differences in the view are the user's changes. @type {Changes} */
   #asked = {};
-  /** Counts what is asked of the style: of several files that are on their way, the last one is shown. */
+  /** Counts the requests for styles: of several files being loaded, the last one is shown. */
   #stylings = 0;
-  /** Fulfilled when no own style is on its way. @type {Promise<void>} */
+  /** Fulfilled when no custom style is being loaded. @type {Promise<void>} */
   styled = Promise.resolve();
 
   /** @param {HTMLElement} element @param {(text: string) => void} warn */
@@ -42,7 +43,7 @@ export class Settings {
     this.#warn = warn;
   }
 
-  /** Those that are shown; before there is a view, those that were asked for. */
+  /** The shown settings; before there is a view, the requested ones. */
   get shown() {
     return this.#session ? this.#session.settings() : this.wanted;
   }
@@ -51,7 +52,7 @@ export class Settings {
     return { ...settingsOf(this.#element), ...this.#wanted };
   }
 
-  /** Sets what the page asks for; in words, why not. An own style is shown when its file has been read. */
+  /** Applies settings of the page; returns an error message. A custom style is shown when its file has been read. */
   set(/** @type {any} */ change) {
     const session = this.#session;
     if (!session) {
@@ -75,22 +76,22 @@ export class Settings {
     return "";
   }
 
-  /** The usual value of a setting; `undefined` where it is not known yet, which asks for it. */
+  /** The default value of a setting; `undefined` while it is unknown, which requests it. */
   usual(/** @type {string} */ setting) {
     return this.#usual[setting];
   }
 
-  /** A person has changed something. */
+  /** Notes a change by the user. */
   changedByHand(/** @type {Changes} */ change) {
     if ("style" in change) this.#stylings += 1;
   }
 
-  /** What was changed by hand, for a link. */
+  /** The user's changes, for a link. */
   get link() {
     return this.#session ? changesText(changed(this.#session.settings(), this.#asked)) : "";
   }
 
-  /** Shows what a link says was changed, and nothing else that was. */
+  /** Shows the user's changes of a link, and drops all others. */
   takeLink(/** @type {string} */ link) {
     const session = this.#session;
     if (!session) return;
@@ -102,24 +103,25 @@ export class Settings {
     });
   }
 
-  /** What was asked for and changed in the view that ends, for the one that takes its place. */
+  /** The requested and changed settings of the view that ends, for its successor. */
   get kept() {
     return { settings: this.#asked, link: this.link };
   }
 
   /**
-   * The settings with which a view is opened.
+   * The settings for opening a view.
    *
-   * @param {Changes} asked by the page; those that are `undefined` are the usual ones
-   * @param {string} link what was changed by hand
+   * @param {Changes} asked the page's settings; `undefined` ones have their default values
+   * @param {string} link the user's changes
    */
   opening(asked, link) {
-    // What was set until now is asked for; a link may say otherwise, and what is set from now on has the last word.
+    // The settings until now are the requested ones; a link overrides them, and settings from now
+    // on override the link.
     this.#late = {};
     const settings = Object.fromEntries(Object.entries(asked).filter(([, value]) => value !== undefined));
     const { style } = settings;
     const isNew = isAddress(style) && (!this.#glue || this.#faultOf({ style }) !== "");
-    // Its file comes while the program does.
+    // The style's file is loaded while the program is.
     const reading = isNew ? readStyle(String(style)) : null;
     reading?.catch(() => {});
     let byHand = {};
@@ -132,7 +134,7 @@ export class Settings {
         byHand = await this.#changesOf(link, { ...this.#usual, ...settings });
         return { ...settings, ...byHand };
       },
-      /** The view is there. What was set while it was being opened is set now; in words, why not. */
+      /** The view exists. Applies the settings that were assigned while it was being opened; returns an error message. */
       done: (/** @type {any} */ session) => {
         this.#session = session;
         this.#asked = { ...session.settings() };
@@ -149,7 +151,7 @@ export class Settings {
     this.#session = null;
   }
 
-  /** Hands an own style to the renderer, under its address; whether it could be read. */
+  /** Passes a custom style to the renderer, under its address; returns whether it could be read. */
   async #keepStyle(/** @type {string} */ address, /** @type {Promise<Uint8Array>} */ reading) {
     try {
       const why = this.#glue.MapView.keep_style(await reading);
@@ -161,19 +163,19 @@ export class Settings {
     }
   }
 
-  /** The changes of a link that can be; the others are told. */
+  /** The valid changes of a link; the others are reported. */
   async #changesOf(/** @type {string} */ link, /** @type {Changes} */ settings) {
     const { changes, unknown } = changesIn(link, settings);
     const good = {};
     for (const [part, change] of changes) {
       const { style } = /** @type {any} */ (change);
-      // A link may have been written by anyone: it must not make this page ask other hosts.
+      // Anyone may have written a link: it must not make this page send requests to other hosts.
       const isOwn = isAddress(style) && originOf(style) === location.origin;
       if (isOwn && this.#faultOf(change) !== "" && !(await this.#keepStyle(style, readStyle(style)))) continue;
       if (this.#faultOf(change) === "") Object.assign(good, change);
       else unknown.push(part);
     }
-    if (unknown.length > 0) this.#warn(`Left out of the link: ${shortList(unknown)}`);
+    if (unknown.length > 0) this.#warn(`Skipped in the link: ${shortList(unknown)}`);
     return good;
   }
 

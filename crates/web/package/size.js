@@ -1,11 +1,11 @@
-// The size of the canvas in pixels of the screen.
+// The size of the canvas in device pixels.
 
 /**
  * Calls back with the size at first and whenever it changes.
  *
  * @param {HTMLElement} canvas
  * @param {(width_px: number, height_px: number, pixels_per_point: number) => void} resized
- * @returns {() => void} ends it
+ * @returns {() => void} ends the calls
  */
 export function watchSize(canvas, resized) {
   const observer = new ResizeObserver((entries) => {
@@ -17,7 +17,7 @@ export function watchSize(canvas, resized) {
       [exact?.inlineSize, box.inlineSize * ratio],
       [exact?.blockSize, box.blockSize * ratio],
     ].map(([told, computed]) =>
-      // Where a browser pretends to have another screen, its exact sizes are still those of the true one.
+      // If a browser emulates another screen, its exact sizes are still those of the real one.
       told !== undefined && Math.abs(told - Number(computed)) < 2 ? told : Math.round(Number(computed)),
     );
     if (width > 0 && height > 0) resized(width, height, ratio);
@@ -25,7 +25,7 @@ export function watchSize(canvas, resized) {
   try {
     observer.observe(canvas, { box: "device-pixel-content-box" });
   } catch {
-    // Safari does not know that box.
+    // Safari does not support that box.
     observer.observe(canvas);
   }
   return () => observer.disconnect();

@@ -1,4 +1,5 @@
-// The line below the map: the place under the pointer, the direction of the camera, tiles on their way.
+// The line below the map: the place under the pointer, the direction of the camera, tiles being
+// loaded.
 import { make, setText } from "./dom.js";
 import { lengthText } from "./scalebar.js";
 
@@ -29,7 +30,7 @@ export function makeStatus() {
       setText(place, cursor ? `${coordinatesText(cursor)}  ${heightText(cursor.height)}` : "");
       setText(camera, view ? cameraText(view) : "");
       const rest = tiles.loading + tiles.missing;
-      setText(loading, rest > 0 ? `${rest} ${rest === 1 ? "tile" : "tiles"} to come` : "");
+      setText(loading, rest > 0 ? `${rest} ${rest === 1 ? "tile" : "tiles"} loading` : "");
     },
   };
 }

@@ -1,9 +1,9 @@
-// Reads own styles: fetched with the first of them, together with a module that reads TOML.
+// Reads custom styles: fetched with the first of them, together with a module that reads TOML.
 import init, { style_table } from "./corniche_web_styles.js";
 
-/** As much as the module reads at most; a file without end is not waited for. */
+/** The largest file that the module reads; an endless file is cut off. */
 const MOST_BYTES = 1 << 20;
-/** A server that does not answer is not waited for longer. */
+/** The time limit for the answer of the server. */
 const MOST_MS = 20_000;
 const MODULE = "corniche_web_styles_bg.wasm";
 
@@ -16,7 +16,7 @@ async function load() {
   await init({ module_or_path: answer });
 }
 
-/** A module that failed to load is asked for again with the next style. */
+/** A module that failed to load is requested again with the next style. */
 function loadModule() {
   module ??= load().catch((error) => {
     module = null;
@@ -38,7 +38,7 @@ async function bytesOf(/** @type {string} */ address) {
   let length = 0;
   for (const reader = answer.body.getReader(); ; ) {
     const { done, value } = await reader.read().catch((error) => {
-      throw new Error(`it breaks off: ${error.message}`);
+      throw new Error(`the download was cut off: ${error.message}`);
     });
     if (done) return new Blob(parts).arrayBuffer();
     parts.push(value);
@@ -54,11 +54,11 @@ function textOf(/** @type {ArrayBuffer} */ bytes) {
   try {
     return new TextDecoder("utf-8", { fatal: true }).decode(bytes);
   } catch {
-    throw new Error("it is no text in UTF-8");
+    throw new Error("it is not UTF-8 text");
   }
 }
 
-/** The reason in a line: a reader of TOML draws the place and lists all entries that it knows. */
+/** The reason in one line: the TOML parser draws the position and lists all known entries. */
 function inShort(/** @type {string} */ why) {
   const [, line, reason] = /^TOML parse error at line (\d+)[^]*\|[^\n]*\n([^]+)/.exec(why) ?? [];
   if (!line) return why;
@@ -68,7 +68,7 @@ function inShort(/** @type {string} */ why) {
 
 /**
  * @param {string} address
- * @param {string} what the style, for people
+ * @param {string} what the style, for the user
  */
 export async function readStyle(address, what) {
   try {

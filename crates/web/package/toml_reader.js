@@ -1,2 +1,2 @@
-// Reads TOML, where a flight is played.
+// Reads TOML, for playing a flight.
 export { parse } from "smol-toml";

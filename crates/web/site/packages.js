@@ -1,6 +1,6 @@
-// The packages that lie beside the page: packages.json, made by `corniche serve`.
+// The packages next to the page: packages.json, written by `corniche serve`.
 
-/** A list of { name, src }, with addresses that are complete; empty where there is no list. */
+/** A list of { name, src }, with absolute addresses; empty if there is no list. */
 export async function packages() {
   const address = new URL("packages.json", import.meta.url);
   const answer = await fetch(address).catch(() => null);

@@ -1,4 +1,5 @@
-// The page of the viewer: ?src=ADDRESS names the package; without it, those beside the page are offered, or a file is taken.
+// The page of the viewer: ?src=ADDRESS names the package; without it, the page offers the packages
+// next to it, and accepts a file.
 import { packages } from "./packages.js";
 
 const map = document.getElementById("map");
@@ -13,7 +14,7 @@ function show(src, title) {
   map.src = src;
 }
 
-/** What a package is called: its file's name. One that cannot be read as an address has its own words. */
+/** The name of a package: its file name. An address that cannot be parsed is shown as it is. */
 function nameOf(src) {
   try {
     return decodeURIComponent(new URL(src, location.href).pathname.split("/").pop()).replace(/\.pmtiles$/, "") || src;
@@ -22,7 +23,7 @@ function nameOf(src) {
   }
 }
 
-/** A file of this computer: a blob's address answers range requests as a server does. */
+/** Shows a local file: a blob's address answers range requests like a server. */
 function showFile(file) {
   if (file) show(`${URL.createObjectURL(file)}#${encodeURIComponent(file.name)}`, file.name.replace(/\.pmtiles$/, ""));
 }
@@ -33,7 +34,7 @@ async function begin() {
   const known = await packages();
   if (known.length === 1) return show(known[0].src, known[0].name);
   said.textContent =
-    known.length > 1 ? "Choose a map." : "No map lies beside this page. Name one in its address, ?src=ADDRESS, or open a file.";
+    known.length > 1 ? "Choose a map." : "There is no map next to this page. Name one in its address, ?src=ADDRESS, or open a file.";
   document.getElementById("list").append(
     ...known.map(({ name, src }) => {
       const item = document.createElement("li");

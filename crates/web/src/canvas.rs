@@ -1,4 +1,4 @@
-//! The canvas of a page, to which the pictures of a map are copied.
+//! The canvas of a page, which the images of a map are copied to.
 
 use corniche_live::{MapCanvas, MapScene};
 use corniche_viewer::gpu::Gpu;
@@ -6,22 +6,22 @@ use web_sys::HtmlCanvasElement;
 
 use crate::problem::Problem;
 
-/// The canvas of a page and what is drawn on it.
+/// The canvas of a page and the content drawn on it.
 pub(crate) struct PageCanvas {
     pub(crate) map: MapCanvas,
     surface: wgpu::Surface<'static>,
     canvas: HtmlCanvasElement,
     configured_px: Option<[u32; 2]>,
-    /// Where the second of two pictures begins, as a share of the width.
+    /// The left edge of the second of two images, as a share of the width.
     pub(crate) divider: f32,
 }
 
 impl PageCanvas {
-    /// A device for a canvas.
+    /// Creates a device for a canvas.
     ///
     /// # Errors
-    /// When the browser has no adapter that can draw there. That it has WebGPU at all, the page has
-    /// found out before.
+    /// When the browser has no adapter that can draw there. The page has already checked that
+    /// WebGPU is available.
     pub(crate) async fn new(canvas: HtmlCanvasElement) -> Result<Self, Problem> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
             backends: wgpu::Backends::BROWSER_WEBGPU,
@@ -32,7 +32,7 @@ impl PageCanvas {
             .map_err(|error| {
                 Problem::new(
                     "no-webgpu",
-                    format!("The canvas gives no WebGPU context: {error}"),
+                    format!("The canvas provides no WebGPU context: {error}"),
                     "Reload the page.",
                 )
             })?;
@@ -43,11 +43,11 @@ impl PageCanvas {
         Ok(Self { map, surface, canvas, configured_px: None, divider: 0.5 })
     }
 
-    /// Draws the scene and shows it, unless it is shown already; of two pictures, the second from
-    /// the share `divider` of the width on. Returns whether something was drawn.
+    /// Draws the scene and shows it, unless it is shown already; of two images, the second begins
+    /// at the share `divider` of the width. Returns whether something was drawn.
     ///
     /// # Errors
-    /// When the picture is beyond what the adapter can draw, or the canvas cannot be drawn to.
+    /// When the image exceeds the limits of the adapter, or the canvas cannot be drawn to.
     pub(crate) fn draw(&mut self, scene: &MapScene, divider: f32) -> Result<bool, Problem> {
         let is_new = self.map.draw(scene).map_err(|error| Problem::of_gpu(&error))?;
         if is_new {
@@ -57,7 +57,8 @@ impl PageCanvas {
         Ok(is_new)
     }
 
-    /// Copies the pictures to the canvas. The canvas has the format of the pictures, so no pass is needed.
+    /// Copies the images to the canvas. The canvas has the format of the images, so no pass is
+    /// needed.
     fn show(&mut self, size_px: [u32; 2]) -> Result<(), Problem> {
         let gpu = &self.map.gpu;
         if self.configured_px != Some(size_px) {

@@ -14,7 +14,7 @@ use crate::{
     problem::{json, object, thrown},
 };
 
-/// Jobs that workers have.
+/// Pending jobs of workers.
 #[derive(Default)]
 struct Jobs {
     last: u32,
@@ -38,18 +38,18 @@ thread_local! {
     static JOBS: RefCell<Jobs> = RefCell::default();
 }
 
-/// What is read of tiles.
+/// The parts of tiles that are read.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Reading {
-    /// The [`TileDecoder`] as JSON, as workers are told.
+pub(crate) struct DecodedParts {
+    /// The [`TileDecoder`] as JSON, as workers receive it.
     decoder: String,
-    /// The sections that it needs.
+    /// The sections that the decoder needs.
     pub(crate) sections: Sections,
 }
 
-impl Reading {
-    /// What a decoder reads.
-    pub(crate) fn of(decoder: &TileDecoder) -> Self {
+impl DecodedParts {
+    /// The parts that a decoder reads.
+    pub(crate) fn from_decoder(decoder: &TileDecoder) -> Self {
         Self { decoder: json(decoder), sections: decoder.sections() }
     }
 }
@@ -61,7 +61,7 @@ pub(crate) struct Decoders {
 }
 
 impl Decoders {
-    /// Tells the workers which package their tiles are of: its metadata.
+    /// Sends the metadata of the tiles' package to the workers.
     pub(crate) fn new(host: Host, metadata: &[u8]) -> Self {
         let workers = host.workers().max(1);
         for worker in 0..workers {
@@ -71,15 +71,15 @@ impl Decoders {
         Self { host, workers }
     }
 
-    /// Has a tile decoded.
+    /// Decodes a tile in a worker.
     ///
     /// # Errors
-    /// When it is damaged, or its worker failed.
+    /// When the tile is corrupt, or its worker failed.
     pub(crate) async fn decode(
         &self,
         payload: Option<Vec<u8>>,
         id: TileId,
-        reading: &Reading,
+        reading: &DecodedParts,
     ) -> Result<TileGeometry, LoadTileError> {
         let failed = |reason: String| LoadTileError { id, source: reason.into() };
         let (answer, got) = oneshot::channel();
@@ -111,8 +111,8 @@ impl Decoders {
         TileGeometry::from_bytes(&bytes.to_vec()).map_err(|error| failed(error.to_string()))
     }
 
-    /// The worker with the fewest jobs; a job counts until it is answered, whether somebody waits
-    /// or not.
+    /// The worker with the fewest jobs; a job counts until its answer arrives, whether a caller
+    /// waits for it or not.
     fn least_busy(&self) -> u32 {
         let jobs_of = |worker: &u32| {
             JOBS.with_borrow(|jobs| {
@@ -123,7 +123,7 @@ impl Decoders {
     }
 }
 
-/// Takes the answer of a worker: every message that a worker posts is handed to this.
+/// Handles the answer of a worker; call this with every message that a worker posts.
 #[wasm_bindgen]
 pub fn decoded(message: &JsValue) {
     let field = |name: &str| Reflect::get(message, &name.into()).unwrap_or(JsValue::UNDEFINED);
@@ -135,11 +135,11 @@ pub fn decoded(message: &JsValue) {
         Ok(tile) => Ok(tile),
         Err(_) => Err(field("error").as_string().unwrap_or_else(|| thrown(message))),
     };
-    // Sending fails when nobody waits any more.
+    // Sending fails if nobody waits any more.
     let _ = job.answer.send(answer);
 }
 
-/// A worker of a map failed for good: what it was to decode is told as failed.
+/// Handles the permanent failure of a worker of a map: its jobs are reported as failed.
 #[wasm_bindgen]
 pub fn worker_failed(host: &Host, worker: u32, why: &str) {
     let failed: Vec<Job> = JOBS.with_borrow_mut(|jobs| {

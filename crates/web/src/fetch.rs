@@ -7,62 +7,66 @@ use web_sys::{AbortSignal, Headers, RequestCache, RequestInit, Response};
 
 use crate::problem::{Problem, thrown};
 
-/// Bytes that a server sent, and what it said of the file.
-pub(crate) struct Answer {
+/// Bytes from a server, and its data about the file.
+pub(crate) struct ServerResponse {
     pub(crate) bytes: Vec<u8>,
-    /// Length of the whole file.
+    /// The length of the whole file.
     pub(crate) file_bytes: u64,
-    /// What tells this version of the file from others: `ETag`, or else `Last-Modified`.
+    /// The identifier of this version of the file: `ETag`, or else `Last-Modified`.
     pub(crate) version: Option<String>,
 }
 
-/// The kind of a problem of which only [`diagnosed`] finds out more. It goes no farther than the source.
+/// The kind of a problem that [`diagnosed`] investigates. It is not passed on beyond the source.
 pub(crate) const UNREACHABLE: &str = "unreachable";
 
-/// The text for a server that must be set up otherwise.
+/// The advice about the required configuration of the server.
 const EXPOSE: &str = "Let the server send `Access-Control-Allow-Origin` and `Access-Control-Expose-Headers: Content-Range, ETag, Content-Encoding`.";
 const LATER: &str = "Try again later.";
 const RANGES: &str =
-    "Put the package on a server that knows range requests, or use `corniche serve`.";
+    "Put the package on a server that supports range requests, or use `corniche serve`.";
 
-/// Asks for the bytes from `first` to `last`; fewer come only where the file ends.
+/// Requests the bytes from `first` to `last`; the answer has fewer bytes only at the end of the
+/// file.
 ///
 /// # Errors
-/// When they do not come, or something else comes.
+/// When the bytes do not arrive, or the answer is something else.
 pub(crate) async fn range(
     address: &str,
     [first, last]: [u64; 2],
     signal: &AbortSignal,
-) -> Result<Answer, Problem> {
+) -> Result<ServerResponse, Problem> {
     answer(request(address, Some([first, last]), Some(signal)).await, [first, last]).await
 }
 
-/// The same of a request that the page has sent.
+/// Handles the answer to a request that the page has sent.
 ///
 /// # Errors
-/// As [`range`].
-pub(crate) async fn sent(response: Promise, [first, last]: [u64; 2]) -> Result<Answer, Problem> {
+/// The errors of [`range`].
+pub(crate) async fn sent(
+    response: Promise,
+    [first, last]: [u64; 2],
+) -> Result<ServerResponse, Problem> {
     let response = JsFuture::from(response).await.map(JsValue::unchecked_into);
     answer(response, [first, last]).await
 }
 
-/// What a server sends for the bytes from `first` to `last`.
+/// Checks the server's answer to a request for the bytes from `first` to `last`.
 async fn answer(
     response: Result<Response, JsValue>,
     [first, last]: [u64; 2],
-) -> Result<Answer, Problem> {
+) -> Result<ServerResponse, Problem> {
     let response = response.map_err(|error| Problem::new(UNREACHABLE, thrown(&error), ""))?;
     let header = |name: &str| response.headers().get(name).ok().flatten();
     let status = response.status();
-    let open_again = "Open the map again; fetch or build the package again if that does not help.";
-    let refuse = |kind, message: &str, advice| -> Result<Answer, Problem> {
+    let open_again = "Reload the map; if that does not help, download or build the package again.";
+    let refuse = |kind, message: &str, advice| -> Result<ServerResponse, Problem> {
         drop_body(&response);
         Err(Problem::new(kind, message, advice))
     };
     match status {
         206 => {}
         200 => {
-            let message = "The server ignores which bytes are asked for: it sends the whole file, because it knows no range requests.";
+            let message = "The server ignores range requests and sends the whole file.";
             return refuse("no-ranges", message, RANGES);
         }
         404 | 410 => {
@@ -70,12 +74,12 @@ async fn answer(
             return refuse("not-found", &message, "Check the address of the package.");
         }
         401 | 403 => {
-            let message = format!("The server refuses access ({status}).");
+            let message = format!("The server denies access ({status}).");
             let advice = "Check the address, and whether the file is public.";
             return refuse("not-found", &message, advice);
         }
         416 => {
-            let message = "The file on the server is shorter than it was, or empty.";
+            let message = "The file on the server is empty or shorter than before.";
             return refuse("changed", message, open_again);
         }
         _ => {
@@ -88,15 +92,15 @@ async fn answer(
         return Err(compressed(&encoding));
     }
     let Some(told) = header("content-range") else {
-        let message = "The page must not see which bytes the server sends (Content-Range).";
+        let message = "The server does not let the page see which bytes it sends (Content-Range).";
         return refuse("cors", message, EXPOSE);
     };
     let Some(file_bytes) = file_bytes_of(&told, first) else {
-        let message = format!("The server sends other bytes than asked for: {told}.");
+        let message = format!("The server sends other bytes than requested: {told}.");
         return refuse("no-ranges", &message, RANGES);
     };
     let cut_off = |what: &str| {
-        let message = format!("The answer of the server was cut off: {what}.");
+        let message = format!("The server's answer was truncated: {what}.");
         Problem::new("network", message, LATER)
     };
     let body = async { JsFuture::from(response.array_buffer()?).await };
@@ -104,9 +108,13 @@ async fn answer(
     let bytes = Uint8Array::new(&body.unchecked_into::<ArrayBuffer>()).to_vec();
     let asked = (last + 1).min(file_bytes).saturating_sub(first);
     if bytes.len() as u64 != asked {
-        return Err(cut_off(&format!("it has {} bytes of {asked}", bytes.len())));
+        return Err(cut_off(&format!("it has {} of {asked} bytes", bytes.len())));
     }
-    Ok(Answer { bytes, file_bytes, version: header("etag").or_else(|| header("last-modified")) })
+    Ok(ServerResponse {
+        bytes,
+        file_bytes,
+        version: header("etag").or_else(|| header("last-modified")),
+    })
 }
 
 /// The length of the file, from `bytes FIRST-LAST/LENGTH`; `None` if the range begins elsewhere.
@@ -120,14 +128,14 @@ fn compressed(encoding: &str) -> Problem {
     Problem::new(
         "compressed",
         format!(
-            "The server compresses the package on its way ({encoding}), so that its ranges are not those of the file."
+            "The server compresses the package in transit ({encoding}), so that its ranges are not those of the file."
         ),
-        "Switch compression off for this file on the server, for instance by naming it .pmtiles.bin, or use `corniche serve`.",
+        "Switch compression off for this file on the server, for example by naming it .pmtiles.bin, or use `corniche serve`.",
     )
 }
 
-/// Why requests of kind [`UNREACHABLE`] found no answer: the browser tells no page, so it is found out by asking otherwise. Other problems are
-/// returned as they are.
+/// Investigates why a request of kind [`UNREACHABLE`] failed: browsers do not report the reason to
+/// pages, so other requests find it out. Other problems are returned unchanged.
 pub(crate) async fn diagnosed(address: &str, problem: Problem) -> Problem {
     if problem.kind != UNREACHABLE {
         return problem;
@@ -141,8 +149,9 @@ pub(crate) async fn diagnosed(address: &str, problem: Problem) -> Problem {
         if let Some(encoding) = encoding {
             return compressed(&encoding);
         }
-        let message =
-            format!("The server breaks off when a part of the file is asked for ({why}).");
+        let message = format!(
+            "The server closes the connection when a range of the file is requested ({why})."
+        );
         return Problem::new("no-ranges", message, RANGES);
     }
     if opaque(address).await {
@@ -156,7 +165,7 @@ pub(crate) async fn diagnosed(address: &str, problem: Problem) -> Problem {
     )
 }
 
-/// Whether a server answers at all, whatever it allows.
+/// Whether a server answers at all, even if it does not allow access.
 async fn opaque(address: &str) -> bool {
     let init = RequestInit::new();
     init.set_mode(web_sys::RequestMode::NoCors);
@@ -179,7 +188,7 @@ async fn request(
     }
     init.set_headers(&headers);
     init.set_signal(signal);
-    // The map keeps what it needs; browsers' caches serialise the ranges of an address.
+    // The map caches what it needs itself; browsers' caches serialise the ranges of an address.
     init.set_cache(RequestCache::NoStore);
     fetch(address, &init).await
 }
@@ -193,10 +202,10 @@ async fn fetch(address: &str, init: &RequestInit) -> Result<Response, JsValue> {
     Ok(response.unchecked_into())
 }
 
-/// Stops the download of what is not wanted.
+/// Cancels a download that is not needed.
 fn drop_body(response: &Response) {
     if let Some(body) = response.body() {
-        // It fails only if the body is read elsewhere.
+        // The call fails only if the body is being read elsewhere.
         let _ = body.cancel();
     }
 }

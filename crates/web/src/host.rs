@@ -1,4 +1,4 @@
-//! What the page and its browser do for a map.
+//! The services that the page and its browser provide to a map.
 
 use js_sys::{Array, Function, Promise, Reflect};
 use wasm_bindgen::{JsCast as _, JsValue, prelude::wasm_bindgen};
@@ -6,20 +6,22 @@ use wasm_bindgen_futures::JsFuture;
 
 #[wasm_bindgen]
 extern "C" {
-    /// The page's side of a map. `wake()` asks for a frame, `post(worker, message, transfer)` hands a message to a worker, `workers` is their number.
-    /// `is_over` is true when the map was closed. `head` is the answer to the first request, for the first `head_bytes` of the package: the page sends it while this module is on its way.
+    /// The page's side of a map. `wake()` requests a frame, `post(worker, message, transfer)`
+    /// passes a message to a worker, `workers` is their number. `is_over` is true when the map was
+    /// closed. `head` is the answer to the first request, for the first `head_bytes` of the
+    /// package: the page sends this request while the module is being loaded.
     #[derive(Clone)]
     pub type Host;
 
-    /// A frame is wanted.
+    /// Requests a frame.
     #[wasm_bindgen(method)]
     pub fn wake(this: &Host);
 
-    /// Hands a message to a worker.
+    /// Passes a message to a worker.
     #[wasm_bindgen(method)]
     pub fn post(this: &Host, worker: u32, message: &JsValue, transfer: &Array);
 
-    /// How many workers there are.
+    /// The number of workers.
     #[wasm_bindgen(method, getter)]
     pub fn workers(this: &Host) -> u32;
 
@@ -27,7 +29,7 @@ extern "C" {
     #[wasm_bindgen(method, getter)]
     pub fn head(this: &Host) -> Promise;
 
-    /// How many bytes it asks for.
+    /// The number of bytes of that request.
     #[wasm_bindgen(method, getter)]
     pub fn head_bytes(this: &Host) -> u32;
 
@@ -36,7 +38,7 @@ extern "C" {
     pub fn is_over(this: &Host) -> bool;
 }
 
-/// Lets the browser do other things for so many milliseconds.
+/// Lets the browser do other work for this number of milliseconds.
 pub(crate) async fn pause(milliseconds: f64) {
     let promise = Promise::new(&mut |resolve, _| {
         let global = js_sys::global();

@@ -1,4 +1,4 @@
-//! A map in a page of a browser, drawn by the same renderer as `render` and `view`.
+//! A map in a web page, drawn by the same renderer as `render` and `view`.
 //!
 //! ```text
 //!  page (JavaScript) ── pointers, keys, settings ──► MapView ──► corniche-live, corniche-viewer ──► canvas
@@ -6,12 +6,14 @@
 //!                                      ranges (fetch) ─┘  └─ decoded tiles ◄── workers: the same module, `work`
 //! ```
 //!
-//! `view::MapView` is a map on a canvas. It draws when the page calls `frame`, and asks for frames through the page's `Host`. Bytes
-//! come by range requests (`source`), tiles are decoded by the page's workers (`worker`), each an instance of this module; no memory is
-//! shared, so that any static host will do. What fails is told as a `problem::Problem`: a kind for programs, a message and advice for people.
+//! `view::MapView` is a map on a canvas. It draws when the page calls `frame`, and requests frames
+//! through the page's `Host`. Bytes come from range requests (`source`). The page's workers decode
+//! tiles (`worker`); each is an instance of this module, and no memory is shared, so that any
+//! static host will do. Failures are reported as a `problem::Problem`: a kind for programs, a
+//! message and advice for people.
 //!
-//! This crate never computes geometry, and has no controls of its own but what a page can say: the
-//! map is a session of `corniche-live`.
+//! This crate never computes geometry, and has no controls of its own apart from the calls of the
+//! page: the map is a session of `corniche-live`.
 
 #[cfg(any(test, target_arch = "wasm32"))]
 mod tables;

@@ -15,41 +15,43 @@ use futures_util::future::{AbortHandle, abortable};
 use wasm_bindgen_futures::spawn_local;
 
 use crate::{
-    decoders::{Decoders, Reading},
+    decoders::{DecodedParts, Decoders},
     host::{Host, pause},
     problem::Problem,
     source::WebSource,
 };
 
-/// A tile that the server did not give is asked for again after this time, and then after twice as long each time …
+/// A tile that the server did not send is requested again after this time, and then after twice as
+/// long each time …
 const FIRST_REST_MS: f64 = 2000.0;
 /// … but not after longer than this.
 const LAST_REST_MS: f64 = 30_000.0;
 
-/// The tiles of a package, and who decodes them.
+/// The tiles of a package, and their decoder.
 pub(crate) struct Tileset {
     pub(crate) package: Arc<PackageTiles<WebSource>>,
     pub(crate) decoders: Decoders,
 }
 
 impl Tileset {
-    /// Reads a tile and has it decoded.
+    /// Reads and decodes a tile.
     ///
     /// # Errors
-    /// When it cannot be read or is damaged.
+    /// When the tile cannot be read or is corrupt.
     pub(crate) async fn load(
         &self,
         id: TileId,
-        reading: &Reading,
+        reading: &DecodedParts,
     ) -> Result<TileGeometry, LoadTileError> {
         let payload = self.package.payload_for(id, reading.sections).await?;
         self.decoders.decode(payload, id, reading).await
     }
 
-    /// What is wrong where a tile did not come: its server, in the words of the source of its bytes where it has some, or its bytes.
+    /// The reason why a tile did not arrive: the problem of its server, as reported by the source
+    /// if possible, or its bytes.
     pub(crate) fn problem_of(&self, error: &LoadTileError) -> Problem {
         let Some(why) = of_server(error) else {
-            let advice = "Fetch or build the package again.";
+            let advice = "Download or build the package again.";
             return Problem::new("damaged", with_causes(error), advice);
         };
         let told = self.package.package.source().take_problem();
@@ -57,23 +59,24 @@ impl Tileset {
     }
 }
 
-/// What arrives, and what is under way.
+/// The arrived tiles, and those being loaded.
 #[derive(Default)]
 struct State {
     arrived: Vec<Loaded>,
     under_way: BTreeMap<TileId, Load>,
-    /// Tiles that are there before they are asked for: those of the first view.
+    /// Tiles that arrived before they were requested: those of the first view.
     ready: BTreeMap<TileId, TileGeometry>,
-    /// Tiles that the server does not give. They are asked for again from time to time; meanwhile what is coarser is drawn.
+    /// Tiles that the server does not send. They are requested again from time to time; meanwhile
+    /// coarser tiles are drawn.
     troubled: BTreeSet<TileId>,
-    /// What is wrong with the server, and nobody was told.
+    /// Problems of the server that have not been reported yet.
     problems: Vec<Problem>,
 }
 
-/// A tile under way.
+/// A tile being loaded.
 struct Load {
     handle: AbortHandle,
-    /// Whether it was asked for, and not only foreseen.
+    /// Whether the tile was requested, and not only predicted.
     is_asked: bool,
 }
 
@@ -82,16 +85,16 @@ struct Load {
 pub(crate) struct PageLoader {
     tiles: Rc<Tileset>,
     host: Host,
-    reading: Rc<RefCell<Reading>>,
+    reading: Rc<RefCell<DecodedParts>>,
     state: Rc<RefCell<State>>,
 }
 
 impl PageLoader {
-    /// Loads what `reading` says. `ready` are tiles that were decoded already.
+    /// Creates the loader for the parts in `reading`. `ready` are tiles that were decoded already.
     pub(crate) fn new(
         tiles: Rc<Tileset>,
         host: Host,
-        reading: Reading,
+        reading: DecodedParts,
         ready: BTreeMap<TileId, TileGeometry>,
     ) -> Self {
         let state = State { ready, ..State::default() };
@@ -103,8 +106,8 @@ impl PageLoader {
         }
     }
 
-    /// From now on other parts of tiles are read; returns whether they are others.
-    pub(crate) fn read_otherwise(&self, reading: Reading) -> bool {
+    /// Changes the parts of tiles that are read; returns whether they changed.
+    pub(crate) fn read_otherwise(&self, reading: DecodedParts) -> bool {
         let is_other = *self.reading.borrow() != reading;
         if is_other {
             self.reading.replace(reading);
@@ -115,12 +118,13 @@ impl PageLoader {
         is_other
     }
 
-    /// What went wrong with the server since this was asked last.
+    /// The problems of the server since the last call.
     pub(crate) fn take_problems(&self) -> Vec<Problem> {
         std::mem::take(&mut self.state.borrow_mut().problems)
     }
 
-    /// The first view is complete: what was foreseen and not asked for is not needed.
+    /// Ends the prediction, since the first view is complete: predicted tiles that were not
+    /// requested are not needed.
     pub(crate) fn end_foresight(&self) {
         let mut state = self.state.borrow_mut();
         state.ready.clear();
@@ -132,19 +136,19 @@ impl PageLoader {
         });
     }
 
-    /// How many tiles wait because the server does not give them.
+    /// The number of tiles that wait because the server does not send them.
     pub(crate) fn troubled(&self) -> usize {
         self.state.borrow().troubled.len()
     }
 
-    /// Loads tiles that will be asked for soon.
+    /// Loads tiles that will be requested soon.
     pub(crate) fn foresee(&self, ids: &[TileId]) {
         for id in ids {
             self.begin(*id, false);
         }
     }
 
-    /// Begins to load a tile, if it is neither there nor under way.
+    /// Starts loading a tile, if it is neither loaded nor being loaded.
     fn begin(&self, id: TileId, is_asked: bool) {
         let mut state = self.state.borrow_mut();
         if let Some(load) = state.under_way.get_mut(&id) {
@@ -182,7 +186,7 @@ impl PageLoader {
                 Ok(tile) => {
                     state.ready.insert(id, tile);
                 }
-                // Who asks for it will be told.
+                // The requester will get the error.
                 Err(_) => {}
             }
             drop(state);
@@ -193,7 +197,7 @@ impl PageLoader {
     }
 }
 
-/// Why a tile did not come, where its server is to blame and not its bytes.
+/// The reason why a tile did not arrive, if its server is to blame and not its bytes.
 fn of_server(error: &LoadTileError) -> Option<String> {
     match error.source.downcast_ref::<ReadError>()? {
         ReadError::Source { source, .. } => Some(source.reason.clone()),
@@ -205,21 +209,21 @@ fn of_server(error: &LoadTileError) -> Option<String> {
 }
 
 impl State {
-    /// Whether a tile under way was asked for.
+    /// Whether a tile being loaded was requested.
     fn is_asked(&self, id: TileId) -> bool {
         self.under_way.get(&id).is_some_and(|load| load.is_asked)
     }
 
-    /// The server did not give a tile.
+    /// Notes that the server did not send a tile.
     fn meet(&mut self, id: TileId, problem: Problem) {
-        // Many tiles meet the same problem; it is told when the first of them does.
+        // Many tiles have the same problem; it is reported for the first of them.
         if self.troubled.is_empty() {
             self.problems.push(problem);
         }
         self.troubled.insert(id);
     }
 
-    /// Stops all that is under way.
+    /// Cancels all loading.
     fn stop(&mut self) {
         self.troubled.clear();
         for load in std::mem::take(&mut self.under_way).into_values() {

@@ -1,10 +1,10 @@
-//! The map of a page: a session of `corniche-live`, its tiles from a server, and what the page is
-//! told.
+//! The map of a page: a session of `corniche-live`, its tiles from a server, and the reports to the
+//! page.
 
 use std::rc::Rc;
 
 use corniche_live::{
-    FrameRest, MapScene, MapSettings, NamedStyle, Session, SettingsRecord, StyleList,
+    FrameRest, MapScene, MapSettings, NamedStyle, Session, StoredSettings, StyleList,
     TileLoader as _,
 };
 use corniche_roads::FunctionalRoadClass;
@@ -13,13 +13,13 @@ use serde_json::{Value, json};
 
 use crate::{
     canvas::PageCanvas,
-    decoders::Reading,
+    decoders::DecodedParts,
     loader::{PageLoader, Tileset},
     problem::Problem,
     tables,
 };
 
-/// While tiles are loaded anew, what was shown stays, but no longer than this.
+/// While all tiles are reloaded, the old image stays, but no longer than this.
 const MOST_WAIT_S: f64 = 1.0;
 
 /// A map on a canvas. All positions are pixels of the canvas, all times seconds of one clock.
@@ -29,15 +29,16 @@ pub(crate) struct Map {
     pub(crate) tileset: Rc<Tileset>,
     pub(crate) loader: PageLoader,
     pub(crate) session: Session,
-    pub(crate) settings: SettingsRecord,
+    pub(crate) settings: StoredSettings,
     pub(crate) labels: [String; FunctionalRoadClass::COUNT],
     pub(crate) size_px: [u32; 2],
     pub(crate) pixels_per_point: f64,
-    /// Messages that the page was not told yet.
+    /// Messages that were not passed to the page yet.
     pub(crate) notices: Vec<Value>,
-    /// The scene of the last frame was drawn with fewer samples than asked.
+    /// Whether the scene of the last frame was drawn with fewer samples than requested.
     pub(crate) is_hurried: bool,
-    /// When tiles began to be loaded anew; what was shown stays until those of the view are there.
+    /// The start of reloading all tiles; the old image stays until the tiles of the view are
+    /// loaded.
     pub(crate) anew_s: Option<f64>,
     /// Time of the last frame.
     pub(crate) last_s: f64,
@@ -50,21 +51,21 @@ impl Drop for Map {
 }
 
 impl Map {
-    /// A warning for the person.
+    /// Adds a warning for the user.
     pub(crate) fn warn(&mut self, text: impl Into<String>) {
         self.notices.push(json!({ "kind": "warn", "text": text.into() }));
     }
 
-    /// News for the person.
+    /// Adds a message for the user.
     pub(crate) fn tell(&mut self, text: &str) {
         self.notices.push(json!({ "kind": "tell", "text": text }));
     }
 
-    /// Changes settings: JSON with those to change.
+    /// Changes settings: JSON with the settings to change.
     pub(crate) fn change(&mut self, changes: &str) -> Result<(), String> {
         let (changed, style) = changed(&self.settings, changes)?;
         let shown = changed.of_session();
-        let reading = Reading::of(&shown.decoder(&style));
+        let reading = DecodedParts::from_decoder(&shown.decoder(&style));
         self.session.change(shown);
         self.session.styles = style_list(&changed.style, style);
         self.session.camera.navigator.has_inertia = changed.inertia;
@@ -77,7 +78,7 @@ impl Map {
         Ok(())
     }
 
-    /// What is known of the map before anything is drawn.
+    /// The properties of the map before anything is drawn.
     pub(crate) fn about(&self) -> Value {
         let mut about = self.session.about(&self.labels, &self.canvas.map.gpu);
         about["src"] = json!(self.address);
@@ -86,7 +87,7 @@ impl Map {
         about
     }
 
-    /// Does all of a frame. Returns what the page is told.
+    /// Executes a frame. Returns the report for the page.
     ///
     /// # Errors
     /// When the device is lost or cannot draw.
@@ -96,17 +97,17 @@ impl Map {
             self.warn(defect);
         }
         for problem in self.loader.take_problems() {
-            // Its tiles are those of another package now.
+            // The tiles of the file are now those of another package.
             if problem.kind == "changed" {
                 return Err(problem);
             }
-            self.warn(format!("Tiles are asked for again. {}", problem.message));
+            self.warn(format!("The map requests these tiles again. {}", problem.message));
         }
         self.last_s = now_s;
         let (canvas, pixels_per_point) = (&mut self.canvas.map, self.pixels_per_point as f32);
         let step = self.session.step(canvas, self.size_px, pixels_per_point, now_s);
         if self.session.tiles.take_first_time_full() {
-            self.warn("The memory for tiles is full: this view is coarser than asked.");
+            self.warn("The memory for tiles is full: this view is coarser than requested.");
         }
         let tiles = &self.session.tiles;
         let is_there = tiles.missing == 0 && !step.is_under_way;
@@ -128,21 +129,22 @@ impl Map {
             return Err(Problem::new(
                 "device-lost",
                 "The graphics device was lost.",
-                "The map is opened again.",
+                "The map is reopened.",
             ));
         }
         let Some(what) = gpu.take_fault() else { return Ok(()) };
         let (kind, advice) = if what.to_lowercase().contains("memory") {
-            let advice = "Make the map smaller, take fewer samples a pixel, or close other pages.";
+            let advice = "Make the map smaller, use fewer samples per pixel, or close other pages.";
             ("out-of-memory", advice)
         } else {
             ("other", "Reload the page.")
         };
-        let message = format!("The graphics device could not do its work: {what}");
+        let message = format!("The graphics device failed: {what}");
         Err(Problem::new(kind, message, advice))
     }
 
-    /// Draws the map. Where the picture is too large for the adapter with so many samples, it is drawn with fewer.
+    /// Draws the map. If the image is too large for the adapter with this many samples, it is drawn
+    /// with fewer.
     fn draw(&mut self, now_s: f64) -> Result<bool, Problem> {
         let MapSettings { samples_per_side, divider_share, .. } = self.session.settings;
         let wanted = samples_per_side.min(self.canvas.map.most_samples(self.size_px));
@@ -153,11 +155,11 @@ impl Map {
         self.canvas.draw(&MapScene { revision, ..scene }, divider_share)
     }
 
-    /// What the page is told of the frame.
+    /// The report of the frame for the page.
     fn report(&mut self, is_under_way: bool, now_s: f64) -> Value {
-        // A picture that was drawn in a hurry is drawn again at rest.
+        // An image that was drawn in a hurry is drawn again at rest.
         let is_busy = is_under_way || self.is_hurried || self.anew_s.is_some();
-        // Nothing is to be waited for from a server that gives no tiles.
+        // The map does not wait for tiles that the server does not send.
         let rest = FrameRest { is_busy, troubled: self.loader.troubled() };
         let counts = self.canvas.map.counts;
         let (mut report, is_settled) =
@@ -174,25 +176,25 @@ impl Map {
     }
 }
 
-/// Settings with some of them changed, as JSON says, and their style.
+/// Applies JSON changes to the settings, and returns them with their style.
 ///
 /// # Errors
-/// In words, when a value cannot be, or there is no such style.
+/// When a value is invalid, or there is no such style, as a message.
 pub(crate) fn changed(
-    settings: &SettingsRecord,
+    settings: &StoredSettings,
     changes: &str,
-) -> Result<(SettingsRecord, Style), String> {
+) -> Result<(StoredSettings, Style), String> {
     let changed = settings.changed_by(changes)?;
     let style = tables::style(&changed.style)?;
     Ok((changed, style))
 }
 
-/// A style as the one that a session can choose.
+/// The list with one style that a session can choose from.
 pub(crate) fn style_list(name: &str, style: Style) -> StyleList {
     StyleList::new(vec![NamedStyle { name: name.to_owned(), style }], None)
 }
 
-/// A size that the adapter can draw with one sample a pixel.
+/// A size that the adapter can draw with one sample per pixel.
 pub(crate) fn clamped(size_px: [u32; 2], most_px: u32) -> [u32; 2] {
     size_px.map(|side| side.clamp(1, most_px))
 }

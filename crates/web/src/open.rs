@@ -4,13 +4,13 @@ use std::{collections::BTreeMap, rc::Rc, sync::Arc};
 
 use corniche_geom::TileId;
 use corniche_live::{
-    FirstLook, KnownTiles, MapSettings, Session, SessionStart, SettingChanges, SettingsRecord,
-    ViewRecord, controls::View, first_view, foreseen,
+    FirstLook, KnownTiles, MapSettings, Session, SessionStart, SettingChanges, StoredSettings,
+    ViewRecord, controls::CameraView, first_view, foreseen,
 };
 use corniche_styles::Style;
 use corniche_tileset::{Manifest, OpenError, Package};
 use corniche_viewer::{
-    CameraRequest, OffGround, SightedGround, range,
+    CameraRequest, SightedGround, ViewpointOffGround, range,
     stream::StreamBudget,
     tiles::{MapPackage, PackageTiles, TileCatalog as _, TileGeometry, may_have_roads},
 };
@@ -19,7 +19,7 @@ use web_sys::HtmlCanvasElement;
 
 use crate::{
     canvas::PageCanvas,
-    decoders::{Decoders, Reading},
+    decoders::{DecodedParts, Decoders},
     host::Host,
     loader::{PageLoader, Tileset},
     map::{Map, clamped, style_list},
@@ -28,73 +28,73 @@ use crate::{
     tables,
 };
 
-/// What may be done in a frame and kept, unless the page says otherwise.
+/// The limits of work per frame and of kept tiles, unless the page sets others.
 const BUDGET: StreamBudget =
     StreamBudget { tiles_in_flight: 12, upload_bytes_per_frame: 4 << 20, gpu_bytes: 512 << 20 };
 
-/// What a page may say when it opens a map.
+/// The options of a page for opening a map.
 #[derive(Debug, Clone, Default, serde::Deserialize)]
 #[serde(default, deny_unknown_fields)]
 struct Options {
-    /// The settings that are not the usual ones.
+    /// The settings that differ from the defaults.
     settings: SettingChanges,
-    /// Where to look; without it, where the roads are.
+    /// The view; by default, the place where the roads are.
     view: Option<ViewRecord>,
-    /// Pixels at the right that are covered by a panel.
+    /// Pixels at the right that a panel covers.
     covered_px: u32,
-    /// Bytes of tiles on the graphics card.
+    /// The limit of bytes of tiles on the GPU.
     gpu_bytes: Option<u64>,
     /// Width and height of the canvas, pixels.
     size_px: Option<[u32; 2]>,
-    /// Pixels to a point of the screen.
+    /// Pixels per point of the screen.
     pixels_per_point: Option<f64>,
 }
 
-/// What is asked of the first view.
+/// The request for the first view.
 struct FirstViewRequest<'a> {
     settings: &'a MapSettings,
     style: &'a Style,
     request: CameraRequest,
-    /// Pixels at the right that are covered by a panel.
+    /// Pixels at the right that a panel covers.
     covered_px: u32,
 }
 
 impl FirstViewRequest<'_> {
-    /// The view itself.
+    /// The requested view.
     fn view(
         &self,
         manifest: &Manifest,
         ground: SightedGround,
         size_px: [u32; 2],
-    ) -> Result<View, Problem> {
+    ) -> Result<CameraView, Problem> {
         let scale = self.settings.exaggeration * manifest.point_scale;
         first_view(self.request, manifest, ground, scale, size_px, self.covered_px)
             .map_err(|error| off_ground(&error))
     }
 }
 
-/// A place without ground, in words.
-fn off_ground(error: &OffGround) -> Problem {
-    let advice = "Leave the place out, or name one that the package covers.";
+/// The problem of a place without ground.
+fn off_ground(error: &ViewpointOffGround) -> Problem {
+    let advice = "Omit the place, or name one that the package covers.";
     Problem::new("off-ground", error.to_string(), advice)
 }
 
-/// A package without ground, in words.
+/// The problem of a package without ground.
 fn no_ground(message: &str) -> Problem {
     Problem::new("no-ground", message, "Build it from a DEM that has heights.")
 }
 
-/// A package that was opened, and what the first view needs of it.
+/// An opened package, with its data for the first view.
 struct Opened {
     tileset: Rc<Tileset>,
     loader: PageLoader,
     ground: SightedGround,
-    /// The first view, in the size that was asked for.
-    home: View,
+    /// The first view, in the requested size.
+    home: CameraView,
 }
 
 impl Opened {
-    /// Reads the tables and the first tiles, and asks for those that the first view will need.
+    /// Reads the tables and the first tiles, and requests the tiles that the first view will need.
     async fn new(
         address: &str,
         host: &Host,
@@ -115,7 +115,7 @@ impl Opened {
         let decoders = Decoders::new(host.clone(), &metadata);
         let tileset = Rc::new(Tileset { package: Arc::clone(&package), decoders });
         let FirstViewRequest { settings, style, .. } = *first;
-        let reading = Reading::of(&settings.decoder(style));
+        let reading = DecodedParts::from_decoder(&settings.decoder(style));
         let (ready, ground) = first_tiles(&tileset, first.request, &reading).await?;
         let home = first.view(manifest, ground, size_px)?;
         let loader = PageLoader::new(Rc::clone(&tileset), host.clone(), reading, ready);
@@ -125,17 +125,18 @@ impl Opened {
     }
 }
 
-/// Loads what the camera of the first view needs: tiles, and the ground that they have.
+/// Loads what the camera of the first view needs: tiles and their ground.
 async fn first_tiles(
     tileset: &Tileset,
     camera: CameraRequest,
-    reading: &Reading,
+    reading: &DecodedParts,
 ) -> Result<(BTreeMap<TileId, TileGeometry>, SightedGround), Problem> {
     let package = tileset.package.as_ref();
     let manifest = package.manifest();
     let place = camera.place(manifest).map_err(|error| off_ground(&error))?;
     let mut there = BTreeMap::new();
-    // All tiles above the place are needed, and asked for at once; else each would wait for the one above it.
+    // All tiles above the place are needed, and are requested at once; otherwise each would wait
+    // for the one above it.
     let mut wanted = place.map_or_else(|| vec![TileId::ROOT], |at| package.tiles_at(at));
     loop {
         let loads = wanted.iter().map(|id| tileset.load(*id, reading));
@@ -144,7 +145,7 @@ async fn first_tiles(
             there.insert(tile.id, tile);
         }
         let may_have_roads = may_have_roads(manifest, reading.sections);
-        let known = KnownTiles { package, there: &there, may_have_roads };
+        let known = KnownTiles::new(package, &there, may_have_roads);
         match known.look(camera, place).map_err(|error| Problem::other(&error))? {
             FirstLook::Wanted(ids) => wanted = ids,
             FirstLook::Known(Some(ground)) => return Ok((there, ground)),
@@ -155,7 +156,7 @@ async fn first_tiles(
     }
 }
 
-/// The page asks for what cannot be.
+/// The problem of an invalid request of the page.
 fn wrong(why: String) -> Problem {
     Problem::new("other", why, "Correct the page.")
 }
@@ -163,7 +164,7 @@ fn wrong(why: String) -> Problem {
 /// Opens a package and finds the first view.
 ///
 /// # Errors
-/// When there is nothing to draw with, or nothing to show.
+/// When there is no graphics device, or nothing to show.
 pub(crate) async fn open(
     canvas: HtmlCanvasElement,
     address: String,
@@ -173,7 +174,7 @@ pub(crate) async fn open(
     let options: Options =
         serde_json::from_slice(if options.is_empty() { b"{}" } else { options.as_bytes() })
             .map_err(|error| wrong(format!("options: {error}")))?;
-    let record = SettingsRecord::default().changed(options.settings).map_err(wrong)?;
+    let record = StoredSettings::default().changed(options.settings).map_err(wrong)?;
     let settings = record.of_session();
     let request = options.view.map_or(CameraRequest::Overview, |place| place.request());
     range::check_camera(request).map_err(|error| wrong(error.to_string()))?;
@@ -185,7 +186,7 @@ pub(crate) async fn open(
         request,
         covered_px: options.covered_px,
     };
-    // The device is waited for while the package is read.
+    // The device is created while the package is read.
     let opened = Box::pin(Opened::new(&address, &host, &first, asked_px));
     let (canvas, opened) = try_join(PageCanvas::new(canvas), opened).await?;
     let Opened { tileset, loader, ground, home } = opened;

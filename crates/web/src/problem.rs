@@ -1,4 +1,4 @@
-//! What went wrong, for programs and for people, and values as JavaScript has them.
+//! Problems for programs and for people, and values for JavaScript.
 
 use std::error::Error;
 
@@ -7,14 +7,15 @@ use corniche_tileset::OpenError;
 use corniche_viewer::gpu::GpuError;
 use wasm_bindgen::JsValue;
 
-/// Why a map cannot be shown. For a page it is an object with the fields `kind`, `message` and `advice`.
+/// The reason why a map cannot be shown. For a page it is an object with the fields `kind`,
+/// `message` and `advice`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Problem {
     /// The kind of problem, for programs: `network`, `not-found`, `cors` and so on.
     pub(crate) kind: &'static str,
-    /// What is wrong.
+    /// The message.
     pub(crate) message: String,
-    /// What to do; may be empty.
+    /// What the user can do; may be empty.
     pub(crate) advice: String,
 }
 
@@ -28,15 +29,16 @@ impl Problem {
         Self::new("other", with_causes(error), "")
     }
 
-    /// A package that cannot be opened. `of_source` is what the source of its bytes says is wrong, if it is to blame.
+    /// The problem of a package that cannot be opened. `of_source` is the problem that the source
+    /// of its bytes reports, if it is to blame.
     pub(crate) fn opening(error: &OpenError, of_source: Option<Self>) -> Self {
-        let again = "Fetch or build the package again.";
+        let again = "Download or build the package again.";
         let kind = match error {
             OpenError::Source(_) => return of_source.unwrap_or_else(|| Self::other(error)),
             OpenError::NotPmtiles
             | OpenError::OrdinaryPmtiles
             | OpenError::PmtilesVersion { .. } => {
-                let advice = "Choose a package that was made with `corniche build`.";
+                let advice = "Choose a package that `corniche build` wrote.";
                 return Self::new("foreign", with_causes(error), advice);
             }
             OpenError::Version { .. } => "old-format",
@@ -45,17 +47,17 @@ impl Problem {
         Self::new(kind, with_causes(error), again)
     }
 
-    /// No device to draw with.
+    /// The problem of a missing graphics device.
     pub(crate) fn of_gpu(error: &GpuError) -> Self {
         match error {
             GpuError::NoAdapter { .. } => Self::new(
                 "no-adapter",
-                "The browser knows WebGPU but gives no graphics adapter.",
-                "Switch on hardware acceleration in the browser's settings, update the graphics driver, or try another browser.",
+                "The browser supports WebGPU but provides no graphics adapter.",
+                "Enable hardware acceleration in the browser's settings, update the graphics driver, or try another browser.",
             ),
             GpuError::NoDevice { source, .. } => Self::new(
                 "limits",
-                format!("The graphics adapter gives no device: {source}"),
+                format!("The graphics adapter provides no device: {source}"),
                 "Update the graphics driver, or try another browser or machine.",
             ),
             GpuError::TooLarge { .. } => {
@@ -76,11 +78,11 @@ impl From<Problem> for JsValue {
     }
 }
 
-/// An object of JavaScript with these fields.
+/// A JavaScript object with these fields.
 pub(crate) fn object(fields: &[(&str, JsValue)]) -> JsValue {
     let object = js_sys::Object::new();
     for (name, value) in fields {
-        // Setting a field of an object of one's own cannot fail.
+        // Setting a field of a new object cannot fail.
         let _ = js_sys::Reflect::set(&object, &(*name).into(), value);
     }
     object.into()
@@ -88,11 +90,11 @@ pub(crate) fn object(fields: &[(&str, JsValue)]) -> JsValue {
 
 /// A value of this crate as JSON.
 pub(crate) fn json(value: &impl serde::Serialize) -> String {
-    // These values have text keys and finite numbers only, so there is always a text.
+    // These values have text keys and finite numbers only, so the conversion never fails.
     serde_json::to_string(value).unwrap_or_default()
 }
 
-/// What JavaScript threw, in words.
+/// The text of a JavaScript exception.
 pub(crate) fn thrown(value: &JsValue) -> String {
     let message = js_sys::Reflect::get(value, &"message".into()).ok();
     message

@@ -1,4 +1,4 @@
-//! A package on a web server, by range requests, with a cache of its own.
+//! A package on a web server, read by range requests, with a cache of its own.
 
 use std::{
     cell::{Cell, RefCell},
@@ -17,10 +17,10 @@ use crate::{
     problem::Problem,
 };
 
-/// What failed on its way is asked for again so often.
+/// The number of tries of a request that failed in transit.
 const TRIES: u32 = 3;
 
-/// Time before that.
+/// The pause before a retry.
 const REST_MS: f64 = 300.0;
 
 /// Whether the same request may succeed a moment later.
@@ -28,7 +28,7 @@ fn may_pass(problem: &Problem) -> bool {
     matches!(problem.kind, "network" | UNREACHABLE)
 }
 
-/// What was asked of the server so far.
+/// The traffic of the server so far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Traffic {
     pub(crate) requests: u32,
@@ -46,11 +46,11 @@ struct Shared {
     cache: RefCell<RangeCache>,
     waiting: RefCell<Vec<Waiting>>,
     traffic: Cell<Traffic>,
-    /// The last thing that went wrong: errors of reading have no kind.
+    /// The last problem: errors of reading have no kind.
     problem: RefCell<Option<Problem>>,
 }
 
-/// A range that was asked for and is not under way yet.
+/// A range that was requested and is not being fetched yet.
 struct Waiting {
     offset: u64,
     length: u64,
@@ -58,18 +58,19 @@ struct Waiting {
     ticket: Rc<Ticket>,
 }
 
-/// What one who waits holds. When it is dropped, nobody waits for this range any more.
+/// The ticket of a caller that waits for a range. Dropping it means that the caller does not wait
+/// any more.
 #[derive(Default)]
 struct Ticket(RefCell<Option<Rc<Request>>>);
 
-/// A request under way, for one range or several.
+/// A request in progress, for one range or several.
 struct Request {
-    /// How many wait for it.
+    /// The number of callers that wait for the request.
     wanted: Cell<usize>,
     controller: RefCell<Option<AbortController>>,
 }
 
-/// Leaves when the future that waits is dropped, answered or not.
+/// Gives up the ticket when the waiting future is dropped, answered or not.
 struct Leaving(Rc<Ticket>);
 
 impl Drop for Leaving {
@@ -85,10 +86,11 @@ impl Drop for Leaving {
 }
 
 impl WebSource {
-    /// Takes the beginning of the file, which the page has asked for, and asks again where it was lost.
+    /// Takes the beginning of the file, which the page has requested, and requests it again if it
+    /// was lost.
     ///
     /// # Errors
-    /// When it cannot be read.
+    /// When the file cannot be read.
     pub(crate) async fn open(address: &str, host: &Host) -> Result<Self, Problem> {
         let bytes = [0, u64::from(host.head_bytes()).max(1) - 1];
         let mut tries = 0;
@@ -100,7 +102,7 @@ impl WebSource {
                 range(address, bytes, &controller()?.signal()).await
             };
             match head {
-                // Nobody waits for the map any more, and its requests were stopped.
+                // The map is not needed any more, and its requests were cancelled.
                 Err(problem) if host.is_over() => return Err(problem),
                 Err(problem) if may_pass(&problem) && tries < TRIES => pause(REST_MS).await,
                 Err(problem) => return Err(diagnosed(address, problem).await),
@@ -121,17 +123,17 @@ impl WebSource {
         })))
     }
 
-    /// What was asked of the server so far.
+    /// The traffic of the server so far.
     pub(crate) fn traffic(&self) -> Traffic {
         self.0.traffic.get()
     }
 
-    /// Length of the file.
+    /// The length of the file.
     pub(crate) fn file_bytes(&self) -> u64 {
         self.0.file_bytes
     }
 
-    /// The last thing that went wrong, once.
+    /// Takes the last problem, if there is one.
     pub(crate) fn take_problem(&self) -> Option<Problem> {
         self.0.problem.take()
     }
@@ -139,12 +141,12 @@ impl WebSource {
 
 fn controller() -> Result<AbortController, Problem> {
     AbortController::new().map_err(|_| {
-        Problem::new("other", "This browser cannot stop requests.", "Update the browser.")
+        Problem::new("other", "This browser cannot cancel requests.", "Update the browser.")
     })
 }
 
 impl Shared {
-    /// Asks for everything that was asked for since.
+    /// Sends all waiting requests.
     fn send(self: &Rc<Self>) {
         let waiting = self.waiting.take();
         let ranges: Vec<[u64; 2]> = waiting.iter().map(|one| [one.offset, one.length]).collect();
@@ -157,9 +159,9 @@ impl Shared {
         }
     }
 
-    /// Fetches a group of ranges as one, and answers each.
+    /// Fetches a group of ranges in one request, and answers each of them.
     async fn fetch(&self, mut group: Vec<Waiting>) {
-        // Who waited for some may have left since.
+        // Some callers may have stopped waiting since.
         group.retain(|one| !one.answer.is_canceled());
         let Some(first) = group.iter().map(|one| one.offset).min() else { return };
         let end = group.iter().map(|one| one.offset + one.length).max().unwrap_or(first);
@@ -182,12 +184,12 @@ impl Shared {
                 let at = (one.offset - first) as usize;
                 bytes[at..at + one.length as usize].to_vec()
             });
-            // Sending fails when nobody waits any more.
+            // Sending fails if nobody waits any more.
             let _ = one.answer.send(part);
         }
     }
 
-    /// The bytes from `first` to `last`, asked for again where they were lost on their way.
+    /// Fetches the bytes from `first` to `last`, with retries if they were lost in transit.
     async fn tried(&self, [first, last]: [u64; 2], request: &Request) -> Result<Vec<u8>, Problem> {
         let mut tries = 0;
         loop {
@@ -202,7 +204,7 @@ impl Shared {
             traffic.bytes += answer.as_ref().map_or(0, |answer| answer.bytes.len() as u64);
             self.traffic.set(traffic);
             match answer {
-                // Nobody waits any more, and the request was stopped.
+                // Nobody waits any more, and the request was cancelled.
                 Err(problem) if request.wanted.get() == 0 => return Err(problem),
                 Err(problem) if may_pass(&problem) && tries < TRIES => pause(REST_MS).await,
                 Err(problem) => return Err(diagnosed(&self.address, problem).await),
@@ -211,8 +213,8 @@ impl Shared {
                 {
                     return Err(Problem::new(
                         "changed",
-                        "The file on the server is another one than when the map was opened.",
-                        "Open the map again.",
+                        "The file on the server has changed since the map was opened.",
+                        "Reload the map.",
                     ));
                 }
                 Ok(answer) => return Ok(answer.bytes),
@@ -235,7 +237,7 @@ impl ByteSource for WebSource {
         if found.len() == length {
             return Ok(found);
         }
-        // The first request ends within a tile: only what is missing is asked for.
+        // The first request ends within a tile: only the missing bytes are requested.
         let (offset, length) = (offset + found.len() as u64, length - found.len());
         let (answer, got) = oneshot::channel();
         let ticket = Rc::new(Ticket::default());
@@ -244,7 +246,7 @@ impl ByteSource for WebSource {
         shared.waiting.borrow_mut().push(waiting);
         if is_first {
             let shared = Rc::clone(shared);
-            // A microtask later: what is asked for in the same turn has come by then.
+            // The requests are sent a microtask later, together with all others of the same turn.
             spawn_local(async move { shared.send() });
         }
         let leaving = Leaving(ticket);

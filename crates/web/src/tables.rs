@@ -1,4 +1,5 @@
-//! Styles and labels that come with the program, as the build script has read them; own styles of the page.
+//! The bundled styles and labels, as the build script has read them, and the custom styles of the
+//! page.
 
 use std::cell::RefCell;
 
@@ -10,11 +11,11 @@ const STYLES: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/styles.bin"));
 const LABELS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/labels.bin"));
 
 thread_local! {
-    /// Own styles, by their addresses, for all maps of the page.
+    /// Custom styles, by their addresses, for all maps of the page.
     static OWN: RefCell<Vec<(String, Style)>> = RefCell::default();
 }
 
-/// A table of named values; the build script wrote it.
+/// Reads a table of named values from the build script.
 fn table<T: DeserializeOwned>(bytes: &[u8]) -> Vec<(String, T)> {
     let read = bincode::serde::decode_from_slice(bytes, bincode::config::legacy());
     read.map(|(table, _)| table).unwrap_or_default()
@@ -25,10 +26,10 @@ pub(crate) fn style_names() -> Vec<String> {
     table::<Style>(STYLES).into_iter().map(|(name, _)| name).collect()
 }
 
-/// The style of this name, among those of the program and those that the page keeps.
+/// The style of this name, bundled or custom.
 ///
 /// # Errors
-/// In words, when there is no such style.
+/// When there is no such style, as a message.
 pub(crate) fn style(name: &str) -> Result<Style, String> {
     let own = OWN.with_borrow(Clone::clone);
     let found = table(STYLES).into_iter().chain(own).find(|(known, _)| known == name);
@@ -38,10 +39,10 @@ pub(crate) fn style(name: &str) -> Result<Style, String> {
     })
 }
 
-/// Keeps the styles of a table that `corniche-web-styles` has made, in place of those of the same names.
+/// Stores the styles of a table from `corniche-web-styles`; they replace styles of the same names.
 ///
 /// # Errors
-/// In words, when it is no such table.
+/// When the bytes are not such a table, as a message.
 pub(crate) fn keep(styles: &[u8]) -> Result<(), String> {
     let styles = table::<Style>(styles);
     if styles.is_empty() {
@@ -54,7 +55,7 @@ pub(crate) fn keep(styles: &[u8]) -> Result<(), String> {
     Ok(())
 }
 
-/// What the roads of each class are called, 0 first, with the FRC table of this name.
+/// The names of the classes, class 0 first, with the FRC table of this name.
 pub(crate) fn class_labels(frc_table: &str) -> [String; FunctionalRoadClass::COUNT] {
     let known = table::<Vec<String>>(LABELS).into_iter().find(|(name, _)| name == frc_table);
     let known = known.and_then(|(_, labels)| labels.try_into().ok());

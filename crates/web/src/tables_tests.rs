@@ -1,4 +1,4 @@
-//! Styles and class names of the page are those of the program.
+//! Styles and class names of the page are the bundled ones.
 
 use corniche_styles::{parse_style, style_preset, style_preset_names};
 

@@ -1,10 +1,10 @@
-//! What a page can do with a map.
+//! The interface of a map for a page.
 
 use std::rc::Rc;
 
 use corniche_live::{
-    PickPlace, SettingsRecord,
-    controls::{Button, Input, Key, KeyState, Mode, Modifiers},
+    PickPlace, StoredSettings,
+    controls::{Button, CameraKey, Input, Mode, Modifiers},
 };
 use corniche_viewer::{gpu::ReadBackError, tiles::MapPackage as _};
 use glam::DVec2;
@@ -28,10 +28,11 @@ pub struct MapView(Map);
 
 #[wasm_bindgen]
 impl MapView {
-    /// Opens a package by its address. `options` is JSON. Rejects with a problem: `{kind, message, advice}`.
+    /// Opens a package by its address. `options` is JSON. Rejects with a problem:
+    /// `{kind, message, advice}`.
     ///
     /// # Errors
-    /// When there is nothing to draw with, or nothing to show.
+    /// When there is no graphics device, or nothing to show.
     pub async fn open(
         canvas: HtmlCanvasElement,
         src: String,
@@ -41,26 +42,27 @@ impl MapView {
         Box::pin(open(canvas, src, &options, host)).await.map(MapView).map_err(JsValue::from)
     }
 
-    /// The usual settings, as JSON.
+    /// The default settings, as JSON.
     #[must_use]
     pub fn usual_settings() -> String {
-        json(&SettingsRecord::default())
+        json(&StoredSettings::default())
     }
 
-    /// Whether the usual settings could be changed so: JSON as for `set`. Returns an empty text, or why not.
+    /// Checks a change of the default settings, given as JSON for `set`. Returns an empty text, or
+    /// an error message.
     #[must_use]
     pub fn fault_of(settings: &str) -> String {
-        changed(&SettingsRecord::default(), settings).err().unwrap_or_default()
+        changed(&StoredSettings::default(), settings).err().unwrap_or_default()
     }
 
-    /// Keeps an own style for all maps of the page, under the address of its file; `table` is from the module for own styles. Returns an empty
-    /// text, or why not.
+    /// Stores a custom style for all maps of the page, under the address of its file; `table` is
+    /// from the module for custom styles. Returns an empty text, or an error message.
     #[must_use]
     pub fn keep_style(table: &[u8]) -> String {
         tables::keep(table).err().unwrap_or_default()
     }
 
-    /// The canvas has this size in pixels of the screen now.
+    /// Sets the size of the canvas in pixels of the screen.
     pub fn resize(&mut self, width_px: u32, height_px: u32, pixels_per_point: f64) {
         self.0.size_px = clamped([width_px, height_px], self.0.canvas.map.gpu.max_side_px());
         self.0.pixels_per_point = pixels_per_point.max(0.1);
@@ -75,14 +77,15 @@ impl MapView {
         Ok(json(&report))
     }
 
-    /// Whether nothing is wrong with the device or the server that the next frame would tell. A page at rest asks from time to time.
+    /// Whether there is no problem with the device or the server that the next frame would report.
+    /// A page at rest asks from time to time.
     #[must_use]
     pub fn is_well(&self) -> bool {
         let gpu = &self.0.canvas.map.gpu;
         !gpu.is_lost() && !gpu.has_fault()
     }
 
-    /// A button goes down: 0 left, 1 middle, 2 right.
+    /// Handles a press of a button: 0 left, 1 middle, 2 right.
     pub fn press(&mut self, button: u8, x: f64, y: f64, shift: bool, control: bool, now_s: f64) {
         self.0.session.take_over();
         if let Some(button) = button_of(button) {
@@ -91,43 +94,44 @@ impl MapView {
         }
     }
 
-    /// The pointer is here.
+    /// Handles a movement of the pointer.
     pub fn move_to(&mut self, x: f64, y: f64, now_s: f64) {
         self.0.session.cursor_px = Some(DVec2::new(x, y));
         self.0.session.input(&Input::Move { at_px: DVec2::new(x, y) }, now_s);
     }
 
-    /// A button goes up.
+    /// Handles the release of a button.
     pub fn release(&mut self, button: u8, now_s: f64) {
         if let Some(button) = button_of(button) {
             self.0.session.input(&Input::Release { button }, now_s);
         }
     }
 
-    /// The pointer is outside.
+    /// Handles a pointer that leaves the map.
     pub fn leave(&mut self) {
         self.0.session.cursor_px = None;
     }
 
-    /// The wheel turns by so many notches; positive zooms in.
+    /// Turns the wheel by this number of notches; positive zooms in.
     pub fn wheel(&mut self, steps: f64, x: f64, y: f64, now_s: f64) {
         self.0.session.take_over();
         self.0.session.input(&Input::Wheel { steps, at_px: DVec2::new(x, y) }, now_s);
     }
 
-    /// Two fingers touch the map, or are elsewhere now.
+    /// Handles two fingers that touch the map or have moved.
     pub fn two_fingers(&mut self, ax: f64, ay: f64, bx: f64, by: f64, now_s: f64) {
         self.0.session.take_over();
         let at_px = [DVec2::new(ax, ay), DVec2::new(bx, by)];
         self.0.session.input(&Input::TwoFingers { at_px }, now_s);
     }
 
-    /// Less than two fingers touch the map.
+    /// Handles fewer than two fingers on the map.
     pub fn end_two_fingers(&mut self, now_s: f64) {
         self.0.session.input(&Input::EndTwoFingers, now_s);
     }
 
-    /// A key goes down or up, by its `KeyboardEvent.code`. Returns whether it means something here.
+    /// Handles a key that goes down or up, by its `KeyboardEvent.code`. Returns whether the key has
+    /// a meaning here.
     pub fn key(
         &mut self,
         code: &str,
@@ -141,7 +145,7 @@ impl MapView {
             self.0.session.input(&Input::Modify { modifiers }, now_s);
             return false;
         }
-        let Some(key) = Key::of_code(code) else { return false };
+        let Some(key) = CameraKey::of_code(code) else { return false };
         let is_map_mode = self.0.session.camera.navigator.mode == Mode::Map;
         if control || (key.is_for_flying() && is_map_mode) {
             return false;
@@ -149,18 +153,18 @@ impl MapView {
         if is_down {
             self.0.session.take_over();
         }
-        let state = if is_down { KeyState::Pressed } else { KeyState::Released };
-        self.0.session.input(&Input::Key { key, state, modifiers }, now_s);
+        self.0.session.input(&Input::Key { key, is_down, modifiers }, now_s);
         true
     }
 
-    /// All keys and buttons count as released.
+    /// Treats all keys and buttons as released.
     pub fn let_go(&mut self, now_s: f64) {
         self.0.session.input(&Input::LetGo, now_s);
     }
 
-    /// Does what a button of the page asks for: `north-up`, `reset`, `toggle-fly`, `toggle-above`, `start-recording`, `stop-recording`. The last
-    /// returns the flight as JSON with the fields of its TOML, others an empty text.
+    /// Executes a command of the page: `north-up`, `reset`, `toggle-fly`, `toggle-above`,
+    /// `start-recording`, `stop-recording`. The last returns the flight as JSON with the fields of
+    /// its TOML, others an empty text.
     pub fn command(&mut self, name: &str, now_s: f64) -> String {
         self.0.session.take_over();
         match name {
@@ -174,7 +178,9 @@ impl MapView {
                     _ => session.start_recording(now_s),
                 };
                 if !is_done {
-                    self.0.tell("Flights are recorded in perspective: not from above.");
+                    self.0.tell(
+                        "Flights are recorded in perspective; leave the view from above first.",
+                    );
                 }
             }
             "stop-recording" => match self.0.session.stop_recording(now_s) {
@@ -186,12 +192,14 @@ impl MapView {
         String::new()
     }
 
-    /// Plays a flight, JSON with the fields of its TOML; returns an empty text, or why not.
+    /// Plays a flight, given as JSON with the fields of its TOML; returns an empty text, or an
+    /// error message.
     pub fn play(&mut self, flight: &str, now_s: f64) -> String {
         self.0.session.play(flight, now_s).err().unwrap_or_default()
     }
 
-    /// Changes settings: a JSON object with those to change. Returns an empty text, or why not.
+    /// Changes settings: a JSON object with the settings to change. Returns an empty text, or an
+    /// error message.
     pub fn set(&mut self, settings: &str) -> String {
         self.0.change(settings).err().unwrap_or_default()
     }
@@ -201,24 +209,26 @@ impl MapView {
         json(&self.0.settings)
     }
 
-    /// What is known of the package and the graphics adapter, as JSON.
+    /// The properties of the package and the graphics adapter, as JSON.
     pub fn about(&self) -> String {
         json(&self.0.about())
     }
 
-    /// Looks at a place, at once or by a flight there: JSON. Returns an empty text, or why not.
+    /// Looks at a place given as JSON, at once or by a flight there. Returns an empty text, or an
+    /// error message.
     pub fn look_at(&mut self, place: &str, now_s: f64, jump: bool) -> String {
         self.0.session.take_over();
         let gone = self.0.session.go_to_record(place, self.0.size_px, jump, now_s);
         gone.err().unwrap_or_default()
     }
 
-    /// Looks at a place as people write it: `9.52,47.14`. Returns an empty text, or why not.
+    /// Looks at a place in the usual notation: `9.52,47.14`. Returns an empty text, or an error
+    /// message.
     pub fn go_to(&mut self, lon_lat: &str, now_s: f64) -> String {
         self.0.session.go_to(lon_lat, now_s).err().unwrap_or_default()
     }
 
-    /// What is at a pixel: a promise of JSON, `null` over the sky.
+    /// The place at a pixel: a promise of JSON, `null` over the sky.
     pub fn pick(&self, x: f64, y: f64) -> Promise {
         let Some(place) = self.0.session.pick_at(DVec2::new(x, y), self.0.size_px) else {
             return future_to_promise(async { Ok("null".into()) });
@@ -238,7 +248,7 @@ impl MapView {
         })
     }
 
-    /// The pixels that are shown: a promise of bytes, four a pixel, rows from the top.
+    /// The shown pixels: a promise of bytes, four per pixel, rows from the top.
     pub fn read_pixels(&self) -> Promise {
         let PageCanvas { map, divider, .. } = &self.0.canvas;
         let (reading, gpu) = (map.begin_read(*divider), Rc::clone(&map.gpu));

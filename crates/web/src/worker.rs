@@ -16,14 +16,15 @@ thread_local! {
     static MANIFEST: RefCell<Option<Manifest>> = RefCell::default();
 }
 
-/// Does what a message asks for: `{metadata}` says which package tiles are of, `{job, decoder, z, x, y, payload}` has one decoded. Returns the
-/// answer to post, whose field `tile` is to be transferred; `undefined` where there is none.
+/// Handles a message: `{metadata}` sets the package of the tiles, `{job, decoder, z, x, y,
+/// payload}` decodes a tile. Returns the answer to post, whose field `tile` is to be transferred;
+/// `undefined` if there is none.
 #[wasm_bindgen]
 #[must_use]
 pub fn work(message: &JsValue) -> JsValue {
     let field = |name: &str| Reflect::get(message, &name.into()).unwrap_or(JsValue::UNDEFINED);
     if let Ok(metadata) = field("metadata").dyn_into::<Uint8Array>() {
-        // The page has read the same bytes, so they are a manifest.
+        // The page has read the same bytes, so they are a valid manifest.
         MANIFEST.set(Manifest::in_metadata(&metadata.to_vec()).ok());
         return JsValue::UNDEFINED;
     }
@@ -43,7 +44,7 @@ fn tile(field: &dyn Fn(&str) -> JsValue) -> Result<Vec<u8>, String> {
         serde_json::from_slice(decoder.as_bytes()).map_err(|error| error.to_string())?;
     let payload = field("payload").dyn_into::<Uint8Array>().ok().map(|bytes| bytes.to_vec());
     MANIFEST.with_borrow(|manifest| {
-        let manifest = manifest.as_ref().ok_or("the worker knows no package")?;
+        let manifest = manifest.as_ref().ok_or("the worker has no package")?;
         let tile =
             decoder.tile(payload.as_deref(), id, manifest).map_err(|error| with_causes(&error))?;
         tile.to_bytes().map_err(|error| error.to_string())

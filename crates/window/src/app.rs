@@ -1,5 +1,5 @@
-//! The state of the window, without the window system: a desk of `corniche-live`, and pictures and
-//! files. What a frame does is in `app/frame.rs`.
+//! The state of the window, without the window system: a desk of `corniche-live`, images and files.
+//! `app/frame.rs` executes a frame.
 
 mod captures;
 mod frame;
@@ -7,8 +7,8 @@ mod frame;
 use std::{path::PathBuf, sync::Arc};
 
 use corniche_live::{
-    ClockS, Command, Drawing, Errand, FramePace, MapDesk, MapSettings, NotSaved, Notices, Session,
-    SessionStart, StyleList, TileLoader, Trace, first_view,
+    ClockS, Errand, FramePace, LineDrawing, MapCommand, MapDesk, MapSettings, NotSaved, Notices,
+    Session, SessionStart, StyleList, TileLoader, Trace, first_view,
 };
 use corniche_roads::FunctionalRoadClass;
 use corniche_viewer::{RoadOptions, SightedGround, gpu::Gpu, tiles::MapPackage};
@@ -25,30 +25,30 @@ pub(crate) struct App {
     captures: Captures,
     trace: Option<Trace>,
     class_labels: [String; FunctionalRoadClass::COUNT],
-    /// What the next frame puts on the clipboard.
+    /// The text that the next frame copies to the clipboard.
     to_copy: Option<String>,
-    /// Number of the frame, 1 first.
+    /// The number of the frame, from 1.
     frame: u64,
-    /// Where the mouse is the panel's, points.
+    /// The areas where the mouse belongs to the panel, in points.
     occupied: Vec<Rect>,
 }
 
-/// What the platform does for the app while it draws.
+/// Services of the platform that the app uses while it draws.
 pub(crate) struct AppPlatform {
     /// Loads tiles.
     pub(crate) loader: Box<dyn TileLoader>,
     /// Saves files.
     pub(crate) files: FileWriter,
-    /// Tells the time.
+    /// Returns the time.
     pub(crate) clock_s: ClockS,
 }
 
 impl App {
-    /// Ready for the first frame of a package with this ground, which the platform has looked up,
-    /// because tiles must be waited for.
+    /// Creates the app, ready for the first frame, of a package with this ground. The platform has
+    /// looked up the ground, because doing so waits for tiles.
     ///
     /// # Errors
-    /// When the place to look at has no ground, or the trace cannot be written.
+    /// When there is no ground at the place to look at, or the trace cannot be written.
     pub(crate) fn new(
         request: WindowRequest,
         package: Arc<dyn MapPackage>,
@@ -71,7 +71,7 @@ impl App {
         let mut notices = Notices::default();
         notices.warn_of_software(gpu, settings.roads.method, request.settings.roads.method);
         let ways = (request.save_drawing, platform.clock_s);
-        let drawing = Drawing::new(&request.drawn_lines, ways, manifest, &mut notices);
+        let drawing = LineDrawing::new(&request.drawn_lines, ways, manifest, &mut notices);
         let session = Session::new(SessionStart {
             package,
             height_range_m: ground.heights_m,
@@ -104,18 +104,18 @@ impl App {
         })
     }
 
-    /// Whether the mouse at this pixel of the window is the map's, not the panel's.
+    /// Whether the mouse at this pixel of the window belongs to the map and not to the panel.
     pub(crate) fn is_map(&self, ui: &egui::Context, at_px: DVec2) -> bool {
         let at = at_px / self.desk.session.camera.pixels_per_point;
         let at = pos2(at.x as f32, at.y as f32);
-        // Lists that hang from the panel lie in layers of their own.
+        // Lists that drop down from the panel are in layers of their own.
         let is_in_front =
             ui.layer_id_at(at).is_some_and(|layer| layer.order != egui::Order::Background);
         !is_in_front && !self.occupied.iter().any(|rect| rect.contains(at))
     }
 
-    /// Does what a key or the panel asks for.
-    pub(crate) fn command(&mut self, command: Command, now_s: f64) {
+    /// Executes a command of a key or the panel.
+    pub(crate) fn command(&mut self, command: MapCommand, now_s: f64) {
         match self.desk.command(command, now_s) {
             Some(Errand::Take(shot)) => self.captures.wanted.push(shot),
             Some(Errand::SaveFlight(text)) => self.captures.files.save_flight(text),
@@ -124,14 +124,15 @@ impl App {
         }
     }
 
-    /// The graphics device is lost and another one has taken its place: everything is loaded and drawn again.
+    /// Starts over with a new graphics device after the old one was lost: everything is loaded and
+    /// drawn again.
     pub(crate) fn begin_again(&mut self) {
         self.desk.tell_lost(self.captures.lose_device());
         self.desk.begin_again();
     }
 
-    /// The window closes: saves what is still to be saved. Returns what became of it, for there is no panel any more to
-    /// show it.
+    /// Closes the window: saves pending files. Returns the results, because no panel can show them
+    /// any more.
     pub(crate) fn end(&mut self, canvas: &Canvas, now_s: f64) -> Vec<Result<PathBuf, NotSaved>> {
         let mut saved = Vec::new();
         match self.desk.stop_recording(now_s) {
@@ -147,7 +148,7 @@ impl App {
     }
 }
 
-/// The settings with which a window opens. `is_software` says that the processor draws.
+/// The initial settings of the window. `is_software` means that the CPU draws.
 fn first_settings(request: &WindowRequest, is_software: bool, is_panel_open: bool) -> MapSettings {
     let MapSettings { roads, .. } = request.settings;
     let method = request.software_method.filter(|_| is_software).unwrap_or(roads.method);

@@ -1,4 +1,5 @@
-//! A window draws the same whether its tiles come from a file or from a source that nothing waits for.
+//! A window draws the same whether its tiles come from a file or from a source that nothing waits
+//! for.
 
 use std::{
     num::NonZeroUsize,
@@ -11,7 +12,7 @@ use corniche_live::{Loaded, LoaderThreads, NamedStyle, Redraw, TileLoader};
 use corniche_styles::Style;
 use corniche_viewer::{
     CameraRequest, RoadMethod, RoadOptions,
-    lod::Drawn,
+    lod::DrawnTile,
     stream::StreamBudget,
     tiles::{MapExtent, MapPackage, PackageSource, TileGeometry, TileSource as _},
 };
@@ -28,7 +29,7 @@ fn request() -> WindowRequest {
         camera: CameraRequest::Overview,
         settings: MapSettings {
             screen_space_error_px: 0.01,
-            ..MapSettings::usual(RoadOptions::of(RoadMethod::ShadowVolumes))
+            ..MapSettings::usual(RoadOptions::for_method(RoadMethod::ShadowVolumes))
         },
         software_method: Some(RoadMethod::Geometry),
         class_labels: std::array::from_fn(|class| format!("class {class}")),
@@ -51,7 +52,7 @@ fn request() -> WindowRequest {
     }
 }
 
-/// Loads without threads: each tile comes a few frames after it was asked for.
+/// Loads without threads: each tile arrives a few frames after its request.
 struct LateLoader {
     source: Arc<PackageSource>,
     asked: Vec<(TileId, u32)>,
@@ -75,19 +76,19 @@ impl TileLoader for LateLoader {
     }
 }
 
-/// Frames until nothing more is due; returns what is drawn then.
+/// Draws frames until nothing more is due; returns what is drawn then.
 fn drawn_at_rest(
     canvas: &mut Canvas,
     package: Arc<dyn MapPackage>,
     root: &TileGeometry,
     loader: Box<dyn TileLoader>,
-) -> Vec<Drawn> {
+) -> Vec<DrawnTile> {
     let request = request();
     request.check().unwrap();
     let heights_m = root.summary.unwrap().height_range_m;
     let extent = MapExtent::of_data(package.manifest().data_bounds, heights_m);
     let ground = SightedGround { extent, heights_m, at_place_m: None };
-    // Nothing is saved.
+    // The writer saves nothing.
     let files = FileWriter::new(PathBuf::from("no folder"), Arc::new(|| ()));
     let platform = AppPlatform { loader, files, clock_s: Box::new(|| 0.0) };
     let app = App::new(request, package, ground, canvas.gpu(), platform, (SIZE_PX, 1.0));

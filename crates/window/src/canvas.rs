@@ -1,5 +1,5 @@
-//! What the window has on the graphics card, apart from the surface: the map, and textures of the
-//! panel. When the device is lost, a new canvas takes the place of the old one.
+//! The window's data on the GPU, apart from the surface: the map, and textures of the panel. When
+//! the device is lost, a new canvas replaces the old one.
 
 mod snapshot;
 
@@ -10,17 +10,17 @@ use egui_wgpu::ScreenDescriptor;
 
 pub(crate) use self::snapshot::Snapshot;
 
-/// What the window has on the graphics card.
+/// The window's data on the GPU.
 pub(crate) struct Canvas {
     pub(crate) map: MapCanvas,
     ui: egui_wgpu::Renderer,
     format: wgpu::TextureFormat,
-    /// The pictures that are shown, as the panel's toolkit knows them.
+    /// The shown images, with their ids in the toolkit.
     pictures: Vec<(wgpu::Texture, TextureId)>,
 }
 
 impl Canvas {
-    /// Nothing drawn yet; the panel will be painted into views of this `format`.
+    /// Creates an empty canvas; the panel will be painted into views of this `format`.
     pub(crate) fn new(gpu: Gpu, format: wgpu::TextureFormat) -> Self {
         let options = egui_wgpu::RendererOptions {
             dithering: false,
@@ -39,19 +39,19 @@ impl Canvas {
         &self.map.gpu
     }
 
-    /// The pictures of the map, as large as the window: one, or those left and right of the divider.
+    /// The images of the map, as large as the window: one, or those left and right of the divider.
     pub(crate) fn pictures(&self) -> Vec<TextureId> {
         self.pictures.iter().map(|(_, id)| *id).collect()
     }
 
-    /// Draws the scene, unless it is what is shown already. Returns whether it was drawn.
+    /// Draws the scene, unless it is already shown. Returns whether it was drawn.
     ///
     /// # Errors
-    /// When the pictures are beyond what the adapter can draw.
+    /// When the images exceed the limits of the adapter.
     pub(crate) fn draw(&mut self, scene: &MapScene) -> Result<bool, GpuError> {
         let is_new = self.map.draw(scene)?;
         if is_new {
-            // Pixel for pixel, or enlarged where they are smaller than the window.
+            // Images are shown pixel by pixel, or enlarged if they are smaller than the window.
             let filter =
                 if scene.is_full() { wgpu::FilterMode::Nearest } else { wgpu::FilterMode::Linear };
             let mut before = std::mem::take(&mut self.pictures);
@@ -73,18 +73,18 @@ impl Canvas {
         Ok(is_new)
     }
 
-    /// Whether the pictures shown have all the window's pixels.
+    /// Whether the shown images have the full resolution of the window.
     pub(crate) fn is_full(&self) -> bool {
         self.map.shown().is_some_and(MapScene::is_full)
     }
 
-    /// Begins to read the map that is shown, without panel and overlay; `None` while no map is shown.
+    /// Starts reading back the map, without panel and overlay; `None` while no map is shown.
     pub(crate) fn snap_map(&self, divider_share: f32) -> Option<Snapshot> {
         self.map.begin_read(divider_share).map(|pixels| Snapshot { pixels, has_blue_first: false })
     }
 
-    /// Uploads what the panel changed of its textures; to be called before what was laid out is painted. Returns the
-    /// textures to free after that.
+    /// Uploads the panel's texture changes; call this before painting the layout. Returns the
+    /// textures to free after painting.
     pub(crate) fn take_textures(&mut self, mut delta: TexturesDelta) -> Vec<TextureId> {
         let gpu = &self.map.gpu;
         for (id, changes) in &delta.set {
@@ -97,14 +97,14 @@ impl Canvas {
         unused
     }
 
-    /// Frees textures that nothing will use from now on.
+    /// Frees textures that are no longer used.
     pub(crate) fn free_textures(&mut self, unused: &[TextureId]) {
         for id in unused {
             self.ui.free_texture(id);
         }
     }
 
-    /// Paints the whole window: the map and what lies on it.
+    /// Paints the whole window: the map and everything on it.
     pub(crate) fn paint(
         &mut self,
         primitives: &[ClippedPrimitive],
@@ -136,7 +136,7 @@ impl Canvas {
         queue.submit(commands);
     }
 
-    /// Paints the whole window into a picture and begins to read it.
+    /// Paints the whole window into an image and starts reading it back.
     pub(crate) fn snap_window(
         &mut self,
         primitives: &[ClippedPrimitive],
@@ -144,7 +144,7 @@ impl Canvas {
     ) -> Snapshot {
         let (size_px, usage) = (screen.size_in_pixels, wgpu::TextureUsages::RENDER_ATTACHMENT);
         let usage = usage | wgpu::TextureUsages::COPY_SRC;
-        let texture = self.gpu().texture("picture of the window", self.format, size_px, 1, usage);
+        let texture = self.gpu().texture("image of the window", self.format, size_px, 1, usage);
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         self.paint(primitives, screen, &view);
         let all = vec![(ReadBack::begin(self.gpu(), &texture), 0..size_px[0])];

@@ -1,4 +1,4 @@
-//! The canvas shows the map pixel for pixel and draws only what has changed.
+//! The canvas shows the map pixel by pixel and draws only what has changed.
 
 use std::time::{Duration, Instant};
 
@@ -17,7 +17,7 @@ use super::*;
 
 const SIZE_PX: [u32; 2] = [64, 48];
 
-/// `None`, and says so, where there is nothing to draw with.
+/// Returns a canvas; prints a message and returns `None` if there is no graphics device.
 pub(crate) fn canvas() -> Option<Canvas> {
     match Gpu::new() {
         Ok(gpu) => Some(Canvas::new(gpu, wgpu::TextureFormat::Bgra8Unorm)),
@@ -29,12 +29,12 @@ pub(crate) fn canvas() -> Option<Canvas> {
     }
 }
 
-/// Nothing but sky and void, so that no tile is needed.
+/// A scene of sky and void, so that no tile is needed.
 fn scene(compare: Compare) -> MapScene {
     scene_of_size(compare, SIZE_PX)
 }
 
-/// The same with heights doubled.
+/// The same scene with heights doubled.
 fn raised() -> MapScene {
     MapScene { exaggeration: 2.0, ..scene(Compare::Off) }
 }
@@ -46,7 +46,7 @@ pub(crate) fn scene_of_size(compare: Compare, size_px: [u32; 2]) -> MapScene {
         shown_px: size_px,
         style: Style::road_atlas(),
         compare,
-        roads: compare.pictures(RoadOptions::of(RoadMethod::Geometry)),
+        roads: compare.pictures(RoadOptions::for_method(RoadMethod::Geometry)),
         exaggeration: 1.0,
         point_scale: 1.0,
         height_range_m: [0.0, 100.0],
@@ -93,7 +93,7 @@ fn the_map_is_shown_pixel_for_pixel_beneath_the_panel() {
     canvas.draw(&scene(Compare::Off)).unwrap();
     let (map, window) = (map(&canvas), paint(&mut canvas));
     assert_eq!(window.dimensions(), (64, 48));
-    // Some pixels around the edge are the toolkit's, which smooths it.
+    // Some pixels at the edge belong to the toolkit, which smooths it.
     for (x, y, pixel) in window.enumerate_pixels().filter(|(x, ..)| !(30..=34).contains(x)) {
         let expected = if x < 32 { [200, 30, 10, 255] } else { map.get_pixel(x, y).0 };
         assert_eq!(pixel.0, expected, "{x}, {y}");
@@ -132,7 +132,7 @@ fn a_picture_shows_what_was_shown_when_it_was_asked_for() {
     assert_eq!(snapshot.into_image(canvas.gpu()).unwrap(), before);
 }
 
-/// A picture of one colour.
+/// An image of one colour.
 fn plain(gpu: &Gpu, color: wgpu::Color) -> Picture {
     let picture = Picture::new(gpu, SIZE_PX, 1).unwrap();
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -185,7 +185,7 @@ fn what_was_lost_is_drawn_again_by_another_canvas() {
     first.draw(&scene(Compare::Off)).unwrap();
     let before = map(&first);
     first.gpu().device.destroy();
-    // Whether or not drawing on tells of it, it must not end the program.
+    // Further drawing may or may not report the loss, but it must not end the program.
     let _ = first.draw(&raised());
     let _ = first.map.times();
     assert!(first.gpu().is_lost());

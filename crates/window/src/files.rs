@@ -1,5 +1,5 @@
-//! Pictures and flights as files, written by a thread of their own in the order in which they were
-//! asked for. They are numbered, and no existing file is replaced.
+//! Saves images and flights as files, on a thread of their own and in the order of the requests.
+//! The files are numbered, and existing files are never overwritten.
 
 use std::{
     fs::{self, OpenOptions},
@@ -14,12 +14,12 @@ use image::{ImageFormat, RgbaImage};
 
 use crate::NotSaved;
 
-/// The largest number that is tried.
+/// The largest number in a file name.
 const MOST: u32 = 99_999;
 
 type Saved = Result<PathBuf, NotSaved>;
 type Work = Box<dyn FnOnce() -> Saved + Send>;
-/// Makes the bytes of a file; called outside the thread that draws.
+/// Creates the bytes of a file; called outside the drawing thread.
 type Encode = Box<dyn FnOnce() -> io::Result<Vec<u8>> + Send>;
 
 /// A folder to which files are added.
@@ -38,13 +38,14 @@ struct Writer {
 }
 
 impl FileWriter {
-    /// Files go into `folder`; `wake` is called from another thread whenever one is written.
+    /// Creates the writer for files in `folder`; another thread calls `wake` whenever a file is
+    /// written.
     pub(crate) fn new(folder: PathBuf, wake: Arc<dyn Fn() + Send + Sync>) -> Self {
         let (sender, saved) = mpsc::channel();
         Self { folder, wake, sender, saved, writer: None }
     }
 
-    /// Saves a picture.
+    /// Saves an image.
     pub(crate) fn save_picture(&mut self, picture: RgbaImage) {
         let encode = move || {
             let mut png = Cursor::new(Vec::new());
@@ -64,19 +65,19 @@ impl FileWriter {
             Some(writer) => writer,
             None => self.start()?,
         };
-        // This cannot fail: the thread receives until this sender is dropped.
+        // This call cannot fail: the thread receives until this sender is dropped.
         let _ = writer.work.send(work);
         self.writer = Some(writer);
         Ok(())
     }
 
-    /// One thread, so that files get their numbers in order.
+    /// Starts one thread, so that files get their numbers in order.
     fn start(&self) -> io::Result<Writer> {
         let (sender, wake) = (self.sender.clone(), Arc::clone(&self.wake));
         let (work, waiting) = mpsc::channel::<Work>();
         let write_all = move || {
             for work in waiting {
-                // This fails once the window is closed, and then nothing needs to be told.
+                // This call fails once the window is closed, and then nothing needs to be reported.
                 let _ = sender.send(work());
                 wake();
             }
@@ -85,35 +86,36 @@ impl FileWriter {
         Ok(Writer { work, thread })
     }
 
-    /// Adds a file under the next free number after `stem`.
+    /// Writes a file with the next free number after `stem`.
     fn save(&mut self, stem: &'static str, extension: &'static str, encode: Encode) {
         let folder = self.folder.clone();
         let work = move || {
-            // If an encoder panics, that costs one file and is reported.
+            // If an encoder panics, only that file is lost, and the loss is reported.
             let encoded = catch_unwind(AssertUnwindSafe(encode));
-            let bytes = encoded.unwrap_or_else(|_| Err(io::Error::other("it cannot be encoded")));
+            let bytes =
+                encoded.unwrap_or_else(|_| Err(io::Error::other("the file cannot be encoded")));
             bytes
                 .and_then(|bytes| write(&folder, stem, extension, &bytes))
                 .map_err(|source| NotSaved::File { folder, source })
         };
         if let Err(source) = self.hand_over(Box::new(work)) {
             let folder = self.folder.clone();
-            // This cannot fail: the receiver is a field of this struct.
+            // This call cannot fail: the receiver is a field of this struct.
             let _ = self.sender.send(Err(NotSaved::File { folder, source }));
         }
     }
 
-    /// The files that were saved, or not, since this was called last; never waits.
+    /// The results of files since the last call; never waits.
     pub(crate) fn news(&mut self) -> Vec<Saved> {
         self.saved.try_iter().collect()
     }
 
-    /// Waits until all files are written; the result is that of the files that [`FileWriter::news`]
-    /// did not yet tell of.
+    /// Waits until all files are written. Returns the results that [`FileWriter::news`] has not
+    /// reported yet.
     pub(crate) fn finish(&mut self) -> Vec<Saved> {
         if let Some(Writer { work, thread }) = self.writer.take() {
             drop(work);
-            // The thread does not panic: panics of the work that it is given are caught.
+            // The thread does not panic: it catches the panics of its tasks.
             let _ = thread.join();
         }
         self.news()
@@ -121,13 +123,13 @@ impl FileWriter {
 }
 
 impl Drop for FileWriter {
-    /// A picture that was taken just before the window was closed is still written.
+    /// Waits for the files: an image taken just before the window was closed is still written.
     fn drop(&mut self) {
         self.finish();
     }
 }
 
-/// Writes a file under the first free number.
+/// Writes a file with the first free number.
 fn write(folder: &Path, stem: &str, extension: &str, bytes: &[u8]) -> io::Result<PathBuf> {
     fs::create_dir_all(folder)?;
     for number in 1..=MOST {
@@ -137,8 +139,8 @@ fn write(folder: &Path, stem: &str, extension: &str, bytes: &[u8]) -> io::Result
                 return match file.write_all(bytes) {
                     Ok(()) => Ok(path),
                     Err(error) => {
-                        // A part of a picture is of no use. If it cannot be removed, the first error is still the one to
-                        // report.
+                        // An incomplete image is of no use. If it cannot be removed, the first
+                        // error is still the one to report.
                         let _ = fs::remove_file(&path);
                         Err(error)
                     }

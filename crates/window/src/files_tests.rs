@@ -1,4 +1,4 @@
-//! Files are numbered, written before the end and never replaced.
+//! Files are numbered, written before the end and never overwritten.
 
 use std::time::{Duration, Instant};
 

@@ -1,4 +1,4 @@
-//! A window on a package: what moves the camera, what is shown beside the map.
+//! A window that shows a package: camera controls, and a panel with settings.
 //!
 //! ```text
 //!  system ──► platform ──► app ── inputs ──► Session of corniche-live ──► canvas ──► surface
@@ -6,14 +6,13 @@
 //!                           └───────── panel, overlay ◄── content
 //! ```
 //!
-//! [`run`] opens the window and returns when it is closed; [`watch`] opens one on pictures that
-//! come from elsewhere. `platform` is the one module that knows the window system; `canvas` is all
-//! that lies on the graphics card, `files` writes. `app` is a session of `corniche-live` and what
-//! is shown beside its map: it knows neither a window nor a clock. Nothing is drawn unless
-//! something moves, loads or is touched.
+//! [`run`] opens the window and returns when it is closed; [`watch`] opens a window for images from
+//! elsewhere. Only `platform` knows the window system; `canvas` holds everything on the GPU, and
+//! `files` writes files. `app` is a session of `corniche-live` with the panel and overlay: it knows
+//! neither a window nor a clock. Nothing is drawn unless something moves, loads or is touched.
 //!
-//! This crate never reads elevation files or extracts and never computes geometry; pictures of the map are
-//! `corniche-viewer`'s.
+//! This crate never reads elevation files or extracts and never computes geometry;
+//! `corniche-viewer` draws the images of the map.
 
 mod app;
 mod canvas;
@@ -28,6 +27,6 @@ mod window_request;
 pub use corniche_live::{
     ClockS, CommandOf, DrawnLine, MapSettings, NamedStyle, NotSaved, Reload, SaveDrawing, ShownView,
 };
-pub use error::{Closed, End, WindowError};
+pub use error::{Closed, WindowEnd, WindowError};
 pub use platform::{Watched, run, watch};
 pub use window_request::{BeginTrace, WindowRequest};

@@ -1,8 +1,9 @@
-//! What lies on the map itself: compass, scale bar, credits, notices, the divider of a split screen, the legend of a
-//! difference, the page of keys and the button for the panel.
+//! The overlay on the map: compass, scale bar, attribution, notices, the divider of a split screen,
+//! the legend of a difference, the page of keys and the button for the panel.
 //!
-//! Everything is painted at a fixed place in the part of the map that the panel leaves free. It does not use windows of the
-//! toolkit, so that nothing moves, fades or covers anything else.
+//! Everything is painted at a fixed position in the part of the map that the panel leaves free. The
+//! overlay does not use windows of the toolkit, so that nothing moves, fades or covers anything
+//! else.
 
 mod compass;
 mod divider;
@@ -14,7 +15,7 @@ mod scale_bar;
 use corniche_live::{Compare, MapSettings};
 use egui::{Rect, Ui};
 
-pub(crate) use self::palette::Answer;
+pub(crate) use self::palette::{PanelActions, color32};
 use self::{
     compass::{compass, compass_place, panel_button},
     divider::{divider, handles},
@@ -25,7 +26,7 @@ use self::{
 };
 use crate::window_content::WindowContent;
 
-/// A map with a side of less than this shows only credits and scale bar, points.
+/// A map with a side below this number of points shows only attribution and scale bar.
 const SMALL: f32 = 110.0;
 
 /// Lays out everything on the map; `rect` is the part of the map that the panel leaves free.
@@ -34,7 +35,7 @@ pub(crate) fn overlay(
     rect: Rect,
     settings: &mut MapSettings,
     content: &WindowContent<'_>,
-    answer: &mut Answer,
+    answer: &mut PanelActions,
 ) {
     // Nothing is painted over the panel or the status line, however small the window is.
     ui.set_clip_rect(rect);
@@ -60,6 +61,6 @@ pub(crate) fn overlay(
         room.min.y = no_data(ui, room, content);
         notices(ui, room, content, answer);
     }
-    // The credits are painted last, so that nothing covers them.
+    // The attribution is painted last, so that nothing covers it.
     credits(ui, rect, content);
 }

@@ -1,25 +1,26 @@
-//! The panel at the window's right side, and how it shares the window with the map.
+//! The panel at the window's right side, and the layout of panel and map.
 
 mod actions;
 mod look;
 mod performance;
 mod status_line;
 
-use corniche_live::{Command, MapSettings};
+use corniche_live::{MapCommand, MapSettings};
 use egui::{Color32, Rect, TextureId, Ui, pos2};
 
 use self::status_line::status_line;
-pub(crate) use crate::overlay::Answer;
+pub(crate) use crate::overlay::PanelActions;
 use crate::{overlay, window_content::WindowContent};
 
 /// Width of the panel, points.
 const WIDTH: f32 = 300.0;
-/// A window with less room than this beside the panel shows the map without the panel.
+/// A window with less space than this next to the panel shows the map without the panel.
 const LEAST_MAP_WIDTH: f32 = 140.0;
 /// A window narrower than this opens with the panel hidden.
 const LEAST_WIDTH_WITH_PANEL: f32 = 600.0;
 
-/// Sets up the toolkit: dark colours, and no animations, so that nothing is drawn again without a reason.
+/// Sets up the toolkit: dark colours, and no animations, so that nothing is redrawn without a
+/// reason.
 pub(crate) fn set_up(ui: &egui::Context) {
     ui.set_theme(egui::Theme::Dark);
     ui.all_styles_mut(|style| {
@@ -32,13 +33,14 @@ pub(crate) fn set_up(ui: &egui::Context) {
     });
 }
 
-/// Width of the open panel in a window of this width, both in points: 0 where there is no room for it.
+/// The width of the open panel in a window of this width, both in points: 0 if there is no space
+/// for it.
 pub(crate) fn width(window_width: f32) -> f32 {
     if window_width >= WIDTH + LEAST_MAP_WIDTH { WIDTH } else { 0.0 }
 }
 
-/// Width of the panel with which a window of this width opens, both in points: 0 in a narrow window, where the map has the
-/// room until the panel is asked for.
+/// The initial width of the panel in a window of this width, both in points: 0 in a narrow window,
+/// where the map has all the space until the user opens the panel.
 pub(crate) fn first_width(window_width: f32) -> f32 {
     if window_width >= LEAST_WIDTH_WITH_PANEL { WIDTH } else { 0.0 }
 }
@@ -49,8 +51,8 @@ pub(crate) fn show(
     settings: &mut MapSettings,
     content: &WindowContent<'_>,
     pictures: &[TextureId],
-) -> Answer {
-    let mut answer = Answer::default();
+) -> PanelActions {
+    let mut answer = PanelActions::default();
     let whole = ui.ctx().viewport_rect();
     paint(ui, whole, settings.divider_share, pictures);
     let has_room = width(whole.width()) > 0.0;
@@ -83,13 +85,13 @@ fn sections(
     ui: &mut Ui,
     settings: &mut MapSettings,
     content: &WindowContent<'_>,
-    commands: &mut Vec<Command>,
+    commands: &mut Vec<MapCommand>,
 ) {
     ui.horizontal(|ui| {
         ui.heading("Corniche");
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             for (words, command) in
-                [("Hide (Tab)", Command::TogglePanel), ("Help (?)", Command::ToggleHelp)]
+                [("Hide (Tab)", MapCommand::TogglePanel), ("Help (?)", MapCommand::ToggleHelp)]
             {
                 if ui.small_button(words).clicked() {
                     commands.push(command);
@@ -109,7 +111,7 @@ fn sections(
     });
 }
 
-/// Sections that few people need, and that are folded at first.
+/// Sections for advanced users, which are folded at first.
 const FOLDED: [&str; 2] = ["Advanced", "Performance"];
 
 fn section(ui: &mut Ui, title: &str, add: impl FnOnce(&mut Ui)) {
@@ -118,7 +120,8 @@ fn section(ui: &mut Ui, title: &str, add: impl FnOnce(&mut Ui)) {
         .show_unindented(ui, add);
 }
 
-/// Paints the map. It fills the whole window, also behind the panel, so that it does not move when the panel opens.
+/// Paints the map. It fills the whole window, even behind the panel, so that it does not move when
+/// the panel opens.
 fn paint(ui: &Ui, whole: Rect, divider_share: f32, pictures: &[TextureId]) {
     let painter = ui.painter();
     let image = |texture, from: f32, to: f32| {

@@ -17,10 +17,10 @@ use super::*;
 mod golden;
 
 fn usual() -> MapSettings {
-    MapSettings::usual(RoadOptions::of(RoadMethod::ShadowVolumes))
+    MapSettings::usual(RoadOptions::for_method(RoadMethod::ShadowVolumes))
 }
 
-/// Everything there is to tell, and all of it long.
+/// All possible content, with long texts.
 struct Told {
     times: FrameTimes,
     attribution: Vec<String>,
@@ -101,17 +101,17 @@ impl Told {
     }
 }
 
-/// Lays out a window of a size in points, with the events of each pass; the last one counts.
+/// Lays out a window of a size in points, with the events of each pass; the last pass counts.
 fn lay_out(
     size: [f32; 2],
     settings: &mut MapSettings,
     content: &WindowContent<'_>,
     passes: &[&[Event]],
-) -> (Vec<(String, Rect, Rect)>, Answer) {
+) -> (Vec<(String, Rect, Rect)>, PanelActions) {
     let ctx = egui::Context::default();
     set_up(&ctx);
     let mut texts = Vec::new();
-    let mut answer = Answer::default();
+    let mut answer = PanelActions::default();
     for events in passes {
         let input = RawInput {
             screen_rect: Some(Rect::from_min_size(egui::Pos2::ZERO, size.into())),
@@ -137,7 +137,8 @@ fn gather(shape: &Shape, clip: Rect, texts: &mut Vec<(String, Rect, Rect)>) {
     match shape {
         Shape::Vec(shapes) => shapes.iter().for_each(|shape| gather(shape, clip, texts)),
         Shape::Text(text) if !text.galley.text().trim().is_empty() => {
-            // The letters themselves: a line that begins inside another one has its room from the left edge on.
+            // The rectangle of the letters themselves: a line that begins inside another one has
+            // its space from the left edge on.
             let place = text.galley.mesh_bounds.translate(text.pos.to_vec2());
             texts.push((text.galley.text().to_owned(), place, clip));
         }
@@ -315,7 +316,7 @@ fn a_click_on_the_compass_turns_north_up() {
     let [over, press, release] = click(pos2(1000.0 - 34.0, 34.0));
     let (_, answer) =
         lay_out([1000.0, 700.0], &mut settings, &told.content(), &[&over, &press, &release]);
-    assert_eq!(answer.commands, [Command::NorthUp]);
+    assert_eq!(answer.commands, [MapCommand::NorthUp]);
 }
 
 #[test]
@@ -323,13 +324,13 @@ fn buttons_ask_for_what_they_say() {
     let told = Told::new();
     let size = [1280.0, 1000.0];
     for (words, command) in [
-        ("Map (P)", Command::Take(Shot::Map)),
-        ("Stop and save", Command::StopRecording),
-        ("Fly (F)", Command::ToggleFly),
-        ("Go to", Command::GoTo),
-        ("Copy this view (V)", Command::CopyView),
-        ("Help (?)", Command::ToggleHelp),
-        ("Hide (Tab)", Command::TogglePanel),
+        ("Map (P)", MapCommand::Take(Shot::Map)),
+        ("Stop and save", MapCommand::StopRecording),
+        ("Fly (F)", MapCommand::ToggleFly),
+        ("Go to", MapCommand::GoTo),
+        ("Copy this view (V)", MapCommand::CopyView),
+        ("Help (?)", MapCommand::ToggleHelp),
+        ("Hide (Tab)", MapCommand::TogglePanel),
     ] {
         let (texts, _) = lay_out(size, &mut usual(), &told.content(), &[&[], &[]]);
         let (_, rect, _) = texts.iter().find(|(text, ..)| text == words).unwrap();
@@ -387,7 +388,7 @@ fn areas_can_be_left_out_where_the_package_has_some() {
     let mut told = Told::new();
     for has_areas in [true, false] {
         told.has_areas = has_areas;
-        // So wide that the status line has room for everything.
+        // The window is wide enough for everything in the status line.
         let (texts, _) = lay_out([4000.0, 1000.0], &mut usual(), &told.content(), &[&[], &[]]);
         assert_eq!(texts.iter().any(|(words, ..)| words == "Areas"), has_areas);
         let timed = texts.iter().any(|(words, ..)| words.contains(" areas 0.0,"));
@@ -428,7 +429,7 @@ fn boundaries_are_listed_while_they_are_shown() {
     }
 }
 
-/// The map keeps its place whatever there is to tell.
+/// The map keeps its place whatever the status line shows.
 #[test]
 fn the_status_line_is_as_high_in_every_window_whatever_it_tells() {
     let told = Told::new();
@@ -465,7 +466,7 @@ fn the_status_says_how_roads_are_drawn_and_by_what() {
 #[test]
 fn where_the_middle_has_no_ground_the_map_says_how_to_come_back() {
     let told = Told::new();
-    let words = "no data here; R returns to the first view";
+    let words = "no data here; press R for the first view";
     let has = |content: &WindowContent<'_>| {
         let (texts, _) = lay_out([480.0, 640.0], &mut usual(), content, &[&[], &[]]);
         texts.iter().any(|(text, ..)| text == words)
@@ -490,7 +491,7 @@ fn a_closed_panel_leaves_a_button_that_opens_it() {
     let [over, press, release] = click(button.center());
     let passes: [&[Event]; 4] = [&[], &over, &press, &release];
     let (_, answer) = lay_out(size, &mut settings, &told.content(), &passes);
-    assert_eq!(answer.commands, [Command::TogglePanel]);
+    assert_eq!(answer.commands, [MapCommand::TogglePanel]);
 }
 
 #[test]
@@ -519,5 +520,5 @@ fn a_place_is_typed_and_entered() {
     let passes: [&[Event]; 6] = [&[], &over, &press, &release, &typed, &entered];
     let (_, answer) = lay_out(size, &mut settings, &told.content(), &passes);
     assert_eq!(settings.place, "9.52, 47.14");
-    assert_eq!(answer.commands, [Command::GoTo]);
+    assert_eq!(answer.commands, [MapCommand::GoTo]);
 }

@@ -1,5 +1,5 @@
-//! What the system gives: event loop, surface, loss of either, threads that load tiles. Nothing
-//! else in this crate knows `winit` or a clock.
+//! The interface to the operating system: event loop, surface, the loss of either, threads that
+//! load tiles. Nothing else in this crate knows `winit` or a clock.
 
 mod event_loop;
 mod first_tiles;

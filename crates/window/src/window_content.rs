@@ -1,4 +1,4 @@
-//! What a frame shows beside the map: values that go from the app to the panel and the overlay.
+//! The content of the panel and the overlay in a frame: values that the app passes to them.
 
 use corniche_live::{DrawingContent, FrameTimes, GroundPoint, Notice, controls::Mode};
 use corniche_roads::FunctionalRoadClass;
@@ -9,64 +9,64 @@ use corniche_viewer::{
     gpu::PassTimes,
 };
 
-/// Everything that the panel and the overlay show, apart from the settings.
-#[expect(clippy::struct_excessive_bools, reason = "facts, independent of each other")]
+/// All values that the panel and the overlay show, apart from the settings.
+#[expect(clippy::struct_excessive_bools, reason = "independent facts")]
 pub(crate) struct WindowContent<'a> {
     /// Name of the graphics adapter.
     pub(crate) adapter: &'a str,
-    /// Whether the processor draws.
+    /// Whether the CPU draws.
     pub(crate) is_software: bool,
-    /// The package's credits.
+    /// The package's attribution.
     pub(crate) attribution: &'a [String],
-    /// The package's CRS and what makes working metres of its coordinates.
+    /// The package's CRS and its factors to working metres.
     pub(crate) crs: WorkingCrs<'a>,
     /// The ground under the cursor; `None` over sky, voids and the panel.
     pub(crate) cursor: Option<GroundPoint>,
     /// The camera; its height is a true height.
     pub(crate) pose: Pose,
-    /// True metres in a point of the screen at its middle; `None` without ground there.
+    /// True metres per point of the screen at its middle; `None` without ground there.
     pub(crate) metres_per_point: Option<f64>,
     /// Map mode or fly mode.
     pub(crate) mode: Mode,
     /// Names of the styles.
     pub(crate) style_names: &'a [String],
-    /// How strongly the style that is shown lets photos be seen; `None` in a package without photos.
+    /// The opacity of photos in the shown style; `None` in a package without photos.
     pub(crate) photo: Option<f32>,
-    /// Whether the package has water, forest and so on.
+    /// Whether the package has areas (water, forest and so on).
     pub(crate) has_areas: bool,
-    /// Whether it has boundaries.
+    /// Whether the package has boundaries.
     pub(crate) has_boundaries: bool,
     /// Names of the files of lines.
     pub(crate) overlays: &'a [String],
-    /// Colours of their lines.
+    /// The colours of the lines of each file.
     pub(crate) overlay_colors: Vec<Rgb>,
     /// The boundaries of the package that the style draws.
     pub(crate) boundary_lines: Vec<BoundaryLines>,
-    /// Colours of the roads in the style that is shown, by class.
+    /// The colours of roads in the shown style, by class.
     pub(crate) road_colors: &'a [Rgb],
-    /// What the roads of each class are called.
+    /// The names of the classes.
     pub(crate) class_labels: &'a [String; FunctionalRoadClass::COUNT],
-    /// Tiles that are drawn.
+    /// The number of drawn tiles.
     pub(crate) tiles_drawn: usize,
-    /// Tiles that the view needs and that are not on the graphics card.
+    /// The number of tiles that the view needs and that are not on the GPU.
     pub(crate) tiles_missing: usize,
-    /// Tiles that are being loaded.
+    /// The number of tiles being loaded.
     pub(crate) tiles_loading: usize,
-    /// Whether the missing tiles do not fit into the graphics memory allowed.
+    /// Whether the missing tiles exceed the graphics memory allowed.
     pub(crate) is_full: bool,
-    /// Triangles of the ground that are drawn.
+    /// The number of drawn triangles of the ground.
     pub(crate) triangles: u64,
-    /// Segments of roads that are drawn.
+    /// The number of drawn segments of roads.
     pub(crate) segments: u64,
-    /// Bytes on the graphics card, and how many there may be.
+    /// The bytes used on the GPU, and the limit.
     pub(crate) gpu_bytes: [u64; 2],
-    /// Times of the passes by the graphics card's clock, for each picture of the last frame that it has finished.
+    /// The GPU times of the passes, for each image of the last frame that the GPU has finished.
     pub(crate) passes: &'a [(RoadMethod, PassTimes)],
-    /// How long the last frames took.
+    /// The durations of the last frames.
     pub(crate) frame_times: &'a FrameTimes,
-    /// The lines that a person draws.
+    /// The lines that the user draws.
     pub(crate) drawing: DrawingContent,
-    /// How long a flight has been recorded; `None` while none is.
+    /// The duration of the recording so far; `None` if there is none.
     pub(crate) recording_s: Option<f64>,
     /// Messages, oldest first.
     pub(crate) notices: &'a [Notice],

@@ -1,4 +1,4 @@
-//! What a caller asks of a window: package, styles, layers, and how files are written.
+//! The request for a window: package, styles, layers, and the writing of files.
 
 use std::{io, path::PathBuf};
 
@@ -10,56 +10,57 @@ use corniche_viewer::{CameraRequest, RoadMethod, range, stream::StreamBudget};
 
 use crate::WindowError;
 
-/// Opens the trace; called once, when the window is open. Each write must reach the file at once, for a script may read it
-/// meanwhile.
+/// Opens the trace; called once, when the window is open. Each write must reach the file at once,
+/// because a script may read it meanwhile.
 pub type BeginTrace = Box<dyn FnOnce() -> io::Result<Box<dyn io::Write>>>;
 
-/// How to open a window, and what it shows at first.
+/// The request for a window, with its initial state.
 pub struct WindowRequest {
-    /// What the package is called.
+    /// The name of the package.
     pub name: String,
-    /// Width and height of the window's inside at first, pixels.
+    /// The initial width and height of the window's inside, in pixels.
     pub size_px: [u32; 2],
-    /// Where to look from at first.
+    /// The initial camera.
     pub camera: CameraRequest,
-    /// What else a person can change, as it is at first; samples and the panel are set when it opens.
+    /// The other initial settings; the window sets samples and the panel when it opens.
     pub settings: MapSettings,
-    /// The method by which roads are drawn at first where the processor draws; `None`: by the same as elsewhere.
+    /// The initial drawing method of roads if the CPU draws; `None` for the same as on a GPU.
     pub software_method: Option<RoadMethod>,
-    /// What people call the roads of each class, 0 first.
+    /// The names of the classes, class 0 first.
     pub class_labels: [String; FunctionalRoadClass::COUNT],
-    /// Tells the command that draws a view, which a person can copy.
+    /// Returns the command that draws a view, which the user can copy.
     pub command_of: CommandOf,
-    /// Styles to choose from, at least one; the first is shown at first.
+    /// Styles to choose from, at least one; the first is the initial one.
     pub styles: Vec<NamedStyle>,
-    /// Tells whether the first style has changed; `None` if it cannot change.
+    /// Checks whether the first style has changed; `None` if it cannot change.
     pub reload: Option<Reload>,
-    /// What the files of lines are called that the package's tiles carry, in the order of the style's
+    /// The names of the line files in the package's tiles, in the order of the style's
     /// [`overlays`](corniche_styles::Style::overlays).
     pub overlays: Vec<String>,
     /// Lines that can be changed in the window.
     pub drawn_lines: Vec<DrawnLine>,
-    /// Saves them.
+    /// Saves the lines.
     pub save_drawing: SaveDrawing,
-    /// Samples per pixel along each side; without it 2, and 1 where the processor draws.
+    /// Samples per pixel along each side; `None` for 2, or 1 if the CPU draws.
     pub samples_per_side: Option<u32>,
-    /// What may be loaded and kept.
+    /// The limits of tiles being loaded and kept.
     pub budget: StreamBudget,
-    /// Whether movements slow down gradually; else they end at once.
+    /// Whether movements slow down gradually; otherwise they end at once.
     pub has_inertia: bool,
-    /// Where pictures and flights are saved; no existing file is replaced.
+    /// The folder for saved images and flights; existing files are never overwritten.
     pub folder: PathBuf,
-    /// A diagnostic: opens what a line for each frame is written to.
+    /// Opens the trace, a diagnostic file with one line per frame.
     pub trace: Option<BeginTrace>,
-    /// Called several times a second: must the program end, for instance because of a signal?
+    /// Returns whether the program must end, for example because of a signal; called several times
+    /// a second.
     pub is_stopped: Box<dyn Fn() -> bool>,
 }
 
 impl WindowRequest {
-    /// Refuses what makes no sense, whatever the package.
+    /// Rejects invalid values, whatever the package.
     ///
     /// # Errors
-    /// When a number is out of its range, or there is no style.
+    /// When a number is out of range, or there is no style.
     pub(crate) fn check(&self) -> Result<(), WindowError> {
         if self.styles.is_empty() {
             return Err(WindowError::NoStyle);

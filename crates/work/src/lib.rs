@@ -1,6 +1,7 @@
-//! Long work: which stage it is in and how far, who is told of it and may end it, the threads that share it, and what they keep for each other.
+//! Long operations: their stages and progress, the observer that is informed and may cancel, worker
+//! threads, and a cache that the threads share.
 //!
-//! This crate never knows what the work is.
+//! This crate does not know what the work is.
 
 mod locked;
 mod observer;

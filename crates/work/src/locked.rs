@@ -1,8 +1,9 @@
-//! Locks of what is whole at any time.
+//! Locks that tolerate panics of other threads.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Locks what is whole also after a thread ended in the middle of its work: it is set at once.
+/// Locks a value that is consistent at any time, because it is assigned in one step. The lock works
+/// even after another thread panicked while holding it.
 pub fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

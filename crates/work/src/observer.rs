@@ -8,7 +8,7 @@ use crate::Stage;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Interrupted;
 
-/// Lets an error that has a variant `Interrupted` be made of [`Interrupted`].
+/// Implements the conversion of [`Interrupted`] to an error with a variant `Interrupted`.
 #[macro_export]
 macro_rules! from_interrupted {
     ($error:ty) => {
@@ -22,27 +22,30 @@ macro_rules! from_interrupted {
 
 /// What work reports to its caller, and how the caller stops it.
 pub trait Observer: Sync {
-    /// A stage begins; `total` is how many of its [`Unit`](crate::Unit)s it will count up to, where that is known. Stages do not overlap.
+    /// A stage begins; `total` is the number of [`Unit`](crate::Unit)s it will count, if known.
+    /// Stages do not overlap.
     fn begin(&self, _: Stage, _total: Option<u64>) {}
 
-    /// An earlier run did `steps` of the total. They count as done, but say nothing about how fast this run is.
+    /// An earlier run did `steps` of the total. They count as done, but not for the speed of this
+    /// run.
     fn already(&self, _: Stage, _steps: u64) {}
 
     /// The stage has done `steps` more.
     fn advance(&self, _: Stage, _steps: u64) {}
 
-    /// The stage has done `done` in all, of a `total` that is known only now or that changed.
+    /// The stage has done `done` in all, out of a `total` that became known only now or that
+    /// changed.
     fn reached(&self, _: Stage, _done: u64, _total: u64) {}
 
     /// The stage is over.
     fn end(&self, _: Stage) {}
 
-    /// The run uses this file or folder and removes it when it ends. A caller that ends the program without waiting for the run
-    /// removes it itself.
+    /// The run uses this temporary file or folder and removes it at the end. A caller that ends the
+    /// program without waiting for the run removes it itself.
     fn temporary(&self, _: &Path) {}
 
-    /// The run keeps its intermediate results in this folder, and may be gone on from there if it ends early. A caller that ends the program without
-    /// waiting for the run tells so itself.
+    /// The run stores its intermediate results in this folder, from which it can be resumed if it
+    /// ends early. A caller that ends the program without waiting for the run reports this itself.
     fn keeps(&self, _: &Path) {}
 
     /// A warning about the inputs, as text for the user.
@@ -53,10 +56,10 @@ pub trait Observer: Sync {
         false
     }
 
-    /// Goes on unless the run is cancelled.
+    /// Continues unless the run is cancelled.
     ///
     /// # Errors
-    /// [`Interrupted`] if it is.
+    /// [`Interrupted`] if the run is cancelled.
     fn check(&self) -> Result<(), Interrupted> {
         if self.is_cancelled() { Err(Interrupted) } else { Ok(()) }
     }

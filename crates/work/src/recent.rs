@@ -1,4 +1,5 @@
-//! What was made last, within a budget of memory: made by whoever asks first, and shared by all threads.
+//! A cache of recently used values with a memory budget: the first thread that requests a value
+//! computes it, and all threads share it.
 
 use std::{
     collections::BTreeMap,
@@ -7,53 +8,57 @@ use std::{
 
 use crate::locked;
 
-/// What an entry takes beside what it holds, about.
+/// The approximate overhead of an entry in bytes, beyond its value.
 const ENTRY_BYTES: u64 = 64;
 
-/// Things by key: those that were used last, within a budget.
+/// A cache of the most recently used values by key, within a memory budget.
 ///
-/// One that is asked for by several threads at once is made by the first of them, and the others wait for it. To make one, others of the same store may
-/// be asked for, as long as none comes to need itself; it is kept meanwhile. A thing of which something is still in use after it was given away stays
-/// in memory until that ends, and no longer counts.
+/// Concurrent requests for one key compute the value once; the other threads wait. Computing a
+/// value may request other keys of the same cache, but not in a cycle (deadlock); the value is kept
+/// meanwhile. A value that is still in use after its eviction stays in memory until its last use,
+/// and no longer counts.
 #[derive(Debug)]
 pub struct Recent<K, V> {
     budget_bytes: u64,
-    kept: Mutex<Kept<K, V>>,
+    kept: Mutex<CacheState<K, V>>,
 }
 
-/// Where a thing is, once it was made.
+/// The slot of a value, empty until it is computed.
 type Slot<V> = Arc<Mutex<Option<Arc<V>>>>;
 
 #[derive(Debug)]
-struct Entry<V> {
+struct CacheEntry<V> {
     slot: Slot<V>,
-    /// When it was used last.
+    /// The time of the last use.
     used: u64,
     bytes: u64,
 }
 
 #[derive(Debug)]
-struct Kept<K, V> {
-    by_key: BTreeMap<K, Entry<V>>,
-    /// The keys by when they were used last.
+struct CacheState<K, V> {
+    by_key: BTreeMap<K, CacheEntry<V>>,
+    /// The keys, ordered by the time of their last use.
     by_use: BTreeMap<u64, K>,
     bytes: u64,
     clock: u64,
 }
 
 impl<K: Copy + Ord, V> Recent<K, V> {
-    /// Keeps nothing yet. Whenever a thing was made, as much goes as `budget_bytes` ask for; but what was asked for last is kept, and what is in use by those
-    /// who ask for it or make it.
+    /// Creates an empty cache. After each computation, values are evicted until the rest fits
+    /// `budget_bytes`; the value requested last and values that are being requested or computed are
+    /// kept.
     #[must_use]
     pub fn new(budget_bytes: u64) -> Self {
-        let kept = Kept { by_key: BTreeMap::new(), by_use: BTreeMap::new(), bytes: 0, clock: 0 };
+        let kept =
+            CacheState { by_key: BTreeMap::new(), by_use: BTreeMap::new(), bytes: 0, clock: 0 };
         Self { budget_bytes, kept: Mutex::new(kept) }
     }
 
-    /// The thing of this key. `make` makes it where it is not kept; `bytes_of` tells what it takes.
+    /// Returns the value of this key. `make` computes it if it is not cached; `bytes_of` returns
+    /// its size.
     ///
     /// # Errors
-    /// Those of `make`; then whoever asks next tries again.
+    /// The errors of `make`; then the next request tries again.
     pub fn get<E>(
         &self,
         key: K,
@@ -69,19 +74,19 @@ impl<K: Copy + Ord, V> Recent<K, V> {
         *made = Some(Arc::clone(&new));
         drop(made);
         let gone = locked(&self.kept).count(key, bytes_of(&new), self.budget_bytes);
-        // Large things are freed while others may ask.
+        // Large values are freed outside the lock.
         drop(gone);
         Ok(new)
     }
 }
 
-impl<K: Copy + Ord, V> Kept<K, V> {
+impl<K: Copy + Ord, V> CacheState<K, V> {
     fn slot(&mut self, key: K) -> Slot<V> {
         self.clock += 1;
         let Self { by_key, by_use, bytes, clock } = self;
         let entry = by_key.entry(key).or_insert_with(|| {
             *bytes += ENTRY_BYTES;
-            Entry { slot: Slot::default(), used: 0, bytes: ENTRY_BYTES }
+            CacheEntry { slot: Slot::default(), used: 0, bytes: ENTRY_BYTES }
         });
         by_use.remove(&entry.used);
         by_use.insert(*clock, key);
@@ -89,9 +94,9 @@ impl<K: Copy + Ord, V> Kept<K, V> {
         Arc::clone(&entry.slot)
     }
 
-    /// Counts what was put in a slot, and gives away what was used longest ago where it is too much.
-    fn count(&mut self, key: K, bytes: u64, budget_bytes: u64) -> Vec<Entry<V>> {
-        // It was in use while it was made, so it is still there.
+    /// Counts the value in a slot, and evicts the least recently used values above the budget.
+    fn count(&mut self, key: K, bytes: u64, budget_bytes: u64) -> Vec<CacheEntry<V>> {
+        // The entry was in use during the computation, so it still exists.
         if let Some(entry) = self.by_key.get_mut(&key) {
             entry.bytes += bytes;
             self.bytes += bytes;
@@ -101,8 +106,9 @@ impl<K: Copy + Ord, V> Kept<K, V> {
             if self.bytes <= budget_bytes {
                 break;
             }
-            // Who makes a thing, or waits for it, holds its slot. Slots are handed out under the lock only.
-            let idle = |entry: &&Entry<V>| other != key && Arc::strong_count(&entry.slot) == 1;
+            // A thread that computes a value or waits for it holds its slot. Slots are handed out
+            // under the lock only.
+            let idle = |entry: &&CacheEntry<V>| other != key && Arc::strong_count(&entry.slot) == 1;
             if let Some(entry) = self.by_key.get(&other).filter(idle) {
                 self.bytes -= entry.bytes;
                 gone.push((used, other));

@@ -1,4 +1,4 @@
-//! What was used longest ago goes first, and threads make a thing once.
+//! The least recently used values are evicted first, and threads compute a value once.
 
 use std::{
     convert::Infallible,
@@ -8,7 +8,8 @@ use std::{
 
 use super::*;
 
-/// Asks for a key whose thing is ten times the key and takes so many bytes; says whether it had to be made.
+/// Requests a key whose value is ten times the key and takes this many bytes; returns whether the
+/// value had to be computed.
 fn ask(recent: &Recent<u32, u32>, key: u32, bytes: u64) -> bool {
     let mut was_made = false;
     let make = || {

@@ -1,16 +1,16 @@
-//! The stages of all commands that take their time: what each is called and what it counts.
+//! The stages of all long commands: their names and the units that they count.
 
-/// What a stage counts.
+/// The unit that a stage counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unit {
     /// Bytes, which have units of their own.
     Bytes,
-    /// Things, by the name of several of them, which ends in s.
+    /// Things, by their plural name, which ends in s.
     Things(&'static str),
 }
 
 impl Unit {
-    /// Several of what is counted.
+    /// The plural name of the unit.
     #[must_use]
     pub const fn plural(self) -> &'static str {
         match self {
@@ -20,13 +20,13 @@ impl Unit {
     }
 }
 
-/// Tiles are what most stages count.
+/// The unit of most stages.
 const TILES: Unit = Unit::Things("tiles");
 
-/// Declares the stages in their order: for each its name for programs, its name for people, and what it counts.
+/// Declares the stages in their order: the name for programs, the name for people, and the unit.
 macro_rules! stages {
     ($($(#[doc = $doc:literal])+ $stage:ident = $id:literal, $title:literal, $unit:expr;)+) => {
-        /// A stage, in the order in which those of one command come.
+        /// A stage; the stages of a command come in this order.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
         pub enum Stage {
             $($(#[doc = $doc])+ $stage,)+
@@ -56,43 +56,63 @@ stages! {
     Boundaries = "boundaries", "splitting boundaries", Unit::Things("ways");
     /// Split roads by tile.
     Roads = "roads", "splitting roads", Unit::Things("ways");
-    /// Read the DEM, reproject it, fill its voids, make the level rasters.
-    // Finest tiles of one window of the DEM.
-    Heights = "heights", "reading heights", Unit::Things("areas");
+    /// Read the DEM, reproject it, fill its voids, create the rasters of all levels.
+    // A window has the samples for some of the finest tiles.
+    Heights = "heights", "reading heights", Unit::Things("windows");
     /// Read photos.
     Photos = "photos", "reading photos", TILES;
     /// Triangulate the tiles of all levels but the finest.
     CoarseTins = "coarse-tins", "meshing coarse levels", TILES;
     /// Measure every finest tile, and the coarser ones above it, against the full resolution.
     Deviations = "deviations", "measuring errors", TILES;
-    /// Measure every level at the DEM's own samples, where they are not the nodes.
+    /// Measure every level at the DEM's own samples, if they are not the nodes.
     Samples = "samples", "measuring at samples", Unit::Things("blocks");
-    /// Make the tiles: clip, drape and encode.
-    Tiles = "tiles", "making tiles", TILES;
-    /// Make the tiles of all levels but the finest.
-    CoarseTiles = "coarse-tiles", "making coarse tiles", TILES;
+    /// Create the tiles: clip, drape and encode.
+    Tiles = "tiles", "creating tiles", TILES;
+    /// Create the tiles of all levels but the finest.
+    CoarseTiles = "coarse-tiles", "creating coarse tiles", TILES;
     /// Solve the heights of bridges and tunnels, and cut them by tile.
     Spans = "spans", "solving bridges", TILES;
     /// Write the package.
     Package = "package", "writing package", TILES;
-    /// Check a package.
-    Verify = "verify", "verifying", TILES;
-    /// An export reads tiles: it sorts what they hold by way, or makes what is written of them.
+    /// Check the ground and the roads of a package.
+    Verify = "verify", "checking tiles", TILES;
+    /// Check photos and their seams.
+    VerifyPhotos = "verify-photos", "checking photos", TILES;
+    /// Check areas and their seams.
+    VerifyAreas = "verify-areas", "checking areas", TILES;
+    /// Check boundaries.
+    VerifyBoundaries = "verify-boundaries", "checking boundaries", TILES;
+    /// Check bridges and tunnels.
+    VerifySpans = "verify-spans", "checking bridges", TILES;
+    /// Compare vertices and reliefs with the DEM.
+    CompareHeights = "compare-heights", "comparing heights", TILES;
+    /// Compare roads with the extract.
+    CompareRoads = "compare-roads", "comparing roads", TILES;
+    /// Compare areas with the extract.
+    CompareAreas = "compare-areas", "comparing areas", TILES;
+    /// Compare boundaries with the extract.
+    CompareBoundaries = "compare-boundaries", "comparing boundaries", TILES;
+    /// Compare bridges and tunnels with the extract.
+    CompareSpans = "compare-spans", "comparing bridges", TILES;
+    /// Compare the ends of areas and boundaries with the polygon.
+    ComparePolygon = "compare-polygon", "comparing with polygon", TILES;
+    /// An export reads tiles and sorts their content by way, or converts it.
     ExportTiles = "export-tiles", "reading tiles", TILES;
-    /// An export makes blocks of a raster.
+    /// An export writes blocks of a raster.
     ExportBlocks = "export-blocks", "writing blocks", Unit::Things("blocks");
     /// An export reads heights along the roads of an extract.
-    ExportChains = "export-chains", "heights along roads", Unit::Things("chains");
+    ExportChains = "export-chains", "reading road heights", Unit::Things("chains");
     /// An export joins the pieces of each way and writes features.
     ExportFeatures = "export-features", "writing features", Unit::Things("pieces");
     /// Compare roads with an image.
     Match = "match", "comparing tiles", TILES;
-    /// Draw the frames of a flight, in one way of drawing.
+    /// Draw the frames of a flight with one drawing method.
     Fly = "fly", "drawing frames", Unit::Things("frames");
 }
 
 impl Stage {
-    /// The stage's name for programs: small letters and hyphens. It does not change.
+    /// The stage's name for programs: lower-case letters and hyphens. It never changes.
     #[must_use]
     pub const fn id(self) -> &'static str {
         self.row().0

@@ -1,10 +1,11 @@
-//! Every stage is listed once, in order, under a name of its own.
+//! Every stage is listed once, in order, under a unique name.
 
 use std::collections::BTreeSet;
 
 use super::*;
 
-/// The match has no `_`, so a new stage does not compile here until it has a place in the list.
+/// The match has no `_`, so that a new stage does not compile here until it has a place in the
+/// list.
 #[test]
 fn every_stage_is_listed_once_in_order() {
     for (place, stage) in Stage::ALL.iter().copied().enumerate() {
@@ -24,16 +25,26 @@ fn every_stage_is_listed_once_in_order() {
             Stage::Spans => 12,
             Stage::Package => 13,
             Stage::Verify => 14,
-            Stage::ExportTiles => 15,
-            Stage::ExportBlocks => 16,
-            Stage::ExportChains => 17,
-            Stage::ExportFeatures => 18,
-            Stage::Match => 19,
-            Stage::Fly => 20,
+            Stage::VerifyPhotos => 15,
+            Stage::VerifyAreas => 16,
+            Stage::VerifyBoundaries => 17,
+            Stage::VerifySpans => 18,
+            Stage::CompareHeights => 19,
+            Stage::CompareRoads => 20,
+            Stage::CompareAreas => 21,
+            Stage::CompareBoundaries => 22,
+            Stage::CompareSpans => 23,
+            Stage::ComparePolygon => 24,
+            Stage::ExportTiles => 25,
+            Stage::ExportBlocks => 26,
+            Stage::ExportChains => 27,
+            Stage::ExportFeatures => 28,
+            Stage::Match => 29,
+            Stage::Fly => 30,
         };
         assert_eq!(place, expected, "{stage:?}");
     }
-    assert_eq!(Stage::ALL.len(), 21);
+    assert_eq!(Stage::ALL.len(), 31);
 }
 
 #[test]

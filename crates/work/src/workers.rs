@@ -1,4 +1,4 @@
-//! The worker threads: they work side by side, and one writer takes their results in order.
+//! Worker threads: they work in parallel, and one writer takes their results in order.
 
 use std::{
     collections::BTreeMap,
@@ -8,10 +8,11 @@ use std::{
 
 use crate::{Interrupted, Observer, Stage, locked};
 
-/// Works on each item with [`in_order`], and asks `observer` before each whether the run is cancelled.
+/// Works on each item with [`in_order`], and checks before each item whether `observer` cancels the
+/// run.
 ///
 /// # Errors
-/// Those of [`in_order`], or [`Interrupted`].
+/// The errors of [`in_order`], or [`Interrupted`].
 pub fn in_order_unless_cancelled<I: Sync, S, R: Send, E: Send + From<Interrupted>>(
     observer: &dyn Observer,
     threads: usize,
@@ -27,10 +28,11 @@ pub fn in_order_unless_cancelled<I: Sync, S, R: Send, E: Send + From<Interrupted
     in_order(threads, items.len(), start, work, |index, made| take(&items[index], made))
 }
 
-/// Works on the items of a stage that has begun, and tells `observer` how far it is. What is made comes to `take` in the items' order.
+/// Works on the items of a stage that has begun, and reports the progress to `observer`. The
+/// results are passed to `take` in the items' order.
 ///
 /// # Errors
-/// Those of [`in_order_unless_cancelled`].
+/// The errors of [`in_order_unless_cancelled`].
 pub fn advance<I: Sync, S, R: Send, E: Send + From<Interrupted>>(
     (observer, stage): (&dyn Observer, Stage),
     threads: usize,
@@ -49,7 +51,7 @@ pub fn advance<I: Sync, S, R: Send, E: Send + From<Interrupted>>(
 /// Does the same as [`advance`] for a whole stage, which begins and ends with it.
 ///
 /// # Errors
-/// Those of [`in_order_unless_cancelled`].
+/// The errors of [`in_order_unless_cancelled`].
 pub fn side_by_side<I: Sync, S, R: Send, E: Send + From<Interrupted>>(
     (observer, stage): (&dyn Observer, Stage),
     threads: usize,
@@ -64,10 +66,11 @@ pub fn side_by_side<I: Sync, S, R: Send, E: Send + From<Interrupted>>(
     Ok(())
 }
 
-/// Makes something of each item of a stage that has begun, and tells `observer` how far it is. What is made comes in the items' order.
+/// Computes a result for each item of a stage that has begun, and reports the progress to
+/// `observer`. The results are in the items' order.
 ///
 /// # Errors
-/// Those of [`in_order_unless_cancelled`].
+/// The errors of [`in_order_unless_cancelled`].
 pub fn make_all<I: Sync, S, T: Send, E: Send + From<Interrupted>>(
     told: (&dyn Observer, Stage),
     threads: usize,
@@ -83,11 +86,11 @@ pub fn make_all<I: Sync, S, T: Send, E: Send + From<Interrupted>>(
     Ok(made)
 }
 
-/// Makes the `missing` of `all` items of a stage, each by `work`, and tells `observer` how far it is. What the items become is kept by
-/// `work` itself.
+/// Computes the `missing` items of `all` items of a stage, each with `work`, and reports the
+/// progress to `observer`. `work` stores the results itself.
 ///
 /// # Errors
-/// Those of [`in_order_unless_cancelled`].
+/// The errors of [`in_order_unless_cancelled`].
 pub fn make_missing<S, T: Sync, E: Send + From<Interrupted>>(
     observer: &dyn Observer,
     stage: Stage,
@@ -103,7 +106,8 @@ pub fn make_missing<S, T: Sync, E: Send + From<Interrupted>>(
     Ok(())
 }
 
-/// A whole stage on the calling thread: `act` takes one item after the other, and `observer` is told of each and may end the run before it.
+/// Runs a whole stage on the calling thread: `act` handles one item after the other, and `observer`
+/// gets the progress and may cancel before each item.
 ///
 /// # Errors
 /// The first error of `act`, or [`Interrupted`].
@@ -122,24 +126,25 @@ pub fn one_by_one<I, E: From<Interrupted>>(
     Ok(())
 }
 
-/// State that workers and the one writer share.
+/// The state that the workers and the writer share.
 struct Queue<R, E> {
-    /// Next item to be taken by a worker.
+    /// The next item for a worker.
     next: usize,
     /// Results that wait for their turn.
     done: BTreeMap<usize, Result<R, E>>,
-    /// Next result to be handed to the writer.
+    /// The next result for the writer.
     written: usize,
     /// Set when the run is over early.
     stop: bool,
 }
 
-/// Works on `count` items with `threads` threads and hands the results to `write` in the order of the items,
-/// on the calling thread.
+/// Works on `count` items with `threads` threads and hands the results to `write` in the order of
+/// the items, on the calling thread.
 ///
-/// Each thread makes its own state with `start` (an open dataset, a cache). At most four results per thread wait
-/// for their turn, so memory is bounded even if some items take much longer than others. The first error stops
-/// everything. Which error is the first does not depend on timing, because results are looked at in order.
+/// Each thread creates its own state with `start` (an open dataset, a cache). At most four results
+/// per thread wait for their turn, so memory is bounded even if some items take much longer than
+/// others. The first error stops everything. Results are read in order, so the first error does not
+/// depend on timing.
 ///
 /// # Errors
 /// The first error, in the order of the items, of `start`, `work` or `write`.
@@ -189,7 +194,8 @@ pub fn in_order<S, R: Send, E: Send>(
         }
     };
     thread::scope(|scope| {
-        // The scope waits for all workers, so those that wait for room must end, however the writer ends.
+        // The scope waits for all workers, so workers that wait for space must end, however the
+        // writer ends.
         let _guard = StopOnDrop { stop: &|| lock().stop = true, changed: &changed };
         for _ in 0..threads {
             scope.spawn(worker);
@@ -207,7 +213,8 @@ pub fn in_order<S, R: Send, E: Send>(
                     queue = changed.wait(queue).unwrap_or_else(PoisonError::into_inner);
                 }
             };
-            // Without a result a worker has panicked; leaving the scope passes the panic on.
+            // A missing result means that a worker has panicked; leaving the scope passes the panic
+            // on.
             let Some(result) = result else { return Ok(()) };
             let written = result.and_then(|result| write(index, result));
             let mut queue = lock();

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::*;
 
-/// Cancels the run once it was asked so many times.
+/// Cancels the run at this number of checks.
 struct CancelAfter(AtomicUsize);
 
 impl Observer for CancelAfter {

@@ -1,4 +1,5 @@
-//! What fuzzing found and starts from, in one binary. The first line of each module says what holds.
+//! Findings and seeds of fuzzing, in one test binary. The first line of each module says what is
+//! tested.
 
 mod replay;
 mod seeds;

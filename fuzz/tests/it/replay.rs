@@ -1,4 +1,5 @@
-//! Every input in `corpus/` and `regressions/`, and what becomes of it when some bytes change, through the function that its folder is named after.
+//! Runs every input in `corpus/` and `regressions/`, and versions with some changed bytes, with the
+//! function that its folder is named after.
 
 #![allow(
     clippy::unwrap_used,
@@ -23,7 +24,7 @@ fn replay(target: &str, run: fn(&[u8])) {
         for entry in entries {
             let path = entry.unwrap().path();
             let data = fs::read(&path).unwrap();
-            // So the name of a failing input stands before the message of the panic.
+            // This prints the name of a failing input before the message of the panic.
             eprintln!("{}", path.display());
             run(&data);
             inputs += 1;
@@ -72,7 +73,8 @@ fn every_line_is_laid_in_order_on_its_ground() {
     replay("drape", corniche_fuzz::drape);
 }
 
-/// Inputs of a target with some bytes changed, left out or repeated. `CORNICHE_FUZZ_SECONDS` makes it go on for so long.
+/// Runs inputs of a target with some bytes changed, removed or repeated. `CORNICHE_FUZZ_SECONDS`
+/// sets how long it runs.
 fn change(target: &str, run: fn(&[u8])) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus").join(target);
     let mut paths: Vec<_> =
@@ -98,7 +100,7 @@ fn change(target: &str, run: fn(&[u8])) {
                 _ => data.iter_mut().skip(at).take(1).for_each(|byte| *byte = random.bits() as u8),
             }
         }
-        // What is written here is what a failing run began with.
+        // This writes the input of a failing run.
         if let Err(panic) = std::panic::catch_unwind(|| run(&data)) {
             eprintln!("{target}: {}", data.escape_ascii());
             std::panic::resume_unwind(panic);

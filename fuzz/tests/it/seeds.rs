@@ -1,5 +1,6 @@
-//! The seeds of the fuzz target `package` (`corpus/package`), and some of `payload`, are made here and are what the target reads to its end.
-//! `CORNICHE_WRITE_SEEDS=1` writes them anew. Those of `osm` are made by `crates/osm/tests/it/seeds.rs`.
+//! Creates the seeds of the fuzz target `package` (`corpus/package`), and some of `payload`; the
+//! target reads them to their end. `CORNICHE_WRITE_SEEDS=1` rewrites them. Those of `osm` are
+//! created by `crates/osm/tests/it/seeds.rs`.
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
 use std::{collections::BTreeMap, fs, path::Path};
@@ -7,27 +8,27 @@ use std::{collections::BTreeMap, fs, path::Path};
 use corniche_geom::{HeightGrid, TileId};
 use corniche_testing::{
     package::{context, encoded, encoded_with_spans, ids, manifest, metadata},
-    pmtiles::{Entry, directory, file, gzip},
+    pmtiles::{RawDirectoryEntry, directory, file, gzip},
 };
 use corniche_tileset::{
     MemorySource, PHOTO_BORDER, Package, Photo, Relief, Sections, TilePayload, decode, encode,
     encode_photo, pmtiles_order,
 };
 
-/// A root directory, a leaf directory and tiles, as the target takes them apart.
+/// A root directory, a leaf directory and tiles, in the form that the target splits.
 fn parts(root: &[u8], leaf: &[u8], tiles: &[Vec<u8>]) -> Vec<u8> {
     let lengths = [root.len() as u16, leaf.len() as u16].map(u16::to_le_bytes).concat();
     [&[2], &lengths[..], root, leaf, &tiles.concat()].concat()
 }
 
-/// The first tiles of the small package, in a directory of their own.
+/// The first tiles of the small package, in a separate directory.
 fn tiles(count: usize) -> (Vec<u8>, Vec<Vec<u8>>) {
     let tiles: Vec<Vec<u8>> = ids().into_iter().take(count).map(encoded).collect();
     let (mut last, mut offset) = (0, 1);
     let mut entries = Vec::new();
     for (id, tile) in ids().into_iter().zip(&tiles) {
         let (order, length) = (pmtiles_order(id), tile.len() as u64);
-        entries.push(Entry { step: order - last, run: 1, length, offset });
+        entries.push(RawDirectoryEntry { step: order - last, run: 1, length, offset });
         (last, offset) = (order, offset + length);
     }
     (directory(&entries), tiles)
@@ -36,7 +37,7 @@ fn tiles(count: usize) -> (Vec<u8>, Vec<Vec<u8>>) {
 fn seeds() -> BTreeMap<&'static str, Vec<u8>> {
     let (four, four_tiles) = tiles(4);
     let (one, one_tile) = tiles(1);
-    let to_leaf = Entry { step: 0, run: 0, length: gzip(&one).len() as u64, offset: 1 };
+    let to_leaf = RawDirectoryEntry { step: 0, run: 0, length: gzip(&one).len() as u64, offset: 1 };
     let text = metadata(&manifest()).to_string();
     let whole = file([&gzip(&four), &gzip(text.as_bytes()), &[], &four_tiles.concat()], 4);
     BTreeMap::from([
@@ -49,7 +50,8 @@ fn seeds() -> BTreeMap<&'static str, Vec<u8>> {
     ])
 }
 
-/// A photo of one colour with a hole, as the target `payload` takes it: a list of sections, of which it is the only one.
+/// A photo of one colour with a hole, in the form of the target `payload`: a list of sections that
+/// contains only the photo.
 fn photo() -> Vec<u8> {
     let side = 256 + 2 * PHOTO_BORDER;
     let texel = |at: usize| if at % side < 24 { [0; 4] } else { [90, 120, 60, 255] };
@@ -59,7 +61,8 @@ fn photo() -> Vec<u8> {
     [&[0, 7], &length[..], section.bytes()].concat()
 }
 
-/// A payload with a relief alone, as the target `payload` takes it: rough ground, a plane and a void.
+/// A payload with only a relief, in the form of the target `payload`: rough ground, a plane and a
+/// void.
 fn relief_seed() -> Vec<u8> {
     let heights = HeightGrid::from_fn(259, 259, |column, row| {
         if column > 200 && row > 180 {
@@ -82,12 +85,12 @@ fn relief_seed() -> Vec<u8> {
     [&[1], &encode(&tile, &context).unwrap().bytes[..]].concat()
 }
 
-/// A payload with ground and roads, as the target `payload` takes it.
+/// A payload with ground and roads, in the form of the target `payload`.
 fn whole_payload() -> Vec<u8> {
     [&[1], &encoded(TileId::ROOT.children().nth(1).unwrap())[..]].concat()
 }
 
-/// A payload with spans, too.
+/// A payload that also has spans.
 fn payload_with_spans() -> Vec<u8> {
     [&[1], &encoded_with_spans(TileId::ROOT.children().nth(1).unwrap())[..]].concat()
 }
@@ -99,13 +102,13 @@ fn the_seed_with_a_relief_is_as_it_is_made_here_and_is_read() {
     if std::env::var_os("CORNICHE_WRITE_SEEDS").is_some() {
         fs::write(&path, &bytes).unwrap();
     }
-    assert!(fs::read(&path).unwrap() == bytes, "CORNICHE_WRITE_SEEDS=1 writes it anew");
+    assert!(fs::read(&path).unwrap() == bytes, "CORNICHE_WRITE_SEEDS=1 rewrites it");
     assert!(bytes.len() <= 16_384, "{} bytes", bytes.len());
     let id = TileId::ROOT.children().nth(1).unwrap();
     let context = context();
     let read = decode(&bytes[1..], id, &context.frame, context.quantum_m, Sections::ALL);
     assert!(read.unwrap().relief.is_some());
-    // Not the last byte, which is no information: zeros are read beyond the end.
+    // The last byte is not changed, because it has no information: zeros are read beyond the end.
     for at in (1..bytes.len()).step_by(bytes.len() / 12) {
         let mut changed = bytes.clone();
         changed[at] ^= 0x10;
@@ -131,11 +134,11 @@ fn check(folder: &Path, seeds: BTreeMap<&'static str, Vec<u8>>) {
             fs::write(&path, &bytes).unwrap();
         }
         let kept = fs::read(&path).unwrap();
-        assert!(kept == bytes, "{name} is out of date; CORNICHE_WRITE_SEEDS=1 writes it anew");
+        assert!(kept == bytes, "{name} is out of date; CORNICHE_WRITE_SEEDS=1 rewrites it");
     }
 }
 
-/// How many tiles the target reads of a seed; fails if it refuses any part of it.
+/// The number of tiles of a seed that the target reads; fails if it rejects any part of the seed.
 fn tiles_read(seed: &[u8]) -> usize {
     let package = corniche_fuzz::package_of(seed).expect("a seed");
     let package = pollster::block_on(Package::open(MemorySource::new(package))).unwrap();

@@ -1,9 +1,9 @@
-"""What a cluster costs against one process with as many threads: both build the same package, in turn.
+"""Compares a cluster with one process with as many threads: both build the same package, in turn.
 
     python benches/efficiency.py --workers 2 --rounds 3 --work FOLDER --dem DEM.tif --osm ROADS.osm.pbf …
 
-Options that are not listed go to ``corniche plan`` and ``corniche build``. Prints Markdown, and fails if the packages differ. The last report of the
-cluster stays in the folder, for ``corniche-dask cost``.
+Options not listed here are passed to ``corniche plan`` and ``corniche build``. Prints Markdown, and fails if the packages differ. The last report of
+the cluster stays in the folder, for ``corniche-dask cost``.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from corniche_dask.limits import parse_bytes
 
 
 def timed(command: Sequence[str]) -> tuple[float, float]:
-    """Wall and processor time of a command with all its processes, in seconds."""
+    """The wall time and the processor time of a command with all its processes, in seconds."""
     before, begun = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
     subprocess.run(command, check=True, stdin=subprocess.DEVNULL)
     wall, after = time.monotonic() - begun, resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -32,7 +32,7 @@ def timed(command: Sequence[str]) -> tuple[float, float]:
 
 
 def main() -> None:
-    """Measures and prints."""
+    """Runs the measurement and prints the result."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0], allow_abbrev=False)
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--rounds", type=int, default=3)

@@ -1,8 +1,8 @@
-"""What many small parts cost the scheduler: they go through the same code as those of a build, but make nothing.
+"""The load of many small parts on the scheduler: they run through the same code as parts of a build, but produce nothing.
 
     python benches/scheduler_load.py --parts 100000 --slots 256
 
-Starts a scheduler and workers as processes of their own, and prints parts a second, and the scheduler's memory and processor time, as Markdown.
+Starts a scheduler and workers as separate processes, and prints parts per second, and the scheduler's memory and processor time, as Markdown.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ SETTING = Setting("0" * 64, "corniche 0", None, ("/store",), None, None, None, "
 
 
 def empty_part(task: PartTask) -> PartResult:
-    """Returns a digest, as a part that was made would."""
+    """Returns a digest, like a part of a build."""
     digest = task.key[-32:]
     return PartResult(
         id=task.job.id,
@@ -53,7 +53,7 @@ def empty_part(task: PartTask) -> PartResult:
 
 
 def jobs(parts: int) -> list[Job]:
-    """Half of them heights, half tiles, one in between and one at the end."""
+    """The parts: half heights, half tiles, with one part between them and one at the end."""
 
     def of(step: str, number: int, *after: str) -> Job:
         return Job(f"{step}-{number}", step, f"20/{number}/0", None, 1.0 + number % 7, after, ("--step", step, "--subtree", f"20/{number}/0"))
@@ -66,11 +66,11 @@ def jobs(parts: int) -> list[Job]:
 
 @contextmanager
 def cluster(workers: int, threads: int) -> Iterator[tuple[str, int]]:
-    """A scheduler's address and process id, with workers."""
+    """Starts a scheduler with workers; yields its address and process id."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "scheduler.json"
         dask = [sys.executable, "-m", "dask"]
-        # As parts are: by name, so that no code goes over the wire.
+        # By name, like parts of a build, so that no code is sent over the network.
         environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parent)}
         quiet: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": folder, "env": environment}
         begun = [subprocess.Popen([*dask, "scheduler", "--scheduler-file", str(file), "--port", "0", "--no-dashboard"], **quiet)]
@@ -87,13 +87,13 @@ def cluster(workers: int, threads: int) -> Iterator[tuple[str, int]]:
 
 
 def processor_seconds(pid: int) -> float:
-    """Of user and system, of a process that is running."""
+    """The user and system time of a running process, in seconds."""
     fields = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def main() -> None:
-    """Measures and prints."""
+    """Runs the measurement and prints the result."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--parts", type=int, default=100_000)
     parser.add_argument("--slots", type=int, default=256, help="parts that are handed out at once")
@@ -127,7 +127,7 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    # Under the name by which workers know it.
+    # The name under which workers import this module.
     import scheduler_load
 
     scheduler_load.main()

@@ -1,4 +1,4 @@
-"""What the tests share: the program, the sample, clusters, and what is left behind."""
+"""Fixtures of the tests: the program, the sample, clusters, and checks for leftovers."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ ROOT = Path(__file__).resolve().parents[3]
 PASS = ROOT / "data-samples" / "pass"
 FAKE = Path(__file__).with_name("fake_corniche.py")
 #: Options of ``corniche plan`` and ``build``.
-#: So that the sample, which is small, is made in many parts.
+#: Options that split the small sample into many parts.
 LEAST_WORK = 0.05
 INPUTS = ["--dem", str(PASS / "pass-dem.tif"), "--osm", str(PASS / "pass.osm.pbf"), "--max-error", "2"]
 
@@ -29,7 +29,7 @@ def corniche() -> str:
 
 
 class Planned:
-    """A plan, and the package that one process makes of it."""
+    """A plan, and the package that one process builds from it."""
 
     def __init__(self, corniche: str, folder: Path, inputs: list[str]) -> None:
         self.corniche = corniche
@@ -47,7 +47,7 @@ class Planned:
         return ran.stdout
 
     def check_store(self, store: Path, folder: Path) -> None:
-        """The store alone makes the same package, and all that lies among its parts is whole."""
+        """Asserts that a merge of the store writes the same package, and that all files among its parts are complete."""
         merged = folder / "merged-from-store.pmtiles"
         self.run("merge", str(self.plan), "--quiet", "--store", str(store), "-o", str(merged))
         assert merged.read_bytes() == self.bytes, "another package than build makes"
@@ -58,7 +58,7 @@ class Planned:
 
 @pytest.fixture(scope="session")
 def planned(corniche: str, tmp_path_factory: pytest.TempPathFactory) -> Planned:
-    """Of the sample ``pass``, with roads."""
+    """The plan of the sample ``pass``, with roads."""
     return Planned(corniche, tmp_path_factory.mktemp("planned"), INPUTS)
 
 
@@ -80,7 +80,7 @@ def local() -> Iterator[Callable[..., Client]]:
 
 
 def processes_of(word: str) -> dict[int, str]:
-    """Command lines of the processes of ``corniche part`` and ``merge``, real or fake, that name this."""
+    """Command lines of the processes of ``corniche part`` and ``merge``, real or fake, that contain the given text."""
     found = {}
     for folder in Path("/proc").iterdir():
         if folder.name.isdigit() and int(folder.name) != os.getpid():
@@ -94,7 +94,7 @@ def processes_of(word: str) -> dict[int, str]:
 
 
 def none_left(word: str, within: float = 20.0) -> None:
-    """Asserts that all processes of corniche that name this end."""
+    """Asserts that all processes of corniche whose command line contains the given text end."""
     end = time.monotonic() + within
     while (left := processes_of(word)) and time.monotonic() < end:
         time.sleep(0.1)

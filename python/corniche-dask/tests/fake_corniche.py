@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Behaves like ``corniche`` towards its caller, and as its plan says: for tests of failures that the real program does not make on demand.
+"""Behaves like ``corniche`` towards its caller, as its plan specifies: for tests of failures that the real program does not produce on demand.
 
-The plan is JSON: ``generator``; ``jobs``, the lines of ``corniche jobs``; ``acts``, by a part's id: ``exit`` (exit code), ``times`` (only so often),
+The plan is JSON: ``generator``; ``jobs``, the lines of ``corniche jobs``; ``acts``, by a part's id: ``exit`` (exit code), ``times`` (how often to do this),
 ``megabytes`` (memory to use), ``sleep`` (seconds, unless standard input ends and ``--die-with-parent`` is given). Each call is noted in a file
 named ``calls`` beside the plan's store, with the process id.
 """
@@ -40,7 +40,7 @@ def main() -> int:
         if "--die-with-parent" not in options:
             time.sleep(0.05)
         elif select.select([sys.stdin], [], [], 0.05)[0] and not sys.stdin.buffer.read1(1024):
-            print("corniche: standard input has ended", file=sys.stderr)
+            print("corniche: stdin was closed", file=sys.stderr)
             return 1
     if "exit" in act and is_act:
         print(json.dumps({"stage": "tiles", "state": "running"}), file=sys.stderr)
@@ -61,7 +61,7 @@ def main() -> int:
 
 
 def peak_memory() -> int:
-    """As the real program tells it."""
+    """Prints a record like the real program."""
     lines = Path("/proc/self/status").read_text().splitlines()
     return next(int(line.split()[1]) * 1024 for line in lines if line.startswith("VmHWM:"))
 

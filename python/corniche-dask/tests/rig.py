@@ -1,4 +1,4 @@
-"""A cluster of processes that tests kill: scheduler, nannies with their workers, and the command as client."""
+"""A cluster of processes that tests kill: the scheduler, nannies with their workers, and the command as client."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from pathlib import Path
 
 from conftest import LEAST_WORK, processes_of
 
-#: Workers of one part at a time.
+#: The number of workers, each of which runs one part at a time.
 NANNIES = 2
-#: What can be killed.
+#: The kinds of processes that can be killed.
 KINDS = ("worker", "nanny", "scheduler", "client", "child")
-#: Seconds in which processes must begin and end.
+#: Seconds within which processes must begin and end.
 PATIENCE = 60.0
 
 
 class Rig:
-    """Ends all that it began when it is left."""
+    """Ends all processes that it started when its block is left."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
@@ -40,7 +40,7 @@ class Rig:
         self._log.close()
 
     def repair(self) -> None:
-        """Starts what is missing. Without a scheduler, the workers end, too."""
+        """Starts missing processes. Without a scheduler, the workers end, too."""
         if self._scheduler is None or self._scheduler.poll() is not None:
             for nanny in self._nannies:
                 end(nanny)
@@ -64,11 +64,11 @@ class Rig:
         return subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=self._log, stderr=self._log)
 
     def log(self) -> str:
-        """What all processes have told so far."""
+        """The output of all processes so far."""
         return (self._folder / "cluster.log").read_text(errors="replace")
 
     def kill(self, kind: str, client: subprocess.Popen[bytes], store: Path, pick: int) -> bool:
-        """Kills one of a kind, without a warning; false if there is none at this moment."""
+        """Kills a process of the given kind with SIGKILL; false if there is none at this moment."""
         if kind == "client":
             pids = [client.pid] if client.poll() is None else []
         elif kind == "scheduler":
@@ -89,7 +89,7 @@ class Rig:
 
 
 def end(process: subprocess.Popen[bytes] | None) -> None:
-    """Ends a process that this one began."""
+    """Ends a process that this one started."""
     if process is not None and process.poll() is None:
         process.terminate()
         try:
@@ -101,7 +101,7 @@ def end(process: subprocess.Popen[bytes] | None) -> None:
 
 
 def wait_for(is_so: object, what: str) -> None:
-    """Until it is so."""
+    """Waits until the condition holds."""
     stop = time.monotonic() + PATIENCE
     while not is_so():  # type: ignore[operator]
         assert time.monotonic() < stop, f"no sign of {what}"
@@ -109,7 +109,7 @@ def wait_for(is_so: object, what: str) -> None:
 
 
 def children_of(pid: int) -> list[int]:
-    """Processes of Python that a nanny began as workers; its other child only keeps account of shared memory."""
+    """Processes of Python that a nanny began as workers; its other child only tracks shared memory."""
     found = []
     for folder in Path("/proc").iterdir():
         if folder.name.isdigit():

@@ -1,4 +1,4 @@
-"""Builds of the sample on clusters of this machine: the bytes of ``corniche build``, within memory, with nothing left behind."""
+"""Builds of the sample on clusters of this machine: the same bytes as ``corniche build``, within the memory limit, without leftovers."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from corniche_dask.tasks import PartResult
 Local = Callable[..., Client]
 OPTIONS: dict[str, Any] = {"memory_bytes": 256 << 20, "least_work": LEAST_WORK}
 
-#: The projection of the sample, for a file that tells none itself.
+#: The projection of the sample, for a file that does not name it.
 UTM_32 = (
     'PROJCS["WGS_1984_UTM_Zone_32N",GEOGCS["GCS_WGS_1984",DATUM["D_WGS_1984",SPHEROID["WGS_1984",6378137.0,298.257223563]],'
     'PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],PARAMETER["False_Easting",500000.0],'
@@ -57,7 +57,7 @@ def test_a_finished_store_is_only_merged(planned: Planned, tmp_path: Path, local
 
 
 class Twice:
-    """A client that gives every part out a second time, under another key, while the first may be running."""
+    """A client that submits every part a second time, under another key, while the first may be running."""
 
     def __init__(self, client: Client) -> None:
         self._client = client

@@ -1,4 +1,4 @@
-"""The cost model finds the factors that measured builds were made with."""
+"""The cost model finds the factors from which measured builds were generated."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from corniche_dask.cost.fit import fit
 from corniche_dask.cost.model import check, fit_model, forecast, shape_of
 from corniche_dask.cost.runs import Size, read_runs
 
-#: Seconds for a million nodes, for a MB of extract, and for a part.
+#: Seconds per million nodes, per MB of extract, and per part.
 HEIGHTS, TILES, ROAD, START = 0.2, 3.0, 1.5, 0.25
 
 
 def report(folder: Path, name: str, nodes: float, extract: float, count: int, **more: Any) -> str:
-    """What a build would have written whose parts cost exactly this; parts of unequal size."""
+    """The report of a build whose parts, of unequal size, have exactly this cost."""
     sizes = [1.0 + number % 5 for number in range(count)]
     shares = [size / sum(sizes) for size in sizes]
 
@@ -42,7 +42,7 @@ def report(folder: Path, name: str, nodes: float, extract: float, count: int, **
 
 @pytest.fixture
 def reports(tmp_path: Path) -> list[str]:
-    """Three sizes; roads do not grow as nodes do."""
+    """Reports of three sizes; roads do not grow in proportion to nodes."""
     return [report(tmp_path, "small", 1e6, 2e6, 7), report(tmp_path, "large", 84e6, 12e6, 40), report(tmp_path, "medium", 12e6, 9e6, 16)]
 
 
@@ -53,7 +53,7 @@ def test_factors_are_found(reports: list[str]) -> None:
     assert seconds["tiles"]["node"] * 1e6 == pytest.approx(TILES)
     assert seconds["tiles"]["extract byte"] * 1e6 == pytest.approx(ROAD)
     assert seconds["tiles"]["part"] == pytest.approx(START)
-    # By the clock, which goes faster than the processor here.
+    # By wall time, which is longer than the processor time here.
     assert seconds["roads"]["extract byte"] * 1e6 == pytest.approx(1.1 * ROAD)
     assert seconds["top"]["part of the build"] == pytest.approx(0.011)
     assert model.package_bytes(Size(5e6, 1e6, 0)) == pytest.approx(6e6)
@@ -105,7 +105,7 @@ def test_one_size_in_more_parts_has_the_same_nodes(reports: list[str]) -> None:
 
 @pytest.mark.parametrize("seed", range(5))
 def test_least_squares_find_what_no_other_coefficients_beat(seed: int) -> None:
-    """Also where the best without a bound would be negative."""
+    """Also if the best unconstrained coefficient would be negative."""
     chance = random.Random(seed)
     rows = [[chance.uniform(0, 1e9), chance.uniform(0, 1e3), 1.0] for _ in range(30)]
     values = [row[0] * 2e-9 - row[1] * 1e-3 + 5 + chance.gauss(0, 0.1) for row in rows]
@@ -138,7 +138,7 @@ def test_the_table(reports: list[str], capsys: pytest.CaptureFixture[str]) -> No
         ({"version": 2}, "version 2"),
         ({"estimate": None}, "number of nodes"),
         ({"parts": []}, "not finished"),
-        ({"input_bytes": 5}, "is no report"),
+        ({"input_bytes": 5}, "is not a report"),
     ],
 )
 def test_reports_that_cannot_be_used(change: dict[str, Any], told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

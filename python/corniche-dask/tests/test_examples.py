@@ -15,7 +15,8 @@ from conftest import ROOT, Planned
 
 EXAMPLES = ROOT / "examples" / "clusters"
 
-#: Runs the tasks of an array, in any order but after the jobs that it depends on; refuses options that it does not know.
+# : Runs the tasks of an array, in reverse order but after the jobs on which it depends; rejects
+# unknown options.
 SBATCH = """
 import argparse, os, pathlib, subprocess, sys
 parser = argparse.ArgumentParser(allow_abbrev=False)
@@ -67,7 +68,7 @@ else:
 
 @pytest.fixture
 def stand_ins(tmp_path: Path, corniche: str) -> dict[str, str]:
-    """An environment in which these commands are found first."""
+    """An environment in which these commands come first on the path."""
     if shutil.which("jq") is None:
         pytest.skip("there is no jq")
     folder = tmp_path / "bin"
@@ -81,7 +82,7 @@ def stand_ins(tmp_path: Path, corniche: str) -> dict[str, str]:
 
 
 def test_slurm(planned: Planned, stand_ins: dict[str, str], tmp_path: Path) -> None:
-    """Rounds that are longer than the largest array are several."""
+    """A round longer than the largest array is split into several arrays."""
     store, package = tmp_path / "store", tmp_path / "out.pmtiles"
     places = {"STORE": str(store), "PACKAGE": str(package), "FOLDER": str(tmp_path / "jobs"), "MEMORY": "300", "LEAST": "0.5"}
     subprocess.run([EXAMPLES / "slurm-array.sh", *planned.inputs], env={**stand_ins, **places}, check=True)
@@ -96,7 +97,7 @@ def test_kubernetes(planned: Planned, stand_ins: dict[str, str], tmp_path: Path)
     places = {"STORE": str(tmp_path / "store"), "PACKAGE": str(package), "VOLUME": str(volume), "MEMORY": "256M"}
     subprocess.run([EXAMPLES / "kubernetes.sh", *planned.inputs], env={**stand_ins, **places}, check=True)
     assert package.read_bytes() == planned.bytes
-    # The package is there: its round fails, and so does the script.
+    # The package exists: its round fails, and so does the script.
     again = subprocess.run([EXAMPLES / "kubernetes.sh", *planned.inputs], env={**stand_ins, **places}, capture_output=True, text=True, check=False)
     assert again.returncode == 1 and "failed; kubectl logs" in again.stderr, again.stderr
     assert package.read_bytes() == planned.bytes

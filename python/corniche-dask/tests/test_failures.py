@@ -1,4 +1,4 @@
-"""What a build does when parts, workers and programs fail: with a program that fails on demand."""
+"""The reaction of a build to failing parts, workers and programs, with a program that fails on demand."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Local = Callable[..., Client]
 
 @pytest.fixture(scope="module")
 def two() -> Iterator[Client]:
-    """Two workers, for tests that need nothing else."""
+    """A client of two workers, for tests that need nothing else."""
     with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0", host="127.0.0.1") as cluster, Client(cluster) as client:
         yield client
 
@@ -74,7 +74,7 @@ class Made:
         return build(client, self.plan, str(self.store), str(self.package), corniche=self.fake, memory_bytes=256 << 20, **options)
 
     def calls(self) -> list[str]:
-        """Each part that was begun."""
+        """The parts that were begun."""
         return [line.split()[0] for line in (self.store.parent / "calls").read_text().splitlines()]
 
 
@@ -118,14 +118,14 @@ def test_unusable_input_is_not_tried_again(code: int, tmp_path: Path, fake: str,
         made.build(client)
     assert failed.value.exit_code == code
     assert made.calls().count("roads") == 1
-    # The other part, which was being made, is cancelled, and its process ends.
+    # The other, running part is cancelled, and its process ends.
     none_left(str(made.store))
     assert client.status == "running"
 
 
 def test_a_killed_child_is_made_again(tmp_path: Path, fake: str, two: Client) -> None:
     made = Made(tmp_path, fake, top={"exit": -9, "times": 1})
-    # An exit code below 0 is 247 for the caller: any other than 0, 2 and 3 is worth another try.
+    # An exit code below 0 is 247 for the caller: any code except 0, 2 and 3 is retried.
     made.build(two)
     assert made.calls().count("top") == 2
 
@@ -158,7 +158,7 @@ def test_another_version_on_a_worker_is_told_before_anything_is_made(tmp_path: P
     with pytest.raises(ProgramError) as failed:
         made.build(client)
     told = str(failed.value)
-    assert "corniche 1.0.0" in told and "made by corniche 9.9.9" in told
+    assert "corniche 1.0.0" in told and "created by corniche 9.9.9" in told
     assert all(worker in told for worker in client.scheduler_info(n_workers=-1)["workers"])
     assert not (made.store.parent / "calls").exists()
 
@@ -173,7 +173,7 @@ def test_a_package_that_is_there_is_kept(tmp_path: Path, fake: str, two: Client)
     made = Made(tmp_path, fake)
     made.package.write_text("mine")
     client = two
-    with pytest.raises(TargetExists, match="-O replaces it"):
+    with pytest.raises(TargetExists, match="pass -O to overwrite it"):
         made.build(client)
     assert made.package.read_text() == "mine" and not (made.store.parent / "calls").exists()
     made.build(client, overwrite=True)
@@ -203,7 +203,7 @@ def test_a_build_asks_the_store_and_not_what_it_remembers(tmp_path: Path, fake: 
 
 
 def test_slots_bound_what_is_made_at_once(tmp_path: Path, fake: str, local: Local) -> None:
-    """A worker of four threads that declares one slot makes one part at a time, with all threads."""
+    """A worker of four threads that declares one slot runs one part at a time, with all threads."""
     made = Made(tmp_path, fake)
     summary = made.build(local(1, 4, resources={"slot": 1}))
     assert summary.slots == 1 and {part.threads for part in summary.parts} == {4}
@@ -213,8 +213,8 @@ def test_slots_bound_what_is_made_at_once(tmp_path: Path, fake: str, local: Loca
     ("arguments", "told"),
     [
         (["--local", "1"], "nothing to build"),
-        (["--local", "1", "--plan", "p.json", "--dem", "a.tif"], "--dem belongs to a plan"),
-        (["--scheduler", "tcp://127.0.0.1:1", "--memory-limit", "1G", "--dem", "a"], "for --local"),
+        (["--local", "1", "--plan", "p.json", "--dem", "a.tif"], "--dem is an option of corniche plan"),
+        (["--scheduler", "tcp://127.0.0.1:1", "--memory-limit", "1G", "--dem", "a"], "need --local"),
     ],
 )
 def test_wrong_usage(arguments: list[str], told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -224,7 +224,7 @@ def test_wrong_usage(arguments: list[str], told: str, tmp_path: Path, capsys: py
 
 
 def test_errors_of_workers_are_those_of_this_package() -> None:
-    """They go through pickle with their text and their exit code."""
+    """Errors keep their text and their exit code when they are pickled."""
     import pickle
 
     for error in [PartFailed("why"), PartRefused("why", 3), ProgramError("why")]:

@@ -1,4 +1,4 @@
-"""The lines of ``corniche jobs``, and in which order parts are handed out."""
+"""The lines of ``corniche jobs``, and the order in which parts are submitted."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def test_the_longest_chain_begins_first_and_within_a_step_the_largest() -> None:
     taken = []
     while (job := flow.take()) is not None:
         taken.append(job.id)
-    # Ways are followed by 6 + 10 + 40 + 2 seconds, heights by 1 + 40 + 2.
+    # The steps after ways take 6 + 10 + 40 + 2 seconds, those after heights 1 + 40 + 2.
     assert taken == ["ways-1", "ways-2", "heights-b", "heights-a", "hashes"]
 
 
@@ -128,5 +128,5 @@ def test_a_part_is_made_once() -> None:
     job = flow.take()
     assert job is not None
     flow.made(job)
-    with pytest.raises(CornicheError, match="never handed out"):
+    with pytest.raises(CornicheError, match="never submitted"):
         flow.made(job)

@@ -1,4 +1,4 @@
-"""Shares of workers, keys, sizes."""
+"""Limits of processes, keys of tasks, sizes as text."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def test_equal_work_has_equal_keys() -> None:
         key_of(SETTING, replace(TILES, share="1/2")),
     ]
     assert len({key, *others}) == 6
-    # What a process may use changes nothing of its result.
+    # The limits of a process do not change its result.
     assert key == key_of(replace(SETTING, threads=7, memory_bytes=GIB), TILES)
 
 

@@ -11,7 +11,7 @@ from corniche_reader import Package, ReadError
 
 
 def main(arguments: list[str]) -> int:
-    """Does so; the result is the exit code."""
+    """Runs the example; returns the exit code."""
     if len(arguments) not in (1, 3):
         print(__doc__, file=sys.stderr)
         return 2

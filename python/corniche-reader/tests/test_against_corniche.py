@@ -1,4 +1,4 @@
-"""All tiles against `corniche tile --json`, bit for bit."""
+"""Compares all tiles with `corniche tile --json`, bit for bit."""
 
 from __future__ import annotations
 
@@ -108,7 +108,8 @@ def test_places_and_heights_are_those_of_profiles(path, level, tmp_path):
         # Profiles have eight decimals.
         away = np.abs(places[:, None, :] - found[None, :, :]).max(axis=2).min(axis=1)
         assert away.max() < 6e-9
-        # Such a place is within a millimetre of its own, and a slope of 45 degrees as much higher.
+        # The rounded position is within a millimetre, and on a slope of 45 degrees the height as
+        # well.
         for row, (lon, lat) in list(zip(rows, places, strict=True))[::5]:
             height = package.height_at(lon, lat, None if level == package.grid.max_level else level)
             assert height is not None and abs(height - float(row["height_m"])) < 0.01, row
@@ -121,5 +122,5 @@ def test_the_ground_has_its_own_heights_at_its_vertices():
             for name in (name for name in package.tiles() if name[0] == level):
                 positions = package.tile(*name).terrain.positions[::97]
                 for (lon, lat), z in zip(package.degrees(positions), positions[:, 2], strict=True):
-                    # On a border that two tiles share, both have this vertex.
+                    # On the border of two tiles, both have this vertex.
                     assert abs(package.height_at(lon, lat, level) - z) < 0.01, (name, lon, lat)

@@ -1,4 +1,4 @@
-"""The package of the repository, against stored numbers, and damaged copies of it."""
+"""Compares the package of the repository with stored numbers, and reads corrupted copies of it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from corniche_reader.container import tile_number, tile_of
 
 GOLDEN = Path(__file__).parents[3] / "crates/tileset/tests/data/version-1.pmtiles"
 ROOT = (0, 0, 0)
-#: CRC-32 of what is read, as `corniche tile --json` told it, too.
+#: CRC-32 of the decoded values; `corniche tile --json` gives the same.
 SUMS = {"positions": 0x51A80049, "triangles": 0x2E36449E, "normals": 0x2F4CC374, "roads": 0x63973D00}
 
 
@@ -59,7 +59,7 @@ def places_of(part: str) -> range:
 
 @pytest.mark.parametrize("part", ["header", "directory", "metadata", "payload"])
 def test_flipped_bytes_are_refused_or_change_nothing(part):
-    """What may change without harm: the offset of leaf directories where there are none, and names and times in gzip headers."""
+    """The bytes that may change: the offset of leaf directories if there are none, and names and times in gzip headers."""
     data = bytearray(GOLDEN.read_bytes())
     with Package.open(GOLDEN) as package:
         metadata, places = package.metadata, package._places

@@ -1,4 +1,4 @@
-"""Whatever a manifest says, the reader opens it or raises an error of its own, soon."""
+"""For any manifest, the reader opens the package or raises one of its own errors, within a time limit."""
 
 from __future__ import annotations
 
@@ -19,23 +19,23 @@ import pytest
 from corniche_reader import Package, ReadError
 
 GOLDEN = Path(__file__).parents[3] / "crates/tileset/tests/data/version-1.pmtiles"
-#: What stands in a number's place, as JSON has it.
+#: The values that replace a number, as JSON.
 HOSTILE = [
     "0", "-0.0", "-1", "1", "0.3", "5e-324", "1e-320", "1e308", "-1e308", "1e400", "NaN", "-Infinity", "4294967296",
     "9223372036854775808", "1" + "0" * 400, "1" + "0" * 5000, "null", "true", '""', '"x"', "[]", "{}", "[1]",
 ]  # fmt: skip
-#: What this reader takes numbers from.
+#: The parts of the manifest from which this reader takes numbers.
 USED = ("frame", "vertical", "coordinates")
 MOST_SECONDS = 20
-#: Tiles are decoded once with each grid: Python takes its time.
+#: Tiles are decoded once with each grid, because Python is slow.
 GRIDS: set[object] = set()
 
 
 def with_metadata(text: bytes) -> bytes:
-    """The golden package with other metadata, at its end, and with nothing else changed."""
+    """The golden package with other metadata at its end, otherwise unchanged."""
     data = bytearray(GOLDEN.read_bytes())
     packed = gzip.compress(text, mtime=0)
-    # Between the parts of a file there may be anything.
+    # Any bytes are allowed between the parts of a file.
     data[24:40] = len(data).to_bytes(8, "little") + len(packed).to_bytes(8, "little")
     return bytes(data) + packed
 
@@ -51,7 +51,7 @@ def golden_metadata() -> dict[str, Any]:
 
 
 def numbers(value: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
-    """The places of numbers; of a list only the first ones, which stand for the others."""
+    """The paths of numbers; in a list only the first items, which represent the others."""
     if isinstance(value, dict):
         for key, inner in value.items():
             yield from numbers(inner, (*path, key))
@@ -63,7 +63,7 @@ def numbers(value: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]
 
 
 def use(data: bytes) -> None:
-    """All that can be asked of a package; errors of the reader are right."""
+    """Calls every method of a package; errors of the reader are allowed."""
     try:
         package = Package(io.BytesIO(data))
         package.degrees([package.grid.origin_m])
@@ -78,7 +78,7 @@ def use(data: bytes) -> None:
 
 @pytest.fixture(autouse=True)
 def soon() -> Iterator[None]:
-    """Ends a test that goes on and on."""
+    """Ends a test that does not end by itself."""
 
     def over(*_: object) -> None:
         raise AssertionError(f"it takes more than {MOST_SECONDS} s")

@@ -1,4 +1,4 @@
-"""Spans: the example of the format, what is refused, and a whole package against `corniche tile --json`, bit for bit."""
+"""Spans: the example of the format, rejected sections, and a whole package against `corniche tile --json`, bit for bit."""
 
 from __future__ import annotations
 
@@ -24,7 +24,8 @@ from corniche_reader.spans import read_spans
 REPOSITORY = Path(__file__).parents[3]
 GOLDEN = [REPOSITORY / "crates/tileset/tests/data" / name for name in ("version-1.pmtiles", "version-1-degrees.pmtiles")]
 PROGRAM = os.environ.get("CORNICHE")
-#: Columns of a section with two runs of two points: from the ground in triangle 0 to the air, and back.
+# : Columns of a section with two runs of two points: from the ground in triangle 0 to the air, and
+# back.
 SOUND = [[24 + 1, 24 + 4 + 2], [2000, 0], [0, 0], [2, 2, 0, 8], [0, 2, 0, 0], [800, 1], [0, 0]]
 
 
@@ -79,19 +80,19 @@ def test_sound_columns_are_read():
 @pytest.mark.parametrize(
     ("at", "numbers", "says"),
     [
-        (0, [72 + 1, 72 + 2], "no such class"),
+        (0, [72 + 1, 72 + 2], "a class does not exist"),
         (0, [24 + 1, 16 + 2], "not sorted"),
         (1, [2000, 1], "not sorted"),
         (2, [(1 << 64) - 1, 0], "too many points"),
-        (3, [2, 0, 0, 8], "a point twice"),
+        (3, [2, 0, 0, 8], "repeats a point"),
         (3, [(1 << 57), 2, 0, 8], "far away"),
         (5, [1 << 33, 1], "beyond 32 bits"),
-        (6, [0, 1 << 40], "no triangle"),
+        (6, [0, 1 << 40], "does not exist"),
     ],
 )  # fmt: skip
 def test_what_no_writer_writes_is_refused(at, numbers, says):
     columns = [numbers if at == number else column for number, column in enumerate(SOUND)]
-    if at == 3 and says == "a point twice":
+    if at == 3 and says == "repeats a point":
         columns[4] = [0, 0, 0, 0]
     with pytest.raises(PayloadError, match=says):
         read(section(columns))
@@ -128,7 +129,7 @@ def package_of(package: Package, tile: tuple[int, int, int], content: bytes) -> 
 
 
 def spans_over(package: Package, tile: tuple[int, int, int]) -> bytes:
-    """Runs all over the tile's ground; every other has its ends on it."""
+    """Runs over the tile's whole ground; every other run has its ends on the ground."""
     ground, grid = package.tile(*tile).terrain, package.grid
     triangles = ground.triangles.tolist()
     corner = grid.lattice_of_node(tile, 0, 0)

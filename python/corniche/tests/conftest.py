@@ -1,4 +1,4 @@
-"""What the tests share: the program, and a package of the sample."""
+"""Fixtures of the tests: the program, and a package of the sample."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ import pytest
 import corniche
 from corniche.program import PACKED, VARIABLE
 
-#: Few triangles are built soon.
+#: A large error bound gives few triangles, so the build is fast.
 COARSE = {"max_error": 20, "dem_vertical_crs": "EPSG:5773"}
 
 
 @pytest.fixture(scope="session")
 def program() -> str:
-    """The program under test, from ``$CORNICHE`` or from the wheel that is installed."""
+    """The program under test, from ``$CORNICHE`` or from the installed wheel."""
     assert os.environ.get(VARIABLE) or PACKED.is_file(), "name the program in $CORNICHE; scripts/test-python does"
     return corniche.find_program()
 

@@ -1,4 +1,4 @@
-"""A child ends with its parent, however that ends, and not before."""
+"""A child ends with its parent, in whatever way the parent ends, and not before."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ import pytest
 from corniche import child as children
 from corniche.child import Child, read_log
 
-#: Ends when its standard input does, as ``--die-with-parent`` does.
+#: Ends when its standard input ends, like ``--die-with-parent``.
 DIES_WITH_PARENT = "import sys; sys.stdin.read(); sys.exit(1)"
-#: Does not look at its standard input.
+#: Ignores its standard input.
 DEAF = "import time; time.sleep(600)"
-#: The same, and has a child of its own in its group.
+#: Ignores its standard input, and has a child in its process group.
 DEAF_WITH_CHILD = "import subprocess, sys, time; subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(600)']); time.sleep(600)"
 
 
@@ -30,7 +30,7 @@ def start(code: str) -> Child:
 
 
 def is_alive(pid: int) -> bool:
-    """Whether a process runs; one that nobody has waited for does not."""
+    """Whether a process runs; a zombie does not."""
     try:
         return Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] not in "ZX"
     except OSError:
@@ -82,7 +82,7 @@ def test_one_that_does_not_listen_is_killed_with_its_group(monkeypatch: pytest.M
 
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
 def test_it_ends_when_its_parent_is_killed(number: signal.Signals, tmp_path: Path) -> None:
-    """Two children of one parent: neither holds the pipe of the other."""
+    """Two children of one parent: neither keeps the pipe of the other open."""
     parent = tmp_path / "parent.py"
     parent.write_text(
         textwrap.dedent(
@@ -107,7 +107,7 @@ def test_it_ends_when_its_parent_is_killed(number: signal.Signals, tmp_path: Pat
 
 
 def test_peak_memory_is_that_of_the_child_alone() -> None:
-    """Not that of this process, from which it was forked, and also of what it gave back."""
+    """The peak is not that of this process, from which the child was forked, and includes memory that was freed again."""
     here = bytearray(400 << 20)
     for page in range(0, len(here), 4096):
         here[page] = 1

@@ -1,4 +1,4 @@
-"""Functions run the program and give its documents, its progress, its warnings and its errors."""
+"""Functions run the program and return its documents, its progress, its warnings and its errors."""
 
 from __future__ import annotations
 
@@ -39,12 +39,13 @@ def test_a_plan_tells_what_a_build_takes_and_is_written_if_asked_for(program: st
 def test_verify_returns_the_checks_and_raises_if_one_fails(package: Path, tmp_path: Path) -> None:
     found = corniche.verify(package, **corniche.sample())
     assert found["holds"] and len(found["checks"]) > 40
-    # One byte of the tiles, of which there is a checksum.
+    # Changes one byte of the tiles, which have a checksum.
     broken = tmp_path / "broken.pmtiles"
     changed = bytearray(package.read_bytes())
     changed[len(changed) - 2000] ^= 1
     broken.write_bytes(changed)
-    # Without the inputs, and with them, where some checks have no case: those are neither broken nor do they hold.
+    # Without and with the inputs, with which some checks have no case: these neither hold nor are
+    # broken.
     no_inputs: dict[str, Any] = {}
     for inputs in (no_inputs, corniche.sample()):
         with pytest.raises(corniche.PromiseBroken, match=r"broken.pmtiles breaks .* of its promises: .*tiles.whole") as raised:
@@ -60,7 +61,7 @@ def test_verify_returns_the_checks_and_raises_if_one_fails(package: Path, tmp_pa
 def test_an_export_is_a_file_for_others(package: Path, tmp_path: Path) -> None:
     path = corniche.export("roads", package, tmp_path / "roads.geojson", crs="EPSG:4979")
     assert path.read_text(encoding="utf-8").startswith("{")
-    with pytest.raises(corniche.TargetExists, match=r"roads.geojson .*overwrite=True") as raised:
+    with pytest.raises(corniche.TargetExists, match=r"roads.geojson\" .*overwrite=True") as raised:
         corniche.export("roads", package, path, crs="EPSG:4979")
     assert raised.value.exit_code == 3
     corniche.export("roads", package, path, crs="EPSG:4979", overwrite=True)
@@ -79,7 +80,7 @@ def test_errors_have_the_words_of_the_program(program: str, tmp_path: Path) -> N
 
 
 def test_warnings_of_the_program_are_warnings(program: str, tmp_path: Path) -> None:
-    with pytest.warns(corniche.CornicheWarning, match="nothing to go on from") as warned:
+    with pytest.warns(corniche.CornicheWarning, match="nothing to resume") as warned:
         corniche.build(tmp_path / "out.pmtiles", **corniche.sample(), **COARSE, resume=True)
     assert all(Path(one.filename) == Path(__file__) for one in warned), "a warning points at the caller"
 
@@ -110,7 +111,7 @@ def test_those_that_tell_progress_are_known(program: str) -> None:
 
 
 def test_options_of_several_numbers_are_known(program: str) -> None:
-    """Those that the program takes once, as numbers with commas."""
+    """Options that the program accepts once, as numbers with commas."""
 
     def told(*words: str) -> set[str]:
         help = subprocess.run([program, *words, "--help"], capture_output=True, text=True, check=True).stdout
@@ -123,16 +124,16 @@ def test_options_of_several_numbers_are_known(program: str) -> None:
 def test_what_the_functions_set_themselves_is_refused_by_name(package: Path, tmp_path: Path) -> None:
     output = tmp_path / "out.pmtiles"
     for option in ("quiet", "verbose", "json_progress", "log_format", "die_with_parent"):
-        with pytest.raises(corniche.UsageError, match=f"{option}=.* is not for Python"):
+        with pytest.raises(corniche.UsageError, match=f"{option}=.* is not available in Python"):
             corniche.build(output, **corniche.sample(), **{option: True})
-    with pytest.raises(corniche.UsageError, match="json=False is not for Python"):
+    with pytest.raises(corniche.UsageError, match="json=False is not available in Python"):
         corniche.plan(**corniche.sample(), json=False)
     with pytest.raises(corniche.UsageError, match="json="):
         corniche.verify(package, json=True)
     with pytest.raises(corniche.UsageError, match="log_format="):
         corniche.serve(package, log_format="text")
     assert list(tmp_path.iterdir()) == []
-    # Commands that tell no progress take it, and an option that is off is not given.
+    # Commands without progress accept the option, and an option that is off is omitted.
     assert corniche.run("info", package, json=True, quiet=True)
     assert corniche.verify(package, quiet=False)["holds"]
 
@@ -160,7 +161,7 @@ def test_python_runs_the_program_as_a_module(program: str) -> None:
 
 @pytest.mark.parametrize("error", [KeyboardInterrupt, ValueError])
 def test_a_stopped_build_leaves_its_work_alone_and_can_go_on(error: type[BaseException], program: str, tmp_path: Path) -> None:
-    """A notebook's button to stop sends its process a signal, which is the exception KeyboardInterrupt."""
+    """The stop button of a notebook sends the process a signal, which raises KeyboardInterrupt."""
 
     def stop(stage: Stage) -> None:
         if stage.stage == "tiles":

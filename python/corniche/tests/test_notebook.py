@@ -1,4 +1,4 @@
-"""The notebook of examples/ runs from its first cell to its last, and shows what it says."""
+"""The notebook in examples/ runs from its first cell to its last, and shows the outputs that its text names."""
 
 from __future__ import annotations
 

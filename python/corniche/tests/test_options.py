@@ -1,4 +1,4 @@
-"""Arguments of Python's functions are options of the program."""
+"""Keyword arguments in Python become options of the program."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from corniche.records import error_of, record_of, stage_of, warning_of
         ({"dem": [Path("a.tif"), "b c.tif"]}, ["--dem=a.tif", "--dem=b c.tif"]),
         ({"bounds": (-9.5, 46.8, 9.6, 46.9)}, ["--bounds=-9.5,46.8,9.6,46.9"]),
         ({"nodata": [-1, (0, 2)]}, ["--nodata=-1", "--nodata=0,2"]),
-        # A word that Python has for itself.
+        # A keyword of Python.
         ({"from_": "here"}, ["--from=here"]),
     ],
 )
@@ -34,7 +34,7 @@ def test_iterables_and_arrays_are_taken_by_the_same_rules(tmp_path: Path) -> Non
     (tmp_path / "a.tif").touch()
     assert words_of({"dem": tmp_path.glob("*.tif")}) == [f"--dem={tmp_path}/a.tif"]
     assert words_of({"way": range(2)}) == ["--way=0", "--way=1"]
-    # Bounds are one value, however they come.
+    # Bounds are one value, whatever type they have.
     for bounds in ([-9.5, 46.8, 9.6, 46.9], (-9.5, 46.8, 9.6, 46.9), iter([-9.5, 46.8, 9.6, 46.9])):
         assert words_of({"bounds": bounds}) == ["--bounds=-9.5,46.8,9.6,46.9"]
     assert words_of({"bounds": "osm"}) == ["--bounds=osm"]
@@ -54,13 +54,13 @@ def test_numbers_of_numpy_are_numbers() -> None:
 
 @pytest.mark.parametrize("value", [{"a": 1}, {1, 2}, b"a.tif", object(), 1j, [[1, 2]], (True, False), (1, (2, 3)), [("a", object())], open])
 def test_what_is_no_value_is_refused_with_its_name(value: object) -> None:
-    with pytest.raises(UsageError, match=r"^dem_band=.* is no value of an option"):
+    with pytest.raises(UsageError, match=r"^dem_band=.* cannot be the value of an option"):
         words_of({"dem_band": value})
 
 
 def test_records_are_read_and_text_is_left() -> None:
     assert record_of("corniche: text") is None and record_of("[1]") is None
-    stage = stage_of({"stage": "tiles", "title": "making tiles", "state": "end", "unit": "tiles", "done": 3, "total": 3, "new field": 1})
+    stage = stage_of({"stage": "tiles", "title": "creating tiles", "state": "end", "unit": "tiles", "done": 3, "total": 3, "new field": 1})
     assert stage is not None and (stage.done, stage.total, stage.seconds_left) == (3, 3, None)
     assert stage_of({"summary": []}) is None
     assert warning_of({"warning": "why"}) == "why" and warning_of({"level": "WARN", "message": "why"}) == "why"
@@ -71,8 +71,8 @@ def test_records_are_read_and_text_is_left() -> None:
 def test_bars_follow_the_stages(capsys: pytest.CaptureFixture[str]) -> None:
     bars = Bars()
     for state, done in [("begin", 0), ("running", 2), ("end", 4)]:
-        stage = stage_of({"stage": "tiles", "title": "making tiles", "state": state, "unit": "tiles", "done": done, "total": 4})
+        stage = stage_of({"stage": "tiles", "title": "creating tiles", "state": state, "unit": "tiles", "done": done, "total": 4})
         assert stage is not None
         bars(stage)
     bars.close()
-    assert "making tiles" in capsys.readouterr().err
+    assert "creating tiles" in capsys.readouterr().err

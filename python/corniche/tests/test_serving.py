@@ -1,4 +1,4 @@
-"""A served package has an address, and its server ends with who shows it."""
+"""A served package has an address, and its server ends with the process that shows it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import corniche
 
 @pytest.fixture
 def page(tmp_path: Path) -> Path:
-    """In place of the page, which a program that was built without it has not."""
+    """A folder that replaces the page, for a program that was built without it."""
     folder = tmp_path / "page"
     folder.mkdir()
     (folder / "index.html").write_text("<!doctype html><title>Maps</title>")
@@ -23,7 +23,7 @@ def page(tmp_path: Path) -> Path:
 
 
 def get(url: str) -> bytes:
-    # Proxies of the environment are not for this computer.
+    # Proxies of the environment must not be used for this computer.
     with urllib.request.build_opener(urllib.request.ProxyHandler({})).open(url, timeout=20) as answer:
         return bytes(answer.read())
 
@@ -45,7 +45,7 @@ def test_what_cannot_be_served_is_told(program: str, page: Path) -> None:
 
 @pytest.mark.parametrize("end", ["", "import os, signal; os.kill(os.getpid(), signal.SIGKILL)"])
 def test_it_ends_with_the_process_that_began_it(end: str, package: Path, page: Path) -> None:
-    """Also when that is killed, as the kernel of a notebook may be."""
+    """Also if the process is killed, like the kernel of a notebook."""
     code = f"import corniche; print(corniche.serve({str(package)!r}, page={str(page)!r}).url, flush=True); {end}"
     ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
     url = ran.stdout.strip()

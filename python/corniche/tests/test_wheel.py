@@ -1,4 +1,4 @@
-"""A wheel with a program has it on the path and to itself; one without says how to get it."""
+"""A wheel with a program puts it on the path and uses it; a wheel without one says how to get it."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def make_wheel(out: Path, release: Path | None) -> Path:
 
 @pytest.fixture(scope="module")
 def packed(program: str, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A wheel of a folder as scripts/release lays it out, with a stand-in that runs the program."""
+    """A wheel of a folder like that of scripts/release, with a stand-in that runs the program."""
     release = tmp_path_factory.mktemp("release")
     for path, text in {
         "bin/corniche": f'#!/bin/sh\nexec "{program}" "$@"\n',

@@ -1,10 +1,11 @@
-//! Ways that no road is: those that go to and fro over one place are left out and told, others are built, and `verify` calls none of it broken.
+//! Ways that are no roads: those that go to and fro at one place are skipped and reported, others
+//! are built, and `verify` accepts the package.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
 use std::fs;
 
-use corniche_testing::pbf::{Block, file};
+use corniche_testing::pbf::{BlockBuilder, file};
 use e2e::{Job, corniche, sample, text};
 
 /// Degrees of the nodes of a way over the pass, and its tags.
@@ -14,10 +15,11 @@ const ROAD: &[(&str, &str)] = &[("highway", "primary")];
 const BRIDGE: &[(&str, &str)] = &[("highway", "primary"), ("bridge", "yes"), ("layer", "1")];
 const TUNNEL: &[(&str, &str)] = &[("highway", "primary"), ("tunnel", "yes"), ("layer", "-1")];
 
-/// Builds a package of the pass with a plain road and these ways, and verifies it; the ids that are told as going to and fro. Ways are numbered from 2.
+/// Builds a package of the pass with a plain road and these ways, and verifies it. Returns the ids
+/// that are reported as going to and fro. Ways are numbered from 2.
 fn told_of(ways: &[Drawn<'_>]) -> Vec<String> {
     let folder = tempfile::tempdir().unwrap();
-    let mut block = Block::new();
+    let mut block = BlockBuilder::new();
     let plain: Drawn<'_> = (vec![[9.46, 46.90], [9.52, 46.91]], ROAD);
     let mut next = 1;
     for (id, (places, tags)) in (1..).zip([&[plain], ways].concat()) {
@@ -34,7 +36,7 @@ fn told_of(ways: &[Drawn<'_>]) -> Vec<String> {
     let osm = folder.path().join("absurd.osm.pbf");
     fs::write(&osm, file(&block)).unwrap();
     let dem = sample("pass/pass-dem.tif");
-    let job = Job::new(&["--max-error", "10", "-q"]).of([dem.clone(), osm.clone()]);
+    let job = Job::new(&["--max-error", "10", "-q"]).with_inputs([dem.clone(), osm.clone()]);
     job.succeed(&[]);
     for inputs in [&[][..], &["--dem", text(&dem), "--osm", text(&osm)]] {
         let ran = corniche([&["verify", text(&job.package())], inputs].concat());
@@ -47,7 +49,8 @@ fn told_of(ways: &[Drawn<'_>]) -> Vec<String> {
         .collect()
 }
 
-/// So many nodes, in turns at two places that move north a little with each.
+/// A way of `count` nodes that alternate between two places, which move north a little with each
+/// node.
 fn to_and_fro(count: u32, [west, east]: [f64; 2], step_deg: f64) -> Vec<[f64; 2]> {
     let place =
         |k: u32| [if k.is_multiple_of(2) { west } else { east }, 46.90 + step_deg * f64::from(k)];
@@ -69,7 +72,7 @@ fn ways_that_go_to_and_fro_are_left_out() {
     assert_eq!(told_of(&ways), expected);
 }
 
-/// The limits of `verify` are above what a build makes of such ways.
+/// The limits of `verify` are above those of the build.
 #[test]
 fn ways_of_many_nodes_are_roads() {
     let straight = |count: u32, length_deg: f64| -> Vec<[f64; 2]> {

@@ -1,16 +1,16 @@
-//! Areas in pictures, through the whole binary.
+//! Areas in rendered images, through the whole binary.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
 use std::{fs, path::Path};
 
-use corniche_testing::pbf::{Block, file};
+use corniche_testing::pbf::{BlockBuilder, file};
 use e2e::{Ran, corniche, draw, sample, text};
 
-/// The sample `pass` with one road and one lake on it; the road and the lake lie in its middle.
+/// The sample `pass` with one road and one lake in its centre.
 fn build(folder: &Path, areas: &str) -> std::path::PathBuf {
     let osm = folder.join("lake.osm.pbf");
-    let mut block = Block::new();
+    let mut block = BlockBuilder::new();
     let places = [(950, 4690), (955, 4690), (955, 4694), (950, 4694)];
     let nodes = (1..).zip(places).map(|(id, (lon, lat))| (id, lat * 100_000, lon * 100_000));
     block.dense(&nodes.collect::<Vec<_>>());
@@ -26,7 +26,7 @@ fn build(folder: &Path, areas: &str) -> std::path::PathBuf {
     package
 }
 
-/// `None` where there is no adapter.
+/// Returns `None` if there is no adapter.
 fn render(package: &Path, png: &Path, options: &[&str]) -> Option<(Ran, Vec<u8>)> {
     let ran = draw(
         "render",

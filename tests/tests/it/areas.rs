@@ -1,4 +1,5 @@
-//! `corniche build --areas`: areas through the whole binary, however the package is made; losses; refusals.
+//! `corniche build --areas`: areas through the whole binary, for all ways to build a package;
+//! losses; errors.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -64,7 +65,7 @@ fn areas_are_the_same_however_the_package_is_made() {
     let bytes = build(&whole, &inputs, &["--threads", "1", "--defects", text(&at("defects.csv"))]);
     succeed(corniche(["verify", text(&whole), "--dem", text(&dem), "--osm", text(&osm)]));
 
-    // What came in is what is kept and what is lost, with their ids.
+    // All read objects are either kept or lost, with their ids.
     let counts = &manifest(&whole)["areas"];
     assert_eq!(counts["objects"], 4);
     let lost: Vec<&str> = counts["lost"]
@@ -82,12 +83,13 @@ fn areas_are_the_same_however_the_package_is_made() {
     );
     let ran = succeed(corniche(["info", text(&whole)]));
     assert!(
-        ran.out.contains("Areas: 4 objects of the extract, of which 2 became areas"),
+        ran.out.contains("Areas: 4 objects of the extract, 2 of them converted"),
         "{}",
         ran.out
     );
 
-    // Each level has the whole of both areas; the sides of a cell of the lattice are 382 by 445 metres there.
+    // Each level has both areas as a whole; the sides of a cell of the lattice are 382 by 445
+    // metres there.
     let cell_m2 = 382.0 * 444.7;
     let areas = areas_of(&whole);
     let finest = areas.keys().map(|(level, _)| *level).max().unwrap();
@@ -123,10 +125,10 @@ fn a_build_with_areas_that_was_stopped_goes_on_to_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
     let inputs = || [sample("pass/pass-dem.tif"), extract_with_areas(folder.path())];
     let options = ["--max-error", "0.25", "--areas", "default"];
-    let whole = Job::new(&options).of(inputs());
+    let whole = Job::new(&options).with_inputs(inputs());
     whole.succeed(&["--quiet"]);
     for signal in ["TERM", "KILL"] {
-        let job = Job::new(&options).of(inputs());
+        let job = Job::new(&options).with_inputs(inputs());
         let stopped = job.stop(&[], signal, When::Worked);
         assert_ne!(stopped.code, 0, "{signal}: it ended by itself");
         job.succeed(&["--quiet", "--resume"]);
@@ -148,8 +150,7 @@ fn tables_that_are_none_and_areas_without_an_extract_are_refused() {
         ran.err
     };
     assert!(
-        refused(&["--areas", "default"])
-            .contains("--areas takes areas from an extract; give one with --osm")
+        refused(&["--areas", "default"]).contains("--areas needs an extract; pass one with --osm")
     );
     let no_table = refused(&["--osm", text(&osm), "--areas", "nothing"]);
     assert!(
@@ -160,11 +161,11 @@ fn tables_that_are_none_and_areas_without_an_extract_are_refused() {
         .unwrap();
     let no_class = refused(&["--osm", text(&osm), "--areas", text(&table)]);
     assert!(
-        no_class.contains("\"pond\" is no class of areas; classes are water, glacier"),
+        no_class.contains("\"pond\" is not a class of areas; the classes are water, glacier"),
         "{no_class}"
     );
 
-    // A table of one's own, named in a settings file beside it.
+    // A custom table next to a settings file that names it.
     fs::write(&table, "name = 'own'\n[[area]]\nclass = 'rock'\ntags = ['natural=water']\n")
         .unwrap();
     let settings = folder.path().join("settings.toml");
@@ -189,7 +190,8 @@ fn tables_that_are_none_and_areas_without_an_extract_are_refused() {
     assert_eq!(found["areas"]["kept"][0]["class"], "rock");
 }
 
-/// Who brings new roads onto the terrain each week may have forgotten `--areas`.
+/// When new roads are built onto existing terrain without `--areas`, the missing areas are
+/// reported.
 #[test]
 fn areas_that_are_not_asked_for_again_are_told() {
     let folder = tempfile::tempdir().unwrap();
@@ -205,17 +207,19 @@ fn areas_that_are_not_asked_for_again_are_told() {
         succeed(corniche([&words[..], &[text(&new)], more].concat())).err
     };
     let said = again(&[]);
-    assert!(said.contains("--areas is not given, it was made with default"), "{said}");
+    assert!(said.contains("--areas is not given, but it was built with default"), "{said}");
     let said = again(&["--areas", "default"]);
-    assert!(!said.contains("other settings"), "{said}");
+    assert!(!said.contains("settings that differ"), "{said}");
 }
 
-/// Sea in the south of a coast, with an island, within bounds; and the same coast without one of its ways.
+/// Sea in the south of a coast, with an island, within bounds; and the same coast without one of
+/// its ways.
 #[test]
 fn the_sea_is_closed_along_the_edge_and_ends_at_the_bounds() {
     let folder = tempfile::tempdir().unwrap();
     let dem = sample("pass/pass-dem.tif");
-    // The sides of 0.005 by 0.004 degrees are 382 by 445 metres there. The data end at 46.86234 degrees, 0.59 of such a side north of the bounds.
+    // The sides of 0.005 by 0.004 degrees are 382 by 445 metres there. The data end at 46.86234
+    // degrees, 0.59 of such a side north of the bounds.
     let expected_m2 = (12.0 * (10.0 - 0.59) - 4.0 * 2.5) * 382.0 * 444.7;
     for (is_whole, open_ends) in [(true, 0), (false, 2)] {
         let osm = extract_with_coast(folder.path(), is_whole);

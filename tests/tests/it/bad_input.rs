@@ -1,10 +1,12 @@
-//! Wrong inputs of every kind: each gives a clear message and the right exit code, and nothing is written to the target.
+//! Invalid inputs of every kind: each gives a clear message and the right exit code, and nothing is
+//! written to the target.
 
 use std::{fs, path::Path};
 
 use e2e::{Ran, build_pass, corniche, real_data, sample, text};
 
-/// Runs `corniche build` with `arguments` and expects `code`, no file at the target and no temporary files beside it.
+/// Runs `corniche build` with `arguments` and expects `code`, no file at the target and no
+/// temporary files next to it.
 fn refuses(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) -> Ran {
     let target = folder.join("out.pmtiles");
     let mut all = vec!["build", "-o", text(&target)];
@@ -51,10 +53,10 @@ fn refuses_an_extract_that_lies_elsewhere() {
     let osm = sample("liechtenstein/liechtenstein-2013-08-03.osm.pbf");
     let options = ["--dem", text(&dem), "--osm", text(&osm)];
     let ran = refuses(folder.path(), &options, 2, &["do not overlap"]);
-    // The message gives the place of both, so that the reader sees which one is wrong.
+    // The message gives both positions, so that the reader sees which one is wrong.
     let rectangle = |before: &str| -> Vec<f64> {
         let (_, from) = ran.err.split_once(before).expect("it says so");
-        let words = from.split([' ', ',', '\n']);
+        let words = from.split([' ', ',', ';', '\n']);
         let [west, east, south, north] =
             words.filter_map(|word| word.parse().ok()).take(4).collect::<Vec<f64>>()[..]
         else {
@@ -63,7 +65,7 @@ fn refuses_an_extract_that_lies_elsewhere() {
         vec![west, south, east, north]
     };
     for (within, true_deg) in [
-        ("roads lie within longitudes ", [9.47, 47.05, 9.64, 47.27]),
+        ("roads are within longitudes ", [9.47, 47.05, 9.64, 47.27]),
         ("heights within longitudes ", [9.50, 46.85, 9.58, 46.95]),
     ] {
         let told_deg = rectangle(within);
@@ -119,7 +121,7 @@ fn a_terabyte_is_a_size() {
     assert_eq!(ran.code, 0, "{}", ran.err);
 }
 
-/// The ending of the name must be that of a PNG, the only format of pictures.
+/// The file extension must be that of a PNG, the only format of images.
 #[test]
 fn refuses_a_picture_that_its_name_makes_something_else() {
     let folder = tempfile::tempdir().unwrap();
@@ -144,7 +146,7 @@ fn keeps_what_exists_unless_told_to_replace_it() {
     let ran = corniche(arguments);
     assert_eq!(ran.code, 3, "{}", ran.err);
     assert_eq!(fs::read(&target).unwrap(), b"precious");
-    // A run that fails leaves the existing file as it was, with -O or without.
+    // A failed run leaves the existing file unchanged, with or without -O.
     let ran = corniche(["build", "--dem", "/nowhere.tif", "-O", "-o", text(&target)]);
     assert_eq!(ran.code, 2, "{}", ran.err);
     assert_eq!(fs::read(&target).unwrap(), b"precious");
@@ -175,8 +177,8 @@ fn refuses_packages_that_are_none() {
     }
 }
 
-/// An interrupted build: exit code 4, no file at the target; what was done is kept, and the build goes on from there, to the
-/// package and the list of defects of a build that was not interrupted.
+/// An interrupted build: exit code 4, no file at the target; progress is kept, and the resumed
+/// build produces the package and the list of defects of an uninterrupted build.
 #[cfg(unix)]
 #[test]
 fn goes_on_after_an_interruption() {
@@ -234,7 +236,7 @@ fn goes_on_after_an_interruption() {
     assert!(unbroken.contains("self-crossing"), "the sample's extract has defects: {unbroken}");
 }
 
-/// Real extracts that cannot be used: each is refused with its reason before any long work.
+/// Real extracts that are unusable: each is rejected with the reason before any long work.
 #[test]
 fn refuses_broken_and_foreign_extracts() {
     let cases = [

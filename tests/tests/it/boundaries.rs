@@ -1,4 +1,5 @@
-//! `corniche build --boundaries`: boundaries through the whole binary, however the package is made; losses; refusals.
+//! `corniche build --boundaries`: boundaries through the whole binary, for all ways to build a
+//! package; losses; errors.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -31,7 +32,7 @@ fn boundaries_are_the_same_however_the_package_is_made() {
     let ran = succeed(corniche(["verify", text(&whole), "--dem", text(&dem), "--osm", text(&osm)]));
     assert!(!ran.out.contains("broken"), "{}", ran.out);
 
-    // What came in is what is kept and what is lost, with its id.
+    // All read ways are either kept or lost, with their ids.
     let found = &manifest(&whole)["boundaries"];
     assert_eq!(found["ways"], 4);
     let kept: Vec<(&str, u64)> = found["kept"]
@@ -43,11 +44,11 @@ fn boundaries_are_the_same_however_the_package_is_made() {
     assert_eq!(kept, [("admin-2", 1), ("admin-6", 1), ("protected", 1)]);
     assert_eq!(found["lost"][0]["reason"], "way of a boundary is missing");
     let defects = fs::read_to_string(at("defects.csv")).unwrap();
-    // It lies in the country beyond, which is no fault of the extract.
+    // It is in the neighbouring country, which is not a defect of the extract.
     assert!(!defects.contains("boundary"), "{defects}");
     let ran = succeed(corniche(["info", text(&whole)]));
     assert!(ran.out.contains("Boundaries: 4 ways of the extract"), "{}", ran.out);
-    assert!(ran.out.contains("  ways beyond the extract: 1\n"), "{}", ran.out);
+    assert!(ran.out.contains("  ways missing from the extract: 1\n"), "{}", ran.out);
     assert!(!ran.out.contains("defect: way of a boundary"), "{}", ran.out);
     // 5 by 4 steps of the lattice of nodes and so on: 382 by 445 metres each.
     let length_km = found["kept"][0]["length_um"].as_f64().unwrap() / 1e9;
@@ -75,9 +76,9 @@ fn a_build_with_boundaries_that_was_stopped_goes_on_to_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
     let inputs = || [sample("pass/pass-dem.tif"), extract_with_boundaries(folder.path())];
     let options = ["--max-error", "0.25", "--boundaries", "on"];
-    let whole = Job::new(&options).of(inputs());
+    let whole = Job::new(&options).with_inputs(inputs());
     whole.succeed(&["--quiet"]);
-    let job = Job::new(&options).of(inputs());
+    let job = Job::new(&options).with_inputs(inputs());
     let stopped = job.stop(&[], "KILL", When::Worked);
     assert_ne!(stopped.code, 0, "it ended by itself");
     job.succeed(&["--quiet", "--resume"]);
@@ -149,5 +150,5 @@ fn bounds_leave_out_what_is_far_and_an_extract_is_needed() {
     assert!(points(&part) < points(&whole), "{} and {}", points(&part), points(&whole));
     let refused = build(&at("none.pmtiles"), &["--boundaries", "on"]);
     assert_eq!(refused.code, 2);
-    assert!(refused.err.contains("give one with --osm"), "{}", refused.err);
+    assert!(refused.err.contains("pass one with --osm"), "{}", refused.err);
 }

@@ -1,4 +1,5 @@
-//! Inputs that change while they are read: the hashes in a package are always those of the bytes it was made from.
+//! Inputs that change while they are read: the hashes in a package are always those of the bytes it
+//! was built from.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 #![cfg(unix)]
@@ -14,8 +15,8 @@ use std::{
 use e2e::{corniche, sample, text};
 use serde_json::Value;
 
-/// Builds from `dem` and `osm`, calls `change` when the inputs are hashed and the long work begins, and gives the exit code
-/// and what was said.
+/// Builds from `dem` and `osm`, calls `change` when the inputs are hashed and the long work begins,
+/// and returns the exit code and the messages.
 fn build_while(dem: &Path, osm: &Path, package: &Path, change: impl FnOnce()) -> (i32, String) {
     let mut child = Command::new(e2e::binary())
         .args(["build", "--dem", text(dem), "--osm", text(osm), "-o", text(package)])
@@ -32,7 +33,7 @@ fn build_while(dem: &Path, osm: &Path, package: &Path, change: impl FnOnce()) ->
     (child.wait().unwrap().code().unwrap_or(-1), rest.join("\n"))
 }
 
-/// Copies of the sample `pass` in a folder of their own.
+/// Copies of the sample `pass` in a separate folder.
 fn copies(folder: &Path) -> [PathBuf; 2] {
     ["pass-dem.tif", "pass.osm.pbf"].map(|name| {
         let copy = folder.join(name);
@@ -41,7 +42,8 @@ fn copies(folder: &Path) -> [PathBuf; 2] {
     })
 }
 
-/// A virtual raster of the size and the place of the sample `pass`, made of the raster `source` beside it.
+/// A virtual raster with the size and position of the sample `pass`, which refers to the raster
+/// `source` next to it.
 fn vrt(source: &str) -> String {
     format!(
         "<VRTDataset rasterXSize=\"1000\" rasterYSize=\"1000\"><SRS>EPSG:32632</SRS>\
@@ -89,7 +91,7 @@ fn a_changed_input_ends_the_build_and_nothing_is_written() {
     }
 }
 
-/// The files that a virtual raster refers to, through another one too, are inputs like any other.
+/// The files that a virtual raster refers to, also through another one, are inputs like any other.
 #[test]
 fn the_parts_of_a_virtual_raster_are_hashed_recorded_and_watched() {
     let folder = tempfile::tempdir().unwrap();
@@ -122,7 +124,7 @@ fn the_parts_of_a_virtual_raster_are_hashed_recorded_and_watched() {
     assert!(said.contains("changed while it was read") && said.contains("pass-dem.tif"), "{said}");
 }
 
-/// What `verify` is given must be what the package was made from, the parts too.
+/// The inputs of `verify` must be those of the package, including parts.
 #[test]
 fn verify_knows_a_virtual_raster_of_other_parts() {
     let folder = tempfile::tempdir().unwrap();
@@ -132,7 +134,8 @@ fn verify_knows_a_virtual_raster_of_other_parts() {
     let package = folder.path().join("out.pmtiles");
     let ran = corniche(["build", "--dem", text(&virtual_dem), "-o", text(&package), "--quiet"]);
     assert_eq!(ran.code, 0, "{}", ran.err);
-    // The virtual raster is the same; the file that it refers to has one byte more, which no sample needs.
+    // The virtual raster is the same; the file that it refers to has one byte more, which no sample
+    // needs.
     let mut bytes = fs::read(&dem).unwrap();
     bytes.push(0);
     fs::write(&dem, bytes).unwrap();

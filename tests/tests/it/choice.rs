@@ -1,4 +1,5 @@
-//! What is converted: a part of the data (`--bounds`), some classes (`--classes`), files by folder, pattern, list and archive (`--dem`).
+//! Selections of inputs: a region (`--bounds`), some classes (`--classes`), files by folder,
+//! pattern, list and archive (`--dem`).
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -7,7 +8,7 @@ use std::{fs, path::Path};
 use e2e::{Ran, corniche, real_data, sample, text};
 use serde_json::Value;
 
-/// Some five by four kilometres in the middle of the sample `pass`.
+/// Some five by four kilometres in the centre of the sample `pass`.
 const BOUNDS: &str = "9.47,46.885,9.53,46.92";
 
 fn succeed(ran: Ran) -> Ran {
@@ -44,7 +45,7 @@ fn parts_resumed_builds_and_settings_files_make_the_package_of_the_bounds() {
     assert!(bytes.len() < fs::read(&whole).unwrap().len() / 2);
     let said = succeed(corniche(["info", text(&part)])).out;
     assert!(said.contains("9.47 46.885 9.53 46.92"), "{said}");
-    assert!(said.contains("lost outside the bounds that were asked for"), "{said}");
+    assert!(said.contains("lost outside the requested bounds"), "{said}");
     assert!(!fs::read_to_string(&list).unwrap().contains("bounds"));
     let counts = &manifest(&part)["counts"];
     let lost: u64 = counts["roads_lost"]
@@ -81,7 +82,7 @@ fn parts_resumed_builds_and_settings_files_make_the_package_of_the_bounds() {
     succeed(corniche(["merge", text(&plan), "-q", "--store", text(&store), "-o", text(&merged)]));
     assert!(fs::read(&merged).unwrap() == bytes, "parts make another package");
 
-    // Roads of the same extract on the terrain of the package: its bounds are taken without being named.
+    // Roads of the same extract on the terrain of the package: its bounds are the default.
     let again = at("again.pmtiles");
     let osm = sample("pass/pass.osm.pbf");
     let taken = ["build", "-q", "-o", text(&again), "--terrain", text(&part), "--osm", text(&osm)];
@@ -102,9 +103,9 @@ fn wrong_bounds_are_refused_with_what_to_do() {
     let inputs = inputs();
     for (bounds, words) in [
         ("9.47,46.9", "west,south,east,north"),
-        ("9.47,46.92,9.53,46.885", "the south must be less"),
-        ("10,50,11,51", "holds no cell of the elevation data"),
-        ("osm", "does not say where the extract is"),
+        ("9.47,46.92,9.53,46.885", "south must be less"),
+        ("10,50,11,51", "contains no cell of the elevation data"),
+        ("osm", "has no bounding box"),
     ] {
         let ran =
             corniche(with(&["build", "-q", "-o", text(&package)], &inputs, &["--bounds", bounds]));
@@ -113,7 +114,7 @@ fn wrong_bounds_are_refused_with_what_to_do() {
     }
     let ran =
         corniche(with(&["build", "-q", "-o", text(&package)], &inputs[..2], &["--bounds", "osm"]));
-    assert!(ran.code == 2 && ran.err.contains("give one with --osm"), "{}", ran.err);
+    assert!(ran.code == 2 && ran.err.contains("pass one with --osm"), "{}", ran.err);
     assert!(!package.exists());
 }
 
@@ -139,7 +140,7 @@ fn bounds_of_an_extract_are_those_of_its_header() {
     ]));
     let plan: Value = serde_json::from_str(&fs::read_to_string(plan).unwrap()).unwrap();
     let bounds: Vec<f64> = serde_json::from_value(plan["settings"]["bounds_deg"].clone()).unwrap();
-    // The header says 9.471 47.048 9.636 47.271, and a hundredth more is taken.
+    // The header says 9.471 47.048 9.636 47.271, extended by 1 %.
     for (found, wanted) in bounds.iter().zip([9.469, 47.0457, 9.638, 47.2733]) {
         assert!((found - wanted).abs() < 1e-3, "{bounds:?}");
     }
@@ -177,7 +178,8 @@ fn classes_that_are_chosen_become_roads_and_the_others_have_a_length() {
         found.fold([0; 2], add)
     };
     assert_eq!((roads(&counts[0], 8), left_out(&counts[1], "class is off")), (0, [0, 0]));
-    // What the usual classes leave out is what becomes a road with all of them: as many ways, as long (by two ways of measuring).
+    // The ways that the default classes skip become roads with all classes: the same number, and
+    // the same length (measured in two ways).
     let [ways, length_um] = left_out(&counts[0], "class is off");
     let length_of =
         |counts: &Value, class: usize| counts["classes"][class]["length_um"].as_u64().unwrap();
@@ -235,5 +237,5 @@ fn elevation_files_are_named_by_folder_pattern_and_list() {
     let empty = folder.path().join("empty");
     fs::create_dir(&empty).unwrap();
     let ran = corniche(["plan", "--dem", text(&empty)]);
-    assert!(ran.code == 2 && ran.err.contains("holds no elevation file"), "{}", ran.err);
+    assert!(ran.code == 2 && ran.err.contains("contains no elevation file"), "{}", ran.err);
 }

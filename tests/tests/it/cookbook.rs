@@ -1,10 +1,11 @@
-//! The commands of `docs/cookbook.md` run as they stand, on the bundled sample in place of what they download.
+//! The commands of `docs/cookbook.md` run unchanged, on the bundled sample instead of the
+//! downloads.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
 use std::{fs, path::Path, process::Command};
 
-/// The blocks of `sh` of a page, with what the comment in their first line says that they need.
+/// The `sh` blocks of a page, with the requirements in the comment of their first line.
 fn blocks(page: &str) -> Vec<(Option<&str>, &str)> {
     let blocks =
         page.split("```").skip(1).step_by(2).filter_map(|block| block.strip_prefix("sh\n"));
@@ -13,7 +14,7 @@ fn blocks(page: &str) -> Vec<(Option<&str>, &str)> {
         .collect()
 }
 
-/// Whether what a block needs is here.
+/// Whether the requirement of a block is met.
 fn has(need: &str) -> bool {
     let program = match need {
         "osmium-tool" => "osmium",
@@ -26,7 +27,7 @@ fn has(need: &str) -> bool {
     Command::new(program).arg("--version").output().is_ok()
 }
 
-/// What the downloads of the page would have made.
+/// Creates the files that the page would download.
 fn lay_inputs(folder: &Path) {
     let (dem, osm) = (e2e::sample("pass/pass-dem.tif"), e2e::sample("pass/pass.osm.pbf"));
     for name in ["heights", "alti"] {
@@ -51,7 +52,7 @@ fn the_commands_of_the_cookbook_run_as_they_stand() {
             e2e::skip(&format!("a block of the cookbook needs {need}"));
             continue;
         }
-        // Pictures need a graphics adapter, which other tests ask for.
+        // Images need a GPU adapter, which other tests require.
         let drawn = block
             .lines()
             .filter(|line| !line.starts_with("corniche render"))

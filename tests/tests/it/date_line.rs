@@ -1,6 +1,8 @@
-//! Roads, areas, boundaries and lines of other files over ±180° and over the opposite meridian, on elevation models of many systems.
+//! Roads, areas, boundaries and lines of other files over ±180° and over the opposite meridian, on
+//! elevation models of many systems.
 //!
-//! All lie on the same ground; right lengths and areas are those of `GeographicLib`'s geodesics on WGS84.
+//! All regions have the same ground; correct lengths and areas are those of `GeographicLib`'s
+//! geodesics on WGS84.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -12,7 +14,7 @@ use std::{
 
 use corniche_testing::{
     Raster,
-    pbf::{Block, Line, extract as extract_of, file},
+    pbf::{BlockBuilder, WayToWrite, extract as extract_of, file},
 };
 use e2e::{corniche, manifest, text};
 use gdal::{
@@ -22,7 +24,8 @@ use gdal::{
 };
 use serde_json::Value;
 
-/// Ways over 180°, from 180° and to 180°, with their lengths; the last one goes over Greenwich, which lies opposite.
+/// Ways across 180°, from 180° and to 180°, with their lengths; the last one crosses the meridian
+/// of Greenwich, on the opposite side.
 const WAYS: [(i64, &[[f64; 2]], f64); 5] = [
     (1, &[[179.9, 10.0], [-179.9, 10.01]], 21_955.416),
     (2, &[[-180.0, 10.1], [-179.9, 10.1]], 10_960.568),
@@ -31,7 +34,8 @@ const WAYS: [(i64, &[[f64; 2]], f64); 5] = [
     (OPPOSITE, &[[-0.1, 10.0], [0.1, 10.05]], 22_612.900),
 ];
 const OPPOSITE: i64 = 5;
-/// Forests of 0.2 by 0.05 degrees over 180° and over Greenwich, from the south-western corner on.
+/// Forests of 0.2 by 0.05 degrees across 180° and across Greenwich, from the south-western corner
+/// on.
 const FORESTS: [(i64, f64); 2] = [(11, 179.9), (12, -0.1)];
 const FOREST_M2: f64 = 121_296_921.4;
 /// Borders along ways 1 and 5.
@@ -40,7 +44,7 @@ const BORDERS: [(i64, usize); 2] = [(21, 0), (22, 4)];
 /// Size and geotransform of a raster.
 type File = ([usize; 2], [f64; 6]);
 
-/// An elevation model: files of one system, and how it is built.
+/// An elevation model: files of one system, and the options to build it.
 struct Model {
     name: &'static str,
     epsg: u32,
@@ -54,7 +58,7 @@ const DEGREE_M: f64 = X_180 / 180.0;
 /// The ground around 180°, degrees.
 const GROUND: [f64; 4] = [-0.25, 9.8, 0.25, 10.3];
 
-/// A position in another system, by PROJ.
+/// Transforms a position to another system with PROJ.
 fn carried(epsg: u32, [lon, lat]: [f64; 2]) -> [f64; 2] {
     let [from, to] = [4326, epsg].map(|code| {
         let mut system = SpatialRef::from_epsg(code).unwrap();
@@ -66,9 +70,10 @@ fn carried(epsg: u32, [lon, lat]: [f64; 2]) -> [f64; 2] {
     [x[0], y[0]]
 }
 
-/// Files of a system in which x goes evenly, from west to east of its coordinate of 180° by these parts of a degree.
+/// Files of a system with evenly spaced x, from west to east relative to its coordinate of 180°, in
+/// fractions of a degree.
 fn even(epsg: u32, parts: &[(f64, [f64; 2])], degree: f64, cell: f64) -> Vec<File> {
-    // All around the earth there is room for more than one row.
+    // For the whole earth there is space for more than one row.
     let [_, south, _, north] = if cell < degree { GROUND } else { [0.0, -2.0, 0.0, 22.0] };
     let [south, north] = [south, north].map(|lat| carried(epsg, [170.0, lat])[1]);
     let rows = ((north - south) / cell).ceil() as usize;
@@ -102,7 +107,8 @@ fn models() -> Vec<Model> {
         model("3857-west", 3857, metres(3857, &[(-X_180, both)]), own),
         model("3857-meeting", 3857, metres(3857, &meeting), own),
         model("3857-meeting-west", 3857, metres(3857, &[meeting[1], meeting[0]]), own),
-        // 250 m are no part of a turn: the files lie on two grids, and one goes on where the other ends.
+        // 250 m are not a multiple of a full turn: the files are on two grids, and one continues
+        // where the other ends.
         model("3857-two-grids", 3857, even(3857, &overlapping, DEGREE_M, 250.0), own),
         model("3857-in-3832", 3857, metres(3857, &[(X_180, both)]), &["--crs", "EPSG:3832"]),
         model(
@@ -128,19 +134,20 @@ fn models() -> Vec<Model> {
     ]
 }
 
-/// A grid all around the earth in degrees, with samples at both ends.
+/// A grid of the whole earth in degrees, with samples at both ends.
 fn globe(name: &'static str, west: f64) -> Model {
     let files = vec![([361, 21], [west - 0.5, 1.0, 0.0, 20.5, 0.0, -1.0])];
     Model { name, epsg: 4326, files, options: &["--crs", "dem"], is_global: true }
 }
 
-/// The same with one sample in each cell: the ground between the last column and the first one has no samples of its own.
+/// The same grid with one sample per cell: there are no samples between the last column and the
+/// first.
 fn cells(name: &'static str, parts: &[(f64, usize)], options: &'static [&'static str]) -> Model {
     let file = |&(west, columns): &(f64, usize)| ([columns, 40], [west, 1.0, 0.0, 20.0, 0.0, -1.0]);
     Model { name, epsg: 4326, files: parts.iter().map(file).collect(), options, is_global: true }
 }
 
-/// The same in metres.
+/// The same grid in metres.
 fn around(name: &'static str, epsg: u32) -> Model {
     let files = even(epsg, &[(0.0, [-180.5, 180.5])], DEGREE_M, DEGREE_M);
     Model { name, epsg, files, options: &["--crs", "dem"], is_global: true }
@@ -156,9 +163,9 @@ impl Model {
     }
 }
 
-/// The extract; `with_opposite` says whether that has what lies over Greenwich.
+/// Writes the extract; `with_opposite` adds the objects across Greenwich.
 fn extract(folder: &Path, with_opposite: bool) -> PathBuf {
-    let mut block = Block::new();
+    let mut block = BlockBuilder::new();
     let mut nodes = Vec::new();
     let mut line = |points: &[[f64; 2]]| -> Vec<i64> {
         let e7 = |deg: f64| (deg * 1e7).round() as i64;
@@ -213,7 +220,7 @@ fn built(model: &Model, dems: &[PathBuf], osm: &Path, package: &Path) {
     done(&words);
 }
 
-/// The features of a file: their numbers by name, and where they lie.
+/// The features of a file: their numbers by name, and their geometries.
 fn features(path: &Path) -> Vec<(BTreeMap<String, f64>, Geometry)> {
     let dataset = Dataset::open(path).unwrap();
     let mut layer = dataset.layer(0).unwrap();
@@ -235,7 +242,8 @@ fn near(what: &str, found: f64, expected: f64) {
     assert!(off < 2e-5, "{what}: {found}, not {expected}");
 }
 
-/// Lines in degrees: all within ±180, none of no length, and about as long as they should be.
+/// Checks lines in degrees: all are within ±180, none has zero length, and the total length is
+/// about right.
 fn check_lines(what: &str, geometry: &Geometry, expected_m: f64) {
     let mut length_m = 0.0;
     for part in 0..geometry.geometry_count() {
@@ -306,7 +314,7 @@ fn check(model: &Model, folder: &Path, extracts: &[PathBuf; 2]) {
     let borders: f64 = BORDERS.iter().map(|&(_, along)| WAYS[along].2).sum();
     near(&format!("{name}, borders"), kept[0]["length_um"].as_f64().unwrap() / 1e6, borders);
     if !model.is_global {
-        // Nothing of what lies opposite comes near the ground.
+        // The objects on the opposite side do not affect the ground.
         let without = at("-without.pmtiles");
         built(model, &dems, &extracts[0], &without);
         let without = manifest(&without);
@@ -338,7 +346,8 @@ fn check(model: &Model, folder: &Path, extracts: &[PathBuf; 2]) {
     }
 }
 
-/// One for each system and way to count, and all that lies over 180°, ends there, or lies over the opposite meridian.
+/// One model per system and counting of longitudes, with all objects that cross 180°, end there, or
+/// cross the opposite meridian.
 #[test]
 fn what_goes_over_the_end_of_the_map_is_as_long_as_on_the_earth() {
     let folder = tempfile::tempdir().unwrap();
@@ -348,7 +357,7 @@ fn what_goes_over_the_end_of_the_map_is_as_long_as_on_the_earth() {
     }
 }
 
-/// Where the map of the whole earth ends, coastlines end, and the sea is closed there.
+/// Coastlines end at the border of the map of the whole earth, where the sea is closed.
 #[test]
 fn a_coast_over_the_end_of_the_map_is_closed_there() {
     let folder = tempfile::tempdir().unwrap();
@@ -360,7 +369,7 @@ fn a_coast_over_the_end_of_the_map_is_closed_there() {
         .zip(corners)
         .map(|(id, (lon, lat))| (id, lat * 10_000_000, lon * 10_000_000))
         .collect();
-    let mut block = Block::new();
+    let mut block = BlockBuilder::new();
     block.dense(&nodes);
     block.way(1, &[("highway", "primary")], &[1, 3]);
     block.way(2, &[("natural", "coastline")], &[1, 2, 3, 4, 1]);
@@ -384,8 +393,8 @@ fn a_coast_over_the_end_of_the_map_is_closed_there() {
     assert!(!is_sea(176.5, 10.0) && !is_sea(179.9, 10.0) && !is_sea(-179.9, 10.0));
 }
 
-/// Grids may count longitudes from 0 to 360, or beyond. What packages say of places lies within ±180; in the header of the file the whole earth
-/// is -180 to 180, where numbers end at 214.75.
+/// Grids may count longitudes from 0 to 360, or beyond. Positions in packages are within ±180; in
+/// the header of the file the whole earth is -180 to 180, because numbers end at 214.75.
 #[test]
 fn what_lies_beyond_180_degrees_comes_back() {
     let folder = tempfile::tempdir().unwrap();
@@ -394,8 +403,10 @@ fn what_lies_beyond_180_degrees_comes_back() {
     let model = |name, files| Model { name, epsg: 4326, files, options: &[], is_global: false };
     let regional = model("beyond", vec![file]);
     let globe = globe("globe", 0.0);
-    let line =
-        Line { tags: vec![("highway", "primary")], points_deg: vec![[-89.9, 10.0], [-89.8, 10.1]] };
+    let line = WayToWrite {
+        tags: vec![("highway", "primary")],
+        points_deg: vec![[-89.9, 10.0], [-89.8, 10.1]],
+    };
     let osm = at("beyond.osm.pbf");
     fs::write(&osm, extract_of(&[], &[line])).unwrap();
     for (model, expected, part) in [
@@ -442,13 +453,13 @@ fn what_lies_beyond_180_degrees_comes_back() {
     }
 }
 
-/// A globe with one sample in each cell has ground all around: between its last column and its first one, too. A grid that ends a column earlier
-/// has none there.
+/// A globe with one sample per cell has ground everywhere, also between its last column and its
+/// first one. A grid that ends a column earlier has no ground there.
 #[test]
 fn a_globe_of_cells_has_no_gap_where_it_ends() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
-    let line = |points_deg: &[[f64; 2]]| Line {
+    let line = |points_deg: &[[f64; 2]]| WayToWrite {
         tags: vec![("highway", "primary")],
         points_deg: points_deg.to_vec(),
     };

@@ -1,4 +1,5 @@
-//! Datums, bands and feet: what is not known of an elevation file is told, asked for or refused, never guessed in silence.
+//! Datums, bands and feet: facts that an elevation file lacks are reported, requested or lead to an
+//! error, and are never guessed silently.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -57,7 +58,8 @@ fn the_way_to_wgs84_and_its_accuracy_are_recorded_and_told() {
         assert!(told.contains(&line), "{told}");
         verified(&package, &dem);
     }
-    // Of a file in another CRS than the package's both ways are recorded: that of roads, and that of the file.
+    // For a file in another CRS than the package's, both operations are recorded: that of roads,
+    // and that of the file.
     let dem = raster(folder.path(), 2056, [2_600_000.0, 1_200_000.0], 30.0);
     assert_eq!(build(&dem, &package, &["--crs", "EPSG:25832"]).code, 0);
     let made = manifest(&package);
@@ -72,7 +74,7 @@ fn the_way_to_wgs84_and_its_accuracy_are_recorded_and_told() {
     assert!(!corniche(["info", text(&package)]).out.contains("positions "));
 }
 
-/// NAD27 in Utah. Where the grids of NADCON are installed, PROJ uses them, and there is nothing to warn of.
+/// NAD27 in Utah. If the NADCON grids are installed, PROJ uses them, and there is no warning.
 #[test]
 fn a_missing_grid_is_told_by_its_name() {
     let folder = tempfile::tempdir().unwrap();
@@ -97,7 +99,8 @@ const LOCAL: &str = "PROJCS[\"Local\",GEOGCS[\"GCS_Local\",DATUM[\"D_Local_Surve
     PARAMETER[\"False_Easting\",4500000.0],PARAMETER[\"False_Northing\",0.0],PARAMETER[\"Central_Meridian\",12.0],\
     PARAMETER[\"Scale_Factor\",1.0],PARAMETER[\"Latitude_Of_Origin\",0.0],UNIT[\"Meter\",1.0]]";
 
-/// An ASCII grid with a `.prj` of a local datum on the ellipsoid of Bessel: WGS84 is 100 m and more beside it.
+/// An ASCII grid with a `.prj` of a local datum on the Bessel ellipsoid, which differs from WGS84
+/// by 100 m and more.
 #[test]
 fn one_datum_is_taken_for_another_only_where_that_is_allowed() {
     let folder = tempfile::tempdir().unwrap();
@@ -122,11 +125,11 @@ fn one_datum_is_taken_for_another_only_where_that_is_allowed() {
     assert!(ran.err.contains("unknown accuracy"), "{}", ran.err);
     assert_eq!(manifest(&package)["datum_operations"][0]["ballpark"], json!(true));
     let told = corniche(["info", text(&package)]).out;
-    assert!(told.contains("takes one datum for the other"), "{told}");
+    assert!(told.contains("a ballpark transformation"), "{told}");
     verified(&package, &dem);
-    // Parts of a build that was allowed to need not be allowed again.
+    // Parts of a plan that allows ballpark transformations need no permission of their own.
     let planned = corniche(["plan", "--dem", text(&dem), "--allow-ballpark"]);
-    assert!(planned.out.contains("takes one datum for the other"), "{}", planned.out);
+    assert!(planned.out.contains("a ballpark transformation"), "{}", planned.out);
     let parts = built_in_parts(folder.path(), &["--dem", text(&dem), "--allow-ballpark"]);
     assert!(parts == fs::read(&package).unwrap(), "parts make another package");
 }
@@ -141,18 +144,18 @@ fn heights_without_a_unit_beside_coordinates_in_feet_are_told() {
         let ran = build(&dem, &package, &[]);
         assert_eq!(ran.code, 0, "{}", ran.err);
         let name = format!("{epsg}.tif");
-        for word in [name.as_str(), "taken as metres", "--dem-vertical-crs", "EPSG:6360"] {
+        for word in [name.as_str(), "read as metres", "--dem-vertical-crs", "EPSG:6360"] {
             assert!(ran.err.contains(word), "{epsg}: {}", ran.err);
         }
         let ran = build(&dem, &package, &["--dem-vertical-crs", "EPSG:6360"]);
-        assert!(ran.code == 0 && !ran.err.contains("taken as metres"), "{}", ran.err);
+        assert!(ran.code == 0 && !ran.err.contains("read as metres"), "{}", ran.err);
         // 300 ± 70 feet.
         let range = &manifest(&package)["vertical"]["range_m"];
         assert!(range[1].as_f64().unwrap() < 370.0 * 0.305, "{range}");
     }
 }
 
-/// Bands that are no colours: which of them has the heights is asked for.
+/// If several bands are no colours, the user must select the one with the heights.
 #[test]
 fn of_several_bands_one_is_to_be_chosen() {
     let folder = tempfile::tempdir().unwrap();
@@ -175,7 +178,7 @@ fn of_several_bands_one_is_to_be_chosen() {
     let chosen = manifest(&package);
     assert_eq!(chosen["settings"]["dem_band"], json!(1));
     verified(&package, &both);
-    // Those of the file with that band alone, and zeros in the other band.
+    // The package equals that of a file with this band only, and zeros in the other band.
     let dem = raster(folder.path(), 32632, [500_000.0, 5_200_000.0], 30.0);
     assert_eq!(build(&dem, &package, &[]).code, 0);
     assert_eq!(chosen["vertical"], manifest(&package)["vertical"]);
@@ -184,7 +187,7 @@ fn of_several_bands_one_is_to_be_chosen() {
     assert_eq!(manifest(&package)["vertical"]["range_m"], json!([0.0, 0.0]));
 }
 
-/// What is laid on the ground or cuts it comes to its datum likewise.
+/// Photos and polygons are converted to the datum of the ground in the same way.
 #[test]
 fn photos_and_polygons_of_an_unknown_datum_are_refused_too() {
     let folder = tempfile::tempdir().unwrap();
@@ -216,7 +219,7 @@ fn photos_and_polygons_of_an_unknown_datum_are_refused_too() {
         assert!(ran.err.contains(name) && ran.err.contains("unknown accuracy"), "{}", ran.err);
     }
     assert_eq!(build(&dem, &package, &[]).code, 0);
-    // Lines: here the outline of the triangle.
+    // For lines: here the outline of the triangle.
     let picture = folder.path().join("map.png");
     for command in [
         &["profile", text(&package), "--line", text(&polygon)][..],
@@ -234,7 +237,7 @@ fn photos_and_polygons_of_an_unknown_datum_are_refused_too() {
     }
 }
 
-/// Lines in NAD27, where grids may be missing: carried, and told.
+/// Lines in NAD27, where grids may be missing, are converted, and this is reported.
 #[test]
 fn lines_whose_datum_has_a_better_operation_are_told() {
     let folder = tempfile::tempdir().unwrap();
@@ -250,7 +253,7 @@ fn lines_whose_datum_has_a_better_operation_are_told() {
     vectors.close().unwrap();
     let ran = corniche(["profile", text(&package), "--line", text(&lines)]);
     assert_eq!(ran.code, 0, "{}", ran.err);
-    // Where the grids are installed there is nothing to tell.
+    // If the grids are installed, there is nothing to report.
     if !ran.err.is_empty() {
         for word in ["lines.gpkg", "EPSG:26712", "us_noaa_", "projsync"] {
             assert!(ran.err.contains(word), "{}", ran.err);

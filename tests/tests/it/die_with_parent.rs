@@ -1,5 +1,5 @@
-//! `--die-with-parent`: a part, and a merge, end when the pipe to their standard input is closed, and only then. What was done is gone on
-//! with.
+//! `--die-with-parent`: a part, and a merge, end when their stdin is closed, and only then. Their
+//! progress is resumed.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 #![cfg(unix)]
@@ -17,7 +17,7 @@ use tempfile::TempDir;
 
 /// Bytes at the beginning of a journal, before its first entry.
 const JOURNAL_HEADER_BYTES: u64 = 48;
-/// A run that is told to end is given ten seconds and a half; the machine may be busy.
+/// A run may need ten seconds and a half to end; the machine may be busy.
 const ENDS_WITHIN: Duration = Duration::from_secs(15);
 
 /// A plan of the sample `pass`.
@@ -59,13 +59,13 @@ fn succeed(ran: &Ran) {
     assert_eq!(ran.code, 0, "{}", ran.err);
 }
 
-/// With a pipe to its standard input.
+/// Starts a command with a pipe to its stdin.
 fn start(command: &mut Command) -> Child {
     command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
-/// Files of a folder, and of sealed parts in it, whose names end so, with their lengths, ascending. The one that is only there to be locked is
-/// left out.
+/// Files of a folder, and of sealed parts in it, with this suffix and their lengths, ascending. The
+/// lock file is skipped.
 fn named(store: &Path, ending: &str) -> Vec<(String, u64)> {
     let entries = [store.to_path_buf(), store.join("parts")].into_iter();
     let files = entries.filter_map(|folder| fs::read_dir(folder).ok()).flatten().flatten();
@@ -92,7 +92,7 @@ fn wait_for_work(store: &Path, child: &mut Child) {
 #[test]
 #[ignore = "slow: waits for processes that end"]
 fn a_part_ends_when_its_pipe_closes_and_is_gone_on_with() {
-    // So long that work becomes durable, every two seconds, before it is done.
+    // The work takes so long that some becomes durable, every two seconds, before it is complete.
     let planned = Planned::new(&["--max-error", "0.1", "--cell", "4"]);
     let [store, aside] = ["store", "aside"].map(|name| planned.path(name));
     let before = ["hashes", "roads", "heights", "top"];
@@ -108,7 +108,7 @@ fn a_part_ends_when_its_pipe_closes_and_is_gone_on_with() {
     let ran = ended(&mut child);
     assert!(closed.elapsed() < ENDS_WITHIN, "it took {:?} to end", closed.elapsed());
     assert_eq!(ran.code, 1, "{}", ran.err);
-    assert!(ran.err.contains("standard input has ended"), "{}", ran.err);
+    assert!(ran.err.contains("stdin was closed"), "{}", ran.err);
     assert_eq!(named(&store, ".part").len(), before.len(), "no half part is sealed");
 
     let mut child = start(&mut planned.part(&store, "tiles", &["--die-with-parent"]));
@@ -146,7 +146,7 @@ fn a_merge_ends_when_its_pipe_closes_and_leaves_nothing() {
     };
     let ran = ended(&mut merge(Stdio::null()));
     assert_eq!(ran.code, 1, "{}", ran.err);
-    assert!(ran.err.contains("standard input has ended"), "{}", ran.err);
+    assert!(ran.err.contains("stdin was closed"), "{}", ran.err);
     let around = named(planned.folder.path(), "");
     assert!(matches!(&around[..], [(plan, _)] if plan == "plan.json"), "{around:?}");
     assert_eq!(named(&store, ""), before, "the store is as it was");

@@ -1,4 +1,4 @@
-//! Areas that leave a package, read back by OGR.
+//! Exported areas, read back by OGR.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -23,7 +23,8 @@ fn build(folder: &Path, areas: &str) -> std::path::PathBuf {
     package
 }
 
-/// What a feature holds: object and id, class, polygons, holes, share of the area that the lattice says.
+/// The contents of a feature: object and id, class, polygons, holes, ratio to the area on the
+/// lattice.
 fn told(feature: &Feature<'_>, cells: f64) -> (String, String, usize, usize) {
     let field = |name: &str| {
         feature.field_as_string(feature.field_index(name).unwrap()).unwrap().unwrap_or_default()
@@ -74,7 +75,8 @@ fn areas_come_back_whole_in_each_format() {
         let mut all: Vec<_> = layer
             .features()
             .map(|feature| {
-                // Of four corners each, on the package's finest lattice, and points on borders of tiles.
+                // Of four corners each, on the package's finest lattice, and points on borders of
+                // tiles.
                 assert!((4..40).contains(&points(feature.geometry().unwrap())));
                 let is_lake = feature.field_as_string(feature.field_index("id").unwrap());
                 let is_lake = is_lake.unwrap().as_deref() == Some("2");
@@ -112,7 +114,7 @@ fn levels_and_classes_can_be_chosen_and_areas_that_are_not_there_are_told() {
     refused(export(&build(folder.path(), "off"), &[]), "it was built without --areas");
     let words = ["export", "areas", text(&package), "-O", "-o", text(&file), "--crs", "package"];
     refused(corniche(words), "RFC 7946");
-    // What was there stays.
+    // The existing file is unchanged.
     assert_eq!(json_features(&file), 1);
 }
 
@@ -122,7 +124,8 @@ fn json_features(file: &Path) -> usize {
     value["features"].as_array().unwrap().len()
 }
 
-/// A package in metres, whose CRS bends the sides of a rectangle of degrees: what is cut is what GEOS cuts, in both coordinates.
+/// A package in metres, whose CRS bends the sides of a rectangle of degrees: clipping gives the
+/// same result as GEOS, in both coordinates.
 #[test]
 fn bounds_cut_areas_and_boundaries_as_geos_does() {
     let folder = tempfile::tempdir().unwrap();
@@ -179,7 +182,8 @@ fn bounds_cut_areas_and_boundaries_as_geos_does() {
                     .chain([envelope.MaxX - east, envelope.MaxY - north])
                     .fold(0.0, f64::max);
                 assert!(beyond < 2e-7, "{layer} {id} in {crs}: {beyond} degrees beyond");
-                // GEOS takes the long lines of boundaries for straight in degrees, which are straight in metres.
+                // GEOS treats the long lines of boundaries as straight in degrees, but they are
+                // straight in metres.
                 let [least, away] = if layer == "areas" { [1e-5, 2e-7] } else { [5e-5, 1e-6] };
                 assert!((ratio - 1.0).abs() < least, "{layer} {id} in {crs}: {ratio}");
                 let away = found.difference(&expected.buffer(away, 4).unwrap()).unwrap();

@@ -1,4 +1,4 @@
-//! Boundaries that leave a package, read back by OGR and compared with what osmium has of the extract.
+//! Exported boundaries, read back by OGR and compared with those that osmium finds in the extract.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -38,7 +38,7 @@ fn export(package: &Path, what: &str, file: &Path, more: &[&str]) -> Ran {
     corniche([&["export", what, text(package), "-O", "-o", text(file)], more].concat())
 }
 
-/// What OGR reads of a file, by way.
+/// The features that OGR reads from a file, by way.
 fn read(file: &Path) -> BTreeMap<i64, Exported> {
     let dataset = Dataset::open(file).unwrap();
     let mut layer = dataset.layer(0).unwrap();
@@ -72,7 +72,7 @@ fn read(file: &Path) -> BTreeMap<i64, Exported> {
         assert_eq!(number("points"), Some(points as i64));
         assert_eq!(number("parts"), Some(lines.len() as i64));
         let admin_level = number("admin_level");
-        // Without an extract there is no such field.
+        // Without an extract the field does not exist.
         let index = feature.field_index("names").ok();
         let names = index.and_then(|index| feature.field_as_string(index).unwrap());
         (number("way_id").unwrap(), Exported { class, admin_level, names, length_m, lines })
@@ -80,8 +80,8 @@ fn read(file: &Path) -> BTreeMap<i64, Exported> {
     features.collect()
 }
 
-/// Length of a line in degrees by the radii of the ellipsoid of WGS84 in the middle of each segment (EPSG guidance note 7-2): good to 1e-6 for
-/// segments of some kilometres.
+/// Length of a line in degrees by the radii of the ellipsoid of WGS84 in the middle of each segment
+/// (EPSG guidance note 7-2): good to 1e-6 for segments of some kilometres.
 fn length_m(line: &[[f64; 2]]) -> f64 {
     let segment = |[from, to]: &[[f64; 2]; 2]| {
         let sine = f64::midpoint(from[1], to[1]).to_radians().sin();
@@ -101,7 +101,7 @@ fn is_same(found: &[[f64; 2]], points: &[[f64; 2]]) -> bool {
     found.len() == points.len() && found.iter().zip(points).all(near)
 }
 
-/// Over borders of tiles each way comes back as the extract has it, once, in each format.
+/// Across borders of tiles each way comes back unchanged, once, in each format.
 #[test]
 fn boundaries_come_back_whole_in_each_format() {
     let folder = tempfile::tempdir().unwrap();
@@ -136,7 +136,7 @@ fn boundaries_come_back_whole_in_each_format() {
     tiles_have_the_parts(&package, &read(&file)[&2].lines[0]);
     let ran = export(&package, "boundaries", &file, &["--classes", "protected,admin-6"]);
     assert_eq!((ran.code, read(&file).into_keys().collect::<Vec<_>>()), (0, vec![3, 4]));
-    // Districts are not stored for so large cells.
+    // Districts are not stored at this cell size.
     assert_eq!(export(&package, "boundaries", &file, &["--level", "0"]).code, 0);
     let refused = |ran: Ran, why: &str| {
         assert_eq!(ran.code, 2, "{}", ran.err);
@@ -177,7 +177,7 @@ fn tiles_have_the_parts(package: &Path, line: &[[f64; 2]]) {
     assert_eq!(found, [true; 2]);
 }
 
-/// The lines of an OPL file with places in ways.
+/// The lines of an OPL file with the positions of ways.
 fn opl_of_osmium(extract: &Path, folder: &Path) -> Option<String> {
     let opl = folder.join("ways.opl");
     let mut command = Command::new("osmium");
@@ -186,7 +186,7 @@ fn opl_of_osmium(extract: &Path, folder: &Path) -> Option<String> {
     Some(std::fs::read_to_string(&opl).unwrap())
 }
 
-/// By way: its places.
+/// The positions of each way.
 fn ways_of(opl: &str) -> BTreeMap<i64, Line> {
     let way = |line: &str| {
         let id = line.strip_prefix('w')?.split(' ').next()?.parse().ok()?;
@@ -201,9 +201,10 @@ fn ways_of(opl: &str) -> BTreeMap<i64, Line> {
     opl.lines().filter_map(way).collect()
 }
 
-/// By way and class: the names of the relations that name it, and its own where it is closed.
+/// The names, by way and class: those of the relations that refer to the way, and its own if it is
+/// closed.
 fn names_of(opl: &str) -> BTreeMap<i64, BTreeMap<String, BTreeSet<String>>> {
-    // Characters that mean something in OPL, and those beyond ASCII, are numbers between percent signs.
+    // OPL escapes its special characters, and those beyond ASCII, as numbers between percent signs.
     let plain = |text: &str| -> String {
         let part = |(place, part): (usize, &str)| match place % 2 {
             0 => part.to_owned(),
@@ -245,7 +246,8 @@ fn names_of(opl: &str) -> BTreeMap<i64, BTreeMap<String, BTreeSet<String>>> {
     names
 }
 
-/// A country: every way that is exported is the one that osmium lists, to the lattice's rounding, with the names of what it bounds.
+/// A country: the exported ways are exactly those that osmium lists, to the lattice's rounding,
+/// with the names of the bounded areas.
 #[test]
 fn boundaries_of_a_country_are_the_ways_of_osmium() {
     let folder = tempfile::tempdir().unwrap();
@@ -269,7 +271,7 @@ fn boundaries_of_a_country_are_the_ways_of_osmium() {
         assert_eq!(told.as_ref(), names.get(way_id), "way {way_id}");
         let mut expected = ways[way_id].clone();
         expected.dedup();
-        // What leaves the ground has lines of its own.
+        // A boundary that leaves the ground has several lines.
         if let [line] = &lines[..]
             && line.len() == expected.len()
         {

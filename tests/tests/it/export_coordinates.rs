@@ -1,5 +1,5 @@
-//! Coordinates of exported features: GeoJSON in degrees without any option, and every layer and format in projected systems, beside what GDAL and PROJ
-//! make of the package's own.
+//! Coordinates of exported features: GeoJSON in degrees without any option, and every layer and
+//! format in projected systems, compared with the results of GDAL and PROJ.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -47,7 +47,7 @@ fn positions(file: &Path) -> Vec<[f64; 3]> {
     all
 }
 
-/// Positions of the package's CRS in another one, by PROJ; heights stay.
+/// Transforms positions of the package's CRS to another one with PROJ; heights are unchanged.
 fn carried(mut all: Vec<[f64; 3]>, epsg: u32) -> Vec<[f64; 3]> {
     let crs = |code| {
         let mut crs = SpatialRef::from_epsg(code).unwrap();
@@ -75,7 +75,7 @@ fn are_same(found: &[[f64; 3]], expected: &[[f64; 3]], plan: f64, what: &str) {
     }
 }
 
-/// Each layer that is exported, with a package that has it, and the options it needs.
+/// Each exported layer, with a package that has it, and the required options.
 fn layers(folder: &Path) -> Vec<(&'static str, PathBuf, Vec<String>)> {
     let [dem, osm] = ["pass/pass-dem.tif", "pass/pass.osm.pbf"].map(sample);
     let roads = folder.join("roads.pmtiles");
@@ -107,14 +107,15 @@ fn every_layer_and_format_has_degrees_and_projected_coordinates() {
         let own = folder.path().join("own.gpkg");
         export(&package, layer, &own, &inputs);
         let own = positions(&own);
-        // In one attempt, and told.
+        // The first attempt succeeds, and the coordinates are reported.
         let json = folder.path().join("degrees.geojson");
         let ran = export(&package, layer, &json, &inputs);
-        assert!(ran.err.contains("coordinates: EPSG:4326, the degrees"), "{}", ran.err);
+        assert!(ran.err.contains("coordinates: EPSG:4326, the CRS of GeoJSON"), "{}", ran.err);
         let has_heights = ["roads", "edges"].contains(&layer);
-        assert_eq!(ran.err.contains("as the package has them"), has_heights, "{}", ran.err);
+        assert_eq!(ran.err.contains("as in the package (--crs"), has_heights, "{}", ran.err);
         are_same(&positions(&json), &carried(own.clone(), 4326), 1e-8, layer);
-        // The last one's datum was made for a country beside: its operation counts there, too.
+        // The datum of the last one was made for a neighbouring country: its operation counts
+        // there, too.
         let pairs = [2056, 32633, 3857, 31467]
             .into_iter()
             .flat_map(|epsg| ["gpkg", "fgb", "csv", "geojson"].map(|ending| (epsg, ending)));
@@ -160,7 +161,7 @@ fn every_layer_and_format_has_degrees_and_projected_coordinates() {
     }
 }
 
-/// A package that knows what its heights are measured from says so in the layer, beside the projected CRS.
+/// A package with a known vertical datum records it in the layer, in addition to the projected CRS.
 #[test]
 fn the_datum_of_heights_stays_in_the_layer() {
     let folder = tempfile::tempdir().unwrap();

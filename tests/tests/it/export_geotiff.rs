@@ -1,4 +1,5 @@
-//! `export geotiff`: rasters that GDAL reads, compared with what `tile --json` says of the package, and with the elevation files.
+//! `export geotiff`: rasters that GDAL reads, compared with `tile --json` and with the elevation
+//! files.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -48,7 +49,7 @@ impl Raster {
         self.dataset.metadata_item(name, "").unwrap_or_default()
     }
 
-    /// Where the middle of a pixel is.
+    /// The position of the centre of a pixel.
     fn middle(&self, column: usize, row: usize) -> [f64; 2] {
         let [x, east, _, y, _, south] = self.crs_from_pixel;
         [x + east * (column as f64 + 0.5), y + south * (row as f64 + 0.5)]
@@ -58,7 +59,7 @@ impl Raster {
         self.bands[band][row * self.columns + column]
     }
 
-    /// Numbers that are no "no data".
+    /// The values that are not nodata.
     fn numbers(&self, band: usize) -> impl Iterator<Item = f64> + '_ {
         self.bands[band].iter().copied().filter(|number| !number.is_nan())
     }
@@ -75,7 +76,8 @@ fn pair(value: &Value) -> [f64; 2] {
     [0, 1].map(|axis: usize| value[axis].as_f64().unwrap())
 }
 
-/// The nodes of the finest level and the heights of a level's triangles there, from `tile --json`: found triangle by triangle with barycentric coordinates.
+/// The nodes of the finest level and the heights of a level's triangles there, from `tile --json`:
+/// found triangle by triangle with barycentric coordinates.
 fn heights_by_node(package: &Path, level: u64) -> HashMap<[i64; 2], f64> {
     let manifest = manifest(package);
     let (origin, cell) = (pair(&manifest["frame"]["origin_m"]), pair(&manifest["frame"]["cell_m"]));
@@ -118,7 +120,7 @@ fn heights_by_node(package: &Path, level: u64) -> HashMap<[i64; 2], f64> {
     heights
 }
 
-/// The node under the middle of each pixel, in cells, and how far beside it the middle is.
+/// The node under the centre of each pixel, in cells, and the distance between both.
 fn node_of(manifest: &Value, at: [f64; 2]) -> ([i64; 2], f64) {
     let (origin, cell) = (pair(&manifest["frame"]["origin_m"]), pair(&manifest["frame"]["cell_m"]));
     let unit = pair(&manifest["metres_per_unit"]);
@@ -128,7 +130,8 @@ fn node_of(manifest: &Value, at: [f64; 2]) -> ([i64; 2], f64) {
     (node, beside[0].max(beside[1]))
 }
 
-/// Every pixel is the height of the package's triangles at its node, for every level; where there is none, there is no data.
+/// Every pixel is the height of the package's triangles at its node, for every level; where there
+/// are no triangles, it is nodata.
 fn assert_is_ground(package: &Path, raster: &Raster, level: u64, most_m: f64) {
     let manifest = manifest(package);
     let mut wanted = heights_by_node(package, level);
@@ -161,10 +164,10 @@ fn every_node_has_the_height_of_the_packages_triangles() {
         // Pixels are f32: a rounding of 1e-4 m at 2 700 m.
         assert_is_ground(&package, &raster, level, 1.3e-4);
     }
-    // Golden: the numbers themselves, which are those of no other program's version.
+    // Golden values, which come from no other program.
     let (raster, told) = export(&package, "finest.tif", &[]);
     assert_is_ground(&package, &raster, finest, 1.3e-4);
-    assert!(told.contains("Float32") && told.contains("to be shown with it"), "{told}");
+    assert!(told.contains("Float32") && told.contains("must be displayed"), "{told}");
     let mut crc = crc32fast::Hasher::new();
     raster.bands[0].iter().for_each(|height_m| crc.update(&(*height_m as f32).to_le_bytes()));
     let voids = raster.bands[0].iter().filter(|height_m| height_m.is_nan()).count();
@@ -196,7 +199,7 @@ fn every_node_has_the_height_of_the_packages_triangles() {
 const GOLDEN_CRC: u32 = 808_173_356;
 const GOLDEN_VOIDS: usize = 5_592;
 
-/// What the second band holds, and what the command and `info` say of it, are one thing.
+/// The second band agrees with the figures of the command and of `info`.
 #[test]
 fn the_error_is_that_against_the_elevation_file() {
     let folder = tempfile::tempdir().unwrap();
@@ -223,7 +226,8 @@ fn the_error_is_that_against_the_elevation_file() {
                 off += u64::from(!is_void);
                 continue;
             }
-            // Samples are whole sixteenths, so f32 holds them; heights of the TIN are rounded in band 1 alone.
+            // Samples are whole sixteenths, so f32 holds them; heights of the TIN are rounded in
+            // band 1 alone.
             assert!((tin_m - sample_m - error_m).abs() < 1.3e-4, "{tin_m} {sample_m} {error_m}");
             both += 1;
         }
@@ -251,7 +255,7 @@ fn the_error_is_that_against_the_elevation_file() {
     }
 }
 
-/// A threads' number changes no byte.
+/// The number of threads changes no byte.
 #[test]
 fn the_same_package_makes_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
@@ -266,7 +270,7 @@ fn the_same_package_makes_the_same_bytes() {
     assert!(bytes[0] == bytes[1], "other bytes");
 }
 
-/// A part of the raster is that part of the whole one.
+/// A clipped raster is a part of the whole one.
 #[test]
 fn bounds_take_the_nodes_inside() {
     let folder = tempfile::tempdir().unwrap();
@@ -308,12 +312,14 @@ fn build(package: &Path, dem: &Path, options: &[&str]) {
     succeed(corniche([&words[..], options].concat()));
 }
 
-/// Middles of pixels are the samples of the file, whatever it says its pixels are and whatever unit its coordinates have.
+/// Centres of pixels are the samples of the file, for pixel-is-area and pixel-is-point and for
+/// every unit of coordinates.
 #[test]
 fn pixels_are_the_samples_of_the_file() {
     let folder = tempfile::tempdir().unwrap();
     let package = folder.path().join("a.pmtiles");
-    // By the file's header: the middle of the south-western sample, the cell, and a CRS: degrees, metres, US survey feet.
+    // By the file's header: the middle of the south-western sample, the cell, and a CRS: degrees,
+    // metres, US survey feet.
     let degrees = ("EPSG:4326", "xllcenter 9\nyllcenter 47\ncellsize 0.001", [9.0, 47.0], 0.001);
     let metres = (
         "EPSG:32632",
@@ -363,7 +369,8 @@ fn pixels_are_the_samples_of_the_file() {
     }
 }
 
-/// Heights of a file in feet are metres; a vertical datum is named where the package has one.
+/// Heights of a file in feet are exported in metres; a vertical datum is named if the package has
+/// one.
 #[test]
 fn heights_are_metres_above_the_packages_datum() {
     let folder = tempfile::tempdir().unwrap();
@@ -389,7 +396,7 @@ fn heights_are_metres_above_the_packages_datum() {
     assert!((raster.at(0, 3, 5) - wanted).abs() < 0.21, "{} {wanted}", raster.at(0, 3, 5));
 }
 
-/// Where f32 would lose more than a tenth of the height quantum, pixels are f64.
+/// If f32 would lose more than a tenth of the height quantum, pixels are f64.
 #[test]
 fn fine_heights_are_written_as_f64() {
     let folder = tempfile::tempdir().unwrap();
@@ -411,7 +418,7 @@ fn what_cannot_be_a_raster_is_refused() {
     e2e::copy_pass(&package, &["--max-error", "20"]);
     let other = folder.path().join("other.tif");
     fs::copy(sample("pass/pass-dem.tif"), &other).unwrap();
-    // The same place, other heights.
+    // The same region with other heights.
     let dataset = Dataset::open_ex(
         &other,
         gdal::DatasetOptions {
@@ -432,18 +439,18 @@ fn what_cannot_be_a_raster_is_refused() {
     let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     let before = names(folder.path());
     let cases: &[(&str, &[&str], i32, &str)] = &[
-        ("a.png", &[], 2, "give it the ending .tif"),
+        ("a.png", &[], 2, "extension .tif"),
         ("a.tif", &["--level", "30"], 2, "has no level 30"),
-        ("a.tif", &["--bounds", "1,1,2,2"], 2, "no ground there"),
+        ("a.tif", &["--bounds", "1,1,2,2"], 2, "no ground in the requested area"),
         (
             "a.tif",
             &["--dem", text(&other)],
             2,
-            "not the elevation files that the package was made from",
+            "not the elevation files that the package was built from",
         ),
         ("a.tif", &["--dem", "nothing.tif"], 2, "nothing.tif"),
         ("a.tif", &["--polygon", text(&other)], 2, "--dem"),
-        ("taken.tif", &[], 3, "exists already"),
+        ("taken.tif", &[], 3, "already exists"),
     ];
     for (name, more, code, words) in cases {
         let ran =
@@ -452,7 +459,7 @@ fn what_cannot_be_a_raster_is_refused() {
         assert!(ran.err.contains(words), "{name} {more:?}: {}", ran.err);
         assert_eq!(names(folder.path()), before, "{name} {more:?}");
     }
-    // An input is never replaced.
+    // An input is never overwritten.
     let copy = folder.path().join("copy.tif");
     fs::copy(&dem, &copy).unwrap();
     let words =
@@ -462,7 +469,7 @@ fn what_cannot_be_a_raster_is_refused() {
     assert_eq!(fs::read(&taken).unwrap(), b"mine");
 }
 
-/// A disk that is full, wherever the end is: nothing stays that looks like a raster.
+/// On a full disk, wherever the writing fails, no file remains that looks like a raster.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_raster_that_cannot_be_written_to_its_end_is_none() {
@@ -485,7 +492,7 @@ fn a_raster_that_cannot_be_written_to_its_end_is_none() {
     }
 }
 
-/// Ctrl-C at any moment: either the file is there as a whole, or nothing is.
+/// After Ctrl-C at any moment, the file is either complete or does not exist.
 #[test]
 #[cfg(unix)]
 fn an_interrupted_export_leaves_nothing() {
@@ -524,7 +531,7 @@ fn an_interrupted_export_leaves_nothing() {
     assert!(interrupted > 0, "every export was faster than the signal");
 }
 
-/// Real heights: a square degree in degrees, and 1/3 arc second with a vertical datum of its own.
+/// Real heights: a square degree in degrees, and 1/3 arc second with a vertical datum.
 #[test]
 fn real_elevation_files_give_the_figures_of_info() {
     let cases = [("liechtenstein/N47E009.hgt", "30"), ("portland/portland-ned.tif", "3")];
@@ -551,7 +558,7 @@ fn real_elevation_files_give_the_figures_of_info() {
                 figure("p99_m")
             );
             assert!(told.contains(&line), "{name}: {line}\n{told}");
-            // A node on a border whose own tile has no ground there has a height of the other one.
+            // A node on a border whose own tile has no ground there has a height of the other tile.
             let borrowed = raster.numbers(1).count() as u64 - said["on_tin"].as_u64().unwrap();
             assert!(borrowed < 100, "{name}: {borrowed}");
             let count = format!("at {} samples", said["on_tin"]);

@@ -1,4 +1,4 @@
-//! `export mesh`: models that other programs read, compared with what `tile --json` says of the package.
+//! `export mesh`: models that other programs read, compared with `tile --json`.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -31,7 +31,7 @@ fn export(package: &Path, name: &str, more: &[&str]) -> PathBuf {
     path
 }
 
-/// The model's origin, as the command tells it.
+/// The model's origin, as the command prints it.
 fn origin(package: &Path, more: &[&str]) -> [f64; 2] {
     let path = package.with_file_name("origin.ply");
     let words = ["export", "mesh", text(package), "-O", "-o", text(&path)];
@@ -42,7 +42,7 @@ fn origin(package: &Path, more: &[&str]) -> [f64; 2] {
     [parts[0], parts[1]]
 }
 
-/// A level as `tile --json` tells it, in local metres.
+/// A level as `tile --json` prints it, in local metres.
 fn expected(package: &Path, level: u8, origin: [f64; 2]) -> Model {
     let found = manifest(package);
     let pair = |value: &Value| [0, 1].map(|axis: usize| value[axis].as_f64().unwrap());
@@ -87,14 +87,14 @@ fn is_near(one: [f64; 3], other: [f64; 3], most_m: f64) -> bool {
     (0..3).all(|axis| (one[axis] - other[axis]).abs() <= most_m)
 }
 
-/// The same triangles with places in the stead of numbers, in one order.
+/// The same triangles with positions instead of indices, in a canonical order.
 fn triangles(model: &Model) -> Vec<[[f64; 3]; 3]> {
     let mut all: Vec<[[f64; 3]; 3]> = model
         .triangles
         .iter()
         .map(|triangle| {
             let mut corners = triangle.map(|at| model.corners[at]);
-            // Corners are whole cells apart.
+            // Corners are at least a cell apart.
             let least =
                 (0..3).min_by_key(|at| corners[*at].map(|part| part.round() as i64)).unwrap();
             corners.rotate_left(least);
@@ -135,7 +135,7 @@ fn models_are_the_packages_ground_and_roads() {
         };
         assert_eq!(model.edges.iter().filter(is_known).count(), model.edges.len(), "{format}");
     }
-    // No corner is there twice, and no side of a triangle has two triangles on it.
+    // No corner exists twice, and no side of a triangle has two triangles on it.
     let places: BTreeSet<[i64; 3]> = ply.corners.iter().map(|at| mm(*at)).collect();
     assert_eq!(places.len(), ply.corners.len(), "corners that tiles share are welded");
     let by_number = open_sides(ply.triangles.iter().copied());
@@ -151,7 +151,7 @@ fn models_are_the_packages_ground_and_roads() {
     );
 }
 
-/// The sides of triangles that have no triangle beyond them.
+/// The sides of triangles without a neighbour.
 fn open_sides<T: Ord + Copy>(triangles: impl Iterator<Item = [T; 3]>) -> BTreeSet<[T; 2]> {
     let mut sides = BTreeSet::new();
     for [a, b, c] in triangles {
@@ -172,10 +172,10 @@ fn what_cannot_be_a_model_is_refused() {
     let before = fs::read(&taken).unwrap();
     for (name, more, code, word) in [
         ("a.xyz", &[][..], 2, ".glb, .ply, .obj"),
-        ("a.glb", &["--up", "z"], 2, "glTF has the y axis upwards"),
-        ("a.glb", &["--bounds", "1,1,2,2"], 2, "no ground there"),
+        ("a.glb", &["--up", "z"], 2, "the y axis of glTF always points up"),
+        ("a.glb", &["--bounds", "1,1,2,2"], 2, "no ground in the requested area"),
         ("a.obj", &["--level", "30"], 2, "has no level 30"),
-        ("taken.ply", &[], 3, "exists already"),
+        ("taken.ply", &[], 3, "already exists"),
     ] {
         let ran = corniche([&["export", "mesh", text(&package), "-o", &at(name)], more].concat());
         assert_eq!(ran.code, code, "{name} {more:?}: {}", ran.err);

@@ -1,4 +1,5 @@
-//! `export quantized-mesh`: decoded by a reader of our own, carried to the package's CRS by PROJ and compared with its ground.
+//! `export quantized-mesh`: decoded by an independent reader, transformed to the package's CRS by
+//! PROJ and compared with its ground.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -38,7 +39,7 @@ fn built(folder: &TempDir) -> PathBuf {
     package
 }
 
-/// Exports a package beside it.
+/// Exports a package to a folder next to it.
 fn export(package: &Path, name: &str, options: &[&str]) -> PathBuf {
     let folder = package.with_file_name(name);
     let words = ["export", "quantized-mesh", text(package), "-o", text(&folder)];
@@ -68,7 +69,8 @@ fn check_all(terrain: &Terrain, package: &Path, region: &Region) {
     assert!(levels.iter().map(|found| found.places).sum::<u64>() > 10_000);
 }
 
-/// In both grids (in a quick run and in CI: in one): the ground of the package within each level's error, closed, the same on both sides of borders.
+/// In both grids (in a quick run and in CI: in one): the ground of the package within each level's
+/// error, closed, the same on both sides of borders.
 #[test]
 fn tiles_are_the_package_s_ground() {
     let folder = TempDir::new().unwrap();
@@ -111,12 +113,13 @@ fn real_regions_are_the_package_s_ground() {
     }
 }
 
-/// Coarse levels look at the same tiles of the package again and again. Where not all of them were kept, an export of this square took eight times as long.
+/// Coarse levels read the same tiles of the package again and again. When not all of them were
+/// cached, an export of this square took eight times as long.
 #[cfg(target_os = "linux")]
 #[test]
 #[ignore = "slow: a square degree"]
 fn a_square_degree_is_read_about_once() {
-    /// What libraries and their data take at most.
+    /// Upper limit of the bytes of libraries and their data.
     const START_BYTES: u64 = 2_000_000;
     let Some(dem) = real_data("liechtenstein/N47E009.hgt") else { return };
     let folder = TempDir::new().unwrap();
@@ -129,15 +132,15 @@ fn a_square_degree_is_read_about_once() {
     let (ran, costs) = e2e::ended_with_costs(&mut child);
     assert_eq!(ran.code, 0, "{}", ran.err);
     let package_bytes = fs::metadata(&package).unwrap().len();
-    // Some tiles are made beforehand, to tell how large the files will be.
+    // Some tiles are computed in advance for the estimate of the files' size.
     let about_once = package_bytes / 2..START_BYTES + package_bytes * 2;
     assert!(about_once.contains(&costs.read_bytes), "{} of {package_bytes}", costs.read_bytes);
 }
 
-/// Makes a terrain wrong, or what it is compared with.
+/// A change that makes a terrain, or the region that it is compared with, wrong.
 type Change = fn(&mut Terrain, &mut Region);
 
-/// The checks see what is wrong.
+/// The checks detect errors.
 #[test]
 #[ignore = "slow: an export of all levels"]
 fn wrong_terrain_is_seen() {
@@ -194,7 +197,7 @@ fn wrong_terrain_is_seen() {
     assert!(check_tree(&gone).is_err(), "a root left out");
 }
 
-/// Builds a package of a raster alone.
+/// Builds a package from a raster only.
 fn built_of(folder: &TempDir, dem: &Path) -> PathBuf {
     let package = folder.path().join("raster.pmtiles");
     let ran = corniche(["build", "--dem", text(dem), "-o", text(&package), "--relief", "off"]);
@@ -202,7 +205,7 @@ fn built_of(folder: &TempDir, dem: &Path) -> PathBuf {
     package
 }
 
-/// Flat ground has no error that a level could reach; there are no more levels than its cells need.
+/// Flat ground has no error that determines a level; there are no more levels than its cells need.
 #[test]
 fn flat_ground_has_few_levels() {
     let folder = TempDir::new().unwrap();
@@ -212,7 +215,7 @@ fn flat_ground_has_few_levels() {
     let terrain = Terrain::read(&export(&package, "terrain", &["--heights", "as-is"]));
     assert_eq!(terrain.levels(), 11, "tiles of 64 cells of some 300 m");
     check_tree(&terrain).unwrap();
-    // Too many tiles are refused, before anything is made.
+    // Too many tiles are rejected before any are written.
     let output = folder.path().join("fine");
     let words = ["export", "quantized-mesh", text(&package), "-o", text(&output)];
     let ran = corniche(words.iter().chain(&["--heights", "as-is", "--max-level", "24"]));
@@ -221,7 +224,8 @@ fn flat_ground_has_few_levels() {
     assert!(!output.exists());
 }
 
-/// Levels, files and bytes are told before anything is made, and end where the package's cells do.
+/// Levels, files and bytes are reported before anything is written, and the finest level is that of
+/// the package's cells.
 #[test]
 fn what_will_be_written_is_told_and_too_much_is_refused() {
     let folder = TempDir::new().unwrap();
@@ -234,7 +238,7 @@ fn what_will_be_written_is_told_and_too_much_is_refused() {
     let ran = run(&[]);
     assert_eq!(ran.code, 0, "{}", ran.err);
     let told = ran.err.lines().find(|line| line.starts_with("terrain  ")).unwrap();
-    assert!(told.contains("an estimate"), "{told}");
+    assert!(told.contains("estimated"), "{told}");
     let between = |from: &str, to: &str| {
         let (_, rest) = told.split_once(from).unwrap();
         rest.split_once(to).unwrap().0.replace([' ', '\u{202f}', ','], "")
@@ -262,7 +266,7 @@ fn what_will_be_written_is_told_and_too_much_is_refused() {
         assert!(ran.err.contains("--max-level "), "{options:?}: {}", ran.err);
         assert!(!output.exists() && begun.elapsed().as_secs() < 60);
     }
-    // What is named is what has to be given.
+    // The option in the message is the one that must be given.
     let ran = run(&["--max-files", "5"]);
     let asked = ran.err.split("--max-files ").nth(1).unwrap().split(',').next().unwrap();
     assert_eq!(run(&["--max-files", asked]).code, 0);
@@ -278,8 +282,8 @@ fn walk(folder: &Path) -> Vec<u64> {
     sizes.flatten().collect()
 }
 
-/// Where ground bends on a border of tiles, the border bends with it: in steep mountains, too, each level is within four fifths of its error at all
-/// places that are looked at.
+/// The borders of tiles follow the ground: also in steep mountains, each level is within four
+/// fifths of its error at all checked points.
 #[test]
 fn steep_ground_is_followed_on_borders() {
     let Some(dem) = real_data("liechtenstein/N47E010.hgt") else { return };
@@ -301,7 +305,8 @@ fn steep_ground_is_followed_on_borders() {
     }
 }
 
-/// A tile of the package is many times as wide as these data, and the table of coordinates ends near them.
+/// A tile of the package is many times as wide as these data, and the table of coordinates ends
+/// close to them.
 #[test]
 fn data_of_few_nodes_have_terrain() {
     for (side, cell_m) in [(2, 1.0), (3, 0.25), (4, 10.0)] {
@@ -321,7 +326,8 @@ fn data_of_few_nodes_have_terrain() {
     }
 }
 
-/// `--bounds` takes whole tiles of the finest level, with the bytes of the whole export, and those above them.
+/// `--bounds` exports whole tiles of the finest level, with the bytes of the whole export, and
+/// their parents.
 #[test]
 fn bounds_take_the_tiles_that_meet_them() {
     let folder = TempDir::new().unwrap();
@@ -361,10 +367,10 @@ fn bounds_take_the_tiles_that_meet_them() {
     let output = folder.path().join("beside");
     let words = ["export", "quantized-mesh", e2e::text(&package), "-o", e2e::text(&output)];
     let ran = corniche(words.iter().chain(&["--heights", "as-is", "--bounds", "20,46,21,47"]));
-    assert!(ran.code == 2 && ran.err.contains("no ground there"), "{}", ran.err);
+    assert!(ran.code == 2 && ran.err.contains("no ground in the requested area"), "{}", ran.err);
 }
 
-/// Ground that is smaller than the places of a coarse level are apart is not lost.
+/// Ground that is smaller than the sampling distance of a coarse level is not lost.
 #[test]
 fn small_ground_is_on_coarse_levels() {
     let folder = TempDir::new().unwrap();
@@ -375,7 +381,7 @@ fn small_ground_is_on_coarse_levels() {
     assert!(told["deviation_m"].as_f64().unwrap() > 0.0, "{told}");
 }
 
-/// On both sides of 180° as anywhere, in both grids.
+/// Terrain is the same on both sides of 180° as elsewhere, in both grids.
 #[test]
 fn terrain_goes_on_across_the_antimeridian() {
     let folder = TempDir::new().unwrap();
@@ -430,7 +436,7 @@ fn data_beyond_the_grid_are_refused() {
     assert_eq!(run("geographic").code, 0);
 }
 
-/// Where tiles tell of tiles, they tell of all, and layer.json says so.
+/// Availability in tiles covers all tiles, and layer.json declares it.
 #[test]
 #[ignore = "slow: two exports of all levels"]
 fn availability_in_tiles_is_that_of_layer_json() {
@@ -458,7 +464,7 @@ fn availability_in_tiles_is_that_of_layer_json() {
     assert!(told.len() > 20);
 }
 
-/// The same bytes with any number of threads; compressed, the same tiles.
+/// Any number of threads produces the same bytes; compressed files contain the same tiles.
 #[test]
 #[ignore = "slow: three exports of all levels"]
 fn bytes_do_not_depend_on_threads() {
@@ -504,7 +510,7 @@ fn what_cannot_be_exported_is_refused_and_leaves_nothing() {
     let layer: Value =
         serde_json::from_slice(&fs::read(output.join("layer.json")).unwrap()).unwrap();
     assert!(layer["description"].as_str().unwrap().contains("unknown"), "{layer}");
-    // An earlier export is replaced on demand, another folder never.
+    // An earlier export is overwritten on request, another folder never.
     assert_eq!(run(&as_is).code, 3);
     assert_eq!(run(&[&as_is[..], &["-O"]].concat()).code, 0);
     fs::remove_dir_all(&output).unwrap();

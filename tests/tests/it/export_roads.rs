@@ -1,4 +1,4 @@
-//! Roads that leave a package, read back by OGR and compared with what `info` and `tile` tell.
+//! Exported roads, read back by OGR and compared with `info` and `tile`.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -47,7 +47,8 @@ impl Road {
         self.fields[name].clone().and_then(FieldValue::into_string).filter(|text| !text.is_empty())
     }
 
-    /// A number of any kind as text; empty without. 0 counts as none: FlatGeobuf leaves out what is null, and `gdal` gives 0.
+    /// A number of any kind as text; empty if missing. 0 counts as missing: FlatGeobuf omits nulls,
+    /// and `gdal` returns 0.
     fn number(&self, name: &str) -> String {
         match self.fields[name].clone() {
             None | Some(FieldValue::IntegerValue(0)) => String::new(),
@@ -111,7 +112,7 @@ fn exported(package: &Path, target: &Path, options: &[&str]) -> Vec<Road> {
     read(target)
 }
 
-/// A line of a tile, as `corniche tile` tells it, in coordinates of the CRS.
+/// A line of a tile, as `corniche tile` prints it, in coordinates of the CRS.
 struct TileLine {
     tile: String,
     way_id: i64,
@@ -138,7 +139,7 @@ fn tile_lines(package: &Path, level: u64) -> Vec<TileLine> {
     lines
 }
 
-/// Segments of lines: by way and both ends in plan, to the last bit; with their heights.
+/// Segments of lines, with their heights: by way and both ends in plan, to the last bit.
 type Segments = BTreeMap<(i64, [u64; 4]), Vec<[f64; 2]>>;
 
 fn segments<'a>(lines: impl Iterator<Item = (i64, &'a Vec<[f64; 3]>)>) -> Segments {
@@ -156,15 +157,15 @@ fn level_of(package: &Path) -> u64 {
     manifest(package)["frame"]["max_level"].as_u64().unwrap()
 }
 
-/// The roads of a file are the lines of the tiles: every segment of the one is one of the other, in plan to the last bit,
-/// in height to the millimetre. Counts and lengths are those of `info`.
+/// The roads of a file are the lines of the tiles: the segments are the same, in plan to the last
+/// bit, in height to the millimetre. Counts and lengths are those of `info`.
 fn is_the_package(package: &Path, roads: &[Road]) {
     let manifest = manifest(package);
     let counts = &manifest["counts"];
     assert_eq!(roads.len() as u64, counts["roads_kept"].as_u64().unwrap());
     let length_m: f64 = roads.iter().map(|road| road.real("length_2d_m")).sum();
     let kept_m = counts["roads_kept_um"].as_f64().unwrap() / 1e6;
-    // Each cut at a border or at an edge of the ground is rounded to the lattice.
+    // Each clip at a border or at an edge of the ground is rounded to the lattice.
     assert!((length_m - kept_m).abs() < 1e-6 * kept_m, "{length_m} m, not {kept_m} m");
     let pieces = tile_lines(package, level_of(package));
     let found =
@@ -191,7 +192,8 @@ fn is_the_package(package: &Path, roads: &[Road]) {
         let (plan_m, space_m) = (road.real("length_2d_m"), road.real("length_3d_m"));
         assert!(space_m >= plan_m && plan_m > 0.0, "{plan_m} {space_m}");
         if road.integer("bridge") + road.integer("tunnel") > 0 {
-            // The ground's ups and downs are not theirs. FlatGeobuf has no word for null, and `gdal` reads 0.
+            // The ascents and descents of the ground do not apply to them. FlatGeobuf has no nulls,
+            // and `gdal` reads 0.
             assert!(road.number("ascent_m").is_empty() && road.number("steepest_pct").is_empty());
             continue;
         }
@@ -201,7 +203,8 @@ fn is_the_package(package: &Path, roads: &[Road]) {
     }
 }
 
-/// Points before draping are those that the build counted for the level; where roads were lost, some of them.
+/// The points before draping are those that the build counted for the level; if roads were lost,
+/// they are a part of those.
 fn points_add_up(package: &Path, manifest: &Value, roads: &[Road]) {
     let growth = json(&["growth", text(package), "--json"]);
     let counted =
@@ -267,8 +270,8 @@ fn the_roads_of_liechtenstein_are_those_of_the_package() {
     assert!(wkt.unwrap().contains("EGM96 height"));
 }
 
-/// All formats have the same roads; CSV and GeoJSON round to less than a millimetre. (Of nine decimals GDAL leaves out the
-/// last one after five zeros.)
+/// All formats have the same roads; CSV and GeoJSON round to less than a millimetre. (GDAL drops
+/// the last of nine decimals after five zeros.)
 #[test]
 fn all_formats_have_the_same_roads() {
     let folder = tempfile::tempdir().unwrap();
@@ -319,7 +322,7 @@ fn same(expected: &[Road], found: &[Road], largest: [f64; 3]) {
         for name in ["lanes", "width"] {
             assert_eq!(expected.number(name), found.number(name), "{name}");
         }
-        // Of nulls some formats make 0, and some nothing.
+        // Some formats convert nulls to 0, and some omit them.
         let number = |road: &Road, name: &str| road.number(name).parse().unwrap_or(0.0);
         for name in ["length_2d_m", "length_3d_m", "ascent_m", "descent_m", "height_tolerance_m"] {
             let (expected, found): (f64, f64) = (number(expected, name), number(found, name));
@@ -337,8 +340,9 @@ fn same(expected: &[Road], found: &[Road], largest: [f64; 3]) {
     }
 }
 
-/// What heights are measured from may be said when they are exported, of a package that does not know it: as if it had been said to the build. It
-/// is not said twice, and not in feet, as the build has taken the numbers for metres.
+/// The vertical datum of a package that does not record one may be given for an export, with the
+/// same result as in the build. It cannot be given twice, nor be in feet, because the build has
+/// interpreted the numbers as metres.
 #[test]
 fn the_datum_may_be_said_when_roads_are_exported() {
     let folder = tempfile::tempdir().unwrap();
@@ -359,7 +363,7 @@ fn the_datum_may_be_said_when_roads_are_exported() {
     assert!(crs.is_compound() && crs.to_wkt().unwrap().contains("EGM96 height"));
     let out = folder.path().join("refused.gpkg");
     for (package, crs, words) in [
-        (&told, "EPSG:5773", ["is known, \"EGM96 height\"", "leave --dem-vertical-crs out"]),
+        (&told, "EPSG:5773", ["is already known, \"EGM96 height\"", "omit --dem-vertical-crs"]),
         (&plain, "EPSG:6360", ["not in metres upwards", "build it again"]),
         (&plain, "EPSG:4326", ["--dem-vertical-crs", "EPSG:4326"]),
     ] {
@@ -371,7 +375,8 @@ fn the_datum_may_be_said_when_roads_are_exported() {
     }
 }
 
-/// Positions in EPSG:4979 are those that PROJ gives for the compound CRS, to a centimetre. PROJ's grid for it comes with PROJ.
+/// Positions in EPSG:4979 are those that PROJ gives for the compound CRS, to a centimetre. PROJ's
+/// grid for it comes with PROJ.
 #[test]
 fn ellipsoidal_heights_are_those_of_proj() {
     let folder = tempfile::tempdir().unwrap();
@@ -403,7 +408,8 @@ fn ellipsoidal_heights_are_those_of_proj() {
             geoid_m.push(height_m - own[2]);
         }
     }
-    // In the Alps the geoid of EGM96 lies some 48 m above the ellipsoid: nothing was left out.
+    // In the Alps the geoid of EGM96 is some 48 m above the ellipsoid: the conversion was not
+    // skipped.
     assert!(geoid_m.iter().all(|metres| (45.0..55.0).contains(metres)), "{:?}", geoid_m.first());
     let crs = Dataset::open(&target).unwrap().layer(0).unwrap().spatial_ref().unwrap();
     assert_eq!(crs.auth_code().unwrap(), 4979);
@@ -447,7 +453,8 @@ fn another_level_has_the_roads_of_that_level() {
     assert!(!root.is_empty() && root.len() < finest.len());
 }
 
-/// Four rectangles that share a corner have all roads between them: their lengths add up. Nothing lies outside.
+/// Four rectangles that share a corner have all roads between them: their lengths add up. No road
+/// is outside.
 #[test]
 fn roads_are_cut_at_the_bounds() {
     let folder = tempfile::tempdir().unwrap();
@@ -470,7 +477,7 @@ fn roads_are_cut_at_the_bounds() {
         let roads = exported(&package, &target, &options);
         assert!(roads.len() > 3 && roads.len() < 67, "{}", roads.len());
         for [lon, lat, _] in roads.iter().flat_map(|road| road.lines.iter().flatten()) {
-            // Rectangles are cut by a table that is right to a centimetre.
+            // Rectangles are clipped by a table that is accurate to a centimetre.
             let room = 2e-7;
             assert!((west - room..=east + room).contains(lon), "{lon} {bounds}");
             assert!((south - room..=north + room).contains(lat), "{lat} {bounds}");
@@ -480,7 +487,7 @@ fn roads_are_cut_at_the_bounds() {
     assert!((length_m - whole).abs() < 1e-6 * whole, "{length_m} {whole}");
 }
 
-/// Classes are told apart, and together they are all.
+/// Classes are selected correctly, and add up to all roads.
 #[test]
 fn classes_can_be_chosen() {
     let folder = tempfile::tempdir().unwrap();
@@ -496,7 +503,7 @@ fn classes_can_be_chosen() {
     assert!(none.is_empty(), "an empty layer is a layer");
 }
 
-/// The same roads make the same bytes, whatever the day and the name.
+/// The same roads produce the same bytes, whatever the date and the file name.
 #[test]
 fn the_same_roads_make_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
@@ -524,7 +531,7 @@ fn a_road_on_a_plane_is_measured_in_closed_form() {
     write_ascii_grid(&dem, [601, 601], place, |column, _| 500.0 + GRADE * 10.0 * column as f64);
     let points_deg = (0..=60).map(|k| [8.98 + 0.04 * f64::from(k) / 60.0, 46.945]).collect();
     let tags = vec![("highway", "primary"), ("name", "Rampe"), ("oneway", "-1")];
-    fs::write(&osm, pbf::extract(&[], &[pbf::Line { tags, points_deg }])).unwrap();
+    fs::write(&osm, pbf::extract(&[], &[pbf::WayToWrite { tags, points_deg }])).unwrap();
     build_from([&dem, &osm], &package, &["-q", "--dem-crs", "EPSG:32632"]);
     let roads = exported(&package, &folder.path().join("plane.gpkg"), &[]);
     let [road] = &roads[..] else { panic!("{} roads", roads.len()) };
@@ -538,7 +545,7 @@ fn a_road_on_a_plane_is_measured_in_closed_form() {
         assert!((found - expected).abs() < largest, "{name}: {found}, not {expected}");
     };
     near("length_2d_m", length_m, 0.01);
-    // Beside the central meridian a true metre is 0.9996 m of the map, on which the plane rises.
+    // Off the central meridian a true metre is 0.9996 m of the map, on which the plane rises.
     let grade = GRADE * 0.9996;
     near("ascent_m", length_m * grade, 0.1);
     near("descent_m", 0.0, 0.01);
@@ -554,8 +561,8 @@ fn a_road_on_a_plane_is_measured_in_closed_form() {
     assert_eq!(road.text("surface"), None);
 }
 
-/// Across the antimeridian: one line in the package's CRS, whose longitudes run on; two in EPSG:4979; cut by bounds with a
-/// west beyond the east.
+/// Across the antimeridian: one line in the package's CRS, with continuous longitudes; two in
+/// EPSG:4979; clipped by bounds with west > east.
 #[test]
 fn roads_cross_the_antimeridian() {
     let folder = tempfile::tempdir().unwrap();
@@ -564,7 +571,7 @@ fn roads_cross_the_antimeridian() {
     let place = "xllcenter 179.9\nyllcenter -16.6\ncellsize 0.001\nNODATA_value -9999";
     write_ascii_grid(&dem, [201, 201], place, |column, row| (column + 2 * row) as f64);
     let points_deg = vec![[179.95, -16.5], [179.99, -16.51], [-179.96, -16.49]];
-    let line = pbf::Line { tags: vec![("highway", "primary")], points_deg };
+    let line = pbf::WayToWrite { tags: vec![("highway", "primary")], points_deg };
     fs::write(&osm, pbf::extract(&[], &[line])).unwrap();
     build_from([&dem, &osm], &package, &["-q", "--dem-crs", "EPSG:4326"]);
     let own = exported(&package, &folder.path().join("own.gpkg"), &[]);

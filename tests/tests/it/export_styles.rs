@@ -1,4 +1,5 @@
-//! `GeoPackages` of roads, areas and boundaries open in QGIS as a map, and say how far heights may be off: read with Python's `SQLite` and XML.
+//! `GeoPackages` of roads, areas and boundaries open in QGIS as a map, and record the tolerance of
+//! heights: read with Python's `SQLite` and XML.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -8,7 +9,7 @@ use e2e::{corniche, manifest, root, skip, text};
 use gdal::{Dataset, vector::LayerAccess as _};
 use serde_json::Value;
 
-/// Prints what QGIS looks for, by the rules of its `QgsOgrProviderMetadata::loadStyle`.
+/// Prints the style that QGIS looks up, by the rules of its `QgsOgrProviderMetadata::loadStyle`.
 const READ: &str = r#"
 import json, sqlite3, sys
 from xml.etree import ElementTree
@@ -41,7 +42,8 @@ fn read(file: &Path, layer: &str) -> Option<Value> {
     Some(serde_json::from_slice(&ran.stdout).unwrap())
 }
 
-/// The table has one style, which is the default, and a category that draws something for each class in the data.
+/// The table has one style, which is the default, and a category with a symbol for each class in
+/// the data.
 #[test]
 fn each_class_of_a_geopackage_has_a_look_in_qgis() {
     let folder = tempfile::tempdir().unwrap();
@@ -69,7 +71,7 @@ fn each_class_of_a_geopackage_has_a_look_in_qgis() {
         assert!(classes.len() > 1, "{layer}: {classes:?}");
         assert!(classes.iter().all(|class| categories.contains(class)), "{layer}: {found}");
 
-        // GDAL has the features first, and the table of styles without geometry.
+        // GDAL lists the features first, and the table of styles without geometry.
         let dataset = Dataset::open(&file).unwrap();
         let names: Vec<String> = dataset.layers().map(|layer| layer.name()).collect();
         assert_eq!(names, [layer, "layer_styles"]);
@@ -78,7 +80,7 @@ fn each_class_of_a_geopackage_has_a_look_in_qgis() {
         let told = description.split_once("Heights are within ").map(|(_, told)| told);
         let told = told.map(|told| told.split(' ').next().unwrap().parse::<f64>().unwrap());
         match told {
-            // It is told in whole centimetres, rounded up.
+            // It is reported in whole centimetres, rounded up.
             Some(told_m) if layer == "roads" => {
                 assert!((bound_m..bound_m + 0.01).contains(&told_m), "{bound_m}: {description}");
             }

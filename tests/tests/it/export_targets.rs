@@ -1,4 +1,4 @@
-//! What `corniche export` refuses, and what it leaves when it does not come to its end.
+//! The errors of `corniche export`, and the files that remain after a failure.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -25,7 +25,7 @@ fn export(package: &Path, target: &Path, options: &[&str]) -> Ran {
     corniche(arguments)
 }
 
-/// Each refusal has its exit code, says what to do, and leaves nothing.
+/// Each error has its exit code, says what to do, and leaves no files.
 #[test]
 fn what_cannot_be_exported_is_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -41,7 +41,7 @@ fn what_cannot_be_exported_is_refused() {
         (&bare, "a.gpkg", &[], "built without --osm"),
         (&package, "a.shp", &[], ".gpkg, .fgb, .geojson, .csv"),
         (&package, "a", &[], "--format"),
-        (&package, "a.gpkg", &["--level", "9"], "its finest is 3"),
+        (&package, "a.gpkg", &["--level", "9"], "its finest level is 3"),
         (&package, "a.gpkg", &["--classes", "9"], "0-4,7"),
         (&package, "a.gpkg", &["--bounds", "1,2,3"], "west,south,east,north"),
         (&package, "a.gpkg", &["--bounds", "9,48,10,47"], "south must be less"),
@@ -65,7 +65,8 @@ fn what_cannot_be_exported_is_refused() {
     assert_eq!(ran.code, 0, "the package is what it was: {}", ran.out);
 }
 
-/// An existing file is kept unless -O is given; a link stays a link. Nothing lies beside it afterwards.
+/// An existing file is kept unless -O is given; a link stays a link. No other files remain next to
+/// it.
 #[test]
 fn an_existing_file_is_replaced_only_when_asked() {
     let folder = tempfile::tempdir().unwrap();
@@ -90,7 +91,7 @@ fn an_existing_file_is_replaced_only_when_asked() {
     }
 }
 
-/// A format that is named goes before the ending. A selection without roads is an empty layer.
+/// A named format takes precedence over the extension. A selection without roads is an empty layer.
 #[test]
 fn a_named_format_and_an_empty_selection() {
     let folder = tempfile::tempdir().unwrap();
@@ -121,7 +122,7 @@ fn start(package: &Path, target: &Path) -> Child {
         .unwrap()
 }
 
-/// Ctrl-C at any moment: either the file is there as a whole, or nothing is.
+/// After Ctrl-C at any moment, the file is either complete or does not exist.
 #[test]
 #[cfg(unix)]
 fn an_interrupted_export_leaves_nothing() {
@@ -157,7 +158,7 @@ fn an_interrupted_export_leaves_nothing() {
     assert!(interrupted > 0, "every export was faster than the signal");
 }
 
-/// What a killed export leaves is no target, and the next one removes it.
+/// Leftovers of a killed export are not the target, and the next export removes them.
 #[test]
 #[cfg(unix)]
 fn what_a_killed_export_leaves_is_removed_by_the_next() {
@@ -179,8 +180,9 @@ fn what_a_killed_export_leaves_is_removed_by_the_next() {
     assert_eq!(names(folder.path()), ["pass.pmtiles", "roads.gpkg"]);
 }
 
-/// A disk that is full, or a limit on the size of files: wherever the end is, every format ends with exit code 1 and leaves
-/// nothing. Some libraries tell nothing when the end of a file is missing.
+/// On a full disk, or with a limit on file sizes, wherever the writing fails, every format ends
+/// with exit code 1 and leaves nothing. Some libraries do not report that the end of a file is
+/// missing.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_file_that_cannot_be_written_to_its_end_is_none() {
@@ -200,7 +202,7 @@ fn a_file_that_cannot_be_written_to_its_end_is_none() {
             limited.args(["export", "roads", text(&package), "-o", text(&target)]).args(wgs84);
             let ran = Ran::from(limited.output().unwrap());
             assert_eq!(ran.code, 1, "{ending}, {limit} of {whole}: {}{}", ran.out, ran.err);
-            // The disk has room; the limit is the reason.
+            // The disk has space; the limit is the reason.
             assert!(ran.err.contains("ulimit -f"), "{ending}: {}", ran.err);
             assert!(!ran.err.contains("disk full"), "{ending}: {}", ran.err);
             assert!(ran.err.contains(&format!("roads.{ending}")), "{ending}: {}", ran.err);

@@ -1,4 +1,5 @@
-//! `export 3dtiles`: decoded by a reader of our own, carried back by PROJ and compared with the package.
+//! `export 3dtiles`: decoded by an independent reader, transformed back by PROJ and compared with
+//! the package.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -46,7 +47,8 @@ fn export(package: &std::path::Path, name: &str, more: &[&str]) -> PathBuf {
     folder
 }
 
-/// Everywhere on the ground, on every level, within a centimetre of the package; the same at borders; closed; roads where they should be.
+/// Everywhere on the ground, on every level, the tiles are within a centimetre of the package; they
+/// are equal at borders, closed, and have roads at the right positions.
 #[test]
 fn tiles_are_the_package_s_ground_with_its_roads() {
     let folder = TempDir::new().unwrap();
@@ -62,7 +64,8 @@ fn tiles_are_the_package_s_ground_with_its_roads() {
     tiles.check_against_dem(&pass()).unwrap();
 }
 
-/// The same on real elevation and roads, in degrees and with voids. SRTM's heights are above EGM96; those of the others are taken to be.
+/// The same checks on real elevation and roads, in degrees and with voids. SRTM's heights are above
+/// EGM96; those of the others are treated as such.
 #[test]
 #[ignore = "slow: exports of two regions"]
 fn real_regions_are_the_package_s_ground_with_its_roads() {
@@ -94,7 +97,7 @@ fn real_regions_are_the_package_s_ground_with_its_roads() {
     }
 }
 
-/// The checks see what is drawn wrong.
+/// The checks detect drawing errors.
 #[test]
 fn wrong_drawings_are_seen() {
     let folder = TempDir::new().unwrap();
@@ -129,7 +132,8 @@ fn wrong_drawings_are_seen() {
     );
 }
 
-/// On flat ground of 32 km a tile is two triangles. Without dividing their edges it would hang some 40 m below the earth's surface, which heights tell.
+/// On flat ground of 32 km a tile has two triangles. If their edges were not divided, it would be
+/// some 40 m below the earth's surface, which its heights show.
 #[test]
 fn flat_ground_follows_the_earth() {
     let folder = TempDir::new().unwrap();
@@ -147,7 +151,7 @@ fn flat_ground_follows_the_earth() {
     assert!(found.largest_m <= 0.01 && found.off_ground == 0, "{found:?}");
     let mut undivided = right.clone();
     undivided.undivide(&region);
-    // The corners are still right; only what lies between them tells.
+    // The corners are still right; only the points between them show the error.
     let corners = check_heights(&undivided, &region, 0);
     assert!(corners.largest_m <= 0.01, "{corners:?}");
     let found = check_heights(&undivided, &region, 20_000);
@@ -156,7 +160,7 @@ fn flat_ground_follows_the_earth() {
     assert!((0.7 * sag_m..=1.1 * sag_m).contains(&found.largest_m), "{found:?}, not {sag_m}");
 }
 
-/// No edge is longer than dividing leaves it.
+/// No edge is longer than the limit for division.
 #[test]
 fn long_edges_are_divided() {
     let folder = TempDir::new().unwrap();
@@ -166,7 +170,7 @@ fn long_edges_are_divided() {
     assert!((200.0..=451.0).contains(&longest), "{longest}");
 }
 
-/// The bytes are the same at any number of threads, and roads go by the options.
+/// The bytes are the same for any number of threads, and roads follow the options.
 #[test]
 fn options_do_what_they_say() {
     let folder = TempDir::new().unwrap();
@@ -201,7 +205,8 @@ fn options_do_what_they_say() {
     assert!(sizes[0] * 4 < sizes[1] * 3, "{sizes:?}");
 }
 
-/// `--bounds` takes the tiles that meet them, to the byte those of the whole, and as much as is needed to hold the bounds.
+/// `--bounds` exports the tiles that intersect the bounds, with the same bytes as in the whole
+/// export, and as many as needed to cover the bounds.
 #[test]
 fn bounds_take_whole_tiles() {
     let folder = TempDir::new().unwrap();
@@ -215,7 +220,7 @@ fn bounds_take_whole_tiles() {
     let [west, south, east, north] = ["min_x", "min_y", "max_x", "max_y"]
         .map(|side| e2e::manifest(&package)["wgs84_bounds"][side].as_f64().unwrap());
     let at = |share: f64| [west + (east - west) * share, south + (north - south) * share];
-    // A place, a part, and all with some around.
+    // A point, a part, and everything with a margin.
     for (name, shares, largest) in
         [("place", [0.3, 0.300_01], 4), ("part", [0.1, 0.4], 20), ("all", [-0.1, 1.1], 1000)]
     {
@@ -230,7 +235,7 @@ fn bounds_take_whole_tiles() {
         }
         let read = Tiles::read(&part, &package);
         read.check_tree().unwrap();
-        // Everywhere in the bounds there is ground, of each level.
+        // Everywhere in the bounds there is ground, on each level.
         let finest = read.levels().max().unwrap();
         assert_eq!(finest + 1, e2e::manifest(&package)["levels"].as_array().unwrap().len() as u64);
         for level in 0..=finest {
@@ -250,10 +255,10 @@ fn bounds_take_whole_tiles() {
     let ran =
         corniche(["export", "3dtiles", text(&package), "-o", text(&target), "--bounds=0,0,1,1"]);
     assert_eq!(ran.code, 2, "{}", ran.err);
-    assert!(ran.err.contains("has no ground there"), "{}", ran.err);
+    assert!(ran.err.contains("has no ground in the requested area"), "{}", ran.err);
 }
 
-/// The sample's CRS.
+/// Transforms to the sample's CRS.
 fn in_crs([lon, lat]: [f64; 2]) -> [f64; 2] {
     let of = |code: u32| {
         let mut crs = SpatialRef::from_epsg(code).unwrap();
@@ -268,7 +273,7 @@ fn in_crs([lon, lat]: [f64; 2]) -> [f64; 2] {
     [x[0], y[0]]
 }
 
-/// What cannot be exported is said, and nothing is left.
+/// Exports that are impossible give an error, and leave no files.
 #[test]
 fn what_cannot_be_exported_is_said() {
     let folder = TempDir::new().unwrap();

@@ -1,4 +1,5 @@
-//! The sea and areas end where data, the extract's box and bounds end; bounds around the whole earth leave out nothing along the longitude.
+//! The sea and areas end at the edges of the data, of the extract's bounding box and of the bounds;
+//! bounds around the whole earth omit nothing along the longitude.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -8,13 +9,14 @@ use std::{
 };
 
 use corniche_testing::{
-    pbf::{self, Way},
+    pbf::{self, PbfWay},
     real_data,
 };
 use e2e::{corniche, manifest, text, write_ascii_grid};
 use serde_json::Value;
 
-/// Builds a package with areas, verifies it, and gives its manifest and the areas of its exported polygons, km², by class.
+/// Builds and verifies a package with areas, and returns its manifest and the areas of its exported
+/// polygons, km², by class.
 fn built([dem, osm]: [&Path; 2], folder: &Path, more: &[&str]) -> (Value, Vec<(String, f64)>) {
     built_from((&[dem], osm), folder, more)
 }
@@ -46,7 +48,8 @@ fn built_from(
     (manifest(&package), areas)
 }
 
-/// An island in data of a degree: the sea is what of the data and of the extract's box is around it, in degrees and in UTM.
+/// An island in data of one degree: the sea fills the rest of the data and of the extract's
+/// bounding box, in degrees and in UTM.
 #[test]
 fn the_sea_ends_where_data_and_box_end() {
     let Some(dem) = real_data("cases/sea-beyond-data/lon10.tif") else { return };
@@ -64,15 +67,16 @@ fn the_sea_ends_where_data_and_box_end() {
             let [(_, exported_km2)] = &areas[..] else { panic!("{name}: {areas:?}") };
             let is_right = |found: f64| (found / expected_km2 - 1.0).abs() < allowed;
             assert!(is_right(*exported_km2), "{name} {crs:?}: {exported_km2}");
-            // Of objects of OSM the manifest has the whole area.
+            // The manifest has the whole area of OSM objects.
             let counted_km2 = manifest["areas"]["kept"][0]["area_km2"].as_f64().unwrap();
             assert!(name == "forest" || is_right(counted_km2), "{name} {crs:?}: {counted_km2}");
         }
     }
 }
 
-/// Three files that leave the fourth corner of their rectangle free: a forest over all of it ends where each of them does. They have a row or a column of
-/// samples in common, so it is as large as the forests over each alone.
+/// Three files that leave the fourth corner of their rectangle free: a forest over all of it ends
+/// where each file does. They share a row or a column of samples, so it is as large as the sum of
+/// the forests over each file.
 #[test]
 fn areas_end_where_files_leave_a_corner_free() {
     let folder = tempfile::tempdir().unwrap();
@@ -80,7 +84,7 @@ fn areas_end_where_files_leave_a_corner_free() {
     let nodes: [(i64, [f64; 2]); 4] =
         [(1, [8.9, 46.9]), (2, [9.5, 46.9]), (3, [9.5, 47.3]), (4, [8.9, 47.3])];
     let tags = vec![("natural", "wood")];
-    let ways = [Way { id: 1, tags, node_ids: vec![1, 2, 3, 4, 1] }];
+    let ways = [PbfWay { id: 1, tags, node_ids: vec![1, 2, 3, 4, 1] }];
     fs::write(&osm, pbf::network(&[], &nodes, &ways)).unwrap();
     let quarter = |name: &str, [lon, lat]: [f64; 2]| {
         let dem = folder.path().join(format!("{name}.asc"));
@@ -107,7 +111,8 @@ fn areas_end_where_files_leave_a_corner_free() {
     }
 }
 
-/// Bounds that are bent in UTM: the ground fills the rectangle around their image, the sea does not.
+/// Bounds that are curved in UTM: the ground fills the rectangle around their image, but the sea
+/// does not.
 #[test]
 fn the_sea_ends_where_bounds_end() {
     let Some(dem) = real_data("cases/sea-beyond-data/lon10.tif") else { return };
@@ -119,7 +124,7 @@ fn the_sea_ends_where_bounds_end() {
     assert!((exported_km2 / 7_310.25 - 1.0).abs() < 1e-4, "{exported_km2}");
 }
 
-/// Data of a degree over 180°: bounds around the earth change nothing along the longitude.
+/// Data of one degree across 180°: bounds around the earth have no effect along the longitude.
 #[test]
 fn bounds_around_the_earth_over_180_degrees() {
     let Some(dem) = real_data("cases/bounds-at-180/at180.tif") else { return };

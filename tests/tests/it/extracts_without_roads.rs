@@ -1,4 +1,5 @@
-//! An extract without roads is refused with the classes that are off, and taken for its areas and boundaries if they are asked for.
+//! An extract without roads is rejected with the classes that are off, but accepted for its areas
+//! and boundaries if they are requested.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -7,15 +8,15 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use corniche_testing::pbf::{Block, file};
+use corniche_testing::pbf::{BlockBuilder, file};
 use e2e::{Ran, corniche, manifest, sample, text};
 
-/// Tags, and places of a lattice.
+/// Tags, and positions on a lattice.
 type Way<'a> = (&'a [(&'a str, &'a str)], &'a [[i64; 2]]);
 
-/// Ways over the sample `pass`, each through places of a lattice 0.005 and 0.004 degrees apart.
+/// Ways over the sample `pass`, each through points of a lattice 0.005 and 0.004 degrees apart.
 fn extract(folder: &Path, name: &str, ways: &[Way<'_>]) -> PathBuf {
-    let mut block = Block::new();
+    let mut block = BlockBuilder::new();
     let place =
         |x: i64, y: i64| (100 + 20 * y + x, 468_700_000 + 40_000 * y, 95_000_000 + 50_000 * x);
     block.dense(&(0..400).map(|n| place(n % 20, n / 20)).collect::<Vec<_>>());
@@ -43,7 +44,7 @@ fn build(folder: &Path, osm: &Path, options: &[&str]) -> Ran {
     corniche(line.iter().chain(&coarse).chain(options))
 }
 
-/// A build of these is refused, and says these words.
+/// A build of these inputs is rejected with these words.
 #[track_caller]
 fn refused(folder: &Path, osm: &Path, options: &[&str], words: &[&str]) {
     let ran = build(folder, osm, options);
@@ -54,7 +55,7 @@ fn refused(folder: &Path, osm: &Path, options: &[&str], words: &[&str]) {
     assert!(!folder.join("a.pmtiles").exists());
 }
 
-/// A build of these is made and whole; what it says and its manifest.
+/// A build of these inputs succeeds and is complete; returns its messages and its manifest.
 #[track_caller]
 fn built(folder: &Path, osm: &Path, options: &[&str]) -> (Ran, serde_json::Value) {
     let ran = build(folder, osm, options);
@@ -72,15 +73,16 @@ fn an_extract_of_paths_alone_is_refused_with_the_classes_that_are_off() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     let osm = extract(at, "paths.osm.pbf", &[(PATH, LINE), (PATH, &RING[..3]), (FOOTWAY, LINE)]);
-    let words = ["paths.osm.pbf", "classes that are off: 8 (path 2, footway 1)", "--classes 0-8"];
+    let words =
+        ["paths.osm.pbf", "classes that are switched off: 8 (path 2, footway 1)", "--classes 0-8"];
     refused(at, &osm, &[], &words);
     let (_, manifest) = built(at, &osm, &["--classes", "0-8"]);
     assert_eq!(manifest["counts"]["roads_in"], 3);
-    // Classes that were chosen away are named as those that the table has off.
+    // Deselected classes are listed like those that the table turns off.
     let roads = extract(at, "roads.osm.pbf", &[(&[("highway", "primary")], LINE)]);
     refused(at, &roads, &["--classes", "3-8"], &["off: 2 (primary 1)", "--classes 0-8"]);
     let moat = extract(at, "moat.osm.pbf", &[(&[("highway", "moat")], LINE)]);
-    refused(at, &moat, &[], &["does not know its highway values: moat 1", "--frc-table"]);
+    refused(at, &moat, &[], &["does not list its highway values: moat 1", "--frc-table"]);
     let planned = extract(at, "planned.osm.pbf", &[(&[("highway", "proposed")], LINE)]);
     refused(at, &planned, &[], &["listed as no road (proposed 1)"]);
 }
@@ -99,12 +101,12 @@ fn an_extract_of_areas_or_boundaries_alone_is_built_if_they_are_asked_for() {
     refused(at, &border, &["--areas", "default"], &["has no road"]);
     let (_, manifest) = built(at, &border, &["--boundaries", "on"]);
     assert_eq!(manifest["boundaries"]["ways"], 1, "{}", manifest["boundaries"]);
-    // Paths that are off, beside a lake.
+    // Paths that are off, next to a lake.
     let both = extract(at, "both.osm.pbf", &[(PATH, LINE), (LAKE, RING)]);
     let (ran, manifest) = built(at, &both, &["--areas", "default"]);
     assert!(ran.err.contains("off: 8 (path 1)"), "{}", ran.err);
     assert_eq!(manifest["counts"]["highways_in"], 1);
-    // A lake beside the part that is asked for.
+    // A lake next to the requested region.
     let part = ["--areas", "default", "--bounds", "9.45,46.865,9.48,46.88"];
-    refused(at, &lake, &part, &["no area or boundary of", "lake.osm.pbf", "lies on ground"]);
+    refused(at, &lake, &part, &["no area or boundary of", "lake.osm.pbf", "is on ground"]);
 }

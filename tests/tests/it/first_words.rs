@@ -1,4 +1,5 @@
-//! What newcomers get wrong first, and what the program says then: the word that helps, before any work, and nothing that helps nobody.
+//! First mistakes of new users, and the program's answers: the helpful word, before any work, and
+//! nothing superfluous.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -6,14 +7,14 @@ use std::{fs, path::Path, process::Command};
 
 use e2e::{Ran, binary, copy_pass, corniche, json, manifest, sample, text, write_ascii_grid};
 
-/// A command ends with exit code 2, says each of these words, and no debug form of a list.
+/// A command ends with exit code 2, prints each of these words, and no debug form of a list.
 fn refused(arguments: &[&str], words: &[&str]) -> Ran {
     let ran = corniche(arguments);
     assert_eq!(ran.code, 2, "{arguments:?}: {}{}", ran.out, ran.err);
     for word in words {
         assert!(ran.err.contains(word), "{arguments:?}: {word:?} is not in: {}", ran.err);
     }
-    // The parser's own have usages.
+    // Errors of the parser itself have a usage.
     for line in ran.err.lines().filter(|line| line.starts_with("corniche: ")) {
         assert!(!line.contains('[') && !line.contains("Some("), "{arguments:?}: {line}");
     }
@@ -34,13 +35,13 @@ fn files_without_options_are_told_their_options() {
     );
     refused(&["plan", "b.osm.pbf", "a.tif"], &["--osm b.osm.pbf --dem a.tif"]);
     refused(&["profile", "a.pmtiles", "road.gpx"], &["--line road.gpx"]);
-    // The likeliest form of it.
+    // The most likely form of it.
     let files = ["pass/pass-dem.tif", "pass/pass.osm.pbf"].map(sample);
     let folder = tempfile::tempdir().unwrap();
     let package = folder.path().join("a.pmtiles");
     refused(
         &["build", "-q", "--dem", text(&files[0]), text(&files[1]), "-o", text(&package)],
-        &["pass.osm.pbf\" has no raster band", "given with --osm"],
+        &["pass.osm.pbf\" has no raster band", "with --osm"],
     );
 }
 
@@ -50,11 +51,11 @@ fn a_place_outside_is_refused_and_swapped_numbers_are_named() {
     let package = folder.path().join("pass.pmtiles");
     copy_pass(&package, &["-q", "--max-error", "10"]);
     let package = text(&package);
-    // The tile of level 0 reaches as far, the data do not.
+    // The tile of level 0 extends that far, but the data does not.
     for place in ["9.65,46.9", "9.5,46.8", "9.44,46.99"] {
-        refused(&["tile", package, "--at", place], &["it covers longitudes 9.4", "choose a place"]);
+        refused(&["tile", package, "--at", place], &["the package covers longitudes 9.4"]);
     }
-    refused(&["tile", package, "--at", "46.9,9.5"], &["longitude comes first: 9.5,46.9 lies"]);
+    refused(&["tile", package, "--at", "46.9,9.5"], &["longitude comes first: 9.5,46.9 is inside"]);
     assert_eq!(corniche(["tile", package, "--at", "9.5,46.9"]).code, 0);
     let png = folder.path().join("a.png");
     for (place, swapped) in [("46.9,9.5", "9.5,46.9"), ("46.87,9.55", "9.55,46.87")] {
@@ -64,18 +65,18 @@ fn a_place_outside_is_refused_and_swapped_numbers_are_named() {
         if e2e::lacks_adapter(&ran) {
             return;
         }
-        let words = format!("longitude comes first: {swapped} lies inside");
+        let words = format!("longitude comes first: {swapped} is inside");
         assert!(ran.code == 2 && ran.err.contains(&words), "{}", ran.err);
     }
     refused(
         &["profile", package, "--from", "46.93,9.46", "--to", "46.935,9.56"],
-        &["longitude comes first: 9.46,46.93 lies inside"],
+        &["longitude comes first: 9.46,46.93 is inside"],
     );
     let line = folder.path().join("line.geojson");
     fs::write(&line, r#"{"type":"LineString","coordinates":[[46.9,9.5],[46.91,9.52]]}"#).unwrap();
     refused(
         &["profile", package, "--line", text(&line)],
-        &["longitude comes first: 9.5,46.9 lies inside"],
+        &["longitude comes first: 9.5,46.9 is inside"],
     );
     let dem = sample("pass/pass-dem.tif");
     let other = folder.path().join("other.pmtiles");
@@ -92,14 +93,14 @@ fn a_place_outside_is_refused_and_swapped_numbers_are_named() {
         ],
         &["9.47,46.88,9.5,46.9 has some"],
     );
-    // What is no latitude is refused before the package is read.
+    // An invalid latitude is rejected before the package is read.
     refused(
         &["render", package, "-o", text(&png), "--look-at", "45.5,-122.6"],
         &["longitude comes first"],
     );
 }
 
-/// Nothing is checked that the wrong files would make worthless.
+/// No check runs whose result the wrong files would make worthless.
 #[test]
 fn files_that_are_not_those_of_the_package_are_told_before_the_work() {
     let folder = tempfile::tempdir().unwrap();
@@ -120,12 +121,12 @@ fn files_that_are_not_those_of_the_package_are_told_before_the_work() {
     assert_eq!(built.code, 0, "{}", built.err);
     let ran = refused(
         &["verify", text(&package), "--dem", text(&other)],
-        &["not the elevation files", "give \"ground.asc\", the same files"],
+        &["not the elevation files", "pass \"ground.asc\", the same files"],
     );
     assert!(!ran.err.contains("tiles"), "no tile was looked at: {}", ran.err);
     let ran = refused(
         &["verify", text(&package), "--osm", text(&sample("pass/pass.osm.pbf"))],
-        &["made without an extract"],
+        &["built without an extract"],
     );
     assert!(!ran.err.contains("tiles"), "{}", ran.err);
     let pass = at("pass.pmtiles");
@@ -134,13 +135,13 @@ fn files_that_are_not_those_of_the_package_are_told_before_the_work() {
     fs::copy(sample("liechtenstein/liechtenstein-2013-08-03.osm.pbf"), &osm).unwrap();
     let ran = refused(
         &["verify", text(&pass), "--osm", text(&osm)],
-        &["other.osm.pbf\" is not what the package was made from; give \"pass.osm.pbf\""],
+        &["other.osm.pbf\" is not what the package was built from; pass \"pass.osm.pbf\""],
     );
     assert!(!ran.err.contains("tiles"), "{}", ran.err);
     assert_eq!(corniche(["verify", text(&package), "--dem", text(&ground)]).code, 0);
 }
 
-/// On a server there is no folder for Wayland's socket, and no library says so in our place.
+/// A server has no folder for Wayland's socket, but no library complains about it.
 #[test]
 #[cfg(target_os = "linux")]
 fn libraries_are_silent_without_a_desktop() {
@@ -170,7 +171,7 @@ fn libraries_are_silent_without_a_desktop() {
     }
 }
 
-/// What there is nothing of is not told: no line ends with a colon and has nothing behind or below it.
+/// Empty lists are not printed: no line ends with a colon without a text after or below it.
 #[test]
 fn no_colon_stands_before_nothing() {
     let folder = tempfile::tempdir().unwrap();
@@ -223,7 +224,7 @@ fn a_name_that_is_too_long_is_told_as_that() {
     copy_pass(&package, &["-q", "--max-error", "20"]);
     for bytes in [232, 250, 300, 4000] {
         let named = |ending: &str| format!("{}/{}{ending}", text(folder.path()), "n".repeat(bytes));
-        let words = ["too long for this file system", "choose a shorter one"];
+        let words = ["too long for this file system", "choose a shorter name"];
         refused(&["build", "--dem", text(&dem), "-o", &named(".pmtiles")], &words);
         refused(&["plan", "--dem", text(&dem), "-o", &named(".json")], &words);
         refused(&["export", "geotiff", text(&package), "-o", &named(".tif")], &words);
@@ -246,11 +247,11 @@ fn half_a_file_of_srtm_is_told_with_its_size() {
     let build = |dem: &Path, words: &[&str]| {
         refused(&["build", "--dem", text(dem), "-o", text(&package)], words);
     };
-    build(&half, &["N47E009.hgt", "1442402 bytes", "2884802", "fetch it again"]);
-    build(&odd, &["alps.hgt", "call it like N47E009.hgt"]);
+    build(&half, &["N47E009.hgt", "1442402 bytes", "2884802", "download it again"]);
+    build(&odd, &["alps.hgt", "like N47E009.hgt"]);
 }
 
-/// `masl`, `unspecified`: what is no unit of length is refused with the option that says what it is.
+/// `masl`, `unspecified`: invalid units of length are rejected with the option that sets the unit.
 #[test]
 fn the_unit_of_heights_can_be_said() {
     let folder = tempfile::tempdir().unwrap();
@@ -292,7 +293,7 @@ fn the_unit_of_heights_can_be_said() {
     refused(&[&given[..], &["--vertical-unit", "masl"]].concat(), &["--vertical-unit", "us-foot"]);
 }
 
-/// Texts are checked where they enter: what cannot be shown on one line is no credit.
+/// Texts are checked where they are given: attribution must fit on one line.
 #[test]
 fn a_credit_is_plain_text_on_one_line() {
     let folder = tempfile::tempdir().unwrap();
@@ -316,7 +317,7 @@ fn a_credit_is_plain_text_on_one_line() {
     let of_config = corniche([&build[..], &["--config", text(&config)]].concat());
     assert!(of_config.code == 2 && of_config.err.contains("U+0000"), "{}", of_config.err);
     assert!(!package.exists());
-    // What is wrong with a file is one line, without the parser's drawing of the place.
+    // An error in a file is one line, without the parser's drawing of the position.
     fs::write(&config, "[terrain]\nattribution = 3\n").unwrap();
     let odd = corniche([&build[..], &["--config", text(&config)]].concat());
     assert!(odd.code == 2 && odd.err.contains("line 2, column 15: invalid type"), "{}", odd.err);

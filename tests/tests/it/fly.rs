@@ -1,11 +1,11 @@
-//! Flights over a package through the whole binary: a repeated flight gives the same output, and the output is complete or
-//! absent.
+//! Flights over a package through the whole binary: a repeated flight gives the same output, and
+//! the output is complete or absent.
 
 use std::{fs, path::Path};
 
 use e2e::{Ran, copy_pass, draw, lacks_adapter, send_signal, text, without_times};
 
-/// `fly` in a small size; `None` where there is no adapter.
+/// Runs `fly` with a small image size; `None` if there is no adapter.
 fn fly(package: &Path, csv: &Path, options: &[&str]) -> Option<Ran> {
     draw("fly", package, csv, &[&["--size", "160x120"], options].concat())
 }
@@ -22,7 +22,7 @@ fn the_same_flight_gives_the_same_list_and_the_same_pictures() {
         let options = ["--frames", "6", "--roads", "none,geo,sv,sv-no-caps", "--png", text(&png)];
         let Some(ran) = fly(&package, &csv, &options) else { return };
         assert_eq!(ran.code, 0, "{}", ran.err);
-        for word in ["first frame left out", "lod, roads sv-no-caps", "loss %", "p95", "26 %"] {
+        for word in ["without first frame", "lod, roads sv-no-caps", "loss %", "p95", "26 %"] {
             assert!(ran.out.contains(word), "{word}: {}", ran.out);
         }
         let mut pictures: Vec<(String, Vec<u8>)> = fs::read_dir(&png)
@@ -80,7 +80,8 @@ fn full_resolution_culling_and_level_of_detail_draw_ever_less() {
         ["full", "culled", "lod"].iter().all(|lod| drawing.contains(&format!("{lod}, roads sv")))
     );
 
-    // An existing file is kept, and the message comes before anything is drawn; a list never replaces a package.
+    // An existing file is kept, and the message is printed before anything is drawn; a table never
+    // overwrites a package.
     let before = fs::read(&csv).unwrap();
     let again = fly(&package, &csv, &["--frames", "2"]).unwrap();
     assert_eq!((again.code, fs::read(&csv).unwrap() == before), (3, true), "{}", again.err);
@@ -136,13 +137,13 @@ fn a_flight_can_be_written_down_changed_and_taken_again() {
         .collect();
     refused(&low, &[], &["too low", "s the eye"]);
     refused(&written, &["--step", "0"], &["--step"]);
-    refused(&written, &["--svg", text(&at("none.csv"))], &["none.csv", "uses that file"]);
+    refused(&written, &["--svg", text(&at("none.csv"))], &["none.csv", "already uses this file"]);
     refused(&written, &["--gpu-memory", "1K"], &["1024", "memory"]);
     refused(&written, &["--gpu-memory", "1K", "--lod", "full"], &["level of detail"]);
 }
 
-/// What a window records: it keeps two metres of exaggerated height off the ground it knows, and notes the way ten times a
-/// second.
+/// A flight as recorded by a window, which keeps two metres of exaggerated height above the known
+/// ground and records its path ten times a second.
 #[test]
 fn a_flight_that_dives_to_the_ground_is_flown_at_any_exaggeration() {
     let folder = tempfile::tempdir().unwrap();
@@ -195,17 +196,18 @@ fn a_flight_that_dives_to_the_ground_is_flown_at_any_exaggeration() {
     assert!((lowest_in_list() - lowest_m).abs() < 0.11, "{} {lowest_m}", lowest_in_list());
     let ran = flown(&dive, &["--frames", "7"]);
     assert_eq!(ran.code, 0, "{}", ran.err);
-    assert!(ran.err.contains("lifted off the ground, by up to 1."), "{}", ran.err);
+    assert!(ran.err.contains("raised to stay above the ground, by up to 1."), "{}", ran.err);
     assert!((lowest_in_list() - ground_m - 2.0).abs() < 0.11, "{} {ground_m}", lowest_in_list());
     let [high, low] = [0, 3].map(|frame: u32| {
         image::open(png.join(format!("lod-sv-{frame:05}.png"))).unwrap().to_rgb8()
     });
     assert!(high != low);
-    // At a height of two metres the haze and the near plane are near: the ground just below fills the lower half.
+    // At a height of two metres the haze and the near plane are near: the ground just below fills
+    // the lower half.
     let feet = low.get_pixel(80, 115);
     assert!(feet.0.iter().any(|channel| *channel > 0), "{feet:?}");
 
-    // Between keyframes beyond a ridge the eye is lifted over it.
+    // Between keyframes behind a ridge the camera is raised over it.
     let through = keyframe(0.0, place_m - 2500.0, ground_m + 1500.0)
         + &keyframe(5.0, place_m, lowest_m)
         + &keyframe(10.0, place_m + 2500.0, ground_m + 1500.0);
@@ -213,7 +215,8 @@ fn a_flight_that_dives_to_the_ground_is_flown_at_any_exaggeration() {
     assert_eq!(ran.code, 0, "{}", ran.err);
 }
 
-/// The list is larger than the limit on file sizes here; the recorded flight beside it is smaller.
+/// The table is larger than the limit on file sizes here; the recorded flight next to it is
+/// smaller.
 #[cfg(unix)]
 #[test]
 fn a_list_that_does_not_fit_on_the_disk_leaves_nothing_beside_it() {
@@ -224,7 +227,8 @@ fn a_list_that_does_not_fit_on_the_disk_leaves_nothing_beside_it() {
     copy_pass(&package, &["--quiet"]);
     let out = folder.path().join("out");
     fs::create_dir(&out).unwrap();
-    // The shell counts blocks of 512 or of 1024 bytes. If the signal is ignored, the write returns an error.
+    // The shell counts blocks of 512 or of 1024 bytes. If the signal is ignored, the write returns
+    // an error.
     let limited = "trap '' XFSZ; ulimit -f 16; exec \"$@\"";
     let ran = Command::new("sh")
         .args(["-c", limited, "sh"])
@@ -242,7 +246,8 @@ fn a_list_that_does_not_fit_on_the_disk_leaves_nothing_beside_it() {
     assert_eq!(fs::read_dir(&out).unwrap().count(), 0);
 }
 
-/// Looking up the ground beneath a million frames takes minutes; an interrupt is noticed long before.
+/// Looking up the ground beneath a million frames takes minutes; an interrupt is noticed long
+/// before.
 #[cfg(unix)]
 #[test]
 fn a_flight_is_interrupted_while_it_is_being_checked_too() {
@@ -279,7 +284,7 @@ fn a_flight_is_interrupted_while_it_is_being_checked_too() {
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "only the package is there");
 }
 
-/// An interrupted flight: exit code 4, and no list, pictures, chart or other file is left.
+/// An interrupted flight: exit code 4, and no table, images, chart or other file remains.
 #[cfg(unix)]
 #[test]
 fn an_interrupted_flight_leaves_nothing() {
@@ -301,7 +306,7 @@ fn an_interrupted_flight_leaves_nothing() {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // Pictures are first written to a temporary folder.
+    // Images are first written to a temporary folder.
     let is_under_way = || {
         let folders = fs::read_dir(&out)
             .unwrap()

@@ -1,5 +1,5 @@
-//! Flights and windows, on a display without a screen (Xvfb): flights shown in one while they are drawn, and a flight that
-//! one has recorded.
+//! Flights and windows, on a virtual display (Xvfb): flights that a window shows while they are
+//! drawn, and a flight that a window has recorded.
 #![cfg(target_os = "linux")]
 
 use std::{
@@ -31,7 +31,7 @@ impl FlightFolder {
         Self { folder, package, out }
     }
 
-    /// `fly` in a window, with a list, a chart and pictures.
+    /// Runs `fly` in a window, with a table, a chart and images.
     fn fly(&self, options: &[&str]) -> Command {
         let mut command = Command::new(binary());
         command.arg("fly").arg(&self.package).args(["--window", "--size", "160x120"]);
@@ -64,7 +64,8 @@ fn window_of(display: &Display, flight: &mut Child) -> Option<String> {
     }
 }
 
-/// What becomes of a flight of so many frames when this is done to its window after some of them; `None` without an adapter.
+/// The result of a flight of this many frames if its window is disturbed after some of them; `None`
+/// without an adapter.
 fn disturbed(
     place: &FlightFolder,
     display: &Display,
@@ -110,18 +111,19 @@ fn closing_the_window_ends_the_flight_and_leaves_nothing() {
     let close = ["windowfocus ID", "sleep 1", "key ctrl+q"];
     let Some(ran) = disturbed(&place, &display, "5000", &close) else { return };
     assert_eq!(ran.code, 4, "{}", ran.err);
-    assert!(ran.err.contains("closed before the flight's end"), "{}", ran.err);
+    assert!(ran.err.contains("closed before the flight ended"), "{}", ran.err);
     assert_eq!(place.leavings(), [""; 0]);
 }
 
-/// If the window is destroyed from outside, for example by a crash of the display's driver, no results are lost.
+/// If the window is destroyed from outside, for example by a crash of the display's driver, no
+/// results are lost.
 #[test]
 fn a_window_that_is_lost_is_no_loss() {
     let Some(display) = Display::start() else { return };
     let place = FlightFolder::new();
     let Some(ran) = disturbed(&place, &display, "80", &["windowclose ID"]) else { return };
     assert_eq!(ran.code, 0, "{}", ran.err);
-    assert!(ran.err.contains("goes on without it"), "{}", ran.err);
+    assert!(ran.err.contains("continues without it"), "{}", ran.err);
     assert_eq!(without_times(&place.out.join("fly.csv")).len(), 81);
     assert_eq!(fs::read_dir(place.out.join("frames")).unwrap().count(), 80);
 }
@@ -135,12 +137,12 @@ fn without_a_display_there_is_no_flight() {
     assert!(ran.err.contains("no display"), "{}", ran.err);
     assert!(begun.elapsed() < Duration::from_secs(30), "{:?}", begun.elapsed());
     assert_eq!(place.leavings(), [""; 0]);
-    // Also not at any other place.
+    // Nor anywhere else.
     assert_eq!(fs::read_dir(place.folder.path()).unwrap().count(), 2, "{}", text(&place.out));
 }
 
-/// Whether for a second the camera did not move and no tile was missing or loading, by the trace of a window. (While a
-/// window records, it draws all the time.)
+/// Whether the camera did not move for a second and no tile was missing or loading, by the trace of
+/// a window. (While a window records, it draws all the time.)
 fn is_at_rest(trace: &Path) -> bool {
     let last = || {
         let list = fs::read_to_string(trace).unwrap_or_default();
@@ -156,7 +158,8 @@ fn is_at_rest(trace: &Path) -> bool {
     before.is_some() && before == last()
 }
 
-/// Zooming in from afar to the ground at the cursor changes what haze and near plane follow from; the flight follows.
+/// Zooming in from afar to the ground at the cursor changes haze and near plane; the flight
+/// reproduces this.
 #[test]
 fn a_recorded_flight_ends_with_the_picture_that_the_window_showed() {
     let Some(display) = Display::start() else { return };
@@ -208,13 +211,14 @@ fn a_recorded_flight_ends_with_the_picture_that_the_window_showed() {
     let shown = image::open(shown).unwrap().to_rgb8();
 
     let (csv, png) = (place.folder.path().join("fly.csv"), place.folder.path().join("frames"));
-    // So slowly that no tile is missing in the last frame.
+    // Slowly enough that no tile is missing in the last frame.
     let options = ["--frames", "40", "--path", text(&flight), "--png", text(&png)];
     let ran = draw("fly", &place.package, &csv, &[&drawing[..], &options[..]].concat()).unwrap();
     assert_eq!(ran.code, 0, "{}", ran.err);
     let flown = image::open(png.join("lod-sv-00039.png")).unwrap().to_rgb8();
     assert_eq!(flown.dimensions(), shown.dimensions());
-    // The window knows the ground beneath the eye from coarser tiles, so the haze differs very slightly.
+    // The window knows the ground beneath the camera from coarser tiles, so the haze differs very
+    // slightly.
     let differs = |(a, b): (&image::Rgb<u8>, &image::Rgb<u8>)| {
         a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > 2)
     };

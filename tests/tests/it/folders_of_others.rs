@@ -1,4 +1,5 @@
-//! Folders that others have prepared: no link is followed, nothing of theirs is deleted for its name, and no pipe is waited for.
+//! Folders that other users have prepared: no link is followed, none of their files is deleted
+//! because of its name, and no pipe blocks the program.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 #![cfg(unix)]
@@ -13,7 +14,7 @@ use std::{
 use e2e::{copy_pass, names, run_soon as run, sample, text};
 use tempfile::TempDir;
 
-/// A folder with a file that must stay as it is.
+/// A folder with a file that must stay unchanged.
 struct Shared {
     folder: TempDir,
 }
@@ -40,7 +41,7 @@ fn pipe(place: &Path) {
     assert!(Command::new("mkfifo").arg(place).status().unwrap().success());
 }
 
-/// A build of the sample's terrain to a package, which must be refused with these words.
+/// A build of the sample's terrain to a package, which must be rejected with these words.
 fn build_refused(shared: &Shared, more: &[&str], words: &[&str], case: &str) {
     let (dem, package) = (sample("pass/pass-dem.tif"), shared.at("o.pmtiles"));
     let line = ["build", "-q", "--max-error", "20", "--dem", text(&dem), "-o", text(&package)];
@@ -72,7 +73,7 @@ fn a_lock_that_others_prepared_is_refused_by_name() {
         // The claim of the package itself.
         let shared = Shared::new();
         put(&shared, &shared.at(".o.pmtiles.unfinished"));
-        build_refused(&shared, &["-O"], &[".o.pmtiles.unfinished is in the way"], case);
+        build_refused(&shared, &["-O"], &[".o.pmtiles.unfinished\" is in the way"], case);
         // The store of a part.
         let shared = Shared::new();
         let (dem, plan, store) =
@@ -102,11 +103,16 @@ fn the_folder_of_a_build_is_no_link() {
     let shared = Shared::new();
     symlink("elsewhere", shared.at(".o.pmtiles.work")).unwrap();
     for more in [&[][..], &["-O"], &["--resume"]] {
-        build_refused(&shared, more, &[".o.pmtiles.work", "it is a link"], "a linked folder");
+        build_refused(
+            &shared,
+            more,
+            &[".o.pmtiles.work", "it is a symbolic link"],
+            "a linked folder",
+        );
     }
 }
 
-/// Files of these names, of which nothing says that Corniche made them.
+/// Files with these names that were not written by Corniche.
 #[test]
 fn a_discarded_store_is_one_by_its_content() {
     for name in ["store", "plan.json"] {
@@ -119,7 +125,7 @@ fn a_discarded_store_is_one_by_its_content() {
     }
 }
 
-/// Names that older versions gave their folders; and a refusal deletes nothing.
+/// Names that older versions gave their folders; and an error deletes nothing.
 #[test]
 fn what_lies_beside_the_target_of_an_export_stays() {
     let shared = Shared::new();
@@ -142,16 +148,16 @@ fn what_lies_beside_the_target_of_an_export_stays() {
         let ran = run(&["export", what, text(&package), "-o", text(&shared.at(target))]);
         assert_eq!(ran.code, code, "{target}: {}", ran.err);
         if code == 0 {
-            assert!(ran.err.contains(&format!(".{target}.replaced may be")), "{}", ran.err);
+            assert!(ran.err.contains(&format!(".{target}.replaced\" may be")), "{}", ran.err);
         }
     }
     for name in &of_others {
         assert_eq!(fs::read(shared.at(name).join("thesis")).unwrap(), b"mine", "{name}");
     }
-    // The file that is written first has no such name, either.
+    // The temporary file does not have such a name, either.
     fs::write(shared.at(".a.svg.unfinished"), "mine").unwrap();
     let ran = run(&["growth", text(&package), "--svg", text(&shared.at("a.svg"))]);
-    assert!(ran.code == 2 && ran.err.contains(".a.svg.unfinished is in the way"), "{}", ran.err);
+    assert!(ran.code == 2 && ran.err.contains(".a.svg.unfinished\" is in the way"), "{}", ran.err);
     assert_eq!(fs::read(shared.at(".a.svg.unfinished")).unwrap(), b"mine");
 }
 
@@ -172,5 +178,5 @@ fn a_pipe_as_a_plan_or_a_part_is_refused_at_once() {
     let sealed = names(&store.join("parts"));
     pipe(&store.join("parts").join(sealed[0].replacen("heights", "heights-2", 1)));
     let ran = run(&part);
-    assert!(ran.code == 1 && ran.err.contains("it is a pipe"), "{} {}", ran.code, ran.err);
+    assert!(ran.code == 1 && ran.err.contains("a pipe"), "{} {}", ran.code, ran.err);
 }

@@ -1,4 +1,5 @@
-//! A shell that is set up for another PROJ, as conda does it, does not disturb a released program, and the program from source says what does.
+//! A shell that is set up for another PROJ, as by conda, does not disturb a released program, and a
+//! program built from source names the cause.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -29,7 +30,7 @@ fn tables_of_another_proj_do_not_disturb_a_released_program() {
     fs::create_dir_all(file("lib/corniche/share")).unwrap();
     fs::hard_link(binary(), &program).or_else(|_| fs::copy(binary(), &program).map(drop)).unwrap();
     std::os::unix::fs::symlink(&tables, file("lib/corniche/share/proj")).unwrap();
-    // A database without tables is not of this PROJ.
+    // A database without tables does not belong to this PROJ.
     fs::create_dir(file("foreign")).unwrap();
     fs::write(file("foreign/proj.db"), "").unwrap();
     let (dem, plan) = (sample("pass/pass-dem.tif"), file("plan.json"));

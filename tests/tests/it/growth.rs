@@ -1,4 +1,5 @@
-//! `corniche growth` as a tool of study: several packages beside each other, a line for each way, and the script that sweeps settings.
+//! `corniche growth` as a tool for studies: several packages side by side, a line per way, and the
+//! script that varies settings.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -34,8 +35,8 @@ fn sum(lines: &[BTreeMap<String, String>], column: &str, class: u64) -> i64 {
     of_class.filter_map(|line| line[column].parse::<i64>().ok()).sum()
 }
 
-/// The columns of the list add up to the growth table: vertices of each level and class, and points of the source. The lengths add up to
-/// what `info` tells as kept.
+/// The columns of the list add up to the growth table: vertices of each level and class, and points
+/// of the source. The lengths add up to the kept length of `info`.
 fn adds_up(package: &Path, folder: &Path) -> Vec<BTreeMap<String, String>> {
     let csv = folder.join("ways.csv");
     let ran = corniche(["growth", text(package), "--json", "--per-way", text(&csv), "-O"]);
@@ -91,14 +92,15 @@ fn lines_of_ways_add_up_to_the_table() {
     copy_pass(&package, &["-q", "--max-error", "10"]);
     let ways = adds_up(&package, folder.path());
     assert_eq!(Some(ways.len() as u64), manifest(&package)["counts"]["roads_kept"].as_u64());
-    // A part of the same: roads end at the bounds, within tiles.
+    // A region of the same data: roads end at the bounds, within tiles.
     build_pass(
         &package,
         &["-q", "-O", "--max-error", "10", "--bounds", "9.47,46.88,9.52,46.93", "--all-classes"],
     );
     let part = adds_up(&package, folder.path());
     assert!(part.len() < ways.len() && part.len() > 3, "{} of {}", part.len(), ways.len());
-    // Where a way lies wholly inside, its points are those of the whole; elsewhere there are no more of them.
+    // Ways that are completely inside have the points of the whole package; others have no more
+    // than that.
     let mut same = 0;
     for way in &part {
         let whole = ways.iter().find(|whole| whole["way_id"] == way["way_id"]).unwrap();
@@ -124,8 +126,9 @@ fn lines_of_real_ways_add_up_to_the_table() {
     assert!(adds_up(&package, folder.path()).len() > 1000);
 }
 
-/// A way of 61 points, evenly from west to east over a plane of nine tiles: all are its own, and none of the cuts at borders of tiles.
-/// Within bounds that cut it between its points, those inside are, and none of the cuts at the bounds.
+/// A way of 61 points, evenly spaced from west to east over a plane of nine tiles: all are its own
+/// points, and none are clips at tile borders. Within bounds that clip it between its points, only
+/// those inside count, and none of the clips at the bounds.
 #[test]
 fn cuts_are_no_points_of_a_way() {
     let folder = tempfile::tempdir().unwrap();
@@ -135,7 +138,7 @@ fn cuts_are_no_points_of_a_way() {
     write_ascii_grid(&dem, [601, 601], place, |column, _| 500.0 + column as f64);
     let longitude = |k: i32| 8.98 + 0.04 * f64::from(k) / 60.0;
     let points_deg = (0..=60).map(|k| [longitude(k), 46.945]).collect();
-    let line = pbf::Line { tags: vec![("highway", "primary")], points_deg };
+    let line = pbf::WayToWrite { tags: vec![("highway", "primary")], points_deg };
     fs::write(&osm, pbf::extract(&[], &[line])).unwrap();
     let points = |options: &[&str]| -> i64 {
         build_from(
@@ -166,14 +169,14 @@ fn lists_of_ways_are_refused_where_they_would_destroy_or_mean_nothing() {
     let png = folder.path().join("growth.png");
     let many = [&[package_name; 28][..], &["--svg", "many.svg"]].concat();
     let refusals: [(&[&str], i32, &str); 8] = [
-        (&[package_name, "--svg", text(&png)], 2, "a name that ends in .svg"),
+        (&[package_name, "--svg", text(&png)], 2, "a name with the extension .svg"),
         (&many, 2, "at most 27"),
-        (&[package_name, "--per-way", csv_name], 3, "exists already"),
-        (&[package_name, package_name, "--per-way", csv_name, "-O"], 2, "one package"),
-        (&[package_name, "--per-way", package_name, "-O"], 2, "uses that file itself"),
-        (&[package_name, "--per-way", csv_name, "--svg", csv_name, "-O"], 2, "one file"),
+        (&[package_name, "--per-way", csv_name], 3, "already exists"),
+        (&[package_name, package_name, "--per-way", csv_name, "-O"], 2, "a single package"),
+        (&[package_name, "--per-way", package_name, "-O"], 2, "already uses this file"),
+        (&[package_name, "--per-way", csv_name, "--svg", csv_name, "-O"], 2, "the same file"),
         (&[package_name, "--per-way", text(&missing)], 2, "cannot write"),
-        (&[package_name, "-O"], 2, "required"),
+        (&[package_name, "-O"], 2, "needs more arguments"),
     ];
     for (arguments, code, word) in refusals {
         let ran = corniche([&["growth"], arguments].concat());
@@ -191,7 +194,8 @@ fn lists_of_ways_are_refused_where_they_would_destroy_or_mean_nothing() {
     assert_eq!(names(folder.path()), ["pass.pmtiles", "ways.csv"], "nothing is left behind");
 }
 
-/// Three packages of one region beside each other; the third has other settings of its roads, and that is said.
+/// Three packages of one region side by side; the third has other settings for roads, which is
+/// reported.
 #[test]
 fn packages_are_compared_and_what_is_not_alike_is_said() {
     let folder = tempfile::tempdir().unwrap();
@@ -211,10 +215,10 @@ fn packages_are_compared_and_what_is_not_alike_is_said() {
         ran
     };
     let alike = grow(&[fine, coarse]);
-    assert!(!alike.out.contains("Not like with like") && alike.err.is_empty(), "{}", alike.out);
+    assert!(!alike.out.contains("The packages differ") && alike.err.is_empty(), "{}", alike.out);
     let told = grow(&[fine, coarse, other]).out;
     for word in [
-        "Not like with like",
+        "The packages differ not only in cell and error bound",
         "  classes: A, B: ",
         "  classes by level: A, B: ",
         "; C: every class on every level",
@@ -239,7 +243,11 @@ fn packages_are_compared_and_what_is_not_alike_is_said() {
     );
 
     let ran = grow(&[fine, coarse, other, "--csv"]);
-    assert!(ran.err.contains("warning: not like with like: classes"), "{}", ran.err);
+    assert!(
+        ran.err.contains("warning: the packages differ not only in cell and error bound: classes"),
+        "{}",
+        ran.err
+    );
     let expected: Vec<String> = [fine, coarse, other]
         .iter()
         .flat_map(|package| {
@@ -267,13 +275,14 @@ fn packages_are_compared_and_what_is_not_alike_is_said() {
     );
     let refused = corniche(["growth", fine, text(&bare)]);
     assert!(
-        refused.code == 2 && refused.err.contains("bare.pmtiles has no roads"),
+        refused.code == 2 && refused.err.contains("bare.pmtiles\" has no roads"),
         "{}",
         refused.err
     );
 }
 
-/// The script measures what is missing, goes on where it was stopped, and refuses a table of another study.
+/// The script measures missing results, resumes after an interruption, and rejects a table of
+/// another study.
 #[test]
 fn the_study_goes_on_where_it_was_stopped() {
     let python = std::env::var("CORNICHE_PYTHON").unwrap_or_else(|_| "python3".to_owned());
@@ -313,7 +322,7 @@ fn the_study_goes_on_where_it_was_stopped() {
         );
         assert_eq!(levels.len().to_string(), line["levels"], "{line:?}");
     }
-    // All at once, the table is the same.
+    // In a single run, the table is the same.
     let bytes = fs::read(&table).unwrap();
     fs::remove_file(&table).unwrap();
     assert_eq!(study(&["--errors", "20,40"]).code, 0);
@@ -325,7 +334,7 @@ fn the_study_goes_on_where_it_was_stopped() {
     let other = study(&own);
     assert!(other.code == 2 && other.err.contains("name another folder"), "{}", other.err);
     for (arguments, word) in [
-        (&["--errors", "-1"][..], "no positive number"),
+        (&["--errors", "-1"][..], "not a positive number"),
         (&["--dem", text(&dem)], "go together"),
         (&["--dem", text(&dem), "--osm", text(&osm)], "give --errors"),
     ] {

@@ -1,4 +1,5 @@
-//! Every command that reads a package made to do harm ends within bounds of computing and memory, and says in one line what is wrong.
+//! Every command that reads a malicious package ends within limits of CPU time and memory, and
+//! reports the error in one line.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
@@ -14,18 +15,19 @@ use std::{
 
 use corniche_testing::{
     hostile::{
-        COMMANDING, Case, FAMILIES, Outcome, SPAN_ATTACKS, commanding_texts, span_attack,
+        COMMANDING, Case, FAMILIES, ReadOutcome, SPAN_ATTACKS, commanding_texts, span_attack,
         text_cases,
     },
     some_of,
 };
 use e2e::{Costs, Ran, binary, corniche, ended_with_costs, json, text};
 
-/// Seconds of computing that a command may take, on a software driver, too; the shell ends it then.
+/// CPU seconds that a command may use, also with a software driver; then the shell ends it.
 const MOST_SECONDS: u32 = 10;
 const MOST_MIB: u64 = 1024;
 
-/// What is done with a package: the words before its name, and those after. Most of these packages have their tile on level 0 alone.
+/// The commands: the words before the package's name, and those after. Most of these packages have
+/// their tile on level 0 only.
 const COMMANDS: [(&str, &[&str], &[&str]); 15] = [
     ("verify", &["verify", "-q"], &[]),
     ("render geo", &["render", "-q", "--size", "200x150", "--roads", "geo"], &["-o", "OUT.png"]),
@@ -53,7 +55,7 @@ const COMMANDS: [(&str, &[&str], &[&str]); 15] = [
     ("tile", &["tile", "--json"], &["0/0/0"]),
 ];
 
-/// Runs a command within the limit of time, and tells what it took.
+/// Runs a command within the time limit, and returns the resources that it used.
 fn run(
     folder: &Path,
     package: &Path,
@@ -74,7 +76,8 @@ fn run(
     ended_with_costs(&mut child)
 }
 
-/// Tries commands on packages of some families, each so many-th of the pairs in each tier; tells what is not as it should be.
+/// Runs commands on packages of some families, with a sample of the pairs in each tier; returns the
+/// failures.
 fn check(families: &[&str], every: [usize; 3], is_asked: impl Fn(&Case, &str) -> bool) {
     let mut broken = Vec::new();
     let (mut pairs, mut chosen) = (0.., some_of(0.., every).peekable());
@@ -98,8 +101,9 @@ fn check(families: &[&str], every: [usize; 3], is_asked: impl Fn(&Case, &str) ->
                 );
                 println!("{line}");
                 let is_known = matches!(ran.code, 0..=2);
-                // That the header counts the list of tiles wrongly is seen by what reads all of it.
-                let may_not_see = matches!(case.outcome, Outcome::Refused("fewer or more"));
+                // A wrong number of tiles in the header is detected only by commands that read the
+                // whole list.
+                let may_not_see = matches!(case.outcome, ReadOutcome::Refused("fewer or more"));
                 let may_not_see = is_read(&case) || may_not_see && command.0 != "verify";
                 let is_refused = ran.code != 0 || may_not_see;
                 let is_small = peak_bytes >> 20 <= MOST_MIB;
@@ -113,7 +117,7 @@ fn check(families: &[&str], every: [usize; 3], is_asked: impl Fn(&Case, &str) ->
 }
 
 fn is_read(case: &Case) -> bool {
-    matches!(case.outcome, Outcome::Read)
+    matches!(case.outcome, ReadOutcome::Read)
 }
 
 #[test]
@@ -123,7 +127,8 @@ fn work_follows_bytes_and_no_coordinate() {
     check(&["lies"], [2, 2, 1], |case, command| is_read(case) && commands.contains(&command));
 }
 
-/// What is refused is refused when it is opened, with its first tile, or with the list of all: by one way for all commands, so two of them will do.
+/// Errors are detected when the package is opened, with its first tile, or with the list of all
+/// tiles: all commands share this code, so two commands suffice.
 #[test]
 #[ignore = "slow: every command on every hostile package, some minutes"]
 fn every_command_ends_on_every_hostile_package() {
@@ -132,10 +137,11 @@ fn every_command_ends_on_every_hostile_package() {
     check(&families, [41, 41, 1], |case, command| is_read(case) || of_refused.contains(&command));
 }
 
-/// Most bytes that a command says of a package, but for documents, which have all that is in it.
+/// Largest output of a command about a package, except documents, which contain all of it.
 const MOST_SAID: u64 = 200_000;
 
-/// Tells what is wrong with how a command ends on a package with a text that does harm: neither a panic nor endless output, and no guess at a full disk.
+/// Describes how a command fails on a package with a malicious text: it must neither panic nor
+/// print endlessly, nor assume a full disk.
 fn fault_of_text(
     folder: &Path,
     package: &Path,
@@ -153,7 +159,7 @@ fn fault_of_text(
     (!is_right).then(|| format!("{}: {costs}: {last}", command.0))
 }
 
-/// Each text of the metadata, endless or with characters that mean something else, through `info`.
+/// Each text of the metadata, endless or with special characters, through `info`.
 #[test]
 fn no_text_of_a_package_makes_info_panic_or_talk_for_ever() {
     let folder = tempfile::tempdir().unwrap();
@@ -169,7 +175,7 @@ fn no_text_of_a_package_makes_info_panic_or_talk_for_ever() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-/// The same through all that reads a package, and through pictures with a legend.
+/// The same texts through all commands that read a package, and through images with a legend.
 #[test]
 #[ignore = "slow: every command on every text, some minutes"]
 fn no_text_of_a_package_ends_another_command_otherwise() {
@@ -196,7 +202,8 @@ fn no_text_of_a_package_ends_another_command_otherwise() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-/// Attribution, datum, CRS, names of inputs, reasons: nothing of it commands the terminal, nor does a file's name. Programs get it as it is.
+/// Attribution, datum, CRS, names of inputs, reasons: none of them controls the terminal, nor does
+/// a file's name. Programs get them unchanged.
 #[test]
 fn no_text_of_a_package_commands_the_terminal() {
     let folder = tempfile::tempdir().unwrap();
@@ -242,7 +249,8 @@ fn no_text_of_a_package_commands_the_terminal() {
     assert_eq!(told["manifest"]["attribution"][0], COMMANDING);
 }
 
-/// Spans that follow no road: as many pieces as few bytes can stand for, over all of a tile, are drawn or refused soon.
+/// Spans without a road: as many pieces as a few bytes can encode, over a whole tile, are drawn or
+/// rejected quickly.
 #[test]
 fn spans_of_a_million_points_end_soon() {
     let mut broken = Vec::new();

@@ -1,4 +1,4 @@
-//! The list of jobs: what it says is done as it says, and the bytes of a build come out.
+//! The list of jobs: running all of them produces the bytes of a build.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -30,7 +30,7 @@ impl Planned {
         Self { folder, inputs, plan, whole: fs::read(package).unwrap() }
     }
 
-    /// Of the sample `pass`.
+    /// Plans the sample `pass`.
     fn pass() -> Self {
         let [dem, osm] = [sample("pass/pass-dem.tif"), sample("pass/pass.osm.pbf")];
         Self::new(&["--dem", text(&dem), "--osm", text(&osm), "--max-error", "10"])
@@ -40,7 +40,7 @@ impl Planned {
         read(&succeed(corniche([&["jobs", text(&self.plan)], options].concat())))
     }
 
-    /// Makes a job's part.
+    /// Computes a job's part.
     fn make(&self, job: &Value, store: &Path) {
         let own = words(&job["args"]);
         let mut command = vec!["part", text(&self.plan), "--store", text(store), "-q"];
@@ -63,7 +63,7 @@ fn succeed(ran: Ran) -> Ran {
     ran
 }
 
-/// The jobs that a command printed; checks what holds of every list.
+/// The jobs that a command printed; checks the invariants of every list.
 fn read(ran: &Ran) -> Vec<Value> {
     let jobs: Vec<Value> =
         ran.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
@@ -72,7 +72,7 @@ fn read(ran: &Ran) -> Vec<Value> {
     assert_eq!(ids.len(), jobs.len(), "each has a name of its own");
     for (index, job) in jobs.iter().enumerate() {
         assert!(job["work"].as_f64().unwrap() > 0.0);
-        // What a job waits for comes before it in the list, all of it.
+        // All parts that a job waits for come before it in the list.
         for step in words(&job["after"]) {
             assert!(steps[..index].contains(&step.as_str()), "{job}");
             assert!(!steps[index..].contains(&step.as_str()), "{job}");
@@ -86,17 +86,17 @@ fn words(list: &Value) -> Vec<String> {
     list.as_array().unwrap().iter().map(|word| word.as_str().unwrap().to_owned()).collect()
 }
 
-fn of<'a>(jobs: &'a [Value], step: &'a str) -> impl Iterator<Item = &'a Value> {
+fn jobs_of_step<'a>(jobs: &'a [Value], step: &'a str) -> impl Iterator<Item = &'a Value> {
     jobs.iter().filter(move |job| job["step"] == step)
 }
 
 fn subtrees(jobs: &[Value], step: &str) -> BTreeMap<String, f64> {
     let one =
         |job: &Value| (job["subtree"].as_str().unwrap().to_owned(), job["work"].as_f64().unwrap());
-    of(jobs, step).map(one).collect()
+    jobs_of_step(jobs, step).map(one).collect()
 }
 
-/// Subtrees of the step heights and those of the step tiles need not be the same: either can be the larger ones.
+/// Subtrees of the step heights and those of the step tiles may differ in both directions.
 #[test]
 #[ignore = "slow: some twenty runs of the program"]
 fn jobs_done_one_after_the_other_make_the_bytes_of_a_build() {
@@ -114,26 +114,27 @@ fn jobs_done_one_after_the_other_make_the_bytes_of_a_build() {
         if slots_before != slots_after {
             assert_ne!(heights.keys().collect::<Vec<_>>(), tiles.keys().collect::<Vec<_>>());
         }
-        for job in of(&again, "tiles") {
+        for job in jobs_of_step(&again, "tiles") {
             planned.make(job, &store);
         }
         planned.check_merged(&store);
     }
 }
 
-/// Before the roads are read, they are taken to lie evenly; after that it is known where they are.
+/// Before the roads are read, they are assumed to be evenly distributed; afterwards their
+/// distribution is known.
 #[test]
 fn roads_in_the_store_change_the_work_of_tiles_alone() {
     let planned = Planned::pass();
     let store = planned.folder.path().join("store");
     let options = ["--slots", "9", "--least-work", "0"];
     let unknown = planned.jobs(&options);
-    // A store that is not there yet, or without roads, says nothing.
+    // A store that does not exist yet, or has no roads, has no effect.
     let options = [&options[..], &["--store", text(&store)]].concat();
     assert_eq!(planned.jobs(&options), unknown);
-    planned.make(of(&unknown, "hashes").next().unwrap(), &store);
+    planned.make(jobs_of_step(&unknown, "hashes").next().unwrap(), &store);
     assert_eq!(planned.jobs(&options), unknown);
-    planned.make(of(&unknown, "roads").next().unwrap(), &store);
+    planned.make(jobs_of_step(&unknown, "roads").next().unwrap(), &store);
     let known = planned.jobs(&options);
     assert_ne!(subtrees(&known, "tiles"), subtrees(&unknown, "tiles"));
     assert_eq!(subtrees(&known, "heights"), subtrees(&unknown, "heights"));
@@ -141,7 +142,8 @@ fn roads_in_the_store_change_the_work_of_tiles_alone() {
     assert_eq!(planned.jobs(&options), known);
 }
 
-/// A wide file and a narrow one far from it: parts are small where there is much, and large where there is little.
+/// A wide file and a narrow one far from it: parts are small where there is much data, and large
+/// where there is little.
 #[test]
 #[ignore = "slow: plans and builds of several data"]
 fn subtrees_of_uneven_data_come_from_several_levels() {
@@ -159,8 +161,8 @@ fn subtrees_of_uneven_data_come_from_several_levels() {
     let levels: BTreeSet<String> =
         subtrees(&jobs, "tiles").keys().map(|id| id[..1].to_owned()).collect();
     assert!(levels.len() > 1, "{levels:?}");
-    // No roads, no step of that name, and nobody waits for it.
-    assert_eq!(of(&jobs, "roads").count(), 0);
+    // Without roads there is no step of that name, and no job waits for it.
+    assert_eq!(jobs_of_step(&jobs, "roads").count(), 0);
     let store = planned.folder.path().join("store");
     for job in &jobs[..jobs.len() - 1] {
         planned.make(job, &store);
@@ -182,15 +184,16 @@ fn plan_lists_the_same_jobs() {
     }
 }
 
-/// With the terrain of a package there are no heights to read, and the tiles are those of the package.
+/// With the terrain of a package there are no heights to read, and the tiles are those of the
+/// package.
 #[test]
 fn jobs_of_a_build_on_recorded_terrain_make_its_bytes() {
     let before = Planned::pass();
     let (terrain, osm) = (before.folder.path().join("whole.pmtiles"), sample("pass/pass.osm.pbf"));
     let planned = Planned::new(&["--terrain", text(&terrain), "--osm", text(&osm)]);
     let jobs = planned.jobs(&["--slots", "3", "--least-work", "0"]);
-    assert_eq!(of(&jobs, "heights").count(), 0);
-    assert!(of(&jobs, "tiles").count() > 3);
+    assert_eq!(jobs_of_step(&jobs, "heights").count(), 0);
+    assert!(jobs_of_step(&jobs, "tiles").count() > 3);
     let store = planned.folder.path().join("store");
     for job in &jobs[..jobs.len() - 1] {
         planned.make(job, &store);

@@ -1,4 +1,4 @@
-//! Builds that are killed at any time go on to the same bytes as an unbroken one.
+//! Builds that are killed at any time resume to the same bytes as an uninterrupted one.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 #![cfg(unix)]
@@ -8,13 +8,13 @@ use std::time::{Duration, Instant};
 use corniche_testing::Random;
 use e2e::{Job, When, went_on};
 
-/// So long that work becomes durable several times, every two seconds.
+/// The build takes so long that work becomes durable several times, every two seconds.
 const OPTIONS: [&str; 2] = ["--max-error", "0.25"];
 
 /// The exit code of a process that SIGKILL ended.
 const KILLED: i32 = -1;
 
-/// The build that is interrupted, and what it makes unbroken.
+/// The interrupted build, and the result of an uninterrupted one.
 struct Campaign {
     options: [&'static str; 4],
     whole: [Vec<u8>; 2],
@@ -34,8 +34,8 @@ impl Campaign {
         Self { options, whole, takes }
     }
 
-    /// Kills a build at a random time, goes on, sometimes kills it again, and compares. Returns how many kills met it at work, and whether
-    /// there was durable work to go on from.
+    /// Kills a build at a random time, resumes it, sometimes kills it again, and compares. Returns
+    /// how many kills hit it at work, and whether there was durable work to resume.
     fn kill(&self, seed: u64) -> (u32, bool) {
         let mut random = Random::new(seed);
         let job = Job::new(&self.options);
@@ -54,12 +54,14 @@ impl Campaign {
             kills += 1;
             had_work |= job.has_work();
             if job.package().exists() {
-                // Killed after the package was placed: without -O a further build would be refused.
+                // Killed after the package was in place: without -O a further build would be
+                // rejected.
                 break;
             }
         }
         if job.package().exists() {
-            // It was complete before, or just before the kill, and then it may have had no time to clean up.
+            // The package was complete before, or just before the kill, and then there may have
+            // been no time to clean up.
             if kills > 0 {
                 job.succeed(&["--quiet", "--resume", "-O"]);
             }
@@ -83,7 +85,7 @@ fn killed_builds(seeds: std::ops::Range<u64>, threads: &'static str) {
     }
     let builds = seeds.len() as u64;
     assert!(u64::from(kills) >= builds / 2, "only {kills} kills met a build at work");
-    // On a machine so fast that nothing is durable before the end this would see nothing.
+    // On a machine so fast that nothing is durable before the end, this would test nothing.
     assert!(with_work >= builds / 4, "only {with_work} of {builds} builds had durable work");
 }
 
@@ -99,7 +101,8 @@ fn twelve_killed_builds_with_two_threads_go_on_to_the_same_bytes() {
     killed_builds(12..24, "2");
 }
 
-/// A signal that asks the build to end: what was done is kept, and the message says how to go on.
+/// After a signal that requests the build to end, progress is kept, and the message says how to
+/// resume.
 #[test]
 fn an_interrupted_build_ends_with_code_4_and_goes_on_where_it_was() {
     let campaign = Campaign::new("2");

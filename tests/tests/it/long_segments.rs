@@ -1,4 +1,5 @@
-//! Roads of one long segment are as long as the straight line on the map, as a whole and where data end.
+//! Roads of one long segment are as long as the straight line on the map, as a whole and at the
+//! edge of data.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -8,13 +9,13 @@ use std::{
 };
 
 use corniche_testing::{
-    pbf::{Block, file},
+    pbf::{BlockBuilder, file},
     real_data,
 };
 use e2e::{corniche, manifest, text};
 use serde_json::Value;
 
-/// Builds and verifies a package; gives its manifest and the length of its exported road.
+/// Builds and verifies a package; returns its manifest and the length of its exported road.
 fn built([dem, osm]: [&Path; 2], folder: &Path) -> (Value, f64) {
     let package = folder.join("roads.pmtiles");
     let inputs = ["--dem", text(dem), "--osm", text(osm)];
@@ -53,7 +54,8 @@ fn long_segments_are_as_long_as_the_line_on_the_map() {
     }
 }
 
-/// A way with one node at 0°, 0°, an everyday mistake in extracts: what is kept is as long as what lies in the tiles.
+/// A way with one node at 0°, 0°, a common error in extracts: the kept length equals the length in
+/// the tiles.
 #[test]
 fn ways_to_no_place_at_all_are_cut_where_data_end() {
     let folder = tempfile::tempdir().unwrap();
@@ -63,7 +65,7 @@ fn ways_to_no_place_at_all_are_cut_where_data_end() {
         ("sea-beyond-data/lon10", [100, -170]),
     ] {
         let Some(dem) = real_data(&format!("cases/{name}.tif")) else { return };
-        let mut block = Block::new();
+        let mut block = BlockBuilder::new();
         block.dense(&[(1, lat * 1_000_000, lon * 1_000_000), (2, 0, 0)]);
         block.way(1, &[("highway", "primary")], &[1, 2]);
         let osm: PathBuf = folder.path().join("null.osm.pbf");

@@ -1,4 +1,5 @@
-//! Scenarios through the whole program, in one binary. The first line of each module says what holds.
+//! Scenarios through the whole program, in one binary. The first line of each module states what is
+//! tested.
 
 mod absurd_ways;
 mod area_pictures;

@@ -1,4 +1,5 @@
-//! Pictures from above with a scale in print know where they are: as GeoTIFF and with a world file, as GDAL reads them.
+//! Images from above with a scale in print are georeferenced: as GeoTIFF and with a world file, as
+//! GDAL reads them.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -13,7 +14,7 @@ use gdal::{
     vector::{Geometry, LayerAccess as _},
 };
 
-/// Secondary and tertiary roads have a colour that nothing else has.
+/// Secondary and tertiary roads have a unique colour.
 const STYLE: &str = r##"
 base = "road-atlas"
 roads.3 = { color = "#FF00FF", outline = "#FF00FF", thin = "#FF00FF" }
@@ -58,7 +59,7 @@ fn lines(geometry: &Geometry) -> Vec<Vec<[f64; 2]>> {
     }
 }
 
-/// A picture as GDAL reads it.
+/// An image as GDAL reads it.
 struct Map {
     dataset: Dataset,
     size: [f64; 2],
@@ -78,7 +79,7 @@ impl Map {
         Self { dataset, size: [columns as f64, rows as f64], crs_from_pixel, bands }
     }
 
-    /// Column and row of a place.
+    /// Column and row of a position.
     fn pixel(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let [x0, a, b, y0, c, d] = self.crs_from_pixel;
         let (dx, dy, det) = (x - x0, y - y0, a * d - b * c);
@@ -87,7 +88,7 @@ impl Map {
 
     fn is_within(&self, [column, row]: [f64; 2], margin_px: f64) -> bool {
         let [columns, rows] = self.size;
-        // The credits are at the bottom.
+        // The attribution is at the bottom.
         (margin_px..columns - margin_px).contains(&column)
             && (margin_px..rows - 3.0 * margin_px).contains(&row)
     }
@@ -98,7 +99,8 @@ impl Map {
         red > 170 && blue > 170 && green < 130
     }
 
-    /// How far beside the middles of some straight pieces of roads the middle of what is drawn there is: along the normal of each, pixels.
+    /// The offsets between the centres of some straight pieces of roads and the centres of their
+    /// drawings: along the normal of each, pixels.
     fn offsets(&self, roads: &[Vec<[f64; 2]>]) -> Vec<f64> {
         let mut offsets = Vec::new();
         for [from, to] in
@@ -128,7 +130,7 @@ impl Map {
     }
 }
 
-/// A road of the package lies within a pixel of its place in the file, north up and turned.
+/// A road of the package is within a pixel of its position in the file, north up and rotated.
 #[test]
 fn a_map_has_its_roads_where_they_are() {
     let folder = tempfile::tempdir().unwrap();
@@ -165,13 +167,13 @@ fn a_map_has_its_roads_where_they_are() {
         let most = offsets.iter().fold(0.0_f64, |most, offset| most.max(offset.abs()));
         assert!(most <= 1.0, "{offsets:?}");
     }
-    // Nothing is left beside them.
+    // No other files remain.
     let left = names(folder.path());
     let beside = left.iter().filter(|name| name.contains("unfinished") || name.contains(".xml"));
     assert_eq!(beside.count(), 0, "{left:?}");
 }
 
-/// GDAL finds the same place in a PNG with its world file as in a GeoTIFF, and the same pixels.
+/// GDAL finds the same position in a PNG with its world file as in a GeoTIFF, and the same pixels.
 #[test]
 fn a_world_file_places_a_picture_as_a_geotiff_does() {
     let folder = tempfile::tempdir().unwrap();
@@ -182,7 +184,7 @@ fn a_world_file_places_a_picture_as_a_geotiff_does() {
     let Some(ran) = draw("render", &package, &tif, &options) else { return };
     assert_eq!(ran.code, 0, "{}", ran.err);
     let options = [&options[..], &["--world-file"]].concat();
-    // One of the files is there already: none is written.
+    // One of the files already exists: none is written.
     fs::write(&prj, "mine").unwrap();
     let ran = draw("render", &package, &png, &options).unwrap();
     assert_eq!(ran.code, 3, "{}", ran.err);
@@ -197,12 +199,13 @@ fn a_world_file_places_a_picture_as_a_geotiff_does() {
         assert!((one - other).abs() < 1e-6, "{one} {other}");
     }
     assert!(fs::read_to_string(&prj).unwrap().contains("UTM_Zone_32N"));
-    // 150 pixels to an inch are 5906 to a metre.
+    // 150 pixels per inch are 5906 per metre.
     let bytes = fs::read(&png).unwrap();
     assert_eq!(bytes[37..50], [b'p', b'H', b'Y', b's', 0, 0, 0x17, 0x12, 0, 0, 0x17, 0x12, 1]);
 }
 
-/// What makes no sense is refused by the name of its option, before anything is drawn or written.
+/// Meaningless combinations are rejected with the name of the option, before anything is drawn or
+/// written.
 #[test]
 fn what_is_no_map_is_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -242,5 +245,5 @@ fn what_is_no_map_is_refused() {
     let options = ["--size", "200x100", "--title", &format!("峠 {long}")];
     let Some(ran) = draw("render", &package, &png, &options) else { return };
     assert_eq!(ran.code, 0, "{}", ran.err);
-    assert!(ran.err.contains("no 峠") && ran.err.contains("cut off"), "{}", ran.err);
+    assert!(ran.err.contains("no 峠") && ran.err.contains("truncated"), "{}", ran.err);
 }

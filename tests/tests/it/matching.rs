@@ -1,4 +1,5 @@
-//! `corniche match`: offsets of photos and benches that were put beside roads on purpose are found again.
+//! `corniche match`: offsets of photos and benches that were deliberately shifted from roads are
+//! found.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -8,7 +9,7 @@ use corniche_testing::{ColourImage, Raster};
 use e2e::{Ran, corniche, json, real_data, sample, text};
 use gdal::{Dataset, DriverManager, cpl::CslStringList};
 
-/// Where the image shows roads, less where they are: metres east and north.
+/// The offset of the roads in the image from the true roads: metres east and north.
 const OFFSET_M: [f64; 2] = [12.0, -7.0];
 /// Around a junction of the sample `pass`, UTM zone 32.
 const WEST_M: f64 = 541_800.0;
@@ -52,7 +53,7 @@ fn roads(folder: &Path) -> Vec<Segment> {
     segments
 }
 
-/// Distance of a place from the nearest road, moved by the offset.
+/// Distance of a point from the nearest road, shifted by the offset.
 fn distance_m(segments: &[Segment], place: [f64; 2]) -> f64 {
     let place = [place[0] - OFFSET_M[0], place[1] - OFFSET_M[1]];
     let of = |[from, to]: &Segment| {
@@ -65,7 +66,7 @@ fn distance_m(segments: &[Segment], place: [f64; 2]) -> f64 {
     segments.iter().map(of).fold(f64::INFINITY, f64::min)
 }
 
-/// East, north and confidence of the row "all".
+/// East, north and confidence in the row "all".
 fn all(answer: &str) -> [f64; 3] {
     let row =
         answer.lines().find(|line| line.starts_with("all ")).unwrap_or_else(|| panic!("{answer}"));
@@ -91,7 +92,7 @@ fn a_photo_that_lies_beside_the_roads() {
     let package = at("plain.pmtiles");
     let photo = |name: &str, shows_roads: bool| {
         let grey = |[x, y]: [f64; 2]| {
-            // Fields of different brightness with sharp edges, which are no lines.
+            // Fields of different brightness with sharp edges, which are not lines.
             let field = ((x / 130.0).floor() * 7.0 + (y / 90.0).floor() * 13.0).rem_euclid(5.0);
             let noise = ((x * 12.9 + y * 78.2).sin() * 43_758.5).rem_euclid(1.0) * 40.0;
             let is_road = shows_roads && distance_m(&segments, [x, y]) < 4.0;
@@ -113,7 +114,7 @@ fn a_photo_that_lies_beside_the_roads() {
     let ran =
         succeed(corniche([&words[..], &["--csv", text(&list), "--svg", text(&map)]].concat()));
     assert_found(&ran.out, 1.0);
-    // Each way that is shown by itself has its part of the offset.
+    // Each way with a reliable offset has its part of the total offset.
     let mut reader = fs::read_to_string(&list).unwrap();
     assert!(
         reader.starts_with("way_id,class,name,ref,length_m,samples,east_m,north_m,"),
@@ -123,18 +124,18 @@ fn a_photo_that_lies_beside_the_roads() {
     assert!(reader.lines().count() >= 3, "{reader}");
     let map = fs::read_to_string(&map).unwrap();
     assert!(map.contains("OpenStreetMap contributors") && map.ends_with("</svg>\n"));
-    // A photo without roads shows none.
+    // A photo without roads gives no offsets.
     let bare = photo("bare.tif", false);
     let ran = succeed(corniche(["match", text(&package), "--photo", text(&bare)]));
     let [.., confidence] = all(&ran.out);
     println!("{}", ran.out);
     assert!(confidence < 6.0, "{}", ran.out);
-    // The package may stand behind the photos.
+    // The package may come after the photos.
     let again = succeed(corniche(["match", "--photo", text(&bare), text(&package)]));
     assert_eq!(again.out, ran.out);
     let ran = corniche(["match", "--photo", text(&bare)]);
-    assert!(ran.code == 2 && ran.err.contains("write it first"), "{}", ran.err);
-    // Nothing is replaced unasked.
+    assert!(ran.code == 2 && ran.err.contains("write the package first"), "{}", ran.err);
+    // Nothing is overwritten without a request.
     let ran = corniche(["match", text(&package), "--photo", text(&bare), "--csv", text(&list)]);
     assert_eq!(ran.code, 3, "{}", ran.err);
 }
@@ -147,11 +148,11 @@ fn benches_in_a_hillside_beside_the_roads() {
     let place = [WEST_M + 1.0, PIXEL_M, 0.0, NORTH_M - 1.0, 0.0, -PIXEL_M];
     let raster = Raster::new(32632, [(SIDE_M / PIXEL_M) as usize; 2], place);
     let dem = raster.write(folder.path(), "benches.tif", |[x, y]| {
-        // A slope of 25 degrees with hollows; a road lies level in it, seven metres wide.
+        // A slope of 25 degrees with hollows; a road is level across, seven metres wide.
         let hill = |x: f64, y: f64| 900.0 + 0.47 * (y - NORTH_M) + 6.0 * (x / 160.0).sin();
         let away = distance_m(&segments, [x, y]);
         let flat = (1.0 - (away - 3.5).max(0.0) / 3.0).max(0.0);
-        // Level across: the height of the hill some metres below is taken in part.
+        // Level across: it is mixed with the height of the hill some metres below.
         (hill(x, y) * (1.0 - flat) + (hill(x, y) / 3.0).round() * 3.0 * flat) as f32
     });
     let (package, osm) = (at("benches.pmtiles"), sample("pass/pass.osm.pbf"));
@@ -159,7 +160,7 @@ fn benches_in_a_hillside_beside_the_roads() {
     succeed(corniche([&words[..], &[text(&package)]].concat()));
     let ran = succeed(corniche(["match", text(&package), "--slope"]));
     assert_found(&ran.out, 2.0);
-    // Slopes come from the relief.
+    // Slopes are computed from the relief.
     let bare = at("bare.pmtiles");
     let words = ["build", "-q", "--dem", text(&dem), "--osm", text(&osm), "--relief", "off", "-o"];
     succeed(corniche([&words[..], &[text(&bare)]].concat()));
@@ -167,7 +168,8 @@ fn benches_in_a_hillside_beside_the_roads() {
     assert!(ran.code == 2 && ran.err.contains("has no relief"), "{}", ran.err);
 }
 
-/// A real photo, and a copy of it with another georeference: the offsets of both differ by the shift.
+/// A real photo, and a copy of it with another georeference: the offsets of both differ by the
+/// shift.
 #[test]
 fn a_real_photo_that_was_moved() {
     let Some(dem) = real_data("swellendam/srtm_41_19_4326.tif") else { return };

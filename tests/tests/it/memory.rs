@@ -7,7 +7,8 @@ use std::path::PathBuf;
 use corniche_testing::{ColourImage, Raster};
 use e2e::{Job, real_data, text};
 
-/// A DEM of `side` × `side` samples, in tiles: hills, a plain, and a lake without heights. Around the roads of the sample `pass`.
+/// A DEM of `side` × `side` samples, in tiles: hills, a plain, and a lake without heights. Around
+/// the roads of the sample `pass`.
 fn large_dem(folder: &std::path::Path, side: usize) -> PathBuf {
     let place = [520_000.0, 10.0, 0.0, 5_215_000.0, 0.0, -10.0];
     let raster = Raster::new(32632, [side; 2], place).nodata(-9999.0);
@@ -25,7 +26,7 @@ fn threads_and_memory_change_no_byte() {
     let folder = tempfile::tempdir().unwrap();
     let inputs = [large_dem(folder.path(), 2600), e2e::sample("pass/pass.osm.pbf")];
     let build = |options: &[&str]| {
-        let job = Job::new(options).of(inputs.clone());
+        let job = Job::new(options).with_inputs(inputs.clone());
         job.succeed(&["--quiet", "--max-error", "20", "--force"]);
         job.result()
     };
@@ -39,7 +40,7 @@ fn threads_and_memory_change_no_byte() {
     }
 }
 
-/// The largest resident size of a build, bytes, as the kernel tells it while the build runs.
+/// The peak resident memory of a build, bytes, as the kernel reports it while the build runs.
 #[cfg(target_os = "linux")]
 fn peak_bytes(job: &Job, more: &[&str]) -> u64 {
     let mut child = job.start(&[&["--quiet"], more].concat());
@@ -48,19 +49,20 @@ fn peak_bytes(job: &Job, more: &[&str]) -> u64 {
     costs.peak_bytes
 }
 
-/// 256 MiB suffice for four threads, whatever the size of the DEM: here 27 million nodes, whose heights alone take 108 MB.
+/// 256 MiB suffice for four threads, whatever the size of the DEM: here 27 million nodes, whose
+/// heights alone need 108 MB.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_build_stays_within_its_memory() {
     let folder = tempfile::tempdir().unwrap();
     let dem = large_dem(folder.path(), 5200);
     let options = ["--max-error", "20", "--threads", "4", "--memory", "256M"];
-    let job = Job::new(&options).of([dem, e2e::sample("pass/pass.osm.pbf")]);
+    let job = Job::new(&options).with_inputs([dem, e2e::sample("pass/pass.osm.pbf")]);
     let peak = peak_bytes(&job, &[]);
     assert!((20 << 20..=256 << 20).contains(&peak), "{} MiB", peak >> 20);
 }
 
-/// So it is with photos: 36 million pixels of three bands, which take 108 MB.
+/// The same applies to photos: 36 million pixels of three bands, which need 108 MB.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_build_with_photos_stays_within_its_memory() {
@@ -77,21 +79,21 @@ fn a_build_with_photos_stays_within_its_memory() {
     };
     let photo = photo.write(folder.path(), "photo.tif", |_| {});
     let options = ["--max-error", "20", "--threads", "4", "--memory", "288M"];
-    let job = Job::new(&options).of([dem, e2e::sample("pass/pass.osm.pbf")]);
+    let job = Job::new(&options).with_inputs([dem, e2e::sample("pass/pass.osm.pbf")]);
     let peak = peak_bytes(&job, &["--photo", text(&photo), "--photo-levels", "1"]);
     assert!((20 << 20..=288 << 20).contains(&peak), "{} MiB", peak >> 20);
     let photos = e2e::manifest(&job.package())["photos"].as_array().unwrap().len();
     assert!(photos > 2, "{photos} levels with photos");
 }
 
-/// A real extract with all its buildings: what is no road takes no memory either.
+/// A real extract with all its buildings: objects that are not roads need no memory either.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_build_with_a_real_extract_stays_within_its_memory() {
     let Some(dem) = real_data("liechtenstein/N47E009.hgt") else { return };
     let Some(osm) = real_data("liechtenstein/liechtenstein-2021-10-28.osm.pbf") else { return };
     let options = ["--threads", "4", "--memory", "256M"];
-    let job = Job::new(&options).of([dem, osm]);
+    let job = Job::new(&options).with_inputs([dem, osm]);
     let peak = peak_bytes(&job, &[]);
     assert!((20 << 20..=256 << 20).contains(&peak), "{} MiB", peak >> 20);
     assert!(text(&job.package()).ends_with("out.pmtiles") && job.package().exists());

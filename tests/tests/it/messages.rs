@@ -1,4 +1,5 @@
-//! What the program says, to whom and how: closed pipes, silence, records, widths of tables; and names that no file should have.
+//! The messages of the program and their readers: closed pipes, silence, records, widths of tables;
+//! and invalid file names.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -7,7 +8,7 @@ use std::{fs, io, path::Path, process::Command};
 use e2e::{Ran, binary, copy_pass, corniche, draw, json, lacks_adapter, sample, text};
 use serde_json::Value;
 
-/// Runs the binary with nobody left to read what it says: on standard output, on standard error, or on both.
+/// Runs the binary with closed pipes: standard output, standard error, or both.
 fn unread(arguments: &[&str], streams: [bool; 2]) -> Ran {
     let closed = || {
         let (reader, writer) = io::pipe().unwrap();
@@ -27,7 +28,7 @@ fn unread(arguments: &[&str], streams: [bool; 2]) -> Ran {
 
 const BOTH: [bool; 2] = [true, true];
 
-/// `corniche … 2>&1 | head`: the reader has gone, and the work is done all the same.
+/// `corniche … 2>&1 | head`: the reader has gone, but the work is done.
 #[test]
 fn a_closed_pipe_is_no_failure_and_ends_no_work() {
     let folder = tempfile::tempdir().unwrap();
@@ -67,7 +68,7 @@ fn a_closed_pipe_is_no_failure_and_ends_no_work() {
         (&["plan", "--dem", text(&dem)], &[0]),
         (&["build", "--help"], &[0]),
         (&["info", "/nowhere.pmtiles"], &[2]),
-        // Without a graphics adapter.
+        // Without a GPU adapter.
         (&["render", package, "-o", text(&png), "--size", "64x48"], &[0, 1]),
     ];
     for (line, codes) in lines {
@@ -80,7 +81,7 @@ fn a_closed_pipe_is_no_failure_and_ends_no_work() {
     }
 }
 
-/// What was asked for is printed, and nothing else is said.
+/// The requested result is printed, and nothing else.
 #[test]
 fn silence_leaves_the_answer_and_nothing_else() {
     let folder = tempfile::tempdir().unwrap();
@@ -125,7 +126,7 @@ fn silence_leaves_the_answer_and_nothing_else() {
     assert!(ran.code == 2 && ran.err.starts_with("corniche: "), "{}", ran.err);
 }
 
-/// Programs that read a pipe get digits alone; the tables fit on a terminal of 100 columns.
+/// Programs that read a pipe get plain digits; the tables fit on a terminal of 100 columns.
 #[test]
 fn numbers_are_plain_in_pipes_and_tables_are_narrow() {
     let folder = tempfile::tempdir().unwrap();
@@ -142,11 +143,11 @@ fn numbers_are_plain_in_pipes_and_tables_are_narrow() {
     let manifest = json(&["info", text(&package), "--json"])["manifest"].take();
     let triangles = manifest["levels"].as_array().unwrap().last().unwrap()["triangles"].to_string();
     assert!(triangles.len() > 5 && info.contains(&format!(" {triangles} ")), "{triangles}: {info}");
-    // Texts are folded, too, but for words that are longer.
+    // Texts are folded, too, except for longer words.
     let wide = info.lines().filter(|line| line.chars().count() > 100);
     assert_eq!(wide.collect::<Vec<_>>(), Vec::<&str>::new(), "{info}");
     for said in [&built.err, &info, &growth, &verify, &plan] {
-        // Tables come after the first empty line.
+        // Tables begin after the first empty line.
         let tables = said.lines().skip_while(|line| !line.is_empty());
         let is_table =
             |line: &&str| line.trim().split("  ").filter(|cell| !cell.is_empty()).count() > 3;
@@ -156,7 +157,7 @@ fn numbers_are_plain_in_pipes_and_tables_are_narrow() {
     }
 }
 
-/// Classes are parts of what was read, so they stand below it and not below what was lost.
+/// Classes are parts of the read roads, so they are listed below those and not below the lost ones.
 #[test]
 fn classes_stand_under_what_they_break_down() {
     let folder = tempfile::tempdir().unwrap();
@@ -181,7 +182,7 @@ fn classes_stand_under_what_they_break_down() {
         classes.iter().map(|line| count(line.trim_start())).sum::<u64>(),
         count(lines[read])
     );
-    assert!(lines[read + 1 + classes.len()].starts_with("kept "), "{info}");
+    assert!(lines[read + 1 + classes.len()].starts_with("kept: "), "{info}");
 }
 
 fn records(said: &str) -> Vec<Value> {
@@ -189,7 +190,7 @@ fn records(said: &str) -> Vec<Value> {
     said.lines().map(parse).collect()
 }
 
-/// A command line that is not understood: whoever asked for records gets one, with the same exit code.
+/// An invalid command line: readers of records get a record, with the same exit code.
 #[test]
 fn refused_command_lines_are_records_on_request() {
     let lines: [(&[&str], &str); 5] = [
@@ -216,7 +217,7 @@ fn refused_command_lines_are_records_on_request() {
         assert_eq!((&end["result"], &end["exit_code"]), (&"unusable".into(), &2.into()), "{end}");
         assert!(ran.code == 2 && end["error"].is_string(), "{end}");
     }
-    // Silence and records exclude each other, wherever they stand.
+    // Silence and records exclude each other in every order.
     let dem = sample("pass/pass-dem.tif");
     let build = ["build", "--dem", text(&dem), "-o", "/nowhere/a.pmtiles", "--json-progress"];
     for line in [[&["-q"], &build[..]].concat(), [&build[..], &["-q"]].concat()] {
@@ -225,7 +226,7 @@ fn refused_command_lines_are_records_on_request() {
         let error = record["end"]["error"].as_str().unwrap();
         assert!(ran.code == 2 && error.contains("--quiet"), "{line:?}: {error}");
     }
-    // Help is an answer.
+    // Help is a result.
     let help = corniche(["build", "--help", "--log-format", "json"]);
     assert!(help.code == 0 && help.err.is_empty() && help.out.contains("--dem"));
 }
@@ -257,7 +258,7 @@ fn messages_are_records_on_request() {
     }
     let stage = told.iter().find(|record| record["span"]["id"] == "tiles").unwrap();
     assert!(stage["done"].as_u64() > Some(0) && stage["seconds"].as_f64().is_some(), "{stage}");
-    // More with -v, and still records; a target that exists is an error with its exit code.
+    // More messages with -v, still as records; a target that exists is an error with its exit code.
     let ran = run(&["-v"]);
     assert_eq!(ran.code, 3, "{}", ran.err);
     let told = records(&ran.err);
@@ -308,13 +309,13 @@ fn the_version_tells_what_a_report_should_name() {
     let lines: Vec<&str> = long.lines().collect();
     assert!(lines[0].starts_with("corniche ") && lines.len() == 5, "{long}");
     assert!(lines[1].starts_with("GDAL ") && lines[1].contains("PROJ "), "{long}");
-    assert_eq!(lines[2], "formats: package 1, plan 8, store 1");
+    assert_eq!(lines[2], "formats: package 1, plan 9, store 1");
     assert_eq!(lines[3], "inputs: all of the manual");
     assert!(lines[4].starts_with("wgpu backends: ") && lines[4].contains("vulkan"), "{long}");
     assert_eq!(corniche(["-V"]).out, format!("{}\n", lines[0]));
 }
 
-/// Nothing is called `-`, an address, or, if it is a package, by another ending.
+/// `-`, URLs, and package names with another extension are rejected.
 #[test]
 fn names_that_no_file_should_have_are_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -355,7 +356,7 @@ fn names_that_no_file_should_have_are_refused() {
     assert_eq!(names, ["pass.pmtiles", "plan.json"]);
 }
 
-/// Pictures and charts are kept like packages, unless `-O` is given.
+/// Images and charts are kept like packages, unless `-O` is given.
 #[test]
 fn pictures_and_charts_are_replaced_only_on_request() {
     let folder = tempfile::tempdir().unwrap();

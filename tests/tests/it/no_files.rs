@@ -1,5 +1,5 @@
-//! Targets and inputs that are pipes, devices, links or folders: they are never replaced and never waited for, and a signal
-//! ends a run that hangs.
+//! Targets and inputs that are pipes, devices, links or folders: they are never overwritten and
+//! never block, and a signal ends a run that hangs.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 #![cfg(unix)]
@@ -24,7 +24,7 @@ fn specials(folder: &Path) -> Vec<PathBuf> {
     assert!(made("mkfifo", &[text(&pipe)]), "mkfifo makes pipes");
     drop(UnixListener::bind(&socket).unwrap());
     let mut all = vec![pipe, socket];
-    // A second /dev/null; only root may make one.
+    // A second /dev/null; only root may create one.
     if made("mknod", &[text(&device), "c", "1", "3"]) {
         all.push(device);
     } else {
@@ -125,13 +125,14 @@ fn a_pipe_as_input_is_refused_with_the_way_out() {
         let tells = ["it", "them"]
             .iter()
             .any(|what| ran.err.contains(&format!("save {what} to a file first")))
-            || ran.err.contains("copy it to one");
+            || ran.err.contains("copy it to a regular file");
         assert!(tells && ran.err.contains("pipe"), "{line:?}: {}", ran.err);
         assert_eq!(names(folder.path()), before, "{line:?} left something behind");
     }
 }
 
-/// A server accepts the connection and never answers: GDAL waits without end and does not ask whether to stop.
+/// A server accepts the connection and never answers: GDAL waits forever and does not check whether
+/// to stop.
 #[test]
 fn the_first_signal_ends_a_read_that_never_returns() {
     let server = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
@@ -171,7 +172,7 @@ fn the_first_signal_ends_a_read_that_never_returns() {
     }
 }
 
-/// As with `cp`, the file that a link points to is replaced, and the link stays a link.
+/// The file that a link points to is overwritten, as by `cp`, and the link stays a link.
 #[test]
 fn a_link_is_followed_and_stays_a_link() {
     let folder = tempfile::tempdir().unwrap();
@@ -204,7 +205,8 @@ fn a_link_is_followed_and_stays_a_link() {
     assert!(chart.symlink_metadata().unwrap().is_symlink());
     assert!(fs::read_to_string(&svg).unwrap().ends_with("</svg>\n"), "the file is replaced");
 
-    // A link to nothing is refused as a mistake; a link to a folder or to an input is refused like its target.
+    // A link to nothing is rejected as a mistake; a link to a folder or to an input is rejected
+    // like its target.
     let [dead, to_folder, to_input] =
         ["dead", "to-folder", "to-input"].map(|name| here.join(format!("{name}.pmtiles")));
     symlink(elsewhere.join("missing"), &dead).unwrap();
@@ -221,7 +223,8 @@ fn a_link_is_followed_and_stays_a_link() {
     assert_eq!(fs::read(&copy).unwrap(), fs::read(&dem).unwrap());
 }
 
-/// Such a name means a folder. The inputs do not exist, so the message about the target shows that the target is checked first.
+/// Such a name means a folder. The inputs do not exist, so the message about the target shows that
+/// the target is checked first.
 #[test]
 fn a_target_that_ends_in_a_slash_is_refused_before_the_work() {
     let folder = tempfile::tempdir().unwrap();
@@ -291,7 +294,8 @@ fn a_name_that_is_not_utf_8_is_told_as_such() {
     }
 }
 
-/// `ulimit -f` acts like a full disk: the message names the limit, no file is left, and no signal kills the program.
+/// `ulimit -f` acts like a full disk: the message names the limit, no file is left, and no signal
+/// kills the program.
 #[test]
 fn a_limit_on_file_sizes_is_told() {
     let folder = tempfile::tempdir().unwrap();
@@ -305,6 +309,6 @@ fn a_limit_on_file_sizes_is_told() {
     );
     let ran = Ran::from(Command::new("sh").args(["-c", &line]).output().unwrap());
     assert_eq!(ran.code, 1, "{}", ran.err);
-    assert!(ran.err.contains("a limit on the size of files"), "{}", ran.err);
+    assert!(ran.err.contains("limit on the size of files"), "{}", ran.err);
     assert_eq!(names(folder.path()), [""; 0]);
 }

@@ -1,4 +1,5 @@
-//! A build in parts on object storage: inputs, stores and package there, the bytes of an ordinary build, whatever is killed on the way.
+//! A build in parts on object storage, with inputs, stores and package there: the bytes of an
+//! ordinary build, even if parts are killed.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 #![cfg(unix)]
@@ -17,13 +18,13 @@ use e2e::{
 use tempfile::TempDir;
 
 const STORE: &str = "s3://maps/alps/build";
-/// After this time artifacts are made durable: a little more than `SYNC_INTERVAL` of the store.
+/// The time after which artifacts are durable: a little more than `SYNC_INTERVAL` of the store.
 const LONGER_THAN_A_SYNC: Duration = Duration::from_millis(2_500);
-/// So that tiles take about a second.
+/// With these options, tiles take about a second.
 const FINE: [&str; 2] = ["--max-error", "0.02"];
 const COARSE: [&str; 2] = ["--max-error", "10"];
 
-/// A plan from inputs on object storage, and what an ordinary build makes from the same files.
+/// A plan from inputs on object storage, and the result of an ordinary build from the same files.
 struct Planned {
     storage: ObjectStorage,
     folder: TempDir,
@@ -34,7 +35,7 @@ struct Planned {
 }
 
 impl Planned {
-    /// `None` where there is no stand-in for object storage.
+    /// Returns `None` if there is no object storage server.
     fn new(options: [&'static str; 2]) -> Option<Self> {
         let storage = ObjectStorage::start()?;
         let folder = tempfile::tempdir().unwrap();
@@ -89,7 +90,8 @@ impl Planned {
         self.run(&[&command[..], &["--tmp", text(&self.tmp)], options].concat())
     }
 
-    /// The package of what is in the store is that of the ordinary build, and nothing is left anywhere.
+    /// The package of the parts in the store is that of the ordinary build, and no other files
+    /// remain.
     fn check_merged(&self) {
         let package = self.folder.path().join("merged.pmtiles");
         succeed(self.merge(text(&package), &["-q"]));
@@ -109,20 +111,21 @@ impl Planned {
         assert_eq!(others, ["alps/build/plan.json", "alps/build/store"]);
     }
 
-    /// How many parts of this name are in the store.
+    /// The number of parts of this name in the store.
     fn count(&self, part: &str) -> usize {
         let begin = format!("alps/build/parts/{part}.");
         self.storage.keys().iter().filter(|key| key.starts_with(&begin)).count()
     }
 
-    /// Starts a part; its words are read at its end.
+    /// Starts a part; its messages are read at its end.
     fn start(&self, step: &str, subtree: Option<&str>) -> Child {
         let mut command = self.command(&self.part(step, subtree));
         command.arg("--json-progress").stdout(Stdio::null()).stderr(Stdio::piped());
         command.spawn().unwrap()
     }
 
-    /// Whether a part that is being made in `--tmp` has artifacts: in its `data`, or in the `journal` of those that are durable.
+    /// Whether an unfinished part in `--tmp` has artifacts: in its `data`, or in the `journal` of
+    /// the durable ones.
     fn has_artifacts(&self, file: &str) -> bool {
         let folders = fs::read_dir(&self.tmp).unwrap().flatten();
         let files = folders.filter_map(|folder| fs::read_dir(folder.path()).ok()).flatten();
@@ -132,7 +135,7 @@ impl Planned {
         files.any(|path| path.extension().is_some_and(|end| end == file) && is_long(&path))
     }
 
-    /// Waits until a part that is being made has artifacts in one of its files.
+    /// Waits until an unfinished part has artifacts in one of its files.
     fn wait_for_artifacts(&self, child: &mut Child, file: &str) {
         let begun = Instant::now();
         while !self.has_artifacts(file) && matches!(child.try_wait(), Ok(None)) {
@@ -148,13 +151,14 @@ fn succeed(ran: Ran) -> Ran {
     ran
 }
 
-/// What it said before.
+/// Kills a part, and returns its messages.
 fn kill(mut child: Child) -> Ran {
     child.kill().unwrap();
     ended(&mut child)
 }
 
-/// Inputs, store and package are all in object storage; the parts are made one by one and some at once, some twice.
+/// Inputs, store and package are all in object storage; some parts are computed one by one, some
+/// concurrently, some twice.
 #[test]
 fn a_build_on_object_storage_makes_the_bytes_of_a_build() {
     let Some(planned) = Planned::new(COARSE) else { return };
@@ -169,7 +173,7 @@ fn a_build_on_object_storage_makes_the_bytes_of_a_build() {
     for subtree in &quarters {
         planned.make("heights", Some(subtree));
     }
-    // Two processes make the same part at once.
+    // Two processes compute the same part concurrently.
     let both = [planned.start("top", None), planned.start("top", None)];
     for mut child in both {
         succeed(ended(&mut child));
@@ -188,7 +192,7 @@ fn a_build_on_object_storage_makes_the_bytes_of_a_build() {
     assert_eq!(planned.storage.keys().iter().filter(|key| key.contains("/parts/")).count(), 11);
     planned.check_merged();
 
-    // The package goes there, too: whole, once, and replaced only if that is asked for.
+    // The package is uploaded, too: complete, once, and overwritten only on request.
     let merge = |options: &[&str]| planned.merge("s3://maps/alps/pass.pmtiles", options);
     succeed(merge(&[]));
     assert!(planned.storage.get("alps/pass.pmtiles").unwrap() == planned.whole);
@@ -201,14 +205,15 @@ fn a_build_on_object_storage_makes_the_bytes_of_a_build() {
     planned.check_clean();
 }
 
-/// The heights of the whole sample have 10 MB; what has more than 8 MiB is not sent in one request.
+/// The heights of the whole sample have 10 MB; anything above 8 MiB is uploaded in several
+/// requests.
 #[test]
 fn a_large_part_is_sent_in_pieces() {
     let Some(planned) = Planned::new(COARSE) else { return };
-    // A machine that is new has no such folder.
+    // A new machine has no such folder.
     fs::remove_dir(&planned.tmp).unwrap();
     planned.make("heights", None);
-    // Of an object that came in pieces, it says how many there were.
+    // The tag of a multipart upload contains the number of parts.
     let tags = planned.storage.etags("alps/build/parts/");
     assert!(tags.len() == 1 && tags[0].contains("-2"), "{tags:?}");
     for step in ["hashes", "roads", "top", "tiles"] {
@@ -257,7 +262,7 @@ fn stores_and_inputs_that_are_others_are_refused() {
         "x.pmtiles",
     ]);
     assert_eq!(no_merge.code, 2, "{}", no_merge.err);
-    // An input that is exchanged makes another plan, because its ETag is another.
+    // Another input makes another plan, because its ETag differs.
     let mut dem = fs::read(sample("pass/pass-dem.tif")).unwrap();
     dem.push(0);
     planned.storage.put("in/pass-dem.tif", &dem);
@@ -266,7 +271,8 @@ fn stores_and_inputs_that_are_others_are_refused() {
     assert!(changed.err.contains("pass-dem.tif"), "{}", changed.err);
 }
 
-/// Killed while it is made, the part is gone on with; killed while it is sent, it is sent again. What was in the store before is all that is there.
+/// If a part is killed while it is computed, it is resumed; if it is killed during the upload, it
+/// is uploaded again. The store is unchanged until then.
 #[test]
 fn a_part_that_is_killed_is_made_and_sent_by_the_next() {
     let Some(planned) = Planned::new(FINE) else { return };
@@ -275,7 +281,8 @@ fn a_part_that_is_killed_is_made_and_sent_by_the_next() {
     }
     let mut child = planned.start("tiles", None);
     planned.wait_for_artifacts(&mut child, "data");
-    // All tiles may take less time than that after which they are made durable, so it passes while the process is suspended.
+    // Computing all tiles may take less time than the interval after which they are durable, so
+    // this interval passes while the process is suspended.
     assert!(send_signal(&child, "STOP"));
     thread::sleep(LONGER_THAN_A_SYNC);
     assert!(send_signal(&child, "CONT"));

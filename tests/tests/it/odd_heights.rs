@@ -1,4 +1,5 @@
-//! Impossible heights are refused before the build begins. The message gives value, count, file and the option that helps.
+//! Impossible heights are rejected before the build begins. The message gives value, count, file
+//! and the option that helps.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -13,7 +14,7 @@ use e2e::{Ran, corniche, manifest, real_data, sample, text, write_ascii_grid};
 const SIDE: usize = 200;
 const UTM: [&str; 2] = ["--dem-crs", "EPSG:32632"];
 
-/// Writes an ESRI ASCII grid of 10 m in UTM 32 that declares no "no data".
+/// Writes an ESRI ASCII grid of 10 m in UTM 32 that declares no nodata value.
 fn raster(folder: &Path, name: &str, height: impl Fn(usize, usize) -> f64) -> PathBuf {
     let path = folder.join(name);
     let place = "xllcorner 500000\nyllcorner 5200000\ncellsize 10";
@@ -25,7 +26,7 @@ fn hill(column: usize, row: usize) -> f64 {
     400.0 + ((column * 7 + row * 3) % 400) as f64
 }
 
-/// A hill of which the first `count` samples, row by row, are `value`.
+/// A hill whose first `count` samples, row by row, are `value`.
 fn with(folder: &Path, value: f64, count: usize) -> PathBuf {
     let name = format!("with{value}.asc");
     raster(
@@ -74,7 +75,8 @@ fn an_undeclared_value_is_refused_with_its_count_at_any_number_of_threads() {
     }
 }
 
-/// One sample of a million is enough, where its value is one that programs write for "no data": −9999 m would be ground.
+/// One sample in a million is enough if its value is a usual nodata value: −9999 m would be ground
+/// otherwise.
 #[test]
 fn a_single_usual_value_for_no_data_is_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -90,7 +92,8 @@ fn a_single_usual_value_for_no_data_is_refused() {
     }
 }
 
-/// A value that is no usual one may be a height: it is told with its place, and with the option that leaves it out.
+/// Another value may be a height: it is reported with its position, and with the option that
+/// excludes it.
 #[test]
 fn a_single_sample_far_beyond_its_neighbours_is_told_and_kept() {
     let folder = tempfile::tempdir().unwrap();
@@ -118,13 +121,13 @@ fn a_single_sample_far_beyond_its_neighbours_is_told_and_kept() {
     }
 }
 
-/// Hawaii and Tenerife on a grid of half a degree: peaks of 4205 and 3715 m, whose neighbours are sea floor of 4500 and 3500 m depth. The same
-/// heights a kilometre apart stand alone.
+/// Hawaii and Tenerife on a grid of half a degree: peaks of 4205 and 3715 m, whose neighbours are
+/// sea floor of 4500 and 3500 m depth. The same heights a kilometre apart are outliers.
 #[test]
 fn islands_on_coarse_grids_are_no_single_samples() {
     let folder = tempfile::tempdir().unwrap();
     let package = folder.path().join("out.pmtiles");
-    // Of the last one, a mountain is higher than the earth has any.
+    // In the last case, a mountain is higher than any on earth.
     for (degrees, peak_m, is_told) in
         [(0.5, 4205.0, false), (0.01, 4205.0, true), (0.5, 5500.0, true)]
     {
@@ -139,11 +142,12 @@ fn islands_on_coarse_grids_are_no_single_samples() {
         let line = ["build", "-O", "--quiet", "--dem", text(&dem), "-o", text(&package)];
         let ran = corniche([&line[..], &["--dem-crs", "EPSG:4326", "--crs", "dem"]].concat());
         assert_eq!(ran.code, 0, "{}", ran.err);
-        assert_eq!(ran.err.contains("stand alone"), is_told, "{degrees}: {}", ran.err);
+        assert_eq!(ran.err.contains("isolated samples"), is_told, "{degrees}: {}", ran.err);
     }
 }
 
-/// What lies outside the bounds does not count, however the file is stored; what lies inside counts as if the file ended there.
+/// Samples outside the bounds do not count, however the file is stored; samples inside count as if
+/// the file ended there.
 #[test]
 fn bounds_and_parts_are_judged_as_a_file_of_that_area() {
     let folder = tempfile::tempdir().unwrap();
@@ -156,7 +160,7 @@ fn bounds_and_parts_are_judged_as_a_file_of_that_area() {
     let dem = raster(folder.path(), "whole.asc", height);
     let place = "xllcorner 500000\nyllcorner 5200000\ncellsize 10";
     write_ascii_grid(&cut, [100, SIDE], place, height);
-    // West of 9.0131° E are 100 columns, east of 9.0145° E is nothing odd.
+    // West of 9.0131° E are 100 columns; east of 9.0145° E nothing is odd.
     let west = ["--bounds", "9.0,46.9,9.01309,47.0", "--fill-voids", "0"];
     let east = ["--bounds", "9.0145,46.9,9.03,47.0", "--fill-voids", "0"];
     let plain = ["--fill-voids", "0"];
@@ -165,14 +169,14 @@ fn bounds_and_parts_are_judged_as_a_file_of_that_area() {
     let of_bounds = build(&dem, &package, &west);
     assert!(of_bounds.code == 2 && of_bounds.err.contains("4 of 2"), "{}", of_bounds.err);
     assert_eq!(build(&dem, &package, &east).code, 0);
-    // Of the whole, 4 of 40 000 are no more than one in ten thousand, also where the work is split.
+    // In the whole, 4 of 40 000 are no more than one in ten thousand, also if the work is split.
     let of_whole = build(&dem, &package, &["-O", "--fill-voids", "0"]);
     assert_eq!(of_whole.code, 0, "{}", of_whole.err);
     let inputs = [&["--dem", text(&dem), "--fill-voids", "0"][..], &UTM[..]].concat();
     assert!(e2e::built_in_parts(folder.path(), &inputs) == fs::read(&package).unwrap());
 }
 
-/// Of several files, those that have the value are named; one that has nothing else too.
+/// The error lists those of several files that have the value; also one without other values.
 #[test]
 fn the_files_that_hold_the_value_are_named() {
     let folder = tempfile::tempdir().unwrap();
@@ -191,7 +195,7 @@ fn the_files_that_hold_the_value_are_named() {
         let rest = ["build", "-o", text(&package), "--quiet"];
         let ran = corniche(rest.into_iter().chain(UTM).chain(files));
         assert_eq!(ran.code, 2, "{}", ran.err);
-        let said = format!("{count} of {of} samples of {} hold -9999", bad.display());
+        let said = format!("{count} of {of} samples of {bad:?} hold -9999");
         assert!(ran.err.contains(&said), "{} is not {said}", ran.err);
     }
 }
@@ -244,7 +248,8 @@ fn heights_outside_the_earths_are_refused_unless_a_range_allows_them() {
         assert_eq!(manifest(&package)["settings"]["height_range_m"], serde_json::json!(ends));
         fs::remove_file(&package).unwrap();
     }
-    // All heights in a range given with --height-range are accepted; the range may also be narrower than the default.
+    // All heights in a range given with --height-range are accepted; the range may also be narrower
+    // than the default.
     let dem = with(folder.path(), -9999.0, 500);
     assert_eq!(build(&dem, &package, &["--height-range", "-9999,9000"]).code, 0);
     let ran = build(&dem, &package, &["-O", "--height-range", "0,600"]);
@@ -254,7 +259,8 @@ fn heights_outside_the_earths_are_refused_unless_a_range_allows_them() {
     }
 }
 
-/// Heights are judged after conversion to metres: the same stored numbers are refused as metres and accepted as feet.
+/// Heights are checked after conversion to metres: the same stored numbers are rejected as metres
+/// and accepted as feet.
 #[test]
 fn heights_are_judged_in_metres_and_named_as_stored() {
     let folder = tempfile::tempdir().unwrap();
@@ -305,7 +311,7 @@ fn warnings_are_told_to_whoever_asks_for_silence() {
             ["build", "--dem", text(&dem), "-O", "-o", text(&package), "--vertical-shift", "20000"];
         let ran = corniche(line.into_iter().chain([silence]));
         assert_eq!(ran.code, 0, "{}", ran.err);
-        let warnings = ran.err.lines().filter(|line| line.contains("none of this earth")).count();
+        let warnings = ran.err.lines().filter(|line| line.contains("implausible height")).count();
         assert_eq!(warnings, 1, "{silence}: {}", ran.err);
         if silence == "--quiet" {
             assert_eq!(ran.err.lines().count(), 1, "nothing else is said: {}", ran.err);
@@ -313,7 +319,8 @@ fn warnings_are_told_to_whoever_asks_for_silence() {
     }
 }
 
-/// The real ones: −32 767 that Crater Lake does not declare, and the sea of Juan de Fuca, 28 % of its samples.
+/// Real cases: −32 767, which Crater Lake does not declare, and the sea of Juan de Fuca, 28 % of
+/// its samples.
 #[test]
 fn real_rasters_are_judged_rightly() {
     let folder = tempfile::tempdir().unwrap();

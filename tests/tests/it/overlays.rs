@@ -1,4 +1,4 @@
-//! `--overlay`: lines of people's own files over the map.
+//! `--overlay`: lines of the user's files over the map.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -13,7 +13,7 @@ use gdal::spatial_ref::{AxisMappingStrategy, CoordTransform, SpatialRef};
 use image::RgbaImage;
 
 const SIZE: [u32; 2] = [400, 300];
-/// Side of a pixel on the ground, metres.
+/// Ground size of a pixel, metres.
 const PIXEL_M: f64 = 4.0;
 
 fn succeed(ran: Ran) -> Ran {
@@ -24,7 +24,7 @@ fn succeed(ran: Ran) -> Ran {
 struct Scene {
     folder: tempfile::TempDir,
     package: PathBuf,
-    /// Longitude and latitude of the middle of all pictures.
+    /// Longitude and latitude of the centre of all images.
     middle_deg: [f64; 2],
     /// From WGS84 to the package's coordinate system.
     to_package: CoordTransform,
@@ -57,7 +57,7 @@ impl Scene {
         self.folder.path().join(name)
     }
 
-    /// A point about so many metres east and north of the middle.
+    /// A point some metres east and north of the centre.
     fn beside_deg(&self, [east_m, north_m]: [f64; 2]) -> [f64; 2] {
         let [lon, lat] = self.middle_deg;
         // Lengths of a degree on the ellipsoid of WGS84, by their series.
@@ -72,7 +72,7 @@ impl Scene {
         ]
     }
 
-    /// Metres east and north of the middle, along the axes of the package.
+    /// Metres east and north of the centre, along the axes of the package.
     fn metres_beside_middle(&self, at_deg: [f64; 2]) -> [f64; 2] {
         let mut x = [self.middle_deg[0], at_deg[0]];
         let mut y = [self.middle_deg[1], at_deg[1]];
@@ -121,7 +121,8 @@ fn distance(at: [f64; 2], [a, b]: [[f64; 2]; 2]) -> f64 {
     (at[0] - a[0] - along * dx).hypot(at[1] - a[1] - along * dy)
 }
 
-/// From above a line is where its coordinates say: every pixel within half its width has its colour, none farther away has.
+/// From above, a line is at its coordinates: every pixel within half its width has its colour, and
+/// no other pixel has.
 #[test]
 fn a_line_is_drawn_where_it_is() {
     let scene = Scene::new();
@@ -159,7 +160,7 @@ fn a_line_is_drawn_where_it_is() {
     }
 }
 
-/// Lines are drawn also where roads are not, alike by both methods, over the slopes of an oblique view.
+/// Lines are drawn everywhere, in the same way by both methods, over the slopes of an oblique view.
 #[test]
 fn methods_agree_and_dashes_leave_gaps() {
     let scene = Scene::new();
@@ -185,7 +186,7 @@ fn methods_agree_and_dashes_leave_gaps() {
     assert!(count(&dashed_sv).abs_diff(dashed) * 50 < dashed);
 }
 
-/// Groups of neighbouring pixels: how many there are, and the sides of the rectangle around them.
+/// Groups of adjacent pixels: their number, and the sides of the rectangle around them.
 fn groups(picture: &RgbaImage) -> Vec<(usize, [u32; 2])> {
     let is_line = |x: u32, y: u32| {
         let pixel = picture.get_pixel(x, y);
@@ -217,14 +218,14 @@ fn groups(picture: &RgbaImage) -> Vec<(usize, [u32; 2])> {
     found
 }
 
-/// A pattern twice as long as its line is wide makes circles on the picture, also where the ground is seen obliquely.
+/// A pattern twice as long as its line is wide makes circles in the image, also in oblique views.
 #[test]
 fn dots_are_round() {
     let scene = Scene::new();
     let line =
         scene.write_line("line.geojson", &[[-1500.0, -600.0], [-100.0, 500.0], [1500.0, 100.0]]);
     let dots = format!("{},color=#FF00FF,width=12,pattern=dots/24", text(&line));
-    // Where slopes turn away from the eye lines are narrower.
+    // On slopes that face away from the camera, lines are narrower.
     let view = ["--distance", "3000", "--pitch", "25", "--heading", "30"];
     for roads in ["geo", "sv"] {
         let above = scene.seen_from_above(&format!("above-{roads}.png"), roads, &[&dots]);
@@ -239,14 +240,15 @@ fn dots_are_round() {
                     && (0.65..0.9).contains(&share)
             };
             let round = groups.iter().filter(is_round).count();
-            // Some lie on corners, borders of tiles or the edge of the picture, or where lines are narrower.
+            // Some are on corners, borders of tiles or the edge of the image, or where lines are
+            // narrower.
             let share = round as f64 / groups.len() as f64;
             assert!(share >= least, "{name}, {roads}: {round} of {groups:?}");
         }
     }
 }
 
-/// The same lines in four formats and two coordinate systems make the same picture.
+/// The same lines in four formats and two coordinate systems give the same image.
 #[test]
 fn every_format_is_read_alike() {
     let scene = Scene::new();
@@ -294,11 +296,11 @@ fn what_is_wrong_with_a_file_is_told() {
     let missing = scene.at("missing.gpx");
     assert!(refused(&scene, &[text(&missing)]).contains("missing.gpx"));
     let points = write("points.geojson", r#"{"type":"Point","coordinates":[9,47]}"#);
-    assert!(refused(&scene, &[text(&points)]).contains("no line and no outline"));
+    assert!(refused(&scene, &[text(&points)]).contains("no lines and no polygons"));
     let broken = write("broken.gpx", "<gpx");
     assert!(refused(&scene, &[text(&broken)]).contains("not a vector file"));
     assert!(refused(&scene, &["a.gpx,width=900"]).contains("width must be 0.5 to 50"));
-    // Each of them has no more points than a file may have, both together have.
+    // Each file is within the limit of points, but both together are not.
     let few = write("few.geojson", r#"{"type":"LineString","coordinates":[[9,47],[9,48]]}"#);
     let most = "[9,47],".repeat((1 << 20) - 1) + "[9,48]";
     let most = write("most.geojson", &format!(r#"{{"type":"LineString","coordinates":[{most}]}}"#));
@@ -318,7 +320,7 @@ fn what_is_wrong_with_a_file_is_told() {
         text(&line),
     ]);
     assert_eq!(same.code, 2, "the picture would replace the lines: {}", same.err);
-    // Far away: nothing is drawn, which is told.
+    // Far away: nothing is drawn, and this is reported.
     let far = write("far.geojson", r#"{"type":"LineString","coordinates":[[100,10],[101,11]]}"#);
     let out = scene.at("far.png");
     let ran = succeed(corniche([
@@ -329,5 +331,5 @@ fn what_is_wrong_with_a_file_is_told() {
         "--overlay",
         text(&far),
     ]));
-    assert!(ran.err.contains("no point of its lines lies in the package"), "{}", ran.err);
+    assert!(ran.err.contains("no point of its lines is in the package"), "{}", ran.err);
 }

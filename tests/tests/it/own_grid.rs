@@ -1,4 +1,5 @@
-//! Nodes that are the DEM's own samples, from the command line: degrees, rectangles, thinning, several grids.
+//! Nodes that are the DEM's own samples, with options: degrees, rectangles, thinning, several
+//! grids.
 
 use std::{
     fs,
@@ -8,7 +9,8 @@ use std::{
 use e2e::{corniche, json, manifest, real_data, sample, text, write_ascii_grid};
 use serde_json::Value;
 
-/// Height of a sample by its longitude and latitude: rough enough for a TIN, whole quarters of a metre.
+/// Height of a sample by its longitude and latitude: rough enough for a TIN, multiples of a quarter
+/// of a metre.
 fn height_m([lon, lat]: [f64; 2]) -> f64 {
     let waves = 400.0 + 150.0 * (lon * 210.0).sin() + 90.0 * (lat * 330.0).cos();
     (waves * 4.0).round() / 4.0
@@ -42,7 +44,8 @@ fn numbers(value: &Value) -> Vec<f64> {
     list.iter().map(|number| number.as_f64().expect("a number")).collect()
 }
 
-/// Vertices of the finest tiles, in coordinates of the CRS, lie on samples and within the bound of their heights.
+/// Vertices of the finest tiles, in coordinates of the CRS, are at samples and within the error
+/// bound of their heights.
 #[test]
 fn tiles_in_crs_coordinates_have_the_samples_as_vertices() {
     let folder = tempfile::tempdir().unwrap();
@@ -94,7 +97,7 @@ fn tiles_in_crs_coordinates_have_the_samples_as_vertices() {
     assert_eq!(refused.code, 2, "without --json it says nothing: {}", refused.out);
 }
 
-/// Every option for the grid can also stand in a settings file; the command line takes precedence.
+/// Every option for the grid can also be in a settings file; the command line takes precedence.
 #[test]
 fn cells_thinning_and_latitude_are_options_and_settings() {
     let folder = tempfile::tempdir().unwrap();
@@ -146,7 +149,7 @@ fn cells_thinning_and_latitude_are_options_and_settings() {
     refused(&["--cell-every", "0"], &["--cell-every 0", "from 1"]);
     refused(&["--cell-every", "200"], &["--cell-every 200", "2 × 2"]);
     refused(&["--scale-latitude", "95"], &["--scale-latitude 95", "between -89 and 89"]);
-    refused(&["--crs", "EPSG:4269"], &["--crs", "EPSG:4269", "nor the DEM's own"]);
+    refused(&["--crs", "EPSG:4269"], &["--crs", "EPSG:4269", "nor the CRS of the DEM"]);
     let both = settings("both.toml", "cell = 60\ncell-every = 2");
     refused(&["--config", text(&both)], &["--cell and --cell-every"]);
     let bad = settings("bad.toml", "cell = [60, 0]");
@@ -162,7 +165,8 @@ fn files_on_another_grid_than_the_first_are_told() {
     let north = write_degrees(&at("north.asc"), [81, 68], [9.0, 50.0], 0.0015);
     let package = at("a.pmtiles");
     let said = build(&package, &[&south, &north], &[]);
-    let words = ["corniche: warning: north.asc", "those of south.asc", "resampled onto its grid"];
+    let words =
+        ["corniche: warning: north.asc", "the grid of south.asc", "resampled onto its grid"];
     assert!(words.iter().all(|word| said.contains(word)) && said.lines().count() == 1, "{said}");
     let resampling = manifest(&package)["resampling"].as_str().unwrap().to_owned();
     assert!(resampling.starts_with("nodes are the samples of south.asc; "), "{resampling}");
@@ -184,7 +188,7 @@ fn files_on_another_grid_than_the_first_are_told() {
         value["warning"].as_str().is_some_and(|text| text.contains("north.asc"))
     };
     assert_eq!((ran.code, ran.err.lines().filter(|line| is_warning(line)).count()), (0, 1));
-    // Files of one grid give no warning.
+    // Files on one grid give no warning.
     assert_eq!(build(&package, &[&south], &[]), "");
 }
 
@@ -212,7 +216,7 @@ fn info_tells_factors_scale_and_sides() {
         "(north)",
         "EPSG:4326",
         "cell 55.8 × 111 m",
-        "over the rim",
+        "along the border",
         "at the centre",
     ] {
         assert!(told.contains(words), "{words}: {told}");
@@ -242,7 +246,8 @@ fn four_samples_are_a_cell() {
     assert_eq!((&level["tiles"], &level["triangles"]), (&1.into(), &2.into()));
 }
 
-/// Real rasters in degrees: nodes are the samples, and the finest level is within the bound at every one on its TIN.
+/// Real rasters in degrees: nodes are the samples, and the finest level is within the bound at
+/// every one on its TIN.
 #[test]
 fn rasters_in_degrees_are_not_resampled() {
     for file in

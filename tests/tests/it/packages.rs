@@ -1,4 +1,4 @@
-//! From inputs to a package and back: the whole way, on the bundled samples and, where they are, on real data.
+//! From inputs to a package and back, on the bundled samples and, if available, on real data.
 
 use std::{fs, process::Command};
 
@@ -19,7 +19,7 @@ fn same_bytes_at_any_number_of_threads() {
     assert_eq!(one, package("eight.pmtiles", "8", "512M"));
 }
 
-/// All checks hold for the sample with --dem; a flipped byte is found and named.
+/// All checks hold for the sample with --dem; a flipped byte is detected and reported.
 #[test]
 fn pass_keeps_its_promises_and_damage_is_named() {
     let folder = tempfile::tempdir().unwrap();
@@ -44,7 +44,7 @@ fn pass_keeps_its_promises_and_damage_is_named() {
     fs::write(&damaged, bytes).unwrap();
     let ran = corniche(["verify", text(&damaged), "--quiet"]);
     assert_eq!(ran.code, 1, "{}{}", ran.out, ran.err);
-    // With --quiet, what is broken and the verdict alone.
+    // With --quiet, only broken checks and the verdict are printed.
     let (checks, verdict) = ran.out.trim_end().rsplit_once('\n').unwrap();
     assert!(checks.starts_with("BROKEN  ") && checks.contains("tile"), "{}", ran.out);
     assert!(!ran.out.lines().any(|line| line.starts_with("holds")), "{}", ran.out);
@@ -88,7 +88,7 @@ fn pass_is_what_its_extract_says_and_checks_have_ids() {
     assert!(ran.err.contains("--frc-table"), "{}", ran.err);
 }
 
-/// A table from a file may have the name of a preset; then `verify` asks for the file.
+/// A table from a file may have the name of a preset; then `verify` requires the file.
 #[test]
 fn verify_asks_for_a_table_that_is_called_like_a_preset() {
     let folder = tempfile::tempdir().unwrap();
@@ -102,14 +102,14 @@ fn verify_asks_for_a_table_that_is_called_like_a_preset() {
     let verify = ["verify", text(&package), "--osm", text(&osm), "--quiet"];
     let ran = corniche(verify);
     assert_eq!(ran.code, 2, "{}{}", ran.out, ran.err);
-    for part in ["another FRC table", "\"valhalla\"", "give that file with --frc-table"] {
+    for part in ["another FRC table", "\"valhalla\"", "pass that file with --frc-table"] {
         assert!(ran.err.contains(part), "{}", ran.err);
     }
     let ran = corniche(verify.into_iter().chain(["--frc-table", text(&table)]));
     assert_eq!(ran.code, 0, "{}{}", ran.out, ran.err);
 }
 
-/// P6: the list names what the manifest counts, defect by defect and loss by loss.
+/// P6: the list contains what the manifest counts, defect by defect and loss by loss.
 #[test]
 fn the_list_of_defects_is_what_the_summary_counts() {
     let folder = tempfile::tempdir().unwrap();
@@ -182,7 +182,7 @@ fn pass_accounts_for_every_road() {
             ["roads", "length_um"].map(|part| number(&counts["classes"][class][part]));
         let metres = micrometres / 1e6;
         assert!((roads - sum("ways_per_highway")).abs() < 0.5, "class {class}");
-        // Coordinates were rounded to 1e-7 degrees, a centimetre a point.
+        // Coordinates were rounded to 1e-7 degrees, a centimetre per point.
         assert!(
             (metres - sum("length_m_per_highway")).abs() < 0.002 * metres,
             "class {class}: {metres}"
@@ -211,7 +211,7 @@ fn the_independent_check_in_python_agrees() {
     let folder = tempfile::tempdir().unwrap();
     let package = folder.path().join("pass.pmtiles");
     copy_pass(&package, &["--quiet"]);
-    // scripts/test names a python that has the modules the check needs.
+    // scripts/test sets a Python with the modules that the check needs.
     let interpreter = std::env::var_os("CORNICHE_PYTHON").unwrap_or_else(|| "python3".into());
     let python = |arguments: &[&str]| Command::new(&interpreter).args(arguments).output();
     let has_modules =
@@ -244,7 +244,7 @@ fn growth_is_told_in_four_ways() {
     let [rows, levels] = ["rows", "levels"].map(|list| growth[list].as_array().unwrap().len());
     let csv = corniche(["growth", text(&package), "--csv"]).out;
     let lines: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
-    // Levels and classes, then levels, then the whole, beneath the names of columns.
+    // Levels and classes, then levels, then the whole, below the column names.
     assert_eq!(lines.len(), 1 + rows + levels + 1);
     assert!(lines.iter().all(|line| line.len() == lines[0].len()), "{csv}");
     let whole = lines.last().unwrap();
@@ -277,7 +277,7 @@ fn terrain_alone_is_a_package_too() {
         let arguments = ["verify", text(&package), "--osm", text(&osm), "--quiet"];
         let ran = corniche(arguments.into_iter().chain(table.iter().copied()));
         assert_eq!(ran.code, 2, "{}{}", ran.out, ran.err);
-        assert!(ran.err.contains("made without an extract; leave --osm out"), "{}", ran.err);
+        assert!(ran.err.contains("built without an extract; omit --osm"), "{}", ran.err);
     }
     let ran = corniche(["growth", text(&package)]);
     assert_eq!(ran.code, 2);
@@ -301,7 +301,8 @@ fn pictures_come_out_or_the_missing_adapter_is_named() {
     assert_eq!(&fs::read(&png).unwrap()[..8], b"\x89PNG\r\n\x1a\n");
 }
 
-/// Real rasters that are projected already: nodes are the samples, and the finest level is within the bound.
+/// Real rasters that are already projected: nodes are the samples, and the finest level is within
+/// the bound.
 #[test]
 fn projected_rasters_are_not_resampled() {
     for file in ["tirol-5m/avaMal.tif", "slovenia-1m/TM1_564_146.tif"] {
@@ -321,7 +322,7 @@ fn projected_rasters_are_not_resampled() {
     }
 }
 
-/// What failed downloads leave in the place of a package is told as what it is.
+/// Results of failed downloads in the place of a package are recognized and named.
 #[test]
 fn a_web_page_or_a_pointer_in_the_place_of_a_package_is_told() {
     let folder = tempfile::tempdir().unwrap();
@@ -331,7 +332,7 @@ fn a_web_page_or_a_pointer_in_the_place_of_a_package_is_told() {
     for (content, words) in [
         (
             "<!DOCTYPE html>\n<html><body>404</body></html>",
-            ["an HTML page", "fetch the file again"],
+            ["an HTML page", "download the file again"],
         ),
         (
             "version https://git-lfs.github.com/spec/v1\noid sha256:00\n",

@@ -1,4 +1,4 @@
-//! A build in parts: the same bytes whatever the subtrees, the order and the folders; a part that is missing is named.
+//! A build in parts: the same bytes for all subtrees, orders and folders; a missing part is named.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -15,7 +15,7 @@ use corniche_testing::Random;
 use e2e::{Ran, corniche, real_data, sample, text, write_ascii_grid};
 use tempfile::TempDir;
 
-/// A planned build, and what an ordinary build makes.
+/// A planned build, and the result of an ordinary build.
 struct Planned {
     folder: TempDir,
     inputs: Vec<String>,
@@ -26,7 +26,7 @@ struct Planned {
 }
 
 impl Planned {
-    /// `inputs` are the options that say what is built from what.
+    /// Plans a build; `inputs` are the options for inputs and settings.
     fn new(inputs: &[&str]) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let [plan, package, defects] =
@@ -40,7 +40,7 @@ impl Planned {
         Self { folder, inputs, plan, whole, defects }
     }
 
-    /// Of the sample `pass`.
+    /// Plans the sample `pass`.
     fn pass(options: &[&str]) -> Self {
         let [dem, osm] = [sample("pass/pass-dem.tif"), sample("pass/pass.osm.pbf")];
         let inputs = ["--dem", text(&dem), "--osm", text(&osm), "--max-error", "10"];
@@ -53,7 +53,7 @@ impl Planned {
         self.folder.path().join(name)
     }
 
-    /// The subtrees of a level that hold data.
+    /// The subtrees of a level that contain data.
     fn subtrees(&self, level: u8) -> Vec<String> {
         let level = level.to_string();
         let command = ["plan", "--subtrees", &level].map(str::to_owned);
@@ -61,7 +61,7 @@ impl Planned {
         ran.out.lines().map(str::to_owned).collect()
     }
 
-    /// Makes a part in the first of some stores.
+    /// Computes a part in the first of some stores.
     fn part(&self, stores: &[&Path], step: &str, subtree: Option<&str>) -> Ran {
         corniche(self.part_command(stores, step, subtree))
     }
@@ -103,7 +103,8 @@ impl Planned {
         }
     }
 
-    /// The subtrees of a level, some of them split into those of the next so that they are `count` in all.
+    /// The subtrees of a level, some of them split into those of the next, so that their total
+    /// number is `count`.
     fn mixed_subtrees(&self, level: u8, count: usize) -> Vec<String> {
         let finer = self.subtrees(level + 1);
         let mut split: Vec<Vec<String>> = Vec::new();
@@ -122,7 +123,7 @@ impl Planned {
         mixed
     }
 
-    /// All parts in one store, those of a step in any order and each twice.
+    /// All parts in one store, those of a step in any order and each computed twice.
     fn check_subtrees(&self, subtrees: &[String], random: &mut Random) {
         let store = self.path(&format!("store-{}", subtrees.len()));
         let stores = [store.as_path()];
@@ -141,7 +142,7 @@ impl Planned {
         first.extend([("hashes", None), ("roads", None)]);
         shuffle(&mut first, random);
         for (step, subtree) in first {
-            // Without an extract there are no roads, and so no part of them.
+            // Without an extract there are no roads, and so no such part.
             if step != "roads" || self.inputs.iter().any(|option| option == "--osm") {
                 once(step, subtree);
             }
@@ -156,7 +157,7 @@ impl Planned {
     }
 }
 
-/// The options that ask for a list of defects, which there is only with an extract.
+/// The options for a list of defects, which requires an extract.
 fn list_of<'a>(inputs: &[impl AsRef<str>], defects: &'a Path) -> Vec<&'a str> {
     let has_extract = inputs.iter().any(|option| option.as_ref() == "--osm");
     if has_extract { vec!["--defects", text(defects)] } else { Vec::new() }
@@ -167,12 +168,13 @@ fn succeed(ran: Ran) -> Ran {
     ran
 }
 
-/// Checks that a run was refused as unusable, and that it says all of `parts`.
+/// Checks that a run was rejected as unusable, with all `parts` in the message.
 fn refused(ran: &Ran, parts: &[&str]) {
     ended_with(2, ran, parts);
 }
 
-/// Checks that a run failed for want of an earlier step, which may be there later, and that it says all of `parts`.
+/// Checks that a run failed because an earlier step is missing, which may be added later, with all
+/// `parts` in the message.
 fn lacks(ran: &Ran, parts: &[&str]) {
     ended_with(1, ran, parts);
 }
@@ -191,7 +193,7 @@ fn shuffle<T>(list: &mut [T], random: &mut Random) {
     }
 }
 
-/// All files of a store with their sizes, but for the lock, which only says who had it last.
+/// All files of a store with their sizes, except for the lock, which only names its last owner.
 fn files(store: &Path) -> Vec<(PathBuf, u64)> {
     let mut found = Vec::new();
     for entry in fs::read_dir(store).unwrap() {
@@ -226,15 +228,15 @@ fn one_subtree_and_four_make_the_bytes_of_a_build() {
     planned.check_subtrees(&planned.subtrees(1), &mut random);
 }
 
-/// Samples are measured apart from nodes where they are not the same.
+/// If samples are not nodes, they are measured separately.
 #[test]
 fn a_resampled_dem_makes_the_same_bytes_in_parts() {
     let planned = Planned::pass(&["--crs", "EPSG:32633"]);
     planned.check_subtrees(&planned.subtrees(1), &mut Random::new(5));
 }
 
-/// Heights in a strip across the middle of two subtrees, and two islands without any cell of the levels above: what has no height is
-/// told from what is missing.
+/// Heights in a strip across the middle of two subtrees, and two islands without any cell of the
+/// levels above: voids are distinguished from missing parts.
 #[test]
 #[ignore = "slow: several builds in parts"]
 fn voids_make_the_same_bytes_in_parts() {
@@ -255,7 +257,8 @@ fn voids_make_the_same_bytes_in_parts() {
     planned.check_subtrees(&planned.subtrees(2), &mut random);
 }
 
-/// Each part in a folder of its own, subtrees of several sizes, one above the other, some made twice.
+/// Each part in a separate folder, subtrees of several sizes, one above the other, some computed
+/// twice.
 #[test]
 fn parts_of_several_folders_overlap() {
     let planned = Planned::pass(&[]);
@@ -266,19 +269,19 @@ fn parts_of_several_folders_overlap() {
     succeed(planned.part(&[&again], "roads", None));
     assert_eq!(sealed(&roads, "roads").file_name(), sealed(&again, "roads").file_name());
     succeed(planned.part(&[&whole], "heights", None));
-    // Of one quarter the parts are smaller.
+    // One quarter is split into smaller parts.
     let quarters = planned.subtrees(1);
     let small: Vec<String> =
         planned.subtrees(2).into_iter().filter(|id| is_beneath(id, &quarters[0])).collect();
     for id in quarters[1..].iter().chain(&small) {
         succeed(planned.part(&[&split], "heights", Some(id)));
     }
-    // Nodes of this one must not count twice.
+    // The nodes of this one must not be counted twice.
     succeed(planned.part(&[&one], "heights", Some(&small[0])));
     for heights in [&whole, &split] {
         succeed(planned.part(&[heights], "top", None));
     }
-    // A part made from the one is the same as from the other.
+    // A part computed from the one is the same as from the other.
     for id in quarters.iter().take(2) {
         succeed(planned.part(&[&tiles, &whole, &roads], "tiles", Some(id)));
         succeed(planned.part(&[&more, &split, &again], "tiles", Some(id)));
@@ -295,7 +298,7 @@ fn parts_of_several_folders_overlap() {
     lacks(&ran, &[&quarters[2], &quarters[3], "--step tiles"]);
 }
 
-/// Whether `tile` lies beneath `above`, of the level above.
+/// Whether `tile` is a child of `above`.
 fn is_beneath(tile: &str, above: &str) -> bool {
     let numbers =
         |id: &str| id.split('/').map(|part| part.parse::<u32>().unwrap()).collect::<Vec<_>>();
@@ -310,7 +313,7 @@ fn a_missing_part_is_named_and_never_taken_for_a_void() {
     let stores = [store.as_path()];
     let tiles = |id: &str| planned.part(&stores, "tiles", Some(id));
     let quarters = planned.subtrees(1);
-    refused(&planned.merge(&stores, &package), &["store", "holds no store"]);
+    refused(&planned.merge(&stores, &package), &["store", "contains no store"]);
     lacks(&tiles(&quarters[0]), &["--step top"]);
     for id in &quarters[..3] {
         succeed(planned.part(&stores, "heights", Some(id)));
@@ -321,7 +324,7 @@ fn a_missing_part_is_named_and_never_taken_for_a_void() {
     lacks(&tiles(&quarters[0]), &["roads", "--step roads"]);
     succeed(planned.part(&stores, "roads", None));
 
-    // Heights that are gone by now: of the subtree itself, and of its neighbour.
+    // Heights that have been deleted: of the subtree itself, and of its neighbour.
     let name = format!("heights-{}", quarters[1].replace('/', "-"));
     let (part, away) = (sealed(&store, &name), planned.path("away"));
     fs::rename(&part, &away).unwrap();
@@ -339,13 +342,13 @@ fn a_missing_part_is_named_and_never_taken_for_a_void() {
     succeed(tiles(&quarters[3]));
     fs::rename(&part, &away).unwrap();
     lacks(&planned.merge(&stores, &package), &["heights of", &quarters[1], "--step heights"]);
-    // It can be made again.
+    // The part can be computed again.
     succeed(planned.part(&stores, "heights", Some(&quarters[1])));
     assert_eq!(sealed(&store, &name), part);
     planned.check_merged(&stores);
 }
 
-/// Programs read the path: no character is written out.
+/// Programs read the path: no character is escaped.
 #[test]
 #[cfg(unix)]
 fn the_path_of_a_part_is_printed_as_it_is() {
@@ -367,13 +370,13 @@ fn stores_and_plans_that_do_not_fit_are_refused() {
 
     let other = Planned::new(&["--dem", text(&dem), "--max-error", "11"]);
     let ran = other.part(&stores, "hashes", None);
-    refused(&ran, &["is of another plan", "--max-error is 11", "10"]);
-    refused(&other.merge(&stores, &other.path("out.pmtiles")), &["is of another plan"]);
+    refused(&ran, &["belongs to another plan", "--max-error is 11", "10"]);
+    refused(&other.merge(&stores, &other.path("out.pmtiles")), &["belongs to another plan"]);
 
     refused(&planned.part(&stores, "top", Some("1/0/0")), &["--subtree 1/0/0", "top"]);
     refused(&planned.part(&stores, "tiles", Some("9/0/0")), &["--subtree 9/0/0", "finest level"]);
     let none = planned.path("none");
-    refused(&planned.part(&[&store, &none], "hashes", None), &["none", "holds no store"]);
+    refused(&planned.part(&[&store, &none], "hashes", None), &["none", "contains no store"]);
     assert!(!none.exists());
     refused(&corniche(["part", text(&dem), "--step", "top", "--store", text(&none)]), &["dem.tif"]);
 
@@ -392,10 +395,10 @@ fn stores_and_plans_that_do_not_fit_are_refused() {
 
     let touched = fs::File::options().append(true).open(&dem).unwrap();
     touched.set_modified(SystemTime::UNIX_EPOCH).unwrap();
-    refused(&planned.part(&stores, "heights", None), &["dem.tif", "its time is"]);
+    refused(&planned.part(&stores, "heights", None), &["dem.tif", "its modification time is"]);
 }
 
-/// Kills at several moments of a part: what was kept is gone on from, and what was not is made again.
+/// Kills at several moments of a part: durable work is resumed, and the rest is computed again.
 #[test]
 fn a_killed_part_is_made_to_its_end_by_the_same_command() {
     let planned = Planned::pass(&[]);
@@ -411,7 +414,8 @@ fn a_killed_part_is_made_to_its_end_by_the_same_command() {
     planned.check_merged(&[&store]);
 }
 
-/// Makes a part of all tiles in `store`, with kills, and undisturbed in `aside`: they are the same.
+/// Computes a part of all tiles in `store`, with kills, and without kills in `aside`: they are
+/// equal.
 fn check_killed(planned: &Planned, [store, aside]: [&Path; 2], step: &str, random: &mut Random) {
     let begun = Instant::now();
     succeed(planned.part(&[aside, store], step, None));
@@ -433,7 +437,8 @@ fn check_killed(planned: &Planned, [store, aside]: [&Path; 2], step: &str, rando
     assert_eq!(sealed(store, &name).file_name(), sealed(aside, &name).file_name());
 }
 
-/// Parts of a step are made at once by processes that know nothing of each other, in a folder that is not there at the start.
+/// Parts of a step are computed concurrently by processes that do not know each other, in a folder
+/// that does not exist at the start.
 #[test]
 fn parts_are_made_side_by_side_in_one_folder() {
     let planned = Planned::pass(&[]);
@@ -462,8 +467,8 @@ fn parts_are_made_side_by_side_in_one_folder() {
     planned.check_merged(&[&store]);
 }
 
-/// Each part is an open file while it is read. A low limit is raised as far as it can be; where that does not suffice, the error says what
-/// to do.
+/// Each part is an open file while it is read. A low limit is raised as far as possible; if that
+/// does not suffice, the error says what to do.
 #[cfg(unix)]
 #[test]
 fn more_parts_than_open_files_are_allowed_are_read_or_refused_with_advice() {
@@ -492,7 +497,8 @@ fn more_parts_than_open_files_are_allowed_are_read_or_refused_with_advice() {
     assert!(fs::read(&package).unwrap() == planned.whole);
 }
 
-/// What was made from an input that changes meanwhile is not kept, even if the input looks as before afterwards.
+/// Results from an input that changes meanwhile are not kept, even if the input looks unchanged
+/// afterwards.
 #[test]
 fn an_input_that_changes_leaves_nothing_of_the_part() {
     let folder = tempfile::tempdir().unwrap();

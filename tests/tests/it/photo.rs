@@ -1,4 +1,5 @@
-//! Photos through the whole binary: built, kept through resume, parts and reuse of terrain, verified, drawn.
+//! Photos through the whole binary: building, resuming, parts, reuse of terrain, verification and
+//! drawing.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -38,11 +39,11 @@ fn a_package_with_photos_keeps_its_promises_and_is_the_same_however_it_is_made()
     let ran = succeed(corniche(["info", text(&at("whole.pmtiles"))]));
     assert!(ran.out.contains("per km²"), "{}", ran.out);
 
-    // Other threads; memory; the same photo in the other order is another package.
+    // Other numbers of threads; memory; the same photos in the other order give another package.
     let again = build(&inputs, &at("again.pmtiles"), &["--threads", "3", "--memory", "600M"]);
     assert!(again == whole, "threads or memory change the bytes");
 
-    // In parts: heights, and so photos, of two subtrees in folders of their own.
+    // In parts: heights, and so photos, of two subtrees in separate folders.
     let plan = at("plan.json");
     let words = ["plan", "-o", text(&plan)].into_iter().map(str::to_owned);
     succeed(corniche(words.chain(inputs.iter().cloned())));
@@ -80,7 +81,7 @@ fn a_package_with_photos_keeps_its_promises_and_is_the_same_however_it_is_made()
     ]));
     assert!(fs::read(&merged).unwrap() == whole, "parts make another package");
 
-    // A part of the data has photos in that part alone.
+    // A region of the data has photos only in this region.
     let bounds = &found["wgs84_bounds"];
     let middle = |low: &str, high: &str, share: f64| {
         let (low, high) = (bounds[low].as_f64().unwrap(), bounds[high].as_f64().unwrap());
@@ -139,18 +140,18 @@ fn options_without_photos_and_photos_elsewhere_are_refused() {
         assert!(!package.exists());
         ran.err
     };
-    assert!(refused(&["--photo-levels", "2"]).contains("together with --photo FILE"));
+    assert!(refused(&["--photo-levels", "2"]).contains("pass photos with --photo FILE"));
     let west = photo(folder.path(), 0.05, "west.tif");
     let with = |options: &[&str]| refused(&[&["--photo", text(&west)], options].concat());
-    assert!(with(&["--photo-quality", "0"]).contains("from 1 to 100, not 0"));
+    assert!(with(&["--photo-quality", "0"]).contains("between 1 and 100, not 0"));
     assert!(with(&["--photo-levels", "5"]).contains("from 0 to 4, not 5"));
     let far = photo(folder.path(), 40.0, "far.tif");
-    assert!(refused(&["--photo", text(&far)]).contains("no photo lies on the ground"));
+    assert!(refused(&["--photo", text(&far)]).contains("no photo overlaps the ground"));
     assert!(refused(&["--photo", "none.tif"]).contains("none.tif"));
     assert!(refused(&["--photo", text(&dem)]).contains("-ot Byte"));
 }
 
-/// What differs between two pictures of one view, as the share of pixels.
+/// The difference between two images of one view, as a fraction of the pixels.
 fn difference(a: &Path, b: &Path) -> f64 {
     let [a, b] = [a, b].map(|path| image::open(path).unwrap().to_rgb8());
     let differ = a.pixels().zip(b.pixels()).filter(|(a, b)| a != b).count();
@@ -175,7 +176,7 @@ fn photos_are_drawn_as_strongly_as_is_asked() {
     ]
     .map(|(name, more)| render("photo.pmtiles", name, more).unwrap());
     let plain = render("plain.pmtiles", "plain.png", &[]).unwrap();
-    // The credit of the photos stands on one of them alone, in a corner.
+    // The attribution of the photos is in one of them only, in a corner.
     assert!(difference(&off, &plain) < 0.08, "{}", difference(&off, &plain));
     assert!(difference(&full, &as_styled) == 0.0);
     assert!(difference(&full, &off) > 0.1, "{}", difference(&full, &off));
@@ -198,8 +199,9 @@ fn flat_style(folder: &Path) -> PathBuf {
     path
 }
 
-/// Over tile borders, and from one level to the next, a smooth photo stays smooth: neighbouring pixels never jump. Without the border
-/// that tiles share, or with a shift of half a texel, they do.
+/// Across tile borders, and from one level to the next, a smooth photo stays smooth: adjacent
+/// pixels never jump. Without the border that tiles share, or with a shift of half a texel, they
+/// would.
 #[test]
 fn no_border_of_tiles_is_seen_in_a_smooth_photo() {
     let folder = tempfile::tempdir().unwrap();
@@ -208,7 +210,7 @@ fn no_border_of_tiles_is_seen_in_a_smooth_photo() {
         (photo(folder.path(), 0.05, "west.tif"), photo(folder.path(), 0.45, "east.tif"));
     let _ = build(&inputs(&[&west, &east]), &at("photo.pmtiles"), &["--photo-quality", "95"]);
     let found = manifest(&at("photo.pmtiles"));
-    // Ground without voids, over borders of tiles.
+    // Ground without voids, across borders of tiles.
     let at_share = |low: &str, high: &str, share: f64| {
         let bounds = &found["wgs84_bounds"];
         let [low, high] = [low, high].map(|key| bounds[key].as_f64().unwrap());
@@ -249,12 +251,13 @@ fn no_border_of_tiles_is_seen_in_a_smooth_photo() {
                 }
             }
         }
-        // A pixel between two tiles may show a wall; along a border that is seen there are hundreds.
+        // A pixel between two tiles may show a wall; a visible border has hundreds of such pixels.
         assert!(jumps <= 12, "{distance} m: {jumps} jumps");
     }
 }
 
-/// Straight from above pixels have the colours that the photo has at their places, and are not shifted by a third of a pixel.
+/// Seen straight from above, pixels have the colours of the photo at their positions, and are not
+/// shifted by a third of a pixel.
 #[test]
 fn from_above_the_photo_lies_where_it_should() {
     const SIZE: [u32; 2] = [400, 300];
@@ -267,7 +270,7 @@ fn from_above_the_photo_lies_where_it_should() {
     let bounds = ["min_x", "min_y", "max_x", "max_y"]
         .map(|key| found["wgs84_bounds"][key].as_f64().unwrap());
     let [min_x, min_y, max_x, max_y] = bounds;
-    // The middle of the photo.
+    // The centre of the photo.
     let middle_deg = [min_x + 0.3 * (max_x - min_x), max_y - 0.485 * (max_y - min_y)];
     let look_at = format!("{},{}", middle_deg[0], middle_deg[1]);
     let (size, pixel) = (format!("{}x{}", SIZE[0], SIZE[1]), PIXEL_M.to_string());
@@ -312,7 +315,7 @@ fn from_above_the_photo_lies_where_it_should() {
     let (lon, lat) = carry(&package, &degrees, x, y);
     let expected = |lon: f64, lat: f64| colour([lon, lat], bounds).map(f64::from);
     let pixel_deg = [PIXEL_M / 76_000.0, PIXEL_M / 111_000.0];
-    // The shift for which colours agree best, by least squares over their change from pixel to pixel.
+    // The shift with the best agreement of colours, by least squares over their gradients.
     let (mut wrong, mut normal, mut right) = (0, [[0.0; 2]; 2], [0.0; 2]);
     for (index, [x, y]) in pixels.iter().enumerate() {
         let (lon, lat) = (lon[index], lat[index]);
@@ -348,7 +351,7 @@ fn from_above_the_photo_lies_where_it_should() {
     assert!(shift_px.iter().all(|shift| shift.abs() < 0.3), "{shift_px:?}");
 }
 
-/// Real photos: one far finer than its DEM, and one on the grid of a DEM that says `PixelIsPoint`.
+/// Real photos: one far finer than its DEM, and one on the grid of a DEM with `PixelIsPoint`.
 #[test]
 fn real_photos_are_built_and_verified() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,5 @@
-//! Photos laid on the terrain of an earlier package: the same bytes as a build from the elevation files, however they are made.
+//! Photos on the terrain of an earlier package: the same bytes as a build from the elevation files,
+//! for all ways to build.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -19,7 +20,7 @@ fn photos_on_terrain_make_the_package_of_a_whole_build() {
     let whole = build(&inputs(&[&west, &east]), &at("whole.pmtiles"), &[]);
     let other = build(&inputs(&[&east]), &at("other.pmtiles"), &["--photo-quality", "50"]);
     assert!(other != whole);
-    // On a package without photos, with other photos, and with the same.
+    // On a package without photos, with other photos, and with the same photos.
     for package in [pass(folder.path()), at("other.pmtiles"), at("whole.pmtiles")] {
         let ground = ["--terrain", text(&package)];
         let made = at("made.pmtiles");
@@ -45,8 +46,8 @@ fn photos_on_terrain_make_the_package_of_a_whole_build() {
     assert!(build(&ground, &at("on-bare.pmtiles"), &[]) == part, "bounds");
 }
 
-/// Who brings new roads onto the terrain each week need not have the photos any more. `--photo off` leaves them out; credits stay, as of elevation
-/// files.
+/// When new roads are built onto existing terrain, the photos need not be available. `--photo off`
+/// omits them; attribution stays, as for elevation files.
 #[test]
 fn photos_of_the_terrain_stay_unless_they_are_off() {
     let folder = tempfile::tempdir().unwrap();
@@ -66,12 +67,12 @@ fn photos_of_the_terrain_stay_unless_they_are_off() {
     let (merged, steps) = in_parts(folder.path(), &plan);
     assert!(merged == whole, "photos changed in parts");
     assert!(!steps.contains(&"heights".to_owned()), "nothing is read: {steps:?}");
-    // How photos are coded cannot be changed without the files.
+    // Settings of photos cannot be changed without the files.
     let quality = ["--photo-quality", "80", "-O", "-o", text(&made)].map(str::to_owned);
     let words = ["build".to_owned()].into_iter().chain(ground.clone()).chain(quality);
     let ran = corniche(words);
     assert_eq!(ran.code, 2, "{}", ran.err);
-    assert!(ran.err.contains("give them together with --photo FILE"), "{}", ran.err);
+    assert!(ran.err.contains("pass photos with --photo FILE"), "{}", ran.err);
 
     let dem = sample("pass/pass-dem.tif");
     let bare = ["--dem", text(&dem), "--osm", text(&osm), "--max-error", "10"].map(str::to_owned);
@@ -101,12 +102,13 @@ fn make_in_parts(folder: &Path, plain: &Path, photo: &Path) {
     let words = ["plan", "-o", text(&plan)].into_iter().map(str::to_owned);
     succeed(corniche(words.chain(of_ground(&["--terrain", text(plain)], &[photo]))));
     let (merged, steps) = in_parts(folder, &plan);
-    // Photos are read in parts, as heights are.
+    // Photos are read in parts, like heights.
     assert!(steps.iter().filter(|&step| step == "heights").count() > 1, "{steps:?}");
     assert!(merged == whole, "parts make another package");
 }
 
-/// Makes the parts of a plan in two stores, and the package of both; also the steps of the parts.
+/// Computes the parts of a plan in two stores, and the package of both; returns also the steps of
+/// the parts.
 fn in_parts(folder: &Path, plan: &Path) -> (Vec<u8>, Vec<String>) {
     let jobs = succeed(corniche(["jobs", text(plan), "--slots", "2", "--least-work", "0.05"]));
     let jobs: Vec<serde_json::Value> =
@@ -115,7 +117,7 @@ fn in_parts(folder: &Path, plan: &Path) -> (Vec<u8>, Vec<String>) {
     assert_eq!(merge["step"], "merge");
     let steps: Vec<String> =
         parts.iter().map(|job| job["step"].as_str().unwrap().to_owned()).collect();
-    // What is read comes before the tiles are made.
+    // Steps that read come before the tiles are computed.
     if let Some(top) = parts.iter().find(|job| job["step"] == "top") {
         let after = top["after"].as_array().unwrap();
         assert!(!steps.contains(&"heights".to_owned()) || after.contains(&"heights".into()));

@@ -1,4 +1,4 @@
-//! `corniche plan`, and builds that would not fit.
+//! `corniche plan`, and builds with too few resources.
 
 use std::{fs, path::Path};
 
@@ -64,8 +64,10 @@ fn a_plan_is_printed_and_written_and_never_replaced_unasked() {
     assert_eq!(corniche(input).code, 2);
 }
 
-/// Without `--max-error` the bound is a 16th of the cell's shorter side, for cells of 1 to 4 m it is 0.25 m, and for smaller ones a quarter of the
-/// cell. A plan holds the bound itself: given, it makes the same plan, and the default of earlier versions, a quarter, makes another one.
+/// Without `--max-error` the bound is a 16th of the cell's shorter side, for cells of 1 to 4 m it
+/// is 0.25 m, and for smaller ones a quarter of the cell. A plan stores the bound itself: if it is
+/// given explicitly, the plan is the same, but the default of earlier versions, a quarter, gives
+/// another plan.
 #[test]
 fn the_bound_without_max_error_follows_from_the_cell() {
     let folder = tempfile::tempdir().unwrap();
@@ -99,7 +101,8 @@ fn the_bound_without_max_error_follows_from_the_cell() {
     }
 }
 
-/// A DEM whose samples are compressed all together, so that each thread must decode all of it: 35 MB each.
+/// A DEM whose samples are compressed as one block, so that each thread must decode all of it: 35
+/// MB each.
 fn one_strip(folder: &Path) -> std::path::PathBuf {
     let place = [500_000.0, 10.0, 0.0, 5_000_000.0, 0.0, -10.0];
     let raster = Raster::new(32632, [3500, 2500], place);
@@ -121,12 +124,12 @@ fn a_build_that_memory_cannot_suffice_for_does_not_begin_unless_forced() {
     }
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "only the DEM is there");
 
-    // The plan is made, and says so.
+    // The plan is written, and reports this.
     let estimate = &json(&["plan", "--dem", text(&dem), "--json"])["estimate"];
     assert!(estimate["memory"]["block_bytes"].as_u64().unwrap() >= 35_000_000, "{estimate}");
     let ran = corniche([&["plan", "--dem", text(&dem)], &small[..]].concat());
     assert_eq!(ran.code, 0, "{}", ran.err);
-    assert!(ran.out.contains("not enough"), "{}", ran.out);
+    assert!(ran.out.contains("the limit is too low"), "{}", ran.out);
 
     let ran = corniche([&build[..], &small, &["--force"]].concat());
     assert_eq!(ran.code, 0, "{}", ran.err);

@@ -1,4 +1,5 @@
-//! The whole binary with `--polygon`: GeoJSON and `GeoPackage`, parts, settings files, `verify`, refusals, and a real border.
+//! The whole binary with `--polygon`: GeoJSON and `GeoPackage`, parts, settings files, `verify`,
+//! errors, and a real border.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -65,7 +66,7 @@ fn every_way_to_name_a_polygon_makes_the_same_tiles() {
     let bytes = fs::read(&package).unwrap();
     let said = succeed(corniche(["info", text(&package)])).out;
     assert!(said.contains("polygon      part.geojson, a part of"), "{said}");
-    assert!(said.contains("lost outside the bounds that were asked for"), "{said}");
+    assert!(said.contains("lost outside the requested bounds"), "{said}");
     assert!(!fs::read_to_string(&list).unwrap().contains("bounds"));
     let own = manifest(&package);
     let kinds: Vec<&str> = own["inputs"]
@@ -81,7 +82,8 @@ fn every_way_to_name_a_polygon_makes_the_same_tiles() {
     let um = |name: &str| counts[name].as_u64().unwrap();
     assert_eq!(um("roads_kept_um") + lost, um("roads_in_um"));
 
-    // The same polygon in another format: the same tiles, and the same package but for the name and hash of the file.
+    // The same polygon in another format: the same tiles, and the same package except for the name
+    // and hash of the file.
     let (gpkg, other) = (sample_as_geopackage(folder.path()), at("b.pmtiles"));
     let with_gpkg = ["build", "-q", "-o", text(&other), "--polygon", text(&gpkg), "--threads", "1"];
     succeed(corniche([&with_gpkg[..], &inputs].concat()));
@@ -118,7 +120,7 @@ fn every_way_to_name_a_polygon_makes_the_same_tiles() {
     succeed(corniche(["merge", text(&plan), "-q", "--store", text(&store), "-o", text(&merged)]));
     assert!(fs::read(&merged).unwrap() == bytes, "parts make another package");
 
-    // Terrain that is taken needs the polygon again, under any name and in any format; so does verify.
+    // Reused terrain needs the polygon again, under any name and in any format; so does verify.
     let again = at("again.pmtiles");
     let taken =
         ["build", "-q", "-o", text(&again), "--terrain", text(&package), "--osm", text(&osm)];
@@ -143,7 +145,7 @@ fn wrong_polygons_are_refused_with_what_to_do() {
         (
             "line.geojson",
             feature(r#"{"type":"LineString","coordinates":[[9.5,46.9],[9.6,46.95]]}"#),
-            "encloses nothing",
+            "encloses no area",
         ),
         (
             "bow.geojson",
@@ -157,7 +159,7 @@ fn wrong_polygons_are_refused_with_what_to_do() {
             feature(
                 r#"{"type":"Polygon","coordinates":[[[10.5,46.9],[10.55,46.9],[10.55,46.94],[10.5,46.9]]]}"#,
             ),
-            "holds no cell",
+            "contains no cell",
         ),
         ("empty.geojson", r#"{"type":"FeatureCollection","features":[]}"#.to_owned(), "no polygon"),
         ("text.geojson", "polygon".to_owned(), "not a vector file"),
@@ -179,14 +181,15 @@ fn wrong_polygons_are_refused_with_what_to_do() {
     assert!(!package.exists());
 }
 
-/// Liechtenstein by its own border: of the country's roads, all but those that the extract has beyond the border.
+/// Liechtenstein, clipped to its own border: all of the country's roads except those that the
+/// extract has beyond the border.
 #[test]
 fn a_country_is_cut_by_its_own_border() {
     let Some(osm) = real_data("liechtenstein/liechtenstein-2021-10-28.osm.pbf") else { return };
     let Some(dem) = real_data("liechtenstein/N47E009.hgt") else { return };
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
-    // GDAL puts relations of ways together; admin level 2 is the country.
+    // GDAL assembles relations of ways; admin level 2 is the country.
     let dataset = Dataset::open(&osm).unwrap();
     let mut layer = dataset.layer_by_name("multipolygons").unwrap();
     layer.set_attribute_filter("admin_level = '2' AND boundary = 'administrative'").unwrap();
@@ -205,7 +208,7 @@ fn a_country_is_cut_by_its_own_border() {
     let [cut_counts, boxed_counts] =
         [&cut, &boxed].map(|package| manifest(package)["counts"].clone());
     let um = |counts: &Value, name: &str| counts[name].as_u64().unwrap() as f64;
-    // The country has 160 km² of the box's 300.
+    // The country has 160 km² of the bounding box's 300.
     let nodes = |counts: &Value| counts["samples"]["with_data"].as_u64().unwrap() as f64;
     let share = nodes(&cut_counts) / nodes(&boxed_counts);
     assert!((0.4..0.7).contains(&share), "{share} of the nodes");

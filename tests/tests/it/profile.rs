@@ -1,4 +1,4 @@
-//! `corniche profile`: height and grade along ways, beside what the export says of them.
+//! `corniche profile`: height and grade along ways, compared with the export.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -46,7 +46,7 @@ fn a_profile_is_as_long_and_as_steep_as_the_exported_road() {
         if checked == 12 {
             break;
         }
-        // Bridges and tunnels have no ups and downs of their own.
+        // Bridges and tunnels have no ascents and descents of their own.
         if field("ascent_m").is_none() {
             continue;
         }
@@ -59,7 +59,7 @@ fn a_profile_is_as_long_and_as_steep_as_the_exported_road() {
         let rises: Vec<f64> =
             steps.map(|[from, to]| number(to, "height_m") - number(from, "height_m")).collect();
         let up: f64 = rises.iter().filter(|rise| **rise > 0.0).sum();
-        // Millimetres in the list.
+        // The list has millimetres.
         let close = |found: f64, expected: f64| {
             assert!(
                 (found - expected).abs() < 2e-3 * rows.len() as f64,
@@ -70,7 +70,8 @@ fn a_profile_is_as_long_and_as_steep_as_the_exported_road() {
         close(up, field("ascent_m").unwrap());
         if let Some(steepest) = field("steepest_pct") {
             let most = rows.iter().map(|row| number(row, "grade_pct").abs()).fold(0.0, f64::max);
-            // Grades of vertices are over twenty metres, and the steepest of all is over as much or more.
+            // Grades of vertices are over twenty metres, and the steepest of the whole is over at
+            // least that.
             assert!(most <= steepest + 0.01, "{way}: {most} {steepest}");
             assert!(said.contains(&format!("Steepest {steepest:.1} %")), "{said}");
         }
@@ -126,7 +127,7 @@ fn a_line_of_a_file_has_the_profile_of_the_way_that_it_follows() {
     fs::write(&far, r#"{"type":"LineString","coordinates":[[100,10],[101,11]]}"#).unwrap();
     let ran = corniche(["profile", text(&package), "--line", text(&far)]);
     assert_eq!(ran.code, 2, "{}", ran.err);
-    assert!(ran.err.contains("no line lies on ground"), "{}", ran.err);
+    assert!(ran.err.contains("no line crosses the ground"), "{}", ran.err);
     let both = corniche(["profile", text(&package), "--line", text(&far), "--way", "1"]);
     assert_eq!(both.code, 2, "{}", both.err);
 }

@@ -1,4 +1,4 @@
-//! Grades of `corniche profile`: over the whole profile, however the road is cut into ways.
+//! Grades of `corniche profile`: over the whole profile, however the road is split into ways.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 #![allow(clippy::float_cmp, reason = "numbers as they are printed")]
@@ -8,13 +8,13 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use corniche_testing::pbf::{self, Way};
+use corniche_testing::pbf::{self, PbfWay};
 use e2e::{build_from, corniche, real_data, text, write_ascii_grid};
 
-/// A vertex: its distance, the height of the smooth line, and its grade, percent.
+/// A vertex: its distance, the height of the smoothed line, and its grade, percent.
 type Smooth = [f64; 3];
 
-/// What is printed of ways, and the smooth line of all vertices.
+/// The printed text of ways, and the smoothed line of all vertices.
 fn profile([dem, osm, package]: [&Path; 3], ways: &[i64]) -> (String, Vec<Smooth>) {
     let list = package.with_extension("csv");
     let ways = ways.iter().map(i64::to_string).collect::<Vec<_>>().join(",");
@@ -46,14 +46,16 @@ fn steepest_pct(said: &str) -> f64 {
     line.split_whitespace().nth(1).unwrap().parse().unwrap_or_else(|_| panic!("{said}"))
 }
 
-/// Each grade is that of the smooth line 25 m before and after its vertex, whatever way these are on.
+/// Each grade is that of the smoothed line 25 m before and after its vertex, whatever way these
+/// points are on.
 fn assert_grades_of_whole(rows: &[Smooth]) {
     let [begin_m, end_m] = [rows[0][0], rows[rows.len() - 1][0]];
     let slope = |k: usize| {
         let ([from_m, from, _], [to_m, to, _]) = (rows[k], rows[k + 1]);
         (to - from) / (to_m - from_m)
     };
-    // The height there, and how far it may be from it: between two vertices the smooth line bends no more than from those before them to those after.
+    // The height there, and its tolerance: between two vertices the smoothed line bends no more
+    // than from those before them to those after.
     let height_m = |along_m: f64| {
         let after = rows.partition_point(|row| row[0] < along_m).clamp(1, rows.len() - 1);
         let ([from_m, from, _], [to_m, to, _]) = (rows[after - 1], rows[after]);
@@ -97,7 +99,8 @@ fn a_bend_where_two_ways_meet_counts_on_both() {
 /// Nodes of a road of 1 500 m over a crest, every 38 m.
 const NODES: i64 = 41;
 
-/// A package of the road, cut into ways that begin and end at nodes, each with whether it goes against the road; `side` adds a road at the crest.
+/// A package of the road, split into ways that begin and end at nodes, each with whether it runs
+/// against the road; `side` adds a road at the crest.
 fn crest(folder: &Path, cuts: &[([i64; 2], bool)], side: bool) -> [PathBuf; 3] {
     let [dem, osm, package] =
         ["dem.asc", "roads.osm.pbf", "crest.pmtiles"].map(|name| folder.join(name));
@@ -108,19 +111,19 @@ fn crest(folder: &Path, cuts: &[([i64; 2], bool)], side: bool) -> [PathBuf; 3] {
     let mut nodes: Vec<(i64, [f64; 2])> =
         (0..NODES).map(|k| (k + 1, [9.005 + 5e-4 * k as f64, 47.005])).collect();
     let tags = vec![("highway", "secondary")];
-    let mut ways: Vec<Way<'_>> = (1..)
+    let mut ways: Vec<PbfWay<'_>> = (1..)
         .zip(cuts)
         .map(|(id, &([first, last], is_against))| {
             let mut node_ids: Vec<i64> = (first + 1..=last + 1).collect();
             if is_against {
                 node_ids.reverse();
             }
-            Way { id, tags: tags.clone(), node_ids }
+            PbfWay { id, tags: tags.clone(), node_ids }
         })
         .collect();
     if side {
         nodes.push((100, [9.0147, 47.008]));
-        ways.push(Way { id: 900, tags, node_ids: vec![21, 100] });
+        ways.push(PbfWay { id: 900, tags, node_ids: vec![21, 100] });
     }
     fs::write(&osm, pbf::network(&[], &nodes, &ways)).unwrap();
     let wgs84 = r#"GEOGCS["GCS_WGS_1984",DATUM["D_WGS_1984",SPHEROID["WGS_1984",6378137.0,298.257223563]],PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]]"#;

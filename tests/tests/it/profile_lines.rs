@@ -1,4 +1,5 @@
-//! `corniche profile --line`: lines of files on the package's triangles and on elevation files, in any format and CRS.
+//! `corniche profile --line`: lines of files on the package's triangles and on elevation files, in
+//! any format and CRS.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -35,7 +36,7 @@ fn write_line(path: &Path, points: &[[f64; 2]]) {
     fs::write(path, document.to_string()).unwrap();
 }
 
-/// The length in plan that is told, and the places of all vertices.
+/// The printed length in plan, and the positions of all vertices.
 fn profile(package: &Path, options: &[&str]) -> (f64, Vec<[f64; 2]>) {
     let list = package.with_extension("csv");
     let words = ["profile", "-q", text(package), "--csv", text(&list), "-O"];
@@ -49,7 +50,8 @@ fn profile(package: &Path, options: &[&str]) -> (f64, Vec<[f64; 2]>) {
     (length.trim().parse().unwrap(), rows.lines().skip(1).map(place).collect())
 }
 
-/// Over hills, on the triangles and on the elevation files: through each of its points, and as long.
+/// Over hills, on the triangles and on the elevation files: the profile passes through each point,
+/// and has the same length.
 fn assert_same_in_plan(inputs: &[PathBuf; 2], line: &Path, points: &[[f64; 2]]) -> f64 {
     let [dem, package] = inputs;
     let (on_tin_m, on_tin) = profile(package, &["--line", text(line)]);
@@ -64,7 +66,8 @@ fn assert_same_in_plan(inputs: &[PathBuf; 2], line: &Path, points: &[[f64; 2]]) 
     on_dem_m
 }
 
-/// What the issue gives: 13 817.0 m by geodesics, where the straight line from end to end has 8 219.9.
+/// The value from the issue: 13 817.0 m by geodesics, where the straight line from end to end has 8
+/// 219.9.
 const BENT: [[f64; 2]; 3] = [[1.50, 42.50], [1.55, 42.55], [1.60, 42.50]];
 
 #[test]
@@ -121,7 +124,7 @@ fn lines_that_come_back_wind_or_have_parts_keep_all_their_points() {
         (0..300).map(|k| [1.5 + 2e-4 * f64::from(k), 42.52 + 3e-4 * f64::from(k % 2)]).collect();
     write_line(&line("winding.geojson"), &winding);
     assert_same_in_plan(&inputs, &line("winding.geojson"), &winding);
-    // Two lines of which the second goes on where the first ends.
+    // Two lines, of which the second continues where the first ends.
     let parts =
         serde_json::json!({ "type": "MultiLineString", "coordinates": [BENT[..2], BENT[1..]] });
     fs::write(line("parts.geojson"), parts.to_string()).unwrap();

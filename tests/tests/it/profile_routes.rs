@@ -1,4 +1,5 @@
-//! Roads by their numbers and names, and the way from place to place: `corniche profile --ref`, `--name`, `--from` and `--to`, and exports.
+//! Roads by their numbers and names, and the way from place to place: `corniche profile --ref`,
+//! `--name`, `--from` and `--to`, and exports.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -8,14 +9,14 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use corniche_testing::pbf::{self, Way};
+use corniche_testing::pbf::{self, PbfWay};
 use e2e::{Ran, build_from, corniche, text, write_ascii_grid};
 use serde_json::Value;
 
 const LAT: f64 = 47.02;
 
-/// Places of nodes: the main road goes along a parallel, with two carriageways between 2 and 3, a roundabout between 4 and 5, and a square without a
-/// number between 6 and 7.
+/// Positions of nodes: the main road follows a parallel, with two carriageways between 2 and 3, a
+/// roundabout between 4 and 5, and a square without a number between 6 and 7.
 ///
 /// ```text
 ///        21 ────── 22                41                     71
@@ -56,7 +57,7 @@ fn inputs(folder: &Path) -> [PathBuf; 3] {
     fs::write(dem.with_extension("prj"), wgs84).unwrap();
     let road = |id, more: &[(&'static str, &'static str)], node_ids: &[i64]| {
         let tags = [&[("highway", "secondary")], more].concat();
-        Way { id, tags, node_ids: node_ids.to_vec() }
+        PbfWay { id, tags, node_ids: node_ids.to_vec() }
     };
     let main = ("ref", "CG 2");
     let ways = [
@@ -64,7 +65,7 @@ fn inputs(folder: &Path) -> [PathBuf; 3] {
         road(11, &[main, ("oneway", "yes")], &[2, 23, 24, 3]),
         road(12, &[main, ("oneway", "yes")], &[3, 22, 21, 2]),
         road(13, &[main], &[4, 3]),
-        // It begins within what is followed.
+        // It begins within the followed road.
         road(14, &[main, ("junction", "roundabout")], &[42, 5, 41, 4, 42]),
         road(15, &[main], &[5, 6]),
         road(16, &[("name", "Square")], &[6, 7]),
@@ -116,7 +117,8 @@ fn assert_close(found: &Value, expected_m: f64) {
     assert!((found_m - expected_m).abs() < 0.05, "{found_m} {expected_m}");
 }
 
-/// From end to end, with one carriageway and one arm of the roundabout, over the square, and without the branch.
+/// From end to end, with one carriageway and one arm of the roundabout, across the square, and
+/// without the branch.
 #[test]
 fn a_road_by_its_number_is_as_long_as_the_road() {
     let folder = tempfile::tempdir().unwrap();
@@ -141,8 +143,8 @@ fn a_road_by_its_number_is_as_long_as_the_road() {
         }
     }
     let said = profile(&package, &["--ref", "CG 2"]).out;
-    assert!(said.contains("of it are other roads, which close its gaps"), "{said}");
-    // A second number of a part, a name of another.
+    assert!(said.contains("of other roads close gaps in this road"), "{said}");
+    // A second number of a part, and a name of another.
     assert_close(&document(&package, &["--ref", "N20"]), metres(&[7, 8].map(place)));
     assert_close(&document(&package, &["--name", "carrer-major"]), metres(&[1, 2].map(place)));
     assert_close(
@@ -161,7 +163,7 @@ fn the_way_from_place_to_place_is_the_shortest() {
     let expected_m = metres(&[&[from], &nodes[..], &[to]].concat());
     for inputs in [&[][..], &both] {
         for road in [&[][..], &["--ref", "CG 2"]] {
-            // Ten metres beside the road, and back again.
+            // Ten metres off the road, and back again.
             for ends in [["9.007,47.0201", "9.035,47.02"], ["9.035,47.02", "9.007,47.0201"]] {
                 let options = [&["--from", ends[0], "--to", ends[1]], road, inputs].concat();
                 let found = document(&package, &options);

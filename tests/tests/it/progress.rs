@@ -1,11 +1,11 @@
-//! What a build tells while it runs, and, with `-v`, the table at its end.
+//! Messages of a build while it runs, and, with `-v`, the table at its end.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
 use e2e::{Ran, copy_pass, corniche, sample, text};
 use serde_json::Value;
 
-/// Builds the sample `pass` and gives what was said.
+/// Builds the sample `pass` and returns its messages.
 fn build(options: &[&str]) -> Ran {
     let folder = tempfile::tempdir().unwrap();
     let package = folder.path().join("out.pmtiles");
@@ -16,10 +16,11 @@ fn build(options: &[&str]) -> Ran {
     ran
 }
 
-/// Every line is JSON; what is done grows and never passes the total; each stage begins, runs and ends.
+/// Every line is JSON; the number of done units grows and never exceeds the total; each stage
+/// begins, runs and ends.
 #[test]
 fn json_lines_tell_what_is_done_of_what() {
-    // With a fine tolerance and one thread stages take long enough to be told of while they run.
+    // With a fine tolerance and one thread, stages take long enough to be reported while they run.
     let ran = build(&["--json-progress", "--max-error", "0.5", "--threads", "1"]);
     let mut lines: Vec<Value> =
         ran.err.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
@@ -87,7 +88,7 @@ fn check_what_linux_tells(rows: &[Value], all: &Value, input_bytes: u64) {
     }
 }
 
-/// Without a terminal: a line for each stage when it ends, and with `-v` the table as the last thing.
+/// Without a terminal: a line per stage when it ends, and with `-v` the table at the end.
 #[test]
 fn plain_lines_end_with_the_table() {
     let ran = build(&["-v"]);
@@ -95,7 +96,7 @@ fn plain_lines_end_with_the_table() {
     let heading = lines.iter().position(|line| line.starts_with("stage ")).unwrap();
     let words = ["done", "wall", "CPU", "cores", "rate", "memory", "read", "written"];
     let known = if cfg!(target_os = "linux") { &words[..] } else { &words[..2] };
-    // A table that is too wide goes on below, with the same rows.
+    // A table that is too wide continues below, with the same rows.
     let blocks: Vec<&[&str]> = lines[heading..].split(|line| line.is_empty()).collect();
     let headings: String = blocks.iter().map(|block| block[0]).collect();
     assert!(known.iter().all(|word| headings.contains(word)), "{}", ran.err);
@@ -117,8 +118,8 @@ fn nothing_is_told_to_whoever_asks_for_silence() {
     assert_eq!(build(&["--quiet"]).err, "");
 }
 
-/// Every export, `match` and `verify`: records in which each stage begins, counts up to its total and ends, and plain lines without
-/// a terminal.
+/// Every export, `match` and `verify`: records in which each stage begins, counts up to its total
+/// and ends, and plain lines without a terminal.
 #[test]
 fn exports_and_comparisons_tell_how_far_they_are() {
     let folder = tempfile::tempdir().unwrap();
@@ -163,7 +164,7 @@ fn exports_and_comparisons_tell_how_far_they_are() {
             assert!(own.iter().all(|record| record.get("seconds_left").is_some()), "{last}");
         }
         assert_eq!(records.last().unwrap()["end"]["result"], "done");
-        // Once is enough: all tell through one observer.
+        // One of them is enough, because all report through one observer.
         if line[1] != "roads" && line[0] != "match" {
             continue;
         }

@@ -1,8 +1,9 @@
-//! P2 on every real elevation model of the developers' data: no stored error below the true one, and hardly above it;
-//! and every raster there that cannot be used is refused by name.
+//! P2 on every real elevation model of the developers' data: no stored error is below the true one,
+//! and few are far above it; and every unusable raster there is rejected by name.
 //!
-//! Runs of CI look at some of them, on each day at others. The tests print one line for each level: what was measured, in how long. Some take minutes:
-//! `CORNICHE_TIER=full cargo test -p e2e --test it real_dems -- --ignored --nocapture`.
+//! Each CI run checks some of them, different ones each day. The tests print one line per level:
+//! the measured values, and the time. Some take minutes: `CORNICHE_TIER=full cargo test -p e2e
+//! --test it real_dems -- --ignored --nocapture`.
 
 use std::{
     fmt::Write as _,
@@ -14,7 +15,7 @@ use std::{
 use e2e::{corniche, real_data, some_of};
 use serde_json::Value;
 
-/// A DEM of one or more files below the data folder, and what `build` must be told to use it.
+/// A DEM of one or more files below the data folder, and the options that `build` needs for it.
 struct Dem {
     files: &'static [&'static str],
     options: &'static [&'static str],
@@ -77,7 +78,7 @@ fn check(dem: &Dem) {
     assert!(broken.is_empty() && report["holds"] == true && ran.code == 0, "{name}: {broken:#?}");
     print_levels(name, &report, [build_s, start.elapsed().as_secs_f64()]);
 
-    // A check that holds means nothing if it had nothing to check.
+    // A check without objects proves nothing.
     for id in ["P2.bound", "P2.tight", "P2.finest", "P2.samples"] {
         let looked_at = checks(&report)
             .iter()
@@ -150,7 +151,7 @@ fn errors_are_true_and_tight_elsewhere() {
     some_of(&dems, [2, 2, 1]).for_each(check);
 }
 
-/// An image of 16 bits, used as heights because of where it lies; its value for no data is 1.
+/// An image of 16 bits, used as heights because of its location; its nodata value is 1.
 const DATELINE: &[&str] = &["--cell", "240", "--height-range", "0,65535"];
 
 /// With voids of all kinds, in other units, upside down, across the antimeridian.
@@ -205,7 +206,7 @@ fn errors_are_true_and_tight_when_hardly_any_is_allowed() {
     check(&dem(&["tirol-5m/avaMal.tif"], &["--max-error", "0.05"]));
 }
 
-/// Rasters that cannot be used, with the words that must be said beside the name of the file.
+/// Unusable rasters, with the words that must be in the message together with the name of the file.
 #[test]
 fn what_cannot_be_used_is_refused_by_name() {
     let cases = [
@@ -232,7 +233,7 @@ fn what_cannot_be_used_is_refused_by_name() {
         ("nasty/derived-dem/1x512.tif", "at least 2 × 2"),
         ("nasty/derived-dem/all-void.tif", "every node is void"),
         ("nasty/derived-dem/N47E009.hgt", "whole .hgt files"),
-        ("nasty/derived-dem/truncated-half.tif", "cut off"),
+        ("nasty/derived-dem/truncated-half.tif", "corrupt"),
         ("nasty/derived-dem/truncated-header-6-bytes.tif", "not a raster"),
         ("nasty/derived-dem/zero-bytes.tif", "empty"),
         ("nasty/osm/empty.osm.pbf", "raster"),

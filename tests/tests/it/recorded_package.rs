@@ -1,6 +1,8 @@
-//! A package that an earlier version of the program wrote, with every kind of section of that time, is opened, verified, drawn and exported as it was then.
+//! A package from an earlier version of the program, with every kind of section of that time, is
+//! opened, verified, drawn and exported with the same results as then.
 //!
-//! `tests/golden/README.md` says how it was made. When one of these tests fails, packages that people have are read in another way.
+//! `tests/golden/README.md` describes how it was created. If one of these tests fails, existing
+//! packages of users are read differently.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -17,7 +19,7 @@ use gdal::{Dataset, vector::LayerAccess as _};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// Kinds of sections, and in how many of the five tiles they are.
+/// Kinds of sections, and the number of the five tiles that have them.
 const KINDS: [(u16, &str, usize); 9] = [
     (1, "terrain", 5),
     (4, "road attributes", 5),
@@ -29,10 +31,11 @@ const KINDS: [(u16, &str, usize); 9] = [
     (11, "coded SV roads", 5),
     (12, "coded areas", 4),
 ];
-/// Kinds that roads have in packages in metres, which another recorded package has.
+/// Kinds of road sections in packages in metres, which another recorded package has.
 const KINDS_IN_METRES: [(u16, &str); 2] = [(2, "GEO roads"), (3, "SV roads")];
 
-/// A tile, what it holds (vertices, triangles, GEO lines, SV lines, ways, areas) and the checksum of all numbers in it.
+/// A tile, its contents (vertices, triangles, GEO lines, SV lines, ways, areas) and the checksum of
+/// all its numbers.
 const TILES: [(&str, [usize; 6], u32); 5] = [
     ("0/0/0", [791, 1522, 75, 88, 88, 18], 1_253_906_107),
     ("1/0/0", [1015, 1956, 454, 690, 652, 40], 1_750_483_359),
@@ -65,7 +68,8 @@ fn varint(bytes: &mut &[u8]) -> usize {
     value
 }
 
-/// How many tiles have each kind of section, read by `FORMAT.md` alone. The package is so small that its directory has no leaves.
+/// The number of tiles with each kind of section, read by `FORMAT.md` alone. The package is so
+/// small that its directory has no leaves.
 fn kinds(package: &Path) -> BTreeMap<u16, usize> {
     let bytes = fs::read(package).unwrap();
     let number = |at: usize| u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap()) as usize;
@@ -75,7 +79,8 @@ fn kinds(package: &Path) -> BTreeMap<u16, usize> {
     flate2::read::GzDecoder::new(&bytes[entries]).read_to_end(&mut directory).unwrap();
     let rest = &mut &directory[..];
     let count = varint(rest);
-    // Steps of ids, lengths of runs, lengths in bytes, offsets. Tiles follow each other without gaps.
+    // Differences of ids, lengths of runs, lengths in bytes, offsets. Tiles follow each other
+    // without gaps.
     let columns = [(); 4].map(|()| (0..count).map(|_| varint(rest)).collect::<Vec<_>>());
     let (mut kinds, mut left) = (BTreeMap::new(), &bytes[tiles]);
     for &length in &columns[2] {
@@ -89,7 +94,7 @@ fn kinds(package: &Path) -> BTreeMap<u16, usize> {
     kinds
 }
 
-/// All numbers of arrays in arrays, in their order, as little-endian f64.
+/// Adds all numbers of nested arrays, in their order, as little-endian f64.
 fn add(sum: &mut crc32fast::Hasher, value: &Value) {
     match value {
         Value::Array(values) => values.iter().for_each(|value| add(sum, value)),
@@ -106,7 +111,7 @@ fn add_each(sum: &mut crc32fast::Hasher, list: &[Value], members: &[&str]) {
     }
 }
 
-/// Runs `corniche export` with the package; the path of what it wrote into a folder.
+/// Runs `corniche export` with the package; returns the path of its output in a folder.
 fn export(folder: &TempDir, what: &str, name: &str) -> PathBuf {
     let path = folder.path().join(name);
     let ran = corniche(["export", what, text(&recorded()), "-q", "-o", text(&path)]);
@@ -114,7 +119,7 @@ fn export(folder: &TempDir, what: &str, name: &str) -> PathBuf {
     path
 }
 
-/// The files with an ending below a folder.
+/// The files with an extension in a folder and its subfolders.
 fn files_below(folder: &Path, ending: &str) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).unwrap() {
@@ -162,7 +167,7 @@ fn it_keeps_its_promises() {
         let report = json(&["verify", text(&package), "--json", "-q"]);
         assert_eq!(report["holds"], true, "{report}");
     }
-    // A check that holds means nothing if it had nothing to check.
+    // A check without objects proves nothing.
     let report = json(&["verify", text(&recorded()), "--json", "-q"]);
     let checks = report["checks"].as_array().unwrap();
     for id in [

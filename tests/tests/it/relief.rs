@@ -1,4 +1,5 @@
-//! `corniche build --relief`: which levels have one, what it weighs, and that packages with and without it keep their promises.
+//! `corniche build --relief`: the levels that have a relief, its size, and that packages with and
+//! without it keep their promises.
 
 use std::{fs, path::Path};
 
@@ -33,7 +34,7 @@ fn each_choice_is_built_told_and_verified() {
     }
     // Each coarser level has a quarter of the tiles.
     assert!(bytes[1] < bytes[2] && bytes[2] < 2 * bytes[1], "{bytes:?}");
-    // Nothing is asked for: all levels.
+    // Without the option, all levels have a relief.
     build_pass(&at("usual.pmtiles"), &["--quiet"]);
     assert!(fs::read(at("usual.pmtiles")).unwrap() == fs::read(at("full.pmtiles")).unwrap());
     let ran = corniche(["info", text(&at("off.pmtiles"))]);
@@ -71,7 +72,7 @@ fn terrain_of_a_package_comes_with_its_relief_or_without_but_not_with_another() 
     ] {
         let ran = build(from, "new.pmtiles", &["--relief", asked]);
         assert_eq!(ran.code, 2, "{}", ran.err);
-        let said = format!("--relief is {asked}, it was made with {has}");
+        let said = format!("--relief is {asked}, but it was built with {has}");
         assert!(ran.err.contains(&said), "{}", ran.err);
         assert!(!at("new.pmtiles").exists());
     }

@@ -1,4 +1,5 @@
-//! Packages that are read from web servers: each command says the same as of the file, in few requests, and what goes wrong is named.
+//! Packages on web servers: each command has the same result as for the file, with few requests,
+//! and errors are named.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -22,7 +23,7 @@ use tempfile::TempDir;
 /// Heights above EGM96, whose grid comes with PROJ.
 const DATUM: [&str; 3] = ["--quiet", "--dem-vertical-crs", "EPSG:5773"];
 
-/// A folder with the package `served/pass.pmtiles`, and a server of it.
+/// A folder with the package `served/pass.pmtiles`, and a server for it.
 fn served() -> Option<(TempDir, WebServer)> {
     let folder = tempfile::tempdir().unwrap();
     let served = folder.path().join("served");
@@ -36,7 +37,7 @@ fn run(arguments: &[&str]) -> Ran {
     direct().args(arguments).output().unwrap().into()
 }
 
-/// How many requests and bytes `-v` tells of.
+/// The number of requests and bytes that `-v` reports.
 fn asked(ran: &Ran) -> [u64; 2] {
     ["requests=", "received_bytes="].map(|name| {
         let (_, rest) = ran.err.split_once(name).unwrap_or_else(|| panic!("{}", ran.err));
@@ -44,7 +45,7 @@ fn asked(ran: &Ran) -> [u64; 2] {
     })
 }
 
-/// All files in a folder and below it, with what is in them.
+/// All files in a folder and its subfolders, with their contents.
 fn content(at: &Path) -> Vec<(String, Vec<u8>)> {
     if at.is_file() {
         return vec![(String::new(), fs::read(at).unwrap())];
@@ -84,7 +85,7 @@ fn what_is_printed_is_that_of_the_file() {
 #[test]
 fn what_is_written_is_that_of_the_file() {
     let Some((folder, server)) = served() else { return };
-    // What follows the question mark is no part of the package's name.
+    // The query is not a part of the package's name.
     let url = format!("{}?signature=none", server.url("pass.pmtiles"));
     let file = folder.path().join("served/pass.pmtiles");
     let commands: [(&[&str], &str); 8] = [
@@ -110,7 +111,7 @@ fn what_is_written_is_that_of_the_file() {
                 return None;
             }
             assert_eq!(ran.code, 0, "{command:?}: {}", ran.err);
-            // A flight also tells times.
+            // A flight also prints times.
             if command[0] == "fly" {
                 return Some(vec![(format!("{:?}", e2e::without_times(&output)), Vec::new())]);
             }
@@ -123,7 +124,8 @@ fn what_is_written_is_that_of_the_file() {
     }
 }
 
-/// A hundred kilobytes tell of a package, a tile or a view what is to be known; nothing is fetched twice.
+/// A hundred kilobytes are enough for the facts about a package, a tile or a view; nothing is
+/// fetched twice.
 #[test]
 fn few_requests_are_made() {
     let Some((folder, server)) = served() else { return };
@@ -146,7 +148,11 @@ fn a_server_that_ignores_ranges_is_named() {
     let ran = run(&["export", "mesh", &server.url("pass.pmtiles"), "-o", text(&output)]);
     assert_eq!(ran.code, 2, "{}", ran.err);
     assert!(ran.err.contains(&server.url("pass.pmtiles")), "{}", ran.err);
-    assert!(ran.err.contains("knows no range requests; fetch the package"), "{}", ran.err);
+    assert!(
+        ran.err.contains("ignores range requests and sends the whole file; download the package"),
+        "{}",
+        ran.err
+    );
     assert_eq!(names(folder.path()), ["served"], "nothing is left");
 }
 
@@ -156,10 +162,10 @@ fn what_is_not_there_is_named() {
     let nobody = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
     for (url, code, said) in [
         (server.url("no.pmtiles"), 2, "no such file (404"),
-        (format!("http://{nobody}/pass.pmtiles"), 1, "nobody listens there"),
+        (format!("http://{nobody}/pass.pmtiles"), 1, "no server answers there"),
         ("https://".to_owned(), 2, "write it like https://example.org/map.pmtiles"),
-        ("ftp://127.0.0.1/pass.pmtiles".to_owned(), 2, "not by ftp://"),
-        (server.url("pass.pmtiles").replace("http:", "https:"), 2, "no protected connection"),
+        ("ftp://127.0.0.1/pass.pmtiles".to_owned(), 2, "not over ftp://"),
+        (server.url("pass.pmtiles").replace("http:", "https:"), 2, "the TLS connection failed"),
     ] {
         let ran = run(&["info", &url]);
         assert_eq!(ran.code, code, "{url}: {}", ran.err);
@@ -167,7 +173,7 @@ fn what_is_not_there_is_named() {
     }
 }
 
-/// A name and a password, and a signature after a question mark.
+/// A name and a password, and a signature in the query.
 #[test]
 fn secrets_of_addresses_are_shown_and_written_nowhere() {
     let Some((folder, server)) = served() else { return };
@@ -198,7 +204,7 @@ fn secrets_of_addresses_are_shown_and_written_nowhere() {
             assert!(!ran.err.contains(secret), "{command:?}: {}", ran.err);
         }
     }
-    // Addresses that cannot be read are told without what is in them.
+    // Invalid URLs are reported without their contents.
     for wrong in [
         "https://me:SECRET@host/x.pmtiles?sig=SECRET#part",
         "https://me:SECRET@host:port/x",
@@ -219,7 +225,7 @@ fn secrets_of_addresses_are_shown_and_written_nowhere() {
     }
 }
 
-/// Object storage, as those who publish maps use it, over TLS, with a certificate of one's own.
+/// Object storage as map publishers use it, over TLS, with a custom certificate.
 #[test]
 fn object_storage_is_read_over_tls() {
     let folder = tempfile::tempdir().unwrap();
@@ -233,7 +239,7 @@ fn object_storage_is_read_over_tls() {
     let url = storage.url("pass.pmtiles");
     let unknown = run(&["info", &url]);
     assert_eq!(unknown.code, 2, "{}", unknown.err);
-    assert!(unknown.err.contains("no protected connection"), "{}", unknown.err);
+    assert!(unknown.err.contains("the TLS connection failed"), "{}", unknown.err);
     let trusting = |arguments: &[&str]| -> Ran {
         let mut command: Command = direct();
         command.env("SSL_CERT_FILE", &certificate).args(arguments).output().unwrap().into()
@@ -243,7 +249,7 @@ fn object_storage_is_read_over_tls() {
     assert_eq!(there.out, corniche(["tile", text(&package), "3/4/2", "--json"]).out);
 }
 
-/// Ctrl-C while a server does not answer: it ends at once, and nothing is left.
+/// Ctrl-C while a server does not answer: the program ends at once, and no files remain.
 #[test]
 #[cfg(unix)]
 fn waiting_for_a_server_can_be_interrupted() {
@@ -255,7 +261,7 @@ fn waiting_for_a_server_can_be_interrupted() {
         let (mut stream, _) = listener.accept().unwrap();
         let read = stream.read(&mut [0; 64]);
         tell.send(read.unwrap()).unwrap();
-        // Until the program goes.
+        // Until the program disconnects.
         let _ = stream.read_to_end(&mut Vec::new());
     });
     let output = folder.path().join("ground.glb");
@@ -274,7 +280,7 @@ fn waiting_for_a_server_can_be_interrupted() {
     assert!(names(folder.path()).is_empty(), "{:?}", names(folder.path()));
 }
 
-/// What a library logs of a redirection, and what GDAL says of its files.
+/// Log messages of a library about a redirection, and GDAL's messages about its files.
 #[test]
 fn no_secret_is_told_of_redirections_and_inputs() {
     let secret = "tell-nobody-0123456789";
@@ -284,7 +290,7 @@ fn no_secret_is_told_of_redirections_and_inputs() {
     thread::spawn(move || {
         for mut stream in listener.incoming().flatten() {
             let to = to.clone();
-            // A connection that is kept is told of, too.
+            // A connection that is kept open is logged, too.
             thread::spawn(move || {
                 let mut asked = [0; 4096];
                 while let Ok(length @ 1..) = stream.read(&mut asked) {
@@ -301,7 +307,7 @@ fn no_secret_is_told_of_redirections_and_inputs() {
     let (there, output) = (format!("http://{host}/x"), folder.path().join("a.pmtiles"));
     let input = format!("http://me:{secret}@{host}/y.tif?{secret}");
     let dem = sample("pass/pass-dem.tif");
-    // The parser refuses them.
+    // The parser rejects them.
     let quoted = format!("http://me:it's {secret}@{host}/x");
     let lines: [&[&str]; 6] = [
         &["info", &there],

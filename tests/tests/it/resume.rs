@@ -1,4 +1,4 @@
-//! What is left of builds that ended early: when it is named, kept, gone on from, refused and removed.
+//! Leftovers of builds that ended early: when they are named, kept, resumed, rejected and removed.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 #![cfg(unix)]
@@ -11,10 +11,10 @@ use std::{
 
 use e2e::{Job, Ran, When, sample, text};
 
-/// So long that it can be stopped in the middle.
+/// The build takes so long that it can be stopped in the middle.
 const OPTIONS: [&str; 4] = ["--max-error", "0.25", "--threads", "2"];
 
-/// A build that was asked to end when it had durable work.
+/// A build that was requested to end when it had durable work.
 fn stopped(job: Job) -> Job {
     let ran = job.stop(&[], "TERM", When::Worked);
     assert_eq!(ran.code, 4, "{}", ran.err);
@@ -22,7 +22,7 @@ fn stopped(job: Job) -> Job {
     job
 }
 
-/// It is refused with this code and these words, and the store is as it was.
+/// It is rejected with this code and these words, and the store is unchanged.
 fn check_refused(job: &Job, more: &[&str], code: i32, words: &[&str]) {
     let before = job.stored();
     let ran = job.run(&[&["--quiet"], more].concat());
@@ -44,7 +44,7 @@ fn whole() -> [Vec<u8>; 2] {
 fn leftovers_are_named_and_nothing_is_touched_until_one_says_what_to_do() {
     let job = stopped(Job::new(&OPTIONS));
     check_refused(&job, &[], 1, &[".out.pmtiles.work", "--resume", "-O"]);
-    // Discarded, it starts again, and nothing is said to be done already.
+    // After discarding, it starts again, and no stage is reported as done already.
     let ran = job.said(&["-O", "--json-progress"]);
     assert!(!ran.err.contains("--resume"), "{}", ran.err);
     let begun = ran.err.lines().filter(|line| line.contains("\"already\":"));
@@ -59,7 +59,7 @@ fn a_store_of_other_settings_is_refused_by_name() {
     check_refused(&job, &other, 1, &[".out.pmtiles.work", "--fill-voids", "7"]);
     let other = ["--resume", "--attribution", "somebody"];
     check_refused(&job, &other, 1, &["--attribution", "somebody"]);
-    // What a run may use is no setting of the package.
+    // Resources of a run are not settings of the package.
     job.succeed(&["--resume", "--memory", "300M", "--quiet"]);
     assert!(job.result() == whole());
 }
@@ -72,12 +72,12 @@ fn a_store_of_inputs_that_changed_since_is_refused_by_name() {
         fs::copy(sample("pass").join(name), &copy).unwrap();
         copy
     });
-    let job = stopped(Job::new(&OPTIONS).of(inputs.clone()));
+    let job = stopped(Job::new(&OPTIONS).with_inputs(inputs.clone()));
     // Another modification time suffices.
     let file = fs::File::options().append(true).open(&inputs[1]).unwrap();
     let time = file.metadata().unwrap().modified().unwrap();
     file.set_modified(time + Duration::from_secs(1)).unwrap();
-    check_refused(&job, &["--resume"], 1, &["pass.osm.pbf", "was changed"]);
+    check_refused(&job, &["--resume"], 1, &["pass.osm.pbf", "has changed"]);
     file.set_modified(time).unwrap();
     job.succeed(&["--resume", "--quiet"]);
     assert!(job.result() == whole());
@@ -87,9 +87,9 @@ fn a_store_of_inputs_that_changed_since_is_refused_by_name() {
 fn with_nothing_to_go_on_from_a_build_starts() {
     let job = Job::new(&["--quiet"]);
     let ran = job.said(&["--resume"]);
-    assert!(ran.err.contains("holds nothing to go on from"), "{}", ran.err);
+    assert!(ran.err.contains("contains nothing to resume"), "{}", ran.err);
     let first = job.result();
-    // A package is replaced only if asked.
+    // An existing package is overwritten only on request.
     let ran = job.run(&["--resume"]);
     assert_eq!(ran.code, 3, "{}", ran.err);
     job.succeed(&["--resume", "-O"]);
@@ -100,12 +100,12 @@ fn with_nothing_to_go_on_from_a_build_starts() {
 fn of_two_builds_of_one_target_one_is_refused() {
     let job = Job::new(&OPTIONS);
     let mut first = job.start(&["--quiet"]);
-    // It is at work when its store is there.
+    // It is at work when its store exists.
     while !job.store().join("store").exists() {
         assert!(first.try_wait().unwrap().is_none(), "the build ended before it was at work");
         std::thread::sleep(Duration::from_millis(2));
     }
-    // The second lists no defects: there, too, one would be refused.
+    // The second has no list of defects, because a locked list would be rejected, too.
     let second = |more: &[&str]| -> Ran {
         let [dem, osm] = [sample("pass/pass-dem.tif"), sample("pass/pass.osm.pbf")];
         let package = job.package();
@@ -127,7 +127,7 @@ fn the_store_lies_where_tmp_says() {
     let elsewhere = tempfile::tempdir().unwrap();
     let job = Job::new(&[&OPTIONS[..], &["--tmp", text(elsewhere.path())]].concat());
     let mut child = job.start(&["--quiet"]);
-    // Its name begins with the package's and has a part that stands for the package's folder.
+    // Its name begins with the package's and has a part that is derived from the package's folder.
     let stores = || -> Vec<PathBuf> {
         let entries = fs::read_dir(elsewhere.path()).unwrap();
         entries.map(|entry| entry.unwrap().path()).collect()
@@ -156,7 +156,7 @@ fn the_store_lies_where_tmp_says() {
     assert_eq!(fs::read_dir(elsewhere.path()).unwrap().count(), 0);
 }
 
-/// Sets the version in the header of a store, and its check sum.
+/// Sets the version in the header of a store, and its checksum.
 fn set_version(store: &Path, version: u32) {
     let path = store.join("store");
     let mut bytes = fs::read(&path).unwrap();
@@ -177,7 +177,8 @@ fn a_store_of_another_version_is_kept_and_refused() {
     assert!(job.result() == whole());
 }
 
-/// A store that is taken away while the build runs: an error, not a package without its tiles.
+/// If a store is removed while the build runs, this is an error, and no package without its tiles
+/// is written.
 #[test]
 fn a_store_that_is_removed_under_a_build_is_an_error() {
     let job = Job::new(&OPTIONS);
@@ -189,16 +190,16 @@ fn a_store_that_is_removed_under_a_build_is_an_error() {
     fs::rename(job.store(), &aside).unwrap();
     let ran = e2e::ended(&mut child);
     assert_eq!(ran.code, 1, "{}", ran.err);
-    assert!(ran.err.contains(".out.pmtiles.work") && ran.err.contains("removed"), "{}", ran.err);
+    assert!(ran.err.contains(".out.pmtiles.work") && ran.err.contains("deleted"), "{}", ran.err);
     assert!(!job.package().exists());
-    // Back in its place, it is gone on from.
+    // After it is moved back, the build resumes.
     let _ = fs::remove_dir_all(job.store());
     fs::rename(&aside, job.store()).unwrap();
     job.succeed(&["--quiet", "--resume"]);
     assert!(job.result() == whole());
 }
 
-/// A folder that holds something else is never emptied, with `-O` neither.
+/// A folder with other contents is never emptied, not even with `-O`.
 #[test]
 fn what_is_not_corniches_is_never_removed() {
     let job = Job::new(&["--quiet"]);

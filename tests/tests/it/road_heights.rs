@@ -1,4 +1,5 @@
-//! Roads on the elevation files themselves: heights beside those that GDAL reads, grades of smooth lines, edges of the network.
+//! Roads on the elevation files themselves: heights compared with those that GDAL reads, grades of
+//! smoothed lines, edges of the network.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -15,7 +16,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use corniche_testing::pbf::{self, Way};
+use corniche_testing::pbf::{self, PbfWay};
 use e2e::{Ran, build_from, copy_pass, corniche, real_data, sample, text, write_ascii_grid};
 use gdal::{Dataset, GeoTransformEx as _, raster::Buffer, vector::LayerAccess as _};
 
@@ -60,7 +61,7 @@ fn number(row: &Row, name: &str) -> f64 {
     row[name].parse().unwrap_or_else(|_| panic!("{name}: {row:?}"))
 }
 
-/// An elevation file as GDAL reads it, bilinear between its samples; this test's own reading.
+/// An elevation file as GDAL reads it, bilinear between its samples; an independent implementation.
 struct Bilinear {
     transform: [f64; 6],
     samples: Buffer<f64>,
@@ -73,7 +74,7 @@ impl Bilinear {
         Self { transform: dataset.geo_transform().unwrap(), samples }
     }
 
-    /// `None` outside, and at voids.
+    /// Returns `None` outside, and at voids.
     fn at(&self, [x, y]: [f64; 2]) -> Option<f64> {
         let (column, row) = self.transform.invert().unwrap().apply(x, y);
         let on_sample = |at: f64| if (at - at.round()).abs() < 1e-7 { at.round() } else { at };
@@ -102,7 +103,8 @@ impl Bilinear {
     }
 }
 
-/// Lines are as near to an elevation file as their field says, at vertices and at many places between them. Returns how many places were compared.
+/// Lines are as close to an elevation file as their field says, at vertices and at many points
+/// between them. Returns the number of compared points.
 fn are_within(features: &[(Row, Vec<Line>)], dem: &Bilinear, field: &str) -> usize {
     let mut compared = 0;
     let mut share = 0.123_f64;
@@ -113,7 +115,8 @@ fn are_within(features: &[(Row, Vec<Line>)], dem: &Bilinear, field: &str) -> usi
             for (share, most_m) in
                 [(0.0, most_m.min(2e-4)), (0.25, most_m), (0.75, most_m), (share, most_m)]
             {
-                // Vertices of the ground are within the field, too; only those on the DEM are exact.
+                // Vertices of the ground are within the field, too; only those on the DEM are
+                // exact.
                 let most_m =
                     if field == "height_tolerance_m" { most_m } else { number(row, field) + 1e-4 };
                 let at: [f64; 3] =
@@ -128,7 +131,8 @@ fn are_within(features: &[(Row, Vec<Line>)], dem: &Bilinear, field: &str) -> usi
     compared
 }
 
-/// Bridges and tunnels as this test knows them: on the ground at both ends, never below it, or above; those without a crossing straight.
+/// Bridges and tunnels by independent rules: on the ground at both ends, and never below it, or
+/// above, respectively; those without a crossing are straight.
 fn are_on_decks(features: &[(Row, Vec<Line>)], dem: &Bilinear) {
     let mut straight = 0;
     for (row, lines) in features {
@@ -188,7 +192,7 @@ fn roads_have_the_heights_of_the_elevation_file() {
         roads.iter().cloned().partition(|(row, _)| row["height_source"] != "dem");
     assert!(are_within(&of_dem, &read, "height_tolerance_m") > 10_000);
     are_on_decks(&of_decks, &read);
-    // The same lines on the package's triangles are as far off as the field says.
+    // The same lines on the package's triangles differ by as much as the field says.
     let of_ground: Vec<(Row, Vec<Line>)> = ground
         .iter()
         .zip(&roads)
@@ -198,7 +202,7 @@ fn roads_have_the_heights_of_the_elevation_file() {
         })
         .collect();
     assert!(are_within(&of_ground, &read, "ground_tolerance_m") > 10_000);
-    // Lines that share a place have the same height there.
+    // Lines that share a point have the same height there.
     let mut heights: BTreeMap<[u64; 2], u64> = BTreeMap::new();
     let mut shared = 0;
     for vertex in roads.iter().flat_map(|(_, lines)| lines.iter().flatten()) {
@@ -222,7 +226,8 @@ fn roads_have_the_heights_of_the_elevation_file() {
         assert_eq!(on_dem["height_tolerance_m"].is_empty(), source != "dem", "{on_dem:?}");
         if source == "dem" {
             assert!(on_dem["free_height_m"].is_empty(), "{on_dem:?}");
-            // Noise makes the ground's own ups and downs longer, never shorter than by what ends are smoothed.
+            // Noise increases the ascents and descents of the ground, and never decreases them by
+            // more than the smoothing of the ends.
             let up = |name: &str| number(on_dem, name);
             let most_m = 2.0 * up("smoothing_max_m") + 1e-3;
             assert!(up("ascent_m") <= up("ground_ascent_m") + most_m, "{on_dem:?}");
@@ -236,7 +241,7 @@ fn roads_have_the_heights_of_the_elevation_file() {
     assert!(structures >= 3);
 }
 
-/// Nodes of a small network on a plane beside the central meridian of UTM 32, in degrees.
+/// Nodes of a small network on a plane off the central meridian of UTM 32, in degrees.
 const NODES: [(i64, [f64; 2]); 13] = [
     (1, [8.990, 46.940]),
     (2, [8.996, 46.941]),
@@ -244,7 +249,7 @@ const NODES: [(i64, [f64; 2]); 13] = [
     (4, [9.008, 46.943]),
     (5, [9.002, 46.948]),
     (6, [9.002, 46.936]),
-    // At the place of node 2, and yet another node.
+    // At the position of node 2, but another node.
     (7, [8.996, 46.941]),
     (8, [8.996, 46.947]),
     (9, [9.014, 46.944]),
@@ -255,10 +260,10 @@ const NODES: [(i64, [f64; 2]); 13] = [
     (23, [8.979, 46.934]),
 ];
 
-/// The nodes of a way, and the tag that says what carries it, if it is not the ground.
+/// The nodes of a way, and the tag of its structure, if it is not on the ground.
 type PlainWay<'a> = (&'a [i64], &'a str);
 
-/// Builds a package of ways on bumpy ground; the ids of ways are those of their order.
+/// Builds a package of ways on bumpy ground; the ids of ways are their positions in the list.
 fn package_of(folder: &Path, name: &str, ways: &[PlainWay<'_>]) -> [PathBuf; 3] {
     package_with(folder, name, (&NODES, ways))
 }
@@ -278,14 +283,14 @@ fn package_with(
         let ridge = if (140..153).contains(&column) { 30.0 } else { 0.0 };
         500.0 + 1.2 * column as f64 + 4.0 * noise + ridge
     });
-    let ways: Vec<Way<'_>> = (1..)
+    let ways: Vec<PbfWay<'_>> = (1..)
         .zip(ways)
         .map(|(id, (node_ids, structure))| {
             let mut tags = vec![("highway", "secondary")];
             if !structure.is_empty() {
                 tags.push((structure, "yes"));
             }
-            Way { id, tags, node_ids: node_ids.to_vec() }
+            PbfWay { id, tags, node_ids: node_ids.to_vec() }
         })
         .collect();
     fs::write(&osm, pbf::network(&[], nodes, &ways)).unwrap();
@@ -357,7 +362,7 @@ fn grades_do_not_depend_on_how_ways_are_split() {
             assert!((found - expected).abs() < 0.01, "{totals:?}");
         }
     }
-    // Node 3 is a junction, node 2 is none: way 7–8 only lies there.
+    // Node 3 is a junction, node 2 is not: way 7–8 only has a node at the same position.
     let ends: Vec<[&str; 2]> =
         all_edges[0].iter().map(|edge| [&*edge["from_node"], &*edge["to_node"]]).collect();
     assert_eq!(ends[..5], [["1", "3"], ["3", "5"], ["3", "6"], ["3", "9"], ["7", "8"]]);
@@ -379,7 +384,8 @@ fn grades_do_not_depend_on_how_ways_are_split() {
     }
 }
 
-/// Edges at one node have one height there; a bridge goes over a ridge in its way; the way back is the other way around.
+/// Edges at one node have one height there; a bridge passes over a ridge in its way; the reverse
+/// edge has the same values in reverse.
 #[test]
 fn edges_meet_and_bridges_go_over_what_is_in_their_way() {
     let folder = tempfile::tempdir().unwrap();
@@ -397,10 +403,11 @@ fn edges_meet_and_bridges_go_over_what_is_in_their_way() {
     assert!((number(over, "bridge_share") - 1.0 / 3.0).abs() < 0.02, "{over:?}");
     assert_eq!((number(side, "bridge_share"), number(tunnel, "tunnel_share")), (0.0, 1.0));
     assert_eq!(over["to_height_m"], side["from_height_m"]);
-    // A tunnel that ends nowhere is level.
+    // A tunnel with a dead end is level.
     let of_tunnel = ["ascent_m", "descent_m"].map(|name| number(tunnel, name));
     assert_eq!((of_tunnel, &tunnel["to_height_m"]), ([0.0; 2], &side["from_height_m"]));
-    // A ridge of 30 m stands in the way of the bridge: its line goes over it, and is measured so.
+    // A ridge of 30 m is in the way of the bridge: its line passes over it, and is measured like
+    // this.
     assert!((25.0..30.0).contains(&number(over, "descent_m")), "{over:?}");
     assert_eq!(
         [&over["ascent_m"], &over["descent_m"]],
@@ -454,7 +461,7 @@ fn decks_do_not_depend_on_how_bridges_are_split() {
     }
 }
 
-/// A profile over a bridge is that of its deck, in both directions; on a coarse level it still is.
+/// A profile over a bridge is that of its deck, in both directions; also on a coarse level.
 #[test]
 fn profiles_go_over_decks() {
     let folder = tempfile::tempdir().unwrap();
@@ -467,9 +474,9 @@ fn profiles_go_over_decks() {
         assert!(!ran.out.contains("without"), "{}", ran.out);
         rows
     };
-    // Without the extract nothing is known of a bridge.
+    // Without the extract, bridges are unknown.
     let (_, alone) = profile(&package, "2", &[]);
-    assert!(alone.out.contains("Up, down not known of"), "{}", alone.out);
+    assert!(alone.out.contains("Up, down unknown on"), "{}", alone.out);
     assert!(!alone.out.contains("Steepest"), "{}", alone.out);
     let heights = |rows: &[Row]| -> Vec<f64> {
         let on_deck = rows.iter().filter(|row| row["height_source"] == "deck");
@@ -481,7 +488,8 @@ fn profiles_go_over_decks() {
     back.reverse();
     let own = heights(&there);
     assert!(own.len() >= 4, "{own:?}");
-    // Where two ways meet a vertex is the first one's: one end of the bridge is missing on each way.
+    // Where two ways meet, the vertex belongs to the first: one end of the bridge is missing on
+    // each way.
     let [first, last] = [own[0], own[own.len() - 2]];
     assert!(back.iter().any(|height_m| (height_m - first).abs() < 0.01), "{own:?} {back:?}");
     assert!(back.iter().any(|height_m| (height_m - last).abs() < 0.01), "{own:?} {back:?}");
@@ -490,7 +498,7 @@ fn profiles_go_over_decks() {
     assert!((ends(&coarse) - ends(&own)).abs() < 0.01, "{coarse:?} {own:?}");
 }
 
-/// Other elevation files and extracts are refused, and nothing is written.
+/// Other elevation files and extracts are rejected, and nothing is written.
 #[test]
 fn files_of_another_package_are_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -504,7 +512,7 @@ fn files_of_another_package_are_refused() {
     bytes[last] ^= 1;
     fs::write(&other, bytes).unwrap();
     let other_osm = at("other.osm.pbf");
-    let way = Way { id: 1, tags: vec![("highway", "primary")], node_ids: vec![1, 2] };
+    let way = PbfWay { id: 1, tags: vec![("highway", "primary")], node_ids: vec![1, 2] };
     fs::write(&other_osm, pbf::network(&[], &NODES, &[way])).unwrap();
     let target = at("roads.gpkg");
     for (options, word) in [
@@ -519,7 +527,7 @@ fn files_of_another_package_are_refused() {
     }
     let ran = export(&package, "edges", &target, &["--dem", text(&dem)]);
     assert_eq!(ran.code, 2, "{}", ran.err);
-    // What cannot be met is told before large files are read.
+    // Impossible requests are reported before large files are read.
     let json = at("roads.geojson");
     let words = ["export", "roads", text(&package), "-o", text(&json), "--dem", text(&dem)];
     let ran = corniche(words.iter().chain(&["--crs", "EPSG:4979"]));

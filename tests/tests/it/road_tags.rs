@@ -1,4 +1,4 @@
-//! Tags of ways on their way out: through build, `tile`, `export`, `info` and `verify`.
+//! Tags of ways in all outputs: through build, `tile`, `export`, `info` and `verify`.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -12,7 +12,8 @@ use gdal::{
 };
 use serde_json::{Value, json};
 
-/// What the tags are, and what they must come out as: highway, lanes, width, maxspeed, `sac_scale`, tracktype.
+/// The tags of ways, and the expected values: highway, lanes, width, maxspeed, `sac_scale`,
+/// tracktype.
 fn ways() -> Vec<(Vec<(&'static str, &'static str)>, Value)> {
     vec![
         (
@@ -39,16 +40,16 @@ fn ways() -> Vec<(Vec<(&'static str, &'static str)>, Value)> {
     ]
 }
 
-/// Builds a package of these ways, side by side on a slope, and gives its folder.
+/// Builds a package of these ways, side by side on a slope, in this folder.
 fn built(folder: &Path) {
     let place = "xllcenter 497000\nyllcenter 5197000\ncellsize 10\nNODATA_value -9999";
     let dem = folder.join("plane.asc");
     write_ascii_grid(&dem, [601, 601], place, |column, _| 500.0 + 0.7 * column as f64);
     let line = |(k, tags)| {
         let lat = 46.945 + 0.002 * k as f64;
-        pbf::Line { tags, points_deg: vec![[8.98, lat], [9.02, lat]] }
+        pbf::WayToWrite { tags, points_deg: vec![[8.98, lat], [9.02, lat]] }
     };
-    let lines: Vec<pbf::Line<'_>> =
+    let lines: Vec<pbf::WayToWrite<'_>> =
         ways().into_iter().map(|(tags, _)| tags).enumerate().map(line).collect();
     let osm = folder.join("plane.osm.pbf");
     fs::write(&osm, pbf::extract(&[], &lines)).unwrap();
@@ -56,8 +57,8 @@ fn built(folder: &Path) {
     build_from([&dem, &osm], &folder.join("plane.pmtiles"), &options);
 }
 
-/// Every tag comes out of `tile` and of `export roads` as it must; what cannot be read is counted by `info`; and `verify` finds
-/// the same in the extract.
+/// Every tag has the expected value in `tile` and `export roads`; `info` counts unreadable values;
+/// and `verify` finds the same in the extract.
 #[test]
 fn tags_of_ways_come_out_as_they_are_read() {
     let folder = tempfile::tempdir().unwrap();
@@ -122,13 +123,13 @@ fn tags_of_ways_come_out_as_they_are_read() {
     assert_eq!(verified.code, 0, "{}{}", verified.out, verified.err);
 }
 
-/// A text out of GDAL's list of other tags, `"key"=>"value","key"=>"value"`.
+/// A text from GDAL's list of other tags, `"key"=>"value","key"=>"value"`.
 fn tag_of<'a>(others: &'a str, key: &str) -> Option<&'a str> {
     let (_, rest) = others.split_once(&format!("\"{key}\"=>\""))?;
     rest.split_once('"').map(|(value, _)| value)
 }
 
-/// The tags of the sample's roads are those that another reader, GDAL's, finds in the extract.
+/// The tags of the sample's roads are those that an independent reader, GDAL, finds in the extract.
 #[test]
 fn tags_of_the_sample_are_those_that_gdal_reads() {
     if DriverManager::get_driver_by_name("OSM").is_err() {

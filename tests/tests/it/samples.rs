@@ -1,4 +1,5 @@
-//! The bundled heights of Liechtenstein are samples of the SRTM square that they were cut from, as `data-samples/SOURCES.md` says.
+//! The bundled heights of Liechtenstein are samples of the SRTM square that they were clipped from,
+//! as `data-samples/SOURCES.md` says.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -30,9 +31,9 @@ impl Heights {
         }
     }
 
-    /// Columns and rows of `square` that lie west and north of these heights.
+    /// The number of columns and rows of `square` west and north of these heights.
     fn place_in(&self, square: &Self) -> [usize; 2] {
-        // Origin and step, east and south, of the six numbers.
+        // Origin and step, east and south, of the geotransform.
         [(0, 1), (3, 5)].map(|(origin, step)| {
             let offset = self.crs_from_pixel[origin] - square.crs_from_pixel[origin];
             let pixels = offset / square.crs_from_pixel[step];
@@ -46,7 +47,7 @@ impl Heights {
 fn the_heights_of_liechtenstein_are_samples_of_the_square() {
     let cut = Heights::read(&sample("liechtenstein/liechtenstein-dem.tif"));
     assert_eq!(cut.nodata, Some(-32768.0));
-    // The box of the extract's data, and 47° N, where the square ends.
+    // The bounding box of the extract's data, and 47° N, where the square ends.
     let [west, east_step, _, north, _, south_step] = cut.crs_from_pixel;
     let (east, south) =
         (west + east_step * cut.columns as f64, north + south_step * cut.rows as f64);

@@ -1,4 +1,4 @@
-//! What `--json` prints is what the schemas in `docs/schema` say.
+//! The output of `--json` conforms to the schemas in `docs/schema`.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -15,7 +15,8 @@ fn schema(name: &str) -> Value {
     serde_json::from_str(&text).unwrap()
 }
 
-/// Fails with what does not fit. Each field must be one that the schema names, so that none is without documentation.
+/// Fails with the fields that do not fit. Each field must be in the schema, so that none is
+/// undocumented.
 fn check(name: &str, documents: &[Value]) {
     let mut schema = schema(name);
     close(&mut schema);
@@ -29,13 +30,13 @@ fn check(name: &str, documents: &[Value]) {
             panic!("{name}: {error:#}");
         }
     }
-    // A schema that takes anything would be of no use.
+    // A schema that accepts anything would be useless.
     for odd in [value!({}), value!({ "odd": 1 })] {
         assert!(schemas.validate(&odd, schema).is_err(), "{name}");
     }
 }
 
-/// Allows no fields but those that are named.
+/// Forbids all fields that are not in the schema.
 fn close(schema: &mut Value) {
     match schema {
         Value::Object(fields) => {
@@ -66,7 +67,7 @@ fn what_is_printed_fits_its_schema() {
     // An end with an error.
     told.extend(lines(&corniche(&build).err));
     assert_eq!(told.last().unwrap()["end"]["result"], "exists");
-    // A warning: another program's version of an option that is of no use.
+    // A warning: an option that has no effect here.
     check("progress", &told);
     let kinds: BTreeSet<&str> = told
         .iter()
@@ -112,7 +113,8 @@ fn what_is_printed_fits_its_schema() {
     check("tile", &documents);
 }
 
-/// A bridge that begins at a vertex of the ground, and a tunnel: each point where it is, as high as it is.
+/// A bridge that begins at a vertex of the ground, and a tunnel: each point has the right position
+/// and height.
 #[test]
 fn spans_of_a_tile_are_told() {
     let folder = tempfile::tempdir().unwrap();
@@ -136,7 +138,8 @@ fn spans_of_a_tile_are_told() {
     );
     let is_vertex = |vertex: &Value| *vertex == spans[0]["line"][0];
     assert!(tile["tin"]["vertices"].as_array().unwrap().iter().any(is_vertex));
-    // A row of 64 cells is 7.5 m higher than the one north of it, and the second column 2.5 m higher than the first.
+    // A row of 64 cells is 7.5 m higher than the one north of it, and the second column 2.5 m
+    // higher than the first.
     let ground_m = (30.0 * (201.0 / 64.0) + 10.0 * (20.0 / 64.0)) * 0.25;
     let tunnel = [point(10.0, 200.0, -1.75), point(20.0, 201.0, ground_m)];
     assert_eq!(
@@ -147,7 +150,8 @@ fn spans_of_a_tile_are_told() {
     assert!(told.lines().any(|line| line.split_whitespace().eq(["spans", "2"])), "{told}");
 }
 
-/// All that a tile holds: normals as many as vertices and of length 1, attributes of exactly the ways that occur.
+/// The contents of a tile: one normal of length 1 per vertex, and the attributes of exactly the
+/// ways in it.
 #[test]
 fn a_tile_has_normals_and_attributes() {
     let folder = tempfile::tempdir().unwrap();
@@ -174,7 +178,7 @@ fn a_tile_has_normals_and_attributes() {
     assert!(named > 0, "the sample has ways with names");
 }
 
-/// The tile at a place is the one whose rectangle holds it, on each level.
+/// The tile at a position is the one whose rectangle contains it, on each level.
 #[test]
 fn a_tile_is_found_by_its_place() {
     let folder = tempfile::tempdir().unwrap();
@@ -190,7 +194,7 @@ fn a_tile_is_found_by_its_place() {
     let number = |value: &Value| value.as_f64().unwrap();
     let [min_x, min_y, max_x, max_y] =
         ["min_x", "min_y", "max_x", "max_y"].map(|side| number(&coordinates["bounds"][side]));
-    // Samples of the table, away from its rim: where they are is known both ways.
+    // Samples of the table, away from its border: their positions are known in both systems.
     for (column, row) in [(2, 2), (1, 1), (3, 2)] {
         let sample = &coordinates["samples_deg"][row * size + column];
         let place = format!("{},{}", sample[0], sample[1]);
@@ -215,8 +219,8 @@ fn a_tile_is_found_by_its_place() {
         assert_eq!(at(&place, &[])["id"], at(&place, &["--level", "3"])["id"]);
     }
     for (arguments, word) in [
-        (&["--at", "100,10"][..], "choose a place there"),
-        (&["--at", "46.9,9.5"], "longitude comes first: 9.5,46.9 lies inside"),
+        (&["--at", "100,10"][..], "the package covers"),
+        (&["--at", "46.9,9.5"], "longitude comes first: 9.5,46.9 is inside"),
         (&["--at", "95.4,46.9", "--level", "1"], "no ground on level 1"),
         (&["--at", "9.54,46.9", "--level", "9"], "finest level is 3"),
         (&["--at", "9.54"], "longitude,latitude"),
@@ -229,12 +233,14 @@ fn a_tile_is_found_by_its_place() {
     }
 }
 
-/// A place in a void: the tile around it, and a word of it; where not even a tile is, what to do.
+/// For a position in a void, the tile around it is printed with a note; if there is no tile either,
+/// the error says what to do.
 #[test]
 fn a_place_without_ground_is_told() {
     let folder = tempfile::tempdir().unwrap();
     let (dem, package) = (folder.path().join("a.asc"), folder.path().join("a.pmtiles"));
-    // Ground with a hole in the west, ground in the east, and a void as wide as four tiles between them.
+    // Ground with a hole in the west, ground in the east, and a void as wide as four tiles between
+    // them.
     let place = "xllcorner 500000\nyllcorner 5200000\ncellsize 10\nNODATA_value -9999";
     write_ascii_grid(&dem, [1537, 257], place, |column, row| {
         let is_hole = (60..200).contains(&column) && (60..200).contains(&row);
@@ -266,9 +272,9 @@ fn a_place_without_ground_is_told() {
     let ground = at(0.02, 0.5, &[]);
     assert!(ground.code == 0 && ground.err.is_empty(), "{}", ground.err);
     let hole = at(0.085, 0.5, &[]);
-    assert!(hole.code == 0 && hole.err.contains("no ground at this place"), "{}", hole.err);
+    assert!(hole.code == 0 && hole.err.contains("no ground at this position"), "{}", hole.err);
     let void = at(0.5, 0.5, &[]);
     assert!(void.code == 0 && void.err.contains("is the finest one"), "{}", void.err);
     let void = at(0.5, 0.5, &["--level", &finest]);
-    assert!(void.code == 2 && void.err.contains("leave --level out"), "{}", void.err);
+    assert!(void.code == 2 && void.err.contains("omit --level"), "{}", void.err);
 }

@@ -1,13 +1,14 @@
-//! What the scripts say on machines that cannot build, the layout of an archive, and the measurements of a graphics card.
+//! Messages of the scripts on machines that cannot build, the layout of an archive, and the
+//! measurements of a GPU.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
 use std::{fs, os::unix::fs::PermissionsExt, path::Path, process::Command};
 
-/// Runs `scripts/demo` with nothing on the path but the system's tools and these stand-ins.
+/// Runs `scripts/demo` with only the system's tools and these stand-ins on the path.
 fn demo(stand_ins: &[(&str, &str)]) -> (Option<i32>, String) {
     let folder = tempfile::tempdir().unwrap();
-    // What the script needs before it builds; the machine's own cargo stays out.
+    // The tools that the script needs before it builds, without the machine's own cargo.
     for tool in ["bash", "env", "dirname", "sed", "awk", "uname", "grep"] {
         let found = ["/bin", "/usr/bin"]
             .map(|path| Path::new(path).join(tool))
@@ -21,7 +22,7 @@ fn demo(stand_ins: &[(&str, &str)]) -> (Option<i32>, String) {
         fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
     }
     let mut demo = Command::new(e2e::root().join("scripts/demo"));
-    // A target folder that exists would show that there is room.
+    // An existing target folder would suggest that there is enough space.
     demo.env("PATH", folder.path()).env("CARGO_TARGET_DIR", folder.path().join("target"));
     // A driver, whether this machine has one or not.
     fs::write(folder.path().join("driver.json"), "{}").unwrap();
@@ -51,7 +52,7 @@ fn an_old_cargo_is_named_with_the_way_to_a_newer_one() {
     assert!(said.contains("rustup update stable"), "{said}");
 }
 
-/// Before anything is compiled.
+/// The disk space is checked before anything is compiled.
 #[test]
 fn too_little_disk_space_is_said_first() {
     let libraries = "echo libvulkan.so.1 libX11-xcb.so.1 libXcursor.so.1 libXi.so.6 libXrandr.so.2 libxkbcommon-x11.so.0";
@@ -70,7 +71,8 @@ fn too_little_disk_space_is_said_first() {
     );
 }
 
-/// What `scripts/test` says last, of a run with a failed test, a skipped one and one that is left out as slow.
+/// The last lines of `scripts/test`, for a run with a failed test, a skipped one and an omitted
+/// slow one.
 #[test]
 fn tests_are_counted_with_those_that_are_skipped() {
     let folder = tempfile::tempdir().unwrap();
@@ -84,7 +86,7 @@ fn tests_are_counted_with_those_that_are_skipped() {
         result(3, 0, 0),
     ];
     fs::write(&output, lines.join("\n")).unwrap();
-    // One test says twice that a part of it is skipped, and has two reasons.
+    // One test reports twice that a part of it is skipped, for two reasons.
     let said_of = |test: &str, reason: &str| format!("it rooms::{test}: {reason}\n");
     let ladder = said_of("attic", "no ladder: none in ../shared").repeat(2);
     let need = "need elevation files that are not in the repository";
@@ -141,7 +143,8 @@ fn an_archive_is_laid_out_around_a_program() {
     assert!(readme.starts_with("# Corniche 0."), "{readme}");
 }
 
-/// One command measures what a graphics card costs, tells what it left out, and takes no renderer in software for a card.
+/// One command measures the costs of a GPU, reports omitted measurements, and does not treat a
+/// software renderer as a GPU.
 #[test]
 fn what_needs_a_card_is_measured_in_one_command() {
     let folder = tempfile::tempdir().unwrap();
@@ -167,7 +170,7 @@ fn what_needs_a_card_is_measured_in_one_command() {
     assert!(probe.err.contains(adapter) && page.starts_with(&format!("# Measured on {adapter}\n")));
     let is_software = adapter.contains("llvmpipe") || adapter.contains("SwiftShader");
     assert_eq!(told["software"], is_software, "{adapter}");
-    assert_eq!(page.contains("this is no graphics card"), is_software);
+    assert_eq!(page.contains("not by a GPU"), is_software);
     let pass = &told["curves"]["pass"];
     let curves: Vec<&String> = pass["flights"].as_object().unwrap().keys().collect();
     let methods = ["none", "geo-no-caps", "geo", "sv-no-caps", "sv"];
@@ -181,7 +184,7 @@ fn what_needs_a_card_is_measured_in_one_command() {
         let roads = &flight["bytes_of_roads_most"];
         assert_eq!(roads.as_f64().is_some_and(|bytes| bytes > 0.0), method != "none", "{flight}");
     }
-    // The list of each flight has the loss, too.
+    // The table of each flight has the loss, too.
     let list = fs::read_to_string(out.join("curves-pass-1.csv")).unwrap();
     let rows: Vec<Vec<&str>> = list.lines().map(|line| line.split(',').collect()).collect();
     let at = |name: &str| rows[0].iter().position(|heading| *heading == name).unwrap();
@@ -201,10 +204,10 @@ fn what_needs_a_card_is_measured_in_one_command() {
     ] {
         assert!(page.contains(beside), "{beside}: {page}");
     }
-    for left_out in ["levels", "pixels", "left out by --parts", "areas: pass has none"] {
+    for left_out in ["levels", "pixels", "excluded by --parts", "areas: pass has none"] {
         assert!(said.contains(left_out) && page.contains(left_out), "{left_out}: {said}");
     }
-    // What is there stays.
+    // The existing folder is unchanged.
     let (code, said) = measure(&small);
     assert!(code == Some(1) && said.contains("is not empty"), "{said}");
 }

@@ -1,4 +1,5 @@
-//! `corniche serve`: what a browser gets is what is in the files, nothing else is to be had, and `--site` writes the same.
+//! `corniche serve`: a browser gets the contents of the files, and nothing else, and `--site`
+//! writes the same files.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -61,10 +62,10 @@ impl ServedFolder {
     }
 }
 
-/// A server that runs; it ends with this.
+/// A running server, which ends when this is dropped.
 struct Serving {
     child: Child,
-    /// As it was printed, with a slash at the end.
+    /// The printed URL, with a slash at the end.
     url: String,
 }
 
@@ -82,7 +83,7 @@ struct Answer {
 }
 
 impl Serving {
-    /// Waits for the line with the address.
+    /// Waits for the line with the URL.
     fn start(command: &mut Command) -> Self {
         let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         let mut said = String::new();
@@ -211,7 +212,7 @@ fn nothing_else_can_be_had() {
         let answer = serving.ask(method, "/packages/pass.pmtiles", "Content-Length: 0\r\n");
         assert_eq!(answer.status, 405, "{method}");
     }
-    // What is put into the folder of the page later was not meant.
+    // Files that are added to the folder of the page later are not served.
     fs::write(place.at("page/later.html"), "later").unwrap();
     assert_eq!(serving.get("/later.html").status, 404);
     let other = serving.ask("GET", "/packages.json", "Host: evil.example\r\n");
@@ -239,7 +240,7 @@ fn corniche_reads_from_its_own_server() {
     }
     let gone = run(&["info", &format!("{}packages/other.pmtiles", serving.url)]);
     assert_eq!(gone.code, 2, "{}", gone.err);
-    // A package that is built anew is another version, and one that is removed is missed.
+    // A rebuilt package is another version, and a removed one is reported.
     let tag = |answer: &Answer| {
         let line = answer.head.lines().find(|line| line.starts_with("etag: "));
         line.expect("a tag").to_owned()
@@ -251,7 +252,7 @@ fn corniche_reads_from_its_own_server() {
     fs::remove_file(place.package()).unwrap();
     let gone = serving.get("/packages/pass.pmtiles");
     let said = String::from_utf8(gone.body).unwrap();
-    assert!(gone.status == 404 && said.contains("packages/pass.pmtiles was there"), "{said}");
+    assert!(gone.status == 404 && said.contains("packages/pass.pmtiles existed"), "{said}");
     assert!(!said.contains(text(place.folder.path())), "{said}");
 }
 
@@ -278,7 +279,7 @@ fn packages_of_one_name_get_numbers() {
     }
 }
 
-/// Ctrl-C is how a server is meant to end: also while a browser holds a connection.
+/// Ctrl-C is the normal end of a server, also while a browser holds a connection.
 #[test]
 #[cfg(unix)]
 fn a_signal_ends_it_well() {
@@ -292,7 +293,7 @@ fn a_signal_ends_it_well() {
         let begun = Instant::now();
         let ran = serving.signal(signal);
         assert_eq!(ran.code, 0, "SIG{signal}: {}", ran.err);
-        assert!(ran.err.contains("serves 1 package; Ctrl-C ends it"), "{}", ran.err);
+        assert!(ran.err.contains("serving 1 package; press Ctrl-C to stop"), "{}", ran.err);
         assert!(!ran.err.contains("interrupted"), "{}", ran.err);
         assert!(begun.elapsed() < Duration::from_secs(20), "SIG{signal}: {:?}", begun.elapsed());
         assert!(TcpStream::connect(&host).is_err(), "its port is free");
@@ -326,27 +327,31 @@ fn what_cannot_be_served_is_told_before_anyone_asks() {
     let port = taken.local_addr().unwrap().port().to_string();
     let lines: [(&[&str], i32, &[&str]); 10] = [
         (&[&package, "--page", &page, "--port", &port], 1, &[&port, "in use by another program"]),
-        (&[&package, "--page", &page, "--address", "192.0.2.7"], 2, &["no address 192.0.2.7"]),
+        (
+            &[&package, "--page", &page, "--address", "192.0.2.7"],
+            2,
+            &["192.0.2.7 is not an address"],
+        ),
         (
             &[&package, "--page", text(&no_page)],
             2,
-            &["no-page: it has no index.html", "scripts/web"],
+            &["no-page\": the folder has no index.html", "scripts/web"],
         ),
         (&[&package, text(&other), "--page", &page], 2, &["other.pmtiles"]),
         (&[text(&missing), "--page", &page], 2, &["missing.pmtiles"]),
         (
             &["https://maps.example/a.pmtiles", "--page", &page],
             2,
-            &["on a web server already", "?src="],
+            &["already on a web server", "?src="],
         ),
         (&["--page", &page], 2, &["PACKAGE"]),
+        (&[&package, "--page", &page, "--site", "s3://maps/alps"], 2, &["s3://maps/alps", "URL"]),
         (
-            &[&package, "--page", &page, "--site", "s3://maps/alps"],
+            &[&package, "--page", &page, "--site", text(&other)],
             2,
-            &["s3://maps/alps", "address"],
+            &["other.pmtiles\": it is a file"],
         ),
-        (&[&package, "--page", &page, "--site", text(&other)], 2, &["other.pmtiles: it is a file"]),
-        (&[&package, "--site", "x", "--port", "0"], 2, &["--site", "--port", "listens nowhere"]),
+        (&[&package, "--site", "x", "--port", "0"], 2, &["--site", "--port", "starts no server"]),
     ];
     for (words, code, said) in lines {
         let ran = corniche([&["serve"], words].concat());
@@ -356,7 +361,7 @@ fn what_cannot_be_served_is_told_before_anyone_asks() {
     }
 }
 
-/// Neither is waited for: nobody writes to the pipe.
+/// Neither blocks: nobody writes to the pipe.
 #[test]
 #[cfg(unix)]
 fn pipes_and_links_are_refused() {
@@ -367,17 +372,18 @@ fn pipes_and_links_are_refused() {
     let page = place.at("page");
     let ran = corniche(["serve", text(&pipe), "--page", text(&page)]);
     assert!(ran.code == 2 && ran.err.contains("pipe"), "{}", ran.err);
-    // A package that becomes one while it is served is gone.
+    // A package that becomes a pipe while it is served is reported as missing.
     let serving = place.serve(&[&place.package()], &[]);
     fs::remove_file(place.package()).unwrap();
     fs::rename(&pipe, place.package()).unwrap();
     assert_eq!(serving.get("/packages/pass.pmtiles").status, 404);
     std::os::unix::fs::symlink(place.at("page/.secret"), page.join("link.txt")).unwrap();
     let ran = corniche(["serve", text(&place.package()), "--page", text(&page)]);
-    assert!(ran.code == 2 && ran.err.contains("link.txt is neither"), "{}", ran.err);
+    assert!(ran.code == 2 && ran.err.contains("link.txt\" is neither"), "{}", ran.err);
 }
 
-/// `--open` gives the address to a browser, the first that `BROWSER` names and that is there; where none opens, the server serves all the same.
+/// `--open` passes the URL to a browser, the first one in `BROWSER` that exists; if none can be
+/// opened, the server runs nevertheless.
 #[test]
 #[cfg(unix)]
 fn open_gives_the_address_to_a_browser() {
@@ -387,7 +393,7 @@ fn open_gives_the_address_to_a_browser() {
     fs::write(&browser, format!("#!/bin/sh\nprintf %s \"$*\" >'{}'\n", told.display())).unwrap();
     fs::set_permissions(&browser, fs::Permissions::from_mode(0o755)).unwrap();
     let (package, page) = (place.package(), place.at("page"));
-    // Without what opens addresses on this computer: a test opens no browser.
+    // Without the system's commands for opening URLs: a test must not open a browser.
     let nothing = place.at("nothing");
     fs::create_dir(&nothing).unwrap();
     let serving = |browser: &str| {
@@ -403,7 +409,7 @@ fn open_gives_the_address_to_a_browser() {
     assert_eq!(without.get("/").body, INDEX.as_bytes());
     without.child.kill().unwrap();
     let said = ended(&mut without.child).err;
-    assert!(said.contains("no browser could be opened"), "{said}");
+    assert!(said.contains("cannot open a browser"), "{said}");
 }
 
 /// A notebook that shows a map may be killed: its server ends, too.
@@ -431,7 +437,8 @@ fn without_a_folder_the_page_of_the_program_is_taken() {
     }
 }
 
-/// The folder is a page on any server that knows ranges; it is there as a whole, and replaced as a whole.
+/// The folder is a page for any server with range requests; it appears as a whole, and is replaced
+/// as a whole.
 #[test]
 fn a_site_is_the_same_files_for_another_server() {
     let place = ServedFolder::new();
@@ -464,7 +471,7 @@ fn a_site_is_the_same_files_for_another_server() {
     let serving = place.serve(&[&package, &spaced], &[]);
     let list = fs::read(site.join("packages.json")).unwrap();
     assert!(list == serving.get("/packages.json").body, "one list");
-    // By a server that knows nothing of packages.
+    // Served by a program that knows nothing of packages.
     if let Some(server) = WebServer::busybox(&site) {
         let list: serde_json::Value = serde_json::from_slice(&list).unwrap();
         for entry in list.as_array().unwrap() {
@@ -482,7 +489,7 @@ fn a_site_is_the_same_files_for_another_server() {
     let replaced = corniche(one);
     assert_eq!((replaced.code, replaced.err.as_str()), (0, ""));
     assert_eq!(names(&site.join("packages")), ["Zürich 50 %.pmtiles"]);
-    // Nothing is replaced that is no such folder, nor one with what is read.
+    // Other folders are never overwritten, nor are folders that contain an input.
     for (target, used) in [
         (&page, &page),
         (&place.at("page/examples"), &page),
@@ -498,7 +505,8 @@ fn a_site_is_the_same_files_for_another_server() {
     assert_eq!(names(place.folder.path()), left, "nothing else is left");
 }
 
-/// A package that is replaced by a link while it is served: what the link leads to is for nobody who asks.
+/// If a package is replaced by a link while it is served, the file that the link leads to is not
+/// served.
 #[test]
 #[cfg(unix)]
 fn a_link_in_the_place_of_a_package_is_not_followed() {
@@ -520,9 +528,9 @@ fn a_link_in_the_place_of_a_package_is_not_followed() {
         let answer = server.get(path);
         let said = String::from_utf8_lossy(&answer.body);
         assert_eq!(answer.status, 404, "{target}: {said}");
-        assert!(said.contains("gone") && !said.contains(text(&folder.at(""))), "{said}");
+        assert!(said.contains("is missing") && !said.contains(text(&folder.at(""))), "{said}");
     }
-    // Nor is a file that is no package.
+    // Nor is a file that is not a package.
     fs::remove_file(&package).unwrap();
     fs::copy(folder.at("secret"), &package).unwrap();
     assert_eq!(server.get(path).status, 404);

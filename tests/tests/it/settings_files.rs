@@ -1,4 +1,4 @@
-//! A settings file can hold a whole build: what is read, how it is made, and what is written.
+//! A settings file can describe a whole build: inputs, settings and outputs.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -36,7 +36,7 @@ fn a_settings_file_alone_makes_the_same_package() {
     assert!(fs::read_to_string(maps.join("defects.csv")).unwrap().lines().count() > 1);
     assert_eq!(fs::read_dir(&elsewhere).unwrap().count(), 0);
 
-    // The same in options.
+    // The same as options.
     let package = folder.path().join("options.pmtiles");
     let mine = maps.join("mine.toml");
     build_pass(
@@ -45,7 +45,8 @@ fn a_settings_file_alone_makes_the_same_package() {
     );
     assert!(fs::read(&package).unwrap() == made, "the packages differ");
 
-    // The command line goes first, file by file; -O and what is refused are as without a file.
+    // The command line takes precedence, file by file; -O and errors are the same as without a
+    // settings file.
     let ran = run(&["build", "--config", text(&settings), "-q"]);
     assert!(ran.code == 3 && ran.err.contains(text(&maps)), "{}", ran.err);
     let ran = run(&[
@@ -66,7 +67,7 @@ fn a_settings_file_alone_makes_the_same_package() {
     let ran = run(&["build", "--config", text(&settings), "-O", "-q", "--dem", "/nowhere.tif"]);
     assert!(ran.code == 2 && ran.err.contains("/nowhere.tif"), "{}", ran.err);
     assert_eq!(fs::read(maps.join("made.pmtiles")).unwrap(), made);
-    // Terrain from the package that was made: --terrain takes the place of the file's dem.
+    // Terrain from the built package: --terrain replaces the dem of the settings file.
     let old = maps.join("made.pmtiles");
     let ran = run(&[
         "build",
@@ -96,7 +97,7 @@ fn a_settings_file_that_lacks_something_says_what() {
         (
             "[inputs]\ndem = \"a.tif\"\nterrain = \"b.pmtiles\"\n",
             &["-o", text(&package)],
-            "leave the other out",
+            "remove the other",
         ),
         ("[output]\ndefects = \"a.csv\"\n", &["--dem", text(&dem), "-o", text(&package)], "--osm"),
         ("[output]\npackage = \"a.tif\"\n", &["--dem", text(&dem)], "a.tif.pmtiles"),

@@ -1,4 +1,5 @@
-//! The whole binary with several `--osm`: any order, lists and folders, shares, parts, settings files, contradictions.
+//! The whole binary with several `--osm`: any order, lists and folders, shares, parts, settings
+//! files, contradictions.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -7,7 +8,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use corniche_testing::pbf::{Block, plain_header, raw};
+use corniche_testing::pbf::{BlockBuilder, plain_header, raw};
 use e2e::{Ran, corniche, sample, text};
 use serde_json::Value;
 
@@ -16,9 +17,10 @@ fn succeed(ran: Ran) -> Ran {
     ran
 }
 
-/// Writes roads over the sample `pass`: way k from the west to the east, bent at a node that all ways of the same tens share.
+/// Writes roads over the sample `pass`: way k from the west to the east, bent at a node that all
+/// ways of the same tens share.
 fn extract(path: &Path, ids: std::ops::RangeInclusive<i64>, lift: i64) {
-    let (mut block, mut nodes) = (Block::new(), Block::new());
+    let (mut block, mut nodes) = (BlockBuilder::new(), BlockBuilder::new());
     let mut places = Vec::new();
     for id in ids {
         let lat = 468_800_000 + id * 12_000 + lift;
@@ -41,7 +43,7 @@ fn counts(package: &Path) -> Value {
     info["manifest"]["counts"].clone()
 }
 
-/// A folder of two extracts that overlap, and beside it one with all of it.
+/// A folder of two overlapping extracts, and next to it an extract with all objects.
 struct Files {
     folder: tempfile::TempDir,
 }
@@ -106,7 +108,7 @@ fn every_way_to_name_extracts_makes_the_same_package() {
         said.contains("input        osm a.osm.pbf") && said.contains("osm b.osm.pbf"),
         "{said}"
     );
-    // verify, with the package behind the extracts.
+    // verify, with the package after the extracts.
     succeed(corniche(["verify", "--osm", text(&b), text(&a), text(&two)]));
     let ran = corniche(["verify", text(&two), "--osm", text(&a)]);
     assert!(ran.code == 2 && ran.err.contains("b.osm.pbf"), "{}", ran.err);
@@ -152,16 +154,16 @@ fn parts_in_shares_and_resumed_builds_make_the_same_package() {
     subtrees.lines().for_each(|subtree| part("tiles", &["--subtree", subtree]));
     succeed(corniche(["merge", text(&plan), "-q", "--store", text(&store), "-o", text(&merged)]));
     assert!(fs::read(&merged).unwrap() == bytes, "shares make another package");
-    // A changed extract is noticed, whichever of them it is.
+    // A change of any extract is detected.
     extract(&b, 22..=50, 0);
     let ran = corniche(["part", text(&plan), "-q", "--store", text(&store), "--step", "roads"]);
-    assert!(ran.code == 2 && ran.err.contains("b.osm.pbf was changed"), "{}", ran.err);
+    assert!(ran.code == 2 && ran.err.contains("b.osm.pbf has changed"), "{}", ran.err);
 }
 
 #[test]
 fn contradictions_are_counted_and_listed() {
     let files = Files::new();
-    // The second has other places for the nodes of the ways that both have.
+    // In the second, the nodes of the common ways have other positions.
     let [a, b] = ["parts/a.osm.pbf", "parts/b.osm.pbf"].map(|name| files.at(name));
     extract(&b, 21..=50, 5);
     let (package, list, dem) =
@@ -187,7 +189,7 @@ fn contradictions_are_counted_and_listed() {
     assert_eq!(conflicts, 20, "{listed}");
     let found = counts(&package)["defects"].to_string();
     assert!(found.contains("conflicting node") && found.contains("20"), "{found}");
-    // Which file came first decides; it does so under another name, too.
+    // The first file decides; so it does under another name.
     let renamed = files.at("parts/z.osm.pbf");
     fs::rename(&a, &renamed).unwrap();
     let ran = corniche(["verify", text(&package), "-q", "--osm", text(&b), text(&renamed)]);

@@ -1,4 +1,5 @@
-//! An extract that several processes read: the same roads as when one reads it, in a part with the same name.
+//! An extract that several processes read: the same roads as from one process, in a part with the
+//! same name.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -35,7 +36,7 @@ impl Planned {
         corniche([&command[..], options].concat())
     }
 
-    /// Makes the roads; returns the name of their part, which tells its content.
+    /// Computes the roads; returns the name of their part, which identifies its content.
     fn roads(&self, store: &Path) -> (String, Ran) {
         let ran = self.part(store, &["--step", "roads"]);
         succeed(&ran);
@@ -82,7 +83,7 @@ fn any_number_of_shares_makes_the_same_part_of_roads() {
         let (name, ran) = planned.roads(&store);
         assert_eq!(name, expected, "{of} shares");
         assert_eq!(ran.err, "", "all shares are there, and nothing is to be said");
-        // With the roads there, shares are of no use any more.
+        // When the roads exist, shares are not needed any more.
         let late = planned.part(&store, &["--step", "ways", "--share", "1/5"]);
         succeed(&late);
         assert_eq!(late.out, "");
@@ -96,15 +97,15 @@ fn shares_that_are_missing_are_named_and_the_extract_is_read_in_their_place() {
     for number in [1, 3] {
         succeed(&planned.part(&store, &["--step", "ways", "--share", &format!("{number}/3")]));
     }
-    // It may be there later.
+    // It may be added later.
     ended_with(
         1,
         &planned.part(&store, &["--step", "nodes", "--share", "1/3"]),
-        &["share 2/3 of the ways", "--step ways"],
+        &["chunk 2/3 of the ways", "--step ways"],
     );
     let (name, ran) = planned.roads(&store);
     assert_eq!(name, planned.roads(&planned.store("direct")).0);
-    assert!(ran.err.contains("not all shares"), "{}", ran.err);
+    assert!(ran.err.contains("some chunks of the steps"), "{}", ran.err);
 }
 
 #[test]
@@ -113,10 +114,10 @@ fn a_share_that_makes_no_sense_is_refused() {
     let store = planned.store("store");
     for share in ["0/3", "4/3", "1/257", "3", "a/b"] {
         let options = ["--step", "ways", "--share", share];
-        refused(&planned.part(&store, &options), &["is not a share I/N"]);
+        refused(&planned.part(&store, &options), &["is not a chunk I/N"]);
     }
     let options = ["--step", "roads", "--share", "1/2"];
-    refused(&planned.part(&store, &options), &["--share 1/2", "the step roads has no shares"]);
+    refused(&planned.part(&store, &options), &["--share 1/2", "the step roads has no chunks"]);
     let options = ["--step", "ways", "--subtree", "0/0/0"];
     refused(&planned.part(&store, &options), &["--subtree 0/0/0"]);
     assert!(!store.exists() || fs::read_dir(store.join("parts")).is_err(), "nothing was made");

@@ -1,4 +1,4 @@
-//! Completions and manual pages: generated, so that they are never behind the program.
+//! Completions and manual pages: generated, so that they are always up to date.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -6,7 +6,7 @@ use std::{collections::BTreeSet, fs, path::Path, process::Command};
 
 use e2e::{corniche, skip, text};
 
-/// Commands as `--help` lists them, of the program or of a command.
+/// The commands in the `--help` of the program or of a command.
 fn commands_of(command: &[&str]) -> BTreeSet<String> {
     let help = corniche(command.iter().chain(&["--help"])).out;
     let listed = help.lines().skip_while(|line| *line != "Commands:").skip(1);
@@ -20,7 +20,7 @@ fn commands() -> BTreeSet<String> {
     commands_of(&[])
 }
 
-/// Options of a command as its `--help` lists them, long ones.
+/// The long options in the `--help` of a command.
 fn options(command: &str) -> BTreeSet<String> {
     let help = corniche(command.split(' ').chain(["--help"])).out;
     let lines = help.lines().map(str::trim_start).filter(|line| line.starts_with('-'));
@@ -117,14 +117,14 @@ fn each_command_has_a_manual_page_with_its_options() {
     };
     assert_eq!(written(&pages), names);
     assert!(page("corniche-verify.1").contains("P2.bound"), "the checks are on its page");
-    let told = page("corniche-render.1").contains("How shadow volumes find their round ends");
+    let told = page("corniche-render.1").contains("How shadow volumes compute their round caps");
     assert!(told, "what -h leaves out is told");
     if let Ok(shown) =
         Command::new("man").args(["--warnings", "-l"]).arg(pages.join("corniche-build.1")).output()
     {
         assert!(shown.stderr.is_empty(), "{}", String::from_utf8_lossy(&shown.stderr));
     }
-    // Pages are kept, all of them, unless -O is given.
+    // All existing pages are kept, unless -O is given.
     fs::write(pages.join("corniche-view.1"), b"mine").unwrap();
     fs::remove_file(pages.join("corniche-build.1")).unwrap();
     assert_eq!(corniche(["man", text(&pages)]).code, 3);

@@ -1,4 +1,5 @@
-//! `corniche build --structures`: bridges and tunnels off the ground, by whole builds, in parts, on recorded terrain and within bounds.
+//! `corniche build --structures`: bridges and tunnels off the ground, in whole builds, in parts, on
+//! recorded terrain and within bounds.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -12,7 +13,7 @@ use e2e::{
 const SPANS: [&str; 4] = ["--structures", "spans", "--classes", "0-8"];
 const GROUND: [&str; 4] = ["--structures", "ground", "--classes", "0-8"];
 
-/// `verify` with the extract holds, and looks at spans.
+/// `verify` with the extract holds, and checks spans.
 fn holds(package: &Path, osm: &Path, more: &[&str]) {
     let report = json(&[&["verify", "--json", text(package), "--osm", text(osm)], more].concat());
     for check in report["checks"].as_array().unwrap() {
@@ -25,7 +26,7 @@ fn holds(package: &Path, osm: &Path, more: &[&str]) {
     }
 }
 
-/// The sample has seven bridges and two tunnels; without spans its tiles are the same but for these.
+/// The sample has seven bridges and two tunnels; without spans its tiles are otherwise the same.
 #[test]
 fn the_sample_has_its_bridges_and_tunnels() {
     let folder = tempfile::tempdir().unwrap();
@@ -47,7 +48,7 @@ fn the_sample_has_its_bridges_and_tunnels() {
     }
 }
 
-/// Parts, and a build on the terrain of a package, make the same bytes as one build.
+/// Builds in parts, and on the terrain of a package, have the same bytes as one build.
 #[test]
 fn spans_do_not_depend_on_how_a_package_is_built() {
     let folder = tempfile::tempdir().unwrap();
@@ -67,7 +68,8 @@ fn spans_do_not_depend_on_how_a_package_is_built() {
     assert!(fs::read(&again).unwrap() == whole, "on the terrain of a package");
 }
 
-/// The gorge of the sample: a bridge over it in both methods alike, and none in a package that has bridges on the ground.
+/// The gorge of the sample: a bridge over it with both methods, and none in a package with bridges
+/// on the ground.
 #[test]
 fn pictures_show_bridges_in_the_air() {
     let folder = tempfile::tempdir().unwrap();
@@ -89,7 +91,8 @@ fn pictures_show_bridges_in_the_air() {
     assert!(bare[0] == bare[1], "without roads");
 }
 
-/// Bounds through bridges and tunnels: these are known as they are in the whole, and in parts and on the terrain of a package the bytes are the same.
+/// Bounds through bridges and tunnels: their heights are those of the whole, and in parts and on
+/// the terrain of a package the bytes are the same.
 #[test]
 fn spans_go_on_beyond_the_bounds() {
     let folder = tempfile::tempdir().unwrap();
@@ -119,7 +122,8 @@ fn spans_go_on_beyond_the_bounds() {
     assert!(fs::read(&again).unwrap() == bytes, "on the terrain of a package");
 }
 
-/// A polygon through the sample: roads begin where it cuts them, and bridges and tunnels are where they are along the whole road.
+/// A polygon through the sample: roads begin where it clips them, and bridges and tunnels have the
+/// same heights as along the whole road.
 #[test]
 fn spans_end_at_a_polygon() {
     let folder = tempfile::tempdir().unwrap();

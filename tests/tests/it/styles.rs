@@ -5,7 +5,7 @@ use std::{fs, path::Path};
 use corniche_testing::pbf;
 use e2e::{Ran, build_from, copy_pass, corniche, draw, root, text, write_ascii_grid};
 
-/// `render` in a small size, over an earlier picture; `None` where there is no adapter.
+/// Runs `render` with a small image size, over an earlier image; `None` if there is no adapter.
 fn render(package: &Path, png: &Path, options: &[&str]) -> Option<Ran> {
     draw("render", package, png, &[&["-O", "--size", "200x150"], options].concat())
 }
@@ -53,7 +53,7 @@ fn every_option_of_the_look_shows_in_the_picture() {
     assert!(ran.err.contains("write --roads sv --caps none"), "{}", ran.err);
 }
 
-/// Roads as Agrawal et al. 2006, Fig. 12, have them. With shadow volumes nothing could be drawn so.
+/// Roads as in Agrawal et al. 2006, Fig. 12. Shadow volumes cannot draw them.
 #[test]
 fn roads_that_are_laid_on_nothing_are_another_picture() {
     let folder = tempfile::tempdir().unwrap();
@@ -72,7 +72,7 @@ fn roads_that_are_laid_on_nothing_are_another_picture() {
     for roads in ["sv", "none"] {
         let png = folder.path().join("refused.png");
         let ran = render(&package, &png, &["--roads", roads, "--unmapped"]).unwrap();
-        assert!(ran.code == 2 && ran.err.contains("together with --roads geo"), "{}", ran.err);
+        assert!(ran.code == 2 && ran.err.contains("use it with --roads geo"), "{}", ran.err);
         assert!(!png.exists());
     }
 }
@@ -111,13 +111,13 @@ fn a_style_of_ones_own_is_drawn_with_or_refused_by_what_is_wrong_in_it() {
     let ran = render(&package, &png, &["--style", "no-such"]).unwrap();
     assert_eq!(ran.code, 2, "{}", ran.err);
     assert!(ran.err.contains("road-atlas, dark"), "{}", ran.err);
-    // A style is never replaced by the picture.
+    // A style is never overwritten by the image.
     let ran = render(&package, &style, &["--style", text(&style)]).unwrap();
     assert_eq!(ran.code, 2, "{}", ran.err);
     assert!(fs::read_to_string(&style).unwrap().contains("amber"));
 }
 
-/// Pictures may be as large as this adapter allows, not only as large as every adapter allows.
+/// Images may be as large as this adapter allows, not only as large as every adapter allows.
 #[test]
 fn a_picture_may_be_as_large_as_the_adapter_can_draw_it() {
     let folder = tempfile::tempdir().unwrap();
@@ -134,16 +134,16 @@ fn a_picture_may_be_as_large_as_the_adapter_can_draw_it() {
         assert!(wide.err.contains(words), "{words}: {}", wide.err);
     }
     assert!(!png.exists());
-    // An adapter with the smallest limit that is allowed draws half of that.
-    let most = if wide.err.contains("it fits with --supersampling 1") { 16384 } else { 8192 };
+    // An adapter with the smallest allowed limit draws half of that.
+    let most = if wide.err.contains("use --supersampling 1 for this size") { 16384 } else { 8192 };
     let size = format!("{most}x24");
     let ran = draw("render", &package, &png, &["--size", &size, "--supersampling", "1"]).unwrap();
     assert_eq!(ran.code, 0, "{}", ran.err);
     assert_eq!(image::image_dimensions(&png).unwrap(), (most, 24));
 }
 
-/// A style that looks at the roads' own widths draws them so, by both methods, tells how many it caps, and says nothing and
-/// draws as before where it does not look.
+/// A style that uses the roads' own widths draws them with these by both methods, and reports how
+/// many it caps; without own widths it reports nothing and draws as before.
 #[test]
 fn a_style_draws_roads_by_their_own_width_and_tells_which_it_caps() {
     let folder = tempfile::tempdir().unwrap();
@@ -158,24 +158,25 @@ fn a_style_draws_roads_by_their_own_width_and_tells_which_it_caps() {
         &[("highway", "primary"), ("lanes", "12")],
         &[("highway", "primary"), ("width", "0")],
     ];
-    let lines: Vec<pbf::Line<'_>> = (0..)
+    let lines: Vec<pbf::WayToWrite<'_>> = (0..)
         .zip(ways)
         .map(|(k, tags)| {
             let lat = 46.93 + 0.008 * f64::from(k);
-            pbf::Line { tags: tags.to_vec(), points_deg: vec![[8.98, lat], [9.02, lat]] }
+            pbf::WayToWrite { tags: tags.to_vec(), points_deg: vec![[8.98, lat], [9.02, lat]] }
         })
         .collect();
     fs::write(&osm, pbf::extract(&[], &lines)).unwrap();
     build_from([&dem, &osm], &package, &["-q", "--dem-crs", "EPSG:32632"]);
     let atlas = fs::read_to_string(root().join("config/styles/road-atlas.toml")).unwrap();
-    // The picture, and what was told of it.
+    // The image, and the note about it.
     let drawn = |entries: &str, method: &str| {
         fs::write(&style, atlas.replacen("own_width = false", entries, 1)).unwrap();
         let options = ["--style", text(&style), "--roads", method, "--width-growth", "none"];
         let from_above = ["--look-at", "9.0,46.942", "--distance", "1500", "--pitch", "0"];
         let ran = render(&package, &png, &[&options[..], &from_above].concat())?;
         assert_eq!(ran.code, 0, "{}", ran.err);
-        let note = ran.err.lines().find(|line| line.contains("ask for more")).map(str::to_owned);
+        let note =
+            ran.err.lines().find(|line| line.contains("their tags are wider")).map(str::to_owned);
         Some((fs::read(&png).unwrap(), note))
     };
     for method in ["geo", "sv"] {
@@ -184,7 +185,7 @@ fn a_style_draws_roads_by_their_own_width_and_tells_which_it_caps() {
         let by_lanes = drawn("own_width = true\nlane_width_m = 3.25", method).unwrap();
         let wide_lanes = drawn("own_width = true\nlane_width_m = 6", method).unwrap();
         let told = |count| {
-            Some(format!("note: roads drawn 60 m wide although their tags ask for more: {count}"))
+            Some(format!("note: roads drawn 60 m wide although their tags are wider: {count}"))
         };
         assert_eq!([by_class.1, by_width.1], [None, told(1)]);
         assert_eq!([by_lanes.1, wide_lanes.1], [told(1), told(2)]);

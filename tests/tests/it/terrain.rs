@@ -1,4 +1,5 @@
-//! Terrain with known answers, from rasters that the tests write themselves (ASCII grids, which GDAL reads).
+//! Terrain with known heights, from rasters that the tests write themselves (ASCII grids, which
+//! GDAL reads).
 
 use std::{
     fs,
@@ -7,7 +8,8 @@ use std::{
 
 use e2e::{corniche, json, sample, text, write_ascii_grid};
 
-/// Writes an ASCII grid of 10 m cells whose south-western sample lies at a node that is a tile corner.
+/// Writes an ASCII grid of 10 m cells whose south-western sample is at a node that is a tile
+/// corner.
 fn write_grid(folder: &Path, side: usize, height_m: impl Fn(usize, usize) -> f64) -> PathBuf {
     let corner_m = 256.0 * 10.0 * 100.0 - 5.0;
     let place =
@@ -53,7 +55,8 @@ fn a_flat_tile_has_four_vertices_and_two_triangles() {
     }
 }
 
-/// A plane is its own TIN on every level: no error anywhere, and the corner heights are the plane's.
+/// A plane is its own TIN on every level: no error anywhere, and the corner heights are the
+/// plane's.
 #[test]
 fn a_plane_is_reproduced_on_every_level() {
     let folder = tempfile::tempdir().unwrap();
@@ -67,7 +70,7 @@ fn a_plane_is_reproduced_on_every_level() {
     }
 }
 
-/// Data that ends one cell past a tile: the coarser level has no cell there, and nothing breaks.
+/// Data that ends one cell beyond a tile: the coarser level has no cell there, and nothing breaks.
 #[test]
 fn ground_that_no_coarser_tile_covers_is_still_accounted_for() {
     let folder = tempfile::tempdir().unwrap();
@@ -82,7 +85,7 @@ fn ground_that_no_coarser_tile_covers_is_still_accounted_for() {
     }
 }
 
-/// A target that cannot grow past 100 kB, as on a full disk: exit code 1, and nothing is left.
+/// A target that cannot grow beyond 100 kB, as on a full disk: exit code 1, and no files remain.
 #[cfg(unix)]
 #[test]
 fn a_full_disk_leaves_nothing_behind() {
@@ -96,7 +99,7 @@ fn a_full_disk_leaves_nothing_behind() {
         .unwrap();
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{said}");
-    assert!(said.contains("a limit on the size of files"), "{said}");
+    assert!(said.contains("limit on the size of files"), "{said}");
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 

@@ -1,4 +1,5 @@
-//! `corniche build --terrain`: new roads on the terrain of an earlier package, without its elevation files.
+//! `corniche build --terrain`: new roads on the terrain of an earlier package, without its
+//! elevation files.
 
 use std::{fs, path::Path};
 
@@ -20,7 +21,8 @@ fn built(what: &[&str], osm: &Path, package: &Path, options: &[&str]) -> Vec<u8>
     fs::read(package).expect("the package")
 }
 
-/// Two years of roads, on the terrain of the first and on a package without roads; the result keeps every promise.
+/// Two years of roads, on the terrain of the first and on a package without roads; the result keeps
+/// every promise.
 fn check_liechtenstein(options: &[&str]) {
     let files = ["N47E009.hgt", "N47E010.hgt", "2013-08-03", "2021-10-28"].map(|name| {
         let extract = format!("liechtenstein/liechtenstein-{name}.osm.pbf");
@@ -38,7 +40,7 @@ fn check_liechtenstein(options: &[&str]) {
     let full = built(&dem, &new, &at("full.pmtiles"), options);
     let again = at("again.pmtiles");
     for package in some_of(["old.pmtiles", "bare.pmtiles", "full.pmtiles"], [2, 2, 1]) {
-        // What was set for the terrain may be said again, or left out.
+        // Terrain settings may be repeated or omitted.
         let said = if package == "old.pmtiles" { options } else { &[] };
         let options = [said, &["-O"]].concat();
         let from = at(package);
@@ -75,28 +77,29 @@ fn the_sample_on_its_own_terrain_with_other_roads_settings_and_credits() {
     assert_ne!(fs::read(at("old.pmtiles")).unwrap(), full);
     let old = at("old.pmtiles");
     let take = ["--terrain", text(&old)];
-    // Credits are kept; those that are given take their place.
+    // Attribution is kept; a given one replaces it.
     assert!(built(&take, &osm, &at("a.pmtiles"), &roads) == full);
-    // An option that was forgotten is told.
+    // A forgotten option is reported.
     let ran = build(&take, &osm, &at("d.pmtiles"), &roads);
     assert!(
-        ran.code == 0 && ran.err.contains("--simplify is 0, it was made with 0.25"),
+        ran.code == 0 && ran.err.contains("--simplify is 0, but it was built with 0.25"),
         "{}",
         ran.err
     );
     let ran = build(&take, &osm, &at("e.pmtiles"), &[]);
-    assert!(ran.code == 0 && !ran.err.contains("it was made with"), "{}", ran.err);
+    assert!(ran.code == 0 && !ran.err.contains("it was built with"), "{}", ran.err);
     let own = [&roads[..], &["--attribution", "Another one"]].concat();
     built(&take, &osm, &at("b.pmtiles"), &own);
     let credits = manifest(&at("b.pmtiles"))["attribution"].clone();
     assert_eq!(credits[0], "Another one", "{credits}");
     assert_eq!(credits.as_array().unwrap().len(), 2, "{credits}");
-    // A settings file with the same terrain does not hinder; the same file served the first build.
+    // A settings file with the same terrain is accepted; the same file was used for the first
+    // build.
     fs::write(at("s.toml"), "[terrain]\nmax-error = 8\n[roads]\nsimplify = 0\n").unwrap();
     let file = at("s.toml");
     let with_file = ["--config", text(&file), "--all-classes", "--frc-table", "here5"];
     assert!(built(&take, &osm, &at("c.pmtiles"), &with_file) == full);
-    // Terrain alone takes the roads away.
+    // A build with terrain only removes the roads.
     let bare = at("bare.pmtiles");
     let ran = corniche(["build", take[0], take[1], "-o", text(&bare), "-q"]);
     assert_eq!(ran.code, 0, "{}", ran.err);
@@ -122,9 +125,9 @@ fn what_does_not_fit_is_refused_in_words() {
     refused(
         &take,
         &["--max-error", "3"],
-        &["old.pmtiles", "--max-error is 3", "made with 8", "--dem"],
+        &["old.pmtiles", "--max-error is 3", "built with 8", "--dem"],
     );
-    refused(&take, &["--cell", "20"], &["--cell is 20,20", "made with not given"]);
+    refused(&take, &["--cell", "20"], &["--cell is 20,20", "built with not given"]);
     let dem = sample("pass/pass-dem.tif");
     refused(&take, &["--dem", text(&dem)], &["--terrain", "--dem", "cannot be used with"]);
     refused(&[], &[], &["--dem"]);
@@ -132,7 +135,7 @@ fn what_does_not_fit_is_refused_in_words() {
     let nothing = at("nothing.pmtiles");
     refused(&["--terrain", text(&nothing)], &[], &["nothing.pmtiles"]);
 
-    // Another extract, elsewhere.
+    // Another extract, in another region.
     let elsewhere = at("elsewhere.tif");
     let raster = Raster::new(32632, [40, 40], [700_000.0, 10.0, 0.0, 5_500_000.0, 0.0, -10.0]);
     raster.write_values(&elsewhere, vec![7.0_f32; 1600]);
@@ -141,7 +144,7 @@ fn what_does_not_fit_is_refused_in_words() {
     assert_eq!(ran.code, 0, "{}", ran.err);
     refused(&["--terrain", text(&far)], &[], &["do not overlap"]);
 
-    // A byte of a tile is another one.
+    // One byte of a tile is changed.
     let mut bytes = fs::read(&old).unwrap();
     let last = bytes.len() - 1000;
     bytes[last] ^= 1;

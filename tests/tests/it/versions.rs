@@ -1,7 +1,8 @@
-//! What this program does with plans, stores, settings and styles of newer and older ones: it refuses them, names both versions, and says what to do.
+//! The treatment of plans, stores, settings and styles of newer and older versions: they are
+//! rejected with both versions and with advice.
 //!
-//! Packages of other versions: `hostile_packages`, and the tests `version_1` of `tileset`. What an older program makes of a newer package:
-//! `reader_of_before` of `pipeline`'s tests.
+//! Packages of other versions: `hostile_packages`, and the tests `version_1` of `tileset`. Newer
+//! packages in older programs: `reader_of_before` of `pipeline`'s tests.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -21,16 +22,16 @@ fn plans_of_other_versions_and_other_programs_are_refused_by_name() {
     let program = concat!("corniche ", env!("CARGO_PKG_VERSION"));
     let cases = [
         (
-            "\"plan_version\": 8",
             "\"plan_version\": 9",
-            "of version 9, and this program reads version 8",
+            "\"plan_version\": 10",
+            "has version 10, but this program reads version 9",
         ),
         (
-            "\"plan_version\": 8",
+            "\"plan_version\": 9",
             "\"plan_version\": 7",
-            "of version 7, and this program reads version 8",
+            "has version 7, but this program reads version 9",
         ),
-        (program, "corniche 99.0.0", "made by corniche 99.0.0"),
+        (program, "corniche 99.0.0", "created by corniche 99.0.0"),
         ("\"libraries\": \"GDAL ", "\"libraries\": \"GDAL 9.9, not ", "GDAL 9.9"),
     ];
     for (there, other, words) in cases {
@@ -38,7 +39,11 @@ fn plans_of_other_versions_and_other_programs_are_refused_by_name() {
         fs::write(&plan, own.replace(there, other)).unwrap();
         let ran = corniche(["part", text(&plan), "--step", "hashes", "--store", text(&store)]);
         assert_eq!(ran.code, 2, "{other}: {}", ran.err);
-        assert!(ran.err.contains(words) && ran.err.contains("make the plan again"), "{}", ran.err);
+        assert!(
+            ran.err.contains(words) && ran.err.contains("create the plan again"),
+            "{}",
+            ran.err
+        );
     }
 }
 
@@ -53,14 +58,14 @@ fn stores_of_other_versions_are_refused_with_the_folder_that_can_be_removed() {
     let hashes = ["part", text(&plan), "--step", "hashes", "--store", text(&store)];
     assert_eq!(corniche(hashes).code, 0);
     let own = fs::read(store.join("store")).unwrap();
-    // A build that was killed leaves such a folder, too.
+    // A killed build leaves such a folder, too.
     let left = file(".a.pmtiles.work");
     fs::create_dir(&left).unwrap();
     fs::copy(store.join("plan.json"), left.join("plan.json")).unwrap();
     let build = ["build", "-q", "--max-error", "50", "--dem", text(&dem), "-o", text(&package)];
     let resumed: Vec<&str> = build.into_iter().chain(["--resume"]).collect();
     for version in [0, 2] {
-        // The version, and no checksum: another version may have another one.
+        // The version without the checksum, because another version may have another checksum.
         let mut other = own.clone();
         other[8] = version;
         for (place, command) in [(&store, hashes.as_slice()), (&left, &resumed)] {
@@ -68,8 +73,8 @@ fn stores_of_other_versions_are_refused_with_the_folder_that_can_be_removed() {
             let ran = corniche(command);
             assert_eq!(ran.code, 2, "{}", ran.err);
             let words = format!(
-                "{place:?} was written by another version of Corniche (store format {version}, this one knows 1); use that version, or remove it \
-                 and start again (build: with -O)"
+                "{place:?} was written by another version of Corniche (store format {version}, this version reads 1); use that version, or delete \
+                 the store and start over (build: with -O)"
             );
             assert!(ran.err.contains(&words), "{}", ran.err);
         }
@@ -80,7 +85,7 @@ fn stores_of_other_versions_are_refused_with_the_folder_that_can_be_removed() {
     assert_eq!((ran.code, left.exists()), (0, false), "{}", ran.err);
 }
 
-/// Texts of each kind, which name few of the keys that there are, as those of an older program do.
+/// Texts of each kind with few of the existing keys, as an older program wrote them.
 const OLDER_TEXTS: [(&str, &str); 4] = [
     ("settings.toml", "[terrain]\nmax-error = 50\n"),
     ("classes.toml", "name = \"own\"\nleast_class = 7\nnot_roads = []\n[classes]\nprimary = 1\n"),
@@ -109,7 +114,7 @@ fn texts_that_a_program_does_not_know_are_refused_with_their_line_and_older_ones
     for (name, older) in OLDER_TEXTS {
         fs::write(file(name), older).unwrap();
         let ran = run(name);
-        // Where nothing can draw, the style was read before that is noticed.
+        // If nothing can draw, the style is read before that is detected.
         assert!(ran.code == 0 || (name == "style.toml" && ran.code == 1), "{name}: {}", ran.err);
         fs::write(file(name), format!("of-next-year = 1\n{older}")).unwrap();
         let ran = run(name);

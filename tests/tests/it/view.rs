@@ -1,4 +1,4 @@
-//! The window through the whole binary, on a display without a screen (Xvfb), driven by xdotool.
+//! The window through the whole binary, on a virtual display (Xvfb), controlled by xdotool.
 #![cfg(target_os = "linux")]
 
 use std::{
@@ -33,7 +33,7 @@ impl Line {
         Some(numbers)
     }
 
-    /// The camera does not move, and no tile is missing or loading.
+    /// Whether the camera does not move, and no tile is missing or loading.
     fn is_settled(&self) -> bool {
         self.vector(["missing", "loading", "moving"]) == Some([0.0; 3])
             && self.number("tiles").is_some_and(|tiles| tiles > 0.0)
@@ -67,7 +67,7 @@ impl Drop for Desk {
 }
 
 impl Desk {
-    /// `None`, with a line that says why, without Xvfb, xdotool or a graphics adapter.
+    /// Returns `None`, with the reason printed, without Xvfb, xdotool or a GPU adapter.
     fn open(options: &[&str]) -> Option<Self> {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let package = folder.path().join("pass.pmtiles");
@@ -75,7 +75,7 @@ impl Desk {
         Self::open_place(folder, package.as_os_str(), options)
     }
 
-    /// Opens the package at a path or an address.
+    /// Opens the package at a path or a URL.
     fn open_place(folder: tempfile::TempDir, package: &OsStr, options: &[&str]) -> Option<Self> {
         let display = Display::start()?;
         let (trace, pictures) = (folder.path().join("trace.csv"), folder.path().join("pictures"));
@@ -97,8 +97,8 @@ impl Desk {
         desk.wait("a first picture", Line::is_settled).map(|_| desk)
     }
 
-    /// Waits until the last line of the trace is as it is to be and no other follows. `None` when the window ended for
-    /// want of an adapter.
+    /// Waits until the last line of the trace is as expected and no other follows. `None` if the
+    /// window ended because there is no adapter.
     fn wait(&mut self, what: &str, is_right: impl Fn(&Line) -> bool) -> Option<Line> {
         let begun = Instant::now();
         let mut last: Option<(u64, Instant)> = None;
@@ -150,13 +150,13 @@ impl Desk {
         self.wait(&format!("cursor at {x}, {y}"), is_there).expect("the window is open")
     }
 
-    /// The picture that is saved when a key is pressed.
+    /// The image that is saved when a key is pressed.
     fn picture(&self, key: &str, number: u32) -> image::RgbaImage {
         self.xdotool(&format!("key {key}"));
         self.saved(number)
     }
 
-    /// Waits for the picture with this number.
+    /// Waits for the image with this number.
     fn saved(&self, number: u32) -> image::RgbaImage {
         let path = self.pictures.join(format!("corniche-{number:03}.png"));
         let begun = Instant::now();
@@ -171,7 +171,7 @@ impl Desk {
     }
 }
 
-/// Whether a part of a picture (left, top, right, bottom) has dark letters on a light background.
+/// Whether a part of an image (left, top, right, bottom) has dark letters on a light background.
 fn has_letters(picture: &image::RgbaImage, [left, top, right, bottom]: [u32; 4]) -> bool {
     let (mut light, mut dark) = (0, 0);
     for (x, y, pixel) in picture.enumerate_pixels() {
@@ -212,11 +212,11 @@ fn what_is_no_package_opens_no_window() {
     assert!(ran.err.contains("none.pmtiles"), "{}", ran.err);
 }
 
-/// What is shown of a package on a web server is what is shown of the file.
+/// A package on a web server looks the same as the file.
 #[test]
 fn a_package_on_a_web_server_is_shown() {
     let map_of = |desk: &Desk| {
-        // The keyboard goes to the window.
+        // The keyboard events go to the window.
         desk.focus();
         desk.picture("p", 1)
     };
@@ -247,7 +247,8 @@ fn the_ground_grabbed_stays_under_the_cursor() {
     for line in [dragged, released] {
         let here = line.vector(ground).expect("there is still ground");
         let pixel_m = line.number("pixel_m").expect("and it has a size");
-        // On tilted ground a pixel covers more ground than this, so the true number of pixels is smaller.
+        // On tilted ground a pixel covers more ground than this, so the true number of pixels is
+        // smaller.
         let off_m = (0..3).map(|axis| (here[axis] - grabbed[axis]).powi(2)).sum::<f64>().sqrt();
         assert!(off_m / pixel_m <= 0.5, "{} px off: {press:?} {line:?}", off_m / pixel_m);
         let eye = ["eye_x_m", "eye_y_m"];
@@ -285,7 +286,8 @@ fn shows_panel(picture: &image::RgbaImage) -> bool {
 fn a_key_held_when_the_keyboard_comes_to_the_window_is_pressed_once() {
     let Some(desk) = Desk::open(&[]) else { return };
     let id = desk.display.window();
-    // A window that gets the focus late is told that the key is already down, and then also gets the event of its press.
+    // A window that gets the focus late is told that the key is already down, and then also gets
+    // the event of its press.
     desk.signal("STOP");
     desk.xdotool(&format!("windowfocus {id}"));
     desk.xdotool("keydown p");
@@ -295,8 +297,8 @@ fn a_key_held_when_the_keyboard_comes_to_the_window_is_pressed_once() {
     assert!(shows_panel(&desk.picture("shift+p", 2)), "of the window, and no other before it");
 }
 
-/// Held down a little too long, Ctrl Q in one window must not end the next one too; pressed here it does, and the picture
-/// that was asked for just before is not lost.
+/// If Ctrl Q is held down a little too long in one window, it must not close the next one, too;
+/// pressed there it does, and the image that was requested just before is not lost.
 #[test]
 fn control_q_ends_the_window_that_it_was_pressed_in() {
     let Some(mut desk) = Desk::open(&[]) else { return };
@@ -414,7 +416,7 @@ impl Desk {
     }
 }
 
-/// Yellow as drawn lines are.
+/// The number of pixels with the yellow of drawn lines.
 fn yellow(picture: &image::RgbaImage) -> usize {
     let is_yellow = |pixel: &&image::Rgba<u8>| {
         let [red, green, blue, _] = pixel.0;
@@ -431,7 +433,7 @@ fn a_line_is_drawn_changed_and_saved() {
     let near = ["--look-at", "9.53,46.88", "--distance", "5000", "--draw", &draw];
     let Some(mut desk) = Desk::open(&near) else { return };
     desk.focus();
-    // Without the panel there is room beside the notices.
+    // Without the panel there is space next to the notices.
     desk.xdotool("key Tab");
     let bare = yellow(&desk.picture("p", 1));
     desk.xdotool("key l");
@@ -444,7 +446,7 @@ fn a_line_is_drawn_changed_and_saved() {
     let three = desk.saved_lines(&path, |lines| lines.len() == 1);
     assert_eq!(three[0].len(), 3);
 
-    // Another line, whose last point goes again.
+    // Another line, whose last point is removed.
     for (x, y) in [(320, 200), (400, 215), (440, 200)] {
         desk.click(x, y);
     }
@@ -453,7 +455,7 @@ fn a_line_is_drawn_changed_and_saved() {
     assert_eq!(two[0], three[0], "to the last bit");
     assert_eq!(two[1].len(), 2);
 
-    // The middle of the first line is dragged; that is one change, which is taken back and made again.
+    // The middle of the first line is dragged; that is one change, which is undone and redone.
     desk.point_at(380, 330);
     desk.xdotool("mousedown 1");
     for step in 1..=5 {
@@ -469,7 +471,7 @@ fn a_line_is_drawn_changed_and_saved() {
     desk.xdotool("key ctrl+y");
     desk.saved_lines(&path, |lines| lines == dragged);
 
-    // What is not saved when the window closes is saved then.
+    // Unsaved changes are saved when the window closes.
     desk.click(350, 300);
     desk.xdotool("key Return");
     desk.xdotool("key ctrl+z");
@@ -478,7 +480,7 @@ fn a_line_is_drawn_changed_and_saved() {
     assert_eq!(ended(&mut desk.window).code, 0);
     assert_eq!(lines_of(&path), two, "two changes were taken back: the point and the drag");
 
-    // A picture of the same file, by another command.
+    // An image of the same file, by another command.
     let package = desk.trace.with_file_name("pass.pmtiles");
     let picture = folder.path().join("lines.png");
     let words = ["render", e2e::text(&package), "-o", e2e::text(&picture), "--overlay", &draw];
@@ -486,7 +488,7 @@ fn a_line_is_drawn_changed_and_saved() {
     assert_eq!(ran.code, 0, "{}", ran.err);
 }
 
-/// Geometries of a GeoJSON file: what they are, and how many positions their first line has.
+/// Geometries of a GeoJSON file: their types, and the numbers of positions of their first line.
 fn geometries(path: &Path) -> Vec<(String, usize)> {
     let text = fs::read_to_string(path).expect("it is saved");
     let document: serde_json::Value = serde_json::from_str(&text).expect("as JSON");
@@ -521,7 +523,8 @@ fn an_area_is_drawn_from_above_and_its_corners_are_rounded() {
     }
     desk.xdotool("key g");
     let drawn = desk.picture("p", 2);
-    // Inside, well away from the outline, every pixel is more yellow than the bare map, and beside it none is.
+    // Inside, well away from the outline, every pixel is more yellow than the bare map, and outside
+    // none is.
     let is_tinted = |x: u32, y: u32| {
         let [red, green, blue] = [0, 1, 2].map(|channel| {
             i32::from(drawn.get_pixel(x, y)[channel]) - i32::from(bare.get_pixel(x, y)[channel])

@@ -1,4 +1,4 @@
-//! The files that `corniche view` writes: they replace no other file, and none is lost.
+//! The files that `corniche view` writes: they overwrite no other file, and none is lost.
 #![cfg(target_os = "linux")]
 
 use std::{
@@ -21,7 +21,7 @@ fn package() -> (tempfile::TempDir, PathBuf) {
     (folder, package)
 }
 
-/// Runs `corniche view` without a display. A refusal must come before the attempt to open a window.
+/// Runs `corniche view` without a display. An error must come before the attempt to open a window.
 fn refused(package: &Path, options: &[&str]) -> Ran {
     let mut command = Command::new(binary());
     without_display(command.arg("view").arg(package).args(options))
@@ -76,7 +76,7 @@ fn a_package_that_does_not_fit_the_memory_allowed_opens_no_window() {
     assert!(ran.err.contains("--gpu-memory"), "{}", ran.err);
 }
 
-/// A window that records its flight, and its number; `None` without a graphics adapter.
+/// A window that records its flight, and its number; `None` without a GPU adapter.
 fn recording(
     display: &Display,
     package: &Path,
@@ -149,7 +149,7 @@ fn a_recording_that_cannot_be_saved_is_told_and_fails() {
     display.xdotool("key ctrl+q");
     let ran = ended(&mut window);
     assert_eq!(ran.code, 1, "{}", ran.err);
-    assert!(ran.err.contains("nothing could be saved in"), "{}", ran.err);
+    assert!(ran.err.contains("cannot save to"), "{}", ran.err);
     assert!(ran.err.contains(text(&pictures)), "{}", ran.err);
     assert_eq!(fs::read(&pictures).unwrap(), b"precious");
 }

@@ -1,4 +1,4 @@
-//! Product code keeps to its budget, which sinks with it.
+//! Product code stays within its budget, which sinks with it.
 
 use std::fs;
 
@@ -8,12 +8,12 @@ use corniche_tidy::{BUDGET, over_budget, product_bytes, read_budget, root};
 fn product_code_keeps_to_its_budget() {
     let budget = read_budget(&fs::read_to_string(root().join(BUDGET)).unwrap()).unwrap();
     let found = product_bytes(&root()).unwrap();
-    assert!(found.values().sum::<u64>() > 1_000_000, "the count does not see much: {found:?}");
+    assert!(found.values().sum::<u64>() > 1_000_000, "the count finds too little code: {found:?}");
     let wrong = over_budget(&budget, &found);
     assert!(
         wrong.is_empty(),
-        "{}\n`cargo run -p corniche-tidy budget --sink` lowers rows; to raise one, say in the commit for which feature, \
-         and by how much",
+        "{}\n`cargo run -p corniche-tidy budget --sink` lowers rows; to raise a row, name the feature and \
+         the number of bytes in the commit",
         wrong.join("\n")
     );
 }

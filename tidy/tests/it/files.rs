@@ -1,4 +1,5 @@
-//! Where tests lie, what is visible and how long files are: the rules, held against the workspace itself.
+//! The rules for the places of tests, for visibility and for lengths of files, checked against the
+//! workspace itself.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -8,11 +9,11 @@ use std::{
 
 use corniche_tidy::{crates_of, figures, files_below, root};
 
-/// Lines beyond which a file is split.
+/// The largest number of lines of a file.
 const MAX_FILE_LINES: usize = 600;
-/// Product lines below which a crate says why it is one.
+/// The number of product lines below which a crate's manifest must give a reason for the crate.
 const SMALL_CRATE_LINES: usize = 1000;
-/// Words that a file's first line has at least.
+/// The smallest number of words in a file's first line.
 const LEAST_WORDS: usize = 4;
 
 fn all_rust_files() -> Vec<PathBuf> {
@@ -21,18 +22,19 @@ fn all_rust_files() -> Vec<PathBuf> {
     files
 }
 
-/// Unit tests lie in `NAME_tests.rs` beside the code, integration tests in `tests/`.
+/// Unit tests are in `NAME_tests.rs` next to the code, integration tests in `tests/`.
 #[test]
 fn unit_tests_lie_beside_the_code() {
     for file in all_rust_files() {
         let text = fs::read_to_string(&file).unwrap();
         let inline = text.lines().any(|line| line.trim_start().starts_with("mod tests {"));
-        assert!(!inline, "{} has a module of tests inside", file.display());
+        assert!(!inline, "{} contains a test module; move it to a file of its own", file.display());
     }
 }
 
-/// The file of the module `name` is `name.rs`, and its children lie in the folder `name/`. In the folders of integration tests
-/// `mod.rs` is allowed, because cargo takes each other file at the top of `tests/` for a test.
+/// The file of the module `name` is `name.rs`, and its children are in the folder `name/`. In the
+/// folders of integration tests `mod.rs` is allowed, because cargo treats every other file at the
+/// top of `tests/` as a test.
 #[test]
 fn modules_of_products_have_files_of_their_own_name() {
     for file in all_rust_files() {
@@ -40,13 +42,13 @@ fn modules_of_products_have_files_of_their_own_name() {
         let is_product = in_repository.components().any(|part| part.as_os_str() == "src");
         assert!(
             !(is_product && file.ends_with("mod.rs")),
-            "{}: name the file after its folder and put it beside that",
+            "{}: name the file after its folder and put it next to the folder",
             file.display()
         );
     }
 }
 
-/// Inside a crate things are visible everywhere, `pub(crate)`, or nowhere.
+/// Inside a crate, items are visible everywhere, with `pub(crate)`, or nowhere.
 #[test]
 fn visibility_inside_a_crate_has_one_form() {
     let others = [concat!("pub(", "super)"), concat!("pub(", "in ")];
@@ -68,7 +70,8 @@ fn files_stay_short() {
     }
 }
 
-/// Whoever opens a file meets its purpose first: what is in it, or, of a module of tests, what holds. No two files say the same.
+/// The first line of a file states its purpose: its content, or, in a module of tests, the tested
+/// property. No two files have the same first line.
 #[test]
 fn each_file_begins_with_what_it_is_for() {
     let mut seen = BTreeMap::new();
@@ -76,7 +79,10 @@ fn each_file_begins_with_what_it_is_for() {
         let text = fs::read_to_string(&file).unwrap();
         let first = text.lines().next().unwrap_or_default();
         let purpose = first.strip_prefix("//! ").unwrap_or_else(|| {
-            panic!("{}: the first line is no `//!` that says what is in the file", file.display())
+            panic!(
+                "{}: the first line is not a `//!` comment that describes the file",
+                file.display()
+            )
         });
         let words = purpose.split_whitespace().count();
         assert!(words >= LEAST_WORDS, "{}: {purpose:?} says too little", file.display());
@@ -86,7 +92,7 @@ fn each_file_begins_with_what_it_is_for() {
     }
 }
 
-/// What a crate includes lies in its own folder, so that `cargo package` takes it along.
+/// Files that a crate includes are in its own folder, so that `cargo package` packs them.
 #[test]
 fn included_files_lie_in_the_crate_that_includes_them() {
     let mut checked = 0;
@@ -119,7 +125,7 @@ fn included_files_lie_in_the_crate_that_includes_them() {
     }
 }
 
-/// The image is made of the files that `Dockerfile` copies: each may pass `.dockerignore`, and nothing else.
+/// `Dockerfile` copies exactly the files that `.dockerignore` lets pass.
 #[test]
 fn an_image_is_built_from_the_archive() {
     let text = fs::read_to_string(root().join("Dockerfile")).unwrap();
@@ -132,12 +138,12 @@ fn an_image_is_built_from_the_archive() {
     assert!(!wanted.is_empty());
 }
 
-/// A small crate says in its manifest why it stands alone.
+/// The manifest of a small crate gives a reason why the crate is separate.
 #[test]
 fn small_crates_say_why_they_stand_alone() {
     for folder in crates_of(&root()).unwrap() {
         let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap();
-        let says = manifest.lines().any(|line| line.starts_with("# Stands alone: "));
+        let says = manifest.lines().any(|line| line.starts_with("# Separate crate: "));
         let lines = figures(&folder).unwrap().product_lines;
         let is_small = lines < SMALL_CRATE_LINES;
         assert_eq!(is_small, says, "{}: {lines} product lines", folder.display());

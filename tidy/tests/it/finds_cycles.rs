@@ -1,10 +1,10 @@
-//! The check for cycles sees those that are there, and none where there is none.
+//! The check for cycles finds existing cycles, and none where there is none.
 
 use std::fs;
 
 use corniche_tidy::{Cycle, Graph, read_crate, uses};
 
-/// The cycles of a crate of these files, those between files first.
+/// The cycles of a crate of these files; cycles between files come first.
 fn cycles_of(files: &[(&str, &str)]) -> Vec<Cycle> {
     let folder = tempfile::tempdir().expect("temporary folder");
     for (name, text) in files {
@@ -19,7 +19,7 @@ fn cycles_of(files: &[(&str, &str)]) -> Vec<Cycle> {
     cycles
 }
 
-/// The nodes of every cycle, without its place.
+/// The nodes of every cycle, without the crate or module.
 fn nodes_of(cycles: &[Cycle]) -> Vec<Vec<&str>> {
     cycles.iter().map(|cycle| cycle.nodes.iter().map(String::as_str).collect()).collect()
 }

@@ -1,7 +1,9 @@
-//! Which crates start threads, say `unsafe` or open files: each of them stands in a list here, with its reason.
+//! Which crates start threads, use `unsafe` or open files: each such crate is in a list here, with
+//! its reason.
 //!
-//! What is found are paths in the syntax tree, followed through the file's own imports; comments, texts and test code do not count.
-//! A method of a value whose type is not named is not seen, except for those of GDAL's drivers that make files.
+//! The tests find paths in the syntax tree, resolved through the file's own imports; comments,
+//! texts and test code do not count. A method of a value whose type is not named is not found,
+//! except for those methods of GDAL's drivers that create files.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -17,47 +19,47 @@ use syn::{ImplItem, Item, Stmt, UseTree, visit::Visit};
 const THREADS: [(&str, &str); 9] = [
     (
         "cli",
-        "signals, the end of standard input, progress while nothing moves, a flight that is shown in a window",
+        "signals, the end of standard input, progress without updates, a flight that is shown in a window",
     ),
     ("live", "tiles are loaded while another thread draws"),
     ("objects", "the runtime of the library for object storage"),
-    ("osm", "blobs are decoded in the pool that the caller hands in"),
+    ("osm", "blobs are decoded in the caller's pool"),
     ("pieces", "the pool in which extracts are decoded and their objects split"),
     ("remote", "a thread that waits for the network"),
-    ("serve", "connections side by side"),
+    ("serve", "simultaneous connections"),
     ("window", "files are written while the window draws"),
-    ("work", "what is made of tiles and roads side by side, and their one writer"),
+    ("work", "parallel work on tiles and roads, and the thread that writes the results"),
 ];
 
 /// Crates with `unsafe` code.
 const UNSAFE: [(&str, &str); 2] = [
-    ("cli", "a call of the C library, by which free memory goes back to the system"),
-    ("gis", "functions of GDAL and PROJ that the `gdal` crate does not hand out"),
+    ("cli", "a call of the C library that returns free memory to the system"),
+    ("gis", "functions of GDAL and PROJ that the `gdal` crate does not wrap"),
 ];
 
 /// Crates that open files.
 const FILES: [(&str, &str); 11] = [
     ("cli", "settings, styles, lists, pages and everything that commands write"),
-    ("export", "the files that it makes, and scratch space"),
+    ("export", "the files that it writes, and scratch space"),
     ("gis", "rasters, polygons, vector files, lists of files"),
-    ("objects", "the file that is sent, and the note of an upload that was begun"),
+    ("objects", "the file that is uploaded, and the record of an unfinished upload"),
     ("osm", "extracts"),
     ("overlay", "the file of lines that a person draws"),
-    ("spec", "hashes of inputs, what the system says of its memory"),
-    ("store", "the store's own files, and what is written beside targets"),
+    ("spec", "hashes of inputs, the system's memory limits"),
+    ("store", "the store's own files, and files next to targets"),
     ("tileset", "packages"),
     ("verify", "a folder for intermediate results"),
     ("window", "pictures and flights that a person saves"),
 ];
 
-/// Files that write to the terminal, or ask what it is.
+/// Files that write to the terminal, or query its type.
 const PRINTERS: [(&str, &str); 3] = [
-    ("crates/cli/src/main.rs", "help and what the parser of the command line says, in its colours"),
+    ("crates/cli/src/main.rs", "help and messages of the command-line parser, in colour"),
     ("crates/cli/src/messages.rs", "answers, notes, warnings and errors"),
-    ("crates/cli/src/progress.rs", "bars, whose texts are our own"),
+    ("crates/cli/src/progress.rs", "progress bars with fixed texts"),
 ];
 
-/// Things that only some crates do.
+/// Actions that only some crates may take.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Deed {
     StartsThreads,
@@ -66,7 +68,7 @@ enum Deed {
     Prints,
 }
 
-/// Methods of GDAL's drivers that make a file.
+/// Methods of GDAL's drivers that create a file.
 const DRIVER_METHODS: [&str; 4] = [
     "create_copy",
     "create_vector_only",
@@ -79,7 +81,7 @@ const FS_FUNCTIONS: [&str; 4] = ["copy", "read", "read_to_string", "write"];
 /// Functions of `std::fs::File` that open a file.
 const FILE_FUNCTIONS: [&str; 4] = ["create", "create_new", "open", "options"];
 
-/// What a path does, given from its root: `std::thread::spawn`.
+/// The action of a path given from its root, such as `std::thread::spawn`.
 #[expect(clippy::match_same_arms, reason = "a row for each library")]
 fn deed_of(path: &[&str]) -> Option<Deed> {
     match path {
@@ -104,7 +106,7 @@ fn deed_of(path: &[&str]) -> Option<Deed> {
     }
 }
 
-/// What the code of a file does outside tests.
+/// The actions in the code of a file, outside tests.
 #[derive(Default)]
 struct Finder {
     imports: BTreeMap<String, Vec<String>>,
@@ -125,7 +127,7 @@ impl Finder {
         finder.found
     }
 
-    /// Takes a path as the code names it.
+    /// Adds a path as the code names it.
     fn take(&mut self, named: &[String]) {
         let Some((first, rest)) = named.split_first() else { return };
         let whole: Vec<&str> = match self.imports.get(first) {
@@ -135,7 +137,7 @@ impl Finder {
         self.found.extend(deed_of(&whole));
     }
 
-    /// Looks for paths and for `unsafe` in the tokens of a macro.
+    /// Searches the tokens of a macro for paths and for `unsafe`.
     fn take_tokens(&mut self, tokens: TokenStream) {
         let mut path: Vec<String> = Vec::new();
         let mut colons = 0;
@@ -208,7 +210,7 @@ impl<'ast> Visit<'ast> for Finder {
     }
 
     fn visit_expr_method_call(&mut self, call: &'ast syn::ExprMethodCall) {
-        // Of the parser of the command line.
+        // A method of the command-line parser.
         if call.method == "print" && call.args.is_empty() {
             self.found.insert(Deed::Prints);
         }
@@ -239,13 +241,13 @@ impl<'ast> Visit<'ast> for Finder {
     }
 
     fn visit_item_foreign_mod(&mut self, block: &'ast syn::ItemForeignMod) {
-        // The blocks of `wasm-bindgen` are not marked: it makes safe functions of them.
+        // The blocks of `wasm-bindgen` are not marked: it generates safe functions from them.
         self.found.extend(block.unsafety.map(|_| Deed::IsUnsafe));
         syn::visit::visit_item_foreign_mod(self, block);
     }
 }
 
-/// All imports of a file, wherever they stand outside tests: the name that each gives, and its path.
+/// All imports of a file outside tests: the name that each introduces, and its path.
 #[derive(Default)]
 struct Imports {
     found: BTreeMap<String, Vec<String>>,
@@ -265,7 +267,7 @@ impl<'ast> Visit<'ast> for Imports {
     }
 }
 
-/// The leaves of a `use`: the name that each gives, `None` for `*`, and its path.
+/// The leaves of a `use` declaration: the name that each introduces, `None` for `*`, and its path.
 fn flatten(
     tree: &UseTree,
     prefix: &mut Vec<String>,
@@ -300,10 +302,11 @@ fn flatten(
     }
 }
 
-/// What each crate of the workspace does in its own code, with the files that do it, from the workspace's root.
+/// The actions of each crate of the workspace in its own code, with the files concerned, relative
+/// to the workspace's root.
 static DEEDS: LazyLock<BTreeMap<(Deed, String), BTreeSet<String>>> = LazyLock::new(deeds_of_crates);
 
-/// Reads all crates but `testing`, which is there for tests.
+/// Reads all crates but `testing`, which only serves tests.
 fn deeds_of_crates() -> BTreeMap<(Deed, String), BTreeSet<String>> {
     let mut found: BTreeMap<_, BTreeSet<String>> = BTreeMap::new();
     let root = root();
@@ -325,7 +328,7 @@ fn deeds_of_crates() -> BTreeMap<(Deed, String), BTreeSet<String>> {
     found
 }
 
-/// Compares what crates do with a list of those that may.
+/// Compares the actions of crates with a list of the crates that may take them.
 fn check(deed: Deed, allowed: &[(&str, &str)], list: &str) {
     let doers = DEEDS.iter().filter(|((what, _), _)| *what == deed);
     for ((_, name), files) in doers {
@@ -338,7 +341,7 @@ fn check(deed: Deed, allowed: &[(&str, &str)], list: &str) {
     for (name, reason) in allowed {
         assert!(!reason.is_empty(), "{name} has no reason in {list}");
         let does = DEEDS.contains_key(&(deed, (*name).to_owned()));
-        assert!(does, "{name} stands in {list} and no longer {deed:?}");
+        assert!(does, "{name} is in {list} but no longer {deed:?}");
     }
 }
 
@@ -357,7 +360,7 @@ fn crates_that_open_files_are_listed() {
     check(Deed::OpensFiles, &FILES, "FILES");
 }
 
-/// What others wrote is escaped in one module, so no other writes to the terminal.
+/// Foreign text is escaped in one module, so no other module writes to the terminal.
 #[test]
 fn one_module_prints_and_others_that_write_to_the_terminal_are_listed() {
     let printing = DEEDS.iter().filter(|((deed, _), _)| *deed == Deed::Prints);
@@ -366,7 +369,7 @@ fn one_module_prints_and_others_that_write_to_the_terminal_are_listed() {
     assert!(PRINTERS.iter().all(|(_, reason)| !reason.is_empty()));
 }
 
-/// Each way to do it is seen, whatever the imports are.
+/// Every form of an action is found, with any imports.
 #[test]
 fn what_is_planted_is_found() {
     let planted = [
@@ -398,7 +401,7 @@ fn what_is_planted_is_found() {
     }
 }
 
-/// Comments, texts, tests and things with similar names are none of it.
+/// Comments, texts, tests and names that are merely similar are not found.
 #[test]
 fn what_only_looks_like_it_is_not_found() {
     let harmless = [

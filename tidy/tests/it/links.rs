@@ -1,10 +1,10 @@
-//! Every link of a page to another place of this repository leads somewhere.
+//! Every link of a page to another place in this repository is valid.
 
 use std::fs;
 
 use corniche_tidy::{files_below, root};
 
-/// The targets of `[text](target)` in a page, code left out.
+/// The targets of `[text](target)` in a page, without code blocks.
 fn targets(text: &str) -> Vec<String> {
     let mut found = Vec::new();
     let mut is_code = false;
@@ -24,7 +24,8 @@ fn targets(text: &str) -> Vec<String> {
     found
 }
 
-/// The anchors that headings of a page have on GitHub: lower case, spaces as hyphens, no punctuation.
+/// The anchors that headings of a page have on GitHub: lower case, spaces as hyphens, no
+/// punctuation.
 fn anchors(text: &str) -> Vec<String> {
     let heading = |line: &str| {
         let title = line.trim_start_matches('#').trim().to_lowercase();
@@ -60,5 +61,5 @@ fn links_between_pages_and_files_lead_somewhere() {
         }
     }
     assert!(checked > 20, "only {checked} links were found");
-    assert!(broken.is_empty(), "links that lead nowhere:\n{}", broken.join("\n"));
+    assert!(broken.is_empty(), "these links are broken:\n{}", broken.join("\n"));
 }

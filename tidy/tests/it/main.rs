@@ -1,4 +1,4 @@
-//! The house rules, in one binary. The first line of each module says what holds.
+//! The house rules, in one binary. The first line of each module states its rule.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 

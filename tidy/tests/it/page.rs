@@ -1,4 +1,4 @@
-//! The page in the program is made from the sources that are here.
+//! The page in the program was generated from the current sources.
 
 use std::fs;
 
@@ -11,9 +11,9 @@ fn the_page_in_the_program_is_made_from_these_sources() {
     assert_eq!(
         known["sources"].as_str().unwrap(),
         page_sources(&root()).unwrap(),
-        "what the page is made from changed since it was made: run `scripts/web --update`"
+        "the sources of the page have changed since it was generated; run `scripts/web --update`"
     );
-    // A hash of nothing would be the same for ever.
+    // The hash of nothing would never change.
     let other = tempfile::tempdir().unwrap();
     page_sources(other.path()).unwrap_err();
 }

@@ -1,4 +1,5 @@
-//! Every test is compiled, every command that names a test finds one, and a test that cannot run says so in one way.
+//! Every test is compiled, every command that names a test finds one, and tests that cannot run
+//! report it in one way.
 
 use std::{
     collections::BTreeMap,
@@ -8,7 +9,7 @@ use std::{
 
 use corniche_tidy::{crates_of, files_below, root};
 
-/// Test binaries besides `it`, and why each is alone in its process.
+/// Test binaries other than `it`, with the reason why each needs a separate process.
 const ALONE: [(&str, &str); 4] = [
     ("osm/tests/memory", "measures the peak memory of its process"),
     ("osm/tests/memory_of_roads", "measures the peak memory of its process"),
@@ -22,7 +23,7 @@ const ALONE: [(&str, &str); 4] = [
     ),
 ];
 
-/// The packages with tests: name of `-p`, and folder.
+/// The packages with tests: the name for `-p`, and the folder.
 fn packages() -> BTreeMap<String, PathBuf> {
     let others = ["config", "tests", "fuzz", "tidy"].map(|name| root().join(name));
     let folders = crates_of(&root()).unwrap().into_iter().chain(others);
@@ -35,7 +36,7 @@ fn packages() -> BTreeMap<String, PathBuf> {
         .collect()
 }
 
-/// The test binaries of a package: name, and file that is their root.
+/// The test binaries of a package: the name, and the root file.
 fn binaries(package: &Path) -> Vec<(String, PathBuf)> {
     let tests = package.join("tests");
     let Ok(entries) = fs::read_dir(&tests) else { return Vec::new() };
@@ -51,7 +52,8 @@ fn binaries(package: &Path) -> Vec<(String, PathBuf)> {
     found
 }
 
-/// A package has one test binary, as linking takes as long as compiling. Others are in the list, with their reasons.
+/// A package has one test binary, because linking takes as long as compiling. Exceptions are in the
+/// list, with their reasons.
 #[test]
 fn a_package_has_one_test_binary() {
     let mut alone = Vec::new();
@@ -75,7 +77,8 @@ fn declared(file: &Path) -> Vec<String> {
     names.collect()
 }
 
-/// Cargo finds no file of `tests/it` by itself: each must be declared by the file above it, or its tests never run.
+/// Cargo does not find files in `tests/it`: each must be declared by the file above it, or its
+/// tests never run.
 #[test]
 fn every_file_of_tests_is_a_module() {
     let mut checked = 0;
@@ -98,10 +101,10 @@ fn every_file_of_tests_is_a_module() {
             checked += 1;
         }
     }
-    assert!(checked > 100, "only {checked} files were looked at");
+    assert!(checked > 100, "only {checked} files were checked");
 }
 
-/// The names of the functions of a text that are tests, also those within `proptest!`.
+/// The names of the test functions in a text, including those within `proptest!`.
 fn tests_of(text: &str) -> Vec<String> {
     let mut names = Vec::new();
     let mut is_test = false;
@@ -109,7 +112,7 @@ fn tests_of(text: &str) -> Vec<String> {
         if let Some((name, _)) = line.strip_prefix("fn ").and_then(|rest| rest.split_once('(')) {
             names.extend(is_test.then(|| name.to_owned()));
         }
-        // Other attributes may stand between.
+        // There may be other attributes between.
         is_test = line == "#[test]" || is_test && line.starts_with("#[");
     }
     names
@@ -132,12 +135,13 @@ fn test_names(root_file: &Path) -> Vec<String> {
     files.iter().flat_map(of_file).collect()
 }
 
-/// What follows this word in a command.
+/// The words after this word in a command.
 fn after<'a>(words: &[&'a str], word: &str) -> Vec<&'a str> {
     words.windows(2).filter(|pair| pair[0] == word).map(|pair| pair[1]).collect()
 }
 
-/// Why a command of the form `cargo test …` runs no test; `None` when it runs one, or names none.
+/// The reason why a command of the form `cargo test …` runs no test; `None` if it runs one, or
+/// names none.
 fn finds_nothing(command: &str, packages: &BTreeMap<String, PathBuf>) -> Option<String> {
     let (command, _) = command.split_once(" -- ").unwrap_or((command, ""));
     let words: Vec<&str> = command.split_whitespace().collect();
@@ -153,7 +157,7 @@ fn finds_nothing(command: &str, packages: &BTreeMap<String, PathBuf>) -> Option<
     if chosen.is_empty() {
         chosen = packages.values().collect();
     }
-    // The first word that is no option and no option's value filters the names.
+    // The first word that is neither an option nor an option's value filters the names.
     let takes_value =
         ["-p", "--package", "--test", "--features", "--target", "--profile", "--example"];
     let mut filter = None;
@@ -193,8 +197,8 @@ fn finds_nothing(command: &str, packages: &BTreeMap<String, PathBuf>) -> Option<
     (!runs).then(|| format!("no test is called {filter}"))
 }
 
-/// The commands `cargo test …` of a text: to the end of the line, or of the code in which they stand. `scripts/test TIER NAME` is given
-/// as what it runs.
+/// The commands `cargo test …` in a text, up to the end of the line or of the code span.
+/// `scripts/test TIER NAME` is returned as the command that it runs.
 fn commands(text: &str) -> Vec<String> {
     let joined = text.replace("\\\n", " ");
     let ends = |c: char| "`\"')#|&>;".contains(c);
@@ -230,7 +234,7 @@ fn commands_that_name_a_test_find_it() {
     let mut checked = 0;
     let mut wrong = Vec::new();
     for file in files.iter().filter(|file| !file.ends_with("tests_are_run.rs")) {
-        // A script may be no text.
+        // A script may be a binary file.
         let Ok(text) = fs::read_to_string(file) else { continue };
         for command in commands(&text) {
             checked += 1;
@@ -243,7 +247,7 @@ fn commands_that_name_a_test_find_it() {
     assert!(wrong.is_empty(), "commands that run no test:\n{}", wrong.join("\n"));
 }
 
-/// The search for commands sees those that name nothing.
+/// The search for commands finds those that name no test.
 #[test]
 fn wrong_commands_are_seen() {
     let packages = packages();
@@ -256,7 +260,7 @@ fn wrong_commands_are_seen() {
         ("cargo test -p corniche-tidy --test files", "no test binary files"),
         ("cargo test -p corniche-tidy --test it nothing_of_this_name", "no test is called"),
         ("cargo test --locked --test it nothing_of_this_name -- --ignored", "no test is called"),
-        // A helper is no test.
+        // A helper function is not a test.
         ("cargo test -p corniche-tidy --test it finds_nothing", "no test is called"),
         ("cargo test -p corniche-tidy finds_nothing", "no test is called"),
     ] {
@@ -268,7 +272,7 @@ fn wrong_commands_are_seen() {
     );
 }
 
-/// `corniche_testing::skip` counts what is skipped; a line that a test prints by itself is lost.
+/// `corniche_testing::skip` counts skipped tests; a line that a test prints by itself is lost.
 #[test]
 fn what_is_skipped_is_counted() {
     let forms = ["print", "eprint"].map(|name| format!("{name}ln!(\"{}", "skipped"));
@@ -279,7 +283,7 @@ fn what_is_skipped_is_counted() {
         let text = fs::read_to_string(&file).unwrap();
         let has_form = forms.iter().any(|form| text.contains(form));
         assert!(!has_form, "{}: use corniche_testing::skip", file.display());
-        // A test is left out in one of two ways: `skip`, or `ignore` with the reason why it is slow.
+        // A test is skipped in one of two ways: `skip`, or `ignore` with the reason why it is slow.
         for line in text.lines().filter(|line| line.trim_start().starts_with("#[ignore")) {
             let is_slow = line.trim_start().starts_with("#[ignore = \"slow: ");
             assert!(is_slow, "{}: {line}: write #[ignore = \"slow: reason\"]", file.display());

@@ -1,4 +1,4 @@
-//! Arguments of `build` and `plan`: what to read, what to make of it and where to write it.
+//! Arguments of `build` and `plan`: the inputs, how they are converted, and the output.
 
 use std::{
     num::NonZeroU32,
@@ -13,19 +13,21 @@ use corniche_presets::{
 
 use super::voice::json_progress;
 
-// What to make and with what: the same for `build` and `plan`.
+// What to build and from which inputs: the same for `build` and `plan`.
 #[derive(Debug, Args)]
 pub(crate) struct WorkArgs {
     #[command(flatten)]
     pub(crate) inputs: InputFiles,
-    /// Credit to show wherever the package is shown, such as that of a DEM; may be given several times
+    /// Attribution that must be displayed wherever the package is shown, such as that of a DEM; may
+    /// be given several times
     #[arg(long, value_name = "TEXT")]
     pub(crate) attribution: Vec<String>,
-    /// Settings file, which can name inputs and outputs, too; options on the command line have precedence over it. Paths in it begin at
-    /// the folder that it is in
+    /// Settings file, which can also name inputs and outputs. Options on the command line take
+    /// precedence. Paths in the file are relative to its folder
     #[arg(long, value_name = "TOML")]
     pub(crate) config: Option<PathBuf>,
-    /// Begin although memory or disk space are not expected to suffice, or there are more than 16 nodes per DEM sample
+    /// Start even if memory or disk space is not expected to suffice, or if the grid has more than
+    /// 16 nodes per DEM sample
     #[arg(long)]
     pub(crate) force: bool,
     #[command(flatten)]
@@ -41,7 +43,7 @@ pub(crate) struct WorkArgs {
 }
 
 impl WorkArgs {
-    /// All files that are read.
+    /// All input files.
     pub(crate) fn files(&self) -> impl Iterator<Item = &Path> {
         let InputFiles { dem, terrain, osm, polygon, photo } = &self.inputs;
         let photo = if is_photo_off(photo) { &[] } else { &photo[..] };
@@ -56,14 +58,15 @@ pub(crate) struct BuildArgs {
     /// The package to write (.pmtiles)
     #[arg(short, long, value_name = "PACKAGE", required_unless_present = "config")]
     pub(crate) output: Option<PathBuf>,
-    /// Replace the package if it exists, once the new one is complete; if it is a link, replace the file it leads to
+    /// Overwrite the package if it exists, once the new one is complete; for a link, overwrite the
+    /// file it points to
     #[arg(short = 'O', long)]
     pub(crate) overwrite: bool,
-    /// Go on with a build of the same package that was stopped, from its intermediate results
+    /// Resume an interrupted build of the same package from its intermediate results
     #[arg(long)]
     pub(crate) resume: bool,
-    /// Also list every defect of the extract and every road lost, one per line (CSV); an existing list is kept
-    /// unless -O is given
+    /// Also list every defect of the extract and every lost road in this file (CSV), one per line;
+    /// needs -O if the file exists
     #[arg(long, value_name = "CSV")]
     pub(crate) defects: Option<PathBuf>,
     #[command(flatten)]
@@ -75,16 +78,18 @@ pub(crate) struct PlanArgs {
     /// Also write the plan (JSON)
     #[arg(short, long, value_name = "PLAN.json")]
     pub(crate) output: Option<PathBuf>,
-    /// Replace the plan if it exists
+    /// Overwrite the plan if it exists
     #[arg(short = 'O', long, requires = "output")]
     pub(crate) overwrite: bool,
     /// Print the estimates as JSON, for programs
     #[arg(long)]
     pub(crate) json: bool,
-    /// Print only the tiles of this level that hold data, one Z/X/Y per line: subtrees for corniche part
+    /// Print only the tiles of this level that contain data, one Z/X/Y per line: the subtrees for
+    /// corniche part
     #[arg(long, value_name = "LEVEL", conflicts_with = "json")]
     pub(crate) subtrees: Option<u8>,
-    /// Print only the parts of the build for so many processes at once, one JSON object per line, as corniche jobs does
+    /// Print only the parts of the build for this number of processes, one JSON object per line, as
+    /// corniche jobs does
     #[arg(long, value_name = "N", conflicts_with_all = ["json", "subtrees"])]
     pub(crate) jobs: Option<NonZeroU32>,
     #[command(flatten)]

@@ -1,26 +1,27 @@
-//! Where to look from, for all commands that look from one place at first.
+//! The camera options of all commands that begin with a view from one point.
 
 use clap::Args;
 use corniche_viewer::{CameraRequest, camera::Orientation};
 
 use super::values::{parse_dpi, parse_position, parse_scale};
 
-/// Side of a pixel of a view from above unless --pixel says otherwise.
+/// The ground size of a pixel in a view from above, unless `--pixel` is given.
 const DEFAULT_PIXEL_M: f64 = 5.0;
-/// Pixels to an inch in print unless --dpi says otherwise.
+/// Pixels per inch in print, unless `--dpi` is given.
 const DEFAULT_DPI: f64 = 300.0;
-/// An inch, metres.
+/// An inch, in metres.
 const INCH_M: f64 = 0.0254;
 
 #[derive(Debug, Args)]
 pub(crate) struct CameraArgs {
-    /// Look at this longitude and latitude (degrees, WGS84) instead of where the roads are
+    /// Look at this longitude and latitude (degrees, WGS84) instead of at the roads
     #[arg(long, value_name = "LON,LAT", value_parser = parse_position, allow_hyphen_values = true)]
     look_at: Option<[f64; 2]>,
-    /// With --look-at: height of the point looked at, in metres, also where there is no ground [default: the ground's]
+    /// With --look-at: height of the target, in metres, also where there is no ground [default: the
+    /// ground's]
     #[arg(long, value_name = "METRES", requires = "look_at", allow_hyphen_values = true)]
     height: Option<f64>,
-    /// With --look-at: distance from the eye to the point looked at, in metres
+    /// With --look-at: distance from the camera to the target, in metres
     #[arg(long, value_name = "METRES", default_value_t = 5000.0, requires = "look_at")]
     distance: f64,
     /// With --look-at: direction of view, in degrees clockwise from north
@@ -32,13 +33,14 @@ pub(crate) struct CameraArgs {
         allow_hyphen_values = true
     )]
     heading: f64,
-    /// With --look-at: tilt of the view, in degrees: 0 looks straight down, 90 at the horizon; a window goes up to 85
+    /// With --look-at: tilt of the view, in degrees: 0 looks straight down, 90 at the horizon; a
+    /// window allows up to 85
     #[arg(long, value_name = "DEGREES", default_value_t = 60.0, requires = "look_at")]
     pitch: f64,
 }
 
 impl CameraArgs {
-    /// What is asked of the viewer, which checks it.
+    /// The request to the viewer, which checks it.
     pub(crate) fn request(&self) -> CameraRequest {
         let Some([lon_deg, lat_deg]) = self.look_at else { return CameraRequest::Overview };
         CameraRequest::LookAt {
@@ -51,55 +53,58 @@ impl CameraArgs {
     }
 }
 
-/// A view from above, for commands that make one picture.
+/// The options of a view from above, for commands that render one image.
 #[derive(Debug, Args)]
 pub(crate) struct FromAboveArgs {
-    /// Look straight down with parallel rays, as on a map: every place at the same scale, north up unless --heading says otherwise
+    /// Look straight down with parallel rays, as on a map: the scale is the same everywhere, and
+    /// north is up unless --heading is given
     #[arg(long, conflicts_with_all = ["height", "distance", "pitch"])]
     pub(crate) ortho: bool,
-    /// With --ortho and --look-at: side of a pixel on the ground, in metres [default: 5]
+    /// With --ortho and --look-at: ground size of a pixel, in metres [default: 5]
     #[arg(long, value_name = "METRES", requires = "ortho", requires = "look_at")]
     pixel: Option<f64>,
-    /// With --ortho: scale in print, as 1:25000 or 25000; without --look-at around the middle of the overview
+    /// With --ortho: scale in print, such as 1:25000 or 25000; without --look-at, centred on the
+    /// overview
     #[arg(long, value_name = "1:N", requires = "ortho", conflicts_with = "pixel", allow_hyphen_values = true, value_parser = parse_scale)]
     scale: Option<u32>,
-    /// With --scale: pixels to an inch in print, which the file says, too [default: 300]
+    /// With --scale: pixels per inch in print, also stored in the file [default: 300]
     #[arg(long, value_name = "N", requires = "scale", allow_hyphen_values = true, value_parser = parse_dpi)]
     dpi: Option<f64>,
-    /// With --ortho: also write where the picture is, beside it: a world file (.pgw) and its coordinate system (.prj)
+    /// With --ortho: also write the georeference next to the image: a world file (.pgw) and its
+    /// coordinate system (.prj)
     #[arg(long, requires = "ortho")]
     pub(crate) world_file: bool,
 }
 
-/// How large a picture is in print.
+/// The scale and resolution of an image in print.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct PrintScale {
-    /// It is so many times smaller than the ground.
+    /// The denominator of the scale.
     pub(crate) denominator: u32,
-    /// Pixels to an inch.
+    /// Pixels per inch.
     pub(crate) dots_per_inch: f64,
 }
 
 impl PrintScale {
-    /// Side of a pixel on the ground.
+    /// The ground size of a pixel, in metres.
     pub(crate) fn pixel_m(self) -> f64 {
         f64::from(self.denominator) * INCH_M / self.dots_per_inch
     }
 
-    /// Pixels to a metre of paper, rounded, as PNG has them.
+    /// Pixels per metre of paper, rounded, as PNG stores them.
     pub(crate) fn dots_per_metre(self) -> u32 {
         (self.dots_per_inch / INCH_M).round() as u32
     }
 }
 
 impl FromAboveArgs {
-    /// The scale in print, if one was asked for.
+    /// The scale in print, if one is requested.
     pub(crate) fn print_scale(&self) -> Option<PrintScale> {
         let dots_per_inch = self.dpi.unwrap_or(DEFAULT_DPI);
         self.scale.map(|denominator| PrintScale { denominator, dots_per_inch })
     }
 
-    /// What is asked of the viewer, which checks it.
+    /// The request to the viewer, which checks it.
     pub(crate) fn request(&self, camera: &CameraArgs) -> CameraRequest {
         let pixel_m = self.print_scale().map(PrintScale::pixel_m).or(self.pixel);
         match (self.ortho, camera.look_at) {

@@ -1,4 +1,4 @@
-//! Options of the camera agree with each other: a place, a distance or a scale.
+//! Camera options are consistent: a position, a distance or a scale.
 
 use clap::Parser;
 

@@ -1,4 +1,4 @@
-//! Commands that draw pictures: one, or a flight of them.
+//! Commands that render images: one image, or a flight of them.
 
 use std::path::PathBuf;
 
@@ -19,10 +19,10 @@ use super::{
 pub(crate) struct RenderArgs {
     #[command(flatten)]
     pub(crate) from: PackageArg,
-    /// The picture to write (.png), or with --ortho a GeoTIFF that knows its place (.tif)
+    /// The image to write (.png), or with --ortho a GeoTIFF with its georeference (.tif)
     #[arg(short, long, value_name = "PNG|TIF")]
     pub(crate) output: PathBuf,
-    /// Replace files that exist, once the new ones are complete
+    /// Overwrite existing files, once the new ones are complete
     #[arg(short = 'O', long)]
     pub(crate) overwrite: bool,
     /// How roads are drawn
@@ -42,44 +42,47 @@ pub(crate) struct RenderArgs {
     /// Samples per pixel along each side, averaged
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=4))]
     pub(crate) supersampling: u32,
-    /// Draw a legend: the roads, tunnels, boundaries, areas and heights that the picture shows, an arrow to the north, and a scale for its middle
+    /// Draw a legend: the roads, tunnels, boundaries, areas and heights in the image, a north
+    /// arrow, and a scale bar for its centre
     #[arg(long)]
     pub(crate) legend: bool,
-    /// Write a title on the picture, at its upper left
+    /// Write a title in the upper left corner of the image
     #[arg(long, value_name = "TEXT", value_parser = parse_title, allow_hyphen_values = true)]
     pub(crate) title: Option<String>,
-    /// Draw the edges of the ground's triangles, beneath the roads
+    /// Draw the edges of the terrain's triangles, beneath the roads
     #[arg(long)]
     pub(crate) wireframe: bool,
-    /// Lay no road on the ground: with --roads geo, straight lines between their points, which ground hides
+    /// Do not drape roads on the ground: with --roads geo, draw straight lines between their
+    /// points, which the ground may hide
     #[arg(long, help_heading = COMPARING, hide_short_help = true)]
     pub(crate) unmapped: bool,
 }
 
-/// How much of the ground is drawn.
+/// The values of `--lod`.
 pub(crate) const DETAILS: Words<Detail, 3> = [
-    ("full", "All finest tiles, in view or not", Detail::Full),
-    ("culled", "The finest tiles in view", Detail::Culled),
-    ("lod", "Tiles by screen-space error, loaded on the way", Detail::Adaptive),
+    ("full", "All tiles of the finest level, in view or not", Detail::Full),
+    ("culled", "The tiles of the finest level that are in view", Detail::Culled),
+    ("lod", "Tiles by screen-space error, loaded during the flight", Detail::Adaptive),
 ];
 
 #[derive(Debug, Args)]
 pub(crate) struct FlyArgs {
     #[command(flatten)]
     pub(crate) from: PackageArg,
-    /// The list to write (.csv): one line per frame, with the tiles, triangles, bytes and milliseconds it took
+    /// The table to write (.csv): one line per frame, with its tiles, triangles, bytes and
+    /// milliseconds
     #[arg(short, long, value_name = "CSV")]
     pub(crate) output: PathBuf,
-    /// Replace files that exist, once the new ones are complete
+    /// Overwrite existing files, once the new ones are complete
     #[arg(short = 'O', long)]
     pub(crate) overwrite: bool,
     /// Also draw a chart of frame times, road segments and tiles along the flight
     #[arg(long, value_name = "SVG")]
     pub(crate) svg: Option<PathBuf>,
-    /// Also keep every frame as a picture in this new folder
+    /// Also save every frame as an image in this new folder
     #[arg(long, value_name = "FOLDER")]
     pub(crate) png: Option<PathBuf>,
-    /// Also show every frame in a window as it is drawn; closing it, also with Ctrl Q, ends the flight
+    /// Also show every frame in a window; closing it, or Ctrl Q, ends the flight
     #[arg(long)]
     pub(crate) window: bool,
     #[command(flatten)]
@@ -93,16 +96,16 @@ pub(crate) struct FlyArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Flight")]
 pub(crate) struct FlightArgs {
-    /// Flight to take: keyframes in TOML, as --save-path writes them [default: a pass along the data]
+    /// Flight path: keyframes in TOML, as --save-path writes them [default: a pass along the data]
     #[arg(long, value_name = "TOML")]
     pub(crate) path: Option<PathBuf>,
-    /// Save the flight in this file, as keyframes in TOML
+    /// Save the flight path in this file, as keyframes in TOML
     #[arg(long, value_name = "TOML")]
     pub(crate) save_path: Option<PathBuf>,
-    /// How many frames, evenly spread over the flight
+    /// Number of frames, evenly spaced along the flight
     #[arg(long, value_name = "N", default_value_t = 100)]
     pub(crate) frames: u32,
-    /// Time from one frame to the next, in seconds, instead of a number of frames
+    /// Time between frames, in seconds, instead of a number of frames
     #[arg(long, value_name = "SECONDS", conflicts_with = "frames", allow_negative_numbers = true)]
     pub(crate) step: Option<f64>,
 }
@@ -110,10 +113,11 @@ pub(crate) struct FlightArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Drawing")]
 pub(crate) struct DrawingArgs {
-    /// How roads are drawn; with several, separated by commas, the flight is taken with each
+    /// How roads are drawn; with several values, separated by commas, the flight is repeated with
+    /// each
     #[arg(long, value_parser = one_of(ROADS), value_delimiter = ',', default_value = Roads::DEFAULT.word())]
     pub(crate) roads: Vec<Roads>,
-    /// How much of the ground is drawn; with several, the flight is taken with each
+    /// How much of the ground is drawn; with several values, the flight is repeated with each
     #[arg(long, value_parser = one_of(DETAILS), value_delimiter = ',', default_value = "lod")]
     pub(crate) lod: Vec<Detail>,
     /// Width and height in pixels
@@ -121,13 +125,13 @@ pub(crate) struct DrawingArgs {
     pub(crate) size: [u32; 2],
     #[command(flatten)]
     pub(crate) ground: GroundArgs,
-    /// Samples per pixel along each side, averaged. One by default, other than for pictures: what a frame costs is compared with published
-    /// figures, which have one
+    /// Samples per pixel along each side, averaged. The default is 1, unlike for images, so that
+    /// the cost of a frame can be compared with published figures
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=4))]
     pub(crate) supersampling: u32,
     #[command(flatten)]
     pub(crate) gpu: GpuArgs,
-    /// Load for where the camera will be in so many seconds; 0 loads nothing in advance
+    /// Preload tiles for the camera position this many seconds ahead; 0 turns preloading off
     #[arg(long, value_name = "SECONDS", default_value_t = 1.0)]
     pub(crate) ahead: f64,
 }

@@ -1,14 +1,14 @@
-//! Commands that draw have the same options with the same defaults, or say why not.
+//! Commands that draw have the same options with the same defaults, or explain the difference.
 
 use clap::Parser as _;
 
 use super::*;
-use crate::args::{Arguments, Command};
+use crate::args::{Arguments, CliCommand};
 
 #[test]
 fn one_flight_may_be_taken_with_several_methods() {
     let line = "corniche fly a -o b --roads none,geo --roads sv,sv-no-caps --lod full,culled,lod";
-    let Command::Fly(args) = Arguments::try_parse_from(line.split(' ')).unwrap().command else {
+    let CliCommand::Fly(args) = Arguments::try_parse_from(line.split(' ')).unwrap().command else {
         panic!("{line} is a flight");
     };
     assert_eq!(args.drawing.roads, [Roads::None, Roads::Geo, Roads::Sv, Roads::SvNoCaps]);
@@ -27,19 +27,20 @@ fn samples_are_one_to_four_along_each_side() {
     }
 }
 
-/// What `render`, `fly` and `view` have in common has one default; where a reason speaks against that, the help text says it.
+/// Options that `render`, `fly` and `view` share have the same default; if there is a reason for
+/// another one, the help text explains it.
 #[test]
 fn commands_that_draw_have_the_same_defaults_or_say_why_not() {
     use clap::CommandFactory as _;
     use std::collections::BTreeMap;
 
-    // Option, command, its default, and a word of the reason.
+    // Option, command, its default, and a word of the explanation.
     let others = [
         ("size", "view", "1280x800", "fits on a screen"),
         ("supersampling", "fly", "1", "compared with published figures"),
-        // Decided when the window knows its adapter.
-        ("supersampling", "view", "", "without a graphics card"),
-        ("roads", "view", "", "without a graphics card"),
+        // The default is chosen when the window knows its adapter.
+        ("supersampling", "view", "", "without a GPU"),
+        ("roads", "view", "", "without a GPU"),
     ];
     let program = Arguments::command();
     let mut shared: BTreeMap<String, Vec<(&str, String, String)>> = BTreeMap::new();

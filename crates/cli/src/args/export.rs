@@ -1,9 +1,10 @@
-//! Commands that give what a package holds to other programs.
+//! Commands that export packages to other formats.
 
 use clap::{ArgAction, Args, Subcommand, ValueHint};
-use corniche_areas::{AreaClass, ClassedLayer, LineClass};
+use corniche_areas::{AreaClass, BoundaryClass};
 use corniche_export::{
-    Availability, Coordinates, MeshFormat, ModelRoads, TileRoads, Tiling, UpAxis, VectorFormat,
+    Availability, FeatureCoordinates, MeshFormat, ModelRoads, TileRoads, Tiling, UpAxis,
+    VectorFormat,
 };
 use corniche_presets::{Words, one_of};
 use corniche_remote::PackagePlace;
@@ -18,23 +19,28 @@ use super::{
 };
 #[derive(Debug, Subcommand)]
 pub(crate) enum Export {
-    /// Write the roads of a package, on its terrain, as lines with lengths and grades for GIS programs
+    /// Write the roads of a package, draped on its terrain, as lines with lengths and grades for
+    /// GIS programs
     Roads(Box<ExportRoadsArgs>),
-    /// Write the roads of a package's extract from junction to junction, with ascents and grades, for routers
+    /// Write the road network of a package's extract as edges from junction to junction, with
+    /// ascents and grades, for routers
     Edges(Box<ExportEdgesArgs>),
     /// Write the areas of a package (water, forest and so on) as polygons for GIS programs
     Areas(Box<ExportAreasArgs>),
     /// Write the boundaries of a package (administrative, protected) as lines for GIS programs
     Boundaries(Box<ExportBoundariesArgs>),
-    /// Write the ground of a package and its roads as a model for 3D programs (GLB, PLY, OBJ)
+    /// Write the terrain and roads of a package as a model for 3D programs (GLB, PLY, OBJ)
     Mesh(Box<ExportMeshArgs>),
-    /// Write the heights of a package as a raster (GeoTIFF), with --dem also how far they are from the elevation files
+    /// Write the heights of a package as a raster (GeoTIFF), with --dem also their differences from
+    /// the DEM
     #[command(name = "geotiff")]
     GeoTiff(Box<ExportGeoTiffArgs>),
-    /// Write a package as 3D Tiles, with its roads cut into the ground, for CesiumJS, three.js, deck.gl and game engines
+    /// Write a package as 3D Tiles, with its roads cut into the terrain, for CesiumJS, three.js,
+    /// deck.gl and game engines
     #[command(name = "3dtiles")]
     Tiles3d(Box<ExportTiles3dArgs>),
-    /// Write the ground of a package as quantized-mesh terrain (layer.json and .terrain files) for the globe of CesiumJS
+    /// Write the terrain of a package as quantized-mesh (layer.json and .terrain files) for
+    /// CesiumJS
     #[command(name = "quantized-mesh")]
     QuantizedMesh(Box<ExportQuantizedMeshArgs>),
 }
@@ -43,8 +49,8 @@ pub(crate) enum Export {
 #[command(
     arg = json_progress(),
     override_usage = "corniche export roads [OPTIONS] --output <FILE> <PACKAGE>",
-    mut_arg("level", |arg| arg.help("The level whose roads are taken [default: the finest]")),
-    mut_arg("dem", |arg| arg.help("The elevation rasters the package was made from, in the same order: heights are theirs, not those of the package's triangles")),
+    mut_arg("level", |arg| arg.help("The level whose roads are exported [default: the finest]")),
+    mut_arg("dem", |arg| arg.help("The DEM the package was built from (same files, same order): heights are read from these files, not from the package's triangles")),
     mut_arg("osm", |arg| arg.requires("dem")),
 )]
 pub(crate) struct ExportRoadsArgs {
@@ -52,7 +58,7 @@ pub(crate) struct ExportRoadsArgs {
     pub(crate) vector: VectorArgs,
     #[command(flatten)]
     pub(crate) at: LevelArg,
-    /// One feature for each piece of a road as the tiles have them, in place of one for each way
+    /// Write one feature per piece of a way, as stored in the tiles, instead of one per way
     #[arg(long)]
     pub(crate) pieces: bool,
     #[command(flatten)]
@@ -68,7 +74,7 @@ pub(crate) struct ExportRoadsArgs {
     arg = json_progress(),
     override_usage = "corniche export edges [OPTIONS] --output <FILE> --dem <FILE>... --osm <FILE>... <PACKAGE>",
     mut_arg("dem", |arg| arg.required(true)),
-    mut_arg("osm", |arg| arg.required(true).help("The extracts the package was made from: roads join where they name the same node")),
+    mut_arg("osm", |arg| arg.required(true).help("The extracts the package was built from: roads join at shared OSM nodes")),
 )]
 pub(crate) struct ExportEdgesArgs {
     #[command(flatten)]
@@ -77,7 +83,7 @@ pub(crate) struct ExportEdgesArgs {
     pub(crate) cpu: ThreadsArg,
 }
 
-// What exports of lines with heights have.
+// Options of the exports of lines with heights.
 #[derive(Debug, Args)]
 pub(crate) struct VectorArgs {
     #[command(flatten)]
@@ -88,50 +94,50 @@ pub(crate) struct VectorArgs {
     pub(crate) file: FileArgs,
     #[command(flatten)]
     pub(crate) road: RoadArg,
-    /// The format of a file with another ending
+    /// Output format, if the file's extension does not name it
     #[arg(short, long, value_parser = one_of(VECTOR_FORMATS), value_name = "FORMAT")]
     pub(crate) format: Option<VectorFormat>,
-    /// The coordinates: "package", "EPSG:4979" (with heights above the ellipsoid of WGS84), "EPSG:4326", or a projected CRS such as "EPSG:2056" [default:
-    /// package; GeoJSON: EPSG:4326]
+    /// CRS of the coordinates: "package", "EPSG:4979" (with heights above the WGS84 ellipsoid),
+    /// "EPSG:4326", or a projected CRS such as "EPSG:2056" [default: package; GeoJSON: EPSG:4326]
     #[arg(long, value_name = "CRS", value_parser = parse_crs)]
-    pub(crate) crs: Option<Coordinates>,
-    /// Keep the package's heights as they are: --crs EPSG:4979 is then EPSG:4326
+    pub(crate) crs: Option<FeatureCoordinates>,
+    /// Do not convert heights to the WGS84 ellipsoid: --crs EPSG:4979 is then the same as EPSG:4326
     #[arg(long, value_parser = one_of(HEIGHTS), value_name = "as-is")]
-    pub(crate) heights: Option<Coordinates>,
+    pub(crate) heights: Option<FeatureCoordinates>,
     #[command(flatten)]
     pub(crate) datum: DatumArg,
 }
 
-// What exports of layers without heights have.
+// Options of the exports of layers without heights.
 #[derive(Debug, Args)]
 pub(crate) struct InPlanArgs {
     #[command(flatten)]
     pub(crate) file: FileArgs,
-    /// The format of a file with another ending
+    /// Output format, if the file's extension does not name it
     #[arg(short, long, value_parser = one_of(VECTOR_FORMATS), value_name = "FORMAT")]
     pub(crate) format: Option<VectorFormat>,
     #[command(flatten)]
     pub(crate) at: LevelArg,
     #[command(flatten)]
     pub(crate) within: BoundsArg,
-    /// The coordinates: "package" (its CRS), "EPSG:4326" (longitude and latitude of WGS84), or a projected CRS such as "EPSG:2056" [default: package; GeoJSON:
-    /// EPSG:4326]
+    /// CRS of the coordinates: "package" (its own), "EPSG:4326" (longitude and latitude of WGS84),
+    /// or a projected CRS such as "EPSG:2056" [default: package; GeoJSON: EPSG:4326]
     #[arg(long, value_name = "CRS", value_parser = parse_plan_crs)]
-    pub(crate) crs: Option<Coordinates>,
+    pub(crate) crs: Option<FeatureCoordinates>,
 }
 
 #[derive(Debug, Args)]
 #[command(
     arg = json_progress(),
-    mut_arg("level", |arg| arg.help("The level whose areas are taken [default: the finest]")),
-    mut_arg("bounds", |arg| arg.help("Cut areas at a rectangle of WGS84 degrees; a west beyond the east crosses 180°")),
+    mut_arg("level", |arg| arg.help("The level whose areas are exported [default: the finest]")),
+    mut_arg("bounds", |arg| arg.help("Clip areas to a bounding box in WGS84 degrees; one with west > east crosses 180°")),
 )]
 pub(crate) struct ExportAreasArgs {
     #[command(flatten)]
     pub(crate) from: PackageArg,
     #[command(flatten)]
     pub(crate) plan: InPlanArgs,
-    /// Classes that are taken, such as water,forest [default: all]
+    /// Classes to export, such as water,forest [default: all]
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = parse_area_class)]
     pub(crate) classes: Vec<AreaClass>,
 }
@@ -139,19 +145,19 @@ pub(crate) struct ExportAreasArgs {
 #[derive(Debug, Args)]
 #[command(
     arg = json_progress(),
-    mut_arg("level", |arg| arg.help("The level whose boundaries are taken [default: the finest]")),
-    mut_arg("bounds", |arg| arg.help("Cut boundaries at a rectangle of WGS84 degrees; a west beyond the east crosses 180°")),
-    mut_arg("osm", |arg| arg.help("The extracts the package was made from: boundaries then have the names of what they bound")),
+    mut_arg("level", |arg| arg.help("The level whose boundaries are exported [default: the finest]")),
+    mut_arg("bounds", |arg| arg.help("Clip boundaries to a bounding box in WGS84 degrees; one with west > east crosses 180°")),
+    mut_arg("osm", |arg| arg.help("The extracts the package was built from: boundaries then have the names of the areas on both sides")),
 )]
 pub(crate) struct ExportBoundariesArgs {
-    /// The package: a file, or an address on a web server (https://…)
+    /// The package: a file, or a URL (https://…)
     #[arg(required_unless_present = "osm", value_parser = package_place(), value_hint = ValueHint::AnyPath)]
     pub(crate) package: Option<PackagePlace>,
     #[command(flatten)]
     pub(crate) plan: InPlanArgs,
-    /// Classes that are taken, such as admin-2,admin-8,protected [default: all]
+    /// Classes to export, such as admin-2,admin-8,protected [default: all]
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = parse_boundary_class)]
-    pub(crate) classes: Vec<LineClass>,
+    pub(crate) classes: Vec<BoundaryClass>,
     #[command(flatten)]
     pub(crate) extract: ExtractArgs,
     #[command(flatten)]
@@ -161,22 +167,24 @@ pub(crate) struct ExportBoundariesArgs {
 #[derive(Debug, Args)]
 #[command(
     arg = json_progress(),
-    mut_arg("output", |arg| arg.help("The file to write; its ending is its format: .glb, .ply or .obj")),
-    mut_arg("bounds", |arg| arg.help("Take what lies in a rectangle of WGS84 degrees, in whole triangles; a west beyond the east crosses 180°")),
+    mut_arg("output", |arg| arg.help("The file to write; its extension selects the format: .glb, .ply or .obj")),
+    mut_arg("bounds", |arg| arg.help("Export the whole triangles in a bounding box in WGS84 degrees; one with west > east crosses 180°")),
 )]
 pub(crate) struct ExportMeshArgs {
     #[command(flatten)]
     pub(crate) from: PackageArg,
     #[command(flatten)]
     pub(crate) file: FileArgs,
-    /// The format of a file with another ending
+    /// Output format, if the file's extension does not name it
     #[arg(short, long, value_parser = one_of(MODEL_FORMATS), value_name = "FORMAT")]
     pub(crate) format: Option<MeshFormat>,
     #[command(flatten)]
     pub(crate) at: LevelArg,
     #[command(flatten)]
     pub(crate) within: BoundsArg,
-    /// How roads are there: lines (centre-lines on the ground), surfaces (of their true width, in the ground's own triangles) or none; bridges are slabs of surfaces if the package has spans
+    /// How roads are exported: lines (centre-lines on the ground), surfaces (with their true width,
+    /// cut into the terrain's triangles) or none; with surfaces, bridges are slabs if the package
+    /// has spans (bridges and tunnels between two points on the ground)
     #[arg(
         long,
         value_parser = one_of(MODEL_ROADS),
@@ -190,10 +198,11 @@ pub(crate) struct ExportMeshArgs {
     pub(crate) style: String,
     #[command(flatten)]
     pub(crate) filter: ClassesArg,
-    /// With .glb: normal maps of the ground from the package's relief [default: on for .glb]
+    /// Add normal maps of the terrain, from the package's relief (only .glb) [default: on for .glb]
     #[arg(long, value_parser = one_of(ON_NONE), value_name = "on|none", hide_possible_values = true)]
     pub(crate) relief: Option<bool>,
-    /// The axis that points up: y (x east, z south) or z (x east, y north) [default: z for .ply, else y]
+    /// The axis that points up: y (x east, z south) or z (x east, y north) [default: z for .ply,
+    /// else y]
     #[arg(
         long,
         value_parser = one_of([("y", "", UpAxis::Y), ("z", "", UpAxis::Z)]),
@@ -207,9 +216,9 @@ pub(crate) struct ExportMeshArgs {
     arg = json_progress(),
     override_usage = "corniche export geotiff [OPTIONS] --output <FILE> <PACKAGE>",
     mut_arg("output", |arg| arg.help("The file to write: .tif or .tiff")),
-    mut_arg("dem", |arg| arg.help("The elevation rasters the package was made from, in the same order: a second band has TIN minus DEM")),
-    mut_arg("level", |arg| arg.help("The level whose triangles are taken [default: the finest]; pixels are the nodes of the finest level in any case")),
-    mut_arg("bounds", |arg| arg.help("Take the nodes in a rectangle of WGS84 degrees, rounded outwards; a west beyond the east crosses 180°")),
+    mut_arg("dem", |arg| arg.help("The DEM the package was built from (same files, same order): adds a second band, the heights of the triangles minus those of the DEM")),
+    mut_arg("level", |arg| arg.help("The level whose triangles are sampled [default: the finest]; pixels are always the grid nodes of the finest level")),
+    mut_arg("bounds", |arg| arg.help("Export the grid nodes in a bounding box in WGS84 degrees, rounded outwards; one with west > east crosses 180°")),
 )]
 pub(crate) struct ExportGeoTiffArgs {
     #[command(flatten)]
@@ -227,15 +236,17 @@ pub(crate) struct ExportGeoTiffArgs {
 }
 
 #[derive(Debug, Args)]
-#[command(arg = json_progress(), mut_arg("bounds", |arg| arg.help("Take the tiles that meet a rectangle of WGS84 degrees, whole: coarse ones reach far beyond it; a west beyond the east crosses 180°")))]
+#[command(arg = json_progress(), mut_arg("bounds", |arg| arg.help("Export the whole tiles that intersect a bounding box in WGS84 degrees: coarse tiles extend far beyond it; one with west > east crosses 180°")))]
 pub(crate) struct ExportTiles3dArgs {
     #[command(flatten)]
     pub(crate) from: PackageArg,
     #[command(flatten)]
     pub(crate) folder: FolderArgs,
-    /// How roads are there: cut (surfaces of true width), line (centre-lines just above the ground), vector (these as vector content
-    /// for CesiumJS) or none. Surfaces are in the ground's own triangles, and bridges are slabs if the package has spans;
-    /// vector content is in a second tileset, roads/tileset.json, a draft, and not valid glTF 2.0 for others
+    /// How roads are exported: cut (surfaces with true widths, in the terrain's triangles), line
+    /// (centre-lines above the ground), vector (vector content for CesiumJS) or none. With
+    /// cut, bridges are slabs if the package has spans. Vector content is in a second tileset,
+    /// roads/tileset.json; it follows a draft specification and is not valid glTF 2.0 for other
+    /// programs
     #[arg(
         long,
         value_parser = one_of(TILE_ROADS),
@@ -249,12 +260,12 @@ pub(crate) struct ExportTiles3dArgs {
     /// Colours and widths: road-atlas, dark, relief, photo or a style file (TOML)
     #[arg(long, value_name = "STYLE", default_value = "road-atlas")]
     pub(crate) style: String,
-    /// The finest level that is written [default: the package's finest]
+    /// The finest level to write [default: the package's finest]
     #[arg(long, value_name = "Z")]
     pub(crate) finest_level: Option<u8>,
     #[command(flatten)]
     pub(crate) within: BoundsArg,
-    /// Normal maps of the ground from the package's relief
+    /// Add normal maps of the terrain, from the package's relief
     #[arg(
         long,
         action = ArgAction::Set,
@@ -264,7 +275,7 @@ pub(crate) struct ExportTiles3dArgs {
         hide_possible_values = true
     )]
     pub(crate) relief: bool,
-    /// Walls below the borders of tiles, which hide gaps between levels
+    /// Add skirts below the borders of tiles, which hide gaps between levels
     #[arg(
         long,
         action = ArgAction::Set,
@@ -274,7 +285,7 @@ pub(crate) struct ExportTiles3dArgs {
         hide_possible_values = true
     )]
     pub(crate) skirts: bool,
-    /// Compression of vertices without loss: meshopt, or none
+    /// Lossless compression of vertices: meshopt, or none
     #[arg(
         long,
         action = ArgAction::Set,
@@ -284,9 +295,9 @@ pub(crate) struct ExportTiles3dArgs {
         hide_possible_values = true
     )]
     pub(crate) compress: bool,
-    /// Keep the package's heights as they are, although 3D Tiles count heights from the ellipsoid of WGS84
+    /// Do not convert heights to the WGS84 ellipsoid, although 3D Tiles expects ellipsoidal heights
     #[arg(long, value_parser = one_of(HEIGHTS), value_name = "as-is")]
-    pub(crate) heights: Option<Coordinates>,
+    pub(crate) heights: Option<FeatureCoordinates>,
     #[command(flatten)]
     pub(crate) datum: DatumArg,
     #[command(flatten)]
@@ -297,14 +308,14 @@ pub(crate) struct ExportTiles3dArgs {
 #[command(
     arg = json_progress(),
     mut_arg("output", |arg| arg.help("The folder to write: layer.json and a folder for each level")),
-    mut_arg("bounds", |arg| arg.help("Take the tiles of the finest level that meet a rectangle of WGS84 degrees, whole, and those above them; a west beyond the east crosses 180°")),
+    mut_arg("bounds", |arg| arg.help("Export the whole tiles of the finest level that intersect a bounding box in WGS84 degrees, and their parents; one with west > east crosses 180°")),
 )]
 pub(crate) struct ExportQuantizedMeshArgs {
     #[command(flatten)]
     pub(crate) from: PackageArg,
     #[command(flatten)]
     pub(crate) folder: FolderArgs,
-    /// The grid of tiles: geographic (EPSG:4326) or web-mercator (EPSG:3857)
+    /// The tiling scheme: geographic (EPSG:4326) or web-mercator (EPSG:3857)
     #[arg(
         long,
         value_parser = one_of([
@@ -316,15 +327,17 @@ pub(crate) struct ExportQuantizedMeshArgs {
         hide_possible_values = true
     )]
     pub(crate) tiling: Tiling,
-    /// The finest level [default: the one with the package's cells, or a coarser one whose error is the package's]
+    /// The finest level [default: the first level whose cell size or whose error is at most the
+    /// package's]
     #[arg(long, value_name = "Z", value_parser = clap::value_parser!(u8).range(0..=24))]
     pub(crate) max_level: Option<u8>,
-    /// Refuse to write more files than this
+    /// Fail if the export would have more files than this
     #[arg(long, value_name = "N", default_value_t = 250_000)]
     pub(crate) max_files: u64,
     #[command(flatten)]
     pub(crate) within: BoundsArg,
-    /// Where it is told which tiles there are: layer (in layer.json) or tiles (in tiles of each tenth level: layer.json stays small with many tiles)
+    /// How tile availability is stored: layer (in layer.json) or tiles (as metadata in the tiles of
+    /// every tenth level, which keeps layer.json small)
     #[arg(
         long,
         value_parser = one_of([
@@ -346,45 +359,46 @@ pub(crate) struct ExportQuantizedMeshArgs {
         hide_possible_values = true
     )]
     pub(crate) compress: bool,
-    /// Keep the package's heights as they are, although quantized-mesh counts heights from the ellipsoid of WGS84
+    /// Do not convert heights to the WGS84 ellipsoid, although quantized-mesh expects ellipsoidal
+    /// heights
     #[arg(long, value_parser = one_of(HEIGHTS), value_name = "as-is")]
-    pub(crate) heights: Option<Coordinates>,
+    pub(crate) heights: Option<FeatureCoordinates>,
     #[command(flatten)]
     pub(crate) datum: DatumArg,
     #[command(flatten)]
     pub(crate) cpu: ThreadsArg,
 }
 
-/// What 3D Tiles have of roads.
+/// The values of `--roads` for 3D Tiles.
 const TILE_ROADS: Words<TileRoads, 4> = [
-    ("cut", "Surfaces in the ground's triangles", TileRoads::Cut),
+    ("cut", "Surfaces in the terrain's triangles", TileRoads::Cut),
     ("line", "Centre-lines above the ground", TileRoads::Line),
     ("vector", "Centre-lines as vector content", TileRoads::Vector),
-    ("none", "Nothing", TileRoads::None),
+    ("none", "No roads", TileRoads::None),
 ];
 
-/// What a model has of roads.
+/// The values of `--roads` for a model.
 const MODEL_ROADS: Words<ModelRoads, 3> = [
-    ("lines", "Their centre-lines on the ground", ModelRoads::Lines),
-    ("surfaces", "Surfaces in the ground's own triangles", ModelRoads::Surfaces),
-    ("none", "Nothing", ModelRoads::None),
+    ("lines", "Centre-lines on the ground", ModelRoads::Lines),
+    ("surfaces", "Surfaces in the terrain's own triangles", ModelRoads::Surfaces),
+    ("none", "No roads", ModelRoads::None),
 ];
 
-/// Whether an export has something: normal maps of the ground, walls below the borders of tiles.
+/// The values of switches: normal maps, skirts.
 const ON_NONE: Words<bool, 2> = [("on", "", true), ("none", "", false)];
 
-/// What becomes of heights in degrees of WGS84.
-const HEIGHTS: Words<Coordinates, 1> =
-    [("as-is", "The package's heights", Coordinates::Wgs84WithPackageHeights)];
+/// The values of `--heights`.
+const HEIGHTS: Words<FeatureCoordinates, 1> =
+    [("as-is", "The package's heights, unconverted", FeatureCoordinates::Wgs84WithPackageHeights)];
 
-/// Formats of models by the endings of their files.
+/// Formats of models, by file extension.
 pub(crate) const MODEL_FORMATS: Words<MeshFormat, 3> = [
     ("glb", "Binary glTF 2.0", MeshFormat::Glb),
     ("ply", "PLY, binary, positions in double precision", MeshFormat::Ply),
     ("obj", "Wavefront OBJ", MeshFormat::Obj),
 ];
 
-/// Formats of features by the endings of their files.
+/// Formats of features, by file extension.
 pub(crate) const VECTOR_FORMATS: Words<VectorFormat, 4> = [
     ("gpkg", "GeoPackage", VectorFormat::GeoPackage),
     ("fgb", "FlatGeobuf", VectorFormat::FlatGeobuf),
@@ -396,30 +410,29 @@ fn parse_area_class(text: &str) -> Result<AreaClass, String> {
     class_named(text, "areas", &AreaClass::ALL)
 }
 
-fn parse_boundary_class(text: &str) -> Result<LineClass, String> {
-    let layer = ClassedLayer::Boundaries;
-    class_named(text, layer.name(), &layer.classes())
+fn parse_boundary_class(text: &str) -> Result<BoundaryClass, String> {
+    class_named(text, "boundaries", &BoundaryClass::ALL)
 }
 
 fn class_named<C: Copy + ToString>(text: &str, layer: &str, classes: &[C]) -> Result<C, String> {
     let names: Vec<String> = classes.iter().map(ToString::to_string).collect();
     let place = names.iter().position(|name| name == text);
     let class = place.map(|place| classes[place]);
-    class.ok_or_else(|| format!("classes of {layer} are {}", names.join(", ")))
+    class.ok_or_else(|| format!("the classes of {layer} are {}", names.join(", ")))
 }
 
-fn parse_plan_crs(text: &str) -> Result<Coordinates, String> {
+fn parse_plan_crs(text: &str) -> Result<FeatureCoordinates, String> {
     match parse_crs(text)? {
-        Coordinates::Wgs84 => {
-            Err("EPSG:4979 has heights, which these layers have not; give EPSG:4326".to_owned())
+        FeatureCoordinates::Wgs84 => {
+            Err("EPSG:4979 has heights, but these layers have none; use EPSG:4326".to_owned())
         }
         crs => Ok(crs),
     }
 }
 
-fn parse_crs(text: &str) -> Result<Coordinates, String> {
+fn parse_crs(text: &str) -> Result<FeatureCoordinates, String> {
     if text == "package" {
-        return Ok(Coordinates::Package);
+        return Ok(FeatureCoordinates::Package);
     }
     let code = match text.split_once(':') {
         Some((registry, code)) if registry.trim().eq_ignore_ascii_case("EPSG") => Some(code),
@@ -427,11 +440,11 @@ fn parse_crs(text: &str) -> Result<Coordinates, String> {
         None => Some(text),
     };
     match code.and_then(|code| code.trim().parse().ok()) {
-        Some(4979) => Ok(Coordinates::Wgs84),
-        Some(4326) => Ok(Coordinates::Wgs84WithPackageHeights),
-        Some(code) => Ok(Coordinates::Epsg(code)),
+        Some(4979) => Ok(FeatureCoordinates::Wgs84),
+        Some(4326) => Ok(FeatureCoordinates::Wgs84WithPackageHeights),
+        Some(code) => Ok(FeatureCoordinates::Epsg(code)),
         None => Err(
-            "give \"package\", EPSG:4326 or a projected CRS as EPSG:n; for others use ogr2ogr -t_srs on the result".to_owned()
+            "use \"package\", EPSG:4326 or a projected CRS as EPSG:n; for other CRSs run ogr2ogr -t_srs on the result".to_owned()
         ),
     }
 }

@@ -1,13 +1,14 @@
-//! How the ground is drawn, in every command that draws it.
+//! How the terrain is drawn, in every command that draws it.
 
 use clap::Args;
 
 #[derive(Debug, Clone, Copy, Args)]
 pub(crate) struct GroundArgs {
-    /// Terrain error that may be seen, in pixels
+    /// Allowed terrain error on the screen, in pixels
     #[arg(long, value_name = "PIXELS", default_value_t = 2.0)]
     pub(crate) screen_space_error: f64,
-    /// Size in pixels that one of a tile's 256 × 256 cells may have; 'inf' lets the terrain error decide alone
+    /// Largest size in pixels of one of a tile's 256 × 256 cells; with 'inf' only the terrain error
+    /// selects tiles
     #[arg(long, value_name = "PIXELS", default_value_t = 2.0)]
     pub(crate) cell_px: f64,
     /// Vertical exaggeration

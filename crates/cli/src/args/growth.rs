@@ -1,4 +1,4 @@
-//! Arguments of `growth`: the packages, and the forms in which the table of growth is written.
+//! Arguments of `growth`: the packages, and the output formats of the growth table.
 
 use std::path::PathBuf;
 
@@ -10,22 +10,24 @@ use super::values::package_place;
 #[derive(Debug, Args)]
 #[command(group = ArgGroup::new("files").args(["svg", "per_way"]).multiple(true))]
 pub(crate) struct GrowthArgs {
-    /// The package: a file, or an address on a web server (https://…); several are compared
+    /// The package: a file, or a URL (https://…); several packages are compared
     #[arg(value_name = "PACKAGE", required = true, value_parser = package_place(), value_hint = ValueHint::AnyPath)]
     pub(crate) packages: Vec<PackagePlace>,
     /// Print JSON, for programs
     #[arg(long, conflicts_with = "csv")]
     pub(crate) json: bool,
-    /// Print CSV, for programs; of several packages with a column that names the package
+    /// Print CSV, for programs; with several packages, a column names the package
     #[arg(long)]
     pub(crate) csv: bool,
-    /// Also draw the growth over the levels (SVG): a line for each class, or for each of several packages
+    /// Also draw the growth over the levels (SVG): one line per class, or per package if there are
+    /// several
     #[arg(long, value_name = "FILE")]
     pub(crate) svg: Option<PathBuf>,
-    /// Also write a line for each way (CSV): its length, and its vertices before and after on each level. Of one package
+    /// Also write one line per way (CSV): its length, and its vertices before and after clipping on
+    /// each level. Only for a single package
     #[arg(long, value_name = "CSV")]
     pub(crate) per_way: Option<PathBuf>,
-    /// Replace files that exist, once the new ones are complete
+    /// Overwrite existing files, once the new ones are complete
     #[arg(short = 'O', long, requires = "files")]
     pub(crate) overwrite: bool,
 }

@@ -1,22 +1,23 @@
-//! How roads are drawn and how everything looks, for all commands that draw.
+//! Options of how roads and everything else look, for all commands that draw.
 
 use clap::{ArgAction, Args, builder::TypedValueParser};
 use corniche_presets::{Words, one_of};
 use corniche_styles::Style;
 use corniche_viewer::{
-    CapTest, Caps, ClassSet, Outline, Quads, RoadMethod, RoadOptions, WidthGrowth,
+    CapTest, Caps, ClassSet, Quads, RoadMethod, RoadOptions, RoadOutline, WidthGrowth,
 };
 
 use super::{
     overlay::{self, OverlayArg},
     values::{parse_within, word_of},
 };
-use crate::failure::Failure;
+use crate::failure::CommandFailure;
 
-/// The heading in the help under which options stand that are there for comparisons with published methods.
+/// The help heading of options for comparisons with published methods.
 pub(crate) const COMPARING: &str = "Comparing with the papers";
 
-/// How roads are drawn. The methods without caps are named by `fly` alone, which can so take one flight with and without.
+/// How roads are drawn. Only `fly` names the methods without caps, so that it can repeat a flight
+/// with and without caps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Roads {
     Geo,
@@ -28,15 +29,15 @@ pub(crate) enum Roads {
 
 /// All values of `--roads`.
 pub(crate) const ROADS: Words<Roads, 5> = [
-    ("geo", "As geometry on the TIN", Roads::Geo),
-    ("geo-no-caps", "As geometry on the TIN, cut off straight at every point", Roads::GeoNoCaps),
-    ("sv", "As shadow volumes: exact to the pixel, also on steep ground", Roads::Sv),
-    ("sv-no-caps", "As shadow volumes, cut off straight at every point", Roads::SvNoCaps),
-    ("none", "Not at all", Roads::None),
+    ("geo", "As geometry on the terrain's triangles (TIN)", Roads::Geo),
+    ("geo-no-caps", "As geometry on the TIN, cut off square at every point", Roads::GeoNoCaps),
+    ("sv", "As shadow volumes: pixel-exact, also on steep ground", Roads::Sv),
+    ("sv-no-caps", "As shadow volumes, cut off square at every point", Roads::SvNoCaps),
+    ("none", "No roads", Roads::None),
 ];
 
 impl Roads {
-    /// What all commands draw where nothing is said: exact to the pixel on every ground.
+    /// The default of all commands: pixel-exact on every terrain.
     pub(crate) const DEFAULT: Self = Self::Sv;
 
     /// Its name on the command line.
@@ -52,18 +53,19 @@ impl Roads {
         }
     }
 
-    /// The value of `--roads` in commands that draw with one method; whether roads have caps is said by `--caps` there.
+    /// The parser of `--roads` in commands that draw with one method; there `--caps` decides about
+    /// caps.
     pub(crate) fn one_method() -> impl TypedValueParser<Value = Self> {
         let [geo, _, sv, _, none] = ROADS;
         one_of([geo, sv, none])
     }
 
-    /// The same method drawn without caps.
+    /// The same method without caps.
     pub(crate) fn without_caps(self) -> Self {
         self.with_caps(Caps::None)
     }
 
-    /// The same method drawn with these caps.
+    /// The same method with these caps.
     fn with_caps(self, caps: Caps) -> Self {
         match (self, caps) {
             (Self::Geo, Caps::None) => Self::GeoNoCaps,
@@ -73,50 +75,50 @@ impl Roads {
     }
 }
 
-/// Whether areas, or boundaries, are drawn.
-const ON_OFF: Words<bool, 2> = [("on", "Those that the style draws", true), ("off", "None", false)];
+/// The values of `--areas` and `--boundaries`.
+const ON_OFF: Words<bool, 2> = [("on", "As the style draws them", true), ("off", "None", false)];
 
-/// How roads begin, bend and end.
+/// The shape of the ends and bends of roads.
 const CAPS: Words<Caps, 2> = [
     ("round", "With a half disc around every point", Caps::Round),
-    ("none", "Cut off straight at every point", Caps::None),
+    ("none", "Cut off square at every point", Caps::None),
 ];
 
-/// How widths depend on the distance from the eye.
+/// How widths depend on the distance from the camera.
 pub(crate) const WIDTH_GROWTHS: Words<WidthGrowth, 3> = [
     ("none", "True widths", WidthGrowth::None),
     ("constant", "True widths times the style's constant", WidthGrowth::Constant),
     (
         "distance",
-        "True widths near the eye, growing beyond the style's threshold",
+        "True widths near the camera, growing beyond the style's threshold",
         WidthGrowth::ByDistance,
     ),
 ];
 
-/// The edge of roads.
-pub(crate) const OUTLINES: Words<Outline, 4> = [
-    ("style", "As wide as the style says", Outline::OfStyle),
-    ("none", "None", Outline::None),
-    ("3", "One pixel, by a kernel of 3 × 3", Outline::Kernel3),
-    ("5", "Two pixels, by a kernel of 5 × 5", Outline::Kernel5),
+/// The outline of roads.
+pub(crate) const OUTLINES: Words<RoadOutline, 4> = [
+    ("style", "The style's width", RoadOutline::OfStyle),
+    ("none", "None", RoadOutline::None),
+    ("3", "One pixel, by a kernel of 3 × 3", RoadOutline::Kernel3),
+    ("5", "Two pixels, by a kernel of 5 × 5", RoadOutline::Kernel5),
 ];
 
-/// How a fragment of a shadow volume finds out whether the ground it sees is road.
+/// How a fragment of a shadow volume decides whether its ground is road.
 const CAP_TESTS: Words<CapTest, 2> = [
-    ("distance", "By the distance in plan: exact far from the eye too", CapTest::Distance),
+    ("distance", "By the distance in plan: exact also far from the camera", CapTest::Distance),
     (
         "paper",
-        "By the paper's formula, for comparison: loses precision far from the eye",
+        "By the paper's formula, for comparison: loses precision far from the camera",
         CapTest::PaperQuadratic,
     ),
 ];
 
-/// What the quad of a piece of road covers.
+/// The ground that the quad of a piece of road covers.
 const QUADS: Words<Quads, 2> = [
-    ("beds", "All ground beside the piece, within the road's width", Quads::Beds),
+    ("beds", "All ground within the road's width", Quads::Beds),
     (
         "level",
-        "What lies as high as the piece, as in the paper, for comparison: roads on slopes are too narrow",
+        "Only ground at the height of the piece, as in the paper, for comparison: roads on slopes are too narrow",
         Quads::Level,
     ),
 ];
@@ -127,48 +129,52 @@ pub(crate) struct LookArgs {
     /// Colours and widths: road-atlas, dark, relief, photo or a style file (TOML)
     #[arg(long, value_name = "NAME|FILE", default_value = "road-atlas")]
     pub(crate) style: String,
-    /// How strongly photos are seen, where the package has some: off, or 0 to 1 [default: as the style says]
+    /// Opacity of photos, where the package has some: off, or 0 to 1 [default: from the style]
     #[arg(long, value_name = "off|SHARE", value_parser = parse_strength)]
     pub(crate) photo: Option<f32>,
-    /// Areas (water, forest …), where the package has some: as the style draws them, or off
+    /// Areas (water, forest …), where the package has some: on (as the style draws them) or off
     #[arg(long, value_parser = one_of(ON_OFF), default_value = "on", action = ArgAction::Set)]
     pub(crate) areas: bool,
-    /// Boundaries, where the package has some: as the style draws them, or off
+    /// Boundaries, where the package has some: on (as the style draws them) or off
     #[arg(long, value_parser = one_of(ON_OFF), default_value = "on", action = ArgAction::Set)]
     pub(crate) boundaries: bool,
-    /// Draw the lines of a file over the map: GeoJSON, GPX, GeoPackage, Shapefile …; give it again for another file
+    /// Draw the lines of a file over the map: GeoJSON, GPX, GeoPackage, Shapefile …; repeat the
+    /// option for more files
     ///
-    /// Behind the file's name: ,color=COLOUR (#C21E8A or tomato) ,width=PIXELS ,opacity=SHARE ,dash=DASH/GAP ,pattern=dots/PX (or beads, arrows) in pixels.
+    /// After the file's name: ,color=COLOUR (#C21E8A or tomato) ,width=PIXELS ,opacity=SHARE
+    /// ,dash=DASH/GAP ,pattern=dots/PX (or beads, arrows) in pixels.
     #[arg(long, value_name = "FILE[,color=…]", value_parser = overlay::parse)]
     pub(crate) overlay: Vec<OverlayArg>,
-    /// Take the datum of such a file for that of WGS84 where PROJ knows nothing between them; its lines can then lie 100 m and more beside the map
+    /// Allow PROJ's ballpark transformations (no datum shift) for files of --overlay; their lines
+    /// can then be off by 100 m or more
     #[arg(long, requires = "overlay")]
     pub(crate) allow_ballpark: bool,
-    /// How roads begin, bend and end
+    /// The shape of the ends and bends of roads
     #[arg(long, value_parser = one_of(CAPS), default_value = "round", help_heading = COMPARING, hide_short_help = true)]
     caps: Caps,
-    /// How widths depend on the distance from the eye
+    /// How widths depend on the distance from the camera
     #[arg(long, value_parser = one_of(WIDTH_GROWTHS), default_value = "distance", help_heading = COMPARING, hide_short_help = true)]
     width_growth: WidthGrowth,
     /// Outline of roads: the style's, none, or one from a kernel of 3 or 5 pixels
     #[arg(long, value_parser = one_of(OUTLINES), default_value = "style", help_heading = COMPARING, hide_short_help = true)]
-    outline: Outline,
-    /// How shadow volumes find their round ends [default: distance]
+    outline: RoadOutline,
+    /// How shadow volumes compute their round caps [default: distance]
     #[arg(long, value_parser = one_of(CAP_TESTS), help_heading = COMPARING, hide_short_help = true)]
     cap_test: Option<CapTest>,
-    /// What the quads of roads as geometry cover [default: beds]
+    /// The ground that the quads of roads drawn as geometry cover [default: beds]
     #[arg(long, value_parser = one_of(QUADS), help_heading = COMPARING, hide_short_help = true)]
     geo_quads: Option<Quads>,
 }
 
-/// A share from 0 to 1; `off` is 0.
+/// Parses a fraction from 0 to 1; `off` is 0.
 fn parse_strength(text: &str) -> Result<f32, String> {
     let share = if text == "off" { "0" } else { text };
     parse_within(share, 0.0..=1.0, "write off, or a number from 0 to 1")
 }
 
 impl LookArgs {
-    /// A style, with photos as strong as `--photo` says, and with areas unless `--areas` says otherwise, and with the lines of `--overlay`.
+    /// The style with the opacity of `--photo`, with or without the areas of `--areas`, and with
+    /// the lines of `--overlay`.
     pub(crate) fn styled(&self, style: Style) -> Style {
         let style = if self.areas { style } else { style.without_areas() };
         let style = if self.boundaries { style } else { style.without_boundaries() };
@@ -176,33 +182,33 @@ impl LookArgs {
         overlay::styled(&self.overlay, style)
     }
 
-    /// Whether an option is given that only some methods have.
+    /// Whether an option is given that applies to some methods only.
     pub(crate) fn needs_method(&self) -> bool {
         self.cap_test.is_some() || self.geo_quads.is_some()
     }
 
-    /// What `--roads` says together with `--caps`.
+    /// The values of `--roads` together with `--caps`.
     ///
     /// # Errors
-    /// When `--cap-test` or `--geo-quads` is given and nothing is drawn that it could change.
-    pub(crate) fn roads(&self, given: &[Roads]) -> Result<Vec<Roads>, Failure> {
+    /// When `--cap-test` or `--geo-quads` is given and would have no effect.
+    pub(crate) fn roads(&self, given: &[Roads]) -> Result<Vec<Roads>, CommandFailure> {
         let roads: Vec<Roads> = given.iter().map(|roads| roads.with_caps(self.caps)).collect();
         if self.cap_test.is_some() && !roads.contains(&Roads::Sv) {
-            return Err(Failure::unusable(
-                "--cap-test has an effect only on shadow volumes with round caps; give it together with --roads sv",
+            return Err(unusable!(
+                "--cap-test applies only to shadow volumes with round caps; use it with --roads sv"
             ));
         }
         if self.geo_quads.is_some()
             && !roads.iter().any(|roads| roads.method() == RoadMethod::Geometry)
         {
-            return Err(Failure::unusable(
-                "--geo-quads has an effect only on roads as geometry; give it together with --roads geo",
+            return Err(unusable!(
+                "--geo-quads applies only to roads as geometry; use it with --roads geo"
             ));
         }
         Ok(roads)
     }
 
-    /// How to draw roads of which [`Self::roads`] told.
+    /// The options for drawing roads with one of the methods that [`Self::roads`] returned.
     pub(crate) fn road_options(&self, roads: Roads) -> RoadOptions {
         RoadOptions {
             method: roads.method(),

@@ -1,4 +1,4 @@
-//! Every option of how roads look reaches the drawing.
+//! All options of how roads look affect the drawing.
 
 use clap::Parser;
 
@@ -20,7 +20,7 @@ fn line(text: &str) -> Line {
 fn nothing_said_is_the_method_as_it_is_meant_to_be_seen() {
     let look = line("--roads geo").look;
     for roads in [Roads::Geo, Roads::Sv, Roads::None] {
-        assert_eq!(look.road_options(roads), RoadOptions::of(roads.method()), "{roads:?}");
+        assert_eq!(look.road_options(roads), RoadOptions::for_method(roads.method()), "{roads:?}");
     }
     assert_eq!(look.style, "road-atlas");
 }
@@ -36,7 +36,7 @@ fn every_option_reaches_the_drawing() {
         cap_test: corniche_viewer::CapTest::PaperQuadratic,
         quads: corniche_viewer::Quads::Beds,
         width_growth: corniche_viewer::WidthGrowth::Constant,
-        outline: corniche_viewer::Outline::Kernel5,
+        outline: corniche_viewer::RoadOutline::Kernel5,
     };
     assert_eq!(look.road_options(look.roads(&roads).unwrap()[0]), expected);
     assert_eq!(look.style, "dark");
@@ -45,7 +45,7 @@ fn every_option_reaches_the_drawing() {
     let look = line("--roads geo --width-growth none --outline none").look;
     let options = look.road_options(Roads::GeoNoCaps);
     assert_eq!(options.width_growth, corniche_viewer::WidthGrowth::None);
-    assert_eq!(options.outline, corniche_viewer::Outline::None);
+    assert_eq!(options.outline, corniche_viewer::RoadOutline::None);
     assert_eq!(options.caps, corniche_viewer::Caps::None);
     assert_eq!(options.method, RoadMethod::Geometry);
     let Line { roads, look } = line("--roads sv,geo --geo-quads level");
@@ -54,10 +54,7 @@ fn every_option_reaches_the_drawing() {
     for without in ["sv", "none"] {
         let Line { roads, look } = line(&format!("--roads {without} --geo-quads level"));
         let refused = look.roads(&roads).unwrap_err().to_string();
-        assert!(
-            refused.contains("--geo-quads has an effect only on roads as geometry"),
-            "{refused}"
-        );
+        assert!(refused.contains("--geo-quads applies only to roads as geometry"), "{refused}");
     }
 }
 

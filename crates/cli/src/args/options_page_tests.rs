@@ -1,7 +1,8 @@
 //! The tables of `docs/options.md` are those of the command line. `CORNICHE_BLESS=1` writes them.
 //!
-//! A table stands between `<!-- options of COMMAND: begin -->`, or `<!-- options of COMMAND, without those of OTHER: begin -->`, and
-//! `<!-- end -->`. A cell has the first sentence of an option's help; what more is to be said stands below the table, written by hand.
+//! A table is between `<!-- options of COMMAND: begin -->`, or `<!-- options of COMMAND, without
+//! those of OTHER: begin -->`, and `<!-- end -->`. A cell has the first sentence of an option's
+//! help; further explanations follow below the table, written by hand.
 
 use std::{collections::BTreeSet, fmt::Write as _, fs, path::PathBuf};
 
@@ -9,7 +10,7 @@ use clap::{Arg, ArgAction, Command, CommandFactory as _};
 
 use super::Arguments;
 
-/// The most words in a cell.
+/// The largest number of words in a cell.
 const MOST_WORDS: usize = 25;
 
 const BEGIN: &str = "<!-- options of ";
@@ -59,14 +60,14 @@ fn a_cell_has_what_comes_first() {
     assert_eq!(marked("with --dem, or -O (--a.b)"), "with `--dem`, or `-O` (`--a`.b)");
 }
 
-/// A command by its words; `corniche` is the program itself, of which all commands have the options.
+/// Finds a command by its words; `corniche` is the program itself, whose options all commands have.
 fn find<'a>(program: &'a Command, words: &str) -> &'a Command {
     words.split(' ').filter(|word| *word != "corniche").fold(program, |command, word| {
         command.find_subcommand(word).unwrap_or_else(|| panic!("there is no command {words}"))
     })
 }
 
-/// The commands with options of their own.
+/// Collects the commands with options of their own.
 fn with_options(words: &str, command: &Command, found: &mut Vec<String>) {
     if !rows(command).is_empty() {
         found.push(if words.is_empty() { "corniche".to_owned() } else { words.to_owned() });
@@ -111,7 +112,7 @@ fn row(option: &Arg) -> Row {
     Row { heading: option.get_help_heading().unwrap_or_default().to_owned(), cells }
 }
 
-/// What may be given: the words that are known, else the name of the value.
+/// The accepted values: the possible words, or the name of the value.
 fn value(option: &Arg) -> String {
     let known: Vec<String> =
         option.get_possible_values().iter().map(|value| value.get_name().to_owned()).collect();
@@ -129,7 +130,8 @@ fn value(option: &Arg) -> String {
     }
 }
 
-/// What a help text says first, in whole clauses and as many words as a cell may have, and the default that it names.
+/// The beginning of a help text, in whole clauses with at most as many words as a cell may have,
+/// and the default in it.
 fn cells(name: &str, help: &str) -> (String, String) {
     let (text, default) = match help.split_once("[default: ") {
         Some((before, after)) => {
@@ -154,7 +156,7 @@ fn cells(name: &str, help: &str) -> (String, String) {
     (marked(&told), marked(default))
 }
 
-/// Text for Markdown, with names of options as code.
+/// A text as Markdown, with names of options as code.
 fn marked(text: &str) -> String {
     let text = text.replace('|', "\\|").replace('*', "\\*").replace('<', "&lt;");
     let word = |word: &str| {

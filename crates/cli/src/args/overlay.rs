@@ -1,4 +1,4 @@
-//! `--overlay`: a file of lines and how they are drawn.
+//! `--overlay`: a file of lines and the style of those lines.
 
 use std::path::PathBuf;
 
@@ -6,27 +6,28 @@ use corniche_styles::{Dash, LineStyle, Rgb, Style, parse_color};
 
 use super::values::parse_within;
 
-/// A file of lines that are drawn over the map. Its text is the file's name, and after it, if wanted, `,color=COLOUR`, `,width=PX`,
-/// `,opacity=SHARE` and `,dash=DASH/GAP` or `,pattern=NAME/PX` in any order.
+/// A file of lines that are drawn over the map. On the command line, the file's name may be
+/// followed by `,color=COLOUR`, `,width=PX`, `,opacity=SHARE` and `,dash=DASH/GAP` or
+/// `,pattern=NAME/PX` in any order.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct OverlayArg {
     pub(crate) path: PathBuf,
-    /// Which colour its lines have, if it says so.
+    /// The colour of the lines, if given.
     pub(crate) color: Option<Rgb>,
     width_px: Option<f32>,
     opacity: Option<f32>,
     dash: Option<Dash>,
-    /// As it was given on the command line.
+    /// The text of the command line.
     pub(crate) text: String,
 }
 
-/// Whether a name of an entry is one of a style. What follows another name belongs to the file's name.
+/// Whether a name of an entry is one of a style. Any other name is a part of the file's name.
 fn is_entry(name: &str) -> bool {
     ["color", "width", "opacity", "dash", "pattern"].contains(&name)
 }
 
 impl OverlayArg {
-    /// How its lines are drawn; what it does not say is as in `usual`.
+    /// The style of the lines; what is not given is as in `usual`.
     pub(crate) fn style(&self, usual: LineStyle) -> LineStyle {
         LineStyle {
             color: self.color.unwrap_or(usual.color),
@@ -38,7 +39,7 @@ impl OverlayArg {
     }
 }
 
-/// A style with the looks that the files ask for.
+/// The style with the line styles of the overlay files.
 pub(crate) fn styled(files: &[OverlayArg], mut style: Style) -> Style {
     for (line, file) in style.overlays.iter_mut().zip(files) {
         *line = file.style(*line);
@@ -74,7 +75,7 @@ pub(crate) fn parse(text: &str) -> Result<OverlayArg, String> {
             "width" => found.width_px = Some(number(0.5..=50.0)?),
             "opacity" => found.opacity = Some(number(0.01..=1.0)?),
             _ if found.dash.is_some() => {
-                return Err("give a line either a dash or a pattern".to_owned());
+                return Err("use either dash or pattern, not both".to_owned());
             }
             "pattern" => found.dash = Some(pattern(value)?),
             _ => found.dash = Some(dash(value)?),
@@ -87,7 +88,7 @@ pub(crate) fn parse(text: &str) -> Result<OverlayArg, String> {
     Ok(OverlayArg { path: PathBuf::from(rest), ..found })
 }
 
-/// A text before and after its last comma, but for commas in brackets, as colours have them.
+/// Splits a text at its last comma outside brackets, because colours contain commas in brackets.
 fn last_entry(text: &str) -> Option<(&str, &str)> {
     let mut open = 0_usize;
     let comma = text.rfind(|letter| {
@@ -103,14 +104,14 @@ fn last_entry(text: &str) -> Option<(&str, &str)> {
 
 fn dash(text: &str) -> Result<Dash, String> {
     let lengths: Result<Vec<f32>, _> = text.split('/').map(str::parse).collect();
-    let lengths =
-        lengths.map_err(|_| format!("{text:?} is no pattern; write pixels like dash=8/4"))?;
+    let lengths = lengths
+        .map_err(|_| format!("{text:?} is not a dash pattern; write pixels like dash=8/4"))?;
     Dash::new(&lengths).map_err(|error| error.to_string())
 }
 
-/// A pattern by its name, and its length in pixels.
+/// Parses a pattern: its name, and its length in pixels.
 fn pattern(text: &str) -> Result<Dash, String> {
-    let wrong = || format!("{text:?} is no pattern; write dots/12, beads/16 or arrows/20");
+    let wrong = || format!("{text:?} is not a pattern; write dots/12, beads/16 or arrows/20");
     let (name, length) = text.split_once('/').ok_or_else(wrong)?;
     let length_px = length.parse().map_err(|_| wrong())?;
     let pattern = match name {

@@ -1,4 +1,4 @@
-//! Entries of `--overlay` are read in any order, and mistakes are told.
+//! Entries of `--overlay` are accepted in any order, and mistakes are reported.
 
 use std::path::Path;
 
@@ -44,13 +44,13 @@ fn colours_may_have_commas() {
 #[test]
 fn what_is_wrong_is_told() {
     for (text, part) in [
-        ("a.gpx,color=redd", "is no colour"),
+        ("a.gpx,color=redd", "is not a colour"),
         ("a.gpx,width=0", "width must be 0.5 to 50"),
-        ("a.gpx,dash=8-4", "is no pattern"),
-        ("a.gpx,pattern=dots", "is no pattern"),
-        ("a.gpx,pattern=stars/9", "is no pattern"),
+        ("a.gpx,dash=8-4", "is not a dash pattern"),
+        ("a.gpx,pattern=dots", "is not a pattern"),
+        ("a.gpx,pattern=stars/9", "is not a pattern"),
         ("a.gpx,pattern=dots/9000", "out of range"),
-        ("a.gpx,pattern=dots/12,dash=8/4", "either a dash or a pattern"),
+        ("a.gpx,pattern=dots/12,dash=8/4", "either dash or pattern"),
         ("a.gpx,dash=8/4,dash=8/4", "dash is given twice"),
         ("a.gpx,width=3,color=#FF0000,width=4", "width is given twice"),
         ("a.gpx,dash=8/4/2", "two or four lengths"),

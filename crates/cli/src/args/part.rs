@@ -1,79 +1,85 @@
-//! Commands that make a package in parts.
+//! Commands that compute a package in parts.
 
 use std::{num::NonZeroU32, path::PathBuf};
 
 use clap::{Args, builder::TypedValueParser};
 use corniche_geom::TileId;
 use corniche_osm::Share;
-use corniche_pipeline::Step;
+use corniche_pipeline::PartStep;
 use corniche_presets::one_of;
 
 use super::{shared::ThreadsArg, voice::json_progress};
-use crate::failure::Failure;
+use crate::failure::CommandFailure;
 
-/// A step of a build that a process can do alone.
-fn step() -> impl TypedValueParser<Value = Step> {
+/// The steps of a build that a process can do alone.
+fn step() -> impl TypedValueParser<Value = PartStep> {
     let help = |step| match step {
-        Step::Hashes => "Hash the inputs",
-        Step::Ways => "Find the road ways in a share of the extract; may be left out",
-        Step::Nodes => {
-            "Find the nodes of road ways in a share of the extract; needs the ways of all shares"
+        PartStep::Hashes => "Hash the inputs",
+        PartStep::Ways => "Find the road ways in a chunk of the extract; may be skipped",
+        PartStep::Nodes => {
+            "Find the nodes of road ways in a chunk of the extract; needs the ways of all chunks"
         }
-        Step::Roads => {
-            "Cut the extract's roads by tile: from all shares of ways and nodes, else from the extract itself"
+        PartStep::Roads => {
+            "Clip the extract's roads to tiles: from all chunks of ways and nodes, or from the extract itself"
         }
-        Step::Heights => "Read the heights of a subtree",
-        Step::Top => {
-            "Check all heights and make what lies above the subtrees; needs the heights of all"
+        PartStep::Heights => "Read the heights of a subtree",
+        PartStep::Top => {
+            "Check all heights and compute the levels above the subtrees; needs the heights of all subtrees"
         }
-        Step::Tiles => "Make the tiles of a subtree; needs the heights of all, top and roads",
+        PartStep::Tiles => {
+            "Compute the tiles of a subtree; needs the heights of all subtrees, top and roads"
+        }
     };
-    one_of(Step::ALL.map(|step| (step.name(), help(step), step)))
+    one_of(PartStep::ALL.map(|step| (step.name(), help(step), step)))
 }
 
-// Which plan, which stores, and what the run may use: the same for `part` and `merge`.
+// The plan, the stores and the resources of the run: the same for `part` and `merge`.
 #[derive(Debug, Args)]
 #[command(arg = json_progress())]
 pub(crate) struct PlannedArgs {
-    /// The plan, made with corniche plan -o
+    /// The plan, created with corniche plan -o
     #[arg(value_name = "PLAN.json")]
     pub(crate) plan: Option<PathBuf>,
-    /// Folders with parts, or prefixes in object storage (`s3://BUCKET/PREFIX`). All are read; the first is also written
+    /// Folders of parts, or prefixes in object storage (`s3://BUCKET/PREFIX`). All are read; only
+    /// the first is written
     #[arg(long, value_name = "FOLDER", num_args = 1.., required = true)]
     pub(crate) store: Vec<PathBuf>,
-    /// With object storage: where a part or a package is made before it is sent [default: the system's temporary folder]
+    /// With object storage: folder for parts and packages before they are uploaded [default: the
+    /// system's temporary folder]
     #[arg(long, value_name = "FOLDER")]
     pub(crate) tmp: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) cpu: ThreadsArg,
-    /// The most memory to use, such as 512M, 4G or 1T, at least 256M [default: half of the machine's, at most 4G]
+    /// Memory limit, at least 256M, such as 512M or 4G (M is 2^20 bytes, MB is 10^6) [default: half
+    /// of the machine's memory, at most 4G]
     #[arg(long, value_name = "BYTES")]
     pub(crate) memory: Option<String>,
 }
 
-/// The plan and the stores. `--store` takes all that follows it, also a plan, which is told from stores by its name.
+/// The plan and the stores. `--store` consumes all words that follow it, including a plan, which
+/// its name identifies.
 ///
 /// # Errors
-/// When no plan is named, or several may be meant.
+/// When no plan is named, or the plan is ambiguous.
 pub(crate) fn plan_and_stores(
     plan: Option<&PathBuf>,
     store: &[PathBuf],
-) -> Result<(PathBuf, Vec<PathBuf>), Failure> {
+) -> Result<(PathBuf, Vec<PathBuf>), CommandFailure> {
     if let Some(plan) = plan {
         return Ok((plan.clone(), store.to_vec()));
     }
     let is_plan = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "json");
     let (mut plans, stores): (Vec<_>, Vec<_>) = store.iter().cloned().partition(is_plan);
     match (plans.pop(), plans.is_empty()) {
-        (Some(_), true) if stores.is_empty() && store.len() == 1 => Err(Failure::unusable(
-            "--store needs a folder; what is named there is a plan: give the plan first, then --store FOLDER...",
+        (Some(_), true) if stores.is_empty() && store.len() == 1 => Err(unusable!(
+            "--store needs a folder, but only a plan follows it; write the plan first: PLAN.json --store FOLDER..."
         )),
         (Some(plan), true) => Ok((plan, stores)),
-        (Some(_), false) => Err(Failure::unusable(
-            "several names behind --store end in .json; write the plan first: PLAN.json --store FOLDER...",
+        (Some(_), false) => Err(unusable!(
+            "several names after --store have the extension .json; write the plan first: PLAN.json --store FOLDER..."
         )),
-        (None, _) => Err(Failure::unusable(
-            "no plan is named: none of the names ends in .json; write it first: PLAN.json --store FOLDER...",
+        (None, _) => Err(unusable!(
+            "no plan is named: no name has the extension .json; write the plan first: PLAN.json --store FOLDER..."
         )),
     }
 }
@@ -81,14 +87,14 @@ pub(crate) fn plan_and_stores(
 #[derive(Debug, Args)]
 #[command(override_usage = "corniche part [OPTIONS] --step <STEP> --store <FOLDER>... <PLAN.json>")]
 pub(crate) struct PartArgs {
-    /// The step to do
+    /// The step to run
     #[arg(long, value_parser = step(), value_name = "STEP")]
-    pub(crate) step: Step,
-    /// Only the tiles beneath and at this one, for the steps heights and tiles [default: 0/0/0, all]
+    pub(crate) step: PartStep,
+    /// For the steps heights and tiles: only this tile and its descendants [default: 0/0/0, all]
     #[arg(long, value_name = "Z/X/Y")]
     pub(crate) subtree: Option<TileId>,
-    /// Only this share of the extract, for the steps ways and nodes; N is the same for all of them, at most 256 [default: 1/1,
-    /// all]
+    /// For the steps ways and nodes: only chunk I of N of the extract; N is the same for all
+    /// chunks, at most 256 [default: 1/1, all]
     #[arg(long, value_name = "I/N")]
     pub(crate) share: Option<Share>,
     #[command(flatten)]
@@ -98,17 +104,18 @@ pub(crate) struct PartArgs {
 #[derive(Debug, Args)]
 #[command(override_usage = "corniche jobs [OPTIONS] --slots <N> <PLAN.json>")]
 pub(crate) struct JobsArgs {
-    /// The plan, made with corniche plan -o
+    /// The plan, created with corniche plan -o
     #[arg(value_name = "PLAN.json", required_unless_present = "store")]
     pub(crate) plan: Option<PathBuf>,
-    /// How many processes will work at once
+    /// Number of processes that will run at once
     #[arg(long, value_name = "N")]
     pub(crate) slots: NonZeroU32,
-    /// Stores with parts. Once the roads are in them, the parts of the step tiles are sized by the roads of each tile, too
+    /// Stores of parts. Once they contain the roads, the parts of the step tiles are also sized by
+    /// the roads of each tile
     #[arg(long, value_name = "STORE", num_args = 1..)]
     pub(crate) store: Vec<PathBuf>,
-    /// Make no part smaller than this without need, in estimated seconds on one core [default: 20 times what the start of a part
-    /// takes]
+    /// Smallest size of a part, in estimated seconds on one core, unless a smaller one is
+    /// unavoidable [default: 20 times the start-up time of a part]
     #[arg(long, value_name = "SECONDS")]
     pub(crate) least_work: Option<f64>,
 }
@@ -119,11 +126,12 @@ pub(crate) struct MergeArgs {
     /// The package to write (.pmtiles): a file, or an object (`s3://BUCKET/NAME.pmtiles`)
     #[arg(short, long, value_name = "PACKAGE")]
     pub(crate) output: PathBuf,
-    /// Replace the package if it exists, once the new one is complete; if it is a link, replace the file it leads to
+    /// Overwrite the package if it exists, once the new one is complete; for a link, overwrite the
+    /// file it points to
     #[arg(short = 'O', long)]
     pub(crate) overwrite: bool,
-    /// Also list every defect of the extract and every road lost, one per line (CSV); an existing list is kept
-    /// unless -O is given
+    /// Also list every defect of the extract and every lost road in this file (CSV), one per line;
+    /// needs -O if the file exists
     #[arg(long, value_name = "CSV")]
     pub(crate) defects: Option<PathBuf>,
     #[command(flatten)]

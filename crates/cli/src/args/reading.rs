@@ -1,4 +1,4 @@
-//! Commands that tell what a package holds.
+//! Commands that report what a package contains.
 
 use std::{fmt::Write as _, path::PathBuf};
 
@@ -12,11 +12,11 @@ use super::{
     values::{package_place, parse_position},
     voice::json_progress,
 };
-/// What `verify --help` ends with: the checks, by their ids.
+/// The end of `verify --help`: the checks, by their ids.
 fn checks() -> String {
     let mut text =
-        "The last line is the verdict; with --quiet only it and broken checks are printed.\n\n\
-         Checks (docs/promises.md explains them); a broken one makes exit code 1:\n"
+        "The last line is the verdict; with --quiet only the verdict and broken checks are printed.\n\n\
+         Checks (see docs/promises.md); the exit code is 1 if one is broken:\n"
             .to_owned();
     for check in CheckId::ALL {
         let needs = check.needs().text().replace('`', "");
@@ -37,25 +37,30 @@ pub(crate) struct InfoArgs {
 #[derive(Debug, Args)]
 #[command(arg = json_progress(), after_long_help = checks(), override_usage = "corniche verify [OPTIONS] <PACKAGE>")]
 pub(crate) struct VerifyArgs {
-    /// The package: a file, or an address on a web server (https://…)
+    /// The package: a file, or a URL (https://…)
     #[arg(required_unless_present_any = ["dem", "photo", "osm"], value_parser = package_place(), value_hint = ValueHint::AnyPath)]
     pub(crate) package: Option<PackagePlace>,
-    /// The elevation rasters it was made from, in the same order: checks stored errors against true ones
+    /// The DEM the package was built from (same files, same order): checks the stored errors
+    /// against the true ones
     #[arg(long, value_name = "FILE", num_args = 1..)]
     pub(crate) dem: Vec<PathBuf>,
-    /// The photos it was made from, in the same order: reads them again and checks the photo of every tile against them
+    /// The photos the package was built from, in the same order: reads them again and checks the
+    /// photo of every tile
     #[arg(long, value_name = "FILE", num_args = 1..)]
     pub(crate) photo: Vec<PathBuf>,
-    /// The extracts it was made from: reads them again and checks roads, attributes and counts against them
+    /// The extracts the package was built from: reads them again and checks roads, attributes and
+    /// counts
     #[arg(long, value_name = "FILE", num_args = 1..)]
     pub(crate) osm: Vec<PathBuf>,
-    /// With --dem or --osm: the polygon that it was cut with
+    /// With --dem or --osm: the polygon that the package was clipped to
     #[arg(long, value_name = "FILE")]
     pub(crate) polygon: Option<PathBuf>,
-    /// With --osm: the FRC table it was made with [default: the preset of the recorded name]
+    /// With --osm: the FRC table (functional road classes) the package was built with [default: the
+    /// preset of the recorded name]
     #[arg(long, value_name = "NAME|FILE", requires = "osm")]
     pub(crate) frc_table: Option<String>,
-    /// With --osm: the table of areas it was made with [default: the preset of the recorded name]
+    /// With --osm: the table of areas the package was built with [default: the preset of the
+    /// recorded name]
     #[arg(long, value_name = "NAME|FILE", requires = "osm")]
     pub(crate) areas: Option<String>,
     #[command(flatten)]
@@ -65,13 +70,13 @@ pub(crate) struct VerifyArgs {
     pub(crate) json: bool,
 }
 
-/// What the coordinates in a dump are.
+/// The coordinates in a dump.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-pub(crate) enum Coordinates {
+pub(crate) enum DumpCoordinates {
     /// Working metres: the CRS's coordinates times the package's `metres_per_unit`
     #[default]
     Working,
-    /// The package's CRS: degrees, feet or metres; longitudes may run on past 180
+    /// The package's CRS: degrees, feet or metres; longitudes may continue past 180
     Crs,
 }
 
@@ -82,16 +87,17 @@ pub(crate) struct TileArgs {
     /// The tile: level, column from the west, row from the north
     #[arg(value_name = "Z/X/Y", required_unless_present = "at")]
     pub(crate) id: Option<TileId>,
-    /// The finest tile at this longitude and latitude (degrees, WGS84), in place of Z/X/Y
+    /// The finest tile at this longitude and latitude (degrees, WGS84), instead of Z/X/Y
     #[arg(long, value_name = "LON,LAT", value_parser = parse_position, allow_hyphen_values = true, conflicts_with = "id")]
     pub(crate) at: Option<[f64; 2]>,
     /// With --at: the tile of this level
     #[arg(long, value_name = "Z", requires = "at", conflicts_with = "id")]
     pub(crate) level: Option<u8>,
-    /// Print all that the tile holds as JSON, for programs: ground with normals, roads, attributes; in working metres
+    /// Print everything in the tile as JSON, for programs: terrain with normals, roads and
+    /// attributes, in working metres
     #[arg(long)]
     pub(crate) json: bool,
-    /// What x and y in the JSON are: working metres, or coordinates of the package's CRS
+    /// The coordinates x and y in the JSON: working metres, or the package's CRS
     #[arg(long, value_enum, default_value_t, requires = "json")]
-    pub(crate) coordinates: Coordinates,
+    pub(crate) coordinates: DumpCoordinates,
 }

@@ -1,4 +1,4 @@
-//! Arguments that several commands share are read or refused.
+//! Arguments that several commands share are parsed or rejected.
 
 use super::*;
 

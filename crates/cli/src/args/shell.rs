@@ -1,4 +1,4 @@
-//! What belongs to the program and to no package.
+//! Commands that concern the program and not a package.
 
 use std::path::PathBuf;
 
@@ -17,13 +17,13 @@ pub(crate) struct CompletionsArgs {
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "For example: corniche man ~/.local/share/man/man1; then man corniche-build shows a page"
+    after_help = "For example: corniche man ~/.local/share/man/man1; then read a page with man corniche-build"
 )]
 pub(crate) struct ManArgs {
-    /// The folder to write them in; it is made if it does not exist
+    /// The folder to write the pages to; it is created if it does not exist
     #[arg(value_name = "FOLDER")]
     pub(crate) folder: PathBuf,
-    /// Replace pages that exist
+    /// Overwrite existing pages
     #[arg(short = 'O', long)]
     pub(crate) overwrite: bool,
 }

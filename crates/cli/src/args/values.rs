@@ -1,4 +1,4 @@
-//! Single values on the command line, such as packages, sizes and positions.
+//! Parsers of single values on the command line, such as packages, sizes and positions.
 
 use std::{
     ffi::OsStr,
@@ -11,7 +11,7 @@ use clap::{builder::TypedValueParser, error::ErrorKind};
 use corniche_presets::Words;
 use corniche_remote::PackagePlace;
 
-use crate::{failure::Failure, names::is_package_name};
+use crate::{failure::CommandFailure, names::is_package_name};
 
 /// The word of a value.
 pub(crate) fn word_of<T: PartialEq, const N: usize>(
@@ -21,12 +21,13 @@ pub(crate) fn word_of<T: PartialEq, const N: usize>(
     values.iter().find(|(_, _, own)| own == value).map_or("", |(word, ..)| word)
 }
 
-/// The package that a command reads: a file, or an address on a web server.
+/// The parser of a package: a file, or a URL.
 pub(crate) fn package_place() -> impl TypedValueParser<Value = PackagePlace> {
     PlaceParser
 }
 
-/// Reads where a package is. What cannot be read is not repeated in the message, as parsers of clap's own do: an address may hold a password.
+/// Parses the place of a package. Unlike clap's own parsers, it does not repeat an invalid text in
+/// its message, because a URL may contain a password.
 #[derive(Debug, Clone)]
 struct PlaceParser;
 
@@ -45,29 +46,30 @@ impl TypedValueParser for PlaceParser {
     }
 }
 
-/// The package that one of several files is.
+/// The package among several files.
 ///
 /// # Errors
-/// When it is an address that cannot be read.
-fn place_of(file: PathBuf) -> Result<PackagePlace, Failure> {
-    PackagePlace::parse(file.into()).map_err(Failure::unusable)
+/// When it is an invalid URL.
+fn place_of(file: PathBuf) -> Result<PackagePlace, CommandFailure> {
+    PackagePlace::parse(file.into()).map_err(CommandFailure::unusable)
 }
 
-/// Whether one of several files may be the package: by its name, or as an address, which nothing else has. It may be one that cannot be read.
+/// Whether one of several files may be the package: its name says so, or it is a URL (even an
+/// invalid one), which no other input can be.
 fn may_be_package(file: &Path) -> bool {
     is_package_name(file) || !matches!(PackagePlace::parse(file.into()), Ok(PackagePlace::File(_)))
 }
 
-/// The package, and the files of options such as `--dem` that take all that follows them, among which it may be if it is not named by itself. `usage` shows how to
-/// name it.
+/// The package, and the files of options such as `--dem`, which consume all words that follow them;
+/// the package may be among those. `usage` shows how to write it.
 ///
 /// # Errors
-/// When no package is named, or several may be meant.
+/// When no package is named, or the package is ambiguous.
 pub(crate) fn package_among<const N: usize>(
     named: Option<&PackagePlace>,
     lists: [&[PathBuf]; N],
     usage: &str,
-) -> Result<(PackagePlace, [Vec<PathBuf>; N]), Failure> {
+) -> Result<(PackagePlace, [Vec<PathBuf>; N]), CommandFailure> {
     if let Some(package) = named {
         return Ok((package.clone(), lists.map(<[PathBuf]>::to_vec)));
     }
@@ -79,16 +81,16 @@ pub(crate) fn package_among<const N: usize>(
     });
     match (packages.pop(), packages.is_empty()) {
         (Some(package), true) => Ok((place_of(package)?, others)),
-        (Some(_), false) => Err(Failure::unusable(format!(
-            "several files end in .pmtiles; write the package first: {usage}"
-        ))),
-        (None, _) => Err(Failure::unusable(format!(
-            "no package is named: none of the files ends in .pmtiles; write it first: {usage}"
-        ))),
+        (Some(_), false) => Err(unusable!(
+            "several files have the extension .pmtiles; write the package first: {usage}"
+        )),
+        (None, _) => Err(unusable!(
+            "no package is named: no file has the extension .pmtiles; write the package first: {usage}"
+        )),
     }
 }
 
-/// More than most graphics cards can draw; each says itself what it can.
+/// The limit is more than most GPUs can draw; each GPU reports its own limit.
 pub(crate) fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let sides = text
         .split_once('x')
@@ -100,7 +102,7 @@ pub(crate) fn parse_size(text: &str) -> Result<[u32; 2], String> {
     }
 }
 
-/// A number of a range, or what to write.
+/// Parses a number within a range; the error is the advice.
 pub(crate) fn parse_within<T: FromStr + PartialOrd>(
     text: &str,
     range: RangeInclusive<T>,
@@ -109,11 +111,12 @@ pub(crate) fn parse_within<T: FromStr + PartialOrd>(
     text.parse().ok().filter(|number| range.contains(number)).ok_or_else(|| advice.to_owned())
 }
 
-/// A pixel of such scales and densities is 1 mm to 254 km wide on the ground, which the viewer draws.
+/// A pixel of these scales and densities is 1 mm to 254 km wide on the ground, which the viewer can
+/// draw.
 const SCALES: RangeInclusive<u32> = 100..=100_000_000;
 const DOTS_PER_INCH: RangeInclusive<f64> = 10.0..=2400.0;
 
-/// How many times smaller than the ground a picture is, from `1:25000` or `25000`.
+/// The denominator of a scale, from `1:25000` or `25000`.
 pub(crate) fn parse_scale(text: &str) -> Result<u32, String> {
     let denominator = text.strip_prefix("1:").unwrap_or(text);
     let advice = "write it like 1:25000, from 1:100 to 1:100000000";
@@ -121,24 +124,25 @@ pub(crate) fn parse_scale(text: &str) -> Result<u32, String> {
 }
 
 pub(crate) fn parse_dpi(text: &str) -> Result<f64, String> {
-    parse_within(text, DOTS_PER_INCH, "write a number of pixels to an inch, from 10 to 2400")
+    parse_within(text, DOTS_PER_INCH, "write a number of pixels per inch, from 10 to 2400")
 }
 
-/// A text that is written on a picture, on as many lines as it needs.
+/// A text that is drawn on an image, on as many lines as it needs.
 pub(crate) fn parse_title(text: &str) -> Result<String, String> {
     if text.trim().is_empty() {
-        return Err("it is empty; leave the option out for a picture without a title".to_owned());
+        return Err("the title is empty; omit the option for an image without a title".to_owned());
     }
     if text.chars().any(|letter| letter.is_control() || is_unseen(letter)) {
         return Err(
-            "it has characters that cannot be seen, such as line breaks; write it in one line"
+            "the title has invisible characters, such as line breaks; write it in one line"
                 .to_owned(),
         );
     }
     Ok(text.trim().to_owned())
 }
 
-/// Whether a character only says how others are written: marks of direction, joiners, spaces without width (category Cf of Unicode 16, as far as texts have them).
+/// Whether a character only controls how others are written: marks of direction, joiners, spaces
+/// without width (category Cf of Unicode 16, as far as texts have them).
 fn is_unseen(letter: char) -> bool {
     matches!(letter, '\u{ad}' | '\u{61c}' | '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}')
 }

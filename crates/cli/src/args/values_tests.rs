@@ -1,4 +1,4 @@
-//! Sizes and positions on the command line are read or refused.
+//! Sizes and positions on the command line are parsed or rejected.
 
 use super::*;
 

@@ -1,10 +1,10 @@
-//! How messages are written, for all commands.
+//! The format of messages, for all commands.
 
 use std::ffi::OsString;
 
 use clap::{Arg, ArgAction, Args, ValueEnum};
 
-/// How messages are written.
+/// The format of messages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
 pub(crate) enum LogFormat {
     /// Lines for people
@@ -14,34 +14,35 @@ pub(crate) enum LogFormat {
     Json,
 }
 
-// What messages are written on standard error, and how; decided once, from the command line.
+// Which messages are written to standard error, and how; decided once, from the command line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Args)]
 #[command(next_help_heading = "Messages")]
 pub(crate) struct Voice {
-    /// Print only errors and warnings on standard error; what a command is asked to print stays (of verify: what is broken, and the
-    /// verdict)
+    /// Print only errors and warnings on standard error. Standard output stays the same, except
+    /// that verify prints only broken checks and the verdict
     #[arg(short, long, global = true, conflicts_with = "verbose")]
     pub(crate) quiet: bool,
-    /// Tell also what is done and with which settings; -vv: each step, and what libraries say
+    /// Also print what is done and with which settings; -vv: each step, and messages of libraries
     #[arg(short, long, global = true, action = ArgAction::Count)]
     pub(crate) verbose: u8,
-    /// How messages are written on standard error
+    /// Format of messages on standard error
     #[arg(long, global = true, value_enum, value_name = "FORMAT", default_value_t)]
     pub(crate) log_format: LogFormat,
-    // Progress is records, and with it warnings and how the run ended.
+    // Progress, warnings and the end of the run are records.
     #[arg(skip)]
     pub(crate) json_progress: bool,
 }
 
 impl Voice {
-    /// The voice that a command line asks for which cannot be parsed: whoever reads records gets the refusal as a record.
+    /// The voice that an invalid command line requests: readers of records get the error as a
+    /// record.
     pub(crate) fn of_unparsed(words: impl IntoIterator<Item = OsString>) -> Self {
         let mut voice = Self::default();
         let mut is_format = false;
         for word in words {
             let word = word.to_string_lossy();
             match &*word {
-                // Names of files follow.
+                // File names follow.
                 "--" => break,
                 "json" if is_format => voice.log_format = LogFormat::Json,
                 "--log-format=json" => voice.log_format = LogFormat::Json,
@@ -57,11 +58,11 @@ impl Voice {
 /// The id of `--json-progress`.
 pub(crate) const JSON_PROGRESS: &str = "json_progress";
 
-/// The option of commands that tell progress.
+/// The option of commands that report progress.
 pub(crate) fn json_progress() -> Arg {
     Arg::new(JSON_PROGRESS)
         .long("json-progress")
-        .help("Print progress, warnings and the end on standard error, as one JSON object per line")
+        .help("Print progress, warnings and the result on standard error, as one JSON object per line")
         .help_heading("Progress")
         .action(ArgAction::SetTrue)
         .conflicts_with("quiet")

@@ -12,59 +12,59 @@ use crate::documents::record_schemas::AreaLevelDocument;
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct AreasDocument {
-    /// Objects of the extract with the tags of an area: those kept and those lost.
+    /// Number of objects in the extract with the tags of an area, converted or not.
     objects: u64,
-    /// Those that became areas, by class, wherever they lie.
+    /// Number of converted areas per class, also outside the package's extent.
     kept: Vec<AreaClassDocument>,
-    /// Those that became none, by reason.
+    /// Number of objects that became no areas, by reason.
     lost: Vec<AreaLossDocument>,
-    /// For each level that has some, root first.
+    /// Areas of each level that has some, root first.
     #[cfg_attr(test, schemars(with = "Vec<AreaLevelDocument>"))]
     levels: Vec<AreaLevelRecord>,
 }
 
-/// Areas of one class.
+/// The areas of one class.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 struct AreaClassDocument {
     /// The class: "water", "forest" and so on.
     class: &'static str,
-    /// How many.
+    /// Number of areas.
     areas: u64,
-    /// Their true area, square kilometres; where areas overlap, each counts.
+    /// True area, square kilometres; overlapping areas are all counted in full.
     area_km2: f64,
 }
 
-/// Objects that became no areas for one reason.
+/// The objects that became no areas for one reason.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 struct AreaLossDocument {
-    /// Why.
+    /// The reason.
     reason: String,
-    /// How many.
+    /// Number of objects.
     objects: u64,
 }
 
-/// The part of an area that lies in a tile.
+/// The part of an area in a tile.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct TileAreaDocument {
-    /// What it was in OSM: "way" or "relation".
+    /// The type of the OSM object: "way" or "relation".
     object: &'static str,
-    /// OSM's id of it.
+    /// OSM id of the object.
     id: i64,
     /// The class: "water", "forest" and so on.
     class: &'static str,
-    /// `name`; null without.
+    /// OSM's `name`; null if untagged.
     name: Option<String>,
-    /// Polygons of rings of positions, x and y: the outer ring counter-clockwise in working metres, then holes, clockwise. The first
-    /// position is not repeated.
+    /// Polygons of rings of positions, x and y: first the outer ring, counter-clockwise in working
+    /// metres, then holes, clockwise. The first position is not repeated.
     polygons: Vec<Vec<Vec<[f64; 2]>>>,
 }
 
 impl TileAreaDocument {
-    /// `place` makes coordinates from points of the lattice.
-    pub(crate) fn of(area: AreaRecord, place: &impl Fn(LatticePoint) -> [f64; 2]) -> Self {
+    /// Converts a record; `place` converts lattice points to coordinates.
+    pub(crate) fn from_record(area: AreaRecord, place: &impl Fn(LatticePoint) -> [f64; 2]) -> Self {
         let (object, id) = area.object.parts();
         let ring = |ring: Vec<_>| ring.into_iter().map(place).collect();
         let polygons = area.polygons.into_iter();

@@ -6,30 +6,32 @@ use serde::Serialize;
 #[cfg(test)]
 use crate::documents::info_schema::RowDocument;
 
-/// What laying roads on the terrain costs.
+/// The cost of draping roads on the terrain: growth is the number of vertices that clipping
+/// (splitting at the edges of the triangles) adds.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct GrowthDocument {
-    /// One for each level and class.
+    /// One row per level and class.
     #[cfg_attr(test, schemars(with = "Vec<RowDocument>"))]
     pub(crate) rows: Vec<GrowthRow>,
-    /// One for each level.
+    /// One entry per level.
     pub(crate) levels: Vec<LevelGrowthDocument>,
-    /// All levels, against one copy of the source.
+    /// All levels, compared with one copy of the source.
     pub(crate) all_levels: WholeGrowthDocument,
-    /// What Vaaraniemi, Treib & Westermann 2011 report (section 7, "about"): times the size of the road data.
+    /// Growth of the size of the road data that Vaaraniemi, Treib & Westermann 2011 report (section
+    /// 7, "about"), as a factor.
     pub(crate) paper: f64,
 }
 
-/// What a level costs, all classes. Ratios are null where there is nothing to divide by.
+/// The cost of one level, all classes. Ratios with a denominator of 0 are null.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct LevelGrowthDocument {
     /// Level.
     pub(crate) level: u8,
-    /// Points of the source lines that lie in tiles with ground.
+    /// Points of the source lines in tiles with ground.
     pub(crate) source_vertices: u64,
-    /// Points of the level's simplified lines that lie in tiles with ground.
+    /// Points of the level's simplified lines in tiles with ground.
     pub(crate) simplified_vertices: u64,
     /// Vertices of the clipped lines.
     pub(crate) geo_vertices: u64,
@@ -41,30 +43,30 @@ pub(crate) struct LevelGrowthDocument {
     pub(crate) geo_stored_bytes: u64,
     /// Bytes of the plan lines as stored.
     pub(crate) sv_stored_bytes: u64,
-    /// What it grew by.
+    /// The growth factors.
     #[serde(flatten)]
     pub(crate) factors: Factors,
 }
 
-/// What a row, or a sum of rows, grew by. Ratios are null where there is nothing to divide by.
+/// The growth factors of a row, or of a sum of rows. Ratios with a denominator of 0 are null.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Factors {
     /// Clipped vertices over simplified ones.
     pub(crate) growth_over_simplified: Option<f64>,
-    /// Clipped vertices over the source's.
+    /// Clipped vertices over those of the source.
     pub(crate) growth_over_source: Option<f64>,
     /// Clipped bytes, raw, over those of the simplified lines.
     pub(crate) raw_bytes_over_simplified: Option<f64>,
     /// Clipped bytes, stored, over those of the simplified lines.
     pub(crate) stored_bytes_over_simplified: Option<f64>,
-    /// Clipped bytes, raw, over the source's.
+    /// Clipped bytes, raw, over those of the source.
     pub(crate) raw_bytes_over_source: Option<f64>,
-    /// Clipped bytes, stored, over the source's.
+    /// Clipped bytes, stored, over those of the source.
     pub(crate) stored_bytes_over_source: Option<f64>,
 }
 
-/// What all levels cost together. Ratios are null where there is nothing to divide by.
+/// The cost of all levels together. Ratios with a denominator of 0 are null.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct WholeGrowthDocument {
@@ -72,54 +74,56 @@ pub(crate) struct WholeGrowthDocument {
     pub(crate) source_vertices: u64,
     /// Vertices of the clipped lines of all levels.
     pub(crate) geo_vertices: u64,
-    /// Clipped vertices over the source's.
+    /// Clipped vertices over those of the source.
     pub(crate) growth_over_source: Option<f64>,
-    /// Clipped bytes, raw, over the source's.
+    /// Clipped bytes, raw, over those of the source.
     pub(crate) raw_bytes_over_source: Option<f64>,
-    /// Clipped bytes, stored, over the source's.
+    /// Clipped bytes, stored, over those of the source.
     pub(crate) stored_bytes_over_source: Option<f64>,
 }
 
-/// Several packages beside each other.
+/// A comparison of several packages.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct ComparisonDocument {
-    /// The packages, in the order in which they were named.
+    /// The packages, in the order of the command line.
     pub(crate) packages: Vec<ComparedDocument>,
-    /// In what they differ beside cell and error bound. Where there is something, their growth tells of that, too.
+    /// Settings and inputs that differ, apart from cell and error bound. If there are any,
+    /// differences in growth may also result from them.
     pub(crate) differences: Vec<DifferenceDocument>,
 }
 
-/// One of several packages.
+/// One of the compared packages.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct ComparedDocument {
-    /// Its path, as it was given.
+    /// Path of the package, as given.
     pub(crate) package: String,
-    /// Cell of its finest level, east and north, working metres.
+    /// Cell size of the finest level, east and north, working metres.
     pub(crate) cell_m: [f64; 2],
-    /// Its `--max-error`, metres.
+    /// The package's `--max-error`, metres.
     pub(crate) max_error_m: f64,
-    /// What `corniche growth --json` tells of it alone.
+    /// The document that `corniche growth --json` prints for this package alone.
     pub(crate) growth: GrowthDocument,
 }
 
-/// Something in which packages differ.
+/// A setting or input in which packages differ.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct DifferenceDocument {
-    /// Its name in words, such as "extract", "classes by level", "voids filled" or "polygon".
+    /// Name of the setting or input, such as "extract", "classes by level", "voids filled" or
+    /// "polygon".
     pub(crate) what: String,
-    /// The values, two at least.
+    /// The values, at least two.
     pub(crate) values: Vec<DifferentValueDocument>,
 }
 
-/// A value, and who has it.
+/// A value, and the packages that have it.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct DifferentValueDocument {
-    /// The packages that have it, by their paths.
+    /// Paths of the packages that have it.
     pub(crate) packages: Vec<String>,
-    /// In words.
+    /// The value as text.
     pub(crate) value: String,
 }

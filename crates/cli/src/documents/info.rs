@@ -1,26 +1,26 @@
-//! `corniche info --json`: the manifest, with objects where the file has pairs, and with zeros that the file leaves out.
+//! `corniche info --json`: the manifest, with objects instead of the file's pairs, and with the
+//! zeros that the file omits.
 
-use corniche_areas::ClassedLayer;
 use corniche_geom::{Bounds, Cell, CoordinateTable, GridFrame};
 use corniche_tileset::{
-    ClipRecord, Counts, DatumOperationRecord, Distribution, GrowthRow, InputRecord, LeftOutRecord,
-    LevelRecord, Manifest, PhotoLevelRecord, RoadLoss, SampleCounts, SampleErrorRecord,
-    ScaleRecord, SettingsRecord, SvTail, VerticalRecord,
+    ClipRecord, DatumOperationRecord, Distribution, GrowthRow, InputRecord, LeftOutRecord,
+    LevelRecord, Manifest, ManifestCounts, PhotoLevelRecord, RoadLoss, SampleCounts,
+    SampleErrorRecord, ScaleRecord, SettingsRecord, SvTail, VerticalRecord,
 };
 use serde::{Serialize, Serializer};
 
 use super::{areas::AreasDocument, lines::LinesDocument, spans::SpansDocument};
 
-/// What a package holds.
+/// The contents of a package.
 #[derive(Serialize)]
 pub(crate) struct InfoDocument<'a> {
     #[serde(serialize_with = "ManifestDocument::serialize")]
     pub(crate) manifest: &'a Manifest,
-    /// Its tiles, "z/x/y".
+    /// Ids of all tiles, "z/x/y".
     pub(crate) tiles: Vec<String>,
 }
 
-/// The table of contents of a package. The schema, in the tests, tells what its fields mean.
+/// The manifest of a package. The schema, which is among the tests, documents its fields.
 #[derive(Serialize)]
 #[serde(remote = "Manifest")]
 struct ManifestDocument {
@@ -54,7 +54,7 @@ struct ManifestDocument {
     inputs: Vec<InputRecord>,
     attribution: Vec<String>,
     #[serde(with = "CountsDocument")]
-    counts: Counts,
+    counts: ManifestCounts,
     growth: Vec<GrowthRow>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     photos: Vec<PhotoLevelRecord>,
@@ -73,15 +73,14 @@ fn areas(manifest: &Manifest) -> Option<AreasDocument> {
 }
 
 fn boundaries(manifest: &Manifest) -> Option<LinesDocument> {
-    let layer = ClassedLayer::Boundaries;
-    manifest.lines(layer).cloned().map(|record| LinesDocument::of(layer, record))
+    manifest.boundaries.clone().map(LinesDocument::from_record)
 }
 
 fn spans(manifest: &Manifest) -> Option<SpansDocument> {
     manifest.spans.clone().map(Into::into)
 }
 
-/// Heights, also with a step of 0.
+/// The heights, also with a step of 0.
 #[derive(Serialize)]
 #[serde(remote = "VerticalRecord")]
 struct VerticalDocument {
@@ -121,9 +120,9 @@ fn levels<S: Serializer>(levels: &[LevelRecord], to: S) -> Result<S::Ok, S::Erro
     to.collect_seq(levels.iter().map(Level))
 }
 
-/// What came in, what was kept, what was lost and why.
+/// Roads that were read, kept and lost, with the reasons.
 #[derive(Serialize)]
-#[serde(remote = "Counts")]
+#[serde(remote = "ManifestCounts")]
 struct CountsDocument {
     samples: SampleCounts,
     roads_in: u64,

@@ -1,4 +1,5 @@
-//! The schema of `corniche info --json`, and of rows of growth. Records of packages write most of it; this is only its schema.
+//! The schema of `corniche info --json`, and of rows of growth. Most of the document is serialized
+//! by records of packages; the types here exist only for the schema.
 
 #![expect(dead_code, reason = "only its schema is wanted")]
 
@@ -15,96 +16,104 @@ use super::{
     spans::SpansDocument,
 };
 
-/// What a package holds.
+/// The contents of a package.
 #[derive(JsonSchema)]
 pub(crate) struct InfoDocument {
-    /// Its table of contents.
+    /// The manifest.
     manifest: ManifestDocument,
-    /// Its tiles, "z/x/y".
+    /// Ids of all tiles, "z/x/y".
     tiles: Vec<String>,
 }
 
-/// The table of contents of a package.
+/// The manifest of a package.
 #[derive(JsonSchema)]
 pub(crate) struct ManifestDocument {
     /// Version of the encodings.
     format_version: u32,
-    /// Program and version that wrote the package, with its GDAL and PROJ.
+    /// Program and version that wrote the package, with the versions of GDAL and PROJ.
     generator: String,
-    /// Says that z/x/y is a local quadtree in the working CRS.
+    /// The tiling scheme: z/x/y is a local quadtree in the working CRS.
     tiling: String,
-    /// CRS: "EPSG:…" where it has a code, else its name. Its coordinates times `metres_per_unit` are working metres.
+    /// CRS: "EPSG:…" if it has a code, otherwise its name. Its coordinates times `metres_per_unit`
+    /// are working metres.
     crs: String,
     /// CRS as WKT2.
     crs_wkt: String,
-    /// Working metres to a unit of the CRS's coordinates, east and north.
+    /// Working metres per unit of the CRS's coordinates, east and north.
     metres_per_unit: [f64; 2],
-    /// Working metres to a true metre, at the centre.
+    /// Working metres per true metre, at the centre.
     point_scale: f64,
-    /// The same along each axis, at the centre and over the data's rim.
+    /// Working metres per true metre along each axis, at the centre and along the border of the
+    /// data.
     scale: ScaleDocument,
     /// The grid.
     frame: FrameDocument,
     /// Rectangle of the DEM's nodes, working metres.
     data_bounds: BoundsDocument,
-    /// The same in WGS84 degrees.
+    /// Rectangle of the DEM's nodes, WGS84 degrees.
     wgs84_bounds: BoundsDocument,
-    /// The part of the elevation files that the package is of (`--bounds`, `--polygon`); left out where it is of all.
+    /// The converted part of the elevation files (`--bounds`, `--polygon`); omitted if all of them
+    /// were converted.
     #[serde(skip_serializing_if = "Option::is_none")]
     clip: Option<ClipDocument>,
-    /// The outline of the elevation files, where they fill no rectangle, on the lattice: polygons of rings of [u, v].
+    /// The outline of the elevation files on the lattice, if they do not fill a rectangle: polygons
+    /// of rings of [u, v].
     #[serde(skip_serializing_if = "Option::is_none")]
     outline: Option<Vec<Vec<Vec<[i64; 2]>>>>,
-    /// How nodes relate to the DEM's samples, in words.
+    /// The relation between nodes and the DEM's samples, in words.
     resampling: String,
     /// Whether nodes and the DEM's samples are the same points.
     nodes_are_samples: bool,
     /// Heights.
     vertical: VerticalDocument,
-    /// How positions come from one datum to another; left out where all datums are that of WGS84, and in packages of before.
+    /// Operations that convert positions between datums; omitted if all datums are that of WGS84,
+    /// and in older packages.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     datum_operations: Vec<DatumOperationDocument>,
-    /// WGS84 ⇄ working CRS without PROJ.
+    /// The conversion between WGS84 and the working CRS, without PROJ.
     coordinates: CoordinatesSchema,
-    /// One for each level, root first.
+    /// The levels, root first.
     levels: Vec<LevelDocument>,
     /// Settings that determine the bytes.
     settings: SettingsDocument,
     /// SHA-256 of the settings.
     settings_sha256: String,
-    /// What was read.
+    /// The input files.
     inputs: Vec<InputDocument>,
-    /// Credits to show wherever the package is shown.
+    /// Attribution that must be displayed wherever the package is shown.
     attribution: Vec<String>,
-    /// What came in, what was kept, what was lost and why.
+    /// Numbers of roads that were read, kept (are in the package) and lost, with the reasons.
     counts: CountsDocument,
-    /// What clipping costs, per level and class.
+    /// The cost of clipping roads to the terrain, per level and class.
     growth: Vec<RowDocument>,
-    /// The photos of each level that has some, root first; left out without any.
+    /// The photos of each level that has some, root first; omitted if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     photos: Vec<PhotoLevelDocument>,
-    /// The areas; left out in packages made without.
+    /// The areas; omitted in packages built without areas.
     #[serde(skip_serializing_if = "Option::is_none")]
     areas: Option<AreasDocument>,
-    /// The boundaries, in the classes "admin-2" to "admin-8" and "protected"; left out in packages made without.
+    /// The boundaries, in the classes "admin-2" to "admin-8" and "protected"; omitted in packages
+    /// built without boundaries.
     #[serde(skip_serializing_if = "Option::is_none")]
     boundaries: Option<LinesDocument>,
-    /// Bridges and tunnels off the ground, whose heights are estimates; left out in packages made without.
+    /// Bridges and tunnels off the ground, whose heights are estimates; omitted in packages built
+    /// without spans.
     #[serde(skip_serializing_if = "Option::is_none")]
     spans: Option<SpansDocument>,
-    /// The tiles that end with most SV roads, each as level, column, row and how many bytes these are; left out where none has many.
+    /// The tiles with the most SV roads (roads drawn by shadow volumes) at their end, each as
+    /// level, column, row and number of bytes; omitted if no tile has many.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     sv_tails: Vec<[u32; 4]>,
 }
 
-/// Working metres to a true metre, along x and along y.
+/// Working metres per true metre, along x and along y.
 #[derive(JsonSchema)]
 struct ScaleDocument {
-    /// In the middle of the data.
+    /// At the centre of the data.
     center: [f64; 2],
-    /// The smallest over corners, middles of sides and centre of every file.
+    /// The smallest value over corners, middles of sides and centre of every file.
     least: [f64; 2],
-    /// The largest.
+    /// The largest value over the same points.
     largest: [f64; 2],
 }
 
@@ -113,7 +122,7 @@ struct ScaleDocument {
 pub(crate) struct FrameDocument {
     /// Position of node 0, 0: x and y in working metres.
     origin_m: [f64; 2],
-    /// Spacing of the finest nodes, east and north, working metres.
+    /// Cell size of the finest level, east and north, working metres.
     cell_m: [f64; 2],
     /// North-west corner of the root tile.
     root_corner: NodeDocument,
@@ -134,165 +143,169 @@ pub(crate) struct BoundsDocument {
     max_y: f64,
 }
 
-/// The part of the elevation files that a package is of.
+/// The converted part of the elevation files.
 #[derive(JsonSchema)]
 pub(crate) struct ClipDocument {
-    /// The bounds that were asked for, rounded outwards to whole cells: south-western and north-eastern node. They may reach
-    /// beyond the data.
+    /// The requested bounds, rounded outwards to whole cells: south-western and north-eastern node.
+    /// They may extend beyond the data.
     nodes: [NodeDocument; 2],
     /// Rectangle of the nodes of all elevation files, working metres.
     whole_data_bounds: BoundsDocument,
-    /// The same in WGS84 degrees.
+    /// Rectangle of the nodes of all elevation files, WGS84 degrees.
     whole_wgs84_bounds: BoundsDocument,
 }
 
-/// Heights: step, unit, datum.
+/// Step, unit and datum of the heights.
 #[derive(JsonSchema)]
 struct VerticalDocument {
     /// One step of heights, metres.
     quantum_m: f64,
     /// Always "metre".
     unit: String,
-    /// Vertical datum as far as the inputs name one, else "unknown".
+    /// Vertical datum if the inputs name one, otherwise "unknown".
     datum: String,
-    /// What was done to the inputs' heights, in words.
+    /// Operations on the heights of the inputs, in words.
     treatment: String,
-    /// The step between heights that the DEM can tell apart, metres; 0 where they have fractions.
+    /// The step between heights that the DEM can distinguish, metres; 0 if heights have fractions.
     height_step_m: f64,
     /// Lowest and highest node, metres.
     range_m: [f64; 2],
 }
 
-/// How positions come from one datum to another.
+/// The operation that converts positions between two datums.
 #[derive(JsonSchema)]
 struct DatumOperationDocument {
-    /// The system that positions are in.
+    /// The source system.
     from: String,
-    /// The system that they come to. The operation is also used the other way around.
+    /// The target system. The operation is also used in reverse.
     to: String,
     /// PROJ's name for the operation.
     operation: String,
-    /// How accurate it is, metres; left out where PROJ does not know it.
+    /// Accuracy of the operation, metres; omitted if PROJ does not know it.
     #[serde(skip_serializing_if = "Option::is_none")]
     accuracy_m: Option<f64>,
-    /// Whether one datum was taken for another, as PROJ knows nothing between them; left out where not.
+    /// Whether the operation is a ballpark transformation, without datum shift; omitted if it is
+    /// not.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     ballpark: bool,
 }
 
-/// A table of longitudes and latitudes over the working CRS, to be interpolated by Lagrange's cubic along both axes. It writes itself;
-/// this is its schema.
+/// A table of longitudes and latitudes over the working CRS, for interpolation with Lagrange's
+/// cubic along both axes. This type exists only for the schema.
 #[derive(JsonSchema)]
 pub(crate) struct CoordinatesSchema {
-    /// What it covers, working metres.
+    /// The covered rectangle, working metres.
     bounds: BoundsDocument,
     /// Samples along each side.
     size: usize,
-    /// Longitude and latitude of each sample, degrees, row by row from the south. Longitudes may run on past 180.
+    /// Longitude and latitude of each sample, degrees, row by row from the south. Longitudes may
+    /// continue past 180.
     samples_deg: Vec<[f64; 2]>,
 }
 
-/// What a level is, and how close it is to the data.
+/// A level, and its errors.
 #[derive(JsonSchema)]
 pub(crate) struct LevelDocument {
     /// Level, 0 = root.
     level: u8,
-    /// Spacing of its nodes, east and north, working metres.
+    /// Cell size, east and north, working metres.
     cell_m: [f64; 2],
-    /// Meshing tolerance against the level's own raster.
+    /// Meshing tolerance, at the nodes of the level's own grid.
     max_error_m: f64,
-    /// Largest stored geometric error of its tiles.
+    /// Largest stored geometric error of the level's tiles, at the nodes of the finest level: on
+    /// coarse levels it may exceed the tolerance.
     geometric_error_m: f64,
-    /// Stored geometric errors of its tiles; null on a level without tiles.
+    /// Stored geometric errors of the level's tiles; null on a level without tiles.
     errors_m: Option<DistributionDocument>,
-    /// How far its TINs are from the DEM's own samples.
+    /// Differences between the level's TINs and the DEM's own samples.
     sample_error: SamplesDocument,
-    /// Stored error over the largest true one, where that can be measured.
+    /// Ratio of the stored error to the largest true one, where that can be measured.
     tightness: Option<DistributionDocument>,
-    /// Least important class shown on this level; null shows no road.
+    /// Least important class shown on this level; null if no roads are shown.
     least_class: Option<u8>,
-    /// Tolerance of the simplification of roads; 0 keeps every point.
+    /// Tolerance of the simplification of roads, metres; 0 if they are not simplified.
     simplify_tolerance_m: f64,
-    /// How far outside a tile its plan lines reach.
+    /// Distance that plan lines extend beyond their tile.
     width_margin_m: f64,
     /// Tiles with ground.
     tiles: u64,
-    /// Triangles in them.
+    /// Triangles of these tiles.
     triangles: u64,
-    /// Vertices in them.
+    /// Vertices of these tiles.
     vertices: u64,
-    /// Stored bytes of their ground.
+    /// Stored bytes of the terrain.
     terrain_bytes: u64,
-    /// Stored bytes of their relief; 0 without.
+    /// Stored bytes of the relief; 0 if the level has none.
     relief_bytes: u64,
-    /// Full-resolution nodes with data that the level's TINs do not cover.
+    /// Nodes of the finest level that have a height and are not covered by the level's triangles.
     uncovered_nodes: u64,
 }
 
 /// An input file.
 #[derive(JsonSchema)]
 struct InputDocument {
-    /// "dem"; "dem-part", a file that the one before it refers to or that belongs to it; "photo"; "photo-part", likewise; "polygon"; or "osm".
+    /// "dem"; "dem-part" (a file that belongs to the previous "dem", or is named in it); "photo";
+    /// "photo-part" (the same for photos); "polygon"; or "osm".
     kind: String,
     /// File name without folders.
     name: String,
-    /// Its size.
+    /// Size of the file, bytes.
     bytes: u64,
-    /// SHA-256 of its bytes.
+    /// SHA-256 of the file.
     sha256: String,
 }
 
-/// What came in, what was kept, what was lost and why.
+/// Numbers of roads that were read, kept (are in the package) and lost, with the reasons.
 #[derive(JsonSchema)]
 pub(crate) struct CountsDocument {
-    /// Nodes of the finest grid over the data's rectangle.
+    /// Nodes of the finest grid in the rectangle of the data.
     samples: NodeCountsDocument,
-    /// Roads read from the extract: ways that the FRC table knows.
+    /// Roads read from the extract: OSM ways with a class in the FRC table.
     roads_in: u64,
-    /// Their true length in plan, micrometres.
+    /// True length in plan of the roads read, micrometres.
     roads_in_um: u64,
-    /// Roads of which anything is kept at the finest level.
+    /// Roads kept: on the package's finest level, in whole or in part.
     roads_kept: u64,
-    /// True length in plan kept at the finest level, micrometres.
+    /// True length in plan of the roads kept, micrometres.
     roads_kept_um: u64,
-    /// The difference, by reason.
+    /// Roads lost: the difference between the roads read and the roads kept, by reason.
     roads_lost: Vec<LossDocument>,
-    /// Defects met in the extract.
+    /// Defects in the extract.
     defects: Vec<NamedCount>,
-    /// Ways by `highway` value that the FRC table does not know.
+    /// OSM ways by `highway` value that the FRC table does not contain.
     unknown_highways: Vec<NamedCount>,
-    /// Tags of roads that are read as another value: on how many ways.
+    /// Road tags that are interpreted as another value, with the number of OSM ways.
     tags_taken_otherwise: Vec<NamedCount>,
     /// Blobs of the extract that have an unknown type and are skipped.
     blobs_passed_over: u64,
-    /// Ways with a `highway` tag in the extract.
+    /// OSM ways with a `highway` tag in the extract.
     highways_in: u64,
-    /// How many of them did not become roads, by reason.
+    /// Number of OSM ways with a `highway` tag that did not become roads, by reason.
     highways_left_out: Vec<NamedCount>,
-    /// Those that the FRC table leaves out, with their lengths; by reason, the longest first.
+    /// OSM ways that the FRC table skips, with lengths; by reason, the longest first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     left_out: Vec<LeftOutDocument>,
     /// Roads read, by class.
     classes: Vec<ClassCount>,
 }
 
-/// How many there are of one kind.
+/// A number of occurrences.
 #[derive(JsonSchema)]
 struct NamedCount {
     /// The defect, value, tag or reason.
     name: String,
-    /// How many.
+    /// Number of occurrences.
     count: u64,
 }
 
 /// Roads of one class.
 #[derive(JsonSchema)]
 struct ClassCount {
-    /// Functional road class.
+    /// Functional road class (FRC).
     class: usize,
-    /// How many.
+    /// Number of roads.
     roads: u64,
-    /// Their true length in plan, micrometres.
+    /// True length in plan, micrometres.
     length_um: u64,
 }
 
@@ -303,22 +316,22 @@ struct PhotoLevelDocument {
     level: u8,
     /// Tiles with a photo.
     tiles: u64,
-    /// Stored bytes of their photos.
+    /// Stored bytes of the photos.
     bytes: u64,
 }
 
-/// What one class costs on one level.
+/// The cost of one class on one level.
 #[derive(JsonSchema)]
 pub(crate) struct RowDocument {
     /// Level.
     level: u8,
-    /// Functional road class.
+    /// Functional road class (FRC).
     class: u8,
-    /// Points of the source lines that lie in tiles with ground.
+    /// Points of the source lines in tiles with ground.
     source_vertices: u64,
-    /// Points of the level's simplified lines that lie in tiles with ground.
+    /// Points of the level's simplified lines in tiles with ground.
     simplified_vertices: u64,
-    /// Vertices of the clipped lines.
+    /// Vertices of the clipped lines: those split at the edges of the triangles.
     geo_vertices: u64,
     /// Points of the plan lines for shadow volumes.
     sv_vertices: u64,

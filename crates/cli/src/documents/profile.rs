@@ -1,65 +1,68 @@
 //! The JSON document of `corniche profile`.
 
-use corniche_export::{Profile, ProfileGrades, ProfilePoint};
+use corniche_export::{ProfileGrades, ProfilePoint, RoadProfile};
 use serde::Serialize;
 
-/// Heights and grades along ways or lines.
+/// Heights and grades along OSM ways, or along lines of a file.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct ProfileDocument<'a> {
-    /// What it is called: roads by their names, or a file.
+    /// Title: the names of the roads, or of a file.
     title: &'a str,
-    /// The level on whose ground it lies.
+    /// The level whose terrain the line follows.
     level: u8,
-    /// What heights are, in words.
+    /// The reference of the heights, in words.
     heights: &'a str,
-    /// How far heights are from the elevation files at most, metres; null without them.
+    /// Largest difference between heights and elevation files, metres; null without `--dem`.
     height_tolerance_m: Option<f64>,
-    /// How far heights are from the elevation data at the samples of these, at most, metres; null with elevation files.
+    /// Largest difference between heights and elevation data at the samples of the data, metres;
+    /// null with `--dem`.
     sample_tolerance_m: Option<f64>,
     /// True length in plan, metres.
     length_2d_m: f64,
     /// True length with heights, metres.
     length_3d_m: f64,
-    /// What bridges and tunnels without known decks have of the length in plan: ups and downs are without them.
+    /// Length in plan on bridges and tunnels without known decks, metres; ascents and descents
+    /// exclude them.
     on_structures_m: f64,
-    /// The ups and downs of the line itself; its steepest grade is over 20 m.
+    /// Ascents and descents of the line itself; its steepest grade is over 20 m.
     line: GradesDocument,
-    /// Those of a smooth line, whose steepest grade is over 50 m; null without elevation files.
+    /// Ascents and descents of a smoothed line, whose steepest grade is over 50 m; null without
+    /// `--dem`.
     smooth: Option<GradesDocument>,
-    /// The largest distance of the smooth line from the line, metres; null without elevation files.
+    /// Largest distance of the smoothed line from the line, metres; null without `--dem`.
     smoothing_max_m: Option<f64>,
-    /// What is followed, in order.
+    /// The OSM ways or the lines of the file, in order.
     legs: Vec<LegDocument<'a>>,
     /// Parts without gaps, in order.
     parts: Vec<PartDocument>,
-    /// To be shown with it.
+    /// Attribution that must be displayed with the profile.
     attribution: &'a [String],
 }
 
-/// Ups and downs.
+/// Ascents and descents.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 struct GradesDocument {
-    /// Metres upwards, all of them together.
+    /// Sum of all ascents, metres.
     ascent_m: f64,
-    /// The same downwards.
+    /// Sum of all descents, metres.
     descent_m: f64,
-    /// Steepest grade, up or down; null where no part is long enough.
+    /// Steepest grade, up or down; null if no part is long enough.
     steepest_pct: Option<f64>,
 }
 
-/// What a stretch follows.
+/// A stretch along one OSM way, or along one line of a file.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 struct LegDocument<'a> {
-    /// The way; with `--line` the number of the line in the file, from 1.
+    /// OSM id of the way; with `--line` the number of the line in the file, from 1.
     way_id: i64,
-    /// Where it begins and ends, true distances in plan from the beginning, metres.
+    /// Start and end of the stretch: true distances in plan from the beginning, metres.
     range_m: [f64; 2],
-    /// OSM's `name`, or that of the line; null without.
+    /// OSM's `name`, or the name of the line; null if there is none.
     name: Option<&'a str>,
-    /// OSM's `ref`; null without.
+    /// OSM's `ref`; null if there is none.
     r#ref: Option<&'a str>,
     /// OSM's `highway`; null for lines of a file.
     highway: Option<&'a str>,
@@ -71,7 +74,7 @@ struct LegDocument<'a> {
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 struct PartDocument {
-    /// Its vertices.
+    /// The vertices of the part.
     points: Vec<PointDocument>,
 }
 
@@ -79,31 +82,33 @@ struct PartDocument {
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 struct PointDocument {
-    /// The way of the vertex; where two meet, the first. With `--line` the number of the line.
+    /// OSM id of the way of the vertex; where two ways meet, the id of the first. With `--line` the
+    /// number of the line in the file, from 1.
     way_id: i64,
     /// True distance in plan from the beginning, metres.
     distance_m: f64,
     /// Height of the line, metres.
     height_m: f64,
-    /// Rise over run of 20 m around the vertex, or of what the part has of them; upwards is positive.
+    /// Rise over run along 20 m around the vertex, or along a shorter distance at the ends of the
+    /// part; upwards is positive.
     grade_pct: f64,
     /// Longitude and latitude of WGS84, degrees.
     position_deg: [f64; 2],
-    /// As in exported roads.
+    /// Source of the height, as in exported roads.
     height_source: &'static str,
-    /// Height of the smooth line, metres; null where there is none.
+    /// Height of the smoothed line, metres; null if there is none.
     smooth_m: Option<f64>,
-    /// Its rise over run of 50 m around the vertex; null where there is none.
+    /// Rise over run of the smoothed line along 50 m around the vertex; null if there is none.
     smooth_grade_pct: Option<f64>,
 }
 
-/// As many digits as tell something: micrometres, and 1e-9 degrees.
+/// Rounds to significant digits: micrometres, and 1e-9 degrees.
 fn rounded(value: f64) -> f64 {
     (value * 1e6).round() / 1e6
 }
 
 impl GradesDocument {
-    fn of(grades: &ProfileGrades) -> Self {
+    fn from_grades(grades: &ProfileGrades) -> Self {
         Self {
             ascent_m: rounded(grades.ascent_m),
             descent_m: rounded(grades.descent_m),
@@ -113,7 +118,7 @@ impl GradesDocument {
 }
 
 impl PointDocument {
-    fn of(point: &ProfilePoint) -> Self {
+    fn from_point(point: &ProfilePoint) -> Self {
         Self {
             way_id: point.way_id,
             distance_m: rounded(point.distance_m),
@@ -129,7 +134,11 @@ impl PointDocument {
 
 impl<'a> ProfileDocument<'a> {
     /// A profile with its title and the attribution of its package.
-    pub(crate) fn of(found: &'a Profile, title: &'a str, attribution: &'a [String]) -> Self {
+    pub(crate) fn from_profile(
+        found: &'a RoadProfile,
+        title: &'a str,
+        attribution: &'a [String],
+    ) -> Self {
         let text = |text: &'a String| Some(text.as_str()).filter(|text| !text.is_empty());
         let legs = found.legs.iter().map(|leg| LegDocument {
             way_id: leg.way_id,
@@ -140,7 +149,7 @@ impl<'a> ProfileDocument<'a> {
             structure: leg.structure.name(),
         });
         let parts = found.parts.iter().map(|part| PartDocument {
-            points: part.points.iter().map(PointDocument::of).collect(),
+            points: part.points.iter().map(PointDocument::from_point).collect(),
         });
         Self {
             title,
@@ -151,8 +160,8 @@ impl<'a> ProfileDocument<'a> {
             length_2d_m: rounded(found.length_2d_m),
             length_3d_m: rounded(found.length_3d_m),
             on_structures_m: rounded(found.on_structures_m),
-            line: GradesDocument::of(&found.grades),
-            smooth: found.smooth.as_ref().map(|(grades, _)| GradesDocument::of(grades)),
+            line: GradesDocument::from_grades(&found.grades),
+            smooth: found.smooth.as_ref().map(|(grades, _)| GradesDocument::from_grades(grades)),
             smoothing_max_m: found.smooth.map(|(_, most_off_m)| rounded(most_off_m)),
             legs: legs.collect(),
             parts: parts.collect(),

@@ -11,97 +11,101 @@ use crate::exit::ExitCode;
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(untagged)]
 pub(crate) enum ProgressRecord<'a> {
-    /// How far a stage is.
+    /// The progress of a stage.
     Stage(StageRecord<'a>),
-    /// Something that should be seen.
+    /// A warning.
     Warning {
-        /// In words.
+        /// Text of the warning.
         warning: &'a str,
     },
-    /// What the stages took, after the last of them.
+    /// Time and resources of the stages, after the last of them.
     Costs {
-        /// The stages, in the order in which they first began.
+        /// The stages, in the order in which they began.
         summary: Vec<StageCostRecord<'a>>,
         /// The whole run.
         all: CostRecord,
     },
-    /// The last line: how the run ended.
+    /// The last line: the result of the run.
     End {
-        /// How.
+        /// The result.
         end: EndRecord,
     },
 }
 
-/// How far a stage is.
+/// The progress of a stage.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct StageRecord<'a> {
-    /// Its name, which does not change.
+    /// Id of the stage, which never changes.
     pub(crate) stage: &'a str,
-    /// Its name for people.
+    /// Name of the stage for people.
     pub(crate) title: &'a str,
     /// "begin", "running" or "end".
     pub(crate) state: &'a str,
-    /// What `done`, `already` and `total` count: "bytes", "blocks", "objects", "ways", "areas", "tiles", "pieces" or "frames".
+    /// What `done`, `already` and `total` count: "bytes", "blocks", "objects", "ways",
+    /// "windows", "tiles", "chains", "pieces" or "frames".
     pub(crate) unit: &'a str,
-    /// Done in all, by an earlier run too.
+    /// Units done so far, including those of an earlier run.
     pub(crate) done: u64,
-    /// Of that, by an earlier run.
+    /// Units done by an earlier run.
     pub(crate) already: u64,
-    /// To be done in all; null if that is not known.
+    /// Total number of units; null if it is unknown.
     pub(crate) total: Option<u64>,
-    /// Since the stage began.
+    /// Seconds since the stage began.
     pub(crate) seconds: f64,
-    /// Time of all threads since the stage began; null where the system does not tell.
+    /// CPU time of all threads since the stage began; null if the system does not report it.
     pub(crate) cpu_seconds: Option<f64>,
-    /// Units per second over the last three quarters of the stage's time; null before anything was done.
+    /// Units per second over the last three quarters of the stage's time; null before anything was
+    /// done.
     pub(crate) per_second: Option<f64>,
-    /// Of this stage; null if that is not known.
+    /// Estimated seconds until the stage ends; null if unknown.
     pub(crate) seconds_left: Option<f64>,
-    /// Bytes that the program asked the system to read since the stage began; null where the system does not tell.
+    /// Bytes that the program requested to read since the stage began; null if the system does not
+    /// report them.
     pub(crate) read_bytes: Option<u64>,
-    /// Bytes that the program asked the system to write since the stage began; null where the system does not tell.
+    /// Bytes that the program requested to write since the stage began; null if the system does not
+    /// report them.
     pub(crate) written_bytes: Option<u64>,
 }
 
-/// What a run took. What the system does not tell is null.
+/// Time and resources of a run or stage. Values that the system does not report are null.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct CostRecord {
-    /// By the clock.
+    /// Wall-clock time.
     pub(crate) seconds: f64,
-    /// Time of all threads, user and system.
+    /// CPU time of all threads, user and system.
     pub(crate) cpu_seconds: Option<f64>,
-    /// CPU time over time by the clock, for stages of 0.2 s or more.
+    /// CPU time divided by wall-clock time, for stages of 0.2 s or more.
     pub(crate) cores_busy: Option<f64>,
-    /// The most resident memory since the program began.
+    /// Peak resident memory since the program began.
     pub(crate) peak_memory_bytes: Option<u64>,
-    /// Bytes that the program asked the system to read.
+    /// Bytes that the program requested to read.
     pub(crate) read_bytes: Option<u64>,
-    /// Bytes that the program asked the system to write.
+    /// Bytes that the program requested to write.
     pub(crate) written_bytes: Option<u64>,
 }
 
-/// What a stage took.
+/// Time and resources of a stage.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct StageCostRecord<'a> {
-    /// Its name, which does not change.
+    /// Id of the stage, which never changes.
     pub(crate) stage: &'a str,
-    /// Its name for people.
+    /// Name of the stage for people.
     pub(crate) title: &'a str,
-    /// Done in all, by an earlier run too.
+    /// Units done, including those of an earlier run.
     pub(crate) done: u64,
-    /// Of that, by an earlier run.
+    /// Units done by an earlier run.
     pub(crate) already: u64,
-    /// What this run did per second; null if it did nothing.
+    /// Units per second in this run; null if it did nothing.
     pub(crate) per_second: Option<f64>,
-    /// What it took.
+    /// Time and resources.
     #[serde(flatten)]
     pub(crate) cost: CostRecord,
 }
 
-/// How a run ended.
+/// The result of a run.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct EndRecord {
@@ -110,13 +114,13 @@ pub(crate) struct EndRecord {
     pub(crate) result: ExitCode,
     /// The program's exit code: 0 to 4, in this order.
     pub(crate) exit_code: u8,
-    /// Why it failed, in words; null when it did not, and for `verify` when a promise is broken.
+    /// Error message; null after success, and for `verify` when a promise is broken.
     pub(crate) error: Option<String>,
-    /// Since the program began.
+    /// Seconds since the program began.
     pub(crate) seconds: f64,
 }
 
-/// A time for programs.
+/// A time in seconds, rounded for programs.
 pub(crate) fn seconds(time: Option<Duration>) -> Option<f64> {
     time.map(|time| time.as_secs_f64())
 }

@@ -1,10 +1,11 @@
-//! The schemas of records that write themselves: what their fields mean to readers of the JSON.
+//! The schemas of records with their own serialization: the meanings of their fields for readers of
+//! the JSON.
 
 #![expect(dead_code, reason = "only their schemas are wanted")]
 
 use corniche_geom::NodeIndex;
 use corniche_pipeline::Job;
-use corniche_plan::{Estimate, MemoryEstimate, Rates};
+use corniche_plan::{BuildEstimate, MemoryEstimate, Rates};
 use corniche_tileset::{
     AreaLevelRecord, Distribution, LeftOutRecord, LineLevelRecord, RoadLoss, SampleCounts,
     SampleErrorRecord,
@@ -21,11 +22,11 @@ pub(crate) struct AreaLevelDocument {
     level: u8,
     /// Tiles with areas.
     tiles: u64,
-    /// Areas of these tiles; one that lies in several tiles counts in each.
+    /// Areas of these tiles; an area in several tiles counts in each.
     areas: u64,
     /// Points of all rings.
     points: u64,
-    /// Stored bytes of their sections.
+    /// Stored bytes of the area sections.
     bytes: u64,
 }
 
@@ -34,20 +35,20 @@ pub(crate) struct AreaLevelDocument {
 pub(crate) struct LineLevelDocument {
     /// Level, 0 = root.
     level: u8,
-    /// Tiles with some.
+    /// Tiles with lines.
     tiles: u64,
-    /// Parts of lines near these tiles; one that comes near several tiles counts in each.
+    /// Parts of lines near these tiles; a part near several tiles counts in each.
     parts: u64,
-    /// Their points.
+    /// Points of these parts.
     points: u64,
-    /// Stored bytes of their sections.
+    /// Stored bytes of the line sections.
     bytes: u64,
 }
 
 /// The distribution of values, as nearest-rank quantiles.
 #[derive(JsonSchema)]
 pub(crate) struct DistributionDocument {
-    /// How many values.
+    /// Number of values.
     count: u64,
     /// Smallest.
     min: f64,
@@ -59,12 +60,12 @@ pub(crate) struct DistributionDocument {
     max: f64,
 }
 
-/// How far TINs are from the DEM's own samples.
+/// Differences between TINs and the DEM's own samples.
 #[derive(JsonSchema)]
 pub(crate) struct SamplesDocument {
-    /// Samples at which there is a TIN.
+    /// Samples that a TIN covers.
     on_tin: u64,
-    /// Samples at which there is none.
+    /// Samples that no TIN covers.
     off_tin: u64,
     /// Largest vertical distance, metres.
     max_m: f64,
@@ -74,12 +75,12 @@ pub(crate) struct SamplesDocument {
     p99_m: f64,
 }
 
-/// Gaps of a level.
+/// Gaps between roads and terrain on a level.
 #[derive(JsonSchema)]
 pub(crate) struct GapDocument {
     /// Level.
     level: u8,
-    /// Edges looked at.
+    /// Edges checked.
     edges: u64,
     /// Largest gap, metres.
     largest_m: f64,
@@ -92,13 +93,13 @@ pub(crate) struct ErrorDocument {
     level: u8,
     /// Tiles measured.
     tiles: u64,
-    /// Nodes with data that were compared.
+    /// Nodes with a height that were compared.
     nodes: u64,
-    /// Largest distance of a TIN from a node, metres.
+    /// Largest distance between a TIN and a node, metres.
     largest_true_m: f64,
-    /// Stored error over true error, for the tiles where that can be measured.
+    /// Ratio of stored error to true error, for the tiles where it can be measured.
     tightness: Option<DistributionDocument>,
-    /// Nodes with data that the TINs do not cover.
+    /// Nodes with a height that the TINs do not cover.
     uncovered_nodes: u64,
 }
 
@@ -116,89 +117,90 @@ pub(crate) struct NodeDocument {
 pub(crate) struct NodeCountsDocument {
     /// All nodes of the rectangle.
     nodes: u64,
-    /// With a height from the DEM.
+    /// Nodes with a height from the DEM.
     with_data: u64,
-    /// Filled from their surroundings.
+    /// Nodes filled from their surroundings.
     filled: u64,
-    /// Left void.
+    /// Nodes that are void.
     void: u64,
 }
 
 /// Roads lost for one reason.
 #[derive(JsonSchema)]
 pub(crate) struct LossDocument {
-    /// Why, in words.
+    /// The reason, in words.
     reason: String,
-    /// Roads lost altogether for this reason.
+    /// Roads lost completely for this reason.
     roads: u64,
     /// True length in plan lost for this reason, micrometres.
     length_um: u64,
 }
 
-/// Ways that the FRC table leaves out for one reason, with one `highway` value.
+/// OSM ways that the FRC table skips for one reason, with one `highway` value.
 #[derive(JsonSchema)]
 pub(crate) struct LeftOutDocument {
-    /// Why, in words.
+    /// The reason, in words.
     reason: String,
     /// Value of `highway`.
     highway: String,
-    /// How many ways.
+    /// Number of OSM ways.
     ways: u64,
-    /// Their true length in plan, micrometres; of areas that of the outline.
+    /// True length in plan, micrometres; for areas that of the outline.
     length_um: u64,
 }
 
-/// What a build will take. All but the counts are estimates.
+/// Estimates for a build. Only the counts are exact.
 #[derive(JsonSchema)]
 pub(crate) struct EstimateDocument {
     /// Nodes of the finest level in the files' rectangles; where files overlap they count twice.
     nodes: u64,
     /// Tiles per level, root first, if no tile is void.
     tiles: Vec<u64>,
-    /// Memory.
+    /// Memory that the build needs.
     memory: MemoryDocument,
     /// Disk space for intermediate results, bytes.
     store_bytes: u64,
     /// Size of the package.
     package_bytes: u64,
-    /// Time on one core.
+    /// Time on one core, seconds.
     core_seconds: f64,
-    /// Time on as many threads as the build has.
+    /// Time on the build's number of threads, seconds.
     seconds: f64,
-    /// Where the numbers of triangles, bytes and seconds come from.
+    /// Source of the rates of triangles, bytes and seconds.
     rates: RatesDocument,
 }
 
 /// Memory that a build needs, bytes.
 #[derive(JsonSchema)]
 pub(crate) struct MemoryDocument {
-    /// Whatever is being built.
+    /// Memory of the program itself, for any build.
     base_bytes: u64,
-    /// For what is remembered of every tile.
+    /// Memory for the list of all tiles.
     tiles_bytes: u64,
     /// Number of threads.
     threads: u64,
-    /// For the work of each thread.
+    /// Memory for the work of each thread.
     thread_bytes: u64,
-    /// For the largest block of a file, which GDAL decodes whole for each thread.
+    /// Memory for the largest block of a file, which GDAL decodes as a whole for each thread.
     block_bytes: u64,
     /// The file with that block.
     block_file: String,
-    /// All blocks from the west to the east side of a file, the most of any file.
+    /// Memory for a row of blocks from the west to the east side of a file, the largest of all
+    /// files.
     block_row_bytes: u64,
-    /// The sum that no build can do with less of.
+    /// The sum, which is the minimum for this build.
     least_bytes: u64,
 }
 
-/// Where an estimate's rates come from.
+/// The source of an estimate's rates.
 #[derive(JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum RatesDocument {
-    /// From builds of other data on another machine, as `docs/lab/build-costs.md` says.
+    /// Builds of other data on another machine, see `docs/lab/build-costs.md`.
     Recorded,
-    /// From some tiles of these data, triangulated on this machine.
+    /// Some tiles of this data, triangulated on this machine.
     Sampled {
-        /// How many.
+        /// Number of tiles.
         tiles: u64,
     },
 }
@@ -206,19 +208,19 @@ pub(crate) enum RatesDocument {
 /// A part of a build.
 #[derive(JsonSchema)]
 pub(crate) struct JobDocument {
-    /// A name that no other part of the plan has, such as "tiles-2-1-3".
+    /// An id that is unique within the plan, such as "tiles-2-1-3".
     id: String,
-    /// The step's name; "merge" for the last one.
+    /// Name of the step; "merge" for the last one.
     step: &'static str,
-    /// Its subtree as "z/x/y"; null where the step has no subtrees.
+    /// The subtree as "z/x/y"; null for steps without subtrees.
     subtree: Option<String>,
-    /// Its share as "i/n"; null where the step has no shares.
+    /// The share of the extract as "i/n"; null for steps without shares.
     share: Option<String>,
     /// Estimated time on one core, seconds.
     work: f64,
-    /// Steps of which all parts must be done before.
+    /// Steps whose parts must all be complete before.
     after: Vec<&'static str>,
-    /// What to give to `corniche part` behind plan and stores; for the merge, to `corniche merge`.
+    /// Arguments for `corniche part` after plan and stores; for the merge, for `corniche merge`.
     args: Vec<String>,
 }
 
@@ -244,7 +246,7 @@ fn records_have_the_fields_of_their_schemas() {
         least_bytes: 1,
     };
     check::<MemoryDocument>(&memory);
-    let estimate = Estimate {
+    let estimate = BuildEstimate {
         nodes: 1,
         tiles: vec![1],
         memory,
@@ -280,7 +282,7 @@ fn records_have_the_fields_of_their_schemas() {
         points: 1,
         bytes: 1,
     });
-    check::<DistributionDocument>(&Distribution::of(vec![1.0]).unwrap());
+    check::<DistributionDocument>(&Distribution::from_values(vec![1.0]).unwrap());
     check::<SamplesDocument>(&SampleErrorRecord::default());
     check::<GapDocument>(&GapFigures::default());
     check::<ErrorDocument>(&ErrorFigures {

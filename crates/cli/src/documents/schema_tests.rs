@@ -18,7 +18,7 @@ use super::{
     verify::VerifyDocument,
 };
 
-/// Of what is written: a field that may be null is there all the same.
+/// The schema of a serialized type: fields that may be null are required.
 fn schema<T: JsonSchema>() -> Schema {
     SchemaSettings::draft2020_12().for_serialize().into_generator().into_root_schema_for::<T>()
 }
@@ -41,6 +41,25 @@ fn schemas() -> [(&'static str, &'static str, Schema); 9] {
     ]
 }
 
+/// Writes each paragraph of a description in one line: comments wrap, and documents do not.
+fn unwrap_descriptions(value: &mut Value) {
+    match value {
+        Value::Object(fields) => {
+            for (name, value) in fields {
+                match value {
+                    Value::String(text) if name == "description" => {
+                        let paragraphs = text.split("\n\n").map(|text| text.replace('\n', " "));
+                        *text = paragraphs.collect::<Vec<_>>().join("\n\n");
+                    }
+                    value => unwrap_descriptions(value),
+                }
+            }
+        }
+        Value::Array(items) => items.iter_mut().for_each(unwrap_descriptions),
+        _ => {}
+    }
+}
+
 #[test]
 fn the_schemas_in_the_docs_are_those_of_the_program() {
     let folder: PathBuf =
@@ -48,6 +67,7 @@ fn the_schemas_in_the_docs_are_those_of_the_program() {
     for (name, title, schema) in schemas() {
         let mut value = serde_json::to_value(schema).unwrap();
         value["title"] = json!(title);
+        unwrap_descriptions(&mut value);
         let text = format!("{}\n", serde_json::to_string_pretty(&value).unwrap());
         let path = folder.join(format!("{name}.schema.json"));
         if std::env::var_os("CORNICHE_BLESS").is_some() {
@@ -63,7 +83,7 @@ fn the_schemas_in_the_docs_are_those_of_the_program() {
     }
 }
 
-/// A field that the manifest gets must be in the document, too.
+/// A new field of the manifest must also be in the document.
 #[test]
 fn the_document_has_all_fields_of_the_manifest() {
     fn check(manifest: &Value, document: &Value, place: &str) {
@@ -83,13 +103,13 @@ fn the_document_has_all_fields_of_the_manifest() {
                     check(value, our, place);
                 }
             }
-            // A pair in the file is an object here.
+            // Pairs in the file are objects here.
             (Value::Array(pair), Value::Object(_)) => assert_eq!(pair.len(), 2, "{place}"),
             _ => assert_eq!(manifest, document, "{place}"),
         }
     }
     let mut manifest = corniche_testing::package::manifest();
-    // What is left out where it is not asked for is there, too.
+    // Optional fields are included, too.
     manifest.clip = Some(ClipRecord {
         nodes: [NodeIndex { i: -1, j: 0 }, NodeIndex { i: 2, j: 3 }],
         whole_data_bounds: manifest.data_bounds,

@@ -1,23 +1,24 @@
-//! The schema of a package's settings, from the table of all settings. The record writes itself; this is only its schema.
+//! The schema of a package's settings, from the table of all settings. The record has its own
+//! serialization; the types here exist only for the schema.
 
 use corniche_settings::SettingsRecord;
 use serde_json::json;
 
 /// A cell, east and north.
 type Cell = [f64; 2];
-/// The name of the levels.
+/// The name of a choice of levels.
 type ReliefLevels = String;
 type PolygonRecord = PolygonDocument;
 type AreaTableRecord = AreaTableDocument;
 type PhotoRecord = PhotoDocument;
 
-/// The polygon that the package was cut with.
+/// The polygon that the package was clipped to.
 #[derive(schemars::JsonSchema)]
 #[expect(dead_code, reason = "only its schema is wanted")]
 pub(crate) struct PolygonDocument {
     /// File name without folders.
     name: String,
-    /// SHA-256 of its coordinate system and corners, whatever the format of the file.
+    /// SHA-256 of its coordinate system and vertices, independent of the format of the file.
     sha256: String,
 }
 
@@ -31,13 +32,13 @@ pub(crate) struct AreaTableDocument {
     sha256: String,
 }
 
-/// How the photos of a package were made.
+/// How the photos of a package are stored.
 #[derive(schemars::JsonSchema)]
 #[expect(dead_code, reason = "only its schema is wanted")]
 pub(crate) struct PhotoDocument {
     /// A cell of the finest level has 2^levels texels along each side.
     levels: u8,
-    /// JPEG's quality, from 1 to 100.
+    /// JPEG quality, from 1 to 100.
     quality: u8,
 }
 
@@ -60,7 +61,7 @@ macro_rules! schema {
 
 corniche_settings::recorded! { [schema] }
 
-/// Keys that are always there come in the order of the manifest.
+/// Keys that are always present are in the order of the manifest.
 fn with_keys_in_order(schema: &mut schemars::Schema) {
     let Some(required) = schema.get_mut("required") else { return };
     let told = required.take();

@@ -6,34 +6,35 @@ use serde::Serialize;
 #[cfg(test)]
 use crate::documents::record_schemas::LineLevelDocument;
 
-/// The bridges and tunnels of a package. Each is all ways of its kind that are connected; heights are estimates.
+/// The bridges and tunnels of a package (spans). A bridge or tunnel consists of all connected OSM
+/// ways of its kind; heights are estimates.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct SpansDocument {
-    /// How many bridges.
+    /// Number of bridges.
     bridges: u64,
-    /// How many tunnels.
+    /// Number of tunnels.
     tunnels: u64,
-    /// The true length of all bridges in plan, as far as they are kept, kilometres.
+    /// True length in plan of the parts of all bridges in the package, kilometres.
     bridges_km: f64,
-    /// The same of all tunnels.
+    /// True length in plan of the parts of all tunnels in the package, kilometres.
     tunnels_km: f64,
-    /// Where they cross other roads or each other.
+    /// Number of crossings with other roads or with each other.
     crossings: u64,
-    /// How often there is a reason to look at one, by its name.
+    /// Number of spans to inspect, by reason.
     reasons: Vec<ReasonDocument>,
-    /// What is off the ground on each level that has some, root first: runs are its parts.
+    /// Stretches off the ground (runs, here `parts`) on each level that has some, root first.
     #[cfg_attr(test, schemars(with = "Vec<LineLevelDocument>"))]
     levels: Vec<LineLevelRecord>,
 }
 
-/// A reason to look at bridges or tunnels.
+/// A reason to inspect bridges or tunnels.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 struct ReasonDocument {
-    /// Its name.
+    /// Name of the reason.
     reason: String,
-    /// How often.
+    /// Number of occurrences.
     count: u64,
 }
 
@@ -52,25 +53,25 @@ impl From<SpansRecord> for SpansDocument {
     }
 }
 
-/// A stretch of a bridge that is above the ground of the tile's level, or of a tunnel that is below.
+/// A stretch of a bridge above the ground of the tile's level, or of a tunnel below it.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct TileSpanDocument {
-    /// OSM's id of the way.
+    /// OSM id of the way.
     way_id: i64,
-    /// Functional road class.
+    /// Functional road class (FRC).
     frc: u8,
     /// "bridge" or "tunnel".
     structure: &'static str,
-    /// x, y and height in metres of each point. Heights are estimates.
+    /// Position (x, y and height in metres) of each point. Heights are estimates.
     line: Vec<[f64; 3]>,
-    /// Whether the first, and the last, of these points lies on the ground.
+    /// Whether the first and the last point are on the ground.
     on_ground: [bool; 2],
 }
 
 impl TileSpanDocument {
-    /// The points of `line` are those of the run.
-    pub(crate) fn of(run: &SpanRun, line: Vec<[f64; 3]>) -> Self {
+    /// Converts a run; `line` has its points.
+    pub(crate) fn from_run(run: &SpanRun, line: Vec<[f64; 3]>) -> Self {
         let is_on_ground = |point: Option<&SpanPoint>| {
             point.is_some_and(|point| matches!(point.height, SpanHeight::Ground { .. }))
         };

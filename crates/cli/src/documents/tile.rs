@@ -6,79 +6,84 @@ use serde::{Serialize, Serializer};
 
 use super::{areas::TileAreaDocument, lines::TileBoundaryDocument, spans::TileSpanDocument};
 
-/// A list whose items are made one after the other while it is written: together they would take several times the memory of the tile.
-pub(crate) struct Written<'a, Item> {
+/// A list whose items are computed one by one during serialization: all of them together would need
+/// several times the memory of the tile.
+pub(crate) struct StreamedList<'a, Item> {
     count: usize,
     item: Box<dyn Fn(usize) -> Item + 'a>,
 }
 
-impl<'a, Item> Written<'a, Item> {
-    /// Each of these as an item.
-    pub(crate) fn of<T>(all: &'a [T], item: impl Fn(&'a T) -> Item + 'a) -> Self {
+impl<'a, Item> StreamedList<'a, Item> {
+    /// Creates a list that converts each element of a slice to an item.
+    pub(crate) fn from_slice<T>(all: &'a [T], item: impl Fn(&'a T) -> Item + 'a) -> Self {
         Self { count: all.len(), item: Box::new(move |index| item(&all[index])) }
     }
 }
 
-impl<Item: Serialize> Serialize for Written<'_, Item> {
+impl<Item: Serialize> Serialize for StreamedList<'_, Item> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_seq((0..self.count).map(&self.item))
     }
 }
 
-/// A tile, decoded.
+/// A decoded tile.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct TileDocument<'a> {
-    /// Level, column from the west, row from the north: "z/x/y".
+    /// Id of the tile, "z/x/y": level, column from the west, row from the north.
     pub(crate) id: String,
     /// CRS of the package.
     pub(crate) crs: String,
-    /// What x and y are: "working" metres, or coordinates of the package's "crs".
+    /// The coordinates x and y: "working" metres, or coordinates of the package's "crs".
     pub(crate) coordinates: &'static str,
-    /// Working metres to a unit of the CRS's coordinates, east and north.
+    /// Working metres per unit of the CRS's coordinates, east and north.
     pub(crate) metres_per_unit: [f64; 2],
     /// Smallest x and y, largest x and y.
     pub(crate) bounds: [f64; 4],
-    /// Spacing of the level's nodes, east and north, working metres.
+    /// Cell size of the level, east and north, working metres.
     pub(crate) cell_m: [f64; 2],
-    /// Meshing tolerance of the level.
+    /// Meshing tolerance of the level, at the nodes of the level's own grid.
     pub(crate) max_error_m: Option<f64>,
-    /// Error of drawing this tile instead of the full-resolution DEM; null without ground.
+    /// Error of this tile at the nodes of the finest level; null if the tile has no ground.
     pub(crate) geometric_error_m: Option<f64>,
-    /// Heights of the lowest and the highest full-resolution node beneath the tile; null without ground.
+    /// Heights of the lowest and the highest node of the finest level within the tile; null if the
+    /// tile has no ground.
     pub(crate) height_range_m: Option<[f64; 2]>,
-    /// Full-resolution nodes with data beneath that the triangles do not cover; null without ground.
+    /// Number of nodes of the finest level within the tile that have a height but no triangle; null
+    /// if the tile has no ground.
     pub(crate) uncovered_nodes: Option<u64>,
-    /// The ground.
+    /// The terrain.
     pub(crate) tin: TinDocument,
-    /// Roads as geometry, on the triangles.
+    /// Roads as geometry on the triangles (GEO).
     pub(crate) roads_geo: Vec<GeoRoadDocument>,
-    /// Roads as plan lines, for shadow volumes.
+    /// Roads as plan lines for shadow volumes (SV).
     #[cfg_attr(test, schemars(with = "Vec<SvRoadDocument>"))]
-    pub(crate) roads_sv: Written<'a, SvRoadDocument>,
-    /// What is known of each way that occurs in the tile, sorted by way id.
+    pub(crate) roads_sv: StreamedList<'a, SvRoadDocument>,
+    /// Attributes of each OSM way in the tile, sorted by id.
     #[cfg_attr(test, schemars(with = "Vec<WayDocument>"))]
-    pub(crate) attributes: Written<'a, WayDocument>,
-    /// Parts of areas that lie in the tile; left out without any.
+    pub(crate) attributes: StreamedList<'a, WayDocument>,
+    /// Parts of areas in the tile; omitted if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) areas: Vec<TileAreaDocument>,
-    /// Parts of boundaries near the tile; left out without any.
+    /// Parts of boundaries near the tile; omitted if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) boundaries: Vec<TileBoundaryDocument>,
-    /// Stretches of bridges that are above the ground, and of tunnels that are below; left out without any.
+    /// Stretches of bridges above the ground, and of tunnels below it; omitted if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) spans: Vec<TileSpanDocument>,
 }
 
-/// Triangles of the ground.
+/// The triangles of the terrain (TIN).
 #[derive(Default, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct TinDocument {
-    /// x, y and height in metres of each vertex.
+    /// Position (x, y and height in metres) of each vertex.
     pub(crate) vertices: Vec<[f64; 3]>,
-    /// Unit normal of the DEM at each vertex, in working axes: east, north, up. Stored in steps of 1/127.
+    /// Unit normal of the DEM at each vertex, in working axes: east, north, up. Stored in steps of
+    /// 1/127.
     pub(crate) normals: Vec<[f64; 3]>,
-    /// Three vertices of each triangle, counter-clockwise seen from above in working metres.
+    /// Indices of the three vertices of each triangle, counter-clockwise from above in working
+    /// metres.
     pub(crate) triangles: Vec<[u32; 3]>,
 }
 
@@ -86,13 +91,13 @@ pub(crate) struct TinDocument {
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct GeoRoadDocument {
-    /// OSM's id of the way.
+    /// OSM id of the way.
     pub(crate) way_id: i64,
-    /// Number of this piece along the way within the tile, from 0.
+    /// Index of this piece along the OSM way within the tile, from 0.
     pub(crate) part: u32,
-    /// Functional road class.
+    /// Functional road class (FRC).
     pub(crate) frc: u8,
-    /// x, y and height in metres of each point.
+    /// Position (x, y and height in metres) of each point.
     pub(crate) line: Vec<[f64; 3]>,
 }
 
@@ -100,50 +105,51 @@ pub(crate) struct GeoRoadDocument {
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct SvRoadDocument {
-    /// OSM's id of the way.
+    /// OSM id of the way.
     pub(crate) way_id: i64,
-    /// Number of this piece along the way within the tile, from 0.
+    /// Index of this piece along the OSM way within the tile, from 0.
     pub(crate) part: u32,
-    /// Functional road class.
+    /// Functional road class (FRC).
     pub(crate) frc: u8,
-    /// x and y of each point.
+    /// Position (x and y) of each point.
     pub(crate) line: Vec<[f64; 2]>,
     /// Lowest and highest ground near each segment.
     pub(crate) ground_range_m: Vec<[f64; 2]>,
 }
 
-/// What is known of a way.
+/// The attributes of an OSM way. Invalid values of tags are null.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct WayDocument {
-    /// OSM's id of the way.
+    /// OSM id of the way.
     way_id: i64,
-    /// How it is built: `ordinary`, `dual_carriageway`, `link` or `roundabout`.
+    /// Form of the road: `ordinary`, `dual_carriageway`, `link` or `roundabout`.
     form: &'static str,
-    /// What carries it: "ground", "bridge" or "tunnel".
+    /// Structure that carries the road: "ground", "bridge" or "tunnel".
     structure: &'static str,
     /// OSM's `layer`.
     layer: i8,
-    /// Permitted direction along the way: "no" (both), "forward" or "backward".
+    /// Permitted direction along the OSM way: "no" (both), "forward" or "backward".
     oneway: &'static str,
-    /// `name`; null without.
+    /// OSM's `name`; null if untagged.
     name: Option<String>,
-    /// `ref`; null without.
+    /// OSM's `ref`; null if untagged.
     #[serde(rename = "ref")]
     reference: Option<String>,
-    /// `surface`; null without.
+    /// OSM's `surface`; null if untagged.
     surface: Option<String>,
-    /// `highway`; null in packages that do not hold it.
+    /// OSM's `highway`; null in packages without this value.
     highway: Option<String>,
-    /// `lanes`, in both directions together; null without.
+    /// OSM's `lanes`, of both directions together; null if untagged.
     lanes: Option<u8>,
-    /// `width`, metres; null without.
+    /// OSM's `width`, metres; null if untagged.
     width_m: Option<f64>,
-    /// `maxspeed`: a number is km/h, "30 mph" miles an hour, else as tagged; null without.
+    /// OSM's `maxspeed`: a number means km/h, "30 mph" miles per hour; other values are as tagged;
+    /// null if untagged.
     maxspeed: Option<String>,
-    /// `sac_scale`; null without.
+    /// OSM's `sac_scale`; null if untagged.
     sac_scale: Option<String>,
-    /// `tracktype`; null without.
+    /// OSM's `tracktype`; null if untagged.
     tracktype: Option<String>,
 }
 
@@ -174,7 +180,7 @@ impl From<&RoadRecord> for WayDocument {
     }
 }
 
-/// A unit vector from its octahedron code, in steps of 1/127; it points upwards.
+/// The unit vector of an octahedron code, in steps of 1/127; it points upwards.
 ///
 /// Source: Meyer et al. 2010, *On Floating-Point Normal Vectors*, section 3.
 pub(crate) fn normal([u, v]: [i8; 2]) -> [f64; 3] {

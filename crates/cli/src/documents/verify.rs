@@ -7,44 +7,45 @@ use serde::Serialize;
 #[cfg(test)]
 use crate::documents::record_schemas::{ErrorDocument, GapDocument, SamplesDocument};
 
-/// Whether a package keeps its promises.
+/// The result of checking a package.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct VerifyDocument {
-    /// No check is broken.
+    /// Whether no check failed.
     holds: bool,
-    /// Tiles looked at.
+    /// Number of tiles checked.
     tiles: u64,
-    /// Borders between tiles of one level that were compared.
+    /// Number of compared borders between tiles of one level.
     borders: u64,
     /// The checks.
     checks: Vec<CheckDocument>,
-    /// Gaps between GEO roads and TINs, per level.
+    /// Gaps between roads drawn as geometry (GEO) and the terrain's triangles (TIN), per level.
     #[cfg_attr(test, schemars(with = "Vec<GapDocument>"))]
     gaps: Vec<GapFigures>,
     /// With `--dem`: geometric errors, per level.
     #[cfg_attr(test, schemars(with = "Vec<ErrorDocument>"))]
     errors: Vec<ErrorFigures>,
-    /// With `--dem`: how far the finest level is from the DEM's own samples.
+    /// With `--dem`: differences between the finest level and the DEM's own samples.
     #[cfg_attr(test, schemars(with = "Option<SamplesDocument>"))]
     samples: Option<SampleErrorRecord>,
 }
 
-/// A check.
+/// The result of a check.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 struct CheckDocument {
-    /// Its name, which does not change.
+    /// Id of the check, which never changes.
     id: &'static str,
-    /// What it checks.
+    /// The promise that is checked.
     promise: &'static str,
-    /// Whether it holds; null when there was nothing to check.
+    /// Whether the package fulfils the promise. If nothing was checked: null for a check that needs
+    /// an input, true for a check of the package alone.
     holds: Option<bool>,
-    /// How many things were looked at.
+    /// Number of objects checked.
     checked: u64,
-    /// How many of them break it.
+    /// Number of objects that break the promise.
     broken: u64,
-    /// The first few of those, in words.
+    /// The first few of the broken objects, in words.
     examples: Vec<String>,
 }
 

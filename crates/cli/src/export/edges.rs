@@ -1,6 +1,8 @@
 //! `corniche export edges`: roads from junction to junction.
 
-use corniche_export::{Coordinates, EdgesSummary, FeatureRequest, VectorFormat, export_edges};
+use corniche_export::{
+    EdgesSummary, FeatureCoordinates, FeatureRequest, VectorFormat, export_edges,
+};
 use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::Manifest;
 
@@ -11,21 +13,18 @@ use super::{
 use crate::{
     args::ExportEdgesArgs,
     escaped::in_line,
-    exit::ExitCode,
-    failure::Failure,
+    failure::CommandFailure,
     messages, recorded,
     table::{bytes, length, noted, up_to},
 };
 
-pub(crate) fn run(args: &ExportEdgesArgs) -> Result<ExitCode, Failure> {
+pub(crate) fn run(args: &ExportEdgesArgs) -> Result<(), CommandFailure> {
     let usage = "corniche export edges PACKAGE -o FILE --dem FILE... --osm FILE...";
     let LinesExport { format, coordinates, package, output, elevation, network } =
         LinesExport::begin(&args.vector, None, &args.cpu, ("edges", usage))?;
-    // The package alone may have been named after these options.
+    // The package may be among the values of these options.
     let (Some(elevation), Some(network)) = (elevation, network) else {
-        return Err(Failure::unusable(format!(
-            "an elevation file and an extract are needed: {usage}"
-        )));
+        return Err(unusable!("an elevation file and an extract are required: {usage}"));
     };
     let request = FeatureRequest {
         format,
@@ -41,12 +40,12 @@ pub(crate) fn run(args: &ExportEdgesArgs) -> Result<ExitCode, Failure> {
         export_edges(&package, (&request, road.as_ref()), inputs, path, progress)
     })?;
     messages::summary(&to_text(args, (coordinates, format), &summary, package.manifest(), size));
-    Ok(ExitCode::Done)
+    Ok(())
 }
 
 fn to_text(
     args: &ExportEdgesArgs,
-    coordinates: (Coordinates, VectorFormat),
+    coordinates: (FeatureCoordinates, VectorFormat),
     summary: &EdgesSummary,
     manifest: &Manifest,
     size: u64,
@@ -56,15 +55,15 @@ fn to_text(
         _ => format!("; {} {what}", noted(number)),
     };
     format!(
-        "{}: {} edges, {}, {}{}{}\n{}\nheights are within {} m of the DEM, over whole lines",
+        "{}: {} edges, {}, {}{}{}\n{}\nheights are within {} m of the DEM along whole lines",
         in_line(&args.vector.file.output.to_string_lossy()),
         noted(summary.edges),
         length((summary.length_m * 1e6).round() as u64),
         bytes(size),
-        some(summary.without_ground, "left out, without ground"),
+        some(summary.without_ground, "skipped, without ground"),
         some(
             summary.without_ascent,
-            "without an ascent, because the ground ends, or nothing carries a bridge or a tunnel",
+            "without an ascent, because the ground ends, or a bridge or tunnel has no ends on the ground",
         ),
         facts(coordinates, &summary.heights, manifest),
         up_to(summary.height_tolerance_m, 3),

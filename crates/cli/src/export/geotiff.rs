@@ -9,8 +9,7 @@ use super::vector_files::{fill, tell};
 use crate::{
     args::ExportGeoTiffArgs,
     escaped::in_line,
-    exit::ExitCode,
-    failure::Failure,
+    failure::CommandFailure,
     messages,
     names::MAP,
     output::{existing_of, named::NamedOutput},
@@ -19,12 +18,12 @@ use crate::{
     table::{bytes, noted},
 };
 
-pub(crate) fn run(args: &ExportGeoTiffArgs) -> Result<ExitCode, Failure> {
+pub(crate) fn run(args: &ExportGeoTiffArgs) -> Result<(), CommandFailure> {
     if !MAP.is_of(&args.file.output) {
-        return Err(Failure::unusable(format!(
-            "{} is a raster; give it the ending .tif",
-            args.file.output.display()
-        )));
+        return Err(unusable!(
+            "cannot write {:?}: the output is a GeoTIFF; choose a name with the extension .tif",
+            args.file.output
+        ));
     }
     let (place, [dem, _]) =
         args.from.files(&[], "corniche export geotiff PACKAGE --dem FILE...")?;
@@ -46,27 +45,27 @@ pub(crate) fn run(args: &ExportGeoTiffArgs) -> Result<ExitCode, Failure> {
     })?;
     if !summary.has_same_crs {
         messages::warning(&format!(
-            "GeoTIFF has no words for all of the package's coordinate system ({}, heights: {}); what programs read of it may differ",
+            "GeoTIFF cannot represent the whole coordinate system of the package ({}, heights: {}); programs may interpret it differently",
             package.manifest().crs,
             summary.heights
         ));
     }
     tell(&args.file.output, &to_text(&summary, package.manifest(), size), package.manifest());
-    Ok(ExitCode::Done)
+    Ok(())
 }
 
 fn to_text(summary: &GeoTiffSummary, manifest: &Manifest, size: u64) -> String {
     let error = summary.sample_error.map_or_else(String::new, |error| {
         let SampleErrorRecord { on_tin, off_tin, max_m, rms_m, p99_m } = error;
-        let points = if manifest.nodes_are_samples { "samples" } else { "nodes, which lie between samples" };
+        let points = if manifest.nodes_are_samples { "samples" } else { "nodes, which are between samples" };
         format!(
-            "\nTIN minus DEM: max {max_m:.3} m, RMS {rms_m:.3} m, p99 {p99_m:.3} m at {} {points}; {} have no ground",
+            "\nTIN minus DEM: max {max_m:.3} m, RMS {rms_m:.3} m, p99 {p99_m:.3} m at {} {points}; {} without ground",
             noted(on_tin),
             noted(off_tin)
         )
     });
     format!(
-        "level {}, {} × {} nodes, {} with ground, {}, {}\nstored error: {:.3} m at most\ncoordinates: {}\nheights: {}{error}",
+        "level {}, {} × {} nodes, {} with ground, {}, {}\nstored error: at most {:.3} m\ncoordinates: {}\nheights: {}{error}",
         summary.level,
         noted(summary.columns),
         noted(summary.rows),

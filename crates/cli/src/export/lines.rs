@@ -1,8 +1,9 @@
-//! What exports of lines with heights begin with: the package, its inputs, and the file to write.
+//! The common start of exports of lines with heights: opens the package and its inputs, and
+//! begins the output file.
 
 use std::path::{Path, PathBuf};
 
-use corniche_export::{Coordinates, VectorFormat, check_lines_request};
+use corniche_export::{FeatureCoordinates, VectorFormat, check_lines_request};
 use corniche_network::Network;
 use corniche_tileset::FilePackage;
 use corniche_verify::RecordedElevation;
@@ -10,7 +11,7 @@ use corniche_verify::RecordedElevation;
 use super::vector_files::coordinates;
 use crate::{
     args::{ThreadsArg, VECTOR_FORMATS, VectorArgs, word_of},
-    failure::Failure,
+    failure::CommandFailure,
     names::format_of,
     output::{existing_of, named::NamedOutput},
     packages, recorded,
@@ -19,7 +20,7 @@ use crate::{
 /// An export of lines whose inputs are open.
 pub(crate) struct LinesExport {
     pub(crate) format: VectorFormat,
-    pub(crate) coordinates: Coordinates,
+    pub(crate) coordinates: FeatureCoordinates,
     pub(crate) package: FilePackage,
     pub(crate) output: NamedOutput,
     pub(crate) elevation: Option<RecordedElevation>,
@@ -27,13 +28,15 @@ pub(crate) struct LinesExport {
 }
 
 impl LinesExport {
-    /// Opens the inputs and begins the file, whose layer is called `layer`; `usage` shows how to name the package. An unusable place, and what cannot be met, is reported before any work is done.
+    /// Opens the inputs and begins the file, whose layer is called `layer`; `usage` shows how to
+    /// write the package. Unwritable targets and impossible requests are reported before any work
+    /// is done.
     pub(crate) fn begin(
         vector: &VectorArgs,
         level: Option<u8>,
         cpu: &ThreadsArg,
         (layer, usage): (&str, &str),
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, CommandFailure> {
         let VectorArgs { from, extract, .. } = vector;
         let format = format_of(vector.format, &vector.file.output, &VECTOR_FORMATS)?;
         let coordinates = coordinates(vector.crs, vector.heights.is_some(), format)?;

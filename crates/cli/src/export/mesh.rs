@@ -1,4 +1,4 @@
-//! `corniche export mesh`: the ground of a level as a model.
+//! `corniche export mesh`: writes the terrain of a level as a model.
 
 use std::{fs, path::PathBuf};
 
@@ -9,8 +9,7 @@ use super::vector_files::tell;
 use crate::{
     args::{ExportMeshArgs, MODEL_FORMATS, word_of},
     escaped::in_line,
-    exit::ExitCode,
-    failure::Failure,
+    failure::CommandFailure,
     names::{file_name, format_of},
     output::{Output, existing_of, named::NamedOutput},
     packages,
@@ -19,13 +18,13 @@ use crate::{
     table::{bytes, noted},
 };
 
-pub(crate) fn run(args: &ExportMeshArgs) -> Result<ExitCode, Failure> {
+pub(crate) fn run(args: &ExportMeshArgs) -> Result<(), CommandFailure> {
     let format = format_of(args.format, &args.file.output, &MODEL_FORMATS)?;
     let ending = word_of(&MODEL_FORMATS, &format);
     if args.relief == Some(true) && format != MeshFormat::Glb {
-        return Err(Failure::unusable(format!(
-            "--relief on: a model in .{ending} has no normal maps; write a .glb, or leave the option out"
-        )));
+        return Err(unusable!(
+            "--relief on: .{ending} does not support normal maps; write a .glb, or omit the option"
+        ));
     }
     let style = styles::style(&args.style)?;
     let package = packages::open(&args.from.package)?;
@@ -50,21 +49,22 @@ pub(crate) fn run(args: &ExportMeshArgs) -> Result<ExitCode, Failure> {
     let begin = |path: &PathBuf| Output::create(path, existing, &used);
     let begun = materials.as_ref().map(begin).transpose()?;
     let exported =
-        Progress::of(|progress| export_mesh(&package, &request, &output.path(), progress));
-    let summary = exported.map_err(|error| Failure::from(error).about_target(&args.file.output))?;
+        Progress::show_during(|progress| export_mesh(&package, &request, &output.path(), progress));
+    let summary =
+        exported.map_err(|error| CommandFailure::from(error).about_target(&args.file.output))?;
     let new = materials.filter(|path| path.symlink_metadata().is_err());
-    // They get their place before the model, which names them.
+    // Materials are moved to their target before the model, which refers to them.
     if let Some(begun) = begun {
         begun.write_whole(request.materials(package.manifest()).as_bytes())?;
     }
     let size = output.place().inspect_err(|_| {
-        // Materials without a model are of no use, but those that were there before belong to another one.
+        // Materials without a model are useless, but existing ones belong to another model.
         if let Some(new) = &new {
             let _ = fs::remove_file(new);
         }
     })?;
     tell(&args.file.output, &to_text(args, &summary, package.manifest(), size), package.manifest());
-    Ok(ExitCode::Done)
+    Ok(())
 }
 
 fn to_text(args: &ExportMeshArgs, summary: &MeshSummary, manifest: &Manifest, size: u64) -> String {

@@ -1,10 +1,10 @@
-//! `corniche export quantized-mesh`: terrain tiles of the globe.
+//! `corniche export quantized-mesh`: writes terrain tiles for CesiumJS.
 
 use std::path::Path;
 
 use corniche_export::{
-    Coordinates, QuantizedMeshLevel, QuantizedMeshPlan, QuantizedMeshRequest, QuantizedMeshSummary,
-    export_quantized_mesh,
+    FeatureCoordinates, QuantizedMeshLevel, QuantizedMeshPlan, QuantizedMeshRequest,
+    QuantizedMeshSummary, export_quantized_mesh,
 };
 use corniche_spec::machine::FileSystem;
 
@@ -12,30 +12,29 @@ use super::vector_files::{fill_folder, tell};
 use crate::{
     args::ExportQuantizedMeshArgs,
     escaped::in_line,
-    exit::ExitCode,
-    failure::Failure,
+    failure::CommandFailure,
     messages, packages,
     progress::Progress,
     settings,
     table::{bytes, noted},
 };
 
-/// Half of the block that most file systems have.
+/// Half the block size of most file systems.
 const HALF_BLOCK_BYTES: u64 = 2048;
 
-pub(crate) fn run(args: &ExportQuantizedMeshArgs) -> Result<ExitCode, Failure> {
+pub(crate) fn run(args: &ExportQuantizedMeshArgs) -> Result<(), CommandFailure> {
     let package = packages::open_with_datum(&args.from.package, &args.datum)?;
     let request = QuantizedMeshRequest {
         tiling: args.tiling,
         max_level: args.max_level,
         max_files: args.max_files,
         bounds: args.within.bounds,
-        coordinates: args.heights.unwrap_or(Coordinates::Wgs84),
+        coordinates: args.heights.unwrap_or(FeatureCoordinates::Wgs84),
         availability: args.availability,
         gzip: args.compress,
         threads: settings::threads(args.cpu.threads),
     };
-    let export = |folder: &Path, progress: &Progress| -> Result<_, Failure> {
+    let export = |folder: &Path, progress: &Progress| -> Result<_, CommandFailure> {
         let plan = QuantizedMeshPlan::new(&package, &request)?;
         messages::note(&plan_text(&plan));
         refuse_full_disk(&plan, folder)?;
@@ -45,32 +44,31 @@ pub(crate) fn run(args: &ExportQuantizedMeshArgs) -> Result<ExitCode, Failure> {
     };
     let (summary, size) = fill_folder(&args.folder, &args.from, "quantized-mesh", export)?;
     tell(&args.folder.output, &to_text(&summary, size), package.manifest());
-    Ok(ExitCode::Done)
+    Ok(())
 }
 
-/// What will be written.
+/// The summary of what will be written.
 fn plan_text(plan: &QuantizedMeshPlan) -> String {
     format!(
-        "terrain      levels 0 to {}: at most {} files, about {} (an estimate from some tiles); --max-level chooses another finest level",
+        "terrain      levels 0 to {}: at most {} files, about {} (estimated from some tiles); change the finest level with --max-level",
         plan.finest(),
         noted(plan.files()),
         bytes(plan.bytes),
     )
 }
 
-/// Refuses what has no room, as far as that can be told. A file takes half a block more than its bytes on average.
-fn refuse_full_disk(plan: &QuantizedMeshPlan, folder: &Path) -> Result<(), Failure> {
+/// Rejects an export that does not fit on the disk, as far as this is known. On average a file
+/// occupies half a block more than its bytes.
+fn refuse_full_disk(plan: &QuantizedMeshPlan, folder: &Path) -> Result<(), CommandFailure> {
     let needed = plan.bytes.saturating_add(plan.files() * HALF_BLOCK_BYTES);
-    // Where nothing is known of the file system, writing tells.
-    match FileSystem::of(folder) {
-        Ok(FileSystem { free_bytes: free, .. }) if free < needed => {
-            Err(Failure::unusable(format!(
-                "about {} are needed for {} files, and {} are free there; choose a coarser level with --max-level, or another folder",
-                bytes(needed),
-                noted(plan.files()),
-                bytes(free),
-            )))
-        }
+    // If the file system reports nothing, writing detects a full disk.
+    match FileSystem::containing(folder) {
+        Ok(FileSystem { free_bytes: free, .. }) if free < needed => Err(unusable!(
+            "about {} are needed for {} files, but only {} are free; choose a coarser level with --max-level, or another folder",
+            bytes(needed),
+            noted(plan.files()),
+            bytes(free),
+        )),
         _ => Ok(()),
     }
 }
@@ -78,10 +76,10 @@ fn refuse_full_disk(plan: &QuantizedMeshPlan, folder: &Path) -> Result<(), Failu
 fn to_text(summary: &QuantizedMeshSummary, size: u64) -> String {
     let level = |level: &QuantizedMeshLevel| {
         let deviation = if level.places == 0 {
-            "not measured: no place with ground is on its raster".to_owned()
+            "not measured: no point with ground is on its raster".to_owned()
         } else {
             format!(
-                "{:.3} m from the package at most ({:.3} m rms, {} places)",
+                "at most {:.3} m from the package ({:.3} m RMS, {} points)",
                 level.deviation_m,
                 level.deviation_rms_m,
                 noted(level.places),

@@ -1,7 +1,7 @@
-//! `corniche export roads`: roads as lines with heights, lengths and grades.
+//! `corniche export roads`: writes roads as lines with heights, lengths and grades.
 
 use corniche_export::{
-    Coordinates, ExportSummary, FeatureRequest, RoadFeatures, RoadHeights, VectorFormat,
+    ExportSummary, FeatureCoordinates, FeatureRequest, RoadFeatures, RoadHeights, VectorFormat,
     export_roads,
 };
 use corniche_tileset::Manifest;
@@ -13,13 +13,12 @@ use super::{
 use crate::{
     args::ExportRoadsArgs,
     escaped::in_line,
-    exit::ExitCode,
-    failure::Failure,
+    failure::CommandFailure,
     messages, recorded,
     table::{bytes, length, noted, up_to},
 };
 
-pub(crate) fn run(args: &ExportRoadsArgs) -> Result<ExitCode, Failure> {
+pub(crate) fn run(args: &ExportRoadsArgs) -> Result<(), CommandFailure> {
     let usage = "corniche export roads PACKAGE -o FILE --dem FILE...";
     let LinesExport { format, coordinates, package, output, elevation, network } =
         LinesExport::begin(&args.vector, args.at.level, &args.cpu, ("roads", usage))?;
@@ -38,21 +37,21 @@ pub(crate) fn run(args: &ExportRoadsArgs) -> Result<ExitCode, Failure> {
     };
     let road = args.vector.road.query();
     let (summary, size) = fill(&args.vector.file, output, elevation.as_ref(), |path, progress| {
-        export_roads(&package, (&request, features, road.as_ref()), heights, path, progress)
+        export_roads(&package, &request, features, road.as_ref(), heights, path, progress)
     })?;
     if summary.features == 0 {
         let level = summary.level;
         messages::warning(&format!(
-            "level {level} of the package has no road of the chosen classes within the bounds: the file has no features"
+            "level {level} of the package has no roads of the selected classes within the bounds; the file has no features"
         ));
     }
     messages::summary(&to_text(args, (coordinates, format), &summary, package.manifest(), size));
-    Ok(ExitCode::Done)
+    Ok(())
 }
 
 fn to_text(
     args: &ExportRoadsArgs,
-    coordinates: (Coordinates, VectorFormat),
+    coordinates: (FeatureCoordinates, VectorFormat),
     summary: &ExportSummary,
     manifest: &Manifest,
     size: u64,
@@ -64,17 +63,17 @@ fn to_text(
     };
     let tolerance = match (summary.ground_tolerance_m, summary.height_tolerance_m) {
         (Some(ground_m), within_m) => format!(
-            "heights are within {} m of the DEM, over whole lines; the package's triangles are within {} m of it there",
+            "heights are within {} m of the DEM along whole lines; the package's triangles are within {} m of the DEM there",
             up_to(within_m.unwrap_or_default(), 3),
             up_to(ground_m, 1),
         ),
         (None, Some(within_m)) => format!(
-            "heights are within {} m of the DEM, over whole lines, and within {} m at its samples; --dem FILE gives the DEM's own",
+            "heights are within {} m of the DEM along whole lines, and within {} m at its samples; use --dem FILE for the DEM's own heights",
             up_to(within_m, 1),
             up_to(summary.sample_tolerance_m, 1),
         ),
         (None, None) => format!(
-            "heights are within {} m of the DEM at its samples, and may be farther off between them; --dem FILE measures it",
+            "heights are within {} m of the DEM at its samples, and may differ more between them; use --dem FILE to measure the difference",
             up_to(summary.sample_tolerance_m, 1),
         ),
     };

@@ -1,22 +1,23 @@
-//! `corniche export 3dtiles`: a package as 3D Tiles.
+//! `corniche export 3dtiles`: writes a package as 3D Tiles.
 
 use std::path::Path;
 
-use corniche_export::{Coordinates, Tiles3dLevel, Tiles3dRequest, Tiles3dSummary, export_tiles3d};
+use corniche_export::{
+    FeatureCoordinates, Tiles3dLevel, Tiles3dRequest, Tiles3dSummary, export_tiles3d,
+};
 
 use super::vector_files::{fill_folder, tell};
 use crate::{
     args::ExportTiles3dArgs,
     escaped::in_line,
-    exit::ExitCode,
-    failure::Failure,
+    failure::CommandFailure,
     packages,
     progress::Progress,
     settings, styles,
     table::{bytes, noted},
 };
 
-pub(crate) fn run(args: &ExportTiles3dArgs) -> Result<ExitCode, Failure> {
+pub(crate) fn run(args: &ExportTiles3dArgs) -> Result<(), CommandFailure> {
     let style = styles::style(&args.style)?;
     let package = packages::open_with_datum(&args.from.package, &args.datum)?;
     let request = Tiles3dRequest {
@@ -28,20 +29,20 @@ pub(crate) fn run(args: &ExportTiles3dArgs) -> Result<ExitCode, Failure> {
         relief: args.relief,
         skirts: args.skirts,
         compress: args.compress,
-        coordinates: args.heights.unwrap_or(Coordinates::Wgs84),
+        coordinates: args.heights.unwrap_or(FeatureCoordinates::Wgs84),
         threads: settings::threads(args.cpu.threads),
     };
     let export =
         |folder: &Path, progress: &Progress| export_tiles3d(&package, &request, folder, progress);
     let (summary, size) = fill_folder(&args.folder, &args.from, "3D Tiles", export)?;
     tell(&args.folder.output, &to_text(&summary, size), package.manifest());
-    Ok(ExitCode::Done)
+    Ok(())
 }
 
 fn to_text(summary: &Tiles3dSummary, size: u64) -> String {
     let level = |level: &Tiles3dLevel| {
         format!(
-            "  level {}: {} tiles, {} triangles ({} in the package), {} of roads, {}, error {:.3} m, {:.1} ms of cutting a tile\n",
+            "  level {}: {} tiles, {} triangles ({} in the package), {} of roads, {}, error {:.3} m, {:.1} ms per tile for cutting\n",
             level.level,
             noted(level.tiles),
             noted(level.triangles),

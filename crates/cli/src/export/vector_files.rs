@@ -1,8 +1,9 @@
-//! What exports to vector files and rasters have in common: the file that is filled, its format, coordinates and heights in words.
+//! Common parts of exports to vector files and rasters: filling the file, and its format,
+//! coordinates and heights in words.
 
 use std::path::Path;
 
-use corniche_export::{Coordinates, SpanFacts, VectorFormat};
+use corniche_export::{FeatureCoordinates, SpanFacts, VectorFormat};
 use corniche_tileset::Manifest;
 use corniche_verify::RecordedElevation;
 
@@ -10,102 +11,107 @@ use crate::{
     args::{FileArgs, FolderArgs, PackageArg},
     credits::credits_line,
     escaped::in_line,
-    failure::Failure,
+    failure::CommandFailure,
     messages,
     output::{existing_of, folder::FolderOutput, named::NamedOutput},
     progress::Progress,
     table::noted,
 };
 
-/// Memory for sorting pieces by their objects.
+/// Memory for sorting pieces by object.
 pub(crate) const MEMORY_BYTES: u64 = 128 << 20;
 
-/// Writes a file that was begun, and puts it into its place unless elevation files have changed meanwhile. Gives its size, too.
-pub(crate) fn fill<T, E: Into<Failure>>(
+/// Fills a file, and moves it to its target unless elevation files have changed meanwhile. Returns
+/// its size, too.
+pub(crate) fn fill<T, E: Into<CommandFailure>>(
     file: &FileArgs,
     output: NamedOutput,
     elevation: Option<&RecordedElevation>,
     export: impl FnOnce(&Path, &Progress) -> Result<T, E>,
-) -> Result<(T, u64), Failure> {
-    let exported = Progress::of(|progress| export(&output.path(), progress));
-    // A file that changed may be the cause of any other error.
+) -> Result<(T, u64), CommandFailure> {
+    let exported = Progress::show_during(|progress| export(&output.path(), progress));
+    // A changed file may be the cause of any other error.
     elevation.map_or(Ok(()), RecordedElevation::check_unchanged)?;
     let summary = exported.map_err(|error| error.into().about_target(&file.output))?;
     Ok((summary, output.place()?))
 }
 
-/// Tells what was written, and what is to be shown with it.
+/// Reports what was written, and its attribution.
 pub(crate) fn tell(output: &Path, what: &str, manifest: &Manifest) {
     let name = output.to_string_lossy();
     messages::summary(&format!("{}: {what}{}", in_line(&name), credits_line(manifest)));
 }
 
-/// Writes a folder, which is none with a file of the package, and puts it into its place. Gives its size, too.
-pub(crate) fn fill_folder<T, E: Into<Failure>>(
+/// Fills a folder, which must not contain a file of the package, and moves it to its target.
+/// Returns its size, too.
+pub(crate) fn fill_folder<T, E: Into<CommandFailure>>(
     args: &FolderArgs,
     package: &PackageArg,
     what: &str,
     export: impl FnOnce(&Path, &Progress) -> Result<T, E>,
-) -> Result<(T, u64), Failure> {
+) -> Result<(T, u64), CommandFailure> {
     let used = [package.package.name()];
     let output = FolderOutput::create(&args.output, existing_of(args.overwrite), &used)?;
-    let exported = Progress::of(|progress| export(output.path(), progress));
+    let exported = Progress::show_during(|progress| export(output.path(), progress));
     let summary = exported.map_err(|error| error.into().about_target(&args.output))?;
     Ok((summary, output.place(what)?))
 }
 
-/// The coordinates that are asked for; of GeoJSON degrees, where nothing is. `keeps_heights` says that heights are to stay as they are.
+/// The requested coordinates; the default for GeoJSON is degrees. `keeps_heights` means that
+/// heights are not converted.
 pub(crate) fn coordinates(
-    crs: Option<Coordinates>,
+    crs: Option<FeatureCoordinates>,
     keeps_heights: bool,
     format: VectorFormat,
-) -> Result<Coordinates, Failure> {
+) -> Result<FeatureCoordinates, CommandFailure> {
     let unasked = match format {
-        VectorFormat::GeoJson => Coordinates::Wgs84WithPackageHeights,
-        _ => Coordinates::Package,
+        VectorFormat::GeoJson => FeatureCoordinates::Wgs84WithPackageHeights,
+        _ => FeatureCoordinates::Package,
     };
     match crs.unwrap_or(unasked) {
-        Coordinates::Package if keeps_heights => Err(Failure::unusable(
-            "--heights as-is goes with --crs EPSG:4979; without it heights are the package's in any case",
+        FeatureCoordinates::Package if keeps_heights => Err(unusable!(
+            "--heights as-is applies only to --crs EPSG:4979; with other coordinates, heights are always the package's"
         )),
-        Coordinates::Wgs84 if keeps_heights => Ok(Coordinates::Wgs84WithPackageHeights),
+        FeatureCoordinates::Wgs84 if keeps_heights => {
+            Ok(FeatureCoordinates::Wgs84WithPackageHeights)
+        }
         asked => Ok(asked),
     }
 }
 
-/// Coordinates in words.
+/// The coordinates in words.
 pub(crate) fn crs_text(
-    coordinates: Coordinates,
+    coordinates: FeatureCoordinates,
     format: VectorFormat,
     manifest: &Manifest,
 ) -> String {
     let is_json = format == VectorFormat::GeoJson;
     match coordinates {
-        Coordinates::Package => in_line(&manifest.crs).into_owned(),
-        Coordinates::Wgs84 => "EPSG:4979".to_owned(),
-        Coordinates::Wgs84WithPackageHeights if is_json => {
-            "EPSG:4326, the degrees that GeoJSON has (RFC 7946)".to_owned()
+        FeatureCoordinates::Package => in_line(&manifest.crs).into_owned(),
+        FeatureCoordinates::Wgs84 => "EPSG:4979".to_owned(),
+        FeatureCoordinates::Wgs84WithPackageHeights if is_json => {
+            "EPSG:4326, the CRS of GeoJSON (RFC 7946)".to_owned()
         }
-        Coordinates::Wgs84WithPackageHeights => "EPSG:4326".to_owned(),
-        Coordinates::Epsg(code) if is_json => {
+        FeatureCoordinates::Wgs84WithPackageHeights => "EPSG:4326".to_owned(),
+        FeatureCoordinates::Epsg(code) if is_json => {
             format!(
-                "EPSG:{code}, in the member \"crs\"; programs that know only RFC 7946 take them for degrees"
+                "EPSG:{code}, in the member \"crs\"; programs that support only RFC 7946 treat them as degrees"
             )
         }
-        Coordinates::Epsg(code) => format!("EPSG:{code}"),
+        FeatureCoordinates::Epsg(code) => format!("EPSG:{code}"),
     }
 }
 
-/// What coordinates and heights of exported lines are, and what is to be shown with them, a line each.
+/// The coordinates and heights of exported lines, and their attribution, one line each.
 pub(crate) fn facts(
-    (coordinates, format): (Coordinates, VectorFormat),
+    (coordinates, format): (FeatureCoordinates, VectorFormat),
     heights: &str,
     manifest: &Manifest,
 ) -> String {
     let is_json = format == VectorFormat::GeoJson;
     let hint = match coordinates {
-        Coordinates::Wgs84WithPackageHeights if is_json => {
-            "; as the package has them (--crs EPSG:4979 carries them to the ellipsoid)"
+        FeatureCoordinates::Wgs84WithPackageHeights if is_json => {
+            "; as in the package (--crs EPSG:4979 converts them to the ellipsoid)"
         }
         _ => "",
     };
@@ -117,9 +123,9 @@ pub(crate) fn facts(
     )
 }
 
-/// So many nodes are named; a list of defects has them all.
+/// The largest number of nodes in the text; a list of defects has them all.
 const MOST_NODES: usize = 5;
-/// A line of bridges and tunnels, and of what is to be known of them; nothing where there is none.
+/// A line about bridges and tunnels, with the reasons to inspect them; empty if there are none.
 pub(crate) fn spans_text(facts: &SpanFacts) -> String {
     if facts.spans == 0 {
         return String::new();

@@ -1,4 +1,4 @@
-//! The chart of a flight names its clock, fits its axes and can be read without colours.
+//! The chart of a flight names its clock, fits its axes and is readable without colours.
 
 use std::{fs, path::PathBuf};
 
@@ -24,14 +24,14 @@ fn a_chart_says_which_clock_its_times_are_of() {
     let mut timed = vec![frame(1.0), frame(3.0), frame(3.0)];
     let svg = flights(&run(timed.clone()), "an adapter").unwrap();
     assert!(svg.contains("clock"), "{svg}");
-    // The first frame does not count, so neither does its clock.
+    // The first frame does not count, and neither does its clock.
     timed[0].passes = None;
     assert!(flights(&run(timed.clone()), "an adapter").unwrap().contains("clock"));
     timed[2].passes = None;
     assert!(!flights(&run(timed), "an adapter").unwrap().contains("clock"));
 }
 
-/// Each part has its own axis, which ends a little above the most.
+/// Each part has its own axis, which ends a little above the maximum.
 #[test]
 fn segments_and_tiles_stand_below_the_times_and_axes_fit() {
     let counts = [(2, 50_000), (12, 400), (31, 930)];
@@ -47,7 +47,7 @@ fn segments_and_tiles_stand_below_the_times_and_axes_fit() {
     let runs = [MeasuredRun { lod: Detail::Adaptive, roads: Roads::Geo, frames }];
     let svg = flights(&runs, "an adapter").unwrap();
     for caption in
-        ["Time to draw a frame (an adapter)", "Road segments of a frame", "Tiles of a frame"]
+        ["Time to draw a frame (an adapter)", "Road segments per frame", "Tiles per frame"]
     {
         assert_eq!(svg.matches(caption).count(), 1, "{caption}");
     }
@@ -60,7 +60,7 @@ fn segments_and_tiles_stand_below_the_times_and_axes_fit() {
     assert_eq!(range_of(&runs[..0], &|_| 7.0), 0.0..1.0);
 }
 
-/// Runs out of a list that `fly` wrote.
+/// The runs in a table that `fly` wrote.
 fn runs_of(list: &str) -> Vec<MeasuredRun> {
     let mut lines = list.lines();
     let headings: Vec<&str> = lines.next().unwrap().split(',').collect();
@@ -72,7 +72,8 @@ fn runs_of(list: &str) -> Vec<MeasuredRun> {
         let number = |name: &str| cell(name).parse::<f64>().unwrap();
         let passes = PassTimes {
             terrain_ms: number("terrain_ms"),
-            // The list of a package without areas and bridges, written before there were any.
+            // The table of a package without areas and bridges, from a version without those
+            // columns.
             areas_ms: 0.0,
             decks_ms: 0.0,
             roads_ms: number("roads_ms"),
@@ -96,7 +97,8 @@ fn runs_of(list: &str) -> Vec<MeasuredRun> {
     runs
 }
 
-/// The chart in the documentation is that of the list beside it, as `fly` draws it. `CORNICHE_BLESS=1` draws it again.
+/// The chart in the documentation is that of the table next to it, as `fly` draws it.
+/// `CORNICHE_BLESS=1` draws it again.
 #[test]
 fn the_chart_in_the_docs_is_that_of_its_list() {
     let docs: PathBuf = [env!("CARGO_MANIFEST_DIR"), "..", "..", "docs", "lab"].iter().collect();
@@ -112,7 +114,7 @@ fn the_chart_in_the_docs_is_that_of_its_list() {
     assert!(stored == drawn, "the chart is not that of its list; draw it with CORNICHE_BLESS=1");
 }
 
-/// Runs can be told apart without colours: their lines differ in dashes or in width.
+/// Runs can be distinguished without colours: their lines differ in dashes or in width.
 #[test]
 fn runs_differ_without_colours() {
     let look = |number: usize| {
@@ -122,7 +124,7 @@ fn runs_differ_without_colours() {
             points: vec![(0.0, 1.0), (1.0, 2.0)],
             marks: Marks::None(number),
         };
-        let axis = |ticks| Axis { description: "", range: 0.0..3.0, ticks };
+        let axis = |ticks| ChartAxis { description: "", range: 0.0..3.0, ticks };
         let axes = Axes {
             size_px: (400, 300),
             caption: String::new(),

@@ -1,4 +1,5 @@
-//! One line per frame and run. The columns of milliseconds come last: all others are the same each time.
+//! The table of frames: one line per frame and run. Milliseconds are in the last columns,
+//! because all other columns are the same in each run of the program.
 
 use std::fmt::Write as _;
 
@@ -8,7 +9,7 @@ const HEADINGS: &str = "lod,roads,frame,time_s,x_m,y_m,height_m,heading_deg,pitc
 tiles_uploaded,tiles_evicted,tiles_missing,triangles,road_segments,gpu_bytes,select_ms,decode_ms,upload_ms,draw_ms,\
 terrain_ms,areas_ms,roads_ms,composite_ms,bridges_ms\n";
 
-/// Times of passes stay empty where the adapter has no clock.
+/// Writes the table as CSV. Times of passes are empty if the adapter has no clock.
 pub(crate) fn to_csv(runs: &[MeasuredRun]) -> String {
     let mut text = HEADINGS.to_owned();
     for run in runs {

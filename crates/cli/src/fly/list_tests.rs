@@ -1,4 +1,4 @@
-//! Every line of the list of frames has every column.
+//! Every line of the table of frames has every column.
 
 use corniche_viewer::Detail;
 

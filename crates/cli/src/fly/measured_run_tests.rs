@@ -1,10 +1,10 @@
-//! A flight that shows less than it seems to says so.
+//! A flight whose frames show less than requested is reported.
 
 use corniche_viewer::{camera::Orientation, flight::Pose, gpu::PassTimes};
 
 use super::*;
 
-/// A frame that takes so long to draw; 3.5 ms of it on the card.
+/// A frame with this drawing time; 3.5 ms of it on the GPU.
 pub(crate) fn frame(draw_ms: f64) -> FrameRecord {
     FrameRecord {
         frame: 4,
@@ -34,7 +34,7 @@ pub(crate) fn frame(draw_ms: f64) -> FrameRecord {
     }
 }
 
-/// A flight of frames that take so long; the first one, which does not count, takes longest.
+/// A flight whose frames have these times; the first one, which does not count, takes longest.
 
 #[test]
 fn flights_that_show_less_than_they_seem_to_say_so() {

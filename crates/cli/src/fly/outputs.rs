@@ -1,4 +1,4 @@
-//! Everything a flight writes: all of it, or nothing.
+//! All output files of a flight: either all of them are written, or none.
 
 use std::path::Path;
 
@@ -10,13 +10,13 @@ use corniche_viewer::{
 use super::{chart, list, measured_run::MeasuredRun, pictures::Pictures};
 use crate::{
     args::FlyArgs,
-    failure::Failure,
+    failure::CommandFailure,
     names::CHART,
     output::{Complete, Existing, Output, existing_of},
     styles,
 };
 
-/// Files and a folder beside their targets, which nothing has touched yet.
+/// Temporary files and a folder next to their targets, which are still untouched.
 pub(crate) struct Outputs {
     csv: Output,
     svg: Option<Output>,
@@ -25,8 +25,9 @@ pub(crate) struct Outputs {
 }
 
 impl Outputs {
-    /// Begins the files that are asked for. None of them may be an input of the command, and no two may be the same.
-    pub(crate) fn create(args: &FlyArgs) -> Result<Self, Failure> {
+    /// Begins the requested files. None of them may be an input of the command, and no two may be
+    /// the same.
+    pub(crate) fn create(args: &FlyArgs) -> Result<Self, CommandFailure> {
         let existing = existing_of(args.overwrite);
         let mut used: Vec<&Path> = vec![args.from.package.name()];
         used.extend(args.flight.path.as_deref());
@@ -41,23 +42,27 @@ impl Outputs {
         Ok(Self { csv, svg, save_path, pictures })
     }
 
-    /// Adds the frame drawn last, where pictures are wanted.
-    pub(crate) fn add_picture(&self, name: &str, replay: &Replay<'_>) -> Result<(), Failure> {
+    /// Adds the last frame, if images are requested.
+    pub(crate) fn add_picture(
+        &self,
+        name: &str,
+        replay: &Replay<'_>,
+    ) -> Result<(), CommandFailure> {
         self.pictures.as_ref().map_or(Ok(()), |pictures| pictures.add(name, replay))
     }
 
-    /// Writes everything, the flight in working metres; and then puts everything in its place, the list last: where
-    /// it stands, all else stands too.
+    /// Writes everything, with the flight in working metres; then moves everything to its target,
+    /// the table last: if the table exists, everything else does.
     ///
-    /// This can fail if one of the places was taken or became unwritable after the flight began. Files put in place before
-    /// that stay, and the list is missing.
+    /// This can fail if a target was created or became unwritable after the flight began. Files
+    /// that were moved before stay, and the table is missing.
     pub(crate) fn finish(
         self,
         flight: &Flight,
         working: WorkingCrs<'_>,
         runs: &[MeasuredRun],
         adapter: &str,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), CommandFailure> {
         let Self { csv, svg, save_path, pictures } = self;
         let mut written = Vec::new();
         if let Some(svg) = svg {
@@ -74,12 +79,12 @@ impl Outputs {
     }
 }
 
-/// Begins a file that is wanted, which is none of those `used`; then it is used too.
+/// Begins a requested file, which must not be among `used`, and adds it to `used`.
 fn create<'a>(
     path: Option<&'a Path>,
     existing: Existing,
     used: &mut Vec<&'a Path>,
-) -> Result<Option<Output>, Failure> {
+) -> Result<Option<Output>, CommandFailure> {
     let Some(path) = path else { return Ok(None) };
     let output = Output::create(path, existing, used)?;
     used.push(path);

@@ -1,4 +1,4 @@
-//! The pictures of a flight appear together or not at all.
+//! The images of a flight appear together or not at all.
 
 use super::*;
 use crate::exit::ExitCode;

@@ -1,5 +1,6 @@
-//! What the flights cost, side by side: the ablation of Agrawal et al. 2006, Table 1, the loss by roads, which Vaaraniemi,
-//! Treib & Westermann 2011, section 7, give, and what caps cost.
+//! The costs of the flights, side by side: the ablation of Agrawal et al. 2006, Table 1, the
+//! loss of frame rate by roads of Vaaraniemi, Treib & Westermann 2011, section 7, and the cost of
+//! caps.
 
 use corniche_viewer::{FrameRecord, gpu::PassTimes};
 
@@ -10,7 +11,7 @@ use crate::{
     table::{Digits, Table, bytes},
 };
 
-/// `point_scale`: working metres to a true metre.
+/// The summary; `point_scale` is the number of working metres per true metre.
 pub(crate) fn to_text(runs: &[MeasuredRun], point_scale: f64, digits: Digits) -> String {
     let parts = [
         Some(drawn(runs, digits)),
@@ -22,10 +23,10 @@ pub(crate) fn to_text(runs: &[MeasuredRun], point_scale: f64, digits: Digits) ->
     parts.into_iter().flatten().collect::<Vec<_>>().join("\n")
 }
 
-/// What was drawn.
+/// The table of what was drawn.
 fn drawn(runs: &[MeasuredRun], digits: Digits) -> String {
     let mut table = Table::new([
-        "average, first frame left out",
+        "average, without first frame",
         "tiles",
         "missing",
         "triangles",
@@ -55,8 +56,8 @@ fn drawn(runs: &[MeasuredRun], digits: Digits) -> String {
     table.to_text()
 }
 
-/// Average speed of the eye over the ground, with all frames: the same flight is taken each time. `None` for a flight without
-/// duration.
+/// The average speed of the camera over the ground, of all frames, because every run is the same
+/// flight. `None` for a flight without duration.
 fn speed(runs: &[MeasuredRun], point_scale: f64) -> Option<String> {
     let frames = &runs.first()?.frames;
     let duration_s = frames.last()?.time_s - frames.first()?.time_s;
@@ -75,23 +76,23 @@ fn speed(runs: &[MeasuredRun], point_scale: f64) -> Option<String> {
     })
 }
 
-/// How long it took: from the first command until all is drawn, and by the graphics card's clock.
+/// The table of times: from the first command until everything is drawn, and by the GPU's clock.
 fn times(runs: &[MeasuredRun]) -> String {
     let mut table = Table::new([
-        "milliseconds, first frame left out",
+        "milliseconds, without first frame",
         "draw",
         "p50",
         "p95",
         "most",
         "per s",
-        "card",
+        "GPU",
         "terrain",
         "areas",
         "roads",
         "bridges",
         "composite",
     ]);
-    // Without areas, or bridges, there is no such pass, and nothing to tell of it.
+    // Without areas, or bridges, their pass does not exist, and its column is omitted.
     let passes = runs.iter().flat_map(MeasuredRun::counted).filter_map(|frame| frame.passes);
     let has_areas = passes.clone().any(|passes| passes.areas_ms > 0.0);
     let has_decks = passes.clone().any(|passes| passes.decks_ms > 0.0);
@@ -121,16 +122,16 @@ fn times(runs: &[MeasuredRun]) -> String {
     table.without_empty_columns().to_text()
 }
 
-/// Loss of frame rate by roads, where the same flight was taken without.
+/// The table of the loss of frame rate by roads, if the same flight was also flown without roads.
 fn losses(runs: &[MeasuredRun]) -> Option<String> {
     let mut table = Table::new([
-        "loss % of frame rate, first frame left out",
+        "loss % of frame rate, without first frame",
         "draw, total",
         "draw, mean of frames",
         "draw, most",
-        "card, total",
-        "card, mean of frames",
-        "card, most",
+        "GPU, total",
+        "GPU, mean of frames",
+        "GPU, most",
         "paper",
         "paper, most",
     ]);
@@ -160,21 +161,22 @@ fn losses(runs: &[MeasuredRun]) -> Option<String> {
         ]);
         is_empty = false;
     }
-    let explained = "draw: from the first command until all is drawn; card: by the graphics card's clock, terrain, areas, roads \
+    let explained = "draw: from the first command until all is drawn; GPU: by the GPU's clock, for terrain, areas, roads \
                      and composite\n\
                      total: 1 - (time of all frames without roads) / (time with roads), the loss of frames per second over the \
                      whole flight\n\
-                     mean of frames: the mean of each frame's own loss, where a quick frame counts as much as a slow one; most: of \
-                     a frame\n\
+                     mean of frames: the mean of the losses of single frames, with equal weights for fast and slow ones; most: of \
+                     a single frame\n\
                      paper: Vaaraniemi, Treib & Westermann 2011, section 7: Utah, 1600 × 1200, Radeon HD 5870; GEO 26 % on average \
                      and 30 % at most, SV without caps 35 and 40 %, SV with caps 42 and 55 %\n";
     (!is_empty).then(|| table.to_text() + explained)
 }
 
-/// What caps cost in the roads pass, where the same flight was taken with and without.
+/// The table of the cost of caps in the roads pass, if the same flight was flown with and without
+/// caps.
 fn costs_of_caps(runs: &[MeasuredRun]) -> Option<String> {
     let mut table = Table::new([
-        "caps, roads pass, first frame left out",
+        "caps, roads pass, without first frame",
         "ms with",
         "ms without",
         "share of caps %",
@@ -197,14 +199,15 @@ fn costs_of_caps(runs: &[MeasuredRun]) -> Option<String> {
     (!is_empty).then(|| table.to_text())
 }
 
-/// Average time of the roads pass; `None` when a frame's is not known, or no frame counts.
+/// The average time of the roads pass; `None` if the time of a frame is unknown, or no frame
+/// counts.
 fn roads_ms(run: &MeasuredRun) -> Option<f64> {
     let each: Option<Vec<f64>> =
         run.counted().iter().map(|frame| Some(frame.passes.as_ref()?.roads_ms)).collect();
     mean(each?.into_iter())
 }
 
-/// Average and most loss over the flight over Utah, percent.
+/// The average and the largest loss of the flight over Utah, percent.
 fn of_paper(roads: Roads) -> Option<[u32; 2]> {
     match roads {
         Roads::Geo => Some([26, 30]),
@@ -214,18 +217,18 @@ fn of_paper(roads: Roads) -> Option<[u32; 2]> {
     }
 }
 
-/// Loss of frame rate against the same flight without roads, as shares.
+/// The loss of frame rate compared with the same flight without roads, as fractions.
 #[derive(Debug, Clone, Copy)]
 struct Loss {
-    /// The share of the frames per second that is lost, over all frames together.
+    /// The fraction of the frames per second that is lost, over all frames together.
     total: f64,
-    /// The mean of what each frame loses.
+    /// The mean of the losses of single frames.
     mean: f64,
-    /// The most that a frame loses.
+    /// The largest loss of a frame.
     most: f64,
 }
 
-/// `None` when a frame's time is not known, or no frame counts.
+/// Returns `None` if the time of a frame is unknown, or no frame counts.
 fn loss(
     run: &MeasuredRun,
     bare: &MeasuredRun,
@@ -256,7 +259,7 @@ fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     (count > 0.0).then_some(sum / count)
 }
 
-/// The least value that is not below `percent` of all (nearest rank); 100 gives the most.
+/// The smallest value that is not below `percent` of all (nearest rank); 100 returns the maximum.
 fn percentile(values: &[f64], percent: usize) -> Option<f64> {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);

@@ -1,4 +1,4 @@
-//! The summary of a flight counts the right frames and compares only what can be compared.
+//! The summary of a flight counts the right frames, and compares only comparable runs.
 
 use corniche_viewer::{Detail, gpu::PassTimes};
 
@@ -10,13 +10,13 @@ fn run(lod: Detail, roads: Roads, times_ms: [f64; 2]) -> MeasuredRun {
     MeasuredRun { lod, roads, frames }
 }
 
-/// True metres and working metres are the same.
+/// The summary with working metres equal to true metres.
 fn to_text(runs: &[MeasuredRun]) -> String {
     super::to_text(runs, 1.0, Digits::Plain)
 }
 
-/// The cells of the line that begins with `name` in the table whose headings begin with `part`; a wide table is folded, and
-/// then in all its parts.
+/// The cells of the line that begins with `name` in the table whose headings begin with `part`; if
+/// a wide table is folded, those of all its parts.
 fn cells<'a>(text: &'a str, part: &str, name: &str) -> Vec<&'a str> {
     let mut cells = Vec::new();
     let mut is_part = false;
@@ -38,11 +38,12 @@ fn losses_are_of_frame_rates_and_against_the_same_tiles_without_roads() {
         run(Detail::Adaptive, Roads::Geo, [8.0, 10.0]),
         run(Detail::Full, Roads::Geo, [100.0, 100.0]),
     ];
-    // 6 of 8 ms are left, so a quarter of the frames is lost; then a fifth. Of 18 ms in all, 14 are left.
+    // 6 of 8 ms are left, so a quarter of the frames is lost; then a fifth. In total, 14 of 18 ms
+    // are left.
     let Loss { total, mean, most } = loss(&runs[1], &runs[0], |frame| Some(frame.draw_ms)).unwrap();
     assert!((mean - 0.225).abs() < 1e-12 && (most - 0.25).abs() < 1e-12);
     assert!((total - 4.0 / 18.0).abs() < 1e-12);
-    // On the card 3.5 ms are left of 7, then of 3.5.
+    // On the GPU 3.5 ms are left of 7, then of 3.5.
     runs[1].frames[1].passes = Some(PassTimes {
         terrain_ms: 1.0,
         roads_ms: 5.0,
@@ -63,8 +64,8 @@ fn the_first_frame_counts_nowhere() {
     let sv = cells(&text, "milliseconds", "lod, roads sv");
     assert_eq!(sv[..5], ["9.00", "8.00", "10.00", "10.00", "111.1"], "{text}");
     assert!(!text.contains("1000.00") && !text.contains("loss"), "{text}");
-    assert_eq!(text.matches("first frame left out").count(), 2, "{text}");
-    // Nothing is left of a single frame.
+    assert_eq!(text.matches("without first frame").count(), 2, "{text}");
+    // A single frame leaves nothing to count.
     let mut single = run(Detail::Adaptive, Roads::Sv, [8.0, 10.0]);
     single.frames.truncate(1);
     let text = to_text(&[single]);
@@ -114,7 +115,8 @@ fn percentiles_are_values_that_were_measured() {
     assert_eq!(percentile(&[], 50), None);
 }
 
-/// A mean over frames lets a few slow frames count no more than quick ones; the total does not.
+/// In a mean over frames, a few slow frames have the same weight as fast ones; in the total they do
+/// not.
 #[test]
 fn a_dense_part_of_a_flight_shows_in_the_total() {
     let bare = run(Detail::Adaptive, Roads::None, [10.0, 10.0]);
@@ -150,7 +152,7 @@ fn what_caps_cost_is_a_share_of_the_roads_pass_of_the_same_tiles() {
     runs[1].frames[1].passes = None;
     let text = to_text(&runs);
     assert_eq!(cells(&text, "caps", "lod, roads sv"), ["8.00", "–", "–"], "{text}");
-    // The same flight was not taken without.
+    // The same flight was not flown without roads.
     assert!(!to_text(&runs[..1]).contains("share of caps"));
 }
 
@@ -173,10 +175,10 @@ fn the_speed_is_that_over_true_ground_and_of_the_whole_flight() {
         (frame.pose.eye_m, frame.time_s) = (eye_m, time_s);
     }
     assert!(to_text(&runs).contains("average speed 400 m/s: 2.0 km in 5.0 s"));
-    // In a projection that draws everything twice as large, a way in plan is half as long.
+    // In a projection that draws everything twice as large, a distance in plan is half as long.
     let scaled = super::to_text(&runs, 2.0, Digits::Plain);
     assert!(scaled.contains("average speed 300 m/s: 1.5 km in 5.0 s"), "{scaled}");
-    // A flight that takes no time has no speed.
+    // A flight without duration has no speed.
     for frame in &mut runs[0].frames {
         frame.time_s = 1.0;
     }

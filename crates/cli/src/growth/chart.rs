@@ -1,16 +1,17 @@
-//! Charts of how vertices grow over the levels: a curve for each class, or one for each of several packages.
+//! Charts of the growth of vertices over the levels: a curve per class, or per package if there
+//! are several.
 
 use corniche_tileset::Manifest;
 use plotters::prelude::RGBColor;
 
 use super::{compare::Compared, factors::of_level};
 use crate::{
-    chart::{Axes, Axis, Curve, MOST_SHAPES, Marks, Ticks, draw, ends},
+    chart::{Axes, ChartAxis, Curve, MOST_SHAPES, Marks, Ticks, draw, ends},
     escaped::{in_line, shortened},
-    failure::Failure,
+    failure::CommandFailure,
 };
 
-/// One colour a class, as on a road atlas: red for motorways down to grey for tracks.
+/// One colour per class, as on a road atlas: from red for motorways to grey for tracks.
 const CLASS_COLORS: [RGBColor; 9] = [
     RGBColor(200, 30, 40),
     RGBColor(230, 100, 30),
@@ -23,30 +24,32 @@ const CLASS_COLORS: [RGBColor; 9] = [
     RGBColor(160, 120, 160),
 ];
 
-/// How far marks stand beside their level at most, levels.
+/// The largest distance between marks and their level, in levels.
 const MOST_ASIDE: f64 = 0.3;
 
-/// How far a class's marks stand beside their level, so that those of other classes do not hide them.
+/// The distance between a class's marks and their level, so that they do not hide those of other
+/// classes.
 fn aside(class: u8) -> f64 {
     let last = (CLASS_COLORS.len() - 1) as f64;
     MOST_ASIDE * (2.0 * f64::from(class) / last - 1.0)
 }
 
-/// The axes of a chart with growth up to the highest one.
-fn axes(x: Axis, highest: f64) -> Axes {
+/// The axes of a chart whose largest growth is `highest`.
+fn axes(x: ChartAxis, highest: f64) -> Axes {
     Axes {
         size_px: (900, 520),
-        caption: "Vertices of clipped roads over the level's simplified lines".to_owned(),
+        caption: "Vertices of clipped roads, relative to the level's simplified lines".to_owned(),
         x,
-        y: Axis {
-            description: "times the vertices",
+        y: ChartAxis {
+            description: "growth factor of vertices",
             range: 0.0..highest * 1.08,
             ticks: Ticks::Round,
         },
     }
 }
 
-/// Growth of clipped vertices over the level's own simplified line, one curve a class over the levels.
+/// The growth of clipped vertices over the level's own simplified lines, one curve per class over
+/// the levels.
 pub(crate) fn growth(manifest: &Manifest) -> anyhow::Result<String> {
     let factor = |geo: u64, simplified: u64| geo as f64 / simplified as f64;
     let rows: Vec<_> = manifest.growth.iter().filter(|row| row.simplified_vertices > 0).collect();
@@ -56,7 +59,7 @@ pub(crate) fn growth(manifest: &Manifest) -> anyhow::Result<String> {
         .fold(1.0_f64, f64::max);
     let levels = || rows.iter().map(|row| row.level);
     let [first, last] = [levels().min(), levels().max()].map(Option::unwrap_or_default);
-    let x = Axis {
+    let x = ChartAxis {
         description: "level (0 = root)",
         range: f64::from(first) - MOST_ASIDE - 0.1..f64::from(last) + MOST_ASIDE + 0.1,
         ticks: Ticks::Whole(usize::from(last - first) + 1),
@@ -80,25 +83,26 @@ pub(crate) fn growth(manifest: &Manifest) -> anyhow::Result<String> {
     draw(&axes(x, highest), &curves)
 }
 
-/// How far the marks of packages stand beside their level at most, levels.
+/// The largest distance between marks of packages and their level, in levels.
 const PACKAGES_ASIDE: f64 = 0.15;
-/// Longer names of packages are cut.
+/// Longer names of packages are shortened.
 const LONGEST_NAME: usize = 24;
 
-/// Refuses more packages than a chart tells apart.
-pub(crate) fn refuse_too_many(packages: usize) -> Result<(), Failure> {
+/// Rejects more packages than a chart can distinguish.
+pub(crate) fn refuse_too_many(packages: usize) -> Result<(), CommandFailure> {
     if packages <= MOST_SHAPES {
         return Ok(());
     }
-    Err(Failure::unusable(format!(
-        "a chart tells at most {MOST_SHAPES} packages apart, and these are {packages}; name fewer, or leave out --svg"
-    )))
+    Err(unusable!(
+        "a chart can distinguish at most {MOST_SHAPES} packages, not {packages}; name fewer, or omit --svg"
+    ))
 }
 
-/// Growth of clipped vertices over the level's own simplified line, all classes, one curve a package over the levels' cells. Of more
-/// packages than [`refuse_too_many`] lets pass, some look alike.
+/// The growth of clipped vertices over the level's own simplified lines, all classes, one curve per
+/// package over the levels' cells. If there are more packages than [`refuse_too_many`] accepts,
+/// some curves look alike.
 pub(crate) fn comparison(packages: &[Compared<'_>]) -> anyhow::Result<String> {
-    // Numbers stand at the levels of the first package.
+    // The axis has numbers at the levels of the first package.
     let unit_m = packages.first().map_or(1.0, |first| first.manifest.frame.cell().shorter_m());
     let points = |package: &Compared<'_>| -> Vec<(f64, f64)> {
         let levels = package.manifest.levels.iter();
@@ -123,7 +127,7 @@ pub(crate) fn comparison(packages: &[Compared<'_>]) -> anyhow::Result<String> {
     let highest = all().map(|(_, growth)| growth).fold(1.0_f64, f64::max);
     let [least, most] = ends(all().map(|(x, _)| x));
     let (least, most) = if least <= most { (least, most) } else { (0.0, 0.0) };
-    let x = Axis {
+    let x = ChartAxis {
         description: "cell of the level, m",
         range: least - PACKAGES_ASIDE - 0.1..most + PACKAGES_ASIDE + 0.1,
         ticks: Ticks::Doubled {
@@ -134,7 +138,7 @@ pub(crate) fn comparison(packages: &[Compared<'_>]) -> anyhow::Result<String> {
     draw(&axes(x, highest), &curves)
 }
 
-/// The file's name without folders and ending, cut if it is long.
+/// The file's name without folders and extension, shortened if it is long.
 fn short_name(path: &str) -> String {
     let stem = std::path::Path::new(path).file_stem().unwrap_or_default().to_string_lossy();
     shortened(&in_line(&stem), LONGEST_NAME).into_owned()

@@ -1,11 +1,12 @@
-//! Curves in charts of growth can be told apart without colours, and too many packages are refused.
+//! Curves in growth charts can be distinguished without colours, and too many packages are
+//! rejected.
 
 use corniche_testing::package;
 use corniche_tileset::GrowthRow;
 
 use super::*;
 
-/// A package whose levels grow by 1, 2, 3 and so on, with this cell.
+/// A package with this cell size whose levels grow by factors of 1, 2, 3 and so on.
 fn manifest(cell_m: f64) -> Manifest {
     let frame = package::frame();
     let frame = corniche_geom::GridFrame::new(
@@ -27,7 +28,7 @@ fn manifest(cell_m: f64) -> Manifest {
     manifest
 }
 
-/// The looks of curves, without colours: dashes of lines and shapes of marks are written into the SVG as they are.
+/// The look of curves without colours: dashes of lines and shapes of marks, as written to the SVG.
 fn look(number: usize) -> String {
     let manifest = manifest(10.0);
     let curve = Curve {
@@ -39,8 +40,8 @@ fn look(number: usize) -> String {
     let axes = Axes {
         size_px: (400, 300),
         caption: String::new(),
-        x: Axis { description: "", range: -1.0..3.0, ticks: Ticks::Whole(3) },
-        y: Axis { description: "", range: 0.0..3.0, ticks: Ticks::Round },
+        x: ChartAxis { description: "", range: -1.0..3.0, ticks: Ticks::Whole(3) },
+        y: ChartAxis { description: "", range: 0.0..3.0, ticks: Ticks::Round },
     };
     assert_eq!(manifest.levels.len(), 3);
     draw(&axes, &[curve]).unwrap()
@@ -71,7 +72,7 @@ fn a_chart_of_packages_has_their_names_and_cells_and_nothing_between() {
     for text in ["10", "20", "40", "80", "A A-of-a-name-that-is-far…"] {
         assert!(texts.contains(&text), "{text}: {texts:?}");
     }
-    // Cells between those of levels have no number.
+    // Cells between those of levels have no label.
     assert!(!texts.contains(&"14.1") && !texts.contains(&"28.3"), "{texts:?}");
 }
 

@@ -1,4 +1,4 @@
-//! The tables of growth of several packages, one beside the other.
+//! Growth tables of several packages, side by side.
 
 use std::fmt::Write as _;
 
@@ -21,17 +21,17 @@ use crate::{
     table::{Digits, Table, wrapped},
 };
 
-/// A package among others.
+/// A package in a comparison.
 pub(crate) struct Compared<'a> {
     /// A letter for tables and charts.
     pub(crate) label: String,
-    /// Its path as it was given, or its address.
+    /// Its path as given, or its URL.
     pub(crate) name: String,
     pub(crate) manifest: &'a Manifest,
 }
 
 impl<'a> Compared<'a> {
-    /// The packages in their order: A, B, C and so on.
+    /// Labels the packages in their order: A, B, C and so on.
     pub(crate) fn all(packages: &'a [FilePackage]) -> Vec<Self> {
         let compared = |(index, package): (usize, &'a FilePackage)| Self {
             label: letters(index),
@@ -42,7 +42,7 @@ impl<'a> Compared<'a> {
     }
 }
 
-/// A to Z, then AA, AB and so on.
+/// The label of an index: A to Z, then AA, AB and so on.
 fn letters(index: usize) -> String {
     const LETTERS: usize = 26;
     let last = char::from(b'A' + (index % LETTERS) as u8);
@@ -52,19 +52,20 @@ fn letters(index: usize) -> String {
     }
 }
 
-/// Something other than cell and error bound in which packages differ, so that their growth tells of that, too.
+/// A difference between packages apart from cell and error bound; differences in growth may also
+/// result from it.
 #[derive(Debug, PartialEq)]
-pub(crate) struct Difference {
+pub(crate) struct PackageDifference {
     pub(crate) what: &'static str,
-    /// Each value, with the numbers of the packages that have it.
+    /// Each value, with the indices of the packages that have it.
     pub(crate) values: Vec<(Vec<usize>, String)>,
 }
 
-/// A property of a package: its name, and its value in words.
+/// A property of a package: its name, and its value as text.
 type Property = (&'static str, String);
 
-/// What is not alike in some packages.
-pub(crate) fn differences(packages: &[Compared<'_>]) -> Vec<Difference> {
+/// The properties that differ between some packages.
+pub(crate) fn differences(packages: &[Compared<'_>]) -> Vec<PackageDifference> {
     let of_each: Vec<_> = packages.iter().map(|package| properties(package.manifest)).collect();
     let Some(first) = of_each.first() else { return Vec::new() };
     let difference = |(property, &(what, _)): (usize, &Property)| {
@@ -76,28 +77,28 @@ pub(crate) fn differences(packages: &[Compared<'_>]) -> Vec<Difference> {
                 None => values.push((vec![index], value.clone())),
             }
         }
-        (values.len() > 1).then_some(Difference { what, values })
+        (values.len() > 1).then_some(PackageDifference { what, values })
     };
     first.iter().enumerate().filter_map(difference).collect()
 }
 
-/// Settings that are not compared, or in words of their own.
+/// Settings that are not compared, or that are compared in other words.
 const NOT_AS_THEY_ARE: [&str; 26] = [
-    // These are what is studied.
+    // The comparison is about these.
     "max_error_m",
     "cell_m",
     "cell_every",
-    // What was made of it is the package's CRS.
+    // The CRS of the package is compared instead.
     "crs",
-    // They change no road.
+    // These have no effect on roads.
     "relief",
     "photo",
     "areas",
     "boundaries",
     "spans",
-    // They follow from the table.
+    // The labels are determined by the table.
     "class_labels",
-    // These have words of their own.
+    // These are worded separately.
     "dem_band",
     "dem_crs",
     "dem_vertical_crs",
@@ -116,7 +117,8 @@ const NOT_AS_THEY_ARE: [&str; 26] = [
     "simplify_cells",
 ];
 
-/// Everything that growth depends on, but for cell and error bound, which are what is studied.
+/// All properties that growth depends on, except cell and error bound, which the comparison is
+/// about.
 fn properties(manifest: &Manifest) -> Vec<Property> {
     let settings = &manifest.settings;
     let nodata = Some(&settings.nodata).filter(|values| !values.is_empty());
@@ -127,11 +129,14 @@ fn properties(manifest: &Manifest) -> Vec<Property> {
         ("band of the elevation data", or(settings.dem_band.as_ref(), "the only one")),
         ("operations between datums", datum_operations(&manifest.datum_operations)),
         ("CRS of the elevation data", or(settings.dem_crs.as_ref(), "as in its files")),
-        ("its vertical CRS", or(settings.dem_vertical_crs.as_ref(), "as in its files")),
+        (
+            "vertical CRS of the elevation data",
+            or(settings.dem_vertical_crs.as_ref(), "as in its files"),
+        ),
         ("vertical CRS", or(settings.vertical_crs.as_ref(), "that of the elevation data")),
         ("vertical shift", format!("{} m", settings.vertical_shift_m)),
         ("vertical unit", or(settings.vertical_unit.as_ref(), "that of the elevation data")),
-        ("values without data", or(nodata, "as in the files")),
+        ("nodata values", or(nodata, "as in the files")),
         (
             "height range",
             settings.height_range_m.map_or_else(usual, |[low, high]| format!("{low} to {high} m")),
@@ -154,24 +159,24 @@ fn properties(manifest: &Manifest) -> Vec<Property> {
         ("bounds", or(settings.bounds_deg.as_ref(), "all of the elevation data")),
         ("polygon", or(settings.polygon.as_ref(), "none")),
     ];
-    // New settings need no words of their own.
+    // New settings are compared without a wording of their own.
     let others = settings.facts().into_iter().filter(|fact| !NOT_AS_THEY_ARE.contains(&fact.key));
     properties.extend(others.map(|fact| (fact.name, in_line(&fact.value).into_owned())));
     properties
 }
 
-/// The value of a setting in one line, else what holds without it.
+/// The value of a setting in one line, or `without` if it is not given.
 fn or(value: Option<&impl SettingValue>, without: &str) -> String {
     value.map_or_else(|| without.to_owned(), |value| in_line(&value.text()).into_owned())
 }
 
-/// How positions came from one datum to another.
+/// The operations that converted positions between datums.
 fn datum_operations(found: &[DatumOperationRecord]) -> String {
     let texts: Vec<String> = found.iter().map(datum_operation).collect();
     if texts.is_empty() { "none".to_owned() } else { texts.join("; ") }
 }
 
-/// The inputs of some kinds by name and hash.
+/// The inputs of some kinds, by name and hash.
 fn inputs(manifest: &Manifest, kinds: &[InputKind]) -> String {
     let of_kind = |input: &&InputRecord| kinds.iter().any(|kind| kind.is_of(input));
     let name = |input: &InputRecord| {
@@ -181,18 +186,18 @@ fn inputs(manifest: &Manifest, kinds: &[InputKind]) -> String {
     manifest.inputs.iter().filter(of_kind).map(name).collect::<Vec<_>>().join(", ")
 }
 
-/// Which classes are roads at all: the table by name and hash, and the classes that were chosen.
+/// The road classes that are converted: the table by name and hash, and the selected classes.
 fn classes(settings: &SettingsRecord) -> String {
     let SettingsRecord { frc_table, frc_table_sha256, classes, .. } = settings;
     let hash = frc_table_sha256.get(..12).unwrap_or_default();
     let chosen = classes.as_ref().map_or_else(
-        || "its classes".to_owned(),
+        || "the classes that are on by default".to_owned(),
         |classes| format!("classes {}", list(classes.iter())),
     );
     format!("table {} ({}…), {chosen}", in_line(frc_table), in_line(hash))
 }
 
-/// Which classes coarse levels show.
+/// The classes that coarse levels show.
 fn classes_by_level(limits: &[Option<f64>]) -> String {
     if limits.iter().all(Option::is_none) {
         return "every class on every level".to_owned();
@@ -207,7 +212,7 @@ fn list(values: impl Iterator<Item = impl ToString>) -> String {
     values.map(|value| value.to_string()).collect::<Vec<_>>().join(", ")
 }
 
-impl Difference {
+impl PackageDifference {
     /// The difference in one line of text.
     pub(crate) fn text(&self, packages: &[Compared<'_>]) -> String {
         let labels = |of: &[usize]| list(of.iter().map(|&index| &packages[index].label));
@@ -216,7 +221,7 @@ impl Difference {
     }
 }
 
-/// The comparison for people.
+/// The comparison as text.
 pub(crate) fn to_text(packages: &[Compared<'_>], digits: Digits) -> String {
     let mut text = String::new();
     for Compared { label, name, .. } in packages {
@@ -224,28 +229,29 @@ pub(crate) fn to_text(packages: &[Compared<'_>], digits: Digits) -> String {
     }
     let differences = differences(packages);
     if !differences.is_empty() {
-        let _ = writeln!(text, "\nNot like with like. Beside cell and error bound, these differ:");
+        let _ =
+            writeln!(text, "\nThe packages differ not only in cell and error bound, but also in:");
         for difference in &differences {
             let _ = writeln!(text, "{}", wrapped(&difference.text(packages), "  ", "    "));
         }
     }
     let _ = write!(
         text,
-        "\nVertices of clipped roads; stored: bytes of all levels; error: --max-error\n{}\n\
+        "\nVertices of clipped roads; stored/source: bytes of all levels\n{}\n\
          Per level\n{}\n\
-         Vaaraniemi, Treib & Westermann 2011, section 7, report about {PAPER_GROWTH} times the size of the data.\n",
+         Vaaraniemi, Treib & Westermann 2011, section 7: clipping makes road data about {PAPER_GROWTH} times as large.\n",
         wholes(packages, digits).to_text(),
         levels(packages, digits).to_text(),
     );
     text
 }
 
-/// A row for each package.
+/// The table with a row per package.
 fn wholes(packages: &[Compared<'_>], digits: Digits) -> Table {
     let mut table = Table::new([
         "",
         "cell m",
-        "error m",
+        "--max-error m",
         "levels",
         "source",
         "finest",
@@ -273,7 +279,7 @@ fn wholes(packages: &[Compared<'_>], digits: Digits) -> Table {
     table
 }
 
-/// A row for each level of each package.
+/// The table with a row per level of each package.
 fn levels(packages: &[Compared<'_>], digits: Digits) -> Table {
     let mut table = Table::new([
         "",
@@ -307,10 +313,10 @@ fn levels(packages: &[Compared<'_>], digits: Digits) -> Table {
     table
 }
 
-/// The comparison for programs.
+/// The comparison as a JSON document.
 pub(crate) fn to_document(packages: &[Compared<'_>]) -> ComparisonDocument {
     let names = |of: &[usize]| of.iter().map(|&index| packages[index].name.clone()).collect();
-    let difference = |difference: Difference| DifferenceDocument {
+    let difference = |difference: PackageDifference| DifferenceDocument {
         what: difference.what.to_owned(),
         values: difference
             .values

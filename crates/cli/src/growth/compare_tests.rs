@@ -1,4 +1,4 @@
-//! A comparison of packages names everything in which they are not alike.
+//! A comparison of packages names all of their differences.
 
 use corniche_tileset::PolygonRecord;
 
@@ -10,7 +10,7 @@ fn packages_have_letters_however_many_they_are() {
     assert_eq!(found, ["A", "B", "Z", "AA", "AB", "AZ", "BA", "ZZ", "AAA"]);
 }
 
-fn of(manifests: &[Manifest]) -> Vec<Compared<'_>> {
+fn compared(manifests: &[Manifest]) -> Vec<Compared<'_>> {
     let compared = |(index, manifest)| Compared {
         label: letters(index),
         name: format!("{index}.pmtiles"),
@@ -23,7 +23,8 @@ fn polygon(digit: &str) -> PolygonRecord {
     PolygonRecord { name: "a.geojson".to_owned(), sha256: digit.repeat(64) }
 }
 
-/// Each thing that makes growth tell of something else is named with who has it; cell and error bound are what is studied.
+/// Each difference that affects growth is listed with the packages that have it, except cell and
+/// error bound, which the comparison is about.
 #[test]
 fn what_is_not_alike_is_said() {
     type Change = fn(&mut Manifest);
@@ -47,7 +48,7 @@ fn what_is_not_alike_is_said() {
         ("bounds", |manifest| manifest.settings.bounds_deg = Some([9.0, 47.0, 10.0, 48.0])),
         ("polygon", |manifest| manifest.settings.polygon = Some(polygon("5"))),
         ("voids filled", |manifest| manifest.settings.fill_voids = 0),
-        ("values without data", |manifest| manifest.settings.nodata = vec![-32767.0, 0.0]),
+        ("nodata values", |manifest| manifest.settings.nodata = vec![-32767.0, 0.0]),
         ("height range", |manifest| manifest.settings.height_range_m = Some([-500.0, 9000.0])),
         ("vertical unit", |manifest| manifest.settings.vertical_unit = Some("foot".to_owned())),
         ("band of the elevation data", |manifest| manifest.settings.dem_band = Some(2)),
@@ -63,7 +64,7 @@ fn what_is_not_alike_is_said() {
         ("CRS of the elevation data", |manifest| {
             manifest.settings.dem_crs = Some("EPSG:2056".to_owned());
         }),
-        ("its vertical CRS", |manifest| {
+        ("vertical CRS of the elevation data", |manifest| {
             manifest.settings.dem_vertical_crs = Some("EPSG:5773".to_owned());
         }),
         ("vertical CRS", |manifest| {
@@ -80,7 +81,7 @@ fn what_is_not_alike_is_said() {
     for (what, change) in changes {
         let mut manifests = vec![base.clone(); 3];
         change(&mut manifests[1]);
-        let packages = of(&manifests);
+        let packages = compared(&manifests);
         let found = differences(&packages);
         let named: Vec<&str> = found.iter().map(|difference| difference.what).collect();
         assert_eq!(
@@ -88,7 +89,7 @@ fn what_is_not_alike_is_said() {
             [what].iter().filter(|what| !what.is_empty()).copied().collect::<Vec<_>>()
         );
         let text = to_text(&packages, Digits::Plain);
-        assert_eq!(text.contains("Not like with like"), !found.is_empty(), "{text}");
+        assert_eq!(text.contains("The packages differ not only"), !found.is_empty(), "{text}");
         for difference in &found {
             let line = difference.text(&packages);
             assert!(
@@ -102,14 +103,14 @@ fn what_is_not_alike_is_said() {
     }
 }
 
-/// Polygons of one name are told apart by their corners.
+/// Polygons of the same name are distinguished by their vertices.
 #[test]
 fn polygons_are_told_by_name_and_hash() {
     let mut manifests = vec![corniche_testing::package::manifest(); 2];
     for (manifest, digit) in manifests.iter_mut().zip(["5", "6"]) {
         manifest.settings.polygon = Some(polygon(digit));
     }
-    let packages = of(&manifests);
+    let packages = compared(&manifests);
     let lines: Vec<String> =
         differences(&packages).iter().map(|difference| difference.text(&packages)).collect();
     assert_eq!(lines, ["polygon: A: a.geojson (555555555555…); B: a.geojson (666666666666…)"]);

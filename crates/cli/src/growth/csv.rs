@@ -1,4 +1,4 @@
-//! The table of growth as CSV, of one package or of several.
+//! The growth table as CSV, of one package or of several.
 
 use corniche_tileset::{GrowthRow, Manifest};
 
@@ -9,12 +9,12 @@ const HEADINGS: &str = "level,class,source_vertices,simplified_vertices,geo_vert
                         geo_raw_bytes,geo_stored_bytes,sv_stored_bytes,growth_over_simplified,growth_over_source,\
                         raw_bytes_over_source,stored_bytes_over_source,raw_bytes_over_simplified,stored_bytes_over_simplified";
 
-/// The rows of one package, under headings.
+/// The rows of one package, with headings.
 pub(crate) fn to_csv(manifest: &Manifest) -> String {
     format!("{HEADINGS}\n{}", rows("", manifest))
 }
 
-/// The rows of several packages, with their names in front.
+/// The rows of several packages, with a column for their names.
 pub(crate) fn to_csv_of_several<'a>(
     packages: impl IntoIterator<Item = (&'a str, &'a Manifest)>,
 ) -> String {
@@ -27,7 +27,8 @@ fn rows(begin: &str, manifest: &Manifest) -> String {
     lines(manifest).iter().map(|line| [begin, line, "\n"].concat()).collect()
 }
 
-/// A row for each level and class, then for each level, then for the whole; ratios are empty where there is nothing to divide by.
+/// A row per level and class, then per level, then for all levels; ratios with a denominator of 0
+/// are empty.
 fn lines(manifest: &Manifest) -> Vec<String> {
     let mut lines = Vec::new();
     for row in &manifest.growth {

@@ -1,11 +1,11 @@
-//! The table of growth as a JSON document.
+//! The growth table as a JSON document.
 
 use corniche_tileset::Manifest;
 
 use super::factors::{PAPER_GROWTH, of_level, whole};
 use crate::documents::growth::{GrowthDocument, LevelGrowthDocument, WholeGrowthDocument};
 
-/// The table for programs.
+/// Creates the document from a manifest.
 pub(crate) fn document(manifest: &Manifest) -> GrowthDocument {
     let (all, all_factors) = whole(manifest);
     let level = |level: u8| {

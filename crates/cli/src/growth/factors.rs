@@ -1,11 +1,11 @@
-//! Sums over rows of the growth table, and what they grew by.
+//! Sums over rows of the growth table, and their growth factors.
 
 use corniche_tileset::{GrowthRow, Manifest};
 
 use crate::documents::growth::Factors;
 
-/// "The preprocessing step for the geometric approach … increased the size of the road data by about a factor of ten in all tested cases":
-/// Vaaraniemi, Treib & Westermann 2011, section 7.
+/// "The preprocessing step for the geometric approach … increased the size of the road data by
+/// about a factor of ten in all tested cases": Vaaraniemi, Treib & Westermann 2011, section 7.
 pub(crate) const PAPER_GROWTH: f64 = 10.0;
 
 /// Rows of a level summed over its classes, or of all levels.
@@ -25,8 +25,8 @@ fn sum<'a>(rows: impl Iterator<Item = &'a GrowthRow>) -> GrowthRow {
     })
 }
 
-/// All levels together cost the sum of the levels, against one copy of the source: what the finest level, which
-/// shows every class, has of it.
+/// The cost of all levels: the sum of the levels, compared with one copy of the source, which is
+/// that of the finest level, because it shows every class.
 pub(crate) fn whole(manifest: &Manifest) -> (GrowthRow, Factors) {
     let (source, _) = of_level(manifest, manifest.frame.max_level());
     let all = GrowthRow {
@@ -45,7 +45,7 @@ pub(crate) fn of_level(manifest: &Manifest, level: u8) -> (GrowthRow, Factors) {
     (row, factors)
 }
 
-/// The factors of a row or of a sum of rows.
+/// The growth factors of a row or of a sum of rows.
 pub(crate) fn factors(row: &GrowthRow) -> Factors {
     let ratio = |above: u64, below: u64| (below > 0).then(|| above as f64 / below as f64);
     Factors {

@@ -1,4 +1,4 @@
-//! The list of growth with one line for each way (CSV).
+//! The growth table with one line per way (CSV).
 
 use std::{fmt::Write as _, io::Write as _, path::Path};
 
@@ -9,25 +9,26 @@ use corniche_tileset::{FilePackage, Manifest};
 
 use crate::{
     export::MEMORY_BYTES,
-    failure::Failure,
+    failure::CommandFailure,
     output::{Complete, Output, failed},
     progress::Progress,
     table::Digits,
 };
 
-/// Fills the file that was begun at `path`, and says what is in it: a line for each way by its id, then for each class what of the growth table belongs to no
-/// way, if there is such. So the columns add up to that table.
+/// Fills the file at `path`, and returns its summary: a line per way, sorted by id, then a line per
+/// class for vertices of the growth table that belong to no OSM way, if there are any. So the
+/// columns add up to the growth table.
 pub(crate) fn fill(
     package: &FilePackage,
     path: &Path,
     mut output: Output,
-) -> Result<(Complete, String), Failure> {
+) -> Result<(Complete, String), CommandFailure> {
     let manifest = package.manifest();
     let cannot = |error: std::io::Error| failed(path, &error);
     output.write_all(headings(manifest).as_bytes()).map_err(cannot)?;
     let mut sums = Sums::new(manifest);
     let mut ways = 0_u64;
-    Progress::of(|progress| {
+    Progress::show_during(|progress| {
         growth_by_way(package, folder_of(path), MEMORY_BYTES, progress, |way| {
             ways += 1;
             sums.add(way);
@@ -38,7 +39,7 @@ pub(crate) fn fill(
     let mut off_ground = 0;
     for (class, points) in sums.left(manifest) {
         off_ground += points;
-        // As many cells as in the other lines.
+        // The same number of cells as in the other lines.
         let empty = ",".repeat(manifest.levels.len() + 3);
         output.write_all(format!(",{class},,{points}{empty}\n").as_bytes()).map_err(cannot)?;
     }
@@ -46,12 +47,12 @@ pub(crate) fn fill(
 }
 
 fn note(path: &Path, ways: u64, off_ground: i64, digits: Digits) -> String {
-    let mut text = format!("{}: {} ways", path.display(), digits.count(ways));
+    let mut text = format!("{}: {} OSM ways", path.display(), digits.count(ways));
     if off_ground != 0 {
         let _ = write!(
             text,
-            "; {off_ground} points of the source lie in tiles with ground, but on no ground (void, edge, outside the bounds): they \
-             are in lines without a way"
+            "; {off_ground} points of the source are in tiles with ground, but not on the ground (void, edge, outside the bounds); \
+             lines without a way id count these points"
         );
     }
     text
@@ -65,7 +66,7 @@ fn headings(manifest: &Manifest) -> String {
     format!("{}\n", columns.collect::<Vec<_>>().join(","))
 }
 
-/// Ratios are empty where there is nothing to divide by.
+/// A line; ratios with a denominator of 0 are empty.
 fn line(way: &WayGrowth) -> String {
     let WayGrowth { way_id, class, length_m, source_vertices, geo_vertices } = way;
     let all: u64 = geo_vertices.iter().sum();
@@ -85,7 +86,7 @@ fn line(way: &WayGrowth) -> String {
 /// Sums over the lines, by class.
 struct Sums {
     source: [u64; FunctionalRoadClass::COUNT],
-    /// Counts of vertices by level, then by class.
+    /// Numbers of vertices by level, then by class.
     geo: Vec<[u64; FunctionalRoadClass::COUNT]>,
 }
 
@@ -105,26 +106,26 @@ impl Sums {
         }
     }
 
-    /// Whether the vertices of the lines are those of the growth table.
-    fn fit(&self, manifest: &Manifest, package: &Path) -> Result<(), Failure> {
+    /// Checks that the vertices of the lines add up to those of the growth table.
+    fn fit(&self, manifest: &Manifest, package: &Path) -> Result<(), CommandFailure> {
         for row in &manifest.growth {
             let sums = self.geo.get(usize::from(row.level));
             let found = sums.and_then(|sums| sums.get(usize::from(row.class))).copied();
             if found != Some(row.geo_vertices) {
-                return Err(Failure::unusable(format!(
-                    "{}: FRC {} has {} vertices on level {} in the growth table, and {} in the tiles; corniche verify says more",
-                    package.display(),
+                return Err(unusable!(
+                    "{package:?}: FRC {} has {} vertices on level {} in the growth table, but {} in the tiles; run corniche verify for details",
                     row.class,
                     row.geo_vertices,
                     row.level,
                     found.unwrap_or_default()
-                )));
+                ));
             }
         }
         Ok(())
     }
 
-    /// The classes of which the growth table has another number of source points on the finest level, and by how much.
+    /// The classes for which the growth table has another number of source points on the finest
+    /// level, and the differences.
     fn left(&self, manifest: &Manifest) -> Vec<(u8, i64)> {
         let finest = manifest.frame.max_level();
         let rows = manifest.growth.iter().filter(|row| row.level == finest);

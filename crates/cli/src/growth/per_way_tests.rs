@@ -1,4 +1,4 @@
-//! The lines for single ways add up to the table of growth.
+//! The lines for single ways add up to the growth table.
 
 use corniche_roads::FunctionalRoadClass;
 use corniche_testing::package;
@@ -27,7 +27,8 @@ fn a_line_has_as_many_cells_as_the_headings() {
     assert_eq!(line(&way(3, 0, &[5, 0, 0])), "7,3,12.500000,0,5,0,0,5,,\n");
 }
 
-/// What the table has and no way is told by class; vertices that do not add up are refused.
+/// Vertices of the table that belong to no way are listed by class; vertices that do not add up are
+/// rejected.
 #[test]
 fn lines_add_up_to_the_table() {
     let mut manifest = package::manifest();
@@ -55,6 +56,6 @@ fn lines_add_up_to_the_table() {
 #[test]
 fn the_note_says_what_is_on_no_ground() {
     let path = Path::new("a.csv");
-    assert_eq!(note(path, 3, 0, Digits::Plain), "a.csv: 3 ways");
+    assert_eq!(note(path, 3, 0, Digits::Plain), "a.csv: 3 OSM ways");
     assert!(note(path, 3, 5, Digits::Plain).contains("5 points"));
 }

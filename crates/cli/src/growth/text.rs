@@ -1,4 +1,4 @@
-//! The table of growth as text for people.
+//! The growth table as text.
 
 use corniche_tileset::{GrowthRow, Manifest};
 
@@ -9,7 +9,7 @@ use crate::{
     table::{Digits, Table, bytes},
 };
 
-/// A growth factor; a dash where there is nothing to divide by.
+/// A growth factor; a dash if the denominator is 0.
 pub(crate) fn factor(value: Option<f64>) -> String {
     or_dash(value, 2)
 }
@@ -33,7 +33,7 @@ fn line(name: String, row: &GrowthRow, factors: &Factors, digits: Digits) -> [St
     ]
 }
 
-/// The table for people.
+/// The table as text.
 pub(crate) fn to_text(manifest: &Manifest, digits: Digits) -> String {
     let headings = [
         "",
@@ -63,9 +63,11 @@ pub(crate) fn to_text(manifest: &Manifest, digits: Digits) -> String {
         classes.row(line(name, row, &factors(row), digits));
     }
     format!(
-        "Vertices and bytes of roads, per level (all classes)\n{}\nPer level and class\n{}\n\
-         All levels together hold {} times the source's vertices and {} times its bytes as f64 pairs \
-         ({} as stored);\nVaaraniemi, Treib & Westermann 2011, section 7, report about {PAPER_GROWTH} times the size of the data.\n",
+        "Vertices and bytes of roads, per level (all classes)\n\
+         source: points in the extract; simplified: on the level; clipped: split at the triangle edges\n\
+         (GEO); SV: for shadow volumes; raw, stored: bytes of clipped roads\n\n{}\nPer level and class\n{}\n\
+         All levels together have {} times the vertices of the source, and {} times the bytes of the\n\
+         source's coordinates as f64 pairs ({} times as stored).\nVaaraniemi, Treib & Westermann 2011, section 7: clipping makes road data about {PAPER_GROWTH} times as large.\n",
         levels.to_text(),
         classes.to_text(),
         factor(all_factors.growth_over_source),

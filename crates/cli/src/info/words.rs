@@ -1,51 +1,58 @@
-//! The words that `info` uses, explained where they are used.
+//! The glossary of the words that `info` prints.
 
 use std::fmt::Write as _;
 
-/// Words in the order in which they come, and what they mean. More is told of some at the address that [`words_of`] gives.
+/// The words in their order in the text, and their meanings. The page whose address [`words_of`]
+/// prints explains some in more detail.
 const WORDS: [(&str, &str); 30] = [
-    ("CRS", "coordinate reference system: what coordinates mean"),
+    ("CRS", "coordinate reference system: the meaning of coordinates"),
     ("working metres", "the coordinates of the package, close to true metres"),
-    ("cell", "the rectangle between four neighbouring heights of a level; its sides in metres"),
-    ("quantum", "heights are stored as multiples of it"),
-    ("datum", "what heights are measured from"),
-    ("nodes", "points of the grid of heights"),
-    ("filled", "nodes in gaps of the data, whose heights come from around them"),
-    ("void", "nodes without data, where the ground is open"),
-    ("sha256", "a hash, by which the content of a file is known"),
+    (
+        "cell",
+        "the rectangle between four neighbouring nodes of a level; in tables, its sides in metres",
+    ),
+    ("quantum", "the step in which heights are stored"),
+    ("datum", "the surface that heights are measured from"),
+    ("nodes", "points of the height grid"),
+    ("filled", "nodes in gaps of the data, with heights interpolated from around them"),
+    ("void", "nodes without data (nodata), where the terrain has holes"),
+    ("sha256", "a hash, which identifies the content of a file"),
     (
         "level",
-        "one resolution of the ground; 0 is the coarsest, each further one has half its cell",
+        "a resolution of the terrain, like a zoom; 0 is the coarsest, and each level halves the cell",
     ),
-    ("tolerance", "how far the triangles of a level may be from the level's own heights"),
+    (
+        "tolerance",
+        "the allowed distance of a level's triangles from the nodes of the level's own grid",
+    ),
     ("terrain", "bytes of the triangles"),
-    ("relief", "bytes of the heights that are kept for shading"),
-    ("roads to FRC", "the last class of roads that the level shows"),
-    ("uncovered", "nodes with data beneath no triangle, beside voids and at the edge of the data"),
+    ("relief", "bytes of the height rasters for shading"),
+    ("roads to FRC", "the least important class of roads that the level shows"),
+    (
+        "uncovered",
+        "with a height, but without a triangle: next to voids and at the edge of the data",
+    ),
     (
         "error",
-        "how far a tile's triangles are from the finest heights, the worst tile of the level",
+        "largest distance between triangles and nodes of the finest level; of the worst tile",
     ),
-    ("median", "half of the tiles have no larger error"),
-    ("p95", "95 of 100 have no larger one"),
-    ("p99", "99 of 100 have no larger one"),
-    (
-        "stored/true",
-        "the error that a tile stores, which is never too small, over the measured one",
-    ),
-    ("TIN", "the triangles of a level"),
-    ("off TIN", "samples beneath no triangle, as for uncovered"),
-    ("RMS", "root mean square, a mean that large values count more in"),
+    ("median", "half of the tiles have a smaller or equal error"),
+    ("p95", "95 % of the tiles have a smaller or equal value"),
+    ("p99", "99 % of the samples have a smaller or equal error"),
+    ("stored/true", "the stored error of a tile (never too small), divided by the measured error"),
+    ("samples", "the heights in the DEM's files; filled nodes are not samples"),
+    ("RMS", "root mean square"),
     ("texel", "a pixel of a photo on the ground"),
-    ("parts", "pieces of lines, cut at the borders of tiles"),
-    ("runs", "stretches of roads off the ground in one tile"),
+    ("parts", "pieces of lines in or near a tile"),
+    ("spans", "bridges or tunnels: all connected ways, between the points on the ground"),
+    ("runs", "stretches of spans off the ground in one tile"),
     ("FRC", "functional road class, the importance of a road: 0 (motorway) to 8"),
-    ("blobs", "the pieces that an extract consists of"),
-    ("defect", "something wrong in the extract; build --defects lists each"),
+    ("blobs", "the blocks of an .osm.pbf file"),
+    ("defect", "an error in the extract; build --defects lists each of them"),
     ("extract", "a file of OpenStreetMap data"),
 ];
 
-/// The words that a text uses, with their meanings, and where there are more.
+/// The glossary of the words that a text uses, with the address of the full one.
 pub(crate) fn words_of(text: &str) -> String {
     let all = WORDS.into_iter().chain(corniche_spec::span_reasons());
     let used: Vec<_> = all.filter(|(word, _)| uses(text, word)).collect();
@@ -56,13 +63,13 @@ pub(crate) fn words_of(text: &str) -> String {
     }
     let _ = writeln!(
         words,
-        "More of them: {}/blob/main/docs/conventions.md#terms",
+        "Full glossary: {}/blob/main/docs/conventions.md#terms",
         env!("CARGO_PKG_REPOSITORY")
     );
     words
 }
 
-/// Whether a text has a word, not as a part of another one.
+/// Whether a text contains a word, not as a part of another.
 fn uses(text: &str, word: &str) -> bool {
     let is_apart = |neighbour: Option<char>| !neighbour.is_some_and(char::is_alphanumeric);
     text.match_indices(word).any(|(at, _)| {

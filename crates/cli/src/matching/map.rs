@@ -1,4 +1,4 @@
-//! A map of offsets as SVG.
+//! The map of offsets as SVG.
 
 use std::fmt::Write as _;
 
@@ -9,13 +9,14 @@ use corniche_tileset::Manifest;
 use super::report::{is_sure, sure_across};
 use crate::chart::in_xml;
 
-/// Longer side of the map, pixels; beside it is the legend.
+/// Longer side of the map, pixels; the legend is next to it.
 const SIDE_PX: f64 = 900.0;
 const LEGEND_PX: f64 = 190.0;
 const MARGIN_PX: f64 = 20.0;
-/// Room beside the map for the names of arrows.
+/// Space next to the map for the labels of arrows.
 const NAME_PX: f64 = 50.0;
-/// Offsets across a road up to so many metres, and their colours, which also differ in brightness.
+/// Upper limits of offsets across a road, in metres, and their colours, which also differ in
+/// brightness.
 const COLOURS: [(f64, &str); 5] = [
     (1.0, "#1a9850"),
     (2.5, "#a6d96a"),
@@ -29,7 +30,7 @@ const ARROW_PX_PER_M: f64 = 3.0;
 
 pub(crate) fn to_svg(report: &MatchReport, manifest: &Manifest) -> String {
     let mut bounds = Bounds::EMPTY;
-    // What the image covers; all roads where it covers none.
+    // The area of the image, or of all roads if the image covers none.
     let is_covered = |road: &&MatchedRoad| road.samples > 0 || report.samples == 0;
     for point in report.roads.iter().filter(is_covered).flat_map(|road| &road.lines).flatten() {
         bounds.include(*point);
@@ -50,7 +51,7 @@ pub(crate) fn to_svg(report: &MatchReport, manifest: &Manifest) -> String {
         width - LEGEND_PX,
         height - 20.0
     );
-    // Those that are shown lie above the others.
+    // Measured roads are drawn above the others.
     for sure in [false, true] {
         let roads = report.roads.iter().filter(|road| sure_across(road).is_some() == sure);
         for road in roads {
@@ -129,10 +130,10 @@ fn legend(svg: &mut String, x: f64, manifest: &Manifest, height: f64) {
         line(svg, Some(colour), &text);
         least = most;
     }
-    line(svg, Some(UNKNOWN), "not shown by itself");
+    line(svg, Some(UNKNOWN), "not measurable alone");
     line(svg, None, "");
-    line(svg, None, "Arrows: offsets of regions,");
-    line(svg, None, &format!("{ARROW_PX_PER_M} pixels a metre"));
+    line(svg, None, "Arrows: offsets per region,");
+    line(svg, None, &format!("{ARROW_PX_PER_M} pixels per metre"));
     let credits = manifest.attribution.join(", ");
     let _ = writeln!(
         svg,

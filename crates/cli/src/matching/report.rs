@@ -1,5 +1,5 @@
-//! The report of offsets: which of them an image shows, the table by region for people, and a line
-//! for each way (CSV).
+//! The report of offsets: which offsets are reliable, a table by region, and a line per way
+//! (CSV).
 
 use std::fmt::Write as _;
 
@@ -11,18 +11,19 @@ use crate::{
     table::{Digits, Table},
 };
 
-/// Below this, or with fewer places, a best shift is one that chance may give.
+/// The least confidence of a reliable offset; with less, or with fewer sampled points, the best
+/// shift may be chance.
 const LEAST_CONFIDENCE: f64 = 6.0;
 const LEAST_PLACES: u64 = 200;
-/// The same for a single road.
+/// The least number of sampled points of a single road.
 const LEAST_PLACES_OF_A_ROAD: u64 = 24;
 
-/// Whether an offset is one that the image shows.
+/// Whether an offset is reliable.
 pub(crate) fn is_sure(offset: &Offset, places: u64) -> bool {
     offset.confidence >= LEAST_CONFIDENCE && places >= LEAST_PLACES && !offset.is_at_edge
 }
 
-/// The offset across a road in metres, if the image shows it.
+/// The offset across a road in metres, if it is reliable.
 pub(crate) fn sure_across(road: &MatchedRoad) -> Option<f64> {
     let sure = road.across_offset.filter(|across| {
         across.confidence >= LEAST_CONFIDENCE
@@ -34,7 +35,7 @@ pub(crate) fn sure_across(road: &MatchedRoad) -> Option<f64> {
 
 pub(crate) fn to_text(report: &MatchReport, manifest: &Manifest, digits: Digits) -> String {
     let mut text = format!(
-        "Roads: {:.1} km, {} places compared, shifts of up to {:.1} m in steps of {:.2} m\n\n",
+        "Roads: {:.1} km, {} points compared, shifts of up to {:.1} m in steps of {:.2} m\n\n",
         report.length_m / 1e3,
         digits.count(report.samples),
         report.reach_m,
@@ -42,12 +43,12 @@ pub(crate) fn to_text(report: &MatchReport, manifest: &Manifest, digits: Digits)
     );
     if report.samples == 0 {
         text.push_str(
-            "No road lies on the image, or all lie nearer to its edge than the shifts reach.\n",
+            "No road is on the image, or all roads are closer to its edge than the largest shift.\n",
         );
         return text;
     }
     let mut table =
-        Table::new(["region, middle", "places", "east, m", "north, m", "confidence", "shown"]);
+        Table::new(["region centre", "points", "east, m", "north, m", "confidence", "reliable"]);
     let mut row = |name: String, samples: u64, offset: Option<&Offset>| {
         let number = |value: fn(&Offset) -> f64| {
             offset.map(|offset| format!("{:.1}", value(offset))).unwrap_or_default()
@@ -78,21 +79,21 @@ pub(crate) fn to_text(report: &MatchReport, manifest: &Manifest, digits: Digits)
     across.sort_unstable_by(f64::total_cmp);
     // Writing to a String cannot fail.
     let _ =
-        write!(text, "\n{} of {} ways on the image are shown by themselves", across.len(), covered);
+        write!(text, "\n{} of {} compared OSM ways have a reliable offset", across.len(), covered);
     if let Some(&median) = across.get(across.len() / 2) {
-        let _ = write!(text, "; median offset across them {median:.1} m");
+        let _ = write!(text, "; the median offset across the road is {median:.1} m");
     }
     let _ = write!(
         text,
-        "\nEast and north: what must be added to the roads. Shown: the confidence is {LEAST_CONFIDENCE} or more, of at least {LEAST_PLACES} places, and the best shift is not the \
-         farthest one. Roads are not moved: those of a package are those of the extract.\n"
+        "\nEast and north: the shift to add to the roads. Reliable: the confidence is at least {LEAST_CONFIDENCE}, from at least {LEAST_PLACES} points, and the best shift is not \
+         at the edge of the search (--radius). Corniche never moves roads: a package has the positions of the extract.\n"
     );
     text
 }
 
 const HEADINGS: &str = "way_id,class,name,ref,length_m,samples,east_m,north_m,confidence,across_m,across_confidence,bends,sure\n";
 
-/// Ways by their ids; offsets are empty where the image shows nothing.
+/// Ways sorted by id; offsets are empty where they are not reliable.
 pub(crate) fn to_csv(report: &MatchReport) -> String {
     let mut text = HEADINGS.to_owned();
     for road in &report.roads {

@@ -1,4 +1,4 @@
-//! Events as lines for people.
+//! The format of events as lines for people.
 
 use std::fmt::{self, Debug, Write as _};
 
@@ -13,8 +13,8 @@ use tracing_subscriber::{
 
 use crate::escaped::in_line;
 
-/// Errors and warnings with the program's name in front, notes as they are. What only `-v` shows has its level, its spans and its
-/// fields.
+/// Errors and warnings begin with the program's name; notes are printed unchanged. Events that only
+/// `-v` shows have their level, spans and fields.
 pub(crate) struct Lines;
 
 impl<S, N> FormatEvent<S, N> for Lines
@@ -47,18 +47,18 @@ where
                     }
                     writer.write_str(": ")?;
                 }
-                // A library may write what a server said.
+                // A library may quote a server's response.
                 writeln!(writer, "{}{fields}", in_line(&message))
             }
         }
     }
 }
 
-/// What an event says.
+/// The contents of an event.
 #[derive(Debug, Default)]
 struct Content {
     message: String,
-    /// Each as ` name=value`.
+    /// All fields, each as ` name=value`.
     fields: String,
 }
 
@@ -67,7 +67,7 @@ impl Visit for Content {
         // Writing to a String cannot fail.
         let _ = match field.name() {
             "message" => write!(self.message, "{value:?}"),
-            // What the bridge from `log` adds: where in a library.
+            // The bridge from `log` adds these: the location within a library.
             name if name.starts_with("log.") => Ok(()),
             name => write!(self.fields, " {name}={value:?}"),
         };

@@ -1,4 +1,5 @@
-//! A folder of output appears when it is complete and is replaced as a whole, whatever is killed.
+//! An output folder appears when it is complete and is replaced as a whole, whenever the program is
+//! killed.
 
 use std::{fs, path::Path, thread, time::Duration};
 
@@ -59,10 +60,10 @@ fn an_empty_folder_is_taken_and_any_other_is_left_alone() {
     let package = empty.join("p.pmtiles");
     fs::write(&package, "p").unwrap();
     for (target, used, word) in [
-        (mine.as_path(), None, "other things"),
+        (mine.as_path(), None, "other files"),
         (mine.join("file").as_path(), None, "it is a file"),
-        (missing.as_path(), None, "its folder"),
-        (empty.as_path(), Some(package.as_path()), "p.pmtiles is in it"),
+        (missing.as_path(), None, "its parent folder"),
+        (empty.as_path(), Some(package.as_path()), "p.pmtiles\", which the command uses"),
     ] {
         let used: Vec<&Path> = used.into_iter().collect();
         let refused = FolderOutput::create(target, Existing::Replace, &used).unwrap_err();
@@ -73,7 +74,7 @@ fn an_empty_folder_is_taken_and_any_other_is_left_alone() {
     assert_eq!(fs::read(package).unwrap(), b"p");
 }
 
-/// Two at once would write into each other's folder.
+/// Two processes at once would write into each other's folder.
 #[test]
 fn only_one_writes_at_a_time() {
     let folder = TempDir::new().unwrap();
@@ -87,7 +88,8 @@ fn only_one_writes_at_a_time() {
 
 const ID: &str = "0123456789abcdef";
 
-/// What a program leaves that is killed while it writes a folder: its claim, and some of what that is for.
+/// Leftovers of a program that was killed while it wrote a folder: its claim, and some of the
+/// claimed files.
 fn left(folder: &Path, ends: &[&str]) {
     fs::write(folder.join(".out.unfinished"), format!("corniche unfinished {ID}\n")).unwrap();
     for end in ends {
@@ -96,7 +98,8 @@ fn left(folder: &Path, ends: &[&str]) {
     }
 }
 
-/// A kill between any two steps of a replacement loses nothing, and the next run clears what is left.
+/// A kill between any two steps of a replacement loses nothing, and the next run removes the
+/// leftovers.
 #[test]
 fn what_a_kill_leaves_is_put_right() {
     let folder = TempDir::new().unwrap();
@@ -105,23 +108,24 @@ fn what_a_kill_leaves_is_put_right() {
     // Before the first rename.
     left(folder.path(), &["unfinished"]);
     let kept = FolderOutput::create(&target, Existing::Keep, &[]).unwrap_err();
-    assert!(kept.to_string().contains("exists already"), "{kept}");
+    assert!(kept.to_string().contains("already exists"), "{kept}");
     assert!(folder.path().join(format!(".out.{ID}.unfinished/a")).exists(), "it was removed");
-    // Between the two.
+    // Between the two renames.
     fs::rename(&target, folder.path().join(format!(".out.{ID}.replaced"))).unwrap();
     let kept = FolderOutput::create(&target, Existing::Keep, &[]).unwrap_err();
-    assert!(kept.to_string().contains("exists already"), "{kept}");
+    assert!(kept.to_string().contains("already exists"), "{kept}");
     assert_eq!(fs::read(target.join("0/a")).unwrap(), b"one");
     write(&target, Existing::Replace, "two");
     assert_eq!(names(folder.path()), ["out"]);
-    // After the second only the old one is left over.
+    // After the second rename, only the old folder is a leftover.
     left(folder.path(), &["replaced"]);
     write(&target, Existing::Replace, "three");
     assert_eq!(names(folder.path()), ["out"]);
     assert_eq!(fs::read(target.join("0/a")).unwrap(), b"three");
 }
 
-/// The program removes what is temporary half a second after a signal, while the run may be about to replace an export.
+/// The program removes temporary files half a second after a signal, while the run may be about to
+/// replace an export.
 #[test]
 fn an_early_end_removes_nothing_of_a_folder_that_takes_its_place() {
     let folder = TempDir::new().unwrap();
@@ -133,13 +137,13 @@ fn an_early_end_removes_nothing_of_a_folder_that_takes_its_place() {
     fs::write(made.join("a"), "two").unwrap();
     let at_end = interrupt::temporary();
     assert!(at_end.contains(&claim) && at_end.contains(&made), "{at_end:?}");
-    // It has begun to remove them: the run waits.
+    // The removal has begun: the run waits.
     let placing = thread::spawn(move || output.place("a test"));
     thread::sleep(Duration::from_millis(200));
     assert!(!placing.is_finished(), "it was placed while it was removed");
     assert_eq!(fs::read(target.join("0/a")).unwrap(), b"one");
     assert!(claim.exists());
-    // It has not begun yet: it would find nothing of them any more.
+    // The removal has not begun, so it would not find the files any more.
     drop(at_end);
     placing.join().unwrap().unwrap();
     let at_end = interrupt::temporary();
@@ -148,7 +152,7 @@ fn an_early_end_removes_nothing_of_a_folder_that_takes_its_place() {
     assert_eq!(names(folder.path()), ["out"]);
 }
 
-/// Folders are not taken for ours because of their names, nor because of a marker that is empty or a link.
+/// Folders are not recognized as ours by their names, nor by a marker that is empty or a link.
 #[test]
 fn folders_of_others_beside_a_target_stay() {
     let folder = TempDir::new().unwrap();
@@ -171,7 +175,7 @@ fn folders_of_others_beside_a_target_stay() {
     fs::write(mine.join("thesis"), "mine").unwrap();
     let check = |what: &str| {
         let refused = FolderOutput::create(&mine, Existing::Replace, &[]).unwrap_err();
-        assert!(refused.to_string().contains("other things"), "{what}: {refused}");
+        assert!(refused.to_string().contains("other files"), "{what}: {refused}");
         assert_eq!(fs::read(mine.join("thesis")).unwrap(), b"mine", "{what}");
     };
     fs::write(mine.join(MARKER), "").unwrap();

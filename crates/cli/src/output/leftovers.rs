@@ -1,20 +1,20 @@
-//! What older versions left beside targets: it has no id that says whose it is, so it is told and left alone.
+//! Leftovers of older versions next to targets: they have no id of their owner, so they are
+//! reported and not removed.
 
 use std::path::Path;
 
 use crate::{messages, names::file_name};
 
-/// The endings of names that older versions gave.
+/// The suffixes of names that older versions used.
 const ENDINGS: [&str; 2] = ["unfinished.files", "replaced"];
 
-/// Tells what lies beside a target under a name that an older version gave.
+/// Reports files next to a target whose names older versions used.
 pub(crate) fn tell(target: &Path) {
     let name = file_name(target);
     for left in ENDINGS.map(|end| target.with_file_name(format!(".{name}.{end}"))) {
         if left.symlink_metadata().is_ok() {
             messages::warning(&format!(
-                "{} may be what an older version left; nothing says so, so it stays: look at it and remove it",
-                left.display()
+                "{left:?} may be a leftover of an older version; not deleted, since this is not certain. Check and delete it yourself"
             ));
         }
     }

@@ -1,9 +1,9 @@
-//! A file that a library writes by its name, in a folder beside its target, from which it gets to its place when it is
-//! complete.
+//! A file that a library writes by name, in a temporary folder next to its target, and that is
+//! moved there when it is complete.
 //!
 //! ```text
 //!   .NAME.unfinished        the claim of the target (corniche_store::Claim)
-//!   .NAME.ID.unfinished/    what the library makes: the file, and others that go with it while it is written
+//!   .NAME.ID.unfinished/    the files of the library: the output, and temporary files next to it
 //! ```
 
 use std::path::{Path, PathBuf};
@@ -11,9 +11,9 @@ use std::path::{Path, PathBuf};
 use corniche_store::UnfinishedFolder;
 
 use super::{Existing, claim, leftovers, not_begun, not_placed};
-use crate::failure::Failure;
+use crate::failure::CommandFailure;
 
-/// A file that a library is to write at [`NamedOutput::path`].
+/// A file that a library writes at [`NamedOutput::path`].
 #[derive(Debug)]
 pub(crate) struct NamedOutput {
     existing: Existing,
@@ -22,26 +22,27 @@ pub(crate) struct NamedOutput {
 }
 
 impl NamedOutput {
-    /// Makes the folder. `name` is what the file is called in it. An unusable place is reported here, before any work is done.
+    /// Creates the folder. `name` is the name of the file in it. An unwritable target is reported
+    /// here, before any work is done.
     pub(crate) fn create(
         named: &Path,
         existing: Existing,
         name: String,
         others: &[&Path],
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, CommandFailure> {
         let claim = claim(named, existing, others)?;
         leftovers::tell(claim.target());
         let folder = claim.begin_folder().map_err(|error| not_begun(named, &error))?;
         Ok(Self { existing, folder, name })
     }
 
-    /// Where the library writes.
+    /// The path for the library.
     pub(crate) fn path(&self) -> PathBuf {
         self.folder.path().join(&self.name)
     }
 
-    /// Makes the file durable and puts it in its place; returns its size in bytes.
-    pub(crate) fn place(self) -> Result<u64, Failure> {
+    /// Syncs the file to disk and moves it to its target; returns its size in bytes.
+    pub(crate) fn place(self) -> Result<u64, CommandFailure> {
         let target = self.folder.claim().target().to_path_buf();
         let placed = self.folder.place_file(&self.name, self.existing);
         placed.map_err(|error| not_placed(&target, &error))

@@ -1,32 +1,33 @@
-//! Files that a command writes beside its answer: a picture and lists.
+//! Files that a command writes in addition to its result: a chart and tables.
 
 use std::path::Path;
 
 use super::{Complete, Existing, Output};
-use crate::{failure::Failure, names::CHART};
+use crate::{failure::CommandFailure, names::CHART};
 
-/// The files that are wanted, begun but not written.
+/// The requested files, begun but not written.
 pub(crate) struct ReportFiles<const LISTS: usize> {
-    /// The one of `--svg`.
+    /// The file of `--svg`.
     svg: Option<Output>,
-    /// The files of the options for lists.
+    /// The files of the options for tables.
     lists: [Option<Output>; LISTS],
 }
 
 impl<const LISTS: usize> ReportFiles<LISTS> {
-    /// Looks at all places before any work is done. Lists come with their options; `inputs` are what the command reads.
+    /// Checks all targets before any work is done. Tables come with their options; `inputs` are the
+    /// files that the command reads.
     pub(crate) fn begin<'a>(
         svg: Option<&'a Path>,
         lists: [(&str, Option<&'a Path>); LISTS],
         inputs: &[&'a Path],
         existing: Existing,
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, CommandFailure> {
         let named = [("--svg", svg)].into_iter().chain(lists);
         for (number, (option, place)) in named.clone().enumerate() {
             let mut before = named.clone().take(number);
             if let Some((other, _)) = before.find(|&(_, other)| place.is_some() && place == other) {
-                let reason = format!("{other} and {option} name one file; give each its own");
-                return Err(Failure::unusable(reason));
+                let reason = format!("{other} and {option} name the same file; use two files");
+                return Err(CommandFailure::unusable(reason));
             }
         }
         let lists = lists.map(|(_, list)| list);
@@ -40,18 +41,18 @@ impl<const LISTS: usize> ReportFiles<LISTS> {
         for (file, list) in files.lists.iter_mut().zip(lists) {
             *file = list.map(begin).transpose()?;
         }
-        // What is no file at all is told first.
+        // Names that are not files are reported first.
         svg.map_or(Ok(()), |path| CHART.refuse_others(path))?;
         Ok(files)
     }
 
-    /// Writes all, and puts them in their places once all are complete: an end before that leaves none. `make_svg` gives the picture; `fill_list`
-    /// writes the list of a number.
+    /// Writes all files, and moves them to their targets when all are complete: after an early end
+    /// there are none. `make_svg` draws the chart; `fill_list` writes the table with an index.
     pub(crate) fn write(
         self,
-        mut fill_list: impl FnMut(usize, Output) -> Result<Complete, Failure>,
-        make_svg: impl FnOnce() -> Result<String, Failure>,
-    ) -> Result<(), Failure> {
+        mut fill_list: impl FnMut(usize, Output) -> Result<Complete, CommandFailure>,
+        make_svg: impl FnOnce() -> Result<String, CommandFailure>,
+    ) -> Result<(), CommandFailure> {
         let mut written = Vec::new();
         for (number, list) in self.lists.into_iter().enumerate() {
             written.extend(list.map(|output| fill_list(number, output)).transpose()?);

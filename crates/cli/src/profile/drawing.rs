@@ -1,8 +1,8 @@
 //! The drawing of a profile: height and grade over distance, with bridges, tunnels and names.
 //!
 //! ```text
-//!   title, what its text tells, and what lines and colours mean
-//!   ├ height ── the smooth line, the ground thin behind it ──┤      bridges and tunnels are bands behind both
+//!   title, main figures, and legend
+//!   ├ height ── the smoothed line, the ground thin behind it ┤      bridges and tunnels are bands behind both
 //!   ├ names of roads, as far as they fit ────────────────────┤
 //!   ├ grade ─────────────────────────────────────────────────┤
 //!   attribution
@@ -11,7 +11,7 @@
 use std::ops::Range;
 
 use anyhow::Result;
-use corniche_export::{Profile, ProfileLeg, ProfilePoint};
+use corniche_export::{ProfileLeg, ProfilePoint, RoadProfile};
 use corniche_roads::Structure;
 use plotters::{
     coord::Shift,
@@ -38,22 +38,27 @@ const NAMES_PX: u32 = 30;
 const GRADES_PX: u32 = 230;
 const FOOT_PX: u32 = 30;
 const MARGIN_PX: i32 = 16;
-/// Room for the numbers of an axis.
+/// Width of the numbers at an axis.
 const LABELS_PX: u32 = 76;
 const LEFT_PX: i32 = MARGIN_PX + LABELS_PX as i32;
 
-/// Fonts by what they are for, pixels.
+/// Font sizes by use, pixels.
 const TITLE_FONT: i32 = 20;
 const FONT: i32 = 14;
 const SMALL_FONT: i32 = 12;
 
-/// A letter is about so wide, of the height of its font.
+/// Average width of a letter, relative to the height of its font.
 const LETTER: f64 = 0.55;
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// A profile as SVG. `facts` are what its text tells, in short; `credits` must be shown.
-pub(crate) fn to_svg(found: &Profile, title: &str, facts: &str, credits: &str) -> Result<String> {
+/// Draws a profile as SVG. `facts` are its main figures in short; `credits` must be displayed.
+pub(crate) fn to_svg(
+    found: &RoadProfile,
+    title: &str,
+    facts: &str,
+    credits: &str,
+) -> Result<String> {
     let height = HEAD_PX + HEIGHTS_PX + NAMES_PX + GRADES_PX + FOOT_PX;
     let mut svg = String::new();
     {
@@ -77,7 +82,7 @@ pub(crate) fn to_svg(found: &Profile, title: &str, facts: &str, credits: &str) -
     Ok(in_xml(&svg))
 }
 
-/// What is drawn over distance.
+/// A panel of curves over distance.
 struct Panel {
     description: &'static str,
     range: Range<f64>,
@@ -89,11 +94,11 @@ struct Curve {
     name: &'static str,
     color: RGBColor,
     width_px: u32,
-    /// Lines without gaps: kilometres, and what is drawn.
+    /// Lines without gaps: kilometres, and the value.
     lines: Vec<Vec<(f64, f64)>>,
 }
 
-fn panels(found: &Profile) -> [Panel; 2] {
+fn panels(found: &RoadProfile) -> [Panel; 2] {
     let ground = curve_lines(found, |point| Some(point.height_m));
     let has_structures = found.legs.iter().any(|leg| leg.structure != Structure::Ground);
     let curve = |name, color, width_px, lines| Curve { name, color, width_px, lines };
@@ -105,14 +110,14 @@ fn panels(found: &Profile) -> [Panel; 2] {
         let of_ground = if has_structures { "DEM, bridges and tunnels" } else { "DEM" };
         let grades = grades(&smooth, 0.05);
         (
-            vec![curve(of_ground, GROUND, 1, ground), curve("smooth line", HEIGHT, 2, smooth)],
-            curve("its grade over 50 m", GRADE, 2, grades),
+            vec![curve(of_ground, GROUND, 1, ground), curve("smoothed line", HEIGHT, 2, smooth)],
+            curve("grade over 50 m", GRADE, 2, grades),
         )
     } else {
         let grades = grades(&ground, 0.02);
         (
             vec![curve("ground of the package", HEIGHT, 2, ground)],
-            curve("its grade over 20 m", GRADE, 2, grades),
+            curve("grade over 20 m", GRADE, 2, grades),
         )
     };
     let grades = vec![grades];
@@ -132,7 +137,8 @@ fn panels(found: &Profile) -> [Panel; 2] {
     ]
 }
 
-/// The grade along a line of kilometres and metres, percent over a length, pixel by pixel: along a deck there are few vertices.
+/// The grade along a line of kilometres and metres, percent over a length, pixel by pixel, because
+/// a deck has few vertices.
 fn grade_line(line: &[(f64, f64)], over_km: f64, all_km: f64) -> Vec<(f64, f64)> {
     let (Some(&(begin_km, _)), Some(&(end_km, _))) = (line.first(), line.last()) else {
         return Vec::new();
@@ -155,7 +161,7 @@ fn grade_line(line: &[(f64, f64)], over_km: f64, all_km: f64) -> Vec<(f64, f64)>
     (0..=steps as u32).map(grade).collect()
 }
 
-/// What lies between the least and the largest value, with some room; `with` is always seen.
+/// The range from the minimum to the maximum, with a margin; `with` is always included.
 fn range(curves: &[Curve], with: Option<f64>) -> Range<f64> {
     let values = curves.iter().flat_map(|curve| curve.lines.iter().flatten());
     let [low, high] = ends(values.map(|(_, value)| *value).chain(with));
@@ -166,9 +172,9 @@ fn range(curves: &[Curve], with: Option<f64>) -> Range<f64> {
     low - margin..high + margin
 }
 
-/// The lines of a value: they end at gaps, and where there is none.
+/// The lines of a value: they end at gaps, and where the value is missing.
 fn curve_lines(
-    found: &Profile,
+    found: &RoadProfile,
     value: impl Fn(&ProfilePoint) -> Option<f64>,
 ) -> Vec<Vec<(f64, f64)>> {
     let mut lines: Vec<Vec<(f64, f64)>> = Vec::new();
@@ -186,7 +192,7 @@ fn curve_lines(
     lines
 }
 
-fn end_km(found: &Profile) -> f64 {
+fn end_km(found: &RoadProfile) -> f64 {
     let last = found.parts.last().and_then(|part| part.points.last());
     last.map_or(1.0, |point| point.distance_m / 1e3).max(1e-3)
 }
@@ -195,17 +201,17 @@ fn style(size: i32) -> TextStyle<'static> {
     TextStyle::from(("sans-serif", size)).color(&BLACK)
 }
 
-/// The same for a text around the height of its place.
+/// The style of a text that is centred on the height of its position.
 fn centered(size: i32, at: HPos) -> TextStyle<'static> {
     style(size).pos(Pos::new(at, VPos::Center))
 }
 
-/// How many letters fit.
+/// The number of letters that fit.
 fn fitting(width_px: i32, font: i32) -> usize {
     (f64::from(width_px) / (LETTER * f64::from(font))).max(0.0) as usize
 }
 
-/// The beginning of a text, with an ellipsis if it has more letters than that.
+/// The beginning of a text, with an ellipsis if it has more letters than `letters`.
 fn shortened(text: &str, letters: usize) -> String {
     if text.chars().count() <= letters {
         return text.to_owned();
@@ -216,7 +222,7 @@ fn shortened(text: &str, letters: usize) -> String {
 
 fn draw_head(
     area: &Area<'_>,
-    found: &Profile,
+    found: &RoadProfile,
     (title, facts): (&str, &str),
     panels: &[Panel; 2],
 ) -> Result<()> {
@@ -226,7 +232,7 @@ fn draw_head(
         let text = shortened(text, fitting(room, font));
         area.draw(&Text::new(text, (LEFT_PX, y), style(font)))?;
     }
-    // What lines and bands mean.
+    // The legend of lines and bands.
     let (mut x, y) = (LEFT_PX, 68);
     let write = |x: i32, text: &str| -> Result<i32> {
         let font = centered(FONT, HPos::Left);
@@ -250,7 +256,7 @@ fn draw_head(
     Ok(())
 }
 
-fn draw_panel(area: &Area<'_>, found: &Profile, panel: &Panel) -> Result<()> {
+fn draw_panel(area: &Area<'_>, found: &RoadProfile, panel: &Panel) -> Result<()> {
     let foot_px = if panel.has_distances { 44 } else { 4 };
     let mut chart = ChartBuilder::on(area)
         .margin_left(MARGIN_PX)
@@ -266,7 +272,7 @@ fn draw_panel(area: &Area<'_>, found: &Profile, panel: &Panel) -> Result<()> {
             Structure::Bridge => BRIDGE,
             Structure::Tunnel => TUNNEL,
         };
-        // Also a short one is seen.
+        // A short stretch is visible, too.
         let [from, to] = leg.range_m.map(|at_m| at_m / 1e3);
         let least = 2.0 / km_px;
         let (from, to) = if to - from < least {
@@ -302,15 +308,15 @@ fn draw_panel(area: &Area<'_>, found: &Profile, panel: &Panel) -> Result<()> {
     Ok(())
 }
 
-/// A number at an axis: as many decimals as it needs, three at most.
+/// A number at an axis: with as few decimals as possible, at most three.
 fn tick(number: f64) -> String {
     let text = format!("{number:.3}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".to_owned() } else { text.replace('-', "−") }
 }
 
-/// Names of roads below what is drawn of them.
-fn draw_names(area: &Area<'_>, found: &Profile) -> Result<()> {
+/// Draws the names of roads below the panels.
+fn draw_names(area: &Area<'_>, found: &RoadProfile) -> Result<()> {
     let room_px = f64::from(WIDTH_PX as i32 - LEFT_PX - MARGIN_PX);
     let x = |at_m: f64| LEFT_PX + (room_px * at_m / 1e3 / end_km(found)).round() as i32;
     let middle = NAMES_PX as i32 / 2;
@@ -332,11 +338,11 @@ fn draw_names(area: &Area<'_>, found: &Profile) -> Result<()> {
     Ok(())
 }
 
-/// The names along a profile; what has the same one is one stretch.
+/// The names along a profile; neighbouring legs with the same name are one stretch.
 fn named_stretches(legs: &[ProfileLeg]) -> Vec<(String, [f64; 2])> {
     let mut stretches: Vec<(String, [f64; 2])> = Vec::new();
     for leg in legs {
-        // The number of a road changes less often than its name, and takes room.
+        // The number of a road changes less often than its name, and needs space.
         let name = if leg.name.is_empty() { name_of(leg) } else { leg.name.clone() };
         match stretches.last_mut() {
             Some((before, range_m)) if *before == name => range_m[1] = leg.range_m[1],
@@ -347,7 +353,7 @@ fn named_stretches(legs: &[ProfileLeg]) -> Vec<(String, [f64; 2])> {
     stretches
 }
 
-/// What a leg is called: its number and its name; empty if it has neither.
+/// The label of a leg: its number and its name; empty if it has neither.
 pub(crate) fn name_of(leg: &ProfileLeg) -> String {
     let reference = leg.reference.replace(';', ", ");
     match (reference.is_empty(), leg.name.is_empty()) {

@@ -1,4 +1,4 @@
-//! What is written on profiles fits, and tells what is drawn.
+//! Texts in profile drawings fit, and describe the drawing.
 
 use super::*;
 
@@ -45,7 +45,8 @@ fn numbers_at_axes_have_the_decimals_that_they_need() {
     assert_eq!([475.0, 0.5, 0.125, -4.0, -0.0].map(tick), ["475", "0.5", "0.125", "−4", "0"]);
 }
 
-/// A deck of two vertices between level roads: over 50 m its grade is there at once, not only at its middle.
+/// A deck of two vertices between level roads: its grade over 50 m begins at its start, not only at
+/// its middle.
 #[test]
 fn the_grade_is_drawn_between_vertices_too() {
     let line = [(0.0, 100.0), (1.0, 100.0), (2.0, 150.0), (3.0, 150.0)];

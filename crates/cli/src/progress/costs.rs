@@ -1,9 +1,9 @@
-//! What the stages of a run cost: the table at its end.
+//! The costs of the stages of a run: the table at its end.
 
 use std::time::Duration;
 
 use super::{
-    texts::{Reading, amount, rate},
+    texts::{StageReading, amount, rate},
     usage::Usage,
 };
 use crate::{
@@ -11,28 +11,29 @@ use crate::{
     table::{Digits, Table, bytes},
 };
 
-/// What this run did of a stage per second, over all of its time; `None` if it did nothing.
-fn mean_per_second(stage: &Reading) -> Option<f64> {
+/// The rate of a stage in this run, over its whole time; `None` if this run did nothing.
+fn mean_per_second(stage: &StageReading) -> Option<f64> {
     let done = stage.done - stage.already;
     (done > 0 && !stage.elapsed.is_zero()).then(|| done as f64 / stage.elapsed.as_secs_f64())
 }
 
-/// Shorter stages have no figure for the cores: their CPU time is known in steps of 10 ms only, at its begin and its end.
+/// Shorter stages have no figure for busy cores, because CPU time is known only in steps of 10 ms
+/// at their begin and end.
 const SHORTEST_WITH_CORES: Duration = Duration::from_millis(200);
 
-/// CPU time as a multiple of wall time; within 0.1.
+/// The ratio of CPU time to wall-clock time; within 0.1.
 fn cores_busy(wall: Duration, used: &Usage) -> Option<f64> {
     let cpu = used.cpu.filter(|_| wall >= SHORTEST_WITH_CORES)?;
     Some(cpu.as_secs_f64() / wall.as_secs_f64())
 }
 
-/// All stages as they ended, in the order in which they first began.
+/// All ended stages, in the order in which they first began.
 #[derive(Debug, Default)]
-pub(crate) struct Costs(Vec<Reading>);
+pub(crate) struct StageCosts(Vec<StageReading>);
 
-impl Costs {
-    /// A stage that came before gets what it took now on top.
-    pub(crate) fn add(&mut self, cost: Reading) {
+impl StageCosts {
+    /// Adds a stage; the costs of a repeated stage are added up.
+    pub(crate) fn add(&mut self, cost: StageReading) {
         match self.0.iter_mut().find(|before| before.stage == cost.stage) {
             Some(before) => {
                 before.done += cost.done;
@@ -44,8 +45,8 @@ impl Costs {
         }
     }
 
-    /// A row for each stage and one for the whole run, which took `wall` and used `used`. Columns of which nothing is known
-    /// are left out.
+    /// A row for each stage and one for the whole run, which took `wall` and used `used`. Columns
+    /// without known values are omitted.
     pub(crate) fn to_text(&self, wall: Duration, used: &Usage, digits: Digits) -> String {
         let mut table = Table::new([
             "stage", "done", "wall", "CPU", "cores", "rate", "memory", "read", "written",
@@ -81,9 +82,9 @@ impl Costs {
         table.without_empty_columns().to_text()
     }
 
-    /// The same for programs.
+    /// The costs as a record for programs.
     pub(crate) fn record(&self, wall: Duration, used: &Usage) -> ProgressRecord<'static> {
-        let stage = |cost: &Reading| StageCostRecord {
+        let stage = |cost: &StageReading| StageCostRecord {
             stage: cost.stage.id(),
             title: cost.stage.title(),
             done: cost.done,

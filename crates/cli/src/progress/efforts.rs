@@ -1,14 +1,15 @@
-//! How long the steps of a stage take, where they are unequal.
+//! The efforts of the steps of a stage, where they are unequal.
 
 /// Parts of an effort of 1: efforts are counted in whole numbers.
 const PARTS: f64 = 16.0;
 
-/// Runs of equal steps, one after the other: how many steps, and the effort of each.
+/// Runs of equal steps, one after the other: the number of steps, and the effort of each.
 #[derive(Debug, Clone)]
 pub(crate) struct Efforts(pub(crate) Vec<(u64, f64)>);
 
 impl Efforts {
-    /// The effort of the first steps, of so many in all. Where these are fewer than was expected, steps after the first run are left out.
+    /// The effort of the first `done` steps of `total`. If the total is smaller than expected,
+    /// steps after the first run are skipped.
     pub(crate) fn until(&self, done: u64, total: Option<u64>) -> u64 {
         let expected: u64 = self.0.iter().map(|(steps, _)| steps).sum();
         let first = self.0.first().map_or(0, |(steps, _)| *steps);
@@ -23,7 +24,7 @@ impl Efforts {
         (effort * PARTS) as u64
     }
 
-    /// The effort of the steps that are left.
+    /// The effort of the remaining steps.
     pub(crate) fn after(&self, done: u64, total: Option<u64>) -> u64 {
         self.until(u64::MAX / 2, None).saturating_sub(self.until(done, total))
     }

@@ -15,7 +15,7 @@ fn steps_count_by_what_they_take() {
     }
 }
 
-/// Two of the four are not made: when all is done, nothing is left.
+/// Two of the four steps are skipped: when all is done, no effort is left.
 #[test]
 fn steps_that_are_left_out_take_nothing() {
     let efforts = Efforts(vec![(10, 1.0), (4, 2.5), (1, 30.0)]);
@@ -24,7 +24,8 @@ fn steps_that_are_left_out_take_nothing() {
     assert_eq!(efforts.until(10, Some(13)) as f64 / PARTS, 10.0);
 }
 
-/// A stage whose last steps are long is foreseen within a factor of two from a fifth of its time on; by counting steps alone it is not.
+/// The end of a stage whose last steps are long is predicted within a factor of two after a fifth
+/// of its time; by counting steps alone it is not.
 #[test]
 fn a_stage_whose_last_steps_are_long_is_foreseen() {
     use std::time::Duration;
@@ -33,7 +34,7 @@ fn a_stage_whose_last_steps_are_long_is_foreseen() {
 
     let runs = vec![(1000, 1.0), (250, 1.6), (60, 3.0), (16, 9.0), (4, 35.0), (5, 140.0)];
     let total: u64 = runs.iter().map(|(steps, _)| steps).sum();
-    // What steps take in truth is up to a quarter more or less.
+    // The true times of steps differ by up to a quarter.
     let truth: Vec<f64> = runs
         .iter()
         .enumerate()

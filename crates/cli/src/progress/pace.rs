@@ -1,11 +1,12 @@
-//! How fast a stage goes, and what time it still needs.
+//! The rate of a stage, and the time that it still needs.
 //!
-//! The rate is taken over the last three quarters of the time that the stage has run: long enough that easy and hard tiles
-//! average out, and short enough that a slow start is forgotten. Steps come in bursts, as workers deliver their results in
-//! order. Both ends of the time over which the rate is taken are therefore moments just after a burst.
+//! The rate is averaged over the last three quarters of the stage's running time: long enough
+//! that easy and hard tiles average out, and short enough that a slow start is forgotten. Steps
+//! arrive in bursts, because workers deliver their results in order. Both ends of the averaged
+//! period are therefore moments just after a burst.
 //!
 //! ```text
-//!   done │                 ┌──●·········   nothing comes for a while …
+//!   done │                 ┌──●·········   no steps for a while …
 //!        │            ┌────┘  └ last
 //!        │        ●───┘
 //!        │   ┌────┘└ start                 rate = (done at last - done at start) / (time between them)
@@ -13,16 +14,19 @@
 //!             quarter        all  now
 //! ```
 //!
-//! Between bursts the time left is counted down. It never falls below what it would be if the largest burst so far came
-//! right now: a stage that stands still needs ever more time.
+//! Between bursts the remaining time is counted down. It never falls below the value that it
+//! would have if the largest burst so far arrived right now: the estimate of a stalled stage keeps
+//! growing.
 
 use std::{collections::VecDeque, time::Duration};
 
-/// The part of the elapsed time over which the rate is taken. Over eight stages of real builds (CPU time as the clock, one
-/// thread, looked at every half second after the first tenth of the work) the end was foreseen within 20 % of the stage's
-/// time at 90 % of the moments; with 0.5 at 87 %, with 1 at 85 %, with a third at 81 %.
+/// The part of the elapsed time over which the rate is averaged. In eight stages of real builds
+/// (CPU time as the clock, one thread, checked every half second after the first tenth of the
+/// work), the end was predicted within 20 % of the stage's time at 90 % of the moments; with 0.5 at
+/// 87 %, with 1 at 85 %, with a third at 81 %.
 const WINDOW: f64 = 0.75;
-/// Moments are kept at least this part of the elapsed time apart, so that there are never more than some hundred.
+/// Recorded moments are at least this part of the elapsed time apart, so that there are never more
+/// than some hundred.
 const SPACING: f64 = 1.0 / 64.0;
 /// Steps within this part of the elapsed time are one burst.
 const BURST: f64 = 1e-3;
@@ -32,15 +36,15 @@ const BURST: f64 = 1e-3;
 pub(crate) struct Pace {
     /// The moments in order of time. The first is the last one before the window, or the begin.
     kept: VecDeque<Moment>,
-    /// When the latest step was made, and how much was done then.
+    /// Time and number of steps at the latest step.
     last: Moment,
-    /// When the burst began to which the latest step belongs.
+    /// Begin of the burst of the latest step.
     burst_began_s: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Moment {
-    /// Since the stage began.
+    /// Seconds since the stage began.
     at_s: f64,
     done: u64,
 }
@@ -52,7 +56,8 @@ impl Pace {
         Self { kept: VecDeque::from([begin]), last: begin, burst_began_s: 0.0 }
     }
 
-    /// Notes that `elapsed` after its begin the stage has done `done` in this run. Neither may be less than before.
+    /// Records that the stage has done `done` in this run, `elapsed` after its begin. Neither may
+    /// decrease.
     pub(crate) fn record(&mut self, elapsed: Duration, done: u64) {
         let at_s = elapsed.as_secs_f64();
         if at_s - self.burst_began_s > BURST * at_s {
@@ -81,7 +86,8 @@ impl Pace {
         Some((done as f64 / took_s).min(if_next_came_now))
     }
 
-    /// The time that `remaining` steps will take, `elapsed` after the stage began; `None` before the first step.
+    /// The time that `remaining` steps will take, `elapsed` after the stage began; `None` before
+    /// the first step.
     pub(crate) fn left(&self, elapsed: Duration, remaining: u64) -> Option<Duration> {
         let start = self.start();
         let done = self.last.done - start.done;
@@ -104,7 +110,7 @@ impl Pace {
         self.kept.front().copied().unwrap_or(self.last)
     }
 
-    /// The most steps between two neighbouring moments.
+    /// The largest number of steps between two neighbouring moments.
     fn largest_burst(&self) -> u64 {
         let later = self.kept.iter().skip(1).chain([&self.last]);
         self.kept.iter().zip(later).map(|(a, b)| b.done - a.done).max().unwrap_or(0)

@@ -1,4 +1,4 @@
-//! Clocks here are made up, so each expected time has a closed form.
+//! Clocks here are artificial, so each expected time has a closed form.
 
 use super::*;
 
@@ -6,8 +6,8 @@ fn seconds(s: f64) -> Duration {
     Duration::from_secs_f64(s)
 }
 
-/// Feeds a pace with (time, steps done so far), and asks between any two of them how long the rest of `total` takes.
-/// Gives (time, time left by the estimate, time left in truth).
+/// Feeds a pace with (time, steps done so far), and asks between any two entries how long the rest
+/// of `total` takes. Returns (time, estimated time left, true time left).
 fn estimates(clock: &[(f64, u64)]) -> Vec<(f64, f64, f64)> {
     let &(end_s, total) = clock.last().unwrap();
     let mut pace = Pace::new();
@@ -77,8 +77,9 @@ fn slowing(slow_from: u64) -> Vec<(f64, u64)> {
     (1..=1000).map(|k| (time_s(k), k)).collect()
 }
 
-/// Half of the steps are fast, which takes 250 s. Before the change nobody can know of it. After it, at `t`, the rate is
-/// taken from `t / 4` on: `2 (250 - t / 4)` fast steps and `t - 250` slow ones in `3 t / 4`.
+/// Half of the steps are fast, which takes 250 s. Before the change it is unpredictable. After it,
+/// at `t`, the rate is averaged from `t / 4` on: `2 (250 - t / 4)` fast steps and `t - 250` slow
+/// ones in `3 t / 4`.
 #[test]
 fn a_stage_that_slows_by_half_is_estimated_ever_better() {
     for (now_s, estimate_s, truth_s) in estimates(&slowing(500)) {
@@ -101,7 +102,8 @@ fn a_stage_that_slows_by_half_is_estimated_ever_better() {
     }
 }
 
-/// Once a quarter of the elapsed time holds all that went faster, at 200 s (and one spacing), the estimate is exact.
+/// Once all fast steps are in the first quarter of the elapsed time, at 200 s (and one spacing),
+/// the estimate is exact.
 #[test]
 fn a_fast_start_is_forgotten() {
     let found = estimates(&slowing(100));
@@ -109,7 +111,8 @@ fn a_fast_start_is_forgotten() {
     check_exact(&after);
 }
 
-/// 10 steps in 10 s, then nothing: counted down to the next step, then the 90 others take ever longer.
+/// 10 steps in 10 s, then nothing: the estimate is counted down to the next step, then the 90
+/// others take ever longer.
 #[test]
 fn a_stage_that_stands_still_needs_ever_more_time() {
     let mut pace = Pace::new();
@@ -118,7 +121,7 @@ fn a_stage_that_stands_still_needs_ever_more_time() {
     }
     let left_s = |now_s: u64| pace.left(Duration::from_secs(now_s), 90).unwrap().as_secs_f64();
     assert!((left_s(10) - 90.0).abs() < 1e-9 && (left_s(11) - 89.0).abs() < 1e-9);
-    // The rate is taken from 2 s on: 8 steps, and the one that may come now.
+    // The rate is averaged from 2 s on: 8 steps, and the one that may be done now.
     for now_s in [12, 20, 100, 10_000] {
         let expected_s = 89.0 * (now_s - 2) as f64 / 9.0;
         assert!((left_s(now_s) - expected_s).abs() < 1e-9, "{now_s}: {}", left_s(now_s));
@@ -132,12 +135,12 @@ fn without_a_step_nothing_is_estimated() {
     let mut pace = Pace::new();
     assert_eq!((pace.left(seconds(5.0), 3), pace.per_second(seconds(5.0))), (None, None));
     assert_eq!(pace.left(seconds(5.0), 0), Some(Duration::ZERO), "nothing needs no time");
-    // A step at the very begin says nothing of a rate.
+    // A step at the very begin gives no rate.
     pace.record(Duration::ZERO, 1);
     assert_eq!((pace.left(seconds(1.0), 3), pace.per_second(seconds(1.0))), (None, None));
 }
 
-/// A build of weeks with billions of steps keeps some hundred moments.
+/// A build of weeks with billions of steps records some hundred moments.
 #[test]
 fn what_is_kept_does_not_grow_with_the_steps() {
     let mut pace = Pace::new();

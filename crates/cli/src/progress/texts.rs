@@ -1,4 +1,4 @@
-//! How progress is put into words and numbers.
+//! Progress in words and numbers.
 
 use std::time::Duration;
 
@@ -10,25 +10,25 @@ use crate::{
     table::{Digits, bytes},
 };
 
-/// What is known of a stage at one moment.
+/// The state of a stage at one moment.
 #[derive(Debug, Clone)]
-pub(crate) struct Reading {
+pub(crate) struct StageReading {
     pub(crate) stage: Stage,
-    /// How much is done in all, by an earlier run too.
+    /// Units done so far, including those of an earlier run.
     pub(crate) done: u64,
-    /// How much of it an earlier run did.
+    /// Units done by an earlier run.
     pub(crate) already: u64,
     pub(crate) total: Option<u64>,
-    /// Since the stage began.
+    /// Time since the stage began.
     pub(crate) elapsed: Duration,
     pub(crate) per_second: Option<f64>,
     pub(crate) left: Option<Duration>,
-    /// Since the stage began.
+    /// Resources used since the stage began.
     pub(crate) used: Usage,
 }
 
-impl Reading {
-    /// While the stage runs, without its title: what is done of what, time left, rate, bytes.
+impl StageReading {
+    /// The text of a running stage, without its title: done of total, time left, rate, bytes.
     pub(crate) fn running(&self, digits: Digits) -> String {
         let unit = self.stage.unit();
         let mut parts = vec![match self.total {
@@ -49,7 +49,7 @@ impl Reading {
         parts.join(", ")
     }
 
-    /// What is told when the stage has ended, without its title.
+    /// The text of an ended stage, without its title.
     pub(crate) fn ended(&self, digits: Digits) -> String {
         let seconds = self.elapsed.as_secs_f64();
         match (self.done, self.already) {
@@ -100,7 +100,7 @@ pub(crate) fn amount(number: u64, unit: Unit, digits: Digits) -> String {
     }
 }
 
-/// Slow rates per minute or hour, so that no rate is a small fraction.
+/// A rate; slow ones are per minute or hour, so that no rate is a small fraction.
 pub(crate) fn rate(per_second: f64, unit: Unit, digits: Digits) -> String {
     if unit == Unit::Bytes {
         return format!("{}/s", bytes(per_second.round() as u64));
@@ -115,7 +115,7 @@ pub(crate) fn rate(per_second: f64, unit: Unit, digits: Digits) -> String {
     format!("{number} {}/{per}", unit.plural())
 }
 
-/// A time to two units at most.
+/// A time in at most two units.
 pub(crate) fn time(time: Duration) -> String {
     const DAY_S: u64 = 86_400;
     let s = (time.as_secs_f64().round()) as u64;

@@ -5,8 +5,8 @@ use serde_json::json;
 
 use super::*;
 
-fn reading(done: u64, total: Option<u64>) -> Reading {
-    Reading {
+fn reading(done: u64, total: Option<u64>) -> StageReading {
+    StageReading {
         stage: Stage::Tiles,
         done,
         already: 0,
@@ -20,7 +20,7 @@ fn reading(done: u64, total: Option<u64>) -> Reading {
 
 #[test]
 fn a_running_stage_tells_what_is_done_of_what_time_left_rate_and_bytes() {
-    let told = Reading {
+    let told = StageReading {
         per_second: Some(43.21),
         left: Some(Duration::from_secs(29)),
         used: Usage { read_bytes: Some(12_300_000), written_bytes: Some(4500), ..Usage::default() },
@@ -30,19 +30,19 @@ fn a_running_stage_tells_what_is_done_of_what_time_left_rate_and_bytes() {
         told.running(Digits::Apart),
         "120 of 1\u{202f}366 tiles (8 %), 29 s left, 43.2 tiles/s, 12.3 MB read, 4500 B written"
     );
-    assert_eq!(Reading { stage: Stage::Hash, ..told.clone() }.running(Digits::Apart), {
+    assert_eq!(StageReading { stage: Stage::Hash, ..told.clone() }.running(Digits::Apart), {
         "120 B of 1366 B (8 %), 29 s left, 43 B/s, 12.3 MB read, 4500 B written"
     });
-    // What is not known is left out.
+    // Unknown values are omitted.
     assert_eq!(reading(0, Some(1)).running(Digits::Apart), "0 of 1 tile (0 %)");
     assert_eq!(reading(1, None).running(Digits::Apart), "1 tile");
     assert_eq!(
-        Reading { stage: Stage::Heights, ..reading(2, None) }.running(Digits::Apart),
-        "2 areas"
+        StageReading { stage: Stage::Heights, ..reading(2, None) }.running(Digits::Apart),
+        "2 windows"
     );
 }
 
-/// Not all is done before all is done, and large numbers do not overflow.
+/// Progress is below 100 % until everything is done, and large numbers do not overflow.
 #[test]
 fn percents_are_rounded_down() {
     assert!(reading(999, Some(1000)).running(Digits::Apart).contains("(99 %)"));
@@ -55,7 +55,8 @@ fn an_ended_stage_tells_what_was_done_and_by_whom() {
     assert_eq!(reading(1366, Some(1366)).ended(Digits::Apart), "1\u{202f}366 tiles in 12.34 s");
     assert_eq!(reading(1366, Some(1366)).ended(Digits::Plain), "1366 tiles in 12.34 s");
     assert_eq!(reading(0, None).ended(Digits::Apart), "0 tiles in 12.34 s");
-    let resumed = |already| Reading { already, ..reading(1366, Some(1366)) }.ended(Digits::Apart);
+    let resumed =
+        |already| StageReading { already, ..reading(1366, Some(1366)) }.ended(Digits::Apart);
     assert_eq!(resumed(1366), "1\u{202f}366 tiles, all by an earlier run");
     assert_eq!(
         resumed(1200),
@@ -65,7 +66,7 @@ fn an_ended_stage_tells_what_was_done_and_by_whom() {
 
 #[test]
 fn a_stage_without_work_says_so() {
-    let nothing = Reading { left: Some(Duration::ZERO), ..reading(0, Some(0)) };
+    let nothing = StageReading { left: Some(Duration::ZERO), ..reading(0, Some(0)) };
     assert_eq!(nothing.running(Digits::Apart), "nothing to do");
     assert_eq!(nothing.ended(Digits::Apart), "nothing to do");
 }

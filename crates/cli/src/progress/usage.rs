@@ -1,26 +1,27 @@
-//! What this process has used so far, as the kernel counts it. Linux only: elsewhere nothing is known, and nothing is
-//! guessed.
+//! Resources that this process has used so far, as counted by the kernel. Linux only: on other
+//! systems they are unknown, and nothing is estimated.
 
 use std::{fs, time::Duration};
 
-/// What the process has used since it began.
+/// Resources that the process has used since it began.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct Usage {
-    /// Time of all threads on all cores, the kernel's work for them included.
+    /// CPU time of all threads on all cores, including the kernel's work for them.
     pub(crate) cpu: Option<Duration>,
-    /// The most resident memory so far.
+    /// Peak resident memory so far.
     pub(crate) peak_memory_bytes: Option<u64>,
-    /// Bytes that the process asked to read and to write, whether a disk was needed for them or not. Files that are
-    /// mapped into memory and network connections are not in it.
+    /// Bytes that the process requested to read and to write, whether or not a disk was involved.
+    /// Memory-mapped files and network connections are not included.
     pub(crate) read_bytes: Option<u64>,
     pub(crate) written_bytes: Option<u64>,
 }
 
-/// Clock ticks per second in `/proc/PID/stat`: `USER_HZ`, which is 100 on every machine that Rust's Linux targets name.
+/// Clock ticks per second in `/proc/PID/stat`: `USER_HZ`, which is 100 on every machine of Rust's
+/// Linux targets.
 const TICKS_PER_SECOND: u64 = 100;
 
 impl Usage {
-    /// What the process has used until now. What the kernel does not tell is `None`.
+    /// Resources used until now. Values that the kernel does not report are `None`.
     pub(crate) fn now() -> Self {
         let file = |name| {
             if cfg!(target_os = "linux") { fs::read_to_string(name).ok() } else { None }
@@ -38,7 +39,7 @@ impl Usage {
         }
     }
 
-    /// What was used since `earlier`. Peak memory stays what it is: it is never counted anew.
+    /// Resources used since `earlier`. Peak memory stays unchanged: it is never reset.
     pub(crate) fn since(&self, earlier: &Self) -> Self {
         let difference = |now: Option<u64>, then: Option<u64>| Some(now?.saturating_sub(then?));
         Self {
@@ -49,7 +50,7 @@ impl Usage {
         }
     }
 
-    /// What was used in this time and in `later` together.
+    /// Resources used in this period and in `later` together.
     pub(crate) fn and(&self, later: &Self) -> Self {
         let sum = |a: Option<u64>, b: Option<u64>| Some(a? + b?);
         Self {
@@ -61,8 +62,8 @@ impl Usage {
     }
 }
 
-/// Time of user and system, fields 14 and 15 of `/proc/PID/stat`. Field 2 is the program's name in brackets, which may
-/// hold blanks and brackets.
+/// User and system time, fields 14 and 15 of `/proc/PID/stat`. Field 2 is the program's name in
+/// brackets, which may contain spaces and brackets.
 ///
 /// Source: `man 5 proc_pid_stat`.
 fn cpu(stat: &str) -> Option<Duration> {

@@ -1,8 +1,8 @@
-//! CPU time, memory and bytes of the process are read from the kernel as they are.
+//! CPU time, memory and bytes of the process are read from the kernel unchanged.
 
 use super::*;
 
-/// A name may look like anything; the fields count from its last bracket.
+/// A name may have any characters; the fields are counted from its last bracket.
 #[test]
 fn cpu_time_is_user_and_system() {
     let fields = "S 1 2 3 4 5 6 7 8 9 10 1234 66 99 98 20 0 3";
@@ -41,7 +41,7 @@ fn differences_and_sums_keep_what_is_unknown_unknown() {
     assert_eq!(Usage::default().since(&usage(4, 30, 100)), Usage::default());
 }
 
-/// What this process does is counted.
+/// The work of this process is counted.
 #[cfg(target_os = "linux")]
 #[test]
 fn the_kernel_counts_what_is_used() {
@@ -50,7 +50,7 @@ fn the_kernel_counts_what_is_used() {
     let file = tempfile::NamedTempFile::new().unwrap();
     fs::write(file.path(), vec![1; BYTES]).unwrap();
     assert_eq!(fs::read(file.path()).unwrap().len(), BYTES);
-    // Until the clock of the kernel has ticked; a loop that ends by it needs no other limit.
+    // The loop runs until the kernel's clock has ticked; it needs no other limit.
     while Usage::now().since(&begin).cpu.unwrap() < Duration::from_millis(50) {}
     let used = Usage::now().since(&begin);
     assert!(used.read_bytes.unwrap() >= BYTES as u64, "{used:?}");

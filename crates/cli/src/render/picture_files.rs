@@ -1,4 +1,5 @@
-//! The files of a picture: a PNG, on request with its place beside it, or a GeoTIFF that has it inside.
+//! The output files of an image: a PNG, optionally with its georeference in other files, or a
+//! GeoTIFF, which contains it.
 
 use std::path::{Path, PathBuf};
 
@@ -8,15 +9,16 @@ use image::RgbaImage;
 
 use crate::{
     args::{PrintScale, RenderArgs},
-    failure::Failure,
+    failure::CommandFailure,
     names::{MAP, PICTURE},
     output::{Complete, Output, existing_of, named::NamedOutput, png},
 };
 
-/// Where the header of a PNG ends: eight bytes of signature, then length, name, thirteen bytes and checksum.
+/// End of the header of a PNG: eight bytes of signature, then length, name, thirteen bytes and
+/// checksum.
 const END_OF_HEADER: usize = 8 + 4 + 4 + 13 + 4;
 
-/// The files that a command was asked for, none of which is begun.
+/// The requested files, none of which is begun.
 pub(crate) struct PictureFiles {
     target: PathBuf,
     files: Files,
@@ -25,15 +27,16 @@ pub(crate) struct PictureFiles {
 enum Files {
     Png {
         picture: Output,
-        /// Beside it: a world file and a coordinate system.
+        /// The georeference next to the image: a world file and a coordinate system.
         place: Option<Box<[Output; 2]>>,
     },
     Map(NamedOutput),
 }
 
 impl PictureFiles {
-    /// Claims the files. What cannot be written is told here, before anything is drawn. The command itself uses the files `used`.
-    pub(crate) fn create(args: &RenderArgs, used: &[&Path]) -> Result<Self, Failure> {
+    /// Claims the files. Unwritable targets are reported here, before anything is drawn. The
+    /// command itself uses the files `used`.
+    pub(crate) fn create(args: &RenderArgs, used: &[&Path]) -> Result<Self, CommandFailure> {
         let (target, existing) = (args.output.as_path(), existing_of(args.overwrite));
         let from_above = &args.from_above;
         if MAP.is_of(target) {
@@ -48,27 +51,28 @@ impl PictureFiles {
         }
         let place = from_above.world_file.then(|| {
             let beside = |ending| Output::create(&target.with_extension(ending), existing, used);
-            Ok::<_, Failure>(Box::new([beside("pgw")?, beside("prj")?]))
+            Ok::<_, CommandFailure>(Box::new([beside("pgw")?, beside("prj")?]))
         });
         let files = Files::Png { picture, place: place.transpose()? };
         Ok(Self { target: target.to_path_buf(), files })
     }
 
-    /// Writes all of them, and puts them into their places when all are complete. Tells whether the coordinate system could be named as it is.
+    /// Writes all files, and moves them to their targets when all are complete. Returns whether the
+    /// coordinate system was recorded completely.
     pub(crate) fn write(
         self,
         picture: &RgbaImage,
         place: Option<&PlaceOfPicture>,
         scale: Option<PrintScale>,
         facts: PictureFacts,
-    ) -> Result<bool, Failure> {
+    ) -> Result<bool, CommandFailure> {
         let target = self.target;
         match (self.files, place) {
             (Files::Map(file), Some(place)) => {
                 let dots_per_inch = scale.map(|scale| scale.dots_per_inch);
                 let facts = PictureFacts { dots_per_inch, ..facts };
                 let is_same_crs = export_picture(picture, place, &facts, &file.path())
-                    .map_err(|error| Failure::from(error).about_target(&target))?;
+                    .map_err(|error| CommandFailure::from(error).about_target(&target))?;
                 file.place()?;
                 Ok(is_same_crs)
             }
@@ -93,40 +97,42 @@ impl PictureFiles {
     }
 }
 
-fn refuse_map(target: &Path, is_from_above: bool, has_world_file: bool) -> Result<(), Failure> {
+fn refuse_map(
+    target: &Path,
+    is_from_above: bool,
+    has_world_file: bool,
+) -> Result<(), CommandFailure> {
     if !is_from_above {
         return Err(no_place(target));
     }
     if has_world_file {
-        return Err(Failure::unusable(format!(
-            "{}: a GeoTIFF has its place inside; --world-file goes with a picture that ends in .png",
-            target.display()
-        )));
+        return Err(unusable!(
+            "{target:?}: a GeoTIFF contains its georeference, and --world-file applies only to .png images; omit --world-file"
+        ));
     }
     Ok(())
 }
 
-/// A world file of an earlier picture would give this one a place that is not its own.
-fn refuse_other_place(target: &Path) -> Result<(), Failure> {
+/// Rejects a leftover world file of an earlier image, which would give this image a wrong
+/// georeference.
+fn refuse_other_place(target: &Path) -> Result<(), CommandFailure> {
     let beside = target.with_extension("pgw");
     if !beside.exists() {
         return Ok(());
     }
-    Err(Failure::unusable(format!(
-        "{}: it tells where an earlier picture lies, and programs would take that for the place of {}; remove it, choose another name, or give --world-file",
-        beside.display(),
-        target.display()
-    )))
-}
-
-fn no_place(target: &Path) -> Failure {
-    Failure::unusable(format!(
-        "cannot write {}: only in a picture from above has each pixel its place on the map; give --ortho, or a name that ends in .png",
-        target.display()
+    Err(unusable!(
+        "{beside:?} is the world file of an earlier image, and programs would apply it to {target:?}; remove it, choose another name, or pass --world-file"
     ))
 }
 
-/// A PNG that says how many of its pixels are a metre of paper, in a chunk behind its header (PNG, third edition, 11.3.4.3).
+fn no_place(target: &Path) -> CommandFailure {
+    unusable!(
+        "cannot write {target:?}: only a view from above can be georeferenced; pass --ortho, or a name with the extension .png"
+    )
+}
+
+/// Adds the number of pixels per metre of paper to a PNG, in a chunk after its header (PNG, third
+/// edition, 11.3.4.3).
 ///
 /// ```text
 ///   length 9    "pHYs"    pixels to a unit along x    the same along y    1: the unit is the metre    checksum

@@ -1,10 +1,10 @@
-//! A PNG says its resolution and is still a PNG.
+//! A PNG with a resolution is still a valid PNG.
 
 use image::ImageDecoder as _;
 
 use super::*;
 
-/// The chunk as it stands in the standard: 11811 pixels to a metre are 300 to an inch.
+/// The chunk as in the standard: 11811 pixels per metre are 300 per inch.
 #[test]
 fn a_picture_says_its_resolution() {
     let picture = RgbaImage::from_fn(7, 5, |x, y| image::Rgba([x as u8, y as u8, 9, 255]));
@@ -13,7 +13,7 @@ fn a_picture_says_its_resolution() {
     assert_eq!(told.len(), plain.len() + 21);
     let expected = [0, 0, 0, 9, b'p', b'H', b'Y', b's', 0, 0, 0x2E, 0x23, 0, 0, 0x2E, 0x23, 1];
     assert_eq!(told[33..50], expected);
-    // Known from other programs: the checksum of this chunk at 300 pixels to an inch.
+    // The checksum of this chunk at 300 pixels per inch, as written by other programs.
     assert_eq!(told[50..54], [0x78, 0xA5, 0x3F, 0x76]);
     let decoder = image::codecs::png::PngDecoder::new(std::io::Cursor::new(&told)).unwrap();
     assert_eq!(decoder.dimensions(), (7, 5));

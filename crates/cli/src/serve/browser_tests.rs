@@ -1,4 +1,4 @@
-//! The variable `BROWSER` is read as other programs read it, and a browser outlives the server.
+//! The variable `BROWSER` is interpreted as by other programs, and a browser outlives the server.
 
 use super::*;
 
@@ -39,13 +39,13 @@ fn a_command_that_fails_or_is_not_there_is_no_browser() {
     assert!(!starts(&[]));
 }
 
-/// Ctrl-C in a terminal goes to all of the group of the process that it runs.
+/// Ctrl-C in a terminal is sent to the whole foreground process group.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_browser_is_in_a_group_of_its_own() {
     let place = tempfile::tempdir().unwrap();
     let told = place.path().join("told");
-    // The fifth field is the number of its group.
+    // The fifth field is the id of the process group.
     let code =
         format!("read -r _ _ _ _ group _ < /proc/$$/stat; echo $$ $group > '{}'", told.display());
     assert!(starts(&["sh".to_owned(), "-c".to_owned(), code]));

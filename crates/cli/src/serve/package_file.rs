@@ -1,4 +1,5 @@
-//! A package on disk, for the server: the file that was named, and no other that takes its place by a link.
+//! A package on disk, for the server: the file that was named, even if a link later leads
+//! elsewhere.
 
 use std::{
     fs::{self, File},
@@ -11,7 +12,7 @@ use corniche_serve::OnDisk;
 use corniche_store::{OpenMode, open_own};
 use corniche_tileset::telling_ranges;
 
-/// So much of a package is read to see which it is.
+/// The number of bytes at the start of a package that identify its version.
 const START_BYTES: u64 = 1024;
 
 /// The file of a package.
@@ -19,15 +20,15 @@ const START_BYTES: u64 = 1024;
 pub(crate) struct PackageFile(PathBuf);
 
 impl PackageFile {
-    /// The file that a path leads to now. Where a link leads later is not followed.
-    pub(crate) fn of(path: &Path) -> io::Result<Self> {
+    /// The file that a path leads to now. Later changes of links are not followed.
+    pub(crate) fn at_path(path: &Path) -> io::Result<Self> {
         fs::canonicalize(path).map(Self)
     }
 }
 
 impl OnDisk for PackageFile {
     fn open(&self) -> io::Result<File> {
-        // Its path is for nobody who asks, and stands in the error.
+        // The error contains the path, which clients must not see.
         open_own(&self.0, OpenMode::Read).map_err(|error| match error.kind() {
             io::ErrorKind::InvalidInput => io::ErrorKind::NotFound.into(),
             _ => error,
@@ -39,7 +40,7 @@ impl OnDisk for PackageFile {
         file.rewind()?;
         file.take(START_BYTES).read_to_end(&mut start)?;
         let ranges = telling_ranges(&start, file.metadata()?.len());
-        // What is no package is none that was to be shown.
+        // A file that is no longer a package must not be served.
         Ok(ranges.ok_or(io::ErrorKind::NotFound)?.into())
     }
 }

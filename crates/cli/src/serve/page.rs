@@ -1,26 +1,26 @@
-//! The page of the viewer: files that are built into the program, or lie in a folder.
+//! The page of the viewer: files that are built into the program, or that are in a folder.
 
 use std::{borrow::Cow, fs, path::Path};
 
 use super::page_files::page_files;
-use crate::{exit::ExitCode, failure::Failure, table::bytes};
+use crate::{exit::ExitCode, failure::CommandFailure, table::bytes};
 
-/// What the program was built with: paths in addresses, and bytes. The build script writes it.
+/// The built-in files: URL paths and bytes. The build script writes this list.
 const BUILT_IN: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/page.rs"));
 
-/// More than any page takes in memory.
+/// The largest memory that a page may need.
 const MOST_BYTES: u64 = 512 << 20;
 
 /// A file of the page.
 #[derive(Debug)]
 pub(crate) struct PageFile {
-    /// Its path in addresses, such as `examples/fly.html`.
+    /// Its URL path, such as `examples/fly.html`.
     pub(crate) path: String,
     pub(crate) bytes: Cow<'static, [u8]>,
 }
 
-/// The files of the page: those of a folder, or else those of the program.
-pub(crate) fn load(folder: Option<&Path>) -> Result<Vec<PageFile>, Failure> {
+/// Loads the files of the page: those of a folder, or the built-in ones.
+pub(crate) fn load(folder: Option<&Path>) -> Result<Vec<PageFile>, CommandFailure> {
     folder.map_or_else(|| Ok(built_in()), read)
 }
 
@@ -32,21 +32,21 @@ fn built_in() -> Vec<PageFile> {
     BUILT_IN.iter().map(file).collect()
 }
 
-/// They are read once, so that all are of one version, and what is put into the folder later is not served.
-fn read(folder: &Path) -> Result<Vec<PageFile>, Failure> {
+/// Reads all files once, so that they are of one version, and files that are added to the folder
+/// later are not served.
+fn read(folder: &Path) -> Result<Vec<PageFile>, CommandFailure> {
     let unusable = |reason: &dyn std::fmt::Display| {
-        Failure::unusable(format!(
-            "--page {}: {reason}; give the folder that scripts/web makes, target/web/site",
-            folder.display()
-        ))
+        unusable!(
+            "--page {folder:?}: {reason}; pass the folder that scripts/web creates, target/web/site"
+        )
     };
     let files = page_files(folder).map_err(|error| unusable(&error))?;
     let mut read_bytes = 0;
     let read = files.into_iter().map(|(path, place)| {
-        let failed = |error| Failure::new(ExitCode::Unusable, error).about(&place);
+        let failed = |error| CommandFailure::new(ExitCode::Unusable, error).about(&place);
         read_bytes += fs::metadata(&place).map_err(failed)?.len();
         if read_bytes > MOST_BYTES {
-            return Err(unusable(&format_args!("it holds more than {}", bytes(MOST_BYTES))));
+            return Err(unusable(&format_args!("the folder has more than {}", bytes(MOST_BYTES))));
         }
         Ok(PageFile { path, bytes: fs::read(&place).map_err(failed)?.into() })
     });

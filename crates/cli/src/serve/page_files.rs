@@ -1,26 +1,29 @@
-//! The files of the page in a folder. The build script uses this file, too, so that what is built in and what is read from a folder follow one rule.
+//! The files of the page in a folder. The build script also uses this file, so that the same
+//! rules apply to built-in files and to files in a folder.
 
 use std::{
     fs, io,
     path::{Path, PathBuf},
 };
 
-/// The page itself, without which a folder is none.
+/// The page itself, which every folder must have.
 pub(crate) const INDEX: &str = "index.html";
 
-/// More than any page has; a folder with more is another one by mistake.
+/// The largest number of files; a folder with more was named by mistake.
 const MOST_FILES: usize = 5000;
 
-/// The files in a folder and below it, sorted: their paths in addresses, and where they are. Hidden ones are left out.
+/// Lists the files in a folder and its subfolders, sorted: their URL paths, and their paths on
+/// disk. Hidden files are skipped.
 ///
 /// # Errors
-/// When the folder cannot be read or holds what is no file of a page, such as a link: it could lead out of the folder.
+/// When the folder cannot be read, or has something that is not a file of a page, such as a link,
+/// which could lead out of the folder.
 pub(crate) fn page_files(folder: &Path) -> io::Result<Vec<(String, PathBuf)>> {
     if !folder.is_dir() {
-        return Err(io::Error::other("there is no such folder"));
+        return Err(io::Error::other("no such folder"));
     }
     if !folder.join(INDEX).is_file() {
-        return Err(io::Error::other(format!("it has no {INDEX}")));
+        return Err(io::Error::other(format!("the folder has no {INDEX}")));
     }
     let mut found = Vec::new();
     collect(folder, "", &mut found)?;
@@ -32,7 +35,7 @@ fn collect(folder: &Path, above: &str, found: &mut Vec<(String, PathBuf)>) -> io
     for entry in fs::read_dir(folder)? {
         let entry = entry?;
         let place = entry.path();
-        let wrong = |what: &str| Err(io::Error::other(format!("{} {what}", place.display())));
+        let wrong = |what: &str| Err(io::Error::other(format!("{place:?} {what}")));
         let Ok(name) = entry.file_name().into_string() else {
             return wrong("has a name that is not UTF-8; rename it");
         };
@@ -47,11 +50,11 @@ fn collect(folder: &Path, above: &str, found: &mut Vec<(String, PathBuf)>) -> io
             found.push((path, place));
         } else {
             return wrong(
-                "is neither a file nor a folder (a link, perhaps); put the file itself there",
+                "is neither a file nor a folder (perhaps a link); replace it with the file itself",
             );
         }
         if found.len() > MOST_FILES {
-            return Err(io::Error::other(format!("it has more than {MOST_FILES} files")));
+            return Err(io::Error::other(format!("the folder has more than {MOST_FILES} files")));
         }
     }
     Ok(())

@@ -1,4 +1,4 @@
-//! The page is served from the program or from a folder, and other folders are refused.
+//! The page is served from the program or from a folder, and other folders are rejected.
 
 use std::fs;
 
@@ -43,7 +43,7 @@ fn other_folders_are_refused_with_the_way_out() {
     {
         std::os::unix::fs::symlink("/etc/passwd", folder.path().join("out.txt")).unwrap();
         let said = refusal("");
-        assert!(said.contains("out.txt is neither a file nor a folder"), "{said}");
+        assert!(said.contains("out.txt\" is neither a file nor a folder"), "{said}");
     }
 }
 

@@ -1,4 +1,4 @@
-//! The packages that a page shows, and what they are called there.
+//! The packages that a page shows, and their names there.
 
 use std::{
     collections::BTreeSet,
@@ -9,59 +9,61 @@ use corniche_remote::PackagePlace;
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 use serde::Serialize;
 
-use crate::{documents::to_line, failure::Failure, packages};
+use crate::{documents::to_line, failure::CommandFailure, packages};
 
-/// The list of packages, which the page reads.
+/// The list of packages that the page reads.
 pub(crate) const LIST: &str = "packages.json";
 
-/// What may stand in an address as it is.
+/// Characters that are percent-encoded in URLs.
 const ENCODED: &AsciiSet = &NON_ALPHANUMERIC.remove(b'-').remove(b'_').remove(b'.').remove(b'~');
 
 /// A package that a page shows.
 #[derive(Debug)]
 pub(crate) struct Shown {
-    /// What it is called: its file's name without the ending, with a number if others are called so.
+    /// Its name: the file name without the extension, with a number if several packages have the
+    /// same name.
     pub(crate) name: String,
-    /// Its file.
+    /// The file.
     pub(crate) file: PathBuf,
 }
 
 impl Shown {
-    /// Its path below the page.
+    /// Its path, relative to the page.
     pub(crate) fn path(&self) -> String {
         format!("packages/{}.pmtiles", self.name)
     }
 }
 
-/// A line of the list.
+/// An entry of the list.
 #[derive(Serialize)]
-struct Entry<'a> {
+struct ShownEntry<'a> {
     name: &'a str,
-    /// An address, from that of the page on.
+    /// The URL, relative to that of the page.
     src: String,
 }
 
-/// Opens each package, so that what is no package is told before anyone looks at it, and names them.
-pub(crate) fn open(places: &[PackagePlace]) -> Result<Vec<Shown>, Failure> {
+/// Opens each package, so that invalid ones are reported before the server starts, and assigns
+/// names.
+pub(crate) fn open(places: &[PackagePlace]) -> Result<Vec<Shown>, CommandFailure> {
     let file = |place: &PackagePlace| match place {
         PackagePlace::File(path) => {
             packages::open(place)?;
             Ok(path.clone())
         }
-        PackagePlace::Address(_) => Err(Failure::unusable(format!(
-            "{place} is on a web server already; serve shows files. The page shows a package of another server by its address: \
-             ?src=ADDRESS behind the page's own"
-        ))),
+        PackagePlace::Address(_) => Err(unusable!(
+            "{:?} is already on a web server, but serve accepts only files; to show it, append ?src=ADDRESS to the address of the page",
+            place.name()
+        )),
     };
     let files: Vec<PathBuf> = places.iter().map(file).collect::<Result<_, _>>()?;
     let names = names(&files);
     Ok(names.into_iter().zip(files).map(|(name, file)| Shown { name, file }).collect())
 }
 
-/// One name for each file, none twice, also where capital and small letters are not told apart.
+/// A unique name for each file, also if case is ignored.
 fn names(files: &[PathBuf]) -> Vec<String> {
     let own = |file: &Path| file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    // A file that is called like another one with a number keeps its name.
+    // A file whose name already ends in such a number keeps its name.
     let mut taken: BTreeSet<String> = files.iter().map(|file| own(file).to_lowercase()).collect();
     let mut given = BTreeSet::new();
     let name = |file: &PathBuf| {
@@ -76,13 +78,13 @@ fn names(files: &[PathBuf]) -> Vec<String> {
     files.iter().map(name).collect()
 }
 
-/// The list as the page reads it.
+/// The list in the format that the page reads.
 pub(crate) fn list(shown: &[Shown]) -> String {
-    let entries: Vec<Entry<'_>> = shown
+    let entries: Vec<ShownEntry<'_>> = shown
         .iter()
         .map(|Shown { name, .. }| {
             let src = format!("packages/{}.pmtiles", utf8_percent_encode(name, ENCODED));
-            Entry { name, src }
+            ShownEntry { name, src }
         })
         .collect();
     format!("{}\n", to_line(&entries))

@@ -1,4 +1,4 @@
-//! No two packages that are served have the same name.
+//! No two served packages have the same name.
 
 use std::path::PathBuf;
 
@@ -13,7 +13,7 @@ fn no_two_packages_have_one_name() {
     assert_eq!(named(&["a/pass.pmtiles", "b/city.PMTILES", "c"]), ["pass", "city", "c"]);
     assert_eq!(named(&["a/pass.pmtiles", "b/pass.pmtiles", "pass"]), ["pass", "pass-2", "pass-3"]);
     assert_eq!(named(&["a/Pass.pmtiles", "b/pass.pmtiles"]), ["Pass", "pass-2"]);
-    // One that is really called so keeps its name.
+    // A package whose own name ends in a number keeps its name.
     assert_eq!(named(&["a/x.pmtiles", "b/x.pmtiles", "x-2.pmtiles"]), ["x", "x-3", "x-2"]);
 }
 

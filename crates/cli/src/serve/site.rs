@@ -1,4 +1,4 @@
-//! The files of a page with its packages, in a folder for any web server.
+//! Writes the files of a page and its packages to a folder for any web server.
 
 use std::{
     fs::{self, File},
@@ -11,22 +11,23 @@ use super::{
     shown::{LIST, Shown, list},
 };
 use crate::{
-    failure::Failure,
+    failure::CommandFailure,
     interrupt, names,
     output::{Existing, failed, folder::FolderOutput},
 };
 
-/// Bytes that are copied between two looks at whether to stop.
+/// The number of bytes that are copied between two checks whether to stop.
 const COPIED_AT_ONCE: u64 = 64 << 20;
 
-/// Writes a folder, which is there when it is complete. `used` are files of the command. Returns the size of the folder in bytes.
+/// Writes a folder, which appears when it is complete. `used` are files of the command. Returns the
+/// size of the folder in bytes.
 pub(crate) fn write(
     target: &Path,
     existing: Existing,
     page: &[PageFile],
     packages: &[Shown],
     used: &[&Path],
-) -> Result<u64, Failure> {
+) -> Result<u64, CommandFailure> {
     names::refuse_what_is_no_file(target)?;
     let output = FolderOutput::create(target, existing, used)?;
     let not_written = |error: io::Error| failed(target, &error);
@@ -43,9 +44,9 @@ pub(crate) fn write(
     output.place("web page of packages")
 }
 
-/// Copies a package; `target` is what the folder is called.
-fn copy(file: &Path, place: &Path, target: &Path) -> Result<(), Failure> {
-    let unread = |error: io::Error| Failure::from(error).about(file);
+/// Copies a package; `target` is the name of the folder.
+fn copy(file: &Path, place: &Path, target: &Path) -> Result<(), CommandFailure> {
+    let unread = |error: io::Error| CommandFailure::from(error).about(file);
     let from = File::open(file).map_err(unread)?;
     let version = |from: &File| {
         let found = from.metadata()?;
@@ -56,10 +57,10 @@ fn copy(file: &Path, place: &Path, target: &Path) -> Result<(), Failure> {
     let mut copied = 0;
     loop {
         if interrupt::is_noted() {
-            return Err(Failure::interrupted());
+            return Err(CommandFailure::interrupted());
         }
         let part = io::copy(&mut (&from).take(COPIED_AT_ONCE), &mut to);
-        // Which of the two files it was is not told.
+        // The error does not say which of the two files failed.
         let bytes = part.map_err(|error| failed(target, &error))?;
         if bytes == 0 {
             break;
@@ -68,9 +69,8 @@ fn copy(file: &Path, place: &Path, target: &Path) -> Result<(), Failure> {
     }
     let after = version(&from).map_err(unread)?;
     if before != after || copied != before.0 {
-        return Err(Failure::failed(format!(
-            "{} changed while it was copied; run the command again",
-            file.display()
+        return Err(CommandFailure::failed(format!(
+            "{file:?} changed while it was being copied; run the command again"
         )));
     }
     Ok(())

@@ -1,38 +1,38 @@
-//! Single samples that stand far above or below all samples around them.
+//! Finds single samples far above or below all samples around them.
 
 use serde::{Deserialize, Serialize};
 
-/// A sample that stands alone is at least this far beyond each of its neighbours: no slope of the
-/// earth is so long and so steep on all sides …
+/// A spike is at least this far beyond each of its neighbours: no slope of the earth is so long and
+/// so steep on all sides. The limit grows with the spacing of samples, see [`STEEPNESS`].
 const LEAST_M: f64 = 2000.0;
-/// … unless samples are kilometres apart. On grids of half a degree islands stand alone in the
-/// ocean, but not on slopes as steep as this.
+/// The limit per metre of spacing, for samples that are kilometres apart: on grids of half a
+/// degree, islands are isolated samples in the ocean, but their slopes are less steep than this.
 const STEEPNESS: f64 = 2.0 / 3.0;
-/// No summit of the earth stands as far above all that surrounds it, be it the bottom of the sea
-/// (Mauna Kea: some 9200 m).
+/// The limit never exceeds this: no summit of the earth is as far above all of its surroundings,
+/// including the bottom of the sea (Mauna Kea: some 9200 m).
 const MOST_M: f64 = 9500.0;
-/// With fewer neighbours nothing is known of a sample.
+/// A sample with fewer neighbours is not judged.
 const FEWEST_NEIGHBOURS: usize = 3;
-/// Spikes that are kept with their places.
+/// The number of spikes whose positions are kept.
 const KEPT_SPIKES: usize = 3;
 
-/// How far beyond all of its neighbours a sample stands alone, where neighbours are so far apart.
+/// The least distance of a spike from all of its neighbours, for samples with this spacing.
 pub(crate) fn limit_m(spacing_m: f64) -> f64 {
     (spacing_m * STEEPNESS).clamp(LEAST_M, MOST_M)
 }
 
-/// A sample that stands alone.
+/// A single sample far beyond its neighbours.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Spike {
     pub(crate) row: usize,
     pub(crate) column: usize,
     pub(crate) height_m: f64,
-    /// The value as the file stores it.
+    /// The value as stored in the file.
     pub(crate) stored: f64,
 }
 
-/// How many spikes there are in some samples of a file, and the first of them, row by row. Parts
-/// merge in any order.
+/// The number of spikes in some samples of a file, and the first spikes, row by row. Parts can be
+/// merged in any order.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Spikes {
     pub(crate) count: u64,
@@ -58,15 +58,15 @@ impl Spikes {
     }
 }
 
-/// The places (column, row) of a rectangle whose samples may be spikes, by the neighbours inside
-/// it. Those off its rim are some; one on the rim can have neighbours outside.
+/// The positions (column, row) in a rectangle whose samples may be spikes, by the neighbours inside
+/// the rectangle. Inside the rim they are spikes; on the rim they can have neighbours outside.
 pub(crate) fn candidates(heights_m: &[f64], columns: usize, limit_m: f64) -> Vec<[usize; 2]> {
     let size = [columns, heights_m.len() / columns];
     let mut found = Vec::new();
     for (row, line) in heights_m.chunks_exact(columns).enumerate() {
         let mut before = f64::NAN;
         for (column, &height_m) in line.iter().enumerate() {
-            // Nearly all samples are near the one before, and are not looked at any further.
+            // Nearly all samples are close to the previous one, and need no further test.
             let is_near = (height_m - before).abs() <= limit_m;
             before = height_m;
             if is_near || height_m.is_nan() {
@@ -81,18 +81,18 @@ pub(crate) fn candidates(heights_m: &[f64], columns: usize, limit_m: f64) -> Vec
     found
 }
 
-/// Whether a place lies in the first or last row or column of a rectangle.
+/// Whether a position is in the first or last row or column of a rectangle.
 pub(crate) fn is_on_rim(size: [usize; 2], at: [usize; 2]) -> bool {
     (0..2).any(|axis| at[axis] == 0 || at[axis] + 1 == size[axis])
 }
 
-/// Whether a sample of a rectangle is a spike, by the neighbours inside it.
+/// Whether a sample of a rectangle is a spike, by the neighbours inside the rectangle.
 pub(crate) fn is_spike(heights_m: &[f64], columns: usize, at: [usize; 2], limit_m: f64) -> bool {
     stands_alone(heights_m, columns, at, (FEWEST_NEIGHBOURS, limit_m))
 }
 
 /// Whether a sample lies beyond all of its neighbours, to the same side, of which there are at
-/// least `fewest`; one without any lies beyond all.
+/// least `fewest`; a sample without neighbours lies beyond all.
 fn stands_alone(
     heights_m: &[f64],
     columns: usize,

@@ -1,5 +1,5 @@
-//! A sample far beyond all of its neighbours is a spike; one beside another, or on a cliff, is
-//! none.
+//! A sample far beyond all of its neighbours is a spike; one next to a similar sample, or on a
+//! cliff, is not.
 
 use super::*;
 
@@ -38,7 +38,7 @@ fn two_side_by_side_and_cliffs_are_none() {
     assert!(found(&cliff).is_empty());
 }
 
-/// In voids there is nothing to compare with; three neighbours are enough.
+/// Voids are not compared; three neighbours are enough.
 #[test]
 fn neighbours_without_height_do_not_count() {
     let mut alone = vec![f64::NAN; 25];
@@ -50,7 +50,7 @@ fn neighbours_without_height_do_not_count() {
     }
 }
 
-/// Only on the rim of a block is it not known what is around a sample: these alone are read again.
+/// Only on the rim of a block are some neighbours unknown: only these samples are read again.
 #[test]
 fn among_voids_candidates_are_on_the_rim_alone() {
     for (at, is_candidate) in [([2, 2], false), ([1, 3], false), ([0, 2], true), ([4, 4], true)] {
@@ -60,7 +60,7 @@ fn among_voids_candidates_are_on_the_rim_alone() {
         assert_eq!(candidates(&alone, COLUMNS, LEAST_M), expected);
         assert_eq!(is_on_rim([COLUMNS; 2], at), is_candidate);
     }
-    // One neighbour of two is too few to judge by, and its own rim is that of the block.
+    // Two neighbours are too few to judge a sample, and the rim here is that of the block.
     assert_eq!(candidates(&[300.0, 5000.0], 2, LEAST_M), [[0, 0], [1, 0]]);
 }
 

@@ -1,4 +1,4 @@
-//! One elevation file: what it says about itself, and its samples as metres.
+//! One elevation file: its metadata, and its samples in metres.
 
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ use gdal::{Dataset, Metadata};
 use crate::files::stored_values::{OpenOptions, StoredValues};
 use crate::{OpenDemError, ReadHeightsError};
 
-/// Most bands that a message names.
+/// The largest number of bands that a message names.
 const MOST_BANDS_NAMED: usize = 12;
 
 /// An elevation file, described but not held open.
@@ -23,22 +23,22 @@ pub(crate) struct Source {
     pub(crate) path: PathBuf,
     pub(crate) columns: i64,
     pub(crate) rows: i64,
-    /// Pixel to CRS.
+    /// The map from pixels to the CRS.
     pub(crate) crs_from_pixel: GeoTransform,
     pub(crate) crs: Crs,
-    /// What its heights are measured from, as the file or `--dem-vertical-crs` says.
+    /// The vertical CRS of heights, from the file or from `--dem-vertical-crs`.
     pub(crate) vertical: Option<VerticalCrs>,
-    /// Whether its band or its vertical CRS says what heights are in.
+    /// Whether the band or the vertical CRS gives the unit of heights.
     pub(crate) has_height_unit: bool,
-    /// Number of the band with the heights.
+    /// The number of the band with the heights.
     pub(crate) band: usize,
-    /// How stored values become metres, without the vertical CRS and the shift asked for.
+    /// How stored values become metres, before the conversion to the vertical CRS and the shift.
     pub(crate) values: StoredValues,
-    /// Stored in whole rows rather than in tiles.
+    /// Whether samples are stored in whole rows rather than in tiles.
     pub(crate) is_striped: bool,
-    /// Number of the band in which 0 means that there is no sample.
+    /// The number of the band in which 0 means that there is no sample.
     alpha_band: Option<usize>,
-    /// The operation to the vertical CRS asked for, where that is another one.
+    /// The operation to the requested vertical CRS, if it is another one.
     pub(crate) to_target: Option<HeightOperation>,
     pub(crate) shift_m: f64,
 }
@@ -54,7 +54,7 @@ impl Source {
             dataset.rasterband(number).map_err(|source| RasterError::unreadable(path, source))?;
         let (columns, rows) = dataset.raster_size();
         let Georeference { crs_from_pixel, crs, vertical } =
-            Georeference::of(path, &dataset, options.dem_crs.as_deref())?;
+            Georeference::from_dataset(path, &dataset, options.dem_crs.as_deref())?;
         let given = || {
             let text = options.dem_vertical_crs.as_deref();
             text.map(|text| VerticalCrs::from_text("--dem-vertical-crs", text)).transpose()
@@ -70,7 +70,7 @@ impl Source {
             has_height_unit: vertical.is_some()
                 || options.vertical_unit.is_some()
                 || !band.unit().trim().is_empty(),
-            values: StoredValues::of(path, (number, &band), vertical.as_ref(), options)?,
+            values: StoredValues::from_band(path, (number, &band), vertical.as_ref(), options)?,
             vertical,
             is_striped: band.block_size().0 == columns,
             alpha_band: alpha_band(&dataset),
@@ -79,7 +79,7 @@ impl Source {
         })
     }
 
-    /// The samples of a rectangle of pixels as metres, row by row, NaN where there is none.
+    /// The samples of a rectangle of pixels in metres, row by row; NaN for voids.
     pub(crate) fn read(
         &self,
         dataset: &Dataset,
@@ -100,10 +100,10 @@ impl Source {
         Ok(())
     }
 
-    /// Carries heights in metres to the vertical CRS asked for, in place; voids (NaN) stay.
+    /// Converts heights in metres to the requested vertical CRS, in place; voids (NaN) stay.
     ///
-    /// Each height is carried at the position of its own sample, counted in the whole file: the
-    /// result does not depend on the rectangle that is read.
+    /// Each height is converted at the position of its own sample in the whole file: the result
+    /// does not depend on the rectangle that is read.
     fn carry(
         &self,
         operation: &HeightOperation,
@@ -130,8 +130,7 @@ impl Source {
         Ok(())
     }
 
-    /// The values of a rectangle of pixels as they are stored, row by row, NaN where a mask says
-    /// that there is none.
+    /// The stored values of a rectangle of pixels, row by row; NaN where a mask marks a void.
     pub(crate) fn read_stored(
         &self,
         dataset: &Dataset,
@@ -179,7 +178,7 @@ fn alpha_band(dataset: &Dataset) -> Option<usize> {
     })
 }
 
-/// The error for a file without a raster band: it may be a container of several rasters.
+/// The error for a file without a raster band, which may be a container of several rasters.
 fn no_band(path: &Path, dataset: &Dataset) -> OpenDemError {
     let names: Vec<String> = dataset
         .metadata_domain("SUBDATASETS")
@@ -198,7 +197,7 @@ fn no_band(path: &Path, dataset: &Dataset) -> OpenDemError {
 }
 
 impl Source {
-    /// How far samples are from their neighbours, along the axis where they are farther, metres; in
+    /// The distance between neighbouring samples, along the axis where it is larger, in metres; for
     /// degrees as at the equator.
     pub(crate) fn spacing_m(&self) -> f64 {
         let c = self.crs_from_pixel.coefficients;
@@ -208,8 +207,8 @@ impl Source {
     }
 }
 
-/// The band with the heights: the only one beside an alpha band, or of several the one asked for. A
-/// raster with several is refused where none is asked for: which of them has heights is not to be
+/// The band with the heights: the only one besides an alpha band, or the requested one of several.
+/// Without a request, a raster with several bands is rejected: which of them has heights is not
 /// guessed.
 fn band_number(path: &Path, dataset: &Dataset, asked: Option<u32>) -> Result<usize, OpenDemError> {
     let count = dataset.raster_count();
@@ -221,7 +220,7 @@ fn band_number(path: &Path, dataset: &Dataset, asked: Option<u32>) -> Result<usi
     let bands = (1..=count).filter_map(|number| Some((number, dataset.rasterband(number).ok()?)));
     let of_values: Vec<_> = bands.filter(|(_, band)| !is_alpha(band)).collect();
     match (asked, of_values.as_slice()) {
-        // There is no band 0 of any file.
+        // No file has a band 0.
         (Some(asked), bands) if asked == 0 || bands.len() > 1 => match asked as usize {
             number if (1..=count).contains(&number) => Ok(number),
             _ => Err(OpenDemError::NoSuchBand { path: path.to_path_buf(), asked, count }),
@@ -241,7 +240,7 @@ fn band_number(path: &Path, dataset: &Dataset, asked: Option<u32>) -> Result<usi
     }
 }
 
-/// Refuses images: bands of colours are not heights. A palette is not a reason to refuse: DEMs can
+/// Rejects images: bands of colours are not heights. A palette is no reason to reject: DEMs can
 /// have one for display.
 fn refuse_imagery(path: &Path, dataset: &Dataset) -> Result<(), OpenDemError> {
     use ColorInterpretation as C;

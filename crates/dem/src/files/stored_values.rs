@@ -1,5 +1,5 @@
-//! From stored values to heights in metres, and the options that say how to understand a file where
-//! it does not say so itself.
+//! The conversion of stored values to heights in metres, and the options that describe files
+//! without metadata.
 
 use std::path::Path;
 
@@ -9,41 +9,42 @@ use gdal::raster::{GdalDataType, RasterBand};
 
 use crate::OpenDemError;
 
-/// Values beyond this are not heights: programs write ±3.4e38, 1e20 and the like for "nothing
-/// here", and the centre of the earth is only 6 400 km from sea level.
+/// Values beyond this are not heights: programs write ±3.4e38, 1e20 and similar values for voids,
+/// and the centre of the earth is only 6 400 km from sea level.
 const NO_HEIGHT_M: f64 = 1e7;
-/// The value for "nothing here" in the 16-bit files of SRTM, also where they do not declare it.
+/// The void value of 16-bit SRTM files, even if it is not declared.
 const SRTM_VOID: f64 = -32768.0;
-/// Units of a band and of its vertical CRS are the same within this: "ft" is often written for
-/// survey feet.
+/// Units of a band and of its vertical CRS within this relative difference are equal: "ft" is often
+/// written for survey feet.
 const SAME_UNIT: f64 = 1e-5;
 
-/// How an elevation file is to be understood where it does not say so itself.
+/// How to read an elevation file whose metadata are incomplete.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct OpenOptions {
-    /// Band with the heights, from 1 on, of the files that have several. `None` refuses those.
+    /// The band with the heights, counted from 1, of files that have several. `None` rejects such
+    /// files.
     pub band: Option<u32>,
-    /// CRS, "EPSG:n" or WKT, of the files that name none. A file that names one keeps it.
+    /// The CRS, "EPSG:n" or WKT, of files that name none. A file that names one keeps it.
     pub dem_crs: Option<String>,
-    /// The unit of heights, whatever bands and vertical CRSs say of it; `None` takes theirs, and
-    /// refuses a band's that is not known.
+    /// The unit of heights, regardless of bands and vertical CRSs; `None` uses their unit, and
+    /// rejects an unknown unit of a band.
     pub vertical_unit: Option<String>,
     /// Stored values that mean "no height", besides the one that the file declares.
     pub nodata: Vec<f64>,
-    /// Vertical CRS, "EPSG:n" or WKT, of the files that name none; with its unit and direction. A
+    /// The vertical CRS, "EPSG:n" or WKT, of files that name none, with its unit and direction. A
     /// file that names one keeps it.
     pub dem_vertical_crs: Option<String>,
-    /// The vertical CRS that heights are wanted in, "EPSG:n" or WKT; `None` leaves them as they
-    /// are.
+    /// The target vertical CRS of heights, "EPSG:n" or WKT; `None` leaves heights unchanged.
     ///
-    /// PROJ takes the best operation for which it has the grids; approximations without any are not
-    /// allowed. Where the grid of the best is not installed but that of a lesser one is, an older
-    /// model of the geoid say, PROJ takes the lesser one and does not tell. It is not asked for the
-    /// best alone, which GDAL can do since 3.8 only (PROJ since 9.2 has an environment variable for
-    /// it, `PROJ_ONLY_BEST_DEFAULT`). Instead [`crate::GridPlan::vertical`] records the offset
-    /// found at the centre, to the millimetre: runs with grids that differ there read differently.
+    /// PROJ uses the best operation for which it has the grids; approximations without grids are
+    /// not allowed. If the grid of the best operation is not installed but that of a worse one is,
+    /// such as an older geoid model, PROJ uses the worse one without a message. The build does not
+    /// request only the best operation, which GDAL supports since 3.8 (PROJ since 9.2 has an
+    /// environment variable for this, `PROJ_ONLY_BEST_DEFAULT`). Instead,
+    /// [`crate::GridPlan::vertical`] records the offset at the centre, to the millimetre: its text
+    /// differs between runs whose grids differ there.
     pub vertical_crs: Option<String>,
-    /// Added to every height, after all else, metres.
+    /// Metres that are added to every height at the end.
     pub vertical_shift_m: f64,
 }
 
@@ -51,27 +52,28 @@ pub struct OpenOptions {
 #[derive(Debug, Clone)]
 pub(crate) struct StoredValues {
     nodata: Vec<f64>,
-    /// Stored as 32-bit floats, so that sentinels are compared in that precision.
+    /// Whether values are stored as 32-bit floats, so that sentinels are compared in this
+    /// precision.
     is_f32: bool,
-    /// Bytes with a sign, which GDAL hands out without one.
+    /// Whether bytes are signed, which GDAL returns as unsigned.
     is_signed_byte: bool,
     scale: f64,
     offset: f64,
-    /// Metres upwards to a unit; negative for depths.
+    /// Metres upwards per unit; negative for depths.
     unit_m: f64,
-    /// GDAL gives a mask that says more than the sentinels.
+    /// Whether GDAL has a mask that goes beyond the sentinels.
     pub(crate) has_mask: bool,
 }
 
 impl StoredValues {
-    pub(crate) fn of(
+    pub(crate) fn from_band(
         path: &Path,
         (number, band): (usize, &RasterBand<'_>),
         vertical: Option<&VerticalCrs>,
         options: &OpenOptions,
     ) -> Result<Self, OpenDemError> {
         let kind = band.band_type();
-        // Complex numbers of all kinds are among the unknown here.
+        // Complex numbers of all kinds are among the unknown types here.
         if kind == GdalDataType::Unknown {
             return Err(OpenDemError::SampleType { path: path.to_path_buf(), band: number });
         }
@@ -95,13 +97,13 @@ impl StoredValues {
             scale,
             offset,
             unit_m: m_per_value(path, &band.unit(), vertical, options.vertical_unit.as_deref())?,
-            // Of the band's nodata and of some alpha bands GDAL makes masks too; looking ourselves
-            // is exact, and covers all types.
+            // GDAL also derives masks from the band's nodata value and from some alpha bands; the
+            // own comparison is exact, and covers all types.
             has_mask,
         })
     }
 
-    /// A stored value as text, with no more digits than the file has: the user may give it as the
+    /// A stored value as text, with no more digits than in the file: the user may pass it as the
     /// value for "no data".
     pub(crate) fn stored_text(&self, value: f64) -> String {
         match value {
@@ -111,12 +113,12 @@ impl StoredValues {
         }
     }
 
-    /// Metres between heights whose stored values are neighbouring whole numbers.
+    /// The difference in metres between heights whose stored values are consecutive whole numbers.
     pub(crate) fn m_per_whole(&self) -> f64 {
         (self.scale * self.unit_m).abs()
     }
 
-    /// Stored values to metres, in place; what is no height becomes NaN.
+    /// Converts stored values to metres, in place; values that are not heights become NaN.
     #[expect(clippy::float_cmp, reason = "a sentinel is one value, not a neighbourhood")]
     pub(crate) fn convert(&self, values: &mut [f64]) {
         for value in values {
@@ -124,7 +126,7 @@ impl StoredValues {
                 *value -= 256.0;
             }
             let is_sentinel = self.nodata.iter().any(|&sentinel| {
-                // A 32-bit file holds its sentinel rounded to 32 bits; its tag has all digits.
+                // A 32-bit file stores its sentinel rounded to 32 bits; its tag has all digits.
                 *value == sentinel || self.is_f32 && *value == f64::from(sentinel as f32)
             });
             let height_m = (*value * self.scale + self.offset) * self.unit_m;
@@ -134,19 +136,19 @@ impl StoredValues {
     }
 }
 
-/// The value that the file declares to mean nothing.
+/// The nodata value that the file declares.
 fn declared(band: &RasterBand<'_>, kind: GdalDataType) -> Option<f64> {
     match kind {
-        // GDAL keeps these apart, as not all of them are floating-point numbers; neither are the
-        // samples read.
+        // GDAL has separate functions for 64-bit integers, because not all of them fit into
+        // floating-point numbers, in which the samples are read.
         GdalDataType::Int64 => band.no_data_value_i64().map(|value| value as f64),
         GdalDataType::UInt64 => band.no_data_value_u64().map(|value| value as f64),
         _ => band.no_data_value(),
     }
 }
 
-/// Metres upwards to a value: by the unit that is given, by the band's, by the vertical CRS, or
-/// metres where none of them says.
+/// Metres upwards per unit of a value: from the given unit, the band's unit, the vertical CRS, or
+/// metres by default.
 fn m_per_value(
     path: &Path,
     band_unit: &str,
@@ -177,7 +179,7 @@ fn m_per_value(
     Ok(vertical.m_per_value())
 }
 
-/// Metres to a unit of length as raster bands name it.
+/// Metres per unit of length, as raster bands name the unit.
 fn unit_m(name: &str) -> Option<f64> {
     Some(match name.to_lowercase().as_str() {
         "m" | "metre" | "metres" | "meter" | "meters" => 1.0,

@@ -1,4 +1,4 @@
-//! Where a DEM's files lie, from positions along their sides and inside them.
+//! The extent of a DEM's files, from positions along their sides and inside them.
 
 use corniche_geom::{Bounds, Seam};
 use corniche_gis::{CrsError, CrsOperation};
@@ -7,13 +7,14 @@ use crate::OpenDemError;
 use crate::files::source::Source;
 use crate::mosaics::mosaic::{Mosaic, SampleRect};
 
-/// Positions along each side of a file. Between two of them a side bends by 1/4096 of its whole
-/// sagitta.
+/// The number of positions along each side of a file. Between two of them a side bends by 1/4096 of
+/// its whole sagitta.
 const SIDE_POSITIONS: usize = 65;
-/// Positions across the inside of a file, each way: a pole may lie there.
+/// The number of positions across the inside of a file, each way: a pole may be there.
 const INNER_POSITIONS: usize = 9;
 
-/// Positions of samples on the rim and inside of a rectangle: the rim first, all the way around.
+/// The positions of samples on the rim and inside of a rectangle: the rim first, all the way
+/// around.
 pub(crate) fn positions(mosaic: &Mosaic, rect: &SampleRect) -> Vec<[f64; 2]> {
     let north_west = rect.min.map(|index| index as f64);
     let south_east = rect.max.map(|index| (index - 1) as f64);
@@ -43,8 +44,8 @@ pub(crate) fn rim_and_inside([west, north]: [f64; 2], [east, south]: [f64; 2]) -
     samples
 }
 
-/// The rectangle around a file's samples in the CRS that `operation` leads to, the bend between rim
-/// positions included; empty where the CRS does not reach.
+/// The rectangle around a file's samples in the target CRS of `operation`, including the bend
+/// between rim positions; empty outside the CRS.
 pub(crate) fn bounds(
     mosaic: &Mosaic,
     rect: &SampleRect,
@@ -55,8 +56,8 @@ pub(crate) fn bounds(
     Ok(with_bend(&points))
 }
 
-/// The rectangle around images of [`rim_and_inside`], the bend between rim positions included;
-/// empty where there are none.
+/// The rectangle around images of [`rim_and_inside`], including the bend between rim positions;
+/// empty without images.
 pub(crate) fn with_bend(points: &[[f64; 2]]) -> Bounds {
     let mut bounds = Bounds::around(points);
     // The distance of a position from the straight line between its two neighbours is 4 times the
@@ -74,8 +75,9 @@ pub(crate) fn with_bend(points: &[[f64; 2]]) -> Bounds {
     bounds
 }
 
-/// Positions on the rim and inside of all files in WGS84, and the rectangle around them. Longitudes
-/// are continuous: across the antimeridian they go on beyond ±180. Refuses a file of which no
+/// The positions on the rim and inside of all files in WGS84, and the rectangle around them.
+/// Longitudes are continuous: across the antimeridian they continue beyond ±180. Rejects a file
+/// without any position on earth.
 /// position is on earth.
 pub(crate) fn wgs84(
     sources: &[Source],
@@ -85,7 +87,7 @@ pub(crate) fn wgs84(
     let mut all = Vec::new();
     let mut bounds = Bounds::EMPTY;
     for (mosaic, operation) in mosaics.iter().zip(operations) {
-        // Degrees of one grid belong together already: they are moved by the same turns.
+        // Degrees of one grid are continuous already: they are moved by the same turns.
         let degrees =
             mosaic.crs.turn_angle().map(|turn| (360.0 / turn, mosaic.middle()[0] * 360.0 / turn));
         let of_mosaic = degrees.map(|(_, middle_deg)| turns_beside(middle_deg, bounds));
@@ -124,22 +126,22 @@ pub(crate) fn wgs84(
     Ok((all, moved_back(bounds, away)))
 }
 
-/// Full turns by which a rectangle in degrees lies beyond ±180; none where a part of it lies
-/// within.
+/// The number of full turns by which a rectangle in degrees lies beyond ±180; none if a part of it
+/// lies within.
 pub(crate) fn turns_beyond(bounds: Bounds) -> f64 {
     let is_beyond = bounds.min_x >= 180.0 || bounds.max_x <= -180.0;
     if is_beyond { Seam::of_degrees().turns(bounds.center()[0]) } else { 0.0 }
 }
 
-/// A rectangle in degrees, so many full turns to the west.
+/// A rectangle in degrees, moved by full turns to the west.
 pub(crate) fn moved_back(bounds: Bounds, turns: f64) -> Bounds {
     let away = 360.0 * turns;
     Bounds { min_x: bounds.min_x - away, max_x: bounds.max_x - away, ..bounds }
 }
 
-/// Makes the longitudes of images of [`rim_and_inside`] continuous. Along the rim each is moved
-/// next to the one before it, which is near. Inside, each is moved next to the middle of the rim:
-/// neighbours in the list can be as far apart as the rectangle is wide.
+/// Makes the longitudes of images of [`rim_and_inside`] continuous. Along the rim each longitude is
+/// moved next to the previous one, which is near. Inside, each is moved next to the middle of the
+/// rim: neighbours in the list can be as far apart as the rectangle is wide.
 pub(crate) fn unwrap(points: &mut [[f64; 2]], seam: Seam) {
     let (rim, inside) = points.split_at_mut(4 * SIDE_POSITIONS);
     let is_somewhere = |point: &&mut [f64; 2]| point[0].is_finite();
@@ -154,8 +156,8 @@ pub(crate) fn unwrap(points: &mut [[f64; 2]], seam: Seam) {
     }
 }
 
-/// Full turns that a longitude is away from the middle of a rectangle; none from half a turn, and
-/// none from an empty one.
+/// The number of full turns between a longitude and the middle of a rectangle; none from half a
+/// turn, and none from an empty rectangle.
 fn turns_beside(lon_deg: f64, bounds: Bounds) -> f64 {
     if bounds.is_empty() {
         return 0.0;

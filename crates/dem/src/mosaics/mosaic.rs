@@ -1,5 +1,5 @@
-//! Files of one grid as one raster of samples: its rectangles, its spacing and phase without the
-//! rounding of the program that wrote the files.
+//! Mosaics: files of one grid as one raster of samples, with its rectangles, and its spacing and
+//! phase without the rounding of the program that wrote the files.
 
 use corniche_geom::{GeoTransform, Seam};
 use corniche_gis::Crs;
@@ -7,18 +7,20 @@ use corniche_gis::Crs;
 use crate::OpenDemError;
 use crate::files::source::Source;
 
-/// Grids are the same when, over the whole extent, their samples are no farther apart than this.
+/// Two grids are the same if their samples are no farther apart than this over the whole extent, in
+/// samples.
 const SAME_GRID_PX: f64 = 1e-3;
-/// After a full turn of longitude, samples may be this far from where they started, in samples.
+/// The tolerance for samples after a full turn of longitude, in samples.
 const SAME_PLACE_PX: f64 = 0.01;
 
-/// Numbers with few digits may move samples by this, over the whole extent, in cells.
+/// The largest shift of samples over the whole extent, in cells, when a spacing is replaced by a
+/// number with few digits.
 const NOISE_CELLS: f64 = 5e-4;
-/// Rounding of a grid's phase, in steps per unit: small enough that it removes only the noise in
-/// corner coordinates.
+/// The rounding of a grid's phase, in steps per unit: small enough that it removes only the noise
+/// in corner coordinates.
 const PHASE_STEPS: f64 = 1e6;
-/// The same in degrees, in steps per cell: degrees are written with fewer digits. Rounding moves
-/// nodes by half a step at most.
+/// The rounding of a phase in degrees, in steps per cell: degrees are written with fewer digits.
+/// Rounding moves nodes by at most half a step.
 const PHASE_STEPS_DEGREES: f64 = 1e4;
 
 /// A rectangle of samples: `min` inclusive, `max` exclusive, as `[column, row]`.
@@ -59,25 +61,26 @@ impl SampleRect {
 #[derive(Debug, Clone)]
 pub(crate) struct Mosaic {
     pub(crate) crs: Crs,
-    /// CRS position of a *sample* (its centre), in the order of [`GeoTransform`].
+    /// The map from a *sample* (its centre) to the CRS, in the order of [`GeoTransform`].
     pub(crate) crs_from_sample: GeoTransform,
-    /// First named first: it wins where files overlap.
-    pub(crate) files: Vec<Placed>,
-    /// First and one past the last sample, both axes.
+    /// The files; the first named has precedence where files overlap.
+    pub(crate) files: Vec<MosaicFile>,
+    /// The first and one past the last sample, on both axes.
     pub(crate) extent: SampleRect,
-    /// Columns all around the earth where that is a whole number: column c + `period` is column c.
+    /// The number of columns all around the earth, if it is a whole number: column c + `period` is
+    /// column c.
     period: Option<i64>,
 }
 
 /// A file in its mosaic.
 #[derive(Debug, Clone)]
-pub(crate) struct Placed {
-    /// Its place among all files of the DEM.
+pub(crate) struct MosaicFile {
+    /// The index among all files of the DEM.
     pub(crate) index: usize,
     pub(crate) rect: SampleRect,
 }
 
-/// Sorts files into mosaics, in the order in which their grids are first named.
+/// Groups files into mosaics, in the order in which their grids are first named.
 pub(crate) fn group(sources: &[Source]) -> Vec<Mosaic> {
     let mut mosaics: Vec<Mosaic> = Vec::new();
     for (index, source) in sources.iter().enumerate() {
@@ -87,12 +90,12 @@ pub(crate) fn group(sources: &[Source]) -> Vec<Mosaic> {
         let rect = |min: [i64; 2]| SampleRect { min, max: [min[0] + size[0], min[1] + size[1]] };
         if let Some((mosaic, min)) = place {
             mosaic.extent = mosaic.extent.union(&rect(min));
-            mosaic.files.push(Placed { index, rect: rect(min) });
+            mosaic.files.push(MosaicFile { index, rect: rect(min) });
         } else {
             mosaics.push(Mosaic {
                 crs: source.crs.clone(),
                 crs_from_sample: from_centres(&source.crs_from_pixel),
-                files: vec![Placed { index, rect: rect([0, 0]) }],
+                files: vec![MosaicFile { index, rect: rect([0, 0]) }],
                 extent: rect([0, 0]),
                 period: period(source),
             });
@@ -101,8 +104,8 @@ pub(crate) fn group(sources: &[Source]) -> Vec<Mosaic> {
     mosaics
 }
 
-/// How many columns make a full turn around the earth; `None` when this is not a whole number. A
-/// spacing that is written with few digits is read as the number that is meant.
+/// The number of columns in a full turn around the earth; `None` if it is not a whole number. A
+/// spacing that is written with few digits is read as the intended number.
 fn period(source: &Source) -> Option<i64> {
     let transform = &source.crs_from_pixel;
     let reach = source.columns.max(source.rows) as f64;
@@ -111,7 +114,7 @@ fn period(source: &Source) -> Option<i64> {
     (transform.is_axis_parallel() && is_whole).then_some(columns.round() as i64)
 }
 
-/// Refuses grids of a single row or column: ground lies between samples, and they enclose none.
+/// Rejects grids of a single row or column: ground lies between samples, and these enclose none.
 pub(crate) fn refuse_lines(sources: &[Source], mosaics: &[Mosaic]) -> Result<(), OpenDemError> {
     match mosaics.iter().find(|mosaic| mosaic.extent.columns() < 2 || mosaic.extent.rows() < 2) {
         Some(Mosaic { extent, files, .. }) => Err(OpenDemError::Line {
@@ -123,8 +126,8 @@ pub(crate) fn refuse_lines(sources: &[Source], mosaics: &[Mosaic]) -> Result<(),
     }
 }
 
-/// The same map from sample indices: sample (0, 0) lies at the centre of pixel (0, 0), half a pixel
-/// in.
+/// The same map from sample indices: sample (0, 0) is at the centre of pixel (0, 0), half a pixel
+/// inside.
 fn from_centres(crs_from_pixel: &GeoTransform) -> GeoTransform {
     let mut coefficients = crs_from_pixel.coefficients;
     [coefficients[0], coefficients[3]] = crs_from_pixel.crs_from_pixel([0.5, 0.5]);
@@ -132,14 +135,14 @@ fn from_centres(crs_from_pixel: &GeoTransform) -> GeoTransform {
 }
 
 impl Mosaic {
-    /// Whether it goes all around the earth with one sample in each cell: between its last column
-    /// and its first one there is ground, too.
+    /// Whether the mosaic covers a full turn with one sample in each cell: there is ground between
+    /// its last and its first column, too.
     pub(crate) fn is_ring(&self) -> bool {
         self.period == Some(self.extent.max[0] - self.extent.min[0])
     }
 
-    /// A rectangle of samples, such as a file's. One that reaches to the eastern end of a ring has
-    /// the ring's first column once more, so that the ring ends where it begins.
+    /// A rectangle of samples, such as that of a file. If it reaches the eastern end of a ring, the
+    /// ring's first column is added again, so that the ring ends where it begins.
     ///
     /// ```text
     ///   │ 0 │ 1 │ … │ 359 ┊ 0 ┊     A globe with cells of a degree: 360 columns of samples, 361 of nodes.
@@ -156,28 +159,28 @@ impl Mosaic {
         closed
     }
 
-    /// CRS position of the middle, of a closed ring where it is one.
+    /// The position of the middle in the CRS, of a closed ring if it is one.
     pub(crate) fn middle(&self) -> [f64; 2] {
         let SampleRect { min, max } = self.closed(&self.extent);
         let middle = [0, 1].map(|axis| (min[axis] + max[axis] - 1) as f64 / 2.0);
         self.crs_from_sample.crs_from_pixel(middle)
     }
 
-    /// The seam of the CRS around the middle; `None` where x never comes back.
+    /// The seam of the CRS around the middle; `None` if x never repeats.
     pub(crate) fn seam(&self) -> Option<Seam> {
         self.crs.turn.map(|turn| Seam::new(self.middle()[0], turn))
     }
 
     /// The samples that a position can refer to. A grid all around the earth repeats, so its
-    /// columns go on to both sides.
+    /// columns continue to both sides.
     pub(crate) fn reachable(&self) -> SampleRect {
         let around = self.period.unwrap_or(0);
         let SampleRect { min, max } = self.extent;
         SampleRect { min: [min[0] - around, min[1]], max: [max[0] + around, max[1]] }
     }
 
-    /// The rectangles within `rect` at which a file lies: its own first, then those one turn away.
-    pub(crate) fn images(&self, file: &Placed, rect: &SampleRect) -> Vec<SampleRect> {
+    /// The rectangles within `rect` that a file covers: its own first, then those one turn away.
+    pub(crate) fn images(&self, file: &MosaicFile, rect: &SampleRect) -> Vec<SampleRect> {
         let moved = |columns: i64| SampleRect {
             min: [file.rect.min[0] + columns, file.rect.min[1]],
             max: [file.rect.max[0] + columns, file.rect.max[1]],
@@ -189,7 +192,7 @@ impl Mosaic {
             .collect()
     }
 
-    /// Where the file's first sample lies on this grid; `None` when it is of another one.
+    /// The index of the file's first sample on this grid; `None` if the file has another grid.
     fn place(&self, source: &Source) -> Option<[i64; 2]> {
         let own = from_centres(&source.crs_from_pixel);
         let [columns, rows] = [source.columns, source.rows];
@@ -214,7 +217,7 @@ impl Mosaic {
 
 /// A spacing without the rounding of the program that wrote the file: a whole number of samples per
 /// unit (1/1200 of a degree), or a number of few decimal digits. If neither is near, the spacing
-/// stays as it is.
+/// stays unchanged.
 pub(crate) fn nice(spacing: f64, reach: f64) -> f64 {
     let is_noise = |nice: f64| (nice - spacing).abs() * reach <= NOISE_CELLS * spacing;
     let digits = rounded(spacing, 9);
@@ -225,7 +228,7 @@ pub(crate) fn nice(spacing: f64, reach: f64) -> f64 {
         .unwrap_or(spacing)
 }
 
-/// Where samples lie between two multiples of their spacing, so that adjoining files of one product
+/// The offset of samples from multiples of their spacing, so that adjoining files of one product
 /// have the same grid.
 pub(crate) fn phase(at: f64, spacing: f64, is_degrees: bool) -> f64 {
     let (unit, steps) =
@@ -235,7 +238,7 @@ pub(crate) fn phase(at: f64, spacing: f64, is_degrees: bool) -> f64 {
     if spacing - phase < 0.5 * unit / steps { 0.0 } else { phase }
 }
 
-/// A number rounded to so many significant decimal digits.
+/// A number rounded to a number of significant decimal digits.
 pub(crate) fn rounded(value: f64, digits: usize) -> f64 {
     format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
 }

@@ -1,4 +1,4 @@
-//! The samples of a mosaic, read from files that are kept open.
+//! Reads the samples of a mosaic from files that are kept open.
 
 use corniche_gis::{FileUse, OpenRasters, RasterError};
 use gdal::Dataset;
@@ -7,7 +7,7 @@ use crate::ReadHeightsError;
 use crate::files::source::Source;
 use crate::mosaics::mosaic::{Mosaic, SampleRect};
 
-/// Files kept open by one reader.
+/// The files kept open by one reader.
 #[derive(Default)]
 pub(crate) struct OpenFiles {
     open: OpenRasters,
@@ -15,8 +15,8 @@ pub(crate) struct OpenFiles {
 }
 
 impl OpenFiles {
-    /// The samples of `rect`, row by row, in metres, NaN where no file has one. A void of the first
-    /// file falls through to the next.
+    /// The samples of `rect`, row by row, in metres; NaN where no file has one. A void of the first
+    /// file is taken from the next.
     pub(crate) fn read(
         &mut self,
         sources: &[Source],
@@ -51,7 +51,7 @@ impl OpenFiles {
         Ok(())
     }
 
-    /// A file, opened if need be.
+    /// A file, which is opened if necessary.
     pub(crate) fn dataset(
         &mut self,
         index: usize,

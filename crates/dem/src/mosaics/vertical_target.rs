@@ -1,5 +1,4 @@
-//! One vertical CRS for the heights of all files: the one that is asked for, or the one that they
-//! agree on.
+//! The vertical CRS of all heights: the requested one, or the one on which the files agree.
 
 use std::path::Path;
 
@@ -16,19 +15,19 @@ use crate::files::stored_values::OpenOptions;
 /// 20 km.
 const MAX_SHIFT_M: f64 = 100_000.0;
 
-/// What the heights that a DEM hands out are measured from.
+/// The vertical reference of a DEM's heights.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct HeightReference {
-    /// The vertical CRS or its datum, where files or options name one.
+    /// The vertical CRS or its datum, if files or options name one.
     pub(crate) datum: Option<String>,
-    /// What was done to the files' heights, in words.
+    /// The conversion of the files' heights, in words.
     pub(crate) conversion: String,
 }
 
-/// The operation that carries a file's heights from one vertical CRS to another; and the offset it
-/// gives, in words.
+/// The operation that converts a file's heights from one vertical CRS to another, and its offset,
+/// in words.
 ///
-/// PROJ must know a true operation: its "ballpark" ones, which leave heights as they are where a
+/// PROJ must know a true operation: its "ballpark" operations, which leave heights unchanged if a
 /// grid is missing, are not allowed.
 fn height_operation(
     source: &Source,
@@ -37,7 +36,7 @@ fn height_operation(
     center_deg: [f64; 2],
 ) -> Result<(HeightOperation, String), HeightDatumError> {
     for vertical in [from, to] {
-        // PROJ skips a grid marked so when it is missing, and leaves heights as they are.
+        // PROJ skips a missing grid that is marked in this way, and leaves heights unchanged.
         if let Some(grids) = vertical.grids().filter(|grids| grids.contains('@')) {
             return Err(HeightDatumError::OptionalGeoidGrid { grids });
         }
@@ -45,7 +44,7 @@ fn height_operation(
     let found = HeightOperation::new(&source.crs, [from, to], area_deg);
     let mut center = [center_deg];
     CrsOperation::new(&Crs::wgs84()?, &source.crs, Some(area_deg)).apply(&mut center)?;
-    // A missing grid shows when the operation is made, or in that nothing has an image.
+    // A missing grid causes an error when the operation is created, or all images are missing.
     forget();
     let points: Vec<[f64; 2]> = center.into_iter().chain(probes(source)).collect();
     let mut offsets_m = vec![0.0; points.len()];
@@ -60,7 +59,7 @@ fn height_operation(
         return Err(no_operation(source, [from, to], None));
     }
     let at = offsets_m.iter().position(|offset_m| !offset_m.is_nan()).unwrap_or_default();
-    // Whole millimetres; adding 0.0 turns −0.0 into 0.0.
+    // Rounded to whole millimetres; adding 0.0 turns −0.0 into 0.0.
     let offset_m = (offsets_m[at] * to.m_per_value() * 1000.0).round() / 1000.0 + 0.0;
     let place = match (at, points[at]) {
         (0, _) => "the centre".to_owned(),
@@ -82,8 +81,8 @@ fn probes(source: &Source) -> impl Iterator<Item = [f64; 2]> {
     })
 }
 
-/// Why PROJ cannot carry heights. PROJ does not say what is missing; only a grid that is named as a
-/// file can be looked for.
+/// The error for heights that PROJ cannot convert. PROJ does not say what is missing; only a grid
+/// that is named as a file can be searched for.
 fn no_operation(
     source: &Source,
     systems: [&VerticalCrs; 2],
@@ -101,11 +100,11 @@ fn no_operation(
     if !gone.is_empty() {
         return HeightDatumError::NoGeoidGrid { path, from, to, grids: gone.join(", ") };
     }
-    let grids = grids.map_or("PROJ does not say which".to_owned(), |all| all.replace(',', ", "));
+    let grids = grids.map_or("PROJ does not name it".to_owned(), |all| all.replace(',', ", "));
     HeightDatumError::VerticalOperation { path, from, to, grids, source: reason }
 }
 
-/// Decides which vertical CRS the heights get, and prepares the files for it.
+/// Decides on the vertical CRS of the heights, and prepares the files for it.
 pub(crate) fn resolve(
     sources: &mut [Source],
     options: &OpenOptions,
@@ -132,14 +131,14 @@ pub(crate) fn resolve(
     Ok(heights)
 }
 
-/// All files to one vertical CRS.
+/// Converts all files to one vertical CRS.
 fn carry(
     sources: &mut [Source],
     target: &VerticalCrs,
     area_deg: Bounds,
     center_deg: [f64; 2],
 ) -> Result<HeightReference, HeightDatumError> {
-    // What was done, and the offset in the first file to which it was done.
+    // The conversions, and the offset in the first file with each.
     let mut texts: Vec<[String; 2]> = Vec::new();
     for source in sources.iter_mut() {
         let Some(own) = source.vertical.clone() else {
@@ -184,7 +183,7 @@ fn carry(
     Ok(HeightReference { datum: Some(target.label()), conversion: words.join("; ") })
 }
 
-/// Heights as they are, when all files say the same of them.
+/// Keeps heights unchanged, if all files agree on their vertical CRS.
 fn agree(sources: &[Source]) -> Result<HeightReference, HeightDatumError> {
     let Some(first) = sources.first() else { return Ok(HeightReference::default()) };
     let is_other = |source: &&Source| match (&first.vertical, &source.vertical) {

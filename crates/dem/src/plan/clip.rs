@@ -1,36 +1,36 @@
-//! The part of a DEM that is asked for: bounds in degrees to a rectangle of nodes, and to the
-//! samples that these need.
+//! Clips a DEM to the requested part: bounds in degrees become a rectangle of nodes, and one of the
+//! samples that these nodes need.
 //!
-//! Working CRS, cell, phase and scale are chosen from the whole DEM before; bounds only say which
-//! of its nodes are made.
+//! Working CRS, cell, phase and scale are chosen from the whole DEM before; bounds only select
+//! nodes.
 
 use std::sync::Arc;
 
 use corniche_geom::{Bounds, Cell, GridFrame, MAX_LATTICE_STEPS, NodeIndex, Seam};
-use corniche_gis::{Crs, CrsError, CrsOperation, GridCrs, Polygon, PolygonError};
+use corniche_gis::{Crs, CrsError, CrsOperation, GridCrs, PolygonError, RegionPolygons};
 
 use crate::mosaics::data_extent::{moved_back, rim_and_inside, turns_beyond, unwrap, with_bend};
-use crate::mosaics::mosaic::{Mosaic, Placed, SampleRect};
+use crate::mosaics::mosaic::{Mosaic, MosaicFile, SampleRect};
 use crate::plan::grid_plan::{GridPlan, Method, MosaicRole, PlanOptions};
-use crate::plan::layout::Layout;
+use crate::plan::layout::{Layout, corner_nodes};
 use crate::{Dem, GridError};
 
-/// Bounds this close to a node, in cells, end at it: what is left of rounding in transformations.
+/// Bounds this close to a node, in cells, end at the node: the rounding error of transformations.
 const ON_NODE: f64 = 1e-6;
-/// Room around the data, as a share of their size and in degrees.
+/// The margin around the data, relative to their size and in degrees.
 const ROOM: f64 = 0.01;
 const LEAST_ROOM_DEG: f64 = 1e-3;
-/// Samples around those under the nodes asked for, against rounding.
+/// The margin around the samples under the requested nodes, against rounding.
 const AROUND_SAMPLES: i64 = 2;
 
 /// Bounds in WGS84 degrees (west, south, east, north) as a rectangle of nodes, its south-western
 /// and north-eastern one, rounded outwards. They may reach beyond the data. `area_deg` is the
 /// rectangle for which PROJ chooses its operation.
 ///
-/// In a projected CRS it is the rectangle around the bounds' image, which is bent.
+/// In a projected CRS, the result is the rectangle around the bounds' image, which is curved.
 ///
 /// # Errors
-/// When the bounds have no place in the CRS.
+/// When the bounds have no position in the CRS.
 pub fn nodes_within(
     bounds_deg: [f64; 4],
     working: &GridCrs,
@@ -43,7 +43,7 @@ pub fn nodes_within(
     let operation = CrsOperation::into_working(&Crs::wgs84()?, working, Some(area_deg));
     operation.around(None).apply(&mut points)?;
     if let Some(seam_m) = working.seam_m() {
-        // The whole rectangle lies where the data's middle is near.
+        // The whole rectangle is moved next to the middle of the data.
         unwrap(&mut points, seam_m);
         let away = seam_m.turns(with_bend(&points).center()[0]);
         for point in &mut points {
@@ -61,27 +61,27 @@ pub fn nodes_within(
 /// A rectangle in working metres as a rectangle of nodes, rounded outwards.
 fn nodes_around(bounds_m: Bounds, origin_m: [f64; 2], cell: Cell) -> [NodeIndex; 2] {
     // The limit keeps the conversion to integers within what a frame can have.
-    let cells = |metres: f64, axis: usize| {
-        ((metres - origin_m[axis]) / cell.to_array()[axis]).clamp(-1e15, 1e15)
-    };
-    let (low, high) =
-        (|at: f64| (at + ON_NODE).floor() as i64, |at: f64| (at - ON_NODE).ceil() as i64);
-    [
-        NodeIndex { i: low(cells(bounds_m.min_x, 0)), j: low(cells(bounds_m.min_y, 1)) },
-        NodeIndex { i: high(cells(bounds_m.max_x, 0)), j: high(cells(bounds_m.max_y, 1)) },
-    ]
+    corner_nodes(
+        bounds_m,
+        origin_m,
+        cell,
+        [
+            |cells| (cells.clamp(-1e15, 1e15) + ON_NODE).floor(),
+            |cells| (cells.clamp(-1e15, 1e15) - ON_NODE).ceil(),
+        ],
+    )
 }
 
-/// What of a DEM is asked for: the nodes, and how the user asked.
-pub(crate) struct Asked {
+/// The requested part of a DEM: the nodes, and the text of the request.
+pub(crate) struct RequestedArea {
     pub(crate) nodes: [NodeIndex; 2],
     text: String,
     bounds_deg: Option<[f64; 4]>,
 }
 
-impl Asked {
-    /// What bounds and polygon have in common; `None` where neither is given.
-    pub(crate) fn of(
+impl RequestedArea {
+    /// The intersection of bounds and polygon; `None` if neither is given.
+    pub(crate) fn from_options(
         options: &PlanOptions,
         layout: &Layout,
         area_deg: Bounds,
@@ -96,7 +96,7 @@ impl Asked {
         if let Some(polygon) = &options.polygon {
             let bounds = working.polygon_bounds_m(polygon, area_deg, cell.shorter_m())?;
             let own = nodes_around(bounds, *origin_m, *cell);
-            let text = format!("--polygon {}", polygon.path().display());
+            let text = format!("--polygon {:?}", polygon.path());
             asked = Some(match asked {
                 Some(bounds) => Self {
                     nodes: common(bounds.nodes, own),
@@ -110,7 +110,7 @@ impl Asked {
     }
 }
 
-/// The same nodes, as far as they are on the lattice.
+/// The same nodes, limited to the lattice.
 pub(crate) fn on_lattice(frame: &GridFrame, nodes: [NodeIndex; 2]) -> [NodeIndex; 2] {
     let [most_i, most_j] =
         frame.node_steps(frame.max_level()).map(|steps| MAX_LATTICE_STEPS / steps);
@@ -120,13 +120,13 @@ pub(crate) fn on_lattice(frame: &GridFrame, nodes: [NodeIndex; 2]) -> [NodeIndex
     })
 }
 
-/// West, south, east and north, the east beyond 180° where the bounds cross it.
+/// West, south, east and north; the east is beyond 180° if the bounds cross the antimeridian.
 fn continuous([west, south, east, north]: [f64; 4]) -> [f64; 4] {
     [west, south, if west > east { east + 360.0 } else { east }, north]
 }
 
-/// Bounds that go around the whole earth leave out nothing along the longitude: they are those of
-/// the data there, with some room on all sides. Others stay.
+/// Bounds that go around the whole earth clip nothing along the longitude: they become the bounds
+/// of the data there, with a margin on all sides. Other bounds stay unchanged.
 fn around_the_earth_as(area_deg: Bounds, [west, south, east, north]: [f64; 4]) -> [f64; 4] {
     if east - west < 360.0 {
         return [west, south, east, north];
@@ -134,7 +134,7 @@ fn around_the_earth_as(area_deg: Bounds, [west, south, east, north]: [f64; 4]) -
     let room = |size_deg: f64| ROOM * size_deg + LEAST_ROOM_DEG;
     let aside = room(area_deg.width()).min((360.0 - area_deg.width()) / 2.0).max(0.0);
     let up = room(area_deg.height());
-    // Farther to the north and the south than data the working CRS may end.
+    // Farther north and south than the data, the working CRS may end.
     let [low, high] = [(area_deg.min_y - up).max(-90.0), (area_deg.max_y + up).min(90.0)];
     let is_beside = north <= low || south >= high;
     let [south, north] =
@@ -142,25 +142,25 @@ fn around_the_earth_as(area_deg: Bounds, [west, south, east, north]: [f64; 4]) -
     [area_deg.min_x - aside, south, area_deg.max_x + aside, north]
 }
 
-/// Bounds as they are given on the command line.
+/// Bounds as given on the command line.
 fn bounds_text(bounds_deg: [f64; 4]) -> String {
     bounds_deg.map(|deg| deg.to_string()).join(",")
 }
 
-/// The nodes of `whole` that are asked for. Fails where that is no cell, or where the bounds lie on
-/// both ends of data that go around the earth.
+/// The requested nodes of `whole`. Fails if these have no cell, or if the bounds lie at both ends
+/// of data that go around the earth.
 pub(crate) fn cut(
-    asked: &Asked,
+    asked: &RequestedArea,
     whole: [NodeIndex; 2],
     around_the_earth: Option<i64>,
     dem: &Dem,
 ) -> Result<[NodeIndex; 2], GridError> {
-    let Asked { nodes: asked, text, bounds_deg } = asked;
+    let RequestedArea { nodes: asked, text, bounds_deg } = asked;
     let common = common(*asked, whole);
     let has_cell = |[low, high]: [NodeIndex; 2]| low.i < high.i && low.j < high.j;
     if let Some(columns) = around_the_earth {
         let moved = |by: i64| asked.map(|node| NodeIndex { i: node.i + by, j: node.j });
-        // One column of cells at both ends comes of rounding.
+        // One column of cells at both ends is a rounding error.
         let is_at_other_end = |by: i64| {
             let [low, high] = self::common(moved(by), whole);
             high.i - low.i > 1 && low.j < high.j
@@ -181,7 +181,7 @@ pub(crate) fn cut(
     Err(GridError::BoundsBesideData { asked: text.clone(), west, south, east, north, swapped })
 }
 
-/// The rectangle of nodes that two have in common; its corners change places where there is none.
+/// The rectangle of nodes that two rectangles share; its corners are swapped if they share none.
 pub(crate) fn common(a: [NodeIndex; 2], b: [NodeIndex; 2]) -> [NodeIndex; 2] {
     [
         NodeIndex { i: a[0].i.max(b[0].i), j: a[0].j.max(b[0].j) },
@@ -190,7 +190,7 @@ pub(crate) fn common(a: [NodeIndex; 2], b: [NodeIndex; 2]) -> [NodeIndex; 2] {
 }
 
 /// The rectangle in WGS84 degrees around a rectangle of nodes; across the antimeridian longitudes
-/// go on beyond ±180, as those of the whole DEM do.
+/// continue beyond ±180, like those of the whole DEM.
 pub(crate) fn wgs84_bounds(
     data: Bounds,
     working: &GridCrs,
@@ -217,8 +217,8 @@ pub(crate) fn wgs84_bounds(
     Ok(moved_back(bounds, turns_beyond(bounds)))
 }
 
-/// The samples of a mosaic that the plan's nodes depend on, voids to fill included: all of them
-/// without bounds.
+/// The samples of a mosaic on which the plan's nodes depend, including those for filling voids: all
+/// samples without bounds.
 pub(crate) fn needed_samples(
     plan: &GridPlan,
     mosaic: &Mosaic,
@@ -241,7 +241,7 @@ pub(crate) fn needed_samples(
         Method::Resampled(positions, kernel) => {
             let Bounds { min_x, min_y, max_x, max_y } = plan.frame.node_bounds_m(nodes);
             let mut points = rim_and_inside([min_x, max_y], [max_x, min_y]);
-            positions.samples_of(&mut points)?;
+            positions.transform(&mut points)?;
             let bounds = with_bend(&points);
             if bounds.is_empty() {
                 return Ok(mosaic.reachable());
@@ -262,8 +262,8 @@ pub(crate) fn needed_samples(
 }
 
 impl Dem {
-    /// Tells for each file, in the order in which they were given, whether the plan's nodes can
-    /// depend on its samples. Files outside the plan's bounds were looked into for the grid alone.
+    /// Tells for each file, in the given order, whether the plan's nodes can depend on its samples.
+    /// Other files, outside the plan's bounds, were opened only to choose the grid.
     ///
     /// # Errors
     /// When PROJ fails.
@@ -279,10 +279,10 @@ impl Dem {
     }
 }
 
-/// The parts of a file, in its own pixels, that lie in a rectangle of its mosaic's samples.
+/// The parts of a file, in its own pixels, within a rectangle of its mosaic's samples.
 pub(crate) fn parts_of_file(
     mosaic: &Mosaic,
-    file: &Placed,
+    file: &MosaicFile,
     needed: &SampleRect,
 ) -> Vec<SampleRect> {
     mosaic
@@ -299,18 +299,18 @@ pub(crate) fn parts_of_file(
 }
 
 impl GridPlan {
-    /// This plan with all nodes of the elevation files, whatever was asked of them.
+    /// This plan with all nodes of the elevation files, without bounds and polygon.
     #[must_use]
     pub fn of_whole_data(&self) -> Self {
         Self { clip: None, polygon: None, ..self.clone() }
     }
 
-    /// This plan, without the nodes that are not corners of cells which the polygon enters. Its
+    /// This plan, without the nodes that are not corners of cells that the polygon touches. Its
     /// bounds stay.
     ///
     /// # Errors
-    /// When the polygon has no place in the working CRS, or encloses nothing.
-    pub fn within(mut self, polygon: &Polygon) -> Result<Self, PolygonError> {
+    /// When the polygon has no position in the working CRS, or encloses no area.
+    pub fn within(mut self, polygon: &RegionPolygons) -> Result<Self, PolygonError> {
         let region = self.working.polygon_on_lattice(polygon, self.area_deg(), &self.frame)?;
         self.polygon = Some(Arc::new(region));
         Ok(self)

@@ -1,11 +1,11 @@
-//! How positions of all files and of the roads come to the datum of a package, and which of these
-//! ways a build must be allowed to take.
+//! The datum operations for all files and for the roads, and the check whether a build may use
+//! them.
 
 use std::path::PathBuf;
 
 use corniche_geom::Bounds;
 use corniche_gis::{
-    Crs, CrsError, CrsOperation, DatumOperation, FileDatums, GridCrs, PlacedRaster, Polygon,
+    Crs, CrsError, CrsOperation, DatumOperation, FileDatums, GridCrs, PlacedRaster, RegionPolygons,
     by_system,
 };
 
@@ -13,7 +13,7 @@ use crate::mosaics::data_extent;
 use crate::{Dem, GridPlan};
 
 /// Operations between the datum of each file, that of the working CRS and WGS84, each once; `data`
-/// is the rectangle of all nodes. None where all datums are that of WGS84.
+/// is the rectangle of all nodes. Empty if all datums are that of WGS84.
 pub(crate) fn datum_operations(
     dem: &Dem,
     working: &GridCrs,
@@ -43,12 +43,12 @@ pub(crate) fn datum_operations(
 }
 
 impl Dem {
-    /// Refuses a plan for which one datum is taken for another, because PROJ knows nothing between
-    /// them: roads would lie 100 m and more beside the ground. Datums on the ellipsoid of WGS84 are
-    /// not refused.
+    /// Rejects a plan that treats one datum as another, because PROJ knows no transformation
+    /// between them: roads would be 100 m or more off the ground. Datums on the ellipsoid of WGS84
+    /// are accepted.
     ///
     /// # Errors
-    /// [`CrsError::Ballpark`] where it is so.
+    /// [`CrsError::Ballpark`] for such a plan.
     pub fn refuse_ballpark(&self, plan: &GridPlan) -> Result<(), CrsError> {
         let Some(refused) = plan.datum_operations.iter().find(|found| found.must_be_allowed) else {
             return Ok(());
@@ -59,13 +59,12 @@ impl Dem {
         };
         let path: Option<PathBuf> =
             has_it(&refused.record.from).or_else(|| has_it(&refused.record.to));
-        Err(refused
-            .refusal(path.map_or_else(|| "--crs".to_owned(), |path| path.display().to_string())))
+        Err(refused.refusal(path.map_or_else(|| "--crs".to_owned(), |path| format!("{path:?}"))))
     }
 }
 
 impl GridPlan {
-    /// How rasters such as photos come to the datum of the grid.
+    /// The datum operations from rasters, such as photos, to the grid.
     pub fn datums_of_rasters<'a>(
         &self,
         rasters: impl Iterator<Item = &'a PlacedRaster>,
@@ -74,9 +73,9 @@ impl GridPlan {
         FileDatums::into_working(files, &self.working, self.area_deg())
     }
 
-    /// How a polygon comes to the datum of the grid.
+    /// The datum operations from a polygon to the grid.
     #[must_use]
-    pub fn datums_of_polygon(&self, polygon: &Polygon) -> FileDatums {
+    pub fn datums_of_polygon(&self, polygon: &RegionPolygons) -> FileDatums {
         let files = polygon.systems().map(|crs| (crs, polygon.path()));
         FileDatums::into_working(files, &self.working, self.area_deg())
     }

@@ -1,14 +1,14 @@
-//! How nodes relate to samples, in words.
+//! A description of how nodes relate to samples.
 
 use corniche_gis::first_names;
 
 use crate::Dem;
-use crate::mosaics::mosaic::{Mosaic, Placed};
+use crate::mosaics::mosaic::{Mosaic, MosaicFile};
 use crate::plan::grid_plan::{Method, MosaicRole};
 use crate::plan::kernel::Alignment;
 
-/// How nodes relate to samples. One grid is "the DEM"; of several each names its files, the first
-/// named first.
+/// Describes how nodes relate to samples. A single grid is "the DEM"; of several grids each names
+/// its files, in the given order.
 pub(crate) fn describe(dem: &Dem, roles: &[MosaicRole]) -> String {
     let is_one = dem.mosaics.len() == 1;
     let mut texts: Vec<String> = Vec::new();
@@ -27,7 +27,7 @@ pub(crate) fn describe(dem: &Dem, roles: &[MosaicRole]) -> String {
             Method::Resampled(positions, kernel) => {
                 let how = if kernel.is_average() { "area average of" } else { "bilinear between" };
                 let the = if is_one { "" } else { "the " };
-                let step = positions.step();
+                let step = positions.step;
                 let exact = if step == 1 {
                     "every node transformed".to_owned()
                 } else {
@@ -41,7 +41,7 @@ pub(crate) fn describe(dem: &Dem, roles: &[MosaicRole]) -> String {
     texts.join("; where those have no data: ")
 }
 
-/// Files on other grids than the first one's, whose samples are nodes, and the first one.
+/// Files on other grids than the first one's, whose samples are nodes, and the first file.
 pub(crate) fn resampled_onto_first(dem: &Dem, roles: &[MosaicRole]) -> Option<[String; 2]> {
     let is_resampled = |role: &MosaicRole| matches!(role.method, Method::Resampled(..));
     let (_, others) = roles.split_first().filter(|(first, _)| !is_resampled(first))?;
@@ -56,7 +56,7 @@ pub(crate) fn resampled_onto_first(dem: &Dem, roles: &[MosaicRole]) -> Option<[S
 
 /// The names of a mosaic's files, without folders.
 fn names(dem: &Dem, mosaic: &Mosaic) -> String {
-    let name = |file: &Placed| {
+    let name = |file: &MosaicFile| {
         let path = &dem.sources[file.index].path;
         path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
     };

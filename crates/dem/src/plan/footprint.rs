@@ -1,4 +1,4 @@
-//! Where files have samples, grid by grid, and between which nodes.
+//! The extents of files, grid by grid, in samples and in nodes.
 
 use corniche_geom::NodeIndex;
 use corniche_gis::{CrsError, CrsOperation};
@@ -7,23 +7,24 @@ use crate::mosaics::data_extent;
 use crate::mosaics::mosaic::Mosaic;
 use crate::plan::clip::common;
 use crate::plan::grid_plan::Method;
+use crate::plan::layout::corner_nodes;
 use crate::{Dem, GridPlan};
 
-/// The samples of the files that lie on one grid.
+/// The extents of the files on one grid.
 pub struct Footprint<'a> {
     /// For each file its first and its last sample: column, row. On a grid all around the earth,
-    /// one more column closes it.
+    /// one more column closes the ring.
     pub rects: Vec<[[i64; 2]; 2]>,
     mosaic: &'a Mosaic,
     working_from_crs: &'a CrsOperation,
 }
 
 impl Dem {
-    /// The south-western and the north-eastern node of each file, between which it can have data,
-    /// within the plan's. Files that have no node between their samples there are left out.
+    /// For each file, the south-western and the north-eastern node between which it can have data,
+    /// within the plan's nodes. Files without a node between their samples are omitted.
     ///
     /// # Errors
-    /// When a file's place cannot be transformed.
+    /// When a file's position cannot be transformed.
     pub fn file_nodes(&self, plan: &GridPlan) -> Result<Vec<[NodeIndex; 2]>, CrsError> {
         let mut found = Vec::new();
         for (mosaic, role) in self.mosaics.iter().zip(&plan.roles.0) {
@@ -33,15 +34,8 @@ impl Dem {
                     Method::Resampled(..) => {
                         let bounds =
                             data_extent::bounds(mosaic, &file.rect, &role.working_from_crs)?;
-                        let (origin_m, cell_m) =
-                            (plan.frame.origin_m(), plan.frame.cell().to_array());
-                        let cells =
-                            |metres: f64, axis: usize| (metres - origin_m[axis]) / cell_m[axis];
-                        let corner = |x: f64, y: f64| NodeIndex { i: x as i64, j: y as i64 };
-                        [
-                            corner(cells(bounds.min_x, 0).ceil(), cells(bounds.min_y, 1).ceil()),
-                            corner(cells(bounds.max_x, 0).floor(), cells(bounds.max_y, 1).floor()),
-                        ]
+                        let (origin_m, cell) = (plan.frame.origin_m(), plan.frame.cell());
+                        corner_nodes(bounds, origin_m, cell, [f64::ceil, f64::floor])
                     }
                 };
                 let [south_west, north_east] = common(own, [plan.south_west, plan.north_east]);
@@ -53,7 +47,7 @@ impl Dem {
         Ok(found)
     }
 
-    /// Where its files have samples. Those of several grids may overlap.
+    /// The extents of the DEM's files. Those of several grids may overlap.
     #[must_use]
     pub fn footprints<'a>(&'a self, plan: &'a GridPlan) -> Vec<Footprint<'a>> {
         let of_mosaic = |mosaic: &'a Mosaic| {
@@ -74,8 +68,8 @@ impl Dem {
 }
 
 impl Footprint<'_> {
-    /// Carries places among the samples (column, row) to working metres; those without a place
-    /// there become NaN.
+    /// Transforms positions among the samples (column, row) to working metres; positions without an
+    /// image become NaN.
     ///
     /// # Errors
     /// When PROJ fails.

@@ -1,16 +1,16 @@
-//! How nodes get heights from samples: they are samples, or lie between some: bilinear, or area
-//! averages where a cell holds several.
+//! The heights of nodes from samples: nodes are samples, or lie between samples; then heights are
+//! bilinear, or area averages if a cell contains several samples.
 
 use corniche_geom::NodeIndex;
 
 use crate::mosaics::mosaic::SampleRect;
 
-/// A position this close to a sample, in samples, is on it: what is left of rounding in
+/// A position this close to a sample, in samples, is on the sample: the rounding error of
 /// transformations.
 const ON_SAMPLE: f64 = 1e-6;
-/// Averaging starts where a cell is as wide as this many samples.
+/// The cell width, in samples, from which heights are averaged.
 const AVERAGE_FROM: f64 = 2.0;
-/// A node has a height when samples of at least this weight do.
+/// A node has a height if samples of at least this weight have heights.
 const LEAST_WEIGHT: f64 = 0.5;
 /// Samples with a smaller variance than this, in samples squared, do not determine a plane.
 const LEAST_SPREAD: f64 = 1e-3;
@@ -26,7 +26,7 @@ pub(crate) struct Alignment {
 }
 
 impl Alignment {
-    /// The samples under the nodes between two.
+    /// The samples under the nodes between two nodes.
     pub(crate) fn samples(&self, nodes: [NodeIndex; 2]) -> SampleRect {
         let [a, b] = nodes.map(|node| self.sample(node));
         let min = [0, 1].map(|axis| a[axis].min(b[axis]));
@@ -56,17 +56,17 @@ impl Alignment {
 
 /// How heights at nodes come from samples.
 ///
-/// Along each axis on its own: below two samples to a cell, linear between the two nearest samples;
-/// from two on, the mean of that linear interpolant over the cell's width. Both reproduce planes
-/// exactly.
+/// Each axis is treated separately: below two samples per cell, linear between the two nearest
+/// samples; from two on, the mean of this linear interpolant over the cell's width. Both reproduce
+/// planes exactly.
 ///
-/// A linear node without all its samples of positive weight is void. An averaged node is void when
-/// less than half of the weight has data; with some missing, the plane that fits the rest best
-/// (weighted least squares), taken at the node, replaces the mean, which would be that of another
-/// place.
+/// A linear node without all its samples of positive weight is void. An averaged node is void if
+/// less than half of the weight has data; if some samples are missing, the height of the
+/// best-fitting plane through the others (weighted least squares) at the node replaces the mean,
+/// which would be the mean at another position.
 #[derive(Debug, Clone)]
 pub(crate) struct Kernel {
-    /// Width of the average in samples, columns and rows; 0 is linear.
+    /// The width of the average in samples, columns and rows; 0 is linear.
     width: [f64; 2],
 }
 
@@ -79,18 +79,18 @@ struct AxisWeights {
 
 /// Buffers that a reader keeps between nodes.
 #[derive(Debug, Default)]
-pub(crate) struct Scratch {
+pub(crate) struct KernelBuffers {
     columns: AxisWeights,
     rows: AxisWeights,
 }
 
-/// Samples of a rectangle, row by row, NaN where there is none.
-pub(crate) struct Samples<'a> {
+/// The samples of a rectangle, row by row; NaN for voids.
+pub(crate) struct SampleRectangle<'a> {
     pub(crate) rect: SampleRect,
     pub(crate) heights_m: &'a [f64],
 }
 
-impl Samples<'_> {
+impl SampleRectangle<'_> {
     fn height_m(&self, column: i64, row: i64) -> f64 {
         let SampleRect { min, max } = self.rect;
         let is_inside = column >= min[0] && column < max[0] && row >= min[1] && row < max[1];
@@ -115,7 +115,7 @@ impl Kernel {
         self.width.iter().any(|&width| width > 0.0)
     }
 
-    /// Samples on either side that a node's height can depend on, columns and rows.
+    /// The number of samples on either side on which a node's height can depend, columns and rows.
     pub(crate) fn reach(&self) -> [i64; 2] {
         self.width.map(|width| (width / 2.0).ceil() as i64 + 1)
     }
@@ -123,14 +123,19 @@ impl Kernel {
     /// The height at a position among the samples; NaN in a void.
     pub(crate) fn height_m(
         &self,
-        samples: &Samples<'_>,
+        samples: &SampleRectangle<'_>,
         at: [f64; 2],
-        scratch: &mut Scratch,
+        scratch: &mut KernelBuffers,
     ) -> f64 {
         if self.is_average() { self.average(samples, at, scratch) } else { bilinear(samples, at) }
     }
 
-    fn average(&self, samples: &Samples<'_>, at: [f64; 2], scratch: &mut Scratch) -> f64 {
+    fn average(
+        &self,
+        samples: &SampleRectangle<'_>,
+        at: [f64; 2],
+        scratch: &mut KernelBuffers,
+    ) -> f64 {
         scratch.columns.compute(at[0], self.width[0]);
         scratch.rows.compute(at[1], self.width[1]);
         let (columns, rows) = (&scratch.columns, &scratch.rows);
@@ -156,7 +161,7 @@ impl Kernel {
     }
 }
 
-fn bilinear(samples: &Samples<'_>, at: [f64; 2]) -> f64 {
+fn bilinear(samples: &SampleRectangle<'_>, at: [f64; 2]) -> f64 {
     let ([column, row], [t, s]) =
         ([at[0], at[1]].map(|x| split(x).0), [at[0], at[1]].map(|x| split(x).1));
     // A sample of weight 0 must not be used: it may be void or outside.
@@ -201,16 +206,16 @@ impl AxisWeights {
     }
 }
 
-/// Integral from −1 to `x` of the hat function, which is 1 at 0 and falls to 0 at ±1: the share of
-/// a sample in the linear interpolant.
+/// The integral from −1 to `x` of the hat function, which is 1 at 0 and falls to 0 at ±1: the
+/// weight of a sample in the linear interpolant.
 fn hat_integral(x: f64) -> f64 {
     let x = x.clamp(-1.0, 1.0);
     if x <= 0.0 { (1.0 + x).powi(2) / 2.0 } else { 1.0 - (1.0 - x).powi(2) / 2.0 }
 }
 
-/// Height at `at` of the plane that fits the samples with data best, by weight.
+/// The height at `at` of the plane that best fits the samples with data, by weight.
 fn plane_fit(
-    samples: &Samples<'_>,
+    samples: &SampleRectangle<'_>,
     at: [f64; 2],
     columns: &AxisWeights,
     rows: &AxisWeights,

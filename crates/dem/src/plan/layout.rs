@@ -1,4 +1,4 @@
-//! Where nodes lie: cell, phase, and the factors of the working CRS that go with them.
+//! The positions of nodes: cell, phase, and the factors of the working CRS.
 
 use corniche_geom::{Bounds, Cell, NodeIndex};
 use corniche_gis::{CrsOperation, GridCrs};
@@ -10,9 +10,9 @@ use crate::plan::kernel::Alignment;
 use crate::plan::sample_steps::spacing_m;
 use crate::{Dem, GridError};
 
-/// Nodes coincide with samples when none is farther off than this, in cells.
+/// Nodes coincide with samples if none is farther off than this, in cells.
 const ALIGNED_CELLS: f64 = 1e-3;
-/// Most samples along an axis of which one is taken.
+/// The largest number of samples along an axis of which one is used.
 const MAX_EVERY: i64 = 1000;
 
 /// Cell, phase and the working CRS with its final factors.
@@ -20,13 +20,12 @@ pub(crate) struct Layout {
     pub(crate) working: GridCrs,
     pub(crate) origin_m: [f64; 2],
     pub(crate) cell: Cell,
-    /// Only samples whose index is a multiple of this are taken; indices are counted as tiles are
-    /// aligned.
+    /// Only samples whose index is a multiple of this are used; indices are counted like the tiles.
     every: i64,
 }
 
-/// The cell as asked, else the first mosaic's: its samples, or every n-th of them, are then the
-/// nodes.
+/// Uses the requested cell, else that of the first mosaic, whose samples, or every n-th of them,
+/// are then the nodes.
 pub(crate) fn layout(
     dem: &Dem,
     options: &PlanOptions,
@@ -54,7 +53,7 @@ pub(crate) fn layout(
     let cell = asked_or_square(dem, options, &working, into_working)?;
     let cell = cell.fitted();
     if is_own {
-        // A cell that is the DEM's own, given as a number.
+        // A cell that is equal to the DEM's own, given as a number.
         let of_samples = Layout::of_samples(first, working.clone(), 1);
         let is_near = |axis: usize| {
             let (own, asked) = (of_samples.cell.to_array()[axis], cell.to_array()[axis]);
@@ -68,21 +67,21 @@ pub(crate) fn layout(
     Ok(Layout { working, origin_m: [0.0; 2], cell, every: 1 })
 }
 
-/// Every n-th sample was asked for, and nodes are not samples: what to do instead.
+/// The error if every n-th sample is requested, but nodes are not samples, with advice.
 fn not_samples(first: &Mosaic, options: &PlanOptions, working: &GridCrs) -> GridError {
     let is_turned = first.crs.is_same(&working.crs);
     let way_out = match options.crs {
-        _ if is_turned => "the DEM's rows and columns do not run along its axes, so give --cell",
-        Some(_) => "give --crs dem, or --cell in place of --cell-every",
+        _ if is_turned => "the DEM's rows and columns are not parallel to its axes, so pass --cell",
+        Some(_) => "pass --crs dem, or --cell instead of --cell-every",
         None => {
-            "that CRS is taken because lengths in the DEM's own are not true within 3 %; give --crs dem, or --cell in \
-             place of --cell-every"
+            "that CRS was chosen because lengths in the CRS of the DEM are off by more than 3 %; pass --crs dem, or --cell instead of --cell-every"
         }
     };
     GridError::CellEveryResampled { crs: working.crs.label.clone(), way_out }
 }
 
-/// The cell as asked, else a square with the shorter spacing of the first mosaic's samples as side.
+/// The requested cell, else a square whose side is the shorter spacing of the first mosaic's
+/// samples.
 fn asked_or_square(
     dem: &Dem,
     options: &PlanOptions,
@@ -111,10 +110,11 @@ fn asked_or_square(
 }
 
 impl Layout {
-    /// Nodes at every `every`-th sample of a mosaic that lies along the axes of the working CRS.
+    /// Nodes at every `every`-th sample of a mosaic that is parallel to the axes of the working
+    /// CRS.
     ///
-    /// The east factor changes by less than a millimetre a cell, so that the cell's east side is a
-    /// whole number of lattice steps.
+    /// The east factor changes by less than a millimetre per cell, so that the cell's east side is
+    /// a whole number of lattice steps.
     fn of_samples(mosaic: &Mosaic, mut working: GridCrs, every: i64) -> Self {
         let c = mosaic.crs_from_sample.coefficients;
         let reach = mosaic.extent.columns().max(mosaic.extent.rows()) as f64;
@@ -135,16 +135,16 @@ impl Layout {
         Self { working, origin_m, cell, every }
     }
 
-    /// How the mosaic's samples are nodes; `None` when they are not.
+    /// The alignment of the mosaic's samples with nodes; `None` if the samples are not nodes.
     pub(crate) fn alignment(&self, mosaic: &Mosaic) -> Option<Alignment> {
         let transform = &mosaic.crs_from_sample;
         if !transform.is_axis_parallel() || !mosaic.crs.is_same(&self.working.crs) {
             return None;
         }
         let factor = self.working.metres_per_unit;
-        // A cell between samples, when only every n-th is taken.
+        // The spacing of samples, if only every n-th one is used.
         let between = self.cell.times(1.0 / self.every as f64).to_array();
-        // Past the antimeridian the mosaic lies where the data's middle is near.
+        // Across the antimeridian, the mosaic is moved next to the middle of the data.
         let [middle, _] = mosaic.middle();
         let moved = self.working.seam().map_or(0.0, |seam| seam.turn() * seam.turns(middle));
         let cells = |sample: [i64; 2]| {
@@ -171,7 +171,7 @@ impl Layout {
         (fits && is_cell).then_some(Alignment { first: [i, j], way, every: self.every })
     }
 
-    /// South-western and north-eastern node between which a mosaic can have data.
+    /// The south-western and the north-eastern node between which a mosaic can have data.
     pub(crate) fn nodes(
         &self,
         dem: &Dem,
@@ -185,7 +185,7 @@ impl Layout {
         for file in &mosaic.files {
             let found = data_extent::bounds(mosaic, &file.rect, operation)?;
             if found.is_empty() {
-                // Without this error the heights of the file would be lost without notice.
+                // Without this error the heights of the file would be lost silently.
                 let path = dem.sources[file.index].path.clone();
                 let crs = self.working.crs.label.clone();
                 return Err(GridError::FileOutsideCrs { path, crs });
@@ -196,12 +196,23 @@ impl Layout {
         if let Some(seam_m) = self.working.seam_m().filter(|_| mosaic.is_ring()) {
             bounds.max_x = bounds.max_x.max(bounds.min_x + seam_m.turn());
         }
-        let cells =
-            |metres: f64, axis: usize| (metres - self.origin_m[axis]) / self.cell.to_array()[axis];
-        let corner = |x: f64, y: f64| NodeIndex { i: x as i64, j: y as i64 };
-        Ok([
-            corner(cells(bounds.min_x, 0).floor(), cells(bounds.min_y, 1).floor()),
-            corner(cells(bounds.max_x, 0).ceil(), cells(bounds.max_y, 1).ceil()),
-        ])
+        Ok(corner_nodes(bounds, self.origin_m, self.cell, [f64::floor, f64::ceil]))
     }
+}
+
+/// The nodes at the south-western and the north-eastern corner of bounds in working metres, each
+/// rounded with its own function.
+pub(crate) fn corner_nodes(
+    bounds_m: Bounds,
+    origin_m: [f64; 2],
+    cell: Cell,
+    round: [fn(f64) -> f64; 2],
+) -> [NodeIndex; 2] {
+    let node = |metres: [f64; 2], round: fn(f64) -> f64| {
+        let [i, j] =
+            [0, 1].map(|axis| round((metres[axis] - origin_m[axis]) / cell.to_array()[axis]));
+        NodeIndex { i: i as i64, j: j as i64 }
+    };
+    let Bounds { min_x, min_y, max_x, max_y } = bounds_m;
+    [node([min_x, min_y], round[0]), node([max_x, max_y], round[1])]
 }

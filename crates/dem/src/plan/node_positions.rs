@@ -1,21 +1,21 @@
-//! Where nodes lie among the DEM's samples.
+//! The positions of nodes among the DEM's samples.
 
 use corniche_geom::{GeoTransform, GridFrame, NodeIndex, NodeWindow};
 use corniche_gis::{CrsError, CrsOperation};
 
 use crate::mosaics::mosaic::Mosaic;
 
-/// Largest error of a position, as a share of a sample or of a cell, whichever is smaller.
+/// The largest error of a position, relative to a sample or a cell, whichever is smaller.
 const TOLERANCE: f64 = 0.01;
-/// The stricter tolerance with which a lattice is chosen, so that most of its meshes then pass the
-/// tolerance above.
+/// The stricter tolerance with which a lattice is chosen, so that most of its meshes then pass
+/// [`TOLERANCE`].
 const PLAN_TOLERANCE: f64 = 0.005;
-/// Lattice spacings tried, in nodes; at 1 every node is transformed.
+/// The lattice spacings that are tried, in nodes; at 1 every node is transformed.
 const STEPS: [i64; 6] = [32, 16, 8, 4, 2, 1];
-/// Meshes looked at along each side of the extent when choosing a lattice.
+/// The number of meshes tested along each side of the extent when a lattice is chosen.
 const TRIAL_MESHES: i64 = 12;
 
-/// Where nodes lie among a mosaic's samples, found through PROJ.
+/// The positions of nodes among a mosaic's samples, found through PROJ.
 ///
 /// ```text
 ///   o───·───o───·───o      o  corners: nodes whose indices are multiples of `step`
@@ -25,22 +25,23 @@ const TRIAL_MESHES: i64 = 12;
 ///   o───·───o───·───o      the bilinear mean of its corners, nodes are interpolated, in others transformed.
 /// ```
 ///
-/// Meshes are those of the global grid, so a node's position depends on nothing but its index. All
-/// five halfway points are tested: with a conformal projection the errors cancel in the middle of a
+/// Meshes are those of the global grid, so a node's position depends only on its index. All five
+/// halfway points are tested: with a conformal projection the errors cancel in the middle of a
 /// mesh, but not on its sides.
 #[derive(Debug, Clone)]
 pub(crate) struct NodePositions {
-    /// Around the seam of the mosaic's CRS.
+    /// The operation from working metres to the mosaic's CRS, around the CRS's seam.
     crs_from_working: CrsOperation,
     crs_from_sample: GeoTransform,
-    step: i64,
+    /// The number of nodes between corners of the lattice.
+    pub(crate) step: i64,
     /// The tolerance, in samples.
     tolerance: f64,
 }
 
 impl NodePositions {
     /// Chooses the lattice for a mosaic whose nodes run from `south_west` to `north_east`, with
-    /// `samples_per_node` samples to a cell.
+    /// `samples_per_node` samples per cell.
     pub(crate) fn new(
         mosaic: &Mosaic,
         crs_from_working: CrsOperation,
@@ -65,11 +66,6 @@ impl NodePositions {
         Ok(positions)
     }
 
-    /// Nodes between corners of the lattice.
-    pub(crate) fn step(&self) -> i64 {
-        self.step
-    }
-
     fn is_smooth(&self, frame: &GridFrame, [low, high]: [NodeIndex; 2]) -> Result<bool, CrsError> {
         if self.step == 1 {
             return Ok(true);
@@ -91,9 +87,9 @@ impl NodePositions {
         Ok(true)
     }
 
-    /// Positions of all nodes of a window, row by row from the north, in samples; NaN where there
+    /// The positions of all nodes of a window, row by row from the north, in samples; NaN if there
     /// is none.
-    pub(crate) fn of(
+    pub(crate) fn positions_in(
         &self,
         frame: &GridFrame,
         window: &NodeWindow,
@@ -149,13 +145,8 @@ impl NodePositions {
         Ok(positions)
     }
 
-    /// Positions in working metres to samples, in place; NaN where there is none.
-    pub(crate) fn samples_of(&self, points: &mut [[f64; 2]]) -> Result<(), CrsError> {
-        self.transform(points)
-    }
-
-    /// Working CRS to samples, in place.
-    fn transform(&self, points: &mut [[f64; 2]]) -> Result<(), CrsError> {
+    /// Transforms positions in working metres to samples, in place; NaN if there is none.
+    pub(crate) fn transform(&self, points: &mut [[f64; 2]]) -> Result<(), CrsError> {
         if points.is_empty() {
             return Ok(());
         }

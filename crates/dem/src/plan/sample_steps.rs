@@ -1,5 +1,5 @@
-//! How far samples are apart in working metres, and whether a grid asks for far more nodes than the
-//! files have samples.
+//! The distance of samples in working metres, and the check whether a grid requests far more nodes
+//! than the files have samples.
 
 use corniche_geom::Cell;
 use corniche_gis::{CrsError, CrsOperation, GridCrs};
@@ -8,12 +8,13 @@ use crate::mosaics::mosaic::Mosaic;
 use crate::{Dem, GridError, GridPlan};
 
 /// More nodes than this per sample, along either axis, are probably a mistake: they are
-/// interpolated, cost as much as nodes with data of their own, and add no information.
+/// interpolated, take as much time and space as nodes with their own data, and add no information.
 const MOST_NODES_PER_SAMPLE: f64 = 16.0;
 /// Tolerance for the rounding of a spacing.
 const ROUNDING: f64 = 1.0 + 1e-9;
 
-/// Spacing of a mosaic's columns and rows in working metres, at its centre; `None` outside the CRS.
+/// The spacing of a mosaic's columns and rows in working metres, at its centre; `None` outside the
+/// CRS.
 pub(crate) fn spacing_m(
     mosaic: &Mosaic,
     working: &GridCrs,
@@ -23,8 +24,8 @@ pub(crate) fn spacing_m(
     Ok(steps.map(|steps| steps.map(|[x, y]| x.hypot(y))))
 }
 
-/// The way from a sample to the next column and to the next row, at a mosaic's centre: working
-/// metres east and north each; `None` outside the CRS.
+/// The vectors from a sample to the next column and to the next row, at a mosaic's centre: each in
+/// working metres east and north; `None` outside the CRS.
 pub(crate) fn steps_m(
     mosaic: &Mosaic,
     working: &GridCrs,
@@ -46,8 +47,8 @@ pub(crate) fn steps_m(
     Ok(steps.iter().all(is_way).then_some(steps))
 }
 
-/// Columns and rows of samples that a cell is long: one cell east and one north, carried among the
-/// samples.
+/// The size of a cell in columns and rows of samples: one cell east and one cell north, transformed
+/// to sample positions.
 pub(crate) fn samples_to_a_cell([column, row]: [[f64; 2]; 2], cell: Cell) -> [f64; 2] {
     let area = column[0] * row[1] - column[1] * row[0];
     [
@@ -57,11 +58,11 @@ pub(crate) fn samples_to_a_cell([column, row]: [[f64; 2]; 2], cell: Cell) -> [f6
 }
 
 impl Dem {
-    /// Refuses a grid with more than 16 nodes to a sample of even the finest files, along either
+    /// Rejects a grid with more than 16 nodes per sample of even the finest files, along either
     /// axis.
     ///
     /// # Errors
-    /// [`GridError::Oversampling`] where it is so, and when a spacing cannot be found.
+    /// [`GridError::Oversampling`] for such a grid, and when a spacing cannot be found.
     pub fn refuse_oversampling(&self, plan: &GridPlan) -> Result<(), GridError> {
         let cell = plan.frame.cell();
         let mut fewest: Option<f64> = None;

@@ -1,4 +1,4 @@
-//! The working CRS: which one, and how its coordinates become working metres.
+//! The choice of the working CRS, and how its coordinates become working metres.
 
 use corniche_geom::{Bounds, ScaleRecord};
 use corniche_gis::{
@@ -10,23 +10,23 @@ use gdal::spatial_ref::SpatialRef;
 use crate::mosaics::mosaic::{Mosaic, rounded};
 use crate::{Dem, GridError};
 
-/// The DEM's own CRS is the working CRS where lengths are then true within this, all over the data:
-/// nodes that are the samples themselves are worth more than 3 % of a width.
+/// The DEM's own CRS is the working CRS if lengths are then true within this, all over the data:
+/// nodes that are exactly samples are worth more than 3 % of a width.
 const OWN_TOLERANCE: f64 = 0.03;
 /// A projection this true to scale, along x and y and all over the data, keeps its unit; UTM is
-/// taken where it is so in all directions.
+/// chosen if it is this true in all directions.
 const TRUE_TOLERANCE: f64 = 0.01;
 /// UTM is defined between these latitudes.
 const UTM_LATITUDES_DEG: [f64; 2] = [-80.0, 84.0];
-/// Significant digits of a factor that PROJ's scale decides: enough for a tenth of a millimetre in
-/// a hundred kilometres, few enough that versions of PROJ agree.
+/// Significant digits of a factor that depends on PROJ's scale: enough for a tenth of a millimetre
+/// in a hundred kilometres, few enough that versions of PROJ agree.
 const FACTOR_DIGITS: usize = 9;
 
 /// The standard latitude: the latitude at which lengths are true.
 #[derive(Debug, Clone, Copy)]
 struct StandardLatitude {
     deg: f64,
-    /// Whether the user gave it; else it follows from the data.
+    /// Whether the user gave the latitude; otherwise it follows from the data.
     is_given: bool,
 }
 
@@ -36,8 +36,8 @@ fn around_data(crs: Crs, metres_per_unit: [f64; 2], dem: &Dem) -> Result<GridCrs
     let middle = if crs.is_same(&own.crs) {
         own.middle()[0]
     } else {
-        // Files all around the earth end where they begin, and not half a turn from the mean of
-        // their positions.
+        // The longitudes of files all around the earth begin and end at the same place, which is
+        // not opposite the mean of their positions.
         let [lon, lat] = dem.center_deg;
         let is_ring = dem.mosaics.iter().any(Mosaic::is_ring);
         let lon = if is_ring { dem.wgs84_bounds.center()[0] } else { lon };
@@ -48,12 +48,12 @@ fn around_data(crs: Crs, metres_per_unit: [f64; 2], dem: &Dem) -> Result<GridCrs
     Ok(GridCrs { crs, metres_per_unit, middle, is_scaled: false })
 }
 
-/// A CRS with the factors that make lengths true at the standard latitude; `None` where it has
-/// none, outside its reach.
+/// A CRS with the factors that make lengths true at the standard latitude; `None` if this latitude
+/// is outside the CRS.
 ///
-/// Whether a projection is true to scale without factors is asked all over the data; with a
-/// latitude that was given, there and at the middle longitude alone, so that packages of adjoining
-/// regions fit.
+/// Whether a projection is true to scale without factors is tested all over the data; with a given
+/// latitude, only at this latitude and the middle longitude, so that packages of adjoining regions
+/// fit.
 fn with_true_lengths(
     dem: &Dem,
     crs: &Crs,
@@ -87,30 +87,32 @@ fn with_true_lengths(
     scaled([0, 1].map(|axis| rounded(unit[axis] / scale.along[axis], FACTOR_DIGITS)))
 }
 
-/// Scale at a place.
+/// The scale at a position.
 fn scale_at(
     working: &GridCrs,
     dem: &Dem,
     place_deg: [f64; 2],
 ) -> Result<Option<LocalScale>, CrsError> {
-    let wgs84 = Crs::wgs84()?;
-    let mut points = [place_deg];
-    CrsOperation::into_working(&wgs84, working, Some(dem.wgs84_bounds)).apply(&mut points)?;
-    let back = CrsOperation::out_of_working(working, &wgs84, Some(dem.wgs84_bounds));
-    Ok(scales(&back, &points)?[0])
+    Ok(scales_at(working, dem, &Crs::wgs84()?, vec![place_deg])?[0])
 }
 
-/// Scales over corners, middles of sides and centre of every file; `None` for one that lies outside
-/// the CRS.
+fn scales_at(
+    working: &GridCrs,
+    dem: &Dem,
+    crs: &Crs,
+    mut places: Vec<[f64; 2]>,
+) -> Result<Vec<Option<LocalScale>>, CrsError> {
+    let area_deg = Some(dem.wgs84_bounds);
+    CrsOperation::into_working(crs, working, area_deg).apply(&mut places)?;
+    scales(&CrsOperation::out_of_working(working, &Crs::wgs84()?, area_deg), &places)
+}
+
+/// The scales at the corners, middles of sides and centre of every file; `None` for a position
+/// outside the CRS.
 fn rim_scales(working: &GridCrs, dem: &Dem) -> Result<Vec<Option<LocalScale>>, CrsError> {
-    let wgs84 = Crs::wgs84()?;
-    let back = CrsOperation::out_of_working(working, &wgs84, Some(dem.wgs84_bounds));
     let mut all = Vec::new();
     for mosaic in &dem.mosaics {
-        let mut points = rim_of(mosaic);
-        CrsOperation::into_working(&mosaic.crs, working, Some(dem.wgs84_bounds))
-            .apply(&mut points)?;
-        all.extend(scales(&back, &points)?);
+        all.extend(scales_at(working, dem, &mosaic.crs, rim_of(mosaic))?);
     }
     Ok(all)
 }
@@ -122,16 +124,16 @@ fn is_true_within(working: &GridCrs, dem: &Dem, tolerance: f64) -> Result<bool, 
     Ok(rim_scales(working, dem)?.iter().all(is_true))
 }
 
-/// How long lengths come out.
+/// The scale of lengths.
 pub(crate) fn scale(working: &GridCrs, dem: &Dem) -> Result<ScaleRecord, GridError> {
     let outside = || GridError::OutsideCrs { crs: working.crs.label.clone() };
     // The middle of the rectangle, because the standard latitude is taken there; the mean of all
-    // positions may lie far from any data.
+    // positions may be far from any data.
     let center = match scale_at(working, dem, dem.wgs84_bounds.center())? {
         Some(center) => center,
         None => scale_at(working, dem, dem.center_deg)?.ok_or_else(outside)?,
     };
-    // Corners outside the area of the CRS (which the user may have chosen) are left out.
+    // Corners outside the area of the CRS (which the user may have chosen) are omitted.
     let mut scale =
         ScaleRecord { center: center.along, least: center.along, largest: center.along };
     for LocalScale { along, .. } in rim_scales(working, dem)?.into_iter().flatten() {
@@ -208,19 +210,19 @@ pub(crate) fn choose(
     Ok(equal_area(dem)?)
 }
 
-/// Whether y lies to the left of x in the middle of the data.
+/// Whether y is to the left of x in the middle of the data.
 fn is_right_handed(working: &GridCrs, dem: &Dem) -> Result<bool, CrsError> {
     let scale = scale_at(working, dem, dem.center_deg)?;
     Ok(scale.is_some_and(|scale| scale.deviation.is_finite()))
 }
 
 /// The latitude at which lengths are true: the middle of the data, rounded to 10⁻⁶ degrees and then
-/// to the nearest half degree (ties towards the equator), so that small changes of the extent leave
-/// the grid where it is.
+/// to the nearest half degree (ties towards the equator), so that small changes of the extent do
+/// not change the grid.
 fn standard_latitude_deg(bounds: Bounds) -> f64 {
     let middle = (bounds.center()[1] * 1e6).round() / 1e6;
     let halves = middle.abs() * 2.0;
-    // Up to half: down; so a tie goes down.
+    // Fractions up to a half are rounded down, so a tie is rounded down.
     let rounded = if halves.fract() > 0.5 { halves.ceil() } else { halves.floor() };
     (rounded / 2.0).copysign(middle) + 0.0
 }
@@ -239,7 +241,7 @@ fn utm(dem: &Dem) -> Result<Option<GridCrs>, CrsError> {
 }
 
 /// Lambert azimuthal equal-area about the data's centre, rounded to whole degrees so that small
-/// changes of the extent leave the grid where it is.
+/// changes of the extent do not change the grid.
 fn equal_area(dem: &Dem) -> Result<GridCrs, CrsError> {
     let [lon, lat] = dem.center_deg.map(f64::round);
     let text = format!(
@@ -255,7 +257,7 @@ fn equal_area(dem: &Dem) -> Result<GridCrs, CrsError> {
     around_data(crs, [1.0; 2], dem)
 }
 
-/// CRS positions of the corners, the middles of the sides and the centre of every file.
+/// The CRS positions of the corners, the middles of the sides and the centre of every file.
 fn rim_of(mosaic: &Mosaic) -> Vec<[f64; 2]> {
     let mut points = Vec::new();
     for file in &mosaic.files {

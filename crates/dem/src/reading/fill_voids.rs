@@ -12,12 +12,12 @@ const DIRECTIONS: [[i64; 2]; 8] =
 ///   ·   ·   8       A void is filled if and only if data is found within `reach` cells
 ///     ·     |   /   in each of the eight directions. Its height is the mean of those eight,
 ///   7 ─ ─ ─ ? ─ 3   weighted by inverse distance in working metres: a step east is as long
-///     /   / | ·     as the cell's east side. Only data counts, never filled nodes, so the
+///     /   / | ·     as the cell's east side. Only data count, never filled nodes, so the
 ///   6   ·   5   4   result does not depend on the window that is read.
 /// ```
 ///
-/// `heights_m` holds `columns` nodes a row, with `reach` nodes of halo on every side. What comes
-/// back are the indices of the filled nodes within it, and their heights.
+/// `heights_m` has `columns` nodes per row, with `reach` nodes of halo on every side. Returns the
+/// indices of the filled nodes within it, and their heights.
 pub(crate) fn fill(
     heights_m: &[f32],
     columns: usize,
@@ -49,7 +49,7 @@ fn fill_node(
     let (mut weights, mut sum) = (0.0, 0.0);
     for [east, south] in DIRECTIONS {
         let stride = south * columns as i64 + east;
-        // In north sides of a cell: weights matter by their ratios only.
+        // In units of the cell's north side: only the ratios of weights matter.
         let length = (east as f64 * (cell.east_m / cell.north_m)).hypot(south as f64);
         let found = (1..=reach as i64).find_map(|cells| {
             let height_m = heights_m[(at as i64 + cells * stride) as usize];

@@ -1,64 +1,64 @@
-//! The reader of windows of heights; each thread has one of its own.
+//! The reader of windows of heights; each thread has its own.
 
 use corniche_geom::{HeightGrid, NodeWindow};
 
 use crate::mosaics::mosaic::{Mosaic, SampleRect};
 use crate::mosaics::open_files::OpenFiles;
 use crate::plan::grid_plan::Method;
-use crate::plan::kernel::{Alignment, Kernel, Samples, Scratch};
+use crate::plan::kernel::{Alignment, Kernel, KernelBuffers, SampleRectangle};
 use crate::reading::fill_voids;
-use crate::reading::window_parts::{Target, WindowPart, intersection};
+use crate::reading::window_parts::{WindowPart, WindowTarget, intersection};
 use crate::{Dem, GridPlan, ReadHeightsError};
 
-/// Samples held in memory at once for one window; larger windows are read in parts. 32 MB.
+/// The number of samples in memory for one window; larger windows are read in parts. 32 MB.
 pub(crate) const MOST_SAMPLES: usize = 1 << 22;
 
-/// Heights of a window of nodes.
+/// The heights of a window of nodes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DemWindow {
     /// The heights, metres.
     pub heights: HeightGrid,
-    /// How many of the nodes were void and are filled from their surroundings.
+    /// The number of void nodes that were filled from their surroundings.
     pub filled: u64,
-    /// Per node, row by row from the north, whether it was filled; empty when none was.
+    /// For each node, row by row from the north, whether it was filled; empty if none was.
     pub is_filled: Vec<bool>,
 }
 
-/// A window of nodes, of which some are wanted; all of them where the list is empty.
-struct Wanted {
+/// A window of nodes, and which of them are needed; an empty list means all.
+struct WantedWindow {
     part: NodeWindow,
     is_wanted: Vec<bool>,
 }
 
 /// Reads windows of heights. Each thread has its own, because it keeps files open and reuses its
 /// buffers.
-pub struct Reader<'a> {
+pub struct HeightReader<'a> {
     pub(crate) dem: &'a Dem,
     pub(crate) plan: &'a GridPlan,
     pub(crate) files: OpenFiles,
     pub(crate) samples: Vec<f64>,
-    pub(crate) scratch: Scratch,
+    pub(crate) scratch: KernelBuffers,
 }
 
 impl Dem {
-    /// A reader of windows, for one thread at a time. It opens files as it needs them.
+    /// A reader of windows, for one thread at a time. It opens files when it needs them.
     #[must_use]
-    pub fn reader<'a>(&'a self, plan: &'a GridPlan) -> Reader<'a> {
-        Reader {
+    pub fn reader<'a>(&'a self, plan: &'a GridPlan) -> HeightReader<'a> {
+        HeightReader {
             dem: self,
             plan,
             files: OpenFiles::default(),
             samples: Vec::new(),
-            scratch: Scratch::default(),
+            scratch: KernelBuffers::default(),
         }
     }
 }
 
-impl Reader<'_> {
+impl HeightReader<'_> {
     /// The heights of a window of stride 1, voids filled. Nodes outside the data, the plan's bounds
     /// or its polygon are gaps.
     ///
-    /// A node has the same bits whichever window it is read through.
+    /// A node has the same bits in any window.
     ///
     /// # Errors
     /// When the stride is not 1 or a file cannot be read.
@@ -69,14 +69,14 @@ impl Reader<'_> {
         if self.plan.clip.is_none() {
             return self.filled_window(window);
         }
-        // Nodes outside the bounds are gaps. Voids inside are filled from data outside, too, so
+        // Nodes outside the bounds are gaps. Voids inside are also filled from data outside, so
         // that nodes have the same heights as without bounds.
         let mut heights_m = vec![f32::NAN; window.columns * window.rows];
         let (mut filled, mut is_filled) = (0, Vec::new());
         let within = intersection(&window, [self.plan.south_west, self.plan.north_east]);
-        if let Some(Wanted { part, is_wanted }) = within.and_then(|part| self.wanted(part)) {
+        if let Some(WantedWindow { part, is_wanted }) = within.and_then(|part| self.wanted(part)) {
             let found = self.filled_window(part)?;
-            let target = Target::new(&window, &part);
+            let target = WindowTarget::new(&window, &part);
             if !found.is_filled.is_empty() {
                 is_filled = vec![false; heights_m.len()];
             }
@@ -102,11 +102,11 @@ impl Reader<'_> {
         Ok(DemWindow { heights, filled, is_filled })
     }
 
-    /// The nodes of a window that the plan's polygon leaves, and the smallest window around them;
-    /// `None` where it leaves none.
-    fn wanted(&self, window: NodeWindow) -> Option<Wanted> {
+    /// The nodes of a window that the plan's polygon keeps, and the smallest window around them;
+    /// `None` if it keeps none.
+    fn wanted(&self, window: NodeWindow) -> Option<WantedWindow> {
         let Some(region) = &self.plan.polygon else {
-            return Some(Wanted { part: window, is_wanted: Vec::new() });
+            return Some(WantedWindow { part: window, is_wanted: Vec::new() });
         };
         let frame = &self.plan.frame;
         let is_wanted = region.nodes(frame.node_steps(frame.max_level()), &window);
@@ -122,16 +122,16 @@ impl Reader<'_> {
         };
         let rows = is_wanted.chunks(window.columns).skip(top).take(part.rows);
         let is_wanted = rows.flat_map(|row| row[left..=right].iter().copied()).collect();
-        Some(Wanted { part, is_wanted })
+        Some(WantedWindow { part, is_wanted })
     }
 
-    /// The same without regard to bounds.
+    /// The heights of a window, regardless of bounds.
     fn filled_window(&mut self, window: NodeWindow) -> Result<DemWindow, ReadHeightsError> {
         let mut heights_m = self.nodes(window)?;
         let mut is_filled = Vec::new();
         let mut filled = 0;
         let reach = self.plan.fill_voids as usize;
-        // The halo is read only where there are voids: other nodes do not depend on it.
+        // The halo is read only if there are voids: other nodes do not depend on it.
         if reach > 0 && heights_m.iter().any(|height_m| height_m.is_nan()) {
             let wide = self.with_halo(window, &heights_m, reach)?;
             let columns = window.columns + 2 * reach;
@@ -181,7 +181,8 @@ impl Reader<'_> {
         Ok(heights_m)
     }
 
-    /// Heights of nodes from the mosaics, voids not filled (NaN), row by row from the north.
+    /// The heights of nodes from the mosaics, with voids not filled (NaN), row by row from the
+    /// north.
     fn nodes(&mut self, window: NodeWindow) -> Result<Vec<f32>, ReadHeightsError> {
         let (dem, plan) = (self.dem, self.plan);
         let mut heights_m = vec![f32::NAN; window.columns * window.rows];
@@ -189,13 +190,13 @@ impl Reader<'_> {
             let Some(part) = intersection(&window, role.nodes) else {
                 continue;
             };
-            let target = Target::new(&window, &part);
+            let target = WindowTarget::new(&window, &part);
             match &role.method {
                 Method::Aligned(alignment) => {
                     self.copy(mosaic, *alignment, &part, &target, &mut heights_m)?;
                 }
                 Method::Resampled(positions, kernel) => {
-                    let at = positions.of(&plan.frame, &part)?;
+                    let at = positions.positions_in(&plan.frame, &part)?;
                     let all =
                         WindowPart { column: 0, row: 0, columns: part.columns, rows: part.rows };
                     self.interpolate(mosaic, kernel, &at, &all, &target, &mut heights_m)?;
@@ -205,16 +206,16 @@ impl Reader<'_> {
         Ok(heights_m)
     }
 
-    /// Heights of nodes that are samples.
+    /// The heights of nodes that are samples.
     fn copy(
         &mut self,
         mosaic: &Mosaic,
         alignment: Alignment,
         part: &NodeWindow,
-        target: &Target,
+        target: &WindowTarget,
         heights_m: &mut [f32],
     ) -> Result<(), ReadHeightsError> {
-        // Bands of rows, so that a window of any size needs bounded memory.
+        // Reads bands of rows, so that a window of any size needs bounded memory.
         let every = alignment.every as usize;
         let band = (MOST_SAMPLES / (part.columns * every * every)).max(1);
         for top in (0..part.rows).step_by(band) {
@@ -240,15 +241,15 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Heights of nodes that lie between samples: the nodes of `part`, whose positions among the
-    /// samples are in `at`.
+    /// The heights of nodes between samples: the nodes of `part`, whose positions among the samples
+    /// are in `at`.
     fn interpolate(
         &mut self,
         mosaic: &Mosaic,
         kernel: &Kernel,
         at: &[[f64; 2]],
         part: &WindowPart,
-        target: &Target,
+        target: &WindowTarget,
         heights_m: &mut [f32],
     ) -> Result<(), ReadHeightsError> {
         let open = part.nodes().filter(|&(c, r)| heights_m[target.at(c, r)].is_nan());
@@ -264,7 +265,7 @@ impl Reader<'_> {
             return Ok(());
         }
         self.files.read(&self.dem.sources, mosaic, &rect, &mut self.samples)?;
-        let samples = Samples { rect, heights_m: &self.samples };
+        let samples = SampleRectangle { rect, heights_m: &self.samples };
         for (column, row) in part.nodes() {
             let position = at[row * target.columns + column];
             let height_m = &mut heights_m[target.at(column, row)];
@@ -276,7 +277,7 @@ impl Reader<'_> {
     }
 }
 
-/// The samples that heights at some positions can depend on; `None` when there are none.
+/// The samples on which heights at some positions can depend; `None` if there are none.
 pub(crate) fn around(
     positions: impl Iterator<Item = [f64; 2]>,
     kernel: &Kernel,

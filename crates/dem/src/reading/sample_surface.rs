@@ -1,4 +1,4 @@
-//! How far lines are from the surface of the DEM's own samples.
+//! Measures the distance of lines from the surface of the DEM's own samples.
 
 use std::sync::Arc;
 
@@ -12,31 +12,31 @@ use crate::{Dem, GridPlan, ReadHeightsError};
 
 /// Samples along each side of a block.
 const BLOCK_SAMPLES: i64 = 64;
-/// Bytes of the blocks that are kept, about 512.
+/// The size of the cache of blocks in bytes, for about 512 blocks.
 const KEPT_BYTES: u64 = 17 << 20;
 
-/// Heights of the samples of a block, row by row.
-type Block = Arc<Vec<f64>>;
-/// A mosaic, by its place, and a block of its samples.
+/// The heights of the samples of a block, row by row.
+type CachedSamples = Arc<Vec<f64>>;
+/// The index of a mosaic, and a block of its samples.
 type BlockKey = (usize, [i64; 2]);
-/// From where to where along a segment, as shares of it.
+/// A stretch of a segment: its two ends as fractions of the segment.
 type Stretch = [f64; 2];
 
-/// The surface of the DEM's samples, as the files have them: bilinear between four of one grid.
-/// Where grids overlap, the one that is named first and has all four counts. It does not depend on
-/// the grid of a package.
+/// The surface of the DEM's samples, as in the files: bilinear between four samples of one grid.
+/// Where grids overlap, the first named one that has all four counts. The surface does not depend
+/// on the grid of a package.
 pub struct SampleSurface<'a> {
     dem: &'a Dem,
-    /// For each mosaic the operation from working metres to its CRS.
+    /// For each mosaic, the operation from working metres to its CRS.
     crs_from_working: Vec<CrsOperation>,
     files: OpenFiles,
     kept: Recent<BlockKey, Vec<f64>>,
-    /// The block that was asked for last.
-    last: Option<(BlockKey, Block)>,
+    /// The most recently used block.
+    last: Option<(BlockKey, CachedSamples)>,
 }
 
-/// A half of a straight part of a line: from one place among a mosaic's samples to another, and how
-/// far beside the straight way between them the line may be there, in samples.
+/// A half of a straight part of a line: from one position among a mosaic's samples to another, and
+/// the largest distance between the line and the chord, in samples.
 #[derive(Clone, Copy)]
 struct Half {
     from: [f64; 2],
@@ -45,7 +45,7 @@ struct Half {
 }
 
 impl Dem {
-    /// The surface of its samples, beneath lines in the working metres of a plan.
+    /// The surface of the DEM's samples, for lines in the working metres of a plan.
     #[must_use]
     pub fn sample_surface<'a>(&'a self, plan: &GridPlan) -> SampleSurface<'a> {
         let operation = |mosaic: &Mosaic| {
@@ -63,11 +63,11 @@ impl Dem {
 }
 
 impl SampleSurface<'_> {
-    /// The largest vertical distance between a line and the surface, metres, over the whole line;
-    /// `None` where nothing of the surface lies beneath it.
+    /// The largest vertical distance between a line and the surface in metres, over the whole line;
+    /// `None` if no surface is beneath the line.
     ///
-    /// The line has ends of straight parts, and between each two of them their middle: an odd
-    /// number of places in working metres, with heights.
+    /// The line consists of the ends of straight parts, and the middle between each two of them: an
+    /// odd number of positions in working metres, with heights.
     ///
     /// ```text
     ///   ●─────┬──m──┬──────●     ●  ends of a straight part,  m  its middle
@@ -91,7 +91,7 @@ impl SampleSurface<'_> {
             let heights_m = [line[index - 1][2], line[index][2]];
             let mut open: Vec<Stretch> = vec![[0.0, 1.0]];
             for (mosaic, at) in places.iter().enumerate() {
-                let half = Half::of(at, index);
+                let half = Half::from_positions(at, index);
                 let mut left = Vec::new();
                 for stretch in std::mem::take(&mut open) {
                     let own_m = self.stretch_m((mosaic, half), heights_m, stretch, &mut left)?;
@@ -103,8 +103,8 @@ impl SampleSurface<'_> {
         Ok(most_m)
     }
 
-    /// The largest distance along a stretch of a segment; of what has no surface of this mosaic
-    /// beneath it the stretches are left.
+    /// The largest distance along a stretch of a segment; stretches without a surface of this
+    /// mosaic beneath remain.
     fn stretch_m(
         &mut self,
         (mosaic, half): (usize, Half),
@@ -196,10 +196,10 @@ impl SampleSurface<'_> {
 }
 
 impl Half {
-    /// The half that ends at a place of a line. Straight parts of a map bend a little among samples
-    /// of another CRS: each half is off its chord by an eighth of the second difference of the
-    /// whole; twice that is allowed for.
-    fn of(at: &[[f64; 2]], index: usize) -> Self {
+    /// The half that ends at a position of a line. Straight parts of a map bend a little among
+    /// samples of another CRS: each half is off its chord by an eighth of the second difference of
+    /// the whole; the tolerance is twice this.
+    fn from_positions(at: &[[f64; 2]], index: usize) -> Self {
         let middle = index - (index + 1) % 2;
         let ends = [at[middle - 1], at[(middle + 1).min(at.len() - 1)]];
         let bow =
@@ -214,8 +214,8 @@ fn bilinear_m([nw, ne, sw, se]: [f64; 4], [across, along]: [f64; 2]) -> f64 {
     north + along * (south - north)
 }
 
-/// The largest size of a parabola between two places, from its values there and in the middle:
-/// along a straight line, heights over a bilinear cell are one.
+/// The largest absolute value of a parabola between two positions, from its values there and in the
+/// middle: along a straight line, heights over a bilinear cell are a parabola.
 #[must_use]
 pub fn largest_of_parabola(from: f64, middle: f64, to: f64) -> f64 {
     let square = 2.0 * (from - 2.0 * middle + to);

@@ -1,8 +1,8 @@
-//! Parabolas between places of which three are known.
+//! Parabolas through three known points.
 
 use super::*;
 
-/// A parabola that is largest between its places, at an end, and where it changes its sign.
+/// Parabolas that are largest between the points, at an end, and where they change sign.
 #[test]
 fn the_largest_value_of_a_parabola_is_found() {
     let along = |a: f64, b: f64, c: f64| {

@@ -1,4 +1,4 @@
-//! The DEM's own samples: all of them, and those that nodes are made from.
+//! The DEM's own samples: all of them, and those that nodes use.
 
 use corniche_geom::{GridFrame, LatticeBounds, NodeIndex, NodeWindow};
 use corniche_gis::{CrsError, CrsOperation};
@@ -6,18 +6,18 @@ use corniche_gis::{CrsError, CrsOperation};
 use crate::mosaics::mosaic::{Mosaic, SampleRect};
 use crate::plan::clip::needed_samples;
 use crate::plan::grid_plan::Method;
-use crate::plan::kernel::{Kernel, Samples};
-use crate::reading::reader::{MOST_SAMPLES, Reader, around};
+use crate::plan::kernel::{Kernel, SampleRectangle};
+use crate::reading::reader::{HeightReader, MOST_SAMPLES, around};
 use crate::reading::window_parts::intersection;
 use crate::{Dem, GridPlan, ReadHeightsError};
 
-/// Side of the blocks in which samples are handed out.
+/// Side of the blocks in which samples are returned.
 const BLOCK_SAMPLES: i64 = 256;
 
 /// A block of samples of one of the DEM's grids.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SampleRange {
-    /// Which of the DEM's grids: the place of its mosaic.
+    /// The grid: the index of its mosaic.
     mosaic: usize,
     rect: SampleRect,
 }
@@ -25,14 +25,14 @@ pub struct SampleRange {
 /// Original samples of the DEM that have a height.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SampleBlock {
-    /// Positions in the working CRS, metres; NaN where it does not reach.
+    /// Positions in the working CRS in metres; NaN outside the CRS.
     pub positions_m: Vec<[f64; 2]>,
-    /// Heights, metres, as long as `positions_m`.
+    /// Heights in metres, as many as `positions_m`.
     pub heights_m: Vec<f32>,
 }
 
 impl SampleBlock {
-    /// Leaves out the samples that do not lie between two nodes, by their places rounded to the
+    /// Removes the samples that do not lie between two nodes, by their positions rounded to the
     /// lattice.
     fn keep_within(&mut self, frame: &GridFrame, nodes: [NodeIndex; 2]) {
         let [min, max] = nodes.map(|node| frame.lattice_of_node(node));
@@ -45,7 +45,7 @@ impl SampleBlock {
         self.retain(&is_inside);
     }
 
-    /// Leaves out the samples for which this is false.
+    /// Removes the samples for which this is false.
     fn retain(&mut self, is_kept: &[bool]) {
         let mut kept = is_kept.iter();
         self.positions_m.retain(|_| kept.next().copied().unwrap_or(false));
@@ -55,8 +55,8 @@ impl SampleBlock {
 }
 
 impl Dem {
-    /// All blocks of samples that can lie between nodes of the plan, in a fixed order: 256 × 256
-    /// samples at most, those of no file left out.
+    /// All blocks of samples that can lie between nodes of the plan, in a fixed order: at most 256
+    /// × 256 samples each, without blocks outside all files.
     ///
     /// # Errors
     /// When PROJ fails.
@@ -70,12 +70,12 @@ impl Dem {
     }
 }
 
-/// Nodes around a window within which the samples of the window lie for certain.
+/// The number of nodes around a window within which the samples of the window certainly lie.
 const AROUND_NODES: usize = 2;
 
 impl Dem {
-    /// Blocks that hold every sample between the nodes of a window, and others around it: 256 × 256
-    /// samples at most. No sample is in two of them.
+    /// Blocks that contain every sample between the nodes of a window, and others around it: at
+    /// most 256 × 256 samples each. No sample is in two blocks.
     ///
     /// # Errors
     /// When PROJ fails.
@@ -101,7 +101,7 @@ impl Dem {
                     Some(alignment.samples(ends).intersection(&mosaic.extent))
                 }
                 Method::Resampled(positions, kernel) => {
-                    let at = positions.of(&plan.frame, &part)?;
+                    let at = positions.positions_in(&plan.frame, &part)?;
                     around(at.into_iter(), kernel, &mosaic.extent)
                 }
             };
@@ -112,7 +112,7 @@ impl Dem {
     }
 }
 
-/// The blocks of a rectangle of samples, those of no file left out.
+/// The blocks of a rectangle of samples, without blocks outside all files.
 fn blocks_of(mosaic: &Mosaic, index: usize, rect: &SampleRect) -> Vec<SampleRange> {
     let mut ranges = Vec::new();
     let SampleRect { min, max } = *rect;
@@ -128,9 +128,9 @@ fn blocks_of(mosaic: &Mosaic, index: usize, rect: &SampleRect) -> Vec<SampleRang
     ranges
 }
 
-impl Reader<'_> {
+impl HeightReader<'_> {
     /// The samples of a range that have a height: after nodata, units and shift; where files of one
-    /// grid overlap, those of the file named first. Those outside the plan's bounds are left out.
+    /// grid overlap, those of the file named first. Samples outside the plan's bounds are omitted.
     ///
     /// # Errors
     /// When a file cannot be read.
@@ -155,8 +155,8 @@ impl Reader<'_> {
         Ok(block)
     }
 
-    /// The samples of a range from which nodes are made: those that are not hidden by an earlier
-    /// named grid with data there.
+    /// The samples of a range that nodes use: those that are not hidden by data of an earlier named
+    /// grid.
     ///
     /// # Errors
     /// When a file cannot be read.
@@ -169,7 +169,8 @@ impl Reader<'_> {
         Ok(block)
     }
 
-    /// Tells for each position, in working metres, whether a mosaic lacks samples around it.
+    /// Tells for each position, in working metres, whether a mosaic lacks samples around the
+    /// position.
     fn is_open(
         &mut self,
         mosaic: usize,
@@ -204,7 +205,7 @@ impl Reader<'_> {
             return self.look(mosaic, &at[half..], last);
         }
         self.files.read(&self.dem.sources, mosaic, &rect, &mut self.samples)?;
-        let samples = Samples { rect, heights_m: &self.samples };
+        let samples = SampleRectangle { rect, heights_m: &self.samples };
         for (position, is_open) in at.iter().zip(is_open).filter(|(at, _)| at[0].is_finite()) {
             *is_open = kernel.height_m(&samples, *position, &mut self.scratch).is_nan();
         }

@@ -18,7 +18,7 @@ impl WindowPart {
             .flat_map(move |row| columns.clone().map(move |column| (column, row)))
     }
 
-    /// Cut across the longer side.
+    /// Splits the part across its longer side.
     pub(crate) fn halves(self) -> [Self; 2] {
         if self.columns >= self.rows {
             let west = self.columns / 2;
@@ -36,16 +36,16 @@ impl WindowPart {
     }
 }
 
-/// Where a part of a window lies in it.
-pub(crate) struct Target {
-    /// Columns of the part.
+/// The position of a part within a window.
+pub(crate) struct WindowTarget {
+    /// The number of columns of the part.
     pub(crate) columns: usize,
     left: usize,
     top: usize,
     window_columns: usize,
 }
 
-impl Target {
+impl WindowTarget {
     pub(crate) fn new(window: &NodeWindow, part: &NodeWindow) -> Self {
         Self {
             columns: part.columns,

@@ -1,5 +1,4 @@
-//! Every elevation file of the real data: read as GDAL reads it, or refused as its description
-//! says.
+//! Every elevation file of the real data is read as by GDAL, or rejected as its description says.
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +8,7 @@ use gdal::Dataset;
 use crate::fixture::{all, check_refused, plan, sample_blocks};
 use crate::real_data::data;
 
-/// What GDAL itself has in the first band, void where `sentinel` or its own nodata value says so.
+/// The values of GDAL in the first band; void for `sentinel` or GDAL's own nodata value.
 fn stored(path: &Path, sentinel: Option<f64>) -> (usize, Vec<Option<f64>>) {
     let dataset = Dataset::open(path).unwrap();
     let band = dataset.rasterband(1).unwrap();
@@ -35,7 +34,7 @@ const fn plain(name: &'static str, expected: Resampling) -> Case {
     Case { name, dem_crs: None, nodata: None, unit_m: 1.0, expected }
 }
 
-/// Aligned: every node is GDAL's sample. Resampled: the samples handed out are GDAL's, one for one.
+/// Aligned: every node is GDAL's sample. Resampled: the returned samples are GDAL's, one for one.
 fn check(case: &Case) -> Option<usize> {
     let files = data(&[case.name])?;
     let options = OpenOptions {
@@ -115,7 +114,7 @@ fn every_elevation_file_is_read_as_gdal_reads_it() {
 }
 
 /// The squares of the large block, and the zipped one whose northern half is void: each opens, and
-/// a window of it holds heights within the range that its description gives.
+/// a window has heights within the range of its description.
 #[test]
 fn every_srtm_square_opens() {
     let squares = ["N47E007", "N47E008", "N48E007", "N48E008", "N48E009", "N48E010"];
@@ -147,7 +146,7 @@ fn every_srtm_square_opens() {
     }
 }
 
-/// Bad files are refused with their name and a remedy.
+/// Invalid files are rejected with their name and advice.
 #[test]
 fn bad_files_are_refused_as_described() {
     let given = OpenOptions::default();
@@ -162,7 +161,7 @@ fn bad_files_are_refused_as_described() {
         ("nasty/derived-dem/1x1.tif", "2 × 2"),
         ("nasty/derived-dem/1x512.tif", "2 × 2"),
         ("nasty/derived-dem/N47E009.hgt", "has 1441207 bytes; whole .hgt files have 2884802"),
-        ("nasty/derived-dem/truncated-half.tif", "cut off"),
+        ("nasty/derived-dem/truncated-half.tif", "corrupt"),
         ("nasty/derived-dem/truncated-header-6-bytes.tif", "not a raster"),
         ("nasty/derived-dem/zero-bytes.tif", "0 bytes"),
         ("registry/zh_dem_25.tif", "--dem-crs"),

@@ -1,4 +1,4 @@
-//! The step between heights that files can tell apart is found by looking at all samples.
+//! The step between distinguishable heights is found by reading all samples.
 
 use std::{fs, path::PathBuf};
 

@@ -1,4 +1,4 @@
-//! What a reader must hold of each file, and where each file's nodes lie.
+//! The memory that a reader needs for each file, and the positions of each file's nodes.
 
 use std::path::Path;
 
@@ -43,7 +43,7 @@ fn blocks_are_those_of_the_file_also_behind_a_virtual_one() {
     assert_eq!(found[0].block, [256, 128]);
     assert_eq!(found[0].row_bytes(), 3 * 256 * 128 * 4);
 
-    // A virtual raster has blocks of its own, and is read through those of its parts.
+    // A virtual raster has its own blocks, and is read through those of its parts.
     let vrt = folder.path().join("dem.vrt");
     let driver = DriverManager::get_driver_by_name("VRT").unwrap();
     let source = Dataset::open(&strip).unwrap();
@@ -53,7 +53,7 @@ fn blocks_are_those_of_the_file_also_behind_a_virtual_one() {
     assert_ne!(found[0].block, [600, 400]);
 }
 
-/// Bands of a virtual raster have types of their own.
+/// The bands of a virtual raster have their own types.
 #[test]
 fn blocks_are_those_of_the_band_that_is_chosen() {
     let folder = tempfile::tempdir().unwrap();
@@ -68,7 +68,7 @@ fn blocks_are_those_of_the_band_that_is_chosen() {
     }
 }
 
-/// `OpenJPEG` offers blocks, but decodes the image for one.
+/// `OpenJPEG` offers blocks, but decodes the whole image for one.
 #[test]
 fn a_jpeg_2000_is_one_block() {
     let folder = tempfile::tempdir().unwrap();

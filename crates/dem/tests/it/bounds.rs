@@ -1,4 +1,4 @@
-//! A plan with bounds has the nodes of the whole plan that lie in them, with the same heights to
+//! A plan with bounds has the nodes of the whole plan within the bounds, with the same heights to
 //! the last bit.
 
 use corniche_dem::{Dem, GridError, GridPlan, OpenOptions, PlanOptions};
@@ -26,8 +26,8 @@ fn with(bounds_deg: [f64; 4], options: PlanOptions) -> PlanOptions {
     PlanOptions { bounds_deg: Some(bounds_deg), ..options }
 }
 
-/// Checks that all that is not about bounds is the same, that nodes inside have the same heights
-/// and no others have one.
+/// Checks that everything unrelated to bounds is the same, that nodes inside have the same heights,
+/// and that no other nodes have heights.
 fn check(dem: &Dem, asked: &PlanOptions, bounds_deg: [f64; 4]) -> GridPlan {
     let whole = dem.plan(asked).unwrap();
     let part = dem.plan(&with(bounds_deg, asked.clone())).unwrap();
@@ -62,13 +62,13 @@ fn check(dem: &Dem, asked: &PlanOptions, bounds_deg: [f64; 4]) -> GridPlan {
         }
     }
     assert_eq!(found.filled, filled);
-    // Positions of roads come out the same, too.
+    // Positions of roads are the same, too.
     let mut points = [[[9.05, 47.05], [9.9, 46.2]]; 2];
     for (plan, points) in [&whole, &part].into_iter().zip(&mut points) {
         dem.projection(plan).unwrap().working_from_wgs84(points).unwrap();
     }
     assert_eq!(points[0], points[1]);
-    // Of the samples there are those between the nodes.
+    // The samples are those between the nodes.
     let samples = |plan| sample_blocks(dem, plan).into_iter().flat_map(|block| block.positions_m);
     let [low, high] =
         part.clip.unwrap().nodes.map(|node| [part.frame.x_m(node.i), part.frame.y_m(node.j)]);
@@ -93,7 +93,7 @@ fn nodes_in_bounds_have_the_heights_of_the_whole() {
     ] {
         let part = check(&dem, &asked, bounds_deg);
         let [west, south, east, north] = part.wgs84_bounds.to_array();
-        // The rectangle of nodes holds the bounds, and in a projection a little more.
+        // The rectangle of nodes contains the bounds, and in a projection a little more.
         assert!(west <= 9.0531 && south <= 47.0411 && east >= 9.1209 && north >= 47.0969);
         assert!(
             west > 9.045 && south > 47.03 && east < 9.13 && north < 47.11,
@@ -117,7 +117,7 @@ fn bounds_are_rounded_outwards_to_cells_and_end_at_nodes_exactly() {
     assert_eq!(size([9.0105, 47.0505, 9.0205, 47.0705]), [11, 21]);
     assert_eq!(size([9.0104, 47.0504, 9.0206, 47.0706]), [13, 23]);
     assert_eq!(size([9.0106, 47.0506, 9.0204, 47.0704]), [11, 21]);
-    // Beyond the data there is nothing.
+    // Beyond the data there are no nodes.
     assert_eq!(size([-20.0, 30.0, 50.0, 60.0]), [200, 160]);
 }
 
@@ -128,7 +128,7 @@ fn only_samples_that_are_needed_are_looked_at() {
     let tiled = ["TILED=YES", "BLOCKXSIZE=256", "BLOCKYSIZE=256"];
     let raster =
         Raster::new(4326, [2048, 2048], [9.0, 0.001, 0.0, 47.0, 0.0, -0.001]).created(&tiled);
-    // An undeclared "no data" far from the bounds does not matter to them.
+    // An undeclared "no data" value far from the bounds does not matter.
     let path = raster
         .write(folder.path(), "a.tif", |[x, y]| if x > 10.9 { -9999.0 } else { (x + y) as f32 });
     let dem = open(&[path]);
@@ -161,13 +161,13 @@ fn bounds_may_cross_180_degrees() {
         assert!((0.5..0.55).contains(&width), "{:?}", part.wgs84_bounds);
         assert!(part.wgs84_bounds.min_x > 179.0, "{:?}", part.wgs84_bounds);
     }
-    // Wholly beyond 180 degrees of the whole: told within ±180.
+    // Entirely beyond 180 degrees of the whole: reported within ±180.
     let part = check(&dem, &options(), [-179.9, -16.4, -179.7, -16.2]);
     assert!((-179.95..-179.85).contains(&part.wgs84_bounds.min_x), "{:?}", part.wgs84_bounds);
 }
 
-/// Bounds that go around the whole earth leave out nothing along the longitude, wherever data lie
-/// and whatever their working CRS is.
+/// Bounds that go around the whole earth clip nothing along the longitude, for data anywhere and in
+/// any working CRS.
 #[test]
 fn bounds_around_the_earth_leave_out_no_longitude() {
     let folder = folder();
@@ -192,7 +192,7 @@ fn bounds_around_the_earth_leave_out_no_longitude() {
             let part = dem.plan(&with([-180.0, -16.4, 180.0, -16.2], asked.clone())).unwrap();
             let widths = [&part, &whole].map(|plan| plan.wgs84_bounds.width());
             assert!(widths[0] > widths[1] - 0.03, "{widths:?}");
-            // Around a pole the ground is the rectangle around a turned image, which is larger.
+            // Around a pole the ground is the rectangle around a rotated image, which is larger.
             if asked.crs.as_deref() != Some("EPSG:3031") {
                 assert!(widths[0] < widths[1] + 0.03, "{widths:?}");
                 assert!(part.wgs84_bounds.height() < 0.3, "{:?}", part.wgs84_bounds);
@@ -212,7 +212,7 @@ fn bounds_without_a_cell_or_at_both_ends_are_refused() {
         check_words(&error, words);
     };
     refuse([10.0, 47.0, 11.0, 48.0], &["--bounds 10,47,11,48", "9.0005", "47.1595"]);
-    // Beside the last sample.
+    // Next to the last sample.
     refuse([9.1996, 47.0, 9.1999, 48.0], &["no cell"]);
     let globe = Raster::new(4326, [360, 180], [-180.0, 1.0, 0.0, 90.0, 0.0, -1.0]);
     let globe =

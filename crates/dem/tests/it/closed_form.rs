@@ -1,5 +1,5 @@
-//! Windows of rasters whose heights are known in closed form have these heights, however the raster
-//! lies.
+//! Windows of rasters whose heights are known in closed form have these heights, for rasters in any
+//! orientation.
 
 use std::path::PathBuf;
 
@@ -108,7 +108,7 @@ fn a_grid_in_feet_is_laid_out_in_metres() {
     assert_eq!(check(&mut dem.reader(&plan), &plan, 0.05, truth), 1200);
 }
 
-/// A plane of UTM seen through longitude and latitude comes back to a hundredth of a cell.
+/// A plane in UTM, stored in longitude and latitude, is reproduced to a hundredth of a cell.
 #[test]
 fn a_reprojected_plane_comes_back() {
     let folder = folder();
@@ -190,8 +190,8 @@ fn wide_and_polar_extents_get_an_equal_area_projection() {
     }
 }
 
-/// Latitudes around the pole, where the lattice of positions cannot be interpolated, are right all
-/// the same.
+/// Latitudes around the pole, where the lattice of positions cannot be interpolated, are correct as
+/// well.
 #[test]
 fn nodes_around_the_pole_are_transformed_one_by_one() {
     let folder = folder();
@@ -233,7 +233,7 @@ fn the_antimeridian_is_no_border() {
         });
         assert!(if is_own { count == 20_000 } else { count > 15_000 }, "{count}");
     }
-    // In degrees nodes go on past 180, and places named from either side fall there.
+    // In degrees nodes continue beyond 180, and positions named from either side are found there.
     let plan = plan(&dem);
     // The east factor is adjusted by half a lattice step a cell at most: 0.5 mm of 106 m.
     check_near(plan.metres_per_unit, degree_m(-17.0), 5e-6);
@@ -292,9 +292,9 @@ fn options_override_and_are_checked() {
     assert!(dem.reader(&own).window(coarse).is_err());
 }
 
-/// A second file turned by a quarter, whose rows run east and whose columns run north: its samples
-/// are where nodes are, one to a node along either axis, though its own axes are 20 m and 10 m
-/// long.
+/// A second file rotated by a quarter turn, whose rows run east and whose columns run north: its
+/// samples coincide with nodes, one per node along either axis, although its own axes are 20 m and
+/// 10 m long.
 #[test]
 fn a_file_turned_by_a_quarter_is_not_averaged_along_the_wrong_axis() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,5 +1,4 @@
-//! How positions come from one datum to another is told, and one datum is not taken for another in
-//! silence.
+//! Datum operations are reported, and one datum is never silently treated as another.
 
 use std::path::PathBuf;
 
@@ -49,7 +48,7 @@ fn an_operation_is_told_with_the_accuracy_that_the_registry_has() {
     }
 }
 
-/// Files on several grids, in two systems by turns.
+/// Files on several grids, alternating between two systems.
 #[test]
 fn each_system_of_files_has_its_operations_once() {
     let folder = folder();
@@ -124,8 +123,8 @@ fn a_local_datum_is_not_taken_for_wgs84_unless_that_is_allowed() {
     }
 }
 
-/// A datum on the ellipsoid of WGS84 or GRS80 was made to be used with satellites: within metres it
-/// is WGS84.
+/// A datum on the ellipsoid of WGS84 or GRS80 was made for satellite positioning: it agrees with
+/// WGS84 within metres.
 #[test]
 fn a_datum_without_a_name_on_the_ellipsoid_of_grs80_is_told_and_not_refused() {
     let folder = folder();
@@ -141,9 +140,10 @@ fn a_datum_without_a_name_on_the_ellipsoid_of_grs80_is_told_and_not_refused() {
 const WEST_OF_IT: [f64; 2] = [2_451_194.441_5, 1_151_695.830_5];
 const INSIDE: [f64; 2] = [2_566_327.701_7, 1_149_948.852_1];
 
-/// West of 5.96° E the registry has no operation for CH1903+. A DEM that reaches there is carried
-/// by one operation nevertheless: else it would break apart at that meridian. The value is that of
-/// GDAL for the same projection with the shift written out (`+towgs84=674.374,15.056,405.346`).
+/// West of 5.96° E the registry has no operation for CH1903+. A DEM that reaches there is
+/// transformed by a single operation nevertheless: otherwise it would break at that meridian. The
+/// value is that of GDAL for the same projection with an explicit shift
+/// (`+towgs84=674.374,15.056,405.346`).
 #[test]
 fn a_dem_that_reaches_beyond_the_area_of_its_datum_stays_in_one_piece() {
     let data = Bounds { min_x: 2.45e6, min_y: 1.1e6, max_x: 2.6e6, max_y: 1.2e6 };

@@ -1,5 +1,5 @@
-//! When two vertical systems measure from the same: by the name of a datum, and of none only word
-//! for word.
+//! Two vertical systems have the same datum if its name is the same; systems without a named datum
+//! only if they are identical.
 
 use std::path::{Path, PathBuf};
 
@@ -22,7 +22,7 @@ pub(crate) fn relabelled(path: &Path, wkt: &str) -> PathBuf {
     own
 }
 
-/// "Unknown" is no datum that two systems could share.
+/// "Unknown" is not a datum that two systems could share.
 #[test]
 fn systems_without_a_datum_are_the_same_only_word_for_word() {
     let folder = tempfile::tempdir().unwrap();
@@ -61,7 +61,7 @@ fn systems_without_a_datum_are_the_same_only_word_for_word() {
         let alike = vertical(&[west, east("harbour height")], &plain);
         assert_eq!(alike, (Some("harbour height".to_owned()), "as in the files".to_owned()));
     }
-    // A datum with a name is one whatever the system above it is called.
+    // A named datum is the same, whatever the name of the system on it.
     let (one, other) = (own("harbour height", "Harbour gauge"), own("harbour", "Harbour gauge"));
     assert!(vertical(&files, &given(&one, &other)).1.contains("as in the files"));
 }
@@ -84,7 +84,7 @@ fn utm_3d(zone: u32) -> String {
     )
 }
 
-/// Heights above one ellipsoid are one thing, whatever the plan's zone is.
+/// Heights above one ellipsoid are equal, regardless of the UTM zone.
 #[test]
 fn ellipsoidal_heights_of_two_zones_agree() {
     let folder = tempfile::tempdir().unwrap();
@@ -101,10 +101,10 @@ fn ellipsoidal_heights_of_two_zones_agree() {
     let (datum, words) = vertical(&files, &OpenOptions::default());
     assert_eq!(datum.as_deref(), Some("ellipsoidal height (WGS 84)"));
     assert_eq!(words, "as in the files");
-    // And they are those of the geographic system: nothing is to be carried.
+    // They are also those of the geographic system: no conversion is needed.
     let words = vertical(&files, &given("", "EPSG:4979")).1;
     assert_eq!(words, "ellipsoidal height (WGS 84), as in the files");
-    // Another datum is another thing.
+    // Another datum differs.
     let other = Raster::new(32632, [60, 50], UTM).write(folder.path(), "other.tif", |_| 500.0_f32);
     let both = [files[0].clone(), other];
     let words = ["32.vrt", "other.tif", "WGS 84", "ETRS89"];

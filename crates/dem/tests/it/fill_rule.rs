@@ -1,9 +1,9 @@
-//! The rule by which voids are filled, against a second, simple implementation.
+//! The rule by which voids are filled, compared with a second, simple implementation.
 
 use std::fs;
 use std::path::PathBuf;
 
-use corniche_dem::{DemWindow, OpenOptions, PlanOptions, Reader};
+use corniche_dem::{DemWindow, HeightReader, OpenOptions, PlanOptions};
 use corniche_geom::{Cell, NodeIndex, NodeWindow};
 use proptest::prelude::*;
 
@@ -75,8 +75,7 @@ impl Mask {
         (is_inside && self.has_data[r * SIZE[0] + c]).then(|| height_m(c, r))
     }
 
-    /// What the rule gives for a void: every void is looked at from each of its sides, step by
-    /// step.
+    /// The result of the rule for a void: searches from every void in each direction, step by step.
     fn filled(&self, column: i64, row: i64, reach: i64, cell: Cell) -> Option<f64> {
         let (mut sum, mut weights) = (0.0, 0.0);
         for down in -1..=1_i64 {
@@ -104,15 +103,15 @@ impl Mask {
     }
 }
 
-fn read(reader: &mut Reader<'_>, window: NodeWindow) -> DemWindow {
+fn read(reader: &mut HeightReader<'_>, window: NodeWindow) -> DemWindow {
     reader.window(window).unwrap()
 }
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(150))]
 
-    /// Filled are exactly the nodes of the rule, with its values, through every window that shows
-    /// them, those at its corners and beyond the data included, and with the same bits.
+    /// Exactly the nodes of the rule are filled, with its values and the same bits, in every window
+    /// that contains them, also at its corners and beyond the data.
     #[test]
     fn exactly_the_nodes_of_the_rule_are_filled(
         is_ground in any::<bool>(),
@@ -164,8 +163,7 @@ proptest! {
     }
 }
 
-/// A square of degrees seen in metres has slanting edges: nothing is filled beyond them, whatever
-/// the reach.
+/// A square of degrees has slanting edges in metres: nothing is filled beyond them, with any reach.
 #[test]
 fn nothing_is_filled_beyond_the_edge_of_reprojected_squares() {
     let folder = tempfile::tempdir().unwrap();

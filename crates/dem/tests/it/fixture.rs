@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use corniche_dem::{Dem, DemError, GridPlan, OpenOptions, PlanOptions, Reader, SampleBlock};
+use corniche_dem::{Dem, DemError, GridPlan, HeightReader, OpenOptions, PlanOptions, SampleBlock};
 use corniche_geom::{NodeWindow, Projection};
 pub(crate) use corniche_testing::Raster;
 use corniche_testing::raster_creation_options;
@@ -45,7 +45,7 @@ pub(crate) fn converted(
     Some(target)
 }
 
-/// The coordinates that heights are a function of.
+/// The coordinates of which heights are a function.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Space {
     /// x, y of the working CRS.
@@ -54,7 +54,8 @@ pub(crate) enum Space {
     Degrees,
 }
 
-/// Opens files and compares every node that has a height with `truth`; returns how many have one.
+/// Opens files and compares every node that has a height with `truth`; returns the number of nodes
+/// with a height.
 pub(crate) fn check_heights(
     name: &str,
     files: &[PathBuf],
@@ -73,8 +74,8 @@ pub(crate) fn check_heights(
     })
 }
 
-/// Files are refused, by opening or by reading, with the file's name and all of `words`, and no raw
-/// error of a library.
+/// Asserts that files are rejected when opened or read, with the file's name and all of `words`,
+/// and without a raw error of a library.
 pub(crate) fn check_refused(files: &[PathBuf], options: &OpenOptions, words: &[&str]) {
     let read = || -> Result<(), DemError> {
         let dem = Dem::open(files, options)?;
@@ -86,7 +87,8 @@ pub(crate) fn check_refused(files: &[PathBuf], options: &OpenOptions, words: &[&
     check_words(&error, words);
 }
 
-/// The message has all of `words`, and neither it nor its causes are in a library's own code words.
+/// Asserts that the message has all of `words`, and that neither it nor its causes are in the
+/// jargon of a library.
 pub(crate) fn check_words(error: &(impl std::error::Error + 'static), words: &[&str]) {
     let text = error.to_string();
     for word in words {
@@ -115,12 +117,12 @@ pub(crate) fn options() -> PlanOptions {
     PlanOptions::default()
 }
 
-/// Options for tests of resampling: a geographic DEM is carried to UTM.
+/// Options for tests of resampling: a geographic DEM is transformed to UTM.
 pub(crate) fn in_utm() -> PlanOptions {
     PlanOptions { crs: Some("utm".to_owned()), ..options() }
 }
 
-/// Metres to a degree of longitude and of latitude on WGS84, by the usual series; an oracle that
+/// Metres per degree of longitude and of latitude on WGS84, by the usual series; an oracle that
 /// shares nothing with the closed formula under test.
 ///
 /// Source: National Geospatial-Intelligence Agency, *Length of a Degree of Latitude and Longitude*.
@@ -132,7 +134,7 @@ pub(crate) fn degree_m(latitude_deg: f64) -> [f64; 2] {
     ]
 }
 
-/// Both numbers agree to a share of themselves.
+/// Asserts that both numbers agree to a relative tolerance.
 pub(crate) fn check_near(found: [f64; 2], expected: [f64; 2], share: f64) {
     for axis in 0..2 {
         let off = (found[axis] / expected[axis] - 1.0).abs();
@@ -156,9 +158,9 @@ pub(crate) fn sample_blocks(dem: &Dem, plan: &GridPlan) -> Vec<SampleBlock> {
     dem.sample_ranges(plan).unwrap().iter().map(|range| reader.samples(range).unwrap()).collect()
 }
 
-/// Compares every node with `truth` at its position; returns how many have a height.
+/// Compares every node with `truth` at its position; returns the number of nodes with a height.
 pub(crate) fn check(
-    reader: &mut Reader<'_>,
+    reader: &mut HeightReader<'_>,
     plan: &GridPlan,
     tolerance_m: f64,
     truth: impl Fn([f64; 2]) -> f64,

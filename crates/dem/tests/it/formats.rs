@@ -1,4 +1,4 @@
-//! Containers and encodings: whatever a plane is wrapped in, it comes back.
+//! Containers and encodings: a plane is reproduced from any format.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use crate::fixture::{Raster, Space, UTM, check_heights, check_refused, converted
 
 const SAMPLES: usize = 60 * 50;
 
-/// What 32-bit floats round away.
+/// The rounding error of 32-bit floats.
 const F32_M: f64 = 1e-4;
 
 fn raster<'a>() -> Raster<'a> {
@@ -63,7 +63,7 @@ fn every_encoding_of_geotiff_gives_the_plane() {
     assert!(count >= 9, "{count} encodings");
 }
 
-/// Drivers that need no other library: every GDAL has them, unless it was built to lack them.
+/// Drivers that need no other library: every GDAL has them, unless it was built without them.
 const IN_EVERY_GDAL: [&str; 8] = ["GTiff", "COG", "VRT", "AAIGrid", "EHdr", "ENVI", "HFA", "SAGA"];
 
 /// Formats that GDAL writes by copying a raster.
@@ -134,7 +134,7 @@ fn degrees([lon, lat]: [f64; 2]) -> f64 {
     1500.0 + (lon - 8.0) * 1200.0 - (47.0 - lat) * 1200.0
 }
 
-/// One hundredth of the finer spacing on that plane, and PROJ's rounding.
+/// The height of one hundredth of the finer spacing on that plane, and PROJ's rounding.
 const DEGREES_M: f64 = 0.02;
 
 fn srtm(folder: &Path, name: &str) -> PathBuf {
@@ -166,7 +166,7 @@ fn srtm_squares_lie_where_their_name_says() {
         );
     }
     let anonymous = [srtm(folder.path(), "heights.hgt")];
-    check_refused(&anonymous, &given, &["heights.hgt", "does not say where it lies"]);
+    check_refused(&anonymous, &given, &["heights.hgt", "does not give its position"]);
 }
 
 #[test]
@@ -238,8 +238,8 @@ fn netcdf_4_gives_the_plane_and_bare_hdf5_has_no_place() {
     let options = ["FORMAT=NC4", "COMPRESS=DEFLATE"];
     let Some(path) = converted(&source, "netCDF", "four.nc", &options) else { return };
     check("netCDF 4", &path, F32_M);
-    // HDF5 has no writer in GDAL; netCDF 4 is HDF5, but without netCDF's conventions nobody knows
-    // where it lies.
+    // HDF5 has no writer in GDAL; netCDF 4 is HDF5, but without netCDF's conventions its
+    // georeference is unknown.
     if DriverManager::get_driver_by_name("HDF5").is_ok() {
         let name = PathBuf::from(format!("HDF5:\"{}\"://Band1", path.display()));
         check_refused(&[name], &given, &["four.nc", "georeference"]);
@@ -260,7 +260,7 @@ fn broken_files_are_refused_with_a_reason() {
         ("text.tif", b"ceci n'est pas un MNT\n".repeat(40), "not a raster"),
         ("markup.vrt", b"<VRTDataset rasterXSize=\"60\"".to_vec(), "not a raster"),
         ("header.tif", whole[..8].to_vec(), "not a raster"),
-        ("half.tif", whole[..whole.len() / 2].to_vec(), "damaged"),
+        ("half.tif", whole[..whole.len() / 2].to_vec(), "corrupt"),
     ] {
         let path = folder.path().join(name);
         fs::write(&path, bytes).unwrap();
@@ -271,7 +271,7 @@ fn broken_files_are_refused_with_a_reason() {
     assert!(matches!(Dem::open(&[], &given), Err(OpenDemError::NoFiles)));
 }
 
-/// Cut anywhere, a file is refused or gives the true heights; it never gives others.
+/// A file that is truncated anywhere is rejected or gives the true heights; it never gives others.
 #[test]
 fn cut_anywhere_a_file_gives_true_heights_or_none() {
     let folder = tempfile::tempdir().unwrap();
@@ -302,8 +302,8 @@ fn cut_anywhere_a_file_gives_true_heights_or_none() {
     assert!(refused > bytes.len() / 2);
 }
 
-/// A part of a virtual raster is named by the bytes of its name, UTF-8 or not, so that whoever
-/// records it can say so.
+/// A part of a virtual raster is named by the bytes of its name, UTF-8 or not, so that callers that
+/// record the name can report it.
 #[cfg(target_os = "linux")]
 #[test]
 fn parts_keep_the_bytes_of_their_names() {

@@ -1,5 +1,5 @@
-//! Where rasters lie: tie points, seams of the globe, poles, and rasters too small to enclose
-//! ground.
+//! Georeferences of rasters: tie points, seams of the globe, poles, and rasters too small to
+//! enclose ground.
 
 use std::path::{Path, PathBuf};
 
@@ -33,7 +33,7 @@ fn tied<'a>(bend_m: f64) -> Raster<'a> {
     })
 }
 
-/// Of a raster that has no geotransform its pixels' positions are unknown to the fixture.
+/// The fixture does not know the pixels' positions of a raster without a geotransform.
 fn untied_plane() -> impl Fn([f64; 2]) -> f64 {
     let next = std::cell::Cell::new(0_u32);
     move |_| {
@@ -114,7 +114,7 @@ fn a_single_row_or_column_is_refused_and_a_square_of_four_is_not() {
     assert_eq!(check_heights("columns", &columns, &given, (Space::Working, 1e-4), plane), 45);
 }
 
-/// A function of the place that is linear in degrees near the antimeridian, seen from either side.
+/// A function of the position that is linear in degrees near the antimeridian, from either side.
 fn beyond([lon, lat]: [f64; 2]) -> f64 {
     let east = if lon < 0.0 { lon + 180.0 } else { lon - 180.0 };
     1000.0 + east * 1000.0 + lat * 500.0
@@ -128,7 +128,8 @@ fn square(folder: &Path, name: &str, west: f64, north: f64, size: [usize; 2]) ->
     )
 }
 
-/// However files name longitudes, 180° is no border: no gap between the last column and the first.
+/// With any notation of longitudes, 180° is no border: there is no gap between the last column and
+/// the first.
 #[test]
 fn the_antimeridian_is_no_seam() {
     let folder = tempfile::tempdir().unwrap();
@@ -166,8 +167,8 @@ fn utm_crosses_the_antimeridian() {
     assert_eq!(check_heights("UTM 60", &[path], &given, (Space::Working, 1e-3), truth), 4800);
 }
 
-/// All around the earth: no void but the caps beyond the last rows and, opposite to the
-/// projection's centre, one cell about the point that it cannot show.
+/// All around the earth: no voids except the caps beyond the last rows and, opposite to the
+/// projection's centre, one cell about the point that the projection cannot show.
 #[test]
 fn a_global_grid_has_no_seam() {
     let folder = tempfile::tempdir().unwrap();
@@ -255,8 +256,7 @@ fn the_poles_are_covered_as_far_as_samples_go() {
     }
 }
 
-/// Wider than half the earth: the rectangle in WGS84 is that of the file, whatever the CRS's
-/// coordinates are.
+/// Wider than half the earth: the rectangle in WGS84 is that of the file, in any CRS.
 #[test]
 fn bounds_of_wide_files_are_their_own() {
     let folder = tempfile::tempdir().unwrap();
@@ -276,7 +276,7 @@ fn bounds_of_wide_files_are_their_own() {
         let file = Raster::new(epsg, [columns, 20], map).write(folder.path(), &name, |_| 1.0_f32);
         let found = open(&[file]).plan(&own_crs()).unwrap().wgs84_bounds;
         let first = west + 0.5;
-        // All around the earth the ground goes on from the last column to the first one.
+        // All around the earth, the ground continues from the last column to the first one.
         let last = if columns == 360 { first + 360.0 } else { first + columns as f64 - 1.0 };
         for (found, expected) in found.to_array().into_iter().zip([first, -9.5, last, 9.5]) {
             assert!((found - expected).abs() < 0.01, "{name}: {found}, not {expected}");
@@ -284,7 +284,8 @@ fn bounds_of_wide_files_are_their_own() {
     }
 }
 
-/// Two halves of the globe side by side are one globe; longitudes do not count a second turn.
+/// Two halves of the globe side by side are one globe; longitudes do not continue for a second
+/// turn.
 #[test]
 fn halves_of_the_globe_are_one_turn() {
     let folder = tempfile::tempdir().unwrap();
@@ -307,7 +308,7 @@ fn own_crs() -> PlanOptions {
     PlanOptions { crs: Some("dem".to_owned()), ..options() }
 }
 
-/// A spacing written with few digits is meant as 1/120 of a degree: files on both sides of the
+/// A spacing written with few digits is read as 1/120 of a degree: files on both sides of the
 /// antimeridian are neighbours, in either order.
 #[test]
 fn few_digits_do_not_part_files_at_the_antimeridian() {
@@ -335,8 +336,8 @@ fn few_digits_do_not_part_files_at_the_antimeridian() {
     }
 }
 
-/// So far from the first file that few digits make another grid of it, on the other side of the
-/// antimeridian: its samples are nodes beside those of the first.
+/// A file so far from the first one that a spacing with few digits gives another grid, on the other
+/// side of the antimeridian: its samples are nodes next to those of the first.
 #[test]
 fn aligned_files_far_across_the_antimeridian_are_near() {
     let folder = tempfile::tempdir().unwrap();

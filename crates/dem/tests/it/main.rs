@@ -1,4 +1,4 @@
-//! Windows of heights from rasters made by GDAL, against closed forms, and from real data.
+//! Windows of heights from rasters created by GDAL, compared with closed forms, and from real data.
 #![expect(
     clippy::unwrap_used,
     clippy::print_stdout,

@@ -1,11 +1,11 @@
-//! Names that stand for several files, or for what is packed in one.
+//! Names that mean several files, or the content of a packed file.
 
 use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use corniche_gis::{NameError, Sought, unpack_name};
+use corniche_gis::{NameError, SoughtFiles, unpack_name};
 
 use crate::fixture::{Raster, check_words, folder, open, options};
 
@@ -20,7 +20,7 @@ fn squares(at: &Path) -> [PathBuf; 2] {
 }
 
 fn expand_name(name: &Path) -> Result<Vec<PathBuf>, NameError> {
-    corniche_gis::expand_name(name, Sought::Elevation)
+    corniche_gis::expand_name(name, SoughtFiles::Elevation)
 }
 
 fn names(found: &[PathBuf]) -> Vec<String> {
@@ -39,19 +39,19 @@ fn folders_patterns_and_lists_stand_for_their_files() {
     assert_eq!(names(&expand_name(at).unwrap()), both);
     assert_eq!(names(&expand_name(&at.join("square-*.tif")).unwrap()), both);
     assert_eq!(names(&expand_name(&at.join("*-1.t?f")).unwrap()), both[1..]);
-    // One file stands for itself, also if it is not there, or is on a server.
+    // The name of one file means this file, also if it does not exist, or is on a server.
     for name in
         [first.clone(), at.join("none.tif"), "https://a/x?y.tif".into(), "/vsicurl/a*.tif".into()]
     {
         assert_eq!(expand_name(&name).unwrap(), [name]);
     }
-    // The order of a list is that of its lines; names are counted from its folder.
+    // The order of a list is that of its lines; names are relative to its folder.
     let list = at.join("list.txt");
     fs::write(&list, format!("# squares\nsquare-1.tif\n\n{}\nsquare-?.tif\n", first.display()))
         .unwrap();
     let listed = expand_name(Path::new(&format!("@{}", list.display()))).unwrap();
     assert_eq!(listed, [second.clone(), first.clone(), first.clone(), second]);
-    // Editors of Windows begin text with a byte order mark, and end lines in their own way.
+    // Editors on Windows begin text with a byte order mark, and have their own line ends.
     fs::write(&list, "\u{feff}square-1.tif\r\nsquare-0.tif\r\n").unwrap();
     let listed = expand_name(Path::new(&format!("@{}", list.display()))).unwrap();
     assert_eq!(names(&listed), ["square-1.tif", "square-0.tif"]);
@@ -69,14 +69,14 @@ fn names_without_a_file_are_refused() {
     let folder = folder();
     let at = folder.path();
     let refuse = |name: &Path, words: &[&str]| check_words(&expand_name(name).unwrap_err(), words);
-    refuse(at, &["holds no elevation file", "tif"]);
-    refuse(&at.join("*.tif"), &["no file fits it"]);
+    refuse(at, &["contains no elevation file", "tif"]);
+    refuse(&at.join("*.tif"), &["no file matches"]);
     refuse(&at.join("a[.tif"), &["a[.tif"]);
     refuse(Path::new("@none.txt"), &["none.txt"]);
     let list = at.join("list.txt");
     fs::write(&list, "# nothing\n").unwrap();
     refuse(Path::new(&format!("@{}", list.display())), &["names no file"]);
-    refuse(Path::new(&format!("@{}", at.display())), &["was to name files"]);
+    refuse(Path::new(&format!("@{}", at.display())), &["a list or folder"]);
 }
 
 #[test]
@@ -96,7 +96,7 @@ fn packed_files_are_read_as_their_content() {
         dem.reader(&plan).window(crate::fixture::all(&plan)).unwrap().heights
     };
     assert_eq!(heights(&found), heights(std::slice::from_ref(&first)));
-    // Names that are GDAL's already, and others, stay.
+    // Names for GDAL's virtual files, and other names, stay unchanged.
     for name in ["/vsizip/a.zip", "/vsigzip/a.gz", "/vsicurl/https://a/b.tif", "a.tif"] {
         assert_eq!(unpack_name(name.into()).unwrap(), [PathBuf::from(name)]);
     }

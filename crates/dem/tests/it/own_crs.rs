@@ -1,5 +1,4 @@
-//! The DEM's own CRS as working CRS: its factors, against closed forms and against PROJ asked
-//! directly.
+//! The DEM's own CRS as working CRS: its factors, compared with closed forms and with PROJ itself.
 
 use corniche_dem::{PlanOptions, Resampling};
 use corniche_geom::Projection;
@@ -7,12 +6,13 @@ use gdal::spatial_ref::{AxisMappingStrategy, CoordTransform, SpatialRef};
 
 use crate::fixture::{Raster, all, check, check_near, check_words, degree_m, open, options, plan};
 
-/// An east side is adjusted by half a lattice step at most: less than 0.5 mm a cell.
+/// The largest relative adjustment of an east side by half a lattice step: less than 0.5 mm per
+/// cell.
 fn adjusted(east_m: f64) -> f64 {
     1e-6 + 0.0005 / east_m
 }
 
-/// Places through PROJ alone, longitude or x first.
+/// Positions transformed by PROJ alone, longitude or x first.
 fn transformed(from: u32, to: u32, point: [f64; 2]) -> [f64; 2] {
     let reference = |epsg: u32| {
         let mut reference = SpatialRef::from_epsg(epsg).unwrap();
@@ -44,8 +44,8 @@ fn plane_about([x0, y0]: [f64; 2], slope: f64) -> impl Fn([f64; 2]) -> f64 {
     move |[x, y]| 800.0 + slope * (x - x0) - 2.0 * slope * (y - y0)
 }
 
-/// Web Mercator, World Mercator and World Equidistant Cylindrical: the unit over PROJ's scale along
-/// each axis, at the standard latitude; lengths in the middle are true, nodes are samples.
+/// Web Mercator, World Mercator and World Equidistant Cylindrical: the unit divided by PROJ's scale
+/// along each axis, at the standard latitude; lengths in the middle are true, nodes are samples.
 #[test]
 fn projections_that_stretch_get_true_lengths_and_keep_their_samples() {
     let folder = tempfile::tempdir().unwrap();
@@ -98,8 +98,8 @@ fn projections_that_stretch_get_true_lengths_and_keep_their_samples() {
     }
 }
 
-/// Degrees and grads, Greenwich and Paris, WGS84 and other ellipsoids: the radii of curvature of
-/// the CRS's own.
+/// Degrees and grads, Greenwich and Paris, WGS84 and other ellipsoids: the radii of curvature are
+/// those of the CRS's own ellipsoid.
 #[test]
 fn a_unit_of_a_geographic_system_is_as_long_as_on_its_ellipsoid() {
     let folder = tempfile::tempdir().unwrap();
@@ -140,7 +140,7 @@ fn a_unit_of_a_geographic_system_is_as_long_as_on_its_ellipsoid() {
     }
 }
 
-/// Hartebeesthoek94 / Lo29 counts westwards and southwards: x grows east and y north all the same.
+/// Hartebeesthoek94 / Lo29 counts westwards and southwards: x grows east and y north nevertheless.
 #[test]
 fn systems_that_count_westwards_and_southwards_are_turned() {
     let folder = tempfile::tempdir().unwrap();
@@ -184,7 +184,7 @@ fn systems_that_count_westwards_and_southwards_are_turned() {
 }
 
 /// Polar stereographic systems are true to scale at 70 or 71 degrees, and keep their unit there;
-/// where they are not, their factor makes them so; where no factor does within 3 %, they give way.
+/// elsewhere a factor makes them true; if no factor does within 3 %, another CRS is chosen.
 #[test]
 fn polar_systems_are_kept_where_lengths_are_true_within_three_percent() {
     let folder = tempfile::tempdir().unwrap();
@@ -293,7 +293,7 @@ fn a_given_latitude_pins_the_factors() {
     }
 }
 
-/// A projected CRS that is asked for has true lengths too.
+/// A requested projected CRS has true lengths, too.
 #[test]
 fn lengths_are_true_in_a_projection_that_is_asked_for() {
     let folder = tempfile::tempdir().unwrap();
@@ -305,8 +305,7 @@ fn lengths_are_true_in_a_projection_that_is_asked_for() {
     check_near(plan.scale.center, [1.0; 2], 0.01);
 }
 
-/// The whole globe in its own degrees: what lies at the poles has no width, and a scale of 1000
-/// says so.
+/// The whole globe in degrees: at the poles, cells have no width, which a scale of 1000 shows.
 #[test]
 fn the_globe_can_be_had_in_its_own_degrees() {
     let folder = tempfile::tempdir().unwrap();
@@ -349,7 +348,7 @@ fn words_for_the_working_crs_have_any_case() {
     check_words(&asked("mercator please").unwrap_err(), &["--crs", "write dem", "utm", "EPSG:n"]);
 }
 
-/// A latitude at which lengths are true says nothing in UTM.
+/// A latitude at which lengths are true has no effect in UTM.
 #[test]
 fn a_given_latitude_does_not_go_with_utm() {
     let folder = tempfile::tempdir().unwrap();

@@ -31,8 +31,8 @@ fn borders(plan: &GridPlan) -> [Vec<u64>; 2] {
     ]
 }
 
-/// With one latitude for all of them, packages of adjoining squares have one grid: same cell, same
-/// origin, the same tile borders; so has the package of all of them.
+/// With one latitude for all, packages of adjoining squares share one grid: the same cell, origin
+/// and tile borders; so does the package of all squares.
 #[test]
 fn adjoining_squares_fit_when_their_latitude_is_pinned() {
     let folder = tempfile::tempdir().unwrap();
@@ -49,8 +49,8 @@ fn adjoining_squares_fit_when_their_latitude_is_pinned() {
         let cell = frame.cell().to_array().map(f64::to_bits);
         (cell, frame.origin_m().map(f64::to_bits), plan.metres_per_unit.map(f64::to_bits))
     };
-    // Without, squares above each other have their own latitudes; those beside each other share
-    // theirs.
+    // Without a latitude, squares above each other have different latitudes; squares side by side
+    // share theirs.
     assert_ne!(grid(&planned(&[&south], None)), grid(&planned(&[&north], None)));
     assert_eq!(grid(&planned(&[&south], None)), grid(&planned(&[&east], None)));
     let pinned = Some(47.5);
@@ -107,8 +107,8 @@ fn digits_left_out_of_a_geotransform_change_no_grid() {
     }
 }
 
-/// Of every K-th sample the nodes are those whose index, counted from the zero of the grid, is a
-/// multiple of K: whichever part of a product a file holds.
+/// If every K-th sample is a node, these are the samples whose index, counted from the origin of
+/// the grid, is a multiple of K, in any part of a product.
 #[test]
 fn every_nth_sample_is_taken_with_its_bits() {
     let folder = tempfile::tempdir().unwrap();
@@ -188,22 +188,22 @@ fn thinning_is_refused_where_nodes_are_no_samples() {
         PlanOptions { crs: Some("utm".to_owned()), ..every(2) },
         &["--cell-every", "--crs dem"],
     );
-    // Nobody gave --crs: lengths far north are not true, and UTM was chosen.
+    // Without --crs: lengths far north are not true, and UTM was chosen.
     let far = [9.0, 0.1, 0.0, 70.0, 0.0, -0.1];
     let far = open(&[Raster::new(4326, [40, 60], far).write(folder.path(), "f.tif", |_| 1.0_f32)]);
     let text = far.plan(&every(2)).unwrap_err().to_string();
-    assert!(text.contains("give --crs dem") && text.contains("within 3 %"), "{text}");
-    assert!(!text.contains("leave out"), "{text}");
+    assert!(text.contains("pass --crs dem") && text.contains("more than 3 %"), "{text}");
+    assert!(!text.contains("omit"), "{text}");
     // For a rotated grid, --crs dem does not help.
     let turned = [500_000.0, 8.0, 6.0, 5_200_000.0, 6.0, -8.0];
     let turned = Raster::new(32632, [40, 30], turned).write(folder.path(), "t.tif", |_| 1.0_f32);
     let text = open(&[turned]).plan(&every(2)).unwrap_err().to_string();
-    assert!(text.contains("give --cell") && !text.contains("--crs"), "{text}");
+    assert!(text.contains("pass --cell") && !text.contains("--crs"), "{text}");
     // So few samples that none, or a single row, is left.
     refused(every(500), &["--cell-every 500", "2 × 2"]);
 }
 
-/// Rectangles and squares that are asked for: interpolated where they are not the DEM's own.
+/// Requested rectangles and squares are interpolated if they are not the DEM's own cells.
 #[test]
 fn a_cell_may_be_a_rectangle() {
     let folder = tempfile::tempdir().unwrap();
@@ -234,7 +234,7 @@ fn a_cell_may_be_a_rectangle() {
                 plan.resampling_text
             );
             let projection = dem.projection(&plan).unwrap();
-            // A hundredth of the cell on this slope: 4 cm a metre east, 4.5 cm a metre north.
+            // A hundredth of the cell on this slope: 4 cm per metre east, 4.5 cm per metre north.
             let tolerance_m = 0.01 * (0.04 * sides[0]).hypot(0.045 * sides[1]) + 1e-3;
             let count = check(&mut dem.reader(&plan), &plan, tolerance_m, |at| {
                 let mut points = [at];
@@ -248,8 +248,8 @@ fn a_cell_may_be_a_rectangle() {
     }
 }
 
-/// Copernicus changes its spacing eastwards at 50° and 60°: the first named file defines the grid,
-/// the other is resampled onto it, and told; samples of the first stay what they are.
+/// The spacing of Copernicus changes eastwards at 50° and 60°: the first named file defines the
+/// grid, the other is resampled onto it and reported; samples of the first stay unchanged.
 #[test]
 fn the_first_named_file_defines_the_grid() {
     let folder = tempfile::tempdir().unwrap();
@@ -285,8 +285,8 @@ fn the_first_named_file_defines_the_grid() {
     }
 }
 
-/// Files of one phase are one mosaic, however far apart; of many the words name some and count the
-/// others.
+/// Files of one phase are one mosaic, at any distance; the description names some files and counts
+/// the others.
 #[test]
 fn files_of_one_phase_are_one_grid() {
     let folder = tempfile::tempdir().unwrap();
@@ -313,8 +313,7 @@ fn files_of_one_phase_are_one_grid() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 
-    /// Wherever a file begins and however many of its samples are taken, nodes are samples, bit for
-    /// bit.
+    /// For any position of a file and any number of its samples, nodes are samples, bit for bit.
     #[test]
     fn nodes_of_a_thinned_file_are_samples(
         left in -2000_i64..2000, top in -2000_i64..2000, size in (2_usize..40, 2_usize..40), every in 1_u32..5,

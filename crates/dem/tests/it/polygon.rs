@@ -1,11 +1,11 @@
-//! A plan with a polygon has the nodes of the cells that the polygon enters, with the heights of
+//! A plan with a polygon has the nodes of the cells that the polygon touches, with the heights of
 //! the whole to the last bit.
 
 use std::{collections::HashSet, fs, path::Path};
 
 use corniche_dem::{Dem, GridPlan, PlanOptions};
 use corniche_geom::{NodeIndex, NodeWindow};
-use corniche_gis::{Polygon, PolygonError, VectorError};
+use corniche_gis::{PolygonError, RegionPolygons, VectorError};
 use gdal::{
     DriverManager,
     spatial_ref::SpatialRef,
@@ -36,16 +36,16 @@ fn geojson(folder: &Path, name: &str, kind: &str, coordinates: &str) -> std::pat
     path
 }
 
-fn polygon(folder: &Path, rings: &str) -> Polygon {
-    Polygon::read(&geojson(folder, "polygon.geojson", "Polygon", rings)).unwrap()
+fn polygon(folder: &Path, rings: &str) -> RegionPolygons {
+    RegionPolygons::read(&geojson(folder, "polygon.geojson", "Polygon", rings)).unwrap()
 }
 
-fn within(polygon: &Polygon, options: PlanOptions) -> PlanOptions {
+fn within(polygon: &RegionPolygons, options: PlanOptions) -> PlanOptions {
     PlanOptions { polygon: Some(polygon.clone()), ..options }
 }
 
-/// Nodes with a height, and checks that each has that of the whole, through this window and through
-/// small ones.
+/// The nodes with a height; checks that each has the height of the whole plan, in this window and
+/// in small ones.
 fn nodes_with_height(dem: &Dem, part: &GridPlan, whole: &GridPlan) -> HashSet<NodeIndex> {
     let window = all(part).with_halo(2);
     let found = dem.reader(part).window(window).unwrap();
@@ -135,7 +135,7 @@ fn a_hole_is_left_out_and_polygons_are_united() {
     let own = polygon(folder.path(), &format!("[{outer},{hole}]"));
     let part = dem.plan(&within(&own, asked.clone())).unwrap();
     assert_eq!(nodes_with_height(&dem, &part, &whole).len(), 21 * 21 - 9 * 9);
-    // Another polygon over half of the hole, and one that lies over the first.
+    // Another polygon over half of the hole, and one that overlaps the first.
     let (island, over) = (square(9.0175, 47.0575, 0.002), square(9.0105, 47.0505, 0.003));
     let path = geojson(
         folder.path(),
@@ -152,7 +152,7 @@ fn a_hole_is_left_out_and_polygons_are_united() {
         several.replace("]}", &feature).replacen(&feature, "]}", several.matches("]}").count() - 1),
     )
     .unwrap();
-    let own = Polygon::read(&path).unwrap();
+    let own = RegionPolygons::read(&path).unwrap();
     let part = dem.plan(&within(&own, asked)).unwrap();
     assert_eq!(nodes_with_height(&dem, &part, &whole).len(), 21 * 21 - 9 * 9 + 9);
 }
@@ -200,7 +200,7 @@ fn edges_are_straight_in_the_files_own_coordinates() {
         let part = dem.plan(&within(own, asked.clone())).unwrap();
         nodes_with_height(&dem, &part, &whole)
     });
-    // Corners are added to a hundredth of a cell, so hardly a cell differs.
+    // Corners are added to within a hundredth of a cell, so hardly a cell differs.
     let differ = few.symmetric_difference(&many).count();
     assert!(few.len() > 100_000 && differ <= 100, "{differ} of {}", few.len());
 }
@@ -210,7 +210,7 @@ fn polygons_across_180_degrees_lie_on_data_across_180_degrees() {
     let folder = folder();
     let raster = Raster::new(4326, [200, 60], [179.0, 0.01, 0.0, -16.0, 0.0, -0.01]);
     let dem = open(&[raster.write(folder.path(), "dem.tif", |[x, y]| (x + y) as f32)]);
-    // As RFC 7946 wants it: cut in two at 180 degrees.
+    // As RFC 7946 requires: cut in two at 180 degrees.
     let two = geojson(
         folder.path(),
         "two.geojson",
@@ -218,7 +218,7 @@ fn polygons_across_180_degrees_lie_on_data_across_180_degrees() {
         "[[[[179.805,-16.405],[180,-16.405],[180,-16.205],[179.805,-16.205],[179.805,-16.405]]],\
           [[[-180,-16.405],[-179.695,-16.405],[-179.695,-16.205],[-180,-16.205],[-180,-16.405]]]]",
     );
-    let own = Polygon::read(&two).unwrap();
+    let own = RegionPolygons::read(&two).unwrap();
     for asked in [options(), in_utm()] {
         let (part, whole) =
             (dem.plan(&within(&own, asked.clone())).unwrap(), dem.plan(&asked).unwrap());
@@ -243,7 +243,7 @@ fn every_vector_format_gives_the_same_polygon() {
     for (driver, name) in [("GPKG", "a.gpkg"), ("ESRI Shapefile", "a.shp")] {
         let path = folder.path().join(name);
         write(&path, driver, Some(4326), &[wkt]);
-        let read = Polygon::read(&path).unwrap();
+        let read = RegionPolygons::read(&path).unwrap();
         assert_eq!(read, json, "{name}");
         assert_eq!(read.canonical_bytes(), json.canonical_bytes());
     }
@@ -254,7 +254,7 @@ fn every_vector_format_gives_the_same_polygon() {
     write(&path("ba.gpkg"), "GPKG", Some(4326), &[other, wkt]);
     write(&path("etrs.gpkg"), "GPKG", Some(4258), &[wkt, other]);
     let [ab, ba, etrs] =
-        ["ab.gpkg", "ba.gpkg", "etrs.gpkg"].map(|name| Polygon::read(&path(name)).unwrap());
+        ["ab.gpkg", "ba.gpkg", "etrs.gpkg"].map(|name| RegionPolygons::read(&path(name)).unwrap());
     assert_eq!(ab, ba);
     assert_ne!(ab, etrs);
     assert_ne!(ab, json);
@@ -287,17 +287,17 @@ fn write(path: &Path, driver: &str, epsg: Option<u32>, wkts: &[&str]) {
 fn files_without_a_usable_polygon_are_refused_with_what_to_do() {
     let folder = folder();
     let refuse = |path: &Path, words: &[&str]| {
-        let error = Polygon::read(path).unwrap_err();
+        let error = RegionPolygons::read(path).unwrap_err();
         check_words(&error, words);
     };
     let json =
         |kind: &str, coordinates: &str| geojson(folder.path(), "a.geojson", kind, coordinates);
     refuse(
         &json("LineString", "[[9,47],[9.1,47.1]]"),
-        &["a.geojson", "LINESTRING", "polygons alone"],
+        &["a.geojson", "LINESTRING", "polygons only"],
     );
-    refuse(&json("Point", "[9,47]"), &["POINT", "encloses nothing"]);
-    // Rings that are not closed, an inner one of a second polygon, too.
+    refuse(&json("Point", "[9,47]"), &["POINT", "encloses no area"]);
+    // Rings that are not closed, including an inner one of a second polygon.
     let closed = "[[9,47],[9.1,47],[9.1,47.1],[9,47]]";
     let open = "[[9,47],[9.1,47],[9.1,47.1]]";
     let advice = [
@@ -305,7 +305,7 @@ fn files_without_a_usable_polygon_are_refused_with_what_to_do() {
         "feature 1",
         "begins at 9, 47",
         "ends at 9.1, 47.1",
-        "repeat its first position",
+        "repeat the first position",
     ];
     refuse(&json("Polygon", &format!("[{open}]")), &advice);
     refuse(&json("MultiPolygon", &format!("[[{closed}],[{closed},{open}]]")), &advice);
@@ -325,16 +325,16 @@ fn files_without_a_usable_polygon_are_refused_with_what_to_do() {
     let path = folder.path().join("empty.geojson");
     fs::write(&path, r#"{"type":"FeatureCollection","features":[]}"#).unwrap();
     refuse(&path, &["empty.geojson", "no polygon"]);
-    // Cut off.
+    // Truncated files.
     let whole = fs::read(json("Polygon", "[[[9,47],[9.1,47],[9.1,47.1],[9,47]]]")).unwrap();
     fs::write(&path, &whole[..whole.len() - 30]).unwrap();
-    refuse(&path, &["empty.geojson", "damaged"]);
+    refuse(&path, &["empty.geojson", "corrupt"]);
     refuse(Path::new("/nowhere.gpkg"), &["cannot open", "nowhere.gpkg"]);
     let text = folder.path().join("text.gpkg");
     fs::write(&text, "no polygons here").unwrap();
     refuse(&text, &["not a vector file"]);
     fs::write(&text, "<!DOCTYPE html><html>404 Not Found</html>").unwrap();
-    let page = Polygon::read(&text).unwrap_err();
+    let page = RegionPolygons::read(&text).unwrap_err();
     let why = std::error::Error::source(&page).unwrap().to_string();
     assert!(why.contains("an HTML page"), "{page}: {why}");
     // A Shapefile without its .prj; one with half of its corners.
@@ -346,7 +346,7 @@ fn files_without_a_usable_polygon_are_refused_with_what_to_do() {
     let shape = folder.path().join("c.shp");
     let bytes = fs::read(&shape).unwrap();
     fs::write(&shape, &bytes[..bytes.len() / 2]).unwrap();
-    let error = Polygon::read(&shape).unwrap_err();
+    let error = RegionPolygons::read(&shape).unwrap_err();
     assert!(
         matches!(
             error,
@@ -364,5 +364,5 @@ fn polygons_beside_the_data_are_refused() {
     let dem = dem(folder.path());
     let own = polygon(folder.path(), "[[[10,47],[10.1,47],[10.1,47.1],[10,47]]]");
     let error = dem.plan(&within(&own, options())).unwrap_err();
-    check_words(&error, &["--polygon", "polygon.geojson", "holds no cell", "9.0005", "47.1595"]);
+    check_words(&error, &["--polygon", "polygon.geojson", "contains no cell", "9.0005", "47.1595"]);
 }

@@ -1,4 +1,4 @@
-//! Windows of real elevation files have the heights that the files hold.
+//! Windows of real elevation files have the heights in the files.
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -25,7 +25,7 @@ fn open(names: &[&str], nodata: Option<f64>) -> Option<(Dem, GridPlan)> {
     Some((dem, plan))
 }
 
-/// Reads all in blocks, as the pipeline does: nodes, heights, filled, lowest, highest, seconds.
+/// Reads all in blocks, like the pipeline: nodes, heights, filled, lowest, highest, seconds.
 fn read_all(dem: &Dem, plan: &GridPlan) -> (usize, usize, u64, [f32; 2]) {
     let mut reader = dem.reader(plan);
     let whole = all(plan);
@@ -89,8 +89,7 @@ fn nodes_of_tirol_are_its_samples() {
     assert!((range[0] - 1328.6).abs() < 0.1 && (range[1] - 2896.1).abs() < 0.1, "{range:?}");
 }
 
-/// With several PROJ operations to choose from, a node's bits depend on the window no more than
-/// with one.
+/// Also with several PROJ operations to choose from, a node's bits do not depend on the window.
 #[test]
 fn tirol_in_another_datum_is_the_same_through_every_window() {
     let Some((dem, _)) = open(&["tirol-5m/avaMal.tif"], None) else { return };
@@ -205,7 +204,7 @@ fn one_grid_georeferenced_six_ways() {
     }
 }
 
-/// South-up, feet and undeclared sentinels of one excerpt give one ground.
+/// South-up, feet and undeclared sentinels of one excerpt give the same ground.
 #[test]
 fn variants_of_one_excerpt_agree() {
     let read = |name: &str| {
@@ -227,7 +226,8 @@ fn variants_of_one_excerpt_agree() {
     }
 }
 
-/// Whatever is in the folder of awkward files: right, or an error that names it; never a panic.
+/// Each file in the folder of awkward files is read correctly, or gives an error that names it;
+/// never a panic.
 #[test]
 fn awkward_files_open_or_say_why_not() {
     let Some(folders) = data(&["nasty/dem", "nasty/derived-dem"]) else { return };

@@ -32,7 +32,7 @@ fn errors_name_the_file_and_what_to_do() {
         ("pointer.hgt", "git lfs pull"),
         ("N47E009.hgt", "has 1400000 bytes; whole .hgt files have 2884802"),
         ("N47E010.hgt", "has 2884803 bytes"),
-        ("alps.hgt", "call it like N47E009.hgt"),
+        ("alps.hgt", "like N47E009.hgt"),
         ("page.tif", "an HTML page; its download failed"),
         ("report.tif", "an error report of a server"),
         ("bare.tif", "--dem-crs"),
@@ -74,8 +74,8 @@ fn names_of_coordinate_systems_are_refused_in_words() {
         ("", "EPSG:n or WKT"),
         ("PROJCS[\"half a", "EPSG:n or WKT"),
         ("EPSG:5773", "neither projected nor geographic"),
-        ("EPSG:4326", "not a projected coordinate system"),
-        ("EPSG:4269", "nor the DEM's own"),
+        ("EPSG:4326", "neither a projected coordinate system"),
+        ("EPSG:4269", "nor the CRS of the DEM"),
     ] {
         let asked = PlanOptions { crs: Some(text.to_owned()), ..options() };
         let error = dem.plan(&asked).unwrap_err();

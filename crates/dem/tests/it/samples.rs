@@ -1,4 +1,4 @@
-//! What stored values mean: types, sentinels, masks, units, bands.
+//! The meaning of stored values: types, sentinels, masks, units, bands.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -77,12 +77,12 @@ fn complex_samples_are_refused() {
              </VRTDataset>"
         );
         fs::write(&path, text).unwrap();
-        check_refused(&[path], &OpenOptions::default(), &[kind, "complex", "no heights"]);
+        check_refused(&[path], &OpenOptions::default(), &[kind, "complex", "cannot be heights"]);
     }
 }
 
-/// Huge values are no heights, with a tag or without; a tag hits its value alone, in the file's own
-/// precision.
+/// Huge values are not heights, with a nodata tag or without; a tag matches only its own value, in
+/// the file's own precision.
 #[test]
 fn huge_values_and_sentinels_are_void() {
     let folder = tempfile::tempdir().unwrap();
@@ -152,7 +152,7 @@ fn units_scale_and_offset_make_metres() {
         let expected = [Some(100.0 * unit_m), Some(101.75 * unit_m), None, Some(0.0)];
         check(unit, path, &given, &expected);
     }
-    // What is no unit of length, or the wrong one, is said from outside.
+    // A unit that is not a length, or the wrong one, is replaced by an option.
     for unit in ["masl", "unspecified", "m a.s.l.", "feet above sea", "ft"] {
         let path = row(folder.path(), "said.tif", raster(), &[1_i16, 2]);
         let aux = format!(
@@ -186,8 +186,7 @@ fn units_scale_and_offset_make_metres() {
     );
 }
 
-/// A mask inside or beside the file, or an alpha band, takes samples away whatever their values
-/// are.
+/// A mask inside or next to the file, or an alpha band, removes samples, whatever their values are.
 #[test]
 fn masks_take_samples_away() {
     let folder = tempfile::tempdir().unwrap();
@@ -212,7 +211,7 @@ fn masks_take_samples_away() {
     gdal::config::clear_thread_local_config_option("GDAL_TIFF_INTERNAL_MASK").unwrap();
     alpha(folder.path(), "u8.tif", [5_u8, 6, 7], [255, 1, 0]);
     alpha(folder.path(), "u16.tif", [5_u16, 6, 7], [65_535, 1, 0]);
-    // Of other types GDAL makes no mask; its own warper writes such files.
+    // For other types GDAL creates no mask; its own warper writes such files.
     alpha(folder.path(), "i16.tif", [5_i16, 6, 7], [32_767, 1, 0]);
     alpha(folder.path(), "f32.tif", [5.0_f32, 6.0, 7.0], [255.0, 1.0, 0.0]);
 }
@@ -268,8 +267,8 @@ fn the_only_band_counts_and_of_several_the_one_that_is_chosen() {
     }
     let missing = OpenOptions { band: Some(3), ..given.clone() };
     check_refused(&[two], &missing, &["two.tif", "2 bands", "--dem-band"]);
-    // Of files with one band, as others of a set can be, that one counts whichever is chosen; an
-    // alpha band has no heights.
+    // In files with one band, as in a set of files, this band counts for any choice; an alpha band
+    // has no heights.
     let one = row(folder.path(), "one.tif", raster(), &[5_i16, 6]);
     let with_alpha = raster().bands(2).created(&["ALPHA=YES"]).tagged(|dataset| {
         let mut opaque = Buffer::new((2, 5), vec![255_u8; 10]);
@@ -301,7 +300,7 @@ fn the_only_band_counts_and_of_several_the_one_that_is_chosen() {
     );
 }
 
-/// A virtual raster can have a band of each type: what is said of one is said of the chosen one.
+/// A virtual raster can have a band of each type: the metadata used are those of the chosen band.
 #[test]
 fn what_is_wrong_with_a_band_is_told_with_its_number() {
     let folder = tempfile::tempdir().unwrap();
@@ -320,7 +319,7 @@ fn what_is_wrong_with_a_band_is_told_with_its_number() {
     }
 }
 
-/// Heights keep their own unit where the plan is in feet.
+/// Heights keep their own unit if the plan is in feet.
 #[test]
 fn feet_on_the_ground_are_not_feet_of_height() {
     let folder = tempfile::tempdir().unwrap();

@@ -7,8 +7,8 @@ use corniche_geom::{Cell, GridFrame, HeightGrid, Projection};
 
 use crate::fixture::{HUNDREDTH_M, Raster, UTM, all, check, folder, open, options, plan, plane};
 
-/// Interpolation crosses the seam of two files, shared column or not, and the first named wins in
-/// the overlap.
+/// Interpolation crosses the seam of two files, with or without a shared column, and the first
+/// named has precedence in the overlap.
 #[test]
 fn files_of_one_grid_are_one_raster() {
     let folder = folder();
@@ -79,7 +79,7 @@ fn files_in_different_systems_serve_one_grid() {
     });
     let dem = open(&[own, degrees]);
     let plan = plan(&dem);
-    // The degrees are the finer ones; CRS and cell are the first file's all the same.
+    // The degrees are the finer ones; nevertheless CRS and cell are those of the first file.
     assert_eq!((plan.crs.as_str(), plan.frame), ("EPSG:32632", grown(&alone_plan.frame, &plan)));
     assert_eq!((plan.resampling, plan.frame.cell()), (Resampling::Resampled, Cell::from(10.0)));
     let told = plan.resampling_text.as_str();
@@ -89,7 +89,7 @@ fn files_in_different_systems_serve_one_grid() {
     let mut reader = dem.reader(&plan);
     let count = check(&mut reader, &plan, HUNDREDTH_M, plane);
     assert!(count as f64 > 0.9 * 220.0 * 100.0 * 7.6 * 11.1 / 100.0, "{count}");
-    // Where the first file has data its samples come out bit for bit.
+    // Where the first file has data, its samples are returned bit for bit.
     let whole = all(&plan);
     let heights = reader.window(whole).unwrap().heights;
     let window = all(&alone_plan);

@@ -1,5 +1,5 @@
-//! Heights carried between vertical systems: a geoid that is a plane, feet, depths, and what is
-//! missing.
+//! Heights converted between vertical systems: a geoid that is a plane, feet, depths, and missing
+//! grids.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -23,12 +23,12 @@ fn undulation_m([lon, lat]: [f64; 2]) -> f64 {
     40.0 + 20.0 * (lon - 9.0) - 30.0 * (lat - 47.0)
 }
 
-/// Writes that geoid for 8..10° E, 46..48° N, and gives the vertical CRS above it.
+/// Writes that geoid for 8..10° E, 46..48° N, and returns the vertical CRS above it.
 fn geoid(folder: &Path) -> String {
     raised_geoid(folder, 0.0)
 }
 
-/// The same, so many metres higher.
+/// The same geoid, raised by some metres.
 fn raised_geoid(folder: &Path, by_m: f64) -> String {
     let path = folder.join("geoid.gtx");
     let driver = DriverManager::get_driver_by_name("GTX").unwrap();
@@ -112,7 +112,7 @@ fn a_plane_of_a_geoid_shifts_heights_to_the_millimetre() {
         assert!(words.contains("geoid.gtx") && !has_path, "{words}");
         assert_eq!(datum.contains("ellipsoidal"), to == "EPSG:4979", "{datum}");
     }
-    // There and back again, through a file that says itself what it is.
+    // There and back again, through a file that names its own vertical CRS.
     let back = OpenOptions { vertical_shift_m: 1.5, ..given(&local, &local) };
     let count =
         check_heights("back", &utm, &back, (Space::Working, MILLIMETRE), |at| plane(at) + 1.5);
@@ -120,8 +120,7 @@ fn a_plane_of_a_geoid_shifts_heights_to_the_millimetre() {
     assert!(vertical(&utm, &back).1.ends_with(", then +1.5 m"));
 }
 
-/// Bit for bit, whichever window a node is read through, at the rim of the grid too; and for
-/// original samples.
+/// The bits are the same in any window, also at the rim of the grid, and for original samples.
 #[test]
 fn the_offset_of_a_node_does_not_depend_on_the_window() {
     let folder = tempfile::tempdir().unwrap();
@@ -180,7 +179,7 @@ fn the_offset_of_a_node_does_not_depend_on_the_window() {
     assert!(count > 50_000, "{count}");
 }
 
-/// Feet and depths of one datum are a matter of factors: no grid is asked for.
+/// Feet and depths of one datum only need factors: no grid is used.
 #[test]
 fn units_and_directions_are_turned_without_a_grid() {
     let folder = tempfile::tempdir().unwrap();
@@ -200,7 +199,8 @@ fn units_and_directions_are_turned_without_a_grid() {
         assert_eq!(count, 3000);
         assert_eq!(vertical(&file, &plain).0.as_deref(), Some(name), "{own}");
         assert_eq!(vertical(&file, &plain).1.contains("depths"), m_per_value < 0.0, "{own}");
-        // The same named from outside, and wanted in another unit: heights are metres all the same.
+        // The same unit given by an option, and another target unit: heights are in metres
+        // nevertheless.
         let bare = [Raster::new(32632, [60, 50], UTM).write(folder.path(), "bare.tif", plane)];
         let wanted = if own.ends_with("5715") { "EPSG:5714" } else { "EPSG:6360" };
         let named = given(&format!("EPSG:{}", &own[11..]), wanted);
@@ -222,7 +222,7 @@ fn a_band_whose_unit_contradicts_its_vertical_system_is_refused() {
     aux("metre");
     let words = ["both.tif", "\"metre\"", "NAVD88 height (ftUS)"];
     check_refused(std::slice::from_ref(&path), &OpenOptions::default(), &words);
-    // Whoever says it is right, and what the system says of up and down stays.
+    // The unit of the option counts, and the direction (up or down) of the system stays.
     for (system, unit, m_per_value) in
         [("EPSG:32632+6360", "metre", 1.0), ("EPSG:32632+6358", "decimetre", -0.1)]
     {
@@ -245,14 +245,14 @@ fn what_is_missing_is_named_and_never_guessed() {
     let utm = [Raster::new(32632, [60, 50], UTM).write(folder.path(), "utm.tif", plane)];
     let gone = above(&folder.path().join("gone.gtx"));
     check_refused(&utm, &given("EPSG:4979", &gone), &["utm.tif", "gone.gtx", "--vertical-shift"]);
-    let words = ["utm.tif", "there is no geoid grid", "gone.gtx", "install"];
+    let words = ["utm.tif", "the geoid grid", "gone.gtx", "install"];
     check_refused(&utm, &given(&gone, "EPSG:4979"), &words);
     let optional = gone.replace("model file\",\"", "model file\",\"@");
     check_refused(&utm, &given("EPSG:4979", &optional), &["gone.gtx", "optional"]);
-    // Two geoids of which PROJ knows no relation, and would leave heights as they are.
+    // Two geoids between which PROJ knows no operation, and would leave heights unchanged.
     let words = ["utm.tif", "Baltic 1977 height", "NAVD88 height", "no exact", "may be missing"];
     check_refused(&utm, &given("EPSG:5705", "EPSG:5703"), &words);
-    // A file that is there but no grid: nobody claims that it is missing.
+    // A file that exists but is not a grid: the message must not claim that it is missing.
     fs::write(folder.path().join("text.gtx"), "no grid").unwrap();
     let broken = above(&folder.path().join("text.gtx"));
     let words = ["utm.tif", "no exact", "may be missing (", "text.gtx"];
@@ -275,7 +275,7 @@ fn what_is_missing_is_named_and_never_guessed() {
     let wide =
         [Raster::new(4326, [200, 50], frame).write(folder.path(), "wide.tif", |_| 100.0_f32)];
     check_refused(&wide, &given(&local, "EPSG:4979"), &["wide.tif", "column", "outside"]);
-    // Voids there do no harm.
+    // Voids there do not matter.
     let east = |[lon, _]: [f64; 2]| if lon > 9.99 { f32::NAN } else { 100.0 };
     let void = [Raster::new(4326, [200, 50], frame).write(folder.path(), "void.tif", east)];
     let truth = |at: [f64; 2]| 100.0 + undulation_m(at);
@@ -310,7 +310,7 @@ fn files_must_agree_on_what_heights_are_measured_from() {
     let (datum, words) = vertical(&both(&navd88, &feet), &plain);
     assert_eq!(datum.as_deref(), Some("North American Vertical Datum 1988"));
     assert_eq!(words, "as in the files");
-    // Unnamed ones join by --dem-vertical-crs.
+    // Files without a vertical CRS get one by --dem-vertical-crs.
     let count = check_heights(
         "given",
         &both(&navd88, &bare),
@@ -319,7 +319,7 @@ fn files_must_agree_on_what_heights_are_measured_from() {
         plane,
     );
     assert_eq!(count, 3000);
-    // Several datums, one target: each file goes its own way.
+    // Several datums, one target: each file has its own operation.
     let ellipsoidal = half("ellipsoidal.tif", "EPSG:32632", 0.0);
     let carried = [ellipsoidal, egm96];
     let options_ = given(&local, "EPSG:4979");
@@ -344,8 +344,8 @@ fn files_must_agree_on_what_heights_are_measured_from() {
     }
 }
 
-/// Two editions of a grid under one name: what was done reads differently, as PROJ does not say
-/// which it took.
+/// Two editions of a grid under one name: the descriptions of the conversion differ, because PROJ
+/// does not say which grid it used.
 #[test]
 fn different_grids_are_told_apart_by_the_offset_on_record() {
     let folders = [tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap()];
@@ -364,15 +364,15 @@ fn different_grids_are_told_apart_by_the_offset_on_record() {
             assert!((found_m - sign * (middle_m + by_m)).abs() < 0.0015, "{middle_m}: {words}");
         }
     }
-    // Files in different systems of the plan, carried alike: one text for all.
+    // Files in different systems of the plan with the same conversion: one text for all.
     let local = geoid(folders[0].path());
     let frame = [9.02, 0.0002, 0.0, 46.96, 0.0, -0.00015];
     let beside = Raster::new(4326, [30, 25], frame).write(folders[0].path(), "ll.tif", plane);
     let words = vertical(&[utm[0].clone(), beside], &given(&local, "EPSG:4979")).1;
     assert_eq!(words.matches("carried").count(), 1, "{words}");
     assert!(words.ends_with(" m at the centre"), "{words}");
-    // The centre lies beyond the grid: the first sample from which heights are carried stands for
-    // it.
+    // The centre lies beyond the grid: the first sample whose height can be converted replaces the
+    // centre.
     let frame = [9.9, 0.001, 0.0, 47.0, 0.0, -0.001];
     let east = |[lon, _]: [f64; 2]| if lon > 9.99 { f32::NAN } else { 100.0 };
     let half = [Raster::new(4326, [300, 50], frame).write(folders[0].path(), "half.tif", east)];

@@ -1,6 +1,6 @@
 //! Voids are filled by the documented rule, and heights do not depend on the window.
 
-use corniche_dem::{Dem, OpenOptions, PlanOptions, Reader};
+use corniche_dem::{Dem, HeightReader, OpenOptions, PlanOptions};
 use corniche_geom::{Cell, NodeIndex, NodeWindow};
 use proptest::prelude::*;
 
@@ -27,8 +27,8 @@ fn geographic(folder: &std::path::Path) -> Dem {
     open(&[path])
 }
 
-/// The rule, written down once more without any cleverness: eight directions, original data only,
-/// lengths in working metres.
+/// A second, simple implementation of the rule: eight directions, only original data, lengths in
+/// working metres.
 fn filled_by_rule(
     data: impl Fn(i64, i64) -> Option<f32>,
     i: i64,
@@ -91,15 +91,14 @@ fn voids_are_filled_by_the_rule_and_by_nothing_else() {
     }
 }
 
-fn bits(reader: &mut Reader<'_>, window: NodeWindow) -> Vec<u32> {
+fn bits(reader: &mut HeightReader<'_>, window: NodeWindow) -> Vec<u32> {
     reader.window(window).unwrap().heights.raw().iter().map(|height_m| height_m.to_bits()).collect()
 }
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
 
-    /// A node has the same bits whichever window it is read through: reprojected, averaged, with
-    /// voids.
+    /// A node has the same bits in any window: reprojected, averaged, with voids.
     #[test]
     fn heights_do_not_depend_on_the_window(
         left in 0_i64..250, top in 0_i64..250, columns in 1_usize..90, rows in 1_usize..90, case in 0_usize..3,

@@ -1,9 +1,9 @@
-//! Walks over triangles in floating point: the paper's form as it is written, and one with care.
+//! Walks over triangles in floating point: the paper's form as written, and a more careful form.
 
 use corniche_geom::LatticePoint;
 use corniche_tin::{NO_TWIN, Surface};
 
-/// A surface with its vertices in metres from a corner of its tile, as a program without a lattice has them.
+/// A surface with its vertices in metres from a corner of its tile, for programs without a lattice.
 pub(crate) struct Ground {
     pub(crate) surface: Surface,
     corner: LatticePoint,
@@ -18,43 +18,45 @@ impl Ground {
         ground
     }
 
-    /// A lattice point in metres.
+    /// The position of a lattice point in metres.
     pub(crate) fn place(&self, point: LatticePoint) -> [f64; 2] {
         let steps = [point.u - self.corner.u, point.v - self.corner.v];
         [steps[0] as f64 * self.step_m[0], steps[1] as f64 * self.step_m[1]]
     }
 
-    /// A place between lattice points in metres.
+    /// The position of a point between lattice points in metres.
     pub(crate) fn place_of_steps(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         [(u - self.corner.u as f64) * self.step_m[0], (v - self.corner.v as f64) * self.step_m[1]]
     }
 }
 
-/// A vertex that a walk added.
+/// A vertex added by a walk.
 pub(crate) struct Crossed {
     /// The ends of the edge, the smaller index first.
     pub(crate) ends: [u32; 2],
     pub(crate) at: [f64; 2],
 }
 
-/// How a walk ended.
+/// The end of a walk.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Outcome {
-    /// At the end of the segment, in this triangle.
+    /// The walk reached the end of the segment, in this triangle.
     Arrived(u32),
-    /// Before the end: no ground continues, or no edge lies ahead.
+    /// The walk stopped before the end: the ground does not continue, or no edge is ahead.
     Stopped { left_m: f64 },
-    /// It entered more triangles than there are.
+    /// The walk entered more triangles than there are.
     Endless,
 }
 
-/// A way to find the exit from a triangle.
+/// A method for finding the exit from a triangle.
 pub(crate) trait Form {
-    /// Whether each exit is the new start, or all distances are from the start of the segment.
+    /// Whether each exit becomes the new start; otherwise all distances are from the start of the
+    /// segment.
     const MOVES_ON: bool;
 
-    /// The first exit from a triangle: across which of its edges, and how far from `from` in the direction `v` of length 1. Edge k
-    /// begins at corner k; `entered` is the one that was come in by.
+    /// Finds the first exit from a triangle: the edge that is crossed, and its distance from `from`
+    /// in the direction `v` of length 1. Edge k begins at corner k; `entered` is the edge through
+    /// which the walk entered.
     fn exit(
         corners: [[f64; 2]; 3],
         entered: Option<usize>,
@@ -63,11 +65,13 @@ pub(crate) trait Form {
     ) -> Option<(usize, f64)>;
 }
 
-/// The paper's section 6.1 as it is written: unit vectors across the edges, distances from them, barycentric coordinates.
+/// The paper's section 6.1 as written: unit vectors across the edges, distances from them,
+/// barycentric coordinates.
 pub(crate) struct AsWritten;
 
-/// The same quotient with all that cancels out left out, so that it is one of two areas; with the start left where it is, so that
-/// rounding does not add up; and never back across the edge that was come in by.
+/// The same quotient without the terms that cancel out, so that it is the quotient of two areas.
+/// The start does not move, so that rounding errors do not add up, and the walk never goes back
+/// across the edge through which it entered.
 pub(crate) struct Areas;
 
 impl Form for AsWritten {
@@ -124,7 +128,7 @@ impl Form for Areas {
     }
 }
 
-/// Follows a segment from a triangle that holds its start; adds a vertex at each exit.
+/// Follows a segment from a triangle that contains its start; adds a vertex at each exit.
 pub(crate) fn trace<F: Form>(
     ground: &Ground,
     segment: [LatticePoint; 2],

@@ -1,12 +1,14 @@
-//! The paper's walk in floating point beside the exact one, on the TINs of packages: how often it goes wrong, and what each costs.
+//! Compares the paper's walk in floating point with the exact walk on the TINs of packages: number
+//! of errors, and time.
 //!
 //! ```sh
 //! cargo run --release -p corniche-drape --example floating_point_walk -- PACKAGE.pmtiles…
 //! ```
 //!
-//! Lines are the roads of the packages, cut at the borders of tiles; straight lines across the tiles; and awkward ones: through TIN
-//! vertices, along edges, along borders of tiles. The first table compares segment by segment; the second has CPU times, all forms
-//! in turns, of the lines that no form is led astray by.
+//! The lines are the roads of the packages, cut at the borders of tiles; straight lines across the
+//! tiles; and difficult lines: through TIN vertices, along edges, along borders of tiles. The first
+//! table compares the walks segment by segment. The second has CPU times, all forms in turns, of
+//! the lines on which every form is correct.
 #![expect(clippy::print_stdout, reason = "an example prints its result")]
 
 mod float_forms;
@@ -22,14 +24,14 @@ use rustix::time::{ClockId, clock_gettime};
 
 use float_forms::{Areas, AsWritten, Crossed, Form, Ground, Outcome, trace};
 
-/// Straight lines made for each tile, and awkward ones.
+/// Number of straight lines, and of difficult lines, for each tile.
 const ACROSS: usize = 128;
 const AWKWARD: usize = 600;
-/// Places less far apart are the same, metres.
+/// Positions closer than this are equal, in metres.
 const SAME_M: f64 = 1e-3;
 const ROUNDS: usize = 15;
 
-/// A tile, its roads, and lines made for it.
+/// A tile, its roads, and the lines generated for it.
 struct Tile {
     ground: Ground,
     roads: Vec<Polyline>,
@@ -37,20 +39,20 @@ struct Tile {
     awkward: Vec<Polyline>,
 }
 
-/// What a segment meets, the most awkward of it.
+/// The most difficult situation on a segment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Meets {
-    /// It crosses edges in their insides, or none.
+    /// The segment only crosses edges in their interiors, or crosses none.
     Insides,
-    /// One of its ends lies in the inside of an edge of the border of ground.
+    /// One of its ends is in the interior of an edge on the boundary of the ground.
     EndOnBorder,
-    /// One of its ends lies in the inside of another edge.
+    /// One of its ends is in the interior of another edge.
     EndOnEdge,
-    /// A TIN vertex lies on it, an end included.
+    /// A TIN vertex is on it, possibly at an end.
     Vertex,
     /// It runs along an edge.
     AlongEdge,
-    /// It runs along an edge of the border of ground.
+    /// It runs along an edge on the boundary of the ground.
     AlongBorder,
 }
 
@@ -67,24 +69,26 @@ impl Meets {
     }
 }
 
-/// How the floating-point walk compares with the exact one on a segment.
+/// The result of comparing the floating-point walk with the exact walk on a segment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Verdict {
-    /// The same crossings of the same edges.
+    /// The walks have the same crossings of the same edges.
     Same,
-    /// The same places to a millimetre under other names: an edge that ends at a vertex instead of the vertex, say.
+    /// The walks have the same positions to a millimetre, with different names: for example an edge
+    /// that ends at a vertex instead of the vertex.
     Renamed,
-    /// All places of the exact walk, and others on the line.
+    /// The walk has all positions of the exact walk, and others on the line.
     Added,
-    /// A place of the exact walk is missing: between its neighbours the line leaves the ground.
+    /// A position of the exact walk is missing: between its neighbours the line leaves the ground.
     Missing,
-    /// It came to the border of ground, or found no exit, more than a millimetre before the end.
+    /// The walk reached the boundary of the ground, or found no exit, more than a millimetre before
+    /// the end.
     Stopped,
-    /// It did not end.
+    /// The walk did not end.
     Endless,
 }
 
-/// The same as words, in order.
+/// The names of the results, in order.
 const VERDICTS: [&str; 6] = ["same", "renamed", "added", "missing", "stopped", "endless"];
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -126,7 +130,7 @@ const KINDS: [(&str, LinesOf); 3] = [
     ("awkward", |tile| &tile.awkward),
 ];
 
-/// The tiles of all levels that have ground.
+/// Reads the tiles of all levels that have ground.
 fn read_tiles(file: &str) -> Result<Vec<Tile>, Box<dyn Error>> {
     let package = FilePackage::open(Path::new(file))?;
     let manifest = package.manifest();
@@ -161,7 +165,8 @@ fn lines_across(random: &mut Random, bounds: &LatticeBounds) -> Vec<Polyline> {
     ends.filter_map(|ends| Polyline::new(ends).ok()).collect()
 }
 
-/// Lines of one segment within the tile: through a TIN vertex, along an edge and over its ends, along a side of the tile.
+/// Lines of one segment within the tile: through a TIN vertex, along an edge and beyond its ends,
+/// along a side of the tile.
 fn awkward_lines(random: &mut Random, surface: &Surface, bounds: &LatticeBounds) -> Vec<Polyline> {
     let LatticeBounds { min, max } = *bounds;
     let mut lines = Vec::new();
@@ -179,7 +184,8 @@ fn awkward_lines(random: &mut Random, surface: &Surface, bounds: &LatticeBounds)
                 let half_edge = random.below(3 * surface.triangles().len() as i64) as u32;
                 let [a, b] =
                     surface.ends(half_edge).map(|vertex| surface.points()[vertex as usize]);
-                // Half an edge further at both ends; lattice steps to a cell are even.
+                // Extend the edge by half its length at both ends; the numbers of lattice steps per
+                // cell are even.
                 let half = [(b.u - a.u) / 2, (b.v - a.v) / 2];
                 [
                     LatticePoint::new(a.u - half[0], a.v - half[1]),
@@ -233,7 +239,8 @@ fn compare_all(name: &str, what: &str, tiles: &[Tile], lines: LinesOf) {
     }
 }
 
-/// What the exact walk has between the ends of a segment, with places; `None` where it is not over ground all along.
+/// The crossings of the exact walk between the ends of a segment, with positions; `None` if the
+/// segment is not on ground everywhere.
 fn exact_crossings(
     ground: &Ground,
     segment: [LatticePoint; 2],
@@ -285,9 +292,9 @@ fn verdict<F: Form>(
     }
 }
 
-/// What a segment meets, exactly.
+/// Determines the situation on a segment exactly.
 fn meets(surface: &Surface, [p, q]: [LatticePoint; 2]) -> Meets {
-    let Some(bounds) = LatticeBounds::of(&[p, q]) else { return Meets::Insides };
+    let Some(bounds) = LatticeBounds::around(&[p, q]) else { return Meets::Insides };
     let mut near = Vec::new();
     surface.triangles_near(bounds, &mut near);
     let is_on = |a: LatticePoint, b: LatticePoint, point: LatticePoint| {
@@ -299,7 +306,7 @@ fn meets(surface: &Surface, [p, q]: [LatticePoint; 2]) -> Meets {
         let [a, b] = surface.ends(half_edge).map(|vertex| surface.points()[vertex as usize]);
         let is_border = surface.twin(half_edge) == NO_TWIN;
         if cross(p, q, a) == 0 && cross(p, q, b) == 0 {
-            // On one line: do they share more than a point?
+            // All points are on one line: do edge and segment share more than a point?
             let [low, high] = [a.min(b).max(p.min(q)), a.max(b).min(p.max(q))];
             if low < high {
                 most = most.max(if is_border { Meets::AlongBorder } else { Meets::AlongEdge });
@@ -318,12 +325,14 @@ fn meets(surface: &Surface, [p, q]: [LatticePoint; 2]) -> Meets {
 struct Times {
     vertices: usize,
     exact_ns: f64,
-    /// As written, by areas, and exact with positions: each to the exact walk of the same round.
+    /// Times as written, by areas, and exact with positions: each divided by the time of the exact
+    /// walk of the same round.
     ratios: [f64; 3],
 }
 
 fn time_all(tiles: &[Tile], lines: LinesOf) -> Times {
-    // Only what lies over ground all along: the exact walk looks for ground beyond a gap, the others end there.
+    // Only lines that are on ground everywhere: the exact walk searches for ground beyond a gap,
+    // the other walks end there.
     let over_ground = |&(tile, line): &(&Tile, &Polyline)| {
         let laid = drape(line, &tile.ground.surface);
         laid.gaps.is_empty() && laid.lines.len() == 1
@@ -364,7 +373,7 @@ fn time_all(tiles: &[Tile], lines: LinesOf) -> Times {
     }
 }
 
-/// A whole line; where the walk loses the ground, it begins anew at the next point.
+/// Traces a whole line; if the walk loses the ground, it begins again at the next point.
 fn trace_line<F: Form>(tile: &Tile, line: &Polyline) {
     let points = black_box(line.points());
     let mut found = Vec::with_capacity(2 * points.len());
@@ -381,7 +390,7 @@ fn trace_line<F: Form>(tile: &Tile, line: &Polyline) {
     black_box(found);
 }
 
-/// CPU time of this process, seconds.
+/// The CPU time of this process in seconds.
 fn cpu_s(work: impl FnOnce()) -> f64 {
     let now = || {
         let time = clock_gettime(ClockId::ProcessCPUTime);

@@ -1,4 +1,5 @@
-//! What `drape` should make: all edges and all triangles by exact fractions, sorted along the line.
+//! The expected result of `drape`: all edges and all triangles by exact fractions, sorted along the
+//! line.
 
 use std::cmp::Ordering;
 
@@ -23,7 +24,8 @@ impl Along {
         self.0 as f64 / self.1 as f64
     }
 
-    /// `from` + `span` · this, in f64 but for one rounding of what is less than 1: the whole part is exact.
+    /// Returns `from` + `span` · this in f64, with one rounding of the part below 1: the whole part
+    /// is exact.
     fn between(self, from: i128, span: i128) -> f64 {
         let Self(n, d) = self;
         let above = span * n;
@@ -44,14 +46,15 @@ impl PartialOrd for Along {
     }
 }
 impl Ord for Along {
-    /// By cross products in 256 bits.
+    /// Compares cross products in 256 bits.
     fn cmp(&self, other: &Self) -> Ordering {
         let (left, right) = (wide_product(self.0, other.1), wide_product(other.0, self.1));
         left.cmp(&right)
     }
 }
 
-/// Sign and magnitude, ordered as the product is: high and low 128 bits, both negated for a negative one.
+/// The sign and the magnitude, ordered like the product: high and low 128 bits, both negated for a
+/// negative product.
 pub(crate) fn wide_product(a: i128, b: i128) -> (bool, [i128; 4]) {
     const LIMB: u128 = (1 << 64) - 1;
     let (x, y) = (a.unsigned_abs(), b.unsigned_abs());
@@ -64,7 +67,7 @@ pub(crate) fn wide_product(a: i128, b: i128) -> (bool, [i128; 4]) {
     (!negative, limbs.map(|limb| if negative { -(limb as i128) } else { limb as i128 }))
 }
 
-/// Twice the area of a, b, c, written down once more.
+/// Twice the area of a, b, c, computed independently.
 pub(crate) fn area(a: LatticePoint, b: LatticePoint, c: LatticePoint) -> i128 {
     let wide = |x: i64, y: i64| i128::from(x) - i128::from(y);
     wide(b.u, a.u) * wide(c.v, a.v) - wide(b.v, a.v) * wide(c.u, a.u)
@@ -90,7 +93,7 @@ fn part_in_triangle(
     (from < to).then_some([from, to])
 }
 
-/// Where p → q is over ground: disjoint, in order.
+/// The stretches of p → q on ground: disjoint, in order.
 fn ground(surface: &Surface, p: LatticePoint, q: LatticePoint) -> Vec<[Along; 2]> {
     let at = |v: u32| surface.points()[v as usize];
     let mut parts: Vec<_> = surface
@@ -109,7 +112,8 @@ fn ground(surface: &Surface, p: LatticePoint, q: LatticePoint) -> Vec<[Along; 2]
     merged
 }
 
-/// Edges crossed in their inside and vertices passed, strictly between p and q, in order.
+/// The edges crossed in their interiors and the vertices passed, strictly between p and q, in
+/// order.
 fn events(surface: &Surface, p: LatticePoint, q: LatticePoint) -> Vec<(Along, DrapedVertex)> {
     let at = |v: u32| surface.points()[v as usize];
     let mut edges: Vec<[u32; 2]> = Vec::new();
@@ -144,7 +148,7 @@ fn events(surface: &Surface, p: LatticePoint, q: LatticePoint) -> Vec<(Along, Dr
     events
 }
 
-/// What `drape` should make: the parts, and the length over no ground.
+/// The expected result of `drape`: the parts, and the length without ground.
 pub(crate) fn expected(line: &Polyline, surface: &Surface) -> (Vec<DrapedLine>, f64) {
     let source = |point| {
         let mut triangles = 0..surface.triangles().len() as u32;
@@ -181,7 +185,8 @@ pub(crate) fn expected(line: &Polyline, surface: &Surface) -> (Vec<DrapedLine>, 
     (lines, off_steps)
 }
 
-/// Where segment p → q crosses the edge between TIN vertices a and b: u, v in steps and the height in quanta.
+/// The position where segment p → q crosses the edge between TIN vertices a and b: u, v in steps,
+/// and the height in quanta.
 pub(crate) fn crossing(
     surface: &Surface,
     [p, q]: [LatticePoint; 2],
@@ -196,7 +201,7 @@ pub(crate) fn crossing(
     [on(a.u, b.u), on(a.v, b.v), on(heights_q[0], heights_q[1])]
 }
 
-/// Height of a triangle's plane above a point, in quanta.
+/// The height of a triangle's plane above a point, in quanta.
 pub(crate) fn height(
     surface: &Surface,
     corners: [u32; 3],

@@ -1,4 +1,5 @@
-//! Lines for the comparison with brute force: through vertices, along edges, over voids and beyond the ground.
+//! Lines for the comparison with brute force: through vertices, along edges, over voids and beyond
+//! the ground.
 
 use corniche_geom::{LatticeBounds, LatticePoint};
 use corniche_tin::Surface;
@@ -7,27 +8,28 @@ use corniche_testing::Random;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Course {
-    /// Two to seven points, of every kind below.
+    /// Two to seven points of all the kinds below.
     Mixed,
     /// Through TIN vertices, and beyond them.
     ThroughVertices,
-    /// Along edges and their continuation: whole, in part, back and forth, over several in one line.
+    /// Along edges and their extensions: whole, in part, back and forth, over several edges in one
+    /// line.
     AlongEdges,
-    /// Along the sides of the TIN's rectangle and round its corners.
+    /// Along the sides of the TIN's rectangle and around its corners.
     OnBorders,
-    /// Starts, bends and ends on edges and vertices.
+    /// Lines that start, bend and end on edges and vertices.
     OnEdges,
-    /// Points repeated, and steps of one.
+    /// Repeated points, and steps of one.
     ZeroLength,
-    /// Back on itself, all the way and part of it.
+    /// Lines that return on themselves, completely or in part.
     Hairpins,
-    /// Out of the rectangle and in again, several times.
+    /// Out of the rectangle and back in, several times.
     LeavesAndReturns,
     /// Up to 2^46 steps away.
     FarLonger,
-    /// Nowhere near, or only round the outside.
+    /// Nowhere near the TIN, or only around it.
     Outside,
-    /// A ring, closed on a vertex, on an edge or elsewhere, often twice round.
+    /// A ring, closed on a vertex, on an edge or elsewhere, often with two turns.
     Ring,
     /// A star that crosses itself.
     SelfCrossing,
@@ -49,7 +51,7 @@ impl Course {
         Self::SelfCrossing,
     ];
 
-    /// Two points or more; neighbours may be equal.
+    /// Generates two points or more; neighbouring points may be equal.
     pub(crate) fn make(self, random: &mut Random, surface: &Surface) -> Vec<LatticePoint> {
         let mut place = Places { random, surface, bounds: bounds(surface) };
         let count = 2 + place.random.below(6) as usize;
@@ -74,7 +76,7 @@ impl Course {
 
 fn bounds(surface: &Surface) -> LatticeBounds {
     let corner = surface.points()[0];
-    LatticeBounds::of(surface.points()).unwrap_or(LatticeBounds { min: corner, max: corner })
+    LatticeBounds::around(surface.points()).unwrap_or(LatticeBounds { min: corner, max: corner })
 }
 
 fn on(from: LatticePoint, to: LatticePoint, part: i64, parts: i64) -> LatticePoint {
@@ -96,7 +98,7 @@ impl Places<'_> {
         self.random.one_of(self.surface.points())
     }
 
-    /// The ends of an edge, either first.
+    /// The ends of an edge, in either order.
     fn edge(&mut self) -> [LatticePoint; 2] {
         let half_edge = self.random.below(3 * self.surface.triangles().len() as i64) as u32;
         let [a, b] =
@@ -104,7 +106,7 @@ impl Places<'_> {
         if self.random.below(2) == 0 { [a, b] } else { [b, a] }
     }
 
-    /// On an edge (as near as the lattice has it), its ends included.
+    /// A point on an edge (as near as the lattice allows), its ends included.
     fn on_edge(&mut self) -> LatticePoint {
         let [a, b] = self.edge();
         on(a, b, self.random.below(5), 4)
@@ -164,11 +166,11 @@ fn mixed(place: &mut Places<'_>, count: usize) -> Vec<LatticePoint> {
         let last = points.last().copied().unwrap_or(vertex);
         points.push(match place.random.below(10) {
             0..=2 => vertex,
-            // On an edge, or between any two vertices.
+            // A point on an edge, or between any two vertices.
             3 => on(vertex, other, 1, 2),
-            // On along the line through the last point and a vertex.
+            // A point farther along the line through the last point and a vertex.
             4 => LatticePoint::new(2 * vertex.u - last.u, 2 * vertex.v - last.v),
-            // Straight, along grid lines.
+            // A straight step along grid lines.
             5 => LatticePoint::new(last.u, vertex.v),
             6 => LatticePoint::new(vertex.u, last.v),
             // A hairpin.
@@ -187,7 +189,7 @@ fn through_vertices(place: &mut Places<'_>, count: usize) -> Vec<LatticePoint> {
     let mut points = vec![place.any()];
     while points.len() < count {
         let (last, vertex) = (points[points.len() - 1], place.vertex());
-        // To it, beyond it, or short of it on the way back.
+        // A point at the vertex, beyond it, or on the way back before it.
         let parts = place.random.one_of(&[1, 2, 3]);
         points.push(LatticePoint::new(
             last.u + (vertex.u - last.u) * parts,
@@ -206,7 +208,8 @@ fn along_edges(place: &mut Places<'_>, count: usize) -> Vec<LatticePoint> {
     let (du, dv) = (b.u - a.u, b.v - a.v);
     let mut points = Vec::new();
     for _ in 0..count {
-        // Eighths of the edge, from well before to well beyond it; exact where the edge allows.
+        // A point in eighths of the edge, from well before to well beyond it; exact if the edge
+        // allows.
         let (part, parts) =
             (place.random.around(24), if du % 8 == 0 && dv % 8 == 0 { 8 } else { 1 });
         let part = if parts == 1 { part / 8 } else { part };
@@ -234,7 +237,7 @@ fn zero_length(place: &mut Places<'_>, count: usize) -> Vec<LatticePoint> {
 fn hairpins(place: &mut Places<'_>, count: usize) -> Vec<LatticePoint> {
     let mut points: Vec<LatticePoint> = (0..count).map(|_| place.any()).collect();
     if place.random.below(2) == 0 {
-        // All the way back, and once more.
+        // The whole way back, and forth again.
         let back: Vec<_> = points.iter().rev().skip(1).copied().collect();
         points.extend(back);
         points.extend_from_within(1..count);
@@ -274,7 +277,7 @@ fn outside(place: &mut Places<'_>, count: usize) -> Vec<LatticePoint> {
     let LatticeBounds { min, max } = place.bounds;
     let mut points = Vec::new();
     for _ in 0..count {
-        // All on one side, or all round.
+        // All points on one side, or all around.
         let at = place.outside();
         points.push(LatticePoint::new(max.u + 1 + (at.u - max.u).abs(), at.v));
     }

@@ -1,4 +1,4 @@
-//! TINs of many shapes.
+//! Generates TINs of many shapes.
 
 use corniche_geom::HeightGrid;
 use corniche_tin::{Tin, TinSpec, TinVertex, triangulate};
@@ -13,13 +13,14 @@ pub(crate) enum Terrain {
     OneTriangle,
     /// Two triangles that share an edge, flat.
     TwoFlat,
-    /// A strip one node high and up to 30 000 long, of triangles a thousand times longer than high.
+    /// A strip that is one node high and up to 30 000 long, of triangles a thousand times longer
+    /// than high.
     Slivers,
-    /// Up to 240 triangles round one vertex, some missing.
+    /// Up to 240 triangles around one vertex, some missing.
     Fan,
-    /// Squares like a chess board's: islands that touch at corners.
+    /// Squares like those of a chess board: islands that touch at corners.
     ChessBoard,
-    /// Meshed from heights, with gaps, as a tile is.
+    /// Triangulated from heights with gaps, like a tile.
     Meshed,
 }
 
@@ -34,7 +35,7 @@ impl Terrain {
         Self::Meshed,
     ];
 
-    /// `None` where chance leaves nothing.
+    /// Generates a TIN; `None` if no triangle is left.
     pub(crate) fn make(self, random: &mut Random) -> Option<Tin> {
         match self {
             Self::Quadrangles => quadrangles(random),
@@ -55,7 +56,7 @@ impl Terrain {
 
 fn quadrangles(random: &mut Random) -> Option<Tin> {
     let (columns, rows) = (2 + random.below(5), 2 + random.below(5));
-    // In a regular grid lines along edges and through many vertices are common.
+    // In a regular grid, lines along edges and through many vertices are common.
     let jitter = random.below(2) + 1;
     let missing = [0, 0, 8, 3][random.below(4) as usize];
     let mut vertices = Vec::new();
@@ -114,7 +115,7 @@ fn slivers(random: &mut Random) -> Option<Tin> {
         };
         vertices.extend(side.iter().map(node));
     }
-    // Like a zip: the next triangle is on whichever side.
+    // Like a zip, the next triangle is on either side.
     let north_count = sides[0].len();
     let (mut n, mut s) = (0, 0);
     let mut triangles = Vec::new();
@@ -136,7 +137,7 @@ fn fan(random: &mut Random) -> Option<Tin> {
     let half = 1 + random.below(30);
     let missing = random.one_of(&[0, 0, 10, 3]);
     let mut rim = Vec::new();
-    // Round the square, counter-clockwise seen from above: rows count southwards.
+    // Around the square, counter-clockwise seen from above: rows count southwards.
     for k in 0..2 * half {
         rim.push((0, 2 * half - k));
     }
@@ -149,7 +150,8 @@ fn fan(random: &mut Random) -> Option<Tin> {
     for k in 0..2 * half {
         rim.push((2 * half - k, 2 * half));
     }
-    // The hub anywhere inside; a wedge along a side of the square would be flat only if it were on it.
+    // The hub is anywhere inside; a wedge along a side of the square would only be flat if the hub
+    // were on that side.
     let hub = (1 + random.below(2 * half - 1), 1 + random.below(2 * half - 1));
     let mut vertices = Vec::new();
     for (row, column) in std::iter::once(hub).chain(rim.iter().copied()) {

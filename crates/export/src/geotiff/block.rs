@@ -1,39 +1,41 @@
-//! A block of a raster: heights of TINs at its nodes, and how far they are from the elevation files.
+//! A block of a raster: heights of TINs at its nodes, and their differences from the elevation
+//! files.
 
 use std::{
     collections::HashMap,
     sync::{Arc, Mutex},
 };
 
-use corniche_dem::Reader;
+use corniche_dem::HeightReader;
 use corniche_geom::{NodeWindow, TILE_CELLS, TileId};
-use corniche_tileset::{FilePackage, SampleSums, Sections, Terrain};
+use corniche_tileset::{FilePackage, SampleSums, Sections, TileTerrain};
 use corniche_tin::{TriangleBuckets, WindowPlacement, heights_m};
 use corniche_work::locked;
 
 use super::{file::Number, grid::BLOCK};
 use crate::error::{ElevationError, RasterError, TileError};
 
-/// A block as it is written: 256 × 256 nodes, those beyond the raster included.
-pub(crate) struct Block<T> {
+/// A block in the form in which it is written: 256 × 256 nodes, including those beyond the raster.
+pub(crate) struct RasterBlock<T> {
     /// Heights of TINs; NaN where there is no ground.
     pub(crate) heights_m: Vec<T>,
-    /// TIN minus DEM; NaN where one of both is missing. Empty without elevation files.
+    /// TIN minus DEM; NaN if one of both is missing. Empty without elevation files.
     pub(crate) errors_m: Vec<T>,
     /// Nodes with ground.
     pub(crate) covered: u64,
-    /// Distances of the TINs from samples, as a build counts them.
+    /// Distances of the TINs from samples, counted as in a build.
     pub(crate) sums: SampleSums,
 }
 
-/// The TINs of a level, kept for neighbouring blocks.
+/// The TINs of a level, cached for neighbouring blocks.
 pub(crate) struct Tins<'a> {
     package: &'a FilePackage,
     level: u8,
     kept: Mutex<HashMap<TileId, Slot>>,
 }
 
-/// A tile's place among those that are kept, empty until it is read: who needs it meanwhile waits, so that each is read once.
+/// A tile's slot in the cache, empty until the tile is read. Other threads that need the tile wait,
+/// so each tile is read once.
 type Slot = Arc<Mutex<Option<Arc<Option<TriangleBuckets>>>>>;
 
 impl<'a> Tins<'a> {
@@ -41,7 +43,7 @@ impl<'a> Tins<'a> {
         Self { package, level, kept: Mutex::default() }
     }
 
-    /// Forgets tiles that end north of a row of nodes.
+    /// Removes tiles that end north of a row of nodes from the cache.
     pub(crate) fn forget_north_of(&self, j: i64) {
         let frame = &self.package.manifest().frame;
         let side = TILE_CELLS * frame.stride(self.level);
@@ -49,12 +51,9 @@ impl<'a> Tins<'a> {
         kept.retain(|id, _| frame.tile_corner(*id).j - side <= j);
     }
 
-    /// The triangles of a tile; none where the package has no ground there.
+    /// Returns the triangles of a tile; `None` if the package has no ground there.
     fn of_tile(&self, id: TileId) -> Result<Arc<Option<TriangleBuckets>>, TileError> {
-        let slot = {
-            let mut kept = locked(&self.kept);
-            Arc::clone(kept.entry(id).or_default())
-        };
+        let slot = Arc::clone(locked(&self.kept).entry(id).or_default());
         let mut slot = locked(&slot);
         if let Some(known) = &*slot {
             return Ok(Arc::clone(known));
@@ -62,18 +61,18 @@ impl<'a> Tins<'a> {
         let quantum_m = self.package.manifest().vertical.quantum_m;
         let payload = self.package.payload(id, Sections::TERRAIN)?;
         let terrain = payload.and_then(|payload| payload.terrain);
-        let buckets = |terrain: Terrain| TriangleBuckets::new(&terrain.tin, quantum_m);
+        let buckets = |terrain: TileTerrain| TriangleBuckets::new(&terrain.tin, quantum_m);
         let found = Arc::new(terrain.map(buckets));
         *slot = Some(Arc::clone(&found));
         Ok(found)
     }
 
-    /// The ground at the nodes of a window of stride 1.
+    /// Returns the ground at the nodes of a window of stride 1.
     fn heights(&self, window: &NodeWindow) -> Result<Heights, TileError> {
         let frame = &self.package.manifest().frame;
         let (root, stride) = (frame.root_corner(), frame.stride(self.level));
         let (side, last) = (TILE_CELLS * stride, (1_i64 << self.level) - 1);
-        // On a border there are two tiles.
+        // A node on a border is in two tiles.
         let tiles = |from: i64, nodes: usize| {
             let first = (from - 1).div_euclid(side).clamp(0, last);
             let end = (from + nodes as i64 - 1).div_euclid(side).clamp(0, last);
@@ -107,29 +106,30 @@ impl<'a> Tins<'a> {
 
 /// Heights at the nodes of a window, row by row.
 struct Heights {
-    /// NaN where there is no ground. Nodes on a border have the heights of the tile in the east or south, where it has ground there.
+    /// NaN where there is no ground. Nodes on a border have the height of the tile in the east or
+    /// south if it has ground there.
     heights_m: Vec<f64>,
-    /// Whether a node has ground of the tile in whose figures it counts: of two, the one in the east or south.
+    /// Whether a node has ground in the tile that counts it in its figures: of two tiles, the one
+    /// in the east or south.
     is_own: Vec<bool>,
 }
 
-/// Makes the block of a window.
+/// Computes the block of a window.
 pub(crate) fn make<T: Number>(
     tins: &Tins<'_>,
     window: &NodeWindow,
-    reader: Option<&mut Reader<'_>>,
-) -> Result<Block<T>, RasterError> {
+    reader: Option<&mut HeightReader<'_>>,
+) -> Result<RasterBlock<T>, RasterError> {
     let Heights { heights_m, is_own } = tins.heights(window)?;
     let quantum_m = tins.package.manifest().vertical.quantum_m;
     let covered = heights_m.iter().filter(|height_m| !height_m.is_nan()).count() as u64;
     let mut sums = SampleSums::new(quantum_m);
     let mut errors_m = Vec::new();
     if let Some(reader) = reader {
-        let failed = |source| ElevationError::Read(Box::new(source));
-        let read = reader.window(*window).map_err(failed)?;
+        let read = reader.window(*window).map_err(ElevationError::from)?;
         let samples = read.heights.raw().iter().enumerate();
         let own = samples.zip(&heights_m).map(|((place, &sample_m), &height_m)| {
-            // A void that was filled is no sample.
+            // A filled void is not a sample.
             if sample_m.is_nan() || read.is_filled.get(place) == Some(&true) {
                 return f64::NAN;
             }
@@ -139,15 +139,15 @@ pub(crate) fn make<T: Number>(
         });
         errors_m = whole(&own.collect::<Vec<f64>>(), window);
     }
-    Ok(Block { heights_m: whole(&heights_m, window), errors_m, covered, sums })
+    Ok(RasterBlock { heights_m: whole(&heights_m, window), errors_m, covered, sums })
 }
 
-/// The numbers of a window as those of a whole block.
+/// Extends the numbers of a window to a whole block.
 fn whole<T: Number>(numbers: &[f64], window: &NodeWindow) -> Vec<T> {
-    let mut block = vec![T::of(f64::NAN); BLOCK * BLOCK];
+    let mut block = vec![T::from_f64(f64::NAN); BLOCK * BLOCK];
     for (from, to) in numbers.chunks(window.columns).zip(block.chunks_mut(BLOCK)) {
         for (from, to) in from.iter().zip(to) {
-            *to = T::of(*from);
+            *to = T::from_f64(*from);
         }
     }
     block

@@ -1,11 +1,11 @@
-//! A raster that is being written.
+//! A raster file while it is written.
 
 use std::path::{Path, PathBuf};
 
 use corniche_store::LackOfRoom;
 use flate2::Crc;
 use gdal::{
-    Dataset, DatasetOptions, DriverManager, GdalOpenFlags, Metadata as _,
+    Dataset, DatasetOptions, Driver, DriverManager, GdalOpenFlags, Metadata as _,
     errors::GdalError,
     raster::{Buffer, GdalType, RasterCreationOptions},
     spatial_ref::{AxisMappingStrategy, SpatialRef},
@@ -18,76 +18,76 @@ use crate::{
 };
 
 const DRIVER: &str = "GTiff";
-/// GDAL's settings while a file is written and read again: all that it says is in the file itself, and pixels that are points are taken for points.
+/// GDAL's settings while a file is written and read back: all metadata are in the file itself, and
+/// GDAL treats pixels that are points as points.
 const SETTINGS: [(&str, &str); 3] = [
     ("GDAL_PAM_ENABLED", "NO"),
     ("GTIFF_POINT_GEO_IGNORE", "NO"),
     ("GTIFF_REPORT_COMPD_CS", "YES"),
 ];
-/// Creation options of every raster. DEFLATE is what every reader of TIFF has.
+/// Creation options of every raster. All TIFF readers support DEFLATE.
 const OPTIONS: [&str; 8] = [
     "TILED=YES",
     "BLOCKXSIZE=256",
     "BLOCKYSIZE=256",
     "COMPRESS=DEFLATE",
     "BIGTIFF=IF_SAFER",
-    // Readers of 1.0 pass over what heights are measured from.
+    // Readers of version 1.0 ignore the vertical CRS.
     "GEOTIFF_VERSION=1.1",
-    // The same bytes, whatever the environment says.
+    // The same bytes, whatever the environment sets.
     "NUM_THREADS=1",
     "SPARSE_OK=FALSE",
 ];
 
-/// What the pixels of a raster are.
+/// The kind of a raster's pixels.
 pub(crate) struct PixelKind {
-    /// Creation options beside [`OPTIONS`].
+    /// Creation options in addition to [`OPTIONS`].
     options: &'static [&'static str],
-    /// Whether a pixel stands for its area or for the point in its middle, as GDAL says it.
+    /// Whether a pixel represents its area or the point in its middle, in GDAL's words.
     area_or_point: &'static str,
-    /// The value that stands for no data.
+    /// The value that means no data.
     no_data: Option<f64>,
 }
 
-/// Heights at points. The predictor for floating-point numbers makes the file small. Bands lie one after the other, so that a program that
-/// wants heights need not read errors. No height can be mistaken for NaN.
+/// Heights at points. The floating-point predictor makes the file small. Bands are stored one after
+/// the other, so a program that reads heights need not read errors. NaN cannot be mistaken for a
+/// height.
 pub(crate) const HEIGHTS: PixelKind = PixelKind {
     options: &["PREDICTOR=3", "INTERLEAVE=BAND"],
     area_or_point: "Point",
     no_data: Some(f64::NAN),
 };
 
-/// Red, green and blue of areas. The predictor takes differences of neighbours.
+/// Red, green and blue of areas. The predictor stores differences of neighbours.
 pub(crate) const COLORS: PixelKind = PixelKind {
     options: &["PREDICTOR=2", "INTERLEAVE=PIXEL", "PHOTOMETRIC=RGB"],
     area_or_point: "Area",
     no_data: None,
 };
 
-/// What a pixel is.
+/// The type of a pixel.
 pub(crate) trait Pixel: GdalType + bytemuck::Pod + Send {}
 
-impl Pixel for u8 {}
-impl Pixel for f32 {}
-impl Pixel for f64 {}
+impl<T: GdalType + bytemuck::Pod + Send> Pixel for T {}
 
-/// A height.
+/// The type of a height.
 pub(crate) trait Number: Pixel {
-    fn of(value: f64) -> Self;
+    fn from_f64(value: f64) -> Self;
 }
 
 impl Number for f32 {
-    fn of(value: f64) -> Self {
+    fn from_f64(value: f64) -> Self {
         value as Self
     }
 }
 
 impl Number for f64 {
-    fn of(value: f64) -> Self {
+    fn from_f64(value: f64) -> Self {
         value
     }
 }
 
-/// What a raster says of itself.
+/// The metadata of a raster.
 pub(crate) struct RasterFacts {
     pub(crate) pixels: &'static PixelKind,
     /// The CRS as WKT2.
@@ -98,29 +98,30 @@ pub(crate) struct RasterFacts {
     pub(crate) metadata: Vec<(&'static str, String)>,
 }
 
-/// A raster that is being written, block by block, row by row from the north.
+/// A raster file that is written block by block, row by row from the north.
 pub(crate) struct RasterFile<T> {
     path: PathBuf,
     dataset: Dataset,
     crs: SpatialRef,
     size: RasterSize,
-    /// The checksum of each block that was written, band by band.
+    /// The checksum of each written block, band by band.
     written: Vec<Vec<u32>>,
     numbers: std::marker::PhantomData<T>,
     _settings: GdalSettings,
 }
 
 impl<T: Pixel> RasterFile<T> {
-    /// Begins a file. Nothing may be at `path`.
+    /// Creates a file. Nothing may exist at `path`.
     pub(crate) fn create(
         path: &Path,
         size: RasterSize,
         facts: &RasterFacts,
     ) -> Result<Self, GdalFileError> {
         let settings = GdalSettings::set(&SETTINGS);
-        let created =
-            create::<T>(path, size, facts).map_err(|error| GdalFileError::write(path, error))?;
-        let (dataset, crs) = created.ok_or(GdalFileError::NoDriver { driver: DRIVER })?;
+        let no_driver = |_| GdalFileError::NoDriver { driver: DRIVER };
+        let driver = DriverManager::get_driver_by_name(DRIVER).map_err(no_driver)?;
+        let (dataset, crs) = create::<T>(path, size, facts, &driver)
+            .map_err(|error| GdalFileError::write(path, error))?;
         Ok(Self {
             path: path.to_path_buf(),
             dataset,
@@ -143,12 +144,13 @@ impl<T: Pixel> RasterFile<T> {
         write().map_err(|error| GdalFileError::write(&self.path, error))
     }
 
-    /// Ends the file and reads all of it again: GDAL does not report everything that fails when a file is closed. Tells whether the file names the same CRS.
+    /// Closes the file and reads all of it back, because GDAL does not report every error of
+    /// closing. Returns whether the file has the same CRS.
     pub(crate) fn finish(self) -> Result<bool, GdalFileError> {
         let Self { path, dataset, crs, size, written, .. } = self;
         gdal_writing::close(dataset, &path)?;
         let again = read_again::<T>(&path, size, &written, &crs);
-        // A file that is cut off may not even be opened.
+        // A truncated file may not even open.
         if let Ok(Some(is_same_crs)) = again {
             Ok(is_same_crs)
         } else {
@@ -158,13 +160,13 @@ impl<T: Pixel> RasterFile<T> {
     }
 }
 
-/// The file, and its CRS; `None` without the driver.
+/// Creates the file and its CRS; returns `None` without the driver.
 fn create<T: Pixel>(
     path: &Path,
     size: RasterSize,
     facts: &RasterFacts,
-) -> Result<Option<(Dataset, SpatialRef)>, GdalError> {
-    let Ok(driver) = DriverManager::get_driver_by_name(DRIVER) else { return Ok(None) };
+    driver: &Driver,
+) -> Result<(Dataset, SpatialRef), GdalError> {
     let options: RasterCreationOptions =
         OPTIONS.iter().chain(facts.pixels.options).copied().collect();
     let mut dataset = driver.create_with_band_type_with_options::<T, _>(
@@ -174,7 +176,7 @@ fn create<T: Pixel>(
         facts.descriptions.len(),
         &options,
     )?;
-    // Before the georeference, whose keys depend on it.
+    // This comes before the georeference, whose keys depend on it.
     dataset.set_metadata_item("AREA_OR_POINT", facts.pixels.area_or_point, "")?;
     let crs = gdal_writing::east_north(&facts.crs)?;
     dataset.set_spatial_ref(&crs)?;
@@ -189,10 +191,11 @@ fn create<T: Pixel>(
         }
         band.set_description(description)?;
     }
-    Ok(Some((dataset, crs)))
+    Ok((dataset, crs))
 }
 
-/// Whether all blocks are there as they were written (`None` if not), and then whether the file names the same CRS.
+/// Compares all blocks with what was written (`None` if they differ), and then returns whether the
+/// file has the same CRS.
 fn read_again<T: Pixel>(
     path: &Path,
     size: RasterSize,
@@ -223,7 +226,8 @@ fn read_again<T: Pixel>(
     Ok(Some(found == *crs))
 }
 
-/// The checksum of what a block has of the raster: what is beyond it, GDAL chooses itself.
+/// Returns the checksum of the part of a block that is inside the raster. GDAL chooses the values
+/// beyond it.
 fn checksum<T: Pixel>(block: &[T], size: RasterSize, place: [usize; 2]) -> u32 {
     let (mut crc, [columns, rows]) = (Crc::new(), size.block_size(place));
     for row in block.chunks(BLOCK).take(rows) {

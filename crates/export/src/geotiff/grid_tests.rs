@@ -1,15 +1,16 @@
-//! Blocks cover a raster once, whatever its size.
+//! Blocks cover a raster of any size exactly once.
 
 use super::*;
 
-/// Blocks cover a raster once, whatever its size, and end where it ends.
+/// Blocks cover a raster of any size exactly once, and end where it ends.
 #[test]
 fn blocks_cover_a_raster() {
     for (columns, rows) in [(1, 1), (256, 257), (1000, 300)] {
-        let grid = RasterGrid { corner: NodeIndex { i: -7, j: 1000 }, columns, rows };
-        let [across, down] = grid.size().blocks();
+        let grid =
+            RasterGrid { corner: NodeIndex { i: -7, j: 1000 }, size: RasterSize { columns, rows } };
+        let [across, down] = grid.size.blocks();
         let windows: Vec<NodeWindow> =
-            (0..across * down).map(|k| grid.window(grid.size().place(k))).collect();
+            (0..across * down).map(|k| grid.window(grid.size.place(k))).collect();
         let nodes: usize = windows.iter().map(|window| window.columns * window.rows).sum();
         assert_eq!(nodes, columns * rows);
         let last = windows.last().unwrap();

@@ -1,4 +1,4 @@
-//! A picture from above is written as a GeoTIFF.
+//! Writes an image from above as a GeoTIFF.
 
 use std::path::Path;
 
@@ -11,24 +11,25 @@ use super::{
 };
 use crate::error::GdalFileError;
 
-/// The bands of a picture.
+/// The bands of an image.
 const BANDS: [&str; 3] = ["red", "green", "blue"];
 
-/// What the file of a picture says of it, beside its place.
+/// The metadata of an image's file, in addition to the georeference.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PictureFacts {
-    /// What it shows.
+    /// The contents of the image.
     pub description: String,
-    /// Program and version that made it.
+    /// Program and version that created it.
     pub software: String,
-    /// Credits to show with it.
+    /// The attribution that must be displayed with it.
     pub attribution: String,
-    /// Pixels to an inch in print, if that is known.
+    /// Pixels per inch in print, if known.
     pub dots_per_inch: Option<f64>,
 }
 
-/// Writes a picture to a new `GeoTIFF` at `path`: red, green and blue. After an error that file is of no use. Tells whether the file names the CRS as it
-/// is: `GeoTIFF` has no words for some.
+/// Writes an image to a new `GeoTIFF` at `path`: red, green and blue. After an error that file is
+/// incomplete. Returns whether the file has exactly the package's CRS: `GeoTIFF` cannot express
+/// every CRS.
 ///
 /// # Errors
 /// When something cannot be written.
@@ -61,7 +62,7 @@ fn raster_facts(place: &PlaceOfPicture, facts: &PictureFacts) -> RasterFacts {
     if let Some(dots) = dots_per_inch {
         metadata.push(("TIFFTAG_XRESOLUTION", dots.to_string()));
         metadata.push(("TIFFTAG_YRESOLUTION", dots.to_string()));
-        // Inches.
+        // The unit 2 means inches.
         metadata.push(("TIFFTAG_RESOLUTIONUNIT", "2".to_owned()));
     }
     RasterFacts {
@@ -73,14 +74,15 @@ fn raster_facts(place: &PlaceOfPicture, facts: &PictureFacts) -> RasterFacts {
     }
 }
 
-/// A band of a block as it is written: 256 × 256 pixels, those beyond the picture included, which are 0.
+/// Returns one band of a block in the form in which it is written: 256 × 256 pixels, with 0 for
+/// pixels beyond the image.
 fn block(picture: &RgbaImage, size: RasterSize, place: [usize; 2], band: usize) -> Vec<u8> {
     let [columns, rows] = size.block_size(place);
     let [left, top] = place.map(|blocks| blocks * BLOCK);
     let mut block = vec![0; BLOCK * BLOCK];
     for (row, line) in block.chunks_mut(BLOCK).take(rows).enumerate() {
         for (column, value) in line.iter_mut().take(columns).enumerate() {
-            // Sides of pictures are u32, and these are within.
+            // Sides of images are u32, and these coordinates are within.
             *value = picture.get_pixel((left + column) as u32, (top + row) as u32).0[band];
         }
     }

@@ -1,4 +1,4 @@
-//! A picture comes back from its GeoTIFF with each pixel, its place and its resolution.
+//! Each pixel of an image, its georeference and its resolution can be read back from its GeoTIFF.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 

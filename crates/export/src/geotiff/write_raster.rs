@@ -1,4 +1,5 @@
-//! The heights of a level are written as a GeoTIFF, and on request their difference from the elevation files.
+//! Writes the heights of a level as a GeoTIFF, on request with their difference from the elevation
+//! files.
 
 use std::path::Path;
 
@@ -7,68 +8,73 @@ use corniche_tileset::{FilePackage, InputKind, Manifest, SampleErrorRecord, Samp
 use corniche_work::{Observer, Stage, workers::make_all};
 
 use super::{
-    block::{self, Block, Tins},
+    block::{self, RasterBlock, Tins},
     file::{HEIGHTS, Number, RasterFacts, RasterFile},
-    grid::RasterGrid,
+    grid::{RasterGrid, RasterSize},
 };
 use crate::{
     bounds::DegreeBounds,
     error::{RasterError, SelectionError},
     heights::Elevation,
-    places::{Coordinates, Places},
+    places::{FeatureCoordinates, Places},
     read,
 };
 
-/// Blocks that are made before some are written: as many whole rows as have so many, one at least. 16 MB a band in f32.
+/// The number of blocks that are computed before any are written, rounded up to whole rows, at
+/// least one. 16 MB per band in f32.
 const BLOCKS_AT_ONCE: usize = 64;
-/// A raster may have so many nodes whatever the package holds, 256 MiB in f32 before compression.
+/// A raster may have this many grid nodes, whatever the package contains: 256 MiB in f32 before
+/// compression.
 const FREE_NODES: u64 = 1 << 26;
-/// A larger raster may have so many times the nodes that tiles have. Its rectangle is the package's own word, and each block of it is written,
-/// with ground or without.
+/// A larger raster may have this many times the nodes of the tiles. Its rectangle comes from the
+/// package, which may be wrong, and every block is written, with or without ground.
 const MOST_NOTHING: u64 = 256;
-/// The share of a height quantum that a pixel may lose by its type.
+/// The share of a height quantum that the type of pixels may lose.
 const LOST_QUANTA: f64 = 0.1;
 
-/// What of a package becomes a raster, and with what it is compared.
+/// The part of a package that becomes a raster, and the files with which it is compared.
 pub struct GeoTiffRequest<'a> {
-    /// The level whose TINs are taken; `None` is the finest.
+    /// The level whose TINs are used; `None` means the finest.
     pub level: Option<u8>,
-    /// The nodes around this rectangle are taken, rounded outwards.
+    /// The raster contains the grid nodes of this rectangle, rounded outwards.
     pub bounds: Option<DegreeBounds>,
-    /// The files of a second band, which has the heights of the TINs minus those of these files.
+    /// The files for the second band: heights of the TINs minus those of these files.
     pub elevation: Option<Elevation<'a>>,
-    /// How many blocks are made at the same time.
+    /// The number of blocks that are computed concurrently.
     pub threads: usize,
 }
 
-/// What was exported.
+/// The figures of an export of a raster.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GeoTiffSummary {
-    /// The level whose TINs were taken.
+    /// The level whose TINs were used.
     pub level: u8,
     /// Nodes from west to east.
     pub columns: u64,
     /// Nodes from north to south.
     pub rows: u64,
-    /// Nodes with ground.
+    /// Grid nodes with ground.
     pub covered: u64,
-    /// The type of pixels: "Float32", or "Float64" where that would lose more than a tenth of the height quantum.
+    /// The type of pixels: "Float32", or "Float64" if the former would lose more than a tenth of
+    /// the height quantum.
     pub pixels: &'static str,
-    /// The stored bound of the level's TINs, metres.
+    /// The stored error bound of the level's TINs, metres.
     pub error_bound_m: f64,
-    /// How far the TINs are from the samples of the elevation files, or from the nodes that were made of them; `None` without files.
+    /// The distance of the TINs from the samples of the elevation files, or from the nodes that
+    /// were resampled from them; `None` without files.
     pub sample_error: Option<SampleErrorRecord>,
-    /// What heights are, in words.
+    /// What heights refer to, in words.
     pub heights: String,
-    /// Whether the file names the package's CRS as it is: `GeoTIFF` has no words for some.
+    /// Whether the file has exactly the package's CRS: `GeoTIFF` cannot express every CRS.
     pub has_same_crs: bool,
 }
 
-/// Writes the heights of a level's TINs, and on request their difference from the elevation files, to a new `GeoTIFF` at `path`. After an error that file is
-/// of no use.
+/// Writes the heights of a level's TINs, and on request their difference from the elevation files,
+/// to a new `GeoTIFF` at `path`. After an error that file is incomplete.
 ///
 /// # Errors
-/// When the package has no such level or no ground there, the package is damaged, an elevation file cannot be read, or something cannot be written.
+/// When the package has no such level or no ground there, the package is corrupt, an elevation file
+/// cannot be read, or something cannot be written.
 pub fn export_geotiff(
     package: &FilePackage,
     request: &GeoTiffRequest<'_>,
@@ -77,11 +83,11 @@ pub fn export_geotiff(
 ) -> Result<GeoTiffSummary, RasterError> {
     let manifest = package.manifest();
     let level = read::level(package, request.level)?;
-    let grid = RasterGrid::of(package, request.bounds.as_ref())?;
-    check_size(package, request, &grid)?;
-    let places = Places::new(manifest, Coordinates::Package)?;
-    let facts = facts(package, level, request, &places, &grid);
+    let grid = RasterGrid::covering(package, request.bounds.as_ref())?;
     let writing = Writing { package, level, request, grid, observer };
+    writing.check_size()?;
+    let places = Places::new(manifest, FeatureCoordinates::Package)?;
+    let facts = writing.facts(&places);
     let (written, pixels) = if fits_f32(manifest) {
         (writing.write::<f32>(path, &facts)?, "Float32")
     } else {
@@ -89,92 +95,26 @@ pub fn export_geotiff(
     };
     Ok(GeoTiffSummary {
         level,
-        columns: grid.columns as u64,
-        rows: grid.rows as u64,
+        columns: grid.size.columns as u64,
+        rows: grid.size.rows as u64,
         covered: written.covered,
         pixels,
-        error_bound_m: bound_m(manifest, level),
+        error_bound_m: writing.bound_m(),
         sample_error: request.elevation.is_some().then(|| written.sums.record()),
         heights: places.heights.clone(),
         has_same_crs: written.has_same_crs,
     })
 }
 
-/// An error where a raster would be nearly all without ground: its rectangle may be a lie. Tiles of the finest level count, whichever level's TINs
-/// are taken: they have ground wherever a coarse tile has, and a single coarse tile may be said to hold all nodes.
-fn check_size(
-    package: &FilePackage,
-    request: &GeoTiffRequest<'_>,
-    grid: &RasterGrid,
-) -> Result<(), RasterError> {
-    let RasterGrid { columns, rows, .. } = *grid;
-    let nodes = (columns as u64).saturating_mul(rows as u64);
-    if nodes <= FREE_NODES {
-        return Ok(());
-    }
-    let level = package.manifest().frame.max_level();
-    let side = TILE_CELLS.unsigned_abs();
-    let tiles = read::tiles(package, level, request.bounds.as_ref())?.len() as u64;
-    let within = tiles.saturating_mul(side.saturating_mul(side));
-    if nodes / MOST_NOTHING > within {
-        return Err(RasterError::MostlyNothing { columns, rows, level, within });
-    }
-    Ok(())
-}
-
-/// Whether f32 keeps all heights of a package to a tenth of its quantum.
+/// Whether f32 preserves all heights of a package to a tenth of its quantum.
 ///
-/// Rounding moves a height by half the step between neighbours in f32 at most, and the step is largest where heights are.
+/// Rounding changes a height by at most half the step between neighbours in f32, and the step is
+/// largest for the largest heights.
 fn fits_f32(manifest: &Manifest) -> bool {
     let [low, high] = manifest.vertical.range_m;
     let farthest = low.abs().max(high.abs()) as f32;
     let step = f64::from(farthest.next_up()) - f64::from(farthest);
     step / 2.0 <= LOST_QUANTA * manifest.vertical.quantum_m
-}
-
-/// The largest stored error of a level's tiles.
-fn bound_m(manifest: &Manifest, level: u8) -> f64 {
-    manifest.levels.get(usize::from(level)).map_or(0.0, |record| record.geometric_error_m)
-}
-
-fn facts(
-    package: &FilePackage,
-    level: u8,
-    request: &GeoTiffRequest<'_>,
-    places: &Places<'_>,
-    grid: &RasterGrid,
-) -> RasterFacts {
-    let manifest = package.manifest();
-    let name = package.file_name().to_owned();
-    let bound_m = bound_m(manifest, level);
-    let attribution = manifest.attribution.join("; ");
-    let mut descriptions = vec!["height of the TIN, metres".to_owned()];
-    let mut metadata = vec![
-        ("TIFFTAG_IMAGEDESCRIPTION", format!("Heights of the TINs of level {level} of {name}")),
-        ("TIFFTAG_SOFTWARE", manifest.generator.clone()),
-        ("TIFFTAG_COPYRIGHT", attribution.clone()),
-        ("ATTRIBUTION", attribution),
-        ("PACKAGE", name),
-        ("PACKAGE_SETTINGS_SHA256", manifest.settings_sha256.clone()),
-        ("LEVEL", level.to_string()),
-        ("ERROR_BOUND_M", bound_m.to_string()),
-        ("HEIGHTS", places.heights.clone()),
-        ("VERTICAL_DATUM_OF_PACKAGE", manifest.vertical.datum.clone()),
-        ("NODES", manifest.resampling.clone()),
-    ];
-    if request.elevation.is_some() {
-        descriptions.push("height of the TIN minus DEM, metres".to_owned());
-        let names: Vec<&str> =
-            manifest.inputs_of(InputKind::Dem).map(|input| input.name.as_str()).collect();
-        metadata.push(("DEM", names.join("; ")));
-    }
-    RasterFacts {
-        pixels: &HEIGHTS,
-        crs: places.wkt.clone(),
-        crs_from_pixel: grid.crs_from_pixel(manifest),
-        descriptions,
-        metadata,
-    }
 }
 
 struct Writing<'a> {
@@ -185,20 +125,84 @@ struct Writing<'a> {
     observer: &'a dyn Observer,
 }
 
-struct Written {
+struct RasterTotals {
     covered: u64,
     sums: SampleSums,
     has_same_crs: bool,
 }
 
 impl Writing<'_> {
-    fn write<T: Number>(&self, path: &Path, facts: &RasterFacts) -> Result<Written, RasterError> {
+    /// Fails if nearly all of the raster would be empty, because the rectangle in the manifest may
+    /// be wrong. Tiles of the finest level count, whichever level's TINs are used: they have ground
+    /// wherever a coarse tile has, and a single coarse tile could claim to contain all nodes.
+    fn check_size(&self) -> Result<(), RasterError> {
+        let Self { package, request, grid, .. } = self;
+        let RasterSize { columns, rows } = grid.size;
+        let nodes = (columns as u64).saturating_mul(rows as u64);
+        if nodes <= FREE_NODES {
+            return Ok(());
+        }
+        let level = package.manifest().frame.max_level();
+        let side = TILE_CELLS.unsigned_abs();
+        let tiles = read::tiles(package, level, request.bounds.as_ref())?.len() as u64;
+        let within = tiles.saturating_mul(side.saturating_mul(side));
+        if nodes / MOST_NOTHING > within {
+            return Err(RasterError::MostlyNothing { columns, rows, level, within });
+        }
+        Ok(())
+    }
+
+    /// The largest stored error of a level's tiles.
+    fn bound_m(&self) -> f64 {
+        let record = self.package.manifest().levels.get(usize::from(self.level));
+        record.map_or(0.0, |record| record.geometric_error_m)
+    }
+
+    fn facts(&self, places: &Places<'_>) -> RasterFacts {
+        let Self { package, level, request, grid, .. } = self;
+        let manifest = package.manifest();
+        let name = package.file_name().to_owned();
+        let attribution = manifest.attribution.join("; ");
+        let mut descriptions = vec!["height of the TIN, metres".to_owned()];
+        let mut metadata = vec![
+            ("TIFFTAG_IMAGEDESCRIPTION", format!("Heights of the TINs of level {level} of {name}")),
+            ("TIFFTAG_SOFTWARE", manifest.generator.clone()),
+            ("TIFFTAG_COPYRIGHT", attribution.clone()),
+            ("ATTRIBUTION", attribution),
+            ("PACKAGE", name),
+            ("PACKAGE_SETTINGS_SHA256", manifest.settings_sha256.clone()),
+            ("LEVEL", level.to_string()),
+            ("ERROR_BOUND_M", self.bound_m().to_string()),
+            ("HEIGHTS", places.heights.clone()),
+            ("VERTICAL_DATUM_OF_PACKAGE", manifest.vertical.datum.clone()),
+            ("NODES", manifest.resampling.clone()),
+        ];
+        if request.elevation.is_some() {
+            descriptions.push("height of the TIN minus DEM, metres".to_owned());
+            let names: Vec<&str> =
+                manifest.inputs_of(InputKind::Dem).map(|input| input.name.as_str()).collect();
+            metadata.push(("DEM", names.join("; ")));
+        }
+        RasterFacts {
+            pixels: &HEIGHTS,
+            crs: places.wkt.clone(),
+            crs_from_pixel: grid.crs_from_pixel(manifest),
+            descriptions,
+            metadata,
+        }
+    }
+
+    fn write<T: Number>(
+        &self,
+        path: &Path,
+        facts: &RasterFacts,
+    ) -> Result<RasterTotals, RasterError> {
         let Self { package, level, request, grid, observer } = self;
-        let mut file = RasterFile::<T>::create(path, grid.size(), facts)?;
+        let mut file = RasterFile::<T>::create(path, grid.size, facts)?;
         let tins = Tins::new(package, *level);
         let mut sums = SampleSums::new(package.manifest().vertical.quantum_m);
         let mut covered = 0;
-        let [columns, rows] = grid.size().blocks();
+        let [columns, rows] = grid.size.blocks();
         observer.begin(Stage::ExportBlocks, Some((columns * rows) as u64));
         let rows_at_once = BLOCKS_AT_ONCE.div_ceil(columns);
         for first in (0..rows).step_by(rows_at_once) {
@@ -206,14 +210,14 @@ impl Writing<'_> {
                 .flat_map(|row| (0..columns).map(move |column| [column, row]))
                 .collect();
             tins.forget_north_of(grid.window([0, first]).corner.j);
-            let made: Vec<Block<T>> = make_all(
+            let made: Vec<RasterBlock<T>> = make_all(
                 (*observer, Stage::ExportBlocks),
                 request.threads,
                 &places,
                 || Ok(request.elevation.map(|Elevation { dem, plan }| dem.reader(plan))),
                 |reader, place| block::make(&tins, &grid.window(*place), reader.as_mut()),
             )?;
-            for Block { heights_m, errors_m, covered: own, sums: own_sums } in made {
+            for RasterBlock { heights_m, errors_m, covered: own, sums: own_sums } in made {
                 file.push(0, heights_m)?;
                 if request.elevation.is_some() {
                     file.push(1, errors_m)?;
@@ -227,6 +231,6 @@ impl Writing<'_> {
         }
         let has_same_crs = file.finish()?;
         observer.end(Stage::ExportBlocks);
-        Ok(Written { covered, sums, has_same_crs })
+        Ok(RasterTotals { covered, sums, has_same_crs })
     }
 }

@@ -1,11 +1,12 @@
 //! One height for each junction: a local fit over all its legs.
 //!
 //! ```text
-//!            │ c            The two legs that go on most straight, a and b, are one smooth line through the junction. Others, c, are lines that end
-//!     a ─────●───── b       there. Each line says how high the junction is, and how much it costs to be elsewhere; the height costs least together.
+//!            │ c            The two straightest legs, a and b, form one smooth line through the junction. Other legs, c, are lines that end
+//!     a ─────●───── b       there. Each line gives a height of the junction and a weight; the chosen height has the least total cost.
 //! ```
 //!
-//! Lines reach as far as they are smoothed, through other junctions along the legs that go on most straight there.
+//! Lines reach as far as the smoothing does, through other junctions along the straightest legs
+//! there. In this module, a node is a node of the network.
 
 use corniche_geom::IndexLists;
 use corniche_work::Observer;
@@ -13,11 +14,13 @@ use corniche_work::Observer;
 use super::smoothing::{MOST_SPACING_M, Smoothing};
 use crate::error::ElevationError;
 
-/// Two legs go on in each other where the road turns by less than this, as a cosine: 45°.
+/// Two legs continue each other if the road turns by less than this between them, as a cosine: 45°.
 const STRAIGHT: f64 = std::f64::consts::FRAC_1_SQRT_2;
-/// At a node with more legs none goes on in another: no real junction has as many, and pairs are looked at two by two.
+/// At a node with more legs, no leg continues another. No real junction has as many, and pairs are
+/// compared two by two.
 const MOST_LEGS: usize = 64;
-/// A line goes through so many chains at most, so that work is bounded where they are very short.
+/// The number of chains that a line may pass, so that the work is bounded where chains are very
+/// short.
 const MOST_CHAINS: usize = 64;
 
 /// One end of a chain, seen from its node.
@@ -29,7 +32,7 @@ pub(crate) struct Leg {
 }
 
 impl Leg {
-    fn of(end: usize) -> Self {
+    fn from_end(end: usize) -> Self {
         Self { chain: end / 2, is_last: end % 2 == 1 }
     }
 
@@ -37,7 +40,7 @@ impl Leg {
         2 * self.chain + usize::from(self.is_last)
     }
 
-    /// The other end of its chain.
+    /// The other end of the same chain.
     fn other(self) -> Self {
         Self { is_last: !self.is_last, ..self }
     }
@@ -45,22 +48,25 @@ impl Leg {
 
 /// The legs of all nodes, with heights of the ground along them.
 pub(crate) trait Legs {
-    /// The ends of chains that lie at each node: twice the number of the chain, plus one for its last station.
+    /// The ends of chains at each node: twice the number of the chain, plus one for its last
+    /// station.
     fn by_node(&self) -> IndexLists;
-    /// Whether a node needs no height of its own: at a dead end, and where a ring without a junction begins.
+    /// Whether a node needs no height of its own: at a dead end, and at the start of a ring without
+    /// a junction.
     fn is_alone(&self, node: usize) -> bool;
-    /// How much is smoothed.
+    /// The strength of the smoothing.
     fn smoothing(&self) -> Smoothing;
-    /// The distance between stations, and the ground at them from the node on; NaN where there is none.
+    /// The distance between stations, and the ground at them from the node onwards; NaN where there
+    /// is none.
     fn leg(&self, leg: Leg) -> (f64, Box<dyn Iterator<Item = f32> + '_>);
-    /// The direction in which a leg leaves its node; of length 1, or 0 where it has none.
+    /// The direction in which a leg leaves its node: of length 1, or 0 if the leg has none.
     fn direction(&self, leg: Leg) -> [f64; 2];
 }
 
-/// No leg goes on in this one.
+/// Marks a leg that no other leg continues.
 const NONE: u32 = u32::MAX;
 
-/// The height of each node, NaN where it has no leg with ground, and where it needs none.
+/// Returns the height of each node; NaN if it has no leg with ground, or needs none.
 pub(crate) fn node_heights(
     legs: &dyn Legs,
     observer: &dyn Observer,
@@ -78,17 +84,17 @@ pub(crate) fn node_heights(
             continue;
         }
         let (mut sum, mut weights) = (0.0, 0.0);
-        for &end in by_node.of(node) {
-            let leg = Leg::of(end as usize);
+        for &end in by_node.list(node) {
+            let leg = Leg::from_end(end as usize);
             let partner = goes_on_in[leg.end()];
             if partner != NONE && partner < end {
-                // With its partner it is one line.
+                // The leg and its partner are one line.
                 continue;
             }
             let mut line = outwards(legs, leg, &goes_on_in);
             let mut at = 0;
             if partner != NONE {
-                let other = outwards(legs, Leg::of(partner as usize), &goes_on_in);
+                let other = outwards(legs, Leg::from_end(partner as usize), &goes_on_in);
                 at = other.len().max(1) - 1;
                 line = other.into_iter().rev().chain(line.into_iter().skip(1)).collect();
             }
@@ -106,19 +112,20 @@ pub(crate) fn node_heights(
     Ok(heights_m)
 }
 
-/// For each end of a chain the end of another one, at the same node, in which it goes on most straight.
+/// Returns, for each end of a chain, the end of another chain at the same node that continues it
+/// most straight.
 fn goes_on_in(legs: &dyn Legs, by_node: &IndexLists) -> Vec<u32> {
     let nodes = by_node.parts()[0].len() - 1;
     let ends = by_node.parts()[1].iter().max().map_or(0, |most| *most as usize + 2);
     let mut partners = vec![NONE; ends];
     let mut pairs: Vec<(f64, u32, u32)> = Vec::new();
     for node in 0..nodes {
-        let own = by_node.of(node);
+        let own = by_node.list(node);
         if own.len() > MOST_LEGS {
             continue;
         }
         let directions: Vec<[f64; 2]> =
-            own.iter().map(|&end| legs.direction(Leg::of(end as usize))).collect();
+            own.iter().map(|&end| legs.direction(Leg::from_end(end as usize))).collect();
         pairs.clear();
         for (k, (&one, a)) in own.iter().zip(&directions).enumerate() {
             for (&other, b) in own.iter().zip(&directions).skip(k + 1) {
@@ -138,13 +145,13 @@ fn goes_on_in(legs: &dyn Legs, by_node: &IndexLists) -> Vec<u32> {
     partners
 }
 
-/// The ground along a leg and what it goes on in, every ten metres from its node on, as far as lines are smoothed; empty where the node has no
-/// ground.
+/// Returns the ground along a leg and the legs that continue it, every ten metres from its node, as
+/// far as the smoothing reaches; empty if the node has no ground.
 fn outwards(legs: &dyn Legs, first: Leg, goes_on_in: &[u32]) -> Vec<f64> {
     let reach_m = legs.smoothing().length_m;
     let mut heights_m: Vec<f64> = Vec::new();
     let mut leg = first;
-    // Where the chain begins, along the line.
+    // The distance along the line at which the chain begins.
     let mut begin_m = 0.0;
     for _ in 0..MOST_CHAINS {
         let (spacing_m, stations) = legs.leg(leg);
@@ -174,7 +181,7 @@ fn outwards(legs: &dyn Legs, first: Leg, goes_on_in: &[u32]) -> Vec<f64> {
             break;
         }
         begin_m = along_m;
-        leg = Leg::of(next as usize);
+        leg = Leg::from_end(next as usize);
     }
     heights_m
 }

@@ -4,7 +4,8 @@ use corniche_work::Silent;
 
 use super::*;
 
-/// Legs that leave one node, each with heights every ten metres and a direction; other ends are dead ends.
+/// Legs that leave one node, each with heights every ten metres and a direction; other ends are
+/// dead ends.
 struct Star {
     legs: Vec<(Vec<f32>, [f64; 2])>,
 }
@@ -49,7 +50,7 @@ fn junction(legs: Vec<(Vec<f32>, [f64; 2])>) -> f64 {
     heights[0]
 }
 
-/// Where all legs are straight and meet, the junction is where they meet.
+/// Where all legs are straight and meet, the junction has the height at which they meet.
 #[test]
 fn straight_legs_meet_where_they_meet() {
     let legs = vec![
@@ -60,7 +61,8 @@ fn straight_legs_meet_where_they_meet() {
     assert!((junction(legs) - 700.0).abs() < 1e-6);
 }
 
-/// One wrong height at the junction moves it by little: by less where a line goes through than where it ends.
+/// One wrong height at the junction moves it only a little: less where a line passes through than
+/// where it ends.
 #[test]
 fn noise_at_the_junction_is_smoothed_over_its_legs() {
     let noisy = |by: f32| {

@@ -1,4 +1,5 @@
-//! The chains of a network with heights of the elevation files, and smooth lines along them.
+//! The chains of a network (roads joined end to end) with heights of the elevation files, and
+//! smooth lines along them.
 
 use std::{
     collections::{HashMap, HashSet, VecDeque},
@@ -19,11 +20,15 @@ use super::{
     span_decks::SpanDecks,
 };
 use crate::{
-    dem_ground::DemNodes, error::ElevationError, heights::Elevation, measures::between,
-    places::Places, plane::mix,
+    dem_ground::DemNodes,
+    error::ElevationError,
+    heights::Elevation,
+    measures::between,
+    places::Places,
+    plane::{mix, steps_between},
 };
 
-/// Chains are told of after so many.
+/// Progress is reported after this many chains.
 const TOLD_CHAINS: usize = 1024;
 
 /// The chains of a network, cut where bridges and tunnels begin, with their heights.
@@ -33,21 +38,24 @@ pub(crate) struct MeasuredChains<'a> {
     chains: Chains,
     smoothing: Smoothing,
     lengths: ChainLengths,
-    /// Where the stations of each chain begin, and the end of all. Bridges and tunnels have none, and chains that have no part in what reaches the data.
+    /// The index of the first station of each chain, and the total. Bridges and tunnels have no
+    /// stations, nor do chains that do not affect what reaches the data.
     starts: Vec<usize>,
-    /// The ground at all stations, NaN where there is none.
+    /// The ground at all stations; NaN where there is none.
     grounds_m: Vec<f32>,
-    /// How much higher the smooth line is there: less is lost by rounding than of its heights.
+    /// The difference between the smooth line and the ground: rounding loses less of it than of
+    /// heights.
     above_m: Vec<f32>,
-    /// The height at each node, NaN where there is none that is shared.
+    /// The height at each node; NaN if there is no shared height.
     nodes_m: Vec<f64>,
     /// The nodes at which rings without a junction begin.
     ring_nodes: HashSet<usize>,
-    /// Bridges and tunnels, whose supports are as high as the ground there.
+    /// Bridges and tunnels, whose supports are at the height of the ground there.
     pub(crate) decks: SpanDecks,
     /// The nodes of chains that reach the data.
     is_reached: Vec<bool>,
-    /// For each chain that is such a ring the distance of their first station from that node: it lies at a place that does not depend on ways.
+    /// The distance of the first station from the ring's node, for each chain that is such a ring:
+    /// the station's place does not depend on ways.
     ring_starts_m: HashMap<usize, f64>,
 }
 
@@ -58,7 +66,7 @@ struct Along {
 }
 
 impl Along {
-    fn of(places: &Places<'_>, points: Vec<LatticePoint>) -> Self {
+    fn from_points(places: &Places<'_>, points: Vec<LatticePoint>) -> Self {
         Self { distances_m: places.distances_m(points.iter().copied()), points }
     }
 
@@ -72,7 +80,8 @@ impl Along {
         least.map_or(0.0, |(_, &distance_m)| distance_m)
     }
 
-    /// The place at a distance, which ascends from call to call; `after` is the point after the one before.
+    /// Returns the place at a distance; distances must ascend from call to call. `after` is the
+    /// index of the point after the previous place.
     fn at(&self, along_m: f64, after: &mut usize) -> [f64; 2] {
         while *after + 1 < self.points.len() && self.distances_m[*after] < along_m {
             *after += 1;
@@ -88,7 +97,8 @@ impl Along {
 }
 
 impl<'a> MeasuredChains<'a> {
-    /// Reads the ground along all chains that reach the package's data, beyond its bounds, too, and finds one height for each of their junctions.
+    /// Reads the ground along all chains that reach the package's data, also beyond its bounds, and
+    /// computes one height for each of their junctions.
     pub(crate) fn measure(
         network: &'a Network,
         places: &'a Places<'a>,
@@ -97,10 +107,10 @@ impl<'a> MeasuredChains<'a> {
     ) -> Result<Self, ElevationError> {
         let manifest = places.manifest;
         let frame = &manifest.frame;
-        // What lies beyond the bounds has a part in what lies within.
+        // Roads beyond the bounds affect roads within.
         let plan = if plan.clip.is_some() { plan.of_whole_data() } else { plan.clone() };
         let nodes = &mut DemNodes::new(Elevation { dem, plan: &plan }, frame);
-        let chains = Chains::of(network, Breaks::JunctionsAndStructures);
+        let chains = Chains::from_network(network, Breaks::JunctionsAndStructures);
         let lengths = chains.lengths(network, &places.metric());
         let data = frame.lattice_bounds(manifest.data_nodes());
         let measured = (network, &chains, &lengths);
@@ -137,7 +147,7 @@ impl<'a> MeasuredChains<'a> {
             let own = if measured.is_on_ground(number) { stations(length_m) } else { 0 };
             measured.starts.push(measured.starts[number.0] + own);
             if own > 0 {
-                // Neighbours are read one after the other, so that each height is read once or twice.
+                // Neighbours are read in sequence, so that each height is read only once or twice.
                 order.push((nodes.block_of(along.points[0].in_steps()), number));
             }
         }
@@ -153,7 +163,8 @@ impl<'a> MeasuredChains<'a> {
             observer.advance(Stage::ExportChains, some.len() as u64);
         }
         measured.nodes_m = node_heights(&measured, observer)?;
-        // Lines are held where bridges and tunnels begin: else both sides of a short bridge would be smoothed apart, and the bridge be steep.
+        // Lines are fixed at the beginning of bridges and tunnels. Otherwise both sides of a short
+        // bridge would be smoothed separately, and the bridge would be steep.
         for &(node, height_m) in &measured.decks.supports {
             measured.nodes_m[network.index_of(node)] = height_m;
         }
@@ -168,12 +179,13 @@ impl<'a> MeasuredChains<'a> {
         Ok(measured)
     }
 
-    /// Whether a chain has a part in what reaches the data: its edge does, or lines are smoothed into it from a node of one that does.
+    /// Returns whether each chain affects what reaches the data: its edge reaches the data, or
+    /// lines are smoothed into it from a node of an edge that does.
     fn find_needed(&mut self) -> Vec<bool> {
         let mut is_needed = vec![false; self.chains.len()];
         let mut along_m = vec![f64::INFINITY; self.network.node_count()];
         let mut waiting = VecDeque::new();
-        let edges = Chains::of(self.network, Breaks::Junctions);
+        let edges = Chains::from_network(self.network, Breaks::Junctions);
         for edge in edges.numbers().map(|number| edges.get(number)) {
             if !self.reaches(&edge) {
                 continue;
@@ -192,7 +204,7 @@ impl<'a> MeasuredChains<'a> {
         }
         let ends_at = self.chains.ends_at(self.network, |_| true);
         while let Some(node) = waiting.pop_front() {
-            for &end in ends_at.of(node) {
+            for &end in ends_at.list(node) {
                 let number = end as usize / 2;
                 is_needed[number] = true;
                 let other = self.chains.get(ChainNumber(number)).ends[1 - end as usize % 2];
@@ -219,11 +231,11 @@ impl<'a> MeasuredChains<'a> {
         for k in 0..own.len() {
             let mut at_m = start_m + length_m * k as f64 / last as f64;
             if at_m > length_m {
-                // Around a ring; its first part comes last.
+                // On a ring, the first part comes last.
                 (at_m, after) = (at_m - length_m, 0);
             }
             let at = match (k, along.points.last()) {
-                // To the last bit, so that all legs of a junction have the same ground there.
+                // Exact to the last bit, so that all legs of a junction have the same ground there.
                 (k, Some(end)) if k == last && start_m <= 0.0 => end.in_steps(),
                 _ => along.at(at_m, &mut after),
             };
@@ -238,12 +250,17 @@ impl<'a> MeasuredChains<'a> {
         self.starts[number]..self.starts[number + 1]
     }
 
+    /// The distance from one of a chain's stations to the next.
+    fn spacing_m(&self, number: ChainNumber) -> f64 {
+        self.lengths.chains_m[number.0] / (self.stations_of(number).len().max(2) - 1) as f64
+    }
+
     fn is_on_ground(&self, number: ChainNumber) -> bool {
         self.network.structure_of(&self.chains.get(number)) == Structure::Ground
     }
 
     fn along(&self, number: ChainNumber) -> Along {
-        Along::of(self.places, self.network.points_of_chain(&self.chains.get(number)))
+        Along::from_points(self.places, self.network.points_of_chain(&self.chains.get(number)))
     }
 
     fn smooth(&mut self, number: ChainNumber) {
@@ -251,7 +268,7 @@ impl<'a> MeasuredChains<'a> {
         let grounds_m: Vec<f64> =
             self.grounds_m[own.clone()].iter().copied().map(f64::from).collect();
         let last = grounds_m.len() - 1;
-        let spacing_m = self.lengths.chains_m[number.0] / last as f64;
+        let spacing_m = self.spacing_m(number);
         if self.is_ring(number) && grounds_m.iter().all(|height_m| height_m.is_finite()) {
             let smooth_m = self.smoothing.solve_ring(spacing_m, &grounds_m[..last]);
             for (k, &ground_m) in grounds_m.iter().enumerate() {
@@ -273,7 +290,8 @@ impl<'a> MeasuredChains<'a> {
                     let above_m = height_m - grounds_m[first + k];
                     self.above_m[own.start + first + k] = above_m as f32;
                 }
-                // The ground ends somewhere before the next station: to there the line goes on as it came.
+                // The ground ends somewhere before the next station; up to there, the line
+                // continues with its grade.
                 let inner = |from: usize, before: usize| match smooth_m.get(before) {
                     Some(before_m) => 2.0 * smooth_m[from] - before_m,
                     None => smooth_m[from],
@@ -290,26 +308,26 @@ impl<'a> MeasuredChains<'a> {
         }
     }
 
-    /// Puts a height of a smooth line at a station without ground.
+    /// Sets the height of the smooth line at a station without ground.
     fn go_on(&mut self, station: usize, height_m: f64) {
         if self.above_m[station].is_nan() {
             (self.grounds_m[station], self.above_m[station]) = (height_m as f32, 0.0);
         }
     }
 
-    /// Where the first station of a chain lies, along it: at its beginning, but for rings.
+    /// The distance of a chain's first station along it: 0, except for rings.
     fn start_m(&self, ChainNumber(number): ChainNumber) -> f64 {
         self.ring_starts_m.get(&number).copied().unwrap_or_default()
     }
 
-    /// Whether a chain comes back to its beginning without a junction there.
+    /// Whether a chain returns to its beginning without a junction there.
     fn is_ring(&self, number: ChainNumber) -> bool {
         let chain = self.chains.get(number);
         chain.is_closed() && self.network.degree(chain.ends[0]) == 2
     }
 
-    /// The ground and the smooth line at a distance along a chain, between its stations; NaN where there is none. Of bridges and tunnels their own
-    /// heights.
+    /// Returns the ground and the smooth line at a distance along a chain, between its stations;
+    /// NaN where there is none. Bridges and tunnels have their own heights.
     fn heights_at(&self, number: ChainNumber, at_m: f64) -> [f64; 2] {
         let own = self.stations_of(number);
         if own.is_empty() {
@@ -321,7 +339,7 @@ impl<'a> MeasuredChains<'a> {
         let place = (at_m / length_m * last as f64).clamp(0.0, last as f64);
         let station = (place.floor() as usize).min(last - 1);
         let share = place - station as f64;
-        // A station without ground counts only where it counts for something.
+        // A station without ground counts only if it has a weight.
         let ends = [station, station + 1].map(|station| own.start + station);
         let of = |heights_m: &[f32]| {
             let [from_m, to_m] = ends.map(|at| f64::from(heights_m[at]));
@@ -331,13 +349,14 @@ impl<'a> MeasuredChains<'a> {
         [ground_m, ground_m + of(&self.above_m)]
     }
 
-    /// The smooth lines of a way, with distances along it; in parts where heights are not known. Of a bridge or a tunnel the ground's height is that of
-    /// its deck, as if no ground came in its way.
+    /// Returns the smooth lines of a way, with distances along it; in parts if heights are missing.
+    /// For a bridge or a tunnel, the ground's height is that of its deck, as if no ground
+    /// obstructed it.
     pub(crate) fn of_way(&self, way_id: i64) -> Vec<SmoothLine> {
         let mut lines = vec![SmoothLine::default()];
         let mut begin_m = 0.0;
         for road in self.network.roads_of(way_id) {
-            // The parts of a way that is cut do not go on.
+            // The parts of a way that was cut do not continue each other.
             lines.push(SmoothLine::default());
             for (number, index) in self.chains.of_road(&self.network.ways()[road]) {
                 begin_m += self.add_stretch(number, index, begin_m, &mut lines);
@@ -356,9 +375,9 @@ impl<'a> MeasuredChains<'a> {
         lines: &mut Vec<SmoothLine>,
     ) -> f64 {
         let link = self.chains.get(number).links[index];
-        let along = Along::of(self.places, self.network.points_of_link(link).collect());
+        let along = Along::from_points(self.places, self.network.points_of_link(link).collect());
         let own_m = along.length_m();
-        // Its own points, and the stations of the chain between them.
+        // The stretch's own points, and the stations of the chain between them.
         let [from_m, _] = self.lengths.links_m[self.chains.place_of(number, index)];
         let stations = self.distances_within(number, [from_m, from_m + own_m]);
         let mut distances_m = along.distances_m.clone();
@@ -393,8 +412,9 @@ impl<'a> MeasuredChains<'a> {
         own_m
     }
 
-    /// The smooth line of some links in a row: distances from their beginning, and heights; `None` where one is not known. Of bridges and tunnels, by
-    /// the numbers of their links, the lines are given, since the ground can be in the way of their decks; of others the decks are taken.
+    /// Returns the smooth line of consecutive links: distances from their beginning, and heights;
+    /// `None` if one is missing. For bridges and tunnels, `given` has the lines by link number,
+    /// since the ground can obstruct their decks; those that are not given get the solved decks.
     pub(crate) fn profile(
         &self,
         links: &[Link],
@@ -432,22 +452,21 @@ impl<'a> MeasuredChains<'a> {
         self.places.length_m(self.network.points_of_link(link))
     }
 
-    /// Two distances along a chain, and those of the stations between them; of a bridge or a tunnel those at which it bends.
+    /// Returns two distances along a chain, and those of the stations between them; for a bridge or
+    /// a tunnel, those of its bends.
     fn distances_within(&self, number: ChainNumber, [from_m, to_m]: [f64; 2]) -> Vec<f64> {
         if self.stations_of(number).is_empty() {
             let bends_m = self.decks.bends_m(number, [from_m, to_m]);
             return [from_m].into_iter().chain(bends_m).chain([to_m]).collect();
         }
-        let last = self.stations_of(number).len().max(2) - 1;
-        let (spacing_m, start_m) =
-            (self.lengths.chains_m[number.0] / last as f64, self.start_m(number));
+        let (spacing_m, start_m) = (self.spacing_m(number), self.start_m(number));
         let first = ((from_m - start_m) / spacing_m).floor() as i64 + 1;
         let between = (first..).map(|k| start_m + k as f64 * spacing_m);
         let between = between.take_while(|&at_m| at_m < to_m);
         [from_m].into_iter().chain(between).chain([to_m]).collect()
     }
 
-    /// The height of a node that several roads share; `None` of others, and where it is not known.
+    /// The height of a node that several roads share; `None` for other nodes, and if it is unknown.
     pub(crate) fn node_m(&self, node: NodeNumber) -> Option<f64> {
         Some(self.nodes_m[self.network.index_of(node)]).filter(|height_m| height_m.is_finite())
     }
@@ -483,7 +502,7 @@ impl Legs for MeasuredChains<'_> {
 
     fn leg(&self, Leg { chain, is_last }: Leg) -> (f64, Box<dyn Iterator<Item = f32> + '_>) {
         let grounds_m = &self.grounds_m[self.stations_of(ChainNumber(chain))];
-        let spacing_m = self.lengths.chains_m[chain] / (grounds_m.len().max(2) - 1) as f64;
+        let spacing_m = self.spacing_m(ChainNumber(chain));
         if is_last {
             (spacing_m, Box::new(grounds_m.iter().rev().copied()))
         } else {
@@ -496,12 +515,12 @@ impl Legs for MeasuredChains<'_> {
         if is_last {
             points.reverse();
         }
-        // That of its first ten metres or so.
+        // The direction of its first ten metres or so.
         let least_steps = 10.0 / self.places.manifest.frame.lattice_step_m();
         let from = points[0];
         let far = points.iter().find(|point| from.distance_steps(**point) >= least_steps);
         let to = far.unwrap_or(&points[points.len() - 1]);
-        let run = [(to.u - from.u) as f64, (to.v - from.v) as f64];
+        let run = steps_between(from, *to);
         let length = run[0].hypot(run[1]);
         if length > 0.0 { run.map(|part| part / length) } else { [0.0; 2] }
     }

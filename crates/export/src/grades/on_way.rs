@@ -1,4 +1,4 @@
-//! Where a line lies along its way.
+//! The position of a line along its way.
 
 use corniche_tileset::Manifest;
 
@@ -11,22 +11,25 @@ use crate::{
     plane::{self, vector},
 };
 
-/// Places of a way that are at most so much farther from an end of a line than the nearest one may be where it lies, lattice steps: half a metre.
+/// Places of a way also match an end of a line if they are farther from it than the nearest place
+/// by at most this, lattice steps: half a metre.
 const ALIKE_STEPS: f64 = 500.0;
-/// A line that is simplified is shorter than its way by no more than this share.
+/// A simplified line is shorter than its way by no more than this share.
 const SHORTER: f64 = 0.05;
 
-/// How far ends of lines may be beside their ways, lattice steps: as far as the level's lines are simplified, and what is rounded.
+/// The largest distance of ends of lines from their ways, lattice steps: the tolerance to which the
+/// level's lines are simplified, plus rounding.
 pub(crate) fn most_steps(manifest: &Manifest, level: u8) -> f64 {
     let [east_m, north_m] = manifest.frame.level_cell(level).to_array();
     let simplified_m = manifest.settings.simplify_cells * east_m.max(north_m);
     (simplified_m + 2.0) / manifest.frame.lattice_step_m()
 }
 
-/// The distances along a way between which a line lies, which is as long; `None` where that is not known. Its ends are no farther from the way than
-/// `most_steps`.
+/// Returns the distances along a way between which a line of this length runs; `None` if that is
+/// unknown. Its ends are no farther from the way than `most_steps`.
 ///
-/// An end can lie at several distances, where a way comes back to itself. Of all pairs that count which is as far apart as the line is long.
+/// An end can match several distances if a way returns to itself. The pair whose distance is
+/// nearest to the length of the line wins.
 pub(crate) fn stretch_of_way(
     way: &[SmoothLine],
     line: &[Vertex],
@@ -37,7 +40,7 @@ pub(crate) fn stretch_of_way(
         [line.first()?, line.last()?].map(|end| distances_near(way, end.at, most_steps));
     let misfit = |[from_m, to_m]: &[f64; 2]| (to_m - from_m - length_m).abs();
     let pairs = first.iter().flat_map(|&from_m| {
-        // Distances ascend: the best partner is next to where it should be.
+        // Distances ascend, so the best partner is next to its expected place.
         let after = last.partition_point(|&to_m| to_m < from_m + length_m);
         let near = [after.checked_sub(1), Some(after)].into_iter().flatten();
         near.filter_map(|at| last.get(at)).map(move |&to_m| [from_m, to_m]).collect::<Vec<_>>()
@@ -47,7 +50,8 @@ pub(crate) fn stretch_of_way(
     best.filter(|pair| misfit(pair) <= SHORTER * length_m + 2.0 * MOST_SPACING_M)
 }
 
-/// The distances along a way at which it comes as near to a place as it does anywhere, ascending; none where that is not near.
+/// Returns the distances along a way at which it is nearest to a place, ascending; none if it is
+/// nowhere near.
 fn distances_near(way: &[SmoothLine], at: [f64; 2], most_steps: f64) -> Vec<f64> {
     let segments = || way.iter().flat_map(|line| line.stations.array_windows::<2>());
     let all: Vec<[f64; 2]> = segments().map(|[from, to]| nearest(*from, *to, at)).collect();
@@ -59,10 +63,11 @@ fn distances_near(way: &[SmoothLine], at: [f64; 2], most_steps: f64) -> Vec<f64>
     distances_m
 }
 
-/// How near a segment comes to a place, lattice steps, and at which distance along the way.
+/// Returns the distance of a place from a segment, lattice steps, and the distance along the way of
+/// the nearest point.
 fn nearest(from: Station, to: Station, at: [f64; 2]) -> [f64; 2] {
     let [share, steps] = plane::nearest(vector(from.at, to.at), vector(from.at, at));
-    // To the bit at its end, as lines are looked up by it.
+    // Exact at the end of the segment, because lines are looked up by it.
     let along_m =
         if share >= 1.0 { to.along_m } else { from.along_m + share * (to.along_m - from.along_m) };
     [steps, along_m]

@@ -1,4 +1,4 @@
-//! Lines are found where they lie along their way.
+//! The positions of lines along their ways are found.
 
 use super::*;
 
@@ -37,7 +37,8 @@ fn a_ring_is_as_long_as_it_is() {
     assert_eq!(stretch_of_way(&way(&ring), &line(&half), 20.0, NEAR), Some([20.0, 40.0]));
 }
 
-/// What is far away, or longer than the way there, is not found; a line that is simplified is a little shorter.
+/// A line that is far away, or longer than the way there, is not found; a simplified line is a
+/// little shorter.
 #[test]
 fn what_is_no_part_of_the_way_is_not_found() {
     let way = way(&[[0.0, 0.0], [500_000.0, 0.0]]);
@@ -48,7 +49,7 @@ fn what_is_no_part_of_the_way_is_not_found() {
     assert_eq!(found(&[[0.0, 0.0], [400_000.0, 0.0]], 390.0), Some([0.0, 400.0]));
 }
 
-/// To and fro between two places: each end lies at many distances.
+/// A way that goes back and forth between two places: each end matches many distances.
 #[test]
 fn a_way_to_and_fro_is_searched_in_order() {
     let ends = [[0.0, 0.0], [100_000.0, 0.0]];

@@ -1,12 +1,12 @@
-//! A smooth line, and what is measured of a part of it.
+//! A smooth line, and the measures of a part of it.
 
 use super::smoothing::{MOST_SPACING_M, Smoothing};
 use crate::{
     measures::{ProfileGrades, between},
-    plane::along,
+    plane::{along, mix},
 };
 
-/// The steepest grade of a smooth line is taken over this length, metres.
+/// The steepest grade of a smooth line is measured over this length, metres.
 pub(crate) const GRADE_LENGTH_M: f64 = 50.0;
 
 /// A place of a smooth line.
@@ -22,14 +22,16 @@ pub(crate) struct Station {
     pub(crate) ground_m: f64,
 }
 
-/// A smooth line without a gap: stations in order of their distances. Between them it is straight.
+/// A smooth line without a gap: stations in order of their distances, connected by straight
+/// segments.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct SmoothLine {
     pub(crate) stations: Vec<Station>,
 }
 
 impl SmoothLine {
-    /// The smooth line through a profile of distances and heights, which is held at its ends; its stations are nowhere in plan.
+    /// Returns the smooth line through a profile of distances and heights, fixed at its ends. Its
+    /// stations have no position in plan.
     pub(crate) fn of_profile(profile: &[[f64; 2]], smoothing: Smoothing) -> Self {
         let (Some(first), Some(last)) = (profile.first(), profile.last()) else {
             return Self::default();
@@ -57,7 +59,7 @@ impl SmoothLine {
         Self { stations: heights_m.iter().zip(smooth_m).enumerate().map(station).collect() }
     }
 
-    /// A line that is as it is: a deck, which has nothing to be smoothed. Its stations are nowhere in plan.
+    /// Returns a line that needs no smoothing: a deck. Its stations have no position in plan.
     pub(crate) fn itself(profile: &[[f64; 2]]) -> Self {
         let station = |&[along_m, height_m]: &[f64; 2]| Station {
             at: [f64::NAN; 2],
@@ -68,7 +70,8 @@ impl SmoothLine {
         Self { stations: profile.iter().map(station).collect() }
     }
 
-    /// How far it is from a line with the same distances at most, metres, between the stations and vertices of both, too.
+    /// Returns the largest vertical distance from a line with the same distances, metres, at all
+    /// stations and vertices of both.
     pub(crate) fn most_off_m(&self, profile: &[[f64; 2]]) -> f64 {
         let Some([begin_m, end_m]) = self.ends_m() else { return 0.0 };
         let is_along = |[along_m, _]: &&[f64; 2]| *along_m >= begin_m && *along_m <= end_m;
@@ -86,7 +89,7 @@ impl SmoothLine {
         at_vertices.chain(at_stations).fold(0.0, |most_m, off_m| most_m.max(off_m.abs()))
     }
 
-    /// What lies between two distances; empty where it is nothing.
+    /// Returns the part between two distances; empty if there is none.
     pub(crate) fn part(&self, [from_m, to_m]: [f64; 2]) -> Self {
         let mut part = Self::default();
         let mut push = |station: Station| {
@@ -116,17 +119,17 @@ impl SmoothLine {
         self.stations.iter().map(|station| [station.along_m, station.height_m]).collect()
     }
 
-    /// The height at a distance; that of the nearest end beyond them, NaN of an empty line.
+    /// The height at a distance; beyond the ends, that of the nearest end. NaN for an empty line.
     pub(crate) fn height_m(&self, along_m: f64) -> f64 {
         self.at(along_m).map_or(f64::NAN, |station| station.height_m)
     }
 
-    /// Whether it lies along a whole stretch of its way.
+    /// Whether the line covers a whole stretch of its way.
     pub(crate) fn reaches(&self, [from_m, to_m]: [f64; 2]) -> bool {
         self.ends_m().is_some_and(|[begin_m, end_m]| begin_m <= from_m && to_m <= end_m)
     }
 
-    /// The place at a distance, or the nearest end beyond them; `None` of an empty line.
+    /// The place at a distance; beyond the ends, the nearest end. `None` for an empty line.
     pub(crate) fn at(&self, along_m: f64) -> Option<Station> {
         let after = self.stations.partition_point(|station| station.along_m < along_m);
         let [from, to] = [after.saturating_sub(1), after.min(self.stations.len().max(1) - 1)];
@@ -134,7 +137,7 @@ impl SmoothLine {
         Some(from.towards(*to, along_m.clamp(from.along_m, to.along_m)))
     }
 
-    /// Rise over run of 50 m around a distance, or of what the line has of them.
+    /// Rise over run of 50 m around a distance, or of the part of them that the line has.
     pub(crate) fn grade(&self, along_m: f64) -> f64 {
         let Some([begin_m, end_m]) = self.ends_m() else { return f64::NAN };
         let half_m = GRADE_LENGTH_M / 2.0;
@@ -146,9 +149,9 @@ impl SmoothLine {
     }
 }
 
-/// What is measured of smooth lines, over [`GRADE_LENGTH_M`] or more of each.
+/// Returns the grades of smooth lines, each measured over [`GRADE_LENGTH_M`] or more.
 pub(crate) fn grades_of(lines: &[SmoothLine]) -> ProfileGrades {
-    ProfileGrades::of(lines.iter().map(SmoothLine::profile), GRADE_LENGTH_M)
+    ProfileGrades::from_profiles(lines.iter().map(SmoothLine::profile), GRADE_LENGTH_M)
 }
 
 impl Station {
@@ -156,21 +159,20 @@ impl Station {
     fn towards(self, to: Self, along_m: f64) -> Self {
         let run_m = to.along_m - self.along_m;
         let share = if run_m > 0.0 { (along_m - self.along_m) / run_m } else { 0.0 };
-        let mix = |from: f64, to: f64| from + share * (to - from);
         match share {
             ..=0.0 => self,
             1.0.. => to,
             _ => Self {
                 at: along(self.at, to.at, share),
                 along_m,
-                height_m: mix(self.height_m, to.height_m),
-                ground_m: mix(self.ground_m, to.ground_m),
+                height_m: mix(self.height_m, to.height_m, share),
+                ground_m: mix(self.ground_m, to.ground_m, share),
             },
         }
     }
 }
 
-/// How many stations a line of a length has: two at least.
+/// The number of stations of a line of this length: at least two.
 pub(crate) fn stations(length_m: f64) -> usize {
     (length_m / MOST_SPACING_M).ceil().max(1.0) as usize + 1
 }

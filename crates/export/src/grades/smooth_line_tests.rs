@@ -51,7 +51,8 @@ fn a_profile_becomes_even_stations_between_its_ends() {
     assert_eq!(SmoothLine::of_profile(&[], SMOOTHING), SmoothLine::default());
 }
 
-/// A peak of 3 m between two stations of a level smooth line counts, and so does a station between two vertices.
+/// A peak of 3 m between two stations of a level smooth line counts, and so does a station between
+/// two vertices.
 #[test]
 fn a_smooth_line_is_compared_between_its_stations_too() {
     let level = SmoothLine::itself(&[[0.0, 100.0], [10.0, 100.0], [20.0, 100.0]]);
@@ -59,13 +60,14 @@ fn a_smooth_line_is_compared_between_its_stations_too() {
     assert_eq!(level.most_off_m(&peak), 3.0);
     let dip = SmoothLine::itself(&[[0.0, 100.0], [10.0, 95.0], [20.0, 100.0]]);
     assert_eq!(dip.most_off_m(&[[0.0, 100.0], [20.0, 100.0]]), 5.0);
-    // Only what both have is compared.
+    // Only the common part is compared.
     let beyond = dip.most_off_m(&[[15.0, 97.5], [30.0, 112.5]]);
     assert!((beyond - 2.5).abs() < 1e-12, "{beyond}");
     assert_eq!(SmoothLine::default().most_off_m(&peak), 0.0);
 }
 
-/// Random smooth lines against a dense sample of both lines: never less, and no more than the sample can miss.
+/// Compares random smooth lines with a dense sample of both lines: the result is never less, and
+/// exceeds the sample only by what the sample can miss.
 #[test]
 fn the_largest_distance_is_that_of_a_dense_sample() {
     let mut state = 7_u64;

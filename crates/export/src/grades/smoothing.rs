@@ -1,36 +1,40 @@
 //! The smooth line through heights at even distances.
 //!
-//! Of all lines z it is the one that makes Σ h (z − g)² + (Lc / 2π)⁴ Σ h (z″)² least, where g are the heights, h is the distance between stations and z″
-//! the second difference over h². Straight lines stay as they are; of a sine of wavelength Lc half is left, of shorter ones less. Source: Whittaker
-//! 1922, *On a New Method of Graduation*, with the penalty on second differences; Reinsch 1967, *Smoothing by Spline Functions*.
+//! Among all lines z, it minimises Σ h (z − g)² + (Lc / 2π)⁴ Σ h (z″)², where g are
+//! the heights, h is the distance between stations, and z″ is the second difference over h².
+//! Straight lines are unchanged; a sine of wavelength Lc keeps half of its amplitude, shorter ones
+//! keep less. Source: Whittaker 1922, *On a New Method of Graduation*, with the penalty on second
+//! differences; Reinsch 1967, *Smoothing by Spline Functions*.
 
 use std::f64::consts::TAU;
 
 use corniche_geom::GridFrame;
 
-/// Stations are no farther apart, metres.
+/// The largest distance between stations, metres.
 pub(crate) const MOST_SPACING_M: f64 = 10.0;
 
-/// How much is smoothed.
+/// The strength of the smoothing.
 #[derive(Clone, Copy)]
 pub(crate) struct Smoothing {
-    /// The length of waves of which half is left, metres.
+    /// The length of waves that keep half of their amplitude, metres.
     pub(crate) length_m: f64,
 }
 
 impl Smoothing {
-    /// What suits an elevation model with cells as long as this: 4.5 cells, and at least 100 m and at most 400 m.
+    /// The smoothing for an elevation model with cells of this length: 4.5 cells, but at least 100
+    /// m and at most 400 m.
     fn of_cell(cell_m: f64) -> Self {
         Self { length_m: (4.5 * cell_m).clamp(100.0, 400.0) }
     }
 
-    /// What suits the grid of a package.
+    /// The smoothing for the grid of a package.
     pub(crate) fn of_frame(frame: &GridFrame) -> Self {
         let [east_m, north_m] = frame.cell().to_array();
         Self::of_cell(east_m.max(north_m))
     }
 
-    /// The smooth line through heights that are so far apart. Ends that are held have that height; others are free.
+    /// Returns the smooth line through heights at this spacing. Ends with a given height are fixed;
+    /// others are free.
     pub(crate) fn solve(
         self,
         spacing_m: f64,
@@ -50,10 +54,11 @@ impl Smoothing {
         right
     }
 
-    /// The smooth line through heights around a ring: the last station is next to the first.
+    /// Returns the smooth line through heights around a ring: the last station is next to the
+    /// first.
     pub(crate) fn solve_ring(self, spacing_m: f64, heights_m: &[f64]) -> Vec<f64> {
         let count = heights_m.len();
-        // So far on both sides, nothing of the free ends is left.
+        // The influence of the free ends vanishes over this distance.
         let reach = (2.0 * self.length_m / spacing_m).ceil() as usize;
         let first = count - reach % count;
         let around: Vec<f64> =
@@ -61,9 +66,9 @@ impl Smoothing {
         self.solve(spacing_m, &around, [None, None])[reach..reach + count].to_vec()
     }
 
-    /// The height of the free smooth line at one station, and how much it weighs: by how much the sum grows if the height there is another one, over
-    /// the square of the difference.
-    pub(crate) fn estimate(self, spacing_m: f64, heights_m: &[f64], at: usize) -> Estimate {
+    /// Returns the height of the free smooth line at one station, with its weight: the increase of
+    /// the sum for another height there, divided by the square of the difference.
+    pub(crate) fn estimate(self, spacing_m: f64, heights_m: &[f64], at: usize) -> WeightedHeight {
         let mut system = System::new(heights_m.len(), self.stiffness(spacing_m));
         system.factor();
         let mut smooth_m = heights_m.to_vec();
@@ -71,10 +76,10 @@ impl Smoothing {
         let mut influence = vec![0.0; heights_m.len()];
         influence[at] = 1.0;
         system.solve(&mut influence);
-        Estimate { height_m: smooth_m[at], weight: spacing_m / influence[at] }
+        WeightedHeight { height_m: smooth_m[at], weight: spacing_m / influence[at] }
     }
 
-    /// The weight of squared second differences beside that of squared distances.
+    /// The weight of squared second differences relative to squared distances.
     fn stiffness(self, spacing_m: f64) -> f64 {
         if spacing_m > 0.0 { (self.length_m / TAU / spacing_m).powi(4) } else { 0.0 }
     }
@@ -82,12 +87,12 @@ impl Smoothing {
 
 /// A height with its weight.
 #[derive(Clone, Copy)]
-pub(crate) struct Estimate {
+pub(crate) struct WeightedHeight {
     pub(crate) height_m: f64,
     pub(crate) weight: f64,
 }
 
-/// A symmetric matrix with two bands beside its diagonal; factored, L D Lᵀ.
+/// A symmetric matrix with two bands next to its diagonal; factored, L D Lᵀ.
 struct System {
     diagonal: Vec<f64>,
     /// Entry k couples stations k and k + 1.
@@ -97,7 +102,7 @@ struct System {
 }
 
 impl System {
-    /// The identity, and `stiffness` times the sum of squared second differences.
+    /// Returns the identity plus `stiffness` times the sum of squared second differences.
     fn new(stations: usize, stiffness: f64) -> Self {
         let mut system = Self {
             diagonal: vec![1.0; stations],
@@ -149,7 +154,7 @@ impl System {
         }
     }
 
-    /// Replaces a right side by the solution; after [`System::factor`].
+    /// Replaces a right-hand side by the solution; requires [`System::factor`].
     fn solve(&self, right: &mut [f64]) {
         let stations = right.len();
         for k in 0..stations {

@@ -29,7 +29,8 @@ fn straight_lines_stay() {
     }
 }
 
-/// Of the wave whose length is that of the smoothing half is left, of one three times as long 81/82, of one half as long 1/17.
+/// A wave of the smoothing's length keeps half of its amplitude, one three times as long 81/82, one
+/// half as long 1/17.
 #[test]
 fn of_a_wave_of_its_length_half_is_left() {
     for (factor, left) in [(1.0, 0.5), (3.0, 81.0 / 82.0), (0.5, 1.0 / 17.0)] {
@@ -55,7 +56,8 @@ fn ends_that_are_held_stay_and_short_lines_are_lines() {
     }
 }
 
-/// An estimate is what the free line has there; a line held elsewhere costs as much more as its weight says.
+/// An estimate is the height of the free line; a line fixed at another height costs as much more as
+/// the weight states.
 #[test]
 fn an_estimate_says_what_another_height_costs() {
     let heights: Vec<f64> = (0..30).map(|k| f64::from(k * 7919 % 13)).collect();
@@ -66,15 +68,15 @@ fn an_estimate_says_what_another_height_costs() {
         off + (200.0 / TAU).powi(4) * spacing_m * bend.sum::<f64>()
     };
     let free = SMOOTHING.solve(10.0, &heights, [None, None]);
-    let Estimate { height_m, weight } = SMOOTHING.estimate(10.0, &heights, 0);
+    let WeightedHeight { height_m, weight } = SMOOTHING.estimate(10.0, &heights, 0);
     near(height_m, free[0], 1e-9);
     let held = SMOOTHING.solve(10.0, &heights, [Some(height_m + 2.0), None]);
     near(cost(&held) - cost(&free), weight * 4.0, 1e-6 * cost(&held));
-    // In the middle of a line a height is known better than at its end.
+    // The height in the middle of a line is better determined than at its end.
     assert!(SMOOTHING.estimate(10.0, &heights, 15).weight > 2.0 * weight);
 }
 
-/// Around a ring it does not matter where it begins.
+/// The beginning of a ring does not matter.
 #[test]
 fn a_ring_has_no_beginning() {
     for count in [3, 17, 200] {
@@ -90,7 +92,7 @@ fn a_ring_has_no_beginning() {
 }
 
 proptest! {
-    /// Of all lines the solution costs least: any other one costs more.
+    /// The solution has the least cost: any other line costs more.
     #[test]
     fn no_other_line_costs_less(
         heights in prop::collection::vec(-50.0..50.0_f64, 3..40),
@@ -104,7 +106,7 @@ proptest! {
         let best = SMOOTHING.solve(10.0, &heights, [None, None]);
         let other: Vec<f64> = best.iter().zip(&change).map(|(z, change)| z + change).collect();
         prop_assert!(cost(&best) <= cost(&other) + 1e-6);
-        // The other way around it is the same line.
+        // The reversed line has the reversed solution.
         let turned: Vec<f64> = heights.iter().rev().copied().collect();
         let mut back = SMOOTHING.solve(10.0, &turned, [None, None]);
         back.reverse();

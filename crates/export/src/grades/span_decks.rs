@@ -1,4 +1,5 @@
-//! The decks of a network's bridges and tunnels, which are solved in another network: with the ways of all classes that carry or cross them.
+//! The decks of a network's bridges and tunnels. They are solved in another network, which has the
+//! ways of all classes that carry or cross them.
 
 use std::{collections::BTreeMap, sync::Arc};
 
@@ -18,33 +19,34 @@ use crate::{
     span_facts::{SpanFacts, ToldSpans},
 };
 
-/// Places are told of after so many.
+/// Progress is reported after this many places.
 const TOLD_PLACES: usize = 1024;
-/// Lengths along the same points are the same but for rounding, metres.
+/// Lengths along the same points differ by rounding only, metres.
 const SAME_M: f64 = 1e-6;
 
-/// A part of a chain, and the same part of a chain of the other network.
+/// A part of a chain, and the same part of a chain in the other network.
 #[derive(Clone, Copy)]
 struct ChainPart {
-    /// Where it begins and ends along the chain, ascending.
+    /// The beginning and the end of the part along the chain, ascending.
     own_m: [f64; 2],
     chain: ChainNumber,
-    /// Where these places are along the other chain.
+    /// The same places along the other chain.
     others_m: [f64; 2],
 }
 
-/// Decks by the chains of a network.
+/// The decks of a network, by chain.
 pub(crate) struct SpanDecks {
     pub(crate) decks: Decks,
     parts: BTreeMap<ChainNumber, Vec<ChainPart>>,
-    /// The nodes of the network at which its bridges and tunnels are carried, with their heights.
+    /// The nodes of the network that carry its bridges and tunnels, with their heights.
     pub(crate) supports: Vec<(NodeNumber, f64)>,
     pub(crate) facts: SpanFacts,
 }
 
-/// A stretch of a road: its chain, where it begins and ends along the road, and where these places are along the chain.
+/// A stretch of a road: its chain, its beginning and end along the road, and the same places along
+/// the chain.
 #[derive(Clone, Copy)]
-struct Stretch {
+struct RoadStretchOnChain {
     chain: ChainNumber,
     along_m: [f64; 2],
     on_chain_m: [f64; 2],
@@ -54,7 +56,8 @@ struct Stretch {
 type Measured<'a> = (&'a Network, &'a Chains, &'a ChainLengths);
 
 impl SpanDecks {
-    /// Solves the decks over the ground of the elevation files. Told are those of roads that reach `data`.
+    /// Solves the decks over the ground of the elevation files. Only the decks of roads that reach
+    /// `data` are reported.
     pub(crate) fn solve(
         own: Measured<'_>,
         (places, data): (&Places<'_>, &LatticeBounds),
@@ -63,7 +66,7 @@ impl SpanDecks {
     ) -> Result<Self, ElevationError> {
         let network = own.0;
         let of_spans = network.of_spans();
-        let of_spans_chains = Chains::of(of_spans, Breaks::JunctionsAndStructures);
+        let of_spans_chains = Chains::from_network(of_spans, Breaks::JunctionsAndStructures);
         let distance_m = places.metric();
         let spans = Spans::find(of_spans, &of_spans_chains, &distance_m);
         let crossings = crossings(of_spans, &of_spans_chains, &distance_m);
@@ -84,15 +87,16 @@ impl SpanDecks {
         let mut told = ToldSpans::default();
         let mut next = 0;
         for way in network.ways().iter().filter(|way| way.structure != Structure::Ground) {
-            // A way that is cut is several roads, in the same order, of which either network may lack some.
+            // A way that was cut consists of several roads in the same order, and either network
+            // may lack some of them.
             let roads = of_spans.roads_of(way.way_id);
             let is_same = |other: &usize| {
                 of_spans.points_of(&of_spans.ways()[*other]) == network.points_of(way)
             };
             let Some(other) = (roads.start.max(next)..roads.end).find(is_same) else { continue };
             next = other + 1;
-            let reaches =
-                LatticeBounds::of(network.points_of(way)).is_some_and(|own| own.intersects(data));
+            let reaches = LatticeBounds::around(network.points_of(way))
+                .is_some_and(|own| own.intersects(data));
             let other = stretches(others, &of_spans.ways()[other], places);
             for (chain, part) in parts_in_common(&stretches(own, way, places), &other) {
                 if reaches {
@@ -114,11 +118,12 @@ impl SpanDecks {
             own.sort_by(|one, other| one.own_m[0].total_cmp(&other.own_m[0]));
         }
         let supports = supports_of(own, (&of_spans_chains, &lengths), &decks, &parts);
-        let facts = SpanFacts::of(&decks, &told);
+        let facts = SpanFacts::from_decks(&decks, &told);
         Ok(Self { decks, parts, supports, facts })
     }
 
-    /// The height at a distance along a chain, as if there were no ground; `None` on the ground, and where it is not known.
+    /// The height at a distance along a chain, as if there were no ground; `None` on the ground,
+    /// and if it is unknown.
     pub(crate) fn height_m(&self, chain: ChainNumber, along_m: f64) -> Option<f64> {
         let parts = self.parts.get(&chain)?;
         let after = parts.partition_point(|part| part.own_m[0] <= along_m);
@@ -126,7 +131,8 @@ impl SpanDecks {
         self.decks.height_m(part.chain, part.other_m(along_m))
     }
 
-    /// The distances between two places of a chain at which its deck may bend, ascending, without these places.
+    /// The distances between two places of a chain at which its deck may bend, ascending, without
+    /// these places.
     pub(crate) fn bends_m(&self, chain: ChainNumber, [from_m, to_m]: [f64; 2]) -> Vec<f64> {
         let mut bends_m = Vec::new();
         for part in self.parts.get(&chain).into_iter().flatten() {
@@ -147,8 +153,15 @@ impl SpanDecks {
     }
 }
 
+impl RoadStretchOnChain {
+    /// The place on the chain for one along the way; exactly an end if it is as near.
+    fn on_chain_m(&self, at_m: f64) -> f64 {
+        near(carried(at_m, self.along_m, self.on_chain_m), self.on_chain_m)
+    }
+}
+
 impl ChainPart {
-    /// The place on the other chain; at the ends to the bit.
+    /// The place on the other chain; exact at the ends.
     fn other_m(&self, own_m: f64) -> f64 {
         carried(own_m, self.own_m, self.others_m)
     }
@@ -158,7 +171,7 @@ impl ChainPart {
     }
 }
 
-/// Carries a place from one range to another.
+/// Maps a place from one range to another.
 fn carried(at_m: f64, [from_m, to_m]: [f64; 2], [other_from_m, other_to_m]: [f64; 2]) -> f64 {
     let share = ((at_m - from_m) / (to_m - from_m)).clamp(0.0, 1.0);
     mix(other_from_m, other_to_m, share)
@@ -169,7 +182,7 @@ fn stretches(
     (network, chains, lengths): Measured<'_>,
     way: &NetworkWay,
     places: &Places<'_>,
-) -> Vec<Stretch> {
+) -> Vec<RoadStretchOnChain> {
     let mut along_m = 0.0;
     let mut stretches = Vec::new();
     for (chain, index) in chains.of_road(way) {
@@ -179,30 +192,35 @@ fn stretches(
         if link.is_against {
             on_chain_m.reverse();
         }
-        stretches.push(Stretch { chain, along_m: [along_m, along_m + length_m], on_chain_m });
+        stretches.push(RoadStretchOnChain {
+            chain,
+            along_m: [along_m, along_m + length_m],
+            on_chain_m,
+        });
         along_m += length_m;
     }
     stretches
 }
 
-/// What stretches of a road in two networks have in common; both ascend along it.
-fn parts_in_common(own: &[Stretch], others: &[Stretch]) -> Vec<(ChainNumber, ChainPart)> {
+/// Returns the common parts of a road's stretches in two networks; both ascend along the road.
+fn parts_in_common(
+    own: &[RoadStretchOnChain],
+    others: &[RoadStretchOnChain],
+) -> Vec<(ChainNumber, ChainPart)> {
     let mut parts = Vec::new();
     let mut first = 0;
     for own in own {
-        let is_before = |other: &&Stretch| other.along_m[1] <= own.along_m[0];
+        let is_before = |other: &&RoadStretchOnChain| other.along_m[1] <= own.along_m[0];
         first += others[first..].iter().take_while(is_before).count();
-        let is_near = |other: &&Stretch| other.along_m[0] < own.along_m[1];
+        let is_near = |other: &&RoadStretchOnChain| other.along_m[0] < own.along_m[1];
         for other in others[first..].iter().take_while(is_near) {
             let along_m =
                 [own.along_m[0].max(other.along_m[0]), own.along_m[1].min(other.along_m[1])];
             if along_m[1] - along_m[0] <= SAME_M {
                 continue;
             }
-            let mut own_m = along_m
-                .map(|at_m| near(carried(at_m, own.along_m, own.on_chain_m), own.on_chain_m));
-            let mut others_m = along_m
-                .map(|at_m| near(carried(at_m, other.along_m, other.on_chain_m), other.on_chain_m));
+            let [mut own_m, mut others_m] =
+                [own, other].map(|of| along_m.map(|at_m| of.on_chain_m(at_m)));
             if own_m[0] > own_m[1] {
                 own_m.reverse();
                 others_m.reverse();
@@ -213,7 +231,8 @@ fn parts_in_common(own: &[Stretch], others: &[Stretch]) -> Vec<(ChainNumber, Cha
     parts
 }
 
-/// The nodes at the ends of chains that are those of supports in the network in which decks were solved. There, another id may stand for a node.
+/// Returns the nodes at the ends of chains that are supports in the network of the decks. A node
+/// may have another id there.
 fn supports_of(
     (_, chains, lengths): Measured<'_>,
     (others, others_lengths): (&Chains, &ChainLengths),
@@ -238,7 +257,7 @@ fn supports_of(
     supports
 }
 
-/// The end of a range that is as near as rounding puts it.
+/// Returns the end of a range that is within rounding of this place.
 fn near(at_m: f64, ends_m: [f64; 2]) -> f64 {
     ends_m.into_iter().find(|end_m| (end_m - at_m).abs() <= SAME_M).unwrap_or(at_m)
 }

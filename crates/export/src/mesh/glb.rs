@@ -1,6 +1,8 @@
-//! Binary glTF 2.0: a node for each tile, with its ground, under its photo and with its relief if it has them, and the roads of each class, as lines or as surfaces and slabs.
+//! Binary glTF 2.0: one node for each tile, with its ground (with photo and relief, if the tile has
+//! them) and the roads of each class, as lines or as surfaces and slabs.
 //!
-//! Positions are f32 about the middle of the tile, and the node is moved there: a millimetre stays a millimetre far from the origin.
+//! Positions are f32 relative to the middle of the tile, and the node is translated there: a
+//! millimetre is still a millimetre far from the origin.
 //!
 //! Source: Khronos Group, *glTF 2.0 Specification*, sections 3.6, 3.7 and 4.4.
 
@@ -9,65 +11,66 @@ use std::{
     path::Path,
 };
 
+use corniche_styles::Style;
 use serde_json::{Map, Value, json};
 
 use super::{
-    mesh_request::{ModelColors, ground_and_roads},
+    mesh_request::{color_of, ground_and_roads},
     model::TileMesh,
-    writer::{Facts, MeshWriter, Spill},
+    writer::{Facts, MeshWriter, Spill, copy_all, spill_beside},
 };
 use crate::{
     globe::middle_of,
     gltf::{
-        ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Gltf, LINES, SLAB_NAME, TRIANGLES, U32, floats,
-        material, positions, write_container, y_up,
+        ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Gltf, LINES, TRIANGLES, U32, floats, material,
+        positions, write_container, y_up,
     },
     surfaces::SurfaceKind,
 };
 
-pub(crate) struct GlbWriter {
+pub(crate) struct GlbWriter<'a> {
     gltf: Gltf<Spill>,
     meshes: Vec<Value>,
     nodes: Vec<Value>,
     materials: Vec<Value>,
-    colors: ModelColors,
-    /// The number of the material of slabs, once there is one.
+    style: &'a Style,
+    /// The number of the material of slabs, once it exists.
     slab_material: Option<usize>,
 }
 
-impl GlbWriter {
-    pub(crate) fn new(path: &Path, colors: ModelColors) -> io::Result<Self> {
+impl<'a> GlbWriter<'a> {
+    pub(crate) fn new(path: &Path, style: &'a Style) -> io::Result<Self> {
         Ok(Self {
-            gltf: Gltf::new(Spill::beside(path)?),
+            gltf: Gltf::new(spill_beside(path)?),
             meshes: Vec::new(),
             nodes: Vec::new(),
-            materials: ground_and_roads().map(|kind| material_of(kind, &colors)).collect(),
-            colors,
+            materials: ground_and_roads().map(|kind| material_of(kind, style)).collect(),
+            style,
             slab_material: None,
         })
     }
 
-    /// The number of a material; that of slabs is added where the first one is.
+    /// Returns the number of a material; the material of slabs is added at its first use.
     fn material_of(&mut self, kind: SurfaceKind) -> usize {
         match kind {
             SurfaceKind::Ground => 0,
             SurfaceKind::Road(class) => 1 + usize::from(class.number()),
             SurfaceKind::Slab(_) => {
-                let Self { materials, colors, slab_material, .. } = self;
+                let Self { materials, style, slab_material, .. } = self;
                 *slab_material.get_or_insert_with(|| {
-                    materials.push(material_of(kind, colors));
+                    materials.push(material_of(kind, style));
                     materials.len() - 1
                 })
             }
         }
     }
 
-    fn add_vertices<T: bytemuck::Pod>(&mut self, kind: &str, items: &[T]) -> io::Result<usize> {
-        self.gltf.numbers(items, json!({ "target": ARRAY_BUFFER }), floats(kind))
-    }
-
-    fn add_positions(&mut self, at: &[[f32; 3]]) -> io::Result<usize> {
-        self.gltf.numbers(at, json!({ "target": ARRAY_BUFFER }), positions(at))
+    fn add_vertices<T: bytemuck::Pod>(
+        &mut self,
+        items: &[T],
+        accessor: Value,
+    ) -> io::Result<usize> {
+        self.gltf.numbers(items, json!({ "target": ARRAY_BUFFER }), accessor)
     }
 
     fn add_indices(&mut self, indices: &[u32]) -> io::Result<usize> {
@@ -75,20 +78,21 @@ impl GlbWriter {
         self.gltf.numbers(indices, json!({ "target": ELEMENT_ARRAY_BUFFER }), accessor)
     }
 
-    /// Adds the photo and the relief of a tile's ground, if it has one of them; returns the number of their material, and what is to be known of vertices.
+    /// Adds the photo and the relief of a tile's ground, if the tile has them; returns the number
+    /// of their material, and the attributes that vertices need.
     fn add_pictures(&mut self, tile: &TileMesh, name: &str) -> io::Result<(usize, Value)> {
         let (mut material, mut attributes) = (self.materials[0].clone(), json!({}));
         if tile.picture.is_none() && tile.relief.is_none() {
             return Ok((0, attributes));
         }
         material["name"] = json!(format!("terrain {name}"));
-        // Places on textures have the same order: the photo, then the relief.
+        // Texture coordinates have the same order: the photo, then the relief.
         if let Some(picture) = &tile.picture {
             let image = json!({ "mimeType": "image/jpeg", "name": format!("photo {name}") });
             let texture = self.gltf.picture(&picture.jpeg, image)?;
             material["pbrMetallicRoughness"]["baseColorTexture"] = json!({ "index": texture });
             material["pbrMetallicRoughness"]["baseColorFactor"] = json!([1.0, 1.0, 1.0, 1.0]);
-            attributes["TEXCOORD_0"] = json!(self.add_vertices("VEC2", &picture.places)?);
+            attributes["TEXCOORD_0"] = json!(self.add_vertices(&picture.places, floats("VEC2"))?);
         }
         if let Some(relief) = &tile.relief {
             let image = json!({ "mimeType": "image/png", "name": format!("relief {name}") });
@@ -96,29 +100,24 @@ impl GlbWriter {
             let number = usize::from(tile.picture.is_some());
             material["normalTexture"] = json!({ "index": texture, "texCoord": number });
             attributes[format!("TEXCOORD_{number}")] =
-                json!(self.add_vertices("VEC2", &relief.places)?);
+                json!(self.add_vertices(&relief.places, floats("VEC2"))?);
             let tangent = |tangent: &[f32; 3]| {
                 let [x, y, z] = y_up(*tangent);
                 [x, y, z, 1.0]
             };
             let tangents: Vec<[f32; 4]> = relief.tangents.iter().map(tangent).collect();
-            attributes["TANGENT"] = json!(self.add_vertices("VEC4", &tangents)?);
+            attributes["TANGENT"] = json!(self.add_vertices(&tangents, floats("VEC4"))?);
         }
         self.materials.push(material);
         Ok((self.materials.len() - 1, attributes))
     }
 }
 
-fn material_of(kind: SurfaceKind, colors: &ModelColors) -> Value {
-    let name = match kind {
-        SurfaceKind::Ground => "terrain".to_owned(),
-        SurfaceKind::Road(class) => format!("roads FRC {}", class.number()),
-        SurfaceKind::Slab(_) => SLAB_NAME.to_owned(),
-    };
-    material(&name, colors.of(kind))
+fn material_of(kind: SurfaceKind, style: &Style) -> Value {
+    material(&kind.name(), color_of(kind, style))
 }
 
-impl MeshWriter for GlbWriter {
+impl MeshWriter for GlbWriter<'_> {
     fn tile(&mut self, tile: &TileMesh) -> io::Result<()> {
         let all = tile.corners.iter().map(|corner| corner.at_m);
         let roads = tile.roads.iter().flat_map(|road| road.points_m.iter().copied());
@@ -129,27 +128,24 @@ impl MeshWriter for GlbWriter {
             tile.corners.iter().map(|corner| about_middle(&corner.at_m)).collect();
         let normals: Vec<[f32; 3]> =
             tile.corners.iter().map(|corner| y_up(corner.normal)).collect();
-        let positions = self.add_positions(&places)?;
-        let normals = self.add_vertices("VEC3", &normals)?;
+        let corners = self.add_vertices(&places, positions(&places))?;
+        let normals = self.add_vertices(&normals, floats("VEC3"))?;
         let name = tile.id.to_string();
         let (material, pictured) = self.add_pictures(tile, &name)?;
         let mut primitives = Vec::new();
-        // Ground, surfaces of roads and slabs have one list of vertices.
+        // Ground, surfaces of roads and slabs share one list of vertices.
         for (kind, triangles) in tile.groups() {
             let indices = self.add_indices(triangles.as_flattened())?;
             let mut primitive = json!({
-                "attributes": { "POSITION": positions, "NORMAL": normals },
+                "attributes": { "POSITION": corners, "NORMAL": normals },
                 "indices": indices, "material": self.material_of(kind), "mode": TRIANGLES,
             });
-            match kind {
-                SurfaceKind::Ground => {
-                    primitive["material"] = json!(material);
-                    for (name, accessor) in pictured.as_object().into_iter().flatten() {
-                        primitive["attributes"][name] = accessor.clone();
-                    }
-                }
-                SurfaceKind::Road(class) | SurfaceKind::Slab(class) => {
-                    primitive["extras"] = json!({ "frc": class.number() });
+            if let Some(class) = kind.class() {
+                primitive["extras"] = json!({ "frc": class.number() });
+            } else {
+                primitive["material"] = json!(material);
+                for (name, accessor) in pictured.as_object().into_iter().flatten() {
+                    primitive["attributes"][name] = accessor.clone();
                 }
             }
             primitives.push(primitive);
@@ -164,10 +160,10 @@ impl MeshWriter for GlbWriter {
                 points.extend(road.points_m.iter().map(about_middle));
                 indices.extend((first + 1..points.len() as u32).flat_map(|end| [end - 1, end]));
             }
-            let positions = self.add_positions(&points)?;
+            let vertices = self.add_vertices(&points, positions(&points))?;
             let indices = self.add_indices(&indices)?;
             primitives.push(json!({
-                "attributes": { "POSITION": positions },
+                "attributes": { "POSITION": vertices },
                 "indices": indices, "material": 1 + class.number(), "mode": LINES,
                 "extras": { "frc": class.number() },
             }));
@@ -193,6 +189,6 @@ impl MeshWriter for GlbWriter {
         });
         let document = gltf.document(&asset, (&nodes, &meshes), &materials);
         let Gltf { bytes, length, .. } = gltf;
-        write_container(into, &document, length, |mut into| bytes.copy_to(&mut into))
+        write_container(into, &document, length, |into| copy_all(bytes, into))
     }
 }

@@ -1,4 +1,4 @@
-//! What a user asks for when a package becomes a model: its format, its axes, its roads and its colours.
+//! The request for a model of a package: format, axes, roads and colours.
 
 use std::fmt::Write as _;
 
@@ -8,7 +8,7 @@ use corniche_tileset::Manifest;
 
 use crate::{
     bounds::DegreeBounds,
-    gltf::{SLAB_COLOR, SLAB_NAME, y_up},
+    gltf::{SLAB_COLOR, y_up},
     surfaces::SurfaceKind,
 };
 
@@ -24,11 +24,11 @@ pub enum MeshFormat {
 }
 
 impl MeshFormat {
-    /// Which axis points up where nothing is said.
+    /// The axis that points up by default.
     #[must_use]
     pub const fn usual_up(self) -> UpAxis {
         match self {
-            // glTF has no other.
+            // In glTF, y is always up.
             Self::Glb | Self::Obj => UpAxis::Y,
             Self::Ply => UpAxis::Z,
         }
@@ -45,7 +45,7 @@ pub enum UpAxis {
 }
 
 impl UpAxis {
-    /// A vector of east, north and up along the model's axes.
+    /// Converts east, north and up to the model's axes.
     pub(crate) fn along_axes<T: std::ops::Neg<Output = T>>(self, at: [T; 3]) -> [T; 3] {
         match self {
             Self::Y => y_up(at),
@@ -54,33 +54,26 @@ impl UpAxis {
     }
 }
 
-/// What a model has of roads.
+/// The form of roads in a model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ModelRoads {
-    /// Roads are there as their centre-lines on the ground.
+    /// Roads are centre-lines on the ground.
     Lines,
-    /// Surfaces of their true width, cut into the ground's own triangles, and bridges as slabs where the package knows their heights; tunnels are left out.
+    /// Roads are surfaces of their true width, cut into the ground's own triangles, and bridges are
+    /// slabs if the package knows their heights; tunnels are omitted.
     Surfaces,
-    /// Roads are left out.
+    /// Roads are omitted.
     None,
-}
-
-/// Colours of what a model has.
-#[derive(Clone)]
-pub(crate) struct ModelColors {
-    /// Colours of the roads of each class.
-    roads: [Rgb; FunctionalRoadClass::COUNT],
 }
 
 pub(crate) const GROUND_COLOR: Rgb = [0.85, 0.86, 0.78];
 
-impl ModelColors {
-    pub(crate) fn of(&self, kind: SurfaceKind) -> Rgb {
-        match kind {
-            SurfaceKind::Ground => GROUND_COLOR,
-            SurfaceKind::Road(class) => self.roads[usize::from(class.number())],
-            SurfaceKind::Slab(_) => SLAB_COLOR,
-        }
+/// Returns the colour of a model's surfaces.
+pub(crate) fn color_of(kind: SurfaceKind, style: &Style) -> Rgb {
+    match kind {
+        SurfaceKind::Ground => GROUND_COLOR,
+        SurfaceKind::Road(class) => style.road(class).bands.main_color(),
+        SurfaceKind::Slab(_) => SLAB_COLOR,
     }
 }
 
@@ -90,52 +83,45 @@ pub(crate) fn ground_and_roads() -> impl Iterator<Item = SurfaceKind> {
     std::iter::once(SurfaceKind::Ground).chain(roads)
 }
 
-/// The name of what has a colour. Slabs of all classes have one.
+/// Returns the name of a coloured group, as one word.
 pub(crate) fn group_name(kind: SurfaceKind) -> String {
-    match kind {
-        SurfaceKind::Ground => "terrain".to_owned(),
-        SurfaceKind::Road(class) => format!("roads_frc_{}", class.number()),
-        SurfaceKind::Slab(_) => SLAB_NAME.to_owned(),
-    }
+    kind.name().to_lowercase().replace(' ', "_")
 }
 
-/// What of a package becomes a model, and how.
+/// The part of a package that becomes a model, and the form of the model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeshRequest {
     /// The format of the file.
     pub format: MeshFormat,
     /// Which axis points up; glTF has only [`UpAxis::Y`].
     pub up: UpAxis,
-    /// The level; `None` is the finest.
+    /// The level; `None` means the finest.
     pub level: Option<u8>,
-    /// Ground that may lie in this rectangle is taken, in whole triangles; roads are cut at it.
+    /// Ground that may be in this rectangle is exported in whole triangles; roads are clipped to
+    /// it.
     pub bounds: Option<DegreeBounds>,
-    /// How roads are there.
+    /// The form of roads.
     pub roads: ModelRoads,
-    /// The classes of roads that are taken.
+    /// The classes of roads that are exported.
     pub classes: Vec<FunctionalRoadClass>,
-    /// Whether the package's reliefs become normal maps, which GLB has.
+    /// Whether the package's reliefs become normal maps, which only GLB has.
     pub relief: bool,
-    /// Colours of roads, widths of surfaces, and how strong photos are, which GLB has.
+    /// Colours of roads, widths of surfaces, and the strength of photos, which only GLB has.
     pub style: Style,
-    /// The name of the file of materials that OBJ with surfaces needs; [`MeshRequest::materials`] tells its content.
+    /// The name of the material file that OBJ with surfaces needs; [`MeshRequest::materials`]
+    /// returns its content.
     pub material_file: Option<String>,
 }
 
 impl MeshRequest {
-    pub(crate) fn colors(&self) -> ModelColors {
-        ModelColors { roads: self.style.roads.map(|road| road.bands.main_color()) }
-    }
-
-    /// The materials of an OBJ of a package, as a file of their own: colours are sRGB.
+    /// Returns the content of the material file of an OBJ; colours are sRGB.
     #[must_use]
     pub fn materials(&self, package: &Manifest) -> String {
-        let colors = self.colors();
         let mut text = String::new();
         let slabs = FunctionalRoadClass::all().map(SurfaceKind::Slab).take(1);
         let slabs = slabs.filter(|_| package.spans.is_some());
         for kind in ground_and_roads().chain(slabs) {
-            let (name, [red, green, blue]) = (group_name(kind), colors.of(kind));
+            let (name, [red, green, blue]) = (group_name(kind), color_of(kind, &self.style));
             // Writing to a text cannot fail.
             let _ = write!(text, "newmtl {name}\nKd {red:.4} {green:.4} {blue:.4}\nillum 1\n");
         }

@@ -2,40 +2,41 @@
 
 use corniche_geom::{Bounds, LatticePoint, TileId};
 use corniche_roads::FunctionalRoadClass;
-use corniche_tileset::{FilePackage, Manifest, Sections};
+use corniche_tileset::{FilePackage, Manifest};
 
 use super::mesh_request::{GROUND_COLOR, MeshFormat, MeshRequest, ModelRoads};
 use crate::{
     cut::cut_at_bounds,
     error::SurfaceError,
-    piece::{Piece, Vertex},
+    piece::{Vertex, WayPiece},
     places::Places,
     read,
     relief_map::{ReliefMap, tangent},
-    surfaces::{Divided, SurfaceKind, TileLines, across},
+    surfaces::{Divided, SurfaceKind, SurfaceLines, across},
     texture::Texture,
 };
 
-/// Local metres of a model: true metres east and north of its origin along the axes of the package's CRS, and true heights.
+/// Local metres of a model: true metres east and north of its origin along the axes of the
+/// package's CRS, and true heights.
 ///
-/// One number along each axis makes true metres of working metres: that of the middle of the data. Elsewhere the package's
-/// [scale](corniche_tileset::ScaleRecord) says by how much they differ.
+/// One factor along each axis converts working metres to true metres: the factor in the middle of
+/// the data. Elsewhere the package's [scale](corniche_tileset::ScaleRecord) states the difference.
 #[derive(Clone, Copy)]
 pub(crate) struct LocalMetres {
     /// The origin, working metres; whole numbers.
     origin_m: [f64; 2],
-    /// Working metres to a true metre, east and north.
+    /// Working metres per true metre, east and north.
     scale: [f64; 2],
 }
 
 impl LocalMetres {
-    /// Local metres whose origin is in the middle of some ground.
+    /// Returns local metres with their origin in the middle of some ground.
     pub(crate) fn about(ground: Bounds, manifest: &Manifest) -> Self {
         Self { origin_m: ground.center().map(f64::round), scale: manifest.scale.center }
     }
 
-    /// A position in working metres and a height.
-    fn of(&self, [x, y]: [f64; 2], height_m: f64) -> [f64; 3] {
+    /// Converts a position in working metres and a height.
+    fn position_m(&self, [x, y]: [f64; 2], height_m: f64) -> [f64; 3] {
         let [east, north] = self.scale;
         [(x - self.origin_m[0]) / east, (y - self.origin_m[1]) / north, height_m]
     }
@@ -45,7 +46,7 @@ impl LocalMetres {
         [0, 1].map(|axis| self.origin_m[axis] / manifest.metres_per_unit[axis])
     }
 
-    /// What a model says of its coordinates, as pairs of a name and a text.
+    /// Returns the metadata of a model's coordinates, as pairs of a name and a text.
     pub(crate) fn described(&self, manifest: &Manifest) -> Vec<(&'static str, String)> {
         let [x, y] = self.origin(manifest);
         let [lon, lat] = manifest.coordinates.wgs84_from_working(self.origin_m);
@@ -65,78 +66,73 @@ impl LocalMetres {
     }
 }
 
-/// What a model has of a tile: east, north and up in local metres.
+/// The part of a model in one tile: east, north and up in local metres.
 pub(crate) struct TileMesh {
     pub(crate) id: TileId,
-    pub(crate) corners: Vec<Corner>,
+    pub(crate) corners: Vec<MeshCorner>,
     /// Counter-clockwise from above, and from outside of slabs.
     pub(crate) triangles: Vec<[u32; 3]>,
-    /// What each triangle is a surface of.
+    /// The kind of surface that each triangle belongs to.
     pub(crate) kinds: Vec<SurfaceKind>,
-    pub(crate) roads: Vec<RoadLine>,
-    /// The photo of the ground, in formats that have pictures inside.
-    pub(crate) picture: Option<Picture>,
-    /// Its relief, likewise.
+    pub(crate) roads: Vec<ModelRoadLine>,
+    /// The photo of the ground, in formats that embed images.
+    pub(crate) picture: Option<GroundImage>,
+    /// The relief of the ground, in formats that embed images.
     pub(crate) relief: Option<ReliefPicture>,
 }
 
-/// A picture of the ground.
-pub(crate) struct Picture {
+/// An image of the ground.
+pub(crate) struct GroundImage {
     pub(crate) jpeg: Vec<u8>,
-    /// Where on it each corner is, from its upper left.
+    /// The texture coordinates of each corner, from the upper left.
     pub(crate) places: Vec<[f32; 2]>,
 }
 
 /// The relief of the ground.
 pub(crate) struct ReliefPicture {
     pub(crate) map: ReliefMap,
-    /// Where on it each corner is, from its upper left, and the tangents that it is read with.
+    /// The texture coordinates of each corner, from the upper left, and the tangents of the normal
+    /// map.
     pub(crate) places: Vec<[f32; 2]>,
     pub(crate) tangents: Vec<[f32; 3]>,
 }
 
 /// A corner of the ground or of a slab.
 #[derive(Clone, Copy)]
-pub(crate) struct Corner {
+pub(crate) struct MeshCorner {
     pub(crate) at_m: [f64; 3],
     pub(crate) normal: [f32; 3],
-    /// Where it is if other tiles may have it, too: it lies on the ground on the tile's border.
+    /// The lattice point of a corner that other tiles may share: it is on the ground, on the tile's
+    /// border.
     pub(crate) shared: Option<LatticePoint>,
 }
 
 /// A line of a road on the ground.
-pub(crate) struct RoadLine {
+pub(crate) struct ModelRoadLine {
     pub(crate) class: FunctionalRoadClass,
     pub(crate) points_m: Vec<[f64; 3]>,
 }
 
-/// What all tiles of a model are read with.
+/// The inputs for reading all tiles of a model.
 pub(crate) struct TileReading<'a> {
     pub(crate) package: &'a FilePackage,
     pub(crate) request: &'a MeshRequest,
     pub(crate) places: &'a Places<'a>,
     pub(crate) local: LocalMetres,
-    /// The lines that become surfaces, if they do.
-    pub(crate) lines: Option<TileLines<'a>>,
+    /// The lines that become surfaces, if any.
+    pub(crate) lines: Option<SurfaceLines<'a>>,
 }
 
 impl TileReading<'_> {
     /// Reads a tile; `None` without ground in the bounds.
     pub(crate) fn read(&self, id: TileId) -> Result<Option<TileMesh>, SurfaceError> {
         let Self { package, request, places, local, lines } = self;
-        let mut wanted = match request.roads {
-            ModelRoads::Lines => Sections::TERRAIN | read::road_sections(),
-            ModelRoads::Surfaces | ModelRoads::None => Sections::TERRAIN,
-        };
-        if request.relief && request.format == MeshFormat::Glb {
-            wanted = wanted | Sections::RELIEF;
-        }
-        let Some(payload) = package.payload(id, wanted)? else { return Ok(None) };
-        let Some(terrain) = &payload.terrain else { return Ok(None) };
+        let has_relief = request.relief && request.format == MeshFormat::Glb;
+        let wanted = read::ground_sections(request.roads == ModelRoads::Lines, has_relief);
+        let divided = Divided::of_tile(package, id, wanted, lines.as_ref())?;
+        let Some((payload, divided)) = divided else { return Ok(None) };
         let manifest = package.manifest();
         let frame = &manifest.frame;
-        let divided = Divided::of_tile(manifest, id, terrain, lines.as_ref())?;
-        let Some(divided) = divided else { return Ok(None) };
         let mesh = &divided.mesh;
         let on_lattice = |corner: u32| mesh.on_lattice(&mesh.vertices[corner as usize]);
         let is_wanted = |corners: &[u32; 3]| {
@@ -144,7 +140,7 @@ impl TileReading<'_> {
             request.bounds.is_none_or(|bounds| bounds.may_meet(&places()))
         };
         let tile = frame.tile_lattice_bounds(id);
-        // Corners of other triangles are left out.
+        // Corners of other triangles are dropped.
         let mut place = vec![u32::MAX; mesh.vertices.len()];
         let (mut corners, mut triangles, mut kinds) = (Vec::new(), Vec::new(), Vec::new());
         let mut acrosses = Vec::new();
@@ -157,12 +153,12 @@ impl TileReading<'_> {
                 if *place == u32::MAX {
                     *place = corners.len() as u32;
                     let (vertex, at) = (&mesh.vertices[corner as usize], on_lattice(corner));
-                    // All vertices lie on the lattice.
+                    // All vertices are on the lattice.
                     let point = LatticePoint::new(at[0] as i64, at[1] as i64);
                     let is_on_border = tile.has_on_border(point);
                     acrosses.push(across(at, &tile));
-                    corners.push(Corner {
-                        at_m: local.of(frame.position_of_fraction_m(at), vertex.height_m),
+                    corners.push(MeshCorner {
+                        at_m: local.position_m(frame.position_of_fraction_m(at), vertex.height_m),
                         normal: vertex.normal,
                         shared: (is_on_border && !vertex.on_slab).then_some(point),
                     });
@@ -178,7 +174,7 @@ impl TileReading<'_> {
             MeshFormat::Glb => Texture::of_tile(package, id, &request.style, GROUND_COLOR)?,
             MeshFormat::Ply | MeshFormat::Obj => None,
         };
-        let picture = texture.map(|texture| Picture {
+        let picture = texture.map(|texture| GroundImage {
             places: acrosses.iter().map(|across| texture.place(*across)).collect(),
             jpeg: texture.jpeg,
         });
@@ -192,13 +188,13 @@ impl TileReading<'_> {
             ModelRoads::Lines => read::pieces_of(&payload, manifest, &request.classes)?,
             ModelRoads::Surfaces | ModelRoads::None => Vec::new(),
         };
-        let cut = |piece: Piece| match &request.bounds {
+        let cut = |piece: WayPiece| match &request.bounds {
             Some(bounds) => cut_at_bounds(&piece, bounds, &|at| places.wgs84(at)),
             None => vec![piece],
         };
         let point_m =
-            |vertex: &Vertex| local.of(frame.position_of_fraction_m(vertex.at), vertex.z_m);
-        let roads = pieces.into_iter().flat_map(cut).map(|piece| RoadLine {
+            |vertex: &Vertex| local.position_m(frame.position_of_fraction_m(vertex.at), vertex.z_m);
+        let roads = pieces.into_iter().flat_map(cut).map(|piece| ModelRoadLine {
             class: piece.class,
             points_m: piece.vertices.iter().map(point_m).collect(),
         });
@@ -215,7 +211,8 @@ impl TileReading<'_> {
 }
 
 impl TileMesh {
-    /// The triangles of the ground, then those of the roads of each class, then those of slabs; none that is empty.
+    /// Returns the triangles of the ground, then those of the roads of each class, then those of
+    /// slabs; empty groups are skipped.
     pub(crate) fn groups(&self) -> Vec<(SurfaceKind, Vec<[u32; 3]>)> {
         let mut groups = std::collections::BTreeMap::new();
         for (triangle, kind) in self.triangles.iter().zip(&self.kinds) {

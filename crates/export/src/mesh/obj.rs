@@ -1,5 +1,5 @@
-//! Wavefront OBJ: the ground as one group of triangles, roads of each class as a group of lines, or of triangles
-//! with a material.
+//! Wavefront OBJ: the ground as one group of triangles, roads of each class as a group of lines, or
+//! of triangles with a material.
 
 use std::{
     fmt::Write as _,
@@ -10,20 +10,21 @@ use std::{
 use super::{
     mesh_request::{UpAxis, group_name},
     model::TileMesh,
-    writer::{Facts, MeshWriter, Spill, Welding},
+    writer::{Facts, MeshWriter, Spill, Welding, copy_all, spill_beside},
 };
 use crate::{surfaces::SurfaceKind, vector::text_in_line};
 
 pub(crate) struct ObjWriter {
     up: UpAxis,
-    /// The file of materials, where groups have some.
+    /// The material file, if groups have materials.
     material_file: Option<String>,
     welding: Welding,
-    /// Everything but the head.
+    /// Everything but the header.
     lines: Spill,
-    /// Positions so far; the first one has the number 1.
+    /// The number of positions so far; the first one has the number 1.
     positions: u32,
-    /// The number of the position of each welded corner of the ground; its normal has the corner's own number.
+    /// The number of the position of each welded corner of the ground; its normal has the corner's
+    /// own number.
     position_of: Vec<u32>,
 }
 
@@ -33,7 +34,7 @@ impl ObjWriter {
             up,
             material_file,
             welding: Welding::default(),
-            lines: Spill::beside(path)?,
+            lines: spill_beside(path)?,
             positions: 0,
             position_of: Vec::new(),
         })
@@ -43,7 +44,7 @@ impl ObjWriter {
 impl MeshWriter for ObjWriter {
     fn tile(&mut self, tile: &TileMesh) -> io::Result<()> {
         let Self { up, material_file, welding, lines, positions, position_of } = self;
-        // Writing to a text cannot fail. To a tenth of a millimetre.
+        // Writing to a text cannot fail. Positions are rounded to a tenth of a millimetre.
         let position = |text: &mut String, at_m: [f64; 3]| {
             let [x, y, z] = up.along_axes(at_m);
             let _ = writeln!(text, "v {x:.4} {y:.4} {z:.4}");
@@ -87,13 +88,12 @@ impl MeshWriter for ObjWriter {
     }
 
     fn finish(self: Box<Self>, into: &mut dyn Write, facts: &Facts) -> io::Result<()> {
-        let mut into = into;
         for (name, text) in facts {
             writeln!(into, "# {name}: {}", text_in_line(text))?;
         }
         if let Some(file) = &self.material_file {
             writeln!(into, "mtllib {file}")?;
         }
-        self.lines.copy_to(&mut into)
+        copy_all(self.lines, into)
     }
 }

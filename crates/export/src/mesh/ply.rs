@@ -1,5 +1,6 @@
-//! PLY: vertices of the ground and of roads, triangles, and roads as edges or as triangles with a class and a colour. The class of a road is told by its vertices: not all programs
-//! read more of an edge than its ends.
+//! PLY: vertices of the ground and of roads, triangles, and roads as PLY edges or as triangles with
+//! a class and a colour. The vertices carry the class of a road, because not all programs read more
+//! of a PLY edge than its ends.
 //!
 //! Source: Greg Turk 1994, *The PLY Polygon File Format*.
 
@@ -8,21 +9,23 @@ use std::{
     path::Path,
 };
 
+use corniche_roads::FunctionalRoadClass;
+use corniche_styles::Style;
+
 use super::{
-    mesh_request::{ModelColors, UpAxis},
+    mesh_request::{UpAxis, color_of},
     model::TileMesh,
-    writer::{Facts, MeshWriter, Spill, Welding},
+    writer::{Facts, MeshWriter, Spill, Welding, copy_all, spill_beside},
 };
-use crate::surfaces::SurfaceKind;
 
 /// The class of a vertex of the ground.
 const NO_ROAD: u8 = 255;
 const UPWARDS: [f32; 3] = [0.0, 0.0, 1.0];
 
-pub(crate) struct PlyWriter {
+pub(crate) struct PlyWriter<'a> {
     up: UpAxis,
-    /// Where faces have a class and a colour.
-    colors: Option<ModelColors>,
+    /// The style, if faces have a class and a colour.
+    style: Option<&'a Style>,
     welding: Welding,
     vertices: Vertices,
     faces: Spill,
@@ -46,7 +49,7 @@ impl Vertices {
         }
         self.spill.write_all(&[class])?;
         let number = self.count;
-        // Numbers of vertices are signed in many programs.
+        // Vertex numbers are signed in many programs.
         if number == i32::MAX as u32 {
             return Err(io::Error::new(io::ErrorKind::FileTooLarge, "more than 2^31 vertices"));
         }
@@ -55,22 +58,22 @@ impl Vertices {
     }
 }
 
-impl PlyWriter {
-    pub(crate) fn new(path: &Path, up: UpAxis, colors: Option<ModelColors>) -> io::Result<Self> {
+impl<'a> PlyWriter<'a> {
+    pub(crate) fn new(path: &Path, up: UpAxis, style: Option<&'a Style>) -> io::Result<Self> {
         Ok(Self {
             up,
-            colors,
+            style,
             welding: Welding::default(),
-            vertices: Vertices { spill: Spill::beside(path)?, count: 0 },
-            faces: Spill::beside(path)?,
-            edges: Spill::beside(path)?,
+            vertices: Vertices { spill: spill_beside(path)?, count: 0 },
+            faces: spill_beside(path)?,
+            edges: spill_beside(path)?,
             face_count: 0,
             edge_count: 0,
         })
     }
 }
 
-impl MeshWriter for PlyWriter {
+impl MeshWriter for PlyWriter<'_> {
     fn tile(&mut self, tile: &TileMesh) -> io::Result<()> {
         let (up, vertices) = (self.up, &mut self.vertices);
         let numbers = self
@@ -81,12 +84,9 @@ impl MeshWriter for PlyWriter {
             for corner in triangle {
                 self.faces.write_all(&numbers[*corner as usize].to_le_bytes())?;
             }
-            if let Some(colors) = &self.colors {
-                let number = match kind {
-                    SurfaceKind::Ground => NO_ROAD,
-                    SurfaceKind::Road(class) | SurfaceKind::Slab(class) => class.number(),
-                };
-                let color = colors.of(*kind);
+            if let Some(style) = self.style {
+                let number = kind.class().map_or(NO_ROAD, FunctionalRoadClass::number);
+                let color = color_of(*kind, style);
                 self.faces.write_all(&[number])?;
                 self.faces.write_all(&color.map(|channel| (channel * 255.0).round() as u8))?;
             }
@@ -107,11 +107,10 @@ impl MeshWriter for PlyWriter {
     }
 
     fn finish(self: Box<Self>, into: &mut dyn Write, facts: &Facts) -> io::Result<()> {
-        let Self { colors, vertices, faces, edges, face_count, edge_count, .. } = *self;
-        let mut into = into;
+        let Self { style, vertices, faces, edges, face_count, edge_count, .. } = *self;
         writeln!(into, "ply\nformat binary_little_endian 1.0")?;
         for (name, text) in facts {
-            // A comment ends with its line.
+            // A comment ends at the end of its line.
             writeln!(into, "comment {name}: {}", text.replace(['\n', '\r'], " "))?;
         }
         writeln!(into, "element vertex {}", vertices.count)?;
@@ -123,7 +122,7 @@ impl MeshWriter for PlyWriter {
         }
         writeln!(into, "property uchar frc")?;
         writeln!(into, "element face {face_count}\nproperty list uchar int vertex_indices")?;
-        if colors.is_some() {
+        if style.is_some() {
             for name in ["frc", "red", "green", "blue"] {
                 writeln!(into, "property uchar {name}")?;
             }
@@ -135,8 +134,9 @@ impl MeshWriter for PlyWriter {
             )?;
         }
         writeln!(into, "end_header")?;
-        vertices.spill.copy_to(&mut into)?;
-        faces.copy_to(&mut into)?;
-        edges.copy_to(&mut into)
+        for part in [vertices.spill, faces, edges] {
+            copy_all(part, into)?;
+        }
+        Ok(())
     }
 }

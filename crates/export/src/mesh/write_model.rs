@@ -1,9 +1,8 @@
-//! The ground of a level is written as one model, with its roads as lines or as surfaces.
+//! Writes the ground of a level as one model, with its roads as lines or as surfaces.
 
 use std::{fs::File, io::BufWriter, path::Path};
 
-use corniche_geom::{Bounds, TileId};
-use corniche_tileset::{FilePackage, Manifest};
+use corniche_tileset::FilePackage;
 use corniche_work::{Observer, Stage, workers::one_by_one};
 
 use super::{
@@ -16,19 +15,19 @@ use super::{
 };
 use crate::{
     error::{MeshError, SelectionError},
-    places::{Coordinates, Places},
+    places::{FeatureCoordinates, Places},
     read,
-    surfaces::{RoadLook, SurfaceKind, TileLines},
+    surfaces::{SurfaceKind, SurfaceLines, SurfaceRoads},
 };
 
-/// What was exported.
-#[derive(Debug, Clone, PartialEq)]
+/// The figures of an export of a model.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct MeshSummary {
-    /// The level that was taken.
+    /// The level that was exported.
     pub level: u8,
     /// Tiles with ground.
     pub tiles: u64,
-    /// Triangles of the ground, roads as surfaces and slabs of bridges included.
+    /// Triangles of the ground, including roads as surfaces and slabs of bridges.
     pub triangles: u64,
     /// Triangles of roads.
     pub road_triangles: u64,
@@ -38,13 +37,15 @@ pub struct MeshSummary {
     pub origin: [f64; 2],
 }
 
-/// Writes the ground of a level, with its roads as lines or as surfaces, to a new file at `path`. After an error that file is of no use.
+/// Writes the ground of a level, with its roads as lines or as surfaces, to a new file at `path`.
+/// After an error that file is incomplete.
 ///
-/// Positions are local: true metres east and north of an origin in the middle, and heights of the package.
+/// Positions are local: true metres east and north of an origin in the middle, and heights of the
+/// package.
 ///
 /// # Errors
-/// When the package has no such level or no ground there, glTF is asked for another axis than y upwards, the package is damaged, or something
-/// cannot be written.
+/// When the package has no such level or no ground there, glTF is requested with another axis than
+/// y upwards, the package is corrupt, or something cannot be written.
 pub fn export_mesh(
     package: &FilePackage,
     request: &MeshRequest,
@@ -56,17 +57,19 @@ pub fn export_mesh(
     }
     let manifest = package.manifest();
     let level = read::level(package, request.level)?;
-    let places = Places::new(manifest, Coordinates::Package)?;
+    let places = Places::new(manifest, FeatureCoordinates::Package)?;
     let ids = read::tiles(package, level, request.bounds.as_ref())?;
     let nothing = || SelectionError::no_ground(package);
-    let ground = ground_of(manifest, &ids).ok_or_else(nothing)?;
+    // Tiles at the border of the data extend beyond it.
+    let parts = ids.iter().map(|&id| read::data_part(manifest, id));
+    let ground = parts.reduce(|one, other| one.union(&other)).ok_or_else(nothing)?;
     let local = LocalMetres::about(ground, manifest);
     let failed = |source| MeshError::Write { path: path.to_path_buf(), source };
-    let mut writer: Box<dyn MeshWriter> = match request.format {
-        MeshFormat::Glb => Box::new(GlbWriter::new(path, request.colors()).map_err(failed)?),
+    let mut writer: Box<dyn MeshWriter + '_> = match request.format {
+        MeshFormat::Glb => Box::new(GlbWriter::new(path, &request.style).map_err(failed)?),
         MeshFormat::Ply => {
-            let colors = (request.roads == ModelRoads::Surfaces).then(|| request.colors());
-            Box::new(PlyWriter::new(path, request.up, colors).map_err(failed)?)
+            let style = (request.roads == ModelRoads::Surfaces).then_some(&request.style);
+            Box::new(PlyWriter::new(path, request.up, style).map_err(failed)?)
         }
         MeshFormat::Obj => {
             let file = request.material_file.clone();
@@ -74,11 +77,10 @@ pub fn export_mesh(
         }
     };
     let origin = local.origin(manifest);
-    let mut summary =
-        MeshSummary { level, tiles: 0, triangles: 0, road_triangles: 0, lines: 0, origin };
-    let look = RoadLook { classes: &request.classes, style: &request.style };
+    let mut summary = MeshSummary { level, origin, ..MeshSummary::default() };
+    let look = SurfaceRoads { classes: &request.classes, style: &request.style };
     let lines =
-        (request.roads == ModelRoads::Surfaces).then(|| TileLines::new(package, look, level));
+        (request.roads == ModelRoads::Surfaces).then(|| SurfaceLines::new(package, look, level));
     let reading = TileReading { package, request, places: &places, local, lines };
     one_by_one((observer, Stage::ExportTiles), &ids, |&id| {
         if let Some(tile) = reading.read(id)? {
@@ -105,11 +107,4 @@ pub fn export_mesh(
     writer.finish(&mut file, &facts).map_err(failed)?;
     file.into_inner().map_err(|error| failed(error.into_error()))?.sync_all().map_err(failed)?;
     Ok(summary)
-}
-
-/// The rectangle of the data on some tiles; `None` without tiles.
-fn ground_of(manifest: &Manifest, ids: &[TileId]) -> Option<Bounds> {
-    // Tiles on the edge reach beyond the data.
-    let tiles = ids.iter().map(|&id| read::data_part(manifest, id));
-    tiles.reduce(|one, other| one.union(&other))
 }

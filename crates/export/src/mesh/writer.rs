@@ -1,38 +1,40 @@
-//! What the writers of all model formats have in common: facts, numbers of corners that tiles
-//! share, and bytes that wait in a file without a name.
+//! Common parts of the writers of all model formats: metadata, numbers for corners that tiles
+//! share, and bytes that are buffered in an unnamed file.
 
 use std::{
     collections::HashMap,
     fs::File,
-    io::{self, BufWriter, Seek as _, SeekFrom, Write},
+    io::{self, BufWriter, Seek as _, Write},
     path::Path,
 };
 
 use corniche_geom::LatticePoint;
 
-use super::model::{Corner, TileMesh};
+use super::model::{MeshCorner, TileMesh};
 
-/// What is said of a model, in order: names and texts.
+/// The metadata of a model, in order: names and texts.
 pub(crate) type Facts = [(&'static str, String)];
 
-/// Makes a file of tiles.
+/// Writes a file of tiles.
 pub(crate) trait MeshWriter {
     fn tile(&mut self, tile: &TileMesh) -> io::Result<()>;
     fn finish(self: Box<Self>, into: &mut dyn Write, facts: &Facts) -> io::Result<()>;
 }
 
-/// Gives the corners of all tiles numbers, one to those that tiles share: positions there are the same to the bit.
+/// Assigns numbers to the corners of all tiles; corners that tiles share have one number, because
+/// their positions are identical to the bit.
 #[derive(Default)]
 pub(crate) struct Welding {
     on_borders: HashMap<LatticePoint, u32>,
 }
 
 impl Welding {
-    /// The numbers of a tile's corners. `add` is called for those that are new, and tells the number.
+    /// Returns the numbers of a tile's corners. `add` is called for new corners, and returns their
+    /// number.
     pub(crate) fn numbers<E>(
         &mut self,
         tile: &TileMesh,
-        mut add: impl FnMut(&Corner) -> Result<u32, E>,
+        mut add: impl FnMut(&MeshCorner) -> Result<u32, E>,
     ) -> Result<Vec<u32>, E> {
         let mut numbers = Vec::with_capacity(tile.corners.len());
         for corner in &tile.corners {
@@ -50,36 +52,19 @@ impl Welding {
     }
 }
 
-/// Bytes that come before others are known which must stand ahead of them: in a file without a name.
-pub(crate) struct Spill {
-    file: BufWriter<File>,
-    length: u64,
+/// A buffer for bytes that belong behind others that are not known yet: an unnamed file.
+pub(crate) type Spill = BufWriter<File>;
+
+/// Creates an unnamed file in the folder of another file.
+pub(crate) fn spill_beside(path: &Path) -> io::Result<Spill> {
+    tempfile::tempfile_in(corniche_store::folder_of(path)).map(BufWriter::new)
 }
 
-impl Spill {
-    /// A file without a name in the folder of another file.
-    pub(crate) fn beside(path: &Path) -> io::Result<Self> {
-        let file = tempfile::tempfile_in(corniche_store::folder_of(path))?;
-        Ok(Self { file: BufWriter::new(file), length: 0 })
-    }
-
-    /// Copies all of it.
-    pub(crate) fn copy_to(self, into: &mut impl Write) -> io::Result<()> {
-        let mut file = self.file.into_inner().map_err(io::IntoInnerError::into_error)?;
-        file.seek(SeekFrom::Start(0))?;
-        let copied = io::copy(&mut file, into)?;
-        if copied == self.length { Ok(()) } else { Err(io::ErrorKind::UnexpectedEof.into()) }
-    }
-}
-
-impl Write for Spill {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let written = self.file.write(bytes)?;
-        self.length += written as u64;
-        Ok(written)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.file.flush()
-    }
+/// Copies all that was written to `spill`.
+pub(crate) fn copy_all(spill: Spill, into: &mut dyn Write) -> io::Result<()> {
+    let mut file = spill.into_inner().map_err(io::IntoInnerError::into_error)?;
+    let length = file.stream_position()?;
+    file.rewind()?;
+    let copied = io::copy(&mut file, into)?;
+    if copied == length { Ok(()) } else { Err(io::ErrorKind::UnexpectedEof.into()) }
 }

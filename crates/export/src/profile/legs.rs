@@ -1,4 +1,5 @@
-//! The legs of a profile: the ways, or parts of ways, or lines of a file, that are followed one after the other.
+//! The legs of a profile: the ways, parts of ways, or lines of a file that are followed one after
+//! the other.
 
 use std::{collections::BTreeMap, ops::Range};
 
@@ -7,35 +8,38 @@ use corniche_roads::{RoadAttributes, Structure};
 
 use crate::grades::SmoothLine;
 
-/// Smooth lines of two legs are held at the node between them: they are as high there, but for rounding, unless one of them only touches a deck.
+/// Smooth lines of two legs are fixed at the node between them: they have the same height there,
+/// apart from rounding, unless one of them only touches a deck.
 const SAME_HEIGHT_M: f64 = 0.01;
 
-/// Lines to follow, one after the other, on whatever ground.
+/// Lines that are followed one after the other, on any ground.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Course {
     /// The lines.
     pub legs: Vec<CourseLeg>,
-    /// What is known of the ways whose parts they are, by id.
+    /// The attributes of the ways to which the lines belong, by id.
     pub ways: BTreeMap<i64, RoadAttributes>,
-    /// Whether they are parts of ways, whose bridges and tunnels are known.
+    /// Whether the lines are parts of ways, whose bridges and tunnels are known.
     pub is_of_ways: bool,
-    /// Where a file has their beginning, longitude and latitude, for whoever swapped them.
+    /// The longitude and latitude in the file of the first point, reported in case the user swapped
+    /// them.
     pub begins_deg: Option<[f64; 2]>,
 }
 
 /// A line to follow.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CourseLeg {
-    /// The way that it is a part of, or its number.
+    /// The way to which the line belongs, or the line's number.
     pub way_id: i64,
-    /// Whether it goes against its way.
+    /// Whether the line goes against its way.
     pub is_against: bool,
     /// Its points on the lattice of the package.
     pub points: Vec<LatticePoint>,
 }
 
 impl Course {
-    /// Lines that are no ways, with the numbers by which they are told and their names, if they have some.
+    /// Returns a course of lines that are not ways, with the numbers under which they are reported
+    /// and their names, if any.
     pub fn of_lines(
         lines: impl IntoIterator<Item = (i64, Option<String>, Vec<LatticePoint>)>,
     ) -> Self {
@@ -52,12 +56,13 @@ impl Course {
     }
 }
 
-/// What a stretch of a profile follows.
+/// A leg of a profile.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProfileLeg {
     /// The way, or the number of the line.
     pub way_id: i64,
-    /// Where it begins and ends, true distances in plan from the beginning of the profile, metres.
+    /// The beginning and the end of the leg, true distances in plan from the beginning of the
+    /// profile, metres.
     pub range_m: [f64; 2],
     /// OSM's `name`, or the name of the line; empty without.
     pub name: String,
@@ -65,28 +70,21 @@ pub struct ProfileLeg {
     pub reference: String,
     /// OSM's `highway`; empty for lines of a file.
     pub highway: String,
-    /// What carries it.
+    /// The structure that carries it.
     pub structure: Structure,
 }
 
 impl ProfileLeg {
-    /// A leg with what is known of its way.
+    /// Returns a leg with the attributes of its way.
     pub(crate) fn new(way_id: i64, range_m: [f64; 2], way: Option<&RoadAttributes>) -> Self {
-        let text =
-            |text: fn(&RoadAttributes) -> &String| way.map(text).cloned().unwrap_or_default();
-        Self {
-            way_id,
-            range_m,
-            name: text(|way| &way.name),
-            reference: text(|way| &way.reference),
-            highway: text(|way| &way.highway),
-            structure: way.map(|way| way.structure).unwrap_or_default(),
-        }
+        let way = way.cloned().unwrap_or_default();
+        let RoadAttributes { name, reference, highway, structure, .. } = way;
+        Self { way_id, range_m, name, reference, highway, structure }
     }
 }
 
-/// Runs, each with its smooth line, of which one that begins where the one before ends, and as high, goes on with it: so grades are taken over the
-/// whole profile, not leg by leg.
+/// Joins runs with their smooth lines: one that begins where the previous one ends, at the same
+/// height, continues it. Grades are therefore measured over the whole profile, not leg by leg.
 pub(crate) fn joined_runs(
     runs: Vec<Range<usize>>,
     smooth: Vec<SmoothLine>,

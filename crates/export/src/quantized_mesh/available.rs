@@ -1,4 +1,4 @@
-//! Which tiles there are, as layer.json tells it.
+//! The availability of tiles, in the form of layer.json.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -6,38 +6,39 @@ use serde_json::{Value, json};
 
 use super::tiling::TerrainTile;
 
-/// Columns from … to, in rows from … to, both included.
+/// The first and the last column, and the first and the last row, both included.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Block {
+pub(crate) struct TileRectangle {
     columns: [u32; 2],
     rows: [u32; 2],
 }
 
-/// The tiles of each level up to the finest in rectangles, each tile in one of them.
-pub(crate) fn blocks(tiles: &BTreeSet<TerrainTile>) -> Vec<Vec<Block>> {
+/// Groups the tiles of each level up to the finest into rectangles, each tile in exactly one.
+pub(crate) fn blocks(tiles: &BTreeSet<TerrainTile>) -> Vec<Vec<TileRectangle>> {
     let finest = tiles.iter().map(|tile| tile.z).max().unwrap_or(0);
     (0..=finest).map(|level| blocks_of_level(tiles, level)).collect()
 }
 
-fn blocks_of_level(tiles: &BTreeSet<TerrainTile>, level: u8) -> Vec<Block> {
+fn blocks_of_level(tiles: &BTreeSet<TerrainTile>, level: u8) -> Vec<TileRectangle> {
     let mut rows: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
     for tile in tiles.iter().filter(|tile| tile.z == level) {
         rows.entry(tile.y).or_default().push(tile.x);
     }
-    let mut done: Vec<Block> = Vec::new();
-    // Blocks that end in the row before.
-    let mut open: Vec<Block> = Vec::new();
+    let mut done: Vec<TileRectangle> = Vec::new();
+    // Blocks that end in the previous row.
+    let mut open: Vec<TileRectangle> = Vec::new();
     for (row, columns) in rows {
         let mut next = Vec::new();
         for run in columns.chunk_by(|one, other| one + 1 == *other) {
             let columns = [run[0], run[run.len() - 1]];
-            let above = |block: &Block| block.columns == columns && block.rows[1] + 1 == row;
+            let above =
+                |block: &TileRectangle| block.columns == columns && block.rows[1] + 1 == row;
             next.push(match open.iter().position(above) {
                 Some(place) => {
                     let block = open.swap_remove(place);
-                    Block { rows: [block.rows[0], row], ..block }
+                    TileRectangle { rows: [block.rows[0], row], ..block }
                 }
-                None => Block { columns, rows: [row, row] },
+                None => TileRectangle { columns, rows: [row, row] },
             });
         }
         done.append(&mut open);
@@ -48,19 +49,24 @@ fn blocks_of_level(tiles: &BTreeSet<TerrainTile>, level: u8) -> Vec<Block> {
     done
 }
 
-/// What of the blocks lies in the tile's rectangle, on the levels beneath it up to `depth` of them; none at the end.
-pub(crate) fn beneath(levels: &[Vec<Block>], tile: TerrainTile, depth: u8) -> Vec<Vec<Block>> {
-    let mut found: Vec<Vec<Block>> = (1..=depth)
+/// Returns the parts of the blocks in the tile's rectangle, for up to `depth` levels beneath it,
+/// without empty levels at the end.
+pub(crate) fn beneath(
+    levels: &[Vec<TileRectangle>],
+    tile: TerrainTile,
+    depth: u8,
+) -> Vec<Vec<TileRectangle>> {
+    let mut found: Vec<Vec<TileRectangle>> = (1..=depth)
         .map_while(|down| {
             let blocks = levels.get(usize::from(tile.z + down))?;
             let inside = |index: u32| [index << down, ((index + 1) << down) - 1];
             let [columns, rows] = [tile.x, tile.y].map(inside);
-            let cut = |block: &Block| {
+            let cut = |block: &TileRectangle| {
                 let both = |[from, to]: [u32; 2], [first, last]: [u32; 2]| {
                     let [from, to] = [from.max(first), to.min(last)];
                     (from <= to).then_some([from, to])
                 };
-                Some(Block {
+                Some(TileRectangle {
                     columns: both(block.columns, columns)?,
                     rows: both(block.rows, rows)?,
                 })
@@ -74,10 +80,10 @@ pub(crate) fn beneath(levels: &[Vec<Block>], tile: TerrainTile, depth: u8) -> Ve
     found
 }
 
-/// The blocks as layer.json has them: rows count from the south, whatever its `scheme`.
-pub(crate) fn to_json(levels: &[Vec<Block>]) -> Value {
-    let block = |block: &Block| {
-        let Block { columns, rows } = block;
+/// Returns the blocks in the form of layer.json: rows count from the south, whatever its `scheme`.
+pub(crate) fn to_json(levels: &[Vec<TileRectangle>]) -> Value {
+    let block = |block: &TileRectangle| {
+        let TileRectangle { columns, rows } = block;
         json!({ "startX": columns[0], "startY": rows[0], "endX": columns[1], "endY": rows[1] })
     };
     levels.iter().map(|blocks| blocks.iter().map(block).collect::<Value>()).collect()

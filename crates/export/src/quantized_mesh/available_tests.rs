@@ -6,10 +6,10 @@ use proptest::prelude::*;
 
 use super::*;
 
-fn tiles_of(levels: &[Vec<Block>], first: u8) -> BTreeSet<TerrainTile> {
+fn tiles_of(levels: &[Vec<TileRectangle>], first: u8) -> BTreeSet<TerrainTile> {
     let mut found = BTreeSet::new();
     for (z, blocks) in (first..).zip(levels) {
-        for Block { columns, rows } in blocks {
+        for TileRectangle { columns, rows } in blocks {
             for y in rows[0]..=rows[1] {
                 for x in columns[0]..=columns[1] {
                     assert!(found.insert(TerrainTile { z, x, y }), "{z}/{x}/{y} is in two blocks");
@@ -20,7 +20,7 @@ fn tiles_of(levels: &[Vec<Block>], first: u8) -> BTreeSet<TerrainTile> {
     found
 }
 
-/// A tile is there with all above it.
+/// Returns tiles with all tiles above them.
 fn with_ancestors(places: &[(u8, u32, u32)]) -> BTreeSet<TerrainTile> {
     let mut tiles = BTreeSet::new();
     for &(z, x, y) in places {
@@ -41,7 +41,7 @@ proptest! {
         prop_assert_eq!(tiles_of(&blocks(&tiles), 0), tiles);
     }
 
-    /// What a tile tells of is what lies beneath it, down to the depth that was asked for.
+    /// The availability in a tile covers the tiles beneath it, down to the requested depth.
     #[test]
     fn beneath_is_what_lies_beneath(
         places in prop::collection::vec((0_u8..6, 0_u32..64, 0_u32..32), 1..40),
@@ -66,7 +66,7 @@ proptest! {
 fn a_rectangle_is_one_block() {
     let tiles = (2..=5).flat_map(|x| (1..=3).map(move |y| TerrainTile { z: 3, x, y })).collect();
     let levels = blocks(&tiles);
-    assert_eq!(levels[3], [Block { columns: [2, 5], rows: [1, 3] }]);
+    assert_eq!(levels[3], [TileRectangle { columns: [2, 5], rows: [1, 3] }]);
     let json = to_json(&levels);
     assert_eq!(json[3], serde_json::json!([{ "startX": 2, "startY": 1, "endX": 5, "endY": 3 }]));
     assert_eq!(json[0], serde_json::json!([]));

@@ -1,4 +1,5 @@
-//! A tile's triangles beside the ground: where they are too far from it, and how far they are at last.
+//! Compares a tile's triangles with the ground: finds places that are too far from it, and measures
+//! the final deviation.
 
 use std::collections::BTreeSet;
 
@@ -7,8 +8,8 @@ use corniche_geom::wgs84::{ECCENTRICITY_2, SEMI_MAJOR_M};
 use super::{
     facets::{Facets, OUTSIDE},
     ground::Bends,
-    mesh::{Deviation, Mesh},
-    raster::{Sample, nearest_steps},
+    mesh::{Mesh, MeshDeviation},
+    raster::{GroundSample, nearest_steps},
     tiling::{LAST_STEP, Square, is_in_tile},
 };
 use crate::{
@@ -17,16 +18,16 @@ use crate::{
     plane::along,
 };
 
-/// A place of the ground, rounded to a 2²⁴th of the tile: there are many.
+/// A place of the ground, rounded to a 2²⁴th of the tile to save memory.
 #[derive(Clone, Copy)]
 pub(crate) struct Point {
-    /// In steps; beyond the tile below 0 or above [`LAST_STEP`].
+    /// In steps; outside the tile below 0 or above [`LAST_STEP`].
     uv: [f32; 2],
-    /// The position from the middle of the tile, in axes parallel to the earth's.
+    /// The position relative to the middle of the tile, in axes parallel to the earth's.
     from_middle_m: [f32; 3],
 }
 
-/// Where a tile lies, for points in it.
+/// The coordinate frame of a tile's points.
 #[derive(Clone, Copy)]
 pub(crate) struct PointFrame {
     square: Square,
@@ -40,7 +41,7 @@ impl PointFrame {
         Self { square, middle_m: geocentric_m([lon, lat, 0.0]) }
     }
 
-    /// The point at a longitude and latitude, with its height.
+    /// Returns the point at a longitude and latitude, with its height.
     pub(crate) fn point(&self, place: [f64; 3]) -> Point {
         let [lon, lat, _] = place;
         Point {
@@ -49,7 +50,7 @@ impl PointFrame {
         }
     }
 
-    /// The position of a longitude, latitude and height, from the middle.
+    /// Returns the position of a longitude, latitude and height, relative to the middle.
     fn position_m(&self, place: [f64; 3]) -> [f64; 3] {
         between(self.middle_m, geocentric_m(place))
     }
@@ -58,6 +59,10 @@ impl PointFrame {
 impl Point {
     fn uv(&self) -> [f64; 2] {
         self.uv.map(f64::from)
+    }
+
+    fn at_m(&self) -> [f64; 3] {
+        self.from_middle_m.map(f64::from)
     }
 
     pub(crate) fn is_in_tile(&self) -> bool {
@@ -71,35 +76,38 @@ pub(crate) struct TooFar {
     off_m: f64,
     /// In steps.
     pub(crate) uv: [f64; 2],
-    /// The point, if it is one; otherwise an edge of the ground crosses one of the triangles there.
+    /// The number of the point, if it is one; otherwise a triangle edge of the ground crosses one
+    /// of the tile's there.
     pub(crate) point: Option<usize>,
 }
 
-/// The ground of a tile, and the triangles that it was last compared with.
+/// The ground of a tile, with the triangles with which it was last compared.
 ///
-/// Between vertices and edges both are flat, so they are farthest from each other at a vertex of either, or where edges of both cross:
+/// Between vertices and triangle edges both surfaces are flat, so their largest distance is at a
+/// vertex of either, or at a crossing of edges:
 ///
 /// ```text
-///         ●──────────────●        ● vertex of the triangles, which lies on the ground
+///         ●──────────────●        ● vertex of the triangles, which is on the ground
 ///        / \    ┆       /         ○ vertex of the ground
-///       /   \ ┆        /          ┆ edge of the ground; it is looked at where it crosses an edge of the triangles, too
+///       /   \ ┆        /          ┆ edge of the ground; it is compared where it crosses an edge of the triangles, too
 ///      /  ○┄┄┄╳       /
 ///     /        \     /
 ///    ●──────────────●
 /// ```
 ///
-/// What the globe's curvature adds between them is seen at the nodes of the raster, which are points, too.
+/// The distance that the globe's curvature adds between these is measured at the nodes of the
+/// raster, which are points, too.
 pub(crate) struct Comparison {
     frame: PointFrame,
     points: Vec<Point>,
     /// Edges between points.
     edges: Vec<[u32; 2]>,
-    /// The triangle that holds each point; [`OUTSIDE`] for those that are not to be looked at.
+    /// The triangle that contains each point; [`OUTSIDE`] for points to ignore.
     faces: Vec<u32>,
     facets: Facets,
-    /// Whether the points of a triangle are to be looked at again.
+    /// Whether the points of a triangle must be checked again.
     is_due: Vec<bool>,
-    /// Steps of places where edges cross that were vertices or off the ground when they were asked for.
+    /// Steps of reported crossings that are vertices already, or that are off the ground.
     settled: BTreeSet<[u16; 2]>,
 }
 
@@ -125,7 +133,7 @@ impl Comparison {
         Self { frame, points, edges, faces, facets, is_due, settled: BTreeSet::new() }
     }
 
-    /// Takes the triangles after vertices were added.
+    /// Takes over the triangles after vertices were added.
     pub(crate) fn update(&mut self, mesh: &Mesh) {
         let facets = mesh.facets(self.frame.middle_m);
         let has_changed: Vec<bool> =
@@ -142,12 +150,13 @@ impl Comparison {
         self.facets = facets;
     }
 
-    /// The point of each triangle that is farthest from it, and farther than `limit_m`. Triangles without one are not looked at again before they change.
+    /// Returns the farthest point of each triangle that is farther from it than `limit_m`.
+    /// Triangles without one are not checked again before they change.
     pub(crate) fn far_points(&mut self, limit_m: f64) -> Vec<TooFar> {
         let mut worst = vec![None; self.facets.len()];
         for (k, (&face, point)) in self.faces.iter().zip(&self.points).enumerate() {
             if face != OUTSIDE && self.is_due[face as usize] && is_inside(point.uv()) {
-                let off_m = self.off_m(face, point.uv(), point.from_middle_m.map(f64::from));
+                let off_m = self.off_m(face, point.uv(), point.at_m());
                 note(&mut worst[face as usize], limit_m, off_m, point.uv(), Some(k));
             }
         }
@@ -155,8 +164,9 @@ impl Comparison {
         worst.into_iter().flatten().collect()
     }
 
-    /// Where an edge of the ground leaves a triangle the farthest from it, and farther than `limit_m`, for each triangle. No steps are told of twice: a vertex
-    /// is there then, or can be none.
+    /// Returns, for each triangle, the farthest crossing at which an edge of the ground leaves it,
+    /// if it is farther than `limit_m`. No steps are reported twice: there is a vertex by then, or
+    /// none is possible.
     pub(crate) fn far_crossings(&mut self, limit_m: f64) -> Vec<TooFar> {
         let mut worst = vec![None; self.facets.len()];
         self.for_each_crossing(|face, uv, from_middle_m| {
@@ -167,13 +177,14 @@ impl Comparison {
                 }
             }
         });
-        // Triangles that meet at a place tell of it, each of them.
+        // Several triangles that meet at a place report it.
         let far = worst.into_iter().flatten();
         far.filter(|far| self.settled.insert(nearest_steps(far.uv))).collect()
     }
 
-    /// Takes another place for a point: that of the steps to which it is rounded; where there is no ground at any, it is left out from now on. Where the ground is
-    /// steep or ends, that makes a difference.
+    /// Replaces a point by the place at the steps to which it is rounded. If there is no ground
+    /// there, the point is ignored from now on. The difference matters where the ground is steep or
+    /// ends.
     pub(crate) fn round(&mut self, point: usize, place: Option<[f64; 3]>) {
         if let Some(place) = place {
             self.points[point] = self.frame.point(place);
@@ -183,20 +194,22 @@ impl Comparison {
         }
     }
 
-    /// How far the triangles are from the ground at all points, where edges cross, and at samples on borders. What is farther than `limit_m` is looked at again
-    /// at the steps to which it is rounded, as `at_steps` tells it. Without `is_finest` edges are not the finest ground's own, so all of it is.
+    /// Returns the distances of the triangles from the ground at all points, at crossings of edges,
+    /// and at samples on borders. Places farther than `limit_m` are checked again at the steps to
+    /// which they are rounded, where `at_steps` returns the ground. Without `is_finest`, edges are
+    /// not those of the finest ground, so all crossings are checked again.
     pub(crate) fn deviation<'s, E>(
         &self,
-        on_borders: impl Iterator<Item = &'s Sample>,
+        on_borders: impl Iterator<Item = &'s GroundSample>,
         limit_m: f64,
         is_finest: bool,
         at_steps: impl FnOnce(&[[f64; 2]]) -> Result<Vec<Option<[f64; 3]>>, E>,
-    ) -> Result<Deviation, E> {
-        let mut found = Deviation::default();
+    ) -> Result<MeshDeviation, E> {
+        let mut found = MeshDeviation::default();
         let mut again: Vec<(u32, [f64; 2])> = Vec::new();
         for (&face, point) in self.faces.iter().zip(&self.points) {
             if face != OUTSIDE {
-                let off_m = self.off_m(face, point.uv(), point.from_middle_m.map(f64::from));
+                let off_m = self.off_m(face, point.uv(), point.at_m());
                 if off_m > limit_m {
                     again.push((face, point.uv()));
                 } else {
@@ -233,8 +246,10 @@ impl Comparison {
         Ok(found)
     }
 
-    /// Tells of each place where an edge of the ground leaves a triangle: the triangle, u and v, and the position from the middle. An edge is bent like the
-    /// globe: over its chord, as far from the ends as shares a and b of its length, it is by length² · a · b / (2 · radius).
+    /// Calls `tell` for each place where an edge of the ground leaves a triangle, with the
+    /// triangle, u and v, and the position relative to the middle. An edge is bent like the globe:
+    /// its height over its chord, at shares a and b of its length from the ends, is length² · a · b
+    /// / (2 · radius).
     fn for_each_crossing(&self, mut tell: impl FnMut(u32, [f64; 2], [f64; 3])) {
         let mut hint = OUTSIDE;
         for &edge in &self.edges {
@@ -249,7 +264,7 @@ impl Comparison {
             }
             let points = ends.map(|end| &self.points[end]);
             let [from, to] = points.map(Point::uv);
-            let ends_m = points.map(|point| point.from_middle_m.map(f64::from));
+            let ends_m = points.map(Point::at_m);
             let chord_m = between(ends_m[0], ends_m[1]);
             let bulge_m = dot(chord_m, chord_m) / (2.0 * SEMI_MAJOR_M);
             let up = self.up_at(ends_m[0]);
@@ -274,7 +289,7 @@ impl Comparison {
         }
     }
 
-    /// How far a triangle is from a place of the ground.
+    /// Returns the distance of a triangle from a place of the ground.
     fn off_m(&self, face: u32, uv: [f64; 2], from_middle_m: [f64; 3]) -> f64 {
         let up = self.up_at(from_middle_m);
         self.facets.above_m(face, uv, from_middle_m, up).abs()
@@ -286,28 +301,29 @@ impl Comparison {
     }
 }
 
-/// Keeps the place that is farther from its triangle than any before it.
+/// Keeps the place if it is farther from its triangle than all previous ones.
 fn note(worst: &mut Option<TooFar>, limit_m: f64, off_m: f64, uv: [f64; 2], point: Option<usize>) {
     if off_m > worst.as_ref().map_or(limit_m, |known| known.off_m) {
         *worst = Some(TooFar { off_m, uv, point });
     }
 }
 
-/// Whether a place is not on a border, once it is rounded to steps.
+/// Whether a place is not on a border after rounding to steps.
 fn is_inside(uv: [f64; 2]) -> bool {
     uv.iter().all(|step| (0.5..f64::from(LAST_STEP) - 0.5).contains(step))
 }
 
-/// Where a line comes into the tile, as a share of the way.
+/// Returns the share of the way at which a line enters the tile.
 ///
 /// Source: Liang & Barsky 1984, *A New Concept and Method for Line Clipping*.
 fn share_at_entry([from, to]: [[f64; 2]; 2]) -> Option<f64> {
     clip(from, to, [[0.0, f64::from(LAST_STEP)]; 2]).map(|[begin, _]| begin)
 }
 
-/// The direction upwards at a position near the ellipsoid.
+/// Returns the upward direction at a position near the ellipsoid.
 ///
-/// On it the direction is that of (x, y, z / (1 − e²)). At a height h it is off by h · e² / (2 · radius) at most: by 10⁻⁵ at 9 km.
+/// On the ellipsoid the direction is that of (x, y, z / (1 − e²)). At a height h, its error is at
+/// most h · e² / (2 · radius): 10⁻⁵ at 9 km.
 fn up_from([x, y, z]: [f64; 3]) -> [f64; 3] {
     unit([x, y, z / (1.0 - ECCENTRICITY_2)])
 }

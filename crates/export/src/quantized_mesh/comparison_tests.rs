@@ -5,7 +5,7 @@ use spade::{DelaunayTriangulation, Triangulation as _};
 use super::*;
 use crate::quantized_mesh::{
     facets::MeshVertex,
-    tiling::{Nodes, TerrainTile, Tiling},
+    tiling::{RasterNodes, TerrainTile, Tiling},
 };
 
 /// A tile of some 20 km at the equator.
@@ -13,7 +13,7 @@ const TILE: TerrainTile = TerrainTile { z: 10, x: 1024, y: 512 };
 const SIDE: f64 = LAST_STEP as f64;
 
 fn frame() -> PointFrame {
-    let nodes = Nodes { tiling: Tiling::Geographic, level: TILE.z, per_tile: 16, parts: 4 };
+    let nodes = RasterNodes { tiling: Tiling::Geographic, level: TILE.z, per_tile: 16, parts: 4 };
     PointFrame::new(nodes.square_of(TILE))
 }
 
@@ -22,10 +22,10 @@ fn place(uv: [f64; 2], height_m: f64) -> [f64; 3] {
     [lon, lat, height_m]
 }
 
-/// Two triangles at a height of 0 over the tile, divided from south-west to north-east.
+/// Two triangles at a height of 0 over the tile, with a diagonal from south-west to north-east.
 fn flat() -> Facets {
     let mut triangles = DelaunayTriangulation::new();
-    // The middle makes four of them.
+    // The middle divides it into four triangles.
     for [u, v] in [[0, 0], [LAST_STEP, 0], [LAST_STEP, LAST_STEP], [0, LAST_STEP], [16_000; 2]] {
         let at = place([u, v].map(f64::from), 0.0);
         triangles.insert(MeshVertex::new([u, v], at, [0.0, 0.0, 1.0])).unwrap();
@@ -45,26 +45,28 @@ fn a_peak_is_the_farthest_point_of_its_triangle() {
     let far = found.far_points(50.0);
     assert_eq!(far.len(), 1);
     assert_eq!(far[0].point, Some(1));
-    // A tile of 20 km bulges by 8 m at most.
+    // A tile of 20 km bulges by at most 8 m.
     assert!((100.0..108.0).contains(&far[0].off_m), "{far:?}");
     assert!(comparison(&[([9000.0, 2000.5], 80.0)], Vec::new()).far_points(90.0).is_empty());
 }
 
-/// A ridge between two points on the triangles is seen where it crosses edges of triangles; each place is told of once.
+/// A ridge between two points on the triangles is found where it crosses edges of triangles; each
+/// place is reported once.
 #[test]
 fn edges_are_seen_where_they_cross() {
     let ends = [([16_000.0, 2000.0], 100.0), ([16_000.0, 30_000.0], 300.0)];
     let mut found = comparison(&ends, vec![[0, 1]]);
     let crossings = found.far_crossings(50.0);
-    // The line runs through the vertex in the middle, where the ground is half as high as at both ends.
+    // The line passes through the vertex in the middle, where the ground is half as high as at both
+    // ends.
     assert_eq!(crossings.len(), 1, "{crossings:?}");
     assert!((crossings[0].uv[1] - 16_000.0).abs() < 1.0);
-    // An edge of 17 km is followed to some centimetres.
+    // An edge of 17 km is followed to within some centimetres.
     assert!((crossings[0].off_m - 200.0).abs() < 0.1, "{crossings:?}");
     assert!(found.far_crossings(50.0).is_empty());
 }
 
-/// A line from beyond the tile is followed from the border on.
+/// A line from outside the tile is followed from the border onwards.
 #[test]
 fn lines_from_outside_are_followed_inside() {
     let ends = [([-1000.0, 3000.0], 100.0), ([SIDE + 1000.0, 3000.0], 100.0)];
@@ -77,7 +79,7 @@ fn lines_from_outside_are_followed_inside() {
     comparison(&beside, vec![[0, 1]]).for_each_crossing(|_, uv, _| panic!("{uv:?}"));
 }
 
-/// What the globe adds over a flat triangle is length² / (8 · radius) in the middle of a side.
+/// The globe's bulge over a flat triangle is length² / (8 · radius) in the middle of a side.
 #[test]
 fn ground_at_sea_level_is_a_bulge_over_triangles() {
     let found = comparison(&[([SIDE / 2.0, 0.0], 0.0)], Vec::new());

@@ -12,24 +12,27 @@
 use super::{
     facets::MeshVertex,
     horizon::{occlusion_point, sphere},
-    mesh::TileMesh,
+    mesh::QuantizedTile,
     tiling::{Horizon, LAST_STEP},
 };
+use crate::surfaces::by_first_use;
 
-/// Vertices that indices of two bytes can name.
+/// The most vertices that indices of two bytes can refer to.
 const MOST_OF_U16: usize = 65_536;
 const NORMALS: u8 = 1;
 const METADATA: u8 = 4;
 
-/// The extension of normals, which all tiles have, as layer.json names it.
+/// The extension for normals, which all tiles have, with its name in layer.json.
 pub(crate) const NORMALS_NAME: &str = "octvertexnormals";
-/// The extension of metadata, which some tiles may have.
+/// The extension for metadata, which some tiles may have.
 pub(crate) const METADATA_NAME: &str = "metadata";
 
-/// A tile as bytes, not compressed. `metadata` is JSON. Without a point that stands for the tile at the horizon its numbers are NaN, which
-/// viewers never take for hidden.
-pub(crate) fn encode(mesh: &TileMesh, metadata: Option<&str>, horizon: Horizon) -> Vec<u8> {
-    let (triangles, order) = by_first_use(mesh);
+/// Encodes a tile, without compression. `metadata` is JSON. A tile without a horizon occlusion
+/// point gets NaN there, and viewers never treat it as hidden.
+pub(crate) fn encode(mesh: &QuantizedTile, metadata: Option<&str>, horizon: Horizon) -> Vec<u8> {
+    // Number the vertices by first use, as high-water marks require.
+    let mut triangles = mesh.triangles.clone();
+    let order = by_first_use(&mut triangles, mesh.vertices.len());
     let vertices: Vec<&MeshVertex> = order.iter().map(|&k| &mesh.vertices[k as usize]).collect();
     let mut bytes = Vec::with_capacity(200 + 8 * vertices.len() + 12 * triangles.len());
     let (middle_m, radius_m) = sphere(mesh);
@@ -45,7 +48,9 @@ pub(crate) fn encode(mesh: &TileMesh, metadata: Option<&str>, horizon: Horizon) 
     doubles(&mut bytes, &[radius_m]);
     doubles(&mut bytes, &horizon);
     word(&mut bytes, vertices.len());
-    for field in [|v: &MeshVertex| v.u, |v: &MeshVertex| v.v, |v: &MeshVertex| v.height] {
+    for field in
+        [|v: &MeshVertex| v.steps[0], |v: &MeshVertex| v.steps[1], |v: &MeshVertex| v.height]
+    {
         let mut last = 0;
         for vertex in &vertices {
             let value = i32::from(field(vertex));
@@ -87,46 +92,27 @@ pub(crate) fn encode(mesh: &TileMesh, metadata: Option<&str>, horizon: Horizon) 
     bytes
 }
 
-/// Triangles with vertices numbered as they come first, which high-water marks need, and the old number of each.
-fn by_first_use(mesh: &TileMesh) -> (Vec<[u32; 3]>, Vec<u32>) {
-    let mut number = vec![u32::MAX; mesh.vertices.len()];
-    let mut order = Vec::with_capacity(mesh.vertices.len());
-    let mut triangles = mesh.triangles.clone();
-    for corner in triangles.as_flattened_mut() {
-        let place = &mut number[*corner as usize];
-        if *place == u32::MAX {
-            *place = order.len() as u32;
-            order.push(*corner);
-        }
-        *corner = *place;
-    }
-    (triangles, order)
-}
-
-/// Vertices on the west, south, east and north border, from the south and from the west.
+/// Returns the vertices on the west, south, east and north border, from the south and from the
+/// west.
 fn edges(vertices: &[&MeshVertex]) -> [Vec<u32>; 4] {
-    let along = |is_on: fn(&MeshVertex) -> bool, place: fn(&MeshVertex) -> u16| {
-        let mut found: Vec<u32> =
-            (0..vertices.len() as u32).filter(|&k| is_on(vertices[k as usize])).collect();
-        found.sort_unstable_by_key(|&k| place(vertices[k as usize]));
+    [(0, 0), (1, 0), (0, LAST_STEP), (1, LAST_STEP)].map(|(across, border)| {
+        let step = |k: u32, axis: usize| vertices[k as usize].steps[axis];
+        let all = 0..vertices.len() as u32;
+        let mut found: Vec<u32> = all.filter(|&k| step(k, across) == border).collect();
+        found.sort_unstable_by_key(|&k| step(k, 1 - across));
         found
-    };
-    [
-        along(|vertex| vertex.u == 0, |vertex| vertex.v),
-        along(|vertex| vertex.v == 0, |vertex| vertex.u),
-        along(|vertex| vertex.u == LAST_STEP, |vertex| vertex.v),
-        along(|vertex| vertex.v == LAST_STEP, |vertex| vertex.u),
-    ]
+    })
 }
 
-/// Differences with their sign in the lowest bit; those of 15-bit values fit.
+/// Stores the sign of a difference in the lowest bit; differences of 15-bit values fit.
 fn zigzag(difference: i32) -> u16 {
     ((difference << 1) ^ (difference >> 31)) as u16
 }
 
-/// A unit vector on an octahedron, 8 bits an axis.
+/// Encodes a unit vector on an octahedron, 8 bits per axis.
 ///
-/// Source: Cigolle et al. 2014, *A Survey of Efficient Representations for Independent Unit Vectors*, as CesiumJS decodes it.
+/// Source: Cigolle et al. 2014, *A Survey of Efficient Representations for Independent Unit
+/// Vectors*; CesiumJS decodes it in this way.
 fn octahedral([x, y, z]: [f64; 3]) -> [u8; 2] {
     let sum = x.abs() + y.abs() + z.abs();
     let [mut p, mut q] = [x / sum, y / sum];

@@ -1,18 +1,18 @@
 //! Terrain tiles have the bytes that the format describes.
 
-#![expect(clippy::float_cmp, reason = "the same to the last bit is what is tested")]
+#![expect(clippy::float_cmp, reason = "the test checks equality to the last bit")]
 
 use super::*;
-use crate::globe::{geocentric_m, up_at};
+use crate::globe::up_at;
 
-/// Differences of both signs: 0, −1, 1, −2, 2 and so on become 0, 1, 2, 3, 4.
+/// Differences of both signs (0, −1, 1, −2, 2 and so on) become 0, 1, 2, 3, 4.
 #[test]
 fn zigzag_has_the_sign_in_the_lowest_bit() {
     assert_eq!([0, -1, 1, -2, 2].map(zigzag), [0, 1, 2, 3, 4]);
     assert_eq!([32_767, -32_767].map(zigzag), [65_534, 65_533]);
 }
 
-/// Decoded as CesiumJS does it, normals are right to a degree.
+/// Decoded like in CesiumJS, normals are accurate to a degree.
 #[test]
 fn normals_survive_the_octahedron() {
     let directions = [-0.9, -0.4, 0.0, 0.3, 1.0];
@@ -42,10 +42,10 @@ fn normals_survive_the_octahedron() {
 fn vertex(u: u16, v: u16, height: u16) -> MeshVertex {
     let share = |step: u16| f64::from(step) / f64::from(LAST_STEP);
     let place = [9.0 + share(u), 47.0 + share(v), 1000.0 + f64::from(height)];
-    MeshVertex { u, v, place, height, at_m: geocentric_m(place), normal: up_at([9.0, 47.0]) }
+    MeshVertex { height, ..MeshVertex::new([u, v], place, up_at(place)) }
 }
 
-/// A square of two triangles, byte by byte: what is where, in the order in which indices come first.
+/// A square of two triangles, byte by byte: the layout, with indices numbered by first use.
 #[test]
 fn a_square_is_laid_out_as_the_format_says() {
     let vertices = vec![
@@ -54,8 +54,11 @@ fn a_square_is_laid_out_as_the_format_says() {
         vertex(0, LAST_STEP, 3),
         vertex(LAST_STEP, LAST_STEP, 9),
     ];
-    let mesh =
-        TileMesh { vertices, triangles: vec![[1, 3, 2], [0, 1, 2]], range_m: [1000.0, 1009.0] };
+    let mesh = QuantizedTile {
+        vertices,
+        triangles: vec![[1, 3, 2], [0, 1, 2]],
+        range_m: [1000.0, 1009.0],
+    };
     let bytes = encode(&mesh, Some("{}"), Horizon::Point);
     let half = |at: usize| u16::from_le_bytes([bytes[at], bytes[at + 1]]);
     let word = |at: usize| u32::from(half(at)) | u32::from(half(at + 2)) << 16;
@@ -87,7 +90,7 @@ fn a_square_is_laid_out_as_the_format_says() {
     assert_eq!((bytes[164], word(165)), (NORMALS, 8));
     assert_eq!((bytes[177], word(178), word(182)), (METADATA, 6, 2));
     assert_eq!(&bytes[186..], b"{}");
-    // What has no point at the horizon says so with numbers that compare as false.
+    // A tile without a horizon occlusion point has numbers there that always compare as false.
     let around_the_globe = encode(&mesh, None, Horizon::None);
     assert!(
         around_the_globe[64..88]
@@ -96,7 +99,7 @@ fn a_square_is_laid_out_as_the_format_says() {
     );
 }
 
-/// With more vertices than two bytes can number, indices have four, behind padding.
+/// With more vertices than two bytes can number, indices have four bytes, after padding.
 #[test]
 fn many_vertices_have_wide_indices() {
     const SIDE: u16 = 257;
@@ -114,7 +117,7 @@ fn many_vertices_have_wide_indices() {
         })
         .collect();
     let (count, mesh) =
-        (vertices.len(), TileMesh { vertices, triangles, range_m: [1000.0, 1000.0] });
+        (vertices.len(), QuantizedTile { vertices, triangles, range_m: [1000.0, 1000.0] });
     assert!(count > MOST_OF_U16);
     let bytes = encode(&mesh, None, Horizon::Point);
     let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
@@ -144,7 +147,7 @@ fn many_vertices_have_wide_indices() {
         .collect();
     for (decoded, known) in corners.iter().zip(mesh.triangles.as_flattened()) {
         let known = &mesh.vertices[*known as usize];
-        assert_eq!([u[*decoded as usize], v[*decoded as usize]], [known.u, known.v]);
+        assert_eq!([u[*decoded as usize], v[*decoded as usize]], known.steps);
     }
     assert_eq!(word(after + 4 + 4 * corners.len()), u32::from(SIDE));
 }

@@ -1,17 +1,20 @@
-//! A mesh's triangles as flat lists: which of them holds a place, through which a line goes, and how high they are.
+//! A mesh's triangles as flat lists: finds the triangle that contains a place, the triangles along
+//! a line, and their heights.
 
 use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation as _};
 
-use crate::globe::{between, dot, geocentric_m};
+use crate::{
+    globe::{between, dot, geocentric_m},
+    plane::doubled_area,
+};
 
 /// A corner of triangles, in whole steps of the tile.
 #[derive(Clone, Copy)]
 pub(crate) struct MeshVertex {
-    pub(crate) u: u16,
-    pub(crate) v: u16,
+    pub(crate) steps: [u16; 2],
     /// Longitude, latitude and height above the ellipsoid.
     pub(crate) place: [f64; 3],
-    /// The height in 32 767ths of the range, once the mesh is finished.
+    /// The height in 32 767ths of the range, after the mesh is finished.
     pub(crate) height: u16,
     /// The position from the earth's centre.
     pub(crate) at_m: [f64; 3],
@@ -23,20 +26,22 @@ impl HasPosition for MeshVertex {
     type Scalar = f64;
 
     fn position(&self) -> Point2<f64> {
-        Point2::new(f64::from(self.u), f64::from(self.v))
+        let [u, v] = self.steps.map(f64::from);
+        Point2::new(u, v)
     }
 }
 
 impl MeshVertex {
-    pub(crate) fn new([u, v]: [u16; 2], place: [f64; 3], normal: [f64; 3]) -> Self {
-        Self { u, v, place, height: 0, at_m: geocentric_m(place), normal }
+    pub(crate) fn new(steps: [u16; 2], place: [f64; 3], normal: [f64; 3]) -> Self {
+        Self { steps, place, height: 0, at_m: geocentric_m(place), normal }
     }
 }
 
-/// In place of a triangle: what is beyond the border of the tile.
+/// The number that means outside the border of the tile, instead of a triangle.
 pub(crate) const OUTSIDE: u32 = 0;
 
-/// A place that is so little beyond a side is taken to be on it, in square steps of u and v: more than rounding makes of products below 2³⁰.
+/// A place that is outside a side by no more than this counts as on it, in square steps of u and v:
+/// more than the rounding error of products below 2³⁰.
 const ROUNDING: f64 = 1e-5;
 
 /// The triangles, numbered as in the mesh. Number 0 is [`OUTSIDE`].
@@ -46,21 +51,19 @@ pub(crate) struct Facets {
     uv: Vec<[f64; 2]>,
     /// Counter-clockwise from above.
     corners: Vec<[u32; 3]>,
-    /// What is beyond the side from corner k to the next.
+    /// The triangle across the side from corner k to the next.
     beyond: Vec<[u32; 3]>,
     /// The position of each vertex, from the origin.
     from_origin_m: Vec<[f64; 3]>,
 }
 
 impl Facets {
-    /// Positions are told from `origin_m`, so that small numbers tell one near it.
+    /// Returns the triangles with positions relative to `origin_m`, which keeps the numbers small
+    /// near it.
     pub(crate) fn new(triangles: &DelaunayTriangulation<MeshVertex>, origin_m: [f64; 3]) -> Self {
         let count = triangles.num_all_faces();
         let mut facets = Self {
-            uv: triangles
-                .vertices()
-                .map(|vertex| [vertex.data().u, vertex.data().v].map(f64::from))
-                .collect(),
+            uv: triangles.vertices().map(|vertex| vertex.data().steps.map(f64::from)).collect(),
             corners: vec![[0; 3]; count],
             beyond: vec![[OUTSIDE; 3]; count],
             from_origin_m: triangles
@@ -77,7 +80,7 @@ impl Facets {
         facets
     }
 
-    /// How many triangles there are, what is outside counted, too.
+    /// The number of triangles, including the one that means outside.
     pub(crate) fn len(&self) -> usize {
         self.corners.len()
     }
@@ -87,17 +90,19 @@ impl Facets {
         earlier.corners.get(face) == Some(&self.corners[face])
     }
 
-    /// How far a place is to the left of a side, times the length of the side.
-    fn beside(&self, face: u32, side: usize, [u, v]: [f64; 2]) -> f64 {
+    /// Returns the distance of a place to the left of a side, times the length of the side.
+    fn beside(&self, face: u32, side: usize, at: [f64; 2]) -> f64 {
         let corners = self.corners[face as usize];
         let [a, b] = [side, (side + 1) % 3].map(|k| self.uv[corners[k] as usize]);
-        (b[0] - a[0]) * (v - a[1]) - (b[1] - a[1]) * (u - a[0])
+        doubled_area([a, b, at])
     }
 
-    /// The triangle that holds a place of the tile, found by going there from another; [`OUTSIDE`] for a place beyond the tile.
+    /// Returns the triangle that contains a place of the tile, by walking there from another
+    /// triangle; [`OUTSIDE`] for a place outside the tile.
     ///
-    /// Source: Devillers, Pion & Teillaud 2002, *Walking in a Triangulation*: it ends in any Delaunay triangulation. Rounding could send it back and forth
-    /// between two triangles, so it never goes back where it came from.
+    /// Source: Devillers, Pion & Teillaud 2002, *Walking in a Triangulation*: the walk ends in any
+    /// Delaunay triangulation. Rounding could send it back and forth between two triangles, so it
+    /// never returns to the previous one.
     pub(crate) fn locate(&self, from: u32, at: [f64; 2]) -> u32 {
         let mut face = from.max(1);
         let mut before = OUTSIDE;
@@ -116,8 +121,9 @@ impl Facets {
         face
     }
 
-    /// Tells where a line that begins in a triangle leaves it and those after it: the triangle, and the share of the way. Along a side, rounding could make of
-    /// the share any number; it never becomes smaller.
+    /// Calls `tell` where a line that begins in a triangle leaves it and the following ones: with
+    /// the triangle, and the share of the way. Along a side, rounding could make the share any
+    /// number; it never decreases.
     pub(crate) fn for_each_crossing(
         &self,
         first: u32,
@@ -149,9 +155,11 @@ impl Facets {
         }
     }
 
-    /// How far the ground at u and v, its position told from the origin, is above a triangle, along the vertical: above the place of the flat triangle that is at
-    /// u and v between its corners. On a side that place depends on the side alone, so that also long narrow triangles beside a border, whose sides bend in
-    /// degrees by more than the triangles' width, are near the ground.
+    /// Returns the vertical distance of the ground at u and v, given by its position relative to
+    /// the origin, above a triangle: above the point of the flat triangle that is at u and v
+    /// between its corners. On a side that point depends on the side alone, so that long narrow
+    /// triangles next to a border stay near the ground, even if their sides bend in degrees by more
+    /// than the triangles' width.
     pub(crate) fn above_m(
         &self,
         face: u32,
@@ -160,7 +168,7 @@ impl Facets {
         up: [f64; 3],
     ) -> f64 {
         let corners = self.corners[face as usize];
-        // The part of each corner is the area of the triangle over the side across from it.
+        // The weight of each corner is the area of the triangle over the opposite side.
         let parts = [1, 2, 0].map(|side| self.beside(face, side, uv));
         let whole: f64 = parts.iter().sum();
         let above = corners

@@ -7,32 +7,37 @@ use corniche_tileset::{FilePackage, Manifest, Sections};
 use corniche_tin::{NO_TWIN, Surface};
 use corniche_work::Recent;
 
-use super::tiling::Nodes;
+use super::tiling::RasterNodes;
 use crate::{error::QuantizedMeshError, places::Places, plane};
 
-/// How far beside a line edges are looked for that may cross it, as a share of its length: meridians and parallels bend in the package's CRS.
+/// The margin around a line in which triangle edges that may cross it are searched, as a share of
+/// its length: meridians and parallels bend in the package's CRS.
 const ROOM_BESIDE_LINES: f64 = 0.01;
 
-/// The ground, read tile by tile. It belongs to one thread; what it reads is shared.
-pub(crate) struct Ground<'a> {
+/// Reads the ground tile by tile. Each thread has a reader, and all readers share a cache.
+pub(crate) struct GroundReader<'a> {
     package: &'a FilePackage,
-    kept: &'a Kept,
+    kept: &'a SharedGroundCache,
     places: Places<'a>,
-    /// Degrees outside of which there is no ground.
+    /// The rectangle of degrees outside of which there is no ground.
     around_deg: Bounds,
 }
 
-impl<'a> Ground<'a> {
-    pub(crate) fn new(package: &'a FilePackage, kept: &'a Kept, places: Places<'a>) -> Self {
+impl<'a> GroundReader<'a> {
+    pub(crate) fn new(
+        package: &'a FilePackage,
+        kept: &'a SharedGroundCache,
+        places: Places<'a>,
+    ) -> Self {
         let data = package.manifest().wgs84_bounds;
-        // Sides of the data may bend a little beyond what was sampled of them.
+        // Sides of the data may bend a little beyond the sampled positions.
         let margin = 0.001 + 0.02 * (data.max_x - data.min_x).max(data.max_y - data.min_y);
         let around_deg = data.expanded([margin; 2]);
         Self { package, kept, places, around_deg }
     }
 
-    /// Heights at longitudes and latitudes, as they were asked for; NaN where there is no ground. What comes out for a place depends on nothing but the
-    /// place.
+    /// Returns the requested heights at longitudes and latitudes; NaN where there is no ground. The
+    /// result for a place depends on nothing but the place.
     pub(crate) fn heights_m(
         &self,
         places_deg: &[[f64; 2]],
@@ -59,11 +64,11 @@ impl<'a> Ground<'a> {
         Ok(heights_m)
     }
 
-    /// The same at the nodes of a rectangle, given by its south-western and north-eastern node, row by row from the south; for few nodes that many tiles
-    /// look at.
+    /// Returns the same at the nodes of a rectangle, given by its south-western and north-eastern
+    /// node, row by row from the south; for few nodes that many tiles use.
     pub(crate) fn heights_at_nodes_m(
         &self,
-        nodes: Nodes,
+        nodes: RasterNodes,
         [from, to]: [[i64; 2]; 2],
     ) -> Result<Vec<f64>, QuantizedMeshError> {
         self.kept.node_heights.of_nodes(nodes, from, to, |places_deg| self.heights_m(places_deg))
@@ -74,9 +79,10 @@ impl<'a> Ground<'a> {
         self.around_deg.contains([seam.image(lon), lat])
     }
 
-    /// The vertices and edges of one of the package's levels in and around a rectangle of degrees, given by its south-western and north-eastern corner.
-    /// `point_of` makes points of longitude, latitude and height. A surface of other triangles is farthest from the ground at a vertex of either, or where
-    /// edges of both cross.
+    /// Returns the vertices and triangle edges of one of the package's levels around a rectangle of
+    /// degrees, given by its south-western and north-eastern corner. `point_of` makes points of
+    /// longitude, latitude and height. The distance between the ground and a surface of other
+    /// triangles is largest at a vertex of either, or at a crossing of edges.
     pub(crate) fn bends<T>(
         &self,
         corners_deg: [[f64; 2]; 2],
@@ -108,14 +114,15 @@ impl<'a> Ground<'a> {
         Ok(bends)
     }
 
-    /// Where edges of one of the package's levels cross a meridian or a parallel, given by its ends, as shares of the way from its first end. What comes
-    /// out depends on the line alone, so that tiles on both of its sides find the same.
+    /// Returns the crossings of a level's triangle edges with a meridian or a parallel, given by
+    /// its ends, as shares of the way from its first end. The result depends on the line alone, so
+    /// tiles on both of its sides get the same.
     pub(crate) fn crossings(
         &self,
         [from_deg, to_deg]: [[f64; 2]; 2],
         level: u8,
     ) -> Result<Vec<f64>, QuantizedMeshError> {
-        // The axis along which the line goes, and the one along which it stays.
+        // The axis along which the line runs, and the one along which it is constant.
         let long = [0, 1].map(|axis| (to_deg[axis] - from_deg[axis]).abs());
         let along = usize::from(long[1] > long[0]);
         let across = 1 - along;
@@ -149,7 +156,8 @@ impl<'a> Ground<'a> {
         Ok(shares)
     }
 
-    /// Hands on the tiles of one of the package's levels near a rectangle with the longitudes of the data, and those of their edges that come near it.
+    /// Calls `each` for the tiles of one of the package's levels near a rectangle with the
+    /// longitudes of the data, with those of their edges that come near it.
     fn for_each_tile(
         &self,
         area_deg: Bounds,
@@ -171,10 +179,9 @@ impl<'a> Ground<'a> {
             min: LatticePoint::new(first.u, last.v),
             max: LatticePoint::new(last.u, first.v),
         };
-        let inside = 0..=(1_i64 << level) - 1;
-        let [from, to] = [first, last].map(|corner| {
-            frame.tile_column_row(level, corner).map(|k| k.clamp(*inside.start(), *inside.end()))
-        });
+        let most = (1_i64 << level) - 1;
+        let [from, to] = [first, last]
+            .map(|corner| frame.tile_column_row(level, corner).map(|k| k.clamp(0, most)));
         for (column, row) in
             (from[1]..=to[1]).flat_map(|row| (from[0]..=to[0]).map(move |c| (c, row)))
         {
@@ -186,8 +193,8 @@ impl<'a> Ground<'a> {
         Ok(())
     }
 
-    /// The parts of a rectangle of degrees that may have ground, with the longitudes of the data: more than one where the data cross 180° and the
-    /// rectangle goes around the globe.
+    /// Returns the parts of a rectangle of degrees that may have ground, with the longitudes of the
+    /// data: several if the data cross 180° and the rectangle goes around the globe.
     fn near_parts(&self, [[west, south], [east, north]]: [[f64; 2]; 2]) -> Vec<Bounds> {
         let part = |turns: f64| {
             let [min_x, max_x] = [west, east].map(|lon| lon + 360.0 * turns);
@@ -200,8 +207,9 @@ impl<'a> Ground<'a> {
             .collect()
     }
 
-    /// Heights, in the package's datum, of positions that have none yet: from the tile that holds the point one step beside. On a border of tiles these
-    /// are all tiles around, of which one may have ground where another has none.
+    /// Adds heights, in the package's datum, at positions that have none yet: from the tile that
+    /// contains the point one step aside. On a border these are all tiles around it, of which one
+    /// may have ground where another has none.
     fn add_heights(
         &self,
         positions: &[[f64; 2]],
@@ -215,7 +223,7 @@ impl<'a> Ground<'a> {
             let [column, row] = frame.tile_column_row(finest, beside);
             TileId::new(finest, u32::try_from(column).ok()?, u32::try_from(row).ok()?).ok()
         };
-        // Neighbours mostly lie in the same tile.
+        // Neighbours are mostly in the same tile.
         let mut by_tile: Vec<(TileId, Vec<(usize, LatticePoint)>)> = Vec::new();
         let mut last = 0;
         for (k, position) in positions.iter().enumerate() {
@@ -274,7 +282,7 @@ impl<'a> Ground<'a> {
             self.heights_m(&plan)?
         };
         let place = |([lon, lat], height_m): ([f64; 2], f64)| {
-            // Where no height can be told, none is looked at.
+            // Where no height can be computed, the vertex has no height.
             [lon, lat, if height_m.is_finite() { height_m } else { f64::NAN }]
         };
         let places = plan.into_iter().zip(heights_m).map(place).collect();
@@ -282,7 +290,7 @@ impl<'a> Ground<'a> {
     }
 }
 
-/// Where the ground bends.
+/// The vertices and triangle edges at which the ground bends.
 pub(crate) struct Bends<T> {
     /// Vertices.
     pub(crate) points: Vec<T>,
@@ -290,7 +298,7 @@ pub(crate) struct Bends<T> {
     pub(crate) edges: Vec<[u32; 2]>,
 }
 
-/// Places along the sides of a rectangle.
+/// Returns places along the sides of a rectangle.
 fn perimeter(bounds: Bounds) -> Vec<[f64; 2]> {
     const PARTS: u32 = 16;
     let share = |k: u32| f64::from(k) / f64::from(PARTS);
@@ -302,21 +310,23 @@ fn perimeter(bounds: Bounds) -> Vec<[f64; 2]> {
     sides.flatten().collect()
 }
 
-/// What is kept of the package's tiles, about: a square degree of SRTM at its default bound, which the coarse levels look at again and again. Where less
-/// than that is kept, tiles are decoded so often that it takes more time, and, for what is made meanwhile, not less memory.
+/// The approximate size of the cache of the package's tiles: a square degree of SRTM at its default
+/// bound, which the coarse levels use again and again. With a smaller cache, tiles are decoded so
+/// often that exports take longer, without needing less memory overall.
 const KEPT_BYTES: u64 = 112 << 20;
-/// What a triangle takes with its half of a vertex, about: corners and twins 24 bytes, lists by vertex and by square some 30, of the vertex some 24.
+/// The approximate memory of a triangle with its half of a vertex: corners and twins take 24 bytes,
+/// lists by vertex and by square some 30, the vertex some 24.
 const TRIANGLE_BYTES: u64 = 96;
 
-/// What was read last, for all threads.
-pub(crate) struct Kept {
-    /// `None` for tiles without ground.
+/// The cache of tiles that all threads share.
+pub(crate) struct SharedGroundCache {
+    /// The tiles; `None` for tiles without ground.
     surfaces: Recent<TileId, Option<SurfaceTile>>,
     node_heights: NodeHeights,
 }
 
-impl Kept {
-    /// Nothing yet.
+impl SharedGroundCache {
+    /// Returns an empty cache.
     pub(crate) fn new() -> Self {
         Self { surfaces: Recent::new(KEPT_BYTES), node_heights: NodeHeights::new() }
     }
@@ -325,17 +335,18 @@ impl Kept {
 /// The ground of a tile of the package.
 struct SurfaceTile {
     surface: Surface,
-    /// Longitude, latitude and height, as it was asked for, of each vertex; the height is NaN where the finest level has no ground.
+    /// Longitude, latitude and requested height of each vertex; the height is NaN where the finest
+    /// level has no ground.
     places: Vec<[f64; 3]>,
 }
 
 impl SurfaceTile {
-    /// What it takes in memory, about.
+    /// The approximate memory of the tile.
     fn bytes(&self) -> u64 {
         self.surface.triangles().len() as u64 * TRIANGLE_BYTES
     }
 
-    /// The edges of all triangles that come near a box, each once.
+    /// Returns the edges of all triangles that come near a box, each once.
     fn edges_near(&self, bounds: LatticeBounds) -> Vec<[u32; 2]> {
         let mut is_near = vec![false; self.surface.triangles().len()];
         let mut near = Vec::new();
@@ -353,15 +364,18 @@ impl SurfaceTile {
     }
 }
 
-/// Nodes along each side of a block, which is sampled at once.
+/// Nodes along each side of a block. A block is sampled as a whole.
 const BLOCK: i64 = 16;
-/// What is kept of the blocks, about: the many tiles along the end of the ground look at the same few of them.
+/// The approximate size of the cache of blocks: the many tiles along the end of the ground use the
+/// same few of them.
 const KEPT_NODE_BYTES: u64 = 4 << 20;
 
-/// A block of nodes: their level, how many there are along a tile, and the block's column and row.
+/// The key of a block of nodes: their level, the number of them along a tile, and the block's
+/// column and row.
 type Key = (u8, i64, [i64; 2]);
 
-/// The heights that were looked at last. Without them each tile would look for tiles of the package all over it, for a few places in each.
+/// A cache of heights at nodes. Without it, each tile would read tiles of the package all over its
+/// area, for a few places in each.
 struct NodeHeights(Recent<Key, Vec<f64>>);
 
 impl NodeHeights {
@@ -369,14 +383,15 @@ impl NodeHeights {
         Self(Recent::new(KEPT_NODE_BYTES))
     }
 
-    /// Heights at the nodes of a rectangle, given by its south-western and north-eastern node, row by row from the south. `sample` tells those at longitudes
-    /// and latitudes, the same for a place each time.
+    /// Returns heights at the nodes of a rectangle, given by its south-western and north-eastern
+    /// node, row by row from the south. `sample` returns heights at longitudes and latitudes,
+    /// always the same for a place.
     ///
     /// # Errors
-    /// Those of `sample`.
+    /// Returns the errors of `sample`.
     fn of_nodes(
         &self,
-        nodes: Nodes,
+        nodes: RasterNodes,
         [west, south]: [i64; 2],
         [east, north]: [i64; 2],
         sample: impl Fn(&[[f64; 2]]) -> Result<Vec<f64>, QuantizedMeshError>,

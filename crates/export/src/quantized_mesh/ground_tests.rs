@@ -7,7 +7,8 @@ use proptest::prelude::*;
 use super::*;
 use crate::quantized_mesh::Tiling;
 
-const NODES: Nodes = Nodes { tiling: Tiling::Geographic, level: 6, per_tile: 64, parts: 1 };
+const NODES: RasterNodes =
+    RasterNodes { tiling: Tiling::Geographic, level: 6, per_tile: 64, parts: 1 };
 
 proptest! {
     #[test]

@@ -1,15 +1,16 @@
-//! What a viewer needs to know before it draws a tile: where it is, and when the earth hides it.
+//! Facts that a viewer needs before it draws a tile: its position, and when the earth hides it.
 
 use corniche_geom::wgs84::{ECCENTRICITY_2, SEMI_MAJOR_M};
 
-use super::mesh::TileMesh;
+use super::mesh::QuantizedTile;
 use crate::globe::{between, cross, dot, middle_of, unit};
 
-/// Stands for a point that is infinitely far away, in the earth's radii.
+/// Represents a point that is infinitely far away, in the earth's radii.
 const FAR_AWAY: f64 = 1e9;
 
-/// Middle and radius of a sphere that holds all vertices, and so all triangles, from the earth's centre.
-pub(crate) fn sphere(mesh: &TileMesh) -> ([f64; 3], f64) {
+/// Returns the middle and radius of a sphere that contains all vertices, and so all triangles, from
+/// the earth's centre.
+pub(crate) fn sphere(mesh: &QuantizedTile) -> ([f64; 3], f64) {
     let middle = middle_of(&mesh.vertices.iter().map(|vertex| vertex.at_m));
     let distance_m = |at: [f64; 3]| {
         let from = between(middle, at);
@@ -19,7 +20,8 @@ pub(crate) fn sphere(mesh: &TileMesh) -> ([f64; 3], f64) {
     (middle, radius_m)
 }
 
-/// The point that is hidden behind the horizon only when the whole tile is, from the earth's centre in the ellipsoid's radii.
+/// Returns the horizon occlusion point, which is behind the horizon only when the whole tile is,
+/// from the earth's centre in the ellipsoid's radii.
 ///
 /// ```text
 ///        P        in the direction of the tile's middle, so far out that the tangent through each vertex,
@@ -28,17 +30,19 @@ pub(crate) fn sphere(mesh: &TileMesh) -> ([f64; 3], f64) {
 ///    /       \
 /// ```
 ///
-/// Tiles as wide as half the globe have no such point; for them it is at infinity, which is exact for a smooth hemisphere.
+/// Tiles as wide as half the globe have no such point. They get a point at infinity, which is exact
+/// for a smooth hemisphere.
 ///
-/// Source: Ring 2013, *Computing the horizon occlusion point* (Cesium's blog), after Cozzi & Ring 2011, *3D Engine Design for Virtual Globes*.
-pub(crate) fn occlusion_point(mesh: &TileMesh, middle_m: [f64; 3]) -> [f64; 3] {
+/// Source: Ring 2013, *Computing the horizon occlusion point* (Cesium's blog), after Cozzi & Ring
+/// 2011, *3D Engine Design for Virtual Globes*.
+pub(crate) fn occlusion_point(mesh: &QuantizedTile, middle_m: [f64; 3]) -> [f64; 3] {
     let semi_minor_m = SEMI_MAJOR_M * (1.0 - ECCENTRICITY_2).sqrt();
     let radii_m = [SEMI_MAJOR_M, SEMI_MAJOR_M, semi_minor_m];
     let scaled = |at_m: [f64; 3]| [0, 1, 2].map(|axis| at_m[axis] / radii_m[axis]);
     let towards = unit(scaled(middle_m));
     let far = mesh.vertices.iter().map(|vertex| {
         let at = scaled(vertex.at_m);
-        // What lies below the ellipsoid counts as lying on it.
+        // Places below the ellipsoid count as being on it.
         let out = dot(at, at).sqrt().max(1.0);
         let direction = unit(at);
         let across = cross(direction, towards);

@@ -1,10 +1,10 @@
-//! layer.json, which tells a viewer what tiles there are.
+//! layer.json, which describes the available tiles for viewers.
 
 use corniche_tileset::Manifest;
 use serde_json::{Value, json};
 
 use super::{
-    available::{Block, beneath, to_json},
+    available::{TileRectangle, beneath, to_json},
     encode::{METADATA_NAME, NORMALS_NAME},
     quantized_mesh_request::{Availability, QuantizedMeshRequest, QuantizedMeshSummary},
     tiling::TerrainTile,
@@ -13,16 +13,17 @@ use super::{
 /// The file's name.
 pub(crate) const LAYER: &str = "layer.json";
 
-/// Each so many levels there are tiles that tell which tiles lie beneath them. Ten is what other writers use.
+/// The interval of levels whose tiles describe the availability of the tiles beneath them. Other
+/// writers also use ten.
 const METADATA_LEVELS: u8 = 10;
 
-/// What layer.json says. With [`Availability::Layer`] it names all tiles.
+/// Returns the content of layer.json. With [`Availability::Layer`] it lists all tiles.
 ///
-/// `corniche` is a part of our own, which viewers pass over: the format has no place for errors.
+/// `corniche` is a custom member that viewers ignore: the format has no place for errors.
 pub(crate) fn layer(
     manifest: &Manifest,
     request: &QuantizedMeshRequest,
-    available: &[Vec<Block>],
+    available: &[Vec<TileRectangle>],
     summary: &QuantizedMeshSummary,
 ) -> Value {
     let data = manifest.wgs84_bounds;
@@ -65,12 +66,13 @@ pub(crate) fn layer(
     layer
 }
 
-/// What a tile tells of those beneath it, if it does.
+/// Returns the availability of the tiles beneath a tile, if it describes them.
 ///
-/// `CesiumJS` (1.145) fails at a tile with metadata where layer.json has no `metadataAvailability`, so with [`Availability::Layer`] none has.
+/// `CesiumJS` (1.145) fails at a tile with metadata if layer.json has no `metadataAvailability`, so
+/// with [`Availability::Layer`] no tile has metadata.
 pub(crate) fn metadata(
     request: &QuantizedMeshRequest,
-    available: &[Vec<Block>],
+    available: &[Vec<TileRectangle>],
     tile: TerrainTile,
 ) -> Option<String> {
     let tells =
@@ -79,7 +81,7 @@ pub(crate) fn metadata(
     tells.then(|| json!({ "available": to_json(&beneath()) }).to_string())
 }
 
-/// Millimetres are enough.
+/// Rounds to millimetres.
 fn rounded(metres: f64) -> f64 {
     (metres * 1e3).round() / 1e3
 }

@@ -1,4 +1,4 @@
-//! What an export of terrain tiles will write, told before it begins.
+//! Plans an export of terrain tiles: levels, files and bytes, computed before anything is written.
 
 use std::collections::BTreeSet;
 
@@ -6,26 +6,28 @@ use corniche_geom::{Bounds, Seam, TileId, wgs84::radii_m};
 use corniche_tileset::{FilePackage, Manifest};
 
 use super::{
-    quantized_mesh_request::{PlannedLevel, QuantizedMeshPlan, QuantizedMeshRequest},
+    quantized_mesh_request::{MeshLevelPlan, QuantizedMeshPlan, QuantizedMeshRequest},
     tiling::{FINEST, TerrainTile, Tiling},
     write_tiles::{has_cells_of, is_wide, mean_bytes, side_and_cell_m, with_ancestors},
 };
-use crate::{bounds::DegreeBounds, error::QuantizedMeshError, read};
+use crate::{bounds::DegreeBounds, error::QuantizedMeshError, plane::doubled_area, read};
 
-/// The most tiles of the finest level. Some hundred bytes are kept for each.
+/// The most tiles of the finest level. Some hundred bytes of memory are needed for each.
 const MOST_TILES: u64 = 4_000_000;
-/// Tiles of the finest level that are made to tell how large files are.
+/// The number of finest tiles that are created to estimate the size of files.
 const TRIED_TILES: usize = 9;
-/// Tiles above the finest ones have more of the ground each: so many times the bytes.
+/// Tiles above the finest ones contain more of the ground each: this many times the bytes.
 const BYTES_ABOVE: f64 = 1.5;
-/// What looking at the ground beneath all tiles of a level takes, as a share of the time of the finest level.
+/// The time for sampling the ground beneath all tiles of a level, as a share of the time of the
+/// finest level.
 const LEVEL_SHARE: f64 = 0.012;
 
 impl QuantizedMeshPlan {
-    /// Looks what a request will write. Nothing is written.
+    /// Computes what a request will write. Nothing is written.
     ///
     /// # Errors
-    /// When the package cannot be exported so, it is damaged, or there would be more files than the request allows.
+    /// When the package does not support the request, it is corrupt, or there would be more files
+    /// than the request allows.
     pub fn new(
         package: &FilePackage,
         request: &QuantizedMeshRequest,
@@ -48,15 +50,15 @@ impl QuantizedMeshPlan {
                 let threads = if one_by_one { request.threads as f64 } else { 1.0 };
                 1.0 + threads * LEVEL_SHARE * finest_tiles / tiles.max(1) as f64
             };
-            PlannedLevel { level, tiles, effort }
+            MeshLevelPlan { level, tiles, effort }
         };
-        let levels: Vec<PlannedLevel> = (0..).zip(&tiles).map(planned).collect();
-        // Evenly among all, so that plains and mountains count.
+        let levels: Vec<MeshLevelPlan> = (0..).zip(&tiles).map(planned).collect();
+        // Evenly spread over all tiles, so that plains and mountains count.
         let step = candidates.len().div_ceil(TRIED_TILES).max(1);
         let tried: Vec<TerrainTile> =
             candidates.iter().skip(step / 2).step_by(step).copied().collect();
         let mean = mean_bytes(package, (request, finest), &tried)?.unwrap_or_default();
-        // Of a coarse tile only a part lies over the data.
+        // Only a part of a coarse tile is over the data.
         let covered = |level: u8, tiles: u64| {
             let cells = 4_f64.powi(i32::from(finest - level));
             (finest_tiles / (cells * tiles as f64)).min(1.0)
@@ -75,26 +77,23 @@ impl QuantizedMeshPlan {
         self.levels.last().map_or(0, |level| level.level)
     }
 
-    /// The most files that there can be, with layer.json.
+    /// The most files that there can be, including layer.json.
     #[must_use]
     pub fn files(&self) -> u64 {
         1 + self.levels.iter().map(|level| level.tiles).sum::<u64>()
     }
 }
 
-/// Fails where the data reach beyond the grid's latitudes: a part would be left out.
+/// Fails if the data extend beyond the grid's latitudes: a part would be missing.
 fn within_grid(manifest: &Manifest, tiling: Tiling) -> Result<(), QuantizedMeshError> {
     let [south, north] = [0, 1].map(|row| tiling.lat_deg(0, row));
     let data = manifest.wgs84_bounds;
     let beyond = [data.min_y, data.max_y].into_iter().find(|lat| !(south..=north).contains(lat));
-    match beyond {
-        Some(lat) => Err(QuantizedMeshError::BeyondGrid { lat, north }),
-        None => Ok(()),
-    }
+    beyond.map_or(Ok(()), |lat| Err(QuantizedMeshError::BeyondGrid { lat, north }))
 }
 
-/// The level that is asked for. Otherwise the first one whose error is at most the package's, or whose cells are the package's: finer ones would hold
-/// nothing that it has not.
+/// Returns the requested level. The default is the first one whose error is at most the package's,
+/// or whose cells are the package's: finer levels would contain nothing more.
 fn finest_level(manifest: &Manifest, request: &QuantizedMeshRequest) -> u8 {
     let of_package = manifest.levels.last().map_or(0.0, |finest| finest.geometric_error_m);
     let is_fine_enough = |level: &u8| {
@@ -105,15 +104,17 @@ fn finest_level(manifest: &Manifest, request: &QuantizedMeshRequest) -> u8 {
     request.max_level.unwrap_or_else(by_data).min(FINEST)
 }
 
-/// Rectangles of degrees around the package's finest tiles, by its table of coordinates. That must agree with the manifest's rectangle: else it could
-/// spread a small package over the globe.
+/// Returns rectangles of degrees around the package's finest tiles, from its coordinate table. They
+/// must agree with the manifest's rectangle: otherwise the table could spread a small package over
+/// the globe.
 fn tiles_around_deg(
     package: &FilePackage,
     bounds: Option<&DegreeBounds>,
 ) -> Result<Vec<Bounds>, QuantizedMeshError> {
     let manifest = package.manifest();
     let data = manifest.wgs84_bounds;
-    // The rectangle around a turned or bent image is larger than the image, but never by so much.
+    // The rectangle around a rotated or bent image is larger than the image, but never by this
+    // much.
     let room = 0.1 + data.width().max(data.height());
     let seam = Seam::of_degrees().around(data.center()[0]);
     let is_all_around = data.width() + 2.0 * room >= 360.0;
@@ -135,11 +136,12 @@ fn tiles_around_deg(
     Ok(found)
 }
 
-/// Whether each part of a tile has about the area by the table of coordinates that it has by the
-/// manifest's scale. A table of one place has not, nor one that is mirrored or stretched: then the
-/// search for the ground at a place grows with what the table says, not with the package.
+/// Whether each part of a tile has about the same area by the coordinate table as by the manifest's
+/// scale. A table that contains a single place fails, and so does one that is mirrored or
+/// stretched: the search for the ground at a place would then grow with the table rather than with
+/// the package.
 fn is_as_large(manifest: &Manifest, id: TileId, places: &[[f64; 2]]) -> bool {
-    /// The scale is that of some places, and parts count as flat.
+    /// The scale belongs to some places only, and parts count as flat.
     const AREA_TOLERANCE: f64 = 4.0;
     let (part, cell) = (read::data_part(manifest, id), manifest.frame.cell());
     if part.width() < cell.east_m || part.height() < cell.north_m {
@@ -154,24 +156,22 @@ fn is_as_large(manifest: &Manifest, id: TileId, places: &[[f64; 2]]) -> bool {
     corners.map(|at| [at, at + 1, at + side + 1, at + side].map(|corner| places[corner])).all(
         |[from, east, across, north]| {
             let [parallel_m, meridian_m] = radii_m(f64::midpoint(from[1], across[1]));
-            let turn = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| {
-                (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-            };
-            let square_deg = f64::midpoint(turn(from, east, across), turn(from, across, north));
+            let halves = [[from, east, across], [from, across, north]].map(doubled_area);
+            let square_deg = f64::midpoint(halves[0], halves[1]);
             let scale = parallel_m.to_radians() * meridian_m.to_radians();
             allowed_m2.contains(&(square_deg * scale))
         },
     )
 }
 
-/// The first and the last column and row of a level over a rectangle of degrees.
+/// Returns the first and the last column and row of a level over a rectangle of degrees.
 fn columns_and_rows(tiling: Tiling, level: u8, around: &Bounds) -> [[i64; 2]; 2] {
     let columns = [around.min_x, around.max_x].map(|lon| tiling.column_of(level, lon));
     let rows = [around.min_y, around.max_y].map(|lat| tiling.row_of(level, lat));
     [[columns[0], columns[1].min(columns[0] + tiling.columns(level) - 1)], rows]
 }
 
-/// Fails where there would be more files than are allowed. Tiles on borders count more than once.
+/// Fails if there would be more files than allowed. Tiles on borders count more than once.
 fn refuse_too_many(
     around: &[Bounds],
     request: &QuantizedMeshRequest,
@@ -185,7 +185,7 @@ fn refuse_too_many(
         around.iter().map(of_tile).sum()
     };
     let until = |level: u8| (0..=level).map(of_level).sum::<u64>();
-    // Exactly, where that takes little.
+    // The exact number, if it is cheap to compute.
     let files = |level: u8| match until(level) {
         few if few <= request.max_files => few,
         some if of_level(level) <= MOST_TILES => {
@@ -210,7 +210,7 @@ fn refuse_too_many(
     })
 }
 
-/// Tiles that may have ground: those around the package's finest ones.
+/// Returns the tiles that may have ground: those around the package's finest ones.
 fn candidates(
     around: &[Bounds],
     request: &QuantizedMeshRequest,

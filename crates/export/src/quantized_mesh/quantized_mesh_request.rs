@@ -1,73 +1,76 @@
-//! What a user asks for when a package becomes quantized-mesh terrain tiles, what will be written,
-//! and what was.
+//! The request for quantized-mesh terrain tiles of a package, the plan of what will be written, and
+//! the summary of what was.
 
 use std::collections::BTreeSet;
 
 use super::tiling::{TerrainTile, Tiling};
-use crate::{bounds::DegreeBounds, places::Coordinates};
+use crate::{bounds::DegreeBounds, places::FeatureCoordinates};
 
-/// What of a package becomes terrain tiles, and how.
+/// The part of a package that becomes terrain tiles, and the form of the tiles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct QuantizedMeshRequest {
     /// The grid of tiles.
     pub tiling: Tiling,
-    /// The finest level; `None` is the first one whose error is not above the package's, or whose cells are the package's.
+    /// The finest level; `None` means the first one whose error is not above the package's, or
+    /// whose cells are the package's.
     pub max_level: Option<u8>,
     /// The most files that may be written.
     pub max_files: u64,
-    /// Only tiles that meet these degrees, and those above them; `None` takes all.
+    /// Only tiles that meet this rectangle are exported, with those above them; `None` exports all.
     pub bounds: Option<DegreeBounds>,
-    /// Heights: [`Coordinates::Wgs84`] carries them to the ellipsoid, [`Coordinates::Wgs84WithPackageHeights`] takes them as they are.
-    pub coordinates: Coordinates,
-    /// Where it is told which tiles there are.
+    /// Heights: [`FeatureCoordinates::Wgs84`] transforms them to the ellipsoid,
+    /// [`FeatureCoordinates::Wgs84WithPackageHeights`] keeps them as they are.
+    pub coordinates: FeatureCoordinates,
+    /// The place where the availability of tiles is stored.
     pub availability: Availability,
-    /// Whether files are compressed with gzip; a server must then say so for each.
+    /// Whether files are compressed with gzip; a server must then declare this for each file.
     pub gzip: bool,
-    /// How many tiles are made at the same time.
+    /// The number of tiles that are created concurrently.
     pub threads: usize,
 }
 
-/// Where it is told which tiles there are.
+/// The place where the availability of tiles is stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Availability {
-    /// It is told in layer.json, as rectangles of tiles.
+    /// Availability is stored in layer.json, as rectangles of tiles.
     Layer,
-    /// It is told in tiles of each tenth level, for those beneath: layer.json stays small with any number of tiles.
+    /// Availability is stored in the tiles of every tenth level, for the tiles beneath: layer.json
+    /// stays small with any number of tiles.
     Tiles,
 }
 
-/// What an export of terrain tiles will write.
+/// The plan of an export of terrain tiles.
 #[derive(Debug, Clone)]
 pub struct QuantizedMeshPlan {
     /// Each level, coarsest first.
-    pub levels: Vec<PlannedLevel>,
-    /// Bytes of all files, estimated from some tiles.
+    pub levels: Vec<MeshLevelPlan>,
+    /// Bytes of all files, estimated from a sample of tiles.
     pub bytes: u64,
     /// The tiles of the finest level.
     pub(crate) candidates: BTreeSet<TerrainTile>,
 }
 
-/// What will be written of a level.
+/// The plan of a level.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PlannedLevel {
+pub struct MeshLevelPlan {
     /// The level.
     pub level: u8,
-    /// The most tiles that it can have: those without ground are left out.
+    /// The most tiles that it can have; tiles without ground are skipped.
     pub tiles: u64,
-    /// How long one takes, in those of the finest level.
+    /// The time for one tile, relative to a tile of the finest level.
     pub effort: f64,
 }
 
-/// What was exported.
+/// The figures of an export of terrain tiles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct QuantizedMeshSummary {
     /// Each level, coarsest first.
     pub levels: Vec<QuantizedMeshLevel>,
-    /// What heights are, in words.
+    /// What heights refer to, in words.
     pub heights: String,
 }
 
-/// What was exported of a level.
+/// The figures of a level.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct QuantizedMeshLevel {
     /// The level.
@@ -80,7 +83,7 @@ pub struct QuantizedMeshLevel {
     pub bytes: u64,
     /// Cells along the sides of the rasters on which the ground was sampled.
     pub cells: u64,
-    /// What CesiumJS takes the level's error to be, metres.
+    /// The error that CesiumJS assumes for the level, metres.
     pub assumed_error_m: f64,
     /// Places with ground at which the tiles were measured.
     pub places: u64,

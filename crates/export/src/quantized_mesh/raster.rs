@@ -1,56 +1,57 @@
-//! Heights at the nodes of a tile, with one more node on each side, also where there is no ground.
+//! A raster of heights for each tile, with one more node on each side, including places without
+//! ground. In this module, a node is a point of the raster.
 
 use super::{
     facets::MeshVertex,
-    ground::Ground,
-    tiling::{LAST_STEP, Nodes, TerrainTile},
+    ground::GroundReader,
+    tiling::{LAST_STEP, RasterNodes, TerrainTile},
 };
 use crate::{
     error::QuantizedMeshError,
     globe::{between, cross, dot, geocentric_m, unit, up_at},
 };
 
-/// What is far from all ground lies on the ellipsoid, as the globe of a viewer without terrain does.
+/// Places far from all ground are on the ellipsoid, like the globe of a viewer without terrain.
 const FAR_FROM_GROUND_M: f64 = 0.0;
 
-/// The heights of a tile. Row 0 and column 0 are those of the neighbours in the north and the west.
-#[derive(Clone)]
-pub(crate) struct TileRaster {
-    pub(crate) nodes: Nodes,
+/// The heights of a tile. Row 0 and column 0 belong to the neighbours in the north and the west.
+pub(crate) struct HeightRaster {
+    pub(crate) nodes: RasterNodes,
     tile: TerrainTile,
     /// Longitudes of columns, from the west.
     lon_deg: Vec<f64>,
     /// Latitudes of rows, from the north.
     pub(crate) lat_deg: Vec<f64>,
     pub(crate) heights_m: Vec<f64>,
-    /// Whether there is ground, rather than a height made up.
+    /// Whether there is ground, rather than a height filled in.
     is_ground: Vec<bool>,
 }
 
 /// A rectangle of the nodes of a level, with one more node on each side.
 struct Window {
-    nodes: Nodes,
-    /// Column and row, counted from the south, of the south-western node, those around not counted.
+    nodes: RasterNodes,
+    /// Column and row of the south-western node, rows counted from the south, without the nodes
+    /// around.
     from: [i64; 2],
     to: [i64; 2],
-    /// Row by row from the south, the nodes around included; NaN where there is no ground.
+    /// Row by row from the south, including the nodes around; NaN where there is no ground.
     heights_m: Vec<f64>,
 }
 
 impl Window {
     fn sample(
-        nodes: Nodes,
+        nodes: RasterNodes,
         from: [i64; 2],
         to: [i64; 2],
-        ground: &Ground<'_>,
+        ground: &GroundReader<'_>,
     ) -> Result<Self, QuantizedMeshError> {
         let [first, last] = around(from, to);
         let heights_m = ground.heights_m(&nodes.places_deg(first, last))?;
         Ok(Self { nodes, from, to, heights_m })
     }
 
-    /// The nodes of the level above between which those of this window lie.
-    fn above(&self, ground: &Ground<'_>) -> Result<Option<Self>, QuantizedMeshError> {
+    /// Returns the nodes of the level above that surround those of this window.
+    fn above(&self, ground: &GroundReader<'_>) -> Result<Option<Self>, QuantizedMeshError> {
         let Some(nodes) = self.nodes.above() else { return Ok(None) };
         let from = self.from.map(|index| index.div_euclid(2));
         let to = self.to.map(|index| (index + 1).div_euclid(2));
@@ -58,7 +59,7 @@ impl Window {
         Ok(Some(Self { nodes, from, to, heights_m }))
     }
 
-    /// The nodes, without those around, row by row from the south.
+    /// Returns the nodes, without those around, row by row from the south.
     fn inner(&self) -> impl Iterator<Item = [i64; 2]> + use<> {
         let ([west, south], [east, north]) = (self.from, self.to);
         (south..=north).flat_map(move |j| (west..=east).map(move |i| [i, j]))
@@ -77,8 +78,8 @@ impl Window {
         self.inner().any(|node| self.height_m(node).is_nan())
     }
 
-    /// Gives a height to each node without ground: the mean of its neighbours with ground, where it has some; else what lies there on the level above;
-    /// else the ellipsoid's.
+    /// Fills in a height at each node without ground: the mean of its neighbours with ground, if
+    /// any; otherwise the height at that place on the level above; otherwise that of the ellipsoid.
     fn fill(&mut self, above: Option<&Self>) {
         let beside_ground = |[i, j]: [i64; 2]| {
             let around = (-1..=1).flat_map(|dj| (-1..=1).map(move |di| [i + di, j + dj]));
@@ -102,7 +103,7 @@ impl Window {
     }
 }
 
-/// A rectangle of nodes with one more on each side.
+/// Returns a rectangle of nodes with one more on each side.
 fn around(from: [i64; 2], to: [i64; 2]) -> [[i64; 2]; 2] {
     [from.map(|index| index - 1), to.map(|index| index + 1)]
 }
@@ -112,19 +113,20 @@ fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     (count > 0).then(|| sum / f64::from(count))
 }
 
-impl TileRaster {
-    /// Samples the ground. Where there is none, heights come from ever coarser nodes around, and at last from the ellipsoid: the rule looks at places over
-    /// the whole globe, so that neighbours have the same heights on their border.
+impl HeightRaster {
+    /// Samples the ground. Where there is none, heights come from ever coarser nodes around, and
+    /// finally from the ellipsoid. The rule depends on places over the whole globe, so neighbours
+    /// have the same heights on their border.
     pub(crate) fn sample(
-        nodes: Nodes,
+        nodes: RasterNodes,
         tile: TerrainTile,
-        ground: &Ground<'_>,
+        ground: &GroundReader<'_>,
     ) -> Result<Self, QuantizedMeshError> {
         let n = nodes.per_tile;
         let [i, j] = [i64::from(tile.x) * n, i64::from(tile.y) * n];
         let (from, to) = ([i - 1, j - 1], [i + n + 1, j + n + 1]);
         let mut window = Window::sample(nodes, from, to, ground)?;
-        // Rows of the raster go southwards.
+        // Rows of the raster run southwards.
         let order: Vec<usize> = (from[1]..=to[1])
             .rev()
             .flat_map(|j| (from[0]..=to[0]).map(move |i| [i, j]))
@@ -154,12 +156,12 @@ impl TileRaster {
         })
     }
 
-    /// Nodes along each side of the tile, those around it not counted.
+    /// Nodes along each side of the tile, without those around it.
     pub(crate) fn side(&self) -> usize {
         self.nodes.per_tile as usize + 1
     }
 
-    /// Where a node of the tile is in the raster.
+    /// Returns the index in the raster of a node of the tile.
     pub(crate) fn at(&self, column: usize, row: usize) -> usize {
         (row + 1) * self.lon_deg.len() + column + 1
     }
@@ -170,26 +172,21 @@ impl TileRaster {
         [self.lon_deg[at % columns], self.lat_deg[at / columns], self.heights_m[at]]
     }
 
-    /// How far the tile goes in longitude and latitude.
+    /// The extent of the tile in longitude and latitude.
     pub(crate) fn size_rad(&self) -> [f64; 2] {
         let [[west, south], [east, north]] = self.nodes.corners_deg(self.tile);
         [east - west, north - south].map(f64::to_radians)
     }
 
-    /// Normal of the ground at a node, from its neighbours on all sides: the same in all tiles that have the node.
+    /// Normal of the ground at a node, from its neighbours on all sides: the same in all tiles that
+    /// have the node.
     pub(crate) fn normal(&self, at: usize) -> [f64; 3] {
         let columns = self.lon_deg.len();
         let of = |at: usize| geocentric_m(self.place(at));
         let way = |from: usize, to: usize| between(of(from), of(to));
         let across = cross(way(at - 1, at + 1), way(at + columns, at - columns));
-        let [lon, lat, _] = self.place(at);
-        // At a pole all longitudes are one place.
-        if dot(across, across) > 0.0 { unit(across) } else { up_at([lon, lat]) }
-    }
-
-    /// Normal of the ground on a border, between two of its nodes.
-    pub(crate) fn normal_on_side(&self, nodes: [usize; 2]) -> [f64; 3] {
-        self.mean_normal(&nodes)
+        // At a pole, all longitudes are one place.
+        if dot(across, across) > 0.0 { unit(across) } else { up_at(self.place(at)) }
     }
 
     fn normal_at(&self, steps: [u16; 2]) -> [f64; 3] {
@@ -202,17 +199,18 @@ impl TileRaster {
         if is_node { self.normal(below) } else { self.mean_normal(&[at, at + 1, below, below + 1]) }
     }
 
-    fn mean_normal(&self, nodes: &[usize]) -> [f64; 3] {
+    pub(crate) fn mean_normal(&self, nodes: &[usize]) -> [f64; 3] {
         let normals: Vec<[f64; 3]> = nodes.iter().map(|&at| self.normal(at)).collect();
         unit([0, 1, 2].map(|axis| normals.iter().map(|normal| normal[axis]).sum()))
     }
 
-    /// The ground at the steps nearest to some u and v: longitude, latitude and height. Where there is none, at the nearest of the steps around that have
-    /// ground: so the ground is seen up to its end. `None` where none has.
+    /// Returns the ground at the steps nearest to u and v: longitude, latitude and height. If there
+    /// is none, returns it at the nearest of the steps around that have ground, so that the ground
+    /// is covered up to its end. `None` if none has.
     pub(crate) fn at_steps(
         &self,
         uv: &[[f64; 2]],
-        ground: &Ground<'_>,
+        ground: &GroundReader<'_>,
     ) -> Result<Vec<Option<[f64; 3]>>, QuantizedMeshError> {
         let nearest: Vec<[u16; 2]> = uv.iter().map(|&uv| nearest_steps(uv)).collect();
         let mut found = self.ground_at(&nearest, ground)?;
@@ -228,7 +226,7 @@ impl TileRaster {
     fn ground_at(
         &self,
         steps: &[[u16; 2]],
-        ground: &Ground<'_>,
+        ground: &GroundReader<'_>,
     ) -> Result<Vec<Option<[f64; 3]>>, QuantizedMeshError> {
         let places: Vec<[f64; 2]> =
             steps.iter().map(|&steps| self.nodes.place_deg(self.tile, steps)).collect();
@@ -239,7 +237,8 @@ impl TileRaster {
         Ok(places.into_iter().zip(heights_m).map(whole).collect())
     }
 
-    /// A vertex at a place of [`Self::at_steps`]; `None` on a border, where there are no others than both tiles have.
+    /// Returns a vertex at a place of [`Self::at_steps`]; `None` on a border, which only has the
+    /// vertices that both tiles have.
     pub(crate) fn vertex(&self, place: [f64; 3]) -> Option<MeshVertex> {
         let [lon, lat, _] = place;
         let steps = nearest_steps(self.nodes.square_of(self.tile).uv_of([lon, lat]));
@@ -247,13 +246,14 @@ impl TileRaster {
         is_inside.then(|| MeshVertex::new(steps, place, self.normal_at(steps)))
     }
 
-    /// The ground of the tile at nodes and along borders. `level` is the package's level whose edges are looked at; where the ground ends, it may end earlier
-    /// than the finest, so there the ground is looked at more closely.
+    /// Returns the ground of the tile at nodes and along borders. `level` is the package's level
+    /// whose edges are used. Where the ground ends, this level may end earlier than the finest, so
+    /// the ground is sampled more densely there.
     pub(crate) fn samples(
         &self,
-        level: Looked,
-        ground: &Ground<'_>,
-    ) -> Result<Samples, QuantizedMeshError> {
+        level: SourceLevel,
+        ground: &GroundReader<'_>,
+    ) -> Result<TileSamples, QuantizedMeshError> {
         let last = self.side() - 1;
         let nodes_of =
             |side: usize| (0..side).flat_map(move |row| (0..side).map(move |c| [c, row]));
@@ -263,7 +263,7 @@ impl TileRaster {
             let at = self.at(column, row);
             if self.is_ground[at] {
                 let steps = [step(column), step(last - row)];
-                inside.push(Sample::new(steps, self.place(at), [at; 2]));
+                inside.push(GroundSample::new(steps, self.place(at), [at; 2]));
             }
         }
         let mut wanted: Vec<([u16; 2], [usize; 2])> = Vec::new();
@@ -280,37 +280,29 @@ impl TileRaster {
             on_sides.push(along.len());
             wanted.extend(along.into_iter().map(|step| self.on_side(side, step)));
         }
-        // All at once: tiles of the package are read once.
+        // All at once, so that tiles of the package are read once.
         let places: Vec<[f64; 2]> =
             wanted.iter().map(|(steps, _)| self.nodes.place_deg(self.tile, *steps)).collect();
         let heights_m = ground.heights_m(&places)?;
-        let found: Vec<Option<Sample>> = wanted
-            .into_iter()
-            .zip(places)
-            .zip(heights_m)
-            .map(|(((steps, between), [lon, lat]), height_m)| {
+        let mut found = wanted.into_iter().zip(places).zip(heights_m).map(
+            |(((steps, between), [lon, lat]), height_m)| {
                 let has_ground = !height_m.is_nan();
-                has_ground.then(|| Sample::new(steps, [lon, lat, height_m], between))
-            })
-            .collect();
-        let (more_inside, mut rest) = found.split_at(of_inside);
-        inside.extend(more_inside.iter().copied().flatten());
-        let mut borders = Vec::new();
-        for count in on_sides {
-            let (border, others) = rest.split_at(count);
-            borders.push(border.iter().copied().flatten().collect());
-            rest = others;
-        }
-        Ok(Samples { inside, borders })
+                has_ground.then(|| GroundSample::new(steps, [lon, lat, height_m], between))
+            },
+        );
+        inside.extend(found.by_ref().take(of_inside).flatten());
+        let border = |count| found.by_ref().take(count).flatten().collect();
+        Ok(TileSamples { inside, borders: on_sides.into_iter().map(border).collect() })
     }
 
-    /// Where the ground is looked at along a border, from the south or the west: at nodes, and where an edge of the package's level crosses the border,
-    /// because there it bends. Below the finest level, also at parts of cells.
+    /// Returns the steps at which the ground is sampled along a border, from the south or the west:
+    /// at nodes, and where an edge of the package's level crosses the border, because the ground
+    /// bends there. Below the finest level, also at parts of cells.
     fn border_steps(
         &self,
         side: Side,
-        level: Looked,
-        ground: &Ground<'_>,
+        level: SourceLevel,
+        ground: &GroundReader<'_>,
     ) -> Result<Vec<u16>, QuantizedMeshError> {
         let corners = self.nodes.corners_deg(self.tile);
         let ends = corners.map(|end| side.at(corners[side.far][side.across], end[1 - side.across]));
@@ -319,7 +311,7 @@ impl TileRaster {
             [step.floor() as u16, step.ceil() as u16]
         };
         let parts = if level.is_finest { 1 } else { self.nodes.parts };
-        let mut steps = Nodes { parts, ..self.nodes }.border_steps();
+        let mut steps = RasterNodes { parts, ..self.nodes }.border_steps();
         steps.extend(ground.crossings(ends, level.level)?.into_iter().flat_map(to_steps));
         steps.sort_unstable();
         steps.dedup();
@@ -333,7 +325,8 @@ impl TileRaster {
         grounds.iter().any(|is_ground| *is_ground != grounds[0])
     }
 
-    /// A place on a border. Its normal will come from the border's own nodes, which both tiles have.
+    /// Returns a place on a border. Its normal is interpolated between the border's own nodes,
+    /// which both tiles have.
     fn on_side(&self, side: Side, step: u16) -> ([u16; 2], [usize; 2]) {
         let last = self.side() - 1;
         let cell = self.nodes.cell_of(step) as usize;
@@ -344,7 +337,7 @@ impl TileRaster {
         (side.at(side.far as u16 * LAST_STEP, step), nodes)
     }
 
-    /// The north-western node of the cell that holds u and v.
+    /// Returns the north-western node of the cell that contains u and v.
     fn cell_at(&self, [u, v]: [u16; 2]) -> usize {
         let [column, from_south] = [u, v].map(|step| self.nodes.cell_of(step) as usize);
         self.at(column, self.side() - 2 - from_south)
@@ -369,25 +362,25 @@ impl Side {
         Self { across: 1, far: 1 },
     ];
 
-    /// A place by where it is across the side, and along it.
+    /// Returns a place, given by its coordinates across and along the side.
     fn at<T>(self, across: T, along: T) -> [T; 2] {
         if self.across == 0 { [across, along] } else { [along, across] }
     }
 }
 
-/// The package's level that is looked at.
+/// The package's level that is sampled.
 #[derive(Clone, Copy)]
-pub(crate) struct Looked {
+pub(crate) struct SourceLevel {
     pub(crate) level: u8,
     pub(crate) is_finest: bool,
 }
 
-/// The steps that are nearest to u and v.
+/// Returns the steps nearest to u and v.
 pub(crate) fn nearest_steps(uv: [f64; 2]) -> [u16; 2] {
     uv.map(|step| step.round().clamp(0.0, f64::from(LAST_STEP)) as u16)
 }
 
-/// The steps around u and v, the nearest first.
+/// Returns the steps around u and v, the nearest first.
 fn steps_around([u, v]: [f64; 2]) -> [[u16; 2]; 4] {
     let [west, south] = [u.floor(), v.floor()];
     let mut found = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]
@@ -397,15 +390,16 @@ fn steps_around([u, v]: [f64; 2]) -> [[u16; 2]; 4] {
     found.map(nearest_steps)
 }
 
-/// The ground of a tile, as its triangles must follow it.
-pub(crate) struct Samples {
-    /// Anywhere in the tile.
-    pub(crate) inside: Vec<Sample>,
-    /// Along each border, from the south or the west: the same for both tiles that share it.
-    pub(crate) borders: Vec<Vec<Sample>>,
+/// The ground of a tile that its triangles must follow.
+pub(crate) struct TileSamples {
+    /// Samples anywhere in the tile.
+    pub(crate) inside: Vec<GroundSample>,
+    /// Samples along each border, from the south or the west: the same for both tiles that share
+    /// it.
+    pub(crate) borders: Vec<Vec<GroundSample>>,
 }
 
-impl Samples {
+impl TileSamples {
     pub(crate) fn is_empty(&self) -> bool {
         self.inside.is_empty() && self.borders.iter().all(Vec::is_empty)
     }
@@ -413,7 +407,7 @@ impl Samples {
 
 /// A place with ground.
 #[derive(Clone, Copy)]
-pub(crate) struct Sample {
+pub(crate) struct GroundSample {
     /// u and v.
     pub(crate) steps: [u16; 2],
     /// Longitude, latitude and height above the ellipsoid.
@@ -426,9 +420,8 @@ pub(crate) struct Sample {
     pub(crate) up: [f64; 3],
 }
 
-impl Sample {
+impl GroundSample {
     fn new(steps: [u16; 2], place: [f64; 3], between: [usize; 2]) -> Self {
-        let [lon, lat, _] = place;
-        Self { steps, place, between, at_m: geocentric_m(place), up: up_at([lon, lat]) }
+        Self { steps, place, between, at_m: geocentric_m(place), up: up_at(place) }
     }
 }

@@ -1,13 +1,15 @@
-//! The grids of terrain tiles on the globe, by degrees and by Mercator, and the names of their tiles.
+//! The grids of terrain tiles on the globe, by degrees and by Mercator, and the names of their
+//! tiles.
 
 use std::{f64::consts::PI, fmt};
 
 use corniche_geom::{Seam, wgs84::SEMI_MAJOR_M};
 
-/// The largest value of u and v: they are 0 in the west and south of a tile and this in its east and north.
+/// The largest value of u and v: they are 0 in the west and south of a tile, and have this value in
+/// its east and north.
 pub(crate) const LAST_STEP: u16 = 32_767;
 
-/// The finest level that can be asked for: tiles of about a metre.
+/// The finest level that can be requested: tiles of about a metre.
 pub(crate) const FINEST: u8 = 24;
 
 /// How the globe is divided into terrain tiles.
@@ -19,12 +21,12 @@ pub enum Tiling {
     WebMercator,
 }
 
-/// Whether a point stands for a tile at the horizon.
+/// Whether a tile has a horizon occlusion point.
 #[derive(Clone, Copy)]
 pub(crate) enum Horizon {
-    /// One that is hidden only when the whole tile is.
+    /// The tile has a point that is hidden only when the whole tile is.
     Point,
-    /// None can: the tile is never hidden.
+    /// No such point exists: the tile is never hidden.
     None,
 }
 
@@ -49,7 +51,7 @@ impl fmt::Display for TerrainTile {
 }
 
 impl Tiling {
-    /// The CRS of the grid, as layer.json names it.
+    /// The CRS of the grid, with its name in layer.json.
     #[must_use]
     pub fn projection(self) -> &'static str {
         match self {
@@ -58,9 +60,11 @@ impl Tiling {
         }
     }
 
-    /// The error that CesiumJS takes ground of a level to have, metres: that of a raster of 65 × 65 heights.
+    /// The error that CesiumJS assumes for the ground of a level, metres: that of a raster of 65 ×
+    /// 65 heights.
     ///
-    /// Source: CesiumJS 1.145, `TerrainProvider.getEstimatedLevelZeroGeometricErrorForAHeightmap`, halved at each level.
+    /// Source: CesiumJS 1.145, `TerrainProvider.getEstimatedLevelZeroGeometricErrorForAHeightmap`,
+    /// halved at each level.
     #[must_use]
     pub fn level_error_m(self, level: u8) -> f64 {
         const QUALITY: f64 = 0.25;
@@ -85,7 +89,7 @@ impl Tiling {
         (0..self.columns(0) as u32).map(|x| TerrainTile { z: 0, x, y: 0 })
     }
 
-    /// Longitude of the western edge of a column. Exact, so that neighbours have the same.
+    /// Longitude of the western edge of a column. It is exact, so neighbours agree.
     pub(crate) fn lon_deg(self, level: u8, column: i64) -> f64 {
         let columns = self.columns(level);
         (180 * (2 * column - columns)) as f64 / columns as f64
@@ -103,12 +107,12 @@ impl Tiling {
         }
     }
 
-    /// Column of a longitude, which may be beyond ±180.
+    /// Column of a longitude, which may exceed ±180.
     pub(crate) fn column_of(self, level: u8, lon_deg: f64) -> i64 {
         ((lon_deg + 180.0) / 360.0 * self.columns(level) as f64).floor() as i64
     }
 
-    /// Row of a latitude; that of the edge for latitudes beyond the grid.
+    /// Row of a latitude; for latitudes beyond the grid, the row of its edge.
     pub(crate) fn row_of(self, level: u8, lat_deg: f64) -> i64 {
         let share = match self {
             Self::Geographic => (lat_deg + 90.0) / 180.0,
@@ -117,13 +121,14 @@ impl Tiling {
         ((share * Self::rows(level) as f64).floor() as i64).clamp(0, Self::rows(level) - 1)
     }
 
-    /// What stands for a tile at the horizon: nothing for one that is wider than half the globe.
+    /// Returns the kind of a tile's horizon occlusion point: none for a tile that is wider than
+    /// half the globe.
     pub(crate) fn horizon_of(self, tile: TerrainTile) -> Horizon {
         if self == Self::WebMercator && tile.z == 0 { Horizon::None } else { Horizon::Point }
     }
 }
 
-/// The degrees of a tile, in which u and v are fractions of steps.
+/// The degrees of a tile. u and v are fractions of steps in it.
 #[derive(Clone, Copy)]
 pub(crate) struct Square {
     corner_deg: [f64; 2],
@@ -132,7 +137,7 @@ pub(crate) struct Square {
 }
 
 impl Square {
-    /// u and v of a longitude and latitude, which may be beyond the tile.
+    /// u and v of a longitude and latitude, which may be outside the tile.
     pub(crate) fn uv_of(&self, [lon, lat]: [f64; 2]) -> [f64; 2] {
         let at = [self.seam.image(lon), lat];
         let share = |axis: usize| (at[axis] - self.corner_deg[axis]) / self.size_deg[axis];
@@ -146,40 +151,43 @@ impl Square {
     }
 }
 
-/// Whether u and v, in steps, are those of a place in a tile or on its border.
+/// Whether u and v, in steps, are inside a tile or on its border.
 pub(crate) fn is_in_tile(uv: [f64; 2]) -> bool {
     uv.iter().all(|step| (0.0..=f64::from(LAST_STEP)).contains(step))
 }
 
-/// The places of a level's rasters: a grid of nodes over the globe, so many along each side of a tile.
+/// The places of a level's rasters: a grid of nodes over the globe, with the same number along each
+/// side of a tile.
 ///
 /// ```text
 ///   node k of a tile, 0 to n      u = k · 32767 / n, rounded      node n of a tile is node 0 of the next
 /// ```
 ///
-/// Nodes lie where u and v can be, so that no vertex moves when it is written. Longitude and latitude are linear in u and v, in Mercator's tiles, too.
+/// Nodes are at possible values of u and v, so no vertex moves when it is written. Longitude and
+/// latitude are linear in u and v, also in Mercator tiles.
 #[derive(Clone, Copy)]
-pub(crate) struct Nodes {
+pub(crate) struct RasterNodes {
     pub(crate) tiling: Tiling,
     pub(crate) level: u8,
     /// Cells along each side of a tile.
     pub(crate) per_tile: i64,
-    /// Parts of a cell, each way, at whose ends the ground is looked at on borders and outlines.
+    /// Parts of a cell in each direction: at their ends the ground is sampled on borders and
+    /// outlines.
     pub(crate) parts: i64,
 }
 
-impl Nodes {
+impl RasterNodes {
     /// u or v of a node of a tile.
     pub(crate) fn step(self, node: i64) -> u16 {
         ((2 * node * i64::from(LAST_STEP) + self.per_tile) / (2 * self.per_tile)) as u16
     }
 
-    /// How far node `node` of a tile is across it, from 0 to 1.
+    /// The position of node `node` across a tile, from 0 to 1.
     pub(crate) fn share(self, node: i64) -> f64 {
         f64::from(self.step(node)) / f64::from(LAST_STEP)
     }
 
-    /// Longitude of a column of nodes, counted over the globe and around it.
+    /// Longitude of a column of nodes; columns are counted over the globe and around it.
     pub(crate) fn lon_deg(self, i: i64) -> f64 {
         let Self { tiling, level, per_tile, .. } = self;
         let column = i.div_euclid(per_tile).rem_euclid(tiling.columns(level));
@@ -187,7 +195,8 @@ impl Nodes {
         west + (east - west) * self.share(i.rem_euclid(per_tile))
     }
 
-    /// Latitude of a row of nodes, counted from the south; beyond the grid, that of its edge.
+    /// Latitude of a row of nodes, counted from the south; beyond the grid, the latitude of its
+    /// edge.
     pub(crate) fn lat_deg(self, j: i64) -> f64 {
         let Self { tiling, level, per_tile, .. } = self;
         let j = j.clamp(0, Tiling::rows(level) * per_tile);
@@ -196,7 +205,8 @@ impl Nodes {
         south + (north - south) * self.share(j.rem_euclid(per_tile))
     }
 
-    /// Longitudes and latitudes of a rectangle of nodes, given by its south-western and north-eastern one, row by row from the south.
+    /// Longitudes and latitudes of a rectangle of nodes, given by its south-western and
+    /// north-eastern node, row by row from the south.
     pub(crate) fn places_deg(
         self,
         [west, south]: [i64; 2],
@@ -215,10 +225,11 @@ impl Nodes {
         })
     }
 
-    /// Longitude and latitude at u and v of a tile. On a border they are the same for both tiles, to the last bit.
+    /// Longitude and latitude at u and v of a tile. On a border they are identical for both tiles,
+    /// to the last bit.
     pub(crate) fn place_deg(self, tile: TerrainTile, [u, v]: [u16; 2]) -> [f64; 2] {
         let [from, to] = self.corners_deg(tile);
-        // What two tiles have in common is at the same place in both.
+        // Common places of two tiles are identical in both.
         let of = |axis: usize, step: u16, index: u32, node_deg: fn(Self, i64) -> f64| {
             if step == LAST_STEP {
                 return node_deg(self, (i64::from(index) + 1) * self.per_tile);
@@ -235,14 +246,15 @@ impl Nodes {
         Square { corner_deg: [west, south], size_deg: [east - west, north - south], seam }
     }
 
-    /// The cell along a side that holds u or v.
+    /// The cell along a side that contains u or v.
     pub(crate) fn cell_of(self, step: u16) -> i64 {
         let guess = i64::from(step) * self.per_tile / i64::from(LAST_STEP);
         let cell = if self.step(guess) > step { guess - 1 } else { guess };
         cell.clamp(0, self.per_tile - 1)
     }
 
-    /// Places inside a cell, given by its column and its row from the south: as many as parts meet.
+    /// Returns the places inside a cell at which its parts meet. The cell is given by its column
+    /// and its row from the south.
     pub(crate) fn inside_cell(self, cell: [usize; 2]) -> impl Iterator<Item = [u16; 2]> {
         let at = move |axis: usize, part: i64| self.part_of_cell(cell[axis] as i64, part);
         let inner = 1..self.parts;
@@ -254,7 +266,7 @@ impl Nodes {
         (from + (to - from) * part / self.parts) as u16
     }
 
-    /// Steps from a border's start to its end, so many parts to a cell.
+    /// Steps from a border's start to its end, with this number of parts to a cell.
     pub(crate) fn border_steps(self) -> Vec<u16> {
         let inside = 0..self.per_tile * self.parts;
         let mut steps: Vec<u16> =
@@ -263,7 +275,7 @@ impl Nodes {
         steps
     }
 
-    /// The same one level up, with cells twice as wide.
+    /// Returns the grid one level up, with cells twice as wide.
     pub(crate) fn above(self) -> Option<Self> {
         (self.level > 0).then(|| Self { level: self.level - 1, ..self })
     }

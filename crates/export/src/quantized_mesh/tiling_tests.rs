@@ -1,6 +1,6 @@
 //! Both sides of a tile border agree to the last bit, and errors are those that CesiumJS assumes.
 
-#![expect(clippy::float_cmp, reason = "the same to the last bit is what is tested")]
+#![expect(clippy::float_cmp, reason = "the test checks equality to the last bit")]
 
 use proptest::prelude::*;
 
@@ -8,7 +8,7 @@ use super::*;
 
 const BOTH: [Tiling; 2] = [Tiling::Geographic, Tiling::WebMercator];
 
-/// The figures that CesiumJS 1.145 has for its two grids, divided by two at each level.
+/// The values of CesiumJS 1.145 for its two grids, divided by two at each level.
 #[test]
 fn errors_are_those_that_cesium_assumes() {
     let near = |error_m: f64, known_m: f64| (error_m - known_m).abs() < 1e-3;
@@ -34,7 +34,7 @@ fn edges_of_the_globe() {
 }
 
 proptest! {
-    /// A place lies between the edges of its column and row.
+    /// A place is between the edges of its column and row.
     #[test]
     fn places_lie_in_their_tile(lon in -180.0..180.0_f64, lat in -85.0..85.0_f64, level in 0_u8..20) {
         for tiling in BOTH {
@@ -51,7 +51,7 @@ proptest! {
         per_tile in prop::sample::select(vec![16_i64, 64, 256]),
     ) {
         for tiling in BOTH {
-            let nodes = Nodes { tiling, level, per_tile, parts: 4 };
+            let nodes = RasterNodes { tiling, level, per_tile, parts: 4 };
             let columns = tiling.columns(level) as u32;
             let rows = Tiling::rows(level) as u32;
             let tile = TerrainTile { z: level, x: x % columns, y: y % (rows - 1) };
@@ -62,11 +62,11 @@ proptest! {
         }
     }
 
-    /// u and v of a place are found again, and their cell holds them.
+    /// u and v of a place are recovered, and their cell contains them.
     #[test]
     fn steps_are_found_again(u in 1..LAST_STEP, v in 1..LAST_STEP, x in 0_u32..16, y in 0_u32..8) {
         for tiling in BOTH {
-            let nodes = Nodes { tiling, level: 4, per_tile: 64, parts: 4 };
+            let nodes = RasterNodes { tiling, level: 4, per_tile: 64, parts: 4 };
             let tile = TerrainTile { z: 4, x: x % tiling.columns(4) as u32, y };
             let square = nodes.square_of(tile);
             let found = square.uv_of(nodes.place_deg(tile, [u, v]));
@@ -82,7 +82,7 @@ proptest! {
 #[test]
 fn borders_are_looked_at_from_end_to_end() {
     for (per_tile, parts) in [(16, 32), (64, 5), (256, 8)] {
-        let nodes = Nodes { tiling: Tiling::Geographic, level: 9, per_tile, parts };
+        let nodes = RasterNodes { tiling: Tiling::Geographic, level: 9, per_tile, parts };
         let steps = nodes.border_steps();
         assert_eq!((steps[0], steps[steps.len() - 1]), (0, LAST_STEP));
         assert_eq!(steps.len() as i64, per_tile * parts + 1);
@@ -90,7 +90,8 @@ fn borders_are_looked_at_from_end_to_end() {
         assert!((0..=per_tile).all(|node| steps.binary_search(&nodes.step(node)).is_ok()));
     }
     assert_eq!(
-        Nodes { tiling: Tiling::Geographic, level: 9, per_tile: 16, parts: 4 }.cell_of(LAST_STEP),
+        RasterNodes { tiling: Tiling::Geographic, level: 9, per_tile: 16, parts: 4 }
+            .cell_of(LAST_STEP),
         15
     );
 }

@@ -1,7 +1,6 @@
-//! A package is written as quantized-mesh terrain tiles into an empty folder.
+//! Writes a package as quantized-mesh terrain tiles into an empty folder.
 
 use std::{
-    borrow::Cow,
     collections::BTreeSet,
     fs,
     io::{self, Write as _},
@@ -16,36 +15,40 @@ use flate2::{Compression, write::GzEncoder};
 use spade::InsertionError;
 
 use super::{
-    available::{Block, blocks},
+    available::{TileRectangle, blocks},
     comparison::{Comparison, Point, PointFrame},
     encode::encode,
-    ground::{Ground, Kept},
+    ground::{GroundReader, SharedGroundCache},
     layer::{LAYER, layer, metadata},
-    mesh::{Deviation, Mesh, SHARE_OF_SAMPLES, SHARE_OF_VERTICES, tin_of},
+    mesh::{Mesh, MeshDeviation, SHARE_OF_SAMPLES, SHARE_OF_VERTICES, tin_of},
     quantized_mesh_request::{
         QuantizedMeshLevel, QuantizedMeshPlan, QuantizedMeshRequest, QuantizedMeshSummary,
     },
-    raster::{Looked, TileRaster},
-    tiling::{Nodes, TerrainTile, Tiling},
+    raster::{HeightRaster, SourceLevel},
+    tiling::{RasterNodes, TerrainTile, Tiling},
 };
 use crate::{
-    error::{CoordinatesError, QuantizedMeshError, SelectionError},
-    places::{Coordinates, Places},
+    error::{QuantizedMeshError, SelectionError},
+    places::{FeatureCoordinates, Places},
 };
 
-/// Cells along a tile's sides: the fewest, and the most. What lies between nodes is seen at vertices and edges of the package's own triangles.
+/// The fewest and the most cells along a tile's sides. Detail between raster nodes is found at
+/// vertices and edges of the package's triangles.
 const CELLS: [i64; 2] = [16, 64];
-/// The package's cells along one of a tile, at most, as long as tiles have few enough cells.
+/// The most cells of the package per cell of a tile, while tiles have few enough cells.
 const PACKAGE_CELLS: f64 = 2.0;
-/// From how many of the package's tiles in a row on a tile is made without others beside it.
+/// If a tile covers this many of the package's tiles in a row, it is created alone, not
+/// concurrently with others.
 const WIDE_TILES: i64 = 4;
-/// Parts of a cell on borders and where the ground ends, the fewest and the most.
+/// The fewest and the most parts of a cell on borders and where the ground ends.
 const PARTS: [f64; 2] = [4.0, 32.0];
 
-/// Writes a package as terrain tiles into an empty folder, as planned. After an error what is in it is of no use.
+/// Writes a package as terrain tiles into an empty folder, as planned. After an error the content
+/// of the folder is incomplete.
 ///
 /// # Errors
-/// When heights cannot be told above the ellipsoid, the package has no ground or is damaged, or something cannot be written.
+/// When heights above the ellipsoid cannot be computed, the package has no ground or is corrupt, or
+/// something cannot be written.
 pub fn export_quantized_mesh(
     package: &FilePackage,
     (request, plan): (&QuantizedMeshRequest, QuantizedMeshPlan),
@@ -54,32 +57,33 @@ pub fn export_quantized_mesh(
 ) -> Result<QuantizedMeshSummary, QuantizedMeshError> {
     let manifest = package.manifest();
     let (finest, candidates) = (plan.finest(), plan.candidates);
-    let heights = heights_in_words(manifest, request.coordinates)?;
-    let job = Job { package, kept: &Kept::new(), request, finest };
-    let writer = Writer { job: &job, folder, observer };
+    let mut heights = Places::new(manifest, request.coordinates)?.heights;
+    if request.coordinates == FeatureCoordinates::Wgs84 {
+        heights = format!("{heights} (in the package: {})", manifest.vertical.datum);
+    }
+    let job = Job { package, kept: &SharedGroundCache::new(), request, finest };
+    let make = |tiles: &[TerrainTile], available: Available<'_>| {
+        job.write_all((tiles, available), folder, observer)
+    };
     let total = with_ancestors(request.tiling, &candidates).len() as u64;
     observer.begin(Stage::ExportTiles, Some(total));
-    // Which tiles have ground is told by those of the finest level.
-    let (made, finest_tiles) = {
-        let candidates = in_curve_order(&candidates);
-        let made = writer.make(&candidates, None)?;
-        let tiles: BTreeSet<TerrainTile> = made.iter().map(|(tile, _)| *tile).collect();
-        (made, tiles)
-    };
+    // The tiles of the finest level determine which tiles have ground.
+    let made = make(&in_curve_order(&candidates), None)?;
     if made.is_empty() {
         return Err(SelectionError::no_ground(package).into());
     }
+    let finest_tiles: BTreeSet<TerrainTile> = made.iter().map(|(tile, _)| *tile).collect();
     let tiles = with_ancestors(request.tiling, &finest_tiles);
     let above = tiles.difference(&finest_tiles).copied().collect();
     let available = blocks(&tiles);
     let above = in_curve_order(&above);
     let done = candidates.len() as u64;
     observer.reached(Stage::ExportTiles, done, done + above.len() as u64);
-    let coarser = writer.make(&above, Some(&available))?;
+    let coarser = make(&above, Some(&available))?;
     observer.end(Stage::ExportTiles);
     let mut levels: Vec<QuantizedMeshLevel> =
         (0..=finest).map(|level| job.empty_level(level)).collect();
-    let mut deviations = vec![Deviation::default(); levels.len()];
+    let mut deviations = vec![MeshDeviation::default(); levels.len()];
     for (tile, made) in made.iter().chain(&coarser) {
         let level = usize::from(tile.z);
         levels[level].tiles += 1;
@@ -93,25 +97,12 @@ pub fn export_quantized_mesh(
         level.deviation_rms_m = (deviation.squares_m2 / deviation.places.max(1) as f64).sqrt();
     }
     let summary = QuantizedMeshSummary { levels, heights };
-    let text = serde_json::to_vec_pretty(&layer(manifest, request, &available, &summary))
-        .map_err(|error| QuantizedMeshError::Write { source: error.into() })?;
-    fs::write(folder.join(LAYER), text).map_err(not_written)?;
+    let text = serde_json::to_vec_pretty(&layer(manifest, request, &available, &summary));
+    fs::write(folder.join(LAYER), text.map_err(io::Error::from)?)?;
     Ok(summary)
 }
 
-fn heights_in_words(
-    manifest: &Manifest,
-    coordinates: Coordinates,
-) -> Result<String, CoordinatesError> {
-    let places = Places::new(manifest, coordinates)?;
-    let datum = &manifest.vertical.datum;
-    Ok(match coordinates {
-        Coordinates::Wgs84 => format!("{} (in the package: {datum})", places.heights),
-        _ => places.heights.clone(),
-    })
-}
-
-/// The tiles, all above them, and the roots, which a viewer asks for in any case.
+/// Returns the tiles, all tiles above them, and the roots, which a viewer requests in any case.
 pub(crate) fn with_ancestors(
     tiling: Tiling,
     tiles: &BTreeSet<TerrainTile>,
@@ -126,7 +117,8 @@ pub(crate) fn with_ancestors(
     all
 }
 
-/// Finest tiles first, and neighbours together, so that tiles of the package are read seldom.
+/// Sorts the finest tiles first, and neighbours together, so that tiles of the package are read
+/// seldom.
 fn in_curve_order(tiles: &BTreeSet<TerrainTile>) -> Vec<TerrainTile> {
     let key = |tile: &TerrainTile| {
         let bits = (0..32).map(|bit| {
@@ -140,113 +132,96 @@ fn in_curve_order(tiles: &BTreeSet<TerrainTile>) -> Vec<TerrainTile> {
     ordered
 }
 
-/// A tile: its bytes, or how many of them were written.
-struct Made<B> {
+/// An encoded tile.
+struct EncodedMesh {
     triangles: u64,
-    bytes: B,
-    deviation: Deviation,
+    /// The size of its file.
+    bytes: u64,
+    deviation: MeshDeviation,
 }
 
-/// What is available beneath tiles that are written even without ground; `None` for tiles that are then left out.
-type Available<'a> = Option<&'a [Vec<Block>]>;
+/// The available tiles beneath tiles that are written even without ground; `None` if tiles without
+/// ground are skipped.
+type Available<'a> = Option<&'a [Vec<TileRectangle>]>;
 
 struct Job<'a> {
     package: &'a FilePackage,
-    kept: &'a Kept,
+    kept: &'a SharedGroundCache,
     request: &'a QuantizedMeshRequest,
     /// The finest level.
     finest: u8,
 }
 
-struct Writer<'a> {
-    job: &'a Job<'a>,
-    folder: &'a Path,
-    observer: &'a dyn Observer,
-}
-
-impl Writer<'_> {
-    fn make(
-        &self,
-        tiles: &[TerrainTile],
-        available: Available<'_>,
-    ) -> Result<Vec<(TerrainTile, Made<u64>)>, QuantizedMeshError> {
-        let (job, manifest) = (self.job, self.job.package.manifest());
-        let wide = tiles.partition_point(|tile| !is_wide(manifest, job.request.tiling, tile.z));
-        let mut made = Vec::with_capacity(tiles.len());
-        for (part, threads) in [(&tiles[..wide], job.request.threads), (&tiles[wide..], 1)] {
-            made.extend(make_all(
-                (self.observer, Stage::ExportTiles),
-                threads,
-                part,
-                || job.ground(),
-                |ground, tile| self.tile(*tile, ground, available),
-            )?);
-        }
-        Ok(tiles.iter().zip(made).filter_map(|(tile, made)| Some((*tile, made?))).collect())
-    }
-
-    fn tile(
-        &self,
-        tile: TerrainTile,
-        ground: &Ground<'_>,
-        available: Available<'_>,
-    ) -> Result<Option<Made<u64>>, QuantizedMeshError> {
-        let made = self.job.tile(tile, ground, available)?;
-        let Some(Made { triangles, bytes, deviation }) = made else { return Ok(None) };
-        let bytes = self.write(tile, &bytes).map_err(not_written)?;
-        Ok(Some(Made { triangles, bytes, deviation }))
-    }
-
-    fn write(&self, TerrainTile { z, x, y }: TerrainTile, bytes: &[u8]) -> io::Result<u64> {
-        let column = self.folder.join(z.to_string()).join(x.to_string());
-        fs::create_dir_all(&column)?;
-        let path = column.join(format!("{y}.terrain"));
-        let bytes = packed(self.job.request, bytes)?;
-        fs::write(path, &bytes)?;
-        Ok(bytes.len() as u64)
-    }
-}
-
-/// A file's bytes, compressed where that is asked for.
-fn packed<'a>(request: &QuantizedMeshRequest, bytes: &'a [u8]) -> io::Result<Cow<'a, [u8]>> {
+/// Returns a file's bytes, compressed if requested.
+fn packed(request: &QuantizedMeshRequest, bytes: Vec<u8>) -> io::Result<Vec<u8>> {
     if !request.gzip {
-        return Ok(bytes.into());
+        return Ok(bytes);
     }
     let mut packed = GzEncoder::new(Vec::new(), Compression::default());
-    packed.write_all(bytes)?;
-    Ok(packed.finish()?.into())
+    packed.write_all(&bytes)?;
+    packed.finish()
 }
 
-fn not_written(source: io::Error) -> QuantizedMeshError {
-    QuantizedMeshError::Write { source }
-}
-
-/// The mean size of the files of some tiles of the finest level with ground, which are made for it; `None` where none of them has any.
+/// Returns the mean file size of some tiles of the finest level with ground, which are created for
+/// this purpose; `None` if none of them has ground.
 pub(crate) fn mean_bytes(
     package: &FilePackage,
     (request, finest): (&QuantizedMeshRequest, u8),
     tiles: &[TerrainTile],
 ) -> Result<Option<f64>, QuantizedMeshError> {
-    let job = Job { package, kept: &Kept::new(), request, finest };
+    let job = Job { package, kept: &SharedGroundCache::new(), request, finest };
     let ground = job.ground()?;
     let (mut files, mut bytes) = (0_u32, 0.0);
     for tile in tiles {
-        if let Some(encoded) = job.tile(*tile, &ground, None)? {
+        if let Some((made, _)) = job.tile(*tile, &ground, None)? {
             files += 1;
-            bytes += packed(request, &encoded.bytes).map_err(not_written)?.len() as f64;
+            bytes += made.bytes as f64;
         }
     }
     Ok((files > 0).then(|| bytes / f64::from(files)))
 }
 
 impl<'a> Job<'a> {
-    fn ground(&self) -> Result<Ground<'a>, QuantizedMeshError> {
-        let places = Places::new(self.package.manifest(), self.request.coordinates)?;
-        Ok(Ground::new(self.package, self.kept, places))
+    /// Creates tiles and writes each to its file; tiles without ground are skipped, unless they are
+    /// requested.
+    fn write_all(
+        &self,
+        (tiles, available): (&[TerrainTile], Available<'_>),
+        folder: &Path,
+        observer: &dyn Observer,
+    ) -> Result<Vec<(TerrainTile, EncodedMesh)>, QuantizedMeshError> {
+        let Self { package, request, .. } = self;
+        let is_narrow = |tile: &TerrainTile| !is_wide(package.manifest(), request.tiling, tile.z);
+        let (narrow, wide) = tiles.split_at(tiles.partition_point(is_narrow));
+        let mut made = Vec::with_capacity(tiles.len());
+        for (part, threads) in [(narrow, request.threads), (wide, 1)] {
+            made.extend(make_all(
+                (observer, Stage::ExportTiles),
+                threads,
+                part,
+                || self.ground(),
+                |ground, tile| {
+                    let Some((made, file)) = self.tile(*tile, ground, available)? else {
+                        return Ok(None);
+                    };
+                    let TerrainTile { z, x, y } = tile;
+                    let column = folder.join(z.to_string()).join(x.to_string());
+                    fs::create_dir_all(&column)?;
+                    fs::write(column.join(format!("{y}.terrain")), file)?;
+                    Ok(Some(made))
+                },
+            )?);
+        }
+        Ok(tiles.iter().zip(made).filter_map(|(tile, made)| Some((*tile, made?))).collect())
     }
 
-    /// The error to which a level is meshed: that which a viewer assumes. The finest level has all that the package has where its raster is as fine as
-    /// that: nothing finer comes after it.
+    fn ground(&self) -> Result<GroundReader<'a>, QuantizedMeshError> {
+        let places = Places::new(self.package.manifest(), self.request.coordinates)?;
+        Ok(GroundReader::new(self.package, self.kept, places))
+    }
+
+    /// The error to which a level is meshed: the one that a viewer assumes. The finest level has
+    /// the package's full detail if its raster is as fine, because nothing finer follows it.
     fn error_m(&self, level: u8) -> f64 {
         let (manifest, tiling) = (self.package.manifest(), self.request.tiling);
         let assumed_m = tiling.level_error_m(level);
@@ -259,13 +234,13 @@ impl<'a> Job<'a> {
     fn tile(
         &self,
         tile: TerrainTile,
-        ground: &Ground<'_>,
+        ground: &GroundReader<'_>,
         available: Available<'_>,
-    ) -> Result<Option<Made<Vec<u8>>>, QuantizedMeshError> {
+    ) -> Result<Option<(EncodedMesh, Vec<u8>)>, QuantizedMeshError> {
         let tiling = self.request.tiling;
         let error_m = self.error_m(tile.z);
         let nodes = nodes(self.package.manifest(), tiling, tile.z);
-        let raster = TileRaster::sample(nodes, tile, ground)?;
+        let raster = HeightRaster::sample(nodes, tile, ground)?;
         let level = self.sampled_level(error_m);
         let samples = raster.samples(level, ground)?;
         let frame = PointFrame::new(nodes.square_of(tile));
@@ -295,15 +270,18 @@ impl<'a> Job<'a> {
         let mesh = mesh.to_tile();
         let metadata = metadata(self.request, available.unwrap_or_default(), tile);
         let bytes = encode(&mesh, metadata.as_deref(), tiling.horizon_of(tile));
-        Ok(Some(Made { triangles: mesh.triangles.len() as u64, bytes, deviation }))
+        let file = packed(self.request, bytes)?;
+        let triangles = mesh.triangles.len() as u64;
+        Ok(Some((EncodedMesh { triangles, bytes: file.len() as u64, deviation }, file)))
     }
 
-    /// The coarsest level of the package whose ground is near enough to the finest to tell where tiles with this error need vertices.
-    fn sampled_level(&self, error_m: f64) -> Looked {
+    /// Returns the coarsest level of the package whose ground is near enough to the finest to
+    /// decide where tiles with this error need vertices.
+    fn sampled_level(&self, error_m: f64) -> SourceLevel {
         let Manifest { levels, frame, .. } = self.package.manifest();
         let near = |level: &&LevelRecord| level.geometric_error_m <= error_m * SHARE_OF_SAMPLES;
         let level = levels.iter().find(near).map_or(frame.max_level(), |level| level.level);
-        Looked { level, is_finest: level == frame.max_level() }
+        SourceLevel { level, is_finest: level == frame.max_level() }
     }
 
     fn empty_level(&self, level: u8) -> QuantizedMeshLevel {
@@ -316,18 +294,18 @@ impl<'a> Job<'a> {
     }
 }
 
-/// Adds vertices to a mesh until it is within `limit_m` of the ground: the farthest place of each triangle, again and again. `at_steps` tells the ground at the
-/// steps to which places are rounded.
+/// Adds vertices to a mesh until it is within `limit_m` of the ground: the farthest place of each
+/// triangle, repeatedly. `at_steps` returns the ground at the steps to which places are rounded.
 fn follow(
     comparison: &mut Comparison,
     mesh: &mut Mesh,
-    raster: &TileRaster,
+    raster: &HeightRaster,
     limit_m: f64,
     inserted: impl Fn(InsertionError) -> QuantizedMeshError,
     at_steps: impl Fn(&[[f64; 2]]) -> Result<Vec<Option<[f64; 3]>>, QuantizedMeshError>,
 ) -> Result<(), QuantizedMeshError> {
     loop {
-        // Points first: there are many, and only those of triangles that changed are looked at again.
+        // Points first: there are many, and only those of changed triangles are checked again.
         let points = comparison.far_points(limit_m);
         let far = if points.is_empty() { comparison.far_crossings(limit_m) } else { points };
         if far.is_empty() {
@@ -348,18 +326,20 @@ fn follow(
     }
 }
 
-/// Whether a level's tiles lie on so many of the package's that one is made after the other, to save memory.
+/// Whether a level's tiles cover so many of the package's that they are created one after the
+/// other, to save memory.
 pub(crate) fn is_wide(manifest: &Manifest, tiling: Tiling, level: u8) -> bool {
     let [side_m, cell_m] = side_and_cell_m(manifest, tiling, level);
     side_m > cell_m * (TILE_CELLS * WIDE_TILES) as f64
 }
 
-/// Whether the finest raster of tiles with such a side has cells no longer than the package's.
+/// Whether the finest raster of tiles with this side has cells no longer than the package's.
 pub(crate) fn has_cells_of(side_m: f64, cell_m: f64) -> bool {
     side_m <= cell_m * CELLS[1] as f64
 }
 
-/// The length of a side of a level's tiles and that of the package's cells, in the middle of the data.
+/// Returns the length of a side of a level's tiles and that of the package's cells, in the middle
+/// of the data.
 pub(crate) fn side_and_cell_m(manifest: &Manifest, tiling: Tiling, level: u8) -> [f64; 2] {
     let [lon, lat] = manifest.coordinates.wgs84_from_working(manifest.data_bounds.center());
     let [parallel_m, meridian_m] = radii_m(lat);
@@ -374,16 +354,17 @@ pub(crate) fn side_and_cell_m(manifest: &Manifest, tiling: Tiling, level: u8) ->
     [side_m, (cell.east_m / scale_x).min(cell.north_m / scale_y)]
 }
 
-/// The raster of a level: cells no longer than some of the package's, as long as tiles have few enough of them.
-fn nodes(manifest: &Manifest, tiling: Tiling, level: u8) -> Nodes {
+/// Returns the raster of a level: cells no longer than some of the package's, while tiles have few
+/// enough of them.
+fn nodes(manifest: &Manifest, tiling: Tiling, level: u8) -> RasterNodes {
     let [side_m, cell_m] = side_and_cell_m(manifest, tiling, level);
     let [fewest, most] = CELLS;
     let mut per_tile = fewest;
     while per_tile < most && side_m / per_tile as f64 > PACKAGE_CELLS * cell_m {
         per_tile *= 2;
     }
-    // As finely as the package has the ground.
+    // With the detail of the package's ground.
     let [least, largest] = PARTS;
     let cells = (side_m / per_tile as f64 / cell_m).ceil().clamp(least, largest);
-    Nodes { tiling, level, per_tile, parts: cells as i64 }
+    RasterNodes { tiling, level, per_tile, parts: cells as i64 }
 }

@@ -1,4 +1,4 @@
-//! The way from place to place, or along a whole road.
+//! Finds the route from place to place, or along a whole road.
 
 use std::{collections::BTreeSet, fmt::Write as _};
 
@@ -8,77 +8,80 @@ use corniche_roads::FunctionalRoadClass;
 use super::graph::{NONE, PlaceOnLink, RoadGraph, ShortestWays};
 use crate::{
     error::RouteError,
-    plane::along,
+    plane::{along, nearest_point},
     profile::{Course, CourseLeg},
     road_query::{NamedWays, RoadQuery},
 };
 
-/// A road is looked for as far as this from a place, metres.
+/// The distance from a place within which a road is searched, metres.
 const MOST_OFF_M: f64 = 500.0;
-/// So far a road may be interrupted by others, such as a roundabout or a square without its number, metres.
+/// The longest interruption of a road by other roads, such as a roundabout or a square without its
+/// number, metres.
 const MOST_GAP_M: f64 = 300.0;
-/// Roads with one number or name, of which one ends so near to another, are one: the carriageways of a road, metres.
+/// Roads with one number or name are one road if an end of one is this near to another: the
+/// carriageways of a road, metres.
 const BESIDE_M: f64 = 100.0;
-/// Roads that are so much farther from a place than the nearest one may be meant as well, metres: the two carriageways of a road.
+/// Roads that are farther from a place than the nearest one by at most this are candidates as well,
+/// metres: the two carriageways of a road.
 const HARDLY_FARTHER_M: f64 = 25.0;
-/// One of several roads is meant if it is so much of them all.
+/// If several roads match, one of them is chosen if it has this share of the total length.
 const MOST_OF_THEM: f64 = 0.9;
-/// Pairs of ends are looked at if they are as far apart as this share of those that are farthest.
+/// Pairs of ends are tried if their distance is at least this share of the largest one.
 const ALMOST_FARTHEST: f64 = 0.95;
-/// From so many ends the way to others is looked for.
+/// The number of ends from which routes to others are searched.
 const MOST_STARTS: usize = 8;
 
-/// What is asked for.
+/// The request for a route.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RouteRequest {
-    /// The level whose roads are followed; `None` is the finest.
+    /// The level whose roads are followed; `None` means the finest.
     pub level: Option<u8>,
-    /// The road, if one is named.
+    /// The road, if the user names one.
     pub road: Option<RoadQuery>,
-    /// Longitude and latitude of both ends; without them the whole road that is named.
+    /// Longitude and latitude of both ends; `None` for the whole named road.
     pub ends_deg: Option<[[f64; 2]; 2]>,
     /// Classes of roads that are followed.
     pub classes: Vec<FunctionalRoadClass>,
 }
 
-/// A way through a network.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Route {
-    /// What is followed.
+/// A route through a network.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct NetworkRoute {
+    /// The lines that are followed.
     pub course: Course,
     /// True length in plan, metres.
     pub length_m: f64,
-    /// What of it are roads other than the one that is named, metres.
+    /// The length of roads other than the named one, metres.
     pub others_m: f64,
-    /// True length in plan of all ways of the road, if one is named as a whole, metres.
+    /// True length in plan of all ways of the road, if a whole road is requested, metres.
     pub road_m: Option<f64>,
     /// Other roads that have the same number or name, in words.
     pub same_name: Vec<String>,
-    /// How far both ends are from the places that were given, metres.
+    /// The distances of both ends from the given places, metres.
     pub off_m: [f64; 2],
 }
 
-/// Looks for ways in a graph.
+/// Finds routes in a graph.
 pub(crate) struct Finder<'a> {
     pub(crate) graph: &'a RoadGraph<'a>,
     pub(crate) roads: &'a NamedWays,
     pub(crate) road: Option<&'a RoadQuery>,
 }
 
-/// A stretch of an edge, from one distance to another; against its way where the first is the larger one.
+/// A stretch of an edge, from one distance to another; against its way if the first is larger.
 #[derive(Clone, Copy)]
-struct Stretch {
+struct EdgeStretch {
     edge: usize,
     from_m: f64,
     to_m: f64,
 }
 
 impl Finder<'_> {
-    /// The shortest way between two places.
-    pub(crate) fn between(&self, ends_deg: [[f64; 2]; 2]) -> Result<Route, RouteError> {
+    /// Returns the shortest route between two places.
+    pub(crate) fn between(&self, ends_deg: [[f64; 2]; 2]) -> Result<NetworkRoute, RouteError> {
         let [from_deg, to_deg] = ends_deg;
         let (from, to) = (self.near(from_deg)?, self.near(to_deg)?);
-        // A road beside the nearest one costs what it is farther away, twice: there and back.
+        // A road near the nearest one costs twice its additional distance: there and back.
         let cost_m = |place: &PlaceOnLink, of: &[PlaceOnLink]| 2.0 * (place.off_m - of[0].off_m);
         let mut starts = Vec::with_capacity(2 * from.len());
         for place in &from {
@@ -88,8 +91,8 @@ impl Finder<'_> {
             starts.push((edge.ends[1], begun_m + edge.weight_m(edge.length_m - place.along_m)));
         }
         let ways = self.graph.shortest(&starts, |_| true);
-        let mut best: Option<(f64, Vec<Stretch>, [f64; 2])> = None;
-        let mut look = |cost_m: f64, stretches: Vec<Stretch>, off_m: [f64; 2]| {
+        let mut best: Option<(f64, Vec<EdgeStretch>, [f64; 2])> = None;
+        let mut look = |cost_m: f64, stretches: Vec<EdgeStretch>, off_m: [f64; 2]| {
             if cost_m.is_finite() && best.as_ref().is_none_or(|(least_m, ..)| cost_m < *least_m) {
                 best = Some((cost_m, stretches, off_m));
             }
@@ -100,7 +103,7 @@ impl Finder<'_> {
             for start in from.iter().filter(|start| start.edge == goal.edge) {
                 let run_m = edge.weight_m((goal.along_m - start.along_m).abs());
                 let stretch =
-                    Stretch { edge: goal.edge, from_m: start.along_m, to_m: goal.along_m };
+                    EdgeStretch { edge: goal.edge, from_m: start.along_m, to_m: goal.along_m };
                 look(
                     cost_m(start, &from) + own_m + run_m,
                     vec![stretch],
@@ -120,8 +123,8 @@ impl Finder<'_> {
                 } else {
                     self.graph.edges[place.edge].length_m
                 };
-                let first = Stretch { edge: place.edge, from_m: place.along_m, to_m: first_m };
-                let last = Stretch { edge: goal.edge, from_m: end_m, to_m: goal.along_m };
+                let first = EdgeStretch { edge: place.edge, from_m: place.along_m, to_m: first_m };
+                let last = EdgeStretch { edge: goal.edge, from_m: end_m, to_m: goal.along_m };
                 let mut stretches = vec![first];
                 stretches.extend(self.to_node(&ways, node));
                 stretches.push(last);
@@ -135,11 +138,11 @@ impl Finder<'_> {
         if route.course.legs.is_empty() {
             return Err(RouteError::OnePlace);
         }
-        Ok(Route { off_m, ..route })
+        Ok(NetworkRoute { off_m, ..route })
     }
 
-    /// The way along the whole road that is named, from its western to its eastern end.
-    pub(crate) fn whole(&self) -> Result<Route, RouteError> {
+    /// Returns the route along the whole named road, from its western to its eastern end.
+    pub(crate) fn whole(&self) -> Result<NetworkRoute, RouteError> {
         let mut matched = self.matched();
         let all_m: f64 = matched.iter().map(|road| road.length_m).sum();
         let is_clear = |road: &MatchedRoad| road.length_m >= MOST_OF_THEM * all_m;
@@ -154,7 +157,7 @@ impl Finder<'_> {
             let roads = std::iter::once(road.text(self.graph)).chain(same_name).collect();
             return Err(RouteError::SeveralRoads { query, roads });
         }
-        let mut best: Option<(f64, Vec<Stretch>)> = None;
+        let mut best: Option<(f64, Vec<EdgeStretch>)> = None;
         for (from, tos) in self.end_pairs(road) {
             let ways = self.graph.shortest(&[(from, 0.0)], |_| true);
             for to in tos {
@@ -168,7 +171,7 @@ impl Finder<'_> {
             return Err(RouteError::NothingToFollow { of: self.of_text() });
         };
         let route = self.route(&stretches)?;
-        Ok(Route { road_m: Some(road.length_m), same_name, ..route })
+        Ok(NetworkRoute { road_m: Some(road.length_m), same_name, ..route })
     }
 
     fn of_text(&self) -> String {
@@ -178,7 +181,7 @@ impl Finder<'_> {
     fn near(&self, place_deg: [f64; 2]) -> Result<Vec<PlaceOnLink>, RouteError> {
         let near = self.graph.near(place_deg, HARDLY_FARTHER_M);
         let [lon, lat] = place_deg;
-        let (of, covered) = (self.of_text(), self.graph.covered_text(place_deg));
+        let (of, covered) = (self.of_text(), self.graph.places.manifest.covered_text(place_deg));
         match near.first().map(|place| place.off_m) {
             Some(off_m) if off_m <= MOST_OFF_M => Ok(near),
             Some(off_m) => Err(RouteError::FarFromRoads { of, lon, lat, off_m, covered }),
@@ -186,23 +189,23 @@ impl Finder<'_> {
         }
     }
 
-    /// The edges by which a node is reached, from the beginning on.
-    fn to_node(&self, ways: &ShortestWays, node: usize) -> Vec<Stretch> {
+    /// Returns the edges by which a node is reached, from the beginning onwards.
+    fn to_node(&self, ways: &ShortestWays, node: usize) -> Vec<EdgeStretch> {
         let mut stretches = Vec::new();
         let mut at = node;
         while ways.by[at] != NONE {
             let (number, end) = (ways.by[at] as usize / 2, ways.by[at] as usize % 2);
             let edge = &self.graph.edges[number];
             let [to_m, from_m] = if end == 0 { [0.0, edge.length_m] } else { [edge.length_m, 0.0] };
-            stretches.push(Stretch { edge: number, from_m, to_m });
+            stretches.push(EdgeStretch { edge: number, from_m, to_m });
             at = edge.ends[1 - end];
         }
         stretches.reverse();
         stretches
     }
 
-    /// What belongs together of the ways that are meant, the longest first: what is connected, also over a short stretch of other roads, and what lies
-    /// beside it.
+    /// Groups the matching ways into roads, the longest first: ways that are connected, also over a
+    /// short stretch of other roads, and ways next to these.
     fn matched(&self) -> Vec<MatchedRoad> {
         let graph = self.graph;
         let mut sets = DisjointSets::new(graph.node_count());
@@ -211,7 +214,8 @@ impl Finder<'_> {
             let [one, other] = graph.edges[edge].ends;
             sets.join(one, other);
         }
-        // From all of them at once, over other roads: where two meet there is a gap between them.
+        // Search from all of them at once, over other roads: where two searches meet, there is a
+        // gap between roads.
         let starts: Vec<(usize, f64)> =
             wanted().flat_map(|edge| graph.edges[edge].ends).map(|node| (node, 0.0)).collect();
         let ways = graph.shortest(&starts, |edge| !edge.is_wanted);
@@ -231,22 +235,23 @@ impl Finder<'_> {
                 sets.join(node, graph.edges[place.edge].ends[0]);
             }
         }
-        let mut roads: Vec<(usize, MatchedRoad)> = Vec::new();
         let mut by_set: Vec<(usize, usize)> =
             wanted().map(|edge| (sets.first_of(graph.edges[edge].ends[0]), edge)).collect();
         by_set.sort_unstable();
-        for own in by_set.chunk_by(|one, other| one.0 == other.0) {
+        let road = |own: &[(usize, usize)]| {
             let edges: Vec<usize> = own.iter().map(|(_, edge)| *edge).collect();
             let length_m = edges.iter().map(|&edge| graph.edges[edge].length_m).sum();
-            roads.push((own[0].1, MatchedRoad { edges, length_m }));
-        }
+            MatchedRoad { edges, length_m }
+        };
+        let by_set = by_set.chunk_by(|one, other| one.0 == other.0);
+        let mut roads: Vec<MatchedRoad> = by_set.map(road).collect();
         roads.sort_by(|one, other| {
-            other.1.length_m.total_cmp(&one.1.length_m).then(one.0.cmp(&other.0))
+            other.length_m.total_cmp(&one.length_m).then(one.edges[0].cmp(&other.edges[0]))
         });
-        roads.into_iter().map(|(_, road)| road).collect()
+        roads
     }
 
-    /// How many ends of edges that are meant a node has.
+    /// Counts the ends of matching edges at a node.
     fn wanted_at(&self, node: usize) -> usize {
         let is_wanted = |end: &&u32| self.graph.edges[**end as usize / 2].is_wanted;
         self.graph.ends_at(node).iter().filter(is_wanted).count()
@@ -263,10 +268,12 @@ impl Finder<'_> {
         self.graph.places.wgs84(self.place(node))
     }
 
-    /// Ends of a road between which it may lie as a whole: nodes at which it begins, with those at which it then ends. Those that are farthest apart,
-    /// or almost; they lie to the east of their beginning.
+    /// Returns pairs of ends of a road: nodes at which it may begin, with those at which it then
+    /// ends. These are the pairs that are (almost) the farthest apart; ends are to the east of
+    /// their beginning.
     fn end_pairs(&self, road: &MatchedRoad) -> Vec<(usize, Vec<usize>)> {
-        let nodes = road.nodes(self.graph);
+        let all = road.edges.iter().flat_map(|&edge| self.graph.edges[edge].ends);
+        let nodes: Vec<usize> = all.collect::<BTreeSet<usize>>().into_iter().collect();
         let places: Vec<[f64; 2]> = nodes.iter().map(|&node| self.place(node)).collect();
         let far_m =
             |one: usize, other: usize| self.graph.places.distance_m(places[one], places[other]);
@@ -283,7 +290,7 @@ impl Finder<'_> {
         for (k, &end) in ends.iter().enumerate() {
             most_m = ends[k + 1..].iter().map(|&to| far_m(end, to)).fold(most_m, f64::max);
         }
-        // A road may end in a roundabout of its own, or be a ring.
+        // A road may end in its own roundabout, or be a ring.
         if ALMOST_FARTHEST * far_m(one, other) > most_m {
             ends.extend([one, other]);
             most_m = far_m(one, other);
@@ -304,8 +311,8 @@ impl Finder<'_> {
         pairs
     }
 
-    /// Stretches one after the other, as a course.
-    fn route(&self, stretches: &[Stretch]) -> Result<Route, RouteError> {
+    /// Joins stretches into a course.
+    fn route(&self, stretches: &[EdgeStretch]) -> Result<NetworkRoute, RouteError> {
         let (mut legs, mut length_m, mut others_m, mut gap_m) = (Vec::new(), 0.0, 0.0, 0.0);
         for stretch in stretches {
             let edge = &self.graph.edges[stretch.edge];
@@ -335,12 +342,11 @@ impl Finder<'_> {
         };
         let ways = legs.iter().filter_map(way).collect();
         let course = Course { legs, ways, is_of_ways: true, begins_deg: None };
-        let (road_m, same_name, off_m) = (None, Vec::new(), [0.0; 2]);
-        Ok(Route { course, length_m, others_m, road_m, same_name, off_m })
+        Ok(NetworkRoute { course, length_m, others_m, ..NetworkRoute::default() })
     }
 
-    /// The points of a stretch, in its direction.
-    fn points(&self, Stretch { edge, from_m, to_m }: Stretch) -> Vec<LatticePoint> {
+    /// Returns the points of a stretch, in its direction.
+    fn points(&self, EdgeStretch { edge, from_m, to_m }: EdgeStretch) -> Vec<LatticePoint> {
         let mut points = self.graph.points(&self.graph.edges[edge]);
         let along_m = self.graph.places.distances_m(points.iter().copied());
         let at = |at_m: f64| {
@@ -349,8 +355,7 @@ impl Finder<'_> {
             let run_m = along_m[after] - along_m[before];
             let share = if run_m > 0.0 { (at_m - along_m[before]) / run_m } else { 1.0 };
             let [from, to] = [before, after].map(|index| points[index].in_steps());
-            let [u, v] = along(from, to, share).map(f64::round);
-            LatticePoint::new(u as i64, v as i64)
+            nearest_point(along(from, to, share))
         };
         let [low_m, high_m] = [from_m.min(to_m), from_m.max(to_m)];
         let [first, last] = [at(low_m), at(high_m)];
@@ -366,11 +371,10 @@ impl Finder<'_> {
     }
 }
 
-/// So many ids of a road are written.
+/// The number of way ids of a road that are printed.
 const MOST_IDS: usize = 20;
 
-/// What belongs together of the ways that are meant.
-#[derive(Clone)]
+/// Matching ways that form one road.
 struct MatchedRoad {
     /// Its edges, ascending.
     edges: Vec<usize>,
@@ -379,13 +383,7 @@ struct MatchedRoad {
 }
 
 impl MatchedRoad {
-    /// Its nodes, ascending.
-    fn nodes(&self, graph: &RoadGraph<'_>) -> Vec<usize> {
-        let ends = self.edges.iter().flat_map(|&edge| graph.edges[edge].ends);
-        ends.collect::<BTreeSet<usize>>().into_iter().collect()
-    }
-
-    /// A line of a list: its length, its place and its ways.
+    /// Returns a line of a list: the road's length, its place and its ways.
     fn text(&self, graph: &RoadGraph<'_>) -> String {
         let way_id = |&edge: &usize| graph.network.way_of(graph.edges[edge].link).way_id;
         let way_ids: BTreeSet<i64> = self.edges.iter().map(way_id).collect();

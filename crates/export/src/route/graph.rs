@@ -1,30 +1,29 @@
-//! The links of a network as a graph, and the shortest ways in it.
+//! The links of a network as a graph, and the shortest routes in it. In this module, an edge is a
+//! link in the direction of its way, and a node is one of the network.
 
-use std::{
-    cmp::{Ordering, Reverse},
-    collections::BinaryHeap,
-};
+use std::{cmp::Reverse, collections::BinaryHeap};
 
 use corniche_geom::{IndexLists, LatticePoint};
 use corniche_network::{Breaks, Chains, Link, Network, NetworkWay};
 
 use crate::{
     places::Places,
-    plane::{along, nearest, vector},
+    plane::{along, nearest, nearest_point, vector},
 };
 
-/// A metre of another road counts as so many of the road that is meant: others only close its gaps.
+/// A metre of another road counts as this many metres of the matching road: others only close its
+/// gaps.
 const OTHER_ROADS: f64 = 20.0;
-/// No edge leads to a node.
+/// Marks a node that no edge reaches.
 pub(crate) const NONE: u32 = u32::MAX;
 
 /// A link in the direction of its way.
 #[derive(Clone, Copy)]
-pub(crate) struct Edge {
+pub(crate) struct RouteEdge {
     pub(crate) link: Link,
     pub(crate) ends: [usize; 2],
     pub(crate) length_m: f64,
-    /// Whether it belongs to the road that is meant.
+    /// Whether it belongs to the matching road.
     pub(crate) is_wanted: bool,
 }
 
@@ -34,64 +33,48 @@ pub(crate) struct PlaceOnLink {
     pub(crate) edge: usize,
     /// Distance along the link, in the direction of its way, metres.
     pub(crate) along_m: f64,
-    /// How far it is from the place that was given, metres.
+    /// Its distance from the given place, metres.
     pub(crate) off_m: f64,
 }
 
-/// The links that may be followed.
+/// The links that a route may follow.
 pub(crate) struct RoadGraph<'a> {
     pub(crate) network: &'a Network,
     pub(crate) places: &'a Places<'a>,
-    pub(crate) edges: Vec<Edge>,
+    pub(crate) edges: Vec<RouteEdge>,
     /// The edges at each node: twice the number of the edge, plus one for its second end.
     at: IndexLists,
 }
 
-/// The shortest ways from some places to all nodes.
+/// The shortest routes from some places to all nodes.
 pub(crate) struct ShortestWays {
-    /// How far nodes are, metres that count; infinite where nothing leads.
+    /// Weighted distances of nodes, metres; infinite for nodes that cannot be reached.
     pub(crate) far_m: Vec<f64>,
-    /// The end of the edge by which each node is reached, twice its number plus one for its second end; [`NONE`] where a way begins.
+    /// The end of the edge by which each node is reached, twice its number plus one for its second
+    /// end; [`NONE`] where a route begins.
     pub(crate) by: Vec<u32>,
-    /// Which of the places each way begins at.
+    /// The number of the place at which each route begins.
     pub(crate) from: Vec<u32>,
 }
 
-/// A node to look at, the nearest first; of equal ones the one with the smaller number.
-#[derive(PartialEq)]
-struct Reached(f64, usize);
-
-impl Eq for Reached {}
-
-impl PartialOrd for Reached {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Reached {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.0.total_cmp(&other.0).then(self.1.cmp(&other.1))
-    }
-}
-
-impl Edge {
-    /// What a length along it counts, metres.
+impl RouteEdge {
+    /// Returns the weight of a length along the edge, metres.
     pub(crate) fn weight_m(&self, length_m: f64) -> f64 {
         if self.is_wanted { length_m } else { OTHER_ROADS * length_m }
     }
 }
 
 impl<'a> RoadGraph<'a> {
-    /// The links of ways that may be followed; `choose` tells whether a way belongs to the road that is meant, and is `None` for one that is not followed.
+    /// Returns the graph of the links that may be followed. `choose` returns whether a way belongs
+    /// to the matching road, and `None` for a way that may not be followed.
     pub(crate) fn new(
         network: &'a Network,
         places: &'a Places<'a>,
         choose: impl Fn(&NetworkWay) -> Option<bool>,
     ) -> Self {
-        let chains = Chains::of(network, Breaks::Junctions);
+        let chains = Chains::from_network(network, Breaks::Junctions);
         let mut edges = Vec::new();
-        // Nodes within chains have numbers of their own.
+        // Nodes within chains have separate numbers.
         let mut nodes = network.node_count();
         for number in chains.numbers() {
             let chain = chains.get(number);
@@ -108,7 +91,7 @@ impl<'a> RoadGraph<'a> {
                     let mut link = link;
                     link.is_against = false;
                     let length_m = places.length_m(network.points_of_link(link));
-                    edges.push(Edge { link, ends, length_m, is_wanted });
+                    edges.push(RouteEdge { link, ends, length_m, is_wanted });
                 }
                 from = to;
             }
@@ -119,26 +102,27 @@ impl<'a> RoadGraph<'a> {
         Self { network, places, edges, at }
     }
 
-    /// How many nodes there are.
+    /// The number of nodes.
     pub(crate) fn node_count(&self) -> usize {
         self.at.parts()[0].len() - 1
     }
 
     /// The ends of edges at a node.
     pub(crate) fn ends_at(&self, node: usize) -> &[u32] {
-        self.at.of(node)
+        self.at.list(node)
     }
 
     /// The points of an edge, in the direction of its way.
-    pub(crate) fn points(&self, edge: &Edge) -> Vec<LatticePoint> {
+    pub(crate) fn points(&self, edge: &RouteEdge) -> Vec<LatticePoint> {
         self.network.points_of_link(edge.link).collect()
     }
 
-    /// The shortest ways to all nodes from some of them, which are so far already. Edges are followed where `is_open` says so.
+    /// Returns the shortest routes to all nodes from some nodes with initial distances. Edges are
+    /// followed if `is_open` allows it.
     pub(crate) fn shortest(
         &self,
         starts: &[(usize, f64)],
-        is_open: impl Fn(&Edge) -> bool,
+        is_open: impl Fn(&RouteEdge) -> bool,
     ) -> ShortestWays {
         let nodes = self.node_count();
         let mut ways = ShortestWays {
@@ -146,14 +130,16 @@ impl<'a> RoadGraph<'a> {
             by: vec![NONE; nodes],
             from: vec![NONE; nodes],
         };
+        // The bits of non-negative numbers have the same order as the numbers.
         let mut heap = BinaryHeap::new();
         for (number, &(node, far_m)) in (0..).zip(starts) {
             if far_m < ways.far_m[node] {
                 (ways.far_m[node], ways.from[node]) = (far_m, number);
-                heap.push(Reverse(Reached(far_m, node)));
+                heap.push(Reverse((far_m.to_bits(), node)));
             }
         }
-        while let Some(Reverse(Reached(far_m, node))) = heap.pop() {
+        while let Some(Reverse((far_m, node))) = heap.pop() {
+            let far_m = f64::from_bits(far_m);
             if far_m > ways.far_m[node] {
                 continue;
             }
@@ -164,26 +150,22 @@ impl<'a> RoadGraph<'a> {
                 if is_open(edge) && next_m < ways.far_m[next] {
                     (ways.far_m[next], ways.by[next]) = (next_m, end ^ 1);
                     ways.from[next] = ways.from[node];
-                    heap.push(Reverse(Reached(next_m, next)));
+                    heap.push(Reverse((next_m.to_bits(), next)));
                 }
             }
         }
         ways
     }
 
-    /// See [`corniche_tileset::Manifest::covered_text`].
-    pub(crate) fn covered_text(&self, place_deg: [f64; 2]) -> String {
-        self.places.manifest.covered_text(place_deg)
-    }
-
-    /// The places on roads that are meant nearest to a place, and those that are at most so much farther; the nearest first.
+    /// Returns the places on matching roads that are nearest to a place, and those farther by at
+    /// most `beside_m`; the nearest first.
     pub(crate) fn near(&self, place_deg: [f64; 2], beside_m: f64) -> Vec<PlaceOnLink> {
         let manifest = self.places.manifest;
         let Some(position_m) = manifest.coordinates.working_from_wgs84(place_deg) else {
             return Vec::new();
         };
         let here = manifest.frame.fraction_of_position(position_m);
-        // Metres to a step, which differ by direction in degrees.
+        // Metres per lattice step, which depend on the direction in degrees.
         let metres = [[1000.0, 0.0], [0.0, 1000.0]].map(|[u, v]| {
             let there = [here[0] + u, here[1] + v];
             self.places.distance_m(here, there) / 1000.0
@@ -207,9 +189,7 @@ impl<'a> RoadGraph<'a> {
                 continue;
             };
             least_m = least_m.min(off_m);
-            let [u, v] = at.map(|steps| steps.round() as i64);
-            let point = LatticePoint::new(u, v);
-            let to_here = points[..=segment].iter().copied().chain([point]);
+            let to_here = points[..=segment].iter().copied().chain([nearest_point(at)]);
             let along_m = self.places.length_m(to_here);
             near.push(PlaceOnLink { edge: number, along_m: along_m.min(edge.length_m), off_m });
         }

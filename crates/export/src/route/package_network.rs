@@ -1,34 +1,35 @@
-//! The network of a package's own lines: they join where they have a point in common.
+//! The network of a package's own lines, which join where they share a point.
 
 use std::collections::BTreeMap;
 
 use corniche_geom::{LatticePoint, Polyline};
 use corniche_network::{Network, NetworkBuilder};
-use corniche_roads::{FunctionalRoadClass, Road};
+use corniche_roads::Road;
 use corniche_tileset::FilePackage;
 use corniche_work::{Observer, Stage, workers::one_by_one};
 
-use crate::{error::RouteError, join::lines, piece::Piece, read};
+use crate::{
+    error::RouteError,
+    join::lines,
+    piece::{WayPiece, own_points},
+    plane::nearest_point,
+    read,
+};
 
-/// The roads of a level as a network. Packages do not know nodes, but no simplification takes the points away at which roads join. Where ways on the
-/// ground, bridges and tunnels, or ways of several layers have a point in common within them all, they cross and do not join.
+/// Returns the roads of a level as a network. Packages do not contain nodes, but no simplification
+/// removes the points at which roads join. Ways on the ground, bridges and tunnels, or ways of
+/// several layers cross without joining if they share a point within all of them.
 pub(crate) fn package_network(
     package: &FilePackage,
     level: u8,
-    classes: &[FunctionalRoadClass],
     observer: &dyn Observer,
 ) -> Result<Network, RouteError> {
-    let mut by_way: BTreeMap<i64, Vec<Piece>> = BTreeMap::new();
+    let mut by_way: BTreeMap<i64, Vec<WayPiece>> = BTreeMap::new();
     let tiles = read::tiles(package, level, None)?;
     one_by_one((observer, Stage::ExportTiles), &tiles, |&id| {
-        for mut piece in read::pieces(package, id, classes)? {
-            // Crossings with the ground's triangles are no points of the road.
-            let last = piece.vertices.len() - 1;
-            let mut index = 0;
-            piece.vertices.retain(|vertex| {
-                index += 1;
-                vertex.is_source || index == 1 || index == last + 1
-            });
+        for mut piece in read::all_pieces(package, id)? {
+            // Crossings with the ground's triangles are not points of the road.
+            piece.vertices = own_points(&piece.vertices).map(|(_, vertex)| *vertex).collect();
             by_way.entry(piece.key.way_id).or_default().push(piece);
         }
         Ok::<(), RouteError>(())
@@ -38,11 +39,7 @@ pub(crate) fn package_network(
         let first = &pieces[0];
         let (way_id, class) = (first.key.way_id, first.class);
         for line in lines(&pieces) {
-            let point = |at: [f64; 2]| {
-                let [u, v] = at.map(|steps| steps.round() as i64);
-                LatticePoint::new(u, v)
-            };
-            let points = line.vertices.iter().map(|vertex| point(vertex.at)).collect();
+            let points = line.vertices.iter().map(|vertex| nearest_point(vertex.at)).collect();
             if let Ok(line) = Polyline::new(points) {
                 let attributes = first.attributes.clone();
                 let (fixed, node_ids, same_places, met) = Default::default();
@@ -67,7 +64,7 @@ pub(crate) fn package_network(
     Ok(builder.finish())
 }
 
-/// Finds the points at which roads join: their ends, and points that several have in common.
+/// Finds the points at which roads join: their ends, and points that several roads share.
 fn join(roads: &mut [Road]) {
     let mut points: Vec<(LatticePoint, usize, u32)> = Vec::new();
     for (number, road) in roads.iter().enumerate() {

@@ -1,6 +1,6 @@
-//! Roads join where their lines have a point in common, if they are on one level or one of them ends there.
+//! Roads join where their lines share a point, if they are on one level or one of them ends there.
 
-use corniche_roads::{MetNodes, RoadAttributes, Structure};
+use corniche_roads::{FunctionalRoadClass, MetNodes, RoadAttributes, Structure};
 
 use super::*;
 

@@ -1,55 +1,62 @@
-//! Roads cut into the triangles of a tile: the same surface, divided along the outlines of roads.
+//! Cuts roads into the triangles of a tile: the surface stays the same, but is divided along the
+//! outlines of roads.
 //!
 //! ```text
 //!   triangles that no outline comes near ───────────────────────────────► unchanged
 //!   the others ──► constrained triangulation of their edges ──► outlines added, edges divided where they cross ──► new triangles
 //! ```
 //!
-//! New vertices lie on the plane of the triangle that they divide, so the surface stays the same, and so does what depth tests see of it. Points
-//! on the tile's border follow from the outlines alone ([`plan_cut`](super::plan_cut)): the tile beyond has the same.
+//! New vertices are on the plane of the triangle that they divide, so neither the surface nor the
+//! result of depth tests changes. Points on the tile's border follow from the outlines alone
+//! ([`plan_cut`](super::plan_cut)): the neighbouring tile has the same.
 //!
-//! All points lie on the lattice, where the predicates of the triangulation are exact. Where lines cross, the point is rounded to the lattice and both
-//! lines go through it: they move by less than a step, half a millimetre, and go on as long as they cross others.
+//! All points are on the lattice, where the predicates of the triangulation are exact. Where lines
+//! cross, the point is rounded to the lattice and both lines pass through it: they move by less
+//! than a step, half a millimetre, at each crossing.
 //!
-//! Sources: Hobby 1999, *Practical Segment Intersection with Finite Precision Output* (rounding crossings to a grid); Shewchuk & Brown 2015, *Fast
-//! Segment Insertion and Incremental Construction of Constrained Delaunay Triangulations*. The triangulation is spade's.
+//! Sources: Hobby 1999, *Practical Segment Intersection with Finite Precision Output* (rounding
+//! crossings to a grid); Shewchuk & Brown 2015, *Fast Segment Insertion and Incremental
+//! Construction of Constrained Delaunay Triangulations*. The triangulation is spade's.
 
 use std::collections::HashMap;
 
-use corniche_geom::{LatticeBounds, LatticePoint};
+use corniche_geom::{LatticeBounds, LatticePoint, barycentric, cross};
 use corniche_tin::{Surface, decode_normal};
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation as _};
 
 use super::{
-    ground::{GroundMesh, GroundVertex, unit},
-    plan_cut::within,
+    ground::{LabelledMesh, SurfaceVertex, on_lattice, unit},
+    plan_cut::{share, within},
     ribbon::Ribbon,
 };
-use crate::error::CutError;
+use crate::{
+    error::CutError,
+    plane::{steps_between, vector},
+};
 
-/// Crossings that are made before the outlines are given up: real ones need a few.
+/// The number of crossings after which the cut fails: real outlines need a few.
 const CROSSINGS_PER_SEGMENT: usize = 100;
 /// Lines move by less than this many steps where they cross others.
 const MOVED_STEPS: i64 = 4;
 
 /// A tile's ground before the cut.
-pub(crate) struct Ground<'a> {
+pub(crate) struct UncutGround<'a> {
     pub(crate) surface: &'a Surface,
-    /// The normals of the TIN's vertices, as they are stored.
+    /// The normals of the TIN's vertices, in their stored form.
     pub(crate) normals: &'a [[i8; 2]],
     /// The tile's rectangle.
     pub(crate) tile: LatticeBounds,
 }
 
-/// A vertex of the triangulation, from the middle of the tile.
+/// A vertex of the triangulation, relative to the middle of the tile.
 #[derive(Clone, Copy)]
-struct Node {
+struct CutNode {
     at: Point2<f64>,
-    /// The TIN's vertex.
+    /// The number of the TIN's vertex, if it is one.
     own: Option<u32>,
 }
 
-impl HasPosition for Node {
+impl HasPosition for CutNode {
     type Scalar = f64;
 
     fn position(&self) -> Point2<f64> {
@@ -57,12 +64,13 @@ impl HasPosition for Node {
     }
 }
 
-type Cdt = ConstrainedDelaunayTriangulation<Node>;
+type Cdt = ConstrainedDelaunayTriangulation<CutNode>;
 
-/// Divides the ground along roads. Ribbons come in their order of importance: where they overlap, the first is seen. Labels of triangles are places in
-/// `ribbons`, counted from 1; 0 is ground without road.
-pub(crate) fn cut(ground: &Ground<'_>, ribbons: &[Ribbon]) -> Result<GroundMesh, CutError> {
-    let Ground { surface, tile, .. } = ground;
+/// Divides the ground along roads. Ribbons are sorted by importance: where they overlap, the first
+/// is visible. Labels of triangles are indices into `ribbons`, counted from 1; 0 is ground without
+/// road.
+pub(crate) fn cut(ground: &UncutGround<'_>, ribbons: &[Ribbon]) -> Result<LabelledMesh, CutError> {
+    let UncutGround { surface, tile, .. } = ground;
     let middle = LatticePoint::new(
         tile.min.u + (tile.max.u - tile.min.u) / 2,
         tile.min.v + (tile.max.v - tile.min.v) / 2,
@@ -74,13 +82,13 @@ pub(crate) fn cut(ground: &Ground<'_>, ribbons: &[Ribbon]) -> Result<GroundMesh,
         surface.visit_triangles_near(bounds, |triangle| {
             let corners =
                 surface.triangles()[triangle as usize].map(|v| surface.points()[v as usize]);
-            let own = LatticeBounds::of(&corners);
+            let own = LatticeBounds::around(&corners);
             is_touched[triangle as usize] |= own.is_some_and(|own| own.intersects(&bounds));
         });
     }
-    let mut mesh = GroundMesh::new(middle);
+    let mut mesh = LabelledMesh::new(middle);
     for (vertex, at) in surface.points().iter().enumerate() {
-        mesh.vertices.push(GroundVertex {
+        mesh.vertices.push(SurfaceVertex {
             at: mesh.seen_from_middle(*at),
             height_m: surface.heights_m()[vertex],
             normal: decode_normal(ground.normals[vertex]),
@@ -100,10 +108,10 @@ pub(crate) fn cut(ground: &Ground<'_>, ribbons: &[Ribbon]) -> Result<GroundMesh,
     Ok(mesh)
 }
 
-/// The outlines of all ribbons as far as they lie in the tile.
+/// The parts of all outlines inside the tile.
 struct Outlines {
     segments: Vec<[LatticePoint; 2]>,
-    /// Points where an outline only touches the tile.
+    /// Points at which an outline only touches the tile.
     points: Vec<LatticePoint>,
 }
 
@@ -121,19 +129,19 @@ impl Outlines {
         Self { segments, points }
     }
 
-    /// What they may come near.
+    /// The bounds of everything that the outlines may come near.
     fn bounds(&self) -> impl Iterator<Item = LatticeBounds> {
-        let of_segments = self.segments.iter().filter_map(|ends| LatticeBounds::of(ends));
-        let of_points = self.points.iter().map(|&point| LatticeBounds { min: point, max: point });
+        let of_segments = self.segments.iter().filter_map(|ends| LatticeBounds::around(ends));
+        let of_points = self.points.iter().copied().map(LatticeBounds::at);
         of_segments.map(|bounds| bounds.expanded(MOVED_STEPS)).chain(of_points)
     }
 }
 
 fn triangulate(
-    ground: &Ground<'_>,
+    ground: &UncutGround<'_>,
     outlines: &Outlines,
     is_touched: &[bool],
-    mesh: &GroundMesh,
+    mesh: &LabelledMesh,
 ) -> Result<Cdt, CutError> {
     let surface = ground.surface;
     let mut place: HashMap<u32, usize> = HashMap::new();
@@ -145,14 +153,14 @@ fn triangulate(
         for corner in *corners {
             place.entry(corner).or_insert_with(|| {
                 let [x, y] = mesh.vertices[corner as usize].at;
-                nodes.push(Node { at: Point2::new(x, y), own: Some(corner) });
+                nodes.push(CutNode { at: Point2::new(x, y), own: Some(corner) });
                 nodes.len() - 1
             });
         }
         for k in 0..3 {
             let half_edge = 3 * triangle as u32 + k;
             let twin = surface.twin(half_edge);
-            // One of both sides adds the edge.
+            // The edge is added from one of both sides.
             let is_other =
                 twin != corniche_tin::NO_TWIN && is_touched[twin as usize / 3] && twin < half_edge;
             if !is_other {
@@ -166,15 +174,12 @@ fn triangulate(
     if conflicts > 0 {
         return Err(CutError);
     }
-    let node = |at: LatticePoint| {
-        let [x, y] = mesh.seen_from_middle(at);
-        Node { at: Point2::new(x, y), own: None }
-    };
     let put = |cdt: &mut Cdt, at: LatticePoint| {
-        let new = node(at);
-        match cdt.locate(new.at) {
+        let [x, y] = mesh.seen_from_middle(at);
+        let at = Point2::new(x, y);
+        match cdt.locate(at) {
             spade::PositionInTriangulation::OnVertex(known) => Ok(known),
-            _ => cdt.insert(new).map_err(|_| CutError),
+            _ => cdt.insert(CutNode { at, own: None }).map_err(|_| CutError),
         }
     };
     for point in &outlines.points {
@@ -184,7 +189,7 @@ fn triangulate(
     for [one, other] in &outlines.segments {
         open.push([put(&mut cdt, *one)?, put(&mut cdt, *other)?]);
     }
-    // Each crossing makes two segments of each, and moves them by less than a step.
+    // Each crossing divides both segments in two, and moves them by less than a step.
     let mut room = CROSSINGS_PER_SEGMENT * (open.len() + cdt.num_undirected_edges());
     while let Some([from, to]) = open.pop() {
         if from == to {
@@ -210,35 +215,28 @@ fn triangulate(
     Ok(cdt)
 }
 
-/// Where two segments cross, rounded to the lattice, and inside of the tile: only what comes from outlines alone may lie on its border, where the
-/// neighbour must have it, too.
+/// Returns the crossing of two segments, rounded to the lattice and inside the tile: only points
+/// that follow from outlines alone may be on its border, where the neighbour must have them, too.
 fn crossing(
     [a, b]: [LatticePoint; 2],
     [c, d]: [LatticePoint; 2],
     tile: &LatticeBounds,
 ) -> LatticePoint {
-    let vector = |from: LatticePoint, to: LatticePoint| {
-        [i128::from(to.u - from.u), i128::from(to.v - from.v)]
-    };
-    let cross = |p: [i128; 2], q: [i128; 2]| p[0] * q[1] - p[1] * q[0];
-    let (along, other) = (vector(a, b), vector(c, d));
-    let (part, whole) = (cross(vector(a, c), other), cross(along, other));
-    let (part, whole) = if whole < 0 { (-part, -whole) } else { (part, whole) };
-    // Rounded to the nearest; they cross, so the whole is not 0.
-    let share = |length: i128| (2 * part * length + whole).div_euclid(2 * whole) as i64;
+    // They cross, so `whole` is not 0.
+    let (part, whole) = (cross(a, c, d), cross(a, b, d) - cross(a, b, c));
     LatticePoint::new(
-        (a.u + share(along[0])).clamp(tile.min.u + 1, tile.max.u - 1),
-        (a.v + share(along[1])).clamp(tile.min.v + 1, tile.max.v - 1),
+        (a.u + share(part, b.u - a.u, whole)).clamp(tile.min.u + 1, tile.max.u - 1),
+        (a.v + share(part, b.v - a.v, whole)).clamp(tile.min.v + 1, tile.max.v - 1),
     )
 }
 
-/// Adds the triangles that lie on touched ground.
+/// Adds the triangles on touched ground.
 fn add_faces(
-    ground: &Ground<'_>,
+    ground: &UncutGround<'_>,
     cdt: &Cdt,
     is_touched: &[bool],
     labels: &LabelIndex<'_>,
-    mesh: &mut GroundMesh,
+    mesh: &mut LabelledMesh,
 ) -> Result<(), CutError> {
     let above = Above { ground, is_touched, middle: mesh.middle };
     let mut places: Vec<Option<u32>> = vec![None; cdt.num_vertices()];
@@ -268,19 +266,20 @@ fn add_faces(
     Ok(())
 }
 
-/// What of the ground is above a position.
+/// Finds the ground above a position.
 struct Above<'a> {
-    ground: &'a Ground<'a>,
+    ground: &'a UncutGround<'a>,
     is_touched: &'a [bool],
     middle: LatticePoint,
 }
 
 impl Above<'_> {
-    /// The touched triangle in which a position from the middle lies deepest, and the shares of its corners there.
+    /// Returns the touched triangle in which a position (relative to the middle) is deepest, and
+    /// the weights of its corners there.
     fn triangle(&self, at: [f64; 2]) -> Option<(u32, [f64; 3])> {
         let surface = self.ground.surface;
-        let [u, v] = [at[0] + self.middle.u as f64, at[1] + self.middle.v as f64].map(f64::floor);
-        let min = LatticePoint::new(u as i64 - 1, v as i64 - 1);
+        let [u, v] = on_lattice(self.middle, at).map(|steps| steps.floor() as i64 - 1);
+        let min = LatticePoint::new(u, v);
         let bounds = LatticeBounds { min, max: LatticePoint::new(min.u + 3, min.v + 3) };
         let mut best: Option<(u32, [f64; 3])> = None;
         surface.visit_triangles_near(bounds, |triangle| {
@@ -296,24 +295,21 @@ impl Above<'_> {
         best
     }
 
-    fn shares(&self, triangle: u32, [x, y]: [f64; 2]) -> [f64; 3] {
+    fn shares(&self, triangle: u32, at: [f64; 2]) -> [f64; 3] {
         let surface = self.ground.surface;
-        let [a, b, c] = surface.triangles()[triangle as usize].map(|vertex| {
-            let point = surface.points()[vertex as usize];
-            [(point.u - self.middle.u) as f64, (point.v - self.middle.v) as f64]
-        });
-        let twice = |p: [f64; 2], q: [f64; 2]| (p[0] - x) * (q[1] - y) - (p[1] - y) * (q[0] - x);
-        let (of_a, of_b, of_c) = (twice(b, c), twice(c, a), twice(a, b));
-        let whole = of_a + of_b + of_c;
-        [of_a / whole, of_b / whole, of_c / whole]
+        let corners = surface.triangles()[triangle as usize];
+        let [a, b, c] =
+            corners.map(|vertex| steps_between(self.middle, surface.points()[vertex as usize]));
+        barycentric(at, a, b, c)
     }
 
     fn is_on_touched(&self, at: [f64; 2]) -> bool {
         self.triangle(at).is_some_and(|(_, shares)| shares.iter().all(|share| *share >= 0.0))
     }
 
-    /// The vertex at a position on touched ground, or beside it by the rounding of a crossing.
-    fn vertex(&self, at: [f64; 2]) -> Option<GroundVertex> {
+    /// Returns the vertex at a position on touched ground, or as near to it as the rounding of a
+    /// crossing.
+    fn vertex(&self, at: [f64; 2]) -> Option<SurfaceVertex> {
         let surface = self.ground.surface;
         let of_corner = |vertex: u32| decode_normal(self.ground.normals[vertex as usize]);
         let (triangle, shares) = self.triangle(at)?;
@@ -323,15 +319,14 @@ impl Above<'_> {
             // From the smaller end, so that both tiles of a border compute the same.
             let ([one, other], [p, q]) =
                 if q < p { ([other, one], [q, p]) } else { ([one, other], [p, q]) };
-            let from_p =
-                [at[0] - (p.u - self.middle.u) as f64, at[1] - (p.v - self.middle.v) as f64];
+            let from_p = vector(steps_between(self.middle, p), at);
             let along = from_p[0].abs() + from_p[1].abs();
             let share = along / ((q.u - p.u).abs() + (q.v - p.v).abs()) as f64;
             let [one_m, other_m] = [one, other].map(|vertex| surface.heights_m()[vertex as usize]);
             let [from, to] = [one, other].map(of_corner);
             let normal = [0, 1, 2].map(|axis| from[axis] + share as f32 * (to[axis] - from[axis]));
             let height_m = one_m + share * (other_m - one_m);
-            return Some(GroundVertex { at, height_m, normal: unit(normal), on_slab: false });
+            return Some(SurfaceVertex { at, height_m, normal: unit(normal), on_slab: false });
         }
         let mut normal = [0.0_f32; 3];
         for (corner, share) in corners.iter().zip(shares) {
@@ -339,12 +334,11 @@ impl Above<'_> {
                 *sum += share as f32 * axis;
             }
         }
-        let on_lattice = [at[0] + self.middle.u as f64, at[1] + self.middle.v as f64];
-        let height_m = surface.height_in_triangle_m(triangle, on_lattice);
-        Some(GroundVertex { at, height_m, normal: unit(normal), on_slab: false })
+        let height_m = surface.height_in_triangle_m(triangle, on_lattice(self.middle, at));
+        Some(SurfaceVertex { at, height_m, normal: unit(normal), on_slab: false })
     }
 
-    /// The edge of the triangle along the tile's border on which a position lies.
+    /// Returns the edge of the triangle along the tile's border that contains a position.
     fn border_edge(&self, triangle: u32, at: [f64; 2]) -> Option<[u32; 2]> {
         let surface = self.ground.surface;
         let LatticeBounds { min, max } = self.ground.tile;
@@ -363,11 +357,11 @@ impl Above<'_> {
 /// Squares along each side of a tile.
 const SQUARES: usize = 128;
 
-/// The parts of ribbons by the squares of a grid over the tile.
+/// An index of the parts of ribbons by the squares of a grid over the tile.
 struct LabelIndex<'a> {
     /// Each part with the label of its ribbon.
     parts: Vec<(u32, &'a [LatticePoint])>,
-    /// Places in `parts`, ascending, by square.
+    /// Indices into `parts`, ascending, by square.
     squares: Vec<Vec<u32>>,
     middle: LatticePoint,
     bounds: LatticeBounds,
@@ -390,14 +384,13 @@ impl<'a> LabelIndex<'a> {
     }
 
     fn add(&mut self, label: u32, part: &'a [LatticePoint]) {
-        let Some(own) = LatticeBounds::of(part) else { return };
+        let Some(own) = LatticeBounds::around(part) else { return };
         if !own.intersects(&self.bounds) {
             return;
         }
         let number = self.parts.len() as u32;
         self.parts.push((label, part));
-        let [from, to] =
-            [own.min, own.max].map(|p| [self.column(p.u as f64), self.row(p.v as f64)]);
+        let [from, to] = [own.min, own.max].map(|corner| self.square_of(corner.in_steps()));
         for row in from[1]..=to[1] {
             for column in from[0]..=to[0] {
                 self.squares[row * SQUARES + column].push(number);
@@ -405,30 +398,29 @@ impl<'a> LabelIndex<'a> {
         }
     }
 
-    fn column(&self, u: f64) -> usize {
-        square(u, self.bounds.min.u, self.bounds.max.u)
+    /// Returns the column and the row of the square that contains a place on the lattice, or of the
+    /// nearest one.
+    fn square_of(&self, [u, v]: [f64; 2]) -> [usize; 2] {
+        let LatticeBounds { min, max } = self.bounds;
+        [square(u, min.u, max.u), square(v, min.v, max.v)]
     }
 
-    fn row(&self, v: f64) -> usize {
-        square(v, self.bounds.min.v, self.bounds.max.v)
-    }
-
-    /// The label at a position from the middle of the tile; 0 where there is no road.
+    /// Returns the label at a position relative to the middle of the tile; 0 where there is no
+    /// road.
     fn at(&self, at: [f64; 2]) -> u32 {
-        let [u, v] = [at[0] + self.middle.u as f64, at[1] + self.middle.v as f64];
-        let parts = &self.squares[self.row(v) * SQUARES + self.column(u)];
+        let [column, row] = self.square_of(on_lattice(self.middle, at));
+        let parts = &self.squares[row * SQUARES + column];
         let parts = parts.iter().map(|part| self.parts[*part as usize]);
-        // Parts come in the order of ribbons.
+        // Parts are in the order of ribbons.
         let mut found = parts.filter(|(_, part)| self.holds(part, at));
         found.next().map_or(0, |(label, _)| label)
     }
 
-    /// Whether a position lies in a polygon, by the even-odd rule.
+    /// Whether a position is inside a polygon, by the even-odd rule.
     fn holds(&self, part: &[LatticePoint], [x, y]: [f64; 2]) -> bool {
-        let at = |p: LatticePoint| [(p.u - self.middle.u) as f64, (p.v - self.middle.v) as f64];
         let ends = part.iter().zip(part.iter().cycle().skip(1));
         let crossed = ends.filter(|(from, to)| {
-            let ([fx, fy], [tx, ty]) = (at(**from), at(**to));
+            let [[fx, fy], [tx, ty]] = [from, to].map(|end| steps_between(self.middle, **end));
             (fy > y) != (ty > y) && x < fx + (tx - fx) * (y - fy) / (ty - fy)
         });
         crossed.count() % 2 == 1

@@ -8,16 +8,16 @@ use proptest::prelude::*;
 
 use super::{
     super::ribbon::{CenterLine, Ribbon},
-    Ground, cut,
+    UncutGround, cut,
 };
-use crate::surfaces::ground::GroundMesh;
+use crate::surfaces::ground::LabelledMesh;
 
 /// Cells along each side of the ground.
 const CELLS: u16 = 4;
 const CELL_STEPS: i64 = 64_000;
 const SIDE: i64 = CELLS as i64 * CELL_STEPS;
 
-/// A raster of hills as triangles; a hole in the middle where asked for.
+/// A raster of hills as triangles; with a hole in the middle if requested.
 fn surface(is_holed: bool) -> Surface {
     let side = CELLS + 1;
     let vertices = (0..side * side)
@@ -49,7 +49,7 @@ fn surface(is_holed: bool) -> Surface {
     )
 }
 
-fn cut_along(surface: &Surface, lines: &[(Vec<LatticePoint>, f64)]) -> GroundMesh {
+fn cut_along(surface: &Surface, lines: &[(Vec<LatticePoint>, f64)]) -> LabelledMesh {
     let normals = vec![[0, 0]; surface.points().len()];
     let tile = LatticeBounds { min: LatticePoint::new(0, 0), max: LatticePoint::new(SIDE, SIDE) };
     let ribbons: Vec<Ribbon> = lines
@@ -63,11 +63,11 @@ fn cut_along(surface: &Surface, lines: &[(Vec<LatticePoint>, f64)]) -> GroundMes
             })
         })
         .collect();
-    cut(&Ground { surface, normals: &normals, tile }, &ribbons).unwrap()
+    cut(&UncutGround { surface, normals: &normals, tile }, &ribbons).unwrap()
 }
 
 /// The area of triangles with a label, square steps.
-fn area(mesh: &GroundMesh, label: Option<u32>) -> f64 {
+fn area(mesh: &LabelledMesh, label: Option<u32>) -> f64 {
     let of = |corners: &[u32; 3]| {
         let [a, b, c] = corners.map(|k| mesh.vertices[k as usize].at);
         ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2.0
@@ -77,7 +77,7 @@ fn area(mesh: &GroundMesh, label: Option<u32>) -> f64 {
 }
 
 /// Edges that only one triangle has.
-fn open_edges(mesh: &GroundMesh) -> Vec<[u32; 2]> {
+fn open_edges(mesh: &LabelledMesh) -> Vec<[u32; 2]> {
     let mut counts: HashMap<[u32; 2], i32> = HashMap::new();
     for corners in &mesh.triangles {
         for k in 0..3 {
@@ -89,8 +89,9 @@ fn open_edges(mesh: &GroundMesh) -> Vec<[u32; 2]> {
     counts.into_iter().filter(|(_, sum)| *sum != 0).map(|(edge, _)| edge).collect()
 }
 
-/// The same ground: every vertex at its height, no area lost, open only where the ground ends.
-fn check(mesh: &GroundMesh, surface: &Surface, cells: i64) {
+/// Checks that the ground is the same: every vertex at its height, no area lost, open only where
+/// the ground ends.
+fn check(mesh: &LabelledMesh, surface: &Surface, cells: i64) {
     let whole = (cells * CELL_STEPS * CELL_STEPS) as f64;
     assert!((area(mesh, None) - whole).abs() < whole * 1e-12, "{}", area(mesh, None) / whole);
     for vertex in &mesh.vertices {
@@ -121,7 +122,8 @@ fn without_roads_nothing_changes() {
     assert!(mesh.labels.iter().all(|label| *label == 0));
 }
 
-/// The area of a straight road is its length times its width; where roads cross, the first is seen.
+/// The area of a straight road is its length times its width; where roads cross, the first is
+/// visible.
 #[test]
 fn roads_have_their_area() {
     let surface = surface(false);
@@ -134,7 +136,8 @@ fn roads_have_their_area() {
     assert!((area(&mesh, Some(2)) - 4000.0 * (side - 7000.0)).abs() < 1.0);
 }
 
-/// A road may end in a hole, run along an edge of the ground or of the tile, and cover whole triangles.
+/// A road may end in a hole, run along an edge of the ground or of the tile, and cover whole
+/// triangles.
 #[test]
 fn odd_places_are_cut() {
     for is_holed in [false, true] {
@@ -157,7 +160,7 @@ fn odd_places_are_cut() {
 
 fn any_line() -> impl Strategy<Value = (Vec<LatticePoint>, f64)> {
     let any_point = || {
-        // Nodes, and places beside them, are where it becomes difficult.
+        // Nodes and places next to them are the difficult cases.
         let axis = || {
             prop_oneof![
                 -20_000..SIDE + 20_000,
@@ -178,7 +181,7 @@ fn any_line() -> impl Strategy<Value = (Vec<LatticePoint>, f64)> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
-    /// Whatever roads there are, the ground stays whole.
+    /// The ground stays complete, whatever roads there are.
     #[test]
     fn the_ground_stays_whole(lines in prop::collection::vec(any_line(), 1..6), is_holed in any::<bool>()) {
         let surface = surface(is_holed);

@@ -1,22 +1,23 @@
-//! How bridges of several ways go on in one another, off the ground.
+//! Continues bridges of several ways in one another, off the ground.
 
 use std::collections::HashMap;
 
 use corniche_geom::LatticePoint;
 
-use super::stretches::Stretch;
+use super::stretches::PlanStretch;
+use crate::plane::steps_between;
 
-/// Turns whose directions have a larger product go back: 120°.
+/// Turns whose directions have a larger product count as turning back: 120°.
 const SHARPEST_TURN: f64 = 0.5;
 
-/// The ends of decks by their places, each with the point before it.
+/// The ends of decks by place, each with the point before it.
 pub(crate) struct DeckEnds {
     inner: HashMap<LatticePoint, Vec<LatticePoint>>,
 }
 
 impl DeckEnds {
-    /// The ends of the decks among some stretches.
-    pub(crate) fn of<'a>(stretches: impl Iterator<Item = &'a Stretch>) -> Self {
+    /// Returns the ends of the decks among some stretches.
+    pub(crate) fn from_stretches<'a>(stretches: impl Iterator<Item = &'a PlanStretch>) -> Self {
         let mut inner: HashMap<LatticePoint, Vec<LatticePoint>> = HashMap::new();
         for stretch in stretches.filter(|stretch| stretch.deck_m.is_some()) {
             for (end, next) in stretch.ends().into_iter().zip(stretch.next_to_ends()) {
@@ -26,12 +27,12 @@ impl DeckEnds {
         Self { inner }
     }
 
-    /// The next point beyond an end of a deck, 0 or 1, on the deck there in which it goes on most straight. Slabs of both then end in the same
-    /// line across, but where their widths differ.
-    pub(crate) fn beyond(&self, deck: &Stretch, end: usize) -> Option<LatticePoint> {
+    /// Returns the next point beyond an end of a deck, 0 or 1, on the deck that continues it most
+    /// straight. Slabs of both then end in the same line across, unless their widths differ.
+    pub(crate) fn beyond(&self, deck: &PlanStretch, end: usize) -> Option<LatticePoint> {
         let (at, own) = (deck.ends()[end], deck.next_to_ends()[end]);
         let direction = |to: LatticePoint| {
-            let [du, dv] = [to.u - at.u, to.v - at.v].map(|steps| steps as f64);
+            let [du, dv] = steps_between(at, to);
             let length = du.hypot(dv);
             [du / length, dv / length]
         };

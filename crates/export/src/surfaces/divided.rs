@@ -1,19 +1,20 @@
-//! The ground of a tile, divided along the edges of its roads, and the slabs of its bridges, with the class of each triangle.
+//! The ground of a tile, divided along the edges of its roads, and the slabs of its bridges, with
+//! the class of each triangle.
 
 use corniche_geom::TileId;
 use corniche_roads::{FunctionalRoadClass, slab_thickness_m};
-use corniche_tileset::{Manifest, Terrain};
+use corniche_tileset::{FilePackage, Sections, TilePayload};
 
 use super::{
-    cut::{self, Ground},
-    ground::GroundMesh,
-    lines::{Road, TileLines},
+    cut::{self, UncutGround},
+    ground::LabelledMesh,
+    lines::{SurfaceLines, SurfaceRoad},
     ribbon::Ribbon,
     slab::{Slab, SlabLabels},
 };
-use crate::error::SurfaceError;
+use crate::{error::SurfaceError, gltf::SLAB_NAME};
 
-/// What a triangle is a surface of.
+/// The kind of surface to which a triangle belongs.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum SurfaceKind {
     Ground,
@@ -23,39 +24,63 @@ pub(crate) enum SurfaceKind {
     Slab(FunctionalRoadClass),
 }
 
+impl SurfaceKind {
+    /// The class of the road.
+    pub(crate) fn class(self) -> Option<FunctionalRoadClass> {
+        match self {
+            Self::Ground => None,
+            Self::Road(class) | Self::Slab(class) => Some(class),
+        }
+    }
+
+    /// The name of its material. Slabs of all classes share one.
+    pub(crate) fn name(self) -> String {
+        match self {
+            Self::Ground => "terrain".to_owned(),
+            Self::Road(class) => format!("roads FRC {}", class.number()),
+            Self::Slab(_) => SLAB_NAME.to_owned(),
+        }
+    }
+}
+
 /// A tile's ground, divided along its roads, and the slabs of its bridges.
 pub(crate) struct Divided {
-    /// What the label of a triangle names is told by [`Divided::kind_of`] and [`Divided::road_of`].
-    pub(crate) mesh: GroundMesh,
-    /// The most important first.
-    roads: Vec<Road>,
+    /// The mesh; [`Divided::kind_of`] and [`Divided::road_of`] return the meaning of a triangle's
+    /// label.
+    pub(crate) mesh: LabelledMesh,
+    /// The roads, the most important first.
+    roads: Vec<SurfaceRoad>,
     /// Triangles that were divided.
     pub(crate) package_triangles: u64,
-    /// How long it took, seconds.
+    /// The duration of the cut, seconds.
     pub(crate) cut_s: f64,
 }
 
 impl Divided {
-    /// Divides the ground of a tile along the roads of `lines`; without them it stays as it is. `None` without ground.
+    /// Reads the `wanted` sections of a tile, and divides its ground along the roads of `lines`;
+    /// without them the ground is unchanged. Returns `None` without ground.
     pub(crate) fn of_tile(
-        manifest: &Manifest,
+        package: &FilePackage,
         id: TileId,
-        terrain: &Terrain,
-        lines: Option<&TileLines<'_>>,
-    ) -> Result<Option<Self>, SurfaceError> {
+        wanted: Sections,
+        lines: Option<&SurfaceLines<'_>>,
+    ) -> Result<Option<(TilePayload, Self)>, SurfaceError> {
+        let Some(payload) = package.payload(id, wanted)? else { return Ok(None) };
+        let Some(terrain) = &payload.terrain else { return Ok(None) };
+        let manifest = package.manifest();
         let frame = &manifest.frame;
         let surface = manifest.surface(id, &terrain.tin);
         if surface.triangles().is_empty() {
             return Ok(None);
         }
-        let ground = Ground {
+        let ground = UncutGround {
             surface: &surface,
             normals: &terrain.normals,
             tile: frame.tile_lattice_bounds(id),
         };
         let roads = lines.map(|lines| lines.around(id)).transpose()?.unwrap_or_default();
-        // Beneath a slab the ground stays as it is.
-        let ribbon = |road: &Road| match road.deck_m {
+        // The ground beneath a slab is unchanged.
+        let ribbon = |road: &SurfaceRoad| match road.deck_m {
             Some(_) => Ribbon::default(),
             None => Ribbon::around(&road.center),
         };
@@ -69,27 +94,27 @@ impl Divided {
         let all = roads.len() as u32;
         for (label, road) in (1..).zip(&roads) {
             if let Some(deck_m) = &road.deck_m {
-                let thickness_m = slab_thickness_m(road.class);
+                let thickness_m = slab_thickness_m(road.way.class);
                 let slab = Slab { center: &road.center, deck_m, thickness_m, steps_per_m };
                 slab.add_to(&mut mesh, SlabLabels { road: label, others: all + label });
             }
         }
-        Ok(Some(Self { mesh, roads, package_triangles, cut_s }))
+        Ok(Some((payload, Self { mesh, roads, package_triangles, cut_s })))
     }
 
-    /// The road that a label names; `None` for ground. Labels are 0 for ground, then there is one for the surface of each road, then one for the rest of its
-    /// slab.
-    pub(crate) fn road_of(&self, label: u32) -> Option<&Road> {
+    /// Returns the road that a label refers to; `None` for ground. Label 0 is ground; then there is
+    /// one label for the surface of each road, then one for the rest of its slab.
+    pub(crate) fn road_of(&self, label: u32) -> Option<&SurfaceRoad> {
         let number = label.checked_sub(1)? as usize;
         self.roads.get(number).or_else(|| self.roads.get(number - self.roads.len()))
     }
 
-    /// What the triangles of a label are.
+    /// Returns the kind of surface of a label's triangles.
     pub(crate) fn kind_of(&self, label: u32) -> SurfaceKind {
         match self.road_of(label) {
             None => SurfaceKind::Ground,
-            Some(road) if label as usize <= self.roads.len() => SurfaceKind::Road(road.class),
-            Some(road) => SurfaceKind::Slab(road.class),
+            Some(road) if label as usize <= self.roads.len() => SurfaceKind::Road(road.way.class),
+            Some(road) => SurfaceKind::Slab(road.way.class),
         }
     }
 }

@@ -2,20 +2,20 @@
 
 use corniche_geom::LatticePoint;
 
-use super::{GroundMesh, GroundVertex};
+use super::{LabelledMesh, SurfaceVertex};
 
-fn square(side: f64) -> GroundMesh {
-    let mut mesh = GroundMesh::new(LatticePoint::new(0, 0));
+fn square(side: f64) -> LabelledMesh {
+    let mut mesh = LabelledMesh::new(LatticePoint::new(0, 0));
     for at in [[0.0, 0.0], [side, 0.0], [side, side], [0.0, side]] {
         let height_m = at[0] * 0.5;
-        mesh.vertices.push(GroundVertex { at, height_m, normal: [0.0, 0.0, 1.0], on_slab: false });
+        mesh.vertices.push(SurfaceVertex { at, height_m, normal: [0.0, 0.0, 1.0], on_slab: false });
     }
     mesh.add([0, 1, 2], 0);
     mesh.add([0, 2, 3], 7);
     mesh
 }
 
-fn area(mesh: &GroundMesh, label: u32) -> f64 {
+fn area(mesh: &LabelledMesh, label: u32) -> f64 {
     let of = |corners: &[u32; 3]| {
         let [a, b, c] = corners.map(|k| mesh.vertices[k as usize].at);
         ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2.0
@@ -28,7 +28,8 @@ fn area(mesh: &GroundMesh, label: u32) -> f64 {
     .sum()
 }
 
-/// No edge stays too long, no area is lost or changes its label, and every inner edge keeps both its triangles.
+/// No edge stays too long, no area is lost or changes its label, and every inner edge keeps both
+/// its triangles.
 #[test]
 fn long_edges_are_divided() {
     for limit in [90.0, 40.0, 13.0] {

@@ -2,7 +2,7 @@
 
 use std::{collections::HashMap, sync::Arc};
 
-use corniche_geom::{LatticePoint, Polyline, TileId, Work};
+use corniche_geom::{LatticePoint, Polyline, StepBudget, TileId};
 use corniche_roads::{FunctionalRoadClass, RoadAttributes, Structure};
 use corniche_styles::Style;
 use corniche_tileset::{FilePackage, Manifest};
@@ -11,85 +11,91 @@ use corniche_work::Recent;
 use super::{
     deck_ends::DeckEnds,
     ribbon::CenterLine,
-    stretches::{Stretch, stretches},
+    stretches::{PlanStretch, stretches},
 };
 use crate::{error::SurfaceError, read};
 
-/// The error that clients allow: Cesium's for ground, which the example asks for.
+/// The error that clients allow: Cesium's for ground, which the example requests.
 const ALLOWED_ERROR_PX: f64 = 2.0;
-/// What is kept of the lines of tiles: several rows of neighbours along a Hilbert curve in a town.
+/// The size of the cache of lines: several rows of neighbours along a Hilbert curve in a town.
 const KEPT_BYTES: u64 = 32 << 20;
-/// What a point of a line takes, with the height of a deck.
+/// The memory of a point of a line, with the height of a deck.
 const POINT_BYTES: usize = size_of::<LatticePoint>() + size_of::<f64>();
-/// Steps that finding the runs of a tile on its lines may take: a vertex that a point is compared with is one. Real tiles take some thousand.
+/// The work for locating the runs of a tile on its lines, in steps; comparing a point with a vertex
+/// is one step. Real tiles take some thousand.
 const MOST_STEPS: u64 = 1 << 28;
 
 /// Which roads become surfaces, and how wide.
 #[derive(Clone, Copy)]
-pub(crate) struct RoadLook<'a> {
+pub(crate) struct SurfaceRoads<'a> {
     pub(crate) classes: &'a [FunctionalRoadClass],
     pub(crate) style: &'a Style,
 }
 
-/// A road in a tile.
+/// The attributes of a way.
 #[derive(Clone)]
-pub(crate) struct Road {
-    pub(crate) way_id: i64,
+pub(crate) struct SurfaceWay {
+    pub(crate) id: i64,
     pub(crate) class: FunctionalRoadClass,
     pub(crate) attributes: Arc<RoadAttributes>,
+}
+
+/// A road in a tile.
+pub(crate) struct SurfaceRoad {
+    pub(crate) way: SurfaceWay,
     pub(crate) center: CenterLine,
-    /// Heights of the deck at the points of its line, where it is a slab and not on the ground.
+    /// Heights of the deck at the points of its line, if it is a slab rather than on the ground.
     pub(crate) deck_m: Option<Vec<f64>>,
 }
 
-/// What one tile has of a way, on the ground or as a slab.
+/// The part of a way in one tile, on the ground or as a slab.
 struct TileLine {
-    way_id: i64,
-    class: FunctionalRoadClass,
-    attributes: Arc<RoadAttributes>,
-    stretch: Stretch,
+    way: SurfaceWay,
+    stretch: PlanStretch,
 }
 
 impl TileLine {
-    /// What it takes in memory, about; attributes as if no other stretch had the same.
+    /// The approximate memory of the line; attributes count in full, although stretches share them.
     fn bytes(&self) -> u64 {
         let points = self.stretch.points.len() * POINT_BYTES;
-        let attributes = size_of::<RoadAttributes>() + self.attributes.text_bytes();
+        let attributes = size_of::<RoadAttributes>() + self.way.attributes.text_bytes();
         (size_of::<Self>() + points + attributes) as u64
     }
 }
 
 /// The lines of tiles, read once for a tile and its neighbours.
-pub(crate) struct TileLines<'a> {
+pub(crate) struct SurfaceLines<'a> {
     package: &'a FilePackage,
-    look: RoadLook<'a>,
-    /// What is drawn on each level.
+    look: SurfaceRoads<'a>,
+    /// The detail that is visible on each level.
     details: Vec<Detail>,
     recent: Recent<TileId, Vec<TileLine>>,
 }
 
-/// How much of roads is seen on a level.
+/// The detail of roads that is visible on a level.
 ///
-/// A client that allows two pixels of error draws a tile only where a pixel is at least half its error. What is finer than that is not seen on it.
-#[derive(Clone)]
+/// A client that allows two pixels of error draws a tile only where a pixel is at least half its
+/// error. Finer detail is not visible on it.
 struct Detail {
-    /// Classes that were asked for, that the style draws at that scale and that are about a pixel wide: thinner surfaces break
-    /// up into dots.
+    /// The requested classes that the style draws at that scale and that are about a pixel wide:
+    /// thinner surfaces would break up into dots.
     classes: Vec<FunctionalRoadClass>,
-    /// A quarter of such a pixel, lattice steps: lines are simplified by it.
+    /// A quarter of such a pixel, lattice steps: the tolerance to which lines are simplified.
     tolerance_steps: f64,
 }
 
 impl Detail {
-    fn of_level(look: RoadLook<'_>, manifest: &Manifest, level: u8, finest: u8) -> Self {
+    fn of_level(look: SurfaceRoads<'_>, manifest: &Manifest, level: u8, finest: u8) -> Self {
         let errors_m = manifest.levels[usize::from(level)].errors_m;
-        // The finest tiles are drawn however near the eye is; others as near as the smallest error allows.
+        // The finest tiles are drawn however near the eye is, other tiles as near as the smallest
+        // error allows.
         let error_m =
             if level == finest { 0.0 } else { errors_m.map_or(0.0, |errors_m| errors_m.min) };
         let pixel_m = error_m / ALLOWED_ERROR_PX;
         let is_seen = |class: &FunctionalRoadClass| {
             let road = look.style.road(*class);
-            // The style says how many pixels of the road it insists on: the more, the longer it stays.
+            // The style states the least width of the road in pixels: the larger it is, the longer
+            // the road stays visible.
             let width_m = road.width_m.min(road.carriageway_width_m);
             let stays_m = f64::from(width_m * road.min_width_px.max(1.0));
             stays_m >= pixel_m && road.last_pixel_m() > pixel_m
@@ -101,9 +107,9 @@ impl Detail {
     }
 }
 
-impl<'a> TileLines<'a> {
-    /// Lines of the levels down to `finest`.
-    pub(crate) fn new(package: &'a FilePackage, look: RoadLook<'a>, finest: u8) -> Self {
+impl<'a> SurfaceLines<'a> {
+    /// Returns the lines of the levels down to `finest`.
+    pub(crate) fn new(package: &'a FilePackage, look: SurfaceRoads<'a>, finest: u8) -> Self {
         let detail = |level| Detail::of_level(look, package.manifest(), level, finest);
         let details = (0..=finest).map(detail).collect();
         Self { package, look, details, recent: Recent::new(KEPT_BYTES) }
@@ -120,7 +126,7 @@ impl<'a> TileLines<'a> {
         self.recent.get(id, make, bytes_of)
     }
 
-    /// The lines of a tile; none of a tunnel, which is not on the ground.
+    /// Reads the lines of a tile; none of a tunnel, which is not on the ground.
     fn read(
         &self,
         id: TileId,
@@ -128,7 +134,7 @@ impl<'a> TileLines<'a> {
     ) -> Result<Vec<TileLine>, SurfaceError> {
         let runs = read::span_runs(self.package, id)?;
         let quantum_m = self.package.manifest().vertical.quantum_m;
-        let work = Work::new(MOST_STEPS);
+        let work = StepBudget::new(MOST_STEPS);
         let failed = |source| SurfaceError::TooManyBridges { tile: id, source };
         let mut lines = Vec::new();
         for piece in read::pieces(self.package, id, classes)? {
@@ -137,20 +143,17 @@ impl<'a> TileLines<'a> {
             }
             let own = runs.get(&piece.key.way_id).map_or(&[][..], Vec::as_slice);
             let stretches = stretches(&piece, own, quantum_m, &work).map_err(failed)?;
-            let (way_id, class) = (piece.key.way_id, piece.class);
             let attributes = Arc::new(piece.attributes);
-            lines.extend(stretches.into_iter().map(|stretch| TileLine {
-                way_id,
-                class,
-                attributes: Arc::clone(&attributes),
-                stretch,
-            }));
+            let way = SurfaceWay { id: piece.key.way_id, class: piece.class, attributes };
+            let line = |stretch| TileLine { way: way.clone(), stretch };
+            lines.extend(stretches.into_iter().map(line));
         }
         Ok(lines)
     }
 
-    /// The roads in a tile and in those around it, and the slabs in the tile, the most important first. Lines that go on across a border know the point beyond it.
-    pub(crate) fn around(&self, id: TileId) -> Result<Vec<Road>, SurfaceError> {
+    /// Returns the roads in a tile and in the tiles around it, and the slabs in the tile, the most
+    /// important first. Lines that continue across a border have the point beyond it.
+    pub(crate) fn around(&self, id: TileId) -> Result<Vec<SurfaceRoad>, SurfaceError> {
         let mut tiles = Vec::new();
         for dy in -1..=1 {
             for dx in -1..=1 {
@@ -163,21 +166,21 @@ impl<'a> TileLines<'a> {
             .iter()
             .flat_map(|(near, tile)| tile.iter().map(move |line| (*near, line)))
             .collect();
-        // Lines of a way that end at a point, and those that begin there.
+        // Lines of a way that end at a point, and lines that begin there.
         let mut across: HashMap<(i64, LatticePoint), [Vec<usize>; 2]> = HashMap::new();
         let mut meetings: HashMap<LatticePoint, u32> = HashMap::new();
         for (number, (_, line)) in lines.iter().enumerate() {
             for (end, point) in line.stretch.ends().into_iter().enumerate() {
                 if line.stretch.goes_on[end] {
-                    across.entry((line.way_id, point)).or_default()[1 - end].push(number);
+                    across.entry((line.way.id, point)).or_default()[1 - end].push(number);
                 }
             }
             for point in &line.stretch.points {
                 *meetings.entry(*point).or_default() += 1;
             }
         }
-        let decks = DeckEnds::of(lines.iter().map(|(_, line)| &line.stretch));
-        // Across a border the same point is that of two lines of one way.
+        let decks = DeckEnds::from_stretches(lines.iter().map(|(_, line)| &line.stretch));
+        // A point on a border belongs to two lines of one way.
         let is_met = |point: LatticePoint| meetings[&point] > 1;
         let joined = |way_id: i64, point: LatticePoint| {
             across.get(&(way_id, point)).and_then(|found| match found {
@@ -188,13 +191,13 @@ impl<'a> TileLines<'a> {
             })
         };
         let center = |line: &TileLine| {
-            let Stretch { points, deck_m, goes_on } = &line.stretch;
+            let PlanStretch { points, deck_m, goes_on } = &line.stretch;
             let [first, last] = line.stretch.ends();
             let mut beyond = [
-                joined(line.way_id, first)
+                joined(line.way.id, first)
                     .filter(|_| goes_on[0])
                     .map(|[ending, _]| ending[ending.len() - 2]),
-                joined(line.way_id, last).filter(|_| goes_on[1]).map(|[_, beginning]| beginning[1]),
+                joined(line.way.id, last).filter(|_| goes_on[1]).map(|[_, beginning]| beginning[1]),
             ];
             if deck_m.is_some() {
                 // Bridges of several ways.
@@ -208,20 +211,18 @@ impl<'a> TileLines<'a> {
                 half_width: self.half_width(line),
             }
         };
-        let mut roads: Vec<Road> = lines
+        let mut roads: Vec<SurfaceRoad> = lines
             .iter()
-            // Each tile has its own slabs.
+            // Each tile has only its own slabs.
             .filter(|(near, line)| *near == id || line.stretch.deck_m.is_none())
-            .map(|(_, line)| Road {
-                way_id: line.way_id,
-                class: line.class,
-                attributes: Arc::clone(&line.attributes),
+            .map(|(_, line)| SurfaceRoad {
+                way: line.way.clone(),
                 center: center(line),
                 deck_m: line.stretch.deck_m.clone(),
             })
             .collect();
         roads.sort_by(|one, other| {
-            let key = |road: &Road| (road.class.number(), road.way_id);
+            let key = |road: &SurfaceRoad| (road.way.class.number(), road.way.id);
             key(one).cmp(&key(other)).then_with(|| one.center.points.cmp(&other.center.points))
         });
         Ok(roads)
@@ -230,13 +231,14 @@ impl<'a> TileLines<'a> {
     /// Half the width of a road, lattice steps.
     fn half_width(&self, line: &TileLine) -> f64 {
         let manifest = self.package.manifest();
-        let width_m = self.look.style.width_of_m(line.class, &line.attributes);
+        let width_m = self.look.style.width_of_m(line.way.class, &line.way.attributes);
         f64::from(width_m) / 2.0 * manifest.point_scale / manifest.frame.lattice_step_m()
     }
 }
 
-/// Leaves out points of lines that nobody sees. Points that lines share stay, so that roads still meet; a tile and its neighbours see the same lines of
-/// each tile, so they simplify them the same way.
+/// Removes points of lines whose absence is not visible. Points that lines share are kept, so that
+/// roads still meet. A tile and its neighbours use the same lines of each tile, so they simplify
+/// them in the same way.
 fn simplify(lines: &mut [TileLine], tolerance_steps: f64) {
     let mut uses: HashMap<LatticePoint, u32> = HashMap::new();
     for line in lines.iter() {

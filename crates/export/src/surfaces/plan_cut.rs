@@ -1,44 +1,43 @@
-//! What of a line lies in a tile, so that the tile beyond the border has the same point on it.
+//! Clips lines to a tile, so that the tile beyond the border has the same point on it.
 
-use corniche_geom::{LatticeBounds, LatticePoint};
+use corniche_geom::{LatticeBounds, LatticePoint, dot};
 
-/// The part of a segment within a tile, its border included: two ends, one where it only touches the tile, or none.
+/// Returns the part of a segment within a tile, its border included: two ends, one if it only
+/// touches the tile, or none.
 ///
-/// Where the segment crosses the line along one of the tile's sides is computed from the segment's own ends alone, whatever their order, and rounded to the lattice.
+/// The crossing of the segment with the line along one of the tile's sides is computed from the
+/// segment's own ends alone, in either order, and rounded to the lattice.
 pub(crate) fn within(segment: [LatticePoint; 2], tile: &LatticeBounds) -> Vec<LatticePoint> {
     let [mut from, mut to] = segment;
     if to < from {
         (from, to) = (to, from);
     }
-    let holds = |p: &LatticePoint| {
-        (tile.min.u..=tile.max.u).contains(&p.u) && (tile.min.v..=tile.max.v).contains(&p.v)
-    };
     let mut found: Vec<LatticePoint> = vec![from, to];
+    // The coordinate along the other axis at which the segment crosses the line at `here`.
+    let crossed = |here: i64, [start, end]: [i64; 2], [other, other_end]: [i64; 2]| {
+        let is_between = start.min(end) < here && here < start.max(end);
+        let place = || share((here - start).into(), other_end - other, (end - start).into());
+        is_between.then(|| other + place())
+    };
     for u in [tile.min.u, tile.max.u] {
-        if (from.u < u && u < to.u) || (to.u < u && u < from.u) {
-            let v = from.v + share(u - from.u, to.v - from.v, to.u - from.u);
-            found.push(LatticePoint::new(u, v));
-        }
+        let v = crossed(u, [from.u, to.u], [from.v, to.v]);
+        found.extend(v.map(|v| LatticePoint::new(u, v)));
     }
     for v in [tile.min.v, tile.max.v] {
-        if (from.v < v && v < to.v) || (to.v < v && v < from.v) {
-            let u = from.u + share(v - from.v, to.u - from.u, to.v - from.v);
-            found.push(LatticePoint::new(u, v));
-        }
+        let u = crossed(v, [from.v, to.v], [from.u, to.u]);
+        found.extend(u.map(|u| LatticePoint::new(u, v)));
     }
-    found.retain(holds);
-    // Along the segment: its ends are sorted, and points between them follow the same order up to rounding.
-    found.sort_unstable_by_key(|p| {
-        let (du, dv) = (i128::from(p.u - from.u), i128::from(p.v - from.v));
-        (du * i128::from(to.u - from.u) + dv * i128::from(to.v - from.v), *p)
-    });
+    found.retain(|point| tile.contains(*point));
+    // Along the segment: its ends are sorted, and points between them have the same order up to
+    // rounding.
+    found.sort_unstable_by_key(|point| (dot(from, to, *point), *point));
     found.dedup();
     found
 }
 
 /// `part · of / whole`, rounded to the nearest whole number, halves upwards.
-fn share(part: i64, of: i64, whole: i64) -> i64 {
-    let (product, whole) = (i128::from(part) * i128::from(of), i128::from(whole));
+pub(crate) fn share(part: i128, of: i64, whole: i128) -> i64 {
+    let product = part * i128::from(of);
     let (product, whole) = if whole < 0 { (-product, -whole) } else { (product, whole) };
     (2 * product + whole).div_euclid(2 * whole) as i64
 }

@@ -39,7 +39,7 @@ proptest! {
         prop_assert_eq!(on_border(&WEST), on_border(&EAST));
     }
 
-    /// What is left lies in the tile and within half a step of the segment.
+    /// The remaining part is in the tile and within half a step of the segment.
     #[test]
     fn parts_lie_on_the_segment(from in point(), to in point()) {
         for at in within([from, to], &WEST) {

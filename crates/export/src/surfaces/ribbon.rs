@@ -8,20 +8,22 @@
 //!     crossing ╲  ╲ ╲
 //! ```
 //!
-//! Everything that is computed at a point depends on that point and its two neighbours alone, so that both tiles of a border have the same
-//! outline there.
+//! Everything computed at a point depends only on that point and its two neighbours, so both tiles
+//! of a border have the same outline there.
 
 use corniche_geom::LatticePoint;
+
+use crate::plane::{nearest_point, steps_between};
 
 /// Turns whose normals have a smaller product are bevelled: 120°.
 const SHARPEST_MITRE: f64 = -0.5;
 
-/// A centre-line with what it needs to become a surface.
+/// A centre-line with everything that its surface depends on.
 #[derive(Clone)]
 pub(crate) struct CenterLine {
-    /// Two at least, no two neighbours the same.
+    /// At least two points, no two neighbours equal.
     pub(crate) points: Vec<LatticePoint>,
-    /// The points before the first and after the last, where the line goes on in another tile.
+    /// The points before the first and after the last, if the line continues in another tile.
     pub(crate) beyond: [Option<LatticePoint>; 2],
     /// Whether other lines meet its first point and its last one.
     pub(crate) is_met: [bool; 2],
@@ -30,11 +32,11 @@ pub(crate) struct CenterLine {
 }
 
 /// The surface of a road in plan.
-#[derive(Clone, Default)]
+#[derive(Default)]
 pub(crate) struct Ribbon {
-    /// The lines that bound it, some of which may lie inside of it.
+    /// The lines that bound it, some of which may be inside it.
     pub(crate) outline: Vec<[LatticePoint; 2]>,
-    /// Polygons that make it up together; they may overlap.
+    /// Polygons that form it together; they may overlap.
     pub(crate) parts: Vec<Vec<LatticePoint>>,
 }
 
@@ -43,40 +45,42 @@ pub(crate) struct Ribbon {
 pub(crate) struct CrossSection {
     /// The number of the point.
     pub(crate) point: usize,
-    /// The left side and the right one.
+    /// The left and the right side.
     pub(crate) sides: [LatticePoint; 2],
 }
 
-/// The two sides at a point of the line, on the left and on the right: where the segment before ends, and where the one after begins.
+/// The two sides at a point of the line, on the left and on the right: the end of the previous
+/// segment, and the start of the next one.
 struct Sides {
     before: [[f64; 2]; 2],
     after: [[f64; 2]; 2],
-    /// Whether a side of the segment before ends where that of the one after begins.
+    /// Whether a side of the previous segment ends where that of the next one begins.
     meet: [bool; 2],
     /// The side inside of a turn.
     inner: Option<InnerSide>,
 }
 
-/// The side inside of a turn, where both segments end on the bisector.
+/// The side inside a turn, where both segments end on the bisector.
 #[derive(Clone, Copy)]
 struct InnerSide {
     side: usize,
-    /// How far before the point they end, and after it they begin, along the line: less than where they cross if that is too far.
+    /// The distance before the point at which they end, and after it at which they begin, along the
+    /// line: less than to their crossing if that is too far.
     back: f64,
-    /// The way along the bisector for one of `back`.
+    /// The vector along the bisector for a `back` of one.
     direction: [f64; 2],
 }
 
 /// A centre-line with the points beyond its ends.
 struct LongLine {
     all: Vec<LatticePoint>,
-    /// Where the line's own first and last point are among them.
+    /// The indices of the line's own first and last point.
     own: [usize; 2],
     half_width: f64,
 }
 
 impl LongLine {
-    fn of(line: &CenterLine) -> Self {
+    fn from_center_line(line: &CenterLine) -> Self {
         let CenterLine { points, beyond, half_width, .. } = line;
         let before = beyond[0].filter(|before| *before != points[0]);
         let after = beyond[1].filter(|after| *after != points[points.len() - 1]);
@@ -94,7 +98,7 @@ impl LongLine {
         let normal = |one: usize, other: usize| left_normal(all[one], all[other]);
         match (index.checked_sub(1), all.get(index + 1)) {
             (Some(previous), Some(_)) => {
-                let reach = length(all[previous], at).min(length(at, all[index + 1]));
+                let reach = at.distance_steps(all[previous]).min(at.distance_steps(all[index + 1]));
                 let normals = [normal(previous, index), normal(index, index + 1)];
                 Sides::at_turn(at, normals, *half_width, reach)
             }
@@ -103,20 +107,21 @@ impl LongLine {
         }
     }
 
-    /// Whether the line goes on beyond its last point.
+    /// Whether the line continues beyond its last point.
     fn goes_on(&self) -> bool {
         self.own[1] + 1 < self.all.len()
     }
 }
 
 impl CenterLine {
-    /// Lines across the road: the sides of its [`Ribbon`], but inside of turns they never cross, so that a strip can go through them. There is one at
-    /// each point, and two where a turn is bevelled.
+    /// Returns lines across the road: the sides of its [`Ribbon`], except that they never cross
+    /// inside turns, so that a strip can pass through them. There is one at each point, and two
+    /// where a turn is bevelled.
     pub(crate) fn cross_sections(&self) -> Vec<CrossSection> {
-        let line = LongLine::of(self);
+        let line = LongLine::from_center_line(self);
         let [from, end] = line.own;
         let mut turns: Vec<Sides> = (from..=end).map(|index| line.sides_at(index)).collect();
-        let lengths = self.points.array_windows().map(|[one, other]| length(*one, *other));
+        let lengths = self.points.array_windows().map(|[one, other]| one.distance_steps(*other));
         let shares = inner_shares(&turns, lengths);
         let mut sections: Vec<CrossSection> = Vec::with_capacity(self.points.len());
         for (point, (sides, share)) in turns.iter_mut().zip(shares).enumerate() {
@@ -129,7 +134,7 @@ impl CenterLine {
             // A turn belongs to the segment before it.
             let before = if point == 0 { sides.after } else { sides.before };
             for sides in [before, sides.after] {
-                let next = CrossSection { point, sides: sides.map(snap) };
+                let next = CrossSection { point, sides: sides.map(nearest_point) };
                 if sections.last() != Some(&next) {
                     sections.push(next);
                 }
@@ -139,7 +144,8 @@ impl CenterLine {
     }
 }
 
-/// Which share of its way back each turn may have, so that no two of them share more than the segment between them.
+/// Returns the share of its `back` that each turn may have, so that no two turns use more than the
+/// segment between them.
 fn inner_shares(turns: &[Sides], lengths: impl Iterator<Item = f64>) -> Vec<f64> {
     let mut shares = vec![1.0_f64; turns.len()];
     for (number, length) in lengths.enumerate() {
@@ -147,7 +153,7 @@ fn inner_shares(turns: &[Sides], lengths: impl Iterator<Item = f64>) -> Vec<f64>
             && one.side == other.side
             && one.back + other.back > length
         {
-            // A little remains between them.
+            // Leave a small gap between them.
             let share = 0.99 * length / (one.back + other.back);
             for point in [number, number + 1] {
                 shares[point] = shares[point].min(share);
@@ -163,7 +169,7 @@ impl Ribbon {
         let CenterLine { points, is_met, half_width, .. } = line;
         let mut ribbon = Self::default();
         let [first, last] = [points[0], points[points.len() - 1]];
-        let long = LongLine::of(line);
+        let long = LongLine::from_center_line(line);
         let [from, end] = long.own;
         let mut start = long.sides_at(from);
         if from == 0 {
@@ -176,7 +182,8 @@ impl Ribbon {
         }
         for index in from..end {
             let stop = long.sides_at(index + 1);
-            let [left, right] = [0, 1].map(|side| [start.after[side], stop.before[side]].map(snap));
+            let [left, right] =
+                [0, 1].map(|side| [start.after[side], stop.before[side]].map(nearest_point));
             ribbon.outline.extend([left, right]);
             ribbon.parts.push(vec![left[0], left[1], right[1], right[0]]);
             // A turn belongs to the segment before it.
@@ -184,7 +191,7 @@ impl Ribbon {
                 let at = long.all[index + 1];
                 for side in [0, 1] {
                     if !stop.meet[side] {
-                        let [one, other] = [stop.before[side], stop.after[side]].map(snap);
+                        let [one, other] = [stop.before[side], stop.after[side]].map(nearest_point);
                         ribbon.outline.extend([[one, other], [one, at], [at, other]]);
                         ribbon.parts.push(vec![at, one, other]);
                     }
@@ -200,9 +207,9 @@ impl Ribbon {
         ribbon
     }
 
-    /// An end: straight where the road ends, half an octagon where it meets another.
+    /// Adds an end: straight where the road ends, half an octagon where it meets another.
     fn cap(&mut self, at: LatticePoint, [nx, ny]: [f64; 2], half_width: f64, is_round: bool) {
-        let offset = |x: f64, y: f64| snap(moved(at, [x, y], half_width));
+        let offset = |x: f64, y: f64| nearest_point(moved(at, [x, y], half_width));
         // Along the line and outwards.
         let [dx, dy] = [ny, -nx];
         let corners = if is_round {
@@ -243,10 +250,11 @@ impl Sides {
         let bisector = [0, 1].map(|axis| before[axis] + after[axis]);
         let inner = usize::from(turn <= 0.0);
         let sign = |side: usize| if side == 0 { 1.0 } else { -1.0 };
-        // How far before the point the inner sides cross: the tangent of half the turn.
+        // The distance from the point to the crossing of the inner sides: the tangent of half the
+        // turn, times half the width.
         let back = half_width * turn.abs() / (1.0 + product);
         let direction = bisector.map(|axis| axis * sign(inner) / turn.abs());
-        // On a way back along itself there is no bisector.
+        // A line that turns back on itself has no bisector.
         let inner_side = direction.iter().all(|axis| axis.is_finite()).then(|| InnerSide {
             side: inner,
             back: if back > reach { reach.min(half_width) } else { back },
@@ -269,25 +277,17 @@ impl Sides {
     }
 }
 
-/// The unit vector to the left of the way from one point to another.
+/// Returns the unit vector to the left of the way from one point to another.
 fn left_normal(from: LatticePoint, to: LatticePoint) -> [f64; 2] {
-    let (du, dv) = ((to.u - from.u) as f64, (to.v - from.v) as f64);
+    let [du, dv] = steps_between(from, to);
     let length = du.hypot(dv);
     [-dv / length, du / length]
 }
 
-fn length(from: LatticePoint, to: LatticePoint) -> f64 {
-    from.distance_steps(to)
-}
-
-/// A point, moved by a multiple of a vector, in lattice steps from the lattice's origin.
+/// Returns a point, moved by a multiple of a vector, in lattice steps from the lattice's origin.
 fn moved(at: LatticePoint, [x, y]: [f64; 2], factor: f64) -> [f64; 2] {
-    // Rounding the offset by itself keeps it the same wherever the point lies.
+    // The offset is rounded separately, so it is the same wherever the point is.
     [at.u as f64 + (x * factor).round(), at.v as f64 + (y * factor).round()]
-}
-
-fn snap([u, v]: [f64; 2]) -> LatticePoint {
-    LatticePoint::new(u.round() as i64, v.round() as i64)
 }
 
 #[cfg(test)]

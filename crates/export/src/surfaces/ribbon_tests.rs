@@ -44,7 +44,7 @@ fn a_straight_road_is_a_rectangle() {
     assert_eq!(outline, expected);
 }
 
-/// At a right angle the sides meet at once and a half the width: tip outside, crossing inside.
+/// At a right angle the sides meet on the diagonal: tip outside, crossing inside.
 #[test]
 fn sides_meet_at_a_turn() {
     let ribbon = Ribbon::around(&line(&[(0, 0), (1000, 0), (1000, 1000)], 50.0));
@@ -52,11 +52,11 @@ fn sides_meet_at_a_turn() {
     let corners: Vec<_> = ribbon.outline.as_flattened().to_vec();
     assert!(corners.contains(&point(950, 50)) && corners.contains(&point(1050, -50)));
     let area: i64 = ribbon.parts.iter().map(|part| twice_area(part)).sum();
-    // Two arms and the square of the corner, less what both share.
+    // Two arms and the square of the corner, without their common part.
     assert_eq!(area, 2 * (950 * 100 + 950 * 100 + 100 * 100));
 }
 
-/// A hairpin is bevelled: nothing reaches further than half the width from the line.
+/// A hairpin is bevelled: nothing extends farther than half the width from the line.
 #[test]
 fn sharp_turns_are_bevelled() {
     let ribbon = Ribbon::around(&line(&[(0, 0), (1000, 0), (0, 100)], 50.0));
@@ -73,7 +73,7 @@ fn short_segments_keep_their_sides() {
     assert!(ribbon.outline.as_flattened().iter().any(on_side));
 }
 
-/// What a tile makes of its half of a line joins what its neighbour makes of the other half.
+/// A tile's half of a line joins its neighbour's half.
 #[test]
 fn halves_of_a_line_join() {
     let border = point(1000, 0);
@@ -90,7 +90,7 @@ fn halves_of_a_line_join() {
     assert_eq!(parts, whole.parts);
 }
 
-/// Where it meets another road the end is half an octagon, within half a width of the end.
+/// An end that meets another road is half an octagon, within half a width of the end.
 #[test]
 fn ends_at_other_roads_are_round() {
     let met = CenterLine { is_met: [false, true], ..line(&[(0, 0), (1000, 0)], 50.0) };
@@ -114,13 +114,13 @@ fn cross_sections_are_the_sides_of_the_ribbon() {
     ];
     assert_eq!(sides, expected);
     assert_eq!(sections.iter().map(|section| section.point).collect::<Vec<_>>(), [0, 1, 2]);
-    // Outside of a sharp turn there are two corners, inside there is one.
+    // Outside a sharp turn there are two corners, inside there is one.
     let sharp = line(&[(0, 0), (1000, 0), (0, 100)], 50.0).cross_sections();
     assert_eq!(sharp.len(), 4);
     assert_eq!(sharp[1].sides[0], sharp[2].sides[0]);
     assert_eq!(sharp[1].sides[1], point(1000, -50));
     assert_ne!(sharp[1].sides[1], sharp[2].sides[1]);
-    // What two halves have at their border is the same.
+    // Both halves have the same cross-section at their border.
     let west =
         CenterLine { beyond: [None, Some(point(2000, 300))], ..line(&[(0, 0), (1000, 0)], 50.0) };
     let east =

@@ -1,13 +1,14 @@
-//! The slab of a bridge: the road on top, two sides, an underside and two ends. It is closed, and its triangles are counter-clockwise from outside.
+//! The slab of a bridge: the road on top, two sides, an underside and two ends. It is closed, and
+//! its triangles are counter-clockwise from outside.
 //!
 //! ```text
 //!    0 ────────── 1      Across the way the slab is a rectangle. Each of its edges goes along the way as a strip,
-//!    │  ───►way   │      from the edge's first corner to its second one; strips beside each other
+//!    │  ───►way   │      from the edge's first corner to its second one; adjacent strips
 //!    3 ────────── 2      have the same corners. The edge 0–1 is the road.
 //! ```
 
 use super::{
-    ground::{GroundMesh, GroundVertex, unit},
+    ground::{LabelledMesh, SurfaceVertex, unit},
     ribbon::{CenterLine, CrossSection},
     wide_line::wide_points,
 };
@@ -19,7 +20,7 @@ pub(crate) struct Slab<'a> {
     /// Heights of the deck at the points of the line.
     pub(crate) deck_m: &'a [f64],
     pub(crate) thickness_m: f64,
-    /// Lattice steps for a true metre.
+    /// Lattice steps per true metre.
     pub(crate) steps_per_m: f64,
 }
 
@@ -37,7 +38,7 @@ const CORNERS: usize = 4;
 
 impl Slab<'_> {
     /// Adds the slab to a mesh.
-    pub(crate) fn add_to(&self, mesh: &mut GroundMesh, labels: SlabLabels) {
+    pub(crate) fn add_to(&self, mesh: &mut LabelledMesh, labels: SlabLabels) {
         let kept = wide_points(&self.center.points, self.center.half_width);
         let points = kept.iter().map(|point| self.center.points[*point]).collect();
         let sections = CenterLine { points, ..self.center.clone() }.cross_sections();
@@ -54,7 +55,8 @@ impl Slab<'_> {
         }
         let ends = [[first[0], first[3], first[2], first[1]], *last];
         for ([a, b, c, d], beyond) in ends.into_iter().zip(self.center.beyond) {
-            // Where the bridge goes on, the end of the slab would be seen as a line across the road.
+            // Where the bridge continues, the end of the slab would be visible as a line across the
+            // road.
             let label = if beyond.is_some() { labels.road } else { labels.others };
             self.strip([[a, b], [d, c]].into_iter(), label, mesh);
         }
@@ -67,7 +69,7 @@ impl Slab<'_> {
     }
 
     /// Adds triangles between pairs of corners. Each corner has the mean of the normals around it.
-    fn strip(&self, pairs: impl Iterator<Item = [Corner; 2]>, label: u32, mesh: &mut GroundMesh) {
+    fn strip(&self, pairs: impl Iterator<Item = [Corner; 2]>, label: u32, mesh: &mut LabelledMesh) {
         let corners: Vec<Corner> = pairs.flatten().collect();
         let first = mesh.vertices.len() as u32;
         let mut normals = vec![[0.0_f32; 3]; corners.len()];
@@ -88,7 +90,7 @@ impl Slab<'_> {
             }
         }
         let vertices = corners.into_iter().zip(normals);
-        mesh.vertices.extend(vertices.map(|(Corner { at, height_m }, normal)| GroundVertex {
+        mesh.vertices.extend(vertices.map(|(Corner { at, height_m }, normal)| SurfaceVertex {
             at,
             height_m,
             normal: unit(normal),
@@ -116,7 +118,7 @@ impl Corner {
     }
 }
 
-/// The normal of a triangle, twice its area long.
+/// The normal of a triangle; its length is twice the triangle's area.
 fn normal([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
     cross(between(a, b), between(a, c))
 }

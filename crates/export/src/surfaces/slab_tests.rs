@@ -1,4 +1,4 @@
-//! Slabs are closed, look outwards, and have the area and the volume of what they are made of.
+//! Slabs are closed, face outwards, and have the area and the volume of their parts.
 
 use std::collections::HashMap;
 
@@ -6,13 +6,13 @@ use corniche_geom::LatticePoint;
 use proptest::prelude::*;
 
 use super::{Slab, SlabLabels};
-use crate::surfaces::{ground::GroundMesh, ribbon::CenterLine};
+use crate::surfaces::{ground::LabelledMesh, ribbon::CenterLine};
 
 const STEPS_PER_M: f64 = 1000.0;
 const LABELS: SlabLabels = SlabLabels { road: 1, others: 2 };
 
 /// The slab of a line in whole metres with the heights of its deck.
-fn slab(points: &[[i64; 2]], deck_m: &[f64], width_m: f64, thickness_m: f64) -> GroundMesh {
+fn slab(points: &[[i64; 2]], deck_m: &[f64], width_m: f64, thickness_m: f64) -> LabelledMesh {
     let steps = STEPS_PER_M as i64;
     let center = CenterLine {
         points: points.iter().map(|[x, y]| LatticePoint::new(x * steps, y * steps)).collect(),
@@ -20,13 +20,13 @@ fn slab(points: &[[i64; 2]], deck_m: &[f64], width_m: f64, thickness_m: f64) -> 
         is_met: [false; 2],
         half_width: width_m / 2.0 * STEPS_PER_M,
     };
-    let mut mesh = GroundMesh::new(LatticePoint::new(0, 0));
+    let mut mesh = LabelledMesh::new(LatticePoint::new(0, 0));
     let slab = Slab { center: &center, deck_m, thickness_m, steps_per_m: STEPS_PER_M };
     slab.add_to(&mut mesh, LABELS);
     mesh
 }
 
-fn places_m(mesh: &GroundMesh, triangle: [u32; 3]) -> [[f64; 3]; 3] {
+fn places_m(mesh: &LabelledMesh, triangle: [u32; 3]) -> [[f64; 3]; 3] {
     triangle.map(|corner| {
         let vertex = &mesh.vertices[corner as usize];
         let [x, y] = vertex.at.map(|steps| steps / STEPS_PER_M);
@@ -43,12 +43,12 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|axis| a[axis] * b[axis]).sum()
 }
 
-fn volume_m3(mesh: &GroundMesh) -> f64 {
+fn volume_m3(mesh: &LabelledMesh) -> f64 {
     let all = mesh.triangles.iter().map(|triangle| places_m(mesh, *triangle));
     all.map(|places| dot(places[0], area_vector(places)) / 6.0).sum()
 }
 
-fn area_m2(mesh: &GroundMesh, label: u32) -> f64 {
+fn area_m2(mesh: &LabelledMesh, label: u32) -> f64 {
     let all = mesh.triangles.iter().zip(&mesh.labels).filter(|(_, own)| **own == label);
     all.map(|(triangle, _)| {
         let vector = area_vector(places_m(mesh, *triangle));
@@ -57,8 +57,8 @@ fn area_m2(mesh: &GroundMesh, label: u32) -> f64 {
     .sum()
 }
 
-/// Each edge, told by the places of its ends, is there as often in one direction as in the other.
-fn is_closed(mesh: &GroundMesh) -> bool {
+/// Each edge, given by the places of its ends, occurs as often in one direction as in the other.
+fn is_closed(mesh: &LabelledMesh) -> bool {
     let mut sums: HashMap<[[u64; 3]; 2], i32> = HashMap::new();
     for triangle in &mesh.triangles {
         let places = places_m(mesh, *triangle).map(|place| place.map(f64::to_bits));
@@ -71,8 +71,8 @@ fn is_closed(mesh: &GroundMesh) -> bool {
     sums.values().all(|sum| *sum == 0)
 }
 
-/// Normals of vertices are of length one, and no triangle looks away from that of its corners.
-fn looks_outwards(mesh: &GroundMesh) -> bool {
+/// Normals of vertices have length one, and no triangle faces away from the normals of its corners.
+fn looks_outwards(mesh: &LabelledMesh) -> bool {
     mesh.triangles.iter().all(|triangle| {
         let around = area_vector(places_m(mesh, *triangle));
         triangle.iter().all(|corner| {
@@ -95,7 +95,7 @@ fn a_straight_bridge_is_a_box() {
     assert!(mesh.vertices.iter().all(|vertex| vertex.on_slab));
 }
 
-/// Where a bridge goes on in another slab, nothing grey is seen between both.
+/// Where another slab continues a bridge, no grey is visible between both.
 #[test]
 fn the_end_towards_another_slab_has_the_colour_of_the_road() {
     let steps = STEPS_PER_M as i64;
@@ -105,7 +105,7 @@ fn the_end_towards_another_slab_has_the_colour_of_the_road() {
         is_met: [false; 2],
         half_width: 4.0 * STEPS_PER_M,
     };
-    let mut mesh = GroundMesh::new(LatticePoint::new(0, 0));
+    let mut mesh = LabelledMesh::new(LatticePoint::new(0, 0));
     let slab =
         Slab { center: &center, deck_m: &[9.0; 2], thickness_m: 1.5, steps_per_m: STEPS_PER_M };
     slab.add_to(&mut mesh, LABELS);
@@ -113,7 +113,8 @@ fn the_end_towards_another_slab_has_the_colour_of_the_road() {
     assert!(is_closed(&mesh));
 }
 
-/// A ramp of 3 in 4: longer on top, but of the same volume as a level one, because its sides are upright.
+/// A ramp of 3 in 4: longer on top, but with the volume of a level one, because its sides are
+/// vertical.
 #[test]
 fn a_ramp_is_a_sheared_box() {
     let mesh = slab(&[[0, 0], [40, 0]], &[110.0, 140.0], 10.0, 1.5);
@@ -122,7 +123,7 @@ fn a_ramp_is_a_sheared_box() {
     assert!((volume_m3(&mesh) - 40.0 * 10.0 * 1.5).abs() < 1e-6);
 }
 
-/// At a right angle the tip outside is as large as what both arms share inside.
+/// At a right angle the tip outside is as large as the overlap of both arms inside.
 #[test]
 fn a_mitred_bridge_keeps_its_area() {
     let mesh = slab(&[[0, 0], [100, 0], [100, 100]], &[110.0; 3], 10.0, 1.0);
@@ -132,7 +133,7 @@ fn a_mitred_bridge_keeps_its_area() {
     assert!((volume_m3(&mesh) - 200.0 * 10.0).abs() < 1e-6);
 }
 
-/// A turn of 143° is bevelled outside and ends at one corner inside; nothing is turned over.
+/// A turn of 143° is bevelled outside and ends at one corner inside; no triangle is flipped.
 #[test]
 fn a_sharp_turn_is_closed() {
     let mesh = slab(&[[0, 0], [100, 0], [20, 60]], &[110.0; 3], 8.0, 1.0);
@@ -141,13 +142,13 @@ fn a_sharp_turn_is_closed() {
     assert!(furthest <= 104.0 * STEPS_PER_M, "{furthest}");
 }
 
-/// A way back along itself, a step of a millimetre, and a road of no width.
+/// A way that turns back on itself, a step of a millimetre, and a road without width.
 #[test]
 fn degenerate_bridges_are_closed() {
     let back = slab(&[[0, 0], [100, 0], [0, 0]], &[110.0; 3], 8.0, 1.0);
     assert!(is_closed(&back) && !back.triangles.is_empty());
     assert!(is_closed(&slab(&[[0, 0], [10, 0]], &[110.0; 2], 0.0, 1.0)));
-    let mut mesh = GroundMesh::new(LatticePoint::new(0, 0));
+    let mut mesh = LabelledMesh::new(LatticePoint::new(0, 0));
     let points = [[0, 0], [1, 0], [1, 1], [-3000, 1]];
     let center = CenterLine {
         points: points.map(|[u, v]| LatticePoint::new(u, v)).to_vec(),
@@ -173,7 +174,7 @@ fn divided_slabs_are_closed() {
 }
 
 proptest! {
-    /// Whatever way a bridge takes, its slab is closed.
+    /// The slab of a bridge is closed, whatever its line.
     #[test]
     fn all_slabs_are_closed(
         places in prop::collection::vec((-60_i64..60, -60_i64..60, 0.0..9.0_f64), 2..9),

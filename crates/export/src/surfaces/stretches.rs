@@ -1,41 +1,45 @@
-//! A line of a tile, divided where its bridges stand high enough above the ground to be slabs.
+//! Divides a line of a tile where its bridges are high enough above the ground to be slabs.
 //!
 //! ```text
 //!             ┌─────────────┐          deck
 //!   ━━━━━━━━━━╱             ╲━━━━━━    a slab, where the deck leaves the ground; it may be within the ground in part
-//!   ───────────╲───────────╱───────    the road also lies on the ground, as far as the slab is not wholly above it
+//!   ───────────╲───────────╱───────    the road is also on the ground where the slab is not entirely above the ground
 //!               ╲_________╱
 //! ```
 //!
-//! A slab begins a little above the ground, so its road is nowhere in the plane of the ground. A bridge that is nowhere its slab's thickness above the ground
-//! has none.
+//! A slab begins a little above the ground, so its road is never in the plane of the ground. A
+//! bridge that is nowhere higher above the ground than its slab's thickness has none.
 //!
-//! Between places at which the deck or the ground bends both are straight, so where a slab begins is a matter of one division.
+//! Between places at which the deck or the ground bends, both are straight, so the start of a slab
+//! follows from one division.
 
-use corniche_geom::{LatticePoint, TooMuchWork, Work, along};
+use corniche_geom::{LatticePoint, StepBudget, TooMuchWork, along};
 use corniche_roads::{Structure, slab_thickness_m};
 use corniche_tileset::{SpanHeight, SpanRun};
 
-use crate::piece::{Piece, Vertex};
+use crate::{
+    piece::{Vertex, WayPiece, own_points},
+    plane::nearest_point,
+};
 
-/// Points of runs are rounded to the lattice: they lie on their line within so many steps.
+/// Points of runs are rounded to the lattice: they are within this many steps of their line.
 const NEAR_STEPS: f64 = 2.0;
 
 /// A slab begins where its road is this far above the ground, metres.
 const START_M: f64 = 0.1;
 
 /// A stretch of a line in plan.
-#[derive(Clone)]
-pub(crate) struct Stretch {
-    /// Two at least, no two neighbours the same.
+pub(crate) struct PlanStretch {
+    /// At least two points, no two neighbours equal.
     pub(crate) points: Vec<LatticePoint>,
-    /// Heights of the deck at the points, in the package's datum; `None` where the road lies on the ground.
+    /// Heights of the deck at the points, in the package's datum; `None` if the road is on the
+    /// ground.
     pub(crate) deck_m: Option<Vec<f64>>,
-    /// Whether the line goes on from its first point, and from its last, in another tile.
+    /// Whether the line continues in another tile from its first point, and from its last.
     pub(crate) goes_on: [bool; 2],
 }
 
-impl Stretch {
+impl PlanStretch {
     pub(crate) fn ends(&self) -> [LatticePoint; 2] {
         [self.points[0], self.points[self.points.len() - 1]]
     }
@@ -46,17 +50,19 @@ impl Stretch {
     }
 }
 
-/// Divides a line along the bridges among the runs of its way: first its slabs, then what of it lies on the ground. Runs that do not lie on it are left out, and so is what others of them have already.
+/// Divides a line along the bridges among the runs of its way: first its slabs, then its parts on
+/// the ground. Runs that are not on the line are skipped, and so are parts that other runs have
+/// already.
 ///
 /// # Errors
-/// When there are more runs over more ground than any writer makes.
+/// When there are more runs over more ground than in any valid package.
 pub(crate) fn stretches(
-    piece: &Piece,
+    piece: &WayPiece,
     runs: &[SpanRun],
     quantum_m: f64,
-    work: &Work,
-) -> Result<Vec<Stretch>, TooMuchWork> {
-    let line = Line::of(&piece.vertices);
+    work: &StepBudget,
+) -> Result<Vec<PlanStretch>, TooMuchWork> {
+    let line = MeasuredLine::from_vertices(&piece.vertices);
     let thickness_m = slab_thickness_m(piece.class);
     let mut slabs: Vec<Vec<DeckPoint>> = Vec::new();
     let mut bare: Vec<[DeckPoint; 2]> = Vec::new();
@@ -82,13 +88,13 @@ pub(crate) fn stretches(
             piece.goes_on[1] && last >= line.length() - NEAR_STEPS,
         ];
         let is_high = bare.iter().any(|[start, _]| start.along >= first && start.along <= last);
-        // How high it is in the next tile is not known here, and must be the same in both.
+        // The height in the next tile is unknown here, and the result must be the same in both.
         if first < from || !(is_high || goes_on.contains(&true)) {
             continue;
         }
         from = last;
         kept.push([first, last]);
-        found.push(Stretch {
+        found.push(PlanStretch {
             points: slab.iter().map(|point| point.at).collect(),
             deck_m: Some(slab.iter().map(|point| point.deck_m).collect()),
             goes_on,
@@ -96,7 +102,7 @@ pub(crate) fn stretches(
     }
     let mut from = Cut { along: f64::NEG_INFINITY, at: None };
     for [first, last] in bare {
-        // Where another run's slab was left out, the road stays on the ground.
+        // Where another run's slab was skipped, the road stays on the ground.
         let is_kept = kept.iter().any(|[start, end]| first.along >= *start && last.along <= *end);
         if first.along < from.along || !is_kept {
             continue;
@@ -126,7 +132,7 @@ struct DeckPoint {
     deck_m: f64,
 }
 
-/// A place at which a deck or the ground beneath bends.
+/// A place at which a deck or the ground beneath it bends.
 struct Station {
     along: f64,
     deck_m: f64,
@@ -135,15 +141,15 @@ struct Station {
     point: Option<LatticePoint>,
 }
 
-/// A line on the ground with the way to each of its vertices.
-struct Line<'a> {
+/// A line on the ground with the distance along it of each vertex.
+struct MeasuredLine<'a> {
     vertices: &'a [Vertex],
     /// Lattice steps from the first vertex.
     along: Vec<f64>,
 }
 
-impl<'a> Line<'a> {
-    fn of(vertices: &'a [Vertex]) -> Self {
+impl<'a> MeasuredLine<'a> {
+    fn from_vertices(vertices: &'a [Vertex]) -> Self {
         let mut sum = 0.0;
         let mut along = vec![sum];
         for [from, to] in vertices.array_windows() {
@@ -157,7 +163,8 @@ impl<'a> Line<'a> {
         self.along[self.along.len() - 1]
     }
 
-    /// The segment with a place on the line, and the share of it that lies before.
+    /// Returns the segment that contains a place on the line, and the share of the segment before
+    /// it.
     fn segment_at(&self, along: f64) -> (usize, f64) {
         let last = self.vertices.len() - 2;
         let segment = self.along.partition_point(|own| *own <= along).saturating_sub(1).min(last);
@@ -166,14 +173,15 @@ impl<'a> Line<'a> {
         (segment, if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 })
     }
 
-    /// The place and the ground's height there.
+    /// Returns the place and the ground's height there.
     fn at(&self, along: f64) -> Vertex {
         let (segment, share) = self.segment_at(along);
         let [from, to] = [self.vertices[segment], self.vertices[segment + 1]];
         from.towards(to, share)
     }
 
-    /// How far along a segment the place nearest to a point is, and how far that is from the point.
+    /// Returns the distance along a segment of the place nearest to a point, and its distance from
+    /// the point.
     fn nearest(&self, segment: usize, point: [f64; 2]) -> (f64, f64) {
         let [from, to] = [self.vertices[segment].at, self.vertices[segment + 1].at];
         let whole = distance(from, to);
@@ -183,8 +191,9 @@ impl<'a> Line<'a> {
         (self.along[segment] + share * whole, distance(along(from, to, share), point))
     }
 
-    /// Where the points of a run are along the line; `None` if it is a run of another line of the way.
-    fn places(&self, run: &SpanRun, work: &Work) -> Option<Vec<f64>> {
+    /// Returns the distances along the line of the points of a run; `None` if the run belongs to
+    /// another line of the way.
+    fn places(&self, run: &SpanRun, work: &StepBudget) -> Option<Vec<f64>> {
         let first = run.points[0].at.in_steps();
         work.add(self.vertices.len());
         (0..self.vertices.len() - 1).find_map(|segment| {
@@ -197,7 +206,8 @@ impl<'a> Line<'a> {
         })
     }
 
-    /// The same for a run whose first point is known. All points at which the line turns are points of the run, so between two of them it is straight.
+    /// Returns the same for a run whose first point is known. All points at which the line turns
+    /// are points of the run, so between two of them it is straight.
     fn follow(&self, run: &SpanRun, first: f64) -> Option<Vec<f64>> {
         let mut places = vec![first];
         let mut before = first;
@@ -213,7 +223,7 @@ impl<'a> Line<'a> {
         Some(places)
     }
 
-    /// The deck of a run, whose points are at these places, over the ground.
+    /// Returns the deck of a run over the ground, with its points at these places.
     fn deck(&self, run: &SpanRun, places: &[f64], quantum_m: f64) -> Vec<Station> {
         let of_run = run.points.iter().zip(places).map(|(point, &along)| {
             let ground_m = self.at(along).z_m;
@@ -241,27 +251,24 @@ impl<'a> Line<'a> {
         stations
     }
 
-    /// What of the line lies on the ground between two cuts, if that has a length.
-    fn on_ground(&self, [from, to]: [Cut; 2], goes_on: [bool; 2]) -> Option<Stretch> {
+    /// Returns the part of the line on the ground between two cuts, if it has a length.
+    fn on_ground(&self, [from, to]: [Cut; 2], goes_on: [bool; 2]) -> Option<PlanStretch> {
         // A line that ends where the ground ends has no point of its own there.
-        let last = self.vertices.len() - 1;
-        let own = self.vertices.iter().enumerate();
-        let own = own.filter(|(index, vertex)| vertex.is_source || *index == 0 || *index == last);
-        let own = own.filter(|(index, _)| {
+        let own = own_points(self.vertices).filter(|(index, _)| {
             let along = self.along[*index];
             along > from.along && along < to.along
         });
-        let inside = own.map(|(_, vertex)| rounded(vertex.at));
+        let inside = own.map(|(_, vertex)| nearest_point(vertex.at));
         let mut points: Vec<LatticePoint> =
             from.at.into_iter().chain(inside).chain(to.at).collect();
         points.dedup();
         let goes_on = [from.at.is_none() && goes_on[0], to.at.is_none() && goes_on[1]];
-        (points.len() > 1).then_some(Stretch { points, deck_m: None, goes_on })
+        (points.len() > 1).then_some(PlanStretch { points, deck_m: None, goes_on })
     }
 }
 
-/// The parts of a deck that are over the ground by this at least.
-fn high_parts(deck: &[Station], line: &Line<'_>, least_m: f64) -> Vec<Vec<DeckPoint>> {
+/// Returns the parts of a deck that are at least this far above the ground.
+fn high_parts(deck: &[Station], line: &MeasuredLine<'_>, least_m: f64) -> Vec<Vec<DeckPoint>> {
     let is_high = |station: &Station| station.over_m >= least_m;
     let mut parts: Vec<Vec<DeckPoint>> = Vec::new();
     let mut before: Option<&Station> = None;
@@ -271,7 +278,7 @@ fn high_parts(deck: &[Station], line: &Line<'_>, least_m: f64) -> Vec<Vec<DeckPo
             let along = from.along + share * (station.along - from.along);
             let at = line.at(along).at;
             let deck_m = from.deck_m + share * (station.deck_m - from.deck_m);
-            DeckPoint { along, at: rounded(at), deck_m }
+            DeckPoint { along, at: nearest_point(at), deck_m }
         });
         if is_high(station) && (before.is_none() || cut.is_some()) {
             parts.push(Vec::new());
@@ -289,10 +296,6 @@ fn high_parts(deck: &[Station], line: &Line<'_>, least_m: f64) -> Vec<Vec<DeckPo
     }
     parts.retain(|part| part.len() > 1);
     parts
-}
-
-fn rounded([u, v]: [f64; 2]) -> LatticePoint {
-    LatticePoint::new(u.round() as i64, v.round() as i64)
 }
 
 fn distance(from: [f64; 2], to: [f64; 2]) -> f64 {

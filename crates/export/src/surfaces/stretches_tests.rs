@@ -1,13 +1,13 @@
-//! Lines over valleys, banks and bumps: what of them is a slab, and where it begins.
+//! Lines over valleys, banks and bumps: which parts are slabs, and where they begin.
 
-use corniche_geom::{LatticePoint, Work};
+use corniche_geom::{LatticePoint, StepBudget};
 use corniche_roads::{FunctionalRoadClass, RoadAttributes, Structure};
 use corniche_tileset::{SpanHeight, SpanPoint, SpanRun};
 
-use super::{Stretch, slab_thickness_m, stretches};
-use crate::piece::{Piece, PieceHeights, PieceKey, Vertex};
+use super::{PlanStretch, slab_thickness_m, stretches};
+use crate::piece::{PieceHeights, PieceKey, Vertex, WayPiece};
 
-/// Lattice steps to a metre, and steps of heights to a metre.
+/// Lattice steps per metre, and steps of heights per metre.
 const METRE: i64 = 1000;
 const QUANTUM_M: f64 = 0.25;
 
@@ -15,13 +15,13 @@ fn class() -> FunctionalRoadClass {
     FunctionalRoadClass::new(4).unwrap()
 }
 
-/// A vertex so many metres east, whole for points of the way.
+/// A vertex this many metres east; whole for points of the way.
 fn vertex(east_m: f64, z_m: f64, is_source: bool) -> Vertex {
     Vertex { at: [east_m * METRE as f64, 0.0], z_m, is_source }
 }
 
-fn piece(vertices: Vec<Vertex>) -> Piece {
-    Piece {
+fn piece(vertices: Vec<Vertex>) -> WayPiece {
+    WayPiece {
         key: PieceKey { way_id: 7, tile: 0, part: 0, cut: 0 },
         class: class(),
         attributes: RoadAttributes::default(),
@@ -36,7 +36,7 @@ fn piece(vertices: Vec<Vertex>) -> Piece {
     }
 }
 
-/// A point of a run so many metres east; `None` is on the ground.
+/// A point of a run this many metres east; `None` is on the ground.
 fn at(east_m: i64, deck_m: Option<f64>) -> SpanPoint {
     let height = deck_m.map_or(SpanHeight::Ground { triangle: 0 }, |deck_m| {
         SpanHeight::Steps((deck_m / QUANTUM_M).round() as i64)
@@ -48,12 +48,12 @@ fn run(points: Vec<SpanPoint>) -> SpanRun {
     SpanRun { way_id: 7, class: class(), structure: Structure::Bridge, points }
 }
 
-fn divided(line: Vec<Vertex>, runs: &[SpanRun]) -> Vec<Stretch> {
-    stretches(&piece(line), runs, QUANTUM_M, &Work::unlimited()).unwrap()
+fn divided(line: Vec<Vertex>, runs: &[SpanRun]) -> Vec<PlanStretch> {
+    stretches(&piece(line), runs, QUANTUM_M, &StepBudget::unlimited()).unwrap()
 }
 
-/// Metres east of the points of a stretch, and the heights of its deck.
-fn told(stretch: &Stretch) -> (Vec<f64>, Option<Vec<f64>>) {
+/// The positions of the points of a stretch, metres east, and the heights of its deck.
+fn told(stretch: &PlanStretch) -> (Vec<f64>, Option<Vec<f64>>) {
     let metres = stretch.points.iter().map(|point| point.u as f64 / METRE as f64);
     (metres.collect(), stretch.deck_m.clone())
 }
@@ -67,8 +67,8 @@ fn without_runs_a_line_is_as_it_was() {
     assert_eq!(found[0].goes_on, [false, true]);
 }
 
-/// A ramp of 4 m over 40 m, and as much down to a border that lies 3 m over the ground. It is a slab from 0.1 m on, and on the ground, too, until that is
-/// a slab of class 4 high.
+/// A ramp of 4 m over 40 m, then down the same way to a border that is 3 m above the ground. It is
+/// a slab from 0.1 m on, and on the ground, too, until it is as high as a slab of class 4.
 #[test]
 fn a_ramp_is_draped_until_it_is_a_slab_high() {
     let line = vec![
@@ -84,8 +84,8 @@ fn a_ramp_is_draped_until_it_is_a_slab_high() {
     assert_eq!([found[0].goes_on, found[1].goes_on], [[false, true], [false, false]]);
 }
 
-/// A level deck over a valley whose ground bends between its points, with a bump in the middle that comes within a slab of it: one slab, and the road beneath
-/// it on the bump.
+/// A level deck over a valley whose ground bends between its points, with a bump in the middle that
+/// comes within a slab of it: one slab, and the road beneath it on the bump.
 #[test]
 fn the_ground_between_points_of_a_run_counts() {
     let line = vec![
@@ -105,7 +105,7 @@ fn the_ground_between_points_of_a_run_counts() {
     assert_eq!(found[3].goes_on, [false, true]);
 }
 
-/// Tunnels, decks that are nowhere high, and runs that lie on no line change nothing.
+/// Tunnels, decks that are nowhere high, and runs that are on no line change nothing.
 #[test]
 fn other_runs_leave_the_road_on_the_ground() {
     let line = || vec![vertex(0.0, 100.0, true), vertex(50.0, 100.0, true)];
@@ -132,7 +132,7 @@ fn runs_over_each_other_are_taken_once() {
     assert_eq!(told(&found[0]), (vec![0.0, 50.0], Some(vec![110.0; 2])));
 }
 
-/// Of two runs that lie over each other in part, the road is on the ground where the second one's slab would be.
+/// If two runs overlap in part, the road is on the ground where the second one's slab would be.
 #[test]
 fn no_road_is_lost_where_runs_overlap() {
     let line = vec![vertex(0.0, 100.0, true), vertex(90.0, 100.0, true)];
@@ -142,7 +142,7 @@ fn no_road_is_lost_where_runs_overlap() {
     assert_eq!(told, [(vec![0.0, 50.0], Some(vec![110.0; 2])), (vec![50.0, 90.0], None)]);
 }
 
-/// A line that crosses itself: the run is where the way goes on as the run does.
+/// A line that crosses itself: the run is where the way continues in the same way as the run.
 #[test]
 fn a_loop_over_itself_is_followed() {
     let place = |u: f64, v: f64, z_m: f64| Vertex {
@@ -168,7 +168,8 @@ fn a_loop_over_itself_is_followed() {
     assert_eq!(found[1].points.len(), 5);
 }
 
-/// A low bridge over a border is a slab in both tiles, because each of them does not know how high it is in the other.
+/// A low bridge over a border is a slab in both tiles, because neither knows its height in the
+/// other.
 #[test]
 fn low_decks_that_go_on_are_slabs() {
     let line = vec![vertex(0.0, 100.0, true), vertex(50.0, 100.0, true)];
@@ -181,7 +182,7 @@ fn low_decks_that_go_on_are_slabs() {
 fn many_runs_over_much_ground_are_refused() {
     let line = vec![vertex(0.0, 100.0, true), vertex(50.0, 100.0, true)];
     let one = run(vec![at(0, Some(110.0)), at(50, Some(110.0))]);
-    assert!(stretches(&piece(line), &vec![one; 100], QUANTUM_M, &Work::new(50)).is_err());
+    assert!(stretches(&piece(line), &vec![one; 100], QUANTUM_M, &StepBudget::new(50)).is_err());
 }
 
 #[test]

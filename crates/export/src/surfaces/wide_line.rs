@@ -1,20 +1,22 @@
-//! Which points a wide line is drawn through: inside of turns, sides of short segments would cross.
+//! Chooses the points through which a wide line is drawn: inside turns, sides of short segments
+//! would cross.
 //!
 //! ```text
 //!   ─────────────◦
 //!          back  │╲        The inner sides end `back` before the turn and begin `back` after it: half the width
-//!   ─────◇╌╌╌╌╌╌╌◦ ╲       times the tangent of half the turn. A segment has room for the backs of both its ends,
-//!         ╲                or one of them is left out.
+//!   ─────◇╌╌╌╌╌╌╌◦ ╲       times the tangent of half the turn. A segment is long enough for the backs of both its ends,
+//!         ╲                or one of them is removed.
 //! ```
 
 use corniche_geom::LatticePoint;
 
-use crate::plane::{nearest, vector};
+use crate::plane::{nearest, steps_between, vector};
 
-/// A point is left out only if that moves the line by no more than this share of half its width.
+/// A point is removed only if that moves the line by no more than this share of half its width.
 const MOST_MOVED: f64 = 0.25;
 
-/// The numbers of the points that are taken, in order: always the first and the last, and all others that the line cannot do without.
+/// Returns the numbers of the points that are kept, in order: always the first and the last, and
+/// all others that the line needs.
 pub(crate) fn wide_points(points: &[LatticePoint], half_width: f64) -> Vec<usize> {
     let mut kept: Vec<usize> = Vec::with_capacity(points.len());
     for next in 0..points.len() {
@@ -26,7 +28,8 @@ pub(crate) fn wide_points(points: &[LatticePoint], half_width: f64) -> Vec<usize
     kept
 }
 
-/// The place among the kept points of one of the last that has too little room, and that the line can do without.
+/// Returns the index among the kept points of one of the last that has too little space, and that
+/// the line does not need.
 fn too_many(points: &[LatticePoint], kept: &[usize], half_width: f64) -> Option<usize> {
     let last = kept.len();
     let at = |place: usize| points[kept[place]];
@@ -49,17 +52,16 @@ fn too_many(points: &[LatticePoint], kept: &[usize], half_width: f64) -> Option<
     Some(either.next().filter(|second| moved(*second) < moved(first)).unwrap_or(first))
 }
 
-/// The tangent of half the turn at a point; below 0 to the right.
+/// The tangent of half the turn at a point; negative to the right.
 fn half_turn(from: LatticePoint, at: LatticePoint, to: LatticePoint) -> f64 {
-    let [a, b] = [[from, at], [at, to]]
-        .map(|[one, other]| [(other.u - one.u) as f64, (other.v - one.v) as f64]);
+    let [a, b] = [steps_between(from, at), steps_between(at, to)];
     let cross = a[0] * b[1] - a[1] * b[0];
     let tangent = cross / (a[0].hypot(a[1]) * b[0].hypot(b[1]) + a[0] * b[0] + a[1] * b[1]);
-    // A way back along itself.
+    // A line that turns back on itself.
     if tangent.is_nan() { f64::INFINITY } else { tangent }
 }
 
-/// How far a point is beside a segment.
+/// Returns the distance of a point from a segment.
 fn beside([from, to]: [LatticePoint; 2], at: LatticePoint) -> f64 {
     let [from, to, at] = [from, to, at].map(LatticePoint::in_steps);
     let [_, off] = nearest(vector(from, to), vector(from, at));

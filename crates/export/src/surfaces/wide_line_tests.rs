@@ -1,4 +1,4 @@
-//! Points in the way of wide lines are left out, and no others.
+//! Points that obstruct wide lines are removed, and no others.
 
 use corniche_geom::LatticePoint;
 
@@ -24,7 +24,7 @@ fn of_two_turns_in_one_place_one_stays() {
     assert_eq!([found[0], found[2]], [0, 3]);
 }
 
-/// Backs of 28 and 36 do not go together on a segment of 49; on one of 141 they do.
+/// Backs of 28 and 36 do not fit on a segment of 49; on a segment of 141 they do.
 #[test]
 fn both_ends_of_a_segment_need_room() {
     let turned =
@@ -33,7 +33,7 @@ fn both_ends_of_a_segment_need_room() {
     assert_eq!(turned(140).len(), 4);
 }
 
-/// A hairpin cannot be left out, nor a corner that the line would be far from.
+/// A hairpin cannot be removed, nor a corner that the line would be far from.
 #[test]
 fn corners_far_from_the_rest_stay() {
     assert_eq!(kept(&[(0, 0), (1000, 0), (0, 10)], 400.0), [0, 1, 2]);

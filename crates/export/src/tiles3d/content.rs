@@ -1,142 +1,140 @@
-//! From a tile of the package to a tile of glTF.
+//! Converts a tile of the package to a tile of glTF.
 
 use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
 use corniche_roads::{FunctionalRoadClass, RoadAttributes, Structure};
 use corniche_styles::{Rgb, Style};
-use corniche_tileset::{FilePackage, Manifest, Sections, TilePayload};
+use corniche_tileset::{FilePackage, Manifest, TilePayload};
 
 use super::{
     parts::{Primitive, PrimitiveKind, RESTART, RoadRow, TileContent},
-    placed::{PlacedTile, PlacedVertex, Placing, Skirt, TileBox},
+    placed::{PlacedTile, PlacedVertex, Skirt, TileBox, TilePlacement},
 };
 use crate::{
     bounds::DegreeBounds,
     error::Tiles3dError,
     gltf::{linear, y_up},
-    places::Coordinates,
+    places::FeatureCoordinates,
     read,
     relief_map::ReliefMap,
-    surfaces::{Divided, SurfaceKind, TileLines},
+    surfaces::{Divided, SurfaceKind, SurfaceLines},
     texture::Texture,
 };
 
-/// What tiles have of roads.
+/// The form of roads in tiles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TileRoads {
     /// Surfaces of their true width, cut into the ground's own triangles.
     Cut,
-    /// Roads are there as their centre-lines, lifted a little above the ground.
+    /// Roads are centre-lines, raised a little above the ground.
     Line,
-    /// The same as vector content, in a second tileset (`3DTILES_content_gltf_vector`, a draft).
+    /// Roads are centre-lines as vector content, in a second tileset
+    /// (`3DTILES_content_gltf_vector`, a draft).
     Vector,
-    /// Roads are left out.
+    /// Roads are omitted.
     None,
 }
 
-/// What of a package becomes 3D Tiles, and how.
+/// The part of a package that becomes 3D Tiles, and the form of the tiles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tiles3dRequest {
-    /// The finest level that is taken; `None` is the package's finest.
+    /// The finest level that is exported; `None` means the package's finest.
     pub finest_level: Option<u8>,
-    /// Tiles that meet it are taken, whole; `None` takes all.
+    /// Tiles that meet this rectangle are exported, whole; `None` exports all.
     pub bounds: Option<DegreeBounds>,
-    /// How roads are there.
+    /// The form of roads.
     pub roads: TileRoads,
-    /// The classes of roads that are taken.
+    /// The classes of roads that are exported.
     pub classes: Vec<FunctionalRoadClass>,
     /// Widths and colours of roads, and colours of the ground.
     pub style: Style,
     /// Whether the package's reliefs become normal maps.
     pub relief: bool,
-    /// Whether walls hang from the borders of tiles, which hide gaps between levels.
+    /// Whether skirts hang from the borders of tiles, which hide gaps between levels.
     pub skirts: bool,
     /// Whether vertices and indices are compressed (`EXT_meshopt_compression`).
     pub compress: bool,
-    /// Heights: [`Coordinates::Wgs84`] carries them to the ellipsoid, [`Coordinates::Wgs84WithPackageHeights`] takes them as they are.
-    pub coordinates: Coordinates,
-    /// How many tiles are made at the same time.
+    /// Heights: [`FeatureCoordinates::Wgs84`] transforms them to the ellipsoid,
+    /// [`FeatureCoordinates::Wgs84WithPackageHeights`] keeps them as they are.
+    pub coordinates: FeatureCoordinates,
+    /// The number of tiles that are created concurrently.
     pub threads: usize,
 }
 
-/// Lines are lifted by this share of their tile's error, and by [`LEAST_LIFT_M`] at least: less than a fifth of a pixel where a tile is shown with
-/// two pixels of error.
+/// Lines are raised by this share of their tile's error, and by at least [`LEAST_LIFT_M`]: less
+/// than a fifth of a pixel if a tile is shown with two pixels of error.
 const LIFT_OF_ERROR: f64 = 0.1;
 const LEAST_LIFT_M: f64 = 0.02;
 
-/// Tangents are rounded to so many steps of one: some hundredths of a degree, which compress to half.
+/// Tangents are rounded to this many steps per unit: some hundredths of a degree. Rounded tangents
+/// compress to half the size.
 const TANGENT_STEPS: f32 = 4096.0;
 
-/// What a level's tiles have in common.
+/// The parameters that the tiles of a level share.
 pub(crate) struct LevelOfTiles {
-    /// Edges that go further are divided: lattice steps for a true metre, and true metres.
+    /// The limits beyond which triangle edges are divided: lattice steps per true metre, and true
+    /// metres.
     pub(crate) steps_per_metre: f64,
     pub(crate) longest_edge_m: f64,
-    /// Step of positions.
+    /// The step to which positions are rounded.
     pub(crate) step_m: f64,
-    /// What dividing and rounding leave of the difference to the package, metres.
+    /// The deviation from the package that remains after dividing edges and rounding, metres.
     pub(crate) sag_m: f64,
-    /// Depth of walls.
+    /// Depth of skirts.
     pub(crate) skirt_m: f64,
 }
 
-/// A tile's content, and what the tileset says of it.
+/// A tile's content, with its facts for the tileset.
 pub(crate) struct MadeTile {
     pub(crate) content: TileContent,
-    /// Roads as vector content, where they are asked for and there are some.
+    /// Roads as vector content, if requested and present.
     pub(crate) vector: Option<TileContent>,
-    pub(crate) tile_box: TileBox,
-    pub(crate) facts: TileFacts,
+    pub(crate) facts: TileContentFacts,
 }
 
-/// What is known of a tile.
-#[derive(Clone, Copy, Default)]
-pub(crate) struct TileFacts {
-    /// The package's bound against the full-resolution DEM.
+/// The facts of a tile.
+#[derive(Clone, Copy)]
+pub(crate) struct TileContentFacts {
+    pub(crate) tile_box: TileBox,
+    /// The package's error bound against the full-resolution DEM.
     pub(crate) bound_m: f64,
-    /// The same of what is written: with sag and rounding.
+    /// The error bound of the written tile: with sag and rounding.
     pub(crate) error_m: f64,
     /// Triangles of the package.
     pub(crate) package_triangles: u64,
-    /// Triangles that are written, walls not included, and those of roads alone.
+    /// Triangles that are written, without skirts, and those of roads alone.
     pub(crate) triangles: u64,
     pub(crate) road_triangles: u64,
-    /// Time for cutting roads in.
+    /// The time for cutting roads into the ground.
     pub(crate) cut_s: f64,
 }
 
-/// Makes one tile; `None` without ground.
+/// Creates one tile; `None` without ground.
 pub(crate) fn make(
     package: &FilePackage,
     id: TileId,
     request: &Tiles3dRequest,
-    lines: &TileLines<'_>,
-    placing: &Placing<'_>,
+    lines: &SurfaceLines<'_>,
+    placing: &TilePlacement<'_>,
     level: &LevelOfTiles,
 ) -> Result<Option<MadeTile>, Tiles3dError> {
-    let mut wanted = match request.roads {
-        TileRoads::Line | TileRoads::Vector => Sections::TERRAIN | read::road_sections(),
-        TileRoads::Cut | TileRoads::None => Sections::TERRAIN,
-    };
-    if request.relief {
-        wanted = wanted | Sections::RELIEF;
-    }
-    let Some(payload) = package.payload(id, wanted)? else { return Ok(None) };
-    let Some(terrain) = &payload.terrain else { return Ok(None) };
-    let manifest = package.manifest();
+    let has_lines = matches!(request.roads, TileRoads::Line | TileRoads::Vector);
+    let wanted = read::ground_sections(has_lines, request.relief);
     let lines = (request.roads == TileRoads::Cut).then_some(lines);
-    let divided = Divided::of_tile(manifest, id, terrain, lines)?;
-    let Some(mut divided) = divided else { return Ok(None) };
+    let divided = Divided::of_tile(package, id, wanted, lines)?;
+    let Some((payload, mut divided)) = divided else { return Ok(None) };
+    let manifest = package.manifest();
     let longest = (level.longest_edge_m * level.steps_per_metre).powi(2);
     divided.mesh.split_long_edges(|[east, north]| east * east + north * north > longest);
     let placed = placing.place(id, &divided.mesh)?;
     let relief = ReliefMap::of_tile(package, id, payload.relief.as_ref(), &divided.mesh)?;
     let skirt =
         if request.skirts { Skirt::below(&placed, level.skirt_m) } else { Skirt::default() };
-    let bound_m = terrain.geometric_error_m;
+    let bound_m = payload.terrain.as_ref().map_or(0.0, |terrain| terrain.geometric_error_m);
     let is_road = |label: &&u32| matches!(divided.kind_of(**label), SurfaceKind::Road(_));
-    let facts = TileFacts {
+    let mut facts = TileContentFacts {
+        tile_box: TileBox::along(placed.axes),
         bound_m,
         error_m: bound_m + level.sag_m,
         package_triangles: divided.package_triangles,
@@ -159,30 +157,26 @@ pub(crate) fn make(
         }
         TileRoads::Cut | TileRoads::None => {}
     }
-    let mut tile_box = TileBox::along(placed.axes);
+    // Tiles of both tilesets share one box, so that a client shows the same level of both.
     let around_middle = |at: [f32; 3]| [0, 1, 2].map(|k| placed.middle_m[k] + f64::from(at[k]));
-    for vertex in &placed.vertices {
-        tile_box.include(around_middle(vertex.at_m));
-    }
-    for (at, _) in &skirt.vertices {
-        tile_box.include(around_middle(*at));
-    }
-    // Tiles of both tilesets have one box, so that a client shows the same level of both.
-    for at in builder.line_positions.iter().chain(&vector.line_positions) {
-        tile_box.include(around_middle(*at));
+    let of_ground = placed.vertices.iter().map(|vertex| &vertex.at_m);
+    let of_skirt = skirt.vertices.iter().map(|(at, _)| at);
+    let of_lines = builder.line_positions.iter().chain(&vector.line_positions);
+    for at in of_ground.chain(of_skirt).chain(of_lines) {
+        facts.tile_box.include(around_middle(*at));
     }
     let vector = (!vector.parts.is_empty()).then(|| vector.finish(id));
-    Ok(Some(MadeTile { content: builder.finish(id), vector, tile_box, facts }))
+    Ok(Some(MadeTile { content: builder.finish(id), vector, facts }))
 }
 
-/// Pictures of a tile's ground.
+/// Images of a tile's ground.
 #[derive(Default)]
 struct Look {
     texture: Option<Texture>,
     relief: Option<ReliefMap>,
 }
 
-/// Sorts triangles and lines into parts.
+/// Sorts triangles and lines into primitives.
 struct Builder<'a> {
     manifest: &'a Manifest,
     request: &'a Tiles3dRequest,
@@ -211,7 +205,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Adds how the ground looks at a vertex.
+    /// Adds the appearance of the ground at a vertex.
     fn add_look(&self, vertex: &PlacedVertex, part: &mut Primitive) {
         if self.look.relief.is_some() {
             let [x, y, z] =
@@ -233,13 +227,14 @@ impl<'a> Builder<'a> {
         let labels = &self.placed.labels;
         let mut triangles: Vec<usize> = (0..labels.len()).collect();
         triangles.sort_by_key(|&triangle| labels[triangle]);
-        // Parts in the order of classes, ground first; roads come sorted by class.
+        // Primitives in the order of classes, ground first; roads are sorted by class.
         let mut by_kind: BTreeMap<SurfaceKind, Vec<(u32, &[usize])>> = BTreeMap::new();
         for of_label in triangles.chunk_by(|&one, &next| labels[one] == labels[next]) {
             let label = labels[of_label[0]];
             by_kind.entry(divided.kind_of(label)).or_default().push((label, of_label));
         }
-        // What a vertex became last, and for which label: each has its own.
+        // For each placed vertex, the label that used it last, and its index in the primitive. Each
+        // label has its own vertices.
         let mut places = vec![None; self.placed.vertices.len()];
         for (kind, labels) in by_kind {
             let mut part = Primitive::default();
@@ -257,7 +252,7 @@ impl<'a> Builder<'a> {
                             part.positions.push(y_up(vertex.at_m));
                             part.normals.push(y_up(vertex.normal));
                             match road {
-                                Some(road) => part.ways.push(road.way_id),
+                                Some(road) => part.ways.push(road.way.id),
                                 None => self.add_look(vertex, &mut part),
                             }
                             index
@@ -266,15 +261,10 @@ impl<'a> Builder<'a> {
                     part.indices.push(index);
                 }
                 if let Some(road) = road {
-                    self.add_row(road.way_id, road.class, &road.attributes);
+                    self.add_row(road.way.id, road.way.class, &road.way.attributes);
                 }
             }
-            let kind = match kind {
-                SurfaceKind::Ground => PrimitiveKind::Terrain,
-                SurfaceKind::Road(class) => PrimitiveKind::RoadSurfaces(class),
-                SurfaceKind::Slab(class) => PrimitiveKind::BridgeSlabs(class),
-            };
-            self.parts.push((kind, part));
+            self.parts.push((PrimitiveKind::Surface(kind), part));
         }
     }
 
@@ -293,11 +283,11 @@ impl<'a> Builder<'a> {
         self.parts.push((PrimitiveKind::Skirt, part));
     }
 
-    /// Centre-lines, lifted, as parts of a kind.
+    /// Adds centre-lines, raised, as primitives of a kind.
     fn lines(
         &mut self,
         payload: &TilePayload,
-        placing: &Placing<'_>,
+        placing: &TilePlacement<'_>,
         error_m: f64,
         kind: fn(FunctionalRoadClass) -> PrimitiveKind,
     ) -> Result<(), Tiles3dError> {
@@ -331,7 +321,7 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    /// Adds a way to the table of roads, if it is not there.
+    /// Adds a way to the table of roads, if it is missing.
     fn add_row(&mut self, way_id: i64, class: FunctionalRoadClass, attributes: &RoadAttributes) {
         self.rows.entry(way_id).or_insert_with(|| {
             let structure = match attributes.structure {

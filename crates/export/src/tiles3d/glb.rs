@@ -1,7 +1,8 @@
-//! One tile as binary glTF: ground, walls and roads, with a table of the roads.
+//! One tile as binary glTF: ground, skirts and roads, with a table of the roads.
 //!
-//! Sources: Khronos Group, *glTF 2.0 Specification*; `EXT_mesh_features`, `EXT_structural_metadata`, `EXT_meshopt_compression`,
-//! `KHR_materials_unlit`; for strips of lines the draft `KHR_mesh_primitive_restart`.
+//! Sources: Khronos Group, *glTF 2.0 Specification*; `EXT_mesh_features`,
+//! `EXT_structural_metadata`, `EXT_meshopt_compression`, `KHR_materials_unlit`; for strips of lines
+//! the draft `KHR_mesh_primitive_restart`.
 
 use std::{
     collections::BTreeSet,
@@ -12,17 +13,21 @@ use corniche_styles::Rgb;
 use serde_json::{Map, Value, json};
 
 use super::parts::{Primitive, PrimitiveKind, RESTART, RoadRow, TileContent};
-use crate::gltf::{
-    ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Gltf, LINE_STRIP, LINES, SLAB_COLOR, TRIANGLES, U8, U16,
-    U32, floats, material, positions, write_container,
+use crate::{
+    gltf::{
+        ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Gltf, LINE_STRIP, LINES, SLAB_COLOR, TRIANGLES, U8,
+        U16, U32, floats, material, positions, write_container,
+    },
+    surfaces::SurfaceKind,
 };
 
-/// Views of tables begin at multiples of this.
+/// Views of tables begin at multiples of this number.
 const TABLE_ALIGNMENT: usize = 8;
-/// Speed against size in the codec of vertices; version 0 of which is the one that the extension knows.
+/// The level of the vertex codec, speed against size. The extension supports version 0 of the
+/// codec.
 const VERTEX_LEVEL: i32 = 2;
 const VERTEX_VERSION: i32 = 0;
-/// Indices are of 16 bits below; the largest number restarts a primitive.
+/// Indices below this number have 16 bits; the largest 16-bit number restarts a primitive.
 const SHORT_INDICES: usize = 65_535;
 
 /// Writes a tile.
@@ -37,7 +42,7 @@ pub(crate) fn write(
         let mut primitive = file.primitive(*kind, part, &tile.roads)?;
         primitive["material"] = json!(materials.len());
         let mut material = material_of(*kind, &tile.colors);
-        // Textures and places on them have the same order: the photo, then the relief.
+        // Textures and their coordinates have the same order: the photo, then the relief.
         let mut texture = 0;
         if !part.picture_places.is_empty() {
             material["pbrMetallicRoughness"]["baseColorTexture"] = json!({ "index": texture });
@@ -62,12 +67,12 @@ pub(crate) fn write(
 }
 
 fn material_of(kind: PrimitiveKind, colors: &[Rgb]) -> Value {
-    let is_slab = matches!(kind, PrimitiveKind::BridgeSlabs(_));
+    let is_slab = matches!(kind, PrimitiveKind::Surface(SurfaceKind::Slab(_)));
     let of_class = kind.class().map(|class| colors[usize::from(class.number())]);
     let color = if is_slab { SLAB_COLOR } else { of_class.unwrap_or([1.0; 3]) };
     let mut material = material(&kind.name(), color);
     if of_class.is_some() && !is_slab {
-        // Colours of roads are those of the legend, whatever the light.
+        // Colours of roads are those of the legend, in any light.
         material["extensions"] = json!({ "KHR_materials_unlit": {} });
     }
     material
@@ -75,7 +80,7 @@ fn material_of(kind: PrimitiveKind, colors: &[Rgb]) -> Value {
 
 struct File {
     gltf: Gltf<Vec<u8>>,
-    /// Length of what compressed views decode to.
+    /// The decoded length of compressed views.
     decoded: usize,
     is_compressed: bool,
 }
@@ -98,9 +103,14 @@ impl File {
         for (number, places) in places.into_iter().filter(|places| !places.is_empty()).enumerate() {
             self.attribute(at, &format!("TEXCOORD_{number}"), places, floats("VEC2"))?;
         }
-        let mut primitive = json!({ "mode": TRIANGLES, "extras": { "part": kind.name() } });
+        let mode = match kind {
+            PrimitiveKind::Surface(_) | PrimitiveKind::Skirt => TRIANGLES,
+            PrimitiveKind::RoadLines(_) => LINES,
+            PrimitiveKind::RoadStrips(_) => LINE_STRIP,
+        };
+        let mut primitive = json!({ "mode": mode, "extras": { "part": kind.name() } });
         if let Some(class) = kind.class() {
-            // Every whole number to 2²⁴ is an f32, and all readers know attributes of them.
+            // Every whole number up to 2²⁴ is an f32, and all readers support f32 attributes.
             let row_of = |way: &i64| roads.partition_point(|row| row.way_id < *way) as f32;
             let features: Vec<f32> = part.ways.iter().map(row_of).collect();
             self.attribute(at, "_FEATURE_ID_0", &features, floats("SCALAR"))?;
@@ -110,20 +120,12 @@ impl File {
             }] } });
             primitive["extras"]["frc"] = json!(class.number());
         }
-        match kind {
-            PrimitiveKind::RoadLines(_) => primitive["mode"] = json!(LINES),
-            PrimitiveKind::RoadStrips(_) => primitive["mode"] = json!(LINE_STRIP),
-            PrimitiveKind::Terrain
-            | PrimitiveKind::Skirt
-            | PrimitiveKind::RoadSurfaces(_)
-            | PrimitiveKind::BridgeSlabs(_) => {}
-        }
         primitive["attributes"] = Value::Object(attributes);
         primitive["indices"] = json!(self.indices(&part.indices, part.positions.len(), kind)?);
         Ok(primitive)
     }
 
-    /// Adds an attribute of vertices, if there are some. `accessor` says what they are.
+    /// Adds an attribute of vertices, if it has values; `accessor` describes them.
     fn attribute<T: bytemuck::Pod>(
         &mut self,
         attributes: &mut Map<String, Value>,
@@ -139,7 +141,7 @@ impl File {
         Ok(())
     }
 
-    /// A view of vertices; returns its number.
+    /// Adds a view of vertices; returns its number.
     fn vertices<T: bytemuck::Pod>(&mut self, vertices: &[T]) -> io::Result<usize> {
         let plain: &[u8] = bytemuck::cast_slice(vertices);
         let stride = size_of::<T>();
@@ -160,14 +162,14 @@ impl File {
         kind: PrimitiveKind,
     ) -> io::Result<usize> {
         let is_short = vertices < SHORT_INDICES;
-        // The largest number restarts strips, of either length.
+        // The largest number restarts strips, with both index sizes.
         const { assert!(RESTART as u16 == u16::MAX) };
         let short: Vec<u16> =
             if is_short { indices.iter().map(|index| *index as u16).collect() } else { Vec::new() };
         let plain: &[u8] =
             if is_short { bytemuck::cast_slice(&short) } else { bytemuck::cast_slice(indices) };
         let stride = if is_short { 2 } else { 4 };
-        // The codec takes no index that is not that of a vertex.
+        // The codec rejects indices that refer to no vertex.
         let is_compressed = self.is_compressed && !matches!(kind, PrimitiveKind::RoadStrips(_));
         let view = if is_compressed {
             let (encoded, mode) = match kind {
@@ -187,7 +189,7 @@ impl File {
         Ok(self.gltf.accessor(accessor, view, indices.len()))
     }
 
-    /// A view whose bytes are decoded into a second buffer, which no file has.
+    /// Adds a view whose bytes are decoded into a second buffer, which no file contains.
     fn compressed(
         &mut self,
         encoded: &[u8],
@@ -205,18 +207,18 @@ impl File {
         if target == ARRAY_BUFFER {
             view["byteStride"] = json!(stride);
         }
-        // Vertices and indices begin at a multiple of four, as they do in a buffer that is there.
+        // Vertices and indices begin at a multiple of four, as in a buffer that is present.
         self.decoded = (self.decoded + decoded).next_multiple_of(4);
         self.gltf.views.push(view);
         Ok(self.gltf.views.len() - 1)
     }
 
-    /// The table of roads, column by column.
+    /// Adds the table of roads, column by column.
     fn table(&mut self, rows: &[RoadRow]) -> io::Result<Value> {
         let gltf = &mut self.gltf;
         let mut column = |bytes: &[u8]| {
             gltf.align(TABLE_ALIGNMENT)?;
-            // A view has a byte at least.
+            // A view has at least one byte.
             gltf.view(if bytes.is_empty() { &[0] } else { bytes }, json!({}))
         };
         let ids: Vec<u8> = rows.iter().flat_map(|row| row.way_id.to_le_bytes()).collect();

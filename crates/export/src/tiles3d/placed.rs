@@ -9,16 +9,17 @@ use crate::{
     globe::{RootFrame, between, cross, dot, middle_of, unit},
     places::Places,
     relief_map::tangent,
-    surfaces::{GroundMesh, across},
+    surfaces::{LabelledMesh, across},
 };
 
 /// The finest grid of positions: 2⁻¹⁰ m.
 const FINEST_STEP_LOG2: i32 = -10;
-/// Whole numbers that an f32 holds.
+/// The bits of whole numbers that an f32 represents exactly.
 const F32_WHOLE_LOG2: i32 = 24;
 
-/// Positions of a level are multiples of this, metres, so that a tile's middle plus an offset in f32 is exact: the largest power of two for tiles
-/// whose corners are no further than `reach_m` from their middle.
+/// Returns the step of a level's positions, metres: a tile's middle plus an offset in f32 is then
+/// exact. It is the largest power of two for tiles whose corners are at most `reach_m` from their
+/// middle.
 pub(crate) fn step_m(reach_m: f64) -> f64 {
     let needed = reach_m.log2().ceil() as i32 - F32_WHOLE_LOG2;
     2.0_f64.powi(needed.max(FINEST_STEP_LOG2))
@@ -27,49 +28,50 @@ pub(crate) fn step_m(reach_m: f64) -> f64 {
 /// A vertex on the globe.
 #[derive(Clone, Copy)]
 pub(crate) struct PlacedVertex {
-    /// The position from the tile's middle, along the root frame's axes, metres.
+    /// The position relative to the tile's middle, along the root frame's axes, metres.
     pub(crate) at_m: [f32; 3],
     pub(crate) normal: [f32; 3],
     /// The tangent of the relief's normal map.
     pub(crate) tangent: [f32; 3],
-    /// Height in the package's datum, which tells the colour.
+    /// Height in the package's datum, which determines the colour.
     pub(crate) height_m: f64,
     /// Shares of the way across the tile, from the west and from the north.
     pub(crate) across: [f32; 2],
-    /// The tile's sides on which it lies: west, east, south, north.
+    /// The sides of the tile on which the vertex is: west, east, south, north.
     sides: [bool; 4],
 }
 
 /// A tile on the globe.
-#[derive(Clone)]
 pub(crate) struct PlacedTile {
     /// The middle in the root frame; whole steps.
     pub(crate) middle_m: [f64; 3],
     pub(crate) vertices: Vec<PlacedVertex>,
     pub(crate) triangles: Vec<[u32; 3]>,
     pub(crate) labels: Vec<u32>,
-    /// Grid east, grid north and up in the middle of the tile, in the root frame: unit vectors, at right angles.
+    /// Grid east, grid north and up in the middle of the tile, in the root frame: perpendicular
+    /// unit vectors.
     pub(crate) axes: [[f64; 3]; 3],
 }
 
-/// Longitude and latitude of a place, and where it is in the root frame.
+/// Longitude and latitude of a place, and its position in the root frame.
 type OnGlobe = ([f64; 2], [f64; 3]);
 
-/// Where a tile goes.
-pub(crate) struct Placing<'a> {
+/// Places tiles on the globe.
+pub(crate) struct TilePlacement<'a> {
     pub(crate) places: &'a Places<'a>,
     pub(crate) root: &'a RootFrame,
-    /// Step of the level's positions.
+    /// The step of the level's positions.
     pub(crate) step_m: f64,
 }
 
-impl Placing<'_> {
-    /// Carries a tile's triangles to the globe, each vertex by itself. Vertices that come to the same place become one, those of slabs only with the same
-    /// normal, and triangles without an inside are left out.
+impl TilePlacement<'_> {
+    /// Transforms a tile's triangles to the globe, each vertex separately. Vertices that fall on
+    /// one place are merged (those of slabs only if they share a normal), and triangles without
+    /// area are dropped.
     pub(crate) fn place(
         &self,
         id: TileId,
-        mesh: &GroundMesh,
+        mesh: &LabelledMesh,
     ) -> Result<PlacedTile, CoordinatesError> {
         let frame = &self.places.manifest.frame;
         let bounds = frame.tile_lattice_bounds(id);
@@ -90,12 +92,12 @@ impl Placing<'_> {
         for (vertex, (place_deg, at)) in mesh.vertices.iter().zip(placed) {
             let at_m = between(middle_m, at).map(|axis| axis as f32);
             let next = tile.vertices.len() as u32;
-            // Adding 0 makes one of both zeros.
+            // Adding 0 makes both zeros equal.
             let bits = |vector: [f32; 3]| vector.map(|axis| (axis + 0.0).to_bits());
             let own_normal = vertex.on_slab.then(|| bits(vertex.normal));
             let place = *known.entry((bits(at_m), own_normal)).or_insert(next);
             number.push(place);
-            // No wall hangs from a slab.
+            // Slabs have no skirts.
             let on_sides = sides(mesh.on_lattice(vertex), &bounds);
             let sides = on_sides.map(|on_side| on_side && !vertex.on_slab);
             if place == next {
@@ -120,7 +122,7 @@ impl Placing<'_> {
         Ok(tile)
     }
 
-    /// Places on the lattice with heights, from the middle of a tile.
+    /// Transforms places on the lattice with heights, relative to the middle of a tile.
     pub(crate) fn positions(
         &self,
         places: impl Iterator<Item = ([f64; 2], f64)>,
@@ -130,7 +132,7 @@ impl Placing<'_> {
         Ok(placed.map(|(_, at)| between(middle_m, at).map(|axis| axis as f32)).collect())
     }
 
-    /// Places on the lattice with heights, on the globe.
+    /// Transforms places on the lattice with heights to the globe.
     fn on_globe(
         &self,
         places: impl Iterator<Item = ([f64; 2], f64)>,
@@ -140,7 +142,10 @@ impl Placing<'_> {
             places.map(|(at, height_m)| (frame.position_of_fraction_m(at), height_m)).unzip();
         self.places.to_wgs84(&mut plan, &mut heights_m)?;
         let placed = plan.into_iter().zip(heights_m).map(|([lon, lat], height_m)| {
-            ([lon, lat], self.root.of([lon, lat, height_m]).map(|axis| self.snap(axis)))
+            (
+                [lon, lat],
+                self.root.position_in_root([lon, lat, height_m]).map(|axis| self.snap(axis)),
+            )
         });
         Ok(placed.collect())
     }
@@ -149,26 +154,27 @@ impl Placing<'_> {
         (metres / self.step_m).round() * self.step_m
     }
 
-    /// Grid east, grid north and up in the middle of a tile, from two places beside it.
-    fn axes(&self, mesh: &GroundMesh) -> Result<[[f64; 3]; 3], CoordinatesError> {
+    /// Returns grid east, grid north and up in the middle of a tile, computed from two places next
+    /// to it.
+    fn axes(&self, mesh: &LabelledMesh) -> Result<[[f64; 3]; 3], CoordinatesError> {
         let frame = &self.places.manifest.frame;
         let [x, y] = frame.position_m(mesh.middle);
         let beside = frame.cell().north_m;
         let mut plan = [[x, y - beside], [x, y + beside], [x, y]];
         self.places.to_wgs84_plan(&mut plan)?;
         let [south, north, middle] = plan;
-        let at = |[lon, lat]: [f64; 2]| self.root.of([lon, lat, 0.0]);
+        let at = |[lon, lat]: [f64; 2]| self.root.position_in_root([lon, lat, 0.0]);
         Ok(grid_axes(between(at(south), at(north)), self.root.up_at(middle)))
     }
 }
 
-/// East, north and up of the grid where `up` is upwards.
+/// Returns east, north and up of the grid at a place with this upward direction.
 fn grid_axes(grid_north: [f64; 3], up: [f64; 3]) -> [[f64; 3]; 3] {
     let east = unit(cross(grid_north, up));
     [east, cross(up, east), up]
 }
 
-/// A direction of the package, given along these axes.
+/// Returns a direction of the package, given along these axes, in the root frame.
 fn turned(along: [f32; 3], [east, north, up]: [[f64; 3]; 3]) -> [f32; 3] {
     let [x, y, z] = along.map(f64::from);
     let turned = [0, 1, 2].map(|axis| x * east[axis] + y * north[axis] + z * up[axis]);
@@ -180,7 +186,7 @@ fn sides([u, v]: [f64; 2], bounds: &LatticeBounds) -> [bool; 4] {
     [is_at(u, bounds.min.u), is_at(u, bounds.max.u), is_at(v, bounds.min.v), is_at(v, bounds.max.v)]
 }
 
-/// A box along some axes.
+/// A box along given axes.
 #[derive(Clone, Copy)]
 pub(crate) struct TileBox {
     axes: [[f64; 3]; 3],
@@ -215,18 +221,23 @@ impl TileBox {
         }
     }
 
+    fn sides_m(&self) -> [f64; 3] {
+        between(self.low, self.high)
+    }
+
     /// Its longest side.
     pub(crate) fn longest_side_m(&self) -> f64 {
-        (0..3).map(|axis| self.high[axis] - self.low[axis]).fold(0.0, f64::max)
+        self.sides_m().into_iter().fold(0.0, f64::max)
     }
 
-    /// The longest way through it.
+    /// The length of its diagonal.
     pub(crate) fn diagonal_m(&self) -> f64 {
-        let along = [0, 1, 2].map(|axis: usize| self.high[axis] - self.low[axis]);
-        dot(along, along).sqrt()
+        let sides_m = self.sides_m();
+        dot(sides_m, sides_m).sqrt()
     }
 
-    /// The box as 3D Tiles write it: the middle and three half axes. A little larger, so that rounding leaves nothing out.
+    /// Returns the box in the form of 3D Tiles: the middle and three half axes. It is slightly
+    /// enlarged, so that rounding excludes nothing.
     pub(crate) fn numbers(&self) -> Vec<f64> {
         const MARGIN_M: f64 = 0.01;
         let middle: [f64; 3] = [0, 1, 2].map(|k: usize| {
@@ -238,21 +249,22 @@ impl TileBox {
             let length = (self.high[axis] - self.low[axis]) / 2.0 + MARGIN_M;
             self.axes[axis].map(move |part| part * length)
         });
-        // Tenths of a millimetre are enough beside the margin.
+        // The margin is larger than a tenth of a millimetre.
         middle.into_iter().chain(half).map(|number| (number * 1e4).round() / 1e4).collect()
     }
 }
 
-/// The walls of a tile.
-#[derive(Clone, Default)]
+/// The skirts of a tile.
+#[derive(Default)]
 pub(crate) struct Skirt {
-    /// Positions from the tile's middle, with the tile's vertex whose normal and colour they have.
+    /// Positions relative to the tile's middle, with the tile's vertex whose normal and colour they
+    /// share.
     pub(crate) vertices: Vec<([f32; 3], u32)>,
     pub(crate) triangles: Vec<[u32; 3]>,
 }
 
 impl Skirt {
-    /// Walls of a depth below each edge along a side of the tile.
+    /// Returns skirts of this depth below each edge along a side of the tile.
     pub(crate) fn below(tile: &PlacedTile, depth_m: f64) -> Self {
         let mut skirt = Self::default();
         let mut place = vec![u32::MAX; tile.vertices.len()];
@@ -264,7 +276,7 @@ impl Skirt {
                 if !(0..4).any(|side| one[side] && other[side]) {
                     continue;
                 }
-                // An edge that two triangles share along a side comes from vertices that fell together.
+                // An edge along a side that two triangles share results from merged vertices.
                 let [a, b] = ends.map(|vertex| {
                     let place = &mut place[vertex as usize];
                     if *place == u32::MAX {
@@ -276,7 +288,7 @@ impl Skirt {
                     }
                     *place
                 });
-                // Seen from outside.
+                // Counter-clockwise from outside.
                 skirt.triangles.extend([[b, a, a + 1], [b, a + 1, b + 1]]);
             }
         }

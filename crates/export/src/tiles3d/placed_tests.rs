@@ -2,7 +2,8 @@
 
 use super::{TileBox, step_m};
 
-/// The step is the smallest power of two with which an f32 holds every position of a tile, and never finer than a millimetre.
+/// The step is the smallest power of two with which an f32 holds every position of a tile, and
+/// never finer than a millimetre.
 #[test]
 fn steps_fit_an_f32() {
     for (reach_m, expected_log2) in [(10.0, -10), (16_384.0, -10), (16_385.0, -9), (100_000.0, -7)]

@@ -1,11 +1,10 @@
-//! The documents of a tileset: which tile lies below which.
+//! The documents of a tileset, which define the tree of tiles.
 //!
 //! Source: Open Geospatial Consortium 2023, *3D Tiles Specification* (22-025r4), sections 7 and 9.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
-    fs,
-    io::{self, Write as _},
+    fs, io,
     path::Path,
 };
 
@@ -13,56 +12,42 @@ use corniche_geom::TileId;
 use corniche_tileset::Manifest;
 use serde_json::{Value, json};
 
-use super::{content::TileFacts, placed::TileBox};
+use super::content::TileContentFacts;
 use crate::globe::RootFrame;
 
-/// The tileset that is opened first.
+/// The name of the tileset that clients open.
 const ROOT_NAME: &str = "tileset.json";
-/// Packages of more tiles are written as several documents.
+/// Packages with more tiles are written as several documents.
 const TILES_OF_ONE_DOCUMENT: usize = 300;
-/// Levels in a document of several.
+/// The number of levels in each of several documents.
 const LEVELS_OF_A_DOCUMENT: u8 = 4;
 
-/// A tile of the tree.
-#[derive(Clone, Copy)]
-struct Branch {
-    tile_box: TileBox,
-    /// Never less than that of a child.
-    error_m: f64,
-    facts: TileFacts,
-}
-
-/// The extension of tilesets whose contents are points, lines and areas, to be drawn as a client's style says.
+/// The extension of tilesets whose contents are points, lines and areas, which clients draw in
+/// their own style.
 ///
-/// Source: Cesium 2026, *`3DTILES_content_gltf_vector`*, draft, pull request 838 of its repository 3d-tiles, as `CesiumJS` 1.145 reads it.
+/// Source: Cesium 2026, *`3DTILES_content_gltf_vector`*, draft, pull request 838 of its repository
+/// 3d-tiles, as `CesiumJS` 1.145 reads it.
 const VECTOR_EXTENSION: &str = "3DTILES_content_gltf_vector";
 
-/// What tiles of a tileset hold.
-#[derive(Clone, PartialEq, Eq)]
-pub(crate) enum Contents {
-    /// All have a model.
-    All,
-    /// These have vectors; others are there for the sake of those below.
-    Vector(BTreeSet<TileId>),
-}
+/// The tiles with content in a tileset of vectors; the other tiles exist only because of those
+/// below. In any other tileset all tiles have a model.
+pub(crate) type WithVectors<'a> = Option<&'a BTreeSet<TileId>>;
 
-/// All tiles, by their place.
+/// All tiles, by id.
 pub(crate) struct Tree<'a> {
     manifest: &'a Manifest,
-    branches: BTreeMap<TileId, Branch>,
+    branches: BTreeMap<TileId, TileContentFacts>,
     documents: bool,
 }
 
 impl<'a> Tree<'a> {
-    /// Makes boxes hold those of children, and errors no smaller than those of children.
+    /// Enlarges boxes to contain those of children, and errors to be no smaller than those of
+    /// children.
     pub(crate) fn new(
         manifest: &'a Manifest,
-        tiles: impl IntoIterator<Item = (TileId, TileBox, TileFacts)>,
+        tiles: impl IntoIterator<Item = (TileId, TileContentFacts)>,
     ) -> Self {
-        let mut branches: BTreeMap<TileId, Branch> = tiles
-            .into_iter()
-            .map(|(id, tile_box, facts)| (id, Branch { tile_box, error_m: facts.error_m, facts }))
-            .collect();
+        let mut branches: BTreeMap<TileId, TileContentFacts> = tiles.into_iter().collect();
         let mut finest_first: Vec<TileId> = branches.keys().copied().collect();
         finest_first.sort_by_key(|id| std::cmp::Reverse(id.z()));
         for id in finest_first {
@@ -76,40 +61,40 @@ impl<'a> Tree<'a> {
         Self { manifest, branches, documents }
     }
 
-    /// Tiles without a tile above.
+    /// Returns the tiles without a tile above.
     fn roots(&self) -> Vec<TileId> {
         let has_parent =
             |id: &TileId| id.parent().is_some_and(|parent| self.branches.contains_key(&parent));
         self.branches.keys().copied().filter(|id| !has_parent(id)).collect()
     }
 
-    /// Writes all documents into a folder; returns how many there are.
+    /// Writes all documents into a folder; returns their number.
     pub(crate) fn write(
         &self,
         folder: &Path,
         root: &RootFrame,
-        contents: &Contents,
+        with_vectors: WithVectors<'_>,
     ) -> io::Result<u64> {
         let mut count = 1;
         if self.documents {
             for id in self.branches.keys().filter(|id| self.begins_document(**id)) {
-                // Documents lie beside tiles, two folders deep.
-                let tile = self.tile(*id, *id, "../../", contents);
-                let document = self.document(&tile, self.branches[id].error_m, contents);
+                // Documents are next to tiles, two folders deep.
+                let tile = self.tile(*id, *id, "../../", with_vectors);
+                let document = self.document(&tile, self.branches[id].error_m, with_vectors);
                 write_json(&folder.join(document_name(*id)), &document)?;
                 count += 1;
             }
         }
         let roots = self.roots();
         let mut whole = match roots.as_slice() {
-            [only] => self.tile(*only, *only, "", contents),
-            several => self.several(several, contents),
+            [only] => self.tile(*only, *only, "", with_vectors),
+            several => self.several(several, with_vectors),
         };
         whole["transform"] = json!(root.to_earth());
         let diagonal_m = roots.iter().map(|id| self.branches[id].tile_box.diagonal_m());
         // Before anything is drawn, all of it is missing.
         let error_m = diagonal_m.fold(0.0, f64::max);
-        let mut document = self.document(&whole, error_m, contents);
+        let mut document = self.document(&whole, error_m, with_vectors);
         document["asset"]["extras"] = json!({ "corniche": {
             "crs": self.manifest.crs,
             "vertical_datum": self.manifest.vertical.datum,
@@ -119,7 +104,7 @@ impl<'a> Tree<'a> {
         Ok(count)
     }
 
-    fn several(&self, roots: &[TileId], contents: &Contents) -> Value {
+    fn several(&self, roots: &[TileId], with_vectors: WithVectors<'_>) -> Value {
         let boxes = roots.iter().map(|id| self.branches[id].tile_box);
         let around = boxes.reduce(|mut around, next| {
             around.include_box(&next);
@@ -131,7 +116,7 @@ impl<'a> Tree<'a> {
             "geometricError": errors.fold(0.0, f64::max),
             "refine": "REPLACE",
             "children":
-                roots.iter().map(|id| self.tile(*id, *id, "", contents)).collect::<Vec<_>>(),
+                roots.iter().map(|id| self.tile(*id, *id, "", with_vectors)).collect::<Vec<_>>(),
         })
     }
 
@@ -139,9 +124,10 @@ impl<'a> Tree<'a> {
         self.documents && id.z() > 0 && id.z().is_multiple_of(LEVELS_OF_A_DOCUMENT)
     }
 
-    /// A tile with its children; those of other documents are only named. `from` is the document's own root, `up` leads to the folder.
-    fn tile(&self, id: TileId, from: TileId, up: &str, contents: &Contents) -> Value {
-        let Branch { tile_box, error_m, facts } = self.branches[&id];
+    /// Returns a tile with its children; children in other documents are only referenced. `from` is
+    /// the document's own root, `up` is the path to the folder.
+    fn tile(&self, id: TileId, from: TileId, up: &str, with_vectors: WithVectors<'_>) -> Value {
+        let TileContentFacts { tile_box, bound_m, error_m, .. } = self.branches[&id];
         let is_elsewhere = self.begins_document(id) && id != from;
         let is_named = is_elsewhere || (self.begins_document(id) && up.is_empty());
         let name = if is_named { document_name(id) } else { content_name(id) };
@@ -150,7 +136,7 @@ impl<'a> Tree<'a> {
             "geometricError": error_m,
             "content": { "uri": format!("{up}{name}") },
         });
-        if let (Contents::Vector(tiles), false) = (contents, is_named) {
+        if let (Some(tiles), false) = (with_vectors, is_named) {
             if tiles.contains(&id) {
                 tile["content"]["extensions"] = json!({ VECTOR_EXTENSION: { "vector": true } });
             } else if let Some(tile) = tile.as_object_mut() {
@@ -164,12 +150,12 @@ impl<'a> Tree<'a> {
             tile["refine"] = json!("REPLACE");
         }
         tile["metadata"] = json!({ "class": "tile", "properties": {
-            "tile": id.to_string(), "level": id.z(), "error_bound_m": facts.bound_m,
+            "tile": id.to_string(), "level": id.z(), "error_bound_m": bound_m,
         } });
         let children: Vec<Value> = id
             .children()
             .filter(|child| self.branches.contains_key(child))
-            .map(|child| self.tile(child, from, up, contents))
+            .map(|child| self.tile(child, from, up, with_vectors))
             .collect();
         if !children.is_empty() {
             tile["children"] = json!(children);
@@ -177,7 +163,7 @@ impl<'a> Tree<'a> {
         tile
     }
 
-    fn document(&self, root: &Value, error_m: f64, contents: &Contents) -> Value {
+    fn document(&self, root: &Value, error_m: f64, with_vectors: WithVectors<'_>) -> Value {
         let mut document = json!({
             "asset": {
                 "version": "1.1",
@@ -201,27 +187,25 @@ impl<'a> Tree<'a> {
             "geometricError": error_m,
             "root": root,
         });
-        if let Contents::Vector(_) = contents {
+        if with_vectors.is_some() {
             document["extensionsUsed"] = json!([VECTOR_EXTENSION]);
         }
         document
     }
 }
 
-/// Where a tile is, from the folder.
+/// Returns the path of a tile, relative to the folder.
 pub(crate) fn content_name(id: TileId) -> String {
     format!("{}/{}/{}.glb", id.z(), id.x(), id.y())
 }
 
-/// Where the document that begins at a tile is.
+/// Returns the path of the document that begins at a tile.
 fn document_name(id: TileId) -> String {
     format!("{}/{}/{}.json", id.z(), id.x(), id.y())
 }
 
 fn write_json(path: &Path, document: &Value) -> io::Result<()> {
-    let mut file = io::BufWriter::new(fs::File::create(path)?);
-    serde_json::to_writer(&mut file, document)?;
-    file.flush()
+    fs::write(path, serde_json::to_vec(document)?)
 }
 
 #[cfg(test)]

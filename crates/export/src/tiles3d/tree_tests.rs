@@ -7,14 +7,14 @@ use corniche_testing::package::manifest;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use super::{Contents, Tree, content_name};
+use super::{Tree, content_name};
 use crate::{
     globe::RootFrame,
-    tiles3d::{content::TileFacts, placed::TileBox},
+    tiles3d::{content::TileContentFacts, placed::TileBox},
 };
 
-/// All tiles of so many levels, but for a quarter of the first.
-fn tiles(levels: u8) -> Vec<(TileId, TileBox, TileFacts)> {
+/// All tiles of this many levels, without a quarter of the first.
+fn tiles(levels: u8) -> Vec<(TileId, TileContentFacts)> {
     let mut ids = vec![TileId::ROOT];
     let mut all = Vec::new();
     for _ in 0..levels {
@@ -30,14 +30,25 @@ fn tiles(levels: u8) -> Vec<(TileId, TileBox, TileFacts)> {
         let side = 1024.0 / f64::from(1_u32 << id.z());
         tile_box.include([f64::from(id.x()) * side, f64::from(id.y()) * side, 0.0]);
         tile_box.include([f64::from(id.x() + 1) * side, f64::from(id.y() + 1) * side, 1.0]);
-        // Errors that are no smaller further down in places.
+        // Some errors are no smaller on finer levels.
         let error_m = f64::from(id.x() % 7) + 1.0;
-        (id, tile_box, TileFacts { bound_m: error_m, error_m, ..TileFacts::default() })
+        let (package_triangles, triangles, road_triangles, cut_s) = Default::default();
+        let bound_m = error_m;
+        let facts = TileContentFacts {
+            tile_box,
+            bound_m,
+            error_m,
+            package_triangles,
+            triangles,
+            road_triangles,
+            cut_s,
+        };
+        (id, facts)
     };
     all.into_iter().map(made).collect()
 }
 
-/// Reads a tile and all below, following documents; adds the names of contents.
+/// Reads a tile and all tiles below, following documents; adds the names of contents.
 fn walk(folder: &Path, from: &Path, tile: &Value, least: f64, found: &mut Vec<String>) {
     let uri = tile["content"]["uri"].as_str().unwrap();
     let path = from.join(uri);
@@ -67,7 +78,7 @@ fn walk(folder: &Path, from: &Path, tile: &Value, least: f64, found: &mut Vec<St
     }
 }
 
-/// Whether in one document or in several, each tile is there once, and errors never grow downwards.
+/// In one document or in several, each tile occurs once, and errors never grow downwards.
 #[test]
 fn every_tile_is_found_once() {
     let manifest = manifest();
@@ -81,8 +92,7 @@ fn every_tile_is_found_once() {
             fs::create_dir_all(place).unwrap();
         }
         let tree = Tree::new(&manifest, tiles);
-        documents
-            .push(tree.write(folder.path(), &RootFrame::at([9.5, 47.0]), &Contents::All).unwrap());
+        documents.push(tree.write(folder.path(), &RootFrame::at([9.5, 47.0]), None).unwrap());
         let first = fs::read(folder.path().join("tileset.json")).unwrap();
         let first: Value = serde_json::from_slice(&first).unwrap();
         assert_eq!(first["root"]["transform"].as_array().unwrap().len(), 16);
@@ -97,7 +107,8 @@ fn every_tile_is_found_once() {
     assert_eq!(documents, [1, 1, 1 + 192]);
 }
 
-/// A tileset of vectors says so, in each document; tiles without roads have no content, but all children.
+/// A tileset of vectors is declared as such in each document; tiles without roads have no content,
+/// but all children.
 #[test]
 fn vectors_are_named_where_there_are_some() {
     let manifest = manifest();
@@ -112,9 +123,8 @@ fn vectors_are_named_where_there_are_some() {
             fs::create_dir_all(place).unwrap();
         }
         let tree = Tree::new(&manifest, tiles);
-        let contents = Contents::Vector(with_roads.clone());
         let root = RootFrame::at([9.5, 47.0]);
-        assert_eq!(tree.write(folder.path(), &root, &contents).unwrap(), documents);
+        assert_eq!(tree.write(folder.path(), &root, Some(&with_roads)).unwrap(), documents);
         let (mut named, mut seen) = (BTreeSet::new(), 0);
         let mut open = vec![folder.path().join("tileset.json")];
         while let Some(path) = open.pop() {

@@ -1,6 +1,7 @@
-//! How vector content looks, which its tiles do not say.
+//! The appearance of vector content, which is not stored in its tiles.
 //!
-//! Source: Open Geospatial Consortium 2023, *3D Tiles Specification* (22-025r4), *Declarative Styling*, with `lineWidth`, as CesiumJS 1.145 reads it.
+//! Source: Open Geospatial Consortium 2023, *3D Tiles Specification* (22-025r4), *Declarative
+//! Styling*, with the `lineWidth` of CesiumJS 1.145.
 
 use std::{fs, io, path::Path};
 
@@ -10,7 +11,8 @@ use serde_json::{Value, json};
 /// The file's name.
 const NAME: &str = "style.json";
 
-/// Writes colours and widths by class. Widths are pixels: the most that the style lets roads grow to with distance.
+/// Writes colours and widths by class. Widths are pixels: the largest width to which the style lets
+/// roads grow with distance.
 pub(crate) fn write(folder: &Path, style: &Style) -> io::Result<()> {
     let by_class = |value: &dyn Fn(&RoadStyle) -> String| {
         let conditions: Vec<Value> = (0..)

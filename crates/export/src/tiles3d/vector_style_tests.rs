@@ -6,7 +6,7 @@ use tempfile::TempDir;
 
 use super::write;
 
-/// Each class has a colour and a width, and the first one's are those of the style.
+/// Each class has a colour and a width; those of the first class come from the style.
 #[test]
 fn all_classes_have_a_look() {
     let folder = TempDir::new().unwrap();
@@ -34,6 +34,6 @@ fn all_classes_have_a_look() {
             blue = blue as u8
         )
     );
-    // Thinner than a pixel is not seen.
+    // A line thinner than a pixel is invisible.
     assert_eq!([value("lineWidth", 0), value("lineWidth", 1)], ["7.5", "1"]);
 }

@@ -1,13 +1,16 @@
-//! Texts of others in files that people and their programs read line by line: as a cell of CSV, and within a line.
+//! Text of external origin in files that people and their programs read line by line: as a cell of
+//! CSV, and within a line.
 
 use std::{borrow::Cow, fmt::Write as _};
 
-/// Whether a character does something other than to be seen. Line breaks and tabs, which we write ourselves, are not asked about.
+/// Whether a character is invisible and may have an effect. Line breaks and tabs that this crate
+/// writes itself are not checked.
 #[must_use]
 pub fn is_unseen(character: char) -> bool {
     match character {
         '\n' | '\t' => false,
-        // Marks, embeddings, overrides and isolates of the bidirectional algorithm, and two kinds of line breaks.
+        // Marks, embeddings, overrides and isolates of the bidirectional algorithm, and two kinds
+        // of line breaks.
         '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => {
             true
         }
@@ -16,7 +19,8 @@ pub fn is_unseen(character: char) -> bool {
     }
 }
 
-/// A text within a line: what is not seen, line breaks and tabs are written as JSON writes them (`\u001b`), so that a record is always one line.
+/// Returns a text on one line: invisible characters, line breaks and tabs are escaped as in JSON
+/// (`\u001b`), so that a record is always one line.
 #[must_use]
 pub fn text_in_line(text: &str) -> Cow<'_, str> {
     let is_written_out = |character: char| is_unseen(character) || matches!(character, '\n' | '\t');
@@ -26,7 +30,7 @@ pub fn text_in_line(text: &str) -> Cow<'_, str> {
     let mut line = String::with_capacity(text.len() + 16);
     for character in text.chars() {
         if is_written_out(character) {
-            // Writing to a text cannot fail. All of them have four digits.
+            // Writing to a text cannot fail. All of these have four digits.
             let _ = write!(line, "\\u{:04x}", u32::from(character));
         } else {
             line.push(character);
@@ -35,7 +39,8 @@ pub fn text_in_line(text: &str) -> Cow<'_, str> {
     Cow::Owned(line)
 }
 
-/// The text as spreadsheets show it and do not run it: within a line, and with `'` before it where it begins with `=`, `+`, `-` or `@` and is no number.
+/// Returns the text in a form that spreadsheets show rather than execute: on one line, and with a
+/// leading `'` if it begins with `=`, `+`, `-` or `@` and is not a number.
 ///
 /// Source: OWASP, *CSV Injection*.
 #[must_use]

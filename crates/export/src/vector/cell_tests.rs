@@ -25,7 +25,8 @@ fn formulas_become_texts_and_numbers_stay() {
     }
 }
 
-/// All control characters and those of the bidirectional algorithm, at the beginning, within and at the end of a text: a JSON reader gets them back.
+/// All control characters and those of the bidirectional algorithm, at the beginning, within and at
+/// the end of a text: a JSON reader recovers them.
 #[test]
 fn what_is_not_seen_is_written_as_in_json() {
     let unseen = (0..=0x2100).filter_map(char::from_u32);

@@ -1,6 +1,6 @@
-//! Fields, values and geometries of the features that are exported.
+//! Fields, values and geometries of exported features.
 
-/// What a field holds.
+/// The type of a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FieldKind {
     /// A whole number of 32 bits.
@@ -14,7 +14,7 @@ pub enum FieldKind {
 }
 
 impl FieldKind {
-    /// Its name, as GDAL has it.
+    /// The name in GDAL.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -28,20 +28,19 @@ impl FieldKind {
 
 /// A field of features.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Field {
+pub struct FeatureField {
     /// Its name in the file.
     pub name: &'static str,
-    /// What it holds.
+    /// The type of its values.
     pub kind: FieldKind,
-    /// The unit of a number; empty where there is none.
+    /// The unit of a number; empty without one.
     pub unit: &'static str,
-    /// What it says.
+    /// The meaning of the field.
     pub meaning: &'static str,
 }
 
 /// The value of a field.
-#[derive(Clone)]
-pub(crate) enum Value {
+pub(crate) enum FieldValue {
     Integer(i64),
     Real(f64),
     Text(String),
@@ -49,70 +48,69 @@ pub(crate) enum Value {
     Null,
 }
 
-impl From<i64> for Value {
+impl From<i64> for FieldValue {
     fn from(number: i64) -> Self {
         Self::Integer(number)
     }
 }
 
-impl From<f64> for Value {
+impl From<f64> for FieldValue {
     fn from(number: f64) -> Self {
         Self::Real(number)
     }
 }
 
-impl From<&str> for Value {
-    /// GDAL's texts end at a zero byte, which OpenStreetMap's never have and damaged ones may.
+impl From<&str> for FieldValue {
+    /// GDAL's texts end at a zero byte. OpenStreetMap's texts never have one, but corrupt ones may.
     fn from(text: &str) -> Self {
         Self::Text(text.replace('\0', "\u{fffd}"))
     }
 }
 
-impl<T: Into<Self>> From<Option<T>> for Value {
+impl<T: Into<Self>> From<Option<T>> for FieldValue {
     fn from(value: Option<T>) -> Self {
         value.map_or(Self::Null, Into::into)
     }
 }
 
-/// A number rounded to whole micrometres, so that sums of rounding do not fill files with digits.
+/// Rounds a number to whole micrometres, so that rounding errors do not fill files with digits.
 pub(crate) fn real(value: f64) -> f64 {
     (value * 1e6).round() / 1e6
 }
 
-/// A text; `None` where it is empty.
+/// Returns a text; `None` if it is empty.
 pub(crate) fn text(text: &str) -> Option<&str> {
     Some(text).filter(|text| !text.is_empty())
 }
 
 /// One feature: a value for each field, and its geometry.
-#[derive(Clone)]
-pub(crate) struct Record {
-    pub(crate) values: Vec<Value>,
-    pub(crate) shape: Shape,
+pub(crate) struct FeatureRecord {
+    pub(crate) values: Vec<FieldValue>,
+    pub(crate) shape: FeatureGeometry,
 }
 
 /// The geometries that a layer holds.
 #[derive(Clone, Copy)]
 pub(crate) enum ShapeKind {
-    /// [`Shape::Lines`]
+    /// [`FeatureGeometry::Lines`]
     Lines,
-    /// [`Shape::Lines`], whose heights are left out.
+    /// [`FeatureGeometry::Lines`], without heights.
     PlanLines,
-    /// [`Shape::Polygons`]
+    /// [`FeatureGeometry::Polygons`]
     Polygons,
 }
 
 /// The geometry of a feature.
-#[derive(Clone)]
-pub(crate) enum Shape {
+pub(crate) enum FeatureGeometry {
     /// Lines of x, y and height.
     Lines(Vec<Vec<[f64; 3]>>),
-    /// Polygons in plan: an outer ring, then rings around holes. The first point of a ring is not repeated at its end.
+    /// Polygons in plan: an outer ring, then the rings of holes. The first point of a ring is not
+    /// repeated at its end.
     Polygons(Vec<Vec<Vec<[f64; 2]>>>),
 }
 
-impl Shape {
-    /// Vertices in a file, where the last point of a ring is its first one again.
+impl FeatureGeometry {
+    /// The number of vertices in a file, where the last point of a ring repeats its first.
     pub(crate) fn vertices(&self) -> usize {
         match self {
             Self::Lines(lines) => lines.iter().map(Vec::len).sum(),
@@ -121,13 +119,13 @@ impl Shape {
     }
 }
 
-/// Declares fields together with what is in them, in one order.
+/// Declares fields together with the functions that return their values, in one order.
 macro_rules! fields {
     ($fields:ident, $of:ident: $type:ty: $($name:literal, $kind:ident, $unit:literal, $meaning:literal, $value:expr;)+) => {
-        const $fields: &[(Field, fn($type) -> Value)] = &[
+        const $fields: &[(FeatureField, fn($type) -> FieldValue)] = &[
             $((
-                Field { name: $name, kind: FieldKind::$kind, unit: $unit, meaning: $meaning },
-                |$of| Value::from($value),
+                FeatureField { name: $name, kind: FieldKind::$kind, unit: $unit, meaning: $meaning },
+                |$of| FieldValue::from($value),
             ),)+
         ];
     };
@@ -135,7 +133,7 @@ macro_rules! fields {
 
 pub(crate) use fields;
 
-/// The fields among fields with what is in them.
-pub(crate) fn fields_of<V>(fields: &[(Field, V)]) -> Vec<Field> {
+/// Returns the fields without the functions that return their values.
+pub(crate) fn fields_of<V>(fields: &[(FeatureField, V)]) -> Vec<FeatureField> {
     fields.iter().map(|(field, _)| *field).collect()
 }

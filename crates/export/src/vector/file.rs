@@ -1,4 +1,4 @@
-//! A vector file is written through GDAL, layer and features, and read again at the end.
+//! Writes a vector file through GDAL, layer and features, and reads it back at the end.
 
 use std::path::{Path, PathBuf};
 
@@ -13,54 +13,53 @@ use gdal::{
 
 use crate::{
     error::GdalFileError,
-    gdal_writing::{self, GdalSettings, plain_text, without_nul},
+    gdal_writing::{self, GdalSettings, plain_text},
     vector::{
         cell::cell_text,
-        field::{Field, FieldKind, Record, Shape, ShapeKind, Value},
+        field::{FeatureField, FeatureGeometry, FeatureRecord, FieldKind, FieldValue, ShapeKind},
         format::VectorFormat,
         geopackage,
-        whole::{self, Contents},
+        whole::{self, FeatureFileContents},
     },
 };
 
-/// Features are handed to GDAL when so many vertices have come together: together they make one transaction.
+/// Features are passed to GDAL in batches of this many vertices. Each batch is one transaction.
 const VERTICES_AT_ONCE: usize = 1 << 16;
-/// GDAL's settings while a file is written, of this thread. The file is of no use until it is complete, so the database need
-/// not be safe against a loss of power; and the same roads make the same bytes, whatever the date.
+/// GDAL's settings for this thread while a file is written. An incomplete file is useless, so the
+/// database need not tolerate a loss of power. The same roads give the same bytes on any date.
 const SETTINGS: [(&str, &str); 2] =
     [("OGR_SQLITE_SYNCHRONOUS", "OFF"), ("OGR_CURRENT_DATE", geopackage::NO_TIME)];
 
-/// What a file says of itself and of its features.
-#[derive(Clone)]
+/// The name, fields and metadata of a layer.
 pub(crate) struct Layer {
     pub(crate) name: &'static str,
-    pub(crate) fields: Vec<Field>,
+    pub(crate) fields: Vec<FeatureField>,
     pub(crate) shapes: ShapeKind,
     /// WKT2, or a code such as "EPSG:4979".
     pub(crate) crs: String,
-    /// The description for people.
+    /// The human-readable description.
     pub(crate) description: String,
-    /// Credits to show wherever the features are shown.
+    /// The attribution that must be displayed with the features.
     pub(crate) attribution: String,
-    /// Keys and values about the whole, where the format has a place for them.
+    /// Keys and values of metadata, for formats that support them.
     pub(crate) metadata: Vec<(&'static str, String)>,
 }
 
-/// A file of features that is being written.
+/// A file of features while it is written.
 pub(crate) struct VectorFile {
     path: PathBuf,
     format: VectorFormat,
     dataset: Dataset,
     layer: Layer,
-    waiting: Vec<Record>,
+    waiting: Vec<FeatureRecord>,
     waiting_vertices: usize,
     heights: Option<String>,
-    written: Contents,
+    written: FeatureFileContents,
     _settings: GdalSettings,
 }
 
 impl VectorFile {
-    /// Begins a file with one layer. Nothing may be at `path`.
+    /// Creates a file with one layer. Nothing may exist at `path`.
     pub(crate) fn create(
         path: &Path,
         format: VectorFormat,
@@ -80,16 +79,16 @@ impl VectorFile {
             waiting: Vec::new(),
             waiting_vertices: 0,
             heights: None,
-            written: Contents::default(),
+            written: FeatureFileContents::default(),
             _settings: settings,
         })
     }
 
     /// Adds a feature.
-    pub(crate) fn push(&mut self, mut record: Record) -> Result<(), GdalFileError> {
+    pub(crate) fn push(&mut self, mut record: FeatureRecord) -> Result<(), GdalFileError> {
         if self.format == VectorFormat::Csv {
             for value in &mut record.values {
-                if let Value::Text(text) = value {
+                if let FieldValue::Text(text) = value {
                     *text = cell_text(text).into_owned();
                 }
             }
@@ -99,8 +98,8 @@ impl VectorFile {
         if self.waiting_vertices >= VERTICES_AT_ONCE { self.write() } else { Ok(()) }
     }
 
-    /// Says in a GeoPackage's description of the layer how far heights may be off: a whole sentence. It may be known only when all features are
-    /// written; what is said last counts.
+    /// Adds the largest error of heights to the description of the layer in a GeoPackage: a whole
+    /// sentence. It may be known only when all features are written; the last call counts.
     pub(crate) fn tell_heights(&mut self, sentence: String) {
         self.heights = Some(sentence);
     }
@@ -111,7 +110,7 @@ impl VectorFile {
         self.written.vertices += std::mem::take(&mut self.waiting_vertices) as u64;
         let of = &self.layer;
         let written = match self.format {
-            // Without a transaction each feature would be one.
+            // Without a transaction, each feature would be one.
             VectorFormat::GeoPackage => self.dataset.start_transaction().and_then(|transaction| {
                 write_all(&transaction.layer(0)?, of, &records)?;
                 transaction.commit()
@@ -121,7 +120,7 @@ impl VectorFile {
         written.map_err(|error| GdalFileError::write(&self.path, error))
     }
 
-    /// Ends the file and reads it again: GDAL does not report everything that fails when a file is closed.
+    /// Closes the file and reads it back, because GDAL does not report every error of closing.
     pub(crate) fn finish(mut self) -> Result<(), GdalFileError> {
         self.write()?;
         let Self { path, format, dataset, layer, heights, written, .. } = self;
@@ -138,7 +137,7 @@ impl VectorFile {
 }
 
 impl Layer {
-    /// The same with texts that all formats take.
+    /// Returns the same with texts that all formats support.
     fn plain(mut self) -> Self {
         let facts = self.metadata.iter_mut().map(|(_, text)| text);
         for text in facts.chain([&mut self.description, &mut self.attribution]) {
@@ -147,7 +146,7 @@ impl Layer {
         self
     }
 
-    /// The description with what is known of heights, and the credits.
+    /// Returns the description with the error of heights, and the attribution.
     fn about(&self, heights: &str) -> String {
         let parts = [self.description.as_str(), heights, &self.attribution];
         parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" ")
@@ -172,13 +171,10 @@ fn create(
     let options: Vec<&str> = options.iter().map(String::as_str).collect();
     let created = dataset.create_layer(LayerOptions {
         name: layer.name,
-        // RFC 7946 has one CRS and no place to name it. For others GDAL writes the member `crs` of the GeoJSON of before.
+        // RFC 7946 has one CRS and no member for it. For others, GDAL writes the member `crs` of
+        // the older GeoJSON specification.
         srs: (format != VectorFormat::GeoJson || crs.is_projected()).then_some(&crs),
-        ty: match layer.shapes {
-            ShapeKind::Lines => OGRwkbGeometryType::wkbMultiLineString25D,
-            ShapeKind::PlanLines => OGRwkbGeometryType::wkbMultiLineString,
-            ShapeKind::Polygons => OGRwkbGeometryType::wkbMultiPolygon,
-        },
+        ty: layer.shapes.types()[0],
         options: Some(&options),
     })?;
     for field in &layer.fields {
@@ -193,13 +189,13 @@ fn create(
     Ok(dataset)
 }
 
-/// What the driver is told beside the layer's name, type and CRS.
+/// Returns the driver's options in addition to the layer's name, type and CRS.
 fn options(format: VectorFormat, layer: &Layer, driver: &Driver) -> Vec<String> {
     let description = format!("{} {}", layer.description, layer.attribution);
     match format {
         VectorFormat::GeoPackage => vec![format!("DESCRIPTION={description}")],
         VectorFormat::FlatGeobuf => {
-            // GDAL has it since 3.9.
+            // GDAL supports it since 3.9.
             let known = driver.metadata_item("DS_LAYER_CREATIONOPTIONLIST", "");
             let has_description = known.is_some_and(|known| known.contains("'DESCRIPTION'"));
             has_description.then(|| format!("DESCRIPTION={description}")).into_iter().collect()
@@ -217,19 +213,23 @@ fn options(format: VectorFormat, layer: &Layer, driver: &Driver) -> Vec<String> 
     }
 }
 
-fn write_all(layer: &GdalLayer<'_>, of: &Layer, records: &[Record]) -> Result<(), GdalError> {
+fn write_all(
+    layer: &GdalLayer<'_>,
+    of: &Layer,
+    records: &[FeatureRecord],
+) -> Result<(), GdalError> {
     let defn = Defn::from_layer(layer);
     for record in records {
         let mut feature = Feature::new(&defn)?;
         for (index, (value, field)) in record.values.iter().zip(&of.fields).enumerate() {
             match value {
-                Value::Null => feature.set_field_null(index)?,
-                Value::Integer(number) if field.kind == FieldKind::Integer => {
+                FieldValue::Null => feature.set_field_null(index)?,
+                FieldValue::Integer(number) if field.kind == FieldKind::Integer => {
                     feature.set_field_integer(index, i32::try_from(*number)?)?;
                 }
-                Value::Integer(number) => feature.set_field_integer64(index, *number)?,
-                Value::Real(number) => feature.set_field_double(index, *number)?,
-                Value::Text(text) => feature.set_field_string(index, &without_nul(text))?,
+                FieldValue::Integer(number) => feature.set_field_integer64(index, *number)?,
+                FieldValue::Real(number) => feature.set_field_double(index, *number)?,
+                FieldValue::Text(text) => feature.set_field_string(index, text)?,
             }
         }
         feature.set_geometry(geometry(&record.shape, of.shapes)?)?;
@@ -238,56 +238,60 @@ fn write_all(layer: &GdalLayer<'_>, of: &Layer, records: &[Record]) -> Result<()
     Ok(())
 }
 
-fn geometry(shape: &Shape, kind: ShapeKind) -> Result<Geometry, GdalError> {
+fn geometry(shape: &FeatureGeometry, kind: ShapeKind) -> Result<Geometry, GdalError> {
+    let mut all = Geometry::empty(kind.types()[0])?;
     match shape {
-        Shape::Lines(lines) => multi_line(lines, kind),
-        Shape::Polygons(polygons) => multi_polygon(polygons),
-    }
-}
-
-fn multi_polygon(polygons: &[Vec<Vec<[f64; 2]>>]) -> Result<Geometry, GdalError> {
-    let mut all = Geometry::empty(OGRwkbGeometryType::wkbMultiPolygon)?;
-    for rings in polygons {
-        let mut polygon = Geometry::empty(OGRwkbGeometryType::wkbPolygon)?;
-        for ring in rings {
-            let mut closed = Geometry::empty(OGRwkbGeometryType::wkbLinearRing)?;
-            // From the end, so that GDAL takes memory for all vertices at once.
-            let first = ring.first().map(|first| (ring.len(), first));
-            for (index, &[x, y]) in first.into_iter().chain(ring.iter().enumerate().rev()) {
-                closed.set_point_2d(index, (x, y));
+        FeatureGeometry::Lines(lines) => {
+            for line in lines {
+                let mut part = Geometry::empty(kind.types()[1])?;
+                // From the end, so that GDAL allocates memory for all vertices at once.
+                for (index, &[x, y, z]) in line.iter().enumerate().rev() {
+                    match kind {
+                        ShapeKind::PlanLines => part.set_point_2d(index, (x, y)),
+                        _ => part.set_point(index, (x, y, written_height(z))),
+                    }
+                }
+                all.add_geometry(part)?;
             }
-            polygon.add_geometry(closed)?;
         }
-        all.add_geometry(polygon)?;
+        FeatureGeometry::Polygons(polygons) => {
+            for rings in polygons {
+                let mut polygon = Geometry::empty(kind.types()[1])?;
+                for ring in rings {
+                    let mut closed = Geometry::empty(OGRwkbGeometryType::wkbLinearRing)?;
+                    // From the end, so that GDAL allocates memory for all vertices at once.
+                    let first = ring.first().map(|first| (ring.len(), first));
+                    for (index, &[x, y]) in first.into_iter().chain(ring.iter().enumerate().rev()) {
+                        closed.set_point_2d(index, (x, y));
+                    }
+                    polygon.add_geometry(closed)?;
+                }
+                all.add_geometry(polygon)?;
+            }
+        }
     }
     Ok(all)
 }
 
-/// A height as it can be written. GDAL 3.6 takes trailing zeros from their exponents: 4.5e-10 becomes 4.5E-1 in texts.
+impl ShapeKind {
+    /// Returns the types of a feature's geometry and of its parts.
+    fn types(self) -> [OGRwkbGeometryType::Type; 2] {
+        match self {
+            Self::Lines => {
+                [OGRwkbGeometryType::wkbMultiLineString25D, OGRwkbGeometryType::wkbLineString25D]
+            }
+            Self::PlanLines => {
+                [OGRwkbGeometryType::wkbMultiLineString, OGRwkbGeometryType::wkbLineString]
+            }
+            Self::Polygons => [OGRwkbGeometryType::wkbMultiPolygon, OGRwkbGeometryType::wkbPolygon],
+        }
+    }
+}
+
+/// Returns a height that can be written. GDAL 3.6 removes trailing zeros from exponents: 4.5e-10
+/// becomes 4.5E-1 in text.
 fn written_height(height: f64) -> f64 {
     if height.abs() < 1e-9 { 0.0 } else { height }
-}
-
-fn multi_line(lines: &[Vec<[f64; 3]>], kind: ShapeKind) -> Result<Geometry, GdalError> {
-    let [of_all, of_part] = match kind {
-        ShapeKind::PlanLines => {
-            [OGRwkbGeometryType::wkbMultiLineString, OGRwkbGeometryType::wkbLineString]
-        }
-        _ => [OGRwkbGeometryType::wkbMultiLineString25D, OGRwkbGeometryType::wkbLineString25D],
-    };
-    let mut all = Geometry::empty(of_all)?;
-    for line in lines {
-        let mut part = Geometry::empty(of_part)?;
-        // From the end, so that GDAL takes memory for all vertices at once.
-        for (index, &[x, y, z]) in line.iter().enumerate().rev() {
-            match kind {
-                ShapeKind::PlanLines => part.set_point_2d(index, (x, y)),
-                _ => part.set_point(index, (x, y, written_height(z))),
-            }
-        }
-        all.add_geometry(part)?;
-    }
-    Ok(all)
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 pub enum VectorFormat {
     /// GeoPackage: an `SQLite` database with a spatial index.
     GeoPackage,
-    /// FlatGeobuf: one layer with a spatial index, to be read by ranges.
+    /// FlatGeobuf: one layer with a spatial index, for reading by range requests.
     FlatGeobuf,
     /// GeoJSON, RFC 7946.
     GeoJson,
@@ -14,7 +14,7 @@ pub enum VectorFormat {
 }
 
 impl VectorFormat {
-    /// GDAL's driver.
+    /// The name of GDAL's driver.
     pub(crate) fn driver(self) -> &'static str {
         match self {
             Self::GeoPackage => "GPKG",

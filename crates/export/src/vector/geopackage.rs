@@ -1,14 +1,15 @@
-//! What a GeoPackage says beside its features: how QGIS draws them, and how far heights may be off.
+//! Metadata of a GeoPackage: the style for QGIS, and the largest error of heights.
 
 use corniche_styles::Style;
 use gdal::{Dataset, errors::GdalError, vector::sql::Dialect};
 
 use super::map_style;
 
-/// The one time that is written to files, so that the same features make the same bytes.
+/// The only time stamp in files, so that the same features give the same bytes.
 pub(crate) const NO_TIME: &str = "1970-01-01T00:00:00.000Z";
 
-/// The table as QGIS makes it (`QgsOgrProviderMetadata::saveStyle`), and its entry among the tables of the file: one without geometry.
+/// The table that QGIS creates for styles (`QgsOgrProviderMetadata::saveStyle`), and its entry
+/// among the tables of the file: one without geometry.
 const STYLES_TABLE: [&str; 2] = [
     r#"CREATE TABLE "layer_styles" ("id" INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, "f_table_catalog" TEXT(256), "f_table_schema" TEXT(256),
 "f_table_name" TEXT(256), "f_geometry_column" TEXT(256), "styleName" TEXT(30), "styleQML" TEXT, "styleSLD" TEXT, "useAsDefault" BOOLEAN,
@@ -17,14 +18,15 @@ const STYLES_TABLE: [&str; 2] = [
 VALUES ('layer_styles', 'attributes', 'layer_styles', '', '1970-01-01T00:00:00.000Z', 0)",
 ];
 
-/// Adds the style by class that QGIS takes when the layer is opened. Nothing is added for a layer without classes.
+/// Adds the style by class that QGIS applies when it opens the layer. Nothing is added for a layer
+/// without classes.
 pub(crate) fn add_style(file: &Dataset, layer: &str) -> Result<(), GdalError> {
     let Some(qml) = map_style::qml(layer, &Style::road_atlas()) else { return Ok(()) };
     for statement in STYLES_TABLE {
         run(file, statement)?;
     }
     let [name, qml] = [layer, &qml].map(quoted);
-    // QGIS looks for an empty schema, and for the column of the geometry that GDAL names.
+    // QGIS expects an empty schema, and the geometry column that GDAL names.
     run(
         file,
         &format!(
@@ -35,7 +37,7 @@ pub(crate) fn add_style(file: &Dataset, layer: &str) -> Result<(), GdalError> {
     )
 }
 
-/// Puts another description in place of a layer's.
+/// Replaces the description of a layer.
 pub(crate) fn describe(file: &Dataset, layer: &str, description: &str) -> Result<(), GdalError> {
     let [layer, description] = [layer, description].map(quoted);
     run(
@@ -48,7 +50,7 @@ fn run(file: &Dataset, statement: &str) -> Result<(), GdalError> {
     file.execute_sql(statement, None, Dialect::DEFAULT).map(|_| ())
 }
 
-/// A text as SQL has it.
+/// Returns a text as an SQL literal.
 fn quoted(text: &str) -> String {
     format!("'{}'", text.replace('\'', "''"))
 }

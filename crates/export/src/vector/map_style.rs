@@ -1,16 +1,19 @@
-//! How QGIS draws the layer of a GeoPackage when it is opened: the colours and widths of the classes, in the words of its QML.
+//! The style in which QGIS draws the layer of a GeoPackage when it opens it: the colours and widths
+//! of the classes, as QML.
 //!
-//! Source: what QGIS 3.22 reads, `QgsCategorizedSymbolRenderer` and `QgsSymbolLayerUtils::parseProperties`.
+//! Source: the QML that QGIS 3.22 reads, `QgsCategorizedSymbolRenderer` and
+//! `QgsSymbolLayerUtils::parseProperties`.
 
 use std::fmt::Write as _;
 
 use corniche_areas::{AreaClass, BoundaryClass};
 use corniche_styles::{AreaStyle, Dash, LineStyle, Rgb, RoadStyle, Style};
 
-/// Millimetres of a pixel: QGIS takes screens to have 96 in an inch.
+/// Millimetres per pixel: QGIS assumes screens with 96 pixels per inch.
 const MM_PER_PX: f32 = 25.4 / 96.0;
 
-/// One class: its value in the field `class`, its name in the legend, and what is drawn for it, the lowest first.
+/// One class: its value in the field `class`, its name in the legend, and its symbol parts, the
+/// lowest first.
 struct Category {
     value: String,
     label: String,
@@ -18,18 +21,15 @@ struct Category {
     parts: Vec<SymbolPart>,
 }
 
-/// What is drawn once for each feature of a class. All parts with a lower `pass` lie below, whichever class they are of.
+/// A part of the symbol of a class. All parts with a lower `pass` are drawn below, whatever their
+/// class.
 struct SymbolPart {
     pass: usize,
-    drawing: Drawing,
+    kind: &'static str,
+    properties: Vec<(&'static str, String)>,
 }
 
-enum Drawing {
-    Fill { color: Rgb },
-    Line { color: Rgb, width_px: f32, dash: Dash },
-}
-
-/// The QML of a layer of this name in this style; `None` for a layer without classes.
+/// Returns the QML of a layer of this name in this style; `None` for a layer without classes.
 pub(crate) fn qml(layer: &str, style: &Style) -> Option<String> {
     let (categories, geometry_type, symbol_type) = match layer {
         "roads" | "edges" => (roads(style), 1, "line"),
@@ -40,7 +40,7 @@ pub(crate) fn qml(layer: &str, style: &Style) -> Option<String> {
     let (mut values, mut symbols) = (String::new(), String::new());
     for (number, category) in categories.iter().enumerate() {
         let Category { value, label, .. } = category;
-        // Nothing is lost: a text takes what is written to it.
+        // Writing to a text cannot fail.
         let _ = writeln!(
             values,
             r#"<category value="{value}" symbol="{number}" label="{label}" render="true"/>"#
@@ -71,15 +71,12 @@ pub(crate) fn qml(layer: &str, style: &Style) -> Option<String> {
     ))
 }
 
-/// Edges lie below all roads, and important roads above others.
+/// Edges are below all roads, and important roads above others.
 fn roads(style: &Style) -> Vec<Category> {
     let above = |class: usize| style.roads.len() - class;
     let category = |(class, road): (usize, &RoadStyle)| {
         let width_px = road.flat_width_px();
-        let line = |pass, color, width_px| {
-            let drawing = Drawing::Line { color, width_px, dash: road.dash };
-            SymbolPart { pass, drawing }
-        };
+        let line = |pass, color, width_px| line(pass, color, width_px, &road.dash);
         let edge = line(0, road.outline, width_px + 2.0 * style.outline_px as f32);
         let bands = road.bands.all().iter();
         let bands = bands.map(|band| line(above(class), band.color, width_px * band.width_share));
@@ -97,22 +94,20 @@ fn areas(style: &Style) -> Vec<Category> {
     let category = |(below, class): (usize, AreaClass)| {
         let AreaStyle { color, opacity, .. } = *style.area(class);
         let pass = AreaClass::COUNT - 1 - below;
-        let parts = vec![SymbolPart { pass, drawing: Drawing::Fill { color } }];
+        let properties =
+            vec![("color", rgba(color)), ("style", "solid".into()), ("outline_style", "no".into())];
+        let parts = vec![SymbolPart { pass, kind: "SimpleFill", properties }];
         Category::named(class.name(), opacity, parts)
     };
     AreaStyle::TOP_FIRST.into_iter().enumerate().map(category).collect()
 }
 
 fn boundaries(style: &Style) -> Vec<Category> {
-    let category = |(class, line): (BoundaryClass, &LineStyle)| {
-        let LineStyle { color, width_px, casing, opacity, dash, .. } = *line;
+    let category = |(class, style): (BoundaryClass, &LineStyle)| {
+        let LineStyle { color, width_px, casing, opacity, dash, .. } = *style;
         let pass = BoundaryClass::COUNT - usize::from(class.number());
-        let part = |pass, color, width_px| {
-            let drawing = Drawing::Line { color, width_px, dash };
-            SymbolPart { pass, drawing }
-        };
-        let casing = casing.map(|casing| part(0, casing, width_px + 2.0));
-        let parts = casing.into_iter().chain([part(pass, color, width_px)]).collect();
+        let casing = casing.map(|casing| line(0, casing, width_px + 2.0, &dash));
+        let parts = casing.into_iter().chain([line(pass, color, width_px, &dash)]).collect();
         Category::named(class.name(), opacity, parts)
     };
     BoundaryClass::ALL.into_iter().zip(&style.boundaries).map(category).collect()
@@ -126,20 +121,7 @@ impl Category {
 
 impl SymbolPart {
     fn write(&self, out: &mut String) {
-        let (kind, properties) = match &self.drawing {
-            Drawing::Fill { color } => (
-                "SimpleFill",
-                vec![
-                    ("color", rgba(*color)),
-                    ("style", "solid".into()),
-                    ("outline_style", "no".into()),
-                ],
-            ),
-            Drawing::Line { color, width_px, dash } => {
-                ("SimpleLine", line(*color, *width_px, dash))
-            }
-        };
-        let pass = self.pass;
+        let Self { pass, kind, properties } = self;
         let _ = writeln!(out, r#"<layer class="{kind}" pass="{pass}" enabled="1" locked="0">"#);
         for (key, value) in properties {
             let _ = writeln!(out, r#"<prop k="{key}" v="{value}"/>"#);
@@ -148,7 +130,7 @@ impl SymbolPart {
     }
 }
 
-fn line(color: Rgb, width_px: f32, dash: &Dash) -> Vec<(&'static str, String)> {
+fn line(pass: usize, color: Rgb, width_px: f32, dash: &Dash) -> SymbolPart {
     let is_dashed = dash.least_px > 0.0 && dash.widths.is_none();
     let cap = if is_dashed { "flat" } else { "round" };
     let mut properties = vec![
@@ -169,7 +151,7 @@ fn line(color: Rgb, width_px: f32, dash: &Dash) -> Vec<(&'static str, String)> {
             ("customdash_unit", "MM".into()),
         ]);
     }
-    properties
+    SymbolPart { pass, kind: "SimpleLine", properties }
 }
 
 fn rgba(color: Rgb) -> String {

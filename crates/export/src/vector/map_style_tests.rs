@@ -1,4 +1,5 @@
-//! Every class that a layer can have is drawn by the style that QGIS gets, in the colour of the default map.
+//! Every class that a layer can have is drawn by the style for QGIS, in the colour of the default
+//! map.
 
 use corniche_roads::FunctionalRoadClass;
 
@@ -28,8 +29,8 @@ fn every_class_has_a_category() {
     assert_eq!(qml("line", &style), None);
 }
 
-/// Colours and widths are those of `config/styles/road-atlas.toml`: a motorway has 5.5 px of #C50D2B and an edge of 1 px on both sides,
-/// #6B1413. A pixel is 25.4 / 96 mm.
+/// Colours and widths are those of `config/styles/road-atlas.toml`: a motorway has 5.5 px of
+/// #C50D2B and an edge of 1 px on both sides, #6B1413. A pixel is 25.4 / 96 mm.
 #[test]
 fn colours_and_widths_are_those_of_the_default_style() {
     let roads = qml("roads", &Style::road_atlas()).unwrap();

@@ -1,4 +1,4 @@
-//! Whether a file that was written is there as a whole.
+//! Checks whether a written file is complete.
 
 use std::{
     fs::File,
@@ -15,36 +15,40 @@ use gdal::{
 
 use crate::{error::GdalFileError, vector::format::VectorFormat};
 
-/// How GDAL begins the line of a feature.
+/// The beginning of a feature's line in GDAL's output.
 const FEATURE: &[u8] = b"{ \"type\": \"Feature\"";
 
-/// What is in a file of features.
+/// The contents of a file of features.
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
-pub(crate) struct Contents {
+pub(crate) struct FeatureFileContents {
     pub(crate) features: u64,
-    /// How many vertices all features have.
+    /// The number of vertices of all features.
     pub(crate) vertices: u64,
 }
 
-/// Whether a file holds what was written to it, by reading all of it; no more of it is in memory than one feature.
+/// Whether a file contains everything that was written to it. All of it is read, but only one
+/// feature at a time is in memory.
 ///
-/// What a file says of itself is not asked: a header or a table with the number of features is written long before the disk is full.
+/// The file's own counts are not trusted: a header or a table with the number of features is
+/// written long before the disk is full.
 pub(crate) fn check(
     path: &Path,
     format: VectorFormat,
-    written: Contents,
+    written: FeatureFileContents,
 ) -> Result<(), GdalFileError> {
     let failed = |source| GdalFileError::ReadAgain { path: path.to_path_buf(), source };
     let found = match format {
-        // A row that is cut off is a row for GDAL; and GDAL ends both with a line.
+        // GDAL reads a truncated row as a row, and GDAL ends both formats with a line break.
         VectorFormat::Csv | VectorFormat::GeoJson if !ends_a_line(path).map_err(failed)? => {
-            Contents::default()
+            FeatureFileContents::default()
         }
-        VectorFormat::GeoPackage if !has_all_pages(path).map_err(failed)? => Contents::default(),
+        VectorFormat::GeoPackage if !has_all_pages(path).map_err(failed)? => {
+            FeatureFileContents::default()
+        }
         // GDAL would read all of a GeoJSON file into memory.
         VectorFormat::GeoJson => {
             let features = count_lines(path).map_err(failed)?;
-            Contents { features, vertices: written.vertices }
+            FeatureFileContents { features, vertices: written.vertices }
         }
         _ => read_all(path, format).map_err(|error| failed(io::Error::other(error)))?,
     };
@@ -59,15 +63,15 @@ pub(crate) fn check(
     })
 }
 
-/// Reads every feature with its geometry. Empty where the format itself finds damage.
-fn read_all(path: &Path, format: VectorFormat) -> Result<Contents, GdalError> {
+/// Reads every feature with its geometry. Returns no contents if the format itself detects damage.
+fn read_all(path: &Path, format: VectorFormat) -> Result<FeatureFileContents, GdalError> {
     let options =
         DatasetOptions { open_flags: GdalOpenFlags::GDAL_OF_VECTOR, ..DatasetOptions::default() };
     let dataset = Dataset::open_ex(path, options)?;
     if format == VectorFormat::GeoPackage && !is_sound(&dataset)? {
-        return Ok(Contents::default());
+        return Ok(FeatureFileContents::default());
     }
-    let mut contents = Contents::default();
+    let mut contents = FeatureFileContents::default();
     let mut layer = dataset.layer(0)?;
     for feature in layer.features() {
         contents.features += 1;
@@ -83,7 +87,7 @@ fn vertices(geometry: &Geometry) -> u64 {
     own + parts.sum::<u64>()
 }
 
-/// What `SQLite` finds in its pages and indices, the spatial one included.
+/// Whether `SQLite` finds no errors in its pages and indices, including the spatial one.
 fn is_sound(dataset: &Dataset) -> Result<bool, GdalError> {
     let Some(mut found) = dataset.execute_sql("PRAGMA quick_check", None, Dialect::DEFAULT)? else {
         return Ok(false);
@@ -92,7 +96,8 @@ fn is_sound(dataset: &Dataset) -> Result<bool, GdalError> {
     Ok(first.and_then(|row| row.field_as_string(0).ok().flatten()).as_deref() == Some("ok"))
 }
 
-/// Whether an `SQLite` file is as long as its header says: what is missing of its last page is not noticed where that page is not in use.
+/// Whether an `SQLite` file is as long as its header states: a truncated last page is not noticed
+/// if it is not in use.
 ///
 /// Source: *Database File Format*, sqlite.org, 1.3.
 fn has_all_pages(path: &Path) -> io::Result<bool> {
@@ -119,7 +124,8 @@ fn ends_a_line(path: &Path) -> io::Result<bool> {
     Ok(last == *b"\n")
 }
 
-/// The features of a GeoJSON file, which GDAL writes one in a line. 0 where its end is missing.
+/// Counts the features of a GeoJSON file, which GDAL writes one per line. Returns 0 if its end is
+/// missing.
 fn count_lines(path: &Path) -> io::Result<u64> {
     let mut file = BufReader::new(File::open(path)?);
     let mut line = Vec::new();
@@ -130,7 +136,7 @@ fn count_lines(path: &Path) -> io::Result<u64> {
         let text = line.trim_ascii();
         if !text.is_empty() {
             last.clear();
-            // The last line is a bracket: of others only the beginning is kept.
+            // The last line is a bracket: only the beginning of other lines is kept.
             last.extend(&text[..text.len().min(8)]);
         }
         line.clear();

@@ -1,3 +1,4 @@
-//! Integration tests of `corniche-export`, in one binary. The first line of each module says what holds.
+//! Integration tests of `corniche-export`, in one binary. The first line of each module states what
+//! it tests.
 
 mod small_package;

@@ -1,4 +1,4 @@
-//! The export on a package of four tiles, and its documentation.
+//! The exports of a package of four tiles, and their documentation.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -9,9 +9,9 @@ use std::{
 };
 
 use corniche_export::{
-    Coordinates, ErrorKind, ExportSummary, FeatureRequest, FeaturesError, Field, HeightSource,
-    RoadFeatures, RoadHeights, VectorFormat, WayGrowth, edge_fields, export_roads, growth_by_way,
-    road_fields,
+    ErrorKind, ExportSummary, FeatureCoordinates, FeatureField, FeatureRequest, FeaturesError,
+    HeightSource, RoadFeatures, RoadHeights, VectorFormat, WayGrowth, edge_fields, export_roads,
+    growth_by_way, road_fields,
 };
 use corniche_roads::FunctionalRoadClass;
 use corniche_testing::{package, root};
@@ -40,7 +40,7 @@ fn request(memory_bytes: u64) -> FeatureRequest<FunctionalRoadClass> {
         level: None,
         classes: FunctionalRoadClass::all().collect(),
         bounds: None,
-        coordinates: Coordinates::Package,
+        coordinates: FeatureCoordinates::Package,
         memory_bytes,
     }
 }
@@ -52,11 +52,11 @@ fn export_pieces(
     observer: &dyn Observer,
 ) -> Result<ExportSummary, FeaturesError> {
     let request = request(memory_bytes);
-    let what = (&request, RoadFeatures::Pieces, None);
-    export_roads(package, what, RoadHeights::default(), path, observer)
+    let heights = RoadHeights::default();
+    export_roads(package, &request, RoadFeatures::Pieces, None, heights, path, observer)
 }
 
-/// However little memory the sorting has, the file is the same.
+/// The file is the same, however little memory sorting has.
 #[test]
 fn memory_does_not_change_the_file() {
     let folder = tempfile::tempdir().unwrap();
@@ -67,12 +67,13 @@ fn memory_does_not_change_the_file() {
         assert!(summary.features > 2 && summary.ways == 1, "{summary:?}");
         fs::read(path).unwrap()
     });
-    assert!(one == two, "other bytes");
+    assert!(one == two, "the bytes differ");
 }
 
-/// What laying each way on the terrain costs: of all levels, in the order of the ways, however little memory the sorting has.
+/// The growth of each way: on all levels, in the order of the ways, however little memory sorting
+/// has.
 #[test]
-fn each_way_is_told_of_once_with_all_levels() {
+fn each_way_is_reported_once_with_all_levels() {
     let folder = tempfile::tempdir().unwrap();
     let package = FilePackage::open(&small_package(folder.path())).unwrap();
     let [one, two] = [500, 1 << 30].map(|memory_bytes| {
@@ -97,13 +98,13 @@ fn each_way_is_told_of_once_with_all_levels() {
     assert!(by_level.iter().all(|&vertices| vertices > 0), "{by_level:?}");
     let refused =
         growth_by_way(&package, folder.path(), 500, &Silent, |_| Err(FeaturesError::Interrupted));
-    assert!(matches!(refused, Err(FeaturesError::Interrupted)), "what the receiver says ends it");
+    assert!(matches!(refused, Err(FeaturesError::Interrupted)), "an error of the receiver ends it");
     let nowhere = folder.path().join("nowhere");
     let refused = growth_by_way(&package, &nowhere, 500, &Silent, |_| Ok::<(), FeaturesError>(()));
     assert!(matches!(refused, Err(FeaturesError::Sort { .. })), "{refused:?}");
 }
 
-/// Asks a number of times whether to stop, then stops.
+/// Continues a number of times, then requests a stop.
 struct Impatient {
     asks: AtomicU32,
 }
@@ -115,9 +116,9 @@ impl Observer for Impatient {
     }
 }
 
-/// An export stops wherever it is asked to, while it reads and while it writes.
+/// An export stops whenever this is requested, while it reads and while it writes.
 #[test]
-fn an_export_stops_when_it_is_asked_to() {
+fn an_export_stops_on_request() {
     let folder = tempfile::tempdir().unwrap();
     let package = FilePackage::open(&small_package(folder.path())).unwrap();
     let mut stopped = 0;
@@ -134,14 +135,14 @@ fn an_export_stops_when_it_is_asked_to() {
     assert_eq!(stopped, 3);
 }
 
-/// A damaged tile is named, and its error says that the package cannot be used.
+/// A corrupt tile is named, and its error means that the package cannot be used.
 #[test]
 fn a_damaged_tile_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let path = small_package(folder.path());
     let package = FilePackage::open(&path).unwrap();
     let id = *package.tile_ids().unwrap().last().unwrap();
-    // SV roads, which are not exported, are the last section.
+    // SV roads (roads drawn by shadow volumes), which are not exported, are the last section.
     let sv_tail = payload_sizes(&package.tile(id).unwrap().unwrap(), id).unwrap().sv_tail;
     let mut bytes = fs::read(&path).unwrap();
     let place = bytes.len() - sv_tail as usize - 10;
@@ -153,7 +154,7 @@ fn a_damaged_tile_is_named() {
     assert!(error.kind() == ErrorKind::Unusable && error.to_string().contains("2/"), "{error}");
 }
 
-/// The tables of fields in the documentation are those of the program.
+/// The tables of fields in the documentation agree with the program.
 #[test]
 fn the_documentation_has_every_field() {
     let page = fs::read_to_string(root().join("docs/export-roads.md")).unwrap();
@@ -161,7 +162,7 @@ fn the_documentation_has_every_field() {
     let dem = road_fields(true, HeightSource::Dem);
     let only_dem = dem.into_iter().filter(|field| !ground.contains(field)).collect();
     for fields in [ground.clone(), only_dem, edge_fields()] {
-        let row = |field: &Field| {
+        let row = |field: &FeatureField| {
             let unit = if field.unit.is_empty() { "–" } else { field.unit };
             format!("| `{}` | {} | {unit} | {} |", field.name, field.kind.name(), field.meaning)
         };

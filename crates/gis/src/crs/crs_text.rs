@@ -1,5 +1,5 @@
-//! Coordinate systems as files and options name them: a horizontal one, and perhaps a vertical one
-//! with it.
+//! Coordinate systems as files and options name them: a horizontal one, optionally with a vertical
+//! one.
 
 use gdal::errors::GdalError;
 use gdal::spatial_ref::SpatialRef;
@@ -9,13 +9,13 @@ use crate::crs::vertical::VerticalCrs;
 use crate::crs::wkt::{child, children, keyword, wkt2};
 use crate::{CrsError, library_error};
 
-/// A horizontal system, and the vertical one that is named together with it.
+/// A horizontal system, and the vertical one that is named with it.
 pub(crate) type CrsParts = (Crs, Option<VerticalCrs>);
 
-/// The systems of "EPSG:n" or WKT, as `option` gave it.
+/// The systems of "EPSG:n" or WKT, as given with `option`.
 ///
 /// # Errors
-/// When PROJ does not know it, or it is neither projected nor geographic.
+/// When PROJ does not know the system, or it is neither projected nor geographic.
 pub fn crs_from_text(
     option: &'static str,
     text: &str,
@@ -30,7 +30,7 @@ pub fn crs_from_text(
     parts_of(&reference)?.ok_or_else(kind)
 }
 
-/// The horizontal part of a system and the vertical one, if any; `None` when it is neither
+/// The horizontal part of a system and the vertical one, if any; `None` if the system is neither
 /// projected nor geographic.
 pub(crate) fn parts_of(reference: &SpatialRef) -> Result<Option<CrsParts>, CrsError> {
     let mut reference = reference.clone();
@@ -39,7 +39,7 @@ pub(crate) fn parts_of(reference: &SpatialRef) -> Result<Option<CrsParts>, CrsEr
     let wkt = wkt2(&reference).map_err(as_wkt)?;
     let vertical = VerticalCrs::of_wkt(&wkt)?;
     if reference.is_compound() {
-        // The vertical system must not be part of it: PROJ would need geoid grids for it.
+        // The vertical system must be removed from the horizontal one: PROJ would need geoid grids.
         let Some(text) = children(&wkt).into_iter().find(|part| is_horizontal(part)) else {
             return Ok(None);
         };

@@ -1,4 +1,4 @@
-//! Which systems come back after a turn around the earth, and after how far.
+//! The systems whose x repeats after a turn around the earth, and their periods.
 
 use super::*;
 use crate::crs::wkt::wkt2;
@@ -30,7 +30,7 @@ fn cylinders_have_a_turn() {
     }
 }
 
-/// Neither transverse nor oblique cylinders, cones or planes come back.
+/// Transverse and oblique cylinders, cones and planes do not repeat.
 #[test]
 fn others_have_none() {
     for code in [32632, 32760, 2193, 3034, 3413, 2056, 3035, 3338] {

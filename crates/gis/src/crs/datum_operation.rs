@@ -1,5 +1,5 @@
-//! Which of PROJ's operations carries positions from one datum to another, how good it is, and what
-//! would be better.
+//! The operation of PROJ that transforms positions from one datum to another, its accuracy, and a
+//! better one if grids are missing.
 
 use std::cmp::Ordering;
 
@@ -8,48 +8,51 @@ use corniche_geom::{Bounds, DatumOperationRecord, Seam};
 use crate::CrsError;
 use crate::crs::horizontal::{Crs, GridCrs};
 use crate::crs::operation::CrsOperation;
-use crate::crs::proj_operations::{Listed, ProjOperation, operations};
+use crate::crs::proj_operations::{ListedOperations, ProjOperation, operations};
 
-/// How positions come from one datum to another.
+/// How positions are transformed from one datum to another.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DatumOperation {
-    /// What packages record of it.
+    /// The record of the operation in packages.
     pub record: DatumOperationRecord,
-    /// Whether a build must be allowed to use it: a ballpark operation of datums other than those
-    /// of satellite positioning, which lie within metres of each other and share the ellipsoid of
+    /// Whether the user must allow the operation: a ballpark operation between datums, unless both
+    /// are datums of satellite positioning, which agree within metres and share the ellipsoid of
     /// WGS84 or GRS80.
     pub must_be_allowed: bool,
-    /// A more accurate operation that PROJ knows and cannot use, because its grids are not there.
+    /// A more accurate operation that PROJ knows and cannot use, because its grids are not
+    /// installed.
     pub better: Option<BetterOperation>,
 }
 
 /// An operation that PROJ cannot use.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BetterOperation {
-    /// PROJ's name for it.
+    /// PROJ's name for the operation.
     pub name: String,
-    /// How accurate it is, metres.
+    /// The accuracy in metres.
     pub accuracy_m: f64,
-    /// The files that it needs and that are not there.
+    /// The required grid files that are missing.
     pub grids: Vec<String>,
 }
 
 impl DatumOperation {
-    /// What a user should know of it before a build: that another is better, or that nobody knows
-    /// how good it is.
+    /// A warning for the user before a build: a better operation exists, or the accuracy is
+    /// unknown.
     #[must_use]
     pub fn warning(&self) -> Option<String> {
         let DatumOperationRecord { from, to, operation, accuracy_m, ballpark: _ } = &self.record;
         let accuracy = self.record.accuracy_text();
-        let begin = format!("positions go from {from} to {to} by PROJ's {operation:?}, {accuracy}");
+        let begin = format!(
+            "positions are transformed from {from} to {to} by PROJ's {operation:?}, {accuracy}"
+        );
         match &self.better {
             Some(BetterOperation { name, accuracy_m, grids }) => Some(format!(
-                "{begin}; {name:?}, accurate to {accuracy_m} m, needs a grid that is not installed: {} (projsync, in Debian in the package \
+                "{begin}; {name:?}, accurate to {accuracy_m} m, needs a grid that is not installed: {} (projsync, in the Debian package \
                  proj-bin, installs grids)",
                 grids.join(", ")
             )),
             None if accuracy_m.is_none() => Some(format!(
-                "{begin}: ground and roads may lie beside each other; if the true coordinate system is another, name it \
+                "{begin}: ground and roads may be offset from each other; if the true coordinate system is another, assign it \
                  (gdal_edit.py -a_srs EPSG:n; for vectors ogr2ogr -a_srs)"
             )),
             None => None,
@@ -76,13 +79,13 @@ impl DatumOperation {
         Ok(Self::used(&operation, &places))
     }
 
-    /// The operations between two datums that are used at some places (degrees), each once; the
-    /// first place has the first. None where the datum stays the same.
+    /// The operations between two datums that are used at some positions (degrees), each once; the
+    /// first position comes first. Empty if the datum stays the same.
     #[must_use]
     pub fn used(operation: &CrsOperation, places_deg: &[[f64; 2]]) -> Vec<Self> {
         let systems = [&operation.from, &operation.to].map(|crs| &*crs.wkt);
-        let usable = operations(systems, operation.area_deg, Listed::Usable);
-        // Ballpark operations are used only where there is no other; see `CrsOperation`.
+        let usable = operations(systems, operation.area_deg, ListedOperations::Usable);
+        // Ballpark operations are used only if there is no other; see `CrsOperation`.
         let is_true = |found: &&ProjOperation| !found.is_ballpark;
         let mut candidates: Vec<&ProjOperation> = usable.iter().filter(is_true).collect();
         if candidates.is_empty() {
@@ -94,7 +97,7 @@ impl DatumOperation {
         if !candidates.iter().any(changes_datum) {
             return Vec::new();
         }
-        let known = operations(systems, operation.area_deg, Listed::Known);
+        let known = operations(systems, operation.area_deg, ListedOperations::Known);
         let mut all: Vec<Self> = Vec::new();
         for &place in places_deg.iter().filter(|place| place[0].is_finite()) {
             let Some(found) = taken_at(place, &candidates).filter(changes_datum) else { continue };
@@ -117,7 +120,7 @@ impl DatumOperation {
         all
     }
 
-    /// The error for what has its datum, or would come to it.
+    /// The error for an input named `whose` that needs this operation.
     #[must_use]
     pub fn refusal(&self, whose: String) -> CrsError {
         let between = Box::new(
@@ -127,8 +130,8 @@ impl DatumOperation {
     }
 }
 
-/// The operation that GDAL takes at a place: the most accurate of those whose area holds it, the
-/// first of equals; where there is none, the first that needs no grid.
+/// The operation that GDAL uses at a position: the most accurate of those whose area contains the
+/// position, the first of equals; without one, the first that needs no grid.
 fn taken_at<'a>(place_deg: [f64; 2], all: &[&'a ProjOperation]) -> Option<&'a ProjOperation> {
     let mut best: Option<&ProjOperation> = None;
     for &other in all.iter().filter(|other| holds(other.area_deg, place_deg)) {
@@ -143,7 +146,7 @@ fn taken_at<'a>(place_deg: [f64; 2], all: &[&'a ProjOperation]) -> Option<&'a Pr
     best.or_else(|| all.iter().copied().find(|other| !other.has_grids))
 }
 
-/// The operation for the smallest area around a place that lacks its grids alone and is more
+/// The operation with the smallest area around a position that only lacks its grids and is more
 /// accurate than another one. The areas of whole countries are rectangles that reach far into their
 /// neighbours.
 fn better_than(
@@ -169,14 +172,14 @@ fn better_than(
         })
 }
 
-/// Square degrees of an area.
+/// The size of an area in square degrees.
 fn size(area_deg: Option<[f64; 4]>) -> f64 {
     let [west, south, east, north] = area_deg.unwrap_or([-180.0, -90.0, 180.0, 90.0]);
     let width = if west <= east { east - west } else { east - west + 360.0 };
     width * (north - south)
 }
 
-/// Whether an area holds a place; one that is not known holds all.
+/// Whether an area contains a position; an unknown area contains all.
 fn holds(area_deg: Option<[f64; 4]>, [lon, lat]: [f64; 2]) -> bool {
     let Some([west, south, east, north]) = area_deg else { return true };
     let lon = Seam::of_degrees().image_from_west(lon);

@@ -1,5 +1,5 @@
-//! Of PROJ's operations the one is chosen that GDAL takes, and a better one is told only where its
-//! grids alone are missing.
+//! The chosen operation of PROJ is the one that GDAL uses, and a better one is reported only if
+//! just its grids are missing.
 
 use super::*;
 
@@ -32,7 +32,7 @@ fn the_most_accurate_operation_whose_area_holds_the_place_is_taken() {
     assert_eq!(name([5.0, 45.0], &all).as_deref(), Some("fine"));
     assert_eq!(name([365.0, 45.0], &all).as_deref(), Some("fine"));
     assert_eq!(name([20.0, 45.0], &all).as_deref(), Some("rough"));
-    // As in GDAL, the first is kept where its accuracy is unknown.
+    // Like in GDAL, the first is kept if its accuracy is unknown.
     assert_eq!(name([5.0, 45.0], &all[1..]).as_deref(), Some("unknown"));
     // Outside all areas: the first without grids.
     let with_grid = ProjOperation { has_grids: true, ..known("grid", Some(0.1), WEST) };
@@ -75,7 +75,7 @@ fn only_a_more_accurate_operation_that_lacks_a_grid_is_better() {
     ];
     assert_eq!(better(&used, &all), Some(("best".to_owned(), 1.5)));
     assert_eq!(better(&used, &all[..4]), None);
-    // The smaller area is the one that was made for the place.
+    // The smaller area is the one of the local operation.
     let small = lacks(known("near", Some(6.0), [4.0, 44.0, 6.0, 46.0]));
     let with_small = [&all[..], &[small]].concat();
     assert_eq!(better(&used, &with_small), Some(("near".to_owned(), 6.0)));

@@ -1,5 +1,5 @@
-//! How positions of files beside the elevation data come to another datum, and which of these ways
-//! a build must be allowed to take.
+//! The datum operations of input files other than elevation data, and the check whether a build may
+//! use them.
 
 use std::path::{Path, PathBuf};
 
@@ -11,8 +11,8 @@ use crate::crs::datum_operation::DatumOperation;
 use crate::crs::horizontal::{Crs, GridCrs};
 use crate::crs::operation::CrsOperation;
 
-/// Systems, each once, with all that is in them: of thousands of files nearly all have the same
-/// one, and asking PROJ takes long.
+/// Groups items by system, so that each system occurs once: thousands of files nearly always share
+/// one system, and queries to PROJ are slow.
 #[must_use]
 pub fn by_system<'a, T>(files: impl Iterator<Item = (&'a Crs, T)>) -> Vec<(&'a Crs, Vec<T>)> {
     let mut systems: Vec<(&Crs, Vec<T>)> = Vec::new();
@@ -25,18 +25,18 @@ pub fn by_system<'a, T>(files: impl Iterator<Item = (&'a Crs, T)>) -> Vec<(&'a C
     systems
 }
 
-/// How positions of files beside the elevation data come to another datum: of photos, polygons, and
-/// lines of people's own files.
+/// The datum operations of input files other than elevation data: photos, polygons, and the user's
+/// lines.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct FileDatums {
-    /// Each operation, and the first file that needs it.
+    /// Each operation, with the first file that needs it.
     found: Vec<(PathBuf, DatumOperation)>,
 }
 
 impl FileDatums {
-    /// The operations of files; `operation` says where their positions go, and `places_deg` where
-    /// they lie.
-    fn of<'a>(
+    /// The operations of files; `operation` returns the one from a system, and `places_deg` are
+    /// positions in the files.
+    fn from_files<'a>(
         files: impl Iterator<Item = (&'a Crs, &'a Path)>,
         operation: impl Fn(&Crs) -> CrsOperation,
         places_deg: &[[f64; 2]],
@@ -54,74 +54,71 @@ impl FileDatums {
         Self { found }
     }
 
-    /// The operations of files that come to working metres, for data that lie in `area_deg`.
+    /// The operations from files to working metres, for data in `area_deg`.
     pub fn into_working<'a>(
         files: impl Iterator<Item = (&'a Crs, &'a Path)>,
         working: &GridCrs,
         area_deg: Bounds,
     ) -> Self {
         let operation = |crs: &Crs| CrsOperation::into_working(crs, working, Some(area_deg));
-        Self::of(files, operation, &[area_deg.center()])
+        Self::from_files(files, operation, &[area_deg.center()])
     }
 
-    /// These, unless one of them takes one datum for another and that is not allowed.
+    /// Returns the operations, unless one of them is a ballpark operation between datums and this
+    /// is not allowed.
     ///
     /// # Errors
-    /// [`CrsError::Ballpark`] where it is so.
+    /// [`CrsError::Ballpark`] for such an operation.
     pub fn allowed(self, allow_ballpark: bool) -> Result<Self, CrsError> {
         match self.found.iter().find(|(_, found)| found.must_be_allowed) {
-            Some((path, refused)) if !allow_ballpark => {
-                Err(refused.refusal(path.display().to_string()))
-            }
+            Some((path, refused)) if !allow_ballpark => Err(refused.refusal(format!("{path:?}"))),
             _ => Ok(self),
         }
     }
 
-    /// What a user should know of them: that another operation is better, or that nobody knows how
-    /// good one is.
+    /// Warnings for the user: a better operation exists, or the accuracy is unknown.
     pub fn warnings(&self) -> impl Iterator<Item = String> {
         let warning = |(path, found): &(PathBuf, DatumOperation)| {
-            found.warning().map(|text| format!("{}: {text}", path.display()))
+            found.warning().map(|text| format!("{path:?}: {text}"))
         };
         self.found.iter().filter_map(warning)
     }
 
-    /// Adds those of other files.
+    /// Adds the operations of other files.
     pub fn extend(&mut self, others: Self) {
         self.found.extend(others.found);
     }
 }
 
-/// The way from a coordinate system, such as that of a layer of a vector file, to longitudes and
-/// latitudes of WGS84.
+/// The operation from a coordinate system, such as that of a layer of a vector file, to longitudes
+/// and latitudes of WGS84.
 #[derive(Debug, Clone)]
 pub struct ToWgs84 {
     operation: CrsOperation,
 }
 
 impl ToWgs84 {
-    /// The way from a system.
+    /// The operation from a system.
     ///
     /// # Errors
-    /// When the system cannot be written down as WKT.
+    /// When the system cannot be written as WKT.
     pub fn new(from: &SpatialRef) -> Result<Self, CrsError> {
         let operation = CrsOperation::new(&Crs::from_spatial_ref(from)?, &Crs::wgs84()?, None);
         Ok(Self { operation })
     }
 
-    /// Replaces positions by their longitudes and latitudes; NaN where there are none.
+    /// Replaces positions by their longitudes and latitudes; NaN if there are none.
     ///
     /// # Errors
-    /// When PROJ knows no way.
+    /// When PROJ knows no operation.
     pub fn apply(&self, points: &mut [[f64; 2]]) -> Result<(), CrsError> {
         self.operation.apply(points)
     }
 
-    /// How positions of a file in this system, which lie at these places, come to the datum of
-    /// WGS84.
+    /// The datum operations from a file in this system, with these positions, to WGS84.
     #[must_use]
     pub fn datums(&self, path: &Path, places_deg: &[[f64; 2]]) -> FileDatums {
         let file = std::iter::once((&self.operation.from, path));
-        FileDatums::of(file, |_| self.operation.clone(), places_deg)
+        FileDatums::from_files(file, |_| self.operation.clone(), places_deg)
     }
 }

@@ -1,4 +1,4 @@
-//! PROJ's operation from one vertical CRS to another, over the horizontal system of one file.
+//! PROJ's operation from one vertical CRS to another, for the horizontal system of one file.
 
 use corniche_geom::Bounds;
 
@@ -7,22 +7,22 @@ use crate::crs::horizontal::Crs;
 use crate::crs::operation::CrsOperation;
 use crate::crs::vertical::VerticalCrs;
 
-/// Carries heights of one file to the vertical CRS asked for, sample by sample.
+/// Converts heights of one file to the target vertical CRS, sample by sample.
 #[derive(Debug, Clone)]
 pub struct HeightOperation {
-    /// The operation from the horizontal system of the file to that of the ellipsoidal heights,
-    /// where these differ.
+    /// The operation from the horizontal system of the file to that of the ellipsoidal heights, if
+    /// the two differ.
     place: Option<CrsOperation>,
     operation: CrsOperation,
-    /// Value in the source system for a metre upwards.
+    /// The change of the value in the source system for a metre upwards.
     values_per_m: f64,
-    /// Metres upwards for a value in the target system.
+    /// The metres upwards for a unit of the value in the target system.
     m_per_value: f64,
     target: String,
 }
 
 impl HeightOperation {
-    /// Between two systems over the horizontal system of a file.
+    /// The operation between two systems, for the horizontal system of a file.
     #[must_use]
     pub fn new(file: &Crs, [from, to]: [&VerticalCrs; 2], area_deg: Bounds) -> Self {
         let place = (from.is_ellipsoidal && from.wkt != file.wkt)
@@ -38,8 +38,8 @@ impl HeightOperation {
         }
     }
 
-    /// Values of the source system, at positions in the file's horizontal one, to those of the
-    /// target.
+    /// Converts values of the source system, at positions in the file's horizontal system, to
+    /// values of the target.
     ///
     /// # Errors
     /// When PROJ knows no operation.
@@ -50,7 +50,7 @@ impl HeightOperation {
         self.operation.apply_heights(&points, values)
     }
 
-    /// Carries heights in metres at positions in the file's horizontal system, in place; NaN where
+    /// Converts heights in metres at positions in the file's horizontal system, in place; NaN if
     /// there is none.
     ///
     /// # Errors
@@ -66,7 +66,7 @@ impl HeightOperation {
         Ok(())
     }
 
-    /// The name of the vertical CRS asked for.
+    /// The name of the target vertical CRS.
     #[must_use]
     pub fn target(&self) -> &str {
         &self.target

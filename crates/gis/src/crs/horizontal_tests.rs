@@ -1,4 +1,4 @@
-//! A degree is as long as the tables say, and axes that count backwards are known.
+//! The length of a degree matches the tables, and axes that count backwards are known.
 
 use crate::crs::crs_text;
 

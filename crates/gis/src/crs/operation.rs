@@ -1,4 +1,4 @@
-//! Coordinate operations between two systems, made for one area of interest and kept for each
+//! Coordinate operations between two systems, created for one area of interest and cached per
 //! thread.
 
 use std::cell::RefCell;
@@ -14,26 +14,26 @@ use crate::{CrsError, library_error};
 
 /// A coordinate operation between two systems, pinned to one area of interest.
 ///
-/// PROJ picks among the operations it knows by the area and by the position transformed, and by
-/// nothing else: what comes out for a position depends neither on its neighbours nor on what was
-/// asked before. The description may go to any thread; PROJ's own object is made once per thread.
+/// PROJ chooses among the operations it knows only by the area and by the transformed position: the
+/// result for a position depends neither on its neighbours nor on earlier calls. The description
+/// can be sent to any thread; PROJ's object is created once per thread.
 ///
-/// Over an area, an operation that takes one datum for another ("ballpark") is used only where PROJ
-/// knows no other at all: else it would carry positions beyond the area of the true one, 100 m
-/// beside their neighbours.
+/// Over an area, an operation that treats one datum as another ("ballpark") is used only if PROJ
+/// knows no other at all: otherwise it would transform positions beyond the area of the true
+/// operation, and shift them 100 m from their neighbours.
 #[derive(Debug, Clone)]
 pub struct CrsOperation {
     pub(crate) from: Crs,
     pub(crate) to: Crs,
     /// West, south, east and north; the west is larger across ±180°.
     pub(crate) area_deg: Option<[f64; 4]>,
-    /// Ballpark operations are not allowed, not even where PROJ knows no other.
+    /// Ballpark operations are not allowed, even if PROJ knows no other.
     is_exact: bool,
     /// Working metres are divided by these factors before the operation.
     divide: [f64; 2],
-    /// Coordinates are multiplied by these factors after it, to make working metres.
+    /// Coordinates are multiplied by these factors after the operation, which gives working metres.
     multiply: [f64; 2],
-    /// Around what the resulting first coordinate is to be.
+    /// The seam around which the resulting first coordinate is wrapped.
     seam: Option<Seam>,
     key: String,
 }
@@ -42,20 +42,20 @@ thread_local! {
     static TRANSFORMS: RefCell<HashMap<String, Rc<CoordTransform>>> = RefCell::new(HashMap::new());
 }
 
-/// How many operations a thread keeps: more than a run needs. The limit keeps the memory of a
-/// program with many runs bounded.
+/// The number of operations that a thread caches: more than a run needs. The limit bounds the
+/// memory of a program with many runs.
 const KEPT: usize = 64;
 
-/// Turns around the earth that an angle may count. PROJ takes off one after the other, so that 10¹⁷
-/// degrees keep it busy for ever. Data go on for one turn beyond ±180 degrees, and packages name no
+/// The largest angle, in turns around the earth. PROJ subtracts turns one by one, so 10¹⁷ degrees
+/// would take forever. Data continue for one turn beyond ±180 degrees, and packages name no
 /// longitude beyond 720.
 const MOST_TURNS: f64 = 4.0;
-/// Metres that a projected coordinate may count: as many as working metres.
+/// The largest projected coordinate in metres: the same as for working metres.
 const MOST_METRES: f64 = MAX_COORDINATE_M;
 
 impl CrsOperation {
-    /// The operation from one system to another for data inside `area_deg` (WGS84; past the
-    /// antimeridian beyond ±180).
+    /// The operation from one system to another for data inside `area_deg` (WGS84; beyond ±180
+    /// across the antimeridian).
     #[must_use]
     pub fn new(from: &Crs, to: &Crs, area_deg: Option<Bounds>) -> Self {
         let wrap = |lon: f64| Seam::of_degrees().image_from_west(lon);
@@ -80,8 +80,8 @@ impl CrsOperation {
         }
     }
 
-    /// The operation from a system to working metres. Where x comes back after a turn around the
-    /// earth, the images nearest to the data's middle come out.
+    /// The operation from a system to working metres. Where x repeats after a turn around the
+    /// earth, the result is the image nearest to the data's middle.
     #[must_use]
     pub fn into_working(from: &Crs, working: &GridCrs, area_deg: Option<Bounds>) -> Self {
         let multiply = working.metres_per_unit;
@@ -94,20 +94,20 @@ impl CrsOperation {
         Self { divide: working.metres_per_unit, ..Self::new(&working.crs, to, area_deg) }
     }
 
-    /// The same operation; its first coordinate is then moved by whole turns onto the map that ends
-    /// at a seam.
+    /// The same operation, which then moves the first coordinate by whole turns onto the map that
+    /// ends at a seam.
     #[must_use]
     pub fn around(self, seam: Option<Seam>) -> Self {
         Self { seam, ..self }
     }
 
-    /// The same, which fails where PROJ knows nothing better than to take one datum for another.
+    /// The same operation, which fails if PROJ knows only ballpark operations.
     pub(crate) fn exactly(self) -> Self {
         Self { is_exact: true, key: format!("{} exact", self.key), ..self }
     }
 
     /// Replaces each height at its position by its image, in the unit and direction of the systems'
-    /// third axes; NaN where there is none.
+    /// third axes; NaN if there is none.
     pub(crate) fn apply_heights(
         &self,
         points: &[[f64; 2]],
@@ -127,7 +127,7 @@ impl CrsOperation {
         Ok(())
     }
 
-    /// Whether positions only get another unit: straight lines stay straight.
+    /// Whether positions only change their unit, so that straight lines stay straight.
     pub(crate) fn is_identity(&self) -> bool {
         self.from.wkt == self.to.wkt
     }
@@ -140,7 +140,7 @@ impl CrsOperation {
         }
     }
 
-    /// Replaces each position by its image; NaN where there is none.
+    /// Replaces each position by its image; NaN if there is none.
     ///
     /// # Errors
     /// When PROJ knows no operation.
@@ -153,7 +153,7 @@ impl CrsOperation {
             for (x, y) in xs.iter_mut().zip(&mut ys) {
                 [*x, *y] = limited(&self.from, [*x, *y]);
             }
-            // An error here means that some positions have no image; those come out as infinite.
+            // An error here means that some positions have no image; these become infinite.
             let _some_failed = transform.transform_coords(&mut xs, &mut ys, &mut []);
         }
         for ((point, mut x), y) in points.iter_mut().zip(xs).zip(ys) {
@@ -171,11 +171,10 @@ impl CrsOperation {
         Ok(())
     }
 
-    /// Replaces each position by the place of its image among the pixels of a raster; NaN where
-    /// there is none.
+    /// Replaces each position by the pixel position of its image in a raster; NaN if there is none.
     ///
     /// # Errors
-    /// As [`CrsOperation::apply`].
+    /// The errors of [`CrsOperation::apply`].
     pub fn apply_to_pixels(
         &self,
         crs_from_pixel: &GeoTransform,
@@ -188,7 +187,7 @@ impl CrsOperation {
         Ok(())
     }
 
-    /// PROJ's object, made anew.
+    /// Creates PROJ's object.
     fn made(&self) -> Result<CoordTransform, GdalError> {
         let made = |is_ballpark_allowed: bool| -> Result<CoordTransform, GdalError> {
             let mut options = CoordTransformOptions::new()?;
@@ -232,7 +231,8 @@ impl CrsOperation {
     }
 }
 
-/// A position of a system as PROJ may get it: infinite where it is no place, so that it has no image.
+/// The position to pass to PROJ: infinite if it is beyond all valid positions, so that it has no
+/// image.
 fn limited(crs: &Crs, position: [f64; 2]) -> [f64; 2] {
     let most = crs.turn_angle().map_or(MOST_METRES / crs.unit_m, |turn| MOST_TURNS * turn);
     let is_place = position.iter().all(|value| value.abs() <= most);

@@ -1,15 +1,15 @@
-//! What PROJ says of the operations between two systems: accuracy, area and grids, which GDAL does
-//! not hand out.
+//! PROJ's information about the operations between two systems: accuracy, area and grids, which
+//! GDAL does not expose.
 
 #![expect(unsafe_code, reason = "PROJ's list of operations has no wrapper in the gdal crate")]
 
 use std::ffi::{CStr, CString, c_char, c_double, c_int, c_void};
 use std::ptr::{NonNull, null, null_mut};
 
-/// Which operations are listed.
+/// The selection of operations to list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Listed {
-    /// Operations whose grids are there, as GDAL lists them.
+pub(crate) enum ListedOperations {
+    /// Operations whose grids are installed, as GDAL lists them.
     Usable,
     /// All operations that PROJ knows.
     Known,
@@ -18,26 +18,26 @@ pub(crate) enum Listed {
 /// One of PROJ's operations.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ProjOperation {
-    /// The names of its steps that change the datum; empty where none does.
+    /// The names of the steps that change the datum; empty if none does.
     pub(crate) name: String,
-    /// `None` where PROJ does not know it.
+    /// `None` if PROJ does not know the accuracy.
     pub(crate) accuracy_m: Option<f64>,
-    /// Whether it takes one datum for another.
+    /// Whether the operation treats one datum as another.
     pub(crate) is_ballpark: bool,
     /// West, south, east and north in degrees; the west is larger across ±180°.
     pub(crate) area_deg: Option<[f64; 4]>,
-    /// Files of the grids that it needs and that are not there.
+    /// The files of required grids that are missing.
     pub(crate) missing_grids: Vec<String>,
-    /// Whether it needs grids.
+    /// Whether the operation needs grids.
     pub(crate) has_grids: bool,
 }
 
-/// PROJ's operations from one system to another in its order, over an area (west, south, east,
-/// north in degrees); none where it cannot read a system.
+/// PROJ's operations from one system to another, in PROJ's order, over an area (west, south, east,
+/// north in degrees); empty if PROJ cannot read a system.
 pub(crate) fn operations(
     [from, to]: [&str; 2],
     area_deg: Option<[f64; 4]>,
-    listed: Listed,
+    listed: ListedOperations,
 ) -> Vec<ProjOperation> {
     let (Ok(from), Ok(to)) = (CString::new(from), CString::new(to)) else { return Vec::new() };
     // SAFETY: every object is made in one context that nothing else uses, is checked for null, and
@@ -58,9 +58,11 @@ pub(crate) fn operations(
         let asked = factory.pointer();
         proj_operation_factory_context_set_spatial_criterion(context, asked, PARTLY_INSIDE);
         let grids = match listed {
-            Listed::Known => WITH_ANY_GRID,
-            Listed::Usable if proj_context_is_network_enabled(context) != 0 => WITH_KNOWN_GRID,
-            Listed::Usable => WITH_GRIDS_THERE,
+            ListedOperations::Known => WITH_ANY_GRID,
+            ListedOperations::Usable if proj_context_is_network_enabled(context) != 0 => {
+                WITH_KNOWN_GRID
+            }
+            ListedOperations::Usable => WITH_GRIDS_THERE,
         };
         proj_operation_factory_context_set_grid_availability_use(context, asked, grids);
         if let Some([west, south, east, north]) = area_deg {
@@ -78,10 +80,10 @@ pub(crate) fn operations(
     }
 }
 
-/// What PROJ says of an operation.
+/// PROJ's information about an operation.
 ///
 /// # Safety
-/// Both must be live objects, and the operation one of the context.
+/// Both must be live objects, and the operation must belong to the context.
 unsafe fn described(context: *mut Context, operation: *mut Object) -> ProjOperation {
     let mut area = [0.0; 4];
     let [west, south, east, north] = &mut area;
@@ -116,7 +118,7 @@ unsafe fn described(context: *mut Context, operation: *mut Object) -> ProjOperat
             name: changes_of_datum(context, operation).join(" + "),
             accuracy_m: (accuracy_m >= 0.0).then_some(accuracy_m),
             is_ballpark: proj_coordoperation_has_ballpark_transformation(context, operation) != 0,
-            // West is −1000 where the area is not known.
+            // West is −1000 if the area is unknown.
             area_deg: (has_area && area[0] >= -180.0).then_some(area),
             missing_grids,
             has_grids: grids > 0,
@@ -124,7 +126,7 @@ unsafe fn described(context: *mut Context, operation: *mut Object) -> ProjOperat
     }
 }
 
-/// The names of the steps that are no mere conversions.
+/// The names of the steps that are not mere conversions.
 ///
 /// # Safety
 /// As [`described`].
@@ -144,19 +146,19 @@ unsafe fn changes_of_datum(context: *mut Context, operation: *mut Object) -> Vec
     }
 }
 
-/// A copy of a text of PROJ's; empty where there is none.
+/// A copy of a text of PROJ; empty for null.
 ///
 /// # Safety
-/// The text must be null, or a C string that lives.
+/// The text must be null, or a live C string.
 unsafe fn text(of_proj: *const c_char) -> String {
     if of_proj.is_null() {
         return String::new();
     }
-    // SAFETY: checked for null; the caller says that it lives.
+    // SAFETY: checked for null; the caller guarantees that it is live.
     unsafe { CStr::from_ptr(of_proj) }.to_string_lossy().into_owned()
 }
 
-/// An object of PROJ's that is freed in the end.
+/// An object of PROJ that is freed when dropped.
 struct Owned<T> {
     object: NonNull<T>,
     free: unsafe extern "C" fn(*mut T),
@@ -180,7 +182,7 @@ impl<T> Drop for Owned<T> {
 }
 
 unsafe extern "C" fn free(object: *mut Object) {
-    // SAFETY: called by the owner, once. What comes back is null.
+    // SAFETY: called by the owner, once. The returned pointer is null.
     unsafe { proj_destroy(object) };
 }
 
@@ -209,7 +211,7 @@ const CONVERSION: c_int = 21;
 /// `PJ_TYPE_CONCATENATED_OPERATION`.
 const CONCATENATED: c_int = 23;
 
-// The library that GDAL itself works with; all of this is there since PROJ 7.
+// PROJ, the same library that GDAL uses; all of these functions exist since PROJ 7.
 unsafe extern "C" {
     fn proj_context_create() -> *mut Context;
     fn proj_context_destroy(context: *mut Context) -> *mut Context;

@@ -1,5 +1,5 @@
-//! The working CRS of a package, made from what the package records and without its elevation
-//! files, and the projection to it.
+//! The working CRS of a package, created from the package's record without its elevation files, and
+//! the projection to it.
 
 use corniche_geom::{Bounds, ProjectError, Projection, Seam};
 
@@ -9,18 +9,18 @@ use crate::crs::operation::CrsOperation;
 use crate::crs::{crs_text, scale};
 use crate::{CrsError, library_error};
 
-/// The working CRS of a package, from what the package records of it: without the elevation files.
+/// The working CRS of a package, from the package's record, without the elevation files.
 #[derive(Debug, Clone)]
 pub struct RecordedCrs {
     working: GridCrs,
 }
 
 impl RecordedCrs {
-    /// The CRS of a WKT or a code such as "EPSG:32632", the working metres to a unit of its
+    /// The CRS of a WKT or a code such as "EPSG:32632", the working metres per unit of its
     /// coordinates, and the rectangle of the data in working metres.
     ///
     /// # Errors
-    /// When PROJ cannot read it, or it is neither projected nor geographic.
+    /// When PROJ cannot read the CRS, or it is neither projected nor geographic.
     pub fn new(text: &str, metres_per_unit: [f64; 2], data: Bounds) -> Result<Self, CrsError> {
         let crs = crs_text::crs_from_text("the package's", text)?.0;
         let is_unit = |factor: f64| factor.abs().to_bits() == crs.unit_m.to_bits();
@@ -29,19 +29,19 @@ impl RecordedCrs {
         Ok(Self { working })
     }
 
-    /// The same with the factors that make its coordinates working metres.
+    /// The CRS with the factors to working metres.
     #[must_use]
     pub fn working(&self) -> &GridCrs {
         &self.working
     }
 
-    /// "EPSG:…" where it has a code, else its name.
+    /// "EPSG:…" if the CRS has a code, else its name.
     #[must_use]
     pub fn label(&self) -> &str {
         &self.working.crs.label
     }
 
-    /// Its WKT2, without heights.
+    /// The WKT2, without heights.
     #[must_use]
     pub fn wkt(&self) -> &str {
         &self.working.crs.wkt
@@ -60,15 +60,15 @@ impl RecordedCrs {
     /// a rectangle in degrees.
     ///
     /// # Errors
-    /// When PROJ does not know it, it is not projected, or PROJ knows no operation.
+    /// When PROJ does not know the CRS, it is not projected, or PROJ knows no operation.
     pub fn projected(&self, text: &str, wgs84_bounds: Bounds) -> Result<ProjectedCrs, CrsError> {
         library_error::quiet();
         let (crs, _) = crs_text::crs_from_text("--crs", text)?;
         if !crs.is_projected() {
             return Err(CrsError::NotProjected { text: text.to_owned() });
         }
-        // Beyond the area for which a datum was made, its operation is better than to take it for
-        // another one.
+        // Beyond the area of a datum, the operation of this datum is better than a ballpark
+        // operation.
         let operation = |area_deg| {
             let found = CrsOperation::out_of_working(&self.working, &crs, area_deg).exactly();
             // PROJ reports at the first use whether it knows the operation.
@@ -78,9 +78,8 @@ impl RecordedCrs {
         Ok(ProjectedCrs { crs, from_working })
     }
 
-    /// The operations that carry positions between the package's datum and that of WGS84, over the
-    /// rectangle of all elevation files in working metres and in degrees; none where the datum is
-    /// that of WGS84.
+    /// The operations between the package's datum and that of WGS84, over the rectangle of all
+    /// elevation files in working metres and in degrees; empty if the datum is that of WGS84.
     ///
     /// # Errors
     /// When PROJ knows no operation.
@@ -92,7 +91,7 @@ impl RecordedCrs {
         DatumOperation::to_wgs84(&self.working, data, wgs84_bounds)
     }
 
-    /// Working metres to a true metre along x and along y at each of `points_m`; `None` where the
+    /// Working metres per true metre along x and along y at each of `points_m`; `None` where the
     /// CRS ends.
     ///
     /// # Errors
@@ -108,7 +107,7 @@ impl RecordedCrs {
     }
 }
 
-/// A projected CRS other than the package's own, and the way there.
+/// A projected CRS other than the package's own, with the operation to it.
 #[derive(Debug, Clone)]
 pub struct ProjectedCrs {
     crs: Crs,
@@ -116,13 +115,13 @@ pub struct ProjectedCrs {
 }
 
 impl ProjectedCrs {
-    /// Its WKT2, without heights.
+    /// The WKT2, without heights.
     #[must_use]
     pub fn wkt(&self) -> &str {
         &self.crs.wkt
     }
 
-    /// Replaces positions in working metres by its coordinates; NaN where there are none.
+    /// Replaces positions in working metres by coordinates of this CRS; NaN if there are none.
     ///
     /// # Errors
     /// When PROJ fails.
@@ -131,9 +130,9 @@ impl ProjectedCrs {
     }
 }
 
-/// WGS84 ⇄ a plan's working metres: PROJ, longitude first, and the plan's factors around it.
+/// WGS84 ⇄ a plan's working metres: PROJ, longitude first, combined with the plan's factors.
 ///
-/// Goes to any thread; PROJ's own objects are made once per thread, on first use.
+/// It can be sent to any thread; PROJ's own objects are created once per thread, on first use.
 #[derive(Debug, Clone)]
 pub struct DemProjection {
     working_from_wgs84: CrsOperation,
@@ -142,8 +141,8 @@ pub struct DemProjection {
 }
 
 impl DemProjection {
-    /// Operations for data in `area_deg`. Longitudes come out as those that are nearest to the
-    /// middle of `near_deg`: over the data they are continuous.
+    /// Operations for data in `area_deg`. Longitudes in the results are those nearest to the middle
+    /// of `near_deg`, so that they are continuous over the data.
     ///
     /// # Errors
     /// When PROJ knows no operation.

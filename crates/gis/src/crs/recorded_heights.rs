@@ -1,5 +1,5 @@
-//! The vertical CRS of a package, found from what it records, and heights carried to the ellipsoid
-//! of WGS84.
+//! The vertical CRS of a package, found by its recorded name, and the conversion of heights to the
+//! ellipsoid of WGS84.
 
 use std::ops::RangeInclusive;
 
@@ -14,11 +14,11 @@ use crate::{CrsError, library_error};
 
 /// WGS84 in three dimensions.
 const WGS84_3D: &str = "EPSG:4979";
-/// Systems with ellipsoidal heights that elevation models come in, by their codes in the EPSG
+/// Systems with ellipsoidal heights that are used by elevation models, by their codes in the EPSG
 /// registry.
 const ELLIPSOIDAL: [u16; 8] = [4979, 4937, 6319, 4939, 7843, 4959, 4955, 9989];
-/// Where the EPSG registry has its vertical systems. Codes between them that are of other systems
-/// are passed over.
+/// The ranges of codes of vertical systems in the EPSG registry. Codes of other systems in these
+/// ranges are skipped.
 const VERTICAL: [RangeInclusive<u16>; 12] = [
     5701..=5799,
     3855..=3900,
@@ -34,21 +34,20 @@ const VERTICAL: [RangeInclusive<u16>; 12] = [
     9245..=9303,
 ];
 
-/// What the heights of a package are measured from, where what it records leads to a vertical CRS.
+/// The vertical reference of a package's heights, if the recorded name leads to a vertical CRS.
 #[derive(Debug, Clone)]
 pub struct RecordedHeights {
     horizontal: Crs,
     metres_per_unit: [f64; 2],
     vertical: VerticalCrs,
-    /// `None` where heights are ellipsoidal heights of WGS84 already.
+    /// `None` if heights are ellipsoidal heights of WGS84 already.
     to_wgs84: Option<HeightOperation>,
 }
 
 impl RecordedHeights {
-    /// The vertical CRS that has the name `datum`, as a package records it. Looked for are the
-    /// systems in `named` ("EPSG:n" or WKT: what was given when the package was built), then those
-    /// of the EPSG registry. `None` where none has this name: the datum is unknown, was shifted, or
-    /// is not registered.
+    /// Finds the vertical CRS with the recorded name `datum`. Searches the systems in `named`
+    /// ("EPSG:n" or WKT: those given when the package was built), then those of the EPSG registry.
+    /// `None` if none has this name: the datum is unknown, was shifted, or is not registered.
     ///
     /// # Errors
     /// When PROJ does not know WGS84.
@@ -81,19 +80,19 @@ impl RecordedHeights {
     }
 
     /// The name that packages record for heights in metres upwards of the vertical CRS `text`;
-    /// `None` for one in other units or of depths.
+    /// `None` for one in other units or with depths.
     ///
     /// # Errors
-    /// When it is no vertical CRS that PROJ knows.
+    /// When PROJ knows no such vertical CRS.
     pub fn datum_in_metres(text: &str) -> Result<Option<String>, CrsError> {
         library_error::quiet();
         let vertical = VerticalCrs::from_text("--dem-vertical-crs", text)?;
         Ok(vertical.is_plain().then(|| vertical.label()))
     }
 
-    /// WKT2 of the package's CRS together with its heights in metres upwards: a compound CRS, or
-    /// one with three axes. `None` for ellipsoidal heights of another system than the horizontal
-    /// one, which WKT has no words for.
+    /// The WKT2 of the package's CRS together with its heights in metres upwards: a compound CRS,
+    /// or one with three axes. `None` for ellipsoidal heights of another system than the horizontal
+    /// one, which WKT cannot express.
     #[must_use]
     pub fn wkt(&self) -> Option<String> {
         let Self { horizontal, vertical, .. } = self;
@@ -105,8 +104,8 @@ impl RecordedHeights {
         Some(self.compound(&horizontal.wkt))
     }
 
-    /// The same together with another projected CRS; `None` for ellipsoidal heights, which WKT has
-    /// no words for there.
+    /// The same for another projected CRS; `None` for ellipsoidal heights, which WKT cannot express
+    /// there.
     #[must_use]
     pub fn wkt_with(&self, crs: &ProjectedCrs) -> Option<String> {
         (!self.vertical.is_ellipsoidal).then(|| self.compound(crs.wkt()))
@@ -121,8 +120,8 @@ impl RecordedHeights {
     }
 
     /// Replaces heights in metres, at positions in working metres, by heights above the ellipsoid
-    /// of WGS84; NaN where there is none. An approximation never takes the place of a geoid grid
-    /// that is not installed.
+    /// of WGS84; NaN if there is none. A geoid grid that is not installed is never replaced by an
+    /// approximation.
     ///
     /// # Errors
     /// When PROJ has no exact operation.
@@ -135,7 +134,7 @@ impl RecordedHeights {
         let [unit_x, unit_y] = self.metres_per_unit;
         let place = |&[x, y]: &[f64; 2]| {
             let x = x / unit_x;
-            // Past the antimeridian longitudes run on; grids end there.
+            // Beyond the antimeridian, longitudes continue; grids end there.
             let turns = self.horizontal.turn_angle().map_or(0.0, |turn| turn * (x / turn).round());
             [x - turns, y / unit_y]
         };
@@ -148,8 +147,8 @@ impl RecordedHeights {
 }
 
 /// The registered system of the same datum in metres upwards, for one in feet or downwards: formats
-/// that name systems by codes, such as `GeoTIFF`, have no words for one without. `None` where the
-/// system is one of metres upwards itself, or there is no other.
+/// that name systems by codes, such as `GeoTIFF`, cannot express one without a code. `None` if the
+/// system itself is in metres upwards, or there is no other.
 fn registered_in_metres(vertical: &VerticalCrs) -> Option<String> {
     let datum = vertical.datum.as_ref().filter(|_| !vertical.is_plain())?;
     let of_code = |code: u16| VerticalCrs::from_text("the package's", &format!("EPSG:{code}")).ok();

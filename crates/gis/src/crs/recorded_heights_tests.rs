@@ -1,4 +1,4 @@
-//! The vertical CRS that a package records is found again, and nothing is guessed.
+//! The recorded name of a vertical CRS leads back to the system, without guesses.
 
 use super::*;
 
@@ -10,8 +10,8 @@ fn find(crs: &str, datum: &str, named: &[&str]) -> Option<RecordedHeights> {
     RecordedHeights::find(&crs, datum, named, BOUNDS).unwrap()
 }
 
-/// What a package records leads back to the system, whether it was given or is registered; nothing
-/// is guessed.
+/// The recorded name leads back to the system, whether it was given or is registered; nothing is
+/// guessed.
 #[test]
 fn a_vertical_system_is_found_by_its_recorded_name() {
     let code = |datum: &str, named: &[&str]| {
@@ -27,8 +27,7 @@ fn a_vertical_system_is_found_by_its_recorded_name() {
     assert_eq!(code("EGM96 height, shifted by +10 m", &["EPSG:5773"]), None);
 }
 
-/// The compound CRS is one that PROJ reads; its heights are in metres although the system found
-/// counts in feet.
+/// PROJ can read the compound CRS; its heights are in metres although the found system is in feet.
 #[test]
 fn a_compound_crs_has_metres_upwards() {
     for (datum, named) in
@@ -43,8 +42,7 @@ fn a_compound_crs_has_metres_upwards() {
     }
 }
 
-/// Ellipsoidal heights make a CRS of three axes where the horizontal system is that of the
-/// ellipsoid.
+/// Ellipsoidal heights give a CRS of three axes if the horizontal system is that of the ellipsoid.
 #[test]
 fn ellipsoidal_heights_make_three_axes() {
     let datum = "ellipsoidal height (WGS 84)";
@@ -52,7 +50,7 @@ fn ellipsoidal_heights_make_three_axes() {
     assert_eq!(find("EPSG:32632", datum, &[]).unwrap().wkt(), None);
 }
 
-/// Heights above the ellipsoid of WGS84 stay what they are.
+/// Heights above the ellipsoid of WGS84 stay unchanged.
 #[test]
 fn heights_of_wgs84_stay() {
     let heights = find("EPSG:32632", "ellipsoidal height (WGS 84)", &[]).unwrap();

@@ -24,8 +24,8 @@ fn text_that_is_no_crs_is_refused() {
     assert!(RecordedCrs::new("PROJCRS[", [1.0; 2], Bounds::EMPTY).is_err());
 }
 
-/// PROJ takes turns off a longitude one by one, and never ends where they do not change it. What no
-/// place can be has no image.
+/// PROJ subtracts turns from a longitude one by one, and never ends if this does not change the
+/// number. An impossible position has no image.
 #[test]
 fn positions_beyond_all_places_have_no_image_and_take_no_time() {
     let data = Bounds { min_x: 0.0, min_y: 0.0, max_x: 1e12, max_y: 1e12 };

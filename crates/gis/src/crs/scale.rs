@@ -11,21 +11,21 @@ use crate::crs::operation::CrsOperation;
 /// matter, short enough that the curvature of coordinate lines does not matter.
 const HALF_SPAN_M: f64 = 500.0;
 
-/// Scales that a package can record. At a pole a degree of longitude has no length, and the scale
-/// is infinite.
+/// The scales that a package can record. At a pole a degree of longitude has no length, and the
+/// scale is infinite.
 pub const SCALES: RangeInclusive<f64> = 0.001..=1000.0;
 
-/// Scale around a point: working metres over true metres.
+/// The scale around a point: working metres per true metre.
 #[derive(Debug, Clone, Copy)]
 pub struct LocalScale {
-    /// Along x and along y.
+    /// The scale along x and along y.
     pub along: [f64; 2],
-    /// Largest deviation from 1 along x, y and both diagonals; infinite when y does not lie left of
-    /// x.
+    /// The largest deviation from 1 along x, y and both diagonals; infinite if y is not to the left
+    /// of x.
     pub deviation: f64,
 }
 
-/// Scale at each of `points_m`, working metres; `None` where the CRS ends.
+/// The scale at each of `points_m`, in working metres; `None` where the CRS ends.
 ///
 /// # Errors
 /// When PROJ knows no operation.
@@ -46,7 +46,7 @@ pub fn scales(
     Ok(ends.chunks_exact(8).map(scale).collect())
 }
 
-/// Scale from the end points of the four ways.
+/// The scale from the end points of the four lines.
 fn scale(ends_deg: &[[f64; 2]]) -> Option<LocalScale> {
     let vectors: Vec<[f64; 3]> = ends_deg
         .chunks_exact(2)
@@ -71,8 +71,8 @@ fn scale(ends_deg: &[[f64; 2]]) -> Option<LocalScale> {
 }
 
 /// The middle of positions on the ellipsoid, longitude and latitude: the mean of their normals, so
-/// that neither the antimeridian nor a pole disturbs it. `None` when they surround the earth evenly
-/// or there are none.
+/// that neither the antimeridian nor a pole affects it. `None` if the positions surround the earth
+/// evenly, or there are none.
 #[must_use]
 pub fn center_deg(points_deg: &[[f64; 2]]) -> Option<[f64; 2]> {
     let mut sum = [0.0; 3];

@@ -1,4 +1,4 @@
-//! Vertical coordinate systems: what heights are measured from.
+//! Vertical coordinate systems, which define the zero of heights.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -9,26 +9,26 @@ use crate::crs::horizontal::Crs;
 use crate::crs::wkt::{child, children, keyword, length_unit_m, quoted, wkt2};
 use crate::{CrsError, LibraryError, library_error};
 
-/// A vertical CRS, or the third axis of a three-dimensional one; kept as text: PROJ's objects
+/// A vertical CRS, or the third axis of a three-dimensional one, stored as text: PROJ's objects
 /// belong to one thread.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VerticalCrs {
-    /// Its name, with the ellipsoid's system for ellipsoidal heights.
+    /// The name, with the ellipsoid's system for ellipsoidal heights.
     pub name: String,
-    /// The datum; it is the same for metres and feet, and for heights and depths. `None` where it
+    /// The datum, which is the same for metres and feet, and for heights and depths. `None` if it
     /// has no name: two systems with the datum "unknown" need not have the same one.
     pub datum: Option<String>,
     /// WKT2 of the vertical node, or of the whole three-dimensional system.
     pub(crate) wkt: Arc<str>,
-    /// Metres to a unit of height.
+    /// Metres per unit of height.
     pub unit_m: f64,
-    /// Whether its values are depths, which grow downwards.
+    /// Whether values are depths, which grow downwards.
     pub is_down: bool,
     pub(crate) is_ellipsoidal: bool,
 }
 
 impl VerticalCrs {
-    /// The vertical part of a coordinate system in WKT2; `None` when it has none.
+    /// The vertical part of a coordinate system in WKT2; `None` if it has none.
     pub(crate) fn of_wkt(wkt: &str) -> Result<Option<Self>, CrsError> {
         match keyword(wkt) {
             "COMPOUNDCRS" => {
@@ -58,7 +58,7 @@ impl VerticalCrs {
             .or_else(|| child(&inner, &["BASEVERTCRS"]));
         let datum = base.as_deref().and_then(quoted).unwrap_or_default();
         let own_name = quoted(&inner).unwrap_or("unnamed").to_owned();
-        // Two systems bound to different grids differ, whatever they are called.
+        // Two systems bound to different grids differ, whatever their names are.
         let (name, datum) = match grids_of(wkt).filter(|_| is_bound) {
             Some(grids) => {
                 let name = format!("height above the geoid of {}", grid_names(&grids));
@@ -81,13 +81,13 @@ impl VerticalCrs {
     fn ellipsoidal(wkt: &str) -> Result<Option<Self>, CrsError> {
         let axes: Vec<String> =
             children(wkt).into_iter().filter(|part| keyword(part) == "AXIS").collect();
-        // A geocentric system has three axes too, and the third one points to the pole.
+        // A geocentric system has three axes, too, and the third one points to the pole.
         let Some(up) = axes.get(2).filter(|axis| {
             children(axis).first().is_some_and(|way| ["up", "down"].contains(&way.as_str()))
         }) else {
             return Ok(None);
         };
-        // Heights are measured from the ellipsoid, whatever the projection.
+        // Heights are measured from the ellipsoid, regardless of the projection.
         let base = child(wkt, &["BASEGEOGCRS", "BASEGEODCRS"]);
         let geodetic = base.as_deref().unwrap_or(wkt);
         let above = |name: &str| format!("ellipsoidal height ({name})");
@@ -96,7 +96,7 @@ impl VerticalCrs {
             geodetic,
             &["DATUM", "ENSEMBLE", "GEODETICDATUM", "GEODETICREFERENCEFRAME", "TRF"],
         );
-        // The EPSG registry calls some datums ensembles that other texts do not.
+        // The EPSG registry calls some datums ensembles that other sources do not.
         let datum = node.as_deref().and_then(quoted).unwrap_or_default();
         let datum = datum.trim_end_matches(" ensemble");
         Ok(Some(Self {
@@ -109,17 +109,17 @@ impl VerticalCrs {
         }))
     }
 
-    /// Whether both measure from the same datum: then only unit and direction can differ.
+    /// Whether both have the same datum: then only unit and direction can differ.
     #[must_use]
     pub fn is_same_datum(&self, other: &Self) -> bool {
         self.wkt == other.wkt || self.datum.is_some() && self.datum == other.datum
     }
 
-    /// The vertical CRS of "EPSG:n" or WKT as `option` gave it, which may be one with a vertical
-    /// part.
+    /// The vertical CRS of "EPSG:n" or WKT as given with `option`, which may be a CRS with a
+    /// vertical part.
     ///
     /// # Errors
-    /// When it is none that PROJ knows, or its axis has no unit.
+    /// When PROJ does not know the vertical CRS, or its axis has no unit.
     pub fn from_text(option: &'static str, text: &str) -> Result<Self, CrsError> {
         library_error::forget();
         let refused = |reason: Option<Box<LibraryError>>| CrsError::VerticalText {
@@ -133,19 +133,20 @@ impl VerticalCrs {
         Self::of_wkt(&wkt)?.ok_or_else(|| refused(None))
     }
 
-    /// Metres upwards to a value.
+    /// Metres upwards per unit of a value.
     #[must_use]
     pub fn m_per_value(&self) -> f64 {
         if self.is_down { -self.unit_m } else { self.unit_m }
     }
 
-    /// Whether it counts metres upwards.
+    /// Whether values are metres upwards.
     #[expect(clippy::float_cmp, reason = "a metre is exactly one")]
     pub(crate) fn is_plain(&self) -> bool {
         self.unit_m == 1.0 && !self.is_down
     }
 
-    /// WKT2 of a system from the same datum that counts metres upwards: of itself, where it does.
+    /// The WKT2 of a system with the same datum in metres upwards: of this system itself, if it is
+    /// one.
     pub(crate) fn metres_upwards_wkt(&self) -> String {
         match &self.datum {
             Some(datum) if !self.is_plain() => format!(
@@ -156,7 +157,7 @@ impl VerticalCrs {
         }
     }
 
-    /// The horizontal system and this one, together.
+    /// The horizontal system combined with this one.
     pub(crate) fn with(&self, horizontal: &Crs) -> Crs {
         let wkt = if self.is_ellipsoidal {
             Arc::clone(&self.wkt)
@@ -166,7 +167,7 @@ impl VerticalCrs {
         horizontal.renamed(wkt, self.name.clone())
     }
 
-    /// Geoid grids that PROJ would use for it, if it says so.
+    /// The geoid grids that PROJ would use for the system, if PROJ names them.
     #[must_use]
     pub fn grids(&self) -> Option<String> {
         grids_of(&self.wkt).or_else(|| {
@@ -186,7 +187,7 @@ impl VerticalCrs {
     }
 }
 
-/// Whether a datum has a name that says which one it is.
+/// Whether a datum has a name that identifies it.
 fn is_named(datum: &str) -> bool {
     let words = datum.trim().to_lowercase().replace('_', " ");
     let words = words.strip_prefix("d ").unwrap_or(&words);
@@ -196,16 +197,16 @@ fn is_named(datum: &str) -> bool {
     !is_none && !words.is_empty()
 }
 
-/// Metres to a unit of an axis: its own, or the one that follows the axes and is that of all.
+/// Metres per unit of an axis: its own unit, or the common unit after all axes.
 ///
-/// Lengths in other places, such as the ellipsoid's, say nothing of heights.
+/// Units of length in other places, such as the ellipsoid's, do not apply to heights.
 fn height_unit_m(system: &str, axis: &str, name: &str) -> Result<f64, CrsError> {
     let of_all = || child(system, &["LENGTHUNIT", "UNIT"]).as_deref().and_then(length_unit_m);
     let unit_m = length_unit_m(axis).or_else(of_all);
     unit_m.ok_or_else(|| CrsError::VerticalUnit { name: name.to_owned() })
 }
 
-/// Grids named in WKT itself.
+/// The grids named in the WKT itself.
 fn grids_of(wkt: &str) -> Option<String> {
     let start = wkt.find("PARAMETERFILE[")?;
     children(&wkt[start..]).first().and_then(|file| quoted(file)).map(str::to_owned)

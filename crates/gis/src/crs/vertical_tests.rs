@@ -12,7 +12,7 @@ fn unit_m(text: &str) -> Option<f64> {
     }
 }
 
-/// PROJ writes the unit of each axis; what is written by hand may have one for all, or none.
+/// PROJ writes the unit of each axis; WKT written by hand may have one unit for all axes, or none.
 #[test]
 fn the_unit_of_heights_is_the_axis_own_and_never_the_ellipsoids() {
     let geographic = |unit: &str, last: &str| {

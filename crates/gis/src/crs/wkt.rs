@@ -1,20 +1,20 @@
-//! Taking WKT apart, as far as GDAL offers no function for it.
+//! Parses WKT where GDAL offers no function.
 
 use gdal::config;
 use gdal::errors::GdalError;
 use gdal::spatial_ref::SpatialRef;
 
-/// First quoted text of a WKT node: its name.
+/// The first quoted text of a WKT node: its name.
 pub(crate) fn quoted(wkt: &str) -> Option<&str> {
     wkt.split('"').nth(1)
 }
 
-/// The word before the first bracket.
+/// The keyword before the first bracket.
 pub(crate) fn keyword(wkt: &str) -> &str {
     wkt.split('[').next().unwrap_or_default().trim()
 }
 
-/// Metres to the unit of length named first in a WKT node.
+/// Metres per unit of the first unit of length in a WKT node.
 ///
 /// WKT rounds the US survey foot to 15 digits; it is 1200/3937 m by definition.
 pub(crate) fn length_unit_m(wkt: &str) -> Option<f64> {
@@ -26,7 +26,7 @@ pub(crate) fn length_unit_m(wkt: &str) -> Option<f64> {
     Some(if (unit_m - SURVEY_FOOT_M).abs() < 1e-12 { SURVEY_FOOT_M } else { unit_m })
 }
 
-/// The nodes and values directly inside the outermost brackets of a WKT text, its name left out.
+/// The nodes and values directly inside the outermost brackets of a WKT text, without its name.
 pub(crate) fn children(wkt: &str) -> Vec<String> {
     let Some(open) = wkt.find('[') else { return Vec::new() };
     let mut parts = vec![String::new()];
@@ -56,7 +56,7 @@ pub(crate) fn child(wkt: &str, keywords: &[&str]) -> Option<String> {
     children(wkt).into_iter().find(|part| part.contains('[') && keywords.contains(&keyword(part)))
 }
 
-/// The definition as WKT2, on this thread alone.
+/// The definition as WKT2; the object stays on this thread.
 pub(crate) fn wkt2(reference: &SpatialRef) -> Result<String, GdalError> {
     const FORMAT: &str = "OSR_WKT_FORMAT";
     config::set_thread_local_config_option(FORMAT, "WKT2_2018")?;

@@ -1,4 +1,4 @@
-//! Where a file lies: its geotransform and its CRS.
+//! The georeference of a file: its geotransform and its CRS.
 
 use std::path::Path;
 
@@ -11,28 +11,32 @@ use crate::crs::crs_text::{self, CrsParts};
 use crate::crs::horizontal::Crs;
 use crate::crs::vertical::VerticalCrs;
 
-/// Tie points make a geotransform when it misses none of them by more than this many pixels.
+/// Tie points define a geotransform if it misses none of them by more than this many pixels.
 const TIE_POINT_PX: f64 = 0.01;
 
-/// Where a raster lies.
+/// The georeference of a raster.
 #[derive(Debug, Clone)]
 pub struct Georeference {
-    /// The map from pixel corners, whether the file says `PixelIsArea` or `PixelIsPoint`: GDAL sees
-    /// to that.
+    /// The map from pixel corners, regardless of `PixelIsArea` or `PixelIsPoint`: GDAL converts
+    /// both.
     pub crs_from_pixel: GeoTransform,
     /// Its CRS.
     pub crs: Crs,
-    /// What heights are measured from, where its CRS says so.
+    /// The vertical CRS of heights, if the file's CRS has one.
     pub vertical: Option<VerticalCrs>,
 }
 
 impl Georeference {
-    /// Takes the file's geotransform, or the one that tie points agree on; `crs_text` is the CRS of
+    /// Reads the file's geotransform, or derives one from its tie points; `crs_text` is the CRS of
     /// a file that names none.
     ///
     /// # Errors
-    /// When it lacks georeference or CRS, or lies beside the earth.
-    pub fn of(path: &Path, dataset: &Dataset, crs_text: Option<&str>) -> Result<Self, RasterError> {
+    /// When the file lacks a georeference or CRS, or its coordinates are off the globe.
+    pub fn from_dataset(
+        path: &Path,
+        dataset: &Dataset,
+        crs_text: Option<&str>,
+    ) -> Result<Self, RasterError> {
         let (crs_from_pixel, is_tied) = geo_transform(path, dataset)?;
         let reference =
             if is_tied { dataset.gcp_spatial_ref() } else { dataset.spatial_ref().ok() };
@@ -48,8 +52,8 @@ impl Georeference {
     }
 }
 
-/// The geotransform, or the one that tie points agree upon; `true` for the latter. GDAL refers both
-/// to pixel *corners*.
+/// The geotransform, or the one that tie points define; `true` for the latter. GDAL refers both to
+/// pixel *corners*.
 fn geo_transform(path: &Path, dataset: &Dataset) -> Result<(GeoTransform, bool), RasterError> {
     if let Ok(coefficients) = dataset.geo_transform() {
         return Ok((GeoTransform { coefficients }, false));
@@ -62,7 +66,7 @@ fn geo_transform(path: &Path, dataset: &Dataset) -> Result<(GeoTransform, bool),
     }
 }
 
-/// The affine map that best fits `[column, row, x, y]` pairs; `None` unless it fits them all.
+/// The affine map that best fits `[column, row, x, y]` tuples; `None` unless it fits all of them.
 fn affine_through(ties: &[[f64; 4]]) -> Option<GeoTransform> {
     if ties.len() < 3 {
         return None;
@@ -100,7 +104,7 @@ fn affine_through(ties: &[[f64; 4]]) -> Option<GeoTransform> {
     fits.then_some(transform)
 }
 
-/// Refuses coordinates that cannot be degrees: metres in a file with a geographic CRS, or exchanged
+/// Rejects coordinates that cannot be degrees: metres in a file with a geographic CRS, or swapped
 /// axes.
 fn refuse_off_globe(
     path: &Path,

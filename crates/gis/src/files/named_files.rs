@@ -1,4 +1,4 @@
-//! Which files a name on the command line means: those of a folder, a pattern, a list or an
+//! The files that a name on the command line means: those of a folder, a pattern, a list or an
 //! archive.
 
 use std::path::{Path, PathBuf};
@@ -9,23 +9,23 @@ use gdal::Dataset;
 use crate::files::open::utf8_name;
 use crate::{FileUse, NameError, library_error};
 
-/// Files of a folder or an archive with one of these endings are taken for elevation files. A VRT
-/// is not: it names files that may lie in the same folder.
+/// Files in a folder or an archive with one of these endings are treated as elevation files. A VRT
+/// is not: it refers to files that may be in the same folder.
 const ENDINGS: [&str; 13] =
     ["tif", "tiff", "hgt", "asc", "img", "dem", "dt0", "dt1", "dt2", "bil", "flt", "grd", "jp2"];
 /// Endings of packed files, of which GDAL reads the content.
 const PACKED: [&str; 2] = ["gz", "zip"];
 
-/// Files of a folder with this ending are taken for extracts.
+/// Files in a folder with this ending are treated as extracts.
 const EXTRACT_ENDINGS: [&str; 1] = ["pbf"];
 
-/// Files of a folder with one of these endings are taken for photos.
+/// Files in a folder with one of these endings are treated as photos.
 const PHOTO_ENDINGS: [&str; 10] =
     ["tif", "tiff", "jp2", "jpg", "jpeg", "png", "webp", "img", "ecw", "sid"];
 
-/// What a folder is searched for, by the endings of names.
+/// The kind of files to search for in a folder, by the endings of names.
 #[derive(Debug, Clone, Copy)]
-pub enum Sought {
+pub enum SoughtFiles {
     /// Elevation files.
     Elevation,
     /// Extracts: they end in pbf.
@@ -34,8 +34,8 @@ pub enum Sought {
     Photos,
 }
 
-impl Sought {
-    /// Whether a file of a folder is one of them.
+impl SoughtFiles {
+    /// Whether a file in a folder is of this kind.
     fn has(self, path: &Path) -> bool {
         match self {
             Self::Elevation => has_ending(path, &ENDINGS) || has_ending(path, &PACKED),
@@ -45,31 +45,30 @@ impl Sought {
     }
 }
 
-impl fmt::Display for Sought {
+impl fmt::Display for SoughtFiles {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (noun, endings) = match self {
             Self::Elevation => ("elevation file", &ENDINGS[..]),
-            Self::Extracts => return write!(f, "extract (names ending in .pbf)"),
+            Self::Extracts => return write!(f, "extract (extension .pbf)"),
             Self::Photos => ("photo", &PHOTO_ENDINGS[..]),
         };
         let endings = endings.join(", ");
-        write!(f, "{noun} (names ending in {endings}, or these in .gz or .zip)")
+        write!(f, "{noun} (extensions {endings}, or these in .gz or .zip)")
     }
 }
 
-/// The files that a name stands for, in the order in which they have precedence. A name of one file
-/// stands for itself, whether it is there or not.
+/// The files that a name means, in order of precedence. The name of one file means this file,
+/// whether it exists or not.
 ///
-/// - `@LIST`: a text file with a name on each line, counted from the folder of the list; lines that
-///   are empty or begin with # do not count. Its names may be folders and patterns, but not lists.
-/// - A folder: its files with the endings of what is sought, sorted by name; not those of folders
-///   in it. A folder that is itself a raster stays one.
-/// - A pattern with `*`, `?` or `[…]`: the files that it fits, sorted by name.
+/// - `@LIST`: a text file with a name on each line, relative to the folder of the list; empty lines
+///   and lines that begin with # are ignored. The names may be folders and patterns, but not lists.
+/// - A folder: its files with matching endings, sorted by name, without subfolders. A folder that
+///   is itself a raster stays one.
+/// - A pattern with `*`, `?` or `[…]`: the matching files, sorted by name.
 ///
 /// # Errors
-/// When a list cannot be read, a pattern cannot be understood, or a folder or a pattern has no
-/// file.
-pub fn expand_name(name: &Path, sought: Sought) -> Result<Vec<PathBuf>, NameError> {
+/// When a list cannot be read, a pattern is invalid, or a folder or a pattern has no file.
+pub fn expand_name(name: &Path, sought: SoughtFiles) -> Result<Vec<PathBuf>, NameError> {
     let text = utf8_name(name, FileUse::Dem)?;
     match text.strip_prefix('@').filter(|_| !name.exists()) {
         Some(list) => expand_list(Path::new(list), sought),
@@ -77,9 +76,9 @@ pub fn expand_name(name: &Path, sought: Sought) -> Result<Vec<PathBuf>, NameErro
     }
 }
 
-fn expand_list(list: &Path, sought: Sought) -> Result<Vec<PathBuf>, NameError> {
+fn expand_list(list: &Path, sought: SoughtFiles) -> Result<Vec<PathBuf>, NameError> {
     let unreadable = |source| NameError::List { path: list.to_path_buf(), source };
-    // A pipe that nobody writes to would be waited for, and a device has no end.
+    // Reading a pipe without a writer would block, and a device has no end.
     if !fs::metadata(list).map_err(unreadable)?.is_file() {
         return Err(unreadable(io::Error::new(
             io::ErrorKind::InvalidInput,
@@ -87,7 +86,7 @@ fn expand_list(list: &Path, sought: Sought) -> Result<Vec<PathBuf>, NameError> {
         )));
     }
     let text = fs::read_to_string(list).map_err(unreadable)?;
-    // Editors of Windows begin text with a byte order mark.
+    // Editors on Windows begin text with a byte order mark.
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
     let folder = list.parent().unwrap_or(Path::new(""));
     let lines =
@@ -105,7 +104,7 @@ fn expand_list(list: &Path, sought: Sought) -> Result<Vec<PathBuf>, NameError> {
     Ok(files)
 }
 
-fn expand_plain(name: &Path, text: &str, sought: Sought) -> Result<Vec<PathBuf>, NameError> {
+fn expand_plain(name: &Path, text: &str, sought: SoughtFiles) -> Result<Vec<PathBuf>, NameError> {
     let is_remote = text.contains("://") || text.starts_with("/vsi");
     if !is_remote && name.is_dir() {
         return expand_folder(name, sought);
@@ -120,14 +119,14 @@ fn expand_plain(name: &Path, text: &str, sought: Sought) -> Result<Vec<PathBuf>,
     files.retain(|file| file.is_file());
     files.sort();
     if files.is_empty() {
-        return Err(refused("no file fits it".to_owned()));
+        return Err(refused("no file matches it".to_owned()));
     }
     Ok(files)
 }
 
-fn expand_folder(folder: &Path, sought: Sought) -> Result<Vec<PathBuf>, NameError> {
+fn expand_folder(folder: &Path, sought: SoughtFiles) -> Result<Vec<PathBuf>, NameError> {
     library_error::quiet();
-    if !matches!(sought, Sought::Extracts) && Dataset::open(folder).is_ok() {
+    if !matches!(sought, SoughtFiles::Extracts) && Dataset::open(folder).is_ok() {
         return Ok(vec![folder.to_path_buf()]);
     }
     let unreadable = |source| NameError::List { path: folder.to_path_buf(), source };
@@ -146,11 +145,11 @@ fn expand_folder(folder: &Path, sought: Sought) -> Result<Vec<PathBuf>, NameErro
     Ok(files)
 }
 
-/// GDAL's names for the content of a packed file: of `FILE.gz` what it holds, of `FILE.zip` the
-/// elevation files in it, sorted by name. Other names stay as they are.
+/// GDAL's names for the content of a packed file: for `FILE.gz` its content, for `FILE.zip` the
+/// elevation files in it, sorted by name. Other names stay unchanged.
 ///
 /// # Errors
-/// When an archive cannot be read or holds no elevation file.
+/// When an archive cannot be read or contains no elevation file.
 pub fn unpack_name(name: PathBuf) -> Result<Vec<PathBuf>, NameError> {
     let text = utf8_name(&name, FileUse::Dem)?;
     let is_inside = ["/vsigzip/", "/vsizip/", "/vsitar/"].iter().any(|at| text.starts_with(at));

@@ -1,5 +1,5 @@
-//! GDAL opens a raster, and an error says which of the usual things went wrong, such as that a
-//! failed download lies in its place.
+//! Opens rasters with GDAL, and reports common problems, such as a failed download that was saved
+//! in place of the file.
 
 use std::{fs::File, io::Read as _, path::Path};
 
@@ -8,21 +8,21 @@ use gdal::Dataset;
 use crate::formats::lacks_format_of;
 use crate::{FileUse, NotUtf8, RasterError, library_error};
 
-/// Files that a reader keeps open; each may hold an operating system's handle.
+/// The number of files that a reader keeps open; each may hold a file handle of the system.
 const OPEN_FILES: usize = 32;
 
-/// Rasters kept open by one reader, the least lately used closed first.
+/// Rasters kept open by one reader; the least recently used one is closed first.
 #[derive(Default)]
 pub struct OpenRasters {
-    /// The ones used last come first, by numbers that the reader gives them.
+    /// The most recently used come first, by numbers that the reader assigns.
     open: Vec<(usize, Dataset)>,
 }
 
 impl OpenRasters {
-    /// A raster, opened if need be.
+    /// A raster, which is opened if necessary.
     ///
     /// # Errors
-    /// As [`open_raster`].
+    /// The errors of [`open_raster`].
     pub fn dataset(
         &mut self,
         index: usize,
@@ -40,22 +40,21 @@ impl OpenRasters {
     }
 }
 
-/// The name of a file as GDAL takes it.
+/// The name of a file as GDAL accepts it.
 pub(crate) fn utf8_name(path: &Path, kind: FileUse) -> Result<&str, NotUtf8> {
     path.to_str().ok_or_else(|| NotUtf8 { kind, path: path.to_path_buf() })
 }
 
-/// Whether a name is one of GDAL's virtual files and subdatasets (`/vsizip/…`, `NETCDF:…`), which
-/// are no names of files.
+/// Whether a name is one of GDAL's virtual files or subdatasets (`/vsizip/…`, `NETCDF:…`), not the
+/// name of a file.
 pub(crate) fn is_virtual(name: &str) -> bool {
     name.starts_with("/vsi") || name.contains(':')
 }
 
-/// Opens a raster, with an error that says which of the usual things went wrong.
+/// Opens a raster, with an error that reports common problems.
 ///
 /// # Errors
-/// When there is no such file, it is empty, a pipe or none of a raster, or GDAL cannot read its
-/// format.
+/// When the file does not exist, is empty, a pipe or not a raster, or GDAL cannot read its format.
 pub fn open_raster(path: &Path, kind: FileUse) -> Result<Dataset, RasterError> {
     let own = || path.to_path_buf();
     let is_virtual = is_virtual(utf8_name(path, kind)?);
@@ -72,7 +71,7 @@ pub fn open_raster(path: &Path, kind: FileUse) -> Result<Dataset, RasterError> {
         Err(source) if !is_virtual => {
             return Err(RasterError::Missing { kind, path: own(), source });
         }
-        // Some formats are folders; GDAL says below whether this is one of them.
+        // Some formats are folders; GDAL reports below whether this is one of them.
         Ok(_) | Err(_) => {}
     }
     library_error::forget();
@@ -91,8 +90,8 @@ pub fn open_raster(path: &Path, kind: FileUse) -> Result<Dataset, RasterError> {
     })
 }
 
-/// What is wrong with a file of SRTM that GDAL does not open: it has nothing but samples, so its
-/// size says their number and its name their place.
+/// The problem of an SRTM file that GDAL does not open: it contains only samples, so its size gives
+/// their number and its name their position.
 fn fault_of_hgt(path: &Path) -> Option<RasterError> {
     if !path.extension()?.eq_ignore_ascii_case("hgt") {
         return None;
@@ -104,14 +103,14 @@ fn fault_of_hgt(path: &Path) -> Option<RasterError> {
     Some(RasterError::HgtSize { path, bytes })
 }
 
-/// Sizes of whole files: 2 bytes for each of 1201², 1801 × 3601 and 3601² samples.
+/// Sizes of complete files: 2 bytes for each of 1201², 1801 × 3601 and 3601² samples.
 const HGT_BYTES: [u64; 3] = [2_884_802, 12_970_802, 25_934_402];
 
-/// How many bytes of a file are examined.
+/// The number of bytes of a file that are examined.
 const START_BYTES: u64 = 4096;
 
-/// What a file is that stands where geodata were to be, and what to do; `None` if it is nothing of
-/// the kind, or cannot be read.
+/// What a file is that was saved in place of geodata, and what to do; `None` if it is nothing of
+/// this kind, or cannot be read.
 #[must_use]
 pub fn stand_in(path: &Path) -> Option<(&'static str, &'static str)> {
     // Opening a pipe would block until something is written to it.
@@ -124,13 +123,13 @@ pub fn stand_in(path: &Path) -> Option<(&'static str, &'static str)> {
     let is = |name: &[u8]| text.get(..name.len()).is_some_and(|own| own.eq_ignore_ascii_case(name));
     let has = |word: &[u8]| text.windows(word.len()).any(|own| own.eq_ignore_ascii_case(word));
     if is(b"version https://git-lfs") {
-        Some(("a Git LFS pointer", "fetch the file that it stands for: git lfs pull"))
+        Some(("a Git LFS pointer", "download the file that it points to: git lfs pull"))
     } else if is(b"<!doctype html") || is(b"<html") || (is(b"<") && has(b"<html")) {
-        Some(("an HTML page", "its download failed; fetch the file again"))
+        Some(("an HTML page", "its download failed; download the file again"))
     } else if is(b"<") && has(b"ExceptionReport") {
         Some((
             "an error report of a server",
-            "read it in an editor, correct the request and fetch the file again",
+            "read it in an editor, correct the request and download the file again",
         ))
     } else {
         None

@@ -1,5 +1,5 @@
-//! Any raster with its place on the earth, such as a photo, and the way from its pixels to working
-//! metres and back.
+//! A raster with its georeference, such as a photo, and the transformation between its pixels and
+//! working metres.
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,8 @@ use crate::files::georeference::Georeference;
 use crate::files::open::open_raster;
 use crate::{CrsError, FileUse, RasterError, library_error};
 
-/// Where any raster lies, also one without heights, such as an image; described but not held open.
+/// The georeference of any raster, also of one without heights, such as an image; described but not
+/// held open.
 #[derive(Debug, Clone)]
 pub struct PlacedRaster {
     path: PathBuf,
@@ -21,15 +22,14 @@ pub struct PlacedRaster {
 }
 
 impl PlacedRaster {
-    /// Opens a raster and reads where it lies: by its geotransform, or by tie points that agree on
-    /// one.
+    /// Opens a raster and reads its georeference: its geotransform, or one that tie points define.
     ///
     /// # Errors
-    /// When the file cannot be opened, or lacks georeference or CRS.
+    /// When the file cannot be opened, or lacks a georeference or CRS.
     pub fn open(path: &Path, kind: FileUse) -> Result<(Self, Dataset), RasterError> {
         library_error::quiet();
         let dataset = open_raster(path, kind)?;
-        let place = Georeference::of(path, &dataset, None)?;
+        let place = Georeference::from_dataset(path, &dataset, None)?;
         let (columns, rows) = dataset.raster_size();
         Ok((Self { path: path.to_path_buf(), size: [columns, rows], place }, dataset))
     }
@@ -40,19 +40,19 @@ impl PlacedRaster {
         &self.path
     }
 
-    /// Columns and rows.
+    /// The numbers of columns and rows.
     #[must_use]
     pub fn size(&self) -> [usize; 2] {
         self.size
     }
 
-    /// Its CRS.
+    /// The CRS of the raster.
     #[must_use]
     pub fn crs(&self) -> &Crs {
         &self.place.crs
     }
 
-    /// Relates its pixels to working metres, for data that lie in `area_deg`.
+    /// Relates the raster's pixels to working metres, for data in `area_deg`.
     #[must_use]
     pub fn on(&self, working: &GridCrs, area_deg: Bounds) -> RasterOnGrid {
         let Georeference { crs, crs_from_pixel, .. } = &self.place;
@@ -67,7 +67,8 @@ impl PlacedRaster {
     }
 }
 
-/// The pixels of a raster and the working metres of a package, through PROJ. Goes to any thread.
+/// The transformation between the pixels of a raster and the working metres of a package, through
+/// PROJ. It can be sent to any thread.
 ///
 /// Pixel positions are continuous: 0, 0 is the outer corner of the first pixel, its centre is at
 /// 0.5, 0.5.
@@ -79,7 +80,7 @@ pub struct RasterOnGrid {
 }
 
 impl RasterOnGrid {
-    /// Replaces positions in working metres by pixel positions; NaN where there is none.
+    /// Replaces positions in working metres by pixel positions; NaN if there is none.
     ///
     /// # Errors
     /// When PROJ knows no transformation between the two systems.
@@ -87,10 +88,10 @@ impl RasterOnGrid {
         self.crs_from_working.apply_to_pixels(&self.crs_from_pixel, points)
     }
 
-    /// Replaces pixel positions by positions in working metres; NaN where there is none.
+    /// Replaces pixel positions by positions in working metres; NaN if there is none.
     ///
     /// # Errors
-    /// As [`RasterOnGrid::pixels_from_working`].
+    /// The errors of [`RasterOnGrid::pixels_from_working`].
     pub fn working_from_pixels(&self, points: &mut [[f64; 2]]) -> Result<(), CrsError> {
         for point in points.iter_mut() {
             *point = self.crs_from_pixel.crs_from_pixel(*point);

@@ -1,5 +1,4 @@
-//! Which files a raster is read from, how they are cut into blocks, and whether a mask counts: what
-//! their reader must know.
+//! The files of a raster, their blocks, and whether a mask matters, as needed by the reader.
 
 use std::{
     collections::BTreeSet,
@@ -14,14 +13,15 @@ use crate::files::open::open_raster;
 use crate::files::vsi::{self, VirtualFile};
 use crate::{FileUse, RasterError, library_error};
 
-/// How a virtual raster (VRT) begins, after white space and an XML declaration at most.
+/// The beginning of a virtual raster (VRT), after at most white space and an XML declaration.
 const VRT: &[u8] = b"<VRTDataset";
 /// The text must begin within this many bytes of the file.
 const VRT_BYTES: u64 = 512;
 
-/// The files that GDAL reads a raster from, each once: the file itself, those beside it
-/// (`.aux.xml`, `.ovr`, `.prj`), and of a virtual raster (VRT) the files that it refers to, also
-/// through other virtual rasters. Files that do not exist are left out; a raster that is no file (a
+/// The files from which GDAL reads a raster, each once: the file itself, the files next to it
+/// (`.aux.xml`, `.ovr`, `.prj`), and for a virtual raster (VRT) the files that it refers to, also
+/// through other virtual rasters. Files that do not exist are omitted; a raster that is not a file
+/// (in a database, on a server) has none.
 /// database's, a server's) has none.
 ///
 /// # Errors
@@ -34,7 +34,7 @@ pub fn raster_files(path: &Path) -> Result<Vec<PathBuf>, RasterError> {
     let mut at = 0;
     while let Some(file) = files.get(at) {
         if file != path && is_vrt(file) {
-            // One that GDAL cannot open is told of when its heights are read.
+            // A file that GDAL cannot open is reported when its heights are read.
             let nested = open_raster(file, FileUse::Dem).map(|dataset| vsi::file_list(&dataset));
             let new: Vec<PathBuf> = nested.unwrap_or_default();
             files.extend(new.into_iter().filter(|file| seen.insert(file.clone())));
@@ -55,35 +55,37 @@ fn is_vrt(path: &Path) -> bool {
     read.is_ok() && start.windows(VRT.len()).any(|window| window == VRT)
 }
 
-/// How a file is cut into blocks: the least that GDAL can read of it, always decoded whole.
+/// The blocks of a file: the smallest units that GDAL can read, which are always decoded
+/// completely.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FileBlocks {
     /// The file.
     pub path: PathBuf,
-    /// Columns and rows of the file, samples.
+    /// Columns and rows of the file, in samples.
     pub size: [u64; 2],
-    /// Columns and rows of a block, samples. The whole file where its format is decoded as a whole.
+    /// Columns and rows of a block, in samples. The whole file if its format is decoded as a whole.
     pub block: [u64; 2],
-    /// Size of a sample as it is stored.
+    /// The stored size of a sample.
     pub sample_bytes: u64,
-    /// Size of the file on disk; 0 where it is none.
+    /// The size of the file on disk; 0 if it is not a file.
     pub file_bytes: u64,
 }
 
 impl FileBlocks {
-    /// A block, decoded, and what it is decoded from, which takes its share of the file.
+    /// The size of a decoded block and of its compressed data, which is a proportional part of the
+    /// file.
     #[must_use]
     pub fn block_bytes(&self) -> u64 {
         let samples = |[columns, rows]: [u64; 2]| columns.saturating_mul(rows);
         let block = samples(self.block);
-        // A compressed block is smaller than its samples; a file may hold overviews and masks
-        // besides.
+        // A compressed block is smaller than its samples; a file may also contain overviews and
+        // masks.
         let decoded = block.saturating_mul(self.sample_bytes);
         let share = block as f64 / samples(self.size).max(1) as f64;
         decoded.saturating_add(((self.file_bytes as f64 * share) as u64).min(decoded))
     }
 
-    /// All blocks beside each other from the west to the east side: as long as they are kept, no
+    /// The size of all blocks in a row from the west to the east side: while they are cached, no
     /// block is read twice.
     #[must_use]
     pub fn row_bytes(&self) -> u64 {
@@ -92,15 +94,15 @@ impl FileBlocks {
         across.saturating_mul(block)
     }
 
-    /// The blocks of a band, or of the first one where the file has fewer.
-    fn of(path: &Path, dataset: &Dataset, band: usize) -> Option<Self> {
+    /// The blocks of a band, or of the first band if the file has fewer.
+    fn from_dataset(path: &Path, dataset: &Dataset, band: usize) -> Option<Self> {
         let has_it = band <= dataset.raster_count();
         let band = dataset.rasterband(if has_it { band } else { 1 }).ok()?;
         let (columns, rows) = dataset.raster_size();
         let size = [columns as u64, rows as u64];
         let (block_columns, block_rows) = band.block_size();
-        // Decoders of JPEG 2000 offer small blocks, and decode the whole image for one where it was
-        // not written in tiles.
+        // Decoders of JPEG 2000 offer small blocks, and decode the whole image for one block if the
+        // image is not tiled.
         let is_whole = dataset.driver().short_name().starts_with("JP2");
         let block = [block_columns as u64, block_rows as u64];
         Some(Self {
@@ -112,27 +114,27 @@ impl FileBlocks {
         })
     }
 
-    /// The blocks of a file's band; of a virtual raster (VRT) also those of the files that it
+    /// The blocks of a file's band; for a virtual raster (VRT) also those of the files that it
     /// refers to.
     ///
     /// # Errors
-    /// When it cannot be opened.
+    /// When the file cannot be opened.
     pub fn of_file(path: &Path, band: usize, kind: FileUse) -> Result<Vec<Self>, RasterError> {
         let dataset = open_raster(path, kind)?;
-        let mut found: Vec<Self> = Self::of(path, &dataset, band).into_iter().collect();
+        let mut found: Vec<Self> = Self::from_dataset(path, &dataset, band).into_iter().collect();
         if dataset.driver().short_name() == "VRT" {
             for part in raster_files(path)?.iter().filter(|part| *part != path) {
                 // Not every part is a raster.
                 let dataset = open_raster(part, kind).ok();
-                found.extend(dataset.and_then(|dataset| Self::of(part, &dataset, band)));
+                found.extend(dataset.and_then(|dataset| Self::from_dataset(part, &dataset, band)));
             }
         }
         Ok(found)
     }
 }
 
-/// Whether a band has a mask that says more than its own nodata and alpha bands, which readers see
-/// in the values themselves. A nodata mask of the whole dataset is such a one: its item
+/// Whether a band has a mask that goes beyond its own nodata and alpha bands, which readers see in
+/// the values themselves. A nodata mask of the whole dataset is an example: its item
 /// `NODATA_VALUES`, which no band has.
 ///
 /// # Errors

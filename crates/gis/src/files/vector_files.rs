@@ -1,4 +1,4 @@
-//! Vector files are opened through GDAL and read to their end; pipes and devices are refused.
+//! Opens vector files through GDAL and reads them to their end; pipes and devices are rejected.
 
 use std::{fs, path::Path};
 
@@ -12,12 +12,12 @@ use crate::{FileUse, LibraryError, VectorError, formats::lacks_format_of, librar
 /// `/vsizip/…`.
 ///
 /// # Errors
-/// When there is no such file, or GDAL cannot read it.
+/// When the file does not exist, or GDAL cannot read it.
 pub fn open_vectors(path: &Path, kind: FileUse) -> Result<Dataset, VectorError> {
     library_error::quiet();
     let own = || path.to_path_buf();
     match fs::metadata(path) {
-        // Opening it would block until something is written to it.
+        // Opening a pipe would block until something is written to it.
         Ok(found) if !found.is_file() && !found.is_dir() => {
             return Err(VectorError::Stream { kind, path: own() });
         }
@@ -31,7 +31,9 @@ pub fn open_vectors(path: &Path, kind: FileUse) -> Result<Dataset, VectorError> 
     let options = DatasetOptions { open_flags, ..DatasetOptions::default() };
     Dataset::open_ex(path, options).map_err(|source| {
         let source = match stand_in(path) {
-            Some((found, advice)) => Box::new(LibraryError::of(format!("it is {found}; {advice}"))),
+            Some((found, advice)) => {
+                Box::new(LibraryError::from_message(format!("it is {found}; {advice}")))
+            }
             None => match lacks_format_of(path) {
                 Some(advice) => return VectorError::NoDriver { path: own(), advice },
                 None => source.into(),
@@ -41,7 +43,7 @@ pub fn open_vectors(path: &Path, kind: FileUse) -> Result<Dataset, VectorError> 
     })
 }
 
-/// Hands on all features of a layer.
+/// Passes all features of a layer to `take`.
 ///
 /// # Errors
 /// Those of `take`, and when not all features can be read.
@@ -58,7 +60,7 @@ pub fn for_each_feature<E: From<VectorError>>(
         found += 1;
         take(&feature)?;
     }
-    // The iterator ends where a feature cannot be read, and does not tell.
+    // The iterator ends at a feature that cannot be read, without an error.
     if let Some(source) = library_error::failure() {
         return Err(VectorError::Damaged { kind, path: path(), source }.into());
     }

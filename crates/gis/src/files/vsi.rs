@@ -1,5 +1,5 @@
-//! What the `gdal` crate does not hand out of GDAL: the files of a raster, texts as they are
-//! stored, and GDAL's virtual files.
+//! Functions of GDAL that the `gdal` crate does not expose: the files of a raster, texts as stored,
+//! and GDAL's virtual files.
 
 #![expect(
     unsafe_code,
@@ -18,8 +18,8 @@ use gdal::Dataset;
 
 use crate::library_error::{forget, last_words, quiet};
 
-/// A text that a file stores under a key. TIFF has ASCII alone there, and programs write UTF-8 or
-/// Latin-1: what is no UTF-8 is taken for Latin-1, in which every byte is a character.
+/// A text that a file stores under a key. TIFF allows only ASCII, but programs write UTF-8 or
+/// Latin-1: a text that is not UTF-8 is read as Latin-1, in which every byte is a character.
 #[must_use]
 pub fn stored_text(dataset: &Dataset, key: &str) -> Option<String> {
     let key = CString::new(key).ok()?;
@@ -35,8 +35,8 @@ pub fn stored_text(dataset: &Dataset, key: &str) -> Option<String> {
     })
 }
 
-/// The files that GDAL names for a raster: its own, those beside it, and of a virtual raster the
-/// files it refers to.
+/// The files that GDAL names for a raster: its own, the files next to it, and for a virtual raster
+/// the files it refers to.
 pub(crate) fn file_list(dataset: &Dataset) -> Vec<PathBuf> {
     let mut files = Vec::new();
     // SAFETY: the handle is that of an open dataset. What comes back is null, or an array of C
@@ -67,8 +67,7 @@ impl VirtualFile {
     /// Opens a file for reading.
     ///
     /// # Errors
-    /// When the name holds a zero byte, or GDAL cannot open such a file; with what it says of the
-    /// reason.
+    /// When the name contains a zero byte, or GDAL cannot open the file; with GDAL's reason.
     pub fn open(path: &Path) -> io::Result<Self> {
         quiet();
         forget();
@@ -77,7 +76,7 @@ impl VirtualFile {
         let handle = unsafe { gdal_sys::VSIFOpenL(name.as_ptr(), c"rb".as_ptr()) };
         let not_found = || {
             let words = last_words().map_or_else(
-                || "GDAL finds no such file".to_owned(),
+                || "GDAL does not find the file".to_owned(),
                 |reason| format!("GDAL cannot open it: {reason}"),
             );
             io::Error::new(io::ErrorKind::NotFound, words)
@@ -85,10 +84,10 @@ impl VirtualFile {
         Ok(Self { handle: NonNull::new(handle).ok_or_else(not_found)? })
     }
 
-    /// How many bytes it has.
+    /// The size of the file in bytes.
     ///
     /// # Errors
-    /// When GDAL cannot find its end.
+    /// When GDAL cannot find the end of the file.
     pub fn into_size(self) -> io::Result<u64> {
         const FROM_END: i32 = 2;
         // SAFETY: the handle is open until this is dropped.
@@ -99,7 +98,8 @@ impl VirtualFile {
         if moved == 0 { Ok(size) } else { Err(io::Error::other("GDAL cannot find its end")) }
     }
 
-    /// Lets GDAL forget what it knows of a file on a server, so that it asks the server again.
+    /// Makes GDAL forget its cached data of a file on a server, so that it queries the server
+    /// again.
     pub fn forget(path: &Path) {
         if let Ok(name) = c_name(path) {
             // SAFETY: the argument is a C string that outlives the call.
@@ -108,7 +108,7 @@ impl VirtualFile {
     }
 
     /// The `ETag` that a server gives for the file, which changes with its content; `None` if the
-    /// server gives none, or the file is on no server.
+    /// server gives none, or the file is not on a server.
     #[must_use]
     pub fn etag(path: &Path) -> Option<String> {
         let name = c_name(path).ok()?;
@@ -143,7 +143,7 @@ impl Read for VirtualFile {
             (read, gdal_sys::VSIFEofL(handle) != 0)
         };
         if read == 0 && !is_end {
-            return Err(io::Error::other("GDAL cannot read it to its end; it may be damaged"));
+            return Err(io::Error::other("GDAL cannot read it to its end; it may be corrupt"));
         }
         Ok(read)
     }

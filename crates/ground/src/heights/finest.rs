@@ -2,17 +2,17 @@
 
 use corniche_dem::DemWindow;
 use corniche_geom::{HeightGrid, TILE_NODES, TileId};
-use corniche_spec::artifacts::{ArtifactError, Kind, damaged};
+use corniche_spec::artifacts::{ArtifactError, ArtifactKind, damaged};
 use corniche_store::Artifacts;
 
 use crate::GroundError;
 
-/// So many nodes of halo lie on every side of a tile's heights: one for slopes at the border, and one for the low-pass of what slopes
-/// are taken from.
+/// The number of halo nodes on every side of a tile's heights: one for slopes at the border, and
+/// one for the low-pass filter of the heights from which slopes are computed.
 pub(crate) const HALO: usize = 2;
 
-/// Columns and rows of a tile's nodes that belong to it: those on the east and south border belong to the next tile, if there can
-/// be one.
+/// Columns and rows of the nodes that belong to a tile. Nodes on the east and south border belong
+/// to the next tile, if there can be one.
 #[must_use]
 pub fn own_size(id: TileId) -> [usize; 2] {
     let last = (1_u32 << id.z()) - 1;
@@ -24,13 +24,14 @@ pub fn own_size(id: TileId) -> [usize; 2] {
 pub struct FinestHeights {
     /// 261 × 261 nodes: the tile's own, borders included, and two more on every side.
     with_halo: HeightGrid,
-    /// Which of the tile's own nodes (257 × 257, row by row from the north) are filled voids; ascending.
+    /// The tile's own nodes (257 × 257, row by row from the north) that are filled voids;
+    /// ascending.
     pub filled: Vec<usize>,
 }
 
 impl FinestHeights {
-    /// Cuts a tile out of a window in which its own north-west node is in column `left` and row `top`, both at least `HALO`. `None`
-    /// where the tile itself has no height.
+    /// Cuts a tile out of a window in which its own north-west node is in column `left` and row
+    /// `top`, both at least `HALO`. `None` if the tile itself has no height.
     #[must_use]
     pub fn cut(window: &DemWindow, left: usize, top: usize) -> Option<Self> {
         let own = |column: usize, row: usize| (left + column, top + row);
@@ -57,33 +58,34 @@ impl FinestHeights {
         Some(Self { with_halo, filled })
     }
 
-    /// The tile's own nodes, borders included, and so many more on every side, at most `HALO`.
+    /// The tile's own nodes, borders included, and `halo` more nodes on every side, at most `HALO`.
     #[must_use]
     pub fn with_halo(&self, halo: usize) -> HeightGrid {
         self.with_halo.inner(HALO - halo)
     }
 
-    /// Keeps the heights of a tile.
+    /// Stores the heights of a tile.
     ///
     /// # Errors
     /// See [`GroundError`].
     pub fn put(&self, store: &dyn Artifacts, id: TileId) -> Result<(), GroundError> {
         let mut bytes = height_bytes(&self.with_halo);
         bytes.extend(self.filled.iter().flat_map(|&node| (node as u32).to_le_bytes()));
-        Ok(store.put(Kind::Heights.of_tile(id), &bytes)?)
+        Ok(store.put(ArtifactKind::Heights.of_tile(id), &bytes)?)
     }
 
-    /// Says that a tile has no height: what is not there was not made.
+    /// Records that a tile has no height, because a missing artifact means "not computed".
     pub(crate) fn put_none(store: &dyn Artifacts, id: TileId) -> Result<(), GroundError> {
-        Ok(store.put(Kind::Heights.of_tile(id), &[])?)
+        Ok(store.put(ArtifactKind::Heights.of_tile(id), &[])?)
     }
 
-    /// `None` where the tile has no height. It must be one of the data's tiles.
+    /// Reads the heights of a tile; `None` if it has none. The tile must be one of the data's
+    /// tiles.
     ///
     /// # Errors
     /// See [`GroundError`].
     pub fn get(store: &dyn Artifacts, id: TileId) -> Result<Option<Self>, GroundError> {
-        let key = Kind::Heights.of_tile(id);
+        let key = ArtifactKind::Heights.of_tile(id);
         let missing = || ArtifactError::Missing {
             what: format!("the heights of tile {id}"),
             step: "heights",
@@ -94,7 +96,7 @@ impl FinestHeights {
         }
         let (heights, filled) = bytes
             .split_at_checked((TILE_NODES + 2 * HALO).pow(2) * 4)
-            .ok_or_else(|| damaged(key, &"it is too short"))?;
+            .ok_or_else(|| damaged(key, &"its data end early"))?;
         let filled = filled
             .chunks_exact(4)
             .map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize)
@@ -103,12 +105,12 @@ impl FinestHeights {
     }
 }
 
-/// A grid's heights, little-endian, row by row.
+/// Encodes a grid's heights, little-endian, row by row.
 pub(crate) fn height_bytes(grid: &HeightGrid) -> Vec<u8> {
     grid.raw().iter().flat_map(|height_m| height_m.to_le_bytes()).collect()
 }
 
-/// The square grid of so many nodes a side that `height_bytes` wrote.
+/// The square grid with `side` nodes a side that `height_bytes` encoded.
 #[must_use]
 pub fn grid_of(bytes: &[u8], side: usize) -> HeightGrid {
     let heights_m =

@@ -1,8 +1,8 @@
-//! Which tiles a subtree's own depend on.
+//! The tiles on which the tiles of a subtree depend.
 
 use corniche_geom::TileId;
 
-/// Whether a tile is one of a subtree or above it, or touches one that is, of its own level.
+/// Whether a tile is in a subtree or above it, or touches a tile of its own level that is.
 #[must_use]
 pub fn is_near(scope: TileId, id: TileId) -> bool {
     let near = |at: u32, first: u32, last: u32| {

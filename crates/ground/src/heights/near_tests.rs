@@ -1,4 +1,4 @@
-//! The tiles near a subtree are those that a ring of tiles around it reaches.
+//! The tiles near a subtree are those within a ring of tiles around it.
 
 use super::*;
 
@@ -10,7 +10,7 @@ fn tile(z: u8, x: u32, y: u32) -> TileId {
 fn near_is_what_a_ring_of_tiles_reaches() {
     for scope in [tile(3, 2, 5), tile(0, 0, 0), tile(4, 15, 0), tile(2, 3, 3)] {
         for level in 0..=5_u8 {
-            // By the rule itself: the subtree's tiles or those above it, and their eight neighbours.
+            // The rule itself: the subtree's tiles or those above it, and their eight neighbours.
             let side = 1_u32 << level;
             let all = (0..side).flat_map(|x| (0..side).map(move |y| tile(level, x, y)));
             let is_own = |id: TileId| {

@@ -1,17 +1,17 @@
 //! A patch: the tiles whose heights are read from the DEM at once.
 //!
 //! ```text
-//!  DEM ─► samples looked at ─► window of nodes ─► heights of finest tiles
+//!  DEM ─► samples checked ───► window of nodes ─► heights of finest tiles
 //!                                             └─► rasters of the two levels above
 //! ```
 //!
-//! A patch is a tile two levels above the finest, so its window has at most 1027 × 1027 nodes (4 MB), and the halo for filling
-//! voids is small beside it.
+//! A patch is a tile two levels above the finest, so its window has at most 1027 × 1027 nodes (4
+//! MB), and the halo for filling voids is small in comparison.
 
-use corniche_dem::{AuditBlock, AuditPart, Auditor, Dem, DemWindow, GridPlan, Reader};
+use corniche_dem::{AuditBlock, AuditPart, Auditor, Dem, DemWindow, GridPlan, HeightReader};
 use corniche_geom::{GridFrame, HeightGrid, NodeIndex, NodeWindow, TILE_CELLS, TILE_NODES, TileId};
 use corniche_spec::{
-    artifacts::{self, Kind},
+    artifacts::{self, ArtifactKind},
     data_tiles::DataTiles,
 };
 use corniche_store::Artifacts;
@@ -31,16 +31,16 @@ pub(crate) fn patch_level(frame: &GridFrame, scope: TileId) -> u8 {
     frame.max_level().saturating_sub(PATCH_LEVELS).max(scope.z())
 }
 
-/// What is known of a patch once its heights are read. All of it can be merged in any order.
+/// The record of a patch whose heights were read. Records can be merged in any order.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct PatchRecord {
     /// Nodes that have a height; each node of the data belongs to one patch.
     pub(crate) with_height: u64,
-    /// How many of them are filled voids.
+    /// How many of the nodes are filled voids.
     pub filled: u64,
     /// Lowest and highest height, metres; `None` without any.
     pub range_m: Option<[f32; 2]>,
-    /// What was seen of samples, one part for each file.
+    /// The findings about samples, one part for each file.
     pub(crate) audit: Vec<AuditPart>,
 }
 
@@ -53,16 +53,16 @@ impl PatchRecord {
         other.audit.into_iter().for_each(|part| merge_audit(&mut self.audit, part));
     }
 
-    /// What was kept of a patch; `None` if it was not made.
+    /// Reads the record of a patch; `None` if the patch is not done.
     ///
     /// # Errors
     /// See [`GroundError`].
     pub fn get(store: &dyn Artifacts, patch: TileId) -> Result<Option<Self>, GroundError> {
-        Ok(artifacts::get(store, Kind::Patch.of_tile(patch))?)
+        Ok(artifacts::get(store, ArtifactKind::Patch.of_tile(patch))?)
     }
 }
 
-/// The lowest and the highest of two ranges.
+/// The union of two ranges.
 #[must_use]
 pub fn union(a: Option<[f32; 2]>, b: Option<[f32; 2]>) -> Option<[f32; 2]> {
     match (a, b) {
@@ -71,7 +71,7 @@ pub fn union(a: Option<[f32; 2]>, b: Option<[f32; 2]>) -> Option<[f32; 2]> {
     }
 }
 
-/// Adds a part to the one of its file.
+/// Merges a part into the part of the same file.
 fn merge_audit(parts: &mut Vec<AuditPart>, part: AuditPart) {
     let mut left = Some(part);
     for own in parts.iter_mut() {
@@ -80,13 +80,14 @@ fn merge_audit(parts: &mut Vec<AuditPart>, part: AuditPart) {
     parts.extend(left);
 }
 
-/// Which patch looks at which samples: each block belongs to the patch in which its middle lies, or the nearest.
+/// Assigns blocks of samples to the patches that check them: each block belongs to the patch that
+/// contains its centre, or the nearest one.
 pub(crate) fn audit_blocks_of(
     dem: &Dem,
     plan: &GridPlan,
     patch_level: u8,
 ) -> Result<Vec<(TileId, AuditBlock)>, GroundError> {
-    let data = DataTiles::of(plan);
+    let data = DataTiles::from_plan(plan);
     let mut blocks = Vec::new();
     for block in dem.audit_blocks(plan)? {
         let middle_m = dem.audit_block_middle_m(&block, plan)?;
@@ -97,16 +98,16 @@ pub(crate) fn audit_blocks_of(
     Ok(blocks)
 }
 
-/// What reads one patch after the other; each thread has its own.
+/// Reads one patch after the other; each thread has its own reader.
 pub(crate) struct PatchReader<'a> {
-    reader: Reader<'a>,
+    reader: HeightReader<'a>,
     auditor: Auditor<'a>,
     plan: &'a GridPlan,
     store: &'a dyn Artifacts,
 }
 
 impl<'a> PatchReader<'a> {
-    /// `allowed_m` are the lowest and the highest height that samples may have.
+    /// Creates a reader; `allowed_m` are the lowest and the highest height that samples may have.
     pub(crate) fn new(
         dem: &'a Dem,
         plan: &'a GridPlan,
@@ -116,15 +117,15 @@ impl<'a> PatchReader<'a> {
         Self { reader: dem.reader(plan), auditor: dem.auditor(allowed_m), plan, store }
     }
 
-    /// Looks at `blocks`, reads the patch's heights and keeps them, those of the levels above up to the patch's too, and its
-    /// record last.
+    /// Checks the samples of `blocks`, reads the patch's heights and stores them, with those of the
+    /// levels above up to the patch's own level. Stores the record last.
     pub(crate) fn make(&mut self, patch: TileId, blocks: &[AuditBlock]) -> Result<(), GroundError> {
         let mut record = PatchRecord::default();
         for block in blocks {
             merge_audit(&mut record.audit, self.auditor.look(block)?);
         }
         let frame = self.plan.frame;
-        let tiles = DataTiles::of(self.plan).within(patch);
+        let tiles = DataTiles::from_plan(self.plan).within(patch);
         if let (Some(&first), Some(&last)) = (tiles.first(), tiles.last()) {
             let window = self.reader.window(window_of(&frame, first, last))?;
             for &id in &tiles {
@@ -137,10 +138,11 @@ impl<'a> PatchReader<'a> {
             }
             self.put_rasters(patch, first, &window)?;
         }
-        Ok(artifacts::put(self.store, Kind::Patch.of_tile(patch), &record)?)
+        Ok(artifacts::put(self.store, ArtifactKind::Patch.of_tile(patch), &record)?)
     }
 
-    /// Rasters of the levels from the one above the finest up to the patch's, from the window that begins with `first`.
+    /// Stores the rasters of the levels from the one above the finest up to the patch's level,
+    /// taken from the window that begins with `first`.
     fn put_rasters(
         &self,
         patch: TileId,
@@ -148,7 +150,7 @@ impl<'a> PatchReader<'a> {
         window: &DemWindow,
     ) -> Result<(), GroundError> {
         let frame = self.plan.frame;
-        let data = DataTiles::of(self.plan);
+        let data = DataTiles::from_plan(self.plan);
         let heights = &window.heights;
         for level in patch.z()..frame.max_level() {
             let stride = frame.stride(level);
@@ -190,7 +192,7 @@ impl PatchRecord {
     }
 }
 
-/// The nodes from one finest tile to another, borders included, with halo.
+/// The nodes from one finest tile to another, with borders and halo.
 fn window_of(frame: &GridFrame, first: TileId, last: TileId) -> NodeWindow {
     let NodeIndex { i, j } = frame.tile_corner(first);
     let side = |first: u32, last: u32| (last - first + 1) as usize * TILE_CELLS as usize + 1;

@@ -1,12 +1,13 @@
-//! The heights of all levels: the DEM, patch by patch, to the heights of finest tiles and to the rasters of the levels above.
+//! The heights of all levels: the DEM is read patch by patch into the heights of finest tiles and
+//! the rasters of the levels above.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use corniche_dem::{Audit, AuditBlock, Dem, GridPlan, SURFACE_RANGE_M};
 use corniche_geom::{HeightGrid, TileId};
 use corniche_spec::{
-    Observer,
-    artifacts::{ArtifactError, Kind},
+    BuildObserver,
+    artifacts::{ArtifactError, ArtifactKind},
     data_tiles::DataTiles,
 };
 use corniche_store::Artifacts;
@@ -20,24 +21,25 @@ use super::{
 };
 use crate::GroundError;
 
-/// Heights of all levels, read from a DEM and kept in a store.
+/// Reads the heights of all levels from a DEM and stores them.
 pub struct Pyramid<'a> {
     /// The elevation files.
     pub dem: &'a Dem,
     /// The grid of nodes.
     pub grid: &'a GridPlan,
-    /// Lowest and highest height that samples may have, metres, if the user said so.
+    /// Lowest and highest height that samples may have, metres, if the user gave a range.
     pub range_m: Option<[f64; 2]>,
     /// Worker threads.
     pub threads: usize,
-    /// Where heights are kept.
+    /// The store for heights.
     pub store: &'a dyn Artifacts,
-    /// Who is told of progress and defects.
-    pub observer: &'a dyn Observer,
+    /// Receives progress and defects.
+    pub observer: &'a dyn BuildObserver,
 }
 
 impl Pyramid<'_> {
-    /// Reads the patches of a subtree that are not there yet, and makes the rasters from there up to the subtree's own.
+    /// Reads those patches of a subtree that are not in the store, and creates the rasters from
+    /// there up to the subtree's own.
     ///
     /// # Errors
     /// See [`GroundError`].
@@ -46,19 +48,19 @@ impl Pyramid<'_> {
         self.make_rasters(scope)
     }
 
-    /// Whether all that is made of a patch is there. A patch above it has the same.
+    /// Whether a patch is complete in the store. A patch above it has the same artifacts.
     fn has_patch(&self, patch: TileId) -> bool {
         let (store, data) = (self.store, self.data());
         let finest_level = self.grid.frame.max_level();
         let mut rasters =
             (patch.z()..finest_level).flat_map(|level| data.above(level).within(patch));
-        (0..=patch.z()).any(|level| store.has(Kind::Patch.of_tile(patch.ancestor(level))))
-            && data.within(patch).into_iter().all(|id| store.has(Kind::Heights.of_tile(id)))
-            && rasters.all(|id| store.has(Kind::Raster.of_tile(id)))
+        (0..=patch.z()).any(|level| store.has(ArtifactKind::Patch.of_tile(patch.ancestor(level))))
+            && data.within(patch).into_iter().all(|id| store.has(ArtifactKind::Heights.of_tile(id)))
+            && rasters.all(|id| store.has(ArtifactKind::Raster.of_tile(id)))
     }
 
     fn data(&self) -> DataTiles {
-        DataTiles::of(self.grid)
+        DataTiles::from_plan(self.grid)
     }
 
     fn read_areas(&self, scope: TileId) -> Result<(), GroundError> {
@@ -84,7 +86,7 @@ impl Pyramid<'_> {
         )
     }
 
-    /// Makes the rasters that are missing beneath and at `scope`, from those that are there up.
+    /// Creates the missing rasters beneath and at `scope`, from those in the store upwards.
     ///
     /// # Errors
     /// See [`GroundError`].
@@ -93,13 +95,14 @@ impl Pyramid<'_> {
         upwards::make_missing(
             (store, &data),
             (self.observer, self.threads),
-            Kind::Raster,
+            ArtifactKind::Raster,
             scope,
             |id| rasters::put_from_children(store, &data, id),
         )
     }
 
-    /// The heights of a tile with one node of halo on every side (259 × 259); `None` where the tile has no height.
+    /// The heights of a tile with one node of halo on every side (259 × 259); `None` if the tile
+    /// has no height.
     ///
     /// # Errors
     /// See [`GroundError`].
@@ -108,7 +111,7 @@ impl Pyramid<'_> {
     }
 }
 
-/// Fails if some tiles are missing, naming them.
+/// Fails if there are missing tiles, and names them.
 ///
 /// # Errors
 /// See [`GroundError`].
@@ -125,14 +128,14 @@ pub fn all_there(what: &str, missing: &[TileId], step: &'static str) -> Result<(
     Err(ArtifactError::Missing { what, step }.into())
 }
 
-/// What the heights of all patches add up to.
+/// The sums over the heights of all patches.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HeightSums {
-    /// How many nodes have heights.
+    /// The numbers of nodes with heights.
     pub samples: SampleCounts,
-    /// Lowest and highest node; zeros where there is none.
+    /// Lowest and highest node; zeros if there is none.
     pub range_m: [f32; 2],
-    /// The step between heights that the DEM can tell apart, metres.
+    /// The smallest height step that the DEM can represent, metres.
     pub step_m: f64,
 }
 
@@ -140,7 +143,7 @@ impl HeightSums {
     /// The sums that a package records.
     #[must_use]
     pub fn recorded(manifest: &Manifest) -> Self {
-        // They were 32-bit numbers before they were written.
+        // The values were 32-bit numbers before they were written.
         let range_m = manifest.vertical.range_m.map(|height_m| height_m as f32);
         let step_m = manifest.vertical.height_step_m;
         Self { samples: manifest.counts.samples, range_m, step_m }
@@ -156,7 +159,8 @@ impl Pyramid<'_> {
         Ok(self.audit(patches).check(self.dem, self.range_m.is_some())?)
     }
 
-    /// Warns of samples of `patches` that stand alone, unless the user said which heights there are.
+    /// Warns of isolated spikes in the samples of `patches`, unless the user gave the range of
+    /// heights.
     pub fn warn_of_spikes(&self, patches: &PatchRecord) {
         if self.range_m.is_none() {
             for text in self.audit(patches).spikes(self.dem) {
@@ -171,7 +175,7 @@ impl Pyramid<'_> {
         audit
     }
 
-    /// Counts over `all` patches.
+    /// Sums up `all` patches.
     #[must_use]
     pub fn sums(&self, all: &PatchRecord) -> HeightSums {
         let plan = self.grid;
@@ -191,10 +195,11 @@ impl Pyramid<'_> {
         }
     }
 
-    /// The records of all patches together; fails if one is missing.
+    /// Merges the records of all patches; fails if a record is missing.
     ///
-    /// The patches of a build that was split may lie on several levels, and even one above the other. Each finest tile counts for
-    /// the highest that is there: so do all others beneath that one, and nothing counts twice.
+    /// The patches of a split build may be on several levels, and even one above the other. Each
+    /// finest tile counts for the highest patch in the store, as do all other tiles beneath that
+    /// patch, so nothing counts twice.
     ///
     /// # Errors
     /// See [`GroundError`].
@@ -202,7 +207,7 @@ impl Pyramid<'_> {
         let store = self.store;
         let area_of = |finest: TileId| {
             let mut patches = (0..=finest.z()).map(|level| finest.ancestor(level));
-            patches.find(|&patch| store.has(Kind::Patch.of_tile(patch)))
+            patches.find(|&patch| store.has(ArtifactKind::Patch.of_tile(patch)))
         };
         let data = self.data();
         all_there("the heights", &data.missing(|id| area_of(id).is_none()), "heights")?;
@@ -215,18 +220,21 @@ impl Pyramid<'_> {
         Ok(all)
     }
 
-    /// Fails if heights of finest tiles of the subtree `scope` are missing, or rasters of tiles in it, above it or around these.
+    /// Fails if heights of finest tiles of the subtree `scope` are missing, or rasters of tiles in
+    /// it, above it or around these tiles.
     ///
     /// # Errors
     /// See [`GroundError`].
     pub fn check_complete(&self, scope: TileId) -> Result<(), GroundError> {
         let (store, data) = (self.store, self.data());
-        let is_missing =
-            |id: TileId| id.ancestor(scope.z()) == scope && !store.has(Kind::Heights.of_tile(id));
+        let is_missing = |id: TileId| {
+            id.ancestor(scope.z()) == scope && !store.has(ArtifactKind::Heights.of_tile(id))
+        };
         all_there("the heights", &data.missing(is_missing), "heights")?;
         let levels = 0..self.grid.frame.max_level();
         let all = levels.flat_map(|level| data.above(level).within(TileId::ROOT));
-        let is_missing = |&id: &TileId| is_near(scope, id) && !store.has(Kind::Raster.of_tile(id));
+        let is_missing =
+            |&id: &TileId| is_near(scope, id) && !store.has(ArtifactKind::Raster.of_tile(id));
         let missing: Vec<TileId> = all.filter(is_missing).collect();
         all_there("the heights", &missing, "top")
     }

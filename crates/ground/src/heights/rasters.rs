@@ -1,10 +1,11 @@
 //! Rasters of the levels above the finest: every second node of the level below.
 //!
-//! The raster of a tile holds its own 257 × 257 nodes, borders included, so that a tile without halo needs no neighbour.
+//! The raster of a tile has its own 257 × 257 nodes, borders included, so that a tile without halo
+//! needs no neighbour.
 
 use corniche_geom::{HeightGrid, TILE_CELLS, TILE_NODES, TileId};
 use corniche_spec::{
-    artifacts::{ArtifactError, Kind, damaged},
+    artifacts::{ArtifactError, ArtifactKind, damaged},
     data_tiles::DataTiles,
 };
 use corniche_store::Artifacts;
@@ -12,16 +13,18 @@ use corniche_store::Artifacts;
 use super::finest::{FinestHeights, grid_of, height_bytes};
 use crate::GroundError;
 
-/// Keeps a tile's raster. Without any height it has no bytes, but it is there: what is not there was not made.
+/// Stores a tile's raster. A raster without any height is stored without bytes, because a missing
+/// artifact means "not computed".
 ///
 /// # Errors
 /// See [`GroundError`].
 pub fn put(store: &dyn Artifacts, id: TileId, raster: &HeightGrid) -> Result<(), GroundError> {
     let bytes = if raster.count_heights() == 0 { Vec::new() } else { height_bytes(raster) };
-    Ok(store.put(Kind::Raster.of_tile(id), &bytes)?)
+    Ok(store.put(ArtifactKind::Raster.of_tile(id), &bytes)?)
 }
 
-/// The raster of a tile above the finest level; `None` where it has no height, and beside the data.
+/// Reads the raster of a tile above the finest level; `None` if it has no height or is outside the
+/// data.
 ///
 /// # Errors
 /// See [`GroundError`].
@@ -33,18 +36,18 @@ pub fn get(
     if !data.above(id.z()).contains(id) {
         return Ok(None);
     }
-    let key = Kind::Raster.of_tile(id);
+    let key = ArtifactKind::Raster.of_tile(id);
     let missing =
         || ArtifactError::Missing { what: format!("the heights of tile {id}"), step: "top" };
     let bytes = store.get(key)?.ok_or_else(missing)?;
     match bytes.len() {
         0 => Ok(None),
         length if length == TILE_NODES * TILE_NODES * 4 => Ok(Some(grid_of(&bytes, TILE_NODES))),
-        _ => Err(damaged(key, &"it has another size").into()),
+        _ => Err(damaged(key, &"it has the wrong size").into()),
     }
 }
 
-/// Makes a tile's raster from the heights of its children.
+/// Creates a tile's raster from the heights of its children.
 ///
 /// # Errors
 /// See [`GroundError`].
@@ -60,7 +63,8 @@ pub fn put_from_children(
         let (left, top) = ((child.x() % 2) as usize * half, (child.y() % 2) as usize * half);
         for row in 0..=half {
             for column in 0..=half {
-                // Nodes on the border between two children are in both. One of them may have no raster.
+                // Nodes on the border between two children are in both rasters. One of the children
+                // may have no raster.
                 if let Some(height_m) = raster.height(2 * column, 2 * row) {
                     heights_m[(top + row) * TILE_NODES + left + column] = height_m;
                 }
@@ -70,8 +74,8 @@ pub fn put_from_children(
     put(store, id, &HeightGrid::new(TILE_NODES, TILE_NODES, heights_m))
 }
 
-/// The heights of a tile above the finest level, with so many nodes of halo on every side, at least one. `None` where the tile itself
-/// has no height.
+/// The heights of a tile above the finest level, with `halo` nodes on every side, at least one.
+/// `None` if the tile itself has no height.
 ///
 /// # Errors
 /// See [`GroundError`].
@@ -85,7 +89,8 @@ pub fn with_halo(
     let Some(own) = get(store, data, id)? else { return Ok(None) };
     let mut heights_m = vec![f32::NAN; side * side];
     let mut fill = |raster: &HeightGrid, dx: i32, dy: i32| {
-        // The part of the window that a neighbour fills, and where it begins in the neighbour. Borders are the same in both.
+        // The part of the window that a neighbour fills, and its start in the neighbour. Borders
+        // are the same in both.
         let span = |d: i32| match d {
             -1 => (0..halo, TILE_NODES - 1 - halo),
             0 => (halo..side - halo, 0),
@@ -108,7 +113,8 @@ pub fn with_halo(
     Ok(Some(HeightGrid::new(side, side, heights_m)))
 }
 
-/// The heights of any tile with so many nodes of halo; `None` where the tile has no height, and beside the data.
+/// The heights of any tile with `halo` nodes on every side; `None` if the tile has no height or is
+/// outside the data.
 pub(crate) fn of_any_level(
     store: &dyn Artifacts,
     data: &DataTiles,

@@ -1,21 +1,22 @@
-//! What a coarse tile has of its children, level by level upwards.
+//! Derives the artifacts of coarse tiles from their children, level by level upwards.
 
 use corniche_geom::TileId;
-use corniche_spec::{Observer, artifacts::Kind, data_tiles::DataTiles};
+use corniche_spec::{BuildObserver, artifacts::ArtifactKind, data_tiles::DataTiles};
 use corniche_store::Artifacts;
 use corniche_work::workers;
 
 use crate::GroundError;
 
-/// Makes what is missing of a `kind` for the tiles above the finest level, beneath and at `scope`. `make` keeps it for a tile,
-/// from what its children have, which is there.
+/// Creates the missing artifacts of a `kind` for the tiles above the finest level, beneath and at
+/// `scope`. `make` creates and stores the artifact of a tile from those of its children, which are
+/// in the store.
 ///
 /// # Errors
 /// See [`GroundError`].
 pub fn make_missing(
     (store, data): (&dyn Artifacts, &DataTiles),
-    (observer, threads): (&dyn Observer, usize),
-    kind: Kind,
+    (observer, threads): (&dyn BuildObserver, usize),
+    kind: ArtifactKind,
     scope: TileId,
     make: impl Fn(TileId) -> Result<(), GroundError> + Sync,
 ) -> Result<(), GroundError> {

@@ -1,9 +1,10 @@
-//! Rasters of photos: of each tile, one texel for each cell of its level. A photo of a coarse tile is made of its children's.
+//! Rasters of photos: each tile has one texel for each cell of its level. The photo of a coarse
+//! tile is derived from its children.
 
 use corniche_geom::{TILE_CELLS, TileId};
 use corniche_photo::Texels;
 use corniche_spec::{
-    artifacts::{ArtifactError, Kind, damaged},
+    artifacts::{ArtifactError, ArtifactKind, damaged},
     data_tiles::DataTiles,
 };
 use corniche_store::Artifacts;
@@ -14,29 +15,31 @@ use crate::GroundError;
 /// Texels along a side of a raster.
 pub const SIDE: usize = TILE_CELLS as usize;
 
-/// Keeps a tile's raster. Without any photo it has no bytes, but it is there: what is not there was not made.
+/// Stores a tile's raster. A raster without any photo is stored without bytes, because a missing
+/// artifact means "not computed".
 ///
 /// # Errors
 /// See [`GroundError`].
 pub fn put(store: &dyn Artifacts, id: TileId, raster: &Texels) -> Result<(), GroundError> {
     let bytes = if raster.is_empty() { &[][..] } else { raster.rgba() };
-    Ok(store.put(Kind::PhotoRaster.of_tile(id), bytes)?)
+    Ok(store.put(ArtifactKind::PhotoRaster.of_tile(id), bytes)?)
 }
 
-/// The raster of a finest tile, of its texels with the border that tiles have, so many levels finer than its cells.
+/// Computes the raster of a finest tile from its texels. The texels include the tile's border and
+/// are `levels` levels finer than its cells.
 #[must_use]
 pub fn of_texels(texels: &Texels, levels: u8) -> Texels {
     let own = texels.part([PHOTO_BORDER; 2], [SIDE << levels; 2]);
     (0..levels).fold(own, |finer, _| finer.halved())
 }
 
-/// The error for what was not made of a tile's photo.
+/// The error for a tile whose photo was not computed.
 #[must_use]
 pub fn missing(id: TileId) -> ArtifactError {
     ArtifactError::Missing { what: format!("the photo of tile {id}"), step: "heights" }
 }
 
-/// A tile's raster; `None` where it has no photo, and beside the data.
+/// Reads a tile's raster; `None` if it has no photo or is outside the data.
 ///
 /// # Errors
 /// See [`GroundError`].
@@ -48,19 +51,20 @@ pub fn get(
     if !data.above(id.z()).contains(id) {
         return Ok(None);
     }
-    let key = Kind::PhotoRaster.of_tile(id);
+    let key = ArtifactKind::PhotoRaster.of_tile(id);
     let bytes = store.get(key)?.ok_or_else(|| missing(id))?;
     if bytes.is_empty() {
         return Ok(None);
     }
     match Texels::new(SIDE, SIDE, bytes) {
         Some(texels) => Ok(Some(texels)),
-        None => Err(damaged(key, &"it is no photo").into()),
+        None => Err(damaged(key, &"it is not a photo").into()),
     }
 }
 
-/// The texels of a tile above the finest level, twice as fine as its cells: those of its children, and `border` more on every side,
-/// of theirs. `None` where none of them has a photo.
+/// The texels of a tile above the finest level, twice as fine as its cells. They are the texels of
+/// its children, with `border` more texels on every side from the neighbours' children. `None` if
+/// no child has a photo.
 ///
 /// # Errors
 /// See [`GroundError`].
@@ -72,7 +76,7 @@ pub fn of_children(
 ) -> Result<Option<Texels>, GroundError> {
     let side = 2 * SIDE + 2 * border;
     let mut all = Texels::empty(side, side);
-    // Children of the tile and those around, by their distance from its first.
+    // Children of the tile and of its neighbours, by their distance from its first child.
     let around = if border == 0 { 0..=1 } else { -1..=2 };
     for south in around.clone() {
         for east in around.clone() {
@@ -80,7 +84,7 @@ pub fn of_children(
             let (Some(x), Some(y)) = (at(id.x(), east), at(id.y(), south)) else { continue };
             let Ok(child) = TileId::new(id.z() + 1, x, y) else { continue };
             let Some(raster) = get(store, data, child)? else { continue };
-            // Which part of a child lies in the square, and where.
+            // The part of a child inside the square, and its position there.
             let span = |by: i64| match by {
                 -1 => (SIDE - border, border, 0),
                 2 => (0, border, border + 2 * SIDE),
@@ -93,7 +97,7 @@ pub fn of_children(
     Ok((!all.is_empty()).then_some(all))
 }
 
-/// Makes a tile's raster from those of its children.
+/// Creates a tile's raster from those of its children.
 ///
 /// # Errors
 /// See [`GroundError`].

@@ -1,4 +1,4 @@
-//! The photos of a build are opened and placed on the grid, or taken from another package.
+//! Opens the photos of a build and places them on the grid, or takes them from another package.
 
 use crate::terrain::ground::GroundSource;
 use corniche_dem::GridPlan;
@@ -9,18 +9,19 @@ use corniche_tileset::PhotoRecord;
 
 use crate::GroundError;
 
-/// Where the photos of a build come from.
+/// The source of a build's photos.
 pub enum PhotoSource {
-    /// There are none.
+    /// The build has no photos.
     Nothing,
-    /// Photos of files.
+    /// Photos come from files.
     Files(Box<OpenedPhotos>),
-    /// Photos come from the package that gives the terrain, as they are there. It says how they were made.
+    /// Photos come unchanged from the package that provides the terrain. The record describes how
+    /// they were created.
     Package(PhotoRecord),
 }
 
 impl PhotoSource {
-    /// Opens the photos that a build asks for, on the grid of its ground.
+    /// Opens the requested photos of a build on the grid of its ground.
     ///
     /// # Errors
     /// See [`GroundError`].
@@ -52,7 +53,7 @@ impl PhotoSource {
         }
     }
 
-    /// What the manifest says of how photos are made; `None` without photos.
+    /// The manifest's record of how photos are created; `None` without photos.
     #[must_use]
     pub fn record(&self) -> Option<PhotoRecord> {
         match self {
@@ -63,17 +64,17 @@ impl PhotoSource {
     }
 }
 
-/// Photos, opened and put on the grid.
+/// Photos that are open and placed on the grid.
 pub struct OpenedPhotos {
     /// The grid of texels.
     pub grid: PhotoGrid,
     /// JPEG's quality, from 1 to 100.
     pub quality: u8,
-    /// What the files say of their rights.
+    /// Attribution found in the files.
     pub credits: Vec<String>,
-    /// How the files are cut into blocks.
+    /// How the files are divided into blocks.
     pub blocks: Vec<FileBlocks>,
-    /// How they come to the datum of the grid.
+    /// How the files are transformed to the datum of the grid.
     pub datums: FileDatums,
 }
 
@@ -99,13 +100,13 @@ impl OpenedPhotos {
         })
     }
 
-    /// What the manifest says of how they are made.
+    /// The manifest's record of how these photos are created.
     #[must_use]
     pub fn record(&self) -> PhotoRecord {
         PhotoRecord { levels: self.levels(), quality: self.quality }
     }
 
-    /// How many levels of texels are finer than the finest cell.
+    /// The number of texel levels finer than the finest cell.
     #[must_use]
     pub fn levels(&self) -> u8 {
         self.grid.texels().levels()

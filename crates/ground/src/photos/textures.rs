@@ -1,8 +1,8 @@
-//! The photo of a tile as its payload has it.
+//! The photo of a tile as it is stored in the payload.
 
 use corniche_geom::{GridFrame, TileId};
 use corniche_photo::{PhotoReader, Texels};
-use corniche_spec::{artifacts::Kind, data_tiles::DataTiles};
+use corniche_spec::{artifacts::ArtifactKind, data_tiles::DataTiles};
 use corniche_store::Artifacts;
 use corniche_tileset::{PHOTO_BORDER, Photo, Section, encode_photo, photo_section};
 
@@ -12,22 +12,22 @@ use super::{
 };
 use crate::{GroundError, TerrainError, terrain::ground::GroundSource};
 
-/// What textures are made from, and where they are kept.
+/// The sources of textures, and the store for them.
 #[derive(Clone, Copy)]
 pub struct TextureStore<'a> {
-    /// Where textures are kept.
+    /// The store for textures.
     pub store: &'a dyn Artifacts,
     /// The package's grid.
     pub frame: &'a GridFrame,
     /// The finest tiles that can have data.
     pub data: DataTiles,
-    /// Where the ground comes from.
+    /// The source of the ground.
     pub source: &'a GroundSource,
-    /// Where photos come from.
+    /// The source of photos.
     pub photo: &'a PhotoSource,
 }
 
-/// Reads the photo of a finest tile, and keeps its texture and its raster.
+/// Reads the photo of a finest tile, and stores its texture and its raster.
 ///
 /// # Errors
 /// See [`GroundError`].
@@ -38,12 +38,12 @@ pub fn make_finest(
     id: TileId,
 ) -> Result<(), GroundError> {
     let store = textures.store;
-    let key = Kind::PhotoTexture.of_tile(id);
+    let key = ArtifactKind::PhotoTexture.of_tile(id);
     let none = || {
         store.put(key, &[])?;
         rasters::put(store, id, &Texels::empty(0, 0))
     };
-    // A rectangle with the border: it is below 8 of 256 texels on each side.
+    // The rectangle includes the border, which is less than 8 of 256 texels on each side.
     let tile = textures.frame.tile_bounds(id);
     let bounds = tile.expanded([tile.width() / 32.0, tile.height() / 32.0]);
     if !photos.grid.touches(&bounds) {
@@ -56,11 +56,12 @@ pub fn make_finest(
         Some(section) => store.put(key, section.bytes())?,
         None => return none(),
     }
-    // The raster says that the tile is done, so it comes last.
+    // The raster marks the tile as done, so it is stored last.
     rasters::put(store, id, &raster)
 }
 
-/// The photo of a tile; `None` where there is none. `earlier` is its payload in the package that gives the terrain.
+/// The photo of a tile; `None` if it has none. `earlier` is its payload in the package that
+/// provides the terrain.
 ///
 /// # Errors
 /// See [`GroundError`].
@@ -94,12 +95,12 @@ fn of_files(
 ) -> Result<Option<Section>, GroundError> {
     let store = textures.store;
     if id.z() == textures.frame.max_level() {
-        let bytes = store.get(Kind::PhotoTexture.of_tile(id))?;
+        let bytes = store.get(ArtifactKind::PhotoTexture.of_tile(id))?;
         let bytes = bytes.ok_or_else(|| rasters::missing(id))?;
         return Ok((!bytes.is_empty()).then(|| Section::of_photo(bytes)));
     }
     let levels = photos.record().levels_on(id.z(), textures.frame.max_level());
-    // Texels of children are half a cell.
+    // Texels of children are half a cell wide.
     let border = PHOTO_BORDER << (1 - levels);
     let Some(texels) = rasters::of_children(store, &textures.data, id, border)? else {
         return Ok(None);

@@ -1,16 +1,18 @@
-//! Which cells along the borders of a tile have ground, told from its TIN.
+//! The cells with ground along the borders of a tile, derived from its TIN.
 
 use corniche_drape::{Neighbours, OwnedBorders};
 use corniche_geom::TILE_CELLS;
 use corniche_tin::Tin;
 
-/// A bit for each of a border's 256 cells, from the west or from the north; bit k of word 0 is cell k.
+/// One bit for each of a border's 256 cells, from the west or from the north; bit k of word 0 is
+/// cell k.
 type Cells = [u64; TILE_CELLS as usize / 64];
 
-/// The cells of a tile that lie along its borders: whether they have ground.
+/// Whether the cells along the borders of a tile have ground.
 ///
-/// A TIN covers exactly the cells with ground, and reaches no farther than the tile. So a cell along a border has ground where
-/// the border is part of the TIN's boundary, and there it is a row of edges with both ends on the border.
+/// A TIN covers exactly the cells with ground, and does not extend beyond the tile. So a cell along
+/// a border has ground where the border is part of the TIN's boundary. There the boundary is a row
+/// of edges with both ends on the border.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct BorderCells {
     north: Cells,
@@ -20,9 +22,9 @@ pub struct BorderCells {
 }
 
 impl BorderCells {
-    /// Which cells along the borders of a tile have ground, by its TIN.
+    /// Derives the cells along the borders of a tile from its TIN.
     #[must_use]
-    pub fn of(tin: &Tin) -> Self {
+    pub fn from_tin(tin: &Tin) -> Self {
         let mut cells = Self::default();
         let last = TILE_CELLS as u16;
         for corners in tin.triangles() {
@@ -46,7 +48,7 @@ impl BorderCells {
     }
 }
 
-/// Sets the cells between two nodes of a border.
+/// Sets the bits of the cells between two nodes of a border.
 fn set(border: &mut Cells, [a, b]: [u16; 2]) {
     for cell in a.min(b)..a.max(b).min(TILE_CELLS as u16) {
         border[usize::from(cell) / 64] |= 1 << (cell % 64);
@@ -58,7 +60,7 @@ fn has(border: &Cells, cell: i64) -> bool {
     word.is_some_and(|word| word >> (cell % 64) & 1 == 1)
 }
 
-/// The border cells of a tile and of its four neighbours; without any ground where a tile has none.
+/// The border cells of a tile and of its four neighbours; empty for a tile without ground.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct CellsAround {
     /// Border cells of the tile itself.
@@ -74,7 +76,7 @@ pub struct CellsAround {
 }
 
 impl CellsAround {
-    /// What the tile owns of its borders among such neighbours.
+    /// Returns the borders that the tile owns among these neighbours.
     #[must_use]
     pub fn owned(&self, neighbours: Neighbours) -> OwnedBorders {
         let last = TILE_CELLS - 1;

@@ -1,4 +1,5 @@
-//! What TINs say of the cells along borders is what the heights say that the TINs were made of.
+//! Border cells derived from TINs equal those derived from the heights from which the TINs were
+//! created.
 
 use std::collections::BTreeMap;
 
@@ -12,16 +13,16 @@ use super::*;
 /// Nodes along a side of a tile with one node of halo at both ends.
 const HALO_NODES: usize = TILE_CELLS as usize + 3;
 
-/// Tiles by their heights with halo, and what both ways say that each of them owns.
+/// Compares the borders that each tile owns, derived in both ways from its heights with halo.
 fn check(heights: &dyn Fn(i64, i64) -> Option<HeightGrid>, [columns, rows]: [i64; 2]) -> usize {
     let spec = TinSpec { max_error_m: 4.0, quantum_m: 1.0 / 32.0 };
-    // With the neighbours around all of them.
+    // All tiles together with their neighbours.
     let all: BTreeMap<[i64; 2], HeightGrid> = (-1..=rows)
         .flat_map(|y| (-1..=columns).map(move |x| [x, y]))
         .filter_map(|[x, y]| Some(([x, y], heights(x, y)?)))
         .collect();
     let cells = |x, y| match all.get(&[x, y]) {
-        Some(heights) => BorderCells::of(&triangulate(heights, spec).unwrap()),
+        Some(heights) => BorderCells::from_tin(&triangulate(heights, spec).unwrap()),
         None => BorderCells::default(),
     };
     let mut partly = 0;
@@ -48,7 +49,7 @@ fn check(heights: &dyn Fn(i64, i64) -> Option<HeightGrid>, [columns, rows]: [i64
     partly
 }
 
-/// The heights of a tile in a level of tiles on which `is_void` says which nodes have none.
+/// The heights of a tile in a level of tiles in which `is_void` marks the nodes without height.
 fn of_tile(is_void: &dyn Fn(i64, i64) -> bool, x: i64, y: i64) -> Option<HeightGrid> {
     let heights = HeightGrid::from_fn(HALO_NODES, HALO_NODES, |column, row| {
         let (column, row) = (x * TILE_CELLS + column as i64 - 1, y * TILE_CELLS + row as i64 - 1);
@@ -73,7 +74,7 @@ fn voids_along_borders_and_on_corners_are_seen_by_both_sides() {
         ("the data's edge alone", Box::new(outside)),
         ("single nodes on borders", Box::new(move |c, r| outside(c, r) || border(c) && r % 7 == 0)),
         (
-            "beside the borders",
+            "next to the borders",
             Box::new(move |c, r| outside(c, r) || (c == TILE_CELLS + 1 && r % 9 < 4)),
         ),
         ("the corner", Box::new(move |c, r| outside(c, r) || border(c) && border(r))),
@@ -101,7 +102,8 @@ proptest! {
     }
 }
 
-/// The sample, whose data end within tiles, and the sample with every height in some ranges taken for "no data".
+/// The sample, whose data end within tiles, and the sample with all heights of some ranges treated
+/// as nodata.
 #[test]
 fn the_sample_with_and_without_voids() {
     let path = corniche_testing::sample("pass/pass-dem.tif");
@@ -122,7 +124,7 @@ fn the_sample_with_and_without_voids() {
             (heights.count_heights() > 0).then_some(heights)
         };
         let partly = check(&heights, [side, side]);
-        // The data end within tiles, so without voids both sides of every border are alike.
+        // The data end within tiles, so without voids both sides of every border are equal.
         assert!(partly > 20 || !is_holey, "{partly}");
     }
 }

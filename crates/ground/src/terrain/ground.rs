@@ -1,11 +1,11 @@
-//! Where a build has its ground from.
+//! The source of a build's ground.
 
 use corniche_dem::{Dem, GridPlan};
 use corniche_gis::{CrsError, DemProjection};
 
 use super::recorded::RecordedTerrain;
 
-/// Elevation files, or a package that was made from them.
+/// The source of the ground: elevation files, or a package that was built from them.
 pub enum GroundSource {
     /// Elevation files.
     Dem(Box<Dem>),
@@ -14,7 +14,7 @@ pub enum GroundSource {
 }
 
 impl GroundSource {
-    /// WGS84 ⇄ the grid's working CRS: the same positions, to the last bit, from either source.
+    /// WGS84 ⇄ the grid's working CRS: both sources give the same positions, to the last bit.
     ///
     /// # Errors
     /// See [`CrsError`].
@@ -25,7 +25,7 @@ impl GroundSource {
         }
     }
 
-    /// The package, if it is one.
+    /// The package, if the ground comes from one.
     #[must_use]
     pub fn package(&self) -> Option<&RecordedTerrain> {
         match self {

@@ -1,4 +1,4 @@
-//! A package as the source of terrain: opened, and checked as far as its manifest tells.
+//! A package as the source of terrain: opened, and checked as far as its manifest allows.
 
 use std::path::{Path, PathBuf};
 
@@ -7,18 +7,19 @@ use corniche_geom::TileId;
 use corniche_gis::{CrsError, DemProjection, RecordedCrs};
 use corniche_spec::{TerrainSettings, open_package, settings_record};
 use corniche_tileset::{
-    FilePackage, InputKind, InputRecord, Manifest, ReadError, Relief, Sections, Terrain,
+    FilePackage, InputKind, InputRecord, Manifest, ReadError, Relief, Sections, TileTerrain,
 };
 
 use super::recorded_grid;
 use crate::TerrainError;
 
-/// What a package records of how its terrain was made: defaults for a build that takes its terrain.
+/// A package's record of how its terrain was built: the defaults for a build that reuses the
+/// terrain.
 #[derive(Debug, Clone)]
 pub struct TerrainRecord {
-    /// How the ground was made. A build that takes it must have the same settings.
+    /// The settings for the ground. A build that reuses the terrain must have the same settings.
     pub terrain: TerrainSettings,
-    /// Its credits, without the one that its extract called for.
+    /// Attribution of the package, without that of its extract.
     pub attribution: Vec<String>,
 }
 
@@ -26,7 +27,7 @@ impl TerrainRecord {
     /// Reads the record of a package.
     ///
     /// # Errors
-    /// When the file cannot be read or is no package of this format version.
+    /// When the file cannot be read or is not a package of this format version.
     pub fn of_package(path: &Path) -> Result<Self, TerrainError> {
         let package = open_package(path)?;
         let manifest = package.manifest();
@@ -37,7 +38,8 @@ impl TerrainRecord {
     }
 }
 
-/// The credits of a package that were given: without the last one where that is what its extract called for.
+/// The attribution given by the user: the package's attribution without the last entry, if that is
+/// the attribution of its extract.
 fn own_credits(manifest: &Manifest) -> Vec<String> {
     let mut credits = manifest.attribution.clone();
     let has_roads = manifest.has_extract();
@@ -47,7 +49,7 @@ fn own_credits(manifest: &Manifest) -> Vec<String> {
     credits
 }
 
-/// A package whose terrain is used.
+/// A package whose terrain is reused.
 #[derive(Debug)]
 pub struct RecordedTerrain {
     package: FilePackage,
@@ -55,8 +57,8 @@ pub struct RecordedTerrain {
 }
 
 impl RecordedTerrain {
-    /// Opens a package that `generator` made with the libraries that it runs with now. Fails for another one, whose terrain could
-    /// differ from what would be made today.
+    /// Opens a package that was built by `generator` with the current versions of the libraries.
+    /// Fails for any other package, because a build today could give another terrain.
     ///
     /// # Errors
     /// See [`TerrainError`].
@@ -65,7 +67,7 @@ impl RecordedTerrain {
         let manifest = package.manifest();
         let this = format!("{generator}, {}", corniche_gis::libraries());
         if manifest.generator != this {
-            let differences = format!("it was made by {}, this is {this}", manifest.generator);
+            let differences = format!("it was built by {}, but this is {this}", manifest.generator);
             return Err(TerrainError::Other { path: path.to_path_buf(), differences });
         }
         let damaged = |what: &str| damaged(path, what);
@@ -76,7 +78,7 @@ impl RecordedTerrain {
         )
         .map_err(|error| damaged(&format!("its CRS cannot be used ({error})")))?;
         if crs.label() != manifest.crs {
-            return Err(damaged("its CRS has another name than its WKT"));
+            return Err(damaged("the name of its CRS differs from the name in its WKT"));
         }
         recorded_grid::check(manifest).map_err(damaged)?;
         if settings_record::sha256(&manifest.settings) != manifest.settings_sha256 {
@@ -103,7 +105,7 @@ impl RecordedTerrain {
         self.package.manifest()
     }
 
-    /// The grid; no height can be read with it.
+    /// The grid; heights cannot be read with it.
     pub fn grid(&self) -> GridPlan {
         recorded_grid::plan(&self.crs, self.manifest())
     }
@@ -116,11 +118,11 @@ impl RecordedTerrain {
         self.crs.projection(self.manifest().area_deg())
     }
 
-    /// The payload of a tile, and its ground decoded; `None` where it has none.
+    /// The payload of a tile, and its decoded ground; `None` if it has no ground.
     ///
     /// # Errors
     /// See [`TerrainError`].
-    pub fn ground(&self, id: TileId) -> Result<Option<(Vec<u8>, Terrain)>, TerrainError> {
+    pub fn ground(&self, id: TileId) -> Result<Option<(Vec<u8>, TileTerrain)>, TerrainError> {
         let failed = |source| TerrainError::Tile { path: self.path().to_path_buf(), source };
         let Some(bytes) = self.package.tile(id).map_err(failed)? else { return Ok(None) };
         let payload = self.manifest().decode(&bytes, id, Sections::TERRAIN);
@@ -131,7 +133,7 @@ impl RecordedTerrain {
         }
     }
 
-    /// The relief in the payload of a tile with ground, which must have one.
+    /// The relief in the payload of a tile with ground. The tile must have one.
     ///
     /// # Errors
     /// See [`TerrainError`].
@@ -142,17 +144,17 @@ impl RecordedTerrain {
             source: ReadError::from(error),
         })?;
         found.relief.ok_or_else(|| {
-            self.damaged(&format!("tile {id} has no relief, which its settings promise"))
+            self.damaged(&format!("tile {id} has no relief, although its settings request it"))
         })
     }
 
-    /// The files of some kinds that the package was made from.
+    /// The input files of some kinds from which the package was built.
     pub fn files(&self, kinds: &[InputKind]) -> impl Iterator<Item = &InputRecord> {
         let is_asked = move |input: &&InputRecord| kinds.iter().any(|kind| kind.is_of(input));
         self.manifest().inputs.iter().filter(is_asked)
     }
 
-    /// The error for content that contradicts itself.
+    /// The error for a package that contradicts itself.
     pub fn damaged(&self, what: &str) -> TerrainError {
         damaged(self.path(), what)
     }

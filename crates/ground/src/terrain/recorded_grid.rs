@@ -6,7 +6,7 @@ use corniche_gis::{CrsError, RecordedCrs, libraries};
 use corniche_spec::manifest_texts;
 use corniche_tileset::{Manifest, limits::MAX_TILES};
 
-/// The grid; no height can be read with it.
+/// The grid; heights cannot be read with it.
 #[must_use]
 pub fn plan(crs: &RecordedCrs, manifest: &Manifest) -> GridPlan {
     let (frame, [south_west, north_east]) = (manifest.frame, manifest.data_nodes());
@@ -24,7 +24,8 @@ pub fn plan(crs: &RecordedCrs, manifest: &Manifest) -> GridPlan {
         polygon: None,
         data_bounds: frame.node_bounds_m([south_west, north_east]),
         wgs84_bounds: manifest.wgs84_bounds,
-        // Whether other nodes than samples are thinned or resampled matters to nobody who has no samples.
+        // Without samples it does not matter whether nodes that are not samples are thinned or
+        // resampled.
         resampling: if manifest.nodes_are_samples {
             Resampling::Aligned
         } else {
@@ -42,7 +43,8 @@ pub fn plan(crs: &RecordedCrs, manifest: &Manifest) -> GridPlan {
     }
 }
 
-/// Fails with a reason unless the grid is one that a build makes. It decides how much work there is.
+/// Fails with a reason unless the grid is one that a build would create. The grid determines the
+/// amount of work.
 ///
 /// # Errors
 /// The reason.
@@ -56,25 +58,25 @@ pub fn check(manifest: &Manifest) -> Result<(), &'static str> {
         frame.y_m(north_east.j),
     ];
     if corners.map(f64::to_bits) != manifest.data_bounds.to_array().map(f64::to_bits) {
-        return Err("the corners of the data's rectangle are no nodes");
+        return Err("the corners of the data's rectangle are not nodes of its grid");
     }
     let smallest = GridFrame::covering(frame.origin_m(), frame.cell(), south_west, north_east);
     if smallest.as_ref() != Ok(frame) {
-        return Err("its grid is not the smallest over its data");
+        return Err("its grid is not the smallest that covers its data");
     }
     let tiles = |low: i64, high: i64| ((high - low) / TILE_CELLS + 2).unsigned_abs();
     let tiles = tiles(south_west.i, north_east.i).saturating_mul(tiles(south_west.j, north_east.j));
-    // At the borders there can be a row and a column more than there are tiles with ground.
+    // At the borders there can be one row and one column more than there are tiles with ground.
     if tiles > 2 * MAX_TILES as u64 {
         return Err("its data's rectangle has more tiles than a package can have");
     }
     Ok(())
 }
 
-/// The grid of a package, on which other rasters can be brought.
+/// The grid of a package, onto which other rasters can be resampled.
 ///
 /// # Errors
-/// When PROJ does not know its CRS.
+/// When PROJ does not know the package's CRS.
 pub fn grid_of(manifest: &Manifest) -> Result<GridPlan, CrsError> {
     let bounds = manifest.whole_data_bounds();
     let crs = RecordedCrs::new(&manifest.crs_wkt, manifest.metres_per_unit, bounds)?;

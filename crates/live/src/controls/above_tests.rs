@@ -1,10 +1,10 @@
 //! The view from above keeps its scale, and the ground stays under the cursor.
 
-use corniche_viewer::camera::Projection;
+use corniche_viewer::camera::CameraProjection;
 
 use super::*;
 
-/// Where the ground at a place is seen.
+/// The pixel at which the ground at a place appears.
 fn seen_at(navigator: &Navigator, [x, y]: [f64; 2]) -> DVec2 {
     let point = DVec3::new(x, y, HILLY.at(x, y));
     navigator.camera().project(point).unwrap().0
@@ -16,7 +16,7 @@ fn from_above_the_grabbed_ground_stays_under_the_cursor() {
     let middle =
         navigator.view().ground_at(DVec2::new(400.0, 300.0), SIZE_PX, 4e4, &HILLY).unwrap();
     navigator.handle(&Input::ToggleAbove, 0.0, &HILLY);
-    assert!(navigator.camera().projection != Projection::Perspective);
+    assert!(navigator.camera().projection != CameraProjection::Perspective);
     let at = seen_at(&navigator, [middle.x, middle.y]);
     assert!(at.distance(DVec2::new(400.0, 300.0)) < 1e-6, "{at}");
     let before_px = navigator.camera().pixel_at_depth_m(0.0);
@@ -43,7 +43,7 @@ fn from_above_the_grabbed_ground_stays_under_the_cursor() {
     let zoomed_px = navigator.camera().pixel_at_depth_m(0.0);
     assert!((zoomed_px / after_px - 0.5).abs() < 1e-9, "{zoomed_px} {after_px}");
 
-    // Turning keeps the middle and never tilts.
+    // Rotating keeps the middle and never tilts.
     let heading_deg = navigator.view().orientation.heading_deg;
     let middle =
         navigator.view().ground_at(DVec2::new(400.0, 300.0), SIZE_PX, 4e4, &HILLY).unwrap();
@@ -56,7 +56,7 @@ fn from_above_the_grabbed_ground_stays_under_the_cursor() {
 
     // Back in perspective the same place is in the middle, about as large.
     navigator.handle(&Input::ToggleAbove, 10.0, &HILLY);
-    assert_eq!(navigator.camera().projection, Projection::Perspective);
+    assert_eq!(navigator.camera().projection, CameraProjection::Perspective);
     assert!(seen_at(&navigator, [middle.x, middle.y]).distance(DVec2::new(400.0, 300.0)) < 1.0);
     let (_, depth_m) = navigator.camera().project(middle).unwrap();
     let seen_px = navigator.camera().pixel_at_depth_m(depth_m);

@@ -1,13 +1,13 @@
-//! A view that is moved within limits: the eye stays over the data and above the ground.
+//! A view whose movements are limited: the eye stays over the data and above the ground.
 
 use corniche_geom::Bounds;
 use corniche_viewer::camera::{Camera, Orientation};
 use glam::{DVec2, DVec3};
 
 use super::{
-    options::Limits,
+    options::CameraLimits,
     sight::sees_data,
-    view::{KnownGround, View, half_turn},
+    view::{CameraView, KnownGround, half_turn},
 };
 
 /// A drag over rising ground is solved at most this many times.
@@ -15,22 +15,13 @@ const PAN_SOLUTIONS: u32 = 64;
 /// When the eye is lifted, it is lifted this much farther than necessary.
 const LIFT_MARGIN_M: f64 = 1e-3;
 
-/// Whether a view could be moved as asked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Moved {
-    /// The view was moved.
-    Yes,
-    /// The view stays: the eye would have gone beyond its limits.
-    Blocked,
-}
-
-/// A view in a picture of some size, and how far it may go.
+/// A view in an image of some size, and the limits of its movements.
 #[derive(Debug, Clone)]
 pub(crate) struct BoundedView {
-    pub(crate) view: View,
-    /// The first view, which is allowed wherever it is.
-    pub(crate) home: View,
-    pub(crate) limits: Limits,
+    pub(crate) view: CameraView,
+    /// The first view, which is always allowed, even outside the limits.
+    pub(crate) home: CameraView,
+    pub(crate) limits: CameraLimits,
     pub(crate) size_px: [u32; 2],
 }
 
@@ -51,23 +42,25 @@ impl BoundedView {
         self.view.ground_at(at_px, self.size_px, self.limits.far_m(), ground)
     }
 
-    /// The ground in the middle of the picture; above the horizon, the point at the distance of the focus.
+    /// The ground in the middle of the image; above the horizon, the point at the distance of the
+    /// focus.
     pub(crate) fn middle(&self, ground: &dyn KnownGround) -> DVec3 {
         self.ground_at(self.middle_px(), ground).unwrap_or_else(|| {
             self.view.eye_in_world - self.view.world_from_view().z_axis * self.view.focus_m
         })
     }
 
-    /// Side of a pixel in the middle of the picture, world metres.
+    /// The side of a pixel in the middle of the image, in world metres.
     pub(crate) fn pixel_m(&self) -> f64 {
         self.camera().pixel_at_unit_depth_m() * self.view.focus_m
     }
 
     /// Brings the grabbed point `anchor` under the cursor.
     ///
-    /// Ground in the way lifts the eye. That moves the grabbed point away from the cursor, so the position in plan is
-    /// solved again. Where the ground behind the eye rises as steeply as the cursor's ray, this does not end; then the map
-    /// stays where it is, as it does when it is dragged beyond the horizon.
+    /// Ground in the way lifts the eye. Lifting moves the grabbed point away from the cursor, so
+    /// the position in plan is solved again. If the ground behind the eye rises as steeply as the
+    /// cursor's ray, the iteration does not converge; then the map does not move, just as when it
+    /// is dragged beyond the horizon.
     pub(crate) fn pan_to(&mut self, anchor: DVec3, cursor_px: DVec2, ground: &dyn KnownGround) {
         let far_m = self.limits.far_m();
         let mut view = self.view;
@@ -81,19 +74,19 @@ impl BoundedView {
                 self.view = view;
                 return;
             }
-            // Without the margin, the rest that is lacking would be halved again and again.
+            // Without the margin, the missing height would be halved again and again.
             view.eye_in_world.z += lacks_m + LIFT_MARGIN_M;
         }
     }
 
-    /// Moves the eye in plan by so many pixels to the right and ahead.
+    /// Moves the eye in plan by this many pixels to the right and ahead.
     pub(crate) fn pan_by(&mut self, step_px: DVec2) {
         let axes = self.view.world_from_view();
         let ahead = DVec3::Z.cross(axes.x_axis);
         self.view.eye_in_world += (axes.x_axis * step_px.x + ahead * step_px.y) * self.pixel_m();
     }
 
-    /// Turns about a point, as far as the eye stays above the ground.
+    /// Rotates about a point, as far as the eye stays above the ground.
     pub(crate) fn turn(
         &mut self,
         pivot: DVec3,
@@ -107,7 +100,7 @@ impl BoundedView {
             let heading_deg = half_turn(heading_deg);
             self.view.turned_about(pivot, Orientation { heading_deg, pitch_deg })
         };
-        let lacks = |view: &View| view.lacks_m(self.limits.clearance_m, ground) > 0.0;
+        let lacks = |view: &CameraView| view.lacks_m(self.limits.clearance_m, ground) > 0.0;
         let wanted = with(pitch_deg);
         // The more steeply the eye looks down, the higher it is above the pivot.
         self.view = if lacks(&wanted) {
@@ -117,13 +110,14 @@ impl BoundedView {
         };
     }
 
-    /// Turns the eye where it is.
+    /// Turns the eye without moving it.
     pub(crate) fn look(&mut self, heading_deg: f64, pitch_deg: f64) {
         self.view.orientation = Orientation { heading_deg, pitch_deg: pitch_deg.clamp(0.0, 90.0) };
     }
 
-    /// Zooms in unless the eye would be too low or too near to the pivot, or out unless it would be too far away.
-    pub(crate) fn zoom_by(&mut self, pivot: DVec3, levels: f64, ground: &dyn KnownGround) -> Moved {
+    /// Zooms in unless the eye would be too low or too near to the pivot, or out unless the eye
+    /// would be too far away. Returns whether it zoomed.
+    pub(crate) fn zoom_by(&mut self, pivot: DVec3, levels: f64, ground: &dyn KnownGround) -> bool {
         let zoomed = self.view.zoomed_at(pivot, libm::exp2(-levels));
         let distance_m = match zoomed.from_above {
             None => zoomed.eye_in_world.distance(pivot),
@@ -134,25 +128,29 @@ impl BoundedView {
                 || distance_m < 2.0 * self.limits.clearance_m);
         let is_too_far = levels < 0.0 && distance_m > self.limits.far_m();
         if is_too_low || is_too_far {
-            return Moved::Blocked;
+            return false;
         }
         self.view = zoomed;
-        Moved::Yes
+        true
     }
 
-    /// All heights become `factor` times what they were: the middle of the picture keeps its place. `ground` is the
-    /// ground before that.
+    /// Multiplies all heights by `factor`; the middle of the image keeps its place. `ground` is the
+    /// ground before the change.
     pub(crate) fn rescale_heights(&mut self, factor: f64, ground: &dyn KnownGround) {
         let pivot = self.middle(ground);
         self.view.eye_in_world.z += pivot.z * (factor - 1.0);
         self.home.eye_in_world.z += ground.base_height() * (factor - 1.0);
     }
 
-    /// The same direction and distance, with another place in the middle of the picture.
-    pub(crate) fn looking_at(&self, target_in_world: DVec3, ground: &dyn KnownGround) -> View {
+    /// The view with the same direction and distance, and another place in the middle of the image.
+    pub(crate) fn looking_at(
+        &self,
+        target_in_world: DVec3,
+        ground: &dyn KnownGround,
+    ) -> CameraView {
         if self.view.from_above.is_some() {
             let eye_in_world = target_in_world + DVec3::Z * self.view.focus_m;
-            return View { eye_in_world, ..self.view };
+            return CameraView { eye_in_world, ..self.view };
         }
         let distance_m = self.middle(ground).distance(self.view.eye_in_world);
         let distance_m = distance_m.clamp(2.0 * self.limits.clearance_m, self.limits.far_m());
@@ -160,11 +158,11 @@ impl BoundedView {
         let pitch_deg = pitch_deg.min(self.limits.max_pitch_deg);
         let orientation = Orientation { heading_deg, pitch_deg };
         let camera = Camera::look_at(target_in_world, distance_m, orientation, self.size_px);
-        View::of(&camera, orientation)
+        CameraView::from_camera(&camera, orientation)
     }
 
-    /// Whether some of the data would be seen in the view.
-    pub(crate) fn shows_data(&self, view: &View, ground: &dyn KnownGround) -> bool {
+    /// Whether the view would show some of the data.
+    pub(crate) fn shows_data(&self, view: &CameraView, ground: &dyn KnownGround) -> bool {
         sees_data(view, self.size_px, self.limits.data, ground.heights()[0])
     }
 

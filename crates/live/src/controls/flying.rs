@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use glam::DVec3;
 
-use super::{input::Key, view::View};
+use super::{input::CameraKey, view::CameraView};
 
 /// The Shift key multiplies the speed by this.
 const FAST: f64 = 4.0;
@@ -16,18 +16,18 @@ const SPEED_RANGE: [f64; 2] = [1.0 / 64.0, 64.0];
 /// The state of fly mode.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Flying {
-    held: BTreeSet<Key>,
+    held: BTreeSet<CameraKey>,
     is_fast: bool,
-    /// Notches by which the wheel has been turned in all.
+    /// The sum of the wheel's notches.
     notches: f64,
 }
 
 impl Flying {
-    pub(crate) fn press(&mut self, key: Key) {
+    pub(crate) fn press(&mut self, key: CameraKey) {
         self.held.insert(key);
     }
 
-    pub(crate) fn release(&mut self, key: Key) {
+    pub(crate) fn release(&mut self, key: CameraKey) {
         self.held.remove(&key);
     }
 
@@ -49,26 +49,27 @@ impl Flying {
         !self.held.is_empty()
     }
 
-    /// Speed along an axis. It grows with the height above the ground, of which the view's focus is a measure.
-    pub(crate) fn speed_m_per_s(&self, view: &View) -> f64 {
+    /// The speed along an axis. It grows with the height above the ground, which the view's focus
+    /// approximates.
+    pub(crate) fn speed_m_per_s(&self, view: &CameraView) -> f64 {
         let wheel = libm::pow(SPEED_PER_NOTCH, self.notches).clamp(SPEED_RANGE[0], SPEED_RANGE[1]);
         let fast = if self.is_fast { FAST } else { 1.0 };
         view.focus_m.max(10.0) * 0.5 * wheel * fast
     }
 
-    /// Where the eye is after the keys that are held now were held for some time.
-    pub(crate) fn moved(&self, view: &View, dt_s: f64) -> DVec3 {
+    /// The position of the eye after the keys that are held now were held for `dt_s`.
+    pub(crate) fn moved(&self, view: &CameraView, dt_s: f64) -> DVec3 {
         let axes = view.world_from_view();
         let direction: DVec3 = self
             .held
             .iter()
             .map(|key| match key {
-                Key::Ahead => -axes.z_axis,
-                Key::Back => axes.z_axis,
-                Key::StrafeLeft => -axes.x_axis,
-                Key::StrafeRight => axes.x_axis,
-                Key::Rise => DVec3::Z,
-                Key::Sink => DVec3::NEG_Z,
+                CameraKey::Ahead => -axes.z_axis,
+                CameraKey::Back => axes.z_axis,
+                CameraKey::StrafeLeft => -axes.x_axis,
+                CameraKey::StrafeRight => axes.x_axis,
+                CameraKey::Rise => DVec3::Z,
+                CameraKey::Sink => DVec3::NEG_Z,
                 _ => DVec3::ZERO,
             })
             .sum();

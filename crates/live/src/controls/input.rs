@@ -1,4 +1,4 @@
-//! Inputs of a person at mouse, keys and touch screen, without any window system.
+//! Inputs of mouse, keyboard and touch screen, independent of any window system.
 
 use glam::{DVec2, DVec3};
 
@@ -13,7 +13,7 @@ pub enum Button {
     Right,
 }
 
-/// Keys held down with a button or another key.
+/// Modifier keys held down with a button or another key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Modifiers {
     /// Shift.
@@ -24,7 +24,7 @@ pub struct Modifiers {
 
 /// A key that moves the camera.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Key {
+pub enum CameraKey {
     /// Arrow to the left.
     Left,
     /// Arrow to the right.
@@ -51,16 +51,7 @@ pub enum Key {
     Sink,
 }
 
-/// Whether a key goes down (or is repeated while down) or up.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum KeyState {
-    /// Down.
-    Pressed,
-    /// Up.
-    Released,
-}
-
-/// What a person does. Positions are pixels of the picture; (0, 0) is its upper left corner.
+/// An input of the user. Positions are pixels of the image; (0, 0) is its upper left corner.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Input {
     /// A button goes down.
@@ -82,16 +73,16 @@ pub enum Input {
         /// The button.
         button: Button,
     },
-    /// Two fingers touch the map, or are elsewhere now. The first time they grab the ground between them.
+    /// Two fingers touch the map, or have moved. The first event grabs the ground between them.
     TwoFingers {
-        /// Where they are.
+        /// The positions of the fingers.
         at_px: [DVec2; 2],
     },
-    /// Less than two fingers touch the map.
+    /// Fewer than two fingers touch the map.
     EndTwoFingers,
     /// The wheel turns.
     Wheel {
-        /// Notches, or parts of one. Positive is away from the person, and zooms in.
+        /// Notches or fractions of notches. Positive values turn away from the user and zoom in.
         steps: f64,
         /// The position of the cursor.
         at_px: DVec2,
@@ -106,9 +97,9 @@ pub enum Input {
     /// A key goes down or up.
     Key {
         /// The key.
-        key: Key,
-        /// Down or up.
-        state: KeyState,
+        key: CameraKey,
+        /// Whether it goes down, or is repeated while down.
+        is_down: bool,
         /// The modifier keys that are held.
         modifiers: Modifiers,
     },
@@ -117,19 +108,20 @@ pub enum Input {
         /// The modifier keys that are held now.
         modifiers: Modifiers,
     },
-    /// All keys and buttons count as released: the window lost the keyboard or the mouse.
+    /// All keys and buttons count as released, since the window lost the keyboard or the mouse.
     LetGo,
-    /// Turn the heading to north; the tilt stays.
+    /// Turn the heading to north and keep the tilt.
     NorthUp,
-    /// Back to the view at the beginning.
+    /// Return to the first view.
     Reset,
-    /// Look at a place from the direction and the distance from which the middle of the picture is seen now.
+    /// Look at a place from the current direction and the current distance to the middle of the
+    /// image.
     GoTo {
         /// A point of the ground, world metres.
         target_in_world: DVec3,
     },
-    /// Change from map to fly mode, or back.
+    /// Switch between map and fly mode.
     ToggleFly,
-    /// Change to a view straight from above with parallel rays, or back to perspective.
+    /// Switch between perspective and a view straight from above with parallel rays.
     ToggleAbove,
 }

@@ -1,9 +1,9 @@
-//! The map is not lost: what keeps the data in view, and the way to a place.
+//! The map cannot be lost: the data stays in view, also on the way to a place.
 
 use super::*;
 
-/// Whether the middle part of the picture shows some of the data, or of a rim of 500 m around it, looked for pixel by pixel: a
-/// sliver of the data may lie between two pixels.
+/// Whether the middle part of the image shows some of the data, or of a rim of 500 m around it. The
+/// search goes pixel by pixel, and a sliver of the data may fall between two pixels.
 fn finds_data(navigator: &Navigator) -> bool {
     let view = navigator.view();
     let camera = navigator.camera();
@@ -25,7 +25,14 @@ fn finds_data(navigator: &Navigator) -> bool {
 fn no_movement_of_the_map_loses_the_data() {
     let mut navigator = looking(30.0, 60.0, 8000.0);
     navigator.has_inertia = false;
-    let keys = [Key::Left, Key::Up, Key::Right, Key::Down, Key::ZoomOut, Key::ZoomIn];
+    let keys = [
+        CameraKey::Left,
+        CameraKey::Up,
+        CameraKey::Right,
+        CameraKey::Down,
+        CameraKey::ZoomOut,
+        CameraKey::ZoomIn,
+    ];
     let mut now_s = 0.0;
     let mut blocked = 0;
     for round in 0..24 {
@@ -34,7 +41,7 @@ fn no_movement_of_the_map_loses_the_data() {
             now_s += 0.1;
             let before = navigator.view();
             let is_shifted = step % 7 == 6;
-            navigator.handle(&key(keys[round % 6], KeyState::Pressed, is_shifted), now_s, &FLAT);
+            navigator.handle(&key(keys[round % 6], true, is_shifted), now_s, &FLAT);
             navigator.advance(now_s + 0.05, &FLAT);
             assert!(finds_data(&navigator), "round {round}, step {step}: {:?}", navigator.view());
             blocked += usize::from(navigator.view() == before);
@@ -60,8 +67,10 @@ fn a_map_dragged_out_of_the_data_comes_back_with_the_cursor() {
 fn a_flight_may_leave_the_data_and_the_map_goes_on_from_there() {
     let mut navigator = looking(0.0, 60.0, 2000.0);
     navigator.handle(&Input::ToggleFly, 0.0, &FLAT);
-    navigator
-        .jump_to(View { eye_in_world: DVec3::new(5000.0, 14_000.0, 900.0), ..navigator.view() });
+    navigator.jump_to(CameraView {
+        eye_in_world: DVec3::new(5000.0, 14_000.0, 900.0),
+        ..navigator.view()
+    });
     navigator.handle(&Input::ToggleFly, 0.1, &FLAT);
     assert!(!finds_data(&navigator));
     let before = navigator.view();

@@ -4,20 +4,21 @@ use corniche_viewer::camera::{Camera, Orientation};
 use glam::{DVec2, DVec3};
 
 use super::{
-    bounded_view::{BoundedView, Moved},
-    fingers::{Fingers, Step},
+    bounded_view::BoundedView,
+    fingers::{FingerStep, Fingers},
     flying::Flying,
-    input::{Button, Input, Key, KeyState, Modifiers},
+    input::{Button, CameraKey, Input, Modifiers},
     movement::{Gesture, Pending, Trail, Travel},
-    options::{Limits, Mode},
-    view::{KnownGround, View, half_turn},
+    options::{CameraLimits, Mode},
+    view::{CameraView, KnownGround, half_turn},
 };
 
-/// Change of heading for each point of a drag, as in `MapLibre`. A point is a pixel, except on screens with small pixels.
+/// The change of heading per point of a drag, as in `MapLibre`. A point is a pixel, except on
+/// screens with small pixels.
 const HEADING_DEG_PER_POINT: f64 = 0.8;
-/// Change of tilt for each point of a drag, as in `MapLibre`.
+/// The change of tilt per point of a drag, as in `MapLibre`.
 const PITCH_DEG_PER_POINT: f64 = 0.5;
-/// Change of heading and tilt for each point of a drag in fly mode.
+/// The change of heading and tilt per point of a drag in fly mode.
 const LOOK_DEG_PER_POINT: f64 = 0.15;
 /// Zoom levels for a notch of the wheel: three notches halve the distance.
 const LEVELS_PER_NOTCH: f64 = 1.0 / 3.0;
@@ -27,25 +28,25 @@ const PAN_STEP_POINTS: f64 = 100.0;
 const HEADING_STEP_DEG: f64 = 15.0;
 /// Shift and an arrow key tilt by this much, as in `MapLibre`.
 const PITCH_STEP_DEG: f64 = 10.0;
-/// The rest of a step shrinks by the factor e in this time.
+/// The remainder of a step shrinks by the factor e in this time.
 const STEP_DECAY_S: f64 = 0.08;
 /// The speed after a throw shrinks by the factor e in this time.
 const GLIDE_DECAY_S: f64 = 0.25;
 /// The map glides after a drag only if the drag was faster than this.
 const GLIDE_MIN_PX_PER_S: f64 = 60.0;
-/// The longest time step, so that the camera does not jump after a program was suspended. It is longer than most frames
-/// that a processor draws, so that flying is not slower without a graphics card.
+/// The longest time step, so that the camera does not jump after the program was suspended. It is
+/// longer than most frames drawn by the CPU, so that flying is not slower without a GPU.
 const MAX_STEP_S: f64 = 0.5;
 
-/// Moves the camera as a person wants.
+/// Moves the camera according to the user's input.
 #[derive(Debug, Clone)]
 pub struct Navigator {
     seen: BoundedView,
     pixels_per_point: f64,
     /// Map mode or fly mode.
     pub mode: Mode,
-    /// Whether movements slow down gradually, and after a fast drag the map glides on. Else they end at once; for scripts, and for people
-    /// whom movement disturbs.
+    /// Whether movements slow down gradually and the map glides on after a fast drag. Otherwise
+    /// movements end at once, for scripts and for users whom movement disturbs.
     pub has_inertia: bool,
     cursor_px: DVec2,
     gesture: Option<Gesture>,
@@ -54,21 +55,28 @@ pub struct Navigator {
     glide_m_per_s: DVec3,
     pending: Pending,
     travel: Option<Travel>,
-    /// The view that was asked for last. It is shown as it was asked for, until something moves it: so it is the picture that `render` draws.
-    placed: Option<View>,
-    /// The last view in map mode that showed some of the data; `None` where there is none to go back to.
-    sighted: Option<View>,
+    /// The last requested view. It is shown exactly as requested until something moves it, so it
+    /// matches the image that `render` draws.
+    placed: Option<CameraView>,
+    /// The last view in map mode that showed some of the data; `None` if there is no such view to
+    /// return to.
+    sighted: Option<CameraView>,
     flying: Flying,
     /// The time up to which the camera has moved.
     now_s: f64,
-    /// When the last frame began.
+    /// The time at which the last frame began.
     advanced_s: f64,
 }
 
 impl Navigator {
-    /// Begins with a view, to which [`Input::Reset`] returns. No side of the picture may be 0.
+    /// Starts with a view, to which [`Input::Reset`] returns. No side of the image may be 0.
     #[must_use]
-    pub fn new(home: View, limits: Limits, size_px: [u32; 2], has_inertia: bool) -> Self {
+    pub fn new(
+        home: CameraView,
+        limits: CameraLimits,
+        size_px: [u32; 2],
+        has_inertia: bool,
+    ) -> Self {
         Self {
             seen: BoundedView { view: home, home, limits, size_px },
             pixels_per_point: 1.0,
@@ -89,30 +97,31 @@ impl Navigator {
         }
     }
 
-    /// What is seen now.
+    /// The current view.
     #[must_use]
-    pub fn view(&self) -> View {
+    pub fn view(&self) -> CameraView {
         self.seen.view
     }
 
-    /// The camera for what is seen now.
+    /// The camera of the current view.
     #[must_use]
     pub fn camera(&self) -> Camera {
         self.seen.camera()
     }
 
-    /// The picture has another size now; no side may be 0.
+    /// Sets the size of the image; no side may be 0.
     pub fn resize(&mut self, size_px: [u32; 2]) {
         self.seen.size_px = size_px;
     }
 
-    /// The screen has this many pixels to a point: the smaller its pixels, the more of them a movement of the hand takes.
+    /// Sets the pixels per point of the screen: with smaller pixels, the same movement of the hand
+    /// covers more of them.
     pub fn set_pixels_per_point(&mut self, pixels_per_point: f64) {
         self.pixels_per_point = pixels_per_point;
     }
 
-    /// All heights become `factor` times what they were: the middle of the picture keeps its place. `ground` is the
-    /// ground before that.
+    /// Multiplies all heights by `factor`; the middle of the image keeps its place. `ground` is the
+    /// ground before the change.
     pub fn rescale_heights(&mut self, factor: f64, ground: &dyn KnownGround) {
         self.seen.rescale_heights(factor, ground);
         if let Some(held) = self.gesture.as_mut().and_then(Gesture::held_mut) {
@@ -128,7 +137,7 @@ impl Navigator {
         }
     }
 
-    /// Whether the camera goes on moving without any further input.
+    /// Whether the camera keeps moving without further input.
     #[must_use]
     pub fn is_moving(&self) -> bool {
         self.travel.is_some()
@@ -137,7 +146,7 @@ impl Navigator {
             || self.pending.is_some()
     }
 
-    /// Takes an input at a time, in seconds of any clock that does not run back.
+    /// Handles an input at a time, in seconds of any monotonic clock.
     pub fn handle(&mut self, input: &Input, now_s: f64, ground: &dyn KnownGround) {
         let was_moving = self.is_moving();
         match *input {
@@ -167,7 +176,7 @@ impl Navigator {
                 let levels = if modifiers.shift { -1.0 } else { 1.0 };
                 self.zoom(levels, at_px, ground);
             }
-            Input::Key { key, state, modifiers } => self.key(key, state, modifiers, ground),
+            Input::Key { key, is_down, modifiers } => self.key(key, is_down, modifiers, ground),
             Input::Modify { modifiers } => self.flying.set_fast(modifiers.shift),
             Input::LetGo => {
                 self.gesture = None;
@@ -187,14 +196,14 @@ impl Navigator {
         }
         self.settle(ground);
         self.keep_data_in_view(ground);
-        // A camera that was moving already has yet to move for the time since the last step. A key that is held down
-        // repeats itself, and its repetitions must not take that time away.
+        // A camera that was already moving has yet to move for the time since the last step. A held
+        // key repeats itself, and its repetitions must not consume that time.
         if !was_moving {
             self.now_s = now_s;
         }
     }
 
-    /// Lets time pass.
+    /// Advances the time.
     pub fn advance(&mut self, now_s: f64, ground: &dyn KnownGround) {
         let dt_s = (now_s - self.now_s).clamp(0.0, MAX_STEP_S);
         self.now_s = now_s;
@@ -224,7 +233,7 @@ impl Navigator {
         self.keep_data_in_view(ground);
     }
 
-    /// Brings the eye back within its limits, and adapts the focus where the view was moved.
+    /// Moves the eye back within its limits, and adapts the focus if the view was moved.
     fn settle(&mut self, ground: &dyn KnownGround) {
         let was = self.seen.view;
         self.seen.settle(ground);
@@ -234,15 +243,16 @@ impl Navigator {
         }
     }
 
-    /// In map mode, undoes a movement after which none of the data would be seen. A flight and the way to another view may
-    /// leave the data; from where they end, the map moves freely until some of the data is seen again.
+    /// In map mode, undoes a movement that leaves none of the data in view. A flight and the way to
+    /// another view may leave the data; after them, the map moves freely until some of the data is
+    /// in view again.
     fn keep_data_in_view(&mut self, ground: &dyn KnownGround) {
         if self.mode == Mode::Fly || self.travel.is_some() {
             self.sighted = None;
         } else if self.seen.shows_data(&self.seen.view, ground) {
             self.sighted = Some(self.seen.view);
         } else if let Some(last) = self.sighted
-            // It may have been seen in a window of another size.
+            // The data may have been seen in a window of another size.
             && self.seen.shows_data(&last, ground)
         {
             self.seen.view = last;
@@ -251,21 +261,17 @@ impl Navigator {
         }
     }
 
-    /// Takes another view at once, and stops all movements.
-    pub fn jump_to(&mut self, view: View) {
-        self.stop();
-        self.gesture = None;
-        self.fingers = None;
+    /// Switches to another view at once, and stops all movements.
+    pub fn jump_to(&mut self, view: CameraView) {
+        self.drop_all();
         self.sighted = None;
         self.placed = Some(view);
         self.seen.view = view;
     }
 
-    /// Moves to another view, which takes some time.
-    pub fn travel_to(&mut self, view: View, now_s: f64) {
-        self.stop();
-        self.gesture = None;
-        self.fingers = None;
+    /// Moves to another view within the usual duration.
+    pub fn travel_to(&mut self, view: CameraView, now_s: f64) {
+        self.drop_all();
         self.mode = Mode::Map;
         if view.from_above.is_none() {
             self.seen.view = self.seen.view.in_perspective();
@@ -275,12 +281,10 @@ impl Navigator {
     }
 
     fn toggle_above(&mut self, ground: &dyn KnownGround) {
-        self.stop();
-        self.gesture = None;
-        self.fingers = None;
+        self.drop_all();
         self.flying.let_go();
         self.mode = Mode::Map;
-        // Going back to a view in perspective would undo this.
+        // Returning to a view in perspective would undo this movement.
         self.sighted = None;
         let view = &self.seen.view;
         self.seen.view = match view.from_above {
@@ -295,9 +299,7 @@ impl Navigator {
     }
 
     fn toggle_fly(&mut self) {
-        self.stop();
-        self.gesture = None;
-        self.fingers = None;
+        self.drop_all();
         self.seen.view = self.seen.view.in_perspective();
         self.flying.let_go();
         self.mode = match self.mode {
@@ -348,7 +350,8 @@ impl Navigator {
         self.trail.push(now_s, self.seen.view.eye_in_world);
     }
 
-    /// Pinches, turns or tilts. The ground that was between the fingers at first stays between them, or at its place while the map tilts.
+    /// Zooms, rotates or tilts. The ground grabbed between the fingers stays between them, or at
+    /// its place while the map tilts.
     fn move_fingers(&mut self, at_px: [DVec2; 2], ground: &dyn KnownGround) {
         if self.mode == Mode::Fly {
             return;
@@ -364,21 +367,21 @@ impl Navigator {
         let anchor = fingers.anchor;
         let Orientation { heading_deg, pitch_deg } = self.seen.view.orientation;
         match fingers.move_to(at_px, self.pixels_per_point) {
-            Step::None => {}
-            Step::Tilt { points } => {
+            FingerStep::None => {}
+            FingerStep::Tilt { points } => {
                 let pitch_deg = pitch_deg - PITCH_DEG_PER_POINT * points;
                 self.seen.turn(anchor, heading_deg, pitch_deg, ground);
             }
-            Step::Pinch { levels, clockwise_deg, between_px } => {
-                // Too near or too far: the map still turns and moves.
-                let _ = self.seen.zoom_by(anchor, levels, ground);
+            FingerStep::Pinch { levels, clockwise_deg, between_px } => {
+                // The zoom has reached its limit: the map still rotates and moves.
+                self.seen.zoom_by(anchor, levels, ground);
                 self.seen.turn(anchor, heading_deg - clockwise_deg, pitch_deg, ground);
                 self.seen.pan_to(anchor, between_px, ground);
             }
         }
     }
 
-    /// After a fast drag the map glides on.
+    /// Makes the map glide on after a fast drag.
     fn throw(&mut self, now_s: f64) {
         let is_pan = matches!(self.gesture, Some(Gesture::Pan { .. }));
         if let Some(speed) = self.trail.speed_m_per_s(now_s, self.advanced_s)
@@ -397,8 +400,14 @@ impl Navigator {
         self.pending.zoom_levels += levels;
     }
 
-    fn key(&mut self, key: Key, state: KeyState, modifiers: Modifiers, ground: &dyn KnownGround) {
-        if state == KeyState::Released {
+    fn key(
+        &mut self,
+        key: CameraKey,
+        is_down: bool,
+        modifiers: Modifiers,
+        ground: &dyn KnownGround,
+    ) {
+        if !is_down {
             self.flying.release(key);
             return;
         }
@@ -415,25 +424,25 @@ impl Navigator {
         self.glide_m_per_s = DVec3::ZERO;
         self.travel = None;
         match key {
-            Key::Left => turn(&mut self.pending, -1.0, 0.0),
-            Key::Right => turn(&mut self.pending, 1.0, 0.0),
-            Key::Up => turn(&mut self.pending, 0.0, 1.0),
-            Key::Down => turn(&mut self.pending, 0.0, -1.0),
-            Key::ZoomIn => self.zoom(levels, self.seen.middle_px(), ground),
-            Key::ZoomOut => self.zoom(-levels, self.seen.middle_px(), ground),
+            CameraKey::Left => turn(&mut self.pending, -1.0, 0.0),
+            CameraKey::Right => turn(&mut self.pending, 1.0, 0.0),
+            CameraKey::Up => turn(&mut self.pending, 0.0, 1.0),
+            CameraKey::Down => turn(&mut self.pending, 0.0, -1.0),
+            CameraKey::ZoomIn => self.zoom(levels, self.seen.middle_px(), ground),
+            CameraKey::ZoomOut => self.zoom(-levels, self.seen.middle_px(), ground),
             _ if self.mode == Mode::Fly => self.flying.press(key),
             _ => {}
         }
     }
 
-    /// Does this share of the steps that were asked for.
+    /// Applies this share of the requested steps.
     fn do_pending(&mut self, share: f64, ground: &dyn KnownGround) {
         let asked = self.pending;
         let Pending { pan_px, heading_deg, pitch_deg, zoom_levels, pivot } =
             self.pending.take(share);
         if asked.zoom_levels != 0.0 {
             let pivot = pivot.unwrap_or_else(|| self.seen.middle(ground));
-            if self.seen.zoom_by(pivot, zoom_levels, ground) == Moved::Blocked {
+            if !self.seen.zoom_by(pivot, zoom_levels, ground) {
                 self.pending.zoom_levels = 0.0;
             }
         }
@@ -447,6 +456,13 @@ impl Navigator {
             }
         }
         self.seen.pan_by(pan_px);
+    }
+
+    /// Stops all movements and releases everything that a button or fingers hold.
+    fn drop_all(&mut self) {
+        self.stop();
+        self.gesture = None;
+        self.fingers = None;
     }
 
     fn stop(&mut self) {

@@ -1,4 +1,4 @@
-//! The ground that was grabbed stays under the cursor, and the eye never leaves the world.
+//! The grabbed ground stays under the cursor, and the eye never leaves the world.
 
 use corniche_geom::Bounds;
 use proptest::prelude::*;
@@ -24,7 +24,7 @@ impl Hills {
 }
 
 impl KnownGround for Hills {
-    /// Steps of a hundredth of the way, then halving.
+    /// Searches in steps of a hundredth of the way, then by bisection.
     fn hit(&self, eye: DVec3, ray: DVec3) -> Option<DVec3> {
         let above = |depth: f64| {
             let at = eye + ray * depth;
@@ -64,12 +64,12 @@ fn looking(heading_deg: f64, pitch_deg: f64, distance_m: f64) -> Navigator {
     let orientation = Orientation { heading_deg, pitch_deg };
     let target = DVec3::new(5000.0, 5000.0, 400.0);
     let camera = Camera::look_at(target, distance_m, orientation, SIZE_PX);
-    let limits = Limits {
+    let limits = CameraLimits {
         data: Bounds { min_x: 0.0, min_y: 0.0, max_x: 10_000.0, max_y: 10_000.0 },
         clearance_m: 2.0,
         max_pitch_deg: 85.0,
     };
-    Navigator::new(View::of(&camera, orientation), limits, SIZE_PX, true)
+    Navigator::new(CameraView::from_camera(&camera, orientation), limits, SIZE_PX, true)
 }
 
 fn press(button: Button, x: f64, y: f64) -> Input {
@@ -80,11 +80,11 @@ fn to(x: f64, y: f64) -> Input {
     Input::Move { at_px: DVec2::new(x, y) }
 }
 
-fn key(key: Key, state: KeyState, shift: bool) -> Input {
-    Input::Key { key, state, modifiers: Modifiers { shift, control: false } }
+fn key(key: CameraKey, is_down: bool, shift: bool) -> Input {
+    Input::Key { key, is_down, modifiers: Modifiers { shift, control: false } }
 }
 
-/// Lets time pass until nothing moves; panics if something moves for a minute.
+/// Advances the time until nothing moves; panics if something moves for a minute.
 fn rest(navigator: &mut Navigator, from_s: f64, ground: &Hills) {
     let mut now_s = from_s;
     while navigator.is_moving() {
@@ -94,7 +94,7 @@ fn rest(navigator: &mut Navigator, from_s: f64, ground: &Hills) {
     }
 }
 
-/// How far in pixels a place in the world is from one in the picture.
+/// The distance in pixels between a place in the world and a pixel of the image.
 fn off_px(navigator: &Navigator, at_in_world: DVec3, x: f64, y: f64) -> f64 {
     let (seen, _) = navigator.camera().project(at_in_world).expect("in front of the eye");
     seen.distance(DVec2::new(x, y))
@@ -133,7 +133,7 @@ proptest! {
         let grabbed = navigator.view().ground_at(between, SIZE_PX, 4e4, &HILLY).unwrap();
         let arm = DVec2::new(apart, 0.0);
         navigator.handle(&Input::TwoFingers { at_px: [between - arm, between + arm] }, 0.0, &HILLY);
-        // A first pinch, so that what follows is no tilt.
+        // First a pinch, so that the following movement is not a tilt.
         let (mut between, mut arm) = (between, arm * 1.3);
         navigator.handle(&Input::TwoFingers { at_px: [between - arm, between + arm] }, 0.0, &HILLY);
         for ([dx, dy, angle, factor], step) in way.into_iter().zip(1..) {
@@ -175,14 +175,15 @@ proptest! {
         prop_assert!((navigator.view().orientation.pitch_deg - (40.0 - 0.5 * dy)).abs() < 1e-9);
     }
 
-    /// Whatever a person does, the eye stays finite, above the ground and near the data, and the tilt in its range.
+    /// Whatever the user does, the eye stays finite, above the ground and near the data, and the
+    /// tilt in its range.
     #[test]
     fn the_eye_never_leaves_the_world(
         inputs in prop::collection::vec((0..12_u8, -200.0..1000.0_f64, -200.0..800.0_f64), 1..60),
     ) {
         let mut navigator = looking(20.0, 50.0, 2000.0);
         let buttons = [Button::Left, Button::Middle, Button::Right];
-        let keys = [Key::Up, Key::Left, Key::ZoomIn, Key::Ahead, Key::Sink, Key::Rise, Key::Back];
+        let keys = [CameraKey::Up, CameraKey::Left, CameraKey::ZoomIn, CameraKey::Ahead, CameraKey::Sink, CameraKey::Rise, CameraKey::Back];
         let mut now_s = 0.0;
         for (what, x, y) in inputs {
             let pick = (x.abs() as usize) % 21;
@@ -191,8 +192,8 @@ proptest! {
                 2..=4 => to(x, y),
                 5 => Input::Release { button: buttons[pick % 3] },
                 6 => Input::Wheel { steps: y / 40.0, at_px: DVec2::new(x, 300.0) },
-                7 => key(keys[pick % 7], KeyState::Pressed, y > 300.0),
-                8 => key(keys[pick % 7], KeyState::Released, false),
+                7 => key(keys[pick % 7], true, y > 300.0),
+                8 => key(keys[pick % 7], false, false),
                 9 => Input::ToggleFly,
                 10 => Input::ToggleAbove,
                 _ => Input::NorthUp,
@@ -200,7 +201,7 @@ proptest! {
             navigator.handle(&input, now_s, &HILLY);
             now_s += 0.05;
             navigator.advance(now_s, &HILLY);
-            let View { eye_in_world: eye, orientation, focus_m, .. } = navigator.view();
+            let CameraView { eye_in_world: eye, orientation, focus_m, .. } = navigator.view();
             prop_assert!(eye.is_finite() && focus_m.is_finite() && focus_m > 0.0);
             prop_assert!(eye.z >= HILLY.at(eye.x, eye.y) + 2.0 - 1e-6, "{input:?}");
             prop_assert!((0.0..=90.0).contains(&orientation.pitch_deg));
@@ -215,7 +216,7 @@ fn before_a_slope() -> Navigator {
     let mut navigator = looking(270.0, 70.0, 300.0);
     let [x, y] = [4740.0, 5000.0];
     let eye_in_world = DVec3::new(x, y, HILLY.at(x, y) + 3.0);
-    navigator.jump_to(View { eye_in_world, ..navigator.view() });
+    navigator.jump_to(CameraView { eye_in_world, ..navigator.view() });
     navigator
 }
 
@@ -235,7 +236,7 @@ fn the_eye_is_lifted_over_a_hill_and_the_grabbed_ground_stays() {
     assert!(navigator.view().lacks_m(2.0, &HILLY) <= 1e-6);
     let there = navigator.view().eye_in_world;
     assert!(there.z > before_m + 0.5, "it was never in the way");
-    // Along a slope without end there is no place from which the ground grabbed is seen there.
+    // Along an endless slope, the grabbed ground cannot be seen there from any position.
     let mut navigator = before_a_slope();
     let before = navigator.view();
     navigator.handle(&press(Button::Left, 400.0, 500.0), 0.0, &Slope);
@@ -243,7 +244,7 @@ fn the_eye_is_lifted_over_a_hill_and_the_grabbed_ground_stays() {
     assert_eq!(navigator.view().eye_in_world, before.eye_in_world);
 }
 
-/// Rises to the east for ever, one in three, through the ground beneath that navigator.
+/// A slope that rises to the east forever, one in three, through the ground beneath that navigator.
 struct Slope;
 
 impl KnownGround for Slope {
@@ -382,13 +383,13 @@ fn a_map_is_thrown_where_frames_are_slow_too() {
 fn signs_zoom_by_a_level_and_with_shift_by_two() {
     let target = DVec3::new(5000.0, 5000.0, 400.0);
     for (sign, shift, factor) in [
-        (Key::ZoomIn, false, 0.5),
-        (Key::ZoomIn, true, 0.25),
-        (Key::ZoomOut, false, 2.0),
-        (Key::ZoomOut, true, 4.0),
+        (CameraKey::ZoomIn, false, 0.5),
+        (CameraKey::ZoomIn, true, 0.25),
+        (CameraKey::ZoomOut, false, 2.0),
+        (CameraKey::ZoomOut, true, 4.0),
     ] {
         let mut navigator = looking(0.0, 30.0, 3000.0);
-        navigator.handle(&key(sign, KeyState::Pressed, shift), 0.0, &FLAT);
+        navigator.handle(&key(sign, true, shift), 0.0, &FLAT);
         rest(&mut navigator, 0.0, &FLAT);
         let distance_m = navigator.view().eye_in_world.distance(target);
         assert!((distance_m / 3000.0 / factor - 1.0).abs() < 0.005, "{distance_m}");
@@ -399,7 +400,7 @@ fn signs_zoom_by_a_level_and_with_shift_by_two() {
 fn shift_makes_a_flight_under_way_fast_and_slow_again() {
     let mut navigator = looking(90.0, 85.0, 3000.0);
     navigator.handle(&Input::ToggleFly, 0.0, &FLAT);
-    navigator.handle(&key(Key::StrafeLeft, KeyState::Pressed, false), 0.0, &FLAT);
+    navigator.handle(&key(CameraKey::StrafeLeft, true, false), 0.0, &FLAT);
     let mut now_s = 0.0;
     let mut way_m = |shift: bool| {
         let modifiers = Modifiers { shift, control: false };
@@ -409,7 +410,7 @@ fn shift_makes_a_flight_under_way_fast_and_slow_again() {
         navigator.advance(now_s, &FLAT);
         navigator.view().eye_in_world.distance(from)
     };
-    // The first step is measured by the focus of the first view.
+    // The focus of the first view determines the first step.
     way_m(false);
     let [slow_m, fast_m, again_m] = [false, true, false].map(&mut way_m);
     assert!((fast_m / slow_m - 4.0).abs() < 1e-6, "{slow_m} m became {fast_m} m");
@@ -436,14 +437,14 @@ fn a_double_click_halves_the_distance_and_doubles_it_with_shift() {
 fn arrows_pan_by_a_hundred_pixels_and_turn_with_shift() {
     let mut navigator = looking(90.0, 0.0, 3000.0);
     let pixel_m = navigator.camera().pixel_at_unit_depth_m() * 3000.0;
-    navigator.handle(&key(Key::Up, KeyState::Pressed, false), 0.0, &FLAT);
+    navigator.handle(&key(CameraKey::Up, true, false), 0.0, &FLAT);
     rest(&mut navigator, 0.0, &FLAT);
-    // Up in a picture that looks east is east.
+    // In an image that looks east, up is east.
     let eye = navigator.view().eye_in_world;
     assert!((eye.x - 5000.0 - 100.0 * pixel_m).abs() < 1e-3 * pixel_m + 1e-6, "{eye}");
     assert!((eye.y - 5000.0).abs() < 1e-6);
-    navigator.handle(&key(Key::Right, KeyState::Pressed, true), 1.0, &FLAT);
-    navigator.handle(&key(Key::Up, KeyState::Pressed, true), 1.0, &FLAT);
+    navigator.handle(&key(CameraKey::Right, true, true), 1.0, &FLAT);
+    navigator.handle(&key(CameraKey::Up, true, true), 1.0, &FLAT);
     rest(&mut navigator, 1.0, &FLAT);
     let Orientation { heading_deg, pitch_deg } = navigator.view().orientation;
     assert!((heading_deg - 105.0).abs() < 0.01 && (pitch_deg - 10.0).abs() < 0.01);
@@ -469,11 +470,14 @@ fn north_comes_up_the_shorter_way_and_reset_returns() {
 #[test]
 fn in_fly_mode_the_eye_moves_along_its_view_while_a_key_is_held() {
     let mut navigator = looking(90.0, 90.0, 3000.0);
-    navigator.jump_to(View { eye_in_world: DVec3::new(4000.0, 5000.0, 900.0), ..navigator.view() });
+    navigator.jump_to(CameraView {
+        eye_in_world: DVec3::new(4000.0, 5000.0, 900.0),
+        ..navigator.view()
+    });
     navigator.handle(&Input::ToggleFly, 0.0, &FLAT);
     assert_eq!(navigator.mode, Mode::Fly);
     let start = navigator.view().eye_in_world;
-    navigator.handle(&key(Key::Ahead, KeyState::Pressed, false), 0.0, &FLAT);
+    navigator.handle(&key(CameraKey::Ahead, true, false), 0.0, &FLAT);
     for step in 1..=10 {
         navigator.advance(f64::from(step) * 0.05, &FLAT);
     }
@@ -482,7 +486,7 @@ fn in_fly_mode_the_eye_moves_along_its_view_while_a_key_is_held() {
     // Map mode tilts no farther than 85°, so that it sinks a little on its way.
     let moved = there.eye_in_world - start;
     assert!((moved.z / moved.x + 5.0_f64.to_radians().tan()).abs() < 1e-9);
-    navigator.handle(&key(Key::Ahead, KeyState::Released, false), 0.5, &FLAT);
+    navigator.handle(&key(CameraKey::Ahead, false, false), 0.5, &FLAT);
     assert!(!navigator.is_moving());
     // The left button looks around, and the eye stays.
     navigator.handle(&press(Button::Left, 400.0, 300.0), 0.6, &FLAT);
@@ -490,8 +494,8 @@ fn in_fly_mode_the_eye_moves_along_its_view_while_a_key_is_held() {
     let Orientation { heading_deg, pitch_deg } = navigator.view().orientation;
     assert!((heading_deg - 105.0).abs() < 1e-9 && (pitch_deg - 88.0).abs() < 1e-9);
     assert_eq!(navigator.view().eye_in_world, there.eye_in_world);
-    // A key whose release was never seen does not fly on for ever.
-    navigator.handle(&key(Key::Rise, KeyState::Pressed, true), 0.8, &FLAT);
+    // A key whose release was never reported does not fly on forever.
+    navigator.handle(&key(CameraKey::Rise, true, true), 0.8, &FLAT);
     navigator.handle(&Input::LetGo, 0.9, &FLAT);
     assert!(!navigator.is_moving());
 }
@@ -503,7 +507,7 @@ fn what_is_grabbed_in_the_sky_moves_nothing() {
     navigator.handle(&press(Button::Left, 400.0, 5.0), 0.0, &FLAT);
     navigator.handle(&to(500.0, 50.0), 0.1, &FLAT);
     assert_eq!(navigator.view().eye_in_world, before);
-    // Nor is ground thrown beyond the horizon.
+    // Ground is not thrown beyond the horizon either.
     navigator.handle(&press(Button::Left, 400.0, 590.0), 0.2, &FLAT);
     navigator.handle(&to(400.0, 5.0), 0.3, &FLAT);
     assert_eq!(navigator.view().eye_in_world, before);
@@ -522,12 +526,16 @@ fn exaggeration_keeps_the_middle_of_the_picture() {
 fn a_key_that_repeats_itself_flies_as_far_as_one_that_does_not() {
     let flown_m = |repeats: &[f64]| {
         let mut navigator = looking(0.0, 60.0, 2000.0);
-        let ahead = |state| Input::Key { key: Key::Ahead, state, modifiers: Modifiers::default() };
+        let ahead = |is_down| Input::Key {
+            key: CameraKey::Ahead,
+            is_down,
+            modifiers: Modifiers::default(),
+        };
         navigator.handle(&Input::ToggleFly, 10.0, &FLAT);
         let from = navigator.view().eye_in_world;
-        navigator.handle(&ahead(KeyState::Pressed), 10.0, &FLAT);
+        navigator.handle(&ahead(true), 10.0, &FLAT);
         for at_s in repeats {
-            navigator.handle(&ahead(KeyState::Pressed), *at_s, &FLAT);
+            navigator.handle(&ahead(true), *at_s, &FLAT);
         }
         navigator.advance(10.4, &FLAT);
         navigator.view().eye_in_world.distance(from)
@@ -540,7 +548,7 @@ fn a_key_that_repeats_itself_flies_as_far_as_one_that_does_not() {
 
 #[test]
 fn on_a_screen_twice_as_fine_the_same_way_of_the_hand_turns_as_far() {
-    let turned = |pixels_per_point: f64, keyed: Key| {
+    let turned = |pixels_per_point: f64, keyed: CameraKey| {
         let mut navigator = looking(10.0, 40.0, 3000.0);
         navigator.set_pixels_per_point(pixels_per_point);
         navigator.handle(&press(Button::Right, 400.0, 300.0), 0.0, &FLAT);
@@ -548,14 +556,15 @@ fn on_a_screen_twice_as_fine_the_same_way_of_the_hand_turns_as_far() {
         navigator.handle(&moved, 0.1, &FLAT);
         navigator.handle(&Input::Release { button: Button::Right }, 1.0, &FLAT);
         let from = navigator.view();
-        navigator.handle(&key(keyed, KeyState::Pressed, false), 2.0, &FLAT);
+        navigator.handle(&key(keyed, true, false), 2.0, &FLAT);
         rest(&mut navigator, 2.0, &FLAT);
         (from.orientation, (navigator.view().eye_in_world - from.eye_in_world).length())
     };
-    let ((coarse, way_m), (fine, finer_way_m)) = (turned(1.0, Key::Left), turned(2.0, Key::Left));
+    let ((coarse, way_m), (fine, finer_way_m)) =
+        (turned(1.0, CameraKey::Left), turned(2.0, CameraKey::Left));
     assert!((coarse.heading_deg - fine.heading_deg).abs() < 1e-9, "{coarse:?} {fine:?}");
     assert!((coarse.pitch_deg - fine.pitch_deg).abs() < 1e-9, "{coarse:?} {fine:?}");
-    // An arrow pans over as much of the screen, which is twice the pixels.
+    // An arrow pans over the same part of the screen, which is twice the number of pixels.
     assert!((finer_way_m / way_m - 2.0).abs() < 0.05, "{way_m} m and {finer_way_m} m");
 }
 
@@ -563,7 +572,7 @@ fn on_a_screen_twice_as_fine_the_same_way_of_the_hand_turns_as_far() {
 fn a_drag_heard_of_after_a_long_frame_is_no_throw_across_the_map() {
     let mut navigator = looking(0.0, 45.0, 3000.0);
     navigator.advance(10.0, &FLAT);
-    // A frame takes 1.8 s, and then the whole drag is heard of within a millisecond.
+    // A frame takes 1.8 s, and then the whole drag is reported within a millisecond.
     navigator.handle(&press(Button::Left, 400.0, 300.0), 11.8, &FLAT);
     navigator.handle(&to(490.0, 348.0), 11.800_5, &FLAT);
     let from = navigator.view().eye_in_world;

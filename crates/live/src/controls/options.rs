@@ -4,28 +4,30 @@ use corniche_geom::Bounds;
 
 /// How far the camera may go.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limits {
-    /// The data in plan; the eye goes no farther from them than their larger side.
+pub struct CameraLimits {
+    /// The extent of the data in plan. The eye goes no farther beyond it than the length of its
+    /// longer side.
     pub data: Bounds,
-    /// The eye stays so far above the ground, world metres.
+    /// The least height of the eye above the ground, in world metres.
     pub clearance_m: f64,
-    /// Farthest tilt from straight down in map mode.
+    /// The largest tilt from straight down in map mode.
     pub max_pitch_deg: f64,
 }
 
-impl Limits {
-    /// The largest distance at which something can be grabbed, and the largest height of the eye over the ground.
+impl CameraLimits {
+    /// The largest distance at which something can be grabbed, and the largest height of the eye
+    /// above the ground.
     #[must_use]
     pub fn far_m(&self) -> f64 {
         4.0 * self.data.width().max(self.data.height()).max(100.0)
     }
 }
 
-/// What a drag does to the camera.
+/// The effect of a drag on the camera.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mode {
-    /// It moves the ground, as one moves a map on a table.
+    /// A drag moves the ground, like a map on a table.
     Map,
-    /// It turns the eye, as one looks around in flight.
+    /// A drag turns the eye, like looking around in flight.
     Fly,
 }

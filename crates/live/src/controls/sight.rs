@@ -1,30 +1,33 @@
-//! Whether a view shows some of the data, so that nobody loses the map.
+//! Checks whether a view shows some of the data, so that users cannot lose the map.
 
 use corniche_geom::Bounds;
 use glam::{DVec2, DVec3};
 
-use super::view::View;
+use super::view::CameraView;
 
-/// The share of the picture's sides, around its middle, in which some of the data must be seen. Panel, compass and notices lie
-/// outside it in all but small windows.
+/// The inner share of the image's sides in which some of the data must be visible. Panel, compass
+/// and notices are outside it in all but small windows.
 const INNER_SHARE: f64 = 0.6;
 
-/// Whether the inner part of a picture of this size shows a part of the data's rectangle at the height `lowest_m` of its
-/// lowest ground.
+/// Whether the inner part of an image of this size shows a part of the data's rectangle at the
+/// height `lowest_m` of its lowest ground.
 ///
-/// Where it does, ground or the wall at the data's edge is seen there, voids aside: a ray from an eye above the ground, or
-/// outside the data, to a point below all ground crosses the ground or the wall on its way.
+/// If so, ground or the wall at the data's edge is visible there, voids aside: a ray from an eye
+/// above the ground, or outside the data, to a point below all ground crosses the ground or the
+/// wall on its way.
 ///
-/// The rectangle is clipped by the four sides of the pyramid between the eye and the inner part of the picture: Sutherland &
-/// Hodgman 1974, *Reentrant Polygon Clipping*.
-pub(crate) fn sees_data(view: &View, size_px: [u32; 2], data: Bounds, lowest_m: f64) -> bool {
-    // From above the same of the plane at that height is seen in perspective from the distance of the focus.
+/// The rectangle is clipped by the four sides of the pyramid between the eye and the inner part of
+/// the image: Sutherland & Hodgman 1974, *Reentrant Polygon Clipping*.
+pub(crate) fn sees_data(view: &CameraView, size_px: [u32; 2], data: Bounds, lowest_m: f64) -> bool {
+    // A view from above shows the same part of the plane at that height as perspective from the
+    // distance of the focus.
     let eye = view.eye_in_world;
     let view = match view.from_above {
         None => *view,
-        Some(_) => {
-            View { eye_in_world: eye.with_z(lowest_m + view.focus_m), ..view.in_perspective() }
-        }
+        Some(_) => CameraView {
+            eye_in_world: eye.with_z(lowest_m + view.focus_m),
+            ..view.in_perspective()
+        },
     };
     let camera = view.camera(size_px);
     let [width, height] = size_px.map(f64::from);
@@ -44,7 +47,7 @@ pub(crate) fn sees_data(view: &View, size_px: [u32; 2], data: Bounds, lowest_m: 
     !seen.is_empty()
 }
 
-/// The part of a polygon on the side of a plane through the origin to which `normal` points.
+/// The part of a polygon on the side of a plane through the origin that `normal` points to.
 fn clipped(polygon: &[DVec3], normal: DVec3) -> Vec<DVec3> {
     let mut kept = Vec::with_capacity(polygon.len() + 1);
     for (from, to) in polygon.iter().zip(polygon.iter().cycle().skip(1)) {

@@ -1,4 +1,4 @@
-//! Some of the data always stays in sight.
+//! Some of the data always stays in view.
 
 use corniche_viewer::camera::{Camera, Orientation};
 
@@ -7,10 +7,10 @@ use super::*;
 const SIZE_PX: [u32; 2] = [800, 600];
 const DATA: Bounds = Bounds { min_x: 0.0, min_y: 0.0, max_x: 1000.0, max_y: 1000.0 };
 
-fn looking_at(x: f64, y: f64, pitch_deg: f64, distance_m: f64) -> View {
+fn looking_at(x: f64, y: f64, pitch_deg: f64, distance_m: f64) -> CameraView {
     let orientation = Orientation { heading_deg: 0.0, pitch_deg };
     let camera = Camera::look_at(DVec3::new(x, y, 0.0), distance_m, orientation, SIZE_PX);
-    View::of(&camera, orientation)
+    CameraView::from_camera(&camera, orientation)
 }
 
 /// Half the inner part is 0.6 · tan 22.5° of the distance high: 248.5 m at 1000 m.

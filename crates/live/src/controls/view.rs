@@ -1,4 +1,4 @@
-//! The view of the camera, and what controls must know of the ground that it looks at.
+//! The view of the camera, and the ground queries that the controls need.
 
 use corniche_viewer::{
     camera::{Camera, Orientation},
@@ -10,33 +10,38 @@ use glam::{DMat3, DVec2, DVec3};
 pub trait KnownGround {
     /// The first ground along a ray.
     fn hit(&self, eye_in_world: DVec3, ray_in_world: DVec3) -> Option<DVec3>;
+    /// The ground that a camera sees at a pixel.
+    fn under(&self, camera: &Camera, at_px: DVec2) -> Option<DVec3> {
+        self.hit(camera.ray_start_in_world(at_px), camera.ray_in_world(at_px))
+    }
     /// Height of the ground at a place in plan, world metres.
     fn height(&self, at: [f64; 2]) -> Option<f64>;
-    /// A height in the middle of the range of heights, world metres. Where no ground is known, a plane at this height is
-    /// taken for it.
+    /// A height in the middle of the range of heights, in world metres. Where the ground is
+    /// unknown, a plane at this height replaces it.
     fn base_height(&self) -> f64;
-    /// All ground of the package lies between these heights, world metres.
+    /// The heights of the lowest and the highest ground of the package, in world metres.
     fn heights(&self) -> [f64; 2];
 }
 
-/// Where the eye is and how it looks.
+/// The position and direction of the eye.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct View {
+pub struct CameraView {
     /// The eye, world metres.
     pub eye_in_world: DVec3,
     /// Direction of view.
     pub orientation: Orientation,
-    /// About how far away the ground is that is looked at; near plane and haze follow from it.
+    /// The approximate distance of the ground in view; it determines the near plane and the haze.
     pub focus_m: f64,
-    /// Heights between which all ground lies, world metres, in a view from above with parallel rays. The eye is then over the middle of
-    /// the picture, at about the height from which things look as large, and looks straight down.
+    /// For a view from above with parallel rays: the heights between which all ground lies, in
+    /// world metres. The eye is then over the middle of the image and looks straight down, at about
+    /// the height from which things look as large.
     pub from_above: Option<[f64; 2]>,
 }
 
-impl View {
+impl CameraView {
     /// The view of a camera in perspective, whose direction is `orientation`.
     #[must_use]
-    pub fn of(camera: &Camera, orientation: Orientation) -> Self {
+    pub fn from_camera(camera: &Camera, orientation: Orientation) -> Self {
         Self {
             eye_in_world: camera.eye_in_world,
             orientation,
@@ -45,7 +50,7 @@ impl View {
         }
     }
 
-    /// The camera for a picture of this size.
+    /// The camera for an image of this size.
     #[must_use]
     pub fn camera(&self, size_px: [u32; 2]) -> Camera {
         let camera = Camera::at_eye(self.eye_in_world, self.focus_m, self.orientation, size_px);
@@ -61,8 +66,8 @@ impl View {
         }
     }
 
-    /// What is seen straight from above with parallel rays: `middle` in the middle of the picture, as large as now, within a range of
-    /// distances.
+    /// The view straight from above with parallel rays: `middle` is in the middle of the image at
+    /// the current scale, within a range of distances.
     #[must_use]
     pub fn seen_from_above(
         &self,
@@ -79,21 +84,21 @@ impl View {
         }
     }
 
-    /// The same place in perspective.
+    /// The view of the same place in perspective.
     #[must_use]
     pub fn in_perspective(&self) -> Self {
         Self { from_above: None, ..*self }
     }
 
-    /// Columns: right, up, backward.
+    /// The matrix of the view's axes; its columns are right, up and backward.
     #[must_use]
     pub fn world_from_view(&self) -> DMat3 {
-        // The axes depend neither on the position nor on the size of the picture.
+        // The axes depend neither on the position nor on the size of the image.
         Camera::look_at(DVec3::ZERO, 1.0, self.orientation, [1, 1]).world_from_view
     }
 
-    /// The ground at a pixel. Where there is none, the plane at the ground's base height, if that is no farther away than
-    /// `most_m`.
+    /// The ground at a pixel. Where there is no ground: the plane at the ground's base height, if
+    /// that is no farther away than `most_m`.
     #[must_use]
     pub fn ground_at(
         &self,
@@ -102,13 +107,13 @@ impl View {
         most_m: f64,
         ground: &dyn KnownGround,
     ) -> Option<DVec3> {
-        let camera = self.camera(size_px);
         ground
-            .hit(camera.ray_start_in_world(at_px), camera.ray_in_world(at_px))
+            .under(&self.camera(size_px), at_px)
             .or_else(|| self.on_plane(at_px, size_px, ground.base_height(), most_m))
     }
 
-    /// Where the ray through a pixel meets the horizontal plane at a height; `None` if that is farther away than `most_m`.
+    /// The point where the ray through a pixel meets the horizontal plane at a height; `None` if it
+    /// is farther away than `most_m`.
     #[must_use]
     pub fn on_plane(
         &self,
@@ -141,8 +146,8 @@ impl View {
         Self { eye_in_world, focus_m, ..*self }
     }
 
-    /// The eye moved in plan so that `anchor` is seen at a pixel; `None` where that would take it more than `most_m` away
-    /// from the anchor.
+    /// The view with the eye moved in plan so that `anchor` appears at a pixel; `None` if the eye
+    /// would be more than `most_m` away from the anchor.
     #[must_use]
     pub fn dragged(
         &self,
@@ -155,7 +160,8 @@ impl View {
             .map(|beneath| Self { eye_in_world: self.eye_in_world + (anchor - beneath), ..*self })
     }
 
-    /// How much higher the eye must be to be `clearance_m` above the ground; 0 or negative where it is high enough.
+    /// The height by which the eye must rise to be `clearance_m` above the ground; 0 or negative if
+    /// it is high enough.
     #[must_use]
     pub fn lacks_m(&self, clearance_m: f64, ground: &dyn KnownGround) -> f64 {
         let eye = self.eye_in_world;
@@ -167,8 +173,8 @@ impl View {
             .map_or(f64::NEG_INFINITY, |height_m| height_m + clearance_m - eye.z)
     }
 
-    /// The same view with the focus that follows from its height above the ground, by the rule for flights; from above, with the height
-    /// that follows from the focus.
+    /// The same view with the focus derived from its height above the ground, by the rule for
+    /// flights; from above, with the height derived from the focus.
     #[must_use]
     pub fn refocused(&self, ground: &dyn KnownGround) -> Self {
         let eye = self.eye_in_world;
@@ -182,7 +188,7 @@ impl View {
     }
 }
 
-/// The same direction between −180° and 180°.
+/// The same heading, between −180° and 180°.
 pub(crate) fn half_turn(heading_deg: f64) -> f64 {
     (heading_deg + 180.0).rem_euclid(360.0) - 180.0
 }

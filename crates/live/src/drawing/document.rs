@@ -1,67 +1,96 @@
-//! The lines, and what was changed in them.
+//! The drawn lines and the history of their changes.
 
 use std::sync::Arc;
 
-/// How many changes can be taken back.
+use corniche_geom::CoordinateTable;
+
+/// The number of changes that can be undone.
 const MOST_CHANGES: usize = 1000;
 
 /// A point of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct DrawnPoint {
-    /// Longitude and latitude, as they are saved.
+    /// Longitude and latitude, as in the file.
     pub(crate) lon_lat_deg: [f64; 2],
     /// x and y in the working CRS.
     pub(crate) at_m: [f64; 2],
 }
 
-/// A line. Lines are never changed: a change makes another line in the same place.
+impl DrawnPoint {
+    /// Creates the point at a position in the working CRS.
+    pub(crate) fn at(at_m: [f64; 2], coordinates: &CoordinateTable) -> Self {
+        Self { lon_lat_deg: coordinates.wgs84_from_working(at_m), at_m }
+    }
+}
+
+/// A line. Lines are immutable: a change replaces a line with a new one.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Line {
-    /// Which line it is, whatever is changed in it.
+pub(crate) struct DocumentLine {
+    /// The id of the line, which changes keep.
     pub(crate) id: u64,
-    /// Which feature of the file it comes from; `None` for one that was drawn.
+    /// The feature of the file that the line comes from; `None` for a line drawn here.
     pub(crate) feature: Option<usize>,
-    /// Whether it is the outline of an area: its first point comes after the last one.
+    /// Whether the line is the outline of an area: its last point is joined to the first.
     pub(crate) is_area: bool,
-    /// Its points; a line that is being begun has only one.
+    /// The points of the line; a line that was just started has only one.
     pub(crate) points: Vec<DrawnPoint>,
 }
 
-impl Line {
-    /// Whether it has points enough to be saved: an area of two is saved as a line.
+impl DocumentLine {
+    /// Whether the line has enough points to be saved: an area of two points is saved as a line.
     fn is_whole(&self) -> bool {
         self.points.len() >= 2
     }
 }
 
-type Lines = Vec<Arc<Line>>;
+type Lines = Vec<Arc<DocumentLine>>;
 
-/// All lines, with what they were before each change.
+/// All lines, with their states before each change.
 #[derive(Debug, Default)]
 pub(crate) struct Document {
     pub(crate) lines: Lines,
     undone: Vec<Lines>,
     done: Vec<Lines>,
     next_id: u64,
-    /// Changes since the beginning, those that were taken back included.
+    /// The number of changes since the beginning, including those that were undone.
     pub(crate) revision: u64,
-    /// The lines as they were saved last.
+    /// The lines as saved last.
     saved: Lines,
 }
 
+/// A line of a file, before the document has given it an id.
+#[derive(Debug, Clone)]
+pub(crate) struct LineOfFile {
+    feature: Option<usize>,
+    is_area: bool,
+    points: Vec<DrawnPoint>,
+}
+
+impl LineOfFile {
+    /// The line of a `feature` of the file, or of none.
+    pub(crate) const fn new(
+        feature: Option<usize>,
+        is_area: bool,
+        points: Vec<DrawnPoint>,
+    ) -> Self {
+        Self { feature, is_area, points }
+    }
+}
+
 impl Document {
-    /// The document of lines that are saved already: which feature of the file each is, whether it is an area, and its points.
-    pub(crate) fn of(lines: Vec<(Option<usize>, bool, Vec<DrawnPoint>)>) -> Self {
+    /// Creates the document of saved lines: the feature of the file, whether the line is an area,
+    /// and its points.
+    pub(crate) fn from_lines(lines: Vec<LineOfFile>) -> Self {
         let mut document = Self::default();
-        for (feature, is_area, points) in lines {
+        for LineOfFile { feature, is_area, points } in lines {
             let id = document.take_id();
-            document.lines.push(Arc::new(Line { id, feature, is_area, points }));
+            document.lines.push(Arc::new(DocumentLine { id, feature, is_area, points }));
         }
         document.saved.clone_from(&document.lines);
         document
     }
 
-    /// All points: their lines, their places in them, and themselves.
+    /// All points: the id of the line, the index of the point, and the point.
     pub(crate) fn points(&self) -> impl Iterator<Item = (u64, usize, &DrawnPoint)> {
         self.lines.iter().flat_map(|line| {
             line.points.iter().enumerate().map(move |(place, point)| (line.id, place, point))
@@ -69,14 +98,14 @@ impl Document {
     }
 
     /// A line by its id.
-    pub(crate) fn line(&self, id: u64) -> Option<&Arc<Line>> {
+    pub(crate) fn line(&self, id: u64) -> Option<&Arc<DocumentLine>> {
         self.lines.iter().find(|line| line.id == id)
     }
 
-    /// Whether there is something that is not saved.
+    /// Whether there are unsaved changes.
     pub(crate) fn is_changed(&self) -> bool {
-        // One point is no line.
-        fn lines(all: &Lines) -> impl Iterator<Item = &Arc<Line>> + Clone {
+        // A single point is not a line.
+        fn lines(all: &Lines) -> impl Iterator<Item = &Arc<DocumentLine>> + Clone {
             all.iter().filter(|line| line.is_whole())
         }
         let (now, saved) = (lines(&self.lines), lines(&self.saved));
@@ -84,25 +113,25 @@ impl Document {
             || now.zip(saved).any(|(now, saved)| !Arc::ptr_eq(now, saved))
     }
 
-    /// What there is now is saved.
+    /// Notes that the current state is saved.
     pub(crate) fn note_saved(&mut self) {
         self.saved.clone_from(&self.lines);
     }
 
-    /// Whether a change can be taken back, and whether one that was taken back can be made again.
+    /// Whether a change can be undone, and whether one can be redone.
     pub(crate) fn can_step(&self) -> [bool; 2] {
         [!self.done.is_empty(), !self.undone.is_empty()]
     }
 
-    /// Begins a line; returns its id.
+    /// Starts a line and returns its id.
     pub(crate) fn begin(&mut self, first: DrawnPoint) -> u64 {
         let id = self.take_id();
-        let line = Line { id, feature: None, is_area: false, points: vec![first] };
+        let line = DocumentLine { id, feature: None, is_area: false, points: vec![first] };
         self.change(|lines| lines.push(Arc::new(line)));
         id
     }
 
-    /// Puts a point into a line, before the point that has this place now.
+    /// Inserts a point into a line, before the point with this index.
     pub(crate) fn insert(&mut self, id: u64, place: usize, point: DrawnPoint) {
         self.change_points(id, |points| points.insert(place.min(points.len()), point));
     }
@@ -116,7 +145,7 @@ impl Document {
         });
     }
 
-    /// The last change was the first part of a movement: this one is made instead of it.
+    /// Replaces the last change, which was the first part of a movement, with this one.
     pub(crate) fn shift_on(&mut self, id: u64, place: usize, to: DrawnPoint) {
         let before = self.done.pop();
         self.shift(id, place, to);
@@ -126,7 +155,7 @@ impl Document {
         }
     }
 
-    /// Takes a point out of a line; a line without points is gone.
+    /// Removes a point from a line; a line without points is removed.
     pub(crate) fn remove_point(&mut self, id: u64, place: usize) {
         self.change(|lines| {
             for line in lines.iter_mut().filter(|line| line.id == id) {
@@ -134,13 +163,14 @@ impl Document {
                 if place < points.len() {
                     points.remove(place);
                 }
-                *line = Arc::new(Line { points, ..Line::clone(line) });
+                *line = Arc::new(DocumentLine { points, ..DocumentLine::clone(line) });
             }
             lines.retain(|line| !line.points.is_empty());
         });
     }
 
-    /// Makes a line of an area, or an area of a line. A closed line has its first point only once then.
+    /// Turns an area into a line, or a line into an area. A closed line then has its first point
+    /// only once.
     pub(crate) fn turn(&mut self, id: u64) {
         self.change_line(id, |line| {
             line.is_area = !line.is_area;
@@ -150,17 +180,17 @@ impl Document {
         });
     }
 
-    /// Gives a line other points.
+    /// Replaces the points of a line.
     pub(crate) fn replace_points(&mut self, id: u64, points: Vec<DrawnPoint>) {
         self.change_line(id, |line| line.points = points);
     }
 
-    /// Takes a line out.
+    /// Removes a line.
     pub(crate) fn remove_line(&mut self, id: u64) {
         self.change(|lines| lines.retain(|line| line.id != id));
     }
 
-    /// Takes the last change back.
+    /// Undoes the last change.
     pub(crate) fn undo(&mut self) {
         if let Some(before) = self.done.pop() {
             self.undone.push(std::mem::replace(&mut self.lines, before));
@@ -168,7 +198,7 @@ impl Document {
         }
     }
 
-    /// Makes the change that was taken back last again.
+    /// Redoes the change that was undone last.
     pub(crate) fn redo(&mut self) {
         if let Some(after) = self.undone.pop() {
             self.done.push(std::mem::replace(&mut self.lines, after));
@@ -185,10 +215,10 @@ impl Document {
         self.change_line(id, |line| change(&mut line.points));
     }
 
-    fn change_line(&mut self, id: u64, change: impl FnOnce(&mut Line)) {
+    fn change_line(&mut self, id: u64, change: impl FnOnce(&mut DocumentLine)) {
         self.change(|lines| {
             if let Some(line) = lines.iter_mut().find(|line| line.id == id) {
-                let mut changed = Line::clone(line);
+                let mut changed = DocumentLine::clone(line);
                 change(&mut changed);
                 *line = Arc::new(changed);
             }

@@ -1,4 +1,4 @@
-//! Every change of drawn lines can be taken back.
+//! Every change of drawn lines can be undone.
 
 use proptest::prelude::*;
 
@@ -9,13 +9,15 @@ fn point(x: f64) -> DrawnPoint {
 }
 
 fn places(document: &Document) -> Vec<Vec<f64>> {
-    let of = |line: &Arc<Line>| line.points.iter().map(|point| point.lon_lat_deg[0]).collect();
+    let of =
+        |line: &Arc<DocumentLine>| line.points.iter().map(|point| point.lon_lat_deg[0]).collect();
     document.lines.iter().map(of).collect()
 }
 
 #[test]
 fn points_are_added_moved_and_removed() {
-    let mut document = Document::of(vec![(Some(3), false, vec![point(1.0), point(2.0)])]);
+    let mut document =
+        Document::from_lines(vec![LineOfFile::new(Some(3), false, vec![point(1.0), point(2.0)])]);
     assert!(!document.is_changed(), "what was loaded is saved");
     let id = document.begin(point(5.0));
     document.insert(id, 1, point(6.0));
@@ -51,10 +53,11 @@ fn what_was_taken_back_is_not_to_be_saved() {
     assert!(!document.is_changed());
 }
 
-/// A drag is many movements and one change.
+/// A drag is many movements but one change.
 #[test]
 fn a_drag_is_taken_back_at_once() {
-    let mut document = Document::of(vec![(None, false, vec![point(1.0), point(2.0)])]);
+    let mut document =
+        Document::from_lines(vec![LineOfFile::new(None, false, vec![point(1.0), point(2.0)])]);
     let id = document.lines[0].id;
     document.shift(id, 0, point(3.0));
     document.shift_on(id, 0, point(4.0));
@@ -69,9 +72,9 @@ fn a_drag_is_taken_back_at_once() {
 
 #[test]
 fn lines_that_are_not_changed_stay_the_same_ones() {
-    let mut document = Document::of(vec![
-        (None, false, vec![point(1.0)]),
-        (None, false, vec![point(2.0), point(3.0)]),
+    let mut document = Document::from_lines(vec![
+        LineOfFile::new(None, false, vec![point(1.0)]),
+        LineOfFile::new(None, false, vec![point(2.0), point(3.0)]),
     ]);
     let first = Arc::clone(&document.lines[0]);
     let id = document.lines[1].id;
@@ -80,7 +83,7 @@ fn lines_that_are_not_changed_stay_the_same_ones() {
 }
 
 proptest! {
-    /// Taking all changes back and making them again leads through the same lines.
+    /// Undoing and redoing all changes leads through the same lines.
     #[test]
     fn every_change_can_be_taken_back(changes in prop::collection::vec((0_u8..5, 0_usize..6, 0.0..9.0_f64), 1..60)) {
         let mut document = Document::default();
@@ -111,7 +114,7 @@ proptest! {
 #[test]
 fn a_closed_line_becomes_an_area_without_its_point_twice() {
     let closed = vec![point(1.0), point(2.0), point(3.0), point(1.0)];
-    let mut document = Document::of(vec![(None, false, closed)]);
+    let mut document = Document::from_lines(vec![LineOfFile::new(None, false, closed)]);
     let id = document.lines[0].id;
     document.turn(id);
     assert_eq!(places(&document), [vec![1.0, 2.0, 3.0]]);

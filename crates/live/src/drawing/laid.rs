@@ -1,4 +1,4 @@
-//! The lines and areas on the tiles that are shown.
+//! Drapes the drawn lines and areas on the tiles in view.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -11,40 +11,41 @@ use corniche_viewer::tiles::{
     AreaVolumes, DrawnArea, LayerLine, LineMethods, Overlays, TileGeometry, TileLayer, TileSurface,
 };
 
-use super::document::{Document, Line};
+use super::document::{Document, DocumentLine};
 
-/// Knows what has been laid: after a change only the lines that changed are laid again, on the tiles that they come near.
+/// Keeps the draped lines: after a change, only the changed lines are draped again, on the tiles
+/// near them.
 #[derive(Default)]
 pub(crate) struct LaidLines {
     tiles: BTreeMap<TileId, LaidTile>,
-    /// Each line as it was prepared last.
+    /// The last preparation of each line.
     prepared: BTreeMap<u64, PreparedLine>,
 }
 
-/// A line that can be laid on any tile.
+/// A line prepared for draping on any tile.
 struct PreparedLine {
-    line: Arc<Line>,
+    line: Arc<DocumentLine>,
     /// The line, or the outline of the area.
     outline: Overlays,
-    /// What is inside.
+    /// The inside of the area.
     area: Option<DrawnArea>,
 }
 
 #[derive(Default)]
 struct LaidTile {
-    /// Made when a line first comes near.
+    /// The surface of the tile, created when a line first comes near.
     surface: Option<TileSurface>,
-    /// What the tile has of each line.
+    /// The part of each line on the tile.
     lines: BTreeMap<u64, LaidLine>,
 }
 
-/// What a tile has of a line.
+/// The part of a line on a tile.
 struct LaidLine {
-    /// The state of the line that was laid.
-    line: Arc<Line>,
+    /// The state of the line that was draped.
+    line: Arc<DocumentLine>,
     outline: TileLayer,
     inside: AreaVolumes,
-    /// Laying it here takes more work than a tile may take: it has no outline here.
+    /// Whether draping exceeds the work limit of a tile: then the line has no outline here.
     is_too_much: bool,
 }
 
@@ -54,31 +55,31 @@ impl LaidLine {
     }
 }
 
-/// What laying came to.
+/// The result of draping.
 #[derive(Debug, Default)]
 pub(crate) struct Relaid {
-    /// All lines and areas of each tile that has others than before.
+    /// All lines and areas of each tile where they have changed.
     pub(crate) changed: Vec<(TileId, TileLayer, AreaVolumes)>,
-    /// How often a line was laid on a tile.
+    /// The number of drapings of a line on a tile.
     pub(crate) laid: usize,
-    /// Lines that take too much work on one of the tiles.
+    /// Lines that exceed the work limit on one of the tiles.
     pub(crate) not_laid: BTreeSet<u64>,
 }
 
 impl LaidLines {
-    /// Forgets tiles that are no longer there.
+    /// Forgets evicted tiles.
     pub(crate) fn evict(&mut self, ids: &[TileId]) {
         for id in ids {
             self.tiles.remove(id);
         }
     }
 
-    /// Forgets everything: the graphics device was lost.
+    /// Forgets everything, since the graphics device was lost.
     pub(crate) fn clear(&mut self) {
         self.tiles.clear();
     }
 
-    /// Lays what has changed since this was called last on all these tiles.
+    /// Drapes the changes since the last call on all these tiles.
     pub(crate) fn update<'a>(
         &mut self,
         document: &Document,
@@ -114,7 +115,7 @@ impl LaidLines {
 }
 
 impl PreparedLine {
-    fn new(line: &Arc<Line>, frame: &GridFrame) -> Self {
+    fn new(line: &Arc<DocumentLine>, frame: &GridFrame) -> Self {
         let mut points: Vec<LatticePoint> =
             line.points.iter().filter_map(|point| frame.snap(point.at_m)).collect();
         let area = if line.is_area { DrawnArea::new(&points) } else { None };
@@ -127,7 +128,7 @@ impl PreparedLine {
 }
 
 impl LaidTile {
-    /// Whether something changed.
+    /// Drapes the changed lines on the tile. Returns whether something changed.
     fn update(
         &mut self,
         prepared: &BTreeMap<u64, PreparedLine>,
@@ -147,7 +148,7 @@ impl LaidTile {
             let had_some = known.is_some_and(|known| !known.is_empty());
             let near = prepared.outline.near(tile.id, frame, margin);
             if !near.is_empty() && self.surface.is_none() {
-                self.surface = TileSurface::of(tile, manifest);
+                self.surface = TileSurface::from_geometry(tile, manifest);
             }
             let outline = match &self.surface {
                 Some(surface) if !near.is_empty() => surface.lay(&near, LineMethods::Both),

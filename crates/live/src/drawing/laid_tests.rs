@@ -1,10 +1,10 @@
-//! An edit lays only the line that it changed, and areas are filled.
+//! An edit drapes only the changed line again, and areas are filled.
 
 use corniche_testing::package::written;
 use corniche_viewer::tiles::{MapPackage as _, PackageSource, TileSource as _};
 
 use super::*;
-use crate::drawing::document::DrawnPoint;
+use crate::drawing::document::{DrawnPoint, LineOfFile};
 
 fn source(folder: &std::path::Path) -> PackageSource {
     let path = folder.join("small.pmtiles");
@@ -28,9 +28,9 @@ fn an_edit_lays_that_line_alone() {
     let at = |x: f64, y: f64| {
         point([bounds.min_x + x * bounds.width(), bounds.min_y + y * bounds.height()])
     };
-    let mut document = Document::of(vec![
-        (None, false, vec![at(0.1, 0.1), at(0.9, 0.9)]),
-        (None, false, vec![at(0.1, 0.9), at(0.9, 0.1)]),
+    let mut document = Document::from_lines(vec![
+        LineOfFile::new(None, false, vec![at(0.1, 0.1), at(0.9, 0.9)]),
+        LineOfFile::new(None, false, vec![at(0.1, 0.9), at(0.9, 0.1)]),
     ]);
     let mut laid = LaidLines::default();
     let first = laid.update(&document, tiles.iter(), manifest);
@@ -42,7 +42,7 @@ fn an_edit_lays_that_line_alone() {
     document.insert(id, 1, at(0.4, 0.5));
     let edited = laid.update(&document, tiles.iter(), manifest);
     assert!(edited.laid > 0 && edited.laid <= tiles.len(), "{} laid", edited.laid);
-    // What is shown is what laying all lines anew gives.
+    // The result is the same as after draping all lines again.
     let mut anew = LaidLines::default();
     let expected = anew.update(&document, tiles.iter(), manifest).changed;
     assert!(!edited.changed.is_empty());
@@ -67,10 +67,10 @@ fn an_area_has_an_outline_that_is_closed_and_volumes_inside() {
         point([bounds.min_x + x * bounds.width(), bounds.min_y + y * bounds.height()])
     };
     let square = |from: f64, to: f64| vec![at(from, from), at(to, from), at(to, to), at(from, to)];
-    let mut document = Document::of(vec![
-        (None, true, square(0.2, 0.5)),
-        (None, true, square(0.4, 0.8)),
-        (None, false, square(0.1, 0.3)),
+    let mut document = Document::from_lines(vec![
+        LineOfFile::new(None, true, square(0.2, 0.5)),
+        LineOfFile::new(None, true, square(0.4, 0.8)),
+        LineOfFile::new(None, false, square(0.1, 0.3)),
     ]);
     let mut laid = LaidLines::default();
     let [(_, outlines, areas)] = &laid.update(&document, tiles.iter(), manifest).changed[..] else {
@@ -81,7 +81,7 @@ fn an_area_has_an_outline_that_is_closed_and_volumes_inside() {
     assert_eq!((areas.walls.len(), areas.triangles.len()), (8, 12));
     let before = outlines.segments.all().len();
 
-    // As a line the second one has no inside, and lacks the side that closed it.
+    // As a line, the second one has no inside, and lacks the side that closed it.
     let id = document.lines[1].id;
     document.turn(id);
     let [(_, outlines, areas)] = &laid.update(&document, tiles.iter(), manifest).changed[..] else {
@@ -96,7 +96,7 @@ fn an_area_has_an_outline_that_is_closed_and_volumes_inside() {
     assert_eq!(areas.walls.len(), 8);
 }
 
-/// Tiles inside an area have none of its outline.
+/// Tiles inside an area contain no part of its outline.
 #[test]
 fn a_tile_inside_an_area_is_filled() {
     let folder = tempfile::tempdir().unwrap();
@@ -110,7 +110,7 @@ fn a_tile_inside_an_area_is_filled() {
         point([bounds.min_x + x * bounds.width(), bounds.min_y + y * bounds.height()])
     };
     let around = vec![at(-0.5, -0.5), at(1.5, -0.5), at(1.5, 1.5), at(-0.5, 1.5)];
-    let document = Document::of(vec![(None, true, around)]);
+    let document = Document::from_lines(vec![LineOfFile::new(None, true, around)]);
     let mut laid = LaidLines::default();
     let relaid = laid.update(&document, tiles.iter(), manifest);
     let with_ground = tiles.iter().filter(|tile| tile.summary.is_some()).count();
@@ -120,7 +120,8 @@ fn a_tile_inside_an_area_is_filled() {
     }
 }
 
-/// A line that crosses too much of the ground of a tile has no outline there, which is told; other lines are laid.
+/// A line that crosses too much ground of a tile has no outline there, which is reported; other
+/// lines are draped.
 #[test]
 fn lines_that_take_too_much_work_are_told() {
     let folder = tempfile::tempdir().unwrap();
@@ -137,11 +138,11 @@ fn lines_that_take_too_much_work_are_told() {
     let at = |x: f64, y: f64| {
         point([bounds.min_x + x * bounds.width(), bounds.min_y + y * bounds.height()])
     };
-    // From west to east and back, each time elsewhere, so that it is not simplified.
+    // The line goes from west to east and back, each time elsewhere, so that it is not simplified.
     let across = |k: u32| at(f64::from(k % 2), f64::from(k * 7919 % 10_000) / 1e4);
-    let mut document = Document::of(vec![
-        (None, false, (0..10_000).map(across).collect()),
-        (None, false, vec![at(0.1, 0.9), at(0.9, 0.1)]),
+    let mut document = Document::from_lines(vec![
+        LineOfFile::new(None, false, (0..10_000).map(across).collect()),
+        LineOfFile::new(None, false, vec![at(0.1, 0.9), at(0.9, 0.1)]),
     ]);
     let long = document.lines[0].id;
     let mut laid = LaidLines::default();

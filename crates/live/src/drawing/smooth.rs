@@ -1,38 +1,40 @@
-//! Corners of lines that are rounded.
+//! Rounds the corners of lines.
 
 use glam::DVec2;
 
-use super::document::{DrawnPoint, Line};
+use super::document::{DocumentLine, DrawnPoint};
 
-/// New points between two neighbours at most.
+/// The largest number of new points between two neighbours.
 const MOST_PIECES: usize = 8;
-/// A line does not become longer than this by it.
+/// The largest number of points of a smoothed line.
 const MOST_POINTS: usize = 1 << 20;
 
-/// Why a line was not changed as asked.
+/// The reason why a line was not changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub(crate) enum Unchanged {
-    /// No point of a line is picked.
-    #[error("pick a line first: click on one of its points")]
+    /// No point of a line is selected.
+    #[error("select a line first: click one of its points")]
     NothingPicked,
-    /// It has fewer than three different points.
-    #[error("this needs at least three points")]
+    /// The line has fewer than three different points.
+    #[error("the line needs at least three points")]
     FewPoints,
-    /// It would have far more points than a person draws.
+    /// The result would have far more points than a user draws.
     #[error("the line has more than {most} points")]
     ManyPoints {
-        /// How many may be rounded.
+        /// The largest number of points that can be smoothed.
         most: usize,
     },
 }
 
 /// The points of a curve through all points of a line, or around an area.
 ///
-/// Points stay, and others come between them: a centripetal Catmull-Rom spline, which makes no loops and no cusps within a piece.
+/// Existing points stay, and new ones are inserted between them: a centripetal Catmull-Rom spline,
+/// which makes no loops and no cusps within a piece.
 ///
-/// Source: Yuksel, Schaefer & Keyser 2011, *Parameterization and applications of Catmull-Rom curves*, Computer-Aided Design 43.
+/// Source: Yuksel, Schaefer & Keyser 2011, *Parameterization and applications of Catmull-Rom
+/// curves*, Computer-Aided Design 43.
 pub(crate) fn smoothed(
-    line: &Line,
+    line: &DocumentLine,
     place: impl Fn([f64; 2]) -> DrawnPoint,
 ) -> Result<Vec<DrawnPoint>, Unchanged> {
     let bits = |point: &DrawnPoint| point.at_m.map(f64::to_bits);
@@ -49,7 +51,7 @@ pub(crate) fn smoothed(
         return Err(Unchanged::ManyPoints { most: MOST_POINTS / MOST_PIECES });
     }
     let at = |index: usize| DVec2::from_array(points[index % count].at_m);
-    // Beyond the ends of a line, their neighbours are mirrored at them.
+    // Beyond the ends of a line, the neighbours of the ends are mirrored at them.
     let before = |index: usize| match index {
         0 if line.is_area => at(count - 1),
         0 => 2.0 * at(0) - at(1),
@@ -76,10 +78,11 @@ pub(crate) fn smoothed(
     Ok(curve)
 }
 
-/// The place on the curve between the second and the third of four corners (Barry & Goldman 1988, *A recursive evaluation algorithm for
-/// a class of Catmull-Rom splines*, Computer Graphics 22).
+/// The position on the curve between the second and the third of four corners (Barry & Goldman
+/// 1988, *A recursive evaluation algorithm for a class of Catmull-Rom splines*, Computer Graphics
+/// 22).
 fn on_curve([a, b, c, d]: [DVec2; 4], share: f64) -> DVec2 {
-    // Centripetal: parameters grow by the square roots of distances.
+    // Centripetal: parameters grow with the square roots of distances.
     let step = |from: DVec2, to: DVec2| from.distance(to).sqrt().max(1e-6);
     let (at_b, at_c) = (step(a, b), step(a, b) + step(b, c));
     let at_d = at_c + step(c, d);

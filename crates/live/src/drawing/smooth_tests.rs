@@ -6,9 +6,9 @@ fn place(at_m: [f64; 2]) -> DrawnPoint {
     DrawnPoint { lon_lat_deg: [at_m[0] / 1e5, at_m[1] / 1e5], at_m }
 }
 
-fn line(places: &[[f64; 2]], is_area: bool) -> Line {
+fn line(places: &[[f64; 2]], is_area: bool) -> DocumentLine {
     let points = places.iter().map(|at| place(*at)).collect();
-    Line { id: 1, feature: None, is_area, points }
+    DocumentLine { id: 1, feature: None, is_area, points }
 }
 
 #[test]

@@ -1,15 +1,16 @@
-//! What the mouse does to the lines.
+//! The drawing tool: the effect of the mouse on the lines.
 
 use std::sync::Arc;
 
 use glam::DVec2;
 
 use super::{
-    document::{Document, DrawnPoint, Line},
+    document::{Document, DocumentLine, DrawnPoint},
     smooth::{Unchanged, smoothed},
 };
 
-/// The cursor is at a point of a line if it is no farther from it than this, screen points.
+/// The largest distance between the cursor and a point of a line at which the cursor touches the
+/// point, in screen points.
 const NEAR_POINTS: f64 = 9.0;
 /// A cursor that moves farther than this with the button held drags the map.
 const STILL_POINTS: f64 = 3.0;
@@ -19,14 +20,15 @@ const STILL_POINTS: f64 = 3.0;
 pub(crate) struct Picked {
     /// The line.
     pub(crate) line: u64,
-    /// Which of its points.
+    /// The index of the point in the line.
     pub(crate) place: usize,
 }
 
-/// Draws and changes lines.
+/// The tool that draws and changes lines.
 #[derive(Debug, Default)]
 pub(crate) struct Tool {
-    /// The point that keys act on; a click on the ground goes on from the end of its line.
+    /// The selected point, on which keys act; a click on the ground continues from the end of its
+    /// line.
     picked: Option<Picked>,
     pressed: Option<Press>,
 }
@@ -34,23 +36,24 @@ pub(crate) struct Tool {
 #[derive(Debug, Clone, Copy)]
 struct Press {
     at: DVec2,
-    /// What is dragged: a point of a line; `None` where the map is.
+    /// The dragged point of a line; `None` while the map is dragged.
     point: Option<Picked>,
-    /// Whether the cursor has moved since.
+    /// Whether the cursor has moved since the press.
     is_moved: bool,
-    /// Whether the point has been moved since.
+    /// Whether the point has been moved since the press.
     is_shifted: bool,
 }
 
 impl Tool {
-    /// The point that keys act on, as long as it is there.
+    /// The selected point, as long as it exists.
     pub(crate) fn picked(&self, document: &Document) -> Option<Picked> {
         self.picked
             .filter(|at| document.line(at.line).is_some_and(|line| at.place < line.points.len()))
     }
 
-    /// The button goes down, at a position on the screen in points. `seen_at` says where a point of a line is seen. Whether the map must
-    /// not be dragged: a point was taken.
+    /// Handles a press of the button, at a position on the screen in points. `seen_at` returns the
+    /// screen position of a point of a line. Returns whether a point was hit, so that the map must
+    /// not be dragged.
     pub(crate) fn press(
         &mut self,
         at: DVec2,
@@ -65,7 +68,8 @@ impl Tool {
         point.is_some()
     }
 
-    /// The cursor is here; `ground` is what is under it. Whether a line was changed.
+    /// Handles a movement of the cursor; `ground` is the ground under it. Returns whether a line
+    /// was changed.
     pub(crate) fn move_to(
         &mut self,
         at: DVec2,
@@ -90,8 +94,9 @@ impl Tool {
         true
     }
 
-    /// The button goes up where it went down: a point is added there, or, with Shift, between the two points of the picked line that are
-    /// nearest. `ground` is what is under the cursor. Whether a line was changed.
+    /// Handles the release of the button. If the cursor has not moved since the press, a point is
+    /// added, or, with Shift, inserted between the two nearest points of the selected line.
+    /// `ground` is the ground under the cursor. Returns whether a line was changed.
     pub(crate) fn release(
         &mut self,
         is_shift: bool,
@@ -112,10 +117,10 @@ impl Tool {
                 let place = if is_shift {
                     nearest_segment(press.at, line, seen_at).map_or(line.points.len(), |k| k + 1)
                 } else if line.is_area {
-                    // An area has no end.
+                    // An area has no end to continue from.
                     picked.map_or(line.points.len(), |picked| picked.place + 1)
                 } else if picked.is_some_and(|picked| picked.place == 0) && line.points.len() > 1 {
-                    // The line goes on from the end that is picked.
+                    // The line continues from its selected end.
                     0
                 } else {
                     line.points.len()
@@ -129,7 +134,7 @@ impl Tool {
         true
     }
 
-    /// The button counts as released, and nothing was done.
+    /// Treats the button as released, without any effect.
     pub(crate) fn let_go(&mut self) {
         self.pressed = None;
     }
@@ -144,7 +149,7 @@ impl Tool {
         self.picked = None;
     }
 
-    /// Removes the picked point, and picks the one before it. Whether there was one.
+    /// Removes the selected point, and selects the one before it. Returns whether there was one.
     pub(crate) fn remove_point(&mut self, document: &mut Document) -> bool {
         let Some(Picked { line, place }) = self.picked(document) else { return false };
         document.remove_point(line, place);
@@ -152,7 +157,7 @@ impl Tool {
         true
     }
 
-    /// Makes an area of the picked line, or a line of the picked area.
+    /// Turns the selected line into an area, or the selected area into a line.
     pub(crate) fn turn(&mut self, document: &mut Document) -> Result<(), Unchanged> {
         let line = self.picked_line(document)?;
         if !line.is_area && line.points.len() < 3 {
@@ -163,7 +168,8 @@ impl Tool {
         Ok(())
     }
 
-    /// Makes a curve of the picked line; `place` makes a point of a place in the working CRS.
+    /// Rounds the corners of the selected line; `place` makes a point from a position in the
+    /// working CRS.
     pub(crate) fn smooth(
         &mut self,
         document: &mut Document,
@@ -176,12 +182,12 @@ impl Tool {
         Ok(())
     }
 
-    fn picked_line<'a>(&self, document: &'a Document) -> Result<&'a Line, Unchanged> {
+    fn picked_line<'a>(&self, document: &'a Document) -> Result<&'a DocumentLine, Unchanged> {
         let picked = self.picked(document).and_then(|picked| document.line(picked.line));
         picked.map(Arc::as_ref).ok_or(Unchanged::NothingPicked)
     }
 
-    /// Removes the picked line. Whether there was one.
+    /// Removes the selected line. Returns whether there was one.
     pub(crate) fn remove_line(&mut self, document: &mut Document) -> bool {
         let Some(Picked { line, .. }) = self.picked(document) else { return false };
         document.remove_line(line);
@@ -190,7 +196,7 @@ impl Tool {
     }
 }
 
-/// The point of a line that is seen next to a position, if it is near.
+/// The point of a line nearest to a position on the screen, if it is near.
 fn nearest(
     at: DVec2,
     document: &Document,
@@ -206,10 +212,11 @@ fn nearest(
         .map(|(picked, _)| picked)
 }
 
-/// Which segment of a line is seen nearest to a position; the last one of an area closes it.
+/// The index of the segment of a line that is nearest to a position on the screen; the last segment
+/// of an area closes it.
 fn nearest_segment(
     at: DVec2,
-    line: &Line,
+    line: &DocumentLine,
     seen_at: impl Fn(&DrawnPoint) -> Option<DVec2>,
 ) -> Option<usize> {
     let closing = line.points.first().filter(|_| line.is_area);

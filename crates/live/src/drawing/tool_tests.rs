@@ -1,10 +1,10 @@
-//! Clicks and drags of the drawing tool change the lines that they should.
+//! Clicks and drags of the drawing tool change the right lines.
 
 #![expect(clippy::unnecessary_wraps, reason = "as the tool asks for them")]
 
 use super::*;
 
-/// The screen shows working metres as they are.
+/// The screen shows working metres without a change of scale.
 fn seen_at(point: &DrawnPoint) -> Option<DVec2> {
     Some(DVec2::from_array(point.at_m))
 }
@@ -109,7 +109,7 @@ fn the_picked_point_and_line_are_removed() {
     assert!(hand.lines().is_empty());
 }
 
-/// Over the sky there is nothing to move to; the drag begins where there is ground again.
+/// Over the sky there is nothing to move to; the drag begins when the cursor reaches ground again.
 #[test]
 fn a_drag_that_begins_over_the_sky_is_a_change_of_its_own() {
     let mut hand = Hand::new();

@@ -1,4 +1,5 @@
-//! Integration tests of `corniche-objects`, in one binary. The first line of each module says what holds.
+//! Integration tests of `corniche-objects`, in one binary. The first line of each module says what
+//! it tests.
 
 mod place;
 mod reading;

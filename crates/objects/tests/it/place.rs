@@ -10,8 +10,8 @@ use crate::support::{
 };
 use corniche_objects::{ObjectAddress, ObjectPlace, block_cache};
 use corniche_store::{
-    Artifacts as _, Hold, Key, LocalStore, OwnPart, PartsPlace as _, Publish as _, SealedParts,
-    StoreError, StoredPlan, SystemDisk,
+    ArtifactKey, Artifacts as _, Hold, LocalStore, OwnPart, PartsPlace as _, Publish as _,
+    SealedParts, StoreError, StoredPlan, SystemDisk,
 };
 use corniche_testing::Random;
 
@@ -33,8 +33,8 @@ fn artifact(item: u64) -> Vec<u8> {
     (0..random.below(4000)).map(|_| random.bits() as u8).collect()
 }
 
-fn key(item: u64) -> Key {
-    Key { kind: 3, item }
+fn key(item: u64) -> ArtifactKey {
+    ArtifactKey { kind: 3, item }
 }
 
 fn open(
@@ -49,7 +49,7 @@ fn open(
     LocalStore::open_places(Arc::new(SystemDisk), sealed, &plan.hash, Some((own, Hold::Alone)))
 }
 
-/// Makes a part with these items, in this order, and sends it.
+/// Writes a part with these items, in this order, and uploads it.
 fn make(
     place: &ObjectPlace,
     name: &str,
@@ -66,7 +66,7 @@ fn make(
     Ok(sent.map(|path| path.display().to_string()))
 }
 
-/// Nothing of a part is left where it was made, once it is sent.
+/// Checks that nothing of a part is left in the work folder once it is uploaded.
 fn nothing_is_left(work: &Path) {
     let parts = fs::read_dir(work.join("parts"));
     assert_eq!(parts.map_or(0, Iterator::count), 0, "what is sent is removed");
@@ -74,7 +74,8 @@ fn nothing_is_left(work: &Path) {
     assert!(!work.exists());
 }
 
-/// S3 answers 409 to one of two that write an object at the same moment. That says nothing about what is there.
+/// S3 answers 409 to one of two concurrent writers of an object. This answer says nothing about the
+/// existing object.
 #[test]
 fn what_is_refused_because_another_writes_at_that_moment_is_written_again() {
     let server = Server::start();
@@ -85,7 +86,7 @@ fn what_is_refused_because_another_writes_at_that_moment_is_written_again() {
     assert!(make(&place, "heights", 0..3).unwrap().is_some());
 }
 
-/// Else two who make the same part would replace each other's.
+/// On other servers, two writers of the same part would overwrite each other's.
 #[test]
 fn a_server_that_writes_over_what_is_to_be_kept_is_refused() {
     let server = Server::start();
@@ -104,11 +105,11 @@ fn a_prefix_is_bound_to_the_plan_that_came_first() {
     assert_eq!(place(&server).stored_plan().unwrap(), None);
     assert_eq!(place(&server).bind(&plan()).unwrap(), plan());
     assert_eq!(place(&server).bind(&plan()).unwrap(), plan());
-    // Who comes with another plan is told which one is there.
+    // A process with another plan gets the existing plan in the error.
     assert_eq!(place(&server).bind(&other_plan()).unwrap(), plan());
     assert_eq!(place(&server).stored_plan().unwrap(), Some(plan()));
     assert_eq!(server.content("utah/plan.json").unwrap(), plan().bytes);
-    // Between the two objects the first process was killed.
+    // The first process was killed between the two objects.
     server.state().objects.remove("maps/utah/store");
     assert_eq!(place(&server).stored_plan().unwrap(), None);
     assert_eq!(place(&server).bind(&other_plan()).unwrap().bytes, plan().bytes);
@@ -127,10 +128,10 @@ fn a_prefix_that_holds_something_else_is_left_alone() {
         assert!(error.to_string().contains("s3://maps/utah"), "{error}");
         server.state().objects.remove(&format!("maps/{name}"));
     }
-    // What only begins alike is beside it.
+    // A prefix with the same beginning is a different store.
     server.put("utah-2/photo.jpg", "dear to someone");
     assert_eq!(place(&server).bind(&plan()).unwrap(), plan());
-    // A header that is damaged is told.
+    // A corrupt header is reported.
     server.put("utah/store", "odd");
     let error = place(&server).stored_plan().unwrap_err();
     assert!(matches!(error, StoreError::Damaged { .. }), "{error}");
@@ -144,7 +145,7 @@ fn parts_are_sent_whole_and_read_where_they_are_needed() {
     let sent = make(&place, "heights-1-0-0", 0..3000).unwrap().unwrap();
     assert!(sent.starts_with("s3://maps/utah/parts/heights-1-0-0."), "{sent}");
     make(&place, "heights-1-1-0", 3000..3100).unwrap().unwrap();
-    // What is there is not made again.
+    // Existing objects are not written again.
     assert_eq!(make(&place, "tiles", 50..80).unwrap(), None);
     assert_eq!(place.parts().unwrap().len(), 2);
 
@@ -158,7 +159,7 @@ fn parts_are_sent_whole_and_read_where_they_are_needed() {
     assert!(!store.has(key(0)) && store.has(key(3099)));
     let log = server.take_log();
     assert!(!log.iter().any(|line| line.contains("heights-1-0-0")), "{log:?}");
-    // One list; header and list of the part; its one block.
+    // The requests are: one list, header and list of the part, and its one block.
     assert_eq!(log.len(), 4, "{log:?}");
     drop(store);
 
@@ -171,13 +172,14 @@ fn parts_are_sent_whole_and_read_where_they_are_needed() {
     assert_eq!(store.items(3), (0..3100).collect::<Vec<_>>());
 }
 
-/// Both made the same artifacts, in another order, so the files differ and the names do not. The first is kept.
+/// Both processes computed the same artifacts, in another order, so the files differ and the names
+/// do not. The first file is kept.
 #[test]
 fn a_part_that_is_made_twice_is_one_object() {
     let server = Server::start();
     let place = place(&server);
     place.bind(&plan()).unwrap();
-    // Both look before either has sent anything.
+    // Both processes check before either has uploaded anything.
     let folder = tempfile::tempdir().unwrap();
     let stores = [(0..60).collect::<Vec<u64>>(), (0..60).rev().collect()].map(|items| {
         let work = folder.path().join(format!("work-{}", items[0]));
@@ -197,7 +199,8 @@ fn a_part_that_is_made_twice_is_one_object() {
     assert!(contents[0] == contents[1], "the first was replaced");
 }
 
-/// The same, where the second one finds out only when it has sent all: between look and sending the first one was faster.
+/// The same, if the second process finds out only after its upload: the first one was faster
+/// between its check and its upload.
 #[test]
 fn of_two_that_send_a_part_at_once_the_first_is_kept() {
     let server = Server::start();
@@ -217,7 +220,7 @@ fn of_two_that_send_a_part_at_once_the_first_is_kept() {
     server.break_with(first(1, Fault::Cut, move |request| {
         let is_sent = request.method == "PUT";
         if is_sent {
-            // The lock of the state is held by who asks, so the object comes from a thread.
+            // The caller holds the lock of the state, so the object comes from a thread.
             let (own, (path, object)) = (own.clone(), back.clone());
             std::thread::spawn(move || own.state().objects.insert(path, object));
             std::thread::sleep(Duration::from_millis(1));
@@ -243,7 +246,7 @@ fn a_part_that_is_exchanged_or_damaged_is_noticed() {
     let error = store.get(key(5)).unwrap_err().to_string();
     assert!(error.contains("changed while it was in use") && error.contains(&name), "{error}");
     drop(store);
-    // Its list is damaged: it is not opened.
+    // The list of the part is corrupt: the part is not opened.
     let mut damaged = bytes.clone();
     let at = damaged.len() - 100;
     damaged[at] ^= 1;
@@ -251,7 +254,7 @@ fn a_part_that_is_exchanged_or_damaged_is_noticed() {
     let error = open(&folder.path().join("b"), "tiles", &place, &|_| true).unwrap_err();
     assert!(matches!(error, StoreError::Damaged { .. }), "{error}");
     assert!(error.to_string().contains(&name), "{error}");
-    // An artifact is damaged: it is not handed out.
+    // An artifact is corrupt: it is not returned.
     let mut damaged = bytes;
     damaged[200] ^= 1;
     server.put(&name, damaged);
@@ -260,7 +263,8 @@ fn a_part_that_is_exchanged_or_damaged_is_noticed() {
     assert_eq!(read.filter(Result::is_err).count(), 1);
 }
 
-/// The part was sealed, and then the server or the process went away. The same part, made again, is only sent.
+/// The part was sealed, and then the server or the process went away. The next run computes the
+/// same part and only uploads it.
 #[test]
 fn a_part_that_could_not_be_sent_is_sent_by_the_next_try() {
     let server = Server::start();

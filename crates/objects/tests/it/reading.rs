@@ -1,4 +1,4 @@
-//! Objects are read by ranges, whatever the server does in between; what cannot be read is said.
+//! Objects are read by ranges, whatever the server does in between, and errors are reported.
 #![allow(clippy::unwrap_used, reason = "tests may unwrap")]
 
 use std::io::{Read as _, Seek as _, SeekFrom};
@@ -42,7 +42,7 @@ fn objects_are_listed_found_and_read_by_ranges() {
     );
 }
 
-/// One request that fails for a moment is not noticed.
+/// A request that fails temporarily is not noticed.
 #[test]
 fn what_fails_for_a_moment_is_tried_again() {
     let bytes = content(300_000);
@@ -85,16 +85,16 @@ fn a_server_that_asks_for_patience_for_ever_ends_in_an_error_that_says_so() {
     assert_eq!(server.take_log().len(), RETRIES + 1);
 }
 
-/// No repetition helps here, so there is none.
+/// A retry cannot help here, so there is none.
 #[test]
 fn a_refusal_is_told_at_once_with_what_to_do() {
     for (status, code, advice) in [
         (403, "SignatureDoesNotMatch", "AWS_SECRET_ACCESS_KEY"),
         (403, "InvalidAccessKeyId", "AWS_ACCESS_KEY_ID"),
-        (403, "AccessDenied", "what they permit"),
+        (403, "AccessDenied", "their permissions"),
         (400, "ExpiredToken", "AWS_SESSION_TOKEN"),
         (400, "AuthorizationHeaderMalformed", "AWS_REGION"),
-        (501, "NotImplemented", "cannot do what is needed"),
+        (501, "NotImplemented", "lacks a required feature"),
     ] {
         let server = Server::start();
         server.put("a", "content");
@@ -112,7 +112,7 @@ fn a_refusal_is_told_at_once_with_what_to_do() {
                 assert!(message.contains(part), "{part}: {message}");
             }
         }
-        // Its answer has no words.
+        // The answer to this request has no text.
         let message = told(&bucket.find("a").unwrap_err());
         assert!(message.contains(&status.to_string()), "{message}");
         assert_eq!(server.take_log().len(), 5, "{code}");
@@ -186,7 +186,7 @@ fn a_reader_reads_what_a_file_would_hold() {
     let mut all = Vec::new();
     reader.read_to_end(&mut all).unwrap();
     assert!(all == bytes);
-    // 4 MiB at once, and one question for its length.
+    // One request of 4 MiB, and one for the length.
     assert_eq!(server.take_log().len(), 4);
     let mut random = Random::new(3);
     for _ in 0..50 {
@@ -203,7 +203,7 @@ fn a_reader_reads_what_a_file_would_hold() {
     assert_eq!(reader.seek(SeekFrom::Start(10_000_000)).unwrap(), 10_000_000);
     assert_eq!(reader.read(&mut [0; 10]).unwrap(), 0);
     assert!(reader.seek(SeekFrom::Current(-10_000_001)).is_err());
-    // Another one is there now, before this reader has read anything.
+    // The object has changed before this reader has read anything.
     let mut reader = open(None).unwrap();
     server.put("extract", bytes);
     reader.seek(SeekFrom::Start(5_000_000)).unwrap();
@@ -233,7 +233,7 @@ fn settings_that_make_no_sense_are_told_without_secrets() {
     assert!(with("AWS_PROFILE", "other").is_ok(), "a variable that only others know");
 }
 
-/// A machine of a cloud gives credentials; this address is that of none.
+/// A cloud machine provides credentials; nothing listens at this address.
 #[test]
 fn without_credentials_the_variables_that_hold_them_are_named() {
     let server = Server::start();
@@ -247,7 +247,7 @@ fn without_credentials_the_variables_that_hold_them_are_named() {
     assert!(matches!(error, ObjectError::NoCredentials { .. }), "{message}");
     assert!(message.contains("s3://maps/a") && message.contains("AWS_ACCESS_KEY_ID"), "{message}");
     assert_eq!(server.take_log(), [""; 0], "nothing is asked without credentials");
-    // A bucket that is open to all needs none.
+    // A public bucket needs no credentials.
     server.put("a", "content");
     settings.variables.push(("AWS_SKIP_SIGNATURE".to_owned(), "true".to_owned()));
     let bucket = Storage::new(settings).unwrap().bucket("maps").unwrap();
@@ -268,7 +268,7 @@ fn page(keys: impl Iterator<Item = usize>, token: Option<usize>) -> String {
     format!("<ListBucketResult>{next}{}</ListBucketResult>", keys.map(entry).collect::<String>())
 }
 
-/// Names and tags that no request can be made with end in an error, or count as none.
+/// Names and tags that no request can contain end in an error, or are ignored.
 #[test]
 fn answers_that_no_request_can_be_made_with_are_refused() {
     let server = Server::start();
@@ -288,7 +288,7 @@ fn answers_that_no_request_can_be_made_with_are_refused() {
         let says = sound.replace(part, &other);
         server.break_with(move |_| Some(Fault::Says(says.clone())));
         let told = told(&bucket.list("store").unwrap_err());
-        assert!(told.contains("cannot be right") && told.contains(said), "{told}");
+        assert!(told.contains("sends an invalid answer") && told.contains(said), "{told}");
     }
     for tag in ["a&#13;&#10;b", "a&#127;"] {
         let says = sound.replace("&quot;1&quot;", tag);
@@ -297,7 +297,8 @@ fn answers_that_no_request_can_be_made_with_are_refused() {
     }
 }
 
-/// A list of many pages is read to its end; one that has none is given up, and so is an answer of gigabytes.
+/// A list of many pages is read to its end; an endless list ends in an error, and so does an answer
+/// of gigabytes.
 #[test]
 fn lists_that_do_not_end_are_given_up() {
     let server = Server::start();
@@ -312,7 +313,8 @@ fn lists_that_do_not_end_are_given_up() {
     pages(|n| page(100 * n..100 * (n + 1), (n < 9).then_some(n)));
     assert_eq!(bucket.list("store").unwrap().0.len(), 1000);
     let endless: [fn(usize) -> String; 5] = [
-        // One token, with new names and without; new tokens with the same names, with none, and with new ones.
+        // The cases are: one token, with new names and without; new tokens with the same names,
+        // with none, and with new ones.
         |n| page(100 * n..100 * (n + 1), Some(7)),
         |_| page(0..3, Some(7)),
         |n| page(0..3, Some(n)),
@@ -331,7 +333,7 @@ fn lists_that_do_not_end_are_given_up() {
         let listed = told(&bucket.list("store").unwrap_err());
         assert!(listed.contains("sends more than"), "{listed}");
         let got = told(&bucket.get("store").unwrap_err());
-        // An object whose length is not told is not read at all.
+        // An object whose length is unknown is not read at all.
         assert!(
             got.contains(if is_claimed { "sends more than" } else { "Content-Length" }),
             "{got}"

@@ -1,4 +1,4 @@
-//! What the tests of object storage share: a small server that speaks S3 and misbehaves when it is told to.
+//! Shared parts of the tests of object storage: a small S3 server that misbehaves on request.
 #![allow(clippy::unwrap_used, reason = "each test file uses some of it; tests may unwrap")]
 
 pub(crate) mod request;
@@ -9,9 +9,9 @@ use std::time::Duration;
 use corniche_objects::{Bucket, ObjectError, Retries, Storage, StorageSettings};
 use server::Server;
 
-/// No message may hold this.
+/// The secret, which no message may contain.
 pub(crate) const SECRET: &str = "do-not-tell-0123456789";
-/// Tries after the first one.
+/// The number of retries.
 pub(crate) const RETRIES: usize = 4;
 
 pub(crate) fn settings(server: &Server) -> StorageSettings {
@@ -31,12 +31,12 @@ pub(crate) fn storage(server: &Server) -> Storage {
     Storage::new(settings(server)).unwrap()
 }
 
-/// The bucket that the server has.
+/// The bucket of the server.
 pub(crate) fn bucket(server: &Server) -> Bucket {
     storage(server).bucket("maps").unwrap()
 }
 
-/// The message of an error, which holds no secret.
+/// The message of an error, which must not contain the secret.
 pub(crate) fn told(error: &ObjectError) -> String {
     let told = error.told();
     assert!(!told.contains(SECRET), "{told}");

@@ -1,4 +1,4 @@
-//! Files become objects as a whole or not at all, and nothing is left of what was stopped.
+//! Files become objects as a whole or not at all, and nothing is left of stopped uploads.
 #![allow(clippy::unwrap_used, reason = "tests may unwrap")]
 
 use std::{cell::Cell, fs, path::PathBuf};
@@ -14,7 +14,7 @@ use corniche_store::Existing;
 use corniche_testing::Random;
 use tempfile::TempDir;
 
-/// Sent in one request, and in three parts.
+/// Sizes of files that are sent in one request, and in three parts.
 const SIZES: [usize; 2] = [30_000, 20 << 20];
 
 struct Sent {
@@ -49,7 +49,7 @@ impl Sent {
         self.bucket.upload(&Upload { file: &self.file, key: "package", existing, should_stop })
     }
 
-    /// The object is the file, and nothing else is left.
+    /// Checks that the object equals the file, and that nothing else is left.
     fn check_whole(&self) {
         assert!(self.server.content("package") == Some(self.bytes.clone()));
         self.check_clean();
@@ -85,7 +85,7 @@ fn a_file_is_sent_as_a_whole_in_one_request_or_in_parts() {
     }
 }
 
-/// Also where it came there between the first look and the end of the upload.
+/// The object may also appear between the first check and the end of the upload.
 #[test]
 fn an_object_that_is_there_is_kept_or_replaced_as_asked() {
     for size in SIZES {
@@ -112,8 +112,8 @@ fn sending_goes_on_after_what_fails_for_a_moment() {
     }
 }
 
-/// The server did what was asked, and the answer was lost: when it is asked again, it says that there is such an object already, or
-/// no such upload any more.
+/// The server executed the request, and the answer was lost: the retry then gets the answer that
+/// the object exists already, or that the upload does not exist any more.
 #[test]
 fn an_answer_that_is_lost_is_no_failure() {
     for size in SIZES {
@@ -159,11 +159,11 @@ fn a_stop_while_parts_are_sent_ends_the_upload() {
     sent.check_clean();
 }
 
-/// A process that is killed ends no upload. The next one that sends the file does.
+/// A killed process cannot abort its upload. The next process that sends the file does.
 #[test]
 fn the_upload_of_a_killed_process_is_ended_by_the_next() {
     let sent = Sent::new(SIZES[1]);
-    // As a kill leaves it: the upload cannot be ended, so that its note stays.
+    // The state after a kill: the upload cannot be aborted, so its note stays.
     sent.server.break_with(|request| {
         let is_part = request.method == "PUT" && request.query["partNumber"] == "3";
         (is_part || request.method == "DELETE").then_some(Fault::Error(403, "AccessDenied", "no"))
@@ -176,7 +176,7 @@ fn the_upload_of_a_killed_process_is_ended_by_the_next() {
     sent.server.repair();
     sent.upload(Existing::Keep).unwrap();
     sent.check_whole();
-    // A note that is not whole, or of an upload that is gone, is no matter.
+    // A note that is incomplete, or of an upload that is gone, does no harm.
     for text in [text.as_str(), "package\nupl", ""] {
         fs::write(&note, text).unwrap();
         sent.upload(Existing::Replace).unwrap();
@@ -184,11 +184,11 @@ fn the_upload_of_a_killed_process_is_ended_by_the_next() {
     }
 }
 
-/// A server that says it has stored something, and has not, or not all of it.
+/// A server that confirms an upload, but has stored nothing or only a part.
 #[test]
 fn what_is_said_to_be_stored_is_looked_for() {
     let lies = [
-        (None, "it is not there"),
+        (None, "it does not exist"),
         (Some(0), "it has 0 bytes"),
         (Some(20_000), "it has 20000 bytes"),
     ];
@@ -200,7 +200,7 @@ fn what_is_said_to_be_stored_is_looked_for() {
                     .break_with(move |request| is_end(request).then_some(Fault::Forgotten(left)));
                 let told = told(&sent.upload(existing).unwrap_err());
                 assert!(
-                    told.contains("says that it has stored it, but") && told.contains(said),
+                    told.contains("confirmed the upload, but") && told.contains(said),
                     "{told}"
                 );
                 sent.check_clean();

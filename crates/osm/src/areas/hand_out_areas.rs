@@ -1,22 +1,28 @@
-//! Areas and what is wrong with them are handed out in order of their objects.
+//! Delivers areas and their defects in the order of the objects.
 
 use corniche_areas::Area;
+use corniche_store::{Sorter, take_record};
 
-use super::{hand_parts::hand_parts, make_areas::make_areas, summary::AreaSummary};
+use super::{make_areas::make_areas, summary::AreaSummary};
 use crate::{
-    AreaLoss, Defect,
+    AreaLoss, ExtractDefect,
     failed::Failed,
     layer_sink::LayerSink,
-    outlines::{found::OutlineObjects, located_ways::LocatedWays},
-    reading::Reading,
+    outlines::{
+        found::OutlineObjects,
+        located_ways::LocatedWays,
+        records::{MemberRecord, OutlineLine, OutlineWayRecord},
+    },
+    reading::ExtractReading,
+    spool::SpoolReader,
 };
 
-/// Hands out areas, and what is wrong with them.
+/// Delivers areas and their defects.
 pub(crate) fn hand_out_areas<'a>(
-    reading: &Reading<'a>,
+    reading: &ExtractReading<'a>,
     (objects, located): (OutlineObjects<'a>, LocatedWays<'a>),
     sink: &mut dyn LayerSink<Area, AreaSummary>,
-    on_defect: &mut dyn FnMut(Defect),
+    on_defect: &mut dyn FnMut(ExtractDefect),
 ) -> Result<(), Failed> {
     let OutlineObjects { known, count, duplicates, members, open_ways, defects, held_bytes } =
         objects;
@@ -33,4 +39,27 @@ pub(crate) fn hand_out_areas<'a>(
     make_areas(reading, (known, count), parts, held_bytes, &mut summary, sink, on_defect)?;
     sink.end(summary);
     Ok(())
+}
+
+/// Assigns to each object the ways of its outline, with their coordinates. Members and ways arrive
+/// in the order of way ids. A member whose way is missing from the file gets a part that says so.
+fn hand_parts<'a>(
+    reading: &ExtractReading<'a>,
+    mut members: SpoolReader<'a>,
+    mut located: LocatedWays<'a>,
+) -> Result<Sorter<'a, OutlineWayRecord>, Failed> {
+    let mut parts = Sorter::new(reading.request.scratch, reading.shares().way_ids);
+    let mut count = 0;
+    while let Some(record) = members.next(take_record)? {
+        let MemberRecord { member, object_number } = record;
+        let way_id = member.way_id;
+        reading.check_stop_at(count)?;
+        count += 1;
+        let line = match located.find(way_id)? {
+            Some(way) => OutlineLine::from_locations(way.places.clone()),
+            None => OutlineLine::NoWay,
+        };
+        parts.push(OutlineWayRecord { object_number, member, line })?;
+    }
+    Ok(parts)
 }

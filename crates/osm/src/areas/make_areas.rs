@@ -1,9 +1,10 @@
-//! Makes areas from objects and the ways of their outlines.
+//! Builds areas from objects and the ways of their outlines.
 
 use std::{collections::HashSet, io};
 
 use corniche_areas::{
-    Area, AreaClass, AreaObject, Assembled, Coastline, OutlineError, OutlineWay, Polygon, assemble,
+    Area, AreaClass, AreaObject, AssembledArea, Coastline, OutlineError, OutlineWay, Polygon,
+    assemble,
 };
 use corniche_geom::{LatticePoint, split_at_seam};
 use corniche_store::{Sorted, take_record};
@@ -11,31 +12,31 @@ use rayon::prelude::*;
 
 use super::{over_seam, summary::AreaSummary};
 use crate::{
-    AreaLoss, Defect,
+    AreaLoss, ExtractDefect,
     ahead::Ahead,
     failed::Failed,
     layer_sink::LayerSink,
     looked::check_held,
     outlines::records::{ObjectRecord, OutlineWayRecord, degrees_of, to_point},
-    read_request::Placing,
-    reading::Reading,
+    read_request::LatticePlacement,
+    reading::ExtractReading,
     spool::SpoolReader,
 };
 
-/// Objects that are made side by side, for each thread, …
+/// The number of objects that each thread builds in parallel, …
 const OBJECTS_PER_THREAD: usize = 512;
 /// … if they have no more points than this.
 const POINTS_PER_THREAD: usize = 1 << 16;
 
-/// Hands out areas in the order of their objects.
+/// Delivers areas in the order of their objects.
 pub(crate) fn make_areas(
-    reading: &Reading<'_>,
+    reading: &ExtractReading<'_>,
     (mut known, objects_count): (SpoolReader<'_>, u64),
     parts: Sorted<'_, OutlineWayRecord>,
     mut held_bytes: u64,
     summary: &mut AreaSummary,
     sink: &mut dyn LayerSink<Area, AreaSummary>,
-    on_defect: &mut dyn FnMut(Defect),
+    on_defect: &mut dyn FnMut(ExtractDefect),
 ) -> Result<(), Failed> {
     let pool = reading.request.pool;
     let threads = pool.current_num_threads();
@@ -58,7 +59,7 @@ pub(crate) fn make_areas(
             return Ok(());
         }
         let placing = reading.request.placing();
-        let made: Vec<Made> = pool.install(|| {
+        let made: Vec<MadeArea> = pool.install(|| {
             batch.into_par_iter().map(|(known, parts)| make(known, &parts, placing)).collect()
         });
         for made in made {
@@ -73,7 +74,7 @@ pub(crate) fn make_areas(
                     count(summary, &area);
                     sink.take(area);
                 }
-                // A coastline alone is no area.
+                // A coastline alone is not an area.
                 Ok(None) => summary.objects -= 1,
                 Err(loss) => *summary.lost.entry(loss).or_default() += 1,
             }
@@ -102,14 +103,18 @@ fn count(summary: &mut AreaSummary, area: &Area) {
     kept.area_m2 += area.area_m2;
 }
 
-/// What becomes of an object.
-struct Made {
+/// The result of building one object.
+struct MadeArea {
     area: Result<Option<Area>, AreaLoss>,
     coastlines: Vec<Coastline>,
-    defects: Vec<Defect>,
+    defects: Vec<ExtractDefect>,
 }
 
-fn make(known: ObjectRecord, parts: &[OutlineWayRecord], placing: Placing<'_>) -> Made {
+fn make(
+    known: ObjectRecord,
+    parts: &[OutlineWayRecord],
+    placing: LatticePlacement<'_>,
+) -> MadeArea {
     let (kind, id) = known.object.parts();
     let is_relation = kind == "relation";
     let mut defects = Vec::new();
@@ -125,17 +130,17 @@ fn make(known: ObjectRecord, parts: &[OutlineWayRecord], placing: Placing<'_>) -
         (None, None) => Ok(None),
     };
     if let Err(loss) = area {
-        defects.push(Defect::LostArea { is_relation, id, loss });
+        defects.push(ExtractDefect::LostArea { is_relation, id, loss });
     }
-    Made { area, coastlines, defects }
+    MadeArea { area, coastlines, defects }
 }
 
-/// The lines of a way on the package's lattice: several where points between them cannot be placed, or where it
-/// goes over the seam of the map.
+/// Returns the lines of a way on the package's lattice: several if points between them cannot be
+/// converted, or if the way crosses the seam of the map.
 fn coastlines(
     way_id: i64,
     parts: &[OutlineWayRecord],
-    placing: Placing<'_>,
+    placing: LatticePlacement<'_>,
 ) -> Result<Vec<Coastline>, AreaLoss> {
     let mut lines = Vec::new();
     for part in parts {
@@ -154,19 +159,19 @@ fn coastlines(
 fn try_making(
     (known, class): (ObjectRecord, AreaClass),
     parts: &[OutlineWayRecord],
-    placing: Placing<'_>,
-    defects: &mut Vec<Defect>,
+    placing: LatticePlacement<'_>,
+    defects: &mut Vec<ExtractDefect>,
 ) -> Result<Area, AreaLoss> {
     let ObjectRecord { object, name, .. } = known;
     let (kind, id) = object.parts();
     let mut missing = 0;
-    let mut ways: Vec<Line> = Vec::new();
+    let mut ways: Vec<LocatedOutlineWay> = Vec::new();
     for part in parts {
         let is_inner = part.member.is_inner;
         match part.points() {
             Ok(points) => {
                 let points = points.iter().copied().map(to_point).collect();
-                ways.push(Line { points, is_inner });
+                ways.push(LocatedOutlineWay { points, is_inner });
             }
             Err(AreaLoss::MissingWays) => missing += 1,
             Err(loss) => return Err(loss),
@@ -194,26 +199,30 @@ fn try_making(
         polygons.extend(over_seam::placed(polygon, placing)?);
     }
     if let (AreaObject::Relation(relation_id), true) = (object, missing > 0) {
-        defects.push(Defect::MissingWays { relation_id, ways: missing });
+        defects.push(ExtractDefect::MissingWays { relation_id, ways: missing });
     }
     let mended = assembled.repeated_segments + assembled.divided_segments;
     if mended > 0 {
         let segments = u32::try_from(mended).unwrap_or(u32::MAX);
-        defects.push(Defect::MendedOutline { is_relation: kind == "relation", id, segments });
+        defects.push(ExtractDefect::MendedOutline {
+            is_relation: kind == "relation",
+            id,
+            segments,
+        });
     }
     let name = (!name.is_empty()).then(|| name.into());
     Ok(Area { object, class, name, polygons, area_m2 })
 }
 
-/// A way of an outline that the file has.
-struct Line {
+/// A way of an outline that is in the file.
+struct LocatedOutlineWay {
     points: Vec<LatticePoint>,
     is_inner: bool,
 }
 
-/// Leaves out polygons around which there is no way but those of holes: where the way around such a hole is missing, it would be
-/// taken for an area. Only here roles are asked for.
-fn leave_out_holes(assembled: &mut Assembled, ways: &[Line]) {
+/// Removes polygons that only ways with the role `inner` surround: if the way around such a hole is
+/// missing, the hole would be mistaken for an area. Roles are used only here.
+fn leave_out_holes(assembled: &mut AssembledArea, ways: &[LocatedOutlineWay]) {
     let in_order = |[a, b]: [LatticePoint; 2]| [a.min(b), a.max(b)];
     let outer: HashSet<[LatticePoint; 2]> = ways
         .iter()
@@ -225,8 +234,8 @@ fn leave_out_holes(assembled: &mut Assembled, ways: &[Line]) {
     });
 }
 
-/// The true area of a polygon whose points are in 1e-7 degrees.
-fn area_m2(polygon: &Polygon, placing: Placing<'_>) -> f64 {
+/// Returns the true area, in square metres, of a polygon whose points are in units of 1e-7 degrees.
+fn area_m2(polygon: &Polygon, placing: LatticePlacement<'_>) -> f64 {
     let of_ring = |points: &[LatticePoint]| {
         let ring_deg: Vec<[f64; 2]> = points.iter().copied().map(degrees_of).collect();
         (placing.ring_area_m2)(&ring_deg)

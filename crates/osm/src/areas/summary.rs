@@ -1,4 +1,4 @@
-//! How many areas an extract had, and how many were kept or lost.
+//! Counts of the areas of an extract: found, kept and lost.
 
 use std::collections::BTreeMap;
 
@@ -6,28 +6,29 @@ use corniche_areas::{AreaClass, Coastline};
 
 use crate::AreaLoss;
 
-/// What was in an extract and what became of it. `objects = kept + lost`, in number.
+/// The areas of an extract, and what became of them. In numbers: `objects = kept + lost`.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct AreaSummary {
-    /// Ways and relations with the tags of an area.
+    /// Ways and relations with area tags.
     pub objects: u64,
-    /// Areas that were handed out, by class.
+    /// Delivered areas, by class.
     pub kept: BTreeMap<AreaClass, KeptAreas>,
-    /// Objects that became none.
+    /// Objects that did not become areas, by reason.
     pub lost: BTreeMap<AreaLoss, u64>,
-    /// Coastlines on the package's lattice, if the table wants the sea. They do not count as objects.
+    /// Coastlines on the package's lattice, if the table includes the sea. They do not count as
+    /// objects.
     pub coastlines: Vec<Coastline>,
 }
 
 /// Areas of one class.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct KeptAreas {
-    /// How many.
+    /// The number of areas.
     pub areas: u64,
     /// The number of their polygons.
     pub polygons: u64,
-    /// The points of all rings.
+    /// The number of points in all rings.
     pub points: u64,
-    /// The true area of the objects, square metres. Where areas overlap, each counts.
+    /// The true area of the objects, square metres. Overlapping areas all count.
     pub area_m2: f64,
 }

@@ -1,14 +1,14 @@
-//! Lines with classes are made of ways and of the relations that hold them.
+//! Builds classified lines from ways and from the relations that contain them.
 
 use std::{io, iter};
 
-use corniche_areas::{ClassedLayer, LineClass};
+use corniche_areas::BoundaryClass;
 use corniche_geom::{LatticePoint, split_at_seam};
 use corniche_store::take_record;
 
-use super::{classed_line::ClassedLine, line_names::LineNames, summary::LineSummary};
+use super::{classed_line::ClassedLine, line_names::NamedObjects, summary::LineSummary};
 use crate::{
-    Defect,
+    ExtractDefect,
     ahead::Ahead,
     failed::Failed,
     layer_sink::LayerSink,
@@ -18,25 +18,28 @@ use crate::{
         located_ways::{LocatedWay, LocatedWays},
         records::{MemberRecord, degrees_of, to_point},
     },
-    reading::Reading,
+    reading::ExtractReading,
     spool::SpoolReader,
 };
 
-/// It is told every so many ways how far the layer is.
+/// The number of ways between two progress reports.
 const WAYS_TO_TELL: u64 = 1 << 10;
 
-/// The class's number of an object that gives its ways none; no class has it.
+/// The class number of an object that gives its ways no class; no class has this number.
 pub(crate) const NO_CLASS: u8 = u8::MAX;
 
-/// Members and ways come in order of way ids; `classes` are the numbers of those of objects, by the objects' numbers.
+/// Builds the lines. Members and ways arrive in the order of way ids; `classes` contains the class
+/// numbers of the objects, by the objects' numbers.
 pub(crate) fn make_lines(
-    reading: &Reading<'_>,
-    layer: ClassedLayer,
+    reading: &ExtractReading<'_>,
     (mut members, classes): (SpoolReader<'_>, &[u8]),
     mut located: LocatedWays<'_>,
     summary: &mut LineSummary,
-    (sink, on_defect): (&mut dyn LayerSink<ClassedLine, LineSummary>, &mut dyn FnMut(Defect)),
-    mut names: Option<LineNames<'_, '_>>,
+    (sink, on_defect): (
+        &mut dyn LayerSink<ClassedLine, LineSummary>,
+        &mut dyn FnMut(ExtractDefect),
+    ),
+    mut names: Option<NamedObjects<'_, '_>>,
 ) -> Result<(), Failed> {
     let records =
         Ahead::new(iter::from_fn(|| members.next(take_record::<MemberRecord>).transpose()));
@@ -45,17 +48,17 @@ pub(crate) fn make_lines(
     while let Some((way_id, class)) = members.next_way(classes)? {
         reading.check_stop_at(count)?;
         if count.is_multiple_of(WAYS_TO_TELL) {
-            // Relations name ways, too, that the file does not have.
+            // Relations also reference ways that are not in the file.
             sink.reached(count.min(all), all);
         }
         count += 1;
-        let Some(class) = layer.class(class) else { continue };
+        let Some(class) = BoundaryClass::from_number(class) else { continue };
         summary.ways += 1;
         let made = match located.find(way_id)? {
             Some(way) => parts_of(reading, way, class).inspect(|_| {
                 tell_gaps(way, on_defect);
                 if let Some(names) = &mut names {
-                    names.tell(layer, way, &members.objects);
+                    names.tell(way, &members.objects);
                 }
             }),
             None => Err(LineLoss::MissingWay),
@@ -69,7 +72,7 @@ pub(crate) fn make_lines(
             }
             Err(loss) => {
                 *summary.lost.entry(loss).or_default() += 1;
-                on_defect(Defect::LostLine { layer, way_id, loss });
+                on_defect(ExtractDefect::LostLine { way_id, loss });
             }
         }
     }
@@ -80,12 +83,12 @@ pub(crate) fn make_lines(
 /// The members of all objects by way.
 struct Members<I: Iterator> {
     records: Ahead<I>,
-    /// The objects of the way that was taken last.
+    /// The objects of the way that was read last.
     objects: Vec<u64>,
 }
 
 impl<I: Iterator<Item = io::Result<MemberRecord>>> Members<I> {
-    /// The next way and the number of the most important of the classes that objects give it.
+    /// Returns the next way, and the number of the most important class that objects give it.
     fn next_way(&mut self, classes: &[u8]) -> io::Result<Option<(i64, u8)>> {
         let Self { records, objects } = self;
         let mut way: Option<(i64, u8)> = None;
@@ -105,8 +108,8 @@ impl<I: Iterator<Item = io::Result<MemberRecord>>> Members<I> {
     }
 }
 
-/// Tells of nodes at which a way that is kept is cut.
-fn tell_gaps(way: &LocatedWay, on_defect: &mut dyn FnMut(Defect)) {
+/// Reports the nodes at which a kept way is cut.
+fn tell_gaps(way: &LocatedWay, on_defect: &mut dyn FnMut(ExtractDefect)) {
     let way_id = way.way_id;
     let count = |wanted: location::Location| {
         let found = way.places.iter().filter(|&&place| place == wanted).count();
@@ -114,19 +117,19 @@ fn tell_gaps(way: &LocatedWay, on_defect: &mut dyn FnMut(Defect)) {
     };
     match count(location::MISSING) {
         0 => {}
-        points => on_defect(Defect::MissingNodes { way_id, points }),
+        points => on_defect(ExtractDefect::MissingNodes { way_id, points }),
     }
     match count(location::OUT_OF_RANGE) {
         0 => {}
-        points => on_defect(Defect::OutOfRange { way_id, points }),
+        points => on_defect(ExtractDefect::OutOfRange { way_id, points }),
     }
 }
 
-/// The parts of a way that have a place.
+/// Returns the parts of a way that have positions.
 fn parts_of(
-    reading: &Reading<'_>,
+    reading: &ExtractReading<'_>,
     way: &LocatedWay,
-    class: LineClass,
+    class: BoundaryClass,
 ) -> Result<Vec<ClassedLine>, LineLoss> {
     let is_missing = |place: &location::Location| *place == location::MISSING;
     let is_valid =
@@ -165,7 +168,7 @@ fn parts_of(
     })
 }
 
-fn part(way_id: i64, class: LineClass, run: Vec<(LatticePoint, bool)>) -> Option<ClassedLine> {
+fn part(way_id: i64, class: BoundaryClass, run: Vec<(LatticePoint, bool)>) -> Option<ClassedLine> {
     let mut points: Vec<(LatticePoint, bool)> = Vec::new();
     for (at, is_shared) in run {
         match points.last_mut() {

@@ -1,20 +1,20 @@
-//! How many ways of a layer of lines an extract had, and how many were kept or lost.
+//! Counts of the boundary ways of an extract: found, kept and lost.
 
 use std::collections::BTreeMap;
 
-use corniche_areas::LineClass;
+use corniche_areas::BoundaryClass;
 
 use crate::line_loss::LineLoss;
 
-/// What was in an extract and what became of it. `ways = kept + lost`, in number.
+/// The boundaries of an extract, and what became of them. In numbers: `ways = kept + lost`.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct LineSummary {
     /// Ways and relations with the tags of a class.
     pub objects: u64,
-    /// Ways that have a class: each counts once.
+    /// Ways that have a class; each counts once.
     pub ways: u64,
-    /// Ways that were handed out, by class.
-    pub kept: BTreeMap<LineClass, u64>,
-    /// Ways that were left out.
+    /// Delivered ways, by class.
+    pub kept: BTreeMap<BoundaryClass, u64>,
+    /// Skipped ways, by reason.
     pub lost: BTreeMap<LineLoss, u64>,
 }

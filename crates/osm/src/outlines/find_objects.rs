@@ -1,24 +1,26 @@
-//! The objects of blobs that are read before those with ways: relations, and ways where the extract is not sorted.
+//! Finds the objects in blobs that are read before the ways: relations, and also ways if the
+//! extract is not sorted.
 
 use std::io::{Read, Seek};
 
 use super::{
     found::Outlines,
-    judge::{Judge, OfBlock},
+    judge::{OfBlock, OutlineJudge},
 };
 use crate::{
     blobs::decode,
-    block::Block,
+    block::AuditedBlock,
     extracts::{Extracts, TOO_MUCH_FOUND},
     failed::Failed,
-    looked::{Looked, LookedAt},
-    reading::{Reading, Step},
+    looked::{BlockSurvey, LookedAt},
+    reading::{ExtractReading, ReadingStep},
 };
 
-/// Reads the blobs with these numbers, and says what else is in them. `with_ways`: ways that are objects by their own tags, too.
-/// `later_bytes` are the bytes of the blobs with ways that are read afterwards, for the progress.
+/// Reads the blobs with these numbers, and returns the facts of the blobs. With `with_ways`, ways
+/// that are objects by their own tags are included. `later_bytes` is the size of the blobs with
+/// ways that are read afterwards, for progress reports.
 pub(crate) fn find_objects<R: Read + Seek>(
-    reading: &Reading<'_>,
+    reading: &ExtractReading<'_>,
     file: &mut Extracts<R>,
     numbers: &[usize],
     outlines: &mut [Outlines<'_>],
@@ -27,15 +29,15 @@ pub(crate) fn find_objects<R: Read + Seek>(
 ) -> Result<LookedAt, Failed> {
     let mut looked_at = LookedAt::default();
     let all_bytes = file.bytes_of(numbers) + later_bytes;
-    let on_bytes = &|bytes| reading.tell(Step::Ways, bytes, all_bytes);
+    let on_bytes = &|bytes| reading.tell(ReadingStep::Ways, bytes, all_bytes);
     let wanted: Vec<_> = outlines.iter().map(|outlines| outlines.wanted).collect();
     let scan = |message: Vec<u8>, most_bytes| {
-        let block = Block::new(&message);
+        let block = AuditedBlock::new(&message);
         let texts = block.texts();
-        let judges: Vec<Judge<'_>> =
-            wanted.iter().map(|&wanted| Judge::new(&texts, wanted)).collect();
+        let judges: Vec<OutlineJudge<'_>> =
+            wanted.iter().map(|&wanted| OutlineJudge::new(&texts, wanted)).collect();
         let mut found: Vec<OfBlock> = judges.iter().map(|_| OfBlock::default()).collect();
-        let looked = Looked::scan(&block);
+        let looked = BlockSurvey::scan(&block);
         if with_ways {
             for way in block.ways() {
                 for (found, judge) in found.iter_mut().zip(&judges) {

@@ -1,4 +1,4 @@
-//! What is found of one kind of outlined objects while an extract is read.
+//! The findings for one kind of outlined objects while an extract is read.
 
 use std::io;
 
@@ -9,15 +9,15 @@ use super::{
     member_ways::MemberWays,
     number_objects::{NumberedObjects, number_objects},
     records::ObjectRecord,
-    wanted::Wanted,
+    wanted::WantedObjects,
 };
 use crate::{
-    AreaLoss, Defect, ExtractSummary,
+    AreaLoss, ExtractDefect, ExtractSummary,
     deferred::Deferred,
     failed::Failed,
     looked::check_held,
     number_nodes::{NumberedNodes, number_nodes},
-    reading::Reading,
+    reading::ExtractReading,
     records::{SoughtId, WayRecord},
     sought_ids::SoughtIds,
     spool::{Spool, SpoolReader},
@@ -26,24 +26,25 @@ use crate::{
 
 /// The objects and ways of one kind that were found so far.
 pub(crate) struct Outlines<'a> {
-    pub(crate) wanted: Wanted<'a>,
+    pub(crate) wanted: WantedObjects<'a>,
     objects: Sorter<'a, ObjectRecord>,
     objects_count: u64,
     ways: Sorter<'a, WayRecord>,
     ways_count: u64,
-    /// The ways that are still to be looked for, by the objects that were found before them.
+    /// The ways still to look for, because objects found before them reference them.
     way_ids: Sorter<'a, SoughtId>,
-    /// Ways with the tags of an area that are not closed.
+    /// The number of ways with area tags that are not closed.
     open_ways: u64,
     defects: Deferred<'a>,
-    /// What all this takes, by an estimate that is not too low.
+    /// The memory of all this, bytes, by an estimate that is never too low.
     held_bytes: u64,
-    /// What goes with each way where it may be in several extracts: of those that have it, the newest version counts.
+    /// The facts stored with each way if it may be in several extracts, of which the newest version
+    /// counts.
     facts: Box<[u8]>,
 }
 
 impl<'a> Outlines<'a> {
-    pub(crate) fn new(reading: &Reading<'a>, wanted: Wanted<'a>) -> Self {
+    pub(crate) fn new(reading: &ExtractReading<'a>, wanted: WantedObjects<'a>) -> Self {
         let (shares, scratch) = (reading.shares(), reading.request.scratch);
         let mut facts: Box<[u8]> = Box::default();
         if reading.is_of_several() {
@@ -63,10 +64,11 @@ impl<'a> Outlines<'a> {
         }
     }
 
-    /// Takes what is in a block of one of the extracts. `is_before_ways`: the ways of its objects are looked for later.
+    /// Adds the contents of a block of one of the extracts. With `is_before_ways`, the ways of its
+    /// objects are looked for later.
     pub(crate) fn take(
         &mut self,
-        reading: &Reading<'_>,
+        reading: &ExtractReading<'_>,
         file: u32,
         of_block: OfBlock,
         is_before_ways: bool,
@@ -76,7 +78,7 @@ impl<'a> Outlines<'a> {
         for id in of_block.open_ways {
             self.open_ways += 1;
             let (is_relation, loss) = (false, AreaLoss::OpenWay);
-            self.defects.push(&Defect::LostArea { is_relation, id, loss });
+            self.defects.push(&ExtractDefect::LostArea { is_relation, id, loss });
         }
         for mut object in of_block.objects {
             object.origin.place(reading, file, &mut self.objects_count);
@@ -95,19 +97,19 @@ impl<'a> Outlines<'a> {
         Ok(())
     }
 
-    /// Numbers the objects, and the nodes of the ways that those name which count.
+    /// Numbers the objects, and the nodes of the ways that the counting objects reference.
     pub(crate) fn number(
         self,
-        reading: &Reading<'a>,
+        reading: &ExtractReading<'a>,
     ) -> Result<(OutlineObjects<'a>, NumberedNodes<'a>), Failed> {
         let Self { objects, ways, open_ways, mut defects, held_bytes, .. } = self;
-        let on_defect = &mut |defect: Defect| defects.push(&defect);
+        let on_defect = &mut |defect: ExtractDefect| defects.push(&defect);
         let NumberedObjects { known, count, duplicates, members } =
             number_objects(reading, objects, on_defect)?;
         let kept = Spool::new(reading.request.scratch, reading.shares().spool);
         let members = members.finish()?;
         let mut ways = MemberWays::new(ways.finish()?, members, kept);
-        // What these count is of roads.
+        // These counts describe roads, so they are not used.
         let none = &mut ExtractSummary::default();
         let numbered = number_nodes(reading, &mut ways, none, on_defect, None)?;
         let members = ways.into_members()?.read();
@@ -117,24 +119,27 @@ impl<'a> Outlines<'a> {
         Ok((objects, numbered))
     }
 
-    /// The ways that are to be looked for; from now on none is added.
-    pub(crate) fn take_way_ids(&mut self, reading: &Reading<'a>) -> io::Result<SoughtIds<'a>> {
-        SoughtIds::of(std::mem::replace(&mut self.way_ids, reading.sorter(0)))
+    /// Returns the ways to look for. No way may be added afterwards.
+    pub(crate) fn take_way_ids(
+        &mut self,
+        reading: &ExtractReading<'a>,
+    ) -> io::Result<SoughtIds<'a>> {
+        SoughtIds::from_sorter(std::mem::replace(&mut self.way_ids, reading.sorter(0)))
     }
 }
 
-/// Objects of one kind, all that is known of them but for the places of their ways.
+/// The objects of one kind, with all their data except the positions of their ways.
 pub(crate) struct OutlineObjects<'a> {
-    /// [`ObjectRecord`] of each object, without its ways, in the order of their numbers.
+    /// The [`ObjectRecord`] of each object, without its ways, in the order of their numbers.
     pub(crate) known: SpoolReader<'a>,
     pub(crate) count: u64,
-    /// How many more have the id of another one.
+    /// The number of further objects that have the id of another one.
     pub(crate) duplicates: u64,
-    /// [`super::records::MemberRecord`] of each way that they need, in order of the ids of ways.
+    /// The [`super::records::MemberRecord`] of each way that the objects need, in order of way ids.
     pub(crate) members: SpoolReader<'a>,
-    /// Ways with the tags of an area that are not closed.
+    /// The number of ways with area tags that are not closed.
     pub(crate) open_ways: u64,
     pub(crate) defects: Deferred<'a>,
-    /// What all this takes, by an estimate that is not too low.
+    /// The memory of all this, bytes, by an estimate that is never too low.
     pub(crate) held_bytes: u64,
 }

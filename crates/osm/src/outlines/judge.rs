@@ -1,68 +1,69 @@
-//! The objects and the outline ways of a block.
+//! Finds the objects and the outline ways of a block.
 
 use corniche_areas::AreaObject;
 use osmpbf::{PrimitiveBlock, RelMemberType, Relation};
 
 use super::{
     records::{Member, ObjectRecord},
-    wanted::Wanted,
+    wanted::WantedObjects,
 };
 use crate::{
     block::BlockWay,
     location::Location,
     records::{Origin, WayRecord},
-    search::Search,
+    search::IdSearch,
     text::Text,
     way_bytes::node_bytes,
 };
 
-/// What the ways and relations of a block are judged by.
-pub(crate) struct Judge<'a> {
-    wanted: Wanted<'a>,
+/// The criteria for the ways and relations of a block.
+pub(crate) struct OutlineJudge<'a> {
+    wanted: WantedObjects<'a>,
     /// Keys and values of the block's tags.
     texts: &'a [&'a [u8]],
-    /// Which of them are keys of such an object.
+    /// Whether each of the texts is a key of such an object.
     is_key: Vec<bool>,
 }
 
-/// What a block holds of one kind of objects, in its order.
+/// The objects of one kind in a block, in the block's order.
 #[derive(Default)]
 pub(crate) struct OfBlock {
     pub(crate) objects: Vec<ObjectRecord>,
-    /// Ways with the tags of an area that are not closed.
+    /// The ids of ways with area tags that are not closed.
     pub(crate) open_ways: Vec<i64>,
     /// The ways of outlines.
     pub(crate) ways: Vec<WayRecord>,
-    /// Where nodes lie, in files that say so in their ways (`LocationsOnWays`).
+    /// The positions of nodes, in files whose ways contain them (`LocationsOnWays`).
     pub(crate) located: Vec<(i64, Location)>,
-    /// What all this takes, by an estimate that is not too low.
+    /// The memory of all this, bytes, by an estimate that is never too low.
     pub(crate) held_bytes: u64,
-    /// The nodes of the way that is being looked at.
+    /// The node ids of the current way.
     node_ids: Vec<i64>,
 }
 
-/// What counts for each object, besides its texts and lists.
+/// The memory counted for each object, besides its texts and lists, bytes.
 const OBJECT_BYTES: usize = 200;
-/// What counts for each way, besides its nodes.
+/// The memory counted for each way, besides its nodes, bytes.
 const WAY_BYTES: usize = 160;
 
-/// A ring has three different points, and the first again.
+/// The minimum number of node references in a ring: three different points, and the first again.
 const LEAST_REFS: usize = 4;
 
-impl<'a> Judge<'a> {
-    pub(crate) fn new(texts: &'a [&'a [u8]], wanted: Wanted<'a>) -> Self {
+impl<'a> OutlineJudge<'a> {
+    pub(crate) fn new(texts: &'a [&'a [u8]], wanted: WantedObjects<'a>) -> Self {
         let is_key = texts.iter().map(|text| wanted.is_key(text)).collect();
         Self { wanted, texts, is_key }
     }
 
-    /// Whether one of the keys is that of an object: most ways and relations have none, and their tags need no decoding.
+    /// Whether one of the keys belongs to such an object. Most ways and relations have no such key,
+    /// and their tags need no decoding.
     fn is_any_key(&self, mut keys: impl Iterator<Item = usize>) -> bool {
         keys.any(|key| self.is_key.get(key) == Some(&true))
     }
 
-    /// The tags of an object, given as the numbers of their texts.
+    /// Returns the tags of an object, which are given by the numbers of their texts.
     fn tags(&self, pairs: impl Iterator<Item = [usize; 2]>) -> Tags<'a> {
-        // The block was checked: no tag is outside its table.
+        // The block was checked: every tag is in its table.
         let text = |index: usize| Text::new(self.texts.get(index).copied().unwrap_or_default());
         let texts: Vec<[Text<'_>; 2]> = pairs.map(|pair| pair.map(text)).collect();
         let plain: Vec<(&str, &str)> =
@@ -73,14 +74,19 @@ impl<'a> Judge<'a> {
 }
 
 impl OfBlock {
-    /// Looks whether a way is an object by its own tags.
-    pub(crate) fn look_at_object(&mut self, way: &BlockWay<'_, '_>, judge: &Judge<'_>) -> bool {
+    /// Checks whether a way is an object by its own tags.
+    pub(crate) fn look_at_object(
+        &mut self,
+        way: &BlockWay<'_, '_>,
+        judge: &OutlineJudge<'_>,
+    ) -> bool {
         if !judge.is_any_key(way.keys()) {
             return false;
         }
         let tags = judge.tags(way.keys().zip(way.values()).map(|(key, value)| [key, value]));
         let wanted = judge.wanted;
-        // Closed ways may be lines, such as hedges around a field; the tags of the table are those of areas.
+        // Closed ways may be lines, such as hedges around a field, but the tags of the table are
+        // tags of areas.
         let mut class = tags.class.filter(|_| wanted.has_open_ways() || !tags.is("area", "no"));
         let is_open = || way.refs().count() < LEAST_REFS || way.refs().next() != way.refs().last();
         if class.is_some() && !wanted.has_open_ways() && is_open() {
@@ -98,10 +104,10 @@ impl OfBlock {
         true
     }
 
-    /// Keeps a way of an outline.
+    /// Stores a way of an outline.
     pub(crate) fn keep(&mut self, way: &BlockWay<'_, '_>) {
         way.take_nodes(&mut self.node_ids, &mut self.located);
-        // Ids and places, each sorted twice.
+        // Ids and positions are each sorted twice.
         self.held_bytes += (WAY_BYTES + 48 * self.node_ids.len()) as u64;
         self.ways.push(WayRecord {
             way_id: way.id,
@@ -111,14 +117,14 @@ impl OfBlock {
         });
     }
 
-    /// Looks at the relations of a block.
-    pub(crate) fn look_at_relations(&mut self, block: &PrimitiveBlock, judge: &Judge<'_>) {
+    /// Checks the relations of a block.
+    pub(crate) fn look_at_relations(&mut self, block: &PrimitiveBlock, judge: &OutlineJudge<'_>) {
         for relation in block.groups().flat_map(|group| group.relations()) {
             self.look_at_relation(&relation, judge);
         }
     }
 
-    fn look_at_relation(&mut self, relation: &Relation<'_>, judge: &Judge<'_>) {
+    fn look_at_relation(&mut self, relation: &Relation<'_>, judge: &OutlineJudge<'_>) {
         let pairs = relation.raw_tags().map(|(key, value)| [key as usize, value as usize]);
         if !judge.is_any_key(pairs.clone().map(|[key, _]| key)) {
             return;
@@ -138,7 +144,7 @@ impl OfBlock {
             .filter(|(_, role)| judge.wanted.is_outline(role))
             .map(|(way_id, role)| Member { way_id, is_inner: role == b"inner" })
             .collect();
-        // A way that is named twice counts once, as in libosmium.
+        // A way that is referenced twice counts once, as in libosmium.
         ways.sort_unstable();
         ways.dedup_by_key(|way| way.way_id);
         let version = relation.info().version().unwrap_or_default();
@@ -167,29 +173,29 @@ impl OfBlock {
     }
 }
 
-/// What is done with ways that are objects by their own tags.
+/// The treatment of ways that are objects by their own tags.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum OwnTags {
-    /// All objects were found before.
+    /// The ways are ignored, because all objects were found before.
     Ignored,
-    /// Objects are found, and their ways kept.
+    /// Objects are found, and their ways are stored.
     Kept,
-    /// They were, and are not kept once more.
+    /// Objects were found and their ways stored before, so they are not stored again.
     KeptBefore,
 }
 
-/// Which ways of a block are looked for: by their own tags, or by their ids.
+/// The ways of a block to look for: by their own tags, or by their ids.
 pub(crate) struct WantedWays<'a> {
     pub(crate) own_tags: OwnTags,
-    pub(crate) ids: Search<'a>,
+    pub(crate) ids: IdSearch<'a>,
 }
 
 impl WantedWays<'_> {
-    /// Looks at a way.
+    /// Checks a way.
     pub(crate) fn look_at(
         &mut self,
         way: &BlockWay<'_, '_>,
-        judge: &Judge<'_>,
+        judge: &OutlineJudge<'_>,
         found: &mut OfBlock,
     ) {
         let is_kept = match self.own_tags {
@@ -208,7 +214,7 @@ impl WantedWays<'_> {
 /// The tags of an object that has one of the keys.
 struct Tags<'a> {
     texts: Vec<[Text<'a>; 2]>,
-    /// The number of its class.
+    /// The number of the object's class.
     class: Option<u8>,
 }
 

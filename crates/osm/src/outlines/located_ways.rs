@@ -1,4 +1,4 @@
-//! Ways of outlines with the places of their nodes.
+//! Ways of outlines with the positions of their nodes.
 
 use std::io;
 
@@ -11,11 +11,11 @@ use crate::{
     spool::{SpoolReader, damaged},
 };
 
-/// Ways in order of their ids, each with the places of its nodes.
+/// Ways in order of their ids, each with the positions of its nodes.
 pub(crate) struct LocatedWays<'a> {
     pub(crate) ways: SpoolReader<'a>,
     pub(crate) stops: Sorted<'a, Stop>,
-    /// How many ways there are.
+    /// The number of ways.
     pub(crate) count: u64,
     /// The way that was read last.
     pub(crate) last: Option<LocatedWay>,
@@ -24,12 +24,14 @@ pub(crate) struct LocatedWays<'a> {
 pub(crate) struct LocatedWay {
     pub(crate) way_id: i64,
     pub(crate) places: Vec<Location>,
-    /// Whether another of the ways has each node too, or this one twice.
+    /// Whether another way also contains the node, or this way contains it twice; one entry per
+    /// node.
     pub(crate) is_shared: Vec<bool>,
 }
 
 impl LocatedWays<'_> {
-    /// The way with this id, if it is one of them. Ways are asked for in ascending order of their ids.
+    /// Returns the way with this id, if it is present. Ways must be requested in ascending order of
+    /// ids.
     pub(crate) fn find(&mut self, way_id: i64) -> io::Result<Option<&LocatedWay>> {
         while self.last.as_ref().is_none_or(|way| way.way_id < way_id) {
             self.last = self.next()?;
@@ -41,7 +43,7 @@ impl LocatedWays<'_> {
     }
 
     fn next(&mut self) -> io::Result<Option<LocatedWay>> {
-        // Nothing is asked of what they are.
+        // The properties of the ways are not needed.
         let take =
             |bytes: &mut &[u8]| take_numbered(bytes).map(|(way_id, nodes, _)| (way_id, nodes));
         let Some((way_id, nodes)) = self.ways.next(take)? else { return Ok(None) };

@@ -1,4 +1,5 @@
-//! The ways that objects name which count: those of older versions of an object name ways, too, that nothing needs.
+//! The ways that counting objects reference. Older versions of an object also reference ways, but
+//! nothing needs those.
 
 use std::io;
 
@@ -7,7 +8,7 @@ use corniche_store::{Sorted, append_record};
 use super::records::MemberRecord;
 use crate::{ahead::Ahead, records::WayRecord, spool::Spool};
 
-/// The ways, in order of their ids, that members name; members are kept in the same order.
+/// The ways that members reference, in order of way ids; members are stored in the same order.
 pub(crate) struct MemberWays<'a> {
     ways: Sorted<'a, WayRecord>,
     members: Ahead<Sorted<'a, MemberRecord>>,
@@ -23,7 +24,7 @@ impl<'a> MemberWays<'a> {
         Self { ways, members: Ahead::new(members), kept }
     }
 
-    /// Whether a member names a way. Ways are asked for in ascending order of their ids.
+    /// Whether a member references a way. Ways must be requested in ascending order of ids.
     fn is_member(&mut self, way_id: i64) -> io::Result<bool> {
         while let Some(&record) = self.members.peek()? {
             if record.member.way_id >= way_id {
@@ -35,7 +36,7 @@ impl<'a> MemberWays<'a> {
         Ok(false)
     }
 
-    /// All members, in order of the ids of their ways.
+    /// Returns all members, in order of their way ids.
     pub(crate) fn into_members(mut self) -> io::Result<Spool<'a>> {
         while let Some(&record) = self.members.peek()? {
             self.kept.push(|bytes| append_record(bytes, record))?;

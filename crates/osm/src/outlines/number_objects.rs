@@ -5,9 +5,9 @@ use corniche_store::{Sorter, append_record};
 
 use super::records::{MemberRecord, ObjectRecord};
 use crate::{
-    AreaLoss, Defect, ReadOsmError,
+    AreaLoss, ExtractDefect, ReadOsmError,
     failed::Failed,
-    reading::Reading,
+    reading::ExtractReading,
     spool::Spool,
     versions::{known_version, two_versions},
 };
@@ -17,18 +17,19 @@ pub(crate) struct NumberedObjects<'a> {
     /// Each object, without its ways.
     pub(crate) known: Spool<'a>,
     pub(crate) count: u64,
-    /// How many more have the id of another one.
+    /// The number of further objects that have the id of another one.
     pub(crate) duplicates: u64,
     pub(crate) members: Sorter<'a, MemberRecord>,
 }
 
-/// Numbers the objects through. Of objects with one id the newest stays, or the first.
+/// Numbers the objects consecutively. Of objects with the same id, the newest is kept, or else the
+/// first.
 ///
-/// Fails if one extract has an object in two versions.
+/// Fails if one extract contains an object in two versions.
 pub(crate) fn number_objects<'a>(
-    reading: &Reading<'a>,
+    reading: &ExtractReading<'a>,
     objects: Sorter<'a, ObjectRecord>,
-    on_defect: &mut dyn FnMut(Defect),
+    on_defect: &mut dyn FnMut(ExtractDefect),
 ) -> Result<NumberedObjects<'a>, Failed> {
     let (request, shares) = (reading.request, reading.shares());
     let mut numbered = NumberedObjects {
@@ -46,7 +47,7 @@ pub(crate) fn number_objects<'a>(
             && before == object.object
         {
             if file != object.origin.file {
-                // That of another extract, which is older or the same.
+                // This object is from another extract, and is older or the same.
                 continue;
             }
             let (kind, id) = object.object.parts();
@@ -58,7 +59,7 @@ pub(crate) fn number_objects<'a>(
             }
             numbered.duplicates += 1;
             let (is_relation, loss) = (kind == "relation", AreaLoss::Duplicate);
-            on_defect(Defect::LostArea { is_relation, id, loss });
+            on_defect(ExtractDefect::LostArea { is_relation, id, loss });
             continue;
         }
         last = Some((object.object, object.origin.file, version));

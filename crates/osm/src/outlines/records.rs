@@ -1,4 +1,4 @@
-//! What is sorted on the way from objects to areas and boundaries.
+//! The records that are sorted on the way from objects to areas and boundaries.
 
 use corniche_areas::AreaObject;
 use corniche_geom::LatticePoint;
@@ -11,17 +11,17 @@ use crate::{
     records::Origin,
 };
 
-/// A way or relation with the tags of an area, or a coastline. Ways come first, each kind by id.
+/// A way or relation with area tags, or a coastline. Ways come first; each type is sorted by id.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) struct ObjectRecord {
     pub(crate) object: AreaObject,
     pub(crate) origin: Origin,
-    /// The number of its class; `None` of a coastline that is no area.
+    /// The number of its class; `None` for a coastline that is not an area.
     pub(crate) class: Option<u8>,
     pub(crate) is_coastline: bool,
-    /// Empty for none.
+    /// The name; empty if there is none.
     pub(crate) name: Box<str>,
-    /// The ways of its outline; a way names itself.
+    /// The ways of its outline; a way references itself.
     pub(crate) ways: Box<[Member]>,
 }
 
@@ -29,7 +29,8 @@ pub(crate) struct ObjectRecord {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) struct Member {
     pub(crate) way_id: i64,
-    /// Whether the relation gives it the role `inner`. This is only asked where other ways are missing.
+    /// Whether the relation gives the way the role `inner`. The role is used only if other ways are
+    /// missing.
     pub(crate) is_inner: bool,
 }
 
@@ -40,7 +41,7 @@ pub(crate) struct MemberRecord {
     pub(crate) object_number: u64,
 }
 
-/// A way of an object's outline with its places.
+/// A way of an object's outline with its positions.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) struct OutlineWayRecord {
     pub(crate) object_number: u64,
@@ -48,21 +49,21 @@ pub(crate) struct OutlineWayRecord {
     pub(crate) line: OutlineLine,
 }
 
-/// What is known of a way of an outline.
+/// The positions of a way of an outline, or why they are unknown.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) enum OutlineLine {
-    /// The way is not in the file.
+    /// The way is missing from the file.
     NoWay,
-    /// Some of its nodes are not.
+    /// Some of its nodes are missing from the file.
     NoNodes,
     /// Some of its nodes are not on Earth.
     OutOfRange,
-    /// Places in whole 1e-7 degrees.
+    /// The positions in units of 1e-7 degrees.
     Points(#[serde(with = "differences")] Box<[Location]>),
 }
 
 impl OutlineLine {
-    pub(crate) fn of(locations: Vec<Location>) -> Self {
+    pub(crate) fn from_locations(locations: Vec<Location>) -> Self {
         if locations.contains(&location::MISSING) {
             Self::NoNodes
         } else if locations.contains(&location::OUT_OF_RANGE) {
@@ -74,7 +75,7 @@ impl OutlineLine {
 }
 
 impl OutlineWayRecord {
-    /// The places of its nodes, or why there is no area or line with it.
+    /// Returns the positions of its nodes, or the reason why there is no area or line with it.
     pub(crate) fn points(&self) -> Result<&[Location], AreaLoss> {
         match &self.line {
             OutlineLine::NoWay => Err(AreaLoss::MissingWays),
@@ -85,7 +86,8 @@ impl OutlineWayRecord {
     }
 }
 
-/// Places on the disk, each as far as it is from the one before: less than half the bytes.
+/// Serialises positions as differences from the previous position, which takes less than half the
+/// bytes.
 mod differences {
     use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
@@ -120,7 +122,8 @@ mod differences {
             for on_axis in &mut place {
                 let next = take_signed(&mut rest).and_then(|by| by.checked_add((*on_axis).into()));
                 let next = next.and_then(|next| next.try_into().ok());
-                *on_axis = next.ok_or_else(|| D::Error::custom("no differences of places"))?;
+                *on_axis =
+                    next.ok_or_else(|| D::Error::custom("coordinate differences are missing"))?;
             }
             places.push(place);
         }
@@ -128,12 +131,12 @@ mod differences {
     }
 }
 
-/// A place as a point of the lattice of 1e-7 degrees, and back.
+/// Returns the point of a position on the lattice of 1e-7 degrees.
 pub(crate) fn to_point([lon, lat]: Location) -> LatticePoint {
     LatticePoint::new(lon.into(), lat.into())
 }
 
-/// The place of a point of the lattice of 1e-7 degrees.
+/// Returns the position of a point on the lattice of 1e-7 degrees.
 pub(crate) fn degrees_of(point: LatticePoint) -> [f64; 2] {
     [point.u as f64 / 1e7, point.v as f64 / 1e7]
 }

@@ -1,4 +1,4 @@
-//! Records of areas come back as they were written.
+//! Records of areas are read as they were written.
 
 use std::fmt::Debug;
 
@@ -50,7 +50,10 @@ fn records_come_back() {
 #[test]
 fn lines_with_unknown_places_say_so() {
     let [near, missing, far] = [[1, 2], location::MISSING, location::OUT_OF_RANGE];
-    assert_eq!(OutlineLine::of(vec![near, missing, far]), OutlineLine::NoNodes);
-    assert_eq!(OutlineLine::of(vec![near, far]), OutlineLine::OutOfRange);
-    assert_eq!(OutlineLine::of(vec![near, near]), OutlineLine::Points(Box::new([near, near])));
+    assert_eq!(OutlineLine::from_locations(vec![near, missing, far]), OutlineLine::NoNodes);
+    assert_eq!(OutlineLine::from_locations(vec![near, far]), OutlineLine::OutOfRange);
+    assert_eq!(
+        OutlineLine::from_locations(vec![near, near]),
+        OutlineLine::Points(Box::new([near, near]))
+    );
 }

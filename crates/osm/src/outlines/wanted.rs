@@ -1,53 +1,52 @@
-//! What is looked for in an extract, areas by a table or a layer of lines, and which keys, tags and roles belong to it.
+//! The objects to look for in an extract, areas by a table or boundaries, with their keys, tags and
+//! roles.
 
-use corniche_areas::{AreaTable, ClassedLayer};
+use corniche_areas::{AreaClass, AreaTable, BoundaryClass};
 
-/// Which objects are looked for.
+/// The kind of objects to look for.
 #[derive(Clone, Copy)]
-pub(crate) enum Wanted<'a> {
+pub(crate) enum WantedObjects<'a> {
     /// Areas of a table.
     Areas(&'a AreaTable),
-    /// Lines of a layer, of which each way counts, closed or not.
-    Lines(ClassedLayer),
+    /// Boundaries; each of their ways counts, closed or not.
+    Boundaries,
 }
 
-impl Wanted<'_> {
-    /// Whether an object with this key may be one of them.
+impl WantedObjects<'_> {
+    /// Whether an object with this key may be of this kind.
     pub(crate) fn is_key(self, key: &[u8]) -> bool {
         match self {
             Self::Areas(table) => {
                 table.keys().any(|known| known.as_bytes() == key)
                     || table.has_sea() && key == b"natural"
             }
-            Self::Lines(layer) => key == layer.table().key.as_bytes(),
+            Self::Boundaries => key == BoundaryClass::KEY.as_bytes(),
         }
     }
 
-    /// The number of the class of an object with these tags.
+    /// Returns the class number of an object with these tags.
     pub(crate) fn classify(self, tags: &[(&str, &str)]) -> Option<u8> {
         match self {
-            Self::Areas(table) => table.classify(tags).map(corniche_areas::AreaClass::number),
-            Self::Lines(layer) => (layer.table().of_tags)(tags),
+            Self::Areas(table) => table.classify(tags).map(AreaClass::number),
+            Self::Boundaries => BoundaryClass::of_tags(tags).map(BoundaryClass::number),
         }
     }
 
-    /// Whether coastlines are looked for, too.
+    /// Whether coastlines are also looked for.
     pub(crate) fn has_sea(self) -> bool {
         matches!(self, Self::Areas(table) if table.has_sea())
     }
 
-    /// Whether a way that is not closed can be one of them.
+    /// Whether an open way can be an object of this kind.
     pub(crate) fn has_open_ways(self) -> bool {
-        matches!(self, Self::Lines(_))
+        matches!(self, Self::Boundaries)
     }
 
     /// Whether a way with this role belongs to the outline of a relation.
     pub(crate) fn is_outline(self, role: &[u8]) -> bool {
         match self {
             Self::Areas(_) => true,
-            Self::Lines(layer) => {
-                layer.table().has_relations && [&b""[..], b"outer", b"inner"].contains(&role)
-            }
+            Self::Boundaries => [&b""[..], b"outer", b"inner"].contains(&role),
         }
     }
 }

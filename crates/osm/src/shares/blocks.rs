@@ -1,4 +1,4 @@
-//! Records of a share in blocks of bytes, each of which is one artifact.
+//! The records of a share in blocks of bytes; each block is an artifact.
 //!
 //! ```text
 //!  ┌ block: record, record, … ┐┌ block ┐┌ block ┐ …      no record crosses a block's end
@@ -6,28 +6,30 @@
 
 use std::io;
 
-use super::kept::{Kept, key};
+use super::kept::{ShareStore, key};
 use crate::{kept_error::KeptError, share::Share};
 
-/// A block ends with the record that reaches this size: large enough that a store on a server is asked seldom, small enough that blocks of
-/// all shares fit in memory. It decides the bytes of parts, so it must not depend on the memory that a process has.
+/// The size of a block, bytes; a block ends with the record that reaches it. It is large enough
+/// that a store on a server gets few requests, and small enough that blocks of all shares fit in
+/// memory. It determines the bytes of parts, so it must not depend on the memory of a process.
 pub(crate) const BLOCK_BYTES: usize = 256 << 10;
 
-/// What blocks are made of.
+/// A record that blocks can contain.
 pub(crate) trait BlockRecord: Sized {
-    /// What a record's bytes depend on: something of the record before it in the block.
+    /// The state that a record's bytes depend on, which comes from the record before it in the
+    /// block.
     type Before: Default;
 
     /// Appends the record's bytes.
     fn write(&self, before: &mut Self::Before, bytes: &mut Vec<u8>);
 
-    /// Takes a record from the front of `bytes`; `None` where they hold none.
+    /// Takes a record from the front of `bytes`; `None` if they do not contain one.
     fn take(before: &mut Self::Before, bytes: &mut &[u8]) -> Option<Self>;
 }
 
-/// Writes blocks.
-pub(crate) struct BlockWriter<'a, T: BlockRecord> {
-    kept: Kept<'a>,
+/// Writes the blocks of a share.
+pub(crate) struct ShareBlockWriter<'a, T: BlockRecord> {
+    kept: ShareStore<'a>,
     kind: u8,
     share: Share,
     blocks: u32,
@@ -35,8 +37,8 @@ pub(crate) struct BlockWriter<'a, T: BlockRecord> {
     before: T::Before,
 }
 
-impl<'a, T: BlockRecord> BlockWriter<'a, T> {
-    pub(crate) fn new(kept: Kept<'a>, kind: u8, share: Share) -> Self {
+impl<'a, T: BlockRecord> ShareBlockWriter<'a, T> {
+    pub(crate) fn new(kept: ShareStore<'a>, kind: u8, share: Share) -> Self {
         let (bytes, before) = (Vec::new(), T::Before::default());
         Self { kept, kind, share, blocks: 0, bytes, before }
     }
@@ -46,7 +48,7 @@ impl<'a, T: BlockRecord> BlockWriter<'a, T> {
         if self.bytes.len() < BLOCK_BYTES { Ok(()) } else { self.put() }
     }
 
-    /// Ends the last block; returns how many there are.
+    /// Ends the last block, and returns the number of blocks.
     pub(crate) fn finish(mut self) -> Result<u32, KeptError> {
         if !self.bytes.is_empty() {
             self.put()?;
@@ -65,7 +67,7 @@ impl<'a, T: BlockRecord> BlockWriter<'a, T> {
 
 /// Reads the records of a share, one block at a time. An error ends the reading.
 pub(crate) struct BlockReader<'a, T: BlockRecord> {
-    kept: Kept<'a>,
+    kept: ShareStore<'a>,
     kind: u8,
     share: Share,
     blocks: std::ops::Range<u32>,
@@ -75,8 +77,8 @@ pub(crate) struct BlockReader<'a, T: BlockRecord> {
 }
 
 impl<'a, T: BlockRecord> BlockReader<'a, T> {
-    /// A writer of so many blocks.
-    pub(crate) fn new(kept: Kept<'a>, kind: u8, share: Share, blocks: u32) -> Self {
+    /// Creates a reader of `blocks` blocks.
+    pub(crate) fn new(kept: ShareStore<'a>, kind: u8, share: Share, blocks: u32) -> Self {
         let (bytes, before) = (Vec::new(), T::Before::default());
         Self { kept, kind, share, blocks: 0..blocks, bytes, at: 0, before }
     }
@@ -86,12 +88,13 @@ impl<'a, T: BlockRecord> BlockReader<'a, T> {
         while self.at == self.bytes.len() {
             let Some(block) = self.blocks.next() else { return Ok(None) };
             let bytes = self.kept.store.get(key(self.kind, self.share, block))?;
-            self.bytes = bytes.ok_or_else(|| damaged(self.share, "a block of it is not there"))?;
+            self.bytes =
+                bytes.ok_or_else(|| damaged(self.share, "one of its blocks is missing"))?;
             (self.at, self.before) = (0, T::Before::default());
         }
         let mut rest = &self.bytes[self.at..];
         let record = T::take(&mut self.before, &mut rest);
-        let record = record.ok_or_else(|| damaged(self.share, "a block of it makes no sense"))?;
+        let record = record.ok_or_else(|| damaged(self.share, "one of its blocks is invalid"))?;
         self.at = self.bytes.len() - rest.len();
         Ok(Some(record))
     }

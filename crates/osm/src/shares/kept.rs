@@ -1,42 +1,44 @@
-//! Where shares keep what they find.
+//! The store for the results of shares.
 
 use std::{collections::BTreeSet, fmt};
 
-use corniche_store::{Artifacts, Key};
+use corniche_store::{ArtifactKey, Artifacts};
 
 use crate::{kept_error::KeptError, share::Share};
 
-/// A store, and which kinds of its artifacts are for shares of one extract.
+/// A store, and the kinds of its artifacts that belong to the shares of one extract.
 #[derive(Clone, Copy)]
-pub struct Kept<'a> {
-    /// Where artifacts are kept and read.
+pub struct ShareStore<'a> {
+    /// The store of the artifacts.
     pub store: &'a dyn Artifacts,
-    /// The kinds under which artifacts are kept.
+    /// The kinds of the artifacts.
     pub kinds: KeptKinds,
 }
 
-/// A kind of artifacts for each thing that shares keep. All of them are different, and of no other use.
+/// One kind of artifacts for each kind of data that shares store. All kinds are different, and have
+/// no other use.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct KeptKinds {
     /// Road ways, sorted by id.
     pub ways: u8,
-    /// Places that ways give for their nodes, sorted by node.
+    /// Positions that ways give for their nodes, sorted by node.
     pub located: u8,
     /// Defects, in the order of the file.
     pub defects: u8,
-    /// One for each share of ways that is complete: counts, and which blobs have nodes.
+    /// One record for each complete share of ways: its counts, and the blobs that contain nodes.
     pub ways_records: u8,
-    /// Places of nodes, sorted by node.
+    /// Positions of nodes, sorted by node.
     pub places: u8,
-    /// One for each share of nodes that is complete.
+    /// One record for each complete share of nodes.
     pub nodes_records: u8,
 }
 
-/// The item of a share's record.
+/// The item number of a share's record.
 const RECORD: u32 = 0;
 
-impl Kept<'_> {
-    /// The number of shares into which the whole extract was split, ways and nodes, if all of them are there; the smallest.
+impl ShareStore<'_> {
+    /// Returns the number of shares into which the extract was split, if all shares of ways and of
+    /// nodes are present. Of several such numbers, returns the smallest.
     #[must_use]
     pub fn complete(&self) -> Option<u16> {
         let items = self.store.items(self.kinds.nodes_records);
@@ -47,13 +49,13 @@ impl Kept<'_> {
         })
     }
 
-    /// Whether any share is there.
+    /// Whether any share is present.
     #[must_use]
     pub fn has_any(&self) -> bool {
         !self.store.items(self.kinds.ways_records).is_empty()
     }
 
-    /// The first share of so many whose ways are not there.
+    /// Returns the first share, of `of` shares, whose ways are missing.
     #[must_use]
     pub fn missing_ways(&self, of: u16) -> Option<Share> {
         Share::all(of).find(|&share| !self.has_ways(share))
@@ -67,12 +69,12 @@ impl Kept<'_> {
         self.store.has(key(self.kinds.nodes_records, share, RECORD))
     }
 
-    /// Keeps a share's record, which says that all of the share is there.
+    /// Stores a share's record, which says that the share is complete.
     pub(crate) fn put_record(&self, kind: u8, share: Share, bytes: &[u8]) -> Result<(), KeptError> {
         Ok(self.store.put(key(kind, share, RECORD), bytes)?)
     }
 
-    /// A share's record.
+    /// Returns a share's record.
     pub(crate) fn record(
         &self,
         kind: u8,
@@ -87,12 +89,12 @@ impl Kept<'_> {
 /// ```text
 ///  │ how many shares: 16 bits │ which: 16 bits │ block: 32 bits │
 /// ```
-pub(crate) fn key(kind: u8, share: Share, block: u32) -> Key {
-    let item = u64::from(share.of()) << 48 | u64::from(share.number()) << 32 | u64::from(block);
-    Key { kind, item }
+pub(crate) fn key(kind: u8, share: Share, block: u32) -> ArtifactKey {
+    let item = u64::from(share.count()) << 48 | u64::from(share.number()) << 32 | u64::from(block);
+    ArtifactKey { kind, item }
 }
 
-impl fmt::Debug for Kept<'_> {
+impl fmt::Debug for ShareStore<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Kept").field("kinds", &self.kinds).finish_non_exhaustive()
     }

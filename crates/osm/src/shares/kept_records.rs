@@ -1,34 +1,35 @@
-//! What is kept in blocks, and how: ways and places that they give as they are sorted anyway, places of nodes as differences.
+//! The records in blocks and their encoding: ways and their positions as they are sorted, positions
+//! of nodes as differences.
 
 use corniche_store::{SortRecord, append_record, take_record};
 
 use super::blocks::BlockRecord;
 use crate::{
-    Defect,
+    ExtractDefect,
     location::Location,
     wire::{push_varint, to_zigzag, varint, zigzag},
 };
 
-/// Where the blobs of a share say that a node lies.
+/// The position of a node according to the blobs of a share.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct PlaceRecord {
     pub(crate) node_id: i64,
-    /// The first that is on Earth; if none is, the last.
+    /// The first position on Earth; if none is on Earth, the last position.
     pub(crate) location: Location,
-    /// Whether they give several on Earth.
+    /// Whether the blobs give several positions on Earth.
     pub(crate) is_conflicting: bool,
-    /// The version of the place, of several extracts; else 0.
+    /// The version of the position, if there are several extracts; otherwise 0.
     pub(crate) version: i32,
 }
 
 impl BlockRecord for PlaceRecord {
-    /// Id and place.
+    /// The id and the position of the previous record.
     type Before = (i64, Location);
 
     /// ```text
     ///  │ id − the one before │ longitude − the one before │ latitude − the one before │ 1 if conflicting │ version │
     /// ```
-    /// Zigzag varints; the mark is the lowest bit of the latitude's.
+    /// The numbers are zigzag varints; the mark is the lowest bit of the latitude's number.
     fn write(&self, before: &mut Self::Before, bytes: &mut Vec<u8>) {
         let (id, [lon, lat]) = *before;
         let difference = |own: i32, before: i32| to_zigzag(i64::from(own) - i64::from(before));
@@ -57,7 +58,7 @@ impl BlockRecord for PlaceRecord {
     }
 }
 
-/// What is sorted stands in blocks as it does in scratch space.
+/// Sorted records have the same bytes in blocks as in scratch space.
 impl<T: SortRecord> BlockRecord for T {
     type Before = ();
 
@@ -70,7 +71,7 @@ impl<T: SortRecord> BlockRecord for T {
     }
 }
 
-impl BlockRecord for Defect {
+impl BlockRecord for ExtractDefect {
     type Before = ();
 
     fn write(&self, (): &mut (), bytes: &mut Vec<u8>) {

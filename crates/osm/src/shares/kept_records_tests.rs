@@ -1,4 +1,4 @@
-//! What shares keep is read as it was written, and other bytes are refused.
+//! The results of shares are read as they were written, and other bytes are rejected.
 
 use proptest::prelude::*;
 
@@ -23,7 +23,8 @@ fn place() -> impl Strategy<Value = PlaceRecord> {
 }
 
 proptest! {
-    /// What is written is read, whatever came before it, and no more bytes than were written.
+    /// Records are read as they were written, whatever came before them, and no more bytes are read
+    /// than were written.
     #[test]
     fn places_come_back(places in prop::collection::vec(place(), 0..50)) {
         let (mut bytes, mut before) = (Vec::new(), Default::default());
@@ -37,25 +38,25 @@ proptest! {
         prop_assert!(rest.is_empty());
     }
 
-    /// Other bytes are refused or read, never more.
+    /// Other bytes are rejected or read, and never more bytes than there are.
     #[test]
     fn any_bytes_are_read_or_refused(bytes: Vec<u8>) {
         let (mut rest, mut before) = (bytes.as_slice(), Default::default());
         while !rest.is_empty() && PlaceRecord::take(&mut before, &mut rest).is_some() {}
         let mut rest = bytes.as_slice();
-        while !rest.is_empty() && Defect::take(&mut (), &mut rest).is_some() {}
+        while !rest.is_empty() && ExtractDefect::take(&mut (), &mut rest).is_some() {}
     }
 }
 
-/// A length that no memory holds is refused before it is taken.
+/// A length that exceeds any memory is rejected before memory is allocated.
 #[test]
 fn a_defect_that_claims_an_endless_text_is_refused() {
     let value = "moat".to_owned();
     let mut bytes = Vec::new();
-    Defect::UnknownHighway { way_id: 1, value }.write(&mut (), &mut bytes);
-    assert!(Defect::take(&mut (), &mut bytes.as_slice()).is_some());
-    // The length stands before the text: bincode's mark of 64 bits, and a number.
+    ExtractDefect::UnknownHighway { way_id: 1, value }.write(&mut (), &mut bytes);
+    assert!(ExtractDefect::take(&mut (), &mut bytes.as_slice()).is_some());
+    // The length precedes the text: bincode's mark of 64 bits, and a number.
     let at = bytes.windows(4).position(|four| four == b"moat").unwrap() - 1;
     bytes.splice(at..=at, [[253].as_slice(), &(1_u64 << 61).to_le_bytes()].concat());
-    assert_eq!(Defect::take(&mut (), &mut bytes.as_slice()), None);
+    assert_eq!(ExtractDefect::take(&mut (), &mut bytes.as_slice()), None);
 }

@@ -1,24 +1,26 @@
-//! Records of several shares as one list.
+//! The records of several shares as one list.
 
 use std::{cmp::Reverse, collections::BinaryHeap, io};
 
 use super::blocks::{BlockReader, BlockRecord};
 
-/// The records of all shares in ascending order of id; those with the same id by age, then in the order of the shares, which is that of the file.
+/// The records of all shares in ascending order of ids. Records with the same id are in the order
+/// of age, then in the order of the shares, which is the order of the file.
 pub(crate) struct Merged<'a, T: BlockRecord> {
     readers: Vec<BlockReader<'a, T>>,
-    /// The id of a record, and how old its extract is: among records with the same id, the smaller ones come first.
+    /// Returns the id of a record, and the age of its extract: among records with the same id,
+    /// smaller ages come first.
     place: fn(&T) -> (i64, u32),
     /// The next record of each share.
     heads: Vec<Option<T>>,
-    /// Id and age of each of them, and its share.
+    /// The id and age of each of these records, and its share.
     places: BinaryHeap<Reverse<(i64, u32, usize)>>,
-    /// What went wrong while the record after the last one handed out was read.
+    /// The error that occurred while the record after the last one delivered was read.
     failed: Option<io::Error>,
 }
 
 impl<'a, T: BlockRecord> Merged<'a, T> {
-    /// Merges the records of one reader for each share, in the order of the shares.
+    /// Merges the records of one reader per share, in the order of the shares.
     pub(crate) fn new(readers: Vec<BlockReader<'a, T>>, place: fn(&T) -> (i64, u32)) -> Self {
         let heads = readers.iter().map(|_| None).collect();
         let places = BinaryHeap::with_capacity(readers.len());

@@ -1,63 +1,77 @@
-//! Roads from what all shares kept.
+//! Reads roads from the results of all shares.
 
 use corniche_roads::Road;
 
 use super::{
     blocks::{BLOCK_BYTES, BlockReader},
-    kept::Kept,
+    kept::ShareStore,
     kept_records::PlaceRecord,
     merged::Merged,
     nodes_of_share::blocks_of,
     ways_record::WaysRecord,
 };
 use crate::{
-    Defect, ExtractSummary, ReadOsmError,
+    ExtractDefect, ExtractSummary, ReadOsmError,
     ahead::Ahead,
     deferred::Deferred,
     failed::Failed,
     hand_out::{RoadWays, hand_out_roads},
     kept_error::KeptError,
     layer_sink::LayerSink,
-    locate_nodes::{NodeQuestions, NodeSource, ShareOfNodes, locate_nodes},
+    locate_nodes::{NodeSource, ShareOfNodes, locate_nodes},
     looked::{append_versions, check_held},
     nodes::{NodeIds, NodePlaces},
-    number_nodes::{NumberedNodes, number_nodes},
+    number_nodes::number_nodes,
     read_request::ReadRequest,
-    reading::{LayerCount, Reading, Step},
+    reading::{ExtractReading, LayerCount, ReadingStep},
     records::{Located, WayRecord},
     share::Share,
     versions::Versions,
     ways::add_summary,
 };
 
-/// Hands out the roads of an extract whose ways and nodes were kept in so many shares: the same roads, defects and counts, in the same
-/// order, as [`read_extract`](crate::read_extract) does. The extract itself is not read, `request.path` only names it in messages.
+/// Delivers the roads of an extract from the stored results of all its shares: the same roads,
+/// defects and counts, in the same order, as [`read_extract`](crate::read_extract). The extract
+/// itself is not read; `request.path` is only the name in messages.
 ///
 /// # Errors
-/// [`ReadOsmError::Kept`] if not all is there, and what [`read_extract`](crate::read_extract) finds by comparing ways with each other.
+/// [`ReadOsmError::Kept`] if results are missing, and the errors that
+/// [`read_extract`](crate::read_extract) finds when it compares ways with each other.
 pub fn read_kept_roads(
     request: &ReadRequest<'_>,
     of: u16,
-    kept: Kept<'_>,
+    kept: ShareStore<'_>,
     sink: &mut dyn LayerSink<Road, ExtractSummary>,
-    on_defect: &mut dyn FnMut(Defect),
+    on_defect: &mut dyn FnMut(ExtractDefect),
     should_stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<(), ReadOsmError> {
-    let failed = |source| ReadOsmError::Kept { path: request.path.to_path_buf(), source };
+    let read = read(request, (of, kept), sink, on_defect, should_stop);
+    read.map_err(|failed| failed.at_path(request.path))
+}
+
+fn read(
+    request: &ReadRequest<'_>,
+    (of, kept): (u16, ShareStore<'_>),
+    sink: &mut dyn LayerSink<Road, ExtractSummary>,
+    on_defect: &mut dyn FnMut(ExtractDefect),
+    should_stop: &(dyn Fn() -> bool + Sync),
+) -> Result<(), Failed> {
     let shares: Vec<Share> = Share::all(of).collect();
-    let records: Result<Vec<_>, KeptError> =
-        shares.iter().map(|&share| WaysRecord::get(kept, share)).collect();
-    let records = records.map_err(failed)?;
-    let Some(first) = records.first() else {
-        return Err(failed(KeptError::Missing { what: "ways", share: Share::WHOLE }));
-    };
-    // A block of places and one of those in ways is in memory for each share; what is sorted gets the rest.
+    let records = WaysRecord::all(kept, of)?;
+    let none = KeptError::Missing { what: "ways", share: Share::WHOLE };
+    let first = records.first().ok_or(none)?;
+    // For each share, one block of positions and one block of positions in ways are in memory;
+    // sorting gets the rest.
     let blocks_bytes = u64::from(of) * 2 * BLOCK_BYTES as u64;
     let sorted_bytes = request.memory_bytes.saturating_sub(blocks_bytes);
     let memory_bytes = sorted_bytes.max(request.memory_bytes / 2);
     let request = &ReadRequest { memory_bytes, ..*request };
-    let reading =
-        Reading { request, should_stop, len_bytes: first.len_bytes, layers: LayerCount::ROADS };
+    let reading = ExtractReading {
+        request,
+        should_stop,
+        len_bytes: first.len_bytes,
+        layers: LayerCount::ROADS,
+    };
     let mut summary = ExtractSummary {
         blobs_passed_over: first.blobs_passed_over,
         header_bounds_deg: first.header.bounds_deg,
@@ -76,11 +90,11 @@ pub fn read_kept_roads(
         check_held(&reading, held_bytes)?;
         let kind = kept.kinds.defects;
         for defect in BlockReader::new(kept, kind, share, record.defect_blocks) {
-            defects.push(&defect.map_err(|error| reading.failed(error))?);
+            defects.push(&defect?);
         }
         add_summary(&mut summary, record.counts);
     }
-    reading.tell(Step::Ways, 1, 1);
+    reading.tell(ReadingStep::Ways, 1, 1);
     let with_blocks = || shares.iter().copied().zip(&blocks);
     let ways = with_blocks()
         .map(|(share, &[blocks, _])| BlockReader::new(kept, kept.kinds.ways, share, blocks));
@@ -90,30 +104,21 @@ pub fn read_kept_roads(
         .iter()
         .map(|&share| Ok(BlockReader::new(kept, kept.kinds.places, share, blocks_of(kept, share)?)))
         .collect();
-    let mut nodes = KeptNodes {
-        places: Ahead::new(Merged::new(places.map_err(failed)?, |place| (place.node_id, 0))),
-    };
+    let mut nodes =
+        KeptNodes { places: Ahead::new(Merged::new(places?, |place| (place.node_id, 0))) };
     let ways = Merged::new(ways.collect(), |way: &WayRecord| (way.way_id, way.origin.age));
     let on_duplicate = &mut |defect| defects.push(&defect);
-    let numbered = number_nodes(&reading, ways, &mut summary, on_duplicate, None)
-        .map_err(|error| reading.failed(error))?;
-    let NumberedNodes { ways, mentions, left_out, ways_count, mentions_count, duplicates } =
-        numbered;
-    let mentions = mentions.finish().map_err(|error| reading.failed(error))?;
-    let questions = vec![NodeQuestions { mentions, mentions_count, left_out }];
+    let numbered = number_nodes(&reading, ways, &mut summary, on_duplicate, None)?;
+    let (ways, questions) = numbered.ask()?;
     let located = Merged::new(located.collect(), |located: &Located| (located.node_id, 0));
     let on_conflict = &mut |_, defect| defects.push(&defect);
-    let answers = locate_nodes(&reading, &mut nodes, questions, located, on_conflict)
-        .map_err(|error| reading.failed(error))?;
-    // There is one for each question.
+    let answers = locate_nodes(&reading, &mut nodes, vec![questions], located, on_conflict)?;
+    // There is one answer for each request.
     let Some(nodes) = answers.into_iter().next() else { return Ok(()) };
-    let ways = (ways.read(), ways_count, duplicates);
-    let found =
-        RoadWays::of(ways, nodes, summary, defects).map_err(|error| reading.failed(error))?;
-    hand_out_roads(&reading, found, sink, on_defect).map_err(|error| reading.failed(error))
+    hand_out_roads(&reading, RoadWays::from_parts(ways, nodes, summary, defects)?, sink, on_defect)
 }
 
-/// The places that all shares of nodes found.
+/// The positions that all shares of nodes found.
 struct KeptNodes<'a> {
     places: Ahead<Merged<'a, PlaceRecord>>,
 }
@@ -121,7 +126,7 @@ struct KeptNodes<'a> {
 impl NodeSource for KeptNodes<'_> {
     fn read(
         &mut self,
-        reading: &Reading<'_>,
+        reading: &ExtractReading<'_>,
         ids: &NodeIds,
         share: &ShareOfNodes,
         places: &mut NodePlaces,
@@ -133,7 +138,7 @@ impl NodeSource for KeptNodes<'_> {
             if place.node_id > last {
                 break;
             }
-            // Not there: only a way that was left out as a duplicate names the node.
+            // The node may be missing: only a way that was skipped as a duplicate references it.
             if let Some(number) = search.find(place.node_id) {
                 let own = (place.location, place.version);
                 places.add(number, own, place.is_conflicting);
@@ -142,7 +147,7 @@ impl NodeSource for KeptNodes<'_> {
             reading.check_stop_at(count)?;
             count += 1;
         }
-        reading.tell(Step::Nodes, share.done(), share.all);
+        reading.tell(ReadingStep::Nodes, share.done(), share.all);
         Ok(())
     }
 }

@@ -1,92 +1,97 @@
 //! Step *ways*: pass 1 over the blobs of a share.
 
-use std::io;
+use corniche_store::{SortRecord, Sorter};
 
-use super::{blocks::BlockWriter, kept::Kept, ways_record::WaysRecord};
+use super::{
+    blocks::ShareBlockWriter, kept::ShareStore, read_step::read_step, ways_record::WaysRecord,
+};
 use crate::{
-    Defect, ReadOsmError,
+    ExtractDefect, ReadOsmError,
     extracts::Extracts,
+    failed::Failed,
     find_ways::{FoundWays, WaysWanted},
+    open_file::Extract,
     outlines::judge::OwnTags,
     read_request::ReadRequest,
-    reading::{LayerCount, Reading},
-    records::{Located, WayRecord},
+    reading::{ExtractReading, ReadingStep},
     share::Share,
 };
 
-/// Reads the blobs of a share and keeps the road ways among them, with all that [`read_kept_roads`](super::read_kept_roads) must know of
-/// these blobs. If that is there already, nothing is read. `on_progress` counts the file's bytes once.
+/// Reads the blobs of a share, and stores the road ways among them, with all facts about these
+/// blobs that [`read_kept_roads`](super::read_kept_roads) needs. If these are already stored,
+/// nothing is read. `on_progress` counts the file's bytes once.
 ///
-/// The file is not read for the list of its blobs: their frames are sought one after the other.
+/// The list of blobs does not require reading the whole file, because the reader seeks from frame
+/// to frame.
 ///
 /// # Errors
-/// As [`read_extract`](crate::read_extract) for what is wrong in these blobs, and [`ReadOsmError::Kept`].
+/// The errors of [`read_extract`](crate::read_extract) for these blobs, and [`ReadOsmError::Kept`].
 pub fn keep_ways(
     request: &ReadRequest<'_>,
     share: Share,
-    kept: Kept<'_>,
+    kept: ShareStore<'_>,
     should_stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<(), ReadOsmError> {
     if kept.has_ways(share) {
         return Ok(());
     }
-    let mut file = Extracts::open(request)?;
-    let len_bytes = file.len_bytes();
-    let told = |done: u64, _| {
-        if let Some(on_progress) = request.on_progress {
-            on_progress(done.min(len_bytes), len_bytes);
-        }
-    };
-    let request = ReadRequest { on_progress: Some(&told), ..*request };
-    let reading = Reading { request: &request, should_stop, len_bytes, layers: LayerCount::ROADS };
-    let failed = |error: io::Error| reading.failed(error);
-    let kept_failed = |source| reading.kept_failed(source);
+    read_step(request, ReadingStep::Ways, should_stop, |reading, file| {
+        keep(reading, file, share, kept)
+    })
+}
 
+fn keep(
+    reading: &ExtractReading<'_>,
+    file: &mut Extracts<Extract>,
+    share: Share,
+    kept: ShareStore<'_>,
+) -> Result<(), Failed> {
     let own: Vec<usize> = share.part_of(file.sizes()).collect();
-    let mut defects = BlockWriter::<Defect>::new(kept, kept.kinds.defects, share);
-    // Who finds defects cannot fail; the first failure is kept.
+    let mut defects = ShareBlockWriter::<ExtractDefect>::new(kept, kept.kinds.defects, share);
+    // The code that finds defects cannot return errors, so the first failure is stored.
     let mut not_kept = None;
     let wanted = WaysWanted {
-        roads: Some(request.table),
+        roads: Some(reading.request.table),
         own_tags: OwnTags::Ignored,
         way_ids: Vec::new(),
         is_first: true,
         bytes: [0, file.bytes_of(&own)],
     };
-    let mut found = FoundWays::new(&reading);
-    found
-        .read(&reading, &mut file, &own, &wanted, &mut [], &mut |defect| {
-            if not_kept.is_none() {
-                not_kept = defects.push(&defect).err();
-            }
-        })
-        .map_err(|error| reading.failed(error))?;
-    not_kept.map_or(Ok(()), Err).map_err(kept_failed)?;
+    let mut found = FoundWays::new(reading);
+    found.read(reading, file, &own, &wanted, &mut [], &mut |defect| {
+        if not_kept.is_none() {
+            not_kept = defects.push(&defect).err();
+        }
+    })?;
+    not_kept.map_or(Ok(()), Err)?;
     let FoundWays { ways, located, mut summary, looked_at, held_bytes, .. } = found;
     summary.nodes_seen = looked_at.nodes_seen;
-
-    let mut blocks = BlockWriter::<WayRecord>::new(kept, kept.kinds.ways, share);
-    for (count, way) in (0..).zip(ways.finish().map_err(failed)?) {
-        reading.check_stop_at(count)?;
-        blocks.push(&way.map_err(failed)?).map_err(kept_failed)?;
-    }
-    let way_blocks = blocks.finish().map_err(kept_failed)?;
-    let mut blocks = BlockWriter::<Located>::new(kept, kept.kinds.located, share);
-    for (count, located) in (0..).zip(located.finish().map_err(failed)?) {
-        reading.check_stop_at(count)?;
-        blocks.push(&located.map_err(failed)?).map_err(kept_failed)?;
-    }
     let record = WaysRecord {
         counts: summary,
         header: file.take_header(),
         blobs_passed_over: file.blobs_passed_over(),
-        len_bytes,
+        len_bytes: reading.len_bytes,
         node_blobs: looked_at.node_blobs,
         versions: looked_at.versions,
         held_bytes,
-        way_blocks,
-        located_blocks: blocks.finish().map_err(kept_failed)?,
-        defect_blocks: defects.finish().map_err(kept_failed)?,
+        way_blocks: keep_sorted(reading, ways, kept, (kept.kinds.ways, share))?,
+        located_blocks: keep_sorted(reading, located, kept, (kept.kinds.located, share))?,
+        defect_blocks: defects.finish()?,
     };
-    record.put(kept, share).map_err(kept_failed)
+    Ok(record.put(kept, share)?)
+}
+
+/// Stores records in their order; returns the number of blocks.
+fn keep_sorted<T: SortRecord>(
+    reading: &ExtractReading<'_>,
+    records: Sorter<'_, T>,
+    kept: ShareStore<'_>,
+    (kind, share): (u8, Share),
+) -> Result<u32, Failed> {
+    let mut blocks = ShareBlockWriter::<T>::new(kept, kind, share);
+    for (count, record) in (0..).zip(records.finish()?) {
+        reading.check_stop_at(count)?;
+        blocks.push(&record?)?;
+    }
+    Ok(blocks.finish()?)
 }

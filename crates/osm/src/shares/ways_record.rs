@@ -1,27 +1,29 @@
-//! What is known of a share's blobs beside its ways: the record that says that the share is complete.
+//! The facts about a share's blobs besides its ways, in the record that marks the share as
+//! complete.
 
 use corniche_store::{record_bytes, take_record};
 use serde::{Deserialize, Serialize};
 
-use super::kept::Kept;
+use super::kept::ShareStore;
 use crate::{
-    ExtractSummary, blobs::Header, kept_error::KeptError, looked::NodeBlob, share::Share,
+    ExtractSummary, blobs::ExtractHeader, kept_error::KeptError, looked::NodeBlob, share::Share,
     versions::Versions,
 };
 
-/// A share of ways.
+/// The record of a share of ways.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub(crate) struct WaysRecord {
     pub(crate) counts: ExtractSummary,
     /// The header of the whole file.
-    pub(crate) header: Header,
+    pub(crate) header: ExtractHeader,
     pub(crate) blobs_passed_over: u64,
     pub(crate) len_bytes: u64,
-    /// Blobs of the share that have nodes, in the order of the file.
+    /// The blobs of the share that contain nodes, in the order of the file.
     pub(crate) node_blobs: Vec<NodeBlob>,
-    /// What is known of versions, without a reason why the file is a history: a share with one is never complete.
+    /// The versions, without a reason why the file is a history: a share with such a reason is
+    /// never complete.
     pub(crate) versions: Versions,
-    /// What its ways take, as it counts for the limit on all of them.
+    /// The memory of its ways, as it counts for the limit on all ways.
     pub(crate) held_bytes: u64,
     pub(crate) way_blocks: u32,
     pub(crate) located_blocks: u32,
@@ -29,14 +31,19 @@ pub(crate) struct WaysRecord {
 }
 
 impl WaysRecord {
-    pub(crate) fn put(&self, kept: Kept<'_>, share: Share) -> Result<(), KeptError> {
+    pub(crate) fn put(&self, kept: ShareStore<'_>, share: Share) -> Result<(), KeptError> {
         kept.put_record(kept.kinds.ways_records, share, &record_bytes(self))
     }
 
-    pub(crate) fn get(kept: Kept<'_>, share: Share) -> Result<Self, KeptError> {
+    /// Returns the records of all shares.
+    pub(crate) fn all(kept: ShareStore<'_>, of: u16) -> Result<Vec<Self>, KeptError> {
+        Share::all(of).map(|share| Self::get(kept, share)).collect()
+    }
+
+    pub(crate) fn get(kept: ShareStore<'_>, share: Share) -> Result<Self, KeptError> {
         let bytes = kept.record(kept.kinds.ways_records, "ways", share)?;
         let mut rest = &*bytes;
         let record = take_record(&mut rest).filter(|_| rest.is_empty());
-        record.ok_or(KeptError::Damaged { share, what: "its record of ways makes no sense" })
+        record.ok_or(KeptError::Damaged { share, what: "its record of ways is invalid" })
     }
 }

@@ -1,4 +1,4 @@
-//! Areas of small extracts made here: what is kept, what is lost and why.
+//! Areas of small generated extracts: which are kept, which are lost, and why.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -6,14 +6,14 @@ use std::fs;
 
 use crate::common::{outlined::read_areas, to_lattice};
 use corniche_areas::{Area, AreaClass, AreaObject, AreaTable};
-use corniche_osm::{AreaLoss, AreaSummary, Defect, ReadOsmError, ReadRequest};
+use corniche_osm::{AreaLoss, AreaSummary, ExtractDefect, ReadOsmError, ReadRequest};
 use corniche_presets::{area_preset, parse_area_table};
 use corniche_testing::MemoryScratch;
-use corniche_testing::pbf::{Block, deltas, field, file, number};
+use corniche_testing::pbf::{BlockBuilder, deltas, field, file, number};
 
 struct Found {
     areas: Vec<Area>,
-    defects: Vec<Defect>,
+    defects: Vec<ExtractDefect>,
     summary: AreaSummary,
 }
 
@@ -21,7 +21,8 @@ fn table() -> AreaTable {
     parse_area_table(area_preset("default").unwrap()).unwrap()
 }
 
-/// Reads with this much memory. Nodes are in a square lattice of 0.001 degrees: number 10 y + x + 1 at (x, y).
+/// Reads with a memory limit. Nodes are in a square lattice of 0.001 degrees: number 10 y + x + 1
+/// at (x, y).
 fn read_within(bytes: &[u8], memory_bytes: u64) -> Result<Found, ReadOsmError> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("made.osm.pbf");
@@ -52,9 +53,9 @@ fn read_within(bytes: &[u8], memory_bytes: u64) -> Result<Found, ReadOsmError> {
 
 type Tags<'a> = &'a [(&'a str, &'a str)];
 
-/// A 10 × 10 lattice of nodes, these ways, these relations of ways.
+/// Returns an extract with a 10 × 10 lattice of nodes, these ways, and these relations of ways.
 fn made(ways: &[(i64, Tags<'_>, &[i64])], relations: &[(i64, Tags<'_>, &[i64])]) -> Vec<u8> {
-    let mut block = Block::new();
+    let mut block = BlockBuilder::new();
     let node = |n: i64| (n + 1, 470_000_000 + 10_000 * (n / 10), 95_000_000 + 10_000 * (n % 10));
     block.dense(&(0..100).map(node).collect::<Vec<_>>());
     for (id, tags, node_ids) in ways {
@@ -77,7 +78,7 @@ const LAKE: Tags<'_> = &[("natural", "water"), ("name", "Bodensee")];
 const FOREST: Tags<'_> = &[("type", "multipolygon"), ("landuse", "forest")];
 const PLAIN: Tags<'_> = &[];
 
-/// What a square of the lattice measures, m².
+/// Returns the area of a square of the lattice, m².
 fn cell_m2() -> f64 {
     corniche_geom::wgs84::area_m2(&[[9.5, 47.0], [9.501, 47.0], [9.501, 47.001], [9.5, 47.001]])
 }
@@ -124,17 +125,19 @@ fn each_object_is_an_area_or_lost_for_a_reason() {
             (10, FOREST, &[7]),
             (11, FOREST, &[7, 70]),
             (12, FOREST, &[]),
-            // The way is there, and a hole is not.
+            // The way is in the file, and a hole is not.
             (13, FOREST, &[2, 1071]),
-            // A hole is there, and the way around it is not.
+            // A hole is in the file, and the way around it is not.
             (15, FOREST, &[71, 1001]),
             (14, &[("type", "route"), ("landuse", "forest")], &[2]),
         ],
     );
-    let way = |id, loss| Defect::LostArea { is_relation: false, id, loss };
-    let relation = |id, loss| Defect::LostArea { is_relation: true, id, loss };
+    let way = |id, loss| ExtractDefect::LostArea { is_relation: false, id, loss };
+    let relation = |id, loss| ExtractDefect::LostArea { is_relation: true, id, loss };
     let mut defects = found.defects;
-    defects.retain(|defect| matches!(defect, Defect::LostArea { .. } | Defect::MissingWays { .. }));
+    defects.retain(|defect| {
+        matches!(defect, ExtractDefect::LostArea { .. } | ExtractDefect::MissingWays { .. })
+    });
     assert_eq!(
         defects,
         [
@@ -146,7 +149,7 @@ fn each_object_is_an_area_or_lost_for_a_reason() {
             relation(10, AreaLoss::OpenOutline),
             relation(11, AreaLoss::MissingWays),
             relation(12, AreaLoss::NoOutline),
-            Defect::MissingWays { relation_id: 13, ways: 1 },
+            ExtractDefect::MissingWays { relation_id: 13, ways: 1 },
             relation(15, AreaLoss::MissingWays),
         ]
     );
@@ -155,7 +158,7 @@ fn each_object_is_an_area_or_lost_for_a_reason() {
     assert_eq!(found.summary.objects, 11);
 }
 
-/// With memory for a few ways at a time, everything comes out as with memory for all.
+/// With memory for a few ways at a time, the result is the same as with memory for all.
 #[test]
 fn little_memory_gives_the_same() {
     let ids: Vec<i64> = (1..=60).collect();
@@ -181,21 +184,24 @@ fn little_memory_gives_the_same() {
     }
 }
 
-/// A relation that contradicts itself makes the file a damaged one, as ways do.
+/// A relation that contradicts itself makes the file corrupt, as ways do.
 #[test]
 fn damaged_relations_are_refused() {
     let relation = |fields: &[Vec<u8>]| {
-        let mut block = Block::with_row_of_nodes(3);
+        let mut block = BlockBuilder::with_row_of_nodes(3);
         block.groups.push(field(4, &[number(1, 9), fields.concat()].concat()));
         read_within(&file(&block), 1 << 24).map(|found| found.areas).unwrap_err().to_string()
     };
     let [roles, ids] = [field(8, &[0]), field(9, &deltas(&[1]))];
     for (fields, reason) in [
-        (vec![roles.clone(), ids.clone(), field(10, &[3])], "a member of relation 9 is of kind 3"),
-        (vec![roles.clone(), ids, field(10, &[1, 1])], "1 members, 1 roles and 2 kinds"),
+        (
+            vec![roles.clone(), ids.clone(), field(10, &[3])],
+            "a member of relation 9 has the unknown type 3",
+        ),
+        (vec![roles.clone(), ids, field(10, &[1, 1])], "1 members, 1 roles and 2 member types"),
         (vec![roles, field(9, &deltas(&[i64::MAX, 1, i64::MIN])), field(10, &[1; 3])], "overflow"),
         (vec![field(2, &[0])], "relation 9 has 1 keys and 0 values"),
-        (vec![field(2, &[0]), field(3, &[100])], "a tag of relation 9 is string 100"),
+        (vec![field(2, &[0]), field(3, &[100])], "a tag of relation 9 refers to string 100"),
     ] {
         let message = relation(&fields);
         assert!(message.contains(reason), "{message}");
@@ -209,9 +215,9 @@ fn coastlines_are_handed_on_in_order_of_their_points() {
     let found = read(
         &[
             (1, COAST, &[1, 2, 12]),
-            // An island that is a wood.
+            // The way is an island that is a wood.
             (2, &[("natural", "coastline"), ("landuse", "forest")], &[34, 35, 45, 44, 34]),
-            // One with a tag of areas that is not closed.
+            // The way has an area tag and is not closed.
             (3, &[("natural", "coastline"), ("landuse", "forest")], &[12, 13]),
             (4, COAST, &[13, 111]),
             (5, LAKE, &[1, 2, 12, 11, 1]),
@@ -229,17 +235,18 @@ fn coastlines_are_handed_on_in_order_of_their_points() {
     assert_eq!(coasts[0].points, [1, 2, 12].map(lattice));
     let objects: Vec<AreaObject> = found.areas.iter().map(|area| area.object).collect();
     assert_eq!(objects, [AreaObject::Way(2), AreaObject::Way(5)]);
-    // Coastlines that are no areas do not count as objects, unless they are lost.
+    // Coastlines that are not areas do not count as objects, unless they are lost.
     assert_eq!(found.summary.objects, 4);
-    let way = |id, loss| Defect::LostArea { is_relation: false, id, loss };
+    let way = |id, loss| ExtractDefect::LostArea { is_relation: false, id, loss };
     let expected = [way(3, AreaLoss::OpenWay), way(4, AreaLoss::MissingNodes)];
     assert_eq!(found.defects, expected);
 }
 
-/// A forest over 180° of two ways, one of which ends at −180° where the other begins at 180°: outlines are joined around the earth.
+/// A forest across 180° has two ways, one of which ends at −180° where the other begins at 180°:
+/// outlines are joined around the Earth.
 #[test]
 fn an_outline_over_180_degrees_is_closed() {
-    let mut block = Block::new();
+    let mut block = BlockBuilder::new();
     let places = [(1799, 100), (1800, 100), (-1799, 100), (-1799, 101), (-1800, 101), (1799, 101)];
     let nodes: Vec<_> =
         (1..).zip(places).map(|(id, (lon, lat))| (id, lat * 1_000_000, lon * 1_000_000)).collect();
@@ -250,7 +257,7 @@ fn an_outline_over_180_degrees_is_closed() {
     let found = read_within(&file(&block), 1 << 24).unwrap();
     assert_eq!(found.defects, []);
     let [forest] = &found.areas[..] else { panic!("{:?}", found.areas) };
-    // As GeographicLib has it for 0.2 by 0.1 degrees at 10 degrees north.
+    // GeographicLib gives this for 0.2 by 0.1 degrees at 10 degrees north.
     let expected_m2 = 242_503_054.0;
     assert!((forest.area_m2 / expected_m2 - 1.0).abs() < 1e-5, "{}", forest.area_m2);
 }

@@ -1,4 +1,4 @@
-//! Areas of real extracts against those that osmium assembles (`osmium export`).
+//! Areas of real extracts are the areas that osmium assembles (`osmium export`).
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -12,12 +12,13 @@ use std::{
 use crate::common::{default_table, outlined::read_areas, to_lattice};
 use corniche_areas::{Area, AreaObject, AreaTable, Polygon};
 use corniche_geom::wgs84;
-use corniche_osm::{AreaLoss, AreaSummary, Defect, ReadRequest};
+use corniche_osm::{AreaLoss, AreaSummary, ExtractDefect, ReadRequest};
 use corniche_presets::{area_preset, parse_area_table};
 use corniche_testing::{MemoryScratch, real_data};
 use serde_json::{Value, json};
 
-/// Areas of osmium, m², by object: all closed ways with a tag of the table, and all relations.
+/// Returns the areas of osmium, m², by object: all closed ways with a tag of the table, and all
+/// relations.
 fn areas_of_osmium(extract: &Path, table: &AreaTable) -> Option<BTreeMap<AreaObject, f64>> {
     let folder = tempfile::tempdir().unwrap();
     let [config, output] = ["config.json", "areas.geojsonseq"].map(|name| folder.path().join(name));
@@ -25,7 +26,7 @@ fn areas_of_osmium(extract: &Path, table: &AreaTable) -> Option<BTreeMap<AreaObj
     let attributes = json!({ "type": true, "id": true });
     let settings = json!({ "attributes": attributes, "linear_tags": false, "area_tags": tags });
     fs::write(&config, settings.to_string()).unwrap();
-    // `export` wants objects in order of id.
+    // `export` requires objects in order of ids.
     let sorted = folder.path().join("sorted.osm.pbf");
     let done =
         Command::new("osmium").arg("sort").arg(extract).arg("-o").arg(&sorted).output().ok()?;
@@ -72,7 +73,7 @@ fn area_m2(rings: &[Vec<[f64; 2]>]) -> f64 {
     rings.iter().map(of_ring).reduce(|outer, hole| outer - hole).unwrap()
 }
 
-fn own_areas(extract: &Path, table: &AreaTable) -> (Vec<Area>, Vec<Defect>, AreaSummary) {
+fn own_areas(extract: &Path, table: &AreaTable) -> (Vec<Area>, Vec<ExtractDefect>, AreaSummary) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
     let scratch = MemoryScratch::default();
     let request = ReadRequest {
@@ -97,7 +98,8 @@ fn own_areas(extract: &Path, table: &AreaTable) -> (Vec<Area>, Vec<Defect>, Area
     (areas, defects, summary)
 }
 
-/// Every area of osmium is one of ours with the same square metres. What only we have was mended, or lacks ways.
+/// Every area of osmium is also one of ours, with the same square metres. Areas that only we have
+/// were mended, or lack ways.
 #[test]
 fn areas_are_those_of_osmium() {
     let table = parse_area_table(area_preset("default").unwrap()).unwrap();
@@ -112,7 +114,7 @@ fn areas_are_those_of_osmium() {
     ] {
         let Some(extract) = real_data(name) else { return };
         let folder = tempfile::tempdir().unwrap();
-        // A compression that we do not read, and say so.
+        // We do not read this compression, and report that.
         let extract = if name.contains("lz4") {
             let again = folder.path().join("zlib.osm.pbf");
             let cat =
@@ -132,9 +134,12 @@ fn areas_are_those_of_osmium() {
         let excused: BTreeSet<(&str, i64)> = defects
             .iter()
             .filter(|defect| {
-                matches!(defect, Defect::MissingWays { .. } | Defect::MendedOutline { .. })
+                matches!(
+                    defect,
+                    ExtractDefect::MissingWays { .. } | ExtractDefect::MendedOutline { .. }
+                )
             })
-            .map(Defect::object)
+            .map(ExtractDefect::object)
             .collect();
         let mut only_ours = 0;
         let mut worst = 0.0_f64;
@@ -144,7 +149,7 @@ fn areas_are_those_of_osmium() {
                 continue;
             }
             only_ours += 1;
-            let of_it = |defect: &&Defect| defect.object() == area.object.parts();
+            let of_it = |defect: &&ExtractDefect| defect.object() == area.object.parts();
             println!("{}: {:?}", area.object, defects.iter().find(of_it));
             assert!(excused.contains(&area.object.parts()), "{name}: {}", area.object);
         }

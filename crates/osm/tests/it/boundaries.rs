@@ -1,21 +1,21 @@
-//! Boundaries of small extracts made here: each way once, in the most important class.
+//! Boundaries of small generated extracts: each way once, in the most important class.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
 use std::fs;
 
 use crate::common::{outlined::check_lines, to_lattice};
-use corniche_areas::{BoundaryClass, ClassedLayer, LineClass};
+use corniche_areas::BoundaryClass;
 use corniche_osm::{
-    ClassedLine, Defect, LayerSink, Layers, LineLoss, LineSummary, ReadRequest, read_extract,
+    ClassedLine, ExtractDefect, LayerSink, Layers, LineLoss, LineSummary, ReadRequest, read_extract,
 };
 use corniche_testing::MemoryScratch;
-use corniche_testing::pbf::{Block, file};
+use corniche_testing::pbf::{BlockBuilder, file};
 
 #[derive(Default)]
 struct Found {
     boundaries: Vec<ClassedLine>,
-    defects: Vec<Defect>,
+    defects: Vec<ExtractDefect>,
     summary: LineSummary,
     names: Vec<(i64, String, String)>,
 }
@@ -31,7 +31,8 @@ impl LayerSink<ClassedLine, LineSummary> for Found {
     }
 }
 
-/// Reads with this much memory. Nodes are in a square lattice of 0.001 degrees: number 10 y + x + 1 at (x, y).
+/// Reads with a memory limit. Nodes are in a square lattice of 0.001 degrees: number 10 y + x + 1
+/// at (x, y).
 fn read(bytes: &[u8], memory_bytes: u64) -> Found {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("made.osm.pbf");
@@ -54,12 +55,12 @@ fn read(bytes: &[u8], memory_bytes: u64) -> Found {
         on_progress: None,
     };
     let (mut found, mut defects, mut names) = (Found::default(), Vec::new(), Vec::new());
-    let mut on_name = |way_id, class: LineClass, name: &str| {
+    let mut on_name = |way_id, class: BoundaryClass, name: &str| {
         names.push((way_id, class.to_string(), name.to_owned()));
     };
     let layers = Layers {
-        lines: vec![(ClassedLayer::Boundaries, &mut found)],
-        line_names: Some(&mut on_name),
+        boundaries: Some(&mut found),
+        boundary_names: Some(&mut on_name),
         ..Layers::default()
     };
     read_extract(&request, layers, &mut |defect| defects.push(defect), &|| false).unwrap();
@@ -70,7 +71,7 @@ type Tags<'a> = &'a [(&'a str, &'a str)];
 type Members<'a> = &'a [(i64, &'a str)];
 
 fn made(ways: &[(i64, Tags<'_>, &[i64])], relations: &[(i64, Tags<'_>, Members<'_>)]) -> Vec<u8> {
-    let mut block = Block::new();
+    let mut block = BlockBuilder::new();
     let node = |n: i64| (n + 1, 470_000_000 + 10_000 * (n / 10), 95_000_000 + 10_000 * (n % 10));
     block.dense(&(0..100).map(node).collect::<Vec<_>>());
     for (id, tags, node_ids) in ways {
@@ -89,8 +90,7 @@ const DISTRICT: Tags<'_> =
 const PARK: Tags<'_> = &[("type", "boundary"), ("boundary", "protected_area")];
 
 fn classes(found: &Found) -> Vec<(i64, BoundaryClass)> {
-    let class = |class: LineClass| BoundaryClass::from_number(class.number()).unwrap();
-    found.boundaries.iter().map(|line| (line.way_id, class(line.class))).collect()
+    found.boundaries.iter().map(|line| (line.way_id, line.class)).collect()
 }
 
 #[test]
@@ -118,7 +118,7 @@ fn ways_with_tags_count_by_themselves_and_other_roles_do_not() {
         [(1, own, &[1, 2]), (2, own, &[2, 3, 13, 2]), (3, &[], &[5, 6])];
     let relations: [(i64, Tags<'_>, Members<'_>); 2] = [
         (10, COUNTRY, &[(1, "outer"), (3, "label")]),
-        // No boundary by its type.
+        // This is not a boundary by its type.
         (
             11,
             &[("type", "route"), ("boundary", "administrative"), ("admin_level", "2")],
@@ -129,7 +129,8 @@ fn ways_with_tags_count_by_themselves_and_other_roles_do_not() {
     assert_eq!(classes(&found), [(1, BoundaryClass::Admin2), (2, BoundaryClass::Admin8)]);
 }
 
-/// An open way bounds nothing by itself, and a relation that gives it no class is none of what it bounds.
+/// An open way bounds nothing by itself, and a relation that gives it no class is not bounded by
+/// it.
 #[test]
 fn names_are_those_of_what_a_way_bounds() {
     let named = |tags: Tags<'static>, name| [tags, &[("name", name)]].concat();
@@ -160,7 +161,7 @@ fn names_are_those_of_what_a_way_bounds() {
     );
 }
 
-/// The ends, and where two boundaries meet.
+/// The fixed points are the ends, and the points where two boundaries meet.
 #[test]
 fn junctions_are_fixed() {
     let ways: [(i64, Tags<'_>, &[i64]); 2] = [(1, &[], &[1, 2, 3, 4, 5]), (2, &[], &[3, 13, 23])];
@@ -173,7 +174,7 @@ fn junctions_are_fixed() {
 fn what_is_lost_is_counted_by_reason() {
     let ways: [(i64, Tags<'_>, &[i64]); 4] = [
         (1, &[], &[1, 2, 3]),
-        // In the middle a node is missing: two parts.
+        // A node in the middle is missing, so there are two parts.
         (2, &[], &[1, 2, 900, 12, 13]),
         (3, &[], &[900, 1, 901]),
         (4, &[], &[7, 7]),
@@ -186,7 +187,7 @@ fn what_is_lost_is_counted_by_reason() {
         .defects
         .iter()
         .filter_map(|defect| match defect {
-            Defect::LostLine { way_id, loss, .. } => Some((*way_id, *loss)),
+            ExtractDefect::LostLine { way_id, loss, .. } => Some((*way_id, *loss)),
             _ => None,
         })
         .collect();
@@ -194,11 +195,11 @@ fn what_is_lost_is_counted_by_reason() {
         lost,
         [(3, LineLoss::MissingNodes), (4, LineLoss::OutsideProjection), (5, LineLoss::MissingWay)]
     );
-    assert!(found.defects.contains(&Defect::MissingNodes { way_id: 2, points: 1 }));
+    assert!(found.defects.contains(&ExtractDefect::MissingNodes { way_id: 2, points: 1 }));
     assert_eq!(found.summary.ways, 5);
 }
 
-/// With little memory everything is sorted on disk, and comes out the same.
+/// With little memory, everything is sorted on disk, and the result is the same.
 #[test]
 fn little_memory_changes_nothing() {
     let ways: Vec<(i64, Tags<'_>, Vec<i64>)> =
@@ -213,7 +214,8 @@ fn little_memory_changes_nothing() {
     assert_eq!(one.boundaries.len(), 90);
 }
 
-/// Of two relations with one id the first counts; what the other names is not read, and makes no junction.
+/// If two relations have the same id, the first counts. Ways that only the other references are not
+/// read, and make no junction.
 #[test]
 fn ways_of_a_relation_that_does_not_count_are_not_looked_at() {
     let ways: [(i64, Tags<'_>, &[i64]); 2] = [(1, &[], &[1, 2, 3]), (2, &[], &[2, 12, 22])];

@@ -1,15 +1,15 @@
-//! Boundaries of real extracts against the objects that osmium lists (`osmium cat -f opl`).
+//! Boundaries of real extracts match the objects that osmium lists (`osmium cat -f opl`).
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
 use std::{collections::BTreeMap, path::Path, process::Command};
 
-use crate::common::{default_table, outlined::read_lines, to_lattice};
-use corniche_areas::{BoundaryClass, ClassedLayer};
-use corniche_osm::{Defect, LineLoss, ReadRequest};
+use crate::common::{default_table, outlined::read_boundaries, to_lattice};
+use corniche_areas::BoundaryClass;
+use corniche_osm::{ExtractDefect, LineLoss, ReadRequest};
 use corniche_testing::{MemoryScratch, real_data};
 
-/// The class that tags give, told here once more: `Tkey=value,key=value`.
+/// Returns the class that tags give, implemented independently: `Tkey=value,key=value`.
 fn class_of(fields: &str) -> Option<BoundaryClass> {
     let tags: BTreeMap<&str, &str> =
         fields.split(',').filter_map(|tag| tag.split_once('=')).collect();
@@ -22,7 +22,7 @@ fn class_of(fields: &str) -> Option<BoundaryClass> {
     }
 }
 
-/// By way: its class, and whether the extract has it.
+/// Returns for each way its class, and whether the extract contains it.
 fn of_osmium(extract: &Path) -> Option<BTreeMap<i64, (BoundaryClass, bool)>> {
     let mut command = Command::new("osmium");
     command.args(["cat", "-f", "opl", "-o", "-", "-t", "way", "-t", "relation"]).arg(extract);
@@ -91,14 +91,13 @@ fn boundaries_are_the_ways_that_osmium_lists() {
             on_progress: None,
         };
         let (mut kept, mut lost) = (BTreeMap::new(), BTreeMap::new());
-        let summary = read_lines(
+        let summary = read_boundaries(
             &request,
-            ClassedLayer::Boundaries,
             &mut |boundary| {
                 kept.insert(boundary.way_id, boundary.class);
             },
             &mut |defect| {
-                if let Defect::LostLine { way_id, loss, .. } = defect {
+                if let ExtractDefect::LostLine { way_id, loss, .. } = defect {
                     lost.insert(way_id, loss);
                 }
             },
@@ -108,7 +107,7 @@ fn boundaries_are_the_ways_that_osmium_lists() {
         for (way_id, (class, is_present)) in &expected {
             if *is_present {
                 assert!(
-                    kept.get(way_id) == ClassedLayer::Boundaries.class(class.number()).as_ref()
+                    kept.get(way_id) == Some(class)
                         || lost.get(way_id) == Some(&LineLoss::MissingNodes),
                     "{name}: way {way_id} {class}"
                 );

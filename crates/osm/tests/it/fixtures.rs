@@ -1,4 +1,5 @@
-//! Small extracts made by hand (`tests/fixtures/*.osm`, written as PBF by osmium) with a known answer.
+//! Small extracts written by hand (`tests/fixtures/*.osm`, converted to PBF by osmium) with a known
+//! result.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -9,7 +10,7 @@ use std::{
 
 use crate::common::{Extract, fixture, read, read_with, request, roads::read_roads, to_lattice};
 use corniche_geom::LatticePoint;
-use corniche_osm::{Defect, ReadOsmError};
+use corniche_osm::{ExtractDefect, ReadOsmError};
 use corniche_roads::{Form, Oneway, Road, Structure};
 use corniche_testing::MemoryScratch;
 
@@ -18,7 +19,7 @@ fn road(extract: &Extract, way_id: i64) -> &Road {
 }
 
 fn points(road: &Road) -> Vec<(i64, i64)> {
-    // Hundredths of a degree: the fixtures use no finer ones.
+    // The unit is a hundredth of a degree: the fixtures use no finer coordinates.
     road.line.points().iter().map(|p| (p.u / 100_000, p.v / 100_000)).collect()
 }
 
@@ -47,8 +48,8 @@ fn every_class_comes_out_as_the_table_says() {
     assert_eq!(
         extract.defects,
         [
-            Defect::Area { way_id: 21 },
-            Defect::UnknownHighway { way_id: 23, value: "goat_trail".into() }
+            ExtractDefect::Area { way_id: 21 },
+            ExtractDefect::UnknownHighway { way_id: 23, value: "goat_trail".into() }
         ]
     );
 }
@@ -72,11 +73,12 @@ fn tags_and_places_come_through() {
 #[test]
 fn nodes_that_roads_share_are_fixed() {
     let extract = read(&fixture("classes.osm.pbf")).unwrap();
-    // Node 2 is shared by ways 10, 11 and 16; node 4 by 11 and 18; nodes 6 and 7 by 19 and by 13 and 14.
+    // Ways 10, 11 and 16 share node 2; ways 11 and 18 share node 4; way 19 shares nodes 6 and 7
+    // with ways 13 and 14.
     assert_eq!(road(&extract, 10).fixed, [0, 1, 2]);
     assert_eq!(road(&extract, 11).fixed, [0, 1, 2]);
     assert_eq!(road(&extract, 19).fixed, [0, 1, 2, 3]);
-    // In the other file only its duplicate, which is left out, shares node 2 of way 30.
+    // In the other file, only a duplicate of way 30, which is skipped, shares its node 2.
     let crossing = read(&fixture("crossing.osm.pbf")).unwrap();
     assert_eq!(road(&crossing, 30).fixed, [0, 2, 3]);
 }
@@ -108,18 +110,18 @@ fn missing_nodes_cut_a_way_and_never_join_it() {
     assert_eq!(
         extract.defects,
         [
-            Defect::TooFewNodes { way_id: -17, nodes: 0 },
-            // On its way back from node -7 it passes (952.8, 4710), between nodes -2 and -4.
-            Defect::SelfCrossing { way_id: -16, crossings: 1 },
-            Defect::MissingNodes { way_id: -15, points: 2 },
-            Defect::DuplicatePoints { way_id: -14, points: 1 },
-            Defect::NoLine { way_id: -14 },
-            Defect::DuplicatePoints { way_id: -13, points: 2 },
-            Defect::MissingNodes { way_id: -12, points: 2 },
-            Defect::NoLine { way_id: -12 },
-            Defect::TooFewNodes { way_id: -11, nodes: 1 },
-            Defect::MissingNodes { way_id: -10, points: 1 },
-            Defect::Split { way_id: -10, roads: 2 },
+            ExtractDefect::TooFewNodes { way_id: -17, nodes: 0 },
+            // On its way back from node -7, the way passes (952.8, 4710), between nodes -2 and -4.
+            ExtractDefect::SelfCrossing { way_id: -16, crossings: 1 },
+            ExtractDefect::MissingNodes { way_id: -15, points: 2 },
+            ExtractDefect::DuplicatePoints { way_id: -14, points: 1 },
+            ExtractDefect::NoLine { way_id: -14 },
+            ExtractDefect::DuplicatePoints { way_id: -13, points: 2 },
+            ExtractDefect::MissingNodes { way_id: -12, points: 2 },
+            ExtractDefect::NoLine { way_id: -12 },
+            ExtractDefect::TooFewNodes { way_id: -11, nodes: 1 },
+            ExtractDefect::MissingNodes { way_id: -10, points: 1 },
+            ExtractDefect::Split { way_id: -10, roads: 2 },
         ]
     );
     assert_eq!((extract.summary.nodes_needed, extract.summary.nodes_missing), (10, 3));
@@ -135,8 +137,8 @@ fn points_that_the_projection_has_no_place_for_cut_a_way() {
     };
     let extract = read_with(&fixture("defects.osm.pbf"), 2, &near).unwrap();
     assert_eq!(points(road(&extract, -16)), [(951, 4710), (953, 4710)]);
-    assert!(extract.defects.contains(&Defect::OutsideProjection { way_id: -16, points: 1 }));
-    assert!(extract.defects.contains(&Defect::StrayPoints { way_id: -16, points: 1 }));
+    assert!(extract.defects.contains(&ExtractDefect::OutsideProjection { way_id: -16, points: 1 }));
+    assert!(extract.defects.contains(&ExtractDefect::StrayPoints { way_id: -16, points: 1 }));
 }
 
 #[test]
@@ -146,7 +148,10 @@ fn of_ways_with_one_id_the_first_stays() {
     assert_eq!(roads, [(29, 2), (30, 4)]);
     assert_eq!(
         extract.defects,
-        [Defect::DuplicateWay { way_id: 30 }, Defect::SelfCrossing { way_id: 30, crossings: 1 }]
+        [
+            ExtractDefect::DuplicateWay { way_id: 30 },
+            ExtractDefect::SelfCrossing { way_id: 30, crossings: 1 }
+        ]
     );
     assert_eq!(extract.summary.left_out.duplicate, 1);
 }

@@ -1,4 +1,5 @@
-//! Files that are no extracts, or extracts that cannot be used: the message says what the file is and what to do.
+//! Files that are not extracts, or extracts that cannot be used: the message says what the file is
+//! and what to do.
 
 #![allow(
     clippy::unwrap_used,
@@ -11,10 +12,10 @@ use std::{fs, path::Path, process::Command};
 use crate::common::{fixture, read, read_bytes, written};
 use corniche_osm::ReadOsmError;
 use corniche_testing::pbf::{
-    Block, field, frame, header, number, packed_blob, plain_header, raw, zlib,
+    BlockBuilder, field, frame, header, number, packed_blob, plain_header, raw, zlib,
 };
 
-/// The message names the file, and says all of these words.
+/// Checks that the message names the file and contains all these words.
 #[track_caller]
 fn check(name: &str, bytes: &[u8], words: &[&str]) {
     let (_folder, path) = written(name, bytes);
@@ -43,7 +44,7 @@ fn a_file_of_another_format_is_named_with_the_way_to_convert_it() {
     const CONVERT: &str = "osmium cat IN -o OUT.osm.pbf";
     const CHANGES: &str = "osmium apply-changes IN.osm.pbf CHANGES -o OUT.osm.pbf";
     const HISTORY: &str = "osmium time-filter IN 2026-01-01T00:00:00Z -o OUT.osm.pbf";
-    const OTHER: &str = "give an OpenStreetMap extract";
+    const OTHER: &str = "pass an OpenStreetMap extract";
     for (name, bytes, found, advice) in [
         ("a.osm", &b"<?xml version='1.0'?>\n<osm version=\"0.6\"/>"[..], "is XML, ", CONVERT),
         ("a.osm", b"\xef\xbb\xbf\n<osm version=\"0.6\"/>", "is XML, ", CONVERT),
@@ -56,23 +57,23 @@ fn a_file_of_another_format_is_named_with_the_way_to_convert_it() {
         ("a.osm", b"<?xml version='1.0'?>", "is XML, ", CONVERT),
         ("a.osh", b"<?xml version='1.0'?><osm version=\"0.6\"/>", "is XML, ", HISTORY),
         ("a.osc", b"<?xml version='1.0'?>\n<osmChange version=\"0.6\"/>", "change file", CHANGES),
-        ("a.gpx", b"<?xml version='1.0'?><gpx/>", "not of OpenStreetMap", OTHER),
-        ("a.osm.pbf", b"<!DOCTYPE html><html>404 Not Found</html>", "an HTML page", "fetch"),
-        ("a.osm.pbf", b"\n<HTML><body>busy</body></HTML>", "an HTML page", "fetch"),
+        ("a.gpx", b"<?xml version='1.0'?><gpx/>", "without OpenStreetMap data", OTHER),
+        ("a.osm.pbf", b"<!DOCTYPE html><html>404 Not Found</html>", "an HTML page", "download"),
+        ("a.osm.pbf", b"\n<HTML><body>busy</body></HTML>", "an HTML page", "download"),
         (
             "a.osm.pbf",
             b"version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 9\n",
             "a Git LFS pointer",
             "git lfs pull",
         ),
-        ("a.osm.gz", b"\x1f\x8b\x08\0\0\0\0\0", "packed with gzip", CONVERT),
-        ("a.osc.gz", b"\x1f\x8b\x08\0\0\0\0\0", "packed with gzip", CHANGES),
-        ("a.osm.bz2", b"BZh91AY&SY", "packed with bzip2", CONVERT),
-        ("a.osh.bz2", b"BZh91AY&SY", "packed with bzip2", HISTORY),
+        ("a.osm.gz", b"\x1f\x8b\x08\0\0\0\0\0", "compressed with gzip", CONVERT),
+        ("a.osc.gz", b"\x1f\x8b\x08\0\0\0\0\0", "compressed with gzip", CHANGES),
+        ("a.osm.bz2", b"BZh91AY&SY", "compressed with bzip2", CONVERT),
+        ("a.osh.bz2", b"BZh91AY&SY", "compressed with bzip2", HISTORY),
         ("a.zip", b"PK\x03\x04........", "a zip archive", "unpack it"),
-        ("a.osm.zst", b"\x28\xb5\x2f\xfd........", "packed with zstd", "unpack it"),
-        ("a.osm.xz", b"\xfd7zXZ\0........", "packed with xz", "unpack it"),
-        ("a.osm.lz4", b"\x04\x22\x4d\x18........", "packed with LZ4", "unpack it"),
+        ("a.osm.zst", b"\x28\xb5\x2f\xfd........", "compressed with zstd", "unpack it"),
+        ("a.osm.xz", b"\xfd7zXZ\0........", "compressed with xz", "unpack it"),
+        ("a.osm.lz4", b"\x04\x22\x4d\x18........", "compressed with LZ4", "unpack it"),
         ("a.7z", b"7z\xbc\xaf\x27\x1c........", "a 7-Zip archive", "unpack it"),
         ("a.o5m", b"\xff\xe0\x04o5m2", "o5m", CONVERT),
         ("a.o5c", b"\xff\xe0\x04o5c2", "change file (o5c)", CHANGES),
@@ -91,15 +92,15 @@ fn a_file_of_another_format_is_named_with_the_way_to_convert_it() {
         ("a.osm", &utf16_le("<?xml version='1.0'?>\n<osm version='0.6'/>"), "is XML, ", CONVERT),
         ("a.osm", &utf16_be("\n<osm version='0.6'/>"), "is XML, ", CONVERT),
         ("a.osc", &utf16_be("<osmChange version='0.6'/>"), "change file", CHANGES),
-        ("a.osm.pbf", &utf16_le("<!DOCTYPE html><html>404</html>"), "an HTML page", "fetch"),
+        ("a.osm.pbf", &utf16_le("<!DOCTYPE html><html>404</html>"), "an HTML page", "download"),
         ("a.txt", &utf16_le("né à Vaduz \u{1f6e3}"), "is text in UTF-16", OTHER),
         ("a.txt", &utf16_be("né à Vaduz \u{1f6e3}"), "is text in UTF-16", OTHER),
         ("a.txt", &utf16_le(&"é".repeat(5000)), "is text in UTF-16", OTHER),
-        // In UTF-32, as far as anyone can tell.
-        ("a.txt", b"\xff\xfe\0\0x\0\0\0", "some other kind", OTHER),
-        ("a.osm.pbf", &[0; 100], "some other kind", OTHER),
-        ("a.osm.pbf", &[255, 0, 255, 0], "some other kind", OTHER),
-        ("a.osm.pbf", b"\0\0\0\x0d\x0a\x09OSM\x01eader\x18\x01", "some other kind", OTHER),
+        // Nobody can tell that this is UTF-32.
+        ("a.txt", b"\xff\xfe\0\0x\0\0\0", "unknown format", OTHER),
+        ("a.osm.pbf", &[0; 100], "unknown format", OTHER),
+        ("a.osm.pbf", &[255, 0, 255, 0], "unknown format", OTHER),
+        ("a.osm.pbf", b"\0\0\0\x0d\x0a\x09OSM\x01eader\x18\x01", "unknown format", OTHER),
     ] {
         check(name, bytes, &[found, advice, "not .osm.pbf"]);
     }
@@ -115,7 +116,7 @@ fn a_way_that_begins_like_an_object_of_opl_is_only_text() {
 #[test]
 fn a_path_that_is_no_file_is_refused_and_nothing_waits() {
     let (folder, path) = written("empty.osm.pbf", b"");
-    check_refused(&path, &["is empty (0 bytes)", "fetch it again"]);
+    check_refused(&path, &["is empty (0 bytes)", "download it again"]);
     let missing = folder.path().join("missing.osm.pbf");
     check_refused(&missing, &["cannot open"]);
     let nested = folder.path().join("empty.osm.pbf/x.osm.pbf");
@@ -149,7 +150,7 @@ fn a_file_that_may_not_be_read_is_said_to_be_so() {
 #[test]
 fn a_compression_that_is_not_supported_is_named() {
     let check = |number: u64, method: &str| {
-        let block = Block::new().bytes();
+        let block = BlockBuilder::new().bytes();
         for bytes in [
             [frame(b"OSMHeader", &field(number, b"....")), raw(b"OSMData", &block)].concat(),
             [plain_header(), frame(b"OSMData", &field(number, b"...."))].concat(),
@@ -199,20 +200,20 @@ fn a_file_begins_with_its_header() {
             (found, _) => panic!("{found:?}"),
         }
     }
-    let block = Block::new().bytes();
+    let block = BlockBuilder::new().bytes();
     let data = raw(b"OSMData", &block);
     let other = frame(b"_thumbnail", b"\xff\xff");
     check(&[&plain_header()], Ok(()));
     check(&[&plain_header(), &data], Ok(()));
     check(&[&packed_blob(b"OSMHeader", b""), &packed_blob(b"OSMData", &block)], Ok(()));
-    // Blobs of unknown types are passed over, unread.
+    // Blobs of unknown types are skipped without being read.
     check(&[&other, &plain_header(), &other, &data, &other], Ok(()));
     check(&[&data], Err("data comes before the file's header"));
     check(&[&data, &plain_header()], Err("data comes before the file's header"));
     check(&[&other], Err("the file has no header"));
-    check(&[&frame(b"OSMHeader", b"")], Err("it holds no data"));
+    check(&[&frame(b"OSMHeader", b"")], Err("the blob contains no data"));
     let flood = [number(2, 2 << 20), field(3, &zlib(&vec![0; 2 << 20]))].concat();
-    check(&[&frame(b"OSMHeader", &flood)], Err("2097152 bytes long, of at most 1048575"));
+    check(&[&frame(b"OSMHeader", &flood)], Err("2097152 bytes long; the limit is 1048575"));
 }
 
 #[test]
@@ -229,7 +230,7 @@ fn several_files_in_a_row_are_one_and_have_no_box() {
         (one.header_bounds_deg, one.generator.as_deref()),
         (Some([9.0, 47.0, 10.0, 48.0]), Some("test"))
     );
-    let mut blocks = [Block::with_row_of_nodes(2), Block::new()];
+    let mut blocks = [BlockBuilder::with_row_of_nodes(2), BlockBuilder::new()];
     blocks[0].track(1, &[1, 2]);
     blocks[1].track(2, &[2, 1]);
     let [a, b] = blocks.map(|block| raw(b"OSMData", &block.bytes()));

@@ -1,4 +1,5 @@
-//! Cut-off extracts, flipped bits, and blocks that contradict themselves: a clear error or an answer, never a panic.
+//! Truncated extracts, flipped bits, and blocks that contradict themselves cause a clear error or a
+//! result, never a panic.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -7,11 +8,12 @@ use std::fs;
 use crate::common::{Extract, fixture, read, read_bytes, written};
 use corniche_osm::ReadOsmError;
 use corniche_testing::pbf::{
-    Block, deltas, field, file, frame, frame_with, number, packed_blob, plain_header, raw, varint,
-    zigzags,
+    BlockBuilder, deltas, field, file, frame, frame_with, number, packed_blob, plain_header, raw,
+    varint, zigzags,
 };
 
-/// Where blobs end, by the framing alone: `BlobHeader` ends in field 3, its blob's size as a varint.
+/// Returns the ends of blobs, from the framing alone: `BlobHeader` ends in field 3, the size of its
+/// blob as a varint.
 fn blob_ends(bytes: &[u8]) -> Vec<usize> {
     let (mut at, mut ends) = (0, Vec::new());
     while at < bytes.len() {
@@ -28,10 +30,10 @@ fn blob_ends(bytes: &[u8]) -> Vec<usize> {
 
 #[test]
 fn an_extract_cut_off_anywhere_is_refused() {
-    // Of one block, and of a block of nodes and one of the ways that need them.
-    let mut ways = Block::new();
+    // One file has one block; the other has a block of nodes and a block of ways that need them.
+    let mut ways = BlockBuilder::new();
     ways.track(7, &[1, 2, 3]);
-    let nodes = Block::with_row_of_nodes(3).bytes();
+    let nodes = BlockBuilder::with_row_of_nodes(3).bytes();
     let made = [plain_header(), raw(b"OSMData", &nodes), packed_blob(b"OSMData", &ways.bytes())];
     for whole in [fs::read(fixture("classes.osm.pbf")).unwrap(), made.concat()] {
         let ends = blob_ends(&whole);
@@ -45,7 +47,7 @@ fn an_extract_cut_off_anywhere_is_refused() {
                 }
                 Err(error @ ReadOsmError::Truncated { .. }) => {
                     let words = error.to_string();
-                    assert!(words.contains("made.osm.pbf") && words.contains("fetch it again"));
+                    assert!(words.contains("made.osm.pbf") && words.contains("download it again"));
                     assert!(words.contains(&format!("the file ends at {len}")), "{words}");
                 }
                 Err(other) => panic!("cut at {len}: {other}"),
@@ -56,9 +58,9 @@ fn an_extract_cut_off_anywhere_is_refused() {
 
 #[test]
 fn nodes_lost_by_a_cut_between_blobs_show_as_missing() {
-    let mut ways = Block::new();
+    let mut ways = BlockBuilder::new();
     ways.track(7, &[1, 2, 3]);
-    let nodes = Block::with_row_of_nodes(3).bytes();
+    let nodes = BlockBuilder::with_row_of_nodes(3).bytes();
     let whole = [plain_header(), packed_blob(b"OSMData", &ways.bytes()), raw(b"OSMData", &nodes)];
     let extract = read_bytes(&whole[..2].concat()).unwrap();
     let summary = &extract.summary;
@@ -70,8 +72,10 @@ fn nodes_lost_by_a_cut_between_blobs_show_as_missing() {
     assert_eq!(read_bytes(&whole.concat()).unwrap().roads.len(), 1);
 }
 
-/// What is the same in two readings when nothing of the roads was changed.
-fn roads_and_losses(extract: &Extract) -> (&[corniche_roads::Road], &[corniche_osm::Defect]) {
+/// Returns the parts of a reading that are equal in two readings if no roads were changed.
+fn roads_and_losses(
+    extract: &Extract,
+) -> (&[corniche_roads::Road], &[corniche_osm::ExtractDefect]) {
     (&extract.roads, &extract.defects)
 }
 
@@ -83,7 +87,7 @@ fn a_flipped_bit_in_packed_blobs_is_seen_wherever_it_could_matter() {
         let mut flipped = whole.clone();
         flipped[bit / 8] ^= 1 << (bit % 8);
         match read_bytes(&flipped) {
-            // The level of compression, or a size that is only promised.
+            // The flipped bit is in the compression level, or in a size that is only promised.
             Ok(extract) if roads_and_losses(&extract) == roads_and_losses(&right) => {} // The type of a blob has no checksum: another one is passed over, as the format asks.
             Ok(extract) => {
                 assert_eq!(extract.summary.blobs_passed_over, 1, "bit {bit}");
@@ -115,7 +119,7 @@ fn check_damaged(bytes: &[u8], words: &str) {
         "{error}"
     );
     let message = error.to_string();
-    for word in [words, "made.osm.pbf", "fetch it again"] {
+    for word in [words, "made.osm.pbf", "download it again"] {
         assert!(message.contains(word), "{word:?} is not in: {message}");
     }
 }
@@ -126,33 +130,33 @@ fn sizes_that_cannot_be_are_damage() {
     let data = |header: Vec<u8>, blob: &[u8]| [plain_header(), frame_with(header, blob)].concat();
     let sized = |size: i64| data([kind.clone(), number(3, size)].concat(), b"");
     let header_of = |bytes: u32| [plain_header(), bytes.to_be_bytes().to_vec()].concat();
-    check_damaged(&header_of(0), "its header names no type");
-    check_damaged(&header_of(64 << 10), "its header claims to be 65536 bytes long");
-    check_damaged(&header_of(u32::MAX), "its header claims to be 4294967295 bytes long");
-    check_damaged(&header_of(100), "is cut off");
-    check_damaged(&sized(-1), "it claims to be -1 bytes long");
-    check_damaged(&sized(i64::from(i32::MIN)), "it claims to be -2147483648 bytes long");
-    check_damaged(&sized((32 << 20) + 1), "it claims to be 33554433 bytes long");
-    check_damaged(&sized(32 << 20), "is cut off");
-    check_damaged(&sized(1), "is cut off");
-    check_damaged(&sized(0), "it holds no data");
-    check_damaged(&data(kind.clone(), b""), "its header gives no size");
-    check_damaged(&data(number(3, 0), b""), "its header names no type");
+    check_damaged(&header_of(0), "the blob header has no type");
+    check_damaged(&header_of(64 << 10), "the blob header claims to be 65536 bytes long");
+    check_damaged(&header_of(u32::MAX), "the blob header claims to be 4294967295 bytes long");
+    check_damaged(&header_of(100), "is truncated");
+    check_damaged(&sized(-1), "the blob claims to be -1 bytes long");
+    check_damaged(&sized(i64::from(i32::MIN)), "the blob claims to be -2147483648 bytes long");
+    check_damaged(&sized((32 << 20) + 1), "the blob claims to be 33554433 bytes long");
+    check_damaged(&sized(32 << 20), "is truncated");
+    check_damaged(&sized(1), "is truncated");
+    check_damaged(&sized(0), "the blob contains no data");
+    check_damaged(&data(kind.clone(), b""), "the blob header has no size");
+    check_damaged(&data(number(3, 0), b""), "the blob header has no type");
 
     let with_data = |blob: Vec<u8>| [plain_header(), frame(b"OSMData", &blob)].concat();
-    let block = Block::with_row_of_nodes(20).bytes();
+    let block = BlockBuilder::with_row_of_nodes(20).bytes();
     let packed = corniche_testing::pbf::zlib(&block);
     let len = block.len() as i64;
     for (promised, words) in [
-        (len - 1, "it unpacks to more than"),
-        (len + 1, "and unpacks to"),
-        (-1, "-1 bytes long, of at most 33554431"),
-        (32 << 20, "33554432 bytes long, of at most 33554431"),
-        (i64::MAX, "of at most 33554431"),
+        (len - 1, "the blob unpacks to more than"),
+        (len + 1, "but unpacks to"),
+        (-1, "-1 bytes long; the limit is 33554431"),
+        (32 << 20, "33554432 bytes long; the limit is 33554431"),
+        (i64::MAX, "the limit is 33554431"),
     ] {
         check_damaged(&with_data([number(2, promised), field(3, &packed)].concat()), words);
     }
-    check_damaged(&with_data(field(3, &packed[..packed.len() / 2])), "is cut off");
+    check_damaged(&with_data(field(3, &packed[..packed.len() / 2])), "is truncated");
     check_damaged(
         &with_data(field(3, &corniche_testing::pbf::zlib(&vec![0; 40 << 20]))),
         "more than 33554431",
@@ -160,9 +164,9 @@ fn sizes_that_cannot_be_are_damage() {
     check_damaged(&with_data(field(1, &vec![0; 32 << 20])), "bytes long");
 }
 
-/// A block of some fields in one group.
-fn group(fields: &[Vec<u8>]) -> Block {
-    let mut block = Block::new();
+/// Returns a block of some fields in one group.
+fn group(fields: &[Vec<u8>]) -> BlockBuilder {
+    let mut block = BlockBuilder::new();
     for text in ["highway", "track"] {
         block.text(text.as_bytes());
     }
@@ -170,26 +174,29 @@ fn group(fields: &[Vec<u8>]) -> Block {
     block
 }
 
-fn dense(fields: &[Vec<u8>]) -> Block {
+fn dense(fields: &[Vec<u8>]) -> BlockBuilder {
     group(&[field(2, &fields.concat())])
 }
 
-/// A way whose tag is `highway=track`, with further fields.
-fn way(fields: &[Vec<u8>]) -> Block {
+/// Returns a way whose tag is `highway=track`, with further fields.
+fn way(fields: &[Vec<u8>]) -> BlockBuilder {
     group(&[field(3, &[number(1, 7), field(2, &[1]), field(3, &[2]), fields.concat()].concat())])
 }
 
 #[test]
 fn blocks_that_contradict_themselves_are_damage() {
-    let check = |block: &Block, words: &str| check_damaged(&file(block), words);
-    // Arrays that belong together.
+    let check = |block: &BlockBuilder, words: &str| check_damaged(&file(block), words);
+    // Parallel arrays must have the same length.
     let columns = |ids: &[i64], lats: &[i64], lons: &[i64]| {
         dense(&[field(1, &deltas(ids)), field(8, &deltas(lats)), field(9, &deltas(lons))])
     };
-    check(&columns(&[1, 2], &[1], &[1, 2]), "it lists 2 nodes, 1 latitudes and 2 longitudes");
-    check(&columns(&[1], &[1, 2], &[1]), "it lists 1 nodes, 2 latitudes and 1 longitudes");
-    check(&columns(&[1, 2], &[1, 2], &[]), "it lists 2 nodes, 2 latitudes and 0 longitudes");
-    check(&columns(&[], &[1], &[1]), "it lists 0 nodes");
+    check(
+        &columns(&[1, 2], &[1], &[1, 2]),
+        "the block lists 2 nodes, 1 latitudes and 2 longitudes",
+    );
+    check(&columns(&[1], &[1, 2], &[1]), "the block lists 1 nodes, 2 latitudes and 1 longitudes");
+    check(&columns(&[1, 2], &[1, 2], &[]), "the block lists 2 nodes, 2 latitudes and 0 longitudes");
+    check(&columns(&[], &[1], &[1]), "the block lists 0 nodes");
     check(&way(&[field(2, &[1])]), "way 7 has 2 keys and 1 values");
     check(&way(&[field(3, &[1])]), "way 7 has 1 keys and 2 values");
     let located = |nodes: i64, lats: i64, lons: i64| {
@@ -201,99 +208,105 @@ fn blocks_that_contradict_themselves_are_damage() {
     check(&located(1, 2, 2), "way 7 has 1 nodes, 2 latitudes and 2 longitudes");
     check(&located(2, 0, 2), "way 7 has 2 nodes, 0 latitudes and 2 longitudes");
 
-    // Texts that are not in the table, of a key, a value, and of a way that is no road at all.
-    check(&way(&[field(2, &[3]), field(3, &[1])]), "a tag of way 7 is string 3 of a table of 3");
-    check(&way(&[field(2, &[1]), field(3, &varint(1 << 40))]), "is string 1099511627776 of");
+    // Texts are not in the table: of a key, of a value, and of a way that is not a road at all.
+    check(&way(&[field(2, &[3]), field(3, &[1])]), "a tag of way 7 refers to string 3 of 3");
+    check(&way(&[field(2, &[1]), field(3, &varint(1 << 40))]), "refers to string 1099511627776 of");
     let building = [number(1, 8), field(2, &[0]), field(3, &[9])].concat();
-    check(&group(&[field(3, &building)]), "a tag of way 8 is string 9 of a table of 3");
+    check(&group(&[field(3, &building)]), "a tag of way 8 refers to string 9 of 3");
     let many = vec![1; (1 << 16) + 1];
     check(&way(&[field(2, &many), field(3, &many)]), "way 7 has 65538 tags");
 
-    // Numbers that overflow when they are added up, or placed.
+    // Numbers overflow when they are added up, or when positions are computed.
     let far = zigzags(&[i64::MAX, 1]);
     let back = zigzags(&[i64::MIN, -1]);
     let here = zigzags(&[0, 0]);
     for ids in [&far, &back] {
         check(
             &dense(&[field(1, ids), field(8, &here), field(9, &here)]),
-            "ids of its nodes overflow",
+            "ids of dense nodes overflow",
         );
         check(&way(&[field(8, ids)]), "the ids of a way's nodes overflow");
     }
     for places in [&far, &back, &zigzags(&[i64::MAX / 100, 1])] {
         let columns = |lats, lons| dense(&[field(1, &here), field(8, lats), field(9, lons)]);
-        check(&columns(places, &here), "places of its nodes overflow");
-        check(&columns(&here, places), "places of its nodes overflow");
+        check(&columns(places, &here), "coordinates of nodes overflow");
+        check(&columns(&here, places), "coordinates of nodes overflow");
         check(&way(&[field(8, &here), field(9, places), field(10, &here)]), "overflow");
     }
     let info = |number: u64, values: &[u8]| {
         let nodes = [field(1, &here), field(8, &here), field(9, &here)].concat();
         dense(&[nodes, field(5, &field(number, values))])
     };
-    check(&info(2, &far), "versions or users of its nodes overflow");
-    check(&info(3, &back), "versions or users of its nodes overflow");
-    check(&info(4, &zigzags(&[i64::from(i32::MAX), 1])), "versions or users of its nodes overflow");
+    check(&info(2, &far), "versions or users of dense nodes overflow");
+    check(&info(3, &back), "versions or users of dense nodes overflow");
+    check(
+        &info(4, &zigzags(&[i64::from(i32::MAX), 1])),
+        "versions or users of dense nodes overflow",
+    );
     check(
         &info(5, &zigzags(&[i64::from(i32::MIN), -1])),
-        "versions or users of its nodes overflow",
+        "versions or users of dense nodes overflow",
     );
-    let mut plain = Block::new();
+    let mut plain = BlockBuilder::new();
     plain.plain(&[(5, i64::MAX, 0)]);
-    check(&plain, "the place of node 5 overflows");
+    check(&plain, "the coordinates of node 5 overflow");
 
-    // Granularity and offsets.
+    // Granularity and offsets are invalid.
     let framed = |fields: &[Vec<u8>]| {
-        let mut block = Block::with_row_of_nodes(2);
+        let mut block = BlockBuilder::with_row_of_nodes(2);
         block.frame = fields.concat();
         block
     };
     for granularity in [0, -1, i64::from(i32::MAX) + 1, i64::MIN] {
-        check(&framed(&[number(17, granularity)]), &format!("its granularity is {granularity}"));
+        check(
+            &framed(&[number(17, granularity)]),
+            &format!("the granularity of the block is {granularity}"),
+        );
     }
-    check(&framed(&[number(19, i64::MAX)]), "places of its nodes overflow");
-    check(&framed(&[number(20, i64::MAX - 8_000_000_000)]), "places of its nodes overflow");
+    check(&framed(&[number(19, i64::MAX)]), "coordinates of nodes overflow");
+    check(&framed(&[number(20, i64::MAX - 8_000_000_000)]), "coordinates of nodes overflow");
 
-    // What may be there once, twice.
+    // Fields that may occur once occur twice.
     let nodes = field(2, &[field(1, &here), field(8, &here), field(9, &here)].concat());
     check(&group(&[nodes.clone(), nodes]), "two lists of dense nodes in one group");
-    check(&framed(&[field(1, &field(1, b""))]), "it has 2 tables of strings");
+    check(&framed(&[field(1, &field(1, b""))]), "the block has 2 string tables");
     let once = field(5, &field(1, &[1, 1]));
-    check(&dense(&[once.clone(), once]), "two lists of what is known of its nodes");
+    check(&dense(&[once.clone(), once]), "two metadata lists for its nodes");
 
-    // Bytes that are no message, or another message.
-    check(&group(&[number(2, 5)]), "not of the kind it should be");
-    check(&group(&[number(3, 5)]), "not of the kind it should be");
-    check(&group(&[field(3, b"\x08")]), "a number has no end");
-    check(&group(&[field(3, b"\x08\x07\x42\x05\x01")]), "a field reaches beyond its message");
-    check(&group(&[field(3, &field(8, b"\x02\x80"))]), "a number has no end");
-    check(&group(&[vec![0x1b]]), "a field is of a kind that is not in use");
-    check(&dense(&[field(10, b"\x80")]), "a number has no end");
+    // The bytes are not a message, or are another message.
+    check(&group(&[number(2, 5)]), "has the wrong wire type");
+    check(&group(&[number(3, 5)]), "has the wrong wire type");
+    check(&group(&[field(3, b"\x08")]), "a number is truncated");
+    check(&group(&[field(3, b"\x08\x07\x42\x05\x01")]), "a field extends beyond its message");
+    check(&group(&[field(3, &field(8, b"\x02\x80"))]), "a number is truncated");
+    check(&group(&[vec![0x1b]]), "a field has an unknown wire type");
+    check(&dense(&[field(10, b"\x80")]), "a number is truncated");
     check_damaged(&[plain_header(), raw(b"OSMData", b"")].concat(), "missing required fields");
     check(&group(&[field(3, b"")]), "missing required fields");
 }
 
 #[test]
 fn blocks_that_would_fill_the_memory_are_damage() {
-    let check = |block: &Block, words: &str| {
+    let check = |block: &BlockBuilder, words: &str| {
         let bytes = [plain_header(), packed_blob(b"OSMData", &block.bytes())].concat();
         assert!(bytes.len() < 1 << 20, "{} bytes", bytes.len());
         check_damaged(&bytes, words);
     };
-    let full = "decoding it takes more memory than a block may";
+    let full = "decoding the block takes more memory than allowed";
     let times = |count: usize, field: &[u8]| field.repeat(count);
     check(&group(&[times(2 << 20, &field(1, &[8, 0, 64, 0, 72, 0]))]), full);
     check(&group(&[times(2 << 20, &field(3, &[8, 0]))]), full);
     check(&group(&[times(2 << 20, &field(4, &[8, 0]))]), full);
     check(&group(&[times(3 << 20, &number(99, 0))]), full);
     check(&group(&[field(3, &[number(1, 7), times(3 << 20, &number(99, 0))].concat())]), full);
-    let mut block = Block::new();
+    let mut block = BlockBuilder::new();
     block.groups = vec![Vec::new(); 2 << 20];
     check(&block, full);
-    let mut block = Block::new();
+    let mut block = BlockBuilder::new();
     block.texts = vec![Vec::new(); 9 << 20];
     check(&block, full);
-    // A name of many roads: each of them has its own.
-    let mut block = Block::new();
+    // Each of many roads has a name, which takes memory for each of them.
+    let mut block = BlockBuilder::new();
     let name = "x".repeat(2000);
     let message = block.way_message(
         1,
@@ -301,12 +314,12 @@ fn blocks_that_would_fill_the_memory_are_damage() {
         &[1, 2],
     );
     block.groups.push(times(400_000, &field(3, &message)));
-    check(&block, "what is found in it takes more memory than that of a block may");
+    check(&block, "the contents of the block take more memory than allowed");
 }
 
 #[test]
 fn an_extract_that_unpacks_to_more_than_its_size_can_mean_is_refused() {
-    let mut block = Block::new();
+    let mut block = BlockBuilder::new();
     let ids = vec![1; 1 << 20];
     block.way(1, &[("highway", "track")], &[]);
     let message =
@@ -318,14 +331,14 @@ fn an_extract_that_unpacks_to_more_than_its_size_can_mean_is_refused() {
     let error = read_bytes(&bytes).unwrap_err();
     assert!(matches!(error, ReadOsmError::TooMuch { .. }), "{error}");
     assert!(error.to_string().contains("pbf_compression=none"), "{error}");
-    // The same where it is as large as it claims to be.
+    // The same applies if the block is as large as it claims to be.
     let bytes = [plain_header(), raw(b"OSMData", &block.bytes()).repeat(6)].concat();
     assert_eq!(read_bytes(&bytes).unwrap().summary.highway_ways, 12);
 }
 
 #[test]
 fn fields_that_are_not_known_are_passed_over() {
-    let mut block = Block::with_row_of_nodes(2);
+    let mut block = BlockBuilder::with_row_of_nodes(2);
     let message = block.way_message(7, &[("highway", "track")], &[1, 2]);
     let later =
         [number(77, 5), field(78, b"later"), varint(79 << 3 | 5), b"....".to_vec()].concat();

@@ -1,17 +1,21 @@
-//! Errors in single ways and nodes: all others are read, and every loss has a defect that names the object.
+//! Errors in single ways and nodes: everything else is read, and every loss has a defect that names
+//! the object.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::common::{Extract, read_bytes, roads::check_summary};
-use corniche_osm::{Defect, LeftOutReason};
-use corniche_testing::pbf::{Block, deltas, field, file, number, packed_blob, plain_header, raw};
+use corniche_osm::{ExtractDefect, LeftOutReason};
+use corniche_testing::pbf::{
+    BlockBuilder, deltas, field, file, number, packed_blob, plain_header, raw,
+};
 use proptest::prelude::*;
 
-/// The points of each road, west to east in hundredths of the row's spacing, and the defects.
+/// Checks the points of each road, west to east in hundredths of the row's spacing, and the
+/// defects.
 #[track_caller]
-fn check(block: &Block, roads: &[(i64, &[i64])], defects: &[Defect]) {
+fn check(block: &BlockBuilder, roads: &[(i64, &[i64])], defects: &[ExtractDefect]) {
     let extract = read_bytes(&file(block)).unwrap();
     let found: Vec<(i64, Vec<i64>)> = extract
         .roads
@@ -25,10 +29,11 @@ fn check(block: &Block, roads: &[(i64, &[i64])], defects: &[Defect]) {
     assert_eq!(extract.defects, defects);
 }
 
-/// A layer that does not fit, a tunnel beside the road, no lanes, no width: the road stays, and each value is counted and listed.
+/// With an invalid layer, a tunnel beside the road, no lanes or no width, the road stays, and each
+/// value is counted and listed.
 #[test]
 fn tags_taken_for_another_value_are_counted_by_value() {
-    let mut block = Block::with_row_of_nodes(3);
+    let mut block = BlockBuilder::with_row_of_nodes(3);
     let tags: [&[(&str, &str)]; 7] = [
         &[("highway", "track"), ("layer", "1000")],
         &[("highway", "track"), ("layer", "-5"), ("tunnel", "yes")],
@@ -36,7 +41,7 @@ fn tags_taken_for_another_value_are_counted_by_value() {
         &[("highway", "track"), ("tunnel", "building_passage")],
         &[("highway", "track"), ("layer", "1;2")],
         &[("highway", "track"), ("lanes", "0"), ("width", "narrow"), ("maxspeed", "slow")],
-        // It is no road, so its tags do not matter.
+        // The way is not a road, so its tags do not matter.
         &[("highway", "proposed"), ("layer", "5000")],
     ];
     for (id, tags) in (1..).zip(tags) {
@@ -57,7 +62,7 @@ fn tags_taken_for_another_value_are_counted_by_value() {
     let listed: Vec<(i64, &str)> = extract
         .defects
         .iter()
-        .filter(|defect| matches!(defect, Defect::TagTakenOtherwise { .. }))
+        .filter(|defect| matches!(defect, ExtractDefect::TagTakenOtherwise { .. }))
         .map(|defect| (defect.object().1, defect.detail().unwrap()))
         .collect();
     let expected = [
@@ -72,20 +77,21 @@ fn tags_taken_for_another_value_are_counted_by_value() {
     assert_eq!(listed, expected);
 }
 
-/// What the table leaves out is counted by reason and value, with its length; and makes no junction in roads.
+/// Ways that the table skips are counted by reason and value, with their lengths, and make no
+/// junction in roads.
 #[test]
 fn ways_that_are_left_out_are_counted_with_their_lengths() {
-    let mut block = Block::with_row_of_nodes(9);
+    let mut block = BlockBuilder::with_row_of_nodes(9);
     block.track(1, &[1, 2, 3, 4]);
     block.way(2, &[("highway", "footway")], &[2, 3]);
     block.way(3, &[("highway", "footway")], &[3, 4, 5, 6]);
     block.way(4, &[("highway", "proposed")], &[1, 9]);
     block.way(5, &[("highway", "moat")], &[7, 8]);
     block.way(6, &[("highway", "track"), ("area", "yes")], &[7, 8, 9, 7]);
-    // Without a place there is no length, and it is no defect of roads.
+    // A node without a position has no length, and this is not a defect of roads.
     block.way(7, &[("highway", "path")], &[1, 99, 5, 6]);
     block.way(8, &[("highway", "path")], &[4]);
-    // An id twice: both count, as ways do.
+    // The id occurs twice: both count, as ways do.
     block.way(8, &[("highway", "path")], &[4, 5]);
     let extract = read_bytes(&file(&block)).unwrap();
     check_summary(&extract.summary);
@@ -111,41 +117,41 @@ fn ways_that_are_left_out_are_counted_with_their_lengths() {
 
 #[test]
 fn ways_of_every_shape_are_roads_or_defects() {
-    let row = || Block::with_row_of_nodes(5);
+    let row = || BlockBuilder::with_row_of_nodes(5);
     let way = |node_ids: &[i64]| {
         let mut block = row();
         block.track(7, node_ids);
         block
     };
-    let too_few = |nodes| [Defect::TooFewNodes { way_id: 7, nodes }];
-    let missing = |points| Defect::MissingNodes { way_id: 7, points };
-    let duplicates = |points| Defect::DuplicatePoints { way_id: 7, points };
-    let no_line = Defect::NoLine { way_id: 7 };
+    let too_few = |nodes| [ExtractDefect::TooFewNodes { way_id: 7, nodes }];
+    let missing = |points| ExtractDefect::MissingNodes { way_id: 7, points };
+    let duplicates = |points| ExtractDefect::DuplicatePoints { way_id: 7, points };
+    let no_line = ExtractDefect::NoLine { way_id: 7 };
     check(&way(&[]), &[], &too_few(0));
     check(&way(&[1]), &[], &too_few(1));
     check(&way(&[99]), &[], &too_few(1));
     check(&way(&[1, 2]), &[(7, &[1, 2])], &[]);
-    // Closed, there and back, through one node twice.
+    // The ways are closed, go back and forth, or pass one node twice.
     check(&way(&[1, 2, 1]), &[(7, &[1, 2, 1])], &[]);
     check(&way(&[1, 2, 3, 2, 5]), &[(7, &[1, 2, 3, 2, 5])], &[]);
     check(&way(&[1, 1, 2, 2, 2, 3]), &[(7, &[1, 2, 3])], &[duplicates(3)]);
     check(&way(&[1, 1]), &[], &[duplicates(1), no_line.clone()]);
     check(&way(&[1, 1, 1]), &[], &[duplicates(2), no_line.clone()]);
-    // Missing nodes at the start, in the middle, at the end, and everywhere.
+    // Nodes are missing at the start, in the middle, at the end, and everywhere.
     check(&way(&[99, 1, 2]), &[(7, &[1, 2])], &[missing(1)]);
     check(&way(&[1, 2, 99]), &[(7, &[1, 2])], &[missing(1)]);
     check(&way(&[99, 98]), &[], &[missing(2), no_line.clone()]);
     check(&way(&[1, 99]), &[], &[missing(1), no_line.clone()]);
     check(&way(&[1, 99, 1]), &[], &[missing(1), no_line.clone()]);
-    let split = Defect::Split { way_id: 7, roads: 2 };
+    let split = ExtractDefect::Split { way_id: 7, roads: 2 };
     check(&way(&[1, 2, 99, 4, 5]), &[(7, &[1, 2]), (7, &[4, 5])], &[missing(1), split]);
-    let stray = Defect::StrayPoints { way_id: 7, points: 1 };
+    let stray = ExtractDefect::StrayPoints { way_id: 7, points: 1 };
     check(&way(&[1, 2, 99, 4, 99]), &[(7, &[1, 2])], &[missing(2), stray]);
 }
 
 #[test]
 fn a_way_may_be_longer_than_osm_allows() {
-    let mut block = Block::with_row_of_nodes(2001);
+    let mut block = BlockBuilder::with_row_of_nodes(2001);
     let ids: Vec<i64> = (1..=2001).collect();
     block.track(7, &ids);
     check(&block, &[(7, &ids)], &[]);
@@ -153,7 +159,7 @@ fn a_way_may_be_longer_than_osm_allows() {
 
 #[test]
 fn a_way_that_runs_to_and_fro_a_million_times_does_not_take_forever() {
-    let mut block = Block::new();
+    let mut block = BlockBuilder::new();
     let nodes: Vec<_> = (0..1000).map(|id| (id, id % 7, 1_000_000 * (id % 2))).collect();
     block.dense(&nodes);
     let ids: Vec<i64> = (0..300_000).map(|number| number * 7919 % 1000).collect();
@@ -168,7 +174,7 @@ fn ids_may_be_negative_or_at_the_ends_of_what_there_is() {
     for [a, b] in
         [[i64::MIN, i64::MIN + 1], [i64::MAX - 1, i64::MAX], [-1, 0], [0, 1], [-1, 1 << 40]]
     {
-        let mut block = Block::new();
+        let mut block = BlockBuilder::new();
         block.dense(&[(a, 0, 90_000_100), (b, 0, 90_000_200)]);
         block.track(a, &[a, b]);
         block.track(b, &[b, a]);
@@ -178,12 +184,12 @@ fn ids_may_be_negative_or_at_the_ends_of_what_there_is() {
 
 #[test]
 fn objects_may_come_in_any_order_and_in_any_blob() {
-    let nodes = Block::with_row_of_nodes(4).bytes();
-    let mut ways = Block::new();
+    let nodes = BlockBuilder::with_row_of_nodes(4).bytes();
+    let mut ways = BlockBuilder::new();
     ways.track(8, &[3, 4]);
     ways.track(7, &[1, 2, 3]);
     let ways = ways.bytes();
-    let mut one = Block::with_row_of_nodes(4);
+    let mut one = BlockBuilder::with_row_of_nodes(4);
     one.track(8, &[3, 4]);
     one.track(7, &[1, 2, 3]);
     let expected = read_bytes(&file(&one)).unwrap();
@@ -197,8 +203,9 @@ fn objects_may_come_in_any_order_and_in_any_blob() {
 
 #[test]
 fn nodes_with_two_places_or_none_on_earth_are_defects() {
-    let mut block = Block::new();
-    // Node 2 is given twice and the first stays; node 3 at latitude 1000, node 4 at longitude -181, node 5 at both poles' end.
+    let mut block = BlockBuilder::new();
+    // Node 2 occurs twice and the first stays; node 3 is at latitude 1000, node 4 at longitude
+    // -181, node 5 at the limit of both axes.
     block.dense(&[(1, 0, 90_000_100), (2, 0, 90_000_200), (2, 0, 90_000_300)]);
     block.plain(&[(3, 10_000_000_000, 0), (4, 0, -1_810_000_000), (5, 900_000_000, 90_000_500)]);
     block.track(7, &[1, 2, 3, 4, 5, 1]);
@@ -206,16 +213,16 @@ fn nodes_with_two_places_or_none_on_earth_are_defects() {
         &block,
         &[(7, &[1, 2]), (7, &[5, 1])],
         &[
-            Defect::ConflictingNode { node_id: 2 },
-            Defect::OutOfRange { way_id: 7, points: 2 },
-            Defect::Split { way_id: 7, roads: 2 },
+            ExtractDefect::ConflictingNode { node_id: 2 },
+            ExtractDefect::OutOfRange { way_id: 7, points: 2 },
+            ExtractDefect::Split { way_id: 7, roads: 2 },
         ],
     );
 }
 
 #[test]
 fn granularity_and_offsets_are_heeded() {
-    let mut block = Block::new();
+    let mut block = BlockBuilder::new();
     block.dense(&[(1, 47, 9), (2, 47, 10)]);
     block.frame =
         [number(17, 1_000_000_000), number(19, 500_000_000), number(20, -250_000_000)].concat();
@@ -227,15 +234,15 @@ fn granularity_and_offsets_are_heeded() {
 
 #[test]
 fn a_place_that_libosmium_did_not_know_is_a_missing_node() {
-    // What `osmium add-locations-to-ways --ignore-missing-nodes` writes for node 2.
+    // `osmium add-locations-to-ways --ignore-missing-nodes` writes this for node 2.
     let unknown = i64::from(i32::MAX);
-    let mut block = Block::new();
+    let mut block = BlockBuilder::new();
     let message = block.way_message(7, &[("highway", "track")], &[1, 2, 3, 4]);
     let lats = deltas(&[0, unknown, 0, 0]);
     let lons = deltas(&[90_000_100, unknown, 90_000_300, 90_000_400]);
     block.groups.push(field(3, &[message, field(9, &lats), field(10, &lons)].concat()));
-    let missing = Defect::MissingNodes { way_id: 7, points: 1 };
-    let stray = Defect::StrayPoints { way_id: 7, points: 1 };
+    let missing = ExtractDefect::MissingNodes { way_id: 7, points: 1 };
+    let stray = ExtractDefect::StrayPoints { way_id: 7, points: 1 };
     check(&block, &[(7, &[3, 4])], &[missing, stray]);
     assert_eq!(read_bytes(&file(&block)).unwrap().summary.nodes_missing, 1);
 }
@@ -244,7 +251,7 @@ fn a_place_that_libosmium_did_not_know_is_a_missing_node() {
 fn texts_longer_than_osm_allows_are_cut_and_damaged_ones_mended() {
     #[track_caller]
     fn check(name: &[u8], expected: &str, reasons: &[&str]) {
-        let mut block = Block::with_row_of_nodes(2);
+        let mut block = BlockBuilder::with_row_of_nodes(2);
         let [key, value] = [block.text(b"name"), block.text(name)];
         let tags = [block.text(b"highway"), block.text(b"track")];
         let way = [
@@ -263,7 +270,7 @@ fn texts_longer_than_osm_allows_are_cut_and_damaged_ones_mended() {
     check("ß".repeat(256).as_bytes(), &"ß".repeat(255), &["long text"]);
     check("\u{1f6e3}".repeat(255).as_bytes(), &"\u{1f6e3}".repeat(255), &[]);
     check("\u{1f6e3}".repeat(999).as_bytes(), &"\u{1f6e3}".repeat(255), &["long text"]);
-    // The limit of 1020 bytes lies within a letter of two bytes.
+    // The limit of 1020 bytes is within a letter of two bytes.
     check(
         format!("x{}", "ß".repeat(999)).as_bytes(),
         &format!("x{}", "ß".repeat(254)),
@@ -278,16 +285,26 @@ fn texts_longer_than_osm_allows_are_cut_and_damaged_ones_mended() {
 #[test]
 fn a_defect_says_what_it_is_about() {
     #[track_caller]
-    fn check(defect: &Defect, object: (&str, i64), count: Option<u32>, detail: Option<&str>) {
+    fn check(
+        defect: &ExtractDefect,
+        object: (&str, i64),
+        count: Option<u32>,
+        detail: Option<&str>,
+    ) {
         assert_eq!((defect.object(), defect.count(), defect.detail()), (object, count, detail));
     }
     let value = "goat_trail".to_owned();
-    check(&Defect::UnknownHighway { way_id: -3, value }, ("way", -3), None, Some("goat_trail"));
-    check(&Defect::MissingNodes { way_id: 4, points: 2 }, ("way", 4), Some(2), None);
-    check(&Defect::Split { way_id: 4, roads: 3 }, ("way", 4), Some(3), None);
-    check(&Defect::TooFewNodes { way_id: 4, nodes: 0 }, ("way", 4), Some(0), None);
-    check(&Defect::ConflictingNode { node_id: 5 }, ("node", 5), None, None);
-    check(&Defect::NoLine { way_id: 6 }, ("way", 6), None, None);
+    check(
+        &ExtractDefect::UnknownHighway { way_id: -3, value },
+        ("way", -3),
+        None,
+        Some("goat_trail"),
+    );
+    check(&ExtractDefect::MissingNodes { way_id: 4, points: 2 }, ("way", 4), Some(2), None);
+    check(&ExtractDefect::Split { way_id: 4, roads: 3 }, ("way", 4), Some(3), None);
+    check(&ExtractDefect::TooFewNodes { way_id: 4, nodes: 0 }, ("way", 4), Some(0), None);
+    check(&ExtractDefect::ConflictingNode { node_id: 5 }, ("node", 5), None, None);
+    check(&ExtractDefect::NoLine { way_id: 6 }, ("way", 6), None, None);
 }
 
 /// A way of a random extract.
@@ -315,13 +332,15 @@ fn made_way() -> impl Strategy<Value = MadeWay> {
         .prop_map(|(id, highway, is_area, node_ids)| MadeWay { id, highway, is_area, node_ids })
 }
 
-/// Latitude and longitude of a node on a small grid, so that places coincide; some are not on Earth.
+/// Generates latitude and longitude of a node on a small grid, so that positions coincide; some are
+/// not on Earth.
 fn made_node() -> impl Strategy<Value = (i64, i64, i64)> {
     let part = prop_oneof![20 => 0_i64..3, 1 => Just(2_000_000_000)];
     (-2_i64..12, part.clone(), part)
 }
 
-/// What became of the ways, told again without the reader: in the file's order, of each id the first road way.
+/// Computes the fate of the ways independently of the reader: in the file's order, of each id the
+/// first road way.
 fn expected(
     ways: &[MadeWay],
     nodes: &[(i64, i64, i64)],
@@ -366,7 +385,7 @@ fn read_made(
 ) -> Extract {
     let mut blobs = Vec::new();
     for some in nodes.chunks(per_block) {
-        let mut block = Block::new();
+        let mut block = BlockBuilder::new();
         let half = some.len() / 2;
         block.dense(&some[..half]);
         block.plain(&some[half..]);
@@ -374,7 +393,7 @@ fn read_made(
     }
     let node_blobs = blobs.len();
     for some in ways.chunks(per_block) {
-        let mut block = Block::new();
+        let mut block = BlockBuilder::new();
         for way in some {
             let mut tags: Vec<(&str, &str)> =
                 way.highway.map(|value| ("highway", value)).into_iter().collect();

@@ -1,4 +1,5 @@
-//! Integration tests of `corniche-osm`, in one binary. The first line of each module says what holds.
+//! The integration tests of `corniche-osm`, in one binary. The first line of each module says what
+//! it tests.
 
 mod areas;
 mod areas_against_osmium;

@@ -1,4 +1,5 @@
-//! All layers are read at once: each is what it is alone, and no blob of a sorted extract is unpacked oftener than for roads alone.
+//! All layers are read at once: each is the same as alone, and no blob of a sorted extract is
+//! unpacked more often than for roads alone.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -7,27 +8,27 @@ use std::{cell::Cell, fs, io::Cursor, path::Path};
 use crate::common::{
     CountedBlobs, Gathered, POOL, gather, request, roads::read_roads_from, to_lattice,
 };
-use corniche_areas::{Area, AreaTable, ClassedLayer};
+use corniche_areas::{Area, AreaTable};
 use corniche_osm::{
-    AreaSummary, ClassedLine, Defect, ExtractSummary, LayerSink, Layers, LineSummary, ReadOsmError,
-    ReadRequest, read_extract, read_extract_from,
+    AreaSummary, ClassedLine, ExtractDefect, ExtractSummary, LayerSink, Layers, LineSummary,
+    ReadOsmError, ReadRequest, read_extract, read_extract_from,
 };
 use corniche_presets::{area_preset, parse_area_table};
 use corniche_roads::Road;
 use corniche_testing::MemoryScratch;
 use corniche_testing::{
-    pbf::{Block, plain_header, raw},
+    pbf::{BlockBuilder, plain_header, raw},
     real_data, sample,
 };
 use proptest::prelude::*;
 
-/// All layers of an extract, and of each what is wrong with it.
+/// All layers of an extract, and the defects of each.
 #[derive(Debug, Default, PartialEq)]
 struct All {
     areas: (Vec<Area>, Option<AreaSummary>),
     boundaries: (Vec<ClassedLine>, Option<LineSummary>),
     roads: (Vec<Road>, Option<ExtractSummary>),
-    defects: Vec<Defect>,
+    defects: Vec<ExtractDefect>,
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -46,18 +47,16 @@ fn table() -> AreaTable {
 
 fn with_layers(
     which: Which,
-    read: impl FnOnce(Layers<'_>, &mut dyn FnMut(Defect)) -> Result<(), ReadOsmError>,
+    read: impl FnOnce(Layers<'_>, &mut dyn FnMut(ExtractDefect)) -> Result<(), ReadOsmError>,
 ) -> Result<All, String> {
     let table = table();
     let (mut areas, mut boundaries, mut roads) =
         (Gathered::default(), Gathered::default(), Gathered::default());
     let mut defects = Vec::new();
-    let of_boundaries =
-        which.boundaries.then_some((ClassedLayer::Boundaries, &mut boundaries as _));
     let layers = Layers {
         areas: which.areas.then_some((&table, &mut areas as &mut dyn LayerSink<_, _>)),
-        lines: Vec::from_iter(of_boundaries),
-        line_names: None,
+        boundaries: which.boundaries.then_some(&mut boundaries as &mut dyn LayerSink<_, _>),
+        boundary_names: None,
         roads: which.roads.then_some(&mut roads as &mut dyn LayerSink<_, _>),
     };
     read(layers, &mut |defect| defects.push(defect)).map_err(|error| error.to_string())?;
@@ -78,7 +77,8 @@ fn read(bytes: &[u8], memory_bytes: u64, which: Which) -> Result<All, String> {
     })
 }
 
-/// What all layers must be together: each as it is alone, and defects in the order of the layers.
+/// Reads each layer alone: together they must equal all layers read at once, with defects in the
+/// order of the layers.
 fn each_alone(read: impl Fn(Which) -> Result<All, String>) -> Result<All, String> {
     let areas = read(Which { areas: true, ..NONE })?;
     let boundaries = read(Which { boundaries: true, ..NONE })?;
@@ -106,7 +106,7 @@ fn layers_of_real_extracts_are_together_what_each_is_alone() {
     }
 }
 
-/// How often blobs of an extract are read for these layers.
+/// Returns how often blobs of an extract are read for these layers.
 fn blobs_read(bytes: &[u8], which: Which) -> u64 {
     let (blobs, scratch) = (Cell::new(0), MemoryScratch::default());
     let request = request(Path::new("made.osm.pbf"), &POOL, &to_lattice, &scratch);
@@ -118,7 +118,7 @@ fn blobs_read(bytes: &[u8], which: Which) -> u64 {
     blobs.get()
 }
 
-/// But for those among which the first relation is sought, as the first way is.
+/// The blobs among which the first relation is searched are an exception, as for the first way.
 #[test]
 fn no_blob_of_a_sorted_extract_is_unpacked_oftener_for_more_layers() {
     let real = [
@@ -153,8 +153,8 @@ enum Kind {
     Relations,
 }
 
-/// An extract of blobs of these kinds, one after the other, `blobs` of each: squares beside each other, some of them of two ways in a relation,
-/// some of them roads.
+/// Returns an extract of blobs of these kinds, one after the other, `blobs` of each: adjacent
+/// squares, some of which consist of two ways in a relation, and some of which are roads.
 fn made(kinds: &[Kind], blobs: i64) -> Vec<u8> {
     let mut bytes = plain_header();
     for &kind in kinds {
@@ -167,8 +167,8 @@ fn made(kinds: &[Kind], blobs: i64) -> Vec<u8> {
 
 const SQUARES: i64 = 8;
 
-fn made_block(kind: Kind, blob: i64) -> Block {
-    let mut block = Block::new();
+fn made_block(kind: Kind, blob: i64) -> BlockBuilder {
+    let mut block = BlockBuilder::new();
     for square in blob * SQUARES..(blob + 1) * SQUARES {
         let node = 1 + 4 * square;
         let [east, north] =
@@ -232,7 +232,7 @@ fn an_extract_in_any_order_gives_the_same() {
     }
 }
 
-/// The made extract in two files: what is in both counts once.
+/// The generated extract is in two files: objects in both count once.
 #[test]
 fn several_extracts_give_the_same() {
     let (folder, kinds) =
@@ -267,7 +267,7 @@ fn several_extracts_give_the_same() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 
-    /// Blobs of all kinds in any order, and a blob with two kinds.
+    /// Blobs of all kinds may come in any order, and a blob may contain two kinds.
     #[test]
     fn blobs_in_any_order_give_what_each_layer_is_alone(
         blobs in Just((0..4_i64).flat_map(|blob| [Kind::Nodes, Kind::Ways, Kind::Relations].map(|kind| (kind, blob))).collect::<Vec<_>>()).prop_shuffle(),

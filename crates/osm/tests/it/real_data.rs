@@ -1,4 +1,4 @@
-//! Real extracts of the developers' data set, against counts taken with osmium-tool 1.15.0.
+//! Real extracts of the developers' data set have the counts that osmium-tool 1.15.0 gives.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -8,7 +8,8 @@ use crate::common::{Extract, read, read_with, to_lattice};
 use corniche_osm::ReadOsmError;
 use corniche_testing::real_data;
 
-/// Ways per `highway` value, from `osmium tags-filter -R FILE w/highway` and `osmium tags-count`.
+/// Checks the ways per `highway` value, from `osmium tags-filter -R FILE w/highway` and
+/// `osmium tags-count`.
 #[track_caller]
 fn check_counts(extract: &Extract, expected: &[(&str, u64)]) {
     let counts: BTreeMap<&str, u64> = extract
@@ -61,10 +62,11 @@ fn liechtenstein_2021_is_counted_as_osmium_counts_it() {
     }
 }
 
-/// What is in an extract and what becomes of it.
+/// The contents of an extract, and what becomes of them.
 ///
-/// Nodes, ways and highways are osmium's own counts (`osmium fileinfo -e`, `osmium tags-filter -R FILE w/highway`); the others
-/// were counted apart, in the text that `osmium cat -f opl` makes of the file.
+/// Nodes, ways and highways are osmium's own counts (`osmium fileinfo -e`,
+/// `osmium tags-filter -R FILE w/highway`); the others were counted separately in the text that
+/// `osmium cat -f opl` writes.
 struct Figures {
     nodes: u64,
     ways: u64,

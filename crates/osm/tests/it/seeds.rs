@@ -1,4 +1,5 @@
-//! The seeds of the fuzz target `osm` (`fuzz/corpus/osm`) are made here. `CORNICHE_WRITE_SEEDS=1` writes them anew.
+//! Generates the seeds of the fuzz target `osm` (`fuzz/corpus/osm`). `CORNICHE_WRITE_SEEDS=1`
+//! writes them again.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -6,33 +7,33 @@ use std::{collections::BTreeMap, fs, path::PathBuf};
 
 use crate::common::fixture;
 use corniche_testing::pbf::{
-    Block, deltas, field, file, frame, header, number, packed_blob, plain_header, raw,
+    BlockBuilder, deltas, field, file, frame, header, number, packed_blob, plain_header, raw,
 };
 
-/// Whole files, and blocks alone, which the target wraps itself.
+/// Returns whole files, and single blocks, which the target wraps itself.
 fn seeds() -> BTreeMap<&'static str, Vec<u8>> {
-    let mut row = Block::with_row_of_nodes(5);
+    let mut row = BlockBuilder::with_row_of_nodes(5);
     row.track(7, &[1, 2, 3, 2, 5]);
     row.way(8, &[("highway", "motorway"), ("name", "A 13"), ("oneway", "yes")], &[5, 4]);
-    let mut broken = Block::with_row_of_nodes(3);
+    let mut broken = BlockBuilder::with_row_of_nodes(3);
     broken.track(7, &[1, 1, 99, 2, 3]);
     broken.track(7, &[1]);
     broken.track(-8, &[]);
     broken.way(9, &[("highway", "goat_trail")], &[1, 2]);
     broken.way(10, &[("highway", "track"), ("area", "yes")], &[1, 2]);
     broken.way(11, &[("building", "yes")], &[1, 2, 3, 1]);
-    let mut plain = Block::new();
+    let mut plain = BlockBuilder::new();
     plain.plain(&[(i64::MIN, 0, 0), (2, 900_000_000, 1_800_000_000), (3, -1, 2_000_000_000)]);
     plain.track(1, &[i64::MIN, 2]);
     plain.frame = [number(17, 100), number(19, 5), number(20, -5)].concat();
-    let mut located = Block::new();
+    let mut located = BlockBuilder::new();
     let message = located.way_message(7, &[("highway", "track")], &[1, 2]);
     let places = [field(9, &deltas(&[0, 5])), field(10, &deltas(&[1, 7]))].concat();
     located.groups.push(field(3, &[message, places].concat()));
-    let mut relation = Block::new();
+    let mut relation = BlockBuilder::new();
     let members = [number(1, 5), field(8, &[0]), field(9, &[2]), field(10, &[1])].concat();
     relation.groups.push(field(4, &members));
-    let mut info = Block::new();
+    let mut info = BlockBuilder::new();
     let ids = deltas(&[1, 2]);
     let known: Vec<u8> = (1..=6).flat_map(|number| field(number, &[1, 0])).collect();
     let nodes =

@@ -1,4 +1,5 @@
-//! Several extracts are read as one: what is in two of them counts once, and of two versions the newer one.
+//! Several extracts are read as one: an object in two of them counts once, and of two versions the
+//! newer one counts.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -11,14 +12,14 @@ use crate::common::{
     Extract, POOL, gather, gather_kept, kept, read_bytes, request, roads::read_roads, to_lattice,
 };
 use corniche_osm::{
-    Defect, ExtractSummary, ReadOsmError, ReadRequest, Share, keep_nodes, keep_ways,
+    ExtractDefect, ExtractSummary, ReadOsmError, ReadRequest, Share, keep_nodes, keep_ways,
 };
 use corniche_store::MemoryStore;
 use corniche_testing::MemoryScratch;
-use corniche_testing::pbf::{Block, field, number, plain_header, raw, zigzag};
+use corniche_testing::pbf::{BlockBuilder, field, number, plain_header, raw, zigzag};
 use proptest::prelude::*;
 
-/// An object's id and version; 0: none.
+/// An object's id and version; 0 means no version.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Object {
     id: i64,
@@ -40,11 +41,11 @@ fn info(version: i64) -> Vec<u8> {
     if version > 0 { field(4, &number(1, version)) } else { Vec::new() }
 }
 
-/// A file of nodes and ways, some of them in a block.
+/// Returns a file of nodes and ways, `per_block` of them in a block.
 fn file(nodes: &[Node], ways: &[Way], per_block: usize) -> Vec<u8> {
     let mut blobs = vec![plain_header()];
     for some in nodes.chunks(per_block) {
-        let mut block = Block::new();
+        let mut block = BlockBuilder::new();
         let key = |number: u8| vec![number << 3];
         let node = |&(Object { id, version }, lat, lon): &Node| {
             let places =
@@ -55,7 +56,7 @@ fn file(nodes: &[Node], ways: &[Way], per_block: usize) -> Vec<u8> {
         blobs.push(raw(b"OSMData", &block.bytes()));
     }
     for some in ways.chunks(per_block) {
-        let mut block = Block::new();
+        let mut block = BlockBuilder::new();
         for way in some {
             let tags = [vec![("highway", way.highway)], way.more.clone()].concat();
             let tags = if way.highway.is_empty() { Vec::new() } else { tags };
@@ -68,7 +69,7 @@ fn file(nodes: &[Node], ways: &[Way], per_block: usize) -> Vec<u8> {
     blobs.concat()
 }
 
-/// The files in a folder, by number.
+/// Writes the files to a folder, and returns their paths.
 fn written(files: &[&[u8]]) -> (tempfile::TempDir, Vec<PathBuf>) {
     let folder = tempfile::tempdir().unwrap();
     let write = |(index, bytes): (usize, &&[u8])| {
@@ -92,7 +93,7 @@ fn read_files(paths: &[PathBuf], memory_bytes: u64) -> Result<Extract, ReadOsmEr
     })
 }
 
-/// The same through shares, the last first.
+/// Reads through shares, the last share first.
 fn read_shares(paths: &[PathBuf], of: u16, memory_bytes: u64) -> Result<Extract, ReadOsmError> {
     let store = MemoryStore::default();
     let kept = kept(&store);
@@ -108,7 +109,8 @@ fn read_shares(paths: &[PathBuf], of: u16, memory_bytes: u64) -> Result<Extract,
     })
 }
 
-/// Reads files at once and in shares, with much memory and with little: the result is always the same.
+/// Reads files at once and in shares, with much memory and with little; the result is always the
+/// same.
 #[track_caller]
 fn read(files: &[&[u8]]) -> Result<Extract, String> {
     let (_folder, paths) = written(files);
@@ -123,17 +125,19 @@ fn read(files: &[&[u8]]) -> Result<Extract, String> {
     found
 }
 
-/// What does not depend on how often an object is there, and on the order in which defects are told.
+/// Returns the parts of an extract that do not depend on repeated objects or on the order in which
+/// defects are reported.
 fn apart_from_repeats(mut extract: Extract) -> Extract {
     extract.defects.sort_by_key(|defect| format!("{defect:?}"));
     extract.summary = ExtractSummary { nodes_seen: 0, ways_seen: 0, ..extract.summary };
     extract
 }
 
-/// Ways and nodes with the files that they are in, as bits, and how many of them a block holds.
+/// Ways and nodes with the files that contain them, as bits, and the number of them in a block.
 type Parts = (Vec<(Way, u8)>, Vec<(Node, u8)>, usize);
 
-/// Ways of all kinds with different ids, for each whether it is in the first file, the second or both, and nodes likewise.
+/// Generates ways of all kinds with different ids, each in the first file, the second or both, and
+/// nodes likewise.
 fn parts() -> impl Strategy<Value = Parts> {
     let highways = vec!["track", "residential", "footway", "goat_trail", "proposed", ""];
     let more = prop::sample::subsequence(
@@ -166,7 +170,8 @@ fn parts() -> impl Strategy<Value = Parts> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// An extract that is cut into two, which overlap, gives what the whole gives, in either order.
+    /// An extract that is cut into two overlapping parts gives the same result as the whole, in
+    /// either order.
     #[test]
     fn two_parts_give_the_whole((ways, nodes, per_block) in parts()) {
         let part = |place: u8| {
@@ -185,7 +190,7 @@ proptest! {
         prop_assert_eq!(&found, &whole);
     }
 
-    /// Whatever is in them, the order of the files decides at most between contents of one version.
+    /// Whatever the files contain, their order matters at most for the content of equal versions.
     #[test]
     fn the_order_of_files_does_not_matter_for_versions(
         (ways, nodes, per_block) in parts(),
@@ -208,7 +213,7 @@ fn road(id: i64, version: i64, highway: &'static str, node_ids: &[i64]) -> Way {
     Way { object: Object { id, version }, highway, more: Vec::new(), node_ids: node_ids.to_vec() }
 }
 
-/// Nodes 1 to 9 in a row.
+/// Returns nodes 1 to 9 in a row.
 fn row(version: i64) -> Vec<Node> {
     (1..10).map(|id| (Object { id, version }, 470_000_000, 90_000_000 + 1000 * id)).collect()
 }
@@ -219,7 +224,7 @@ fn of_two_versions_of_a_way_the_newer_one_counts() {
     let new = file(&row(1), &[road(5, 2, "footway", &[1, 2, 3]), road(6, 1, "track", &[2, 3])], 20);
     for files in [[&old[..], &new], [&new[..], &old]] {
         let found = read(&files).unwrap();
-        assert_eq!(found.defects, [Defect::ConflictingWay { way_id: 5 }]);
+        assert_eq!(found.defects, [ExtractDefect::ConflictingWay { way_id: 5 }]);
         let ids: Vec<i64> = found.roads.iter().map(|road| road.way_id).collect();
         assert_eq!((ids, found.summary.left_out.class_off), (vec![6], 1));
         assert_eq!(found.summary.highway_ways, 2);
@@ -233,7 +238,7 @@ fn of_two_contents_of_one_version_the_first_counts() {
         let other = file(&row(0), &[road(5, version, "track", &[1, 2, 3])], 20);
         for (files, points) in [([&one[..], &other], 2), ([&other[..], &one], 3)] {
             let found = read(&files).unwrap();
-            assert_eq!(found.defects, [Defect::ConflictingWay { way_id: 5 }]);
+            assert_eq!(found.defects, [ExtractDefect::ConflictingWay { way_id: 5 }]);
             assert_eq!(found.roads[0].line.points().len(), points);
         }
     }
@@ -248,25 +253,25 @@ fn of_two_places_of_a_node_that_of_the_newer_version_counts() {
     let new = file(&moved, &way, 20);
     for files in [[&old[..], &new], [&new[..], &old]] {
         let found = read(&files).unwrap();
-        assert_eq!(found.defects, [Defect::ConflictingNode { node_id: 1 }]);
+        assert_eq!(found.defects, [ExtractDefect::ConflictingNode { node_id: 1 }]);
         assert_eq!(found.roads[0].line.points()[0].v, 470_005_000);
     }
-    // The same place in another version is no contradiction.
+    // The same position in another version is not a contradiction.
     let touched = file(&row(7), &way, 20);
     assert_eq!(read(&[&old, &touched]).unwrap().defects, []);
 }
 
 #[test]
 fn each_extract_for_itself_must_be_of_one_point_in_time() {
-    // Across files versions may differ, also where one ends with the way that the next begins with.
+    // Versions may differ between files, even if one ends with the way with which the next begins.
     let old = file(&row(1), &[road(5, 1, "track", &[1, 2])], 20);
     let new = file(&[], &[road(5, 2, "track", &[1, 2])], 20);
     assert_eq!(read(&[&old, &new]).unwrap().roads.len(), 1);
-    // Within one they may not.
+    // Versions may not differ within a file.
     let history = file(&row(1), &[road(5, 1, "track", &[1, 2]), road(5, 2, "track", &[1, 2])], 20);
     for (number, files) in [[&history[..], &old], [&old[..], &history]].iter().enumerate() {
         let said = read(files).unwrap_err();
-        assert!(said.contains("it holds way 5 in versions"), "{said}");
+        assert!(said.contains("the file contains way 5 in versions"), "{said}");
         assert!(said.contains(&format!("{number}.osm.pbf")), "{said}");
     }
 }
@@ -276,9 +281,9 @@ fn duplicates_within_one_extract_are_told_as_ever() {
     let twice = file(&row(1), &[road(5, 1, "track", &[1, 2]), road(5, 1, "track", &[1, 2])], 20);
     let once = file(&row(1), &[road(5, 1, "track", &[1, 2])], 20);
     let alone = read(&[&twice]).unwrap();
-    assert_eq!(alone.defects, [Defect::DuplicateWay { way_id: 5 }]);
+    assert_eq!(alone.defects, [ExtractDefect::DuplicateWay { way_id: 5 }]);
     let found = read(&[&twice, &once]).unwrap();
     assert_eq!(apart_from_repeats(found), apart_from_repeats(alone));
-    // Of the extract that counts; the other one's duplicates are not looked at.
+    // The duplicates of the counting extract are reported; those of the other are not checked.
     assert_eq!(read(&[&once, &twice]).unwrap().defects, []);
 }

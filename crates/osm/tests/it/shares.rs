@@ -1,4 +1,5 @@
-//! An extract that is read in shares gives the roads, defects, counts and refusals of one that is read at once.
+//! An extract that is read in shares gives the same roads, defects, counts and rejections as one
+//! that is read at once.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -10,10 +11,10 @@ use crate::common::{
     read, request, to_lattice, written,
 };
 use corniche_osm::{KeptError, ReadOsmError, ReadRequest, Share, keep_nodes, keep_ways};
-use corniche_store::{Artifacts, Key, MemoryStore, Scratch};
+use corniche_store::{ArtifactKey, Artifacts, MemoryStore, ScratchSpace};
 use corniche_testing::MemoryScratch;
 use corniche_testing::{
-    pbf::{Block, field, number, plain_header, raw},
+    pbf::{BlockBuilder, field, number, plain_header, raw},
     real_data, sample,
 };
 use proptest::prelude::*;
@@ -21,12 +22,13 @@ use proptest::prelude::*;
 fn request_within<'a>(
     path: &'a Path,
     memory_bytes: u64,
-    scratch: &'a dyn Scratch,
+    scratch: &'a dyn ScratchSpace,
 ) -> ReadRequest<'a> {
     ReadRequest { memory_bytes, ..request(path, &POOL, &to_lattice, scratch) }
 }
 
-/// Makes all shares of both steps, as processes would that know nothing of each other: the last ones first.
+/// Creates all shares of both steps, as processes would that know nothing of each other: the last
+/// ones first.
 fn keep(path: &Path, of: u16, memory_bytes: u64, store: &MemoryStore) -> Result<(), ReadOsmError> {
     let scratch = MemoryScratch::default();
     let request = request_within(path, memory_bytes, &scratch);
@@ -60,7 +62,7 @@ fn read_in_shares(path: &Path, of: u16, memory_bytes: u64) -> Result<Extract, Re
     read_kept(path, of, memory_bytes, &store)
 }
 
-/// Compares any number of shares with the reading at once; a refusal must have the same words.
+/// Compares any number of shares with the reading at once; a rejection must have the same words.
 #[track_caller]
 fn check_same(path: &Path, counts: &[u16]) {
     let words = |read: Result<Extract, ReadOsmError>| read.map_err(|error| error.to_string());
@@ -120,9 +122,9 @@ fn fixtures_are_the_same_in_shares() {
     }
 }
 
-/// A blob of ways, each with its id, version (0: none) and nodes.
+/// Returns a blob of ways, each with its id, version (0: none) and nodes.
 fn ways(ways: &[(i64, i64, &[i64])]) -> Vec<u8> {
-    let mut block = Block::new();
+    let mut block = BlockBuilder::new();
     for &(id, version, nodes) in ways {
         let mut message = block.way_message(id, &[("highway", "track")], nodes);
         if version > 0 {
@@ -133,9 +135,9 @@ fn ways(ways: &[(i64, i64, &[i64])]) -> Vec<u8> {
     raw(b"OSMData", &block.bytes())
 }
 
-/// A blob of nodes: id, latitude, longitude.
+/// Returns a blob of nodes: id, latitude, longitude.
 fn nodes(nodes: &[(i64, i64, i64)]) -> Vec<u8> {
-    let mut block = Block::new();
+    let mut block = BlockBuilder::new();
     block.dense(nodes);
     raw(b"OSMData", &block.bytes())
 }
@@ -144,7 +146,7 @@ fn file(blobs: &[Vec<u8>]) -> Vec<u8> {
     [plain_header(), blobs.concat()].concat()
 }
 
-/// With as many shares as blobs and more, each blob is in a share of its own.
+/// With as many shares as blobs or more, each blob has its own share.
 const COUNTS: [u16; 6] = [1, 2, 3, 4, 9, 20];
 
 #[test]
@@ -181,7 +183,7 @@ fn a_history_that_no_share_sees_alone_is_refused() {
     }
 }
 
-/// The first place on Earth stays, whichever blob gives it; only nodes on roads matter.
+/// The first position on Earth is kept, whichever blob gives it; only nodes on roads matter.
 #[test]
 fn places_of_a_node_in_several_shares_are_compared() {
     let far = 2_000_000_000;
@@ -215,7 +217,7 @@ fn places_of_a_node_in_several_shares_are_compared() {
 #[test]
 fn a_damaged_blob_fails_its_share_with_the_words_of_the_whole() {
     let good = ways(&[(5, 0, &[1, 2])]);
-    let mut bad = Block::new();
+    let mut bad = BlockBuilder::new();
     bad.groups.push(field(3, &[number(1, 7), field(2, &[9]), field(3, &[])].concat()));
     let bytes = file(&[
         nodes(&[(1, 0, 0), (2, 0, 9)]),
@@ -232,7 +234,7 @@ fn a_damaged_blob_fails_its_share_with_the_words_of_the_whole() {
         .map(Share::number)
         .collect();
     assert_eq!(failed.len(), 1, "{failed:?}");
-    // Its ways are not there: no share of nodes can be made, and nothing is complete.
+    // Its ways are missing: no share of nodes can be created, and nothing is complete.
     let error =
         keep_nodes(&request, Share::new(1, 9).unwrap(), kept(&store), &|| false).unwrap_err();
     assert!(
@@ -241,7 +243,7 @@ fn a_damaged_blob_fails_its_share_with_the_words_of_the_whole() {
     );
     assert_eq!(kept(&store).missing_ways(9).map(Share::number), failed.first().copied());
     assert_eq!(kept(&store).complete(), None);
-    // Cut off: no share can be made, because the list of blobs has no end.
+    // The file is truncated: no share can be created, because the list of blobs has no end.
     fs::write(&path, &bytes[..bytes.len() - 3]).unwrap();
     check_same(&path, &[1, 5]);
 }
@@ -252,7 +254,8 @@ fn an_extract_without_roads_or_blobs_can_be_shared() {
     check_bytes(&file(&[nodes(&[(1, 0, 0)])]), &COUNTS);
 }
 
-/// What is kept depends on the extract and the share, not on memory or threads: parts made twice are one part.
+/// The stored results depend on the extract and the share, not on memory or threads: parts that are
+/// created twice are equal.
 #[test]
 fn what_a_share_keeps_is_the_same_with_any_memory() {
     let path = sample("liechtenstein/liechtenstein-2013-08-03.osm.pbf");
@@ -260,7 +263,11 @@ fn what_a_share_keeps_is_the_same_with_any_memory() {
         let store = MemoryStore::default();
         keep(&path, 3, memory_bytes, &store).unwrap();
         let items = (10..16_u8).flat_map(|kind| {
-            store.items(kind).into_iter().map(move |item| Key { kind, item }).collect::<Vec<_>>()
+            store
+                .items(kind)
+                .into_iter()
+                .map(move |item| ArtifactKey { kind, item })
+                .collect::<Vec<_>>()
         });
         items.map(|key| (key, store.get(key).unwrap())).collect::<Vec<_>>()
     };
@@ -269,7 +276,7 @@ fn what_a_share_keeps_is_the_same_with_any_memory() {
     assert!(all(100_000) == expected);
 }
 
-/// Shares of another number do not disturb, and a share that is there is not made again.
+/// Shares of another division do not disturb, and an existing share is not created again.
 #[test]
 fn shares_of_several_numbers_lie_beside_each_other() {
     let path = sample("pass/pass.osm.pbf");
@@ -286,7 +293,7 @@ fn shares_of_several_numbers_lie_beside_each_other() {
     .unwrap();
     assert_eq!(kept(&store).complete(), Some(3));
     assert!(read_kept(&path, 3, 1 << 30, &store).unwrap() == expected);
-    // Nothing is read for what is there: the file need not be there.
+    // Nothing is read for existing results: the file need not exist.
     let gone = request_within(Path::new("gone.osm.pbf"), 1 << 30, &scratch);
     for share in Share::all(3) {
         keep_ways(&gone, share, kept(&store), &|| false).unwrap();
@@ -295,15 +302,19 @@ fn shares_of_several_numbers_lie_beside_each_other() {
     assert!(keep_ways(&gone, Share::WHOLE, kept(&store), &|| false).is_err());
 }
 
-/// A store that lost an artifact, or has another in its place.
+/// A store may lack an artifact, or have another in its place.
 #[test]
 fn what_is_lost_or_damaged_is_an_error() {
     let path = fixture("classes-located.osm.pbf");
     let whole = MemoryStore::default();
     keep(&path, 2, 1 << 30, &whole).unwrap();
-    let keys: Vec<Key> = (10..16_u8)
+    let keys: Vec<ArtifactKey> = (10..16_u8)
         .flat_map(|kind| {
-            whole.items(kind).into_iter().map(move |item| Key { kind, item }).collect::<Vec<_>>()
+            whole
+                .items(kind)
+                .into_iter()
+                .map(move |item| ArtifactKey { kind, item })
+                .collect::<Vec<_>>()
         })
         .collect();
     for &broken in &keys {
@@ -322,7 +333,8 @@ fn what_is_lost_or_damaged_is_an_error() {
     }
 }
 
-/// Two versions make a history where one follows the other, whatever the blobs and shares are; else only those of roads do.
+/// Two versions make a history if one follows the other, whatever the blobs and shares are;
+/// otherwise only two versions of roads do.
 #[test]
 fn versions_with_another_way_between_them_are_no_history_in_any_blob_or_share() {
     let ways = [(18, "track", 8), (5, "track", 7), (18, "footway", 7)];
@@ -338,7 +350,7 @@ fn versions_with_another_way_between_them_are_no_history_in_any_blob_or_share() 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
-    /// Where several things make a file a history, each way of reading may tell another one first.
+    /// If several facts make a file a history, each way of reading may report another one first.
     #[test]
     fn a_random_extract_is_the_same_in_shares(
         extract in made_extract(),

@@ -1,5 +1,5 @@
-//! Ways and nodes that do not fit in memory: the result is the same with any memory, blobs are read no oftener than they must
-//! be, and a disk that fails is an error.
+//! Ways and nodes that do not fit in memory: the result is the same with any memory, blobs are read
+//! no more often than necessary, and a failing disk causes an error.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -16,10 +16,10 @@ use crate::common::{
     roads::read_roads_from, to_lattice,
 };
 use corniche_osm::{ReadOsmError, ReadRequest};
-use corniche_store::{Scratch, Span};
+use corniche_store::{ScratchRange, ScratchSpace};
 use corniche_testing::MemoryScratch;
 use corniche_testing::{
-    pbf::{Block, plain_header, raw},
+    pbf::{BlockBuilder, plain_header, raw},
     real_data,
 };
 use proptest::prelude::*;
@@ -27,7 +27,7 @@ use proptest::prelude::*;
 /// A quarter of the memory is for nodes, 18 bytes each.
 const MEMORY_OF_A_NODE: u64 = 4 * 18;
 
-/// What was read, or the words of the refusal.
+/// Returns the result, or the words of the rejection.
 fn read_within(memory_bytes: u64, bytes: &[u8]) -> Result<Extract, String> {
     let scratch = MemoryScratch::default();
     read_bytes_within(memory_bytes, &scratch, bytes).map_err(|error| error.to_string())
@@ -85,7 +85,7 @@ fn fixtures_are_the_same_with_any_memory() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
-    /// Roads, defects, counts and refusals.
+    /// Roads, defects, counts and rejections are the same.
     #[test]
     fn a_random_extract_is_the_same_with_any_memory(extract in made_extract()) {
         let bytes = extract.bytes();
@@ -106,7 +106,8 @@ fn blobs_read(memory_bytes: u64, bytes: &[u8]) -> (Extract, u64) {
     (extract.unwrap(), blobs.into_inner())
 }
 
-/// Blobs of 100 nodes in a row: `ids` says which node is where. Then five blobs of ways, which name the nodes from 2000 on.
+/// Returns blobs of 100 nodes in a row; `ids` says which node is where. Five blobs of ways follow,
+/// which reference the nodes from 2000 on.
 fn row_of_blobs(ids: impl Iterator<Item = i64>) -> Vec<u8> {
     let (nodes, ways) = blobs_of_row(ids);
     [plain_header()].into_iter().chain(nodes).chain(ways).flatten().collect()
@@ -115,13 +116,13 @@ fn row_of_blobs(ids: impl Iterator<Item = i64>) -> Vec<u8> {
 fn blobs_of_row(ids: impl Iterator<Item = i64>) -> (Vec<Vec<u8>>, Vec<Vec<u8>>) {
     let ids: Vec<i64> = ids.collect();
     let nodes = ids.chunks(100).map(|some| {
-        let mut block = Block::new();
+        let mut block = BlockBuilder::new();
         let nodes: Vec<_> = some.iter().map(|&id| (id, 0, 100 * id)).collect();
         block.dense(&nodes);
         raw(b"OSMData", &block.bytes())
     });
     let ways = (0..5).map(|blob| {
-        let mut block = Block::new();
+        let mut block = BlockBuilder::new();
         for way in 0..20 {
             let first = 2000 + 400 * blob + 20 * way;
             block.track(first, &(first..first + 20).collect::<Vec<_>>());
@@ -131,7 +132,7 @@ fn blobs_of_row(ids: impl Iterator<Item = i64>) -> (Vec<Vec<u8>>, Vec<Vec<u8>>) 
     (nodes.collect(), ways.collect())
 }
 
-/// The first way is sought among 45 blobs, once the first blob is known to hold nodes.
+/// The first way is searched among 45 blobs, once the first blob is known to contain nodes.
 const SOUGHT: u64 = 1 + 5;
 
 #[test]
@@ -140,19 +141,21 @@ fn a_blob_of_a_sorted_extract_is_read_once_and_for_its_nodes_once_more_where_the
     let (expected, blobs) = blobs_read(u64::MAX, &sorted);
     assert_eq!((expected.roads.len(), expected.summary.nodes_missing), (100, 0));
     assert_eq!(blobs, SOUGHT + 45);
-    // 300 nodes at a time end where blobs do; 350 end within one each second time.
+    // Parts of 300 nodes end where blobs end; every second part of 350 ends within a blob.
     for (nodes, again) in [(2000, 0), (1000, 0), (300, 0), (350, 3), (150, 7), (100, 0), (50, 20)] {
         let (extract, blobs) = blobs_read(nodes * MEMORY_OF_A_NODE, &sorted);
         assert_eq!(extract, expected, "{nodes} nodes at a time");
-        // The 20 blobs with the nodes from 2000 on are needed again, but for those of the first part.
+        // The 20 blobs with the nodes from 2000 on are needed again, except for the blobs of the
+        // first part.
         let first = nodes.min(2000).div_ceil(100);
         assert_eq!(blobs, SOUGHT + 45 + 20 - first + again, "{nodes} nodes at a time");
         assert!(again < 2000_u64.div_ceil(nodes));
     }
 }
 
-/// How many blobs a file has, and how many of them hold nodes, was counted apart, by a script of its own; how many nodes ways with a `highway` tag
-/// have, with `osmium tags-filter w/highway`. Those that become no road count, too: their length is told.
+/// The number of blobs in a file, and of blobs with nodes, was counted separately by a script. The
+/// number of nodes of ways with a `highway` tag comes from `osmium tags-filter w/highway`. Ways
+/// that do not become roads count, too, because their length is reported.
 #[test]
 fn blobs_of_real_extracts_are_read_as_seldom_as_those_of_made_ones() {
     for (name, all, with_nodes, highway_nodes) in [
@@ -179,7 +182,7 @@ fn blobs_of_real_extracts_are_read_as_seldom_as_those_of_made_ones() {
 #[test]
 fn blobs_of_an_extract_that_is_not_sorted_are_read_for_each_part_of_the_nodes() {
     let expected = blobs_read(u64::MAX, &row_of_blobs(0..4000)).0;
-    // Each blob has nodes from all over.
+    // Each blob has nodes from the whole range.
     let scattered = row_of_blobs((0..4000).map(|number| number % 40 * 100 + number / 40));
     for (nodes, times) in [(1 << 40, 1), (2000, 1), (500, 4), (300, 7)] {
         let (extract, blobs) = blobs_read(nodes * MEMORY_OF_A_NODE, &scattered);
@@ -188,13 +191,14 @@ fn blobs_of_an_extract_that_is_not_sorted_are_read_for_each_part_of_the_nodes() 
     }
 }
 
-/// Bisection takes the nodes' end for where most ways begin; the blob of ways before it is noticed, and nothing is told twice.
+/// Bisection mistakes the end of the nodes for the beginning of most ways. The blob of ways before
+/// it is noticed, and nothing is reported twice.
 #[test]
 fn ways_among_the_nodes_are_found() {
     let (expected, _) = blobs_read(u64::MAX, &row_of_blobs(0..4000));
     for at in 0..40 {
         let (mut blobs, mut ways) = blobs_of_row(0..4000);
-        let mut of_nothing = Block::new();
+        let mut of_nothing = BlockBuilder::new();
         of_nothing.way(9_999_999, &[("highway", "unheard_of")], &[2000, 2001]);
         ways.push(raw(b"OSMData", &of_nothing.bytes()));
         blobs.insert(at, ways.swap_remove(0));
@@ -209,7 +213,7 @@ fn ways_among_the_nodes_are_found() {
     }
 }
 
-/// Scratch space of which one call fails.
+/// Scratch space in which one call fails.
 struct Failing {
     space: MemoryScratch,
     calls_left: AtomicU64,
@@ -222,13 +226,13 @@ impl Failing {
     }
 }
 
-impl Scratch for Failing {
-    fn append(&self, bytes: &[u8]) -> io::Result<Span> {
+impl ScratchSpace for Failing {
+    fn append(&self, bytes: &[u8]) -> io::Result<ScratchRange> {
         self.call()?;
         self.space.append(bytes)
     }
 
-    fn read(&self, span: Span) -> io::Result<Vec<u8>> {
+    fn read(&self, span: ScratchRange) -> io::Result<Vec<u8>> {
         self.call()?;
         self.space.read(span)
     }
@@ -260,11 +264,11 @@ fn a_disk_that_fails_at_any_call_is_an_error_that_names_the_extract() {
 #[test]
 fn all_in_memory_needs_no_scratch_space() {
     struct None;
-    impl Scratch for None {
-        fn append(&self, _: &[u8]) -> io::Result<Span> {
+    impl ScratchSpace for None {
+        fn append(&self, _: &[u8]) -> io::Result<ScratchRange> {
             Err(io::ErrorKind::StorageFull.into())
         }
-        fn read(&self, _: Span) -> io::Result<Vec<u8>> {
+        fn read(&self, _: ScratchRange) -> io::Result<Vec<u8>> {
             Err(io::ErrorKind::NotFound.into())
         }
     }
@@ -295,7 +299,8 @@ fn progress_grows_from_step_to_step_up_to_twice_the_file() {
         assert!(told.is_sorted(), "{told:?}");
         assert_eq!(told.last(), Some(&(all, all)));
         if bytes.len() > empty.len() {
-            // Within a step too; the ways of the sorted one are read at once.
+            // The reading may also stop within a step; the ways of the sorted file are read at
+            // once.
             for step in u64::from(*bytes == sorted)..2 {
                 let half = bytes.len() as u64;
                 let within = step * half + 1..(step + 1) * half;

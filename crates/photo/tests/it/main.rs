@@ -1,4 +1,4 @@
-//! Integration tests of `corniche-photo`, in one binary. The first line of each module says what
-//! holds.
+//! Integration tests of `corniche-photo`, in one binary. The first line of each module states what
+//! it tests.
 
 mod photos;

@@ -1,4 +1,4 @@
-//! Photos lie where they should, and come out as they are: closed forms, on files written by GDAL.
+//! Photos have the right position and unchanged colours: closed forms, on files written by GDAL.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -48,7 +48,7 @@ fn refused(files: &[PathBuf]) -> String {
     Photos::open(files).unwrap_err().to_string()
 }
 
-/// A photo with the DEM's cells, on its nodes' squares, in UTM.
+/// A photo with the DEM's cells, centred on its nodes, in UTM.
 fn on_cells<'a>(
     value: &'a dyn Fn([f64; 2]) -> Vec<u8>,
     interpretations: &'a [C],
@@ -79,7 +79,7 @@ fn pixels_that_are_texels_come_out_as_they_are() {
     }
 }
 
-/// Moves an edge of black and white across a texel, and finds it again from the texel's grey: to a
+/// Moves an edge of black and white across a texel, and locates it from the texel's grey: to a
 /// tenth of a texel, also in another CRS than the DEM's.
 #[test]
 fn edges_land_within_a_tenth_of_a_texel() {
@@ -126,10 +126,10 @@ fn edges_land_within_a_tenth_of_a_texel() {
     for (name, file) in [("UTM", own), ("degrees", other)] {
         let texels = tile(&[file], &grid, 0);
         let mut worst: f64 = 0.0;
-        // Along the middle of a row of squares: where grey passes the half lies an edge.
+        // Along the middle of a row of squares: an edge is where grey passes one half.
         for row in [8, 136, 248] {
             for edge in 1..15_usize {
-                // The mean of the texels around an edge says where it is.
+                // The mean of the texels around an edge gives its position.
                 let from = edge * 16 - 4;
                 let sum: f64 = (from..from + 8)
                     .map(|column| f64::from(texels.at(column, row)[0]) / 255.0)
@@ -143,8 +143,8 @@ fn edges_land_within_a_tenth_of_a_texel() {
     }
 }
 
-/// A file that says `PixelIsPoint` has its geotransform half a pixel away in its tags; both must
-/// come out at the same place.
+/// A file with `PixelIsPoint` has a geotransform that is shifted by half a pixel in its tags; both
+/// files must have the same position.
 #[test]
 fn points_and_areas_lie_at_the_same_place() {
     let folder = tempfile::tempdir().unwrap();
@@ -183,7 +183,7 @@ fn alpha_nodata_and_masks_leave_texels_out() {
         assert_eq!(texels.at(127, 9), [0; 4], "{file:?}");
         assert_eq!(texels.at(128, 9), [9, 8, 7, 255], "{file:?}");
     }
-    // Black that only one band has is a colour.
+    // A pixel that is black in only one band is a colour.
     let dark = on_cells(&|_| vec![0, 200, 0], &RGB).write(folder.path(), "dark.tif", |dataset| {
         for band in 1..=3 {
             dataset.rasterband(band).unwrap().set_no_data_value(Some(0.0)).unwrap();
@@ -238,7 +238,7 @@ fn the_first_photo_lies_on_top_and_neighbours_leave_no_gap() {
     }
 }
 
-/// Detail finer than a texel becomes its mean, and not a pattern of its own.
+/// Detail finer than a texel is averaged, and does not alias.
 #[test]
 fn finer_photos_are_averaged() {
     let folder = tempfile::tempdir().unwrap();
@@ -258,7 +258,7 @@ fn finer_photos_are_averaged() {
     }
 }
 
-/// Any window gives the same texels; also across the meshes in which positions are interpolated.
+/// All windows give the same texels, also across the meshes in which positions are interpolated.
 #[test]
 fn a_texel_is_the_same_in_every_window() {
     let folder = tempfile::tempdir().unwrap();
@@ -335,7 +335,7 @@ fn what_is_no_photo_is_refused_with_what_to_do() {
     };
     let far = Photos::open(&[far.write(at, "far.tif", |_| {})]).unwrap();
     let text = far.on(&grid, LevelChoice::OfPhotos).unwrap_err().to_string();
-    assert!(text.contains("no photo lies on the ground"), "{text}");
+    assert!(text.contains("no photo overlaps the ground"), "{text}");
     let near = on_cells(&|_| vec![1, 2, 3], &RGB).write(at, "near.tif", |_| {});
     let near = Photos::open(&[near]).unwrap();
     let text = near.on(&grid, LevelChoice::Given(5)).unwrap_err().to_string();

@@ -1,4 +1,5 @@
-//! The areas of the extract: split by tile, and for each tile of each level the section with what lies in it.
+//! The areas of the extract, split by tile: each tile of each level gets a section with the areas
+//! inside it.
 
 use corniche_areas::{
     Area, AreaClass, AreaObject, Axis, OutlineError, Polygon, coarsen, cut_out, divide_all,
@@ -7,7 +8,7 @@ use corniche_areas::{
 use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, LatticeRegion, TileId};
 use corniche_osm::{AreaLoss, AreaSummary};
 use corniche_spec::{Defect, artifacts::damaged, data_tiles::DataTiles, extent::AreaExtent};
-use corniche_store::{Artifacts, Scratch, record_bytes, take_record};
+use corniche_store::{Artifacts, ScratchSpace, record_bytes, take_record};
 use corniche_tileset::{AreaRecord, AreaRings, encode_areas};
 use corniche_work::Stage;
 
@@ -16,7 +17,7 @@ use crate::{
     ExtractError,
     layers::{
         SectionLayer,
-        layer_writer::{LayerContext, TileLayer, TileSplitting},
+        layer_writer::{LayerContext, LayerEncoder, TileSplitting},
         parts_by_tile::PartsByTile,
         plan_splitting::PlanSplitting,
         tile_section::AreaTotals,
@@ -24,15 +25,16 @@ use crate::{
     },
 };
 
-/// How areas are split.
+/// Splits areas by tile.
 pub(crate) struct AreaSplitting<'a> {
     pub plan: PlanSplitting<'a>,
-    /// Areas end where it does.
+    /// The extent to which areas are clipped.
     pub extent: &'a AreaExtent,
 }
 
 impl AreaSplitting<'_> {
-    /// The parts of an area by tile. On coarse levels, polygons smaller than a cell are left out.
+    /// Returns the parts of an area by tile. On coarse levels, polygons smaller than a cell are
+    /// skipped.
     pub(crate) fn split(&self, area: &Area) -> Result<Vec<(TileId, AreaRecord)>, OutlineError> {
         let PlanSplitting { frame, data, polygon, .. } = self.plan;
         let mut parts = Vec::new();
@@ -46,13 +48,14 @@ impl AreaSplitting<'_> {
                 let [east, north] = frame.node_steps(level).map(i128::from);
                 coarse.retain(|polygon| polygon.doubled_area() >= 2 * east * north);
             }
-            // Before other cuts: the data's rectangle is not on the lattice of coarse levels.
+            // The region comes before other cuts, because the data's rectangle is not on the
+            // lattice of coarse levels.
             for region in polygon.into_iter().chain(&self.extent.region) {
                 coarse = inside(coarse, region, step)?;
             }
             let coarse = cut_out(&coarse, &self.extent.bounds)?;
             let mut tiles = Vec::new();
-            let wanted = Wanted { frame, data: data.above(level), level };
+            let wanted = DataTilesOfLevel { frame, data: data.above(level), level };
             wanted.divide(TileId::ROOT, coarse, &mut tiles)?;
             parts.extend(tiles.into_iter().map(|(id, polygons)| (id, record(area, &polygons))));
         }
@@ -60,7 +63,7 @@ impl AreaSplitting<'_> {
     }
 }
 
-/// The parts of polygons in a region, on the lattice of a level.
+/// The parts of polygons inside a region, on the lattice of a level.
 fn inside(
     polygons: Vec<Polygon>,
     region: &LatticeRegion,
@@ -68,8 +71,8 @@ fn inside(
 ) -> Result<Vec<Polygon>, OutlineError> {
     let points: Vec<LatticePoint> =
         polygons.iter().flat_map(|polygon| polygon.outer().points()).copied().collect();
-    // Outlines are put on the lattice of the level, too.
-    let Some(near) = LatticeBounds::of(&points).map(|bounds| bounds.expanded(2 * step)) else {
+    // Outlines are snapped to the level's lattice, too.
+    let Some(near) = LatticeBounds::around(&points).map(|bounds| bounds.expanded(2 * step)) else {
         return Ok(polygons);
     };
     if region.edges_near(&near).next().is_some() {
@@ -78,18 +81,19 @@ fn inside(
     Ok(if region.contains(near.min) { polygons } else { Vec::new() })
 }
 
-/// The tiles of a level on which data can lie.
-struct Wanted<'a> {
+/// The tiles of a level in which there can be data.
+struct DataTilesOfLevel<'a> {
     frame: &'a GridFrame,
     data: DataTiles,
     level: u8,
 }
 
-impl Wanted<'_> {
-    /// Divides polygons that lie in a tile, or beside it, by the lines between the tiles beneath it, down to the level.
+impl DataTilesOfLevel<'_> {
+    /// Divides polygons inside or around a tile along the borders of the tiles beneath it, down to
+    /// the level.
     ///
-    /// All tiles are made by the same lines in the same order, those of an area between two tiles by the line between them: so both have
-    /// the same points on it.
+    /// Every tile is cut along the same lines in the same order, and two neighbouring tiles are cut
+    /// along the line between them. So both have the same points on this line.
     fn divide(
         &self,
         id: TileId,
@@ -108,7 +112,8 @@ impl Wanted<'_> {
             }
             return Ok(());
         }
-        // The four children meet in the south-eastern corner of the first, which is north-western.
+        // The four children meet in the south-eastern corner of the first child, which is the
+        // north-western one.
         let Some(first) = id.children().next() else { return Ok(()) };
         let first = self.frame.tile_lattice_bounds(first);
         let [west, east] = divide_all(&polygons, Axis::East, first.max.u)?;
@@ -123,7 +128,7 @@ impl Wanted<'_> {
 }
 
 fn meets(polygon: &Polygon, bounds: &LatticeBounds) -> bool {
-    LatticeBounds::of(polygon.outer().points()).is_some_and(|own| own.intersects(bounds))
+    LatticeBounds::around(polygon.outer().points()).is_some_and(|own| own.intersects(bounds))
 }
 
 fn record(area: &Area, polygons: &[Polygon]) -> AreaRecord {
@@ -138,20 +143,20 @@ fn record(area: &Area, polygons: &[Polygon]) -> AreaRecord {
     }
 }
 
-/// Areas as they come in.
+/// Receives areas in the order in which they are read.
 pub(crate) struct AreaLayer<'a> {
     splitting: AreaSplitting<'a>,
     sea: SeaPlace<'a>,
     store: &'a dyn Artifacts,
     parts: PartsByTile<'a, u64>,
-    /// Areas that could not be split, with their true area.
+    /// Areas that were too complex to split, with their true area.
     intricate: Vec<(AreaObject, AreaClass, f64)>,
 }
 
 impl<'a> AreaLayer<'a> {
     pub(crate) fn new(
         (splitting, sea): (AreaSplitting<'a>, SeaPlace<'a>),
-        (store, scratch): (&'a dyn Artifacts, &'a dyn Scratch),
+        (store, scratch): (&'a dyn Artifacts, &'a dyn ScratchSpace),
         memory_bytes: u64,
     ) -> Self {
         let parts = PartsByTile::new(scratch, memory_bytes);
@@ -159,7 +164,7 @@ impl<'a> AreaLayer<'a> {
     }
 }
 
-/// An area that was split.
+/// An area that has been split.
 pub(crate) struct SplitArea {
     number: u64,
     object: AreaObject,
@@ -186,7 +191,7 @@ impl TileSplitting for AreaSplitting<'_> {
     }
 }
 
-impl<'a> TileLayer for AreaLayer<'a> {
+impl<'a> LayerEncoder for AreaLayer<'a> {
     type Splitting = AreaSplitting<'a>;
     type Summary = AreaSummary;
     type Done = AreaTotals;
@@ -208,7 +213,7 @@ impl<'a> TileLayer for AreaLayer<'a> {
         parts.into_iter().try_for_each(|(id, bytes)| self.parts.push(id, number, bytes))
     }
 
-    /// Closes the sea, and keeps the sections of all tiles and last the totals.
+    /// Closes the sea, and stores the sections of all tiles and finally the totals.
     fn finish(
         mut self,
         count: u64,
@@ -228,7 +233,7 @@ impl<'a> TileLayer for AreaLayer<'a> {
             *summary.lost.entry(AreaLoss::TooIntricate).or_default() += 1;
             let (kind, id) = object.parts();
             let (is_relation, loss) = (kind == "relation", AreaLoss::TooIntricate);
-            on_defect(corniche_osm::Defect::LostArea { is_relation, id, loss });
+            on_defect(corniche_osm::ExtractDefect::LostArea { is_relation, id, loss });
         }
         let (splitting, store) = (&self.splitting.plan, self.store);
         self.parts.for_each_tile(
@@ -236,7 +241,7 @@ impl<'a> TileLayer for AreaLayer<'a> {
             |parts: &mut Vec<AreaRecord>, tile, _, bytes| {
                 parts.push(take_record(&mut &*bytes).ok_or_else(|| {
                     let key = SectionLayer::Areas.section().item(tile);
-                    damaged(key, &"what was read back is no area")
+                    damaged(key, &"the record read back is not an area")
                 })?);
                 Ok(())
             },

@@ -7,7 +7,7 @@ use std::{
 
 use corniche_areas::{AreaClass, AreaObject, OutlineWay, assemble};
 use corniche_geom::{LatticePoint, NodeIndex};
-use corniche_verify::area_seams::{Beside, Seam};
+use corniche_verify::area_seams::{Beside, TileSeam};
 use proptest::prelude::*;
 
 use super::*;
@@ -17,7 +17,7 @@ fn frame() -> GridFrame {
     GridFrame::new([0.0, 0.0], 10.0, NodeIndex { i: -512, j: 512 }, 2).unwrap()
 }
 
-/// The whole root tile.
+/// The root tile as a whole.
 fn root() -> &'static AreaExtent {
     static WHOLE: LazyLock<AreaExtent> =
         LazyLock::new(|| AreaExtent::of_rectangle(frame().tile_lattice_bounds(TileId::ROOT)));
@@ -31,7 +31,7 @@ fn splitting(frame: &GridFrame) -> AreaSplitting<'_> {
     AreaSplitting { plan, extent: root() }
 }
 
-/// A star around a place, with a hole.
+/// A star around a position, with a hole.
 fn star(center: [i64; 2], radii: &[i64]) -> Area {
     let ring = |part: f64| -> Vec<LatticePoint> {
         let corner = |(number, radius): (usize, &i64)| {
@@ -73,8 +73,9 @@ fn doubled_area(parts: &[AreaRings]) -> i128 {
     parts.iter().flat_map(|part| &part.rings).map(of_ring).sum()
 }
 
-/// Asserts that neighbours cover the same of the lines between them, but for outlines of the area that run along these: one along a whole line is
-/// something that a seam cannot tell from a missing part.
+/// Asserts that neighbours cover the same sections of the line between them. Outlines of the area
+/// that run along this line are excepted: an outline along the whole line cannot be distinguished
+/// from a missing part.
 fn assert_seams_hold(area: &Area, tiles: &BTreeMap<TileId, AreaRecord>) {
     let frame = &frame();
     let all = tiles
@@ -83,7 +84,7 @@ fn assert_seams_hold(area: &Area, tiles: &BTreeMap<TileId, AreaRecord>) {
     for id in all.collect::<BTreeSet<TileId>>() {
         for beside in [Beside::East, Beside::South] {
             let Some(neighbour) = beside.neighbour(id) else { continue };
-            let seam = Seam::new(frame, id, beside, None);
+            let seam = TileSeam::new(frame, id, beside, None);
             let of = |id: TileId| tiles.get(&id).map_or(&[][..], std::slice::from_ref);
             let covered = [id, neighbour]
                 .map(|id| seam.covered(of(id)).into_values().next().unwrap_or_default());
@@ -121,7 +122,8 @@ fn what_is_smaller_than_a_cell_is_left_out_on_coarse_levels() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 
-    /// The parts of each level are the area, but for its coarse lattice; neighbours share the line between them.
+    /// The parts on each level add up to the area, apart from the coarse lattice; neighbours share
+    /// the line between them.
     #[test]
     fn parts_of_a_level_add_up_and_share_their_borders(
         center in [-1500_i64..1500, -1500_i64..1500],
@@ -140,7 +142,7 @@ proptest! {
                 prop_assert!(points.into_iter().all(|&point| bounds.contains(point)));
             }
             let sum: i128 = tiles.values().map(|record| doubled_area(&record.polygons)).sum();
-            // All of it is inside the root unless the star reaches beyond 5120 m.
+            // The whole star is inside the root unless it reaches beyond 5120 m.
             let around: i128 = 4 * radii.iter().map(|&radius| i128::from(radius)).sum::<i128>();
             let off = i128::from(splitting.plan.step(level)) * around;
             let reach = 3000 + 1500;
@@ -149,7 +151,8 @@ proptest! {
         }
     }
 
-    /// A part of an area in a triangle of any place: seams hold, nothing lies outside, and what lies in it and what lies beside it is all.
+    /// An area is clipped to a triangle anywhere: seams hold, nothing is outside, and the parts
+    /// inside and outside add up to the area.
     #[test]
     fn areas_end_at_the_outline_of_a_polygon(
         center in [-1500_i64..1500, -1500_i64..1500],
@@ -178,7 +181,8 @@ proptest! {
                 assert_seams_hold(&area, tiles);
                 *sum = tiles.values().map(|record| doubled_area(&record.polygons)).sum::<i128>();
             }
-            // `verify` allows as much: corners and crossings move by half a step, and then to an end nearby.
+            // `verify` tolerates the same amount: corners and crossings move by half a step, and
+            // then to a nearby end.
             let around = inside.bounds().expanded(3 * step);
             let points = within.get(level).into_iter().flat_map(|tiles| tiles.values());
             let mut points = points.flat_map(|record| &record.polygons).flat_map(|part| &part.rings).flatten();
@@ -189,7 +193,8 @@ proptest! {
         }
     }
 
-    /// Outlines that run along the lines between tiles, cross them at and beside corners, and leave them at any angle.
+    /// Outlines that run along the lines between tiles, cross them at corners and next to corners,
+    /// and leave them at any angle.
     #[test]
     fn seams_hold_where_outlines_run_along_them(
         cells in prop::collection::btree_set((-5_i64..5, -5_i64..5), 1..70),

@@ -1,14 +1,15 @@
-//! The sea of an extract: its coastlines, closed along the edge of what the data, the extract and the bounds cover.
+//! The sea of an extract: its coastlines, closed along the edge of the area that data, extract and
+//! bounds cover.
 
 use corniche_areas::{Area, AreaClass, AreaObject, Coastline, Polygon, Ring, close_sea};
 use corniche_geom::{GridFrame, Projection};
-use corniche_osm::{AreaLoss, AreaSummary, Defect};
+use corniche_osm::{AreaLoss, AreaSummary, ExtractDefect};
 use corniche_spec::{extent::AreaExtent, true_areas::lattice_ring_m2};
 
-/// The sea is no object of OSM.
+/// The sea, which is not an object of OSM.
 const SEA: AreaObject = AreaObject::Way(0);
 
-/// Where the sea is made of coastlines.
+/// The region in which coastlines are closed to form the sea.
 #[derive(Clone, Copy)]
 pub(crate) struct SeaPlace<'a> {
     pub extent: &'a AreaExtent,
@@ -17,11 +18,12 @@ pub(crate) struct SeaPlace<'a> {
 }
 
 impl SeaPlace<'_> {
-    /// Makes the sea, if there are coastlines, and counts it in `summary`, and what is wrong with coastlines.
+    /// Creates the sea, if there are coastlines, and counts the sea and the defects of coastlines
+    /// in `summary`.
     pub(crate) fn close(
         &self,
         summary: &mut AreaSummary,
-        on_defect: &mut dyn FnMut(Defect),
+        on_defect: &mut dyn FnMut(ExtractDefect),
     ) -> Option<Area> {
         let coastlines: Vec<Coastline> = std::mem::take(&mut summary.coastlines);
         let first = coastlines.iter().map(|coastline| coastline.way_id).min()?;
@@ -29,14 +31,14 @@ impl SeaPlace<'_> {
         let (polygons, left_out) = match closed {
             Ok(sea) => {
                 let open = sea.bridged.into_iter();
-                open.for_each(|way_id| on_defect(Defect::OpenCoastline { way_id }));
+                open.for_each(|way_id| on_defect(ExtractDefect::OpenCoastline { way_id }));
                 (sea.polygons, sea.left_out)
             }
             Err(_) => (Vec::new(), vec![first]),
         };
         let loss = AreaLoss::ContradictingCoastline;
         for &id in &left_out {
-            on_defect(Defect::LostArea { is_relation: false, id, loss });
+            on_defect(ExtractDefect::LostArea { is_relation: false, id, loss });
         }
         if !left_out.is_empty() {
             summary.objects += left_out.len() as u64;

@@ -1,4 +1,5 @@
-//! Reads the extract once, or what was kept of it in shares, and keeps, for each tile of each level, what it needs of each layer.
+//! Reads the extract once, or the stored shares of it, and stores for each tile of each level what
+//! the tile needs of each layer.
 //!
 //! ```text
 //! extract ─► objects of a layer ─► parts by level and tile ─► sorted by tile ─► one artifact for each tile
@@ -6,24 +7,24 @@
 //!         defects ─► one artifact for each block of defects
 //! ```
 //!
-//! Nothing that grows with the number of objects stays in memory.
+//! Memory does not grow with the number of objects.
 
 use std::{path::PathBuf, sync::atomic::Ordering};
 
-use corniche_areas::{AreaTable, ClassedLayer};
+use corniche_areas::AreaTable;
 use corniche_geom::{Bounds, LatticeBounds, LatticeRegion, Projection};
 use corniche_osm::{
     ExtractSummary, LayerSink, Layers, ReadOsmError, ReadRequest, read_extract, read_kept_roads,
 };
 use corniche_spec::{
-    Defect, Observer, RoadSettings,
-    artifacts::{self, Kind},
+    BuildObserver, Defect, RoadSettings,
+    artifacts::{self, ArtifactKind},
     data_tiles::DataTiles,
-    extent::{AreaExtent, ExtentParts, Outline},
+    extent::{AreaExtent, ExtentOutline, ExtentParts},
     levels::Levels,
     true_lengths::TrueLengths,
 };
-use corniche_store::{Artifacts, Scratch};
+use corniche_store::{Artifacts, ScratchSpace};
 use corniche_work::Stage;
 
 use super::{kept::kept_in, no_road, placed_reading::PlacedReading};
@@ -38,7 +39,7 @@ use crate::{
         layer_writer::{LayerContext, LayerWriter},
         plan_splitting::PlanSplitting,
     },
-    lines::layer::{LineSplitting, LinesLayer, MeasuredSplitting},
+    lines::layer::{LineSplitting, LinesLayer},
     roads::{
         layer::RoadLayer,
         split::RoadSplitting,
@@ -46,38 +47,38 @@ use crate::{
     },
 };
 
-/// What is said if the ways of some shares are there, but not ways and nodes of all.
-const SOME_SHARES: &str = "not all shares of the steps ways and nodes are in the stores, so the whole extract is read again";
+/// The warning for stores that have the ways of some shares, but not the ways and nodes of all.
+const SOME_SHARES: &str = "some chunks of the steps ways and nodes are missing from the stores, so the whole extract is read again";
 
-/// What the partition needs.
+/// The inputs of the partition.
 pub struct ExtractInput<'a> {
-    /// Never empty.
+    /// The extracts; at least one.
     pub osm: &'a [PathBuf],
-    /// How roads are made.
+    /// How roads are built.
     pub settings: &'a RoadSettings,
-    /// Which objects are areas, if any are wanted.
+    /// Which objects are areas, if areas are requested.
     pub areas: Option<&'a AreaTable>,
-    /// The layers of lines that are wanted.
-    pub lines: &'a [ClassedLayer],
-    /// The tiles on which data can lie.
+    /// Whether boundaries are requested.
+    pub boundaries: bool,
+    /// The tiles in which there can be data.
     pub data: DataTiles,
     /// WGS84 ⇄ the grid's working CRS.
     pub projection: &'a (dyn Projection + Sync),
     /// Tolerances and margins of levels.
     pub levels: &'a Levels,
-    /// How roads are measured.
+    /// Measures roads.
     pub lengths: &'a TrueLengths<'a>,
-    /// The data's rectangle: that of all nodes at which data can lie.
+    /// The data's rectangle, which contains all nodes at which there can be data.
     pub node_bounds: LatticeBounds,
-    /// The bounds that were asked for.
+    /// The requested bounds.
     pub clip: Option<LatticeBounds>,
-    /// The same in degrees.
+    /// The requested bounds in degrees.
     pub bounds_deg: Option<[f64; 4]>,
-    /// The outline of the elevation files, where they fill no rectangle.
-    pub outline: Option<&'a Outline>,
+    /// The outline of the elevation files, if they do not fill a rectangle.
+    pub outline: Option<&'a ExtentOutline>,
     /// The rectangle around all elevation files, degrees.
     pub area_deg: Bounds,
-    /// The polygon that was asked for.
+    /// The requested polygon.
     pub polygon: Option<&'a LatticeRegion>,
     /// Threads for reading and splitting.
     pub pool: &'a rayon::ThreadPool,
@@ -85,18 +86,19 @@ pub struct ExtractInput<'a> {
     pub memory_bytes: u64,
 }
 
-/// Keeps what tiles need of all layers, the lengths of all roads, the defects of the extract, and last the totals of roads. If these are
-/// in the store, all is, and nothing is read. The observer is told of the same defects in the same order either way.
+/// Stores what tiles need of all layers, the lengths of all roads, the defects of the extract, and
+/// finally the totals of roads. If the totals are in the store, everything else is, and nothing is
+/// read. In both cases the observer receives the same defects in the same order.
 ///
 /// # Errors
 /// See [`ExtractError`].
 pub fn partition(
     input: &ExtractInput<'_>,
     store: &dyn Artifacts,
-    scratch: &dyn Scratch,
-    observer: &dyn Observer,
+    scratch: &dyn ScratchSpace,
+    observer: &dyn BuildObserver,
 ) -> Result<RoadTotals, ExtractError> {
-    if let Some(totals) = artifacts::get(store, Kind::RoadTotals.item(0))? {
+    if let Some(totals) = artifacts::get(store, ArtifactKind::RoadTotals.item(0))? {
         replay_defects(store, observer)?;
         return Ok(totals);
     }
@@ -110,36 +112,37 @@ pub fn partition(
         }
         let (osm, reason) = (input.osm, why.reason);
         observer.warning(&format!(
-            "{osm:?} has no road: {reason}; only its areas and boundaries are taken"
+            "{osm:?} has no road: {reason}; only its areas and boundaries are included"
         ));
     }
     let defects = told.end().finish()?;
     let totals = RoadTotals { defects, extract: ExtractCounts::from(&extract), ..totals };
-    artifacts::put(store, Kind::RoadTotals.item(0), &totals)?;
+    artifacts::put(store, ArtifactKind::RoadTotals.item(0), &totals)?;
     Ok(totals)
 }
 
-/// What was found in the extract.
-struct Found {
+/// The findings about the extract.
+struct ExtractFindings {
     roads: (RoadTotals, ExtractSummary),
-    /// Whether other layers were asked for, and there are some: then there need not be roads.
+    /// Whether other layers were requested and the extract has objects of them: then roads are
+    /// optional.
     has_others: bool,
 }
 
-/// Reads all layers that are wanted, and keeps what tiles need of them.
+/// Reads all requested layers, and stores what tiles need of them.
 fn read(
     input: &ExtractInput<'_>,
-    places: (&dyn Artifacts, &dyn Scratch),
+    places: (&dyn Artifacts, &dyn ScratchSpace),
     told: &LayerContext<'_>,
-) -> Result<Found, ExtractError> {
+) -> Result<ExtractFindings, ExtractError> {
     let (store, scratch) = places;
     let extent = area_extent(input, told.observer)?;
     let mut areas = input
         .areas
         .zip(extent.as_ref())
         .map(|(table, extent)| (table, LayerWriter::new(area_layer(input, extent, places), told)));
-    let writer = |&layer| (layer, LayerWriter::new(lines_layer(input, layer, places), told));
-    let mut lines: Vec<_> = input.lines.iter().map(writer).collect();
+    let writer = || LayerWriter::new(boundary_layer(input, places), told);
+    let mut boundaries = input.boundaries.then(writer);
     let mut roads = LayerWriter::new(road_layer(input, places), told);
     let kept = kept_in(store);
     let of = kept.complete();
@@ -151,30 +154,31 @@ fn read(
     let on_defect = &mut |defect| told.on_defect(Defect::from(defect));
     let layers = Layers {
         areas: areas.as_mut().map(|(table, sink)| (*table, sink as &mut dyn LayerSink<_, _>)),
-        lines: lines.iter_mut().map(|(layer, sink)| (*layer, sink as &mut _)).collect(),
-        line_names: None,
-        // Shares keep roads alone.
+        boundaries: boundaries.as_mut().map(|sink| sink as &mut dyn LayerSink<_, _>),
+        boundary_names: None,
+        // Shares contain roads only.
         roads: of.is_none().then_some(&mut roads as &mut dyn LayerSink<_, _>),
     };
-    let read = if of.is_none() || input.areas.is_some() || !input.lines.is_empty() {
+    let read = if of.is_none() || input.areas.is_some() || input.boundaries {
         on_extract(input, scratch, told, |request| {
             read_extract(request, layers, on_defect, &should_stop)
         })
     } else {
         Ok(())
     };
-    // What could not be kept ended the reading.
+    // If something could not be stored, reading has ended.
     if let Some((_, areas)) = &mut areas {
         areas.check()?;
     }
-    lines.iter_mut().try_for_each(|(_, writer)| writer.check())?;
+    if let Some(boundaries) = &mut boundaries {
+        boundaries.check()?;
+    }
     roads.check()?;
     read?;
-    let has_areas = areas.map_or(Ok(None), |(_, writer)| writer.done())?;
-    let mut has_others = has_areas.is_some_and(|totals| totals.has_any());
-    for (_, writer) in lines {
-        has_others |= writer.done()?.is_some_and(|totals| totals.has_any());
-    }
+    let areas = areas.map_or(Ok(None), |(_, writer)| writer.done())?;
+    let boundaries = boundaries.map_or(Ok(None), LayerWriter::done)?;
+    let has_others = areas.is_some_and(|totals| totals.has_any())
+        || boundaries.is_some_and(|totals| totals.has_any());
     if let Some(of) = of {
         let read = on_extract(input, scratch, told, |request| {
             read_kept_roads(request, of, kept, &mut roads, on_defect, &should_stop)
@@ -183,7 +187,7 @@ fn read(
         read?;
     }
     let roads = roads.done()?.ok_or(ExtractError::Interrupted)?;
-    Ok(Found { roads, has_others })
+    Ok(ExtractFindings { roads, has_others })
 }
 
 fn plan_splitting<'a>(input: &ExtractInput<'a>) -> PlanSplitting<'a> {
@@ -191,10 +195,10 @@ fn plan_splitting<'a>(input: &ExtractInput<'a>) -> PlanSplitting<'a> {
     PlanSplitting { frame: input.levels.frame(), data, clip, polygon }
 }
 
-/// Where areas can lie, if any are wanted.
+/// The extent of areas, if areas are requested.
 fn area_extent(
     input: &ExtractInput<'_>,
-    observer: &dyn Observer,
+    observer: &dyn BuildObserver,
 ) -> Result<Option<AreaExtent>, ExtractError> {
     if input.areas.is_none() {
         return Ok(None);
@@ -213,7 +217,7 @@ fn area_extent(
     };
     Ok(Some(AreaExtent::new(&parts).unwrap_or_else(|error| {
         observer.warning(&format!(
-            "the sea and areas go to the edges of the data's rectangle: bounds and boxes of the extracts cannot be overlaid with it ({error})"
+            "the sea and areas are clipped to the data's rectangle only: the bounds and the extracts' bounding boxes cannot be overlaid with it ({error})"
         ));
         AreaExtent::of_rectangle(input.node_bounds)
     })))
@@ -222,7 +226,7 @@ fn area_extent(
 fn area_layer<'a>(
     input: &ExtractInput<'a>,
     extent: &'a AreaExtent,
-    places: (&'a dyn Artifacts, &'a dyn Scratch),
+    places: (&'a dyn Artifacts, &'a dyn ScratchSpace),
 ) -> AreaLayer<'a> {
     let frame = input.levels.frame();
     let splitting = AreaSplitting { plan: plan_splitting(input), extent };
@@ -232,7 +236,7 @@ fn area_layer<'a>(
 
 fn road_layer<'a>(
     input: &ExtractInput<'a>,
-    places: (&'a dyn Artifacts, &'a dyn Scratch),
+    places: (&'a dyn Artifacts, &'a dyn ScratchSpace),
 ) -> RoadLayer<'a> {
     let splitting = RoadSplitting {
         levels: input.levels,
@@ -246,20 +250,19 @@ fn road_layer<'a>(
     RoadLayer::new(splitting, places, input.memory_bytes)
 }
 
-fn lines_layer<'a>(
+fn boundary_layer<'a>(
     input: &ExtractInput<'a>,
-    layer: ClassedLayer,
-    places: (&'a dyn Artifacts, &'a dyn Scratch),
+    places: (&'a dyn Artifacts, &'a dyn ScratchSpace),
 ) -> LinesLayer<'a> {
-    let splitting = LineSplitting { plan: plan_splitting(input), levels: input.levels };
-    let splitting = MeasuredSplitting { splitting, lengths: input.lengths };
-    LinesLayer::new(layer, splitting, places, input.memory_bytes)
+    let ExtractInput { levels, lengths, .. } = *input;
+    let splitting = LineSplitting { plan: plan_splitting(input), levels, lengths };
+    LinesLayer::new(splitting, places, input.memory_bytes)
 }
 
 /// Reads the extract.
 fn on_extract(
     input: &ExtractInput<'_>,
-    scratch: &dyn Scratch,
+    scratch: &dyn ScratchSpace,
     told: &LayerContext<'_>,
     read: impl FnOnce(&ReadRequest<'_>) -> Result<(), ReadOsmError>,
 ) -> Result<(), ExtractError> {

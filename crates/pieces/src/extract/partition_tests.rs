@@ -8,7 +8,7 @@ use std::{
 
 use corniche_geom::{Bounds, CoordinateTable, GridFrame, NodeIndex, TileId};
 use corniche_roads::{ClassFilter, FrcTable, FunctionalRoadClass};
-use corniche_store::{Key, MemoryStore, StoreError};
+use corniche_store::{ArtifactKey, MemoryStore, StoreError};
 use corniche_testing::{FlatProjection, MemoryScratch, Random, pbf};
 
 use super::*;
@@ -17,26 +17,26 @@ use crate::{
     roads::{pieces::TilePieces, totals::lengths_of_block},
 };
 
-/// Keeps the defects that it is told of.
+/// Records the reported defects.
 #[derive(Default)]
 struct Listener(Mutex<Vec<Defect>>);
 
 impl corniche_work::Observer for Listener {}
 
-impl Observer for Listener {
+impl BuildObserver for Listener {
     fn defect(&self, defect: &Defect) {
         self.0.lock().unwrap().push(defect.clone());
     }
 }
 
-/// A store that takes so many artifacts and no more.
+/// A store that accepts a number of artifacts and no more.
 struct FullStore<'a> {
     store: &'a MemoryStore,
     room: AtomicU64,
 }
 
 impl Artifacts for FullStore<'_> {
-    fn put(&self, key: Key, bytes: &[u8]) -> Result<(), StoreError> {
+    fn put(&self, key: ArtifactKey, bytes: &[u8]) -> Result<(), StoreError> {
         let has_room = |room: u64| room.checked_sub(1);
         match self.room.fetch_update(Ordering::Relaxed, Ordering::Relaxed, has_room) {
             Ok(_) => self.store.put(key, bytes),
@@ -44,11 +44,11 @@ impl Artifacts for FullStore<'_> {
         }
     }
 
-    fn get(&self, key: Key) -> Result<Option<Vec<u8>>, StoreError> {
+    fn get(&self, key: ArtifactKey) -> Result<Option<Vec<u8>>, StoreError> {
         self.store.get(key)
     }
 
-    fn has(&self, key: Key) -> bool {
+    fn has(&self, key: ArtifactKey) -> bool {
         self.store.has(key)
     }
 
@@ -57,7 +57,7 @@ impl Artifacts for FullStore<'_> {
     }
 }
 
-/// Four by four tiles around 0° of a flat world.
+/// Four by four tiles around 0° on a flat map.
 struct World {
     settings: RoadSettings,
     levels: Levels,
@@ -89,7 +89,7 @@ impl World {
         self.partition_told(osm, store, threads, memory_bytes).1
     }
 
-    /// The same, and the defects that the observer is told of.
+    /// Partitions, and returns the defects that were reported to the observer.
     fn partition_told(
         &self,
         osm: &Path,
@@ -100,7 +100,7 @@ impl World {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let frame = *self.levels.frame();
         let input = ExtractInput {
-            lines: &[],
+            boundaries: false,
             data: DataTiles::between(
                 &frame,
                 NodeIndex { i: -512, j: -512 },
@@ -127,12 +127,12 @@ impl World {
     }
 }
 
-/// Winding roads over the world, and ways that are no roads.
+/// Winding roads all over the map, and ways that are not roads.
 fn extract(folder: &Path, roads: usize) -> PathBuf {
     extract_with_moats(folder, roads, 1)
 }
 
-/// The same with `moats` ways of an unknown kind.
+/// The same extract with `moats` additional ways of an unknown kind.
 fn extract_with_moats(folder: &Path, roads: usize, moats: usize) -> PathBuf {
     let mut random = Random::new(5);
     let mut next = || random.share() - 0.5;
@@ -142,7 +142,7 @@ fn extract_with_moats(folder: &Path, roads: usize, moats: usize) -> PathBuf {
             at = [at[0] + 0.004 * next(), at[1] + 0.004 * next()];
             at
         });
-        pbf::Line { tags: vec![("highway", value)], points_deg: points_deg.collect() }
+        pbf::WayToWrite { tags: vec![("highway", value)], points_deg: points_deg.collect() }
     };
     let mut lines: Vec<_> = (0..roads).map(|k| line("primary", 2 + k % 9, &mut next)).collect();
     lines.push(line("no", 2, &mut next));
@@ -152,8 +152,13 @@ fn extract_with_moats(folder: &Path, roads: usize, moats: usize) -> PathBuf {
     path
 }
 
-fn everything(store: &MemoryStore) -> Vec<(Key, Vec<u8>)> {
-    let kinds = [Kind::RoadPieces, Kind::RoadLengths, Kind::Defects, Kind::RoadTotals];
+fn everything(store: &MemoryStore) -> Vec<(ArtifactKey, Vec<u8>)> {
+    let kinds = [
+        ArtifactKind::RoadPieces,
+        ArtifactKind::RoadLengths,
+        ArtifactKind::Defects,
+        ArtifactKind::RoadTotals,
+    ];
     let keys = kinds
         .into_iter()
         .flat_map(|kind| store.items(kind as u8).into_iter().map(move |item| kind.item(item)));
@@ -189,10 +194,10 @@ fn pieces_lengths_and_totals_are_those_of_the_roads() {
     let lengths = lengths_of_block(&store, 0, count).unwrap();
     assert_eq!(lengths.iter().map(|length| length.length_um).sum::<u64>(), totals.length_um);
     assert!(lengths.iter().zip(1..).all(|(length, way_id)| length.way_id == way_id));
-    // Every point of every road that lies in the root is in one finest tile.
+    // Every point of every road in the root is in exactly one finest tile.
     let mut points = 0;
-    for item in store.items(Kind::RoadPieces as u8) {
-        let bytes = store.get(Kind::RoadPieces.item(item)).unwrap().unwrap();
+    for item in store.items(ArtifactKind::RoadPieces as u8) {
+        let bytes = store.get(ArtifactKind::RoadPieces.item(item)).unwrap().unwrap();
         let pieces = TilePieces::from_bytes(&bytes).unwrap();
         assert!(pieces.roads.is_sorted_by(|(one, _), (other, _)| one < other));
         for (ordinal, piece) in &pieces.roads {
@@ -216,11 +221,13 @@ fn an_extract_without_roads_is_an_error_and_leaves_no_totals() {
     assert!(everything(&store).is_empty());
 }
 
-/// Defects of a run that reads the extract, of one that need not, and of one that goes on from a step that broke off anywhere.
+/// Compares the defects of a run that reads the extract, a run that need not read it, and a run
+/// that resumes a step interrupted anywhere.
 #[test]
 fn every_run_tells_of_the_same_defects_in_the_same_order() {
     let folder = tempfile::tempdir().unwrap();
-    // Enough unknown ways for three blocks of defects; some of the roads cross themselves.
+    // There are enough unknown ways for three blocks of defects; some of the roads cross
+    // themselves.
     let osm = extract_with_moats(folder.path(), 60, 9000);
     let (world, unbroken) = (World::new(), MemoryStore::default());
     let (wanted, totals) = world.partition_told(&osm, &unbroken, 1, 1 << 20);
@@ -228,7 +235,7 @@ fn every_run_tells_of_the_same_defects_in_the_same_order() {
     assert_eq!(totals.defects.values().sum::<u64>(), wanted.len() as u64);
     assert_eq!(totals.defects["unknown highway value"], 9000);
     assert!(totals.defects.len() > 1, "{:?}", totals.defects);
-    assert_eq!(unbroken.items(Kind::Defects as u8), [0, 1, 2]);
+    assert_eq!(unbroken.items(ArtifactKind::Defects as u8), [0, 1, 2]);
     let mut room = 0;
     loop {
         let store = MemoryStore::default();

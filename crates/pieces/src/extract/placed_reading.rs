@@ -1,4 +1,4 @@
-//! An extract is read onto the lattice of a package.
+//! Reads an extract onto the lattice of a package.
 
 use std::{
     path::PathBuf,
@@ -8,24 +8,24 @@ use std::{
 use corniche_geom::{GridFrame, LatticePoint, ProjectError, Projection, TILE_CELLS};
 use corniche_osm::{OnProgress, ReadOsmError, ReadRequest};
 use corniche_roads::FrcTable;
-use corniche_spec::{Observer, true_areas::degrees_ring_m2};
-use corniche_store::Scratch;
+use corniche_spec::{BuildObserver, true_areas::degrees_ring_m2};
+use corniche_store::ScratchSpace;
 use corniche_work::locked;
 
 use super::kept::not_read;
 use crate::ExtractError;
 
-/// How extracts are read for a package.
+/// Reads extracts for a package.
 pub struct PlacedReading<'a> {
-    /// Never empty.
+    /// The extracts; at least one.
     pub osm: &'a [PathBuf],
-    /// Which `highway` values are roads, and of which class.
+    /// Which `highway` values are roads, and their classes.
     pub table: &'a FrcTable,
     /// The package's grid.
     pub frame: &'a GridFrame,
     /// WGS84 ⇄ the grid's working CRS.
     pub projection: &'a (dyn Projection + Sync),
-    /// Whether roads come with the ids of their nodes.
+    /// Whether roads include the ids of their nodes.
     pub node_ids: bool,
     /// Threads for reading.
     pub pool: &'a rayon::ThreadPool,
@@ -34,20 +34,20 @@ pub struct PlacedReading<'a> {
 }
 
 impl PlacedReading<'_> {
-    /// Lets `read` read the extracts. Points that cannot be projected make it fail.
+    /// Lets `read` read the extracts. Fails if a point cannot be projected.
     ///
     /// # Errors
     /// See [`ExtractError`].
     pub fn read(
         &self,
-        scratch: &dyn Scratch,
-        (observer, on_progress): (&dyn Observer, &OnProgress<'_>),
+        scratch: &dyn ScratchSpace,
+        (observer, on_progress): (&dyn BuildObserver, &OnProgress<'_>),
         read: impl FnOnce(&ReadRequest<'_>) -> Result<(), ReadOsmError>,
     ) -> Result<(), ExtractError> {
         let unprojected = Mutex::new(None);
         let place = |positions_deg: &[[f64; 2]]| {
             place(positions_deg, self.frame, self.projection).unwrap_or_else(|error| {
-                // The points are not at fault: the run fails with this error after reading.
+                // The points are not the cause: the run fails with this error after reading.
                 *locked(&unprojected) = Some(error);
                 vec![None; positions_deg.len()]
             })

@@ -1,20 +1,20 @@
-//! Long lists in the store, block by block: one block of them is in memory.
+//! Stores long lists block by block, so that memory holds one block.
 
-use corniche_spec::artifacts::{self, ArtifactError, Kind};
+use corniche_spec::artifacts::{self, ArtifactError, ArtifactKind};
 use corniche_store::Artifacts;
 use serde::{Serialize, de::DeserializeOwned};
 
-/// Keeps a list in blocks of a size, which are the artifacts of a kind.
-pub(crate) struct BlockWriter<'a, T> {
+/// Stores a list in blocks of a fixed size, as artifacts of one kind.
+pub(crate) struct ListBlockWriter<'a, T> {
     store: &'a dyn Artifacts,
-    kind: Kind,
+    kind: ArtifactKind,
     size: usize,
     blocks: u64,
     block: Vec<T>,
 }
 
-impl<'a, T: Serialize> BlockWriter<'a, T> {
-    pub(crate) fn new(store: &'a dyn Artifacts, kind: Kind, size: usize) -> Self {
+impl<'a, T: Serialize> ListBlockWriter<'a, T> {
+    pub(crate) fn new(store: &'a dyn Artifacts, kind: ArtifactKind, size: usize) -> Self {
         Self { store, kind, size, blocks: 0, block: Vec::new() }
     }
 
@@ -23,12 +23,13 @@ impl<'a, T: Serialize> BlockWriter<'a, T> {
         if self.block.len() == self.size { self.put() } else { Ok(()) }
     }
 
-    /// Ends the list with the last block, if it has something.
+    /// Ends the list with the last block, unless that block is empty.
     pub(crate) fn finish(mut self) -> Result<(), ArtifactError> {
         if self.block.is_empty() { Ok(()) } else { self.put() }
     }
 
-    /// Ends the list with a block that has less than the others, perhaps nothing: it says that all are there.
+    /// Ends the list with a block that is not full, and may be empty: it marks the list as
+    /// complete.
     pub(crate) fn finish_with_mark(mut self) -> Result<(), ArtifactError> {
         self.put()
     }
@@ -41,20 +42,20 @@ impl<'a, T: Serialize> BlockWriter<'a, T> {
     }
 }
 
-/// A block of a list, which must be there.
+/// Reads a block of a list; a missing block is an error.
 pub(crate) fn block<T: DeserializeOwned>(
     store: &dyn Artifacts,
-    kind: Kind,
+    kind: ArtifactKind,
     number: u64,
 ) -> Result<Vec<T>, ArtifactError> {
     let key = kind.item(number);
     artifacts::get(store, key)?.ok_or_else(|| artifacts::damaged(key, &"it is missing"))
 }
 
-/// Hands out all blocks of a list that was ended with a mark.
+/// Passes on all blocks of a list that was ended with a mark.
 pub(crate) fn for_each_block<T: DeserializeOwned, E: From<ArtifactError>>(
     store: &dyn Artifacts,
-    kind: Kind,
+    kind: ArtifactKind,
     size: usize,
     mut take: impl FnMut(Vec<T>) -> Result<(), E>,
 ) -> Result<(), E> {

@@ -1,31 +1,34 @@
-//! Keeps the defects of the extract, so that a run that does not read it again can tell them all the same.
+//! Stores the defects of the extract, so that a run that does not read it again can report them all
+//! the same.
 
 use std::collections::BTreeMap;
 
 use corniche_spec::{
-    Defect, Observer,
-    artifacts::{ArtifactError, Kind},
+    BuildObserver, Defect,
+    artifacts::{ArtifactError, ArtifactKind},
 };
 use corniche_store::Artifacts;
 
-use super::blocks::{BlockWriter, for_each_block};
+use super::blocks::{ListBlockWriter, for_each_block};
 use crate::ExtractError;
 
-/// Defects of a block of [`Kind::Defects`]. The last block has fewer, perhaps none: it says that all are there.
+/// Defects in a block of [`ArtifactKind::Defects`]. The last block has fewer, possibly none: it
+/// marks the list as complete.
 const BLOCK_DEFECTS: usize = 4096;
 
-/// Tells an observer of defects as they come, counts them, and keeps them block by block.
+/// Reports defects to an observer as they are found, counts them, and stores them block by block.
 pub(crate) struct DefectsWriter<'a> {
-    observer: &'a dyn Observer,
-    blocks: BlockWriter<'a, Defect>,
+    observer: &'a dyn BuildObserver,
+    blocks: ListBlockWriter<'a, Defect>,
     by_name: BTreeMap<String, u64>,
-    /// Who finds defects cannot fail; the first failure is kept, and no block after it.
+    /// The finders of defects cannot fail; the first failure is recorded here, and no further block
+    /// is stored.
     kept: Result<(), ArtifactError>,
 }
 
 impl<'a> DefectsWriter<'a> {
-    pub(crate) fn new(store: &'a dyn Artifacts, observer: &'a dyn Observer) -> Self {
-        let blocks = BlockWriter::new(store, Kind::Defects, BLOCK_DEFECTS);
+    pub(crate) fn new(store: &'a dyn Artifacts, observer: &'a dyn BuildObserver) -> Self {
+        let blocks = ListBlockWriter::new(store, ArtifactKind::Defects, BLOCK_DEFECTS);
         Self { observer, blocks, by_name: BTreeMap::new(), kept: Ok(()) }
     }
 
@@ -38,7 +41,7 @@ impl<'a> DefectsWriter<'a> {
         }
     }
 
-    /// Keeps the last block; returns how many defects of each name there are.
+    /// Stores the last block; returns the number of defects of each name.
     pub(crate) fn finish(self) -> Result<BTreeMap<String, u64>, ExtractError> {
         self.kept?;
         self.blocks.finish_with_mark()?;
@@ -46,13 +49,16 @@ impl<'a> DefectsWriter<'a> {
     }
 }
 
-/// Tells an observer of all defects of the extract, in the order in which they were found; one block of them is in memory.
-/// The step that reads the roads must be done.
+/// Reports all defects of the extract to an observer, in the order in which they were found; memory
+/// holds one block of them. The step that reads the roads must be done.
 ///
 /// # Errors
 /// See [`ExtractError`].
-pub fn replay_defects(store: &dyn Artifacts, observer: &dyn Observer) -> Result<(), ExtractError> {
-    for_each_block(store, Kind::Defects, BLOCK_DEFECTS, |defects: Vec<Defect>| {
+pub fn replay_defects(
+    store: &dyn Artifacts,
+    observer: &dyn BuildObserver,
+) -> Result<(), ExtractError> {
+    for_each_block(store, ArtifactKind::Defects, BLOCK_DEFECTS, |defects: Vec<Defect>| {
         observer.check()?;
         for defect in &defects {
             observer.defect(defect);

@@ -1,4 +1,4 @@
-//! Kept defects are told again as they were, and a missing block is an error.
+//! Stored defects are reported again unchanged, and a missing block is an error.
 
 use corniche_spec::artifacts::ArtifactError;
 use std::sync::{
@@ -6,12 +6,12 @@ use std::sync::{
     atomic::{AtomicBool, Ordering},
 };
 
-use corniche_osm::Defect as OsmDefect;
+use corniche_osm::ExtractDefect as OsmDefect;
 use corniche_store::MemoryStore;
 
 use super::*;
 
-/// Keeps what it is told of.
+/// Records what is reported to it.
 #[derive(Default)]
 struct Listener {
     told: Mutex<Vec<Defect>>,
@@ -24,13 +24,13 @@ impl corniche_work::Observer for Listener {
     }
 }
 
-impl Observer for Listener {
+impl BuildObserver for Listener {
     fn defect(&self, defect: &Defect) {
         self.told.lock().unwrap().push(defect.clone());
     }
 }
 
-/// Defects of several kinds, no two the same.
+/// Defects of several kinds; no two are equal.
 fn defects(count: usize) -> Vec<Defect> {
     let defect = |k: usize| {
         let way_id = 7 - k as i64;
@@ -65,25 +65,27 @@ fn defects_are_told_again_as_they_were() {
     ] {
         let (store, defects) = (MemoryStore::default(), defects(count));
         let (told, by_name) = keep(&defects, &store);
-        assert!(told == defects, "{count} told as they come");
+        assert!(told == defects, "{count} reported as they are found");
         assert_eq!(by_name.values().sum::<u64>(), count as u64);
-        assert_eq!(store.items(Kind::Defects as u8).len(), blocks, "{count}");
+        assert_eq!(store.items(ArtifactKind::Defects as u8).len(), blocks, "{count}");
         let listener = Listener::default();
         replay_defects(&store, &listener).unwrap();
-        assert!(listener.told.into_inner().unwrap() == defects, "{count} told again");
+        assert!(listener.told.into_inner().unwrap() == defects, "{count} reported again");
     }
 }
 
-/// Every block but one is copied: whichever it is, this is seen, the last one too.
+/// All blocks but one are copied: each missing block is noticed, also the last one.
 #[test]
 fn a_missing_block_is_an_error() {
     let whole = MemoryStore::default();
     keep(&defects(2 * BLOCK_DEFECTS), &whole);
-    let items = whole.items(Kind::Defects as u8);
+    let items = whole.items(ArtifactKind::Defects as u8);
     assert_eq!(items, [0, 1, 2]);
     for &missing in &items {
         let store = MemoryStore::default();
-        for key in items.iter().filter(|&&item| item != missing).map(|&k| Kind::Defects.item(k)) {
+        for key in
+            items.iter().filter(|&&item| item != missing).map(|&k| ArtifactKind::Defects.item(k))
+        {
             store.put(key, &whole.get(key).unwrap().unwrap()).unwrap();
         }
         let error = replay_defects(&store, &Listener::default()).unwrap_err();

@@ -1,10 +1,10 @@
-//! The points of a line's part that no simplification may remove.
+//! The points of a line's part that simplification must not remove.
 
 use corniche_drape::ClippedPart;
 use corniche_geom::LatticePoint;
 use corniche_roads::{MetNodes, Road};
 
-/// The index of the point of a line that a point of its part is; `None` for a cut.
+/// The index of the line's point that equals a point of its part; `None` for a cut.
 pub(crate) fn point_of_line(
     points: &[LatticePoint],
     part: &ClippedPart,
@@ -18,7 +18,8 @@ pub(crate) fn point_of_line(
     (points.get(of_line) == line.points().get(index)).then_some(of_line)
 }
 
-/// The indices of a part's points that are fixed points of its line. Its ends, which cuts make, stay anyway.
+/// The indices of a part's points that are fixed points of its line. The ends of the part, which
+/// are cuts, are preserved anyway.
 pub(crate) fn fixed_of_part(
     points: &[LatticePoint],
     fixed: &[u32],
@@ -31,7 +32,7 @@ pub(crate) fn fixed_of_part(
     (0..part.line.points().len()).filter(is_fixed).map(|index| index as u32).collect()
 }
 
-/// A part of a road, as a road. Its ends, where they are cuts, are no nodes.
+/// A part of a road, as a road. Its ends are not nodes if they are cuts.
 #[must_use]
 pub fn road_of_part(road: &Road, part: ClippedPart) -> Road {
     let points = road.line.points();

@@ -1,4 +1,5 @@
-//! Objects of a layer as the reader hands them out: split side by side, and taken in their order.
+//! Splits objects of a layer in parallel, and processes them in the order in which the reader
+//! delivers them.
 
 use std::{
     cell::{Cell, RefCell},
@@ -6,52 +7,54 @@ use std::{
 };
 
 use corniche_osm::LayerSink;
-use corniche_spec::{Defect, Observer};
+use corniche_spec::{BuildObserver, Defect};
 use corniche_work::Stage;
 use rayon::prelude::*;
 
 use super::defects::DefectsWriter;
 use crate::ExtractError;
 
-/// Objects, and points of objects, that are split at once.
+/// The number of objects, and of their points, that are split in one batch.
 pub(crate) const BATCH_OBJECTS: usize = 1024;
 const BATCH_POINTS: usize = 1 << 16;
 
 /// How the objects of a layer are split by tile.
 pub(crate) trait TileSplitting: Sync {
     type Object: Send;
-    /// The parts of an object, and what is counted of it.
+    /// The parts of an object, with their counts.
     type Split: Send;
 
-    /// How many points an object has.
+    /// The number of points of an object.
     fn points(object: &Self::Object) -> usize;
 
-    /// Splits an object. It is dropped here, and not by the one thread that takes the parts.
+    /// Splits an object. The object is dropped here, and not by the single thread that receives the
+    /// parts.
     fn split_object(&self, number: u64, object: Self::Object) -> Self::Split;
 }
 
-/// What a layer makes of its objects. They are numbered in the order in which they come.
-pub(crate) trait TileLayer {
+/// Encodes the objects of a layer. Objects are numbered in the order in which they are read.
+pub(crate) trait LayerEncoder {
     type Splitting: TileSplitting;
-    /// What the reader counted.
+    /// The counts of the reader.
     type Summary;
-    /// What is known of the layer at the end.
+    /// The result of the layer.
     type Done;
 
-    /// What is told while its objects are split.
+    /// The stage that is reported while the layer's objects are split.
     fn stage(&self) -> Stage;
 
     fn splitting(&self) -> &Self::Splitting;
 
-    /// Takes the parts of the next object.
+    /// Receives the parts of the next object.
     fn take(&mut self, split: SplitOf<Self>) -> Result<(), ExtractError>;
 
-    /// Takes a road that is left out, but may carry bridges and tunnels; see [`LayerSink::take_carrier`].
+    /// Receives a road that is skipped but may carry bridges and tunnels; see
+    /// [`LayerSink::take_carrier`].
     fn take_carrier(&mut self, _object: ObjectOf<Self>) -> Result<(), ExtractError> {
         Ok(())
     }
 
-    /// Keeps what all `count` objects made.
+    /// Stores the results of all `count` objects.
     fn finish(
         self,
         count: u64,
@@ -61,26 +64,26 @@ pub(crate) trait TileLayer {
 }
 
 /// An object of a layer.
-pub(crate) type ObjectOf<L> = <<L as TileLayer>::Splitting as TileSplitting>::Object;
-/// What splitting makes of it.
-pub(crate) type SplitOf<L> = <<L as TileLayer>::Splitting as TileSplitting>::Split;
+pub(crate) type ObjectOf<L> = <<L as LayerEncoder>::Splitting as TileSplitting>::Object;
+/// The parts of an object of a layer.
+pub(crate) type SplitOf<L> = <<L as LayerEncoder>::Splitting as TileSplitting>::Split;
 
-/// Who is told of all layers, and where they are split.
+/// The context of all layers: the observer, and the threads that split objects.
 pub(crate) struct LayerContext<'a> {
     pub pool: &'a rayon::ThreadPool,
-    pub observer: &'a dyn Observer,
+    pub observer: &'a dyn BuildObserver,
     pub defects: RefCell<DefectsWriter<'a>>,
-    /// The stage that is under way.
+    /// The current stage.
     stage: Cell<Stage>,
-    /// Whether what a layer makes could not be kept: then the rest need not be read.
+    /// Whether a layer's result could not be stored: then the rest need not be read.
     pub(crate) has_failed: AtomicBool,
 }
 
 impl<'a> LayerContext<'a> {
-    /// Begins to read the extract.
+    /// Starts reading the extract.
     pub(crate) fn begin(
         pool: &'a rayon::ThreadPool,
-        observer: &'a dyn Observer,
+        observer: &'a dyn BuildObserver,
         defects: DefectsWriter<'a>,
     ) -> Self {
         observer.begin(Stage::Extract, None);
@@ -97,14 +100,14 @@ impl<'a> LayerContext<'a> {
         self.defects.borrow_mut().push(defect);
     }
 
-    /// A stage has done so much. It is told if it is under way.
+    /// Reports the progress of a stage, if it is the current stage.
     pub(crate) fn reached(&self, stage: Stage, done: u64, total: u64) {
         if self.stage.get() == stage {
             self.observer.reached(stage, done, total);
         }
     }
 
-    /// Ends the stage that is under way, and begins another one.
+    /// Ends the current stage, and starts another one.
     pub(crate) fn go_on_to(&self, stage: Stage) {
         let before = self.stage.replace(stage);
         if before != stage {
@@ -113,26 +116,27 @@ impl<'a> LayerContext<'a> {
         }
     }
 
-    /// Ends the last stage; returns what is wrong with the extract.
+    /// Ends the last stage; returns the defects of the extract.
     pub(crate) fn end(self) -> DefectsWriter<'a> {
         self.observer.end(self.stage.get());
         self.defects.into_inner()
     }
 }
 
-/// A layer while its objects come in.
-pub(crate) struct LayerWriter<'a, 'b, L: TileLayer> {
+/// A layer while its objects are read.
+pub(crate) struct LayerWriter<'a, 'b, L: LayerEncoder> {
     stage: Stage,
     layer: Option<L>,
     told: &'a LayerContext<'b>,
     batch: Vec<ObjectOf<L>>,
     batch_points: usize,
     count: u64,
-    /// The reader's sink cannot fail; the first failure is kept and everything after it ignored.
+    /// The reader's sink cannot fail; the first failure is recorded, and everything after it is
+    /// ignored.
     done: Result<Option<L::Done>, ExtractError>,
 }
 
-impl<'a, 'b, L: TileLayer> LayerWriter<'a, 'b, L> {
+impl<'a, 'b, L: LayerEncoder> LayerWriter<'a, 'b, L> {
     pub(crate) fn new(layer: L, told: &'a LayerContext<'b>) -> Self {
         let (stage, batch) = (layer.stage(), Vec::new());
         Self { stage, layer: Some(layer), told, batch, batch_points: 0, count: 0, done: Ok(None) }
@@ -143,7 +147,7 @@ impl<'a, 'b, L: TileLayer> LayerWriter<'a, 'b, L> {
         self.told.has_failed.store(true, Ordering::Relaxed);
     }
 
-    /// Why what the layer makes could not be kept, if so.
+    /// Fails if the layer's result could not be stored.
     pub(crate) fn check(&mut self) -> Result<(), ExtractError> {
         if self.done.is_ok() {
             return Ok(());
@@ -151,12 +155,12 @@ impl<'a, 'b, L: TileLayer> LayerWriter<'a, 'b, L> {
         std::mem::replace(&mut self.done, Ok(None)).map(drop)
     }
 
-    /// What is known of the layer; `None` if it was not read to its end.
+    /// The result of the layer; `None` if it was not read to its end.
     pub(crate) fn done(self) -> Result<Option<L::Done>, ExtractError> {
         self.done
     }
 
-    /// Splits the objects of the batch side by side, and takes them in their order.
+    /// Splits the objects of the batch in parallel, and processes the parts in the objects' order.
     fn split_batch(&mut self) -> Result<(), ExtractError> {
         let batch = std::mem::take(&mut self.batch);
         self.batch_points = 0;
@@ -174,7 +178,7 @@ impl<'a, 'b, L: TileLayer> LayerWriter<'a, 'b, L> {
     }
 }
 
-impl<L: TileLayer> LayerSink<ObjectOf<L>, L::Summary> for LayerWriter<'_, '_, L> {
+impl<L: LayerEncoder> LayerSink<ObjectOf<L>, L::Summary> for LayerWriter<'_, '_, L> {
     fn begin(&mut self) {
         self.told.go_on_to(self.stage);
     }

@@ -1,37 +1,39 @@
-//! Parts of a layer's objects on their way to their tiles.
+//! Sorts the parts of a layer's objects by tile.
 
 use corniche_geom::TileId;
-use corniche_spec::Observer;
-use corniche_store::{Scratch, SortRecord, Sorter, append_record, take_record};
+use corniche_spec::BuildObserver;
+use corniche_store::{ScratchSpace, SortRecord, Sorter, append_record, take_record};
 use corniche_tileset::pmtiles_order;
 use serde::{Serialize, de::DeserializeOwned};
 
 use crate::ExtractError;
 
-/// The order of the parts of a tile. No two parts of a tile have the same.
+/// The order of the parts of a tile. No two parts of a tile have equal keys.
 pub(crate) trait PartKey: Ord + Send + Serialize + DeserializeOwned {}
 
 impl<K: Ord + Send + Serialize + DeserializeOwned> PartKey for K {}
 
-/// Sorts parts by tile, and within a tile by their keys; what does not fit in memory goes to scratch space.
+/// Sorts parts by tile, and within a tile by their keys; parts that do not fit in memory go to
+/// scratch space.
 pub(crate) struct PartsByTile<'a, K: PartKey>(Sorter<'a, ObjectPart<K>>);
 
 impl<'a, K: PartKey> PartsByTile<'a, K> {
-    /// `memory_bytes` is all that there is for the extract.
-    pub(crate) fn new(scratch: &'a dyn Scratch, memory_bytes: u64) -> Self {
-        // The reader keeps a third of it while it hands out roads.
+    /// Creates the sorter; `memory_bytes` is all the memory for the extract.
+    pub(crate) fn new(scratch: &'a dyn ScratchSpace, memory_bytes: u64) -> Self {
+        // The reader needs a third of the memory while it delivers roads.
         Self(Sorter::new(scratch, memory_bytes / 3 * 2))
     }
 
     pub(crate) fn push(&mut self, id: TileId, key: K, bytes: Vec<u8>) -> Result<(), ExtractError> {
         let part = ObjectPart { tile: pmtiles_order(id), key, bytes };
-        self.0.push(part).map_err(ExtractError::Storage)
+        Ok(self.0.push(part)?)
     }
 
-    /// Gathers the parts of each tile with `add`, in their order, and hands what they make to `put`, in the order of the package.
+    /// Gathers the parts of each tile with `add`, in their order, and passes the results to `put`,
+    /// in the order of the package.
     pub(crate) fn for_each_tile<T: Default>(
         self,
-        observer: &dyn Observer,
+        observer: &dyn BuildObserver,
         mut add: impl FnMut(&mut T, u64, K, Vec<u8>) -> Result<(), ExtractError>,
         mut put: impl FnMut(u64, T) -> Result<(), ExtractError>,
     ) -> Result<(), ExtractError> {
@@ -40,8 +42,8 @@ impl<'a, K: PartKey> PartsByTile<'a, K> {
             put(tile, parts)
         };
         let mut current: Option<(u64, T)> = None;
-        for part in self.0.finish().map_err(ExtractError::Storage)? {
-            let ObjectPart { tile, key, bytes } = part.map_err(ExtractError::Storage)?;
+        for part in self.0.finish()? {
+            let ObjectPart { tile, key, bytes } = part?;
             if let Some(done) = current.take_if(|(own, _)| *own != tile) {
                 put(done)?;
             }
@@ -52,10 +54,10 @@ impl<'a, K: PartKey> PartsByTile<'a, K> {
     }
 }
 
-/// A part, encoded.
+/// An encoded part of an object.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 struct ObjectPart<K> {
-    /// The tile's place in the order of the package.
+    /// The tile's position in the order of the package.
     tile: u64,
     key: K,
     bytes: Vec<u8>,

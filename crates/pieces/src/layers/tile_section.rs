@@ -1,4 +1,4 @@
-//! What the store has of a layer: the section of each tile, and what is known of all objects together.
+//! The artifacts of a layer: the section of each tile, and the totals of all objects.
 
 use std::collections::BTreeMap;
 
@@ -13,19 +13,20 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use super::SectionLayer;
 use crate::ExtractError;
 
-/// The encoded section of a tile, and how much is in it.
+/// The encoded section of a tile, with its counts.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TileSection {
     /// The encoded section.
     pub section: Vec<u8>,
     /// The number of its objects, or of their parts.
     pub parts: u64,
-    /// The number of the points of all of them.
+    /// The number of points of all parts.
     pub points: u64,
 }
 
 impl TileSection {
-    /// Keeps what `encode` makes of the parts of a tile, if they make a section, with the numbers of parts and points.
+    /// Encodes the parts of a tile with `encode` and stores the section, if there is one, with the
+    /// numbers of parts and points.
     ///
     /// # Errors
     /// See [`ExtractError`].
@@ -41,10 +42,10 @@ impl TileSection {
         Ok(artifacts::put(store, key, &Self { section, parts, points })?)
     }
 
-    /// The section of a tile; `None` if it has none of the layer.
+    /// Reads the section of a tile; `None` if it has none of the layer.
     ///
     /// # Errors
-    /// When it cannot be kept or read, or makes no sense.
+    /// When the artifact cannot be read or is invalid.
     pub fn get(
         layer: SectionLayer,
         store: &dyn Artifacts,
@@ -54,12 +55,12 @@ impl TileSection {
     }
 }
 
-/// What the section of a tile takes; all 0 without one.
+/// The counts and size of a tile's section; all 0 without a section.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct SectionOfTile {
     /// The number of its objects, or of their parts.
     pub parts: u64,
-    /// The number of the points of all of them.
+    /// The number of points of all parts.
     pub points: u64,
     /// The size of the section as it is stored.
     pub bytes: u64,
@@ -70,9 +71,9 @@ pub struct SectionOfTile {
 pub struct SectionSums {
     /// Tiles that have a section.
     pub tiles: u64,
-    /// The number of its objects, or of their parts.
+    /// The number of the layer's objects, or of their parts.
     pub parts: u64,
-    /// The number of the points of all of them.
+    /// The number of points of all parts.
     pub points: u64,
     /// Bytes of the sections.
     pub bytes: u64,
@@ -88,52 +89,53 @@ impl SectionSums {
     }
 }
 
-/// Counts of a layer of the extract: `objects = kept + lost`. They are kept after all sections. `M` is what its objects are measured in.
+/// Counts of a layer of the extract: `objects = kept + lost`. They are stored after all sections.
+/// `M` is the measure of the layer's objects.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct LayerTotals<M> {
     /// Objects of the layer in the extract.
     pub objects: u64,
-    /// Number and measure of those of each class, by the class's number.
+    /// Number and measure of the kept objects of each class, by the class's number.
     pub kept: BTreeMap<u8, (u64, M)>,
-    /// How many were lost, by reason.
+    /// The number of lost objects, by reason.
     pub(crate) lost: BTreeMap<String, u64>,
 }
 
 /// Areas, in square metres.
 pub type AreaTotals = LayerTotals<f64>;
-/// Ways of a layer of lines, in micrometres.
+/// Ways of boundaries, in micrometres.
 pub type LineTotals = LayerTotals<u64>;
 
 impl<M: Serialize + DeserializeOwned> LayerTotals<M> {
-    /// Keeps them for a layer.
+    /// Stores the totals of a layer.
     ///
     /// # Errors
-    /// When it cannot be kept or read, or makes no sense.
+    /// When the artifact cannot be stored.
     pub fn put(&self, layer: SectionLayer, store: &dyn Artifacts) -> Result<(), ArtifactError> {
         artifacts::put(store, layer.totals().item(0), self)
     }
 
-    /// `None` in a build without the layer.
+    /// Reads the totals of a layer; `None` in a build without the layer.
     ///
     /// # Errors
-    /// When it cannot be kept or read, or makes no sense.
+    /// When the artifact cannot be read or is invalid.
     pub fn get(layer: SectionLayer, store: &dyn Artifacts) -> Result<Option<Self>, ArtifactError> {
         artifacts::get(store, layer.totals().item(0))
     }
 
-    /// Whether the extract has an object that was taken.
+    /// Whether the extract has an object of this layer.
     pub(crate) fn has_any(&self) -> bool {
         self.kept.values().any(|&(objects, _)| objects > 0)
     }
 
-    /// How many objects were lost, by reason.
+    /// The number of lost objects, by reason.
     fn lost(&self) -> Vec<(String, u64)> {
         self.lost.iter().map(|(reason, &objects)| (reason.clone(), objects)).collect()
     }
 }
 
 impl AreaTotals {
-    /// What the manifest says of them.
+    /// The manifest's record of these totals.
     #[must_use]
     pub fn counts(&self) -> AreaCounts {
         let class = |(&class, &(areas, area_m2)): (&u8, &(u64, f64))| AreaClassRecord {
@@ -147,7 +149,7 @@ impl AreaTotals {
 }
 
 impl LineTotals {
-    /// What the manifest says of them.
+    /// The manifest's record of these totals.
     #[must_use]
     pub fn counts(&self) -> LineCounts {
         let class = |(&class, &(ways, length_um)): (&u8, &(u64, u64))| LineClassRecord {

@@ -1,8 +1,9 @@
-//! A layer of lines of the extract: split by tile, and for each tile of each level the section with what comes near it.
+//! Boundaries of the extract, split by tile: each tile of each level gets a section with the lines
+//! near it.
 
 use std::{borrow::Cow, collections::BTreeMap};
 
-use corniche_areas::{ClassedLayer, LineClass, line_text};
+use corniche_areas::BoundaryClass;
 use corniche_drape::{ClippedPart, clip_region};
 use corniche_geom::{LatticePoint, Polyline, TileId};
 use corniche_osm::{ClassedLine, LineSummary};
@@ -10,8 +11,8 @@ use corniche_roads::simplify;
 use corniche_spec::{
     artifacts::damaged, levels::Levels, tiles_near::for_each_tile_near, true_lengths::TrueLengths,
 };
-use corniche_store::{Artifacts, Scratch, record_bytes, take_record};
-use corniche_tileset::{LineRecord, encode_lines};
+use corniche_store::{Artifacts, ScratchSpace, record_bytes, take_record};
+use corniche_tileset::{LineRecord, encode_boundaries};
 use corniche_work::Stage;
 
 use crate::{
@@ -19,7 +20,7 @@ use crate::{
     layers::{
         SectionLayer,
         fixed_points::fixed_of_part,
-        layer_writer::{LayerContext, TileLayer, TileSplitting},
+        layer_writer::{LayerContext, LayerEncoder, TileSplitting},
         parts_by_tile::PartsByTile,
         plan_splitting::PlanSplitting,
         tile_section::LineTotals,
@@ -27,24 +28,25 @@ use crate::{
     },
 };
 
-/// On levels above the finest, lines are simplified by so many of the level's cells.
+/// Tolerance of simplification on levels above the finest, in cells of the level.
 const TOLERANCE_CELLS: f64 = 0.25;
 
-/// How the lines of a layer are split.
+/// Splits and measures boundaries.
 pub(crate) struct LineSplitting<'a> {
     pub plan: PlanSplitting<'a>,
     pub levels: &'a Levels,
+    pub lengths: &'a TrueLengths<'a>,
 }
 
 impl LineSplitting<'_> {
     /// Whether a class is stored on a level.
-    fn shows(&self, level: u8, class: LineClass) -> bool {
+    fn shows(&self, level: u8, class: BoundaryClass) -> bool {
         let frame = self.plan.frame;
         let cell_m = frame.level_cell(level).shorter_m();
         level == frame.max_level() || class.coarsest_cell_m().is_none_or(|most_m| cell_m <= most_m)
     }
 
-    /// The parts of a line by tile.
+    /// Returns the parts of a line by tile.
     pub(crate) fn split(&self, object: &ClassedLine) -> Vec<(TileId, LineRecord)> {
         let parts = self.parts(object);
         let levels = self.levels.numbers().filter(|&level| self.shows(level, object.class));
@@ -53,7 +55,7 @@ impl LineSplitting<'_> {
             .collect()
     }
 
-    /// The parts of a line in the polygon; without one, the line.
+    /// The parts of a line inside the polygon; without a polygon, the line.
     fn parts<'b>(&self, object: &'b ClassedLine) -> Vec<Cow<'b, ClassedLine>> {
         let Some(region) = self.plan.polygon else { return vec![Cow::Borrowed(object)] };
         let Ok(line) = Polyline::new(object.points.clone()) else { return Vec::new() };
@@ -112,45 +114,38 @@ impl LineSplitting<'_> {
     }
 }
 
-/// Parts of a tile are sorted by class and way; those of one way by where they begin, so that their order depends on what they are alone.
+/// The order of a tile's parts: by class and way, and parts of one way by their start, so that the
+/// order depends on the parts alone.
 type PartOrder = (u8, i64, LatticePoint, u64);
 
-/// How lines are split, and measured.
-pub(crate) struct MeasuredSplitting<'a> {
-    pub(crate) splitting: LineSplitting<'a>,
-    pub lengths: &'a TrueLengths<'a>,
-}
-
-/// Lines of a layer as they come in.
+/// Receives boundaries in the order in which they are read.
 pub(crate) struct LinesLayer<'a> {
-    layer: ClassedLayer,
-    splitting: MeasuredSplitting<'a>,
+    splitting: LineSplitting<'a>,
     store: &'a dyn Artifacts,
     parts: PartsByTile<'a, PartOrder>,
-    /// The true lengths of all ways that were handed out, by class.
-    lengths_um: BTreeMap<LineClass, u64>,
+    /// The true lengths of all ways that were read, by class.
+    lengths_um: BTreeMap<BoundaryClass, u64>,
 }
 
 impl<'a> LinesLayer<'a> {
     pub(crate) fn new(
-        layer: ClassedLayer,
-        splitting: MeasuredSplitting<'a>,
-        (store, scratch): (&'a dyn Artifacts, &'a dyn Scratch),
+        splitting: LineSplitting<'a>,
+        (store, scratch): (&'a dyn Artifacts, &'a dyn ScratchSpace),
         memory_bytes: u64,
     ) -> Self {
         let parts = PartsByTile::new(scratch, memory_bytes);
-        Self { layer, splitting, store, parts, lengths_um: BTreeMap::new() }
+        Self { splitting, store, parts, lengths_um: BTreeMap::new() }
     }
 }
 
-/// A line that was split.
+/// A line that has been split.
 pub(crate) struct SplitLine {
-    class: LineClass,
+    class: BoundaryClass,
     length_um: u64,
     parts: Vec<(TileId, PartOrder, Vec<u8>)>,
 }
 
-impl TileSplitting for MeasuredSplitting<'_> {
+impl TileSplitting for LineSplitting<'_> {
     type Object = ClassedLine;
     type Split = SplitLine;
 
@@ -170,21 +165,21 @@ impl TileSplitting for MeasuredSplitting<'_> {
         SplitLine {
             class,
             length_um: self.lengths.segments_um(&line).iter().sum(),
-            parts: (0..).zip(self.splitting.split(&object)).map(part).collect(),
+            parts: (0..).zip(self.split(&object)).map(part).collect(),
         }
     }
 }
 
-impl<'a> TileLayer for LinesLayer<'a> {
-    type Splitting = MeasuredSplitting<'a>;
+impl<'a> LayerEncoder for LinesLayer<'a> {
+    type Splitting = LineSplitting<'a>;
     type Summary = LineSummary;
     type Done = LineTotals;
 
     fn stage(&self) -> Stage {
-        SectionLayer::Lines(self.layer).stage()
+        SectionLayer::Boundaries.stage()
     }
 
-    fn splitting(&self) -> &MeasuredSplitting<'a> {
+    fn splitting(&self) -> &LineSplitting<'a> {
         &self.splitting
     }
 
@@ -193,22 +188,22 @@ impl<'a> TileLayer for LinesLayer<'a> {
         split.parts.into_iter().try_for_each(|(id, order, bytes)| self.parts.push(id, order, bytes))
     }
 
-    /// Keeps the sections of all tiles and last the totals.
+    /// Stores the sections of all tiles and finally the totals.
     fn finish(
         self,
         _: u64,
         summary: LineSummary,
         told: &LayerContext<'_>,
     ) -> Result<LineTotals, ExtractError> {
-        let (splitting, store) = (&self.splitting.splitting.plan, self.store);
-        let (own, layer) = (self.layer, SectionLayer::Lines(self.layer));
+        let (splitting, store) = (&self.splitting.plan, self.store);
+        let layer = SectionLayer::Boundaries;
         self.parts.for_each_tile(
             told.observer,
             |parts: &mut Vec<LineRecord>, tile, (class, way_id, ..), bytes| {
-                let class = own.class(class);
+                let class = BoundaryClass::from_number(class);
                 let part = class.zip(take_record(&mut &*bytes)).ok_or_else(|| {
                     let key = layer.section().item(tile);
-                    damaged(key, &line_text!(own, "what was read back is no " one))
+                    damaged(key, &"the record read back is not a boundary")
                 });
                 let (class, points) = part?;
                 parts.push(LineRecord { way_id, class, points });
@@ -218,7 +213,7 @@ impl<'a> TileLayer for LinesLayer<'a> {
                 let points = parts.iter().map(|line| line.points.len() as u64).sum();
                 let counts = [parts.len() as u64, points];
                 TileSection::put((layer, tile), store, counts, |id| {
-                    encode_lines(id, own, splitting.step(id.z()), &parts)
+                    encode_boundaries(id, splitting.step(id.z()), &parts)
                 })
             },
         )?;
@@ -229,7 +224,7 @@ impl<'a> TileLayer for LinesLayer<'a> {
         let totals = LineTotals {
             objects: summary.ways,
             kept: kept.collect(),
-            lost: summary.lost.iter().map(|(loss, &n)| (loss.reason(own).to_owned(), n)).collect(),
+            lost: summary.lost.iter().map(|(loss, &n)| (loss.reason().to_owned(), n)).collect(),
         };
         totals.put(layer, store)?;
         Ok(totals)

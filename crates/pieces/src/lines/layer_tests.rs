@@ -1,11 +1,11 @@
-//! Every tile has the segments of lines that come near it, and junctions stay.
+//! Every tile has the segments of lines near it, and junctions are preserved.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use corniche_areas::{BoundaryClass, ClassedLayer};
 use corniche_geom::{GridFrame, LatticeBounds, LatticeRegion, NodeIndex};
 use corniche_roads::{ClassFilter, FrcTable};
 use corniche_spec::{RoadSettings, data_tiles::DataTiles};
+use corniche_testing::FlatProjection;
 
 use super::*;
 
@@ -18,31 +18,36 @@ fn levels() -> Levels {
     Levels::new(frame, 1.0, &settings, 1.0)
 }
 
-fn splitting(levels: &Levels) -> LineSplitting<'_> {
+const PROJECTION: FlatProjection =
+    FlatProjection { origin_m: [0.0; 2], origin_deg: [0.0; 2], metres_per_degree: [1e5; 2] };
+
+fn lengths(levels: &Levels) -> TrueLengths<'static> {
+    TrueLengths::projected(*levels.frame(), &PROJECTION)
+}
+
+fn splitting<'a>(levels: &'a Levels, lengths: &'a TrueLengths<'a>) -> LineSplitting<'a> {
     let [south_west, north_east] = [[-512, -512], [511, 511]].map(|[i, j]| NodeIndex { i, j });
     let data = DataTiles::between(levels.frame(), south_west, north_east);
     let plan = PlanSplitting { frame: levels.frame(), data, clip: None, polygon: None };
-    LineSplitting { plan, levels }
+    LineSplitting { plan, levels, lengths }
 }
 
-fn line_class(class: BoundaryClass) -> LineClass {
-    ClassedLayer::Boundaries.class(class.number()).unwrap()
-}
-
-/// A wave across the whole of the root, in metres; its middle is a junction.
+/// A wave across the whole root, in metres; its middle is a junction.
 fn wave(levels: &Levels, class: BoundaryClass) -> ClassedLine {
     let point = |k: i32| {
         let x = f64::from(k) * 20.0 - 5000.0;
         levels.frame().snap([x, 900.0 * (x / 700.0).sin()]).unwrap()
     };
     let points: Vec<LatticePoint> = (0..=500).map(point).collect();
-    ClassedLine { way_id: 7, class: line_class(class), points, fixed: vec![0, 250, 500] }
+    ClassedLine { way_id: 7, class, points, fixed: vec![0, 250, 500] }
 }
 
 #[test]
 fn every_tile_has_the_segments_that_come_near_it() {
     let levels = levels();
-    let (splitting, boundary) = (splitting(&levels), wave(&levels, BoundaryClass::Admin2));
+    let lengths = lengths(&levels);
+    let (splitting, boundary) =
+        (splitting(&levels, &lengths), wave(&levels, BoundaryClass::Admin2));
     let mut by_tile: BTreeMap<TileId, Vec<LineRecord>> = BTreeMap::new();
     for (id, record) in splitting.split(&boundary) {
         by_tile.entry(id).or_default().push(record);
@@ -73,7 +78,9 @@ fn every_tile_has_the_segments_that_come_near_it() {
 #[test]
 fn junctions_stay_and_coarse_levels_have_fewer_points() {
     let levels = levels();
-    let (splitting, boundary) = (splitting(&levels), wave(&levels, BoundaryClass::Admin2));
+    let lengths = lengths(&levels);
+    let (splitting, boundary) =
+        (splitting(&levels, &lengths), wave(&levels, BoundaryClass::Admin2));
     let lines: Vec<Vec<LatticePoint>> =
         levels.numbers().map(|level| splitting.line(&boundary, level)).collect();
     let counts: Vec<usize> = lines.iter().map(Vec::len).collect();
@@ -97,18 +104,20 @@ fn small_units_are_stored_where_cells_are_small() {
     let settings =
         RoadSettings { table, filter: ClassFilter::all(), simplify_cells: 0.25, spans: false };
     let levels = Levels::new(frame, 1.0, &settings, 1.0);
-    let splitting = splitting(&levels);
+    let lengths = lengths(&levels);
+    let splitting = splitting(&levels, &lengths);
     let shown = |class: BoundaryClass| -> Vec<u8> {
-        levels.numbers().filter(|&level| splitting.shows(level, line_class(class))).collect()
+        levels.numbers().filter(|&level| splitting.shows(level, class)).collect()
     };
-    // Cells of 240, 120 and 60 m.
+    // The levels have cells of 240, 120 and 60 m.
     assert_eq!(shown(BoundaryClass::Admin2), [0, 1, 2]);
     assert_eq!(shown(BoundaryClass::Admin6), [0, 1, 2]);
     assert_eq!(shown(BoundaryClass::Admin8), [2]);
     assert_eq!(shown(BoundaryClass::Protected), [2]);
 }
 
-/// The part of the wave in a square around the middle: cut at the outline on every level, and nothing outside of it.
+/// The part of the wave in a square around the middle: cut at the outline on every level, with
+/// nothing outside.
 #[test]
 fn boundaries_end_at_the_outline_of_a_polygon() {
     let levels = levels();
@@ -117,12 +126,13 @@ fn boundaries_end_at_the_outline_of_a_polygon() {
     let region = LatticeRegion::new(&[vec![square.map(corner).to_vec()]]).unwrap();
     let bounds = region.bounds();
     let boundary = wave(&levels, BoundaryClass::Admin2);
-    let mut splitting = splitting(&levels);
+    let lengths = lengths(&levels);
+    let mut splitting = splitting(&levels, &lengths);
     splitting.plan.polygon = Some(&region);
     let parts = splitting.split(&boundary);
     for level in 0..=2 {
         let points = parts.iter().filter(|(id, _)| id.z() == level).flat_map(|(_, of)| &of.points);
-        let own = LatticeBounds::of(&points.copied().collect::<Vec<_>>()).unwrap();
+        let own = LatticeBounds::around(&points.copied().collect::<Vec<_>>()).unwrap();
         let step = splitting.plan.step(level);
         assert!(
             (own.min.u - bounds.min.u).abs() <= step && (own.max.u - bounds.max.u).abs() <= step

@@ -1,4 +1,4 @@
-//! Roads laid on the tiles of a level, and the sums over what was laid.
+//! Drapes roads on the tiles of a level, and sums up the results.
 
 use std::collections::BTreeMap;
 
@@ -9,25 +9,25 @@ use corniche_spec::{
     levels::Levels,
     true_lengths::{TrueLengths, starts_um},
 };
-use corniche_tileset::{GeoRoad, RoadRecord, SvRoad, Terrain, TilePayload};
+use corniche_tileset::{GeoRoad, RoadRecord, SvRoad, TilePayload, TileTerrain};
 use corniche_tin::Surface;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    ground_lines::{GroundLine, PartOfRun, line_of},
-    pieces::{RoadPiece, Run, TilePieces},
+    ground_lines::{PartOfRun, SpanGroundLine, line_of},
+    pieces::{RoadPiece, SegmentRun, TilePieces},
 };
 
 /// Sums over the roads of a class on a level.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ClassSums {
-    /// Points of the source lines that lie in tiles with ground.
+    /// Points of the source lines in tiles with ground.
     pub source_vertices: u64,
-    /// The same of the level's simplified lines.
+    /// Points of the level's simplified lines in tiles with ground.
     pub simplified_vertices: u64,
-    /// Vertices of the lines on the ground (GEO).
+    /// Vertices of GEO lines (roads drawn as geometry on the TIN).
     pub geo_vertices: u64,
-    /// Vertices of the simplified lines (SV).
+    /// Vertices of SV lines (simplified, for roads drawn by shadow volumes).
     pub sv_vertices: u64,
     /// Bytes of the section GEO in the payload.
     pub geo_stored_bytes: u64,
@@ -36,9 +36,9 @@ pub struct ClassSums {
 }
 
 impl ClassSums {
-    /// Adds the sums over other roads: in any order and grouping the result is the same.
+    /// Adds the sums over other roads. The result does not depend on order or grouping.
     pub fn merge(&mut self, other: &Self) {
-        // Without `..` a new field cannot be forgotten.
+        // Without `..`, a new field cannot be forgotten.
         let Self {
             source_vertices,
             simplified_vertices,
@@ -56,17 +56,17 @@ impl ClassSums {
     }
 }
 
-/// What became of a road, or of a part of it, at the finest level.
+/// What became of a road, or of a part of it, on the finest level.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct RoadFate {
-    /// True length that lies on a TIN, micrometres.
+    /// True length on a TIN, micrometres.
     pub(crate) kept_um: u64,
-    /// True length on the data's tiles, but where there is no ground, micrometres.
+    /// True length on the data's tiles without ground, micrometres.
     pub(crate) void_um: u64,
 }
 
 impl RoadFate {
-    /// Adds what became of other parts: in any order and grouping the result is the same.
+    /// Adds the fates of other parts. The result does not depend on order or grouping.
     pub fn merge(&mut self, other: &Self) {
         let Self { kept_um, void_um } = other;
         self.kept_um += kept_um;
@@ -74,7 +74,7 @@ impl RoadFate {
     }
 }
 
-/// A tile on which roads are laid.
+/// A tile on which roads are draped.
 pub struct TileToLayOn<'a> {
     /// The tile.
     pub id: TileId,
@@ -82,15 +82,15 @@ pub struct TileToLayOn<'a> {
     pub surface: &'a Surface,
     /// Which of its borders belong to the tile.
     pub owned: OwnedBorders,
-    /// The bounds that were asked for: at the finest level roads end there.
+    /// The requested bounds: on the finest level, roads end there.
     pub clip: Option<LatticeBounds>,
     /// Whether bridges and tunnels become spans.
     pub spans: bool,
-    /// How roads are measured.
+    /// Measures roads.
     pub lengths: &'a TrueLengths<'a>,
 }
 
-/// What becomes of a tile's roads if it is a finest tile without ground.
+/// The fates of a tile's roads if it is a finest tile without ground.
 #[must_use]
 pub fn lost_pieces(
     pieces: &TilePieces,
@@ -100,7 +100,7 @@ pub fn lost_pieces(
     lengths: &TrueLengths<'_>,
 ) -> Vec<(u32, RoadFate)> {
     let within = clip.unwrap_or(*bounds);
-    let lost = |run: &Run| -> u64 {
+    let lost = |run: &SegmentRun| -> u64 {
         corniche_drape::clip_parts_within(&run.line, bounds, owned, &within)
             .iter()
             .flat_map(|part| lengths.pieces_um(&run.line, part, &run.segments_um))
@@ -117,27 +117,27 @@ pub fn lost_pieces(
     fates
 }
 
-/// The roads of one tile as they are laid.
+/// The draped roads of one tile.
 #[derive(Default)]
-pub struct Laid {
+pub struct DrapedRoads {
     /// Roads on the ground.
     pub geo: Vec<GeoRoad>,
     /// Roads for shadow volumes.
     pub sv: Vec<SvRoad>,
-    /// What is recorded of each way.
+    /// The record of each way.
     pub attributes: BTreeMap<i64, RoadRecord>,
-    /// What became of the pieces of each road, by its number.
+    /// The fate of each road's pieces, by the road's number.
     pub fates: Vec<(u32, RoadFate)>,
     /// Sums by class.
     pub classes: BTreeMap<u8, ClassSums>,
-    /// The ground beneath bridges and tunnels, where they become spans.
-    pub ground_lines: Vec<GroundLine>,
+    /// The ground beneath bridges and tunnels, if they become spans.
+    pub ground_lines: Vec<SpanGroundLine>,
     /// Next part number of each way, GEO and SV.
     parts: BTreeMap<i64, [u32; 2]>,
 }
 
-impl Laid {
-    /// Lays all roads of a tile.
+impl DrapedRoads {
+    /// Drapes all roads of a tile.
     #[must_use]
     pub fn of_tile(pieces: &TilePieces, on: &TileToLayOn<'_>, levels: &Levels) -> Self {
         let mut laid = Self::default();
@@ -175,7 +175,7 @@ impl Laid {
         let is_span = spans && road.attributes.structure != Structure::Ground;
         let bounds = levels.frame().tile_lattice_bounds(id);
         let is_finest = id.z() == levels.frame().max_level();
-        // On coarser levels ground ends before the bounds, and roads with it.
+        // On coarser levels the ground ends before the bounds, and so do the roads.
         let within = clip.filter(|_| is_finest).unwrap_or(bounds);
         let [next_part, _] = self.parts.entry(road.way_id).or_default();
         let mut fate = RoadFate::default();
@@ -223,7 +223,7 @@ impl Laid {
         }
     }
 
-    /// Puts roads into the order in which a payload has them.
+    /// Sorts the roads into the order of a payload.
     pub fn sort(&mut self) {
         self.geo.sort_by_key(|road| (road.class, road.way_id, road.part));
         self.sv.sort_by_key(|road| (road.class, road.way_id, road.part));
@@ -231,7 +231,7 @@ impl Laid {
 
     /// The payload of the tile, with its ground.
     #[must_use]
-    pub fn into_payload(mut self, id: TileId, terrain: Terrain) -> TilePayload {
+    pub fn into_payload(mut self, id: TileId, terrain: TileTerrain) -> TilePayload {
         self.sort();
         TilePayload {
             id,

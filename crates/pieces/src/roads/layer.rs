@@ -1,10 +1,11 @@
-//! The roads of the extract: for each tile of each level the pieces that it needs, and the true lengths of all.
+//! The roads of the extract: the pieces that each tile of each level needs, and the true lengths of
+//! all roads.
 
 use corniche_geom::{LatticeBounds, TileId};
 use corniche_osm::ExtractSummary;
 use corniche_roads::{FunctionalRoadClass, Road};
-use corniche_spec::artifacts::Kind;
-use corniche_store::{Artifacts, Scratch};
+use corniche_spec::artifacts::ArtifactKind;
+use corniche_store::{Artifacts, ScratchSpace};
 use corniche_work::Stage;
 
 use super::{
@@ -16,30 +17,31 @@ use super::{
 use crate::{
     ExtractError,
     layers::{
-        blocks::BlockWriter,
-        layer_writer::{LayerContext, SplitOf, TileLayer, TileSplitting},
+        blocks::ListBlockWriter,
+        layer_writer::{LayerContext, LayerEncoder, SplitOf, TileSplitting},
         parts_by_tile::PartsByTile,
     },
 };
 
-/// Roads are near a node of a bridge or a tunnel within this, in true metres: their directions there count.
+/// The distance from a node of a bridge or a tunnel, in true metres, within which the directions of
+/// roads are considered.
 pub const NEAR_M: f64 = 20.0;
 
-/// Roads as they come in.
+/// Receives roads in the order in which they are read.
 pub(crate) struct RoadLayer<'a> {
     splitting: RoadSplitting<'a>,
     store: &'a dyn Artifacts,
     totals: RoadTotals,
-    lengths: BlockWriter<'a, RoadLength>,
+    lengths: ListBlockWriter<'a, RoadLength>,
     pieces: PartsByTile<'a, u32>,
-    /// Where bridges and tunnels become spans: what may be near them.
+    /// The roads near bridges and tunnels, if these become spans.
     near_spans: Option<NearRoadsWriter<'a>>,
 }
 
 impl<'a> RoadLayer<'a> {
     pub(crate) fn new(
         splitting: RoadSplitting<'a>,
-        (store, scratch): (&'a dyn Artifacts, &'a dyn Scratch),
+        (store, scratch): (&'a dyn Artifacts, &'a dyn ScratchSpace),
         memory_bytes: u64,
     ) -> Self {
         let spans = splitting.spans;
@@ -73,7 +75,7 @@ impl TileSplitting for RoadSplitting<'_> {
     }
 }
 
-impl<'a> TileLayer for RoadLayer<'a> {
+impl<'a> LayerEncoder for RoadLayer<'a> {
     type Splitting = RoadSplitting<'a>;
     type Summary = ExtractSummary;
     type Done = (RoadTotals, ExtractSummary);
@@ -89,7 +91,7 @@ impl<'a> TileLayer for RoadLayer<'a> {
     fn take_carrier(&mut self, road: Road) -> Result<(), ExtractError> {
         let Some(near_spans) = &mut self.near_spans else { return Ok(()) };
         let is_reached = self.splitting.reaches(&road);
-        near_spans.push(NearRoad::of(&road, None, &[], is_reached))
+        near_spans.push(NearRoad::from_road(&road, None, &[], is_reached))
     }
 
     fn take(&mut self, (road, pieces): SplitOf<Self>) -> Result<(), ExtractError> {
@@ -110,7 +112,7 @@ impl<'a> TileLayer for RoadLayer<'a> {
         pieces.into_iter().try_for_each(|(id, ordinal, bytes)| self.pieces.push(id, ordinal, bytes))
     }
 
-    /// Keeps the last lengths and the pieces of all tiles.
+    /// Stores the last lengths and the pieces of all tiles.
     fn finish(
         self,
         _: u64,
@@ -124,7 +126,9 @@ impl<'a> TileLayer for RoadLayer<'a> {
                 pieces.push(ordinal, &bytes);
                 Ok(())
             },
-            |tile, pieces| Ok(self.store.put(Kind::RoadPieces.item(tile), &pieces.into_bytes())?),
+            |tile, pieces| {
+                Ok(self.store.put(ArtifactKind::RoadPieces.item(tile), &pieces.into_bytes())?)
+            },
         )?;
         if let Some(near_spans) = self.near_spans {
             let reach = self.splitting.levels.steps_of_true(NEAR_M);

@@ -1,10 +1,10 @@
-//! Which roads were kept at the finest level, which were lost, and why.
+//! Which roads were kept on the finest level, which were lost, and why.
 
 use corniche_roads::Structure;
 use corniche_spec::artifacts::ArtifactError;
-use corniche_spec::{Defect, Loss, Observer, true_lengths::UM};
-use corniche_store::{Artifacts, Scratch, SerdeRecord, Sorted, Sorter};
-use corniche_tileset::{Counts, RoadLoss, SampleCounts};
+use corniche_spec::{BuildObserver, Defect, Loss, true_lengths::UM};
+use corniche_store::{Artifacts, ScratchSpace, SerdeRecord, Sorted, Sorter};
+use corniche_tileset::{ManifestCounts, RoadLoss, SampleCounts};
 use serde::{Deserialize, Serialize};
 
 use super::{
@@ -13,7 +13,8 @@ use super::{
 };
 use crate::ExtractError;
 
-/// A road's true length at the finest level, micrometres, by what became of it; each part measured by itself.
+/// A road's true length on the finest level, micrometres, divided by fate; each part is measured
+/// separately.
 #[expect(clippy::struct_field_names, reason = "the unit is part of every name")]
 struct Lengths {
     kept_um: u64,
@@ -22,7 +23,8 @@ struct Lengths {
     beyond_um: u64,
 }
 
-/// A cut moves a point by less than a lattice step, which is at most a millimetre, so lengths up to 2 mm count as 0.
+/// Whether a length counts as more than 0. A cut moves a point by less than a lattice step, which
+/// is at most a millimetre, so lengths up to 2 mm count as 0.
 fn is_some(length_um: u64) -> bool {
     length_um > 2_000
 }
@@ -40,7 +42,8 @@ impl Lengths {
         })
     }
 
-    /// The reason under which a completely lost road is counted: that of the longest lost part.
+    /// The reason under which a completely lost road is counted: the reason of its longest lost
+    /// part.
     fn reason(&self) -> Loss {
         if self.beyond_um > self.void_um.max(self.outside_um) {
             Loss::OutsideBounds
@@ -53,24 +56,26 @@ impl Lengths {
 }
 
 /// Sums over all roads.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Sums {
-    /// Roads of which a part is kept.
+    /// The number of roads of which at least a part is kept.
     pub roads_kept: u64,
-    /// Length that is kept, micrometres.
+    /// The kept length, micrometres.
     pub roads_kept_um: u64,
-    /// What of that is carried by what, in the order of [`Structure::ALL`].
+    /// The kept length by structure, in the order of [`Structure::ALL`].
     pub(crate) kept_by_structure_um: [u64; Structure::ALL.len()],
     pub(crate) lost: Vec<RoadLoss>,
-    /// The same where only what lies outside the data's tiles is outside the data, as packages of before have it.
+    /// The losses as older packages record them: only roads outside the data's tiles are outside
+    /// the data.
     pub lost_by_tiles: Vec<RoadLoss>,
 }
 
-/// What came in, what was kept, what was lost and why: per road, then summed.
+/// The counts of the manifest: what was read, what was kept, what was lost and why; per road, then
+/// summed.
 #[must_use]
-pub fn road_counts(samples: SampleCounts, roads: &RoadTotals, losses: &Sums) -> Counts {
+pub fn road_counts(samples: SampleCounts, roads: &RoadTotals, losses: &Sums) -> ManifestCounts {
     let extract = &roads.extract;
-    Counts {
+    ManifestCounts {
         samples,
         roads_in: roads.roads,
         roads_in_um: roads.length_um,
@@ -88,30 +93,30 @@ pub fn road_counts(samples: SampleCounts, roads: &RoadTotals, losses: &Sums) -> 
     }
 }
 
-/// Adds up what became of each road in all tiles. It takes no more memory than it is given, however many roads there are.
+/// Sums up the fates of each road in all tiles. Its memory is capped, however many roads there are.
 pub struct LossFold<'a> {
     fates: Sorter<'a, FateRecord>,
 }
 
 impl<'a> LossFold<'a> {
-    /// Nothing yet; keeps at most about `memory_bytes` in memory.
-    pub fn new(scratch: &'a dyn Scratch, memory_bytes: u64) -> Self {
+    /// Creates an empty fold that uses at most about `memory_bytes` of memory.
+    pub fn new(scratch: &'a dyn ScratchSpace, memory_bytes: u64) -> Self {
         Self { fates: Sorter::new(scratch, memory_bytes) }
     }
 
-    /// Adds what became of roads in one tile. The order of tiles does not matter.
+    /// Adds the fates of roads in one tile. The order of tiles does not matter.
     ///
     /// # Errors
     /// See [`ExtractError`].
     pub fn add(&mut self, fates: &[(u32, RoadFate)]) -> Result<(), ExtractError> {
         for &(ordinal, fate) in fates {
-            self.fates.push(FateRecord { ordinal, fate }).map_err(ExtractError::Storage)?;
+            self.fates.push(FateRecord { ordinal, fate })?;
         }
         Ok(())
     }
 
-    /// Joins it with the lengths of all roads. Reports every road that was lost completely or in part, in the order in which
-    /// roads were read.
+    /// Combines the fates with the lengths of all roads. Reports every road that was lost
+    /// completely or in part, in the order in which roads were read.
     ///
     /// # Errors
     /// See [`ExtractError`].
@@ -119,37 +124,41 @@ impl<'a> LossFold<'a> {
         self,
         totals: &RoadTotals,
         store: &dyn Artifacts,
-        observer: &dyn Observer,
+        observer: &dyn BuildObserver,
     ) -> Result<Sums, ExtractError> {
-        let mut fates =
-            Fates { sorted: self.fates.finish().map_err(ExtractError::Storage)?, next: None };
+        let mut fates = Fates { sorted: self.fates.finish()?, next: None };
         fates.advance()?;
-        let (mut folded, mut by_tiles) = (Folded::default(), Folded::default());
+        let (mut sums, mut lost, mut by_tiles) =
+            (Sums::default(), Lost::default(), Lost::default());
         for block in 0..totals.roads.div_ceil(BLOCK_ROADS) {
             let first = block * BLOCK_ROADS;
             let roads = BLOCK_ROADS.min(totals.roads - first);
             for (ordinal, length) in (first..).zip(lengths_of_block(store, block, roads)?) {
-                let RoadFate { kept_um, void_um } = fates.of(ordinal)?;
+                let RoadFate { kept_um, void_um } = fates.fate_at(ordinal)?;
                 let RoadLength { outside_um, padding_um, beyond_um, .. } = length;
                 by_tiles.add(&Lengths { kept_um, outside_um, void_um, beyond_um });
-                // No ground reaches into the padding of tiles. The two lengths are measured along different cuts.
+                // The padding of tiles has no ground. The two lengths are measured along different
+                // cuts.
                 let beside_um = padding_um.min(void_um);
                 let (outside_um, void_um) = (outside_um + beside_um, void_um - beside_um);
                 let road = Lengths { kept_um, outside_um, void_um, beyond_um };
-                folded.add(&road);
-                folded.kept_by_structure_um[length.structure as usize] += kept_um;
+                lost.add(&road);
+                sums.roads_kept += u64::from(road.is_kept());
+                sums.roads_kept_um += kept_um;
+                sums.kept_by_structure_um[length.structure as usize] += kept_um;
                 road.report(length.way_id, observer);
             }
         }
         if let Some(FateRecord { ordinal, .. }) = fates.next {
-            let what = format!("a tile has road {ordinal} of {}", totals.roads);
+            let what =
+                format!("a tile names road {ordinal}, but there are only {} roads", totals.roads);
             return Err(ArtifactError::Damaged { what }.into());
         }
-        Ok(Sums { lost_by_tiles: by_tiles.into_sums().lost, ..folded.into_sums() })
+        Ok(Sums { lost: lost.records(), lost_by_tiles: by_tiles.records(), ..sums })
     }
 }
 
-/// What became of a road in one tile.
+/// The fate of a road in one tile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 struct FateRecord {
     ordinal: u32,
@@ -158,7 +167,7 @@ struct FateRecord {
 
 impl SerdeRecord for FateRecord {}
 
-/// Fates by ascending ordinal.
+/// The fates, by ascending ordinal.
 struct Fates<'a> {
     sorted: Sorted<'a, FateRecord>,
     next: Option<FateRecord>,
@@ -166,12 +175,12 @@ struct Fates<'a> {
 
 impl Fates<'_> {
     fn advance(&mut self) -> Result<(), ExtractError> {
-        self.next = self.sorted.next().transpose().map_err(ExtractError::Storage)?;
+        self.next = self.sorted.next().transpose()?;
         Ok(())
     }
 
-    /// The whole fate of a road. Roads are asked for in ascending order, none left out.
-    fn of(&mut self, ordinal: u64) -> Result<RoadFate, ExtractError> {
+    /// The complete fate of a road. Callers must request every road, in ascending order.
+    fn fate_at(&mut self, ordinal: u64) -> Result<RoadFate, ExtractError> {
         let mut whole = RoadFate::default();
         while let Some(record) = self.next.filter(|record| u64::from(record.ordinal) == ordinal) {
             whole.merge(&record.fate);
@@ -181,51 +190,34 @@ impl Fates<'_> {
     }
 }
 
-/// Sums as roads are added.
+/// The number of lost roads and the lost length in micrometres, in the order of [`Loss::ALL`].
 #[derive(Default)]
-struct Folded {
-    roads_kept: u64,
-    roads_kept_um: u64,
-    kept_by_structure_um: [u64; Structure::ALL.len()],
-    /// Count and micrometres, in the order of [`Loss::ALL`].
-    lost: [(u64, u64); Loss::ALL.len()],
-}
+struct Lost([(u64, u64); Loss::ALL.len()]);
 
-impl Folded {
+impl Lost {
     fn add(&mut self, road: &Lengths) {
-        self.roads_kept_um += road.kept_um;
-        self.roads_kept += u64::from(road.is_kept());
-        for ((count, length_um), (loss, lost_um)) in self.lost.iter_mut().zip(road.losses()) {
+        for ((count, length_um), (loss, lost_um)) in self.0.iter_mut().zip(road.losses()) {
             *length_um += lost_um;
             *count += u64::from(!road.is_kept() && road.reason() == loss);
         }
     }
 
-    fn into_sums(self) -> Sums {
-        let loss = |(loss, (roads, length_um)): (Loss, (u64, u64))| RoadLoss {
-            reason: loss.reason().to_owned(),
-            roads,
-            length_um,
-        };
-        Sums {
-            roads_kept: self.roads_kept,
-            roads_kept_um: self.roads_kept_um,
-            kept_by_structure_um: self.kept_by_structure_um,
-            // Without bounds nothing is lost by them, and they are not named.
-            lost: Loss::ALL
-                .into_iter()
-                .zip(self.lost)
-                .filter(|&(loss, lost)| loss != Loss::OutsideBounds || lost != (0, 0))
-                .map(loss)
-                .collect(),
-            lost_by_tiles: Vec::new(),
-        }
+    fn records(self) -> Vec<RoadLoss> {
+        // Without bounds, nothing is lost because of them, and the reason is not listed.
+        let all = Loss::ALL.into_iter().zip(self.0);
+        all.filter(|&(loss, lost)| loss != Loss::OutsideBounds || lost != (0, 0))
+            .map(|(loss, (roads, length_um))| RoadLoss {
+                reason: loss.reason().to_owned(),
+                roads,
+                length_um,
+            })
+            .collect()
     }
 }
 
 impl Lengths {
-    fn report(&self, way_id: i64, observer: &dyn Observer) {
-        // What the user left out is no defect.
+    fn report(&self, way_id: i64, observer: &dyn BuildObserver) {
+        // Roads outside the user's own bounds are not defects.
         let told = self.losses().into_iter().filter(|&(loss, _)| loss != Loss::OutsideBounds);
         for (loss, lost_um) in told {
             // A road shorter than 2 mm has no length to lose, but it can be lost as a whole.

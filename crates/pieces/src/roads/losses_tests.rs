@@ -1,4 +1,4 @@
-//! A road is kept or lost by what became of all its parts, in whatever order they come.
+//! The fates of all parts of a road determine whether it is kept or lost, in any order.
 
 use corniche_spec::artifacts::ArtifactError;
 use std::sync::Mutex;
@@ -10,13 +10,13 @@ use proptest::{collection::vec, prelude::*};
 use super::*;
 use crate::roads::totals::{RoadLength, lengths_writer};
 
-/// Remembers defects.
+/// Records defects.
 #[derive(Default)]
 struct Told(Mutex<Vec<Defect>>);
 
 impl corniche_work::Observer for Told {}
 
-impl Observer for Told {
+impl BuildObserver for Told {
     fn defect(&self, defect: &Defect) {
         self.0.lock().unwrap().push(defect.clone());
     }
@@ -42,7 +42,7 @@ fn fate(kept_um: u64, void_um: u64) -> RoadFate {
     RoadFate { kept_um, void_um }
 }
 
-/// The fold of `fates`, tile by tile.
+/// Folds `fates`, tile by tile.
 fn folded(lengths: &[RoadLength], tiles: &[Vec<(u32, RoadFate)>]) -> (Sums, Vec<Defect>) {
     let ((store, totals), scratch) = (stored(lengths), MemoryScratch::default());
     let mut fold = LossFold::new(&scratch, 0);
@@ -75,11 +75,12 @@ fn roads_are_kept_or_lost_by_what_became_of_all_their_parts() {
     assert_eq!(defects, expected);
 }
 
-/// Of what has no ground on the data's tiles, what lies in their padding is outside the data.
+/// Length without ground in the padding of the data's tiles is outside the data.
 #[test]
 fn padding_is_outside_the_data() {
     let in_padding = |way_id, padding_um| RoadLength { padding_um, ..road(way_id, 0) };
-    // Wholly in the padding; half of it, the rest over a void; partly kept. The second is measured a micrometre too long.
+    // The first road is wholly in the padding, the second half in it and half over a void, and the
+    // third is partly kept. The second is measured a micrometre too long.
     let lengths = [in_padding(1, 1_000_000), in_padding(2, 400_000), in_padding(3, 300_001)];
     let tiles =
         [vec![(0, fate(0, 1_000_000)), (1, fate(0, 1_000_000)), (2, fate(700_000, 300_000))]];
@@ -119,8 +120,8 @@ fn a_road_that_does_not_exist_and_missing_lengths_are_damage() {
 }
 
 proptest! {
-    /// However tiles are ordered, and fates are spread over tiles, the sums and the reports are the same: those of each road's
-    /// own sums.
+    /// The sums and the reports do not depend on the order of tiles, or on the distribution of
+    /// fates to tiles: they equal those of each road's own sums.
     #[test]
     fn no_order_and_no_grouping_matters(
         outside_um in vec(prop_oneof![Just(0), 0..4_000_u64, 0..9_000_000_u64], 1..30),

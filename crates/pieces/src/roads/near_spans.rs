@@ -1,7 +1,9 @@
-//! The roads of which bridges and tunnels are known: themselves, and the pieces of others that can carry, touch or cross them.
+//! Stores the roads that spans depend on: bridges and tunnels themselves, and the pieces of other
+//! roads that can carry, touch or cross them.
 //!
-//! They are taken from whole roads, wherever these lie and whatever their classes, so what is known of a bridge does not depend on bounds, tiles and
-//! classes. Left out are bridges and tunnels that depend on none that reaches the data and what was asked of it.
+//! They are taken from whole roads, independently of position and class, so the data about a bridge
+//! do not depend on bounds, tiles and classes. Bridges and tunnels are skipped if neither they nor
+//! any span that may depend on them reaches the data and the requested region.
 
 use std::collections::BTreeMap;
 
@@ -9,51 +11,58 @@ use corniche_geom::{LatticePoint, Polyline, TileId};
 use corniche_roads::{FunctionalRoadClass, MetNodes, Road, RoadAttributes, Structure};
 use corniche_spans::{SpanLine, Vicinity, connected};
 use corniche_spec::{
-    Observer,
-    artifacts::{self, Kind},
+    BuildObserver,
+    artifacts::{self, ArtifactKind},
 };
-use corniche_store::{Artifacts, Scratch, record_bytes, take_record};
+use corniche_store::{Artifacts, ScratchSpace, record_bytes, take_record};
 use serde::{Deserialize, Serialize};
 
 use crate::{
     ExtractError,
     layers::{
-        blocks::{BlockWriter, for_each_block},
+        blocks::{ListBlockWriter, for_each_block},
         parts_by_tile::PartsByTile,
     },
 };
 
-/// Roads of a block of [`Kind::SpanRoads`]. The last block has fewer, perhaps none: it says that all are there.
+/// Roads in a block of [`ArtifactKind::SpanRoads`]. The last block has fewer, possibly none: it
+/// marks the list as complete.
 const BLOCK_ROADS: usize = 4096;
 
-/// A piece of a road.
+/// A road near spans, or a piece of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NearRoad {
-    /// The number of its road; `None` of a way whose class is off or not known, which is no road of the package.
+    /// The number of its road; `None` for a way whose class is off or unknown, which is not a road
+    /// of the package.
     pub ordinal: Option<u32>,
     /// The way of the road.
     pub way_id: i64,
     /// The class of the road.
     pub class: FunctionalRoadClass,
-    /// Which of [`Structure::ALL`] it is on.
-    structure: u8,
+    /// The structure of the road, one of [`Structure::ALL`].
+    structure: Structure,
     layer: i8,
     highway: String,
-    /// Whether its way reaches the data, and what was asked of it.
+    /// Whether its way reaches the data and the requested region.
     pub(crate) is_reached: bool,
     points: Vec<LatticePoint>,
-    /// The true lengths of its segments, micrometres; of roads on the ground none.
+    /// The true lengths of its segments, micrometres; empty for roads on the ground.
     pub(crate) segments_um: Vec<u64>,
-    /// Its nodes at which roads may join: which points they are, and their ids.
+    /// Its nodes at which roads may join: the indices of their points, and their ids.
     nodes: Vec<(u32, i64)>,
-    /// Pairs of nodes that lie at one place; all are told by the first road.
+    /// Pairs of nodes at the same position; the first road stores all pairs.
     same_places: Vec<[i64; 2]>,
 }
 
 impl NearRoad {
-    /// A whole road.
+    /// Creates the record of a whole road.
     #[must_use]
-    pub fn of(road: &Road, ordinal: Option<u32>, segments_um: &[u64], is_reached: bool) -> Self {
+    pub fn from_road(
+        road: &Road,
+        ordinal: Option<u32>,
+        segments_um: &[u64],
+        is_reached: bool,
+    ) -> Self {
         let fixed = road.fixed.iter().zip(&road.node_ids);
         let mut nodes: Vec<(u32, i64)> =
             fixed.filter_map(|(&index, id)| Some((index, (*id)?))).collect();
@@ -66,7 +75,7 @@ impl NearRoad {
             ordinal,
             way_id: road.way_id,
             class: road.class,
-            structure: structure as u8,
+            structure,
             layer: road.attributes.layer,
             highway: road.attributes.highway.clone(),
             is_reached,
@@ -77,7 +86,7 @@ impl NearRoad {
         }
     }
 
-    /// The same as a road. Its ends stay, where they are nodes and where not.
+    /// Returns the record as a road. Its ends are preserved, whether they are nodes or not.
     #[must_use]
     pub fn road(&self) -> Option<Road> {
         let last = self.points.len().checked_sub(1)? as u32;
@@ -87,7 +96,7 @@ impl NearRoad {
             way_id: self.way_id,
             class: self.class,
             attributes: RoadAttributes {
-                structure: *Structure::ALL.get(usize::from(self.structure))?,
+                structure: self.structure,
                 layer: self.layer,
                 highway: self.highway.clone(),
                 ..RoadAttributes::default()
@@ -101,14 +110,15 @@ impl NearRoad {
     }
 
     fn is_span(&self) -> bool {
-        self.structure != Structure::Ground as u8
+        self.structure != Structure::Ground
     }
 
     fn segments(&self) -> impl Iterator<Item = [LatticePoint; 2]> + '_ {
         self.points.array_windows().copied()
     }
 
-    /// The pieces of a road on the ground that its wanted segments make, those that follow each other together.
+    /// Returns the pieces that the requested segments of a road on the ground form; adjacent
+    /// segments form one piece.
     fn pieces(&self, is_wanted: impl Fn([LatticePoint; 2]) -> bool) -> Vec<Self> {
         let wanted: Vec<bool> = self.segments().map(is_wanted).collect();
         let mut pieces = Vec::new();
@@ -135,26 +145,26 @@ impl NearRoad {
     }
 }
 
-/// Where among all roads a road comes: those of a way stay in their order.
+/// The position of a road among all roads: the roads of a way keep their order.
 type RoadPlace = (i64, u64);
 
-/// Takes all roads of the extract in any order, and keeps those near bridges and tunnels.
+/// Receives all roads of the extract in any order, and stores those near bridges and tunnels.
 pub struct NearRoadsWriter<'a> {
     count: u64,
-    /// All on bridges and in tunnels; what is known of them is in memory later, too.
+    /// All roads on bridges and in tunnels; solving later holds them in memory, too.
     of_spans: Vec<(RoadPlace, NearRoad)>,
     others: PartsByTile<'a, RoadPlace>,
     same_places: Vec<[i64; 2]>,
 }
 
 impl<'a> NearRoadsWriter<'a> {
-    /// Roads are sorted within `memory_bytes`.
-    pub fn new(scratch: &'a dyn Scratch, memory_bytes: u64) -> Self {
+    /// Creates the writer; it sorts roads within `memory_bytes` of memory.
+    pub fn new(scratch: &'a dyn ScratchSpace, memory_bytes: u64) -> Self {
         let others = PartsByTile::new(scratch, memory_bytes);
         Self { count: 0, of_spans: Vec::new(), others, same_places: Vec::new() }
     }
 
-    /// Takes a road.
+    /// Adds a road.
     ///
     /// # Errors
     /// See [`ExtractError`].
@@ -169,21 +179,21 @@ impl<'a> NearRoadsWriter<'a> {
         self.others.push(TileId::ROOT, place, record_bytes(&road))
     }
 
-    /// Counts bridges and tunnels of more ways as reached.
+    /// Marks the bridges and tunnels of more ways as reached.
     pub fn reach(&mut self, is_reached: impl Fn(i64) -> bool) {
         for (_, road) in &mut self.of_spans {
             road.is_reached |= is_reached(road.way_id);
         }
     }
 
-    /// Keeps what lies near bridges and tunnels that reach what was asked for, or that others depend on which do. What lies within `reach` lattice steps of
-    /// a node of theirs is near.
+    /// Stores the roads near those bridges and tunnels that reach the requested region, or on which
+    /// such spans depend. Roads within `reach` lattice steps of a node of these spans are near.
     ///
     /// # Errors
     /// See [`ExtractError`].
     pub fn finish(
         self,
-        (store, observer): (&dyn Artifacts, &dyn Observer),
+        (store, observer): (&dyn Artifacts, &dyn BuildObserver),
         reach: f64,
     ) -> Result<(), ExtractError> {
         let Self { mut of_spans, others, same_places, .. } = self;
@@ -194,15 +204,16 @@ impl<'a> NearRoadsWriter<'a> {
             .iter()
             .flat_map(|(_, road)| road.nodes.iter().map(|&(index, _)| road.points[index as usize]));
         let near = Vicinity::new(segments, nodes, reach);
-        let mut blocks = BlockWriter::new(store, Kind::SpanRoads, BLOCK_ROADS);
-        // The first road tells them.
+        let mut blocks = ListBlockWriter::new(store, ArtifactKind::SpanRoads, BLOCK_ROADS);
+        // The first road stores the pairs.
         let mut same_places = Some(same_places);
         let mut put = |road: NearRoad| {
             let same_places = same_places.take().unwrap_or_default();
             blocks.push(NearRoad { same_places, ..road })
         };
         let mut of_spans = of_spans.into_iter().peekable();
-        let damaged = || artifacts::damaged(Kind::SpanRoads.item(0), &"it makes no sense");
+        let damaged =
+            || artifacts::damaged(ArtifactKind::SpanRoads.item(0), &"its content is invalid");
         others.for_each_tile(
             observer,
             |(): &mut (), _, place, bytes| {
@@ -220,7 +231,7 @@ impl<'a> NearRoadsWriter<'a> {
     }
 }
 
-/// The bridges and tunnels that reach what was asked for, and those on which they may depend.
+/// The bridges and tunnels that reach the requested region, and those on which they may depend.
 fn needed(all: Vec<(RoadPlace, NearRoad)>, same_places: &[[i64; 2]]) -> Vec<(RoadPlace, NearRoad)> {
     if all.iter().all(|(_, road)| road.is_reached) {
         return all;
@@ -236,12 +247,12 @@ fn needed(all: Vec<(RoadPlace, NearRoad)>, same_places: &[[i64; 2]]) -> Vec<(Roa
     needed.map(|(road, _)| road).collect()
 }
 
-/// Hands all roads near spans to `take`, in their order; one block of them is in memory.
+/// Passes all roads near spans to `take`, in their order; memory holds one block of them.
 ///
 /// # Errors
 /// See [`ExtractError`].
 pub fn for_each(store: &dyn Artifacts, mut take: impl FnMut(NearRoad)) -> Result<(), ExtractError> {
-    for_each_block(store, Kind::SpanRoads, BLOCK_ROADS, |roads| {
+    for_each_block(store, ArtifactKind::SpanRoads, BLOCK_ROADS, |roads| {
         roads.into_iter().for_each(&mut take);
         Ok(())
     })

@@ -1,4 +1,5 @@
-//! What lies near a bridge is kept: a road that goes on at its end, and one that crosses it, whatever its class.
+//! Roads near a bridge are stored: a road that continues at its end, and one that crosses it,
+//! whatever its class.
 
 use corniche_store::MemoryStore;
 use corniche_testing::MemoryScratch;
@@ -23,14 +24,14 @@ fn road(way_id: i64, structure: Structure, points: Points<'_>) -> Road {
     }
 }
 
-/// What is kept of roads, of which some reach what was asked for.
+/// The stored roads, of which some reach the requested region.
 fn kept(roads: &[(Option<u32>, Road, bool)]) -> Vec<NearRoad> {
     let store = MemoryStore::default();
     let scratch = MemoryScratch::default();
     let mut writer = NearRoadsWriter::new(&scratch, 1 << 20);
     for (ordinal, road, is_reached) in roads {
         let segments_um = vec![1000; road.line.points().len() - 1];
-        writer.push(NearRoad::of(road, *ordinal, &segments_um, *is_reached)).unwrap();
+        writer.push(NearRoad::from_road(road, *ordinal, &segments_um, *is_reached)).unwrap();
     }
     writer.finish((&store, &Silent), 100.0).unwrap();
     let mut kept = Vec::new();
@@ -40,7 +41,8 @@ fn kept(roads: &[(Option<u32>, Road, bool)]) -> Vec<NearRoad> {
 
 const BRIDGE: Points<'_> = &[(0, 0, Some(7)), (1000, 0, None), (2000, 0, Some(8))];
 
-/// A bridge, a road that goes on at its end, one that crosses it and is of no class that is wanted, and one far away. They come in any order.
+/// A bridge, a road that continues at its end, one that crosses it and has no requested class, and
+/// one far away. They are read in any order.
 #[test]
 fn what_lies_near_a_bridge_is_kept() {
     let crossing = [(1500, -900, None), (1500, 900, None), (1500, 5000, None)];
@@ -56,7 +58,8 @@ fn what_lies_near_a_bridge_is_kept() {
     ]);
     let found: Vec<(i64, Option<u32>, usize)> =
         kept.iter().map(|road| (road.way_id, road.ordinal, road.points.len())).collect();
-    // Of the first road the segment at the bridge's end, of the third the one that crosses.
+    // Of the first road, the segment at the bridge's end is stored; of the third, the segment that
+    // crosses.
     assert_eq!(found, [(1, Some(10), 2), (2, Some(11), 3), (3, None, 2)]);
     let bridge = kept[1].road().unwrap();
     assert_eq!((bridge.fixed, bridge.node_ids), (vec![0, 2], vec![Some(7), Some(8)]));
@@ -64,7 +67,8 @@ fn what_lies_near_a_bridge_is_kept() {
     assert_eq!((before.fixed, before.node_ids), (vec![0, 1], vec![None, Some(7)]));
 }
 
-/// Bridges beyond what was asked for are kept where one that reaches it depends on them: it goes on in them, or crosses them.
+/// Bridges beyond the requested region are stored if one that reaches it depends on them: it
+/// continues in them, or crosses them.
 #[test]
 fn bridges_that_others_depend_on_are_kept() {
     let beyond = [(2000, 0, Some(8)), (5000, 0, Some(9))];
@@ -79,7 +83,7 @@ fn bridges_that_others_depend_on_are_kept() {
     assert_eq!(kept.iter().map(|road| road.way_id).collect::<Vec<_>>(), [1, 2, 3]);
 }
 
-/// A node at which only ways of other classes join is one.
+/// A node counts even if only ways of other classes join there.
 #[test]
 fn nodes_of_other_classes_count() {
     let met = MetNodes { nodes: vec![(1, 5)], same_places: vec![[5, 6]] };

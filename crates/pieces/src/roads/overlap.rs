@@ -1,4 +1,4 @@
-//! Whether the roads and the elevation data lie on each other at all.
+//! Checks that the roads and the elevation data overlap.
 
 use std::path::PathBuf;
 
@@ -8,7 +8,7 @@ use corniche_geom::{Bounds, GridFrame, ProjectError, Projection};
 use super::totals::RoadTotals;
 use crate::ExtractError;
 
-/// Fails when no road of the extract `osm` lies on the elevation data's rectangle.
+/// Fails if no road of the extract `osm` is inside the elevation data's rectangle.
 ///
 /// # Errors
 /// See [`ExtractError`].
@@ -31,7 +31,8 @@ pub fn check_overlap(
     Err(ExtractError::NoOverlap { osm: osm.to_vec(), roads_and_heights_deg })
 }
 
-/// A rectangle of the working CRS by its corners in degrees, where it is turned: two of them would not do.
+/// Converts a rectangle of the working CRS to degrees by all its corners, because two corners do
+/// not suffice if it is turned.
 fn bounds_deg(bounds_m: Bounds, projection: &dyn Projection) -> Result<Bounds, ProjectError> {
     let Bounds { min_x, min_y, max_x, max_y } = bounds_m;
     let mut corners = [[min_x, min_y], [max_x, max_y], [min_x, max_y], [max_x, min_y]];

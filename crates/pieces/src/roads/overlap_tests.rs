@@ -1,8 +1,8 @@
-//! A rectangle that is turned in degrees is found by all its corners.
+//! The bounds of a rectangle that is turned in degrees include all its corners.
 
 use super::*;
 
-/// Turned by 45 degrees.
+/// A projection that is turned by 45 degrees.
 struct Diamond;
 
 impl Projection for Diamond {

@@ -1,16 +1,14 @@
-//! What a tile needs of its roads: pieces of their lines as its level shows them.
+//! The pieces of roads that a tile needs: parts of their lines, as the tile's level shows them.
 
 use std::sync::Arc;
 
 use corniche_geom::{LatticePoint, Polyline, TileId};
-use corniche_roads::{AttributeParts, FunctionalRoadClass, RoadAttributes};
-use corniche_spec::artifacts::{ArtifactError, Kind, damaged};
+use corniche_roads::{FunctionalRoadClass, RoadAttributes};
+use corniche_spec::artifacts::{ArtifactError, ArtifactKind, damaged};
 use corniche_store::Artifacts;
-use corniche_varints::{
-    push_bytes, push_signed, push_varint, take_array, take_number, take_signed, take_text,
-};
+use corniche_varints::{push_signed, push_varint, take_array, take_number, take_signed};
 
-/// What a tile needs of one road.
+/// The part of one road that a tile needs.
 ///
 /// ```text
 ///       ┌───────────────────┐ tile and margin      The line leaves and comes back: two runs. A run has whole
@@ -27,32 +25,35 @@ pub struct RoadPiece {
     pub way_id: i64,
     /// The class of the road.
     pub class: FunctionalRoadClass,
-    /// All pieces of a road have the same.
+    /// Attributes of the road, shared by all its pieces.
     pub attributes: Arc<RoadAttributes>,
-    /// How many points of the source line belong to the tile.
+    /// The number of points of the source line that belong to the tile.
     pub(crate) source_points: u64,
-    /// The same of the level's simplified line.
+    /// The number of points of the level's simplified line that belong to the tile.
     pub(crate) simplified_points: u64,
     /// The runs in the order of the line.
-    pub(crate) runs: Vec<Run>,
+    pub(crate) runs: Vec<SegmentRun>,
 }
 
-/// Segments of the level's line that follow each other and may meet the tile or its margin.
+/// Consecutive segments of the level's line that may touch the tile or its margin.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Run {
+pub(crate) struct SegmentRun {
     pub line: Polyline,
-    /// The true length of each segment in micrometres on the finest level, and of bridges and tunnels, where spans are wanted, on all; of what is
-    /// simplified it is that of the source line. Else empty.
+    /// The true length of each segment in micrometres: on the finest level, and for bridges and
+    /// tunnels on all levels if spans are requested. Simplified segments have the length of the
+    /// source line. Otherwise empty.
     pub(crate) segments_um: Vec<u64>,
-    /// How far along the road it begins, micrometres; 0 where lengths are not known.
+    /// Distance of its start along the road, micrometres; 0 if lengths are not known.
     pub(crate) from_um: u64,
-    /// The nodes at which other roads may join, on the finest level where spans are wanted: which points they are, and their ids.
+    /// The nodes at which other roads may join: the indices of their points, and their ids. Only on
+    /// the finest level and if spans are requested.
     pub nodes: Vec<(u32, i64)>,
 }
 
 /// The pieces of all roads of a tile with the roads' ordinals, ascending.
 ///
-/// Bytes: for each road, how many ordinals lie between it and the road before, and then its piece.
+/// Encoding: for each road, the number of ordinals skipped since the road before, and then its
+/// piece.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TilePieces {
     /// Pieces with the numbers of their roads.
@@ -60,17 +61,17 @@ pub struct TilePieces {
 }
 
 impl TilePieces {
-    /// The pieces of a tile; none if nothing is in the store.
+    /// Reads the pieces of a tile; none if the store has no artifact.
     ///
     /// # Errors
-    /// When it cannot be kept or read, or makes no sense.
+    /// When the artifact cannot be read or is invalid.
     pub fn load(store: &dyn Artifacts, id: TileId) -> Result<Self, ArtifactError> {
-        let key = Kind::RoadPieces.of_tile(id);
+        let key = ArtifactKind::RoadPieces.of_tile(id);
         let Some(bytes) = store.get(key)? else { return Ok(Self::default()) };
-        Self::from_bytes(&bytes).ok_or_else(|| damaged(key, &"these are no pieces of roads"))
+        Self::from_bytes(&bytes).ok_or_else(|| damaged(key, &"it does not hold pieces of roads"))
     }
 
-    /// Reads what `TilePiecesWriter` made; `None` for other bytes.
+    /// Decodes the bytes of a `TilePiecesWriter`; `None` for other bytes.
     #[must_use]
     pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
         let mut rest = bytes;
@@ -85,16 +86,16 @@ impl TilePieces {
     }
 }
 
-/// Puts the pieces of a tile one after the other.
+/// Concatenates the pieces of a tile.
 #[derive(Default)]
 pub(crate) struct TilePiecesWriter {
     bytes: Vec<u8>,
-    /// The least ordinal that can follow.
+    /// The smallest ordinal that can follow.
     next: u32,
 }
 
 impl TilePiecesWriter {
-    /// Adds a road by its encoded piece. Ordinals ascend.
+    /// Adds a road with its encoded piece. Ordinals must ascend.
     pub(crate) fn push(&mut self, ordinal: u32, piece: &[u8]) {
         debug_assert!(ordinal >= self.next, "ordinals ascend");
         push_varint(&mut self.bytes, u64::from(ordinal - self.next));
@@ -108,14 +109,15 @@ impl TilePiecesWriter {
 }
 
 impl RoadPiece {
-    /// Its bytes: numbers of variable length, points as differences from the point before.
+    /// Encodes the piece: numbers of variable length, and points as differences from the previous
+    /// point.
     pub(crate) fn to_bytes(&self) -> Vec<u8> {
         let Self { way_id, class, attributes, source_points, simplified_points, runs } = self;
         let points: usize = runs.iter().map(|run| run.line.points().len()).sum();
         let mut bytes = Vec::with_capacity(64 + points * 12);
         push_signed(&mut bytes, *way_id);
         bytes.push(class.number());
-        put_attributes(&mut bytes, attributes);
+        attributes.push_to(&mut bytes);
         push_varint(&mut bytes, *source_points);
         push_varint(&mut bytes, *simplified_points);
         push_varint(&mut bytes, runs.len() as u64);
@@ -145,40 +147,26 @@ impl RoadPiece {
     fn take(rest: &mut &[u8]) -> Option<Self> {
         let way_id = take_signed(rest)?;
         let [class] = take_array(rest)?;
-        let attributes = Arc::new(take_attributes(rest)?);
+        let attributes = Arc::new(RoadAttributes::take_from(rest)?);
         let [source_points, simplified_points] = [take_number(rest)?, take_number(rest)?];
         let count = take_count(rest)?;
         let mut before = LatticePoint::new(0, 0);
         let mut runs = Vec::with_capacity(count);
         for _ in 0..count {
-            runs.push(Run::take(rest, &mut before)?);
+            runs.push(SegmentRun::take(rest, &mut before)?);
         }
         let class = FunctionalRoadClass::new(class)?;
         Some(Self { way_id, class, attributes, source_points, simplified_points, runs })
     }
 }
 
-fn put_attributes(bytes: &mut Vec<u8>, attributes: &RoadAttributes) {
-    let AttributeParts { codes, width_mm, texts } = attributes.parts();
-    bytes.extend(codes);
-    push_varint(bytes, width_mm.into());
-    for text in texts {
-        push_bytes(bytes, text.as_bytes());
-    }
-}
-
-fn take_attributes(rest: &mut &[u8]) -> Option<RoadAttributes> {
-    let codes = take_array(rest)?;
-    let width_mm = take_number(rest)?;
-    RoadAttributes::from_parts(codes, width_mm, || take_text(rest).map(str::to_owned))
-}
-
-/// How many things follow that take a byte each at least: never more than there are bytes.
+/// Reads the number of items that follow, each at least a byte long: never more than there are
+/// bytes.
 fn take_count(rest: &mut &[u8]) -> Option<usize> {
     take_number(rest).filter(|count| *count <= rest.len())
 }
 
-impl Run {
+impl SegmentRun {
     fn take(rest: &mut &[u8], before: &mut LatticePoint) -> Option<Self> {
         let count = take_count(rest)?;
         let mut points = Vec::with_capacity(count);
@@ -201,7 +189,7 @@ impl Run {
         let mut lengths_um = segments_um.iter();
         lengths_um.try_fold(from_um, |sum: u64, length_um| sum.checked_add(*length_um))?;
         let line = Polyline::new(points).ok()?;
-        // Equal neighbours would have been merged: a run has none.
+        // Equal neighbours would have been merged, so a run has none.
         let is_whole = line.points().len() == count && (lengths == 0 || lengths == count - 1);
         is_whole.then_some(Self { line, segments_um, from_um, nodes })
     }

@@ -1,4 +1,4 @@
-//! Pieces of roads come back as they were, and damaged bytes never cause a panic.
+//! Decoded pieces of roads equal the encoded ones, and damaged bytes never cause a panic.
 
 use std::num::{NonZeroU8, NonZeroU32};
 
@@ -7,7 +7,7 @@ use proptest::{collection::vec, prelude::*};
 
 use super::*;
 
-fn runs() -> impl Strategy<Value = Vec<Run>> {
+fn runs() -> impl Strategy<Value = Vec<SegmentRun>> {
     let point = (any::<i64>(), any::<i64>()).prop_map(|(u, v)| LatticePoint::new(u >> 3, v >> 3));
     let run = (vec(point, 2..9), any::<bool>(), 0..1_u64 << 60).prop_filter_map(
         "a line has two different points",
@@ -15,7 +15,12 @@ fn runs() -> impl Strategy<Value = Vec<Run>> {
             let line = Polyline::new(points).ok()?;
             let count = if has_lengths { line.points().len() - 1 } else { 0 };
             let nodes = if has_lengths { vec![(1, length_um as i64)] } else { Vec::new() };
-            Some(Run { line, segments_um: vec![length_um; count], from_um: length_um, nodes })
+            Some(SegmentRun {
+                line,
+                segments_um: vec![length_um; count],
+                from_um: length_um,
+                nodes,
+            })
         },
     );
     vec(run, 0..4)
@@ -57,14 +62,15 @@ fn written(pieces: &TilePieces) -> Vec<u8> {
 }
 
 proptest! {
-    /// Pieces come back as they were.
+    /// Decoded pieces equal the encoded ones.
     #[test]
     fn pieces_come_back(pieces in vec(pieces(), 0..5), ordinals in proptest::collection::btree_set(0..u32::MAX, 5)) {
         let tile = TilePieces { roads: ordinals.into_iter().zip(pieces).collect() };
         prop_assert_eq!(TilePieces::from_bytes(&written(&tile)), Some(tile));
     }
 
-    /// Damaged bytes are nothing or other pieces, never a panic; a cut road is nothing.
+    /// Damaged bytes decode to nothing or to other pieces, but never panic; a truncated road
+    /// decodes to nothing.
     #[test]
     fn damage_is_no_panic(piece in pieces(), at in any::<prop::sample::Index>(), bit in 0..8_u8) {
         let tile = TilePieces { roads: vec![(7, piece)] };
@@ -78,7 +84,7 @@ proptest! {
         prop_assert!(damaged.is_none_or(|pieces| pieces != tile));
     }
 
-    /// Foreign bytes are no panic.
+    /// Foreign bytes do not panic.
     #[test]
     fn foreign_bytes_are_no_panic(bytes in vec(any::<u8>(), 0..200)) {
         let _ = TilePieces::from_bytes(&bytes);

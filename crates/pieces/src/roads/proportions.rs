@@ -1,8 +1,8 @@
-//! A sum shared out by road class.
+//! Distributes a sum over road classes.
 
 use corniche_roads::FunctionalRoadClass;
 
-/// The share of `total` that falls to `parts[index]`, so that all shares add up to `total` exactly.
+/// Returns the share of `total` for `parts[index]`; all shares add up to `total` exactly.
 #[must_use]
 pub fn share(total: u64, parts: &[u64; FunctionalRoadClass::COUNT], index: usize) -> u64 {
     let sum: u64 = parts.iter().sum();

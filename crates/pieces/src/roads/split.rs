@@ -13,35 +13,38 @@ use corniche_spec::{
 
 use super::{
     near_spans::NearRoad,
-    pieces::{RoadPiece, Run},
+    pieces::{RoadPiece, SegmentRun},
     totals::RoadLength,
 };
 use crate::layers::fixed_points::road_of_part;
 
-/// What splitting needs.
+/// The settings and data that splitting needs.
 pub(crate) struct RoadSplitting<'a> {
     pub levels: &'a Levels,
     pub lengths: &'a TrueLengths<'a>,
-    /// The finest tiles on which the data's rectangle lies, all together. Tiles beside it need no roads.
+    /// The union of the finest tiles that the data's rectangle touches. Tiles outside it need no
+    /// roads.
     pub data_bounds: LatticeBounds,
-    /// The data's rectangle: that of all nodes at which data can lie.
+    /// The data's rectangle, which contains all nodes at which there can be data.
     pub node_bounds: LatticeBounds,
-    /// The bounds that were asked for. Tiles on their edge get roads from outside, too: for what is drawn beside their ground.
+    /// The requested bounds. Tiles on their edge also get roads from outside, which are drawn
+    /// outside their ground.
     pub clip: Option<LatticeBounds>,
-    /// The polygon that was asked for: roads end at its outline.
+    /// The requested polygon: roads are clipped to its outline.
     pub polygon: Option<&'a LatticeRegion>,
-    /// Whether bridges and tunnels become spans: then pieces tell where along their road they lie, and which nodes they have.
+    /// Whether bridges and tunnels become spans: then pieces store their position along their road,
+    /// and their nodes.
     pub spans: bool,
 }
 
-/// A road, split.
+/// A road that has been split.
 pub(crate) struct SplitRoad {
     pub(crate) length: RoadLength,
     pub class: FunctionalRoadClass,
     pub bounds: Option<LatticeBounds>,
     /// The pieces with their tiles, on all levels.
     pub pieces: Vec<(TileId, RoadPiece)>,
-    /// Where spans are wanted, what they may need of it.
+    /// The road as spans may need it, if spans are requested.
     pub(crate) near: Option<NearRoad>,
 }
 
@@ -50,13 +53,15 @@ impl RoadSplitting<'_> {
     pub(crate) fn split(&self, ordinal: u32, road: &Road) -> SplitRoad {
         let is_span = self.spans && road.attributes.structure != Structure::Ground;
         let segments_um = if is_span {
-            // A deck of bounds is that without: no table of their extent comes in.
+            // A deck must be the same with and without bounds, so the coordinate table, whose
+            // extent depends on the bounds, is not used.
             self.lengths.projected_segments_um(&road.line)
         } else {
             self.lengths.segments_um(&road.line)
         };
         let length_um: u64 = segments_um.iter().sum();
-        let mut near = self.spans.then(|| NearRoad::of(road, Some(ordinal), &segments_um, false));
+        let mut near =
+            self.spans.then(|| NearRoad::from_road(road, Some(ordinal), &segments_um, false));
         let parts = self.parts(road, segments_um);
         let length_in = |bounds: &LatticeBounds| -> u64 {
             parts.iter().map(|part| part.length_in_um(bounds, self.lengths)).sum()
@@ -69,7 +74,7 @@ impl RoadSplitting<'_> {
         // Cuts are rounded to whole micrometres.
         let outside_um = asked_um.saturating_sub(inside_um);
         let nodes = &self.node_bounds;
-        let bounds = LatticeBounds::of(road.line.points());
+        let bounds = LatticeBounds::around(road.line.points());
         let padding_um = if bounds.is_some_and(|own| own.intersection(nodes) == own) {
             0
         } else {
@@ -102,7 +107,7 @@ impl RoadSplitting<'_> {
         }
     }
 
-    /// Whether a road reaches the data, and what was asked of it.
+    /// Whether a road reaches the data and the requested region.
     pub(crate) fn reaches(&self, road: &Road) -> bool {
         let data = self.clip.map_or(self.data_bounds, |clip| clip.intersection(&self.data_bounds));
         let is_inside = |line: &Polyline| {
@@ -116,7 +121,8 @@ impl RoadSplitting<'_> {
         }
     }
 
-    /// The parts of a road in the polygon; without one, the road. `segments_um` are the true lengths of the road's segments.
+    /// The parts of a road inside the polygon; without a polygon, the road. `segments_um` are the
+    /// true lengths of the road's segments.
     fn parts<'r>(&self, road: &'r Road, segments_um: Vec<u64>) -> Vec<RoadPart<'r>> {
         let Some(region) = self.polygon else {
             return vec![RoadPart { road: Cow::Borrowed(road), segments_um, from_um: 0 }];
@@ -131,7 +137,7 @@ impl RoadSplitting<'_> {
             .collect()
     }
 
-    /// The pieces of one level.
+    /// Returns the pieces on one level.
     fn split_level(
         &self,
         parts: &[RoadPart<'_>],
@@ -142,7 +148,7 @@ impl RoadSplitting<'_> {
         let levels = self.levels;
         let lines: Vec<LevelLine<'_>> = parts
             .iter()
-            .filter(|part| self.is_near(LatticeBounds::of(part.road.line.points()), level))
+            .filter(|part| self.is_near(LatticeBounds::around(part.road.line.points()), level))
             .map(|part| LevelLine::new(part, level, levels, self.spans))
             .collect();
         let mut near = Vec::new();
@@ -177,16 +183,16 @@ impl RoadSplitting<'_> {
         }
     }
 
-    /// Whether a road in this rectangle can meet a tile of a level, margin included. Most roads of an extract that is far larger
-    /// than the data do not.
+    /// Whether a road in this rectangle may touch a tile of a level, margin included. If the
+    /// extract is far larger than the data, most roads do not.
     fn is_near(&self, bounds: Option<LatticeBounds>, level: u8) -> bool {
-        // A step of rounding, as where tiles are looked for.
+        // One step of rounding is added, as in the search for tiles.
         let reach = self.levels.margin_steps(level) + 1;
         let root = self.levels.frame().tile_lattice_bounds(TileId::ROOT).expanded(reach);
         bounds.is_some_and(|bounds| bounds.intersects(&root))
     }
 
-    /// Whether a tile can have ground: it shares more than a border with the data's tiles.
+    /// Whether a tile can have ground: it overlaps the data's tiles by more than a border.
     fn is_data(&self, id: TileId) -> bool {
         let (tile, data) = (self.levels.frame().tile_lattice_bounds(id), &self.data_bounds);
         tile.min.u < data.max.u
@@ -196,17 +202,17 @@ impl RoadSplitting<'_> {
     }
 }
 
-/// A part of a road in the polygon that was asked for, or the whole road.
+/// A part of a road inside the requested polygon, or the whole road.
 struct RoadPart<'r> {
     road: Cow<'r, Road>,
-    /// True lengths of its segments.
+    /// True lengths of the part's segments.
     segments_um: Vec<u64>,
-    /// How far along the road it begins, micrometres.
+    /// Distance of its start along the road, micrometres.
     from_um: u64,
 }
 
 impl RoadPart<'_> {
-    /// What was cut out of a road, whose segments have these lengths.
+    /// Cuts a part out of a road whose segments have these lengths.
     fn cut(road: &Road, part: ClippedPart, segments_um: &[u64], lengths: &TrueLengths<'_>) -> Self {
         let pieces: Vec<[u64; 2]> = lengths.pieces_um(&road.line, &part, segments_um).collect();
         let before_um: u64 =
@@ -231,11 +237,13 @@ impl RoadPart<'_> {
 /// A part as a level shows it.
 struct LevelLine<'p> {
     line: Polyline,
-    /// True lengths of its segments on the finest level, and of bridges and tunnels where they become spans; else empty.
+    /// True lengths of the segments: on the finest level, and of bridges and tunnels that become
+    /// spans; otherwise empty.
     segments_um: Cow<'p, [u64]>,
-    /// How far along the road each segment begins; empty where no spans are wanted.
+    /// Start of each segment along the road; empty if no spans are requested.
     starts_um: Vec<u64>,
-    /// Its nodes at which other roads may join, by the index of their point; on the finest level alone.
+    /// Nodes of the line at which other roads may join, by the index of their point; on the finest
+    /// level only.
     nodes: Vec<(usize, i64)>,
     source: PointsByTile,
     simplified: PointsByTile,
@@ -263,20 +271,20 @@ impl<'p> LevelLine<'p> {
             starts_um: if spans { starts_um(part.from_um, &segments_um) } else { Vec::new() },
             segments_um,
             nodes: nodes.filter_map(|(&at, id)| Some((at as usize, (*id)?))).collect(),
-            source: PointsByTile::of(&road.line, level, levels),
-            simplified: PointsByTile::of(&line, level, levels),
+            source: PointsByTile::from_line(&road.line, level, levels),
+            simplified: PointsByTile::from_line(&line, level, levels),
             line,
         }
     }
 
     /// The run from segment `first` to segment `last`, both included.
-    fn run(&self, [first, last]: [usize; 2]) -> Option<Run> {
+    fn run(&self, [first, last]: [usize; 2]) -> Option<SegmentRun> {
         let line = Polyline::new(self.line.points()[first..=last + 1].to_vec()).ok()?;
         let segments_um = self.segments_um.get(first..=last).unwrap_or_default().to_vec();
         let [from, to] =
             [first, last + 2].map(|end| self.nodes.partition_point(|(at, _)| *at < end));
         let nodes = self.nodes[from..to].iter();
-        Some(Run {
+        Some(SegmentRun {
             line,
             from_um: self.starts_um.get(first).copied().unwrap_or_default(),
             segments_um,
@@ -285,7 +293,8 @@ impl<'p> LevelLine<'p> {
     }
 }
 
-/// The lengths of a line between the points that its simplification keeps, of which equal neighbours are one.
+/// The lengths of a line between the points that simplification keeps; equal neighbours count as
+/// one point.
 fn simplified_um(line: &Polyline, segments_um: &[u64], kept: &[usize]) -> Vec<u64> {
     let points = line.points();
     let mut lengths_um = Vec::with_capacity(kept.len());
@@ -302,14 +311,14 @@ fn simplified_um(line: &Polyline, segments_um: &[u64], kept: &[usize]) -> Vec<u6
     lengths_um
 }
 
-/// How many of a line's points belong to each tile of a level: each point belongs to one tile at most.
+/// The number of a line's points in each tile of a level: each point belongs to at most one tile.
 struct PointsByTile {
     /// Column and row of each point's tile, ascending.
     tiles: Vec<[i64; 2]>,
 }
 
 impl PointsByTile {
-    fn of(line: &Polyline, level: u8, levels: &Levels) -> Self {
+    fn from_line(line: &Polyline, level: u8, levels: &Levels) -> Self {
         let frame = levels.frame();
         let last = (1_i64 << level) - 1;
         let outer = frame.tile_lattice_bounds(TileId::ROOT);

@@ -1,4 +1,4 @@
-//! Laying pieces is the same as laying whole roads, tile by tile.
+//! Draping pieces gives the same result as draping whole roads, tile by tile.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ use proptest::{collection::vec, prelude::*};
 
 use super::*;
 use crate::roads::{
-    lay::{ClassSums, Laid, RoadFate, TileToLayOn, lost_pieces},
+    lay::{ClassSums, DrapedRoads, RoadFate, TileToLayOn, lost_pieces},
     pieces::TilePieces,
 };
 
@@ -24,7 +24,7 @@ struct World {
     table: CoordinateTable,
     projection: FlatProjection,
     data_bounds: LatticeBounds,
-    /// Nodes without a height, of the nine by nine on each tile.
+    /// Nodes without a height, out of the nine by nine nodes of each tile.
     gaps: Vec<(usize, usize)>,
 }
 
@@ -66,7 +66,7 @@ impl World {
     }
 }
 
-/// What was laid of some roads on a tile.
+/// The draped roads of a tile.
 #[derive(Debug, Default, PartialEq)]
 struct OnTile {
     geo: Vec<GeoRoad>,
@@ -77,7 +77,8 @@ struct OnTile {
     lost: Vec<(u32, RoadFate)>,
 }
 
-/// The oracle: a whole road is simplified, clipped and laid on a tile, as if no other tile existed.
+/// The oracle: a whole road is simplified, clipped and draped on a tile, as if no other tile
+/// existed.
 fn lay_whole(on: &mut OnTile, road: &Road, ordinal: u32, world: &World, id: TileId) {
     let (levels, lengths, owned) = (&world.levels, world.lengths(), world.owned(id));
     let surface = world.surface(id);
@@ -122,7 +123,7 @@ fn lay_whole(on: &mut OnTile, road: &Road, ordinal: u32, world: &World, id: Tile
     on.lost.extend((lost != RoadFate::default()).then_some((ordinal, lost)));
 }
 
-/// The points of a line in a tile: the oracle for counts.
+/// The number of a line's points in a tile: the oracle for counts.
 fn points_in(line: &Polyline, id: TileId, levels: &Levels) -> u64 {
     let bounds = levels.frame().tile_lattice_bounds(id);
     let root = levels.frame().tile_lattice_bounds(TileId::ROOT);
@@ -151,7 +152,8 @@ fn worlds() -> impl Strategy<Value = World> {
                 spans: false,
             };
             let levels = Levels::new(frame, cell.shorter_m(), &settings, 1.0);
-            // What lies in the table has other lengths than what does not, so that it shows which of them was taken.
+            // Lengths inside and outside the table differ, so that the test shows which of them was
+            // used.
             let Bounds { min_x, min_y, max_x, max_y } = frame.tile_bounds(TileId::ROOT);
             let half = [f64::midpoint(min_x, max_x), f64::midpoint(min_y, max_y)];
             let tabulated = Bounds { min_x, min_y, max_x: half[0], max_y: half[1] };
@@ -166,14 +168,15 @@ fn worlds() -> impl Strategy<Value = World> {
     )
 }
 
-/// A coordinate, as a place within the root and as a border and a distance from it.
+/// A coordinate: a position within the root, and a border with a distance from it.
 type PointSeed = (u8, f64, i64, i64);
 
 fn places() -> impl Strategy<Value = PointSeed> {
     (0..12_u8, -0.4..1.4_f64, 0..=4_i64, -1..=1_i64)
 }
 
-/// Roads with points anywhere, on borders of tiles and of margins, a step beside them, and far away; some are rings.
+/// Roads with points anywhere: on borders of tiles and of margins, a step away from them, and far
+/// away; some are rings.
 fn roads() -> impl Strategy<Value = Vec<Vec<(PointSeed, PointSeed)>>> {
     vec(vec((places(), places()), 2..14), 1..4)
 }
@@ -216,7 +219,7 @@ impl World {
         let line = Polyline::new(line).unwrap();
         let last = line.points().len() as u32 - 1;
         Road {
-            // Two roads of one way.
+            // Two of the roads belong to one way.
             way_id: [40, 41, 41][ordinal as usize % 3],
             class: FunctionalRoadClass::new(ordinal as u8 % 9).unwrap(),
             attributes: RoadAttributes { name: format!("{ordinal}"), ..RoadAttributes::default() },
@@ -230,8 +233,8 @@ impl World {
 }
 
 proptest! {
-    /// What is laid of the pieces of roads is what is laid of the whole roads: lines, their order and numbers, lengths,
-    /// attributes and counts. A tile without a piece of a road has nothing of it.
+    /// Draped pieces of roads equal draped whole roads: lines, their order and numbers, lengths,
+    /// attributes and counts. A tile without a piece of a road has no part of it.
     #[test]
     fn pieces_are_laid_as_whole_roads_are(world in worlds(), roads in roads()) {
         let roads: Vec<Road> =
@@ -256,7 +259,7 @@ proptest! {
                 continue;
             }
             let (surface, owned) = (world.surface(id), world.owned(id));
-            let laid = Laid::of_tile(&pieces, &TileToLayOn { id, surface: &surface, owned, clip: None, spans: false, lengths: &lengths }, &world.levels);
+            let laid = DrapedRoads::of_tile(&pieces, &TileToLayOn { id, surface: &surface, owned, clip: None, spans: false, lengths: &lengths }, &world.levels);
             let bounds = world.levels.frame().tile_lattice_bounds(id);
             let is_finest = id.z() == world.levels.frame().max_level();
             let found = OnTile {
@@ -315,7 +318,8 @@ impl Large {
         self.split_around(points, data_bounds, data_bounds)
     }
 
-    /// The same where the data's rectangle is `node_bounds`, and its tiles are those of `data_bounds`.
+    /// Splits where the data's rectangle is `node_bounds`, and its tiles are those of
+    /// `data_bounds`.
     fn split_around(
         &self,
         points: Vec<LatticePoint>,
@@ -347,7 +351,8 @@ impl Large {
     }
 }
 
-/// A road from within the data through the padding of their tiles to beyond it, and one that lies in the padding alone.
+/// One road from within the data through the padding of their tiles to the outside, and one in the
+/// padding alone.
 #[test]
 fn the_padding_of_tiles_is_measured_by_itself() {
     let large = Large::new();
@@ -373,7 +378,8 @@ fn a_tile_has_only_the_segments_near_it() {
     let large = Large::new();
     let frame = large.levels.frame();
     let root = frame.tile_lattice_bounds(TileId::ROOT);
-    // A zigzag from the north-west corner to the south-east one, 32 tiles away, with ten segments a tile.
+    // A zigzag from the north-west corner to the south-east one, 32 tiles away, with ten segments a
+    // tile.
     let points: Vec<LatticePoint> = (0..=320)
         .map(|k| {
             let along = (root.max.u - root.min.u) / 320 * k;
@@ -387,7 +393,7 @@ fn a_tile_has_only_the_segments_near_it() {
         let segments: usize = piece.runs.iter().map(|run| run.segments_um.len()).sum();
         assert!((1..=14).contains(&segments), "tile {id} has {segments} segments");
     }
-    // Beside the data there is nothing.
+    // Tiles outside the data have no roads.
     let corner = TileId::new(5, 0, 0).unwrap();
     let split = large.split(points, frame.tile_lattice_bounds(corner));
     let ids: Vec<TileId> = split.pieces.iter().map(|(id, _)| *id).collect();
@@ -396,7 +402,7 @@ fn a_tile_has_only_the_segments_near_it() {
     assert!(split.length.outside_um < split.length.length_um);
 }
 
-/// A road that leaves a tile far behind and comes back has two runs there.
+/// A road that goes far away from a tile and comes back has two runs there.
 #[test]
 fn what_lies_far_away_between_two_visits_is_left_out() {
     let large = Large::new();

@@ -1,64 +1,64 @@
-//! What is known of all roads together, and of each road alone: its true lengths.
+//! The totals of all roads, and the true lengths of each road.
 
 use std::{cmp::Reverse, collections::BTreeMap};
 
 use corniche_geom::LatticePoint;
 use corniche_osm::{ExtractSummary, LeftOut, LeftOutReason, LeftOutWays};
 use corniche_roads::{LossReason, Structure};
-use corniche_spec::artifacts::{self, Kind};
+use corniche_spec::artifacts::{self, ArtifactKind};
 use corniche_store::Artifacts;
 use corniche_tileset::LeftOutRecord;
 use serde::{Deserialize, Serialize};
 
 use crate::{
     ExtractError,
-    layers::blocks::{BlockWriter, block},
+    layers::blocks::{ListBlockWriter, block},
 };
 
-/// Roads of a block of [`Kind::RoadLengths`].
+/// Roads in a block of [`ArtifactKind::RoadLengths`].
 pub(crate) const BLOCK_ROADS: u64 = 1 << 16;
 
 /// True lengths of a road.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct RoadLength {
     pub way_id: i64,
-    /// What carries it.
+    /// The structure of the road.
     pub(crate) structure: Structure,
     /// The length of the whole road, micrometres.
     pub length_um: u64,
-    /// How much of it lies outside the tiles of the data's rectangle, measured by itself.
+    /// The length outside the tiles of the data's rectangle, measured separately.
     pub(crate) outside_um: u64,
-    /// How much of it lies on those tiles, but outside the data's rectangle itself: in their padding. It is not counted under
-    /// `outside_um`.
+    /// The length inside these tiles, but outside the data's rectangle itself: in their padding. It
+    /// is not counted under `outside_um`.
     pub(crate) padding_um: u64,
-    /// How much of it lies outside the bounds that were asked for; what does is counted under nothing else.
+    /// The length outside the requested bounds; it is counted under nothing else.
     pub(crate) beyond_um: u64,
 }
 
-/// What is known of all roads. It is kept last: when it is in the store, so are all pieces, lengths and
-/// defects.
+/// The totals of all roads. They are stored last: if they are in the store, so are all pieces,
+/// lengths and defects.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct RoadTotals {
-    /// How many roads there are: ordinals run from 0 to one less.
+    /// The number of roads: ordinals run from 0 to one less.
     pub roads: u64,
     /// The sum of their true lengths, micrometres.
     pub length_um: u64,
-    /// Per class: roads and true micrometres.
+    /// Per class: number of roads and true length in micrometres.
     pub classes: Vec<(u64, u64)>,
     /// Counted defects by name.
     pub defects: BTreeMap<String, u64>,
-    /// What the extract held and what of it is no road.
+    /// The content of the extract, and the ways that are not roads.
     pub extract: ExtractCounts,
-    /// South-west and north-east corner of where roads lie.
+    /// South-west and north-east corner of the rectangle around all roads.
     pub bounds: Option<[LatticePoint; 2]>,
 }
 
 /// The counts of an extract that a manifest records.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ExtractCounts {
-    /// Values of `highway` that the FRC table does not have, with how many ways have each.
+    /// Values of `highway` that are not in the FRC table, with their numbers of ways.
     pub unknown_highways: Vec<(String, u64)>,
-    /// Tags that were understood in another way than they are written, with how often.
+    /// Tags that were interpreted differently from how they are written, with their frequencies.
     pub tags_taken_otherwise: Vec<(String, u64)>,
     /// Blobs without ways of roads.
     pub blobs_passed_over: u64,
@@ -66,7 +66,7 @@ pub struct ExtractCounts {
     pub highways_in: u64,
     /// Ways with a `highway` tag that are no roads here, by reason.
     pub highways_left_out: Vec<(String, u64)>,
-    /// Ways that the FRC table leaves out, by reason and `highway` value.
+    /// Ways that the FRC table excludes, by reason and `highway` value.
     pub left_out: Vec<LeftOutRecord>,
 }
 
@@ -86,7 +86,7 @@ impl From<&ExtractSummary> for ExtractCounts {
     }
 }
 
-/// Ways that are left out, by reason, and within one the longest first.
+/// Ways that are skipped, by reason, and within a reason the longest first.
 fn left_out_ways(extract: &ExtractSummary) -> Vec<LeftOutRecord> {
     let ways = extract.left_out_ways.iter();
     let mut counts: Vec<(LeftOutReason, LeftOutRecord)> = ways
@@ -96,7 +96,7 @@ fn left_out_ways(extract: &ExtractSummary) -> Vec<LeftOutRecord> {
             (*reason, LeftOutRecord { reason: text, highway, ways, length_um })
         })
         .collect();
-    // The sort keeps the order of values where lengths are the same.
+    // The sort is stable, so values with equal lengths keep their order.
     counts.sort_by_key(|(reason, count)| (*reason, Reverse(count.length_um)));
     counts.into_iter().map(|(_, count)| count).collect()
 }
@@ -115,21 +115,21 @@ fn left_out(extract: &ExtractSummary) -> Vec<(String, u64)> {
     some.map(|(reason, ways)| (reason.text().to_owned(), ways)).collect()
 }
 
-/// Keeps the lengths of roads, as they come in the order of their ordinals.
-pub(crate) fn lengths_writer(store: &dyn Artifacts) -> BlockWriter<'_, RoadLength> {
-    BlockWriter::new(store, Kind::RoadLengths, BLOCK_ROADS as usize)
+/// Stores the lengths of roads in the order of their ordinals.
+pub(crate) fn lengths_writer(store: &dyn Artifacts) -> ListBlockWriter<'_, RoadLength> {
+    ListBlockWriter::new(store, ArtifactKind::RoadLengths, BLOCK_ROADS as usize)
 }
 
-/// The lengths of a block, which has `roads` roads.
+/// Reads the lengths of a block of `roads` roads.
 pub(crate) fn lengths_of_block(
     store: &dyn Artifacts,
     number: u64,
     roads: u64,
 ) -> Result<Vec<RoadLength>, ExtractError> {
-    let lengths: Vec<RoadLength> = block(store, Kind::RoadLengths, number)?;
+    let lengths: Vec<RoadLength> = block(store, ArtifactKind::RoadLengths, number)?;
     if lengths.len() as u64 != roads {
-        let what = "it does not have the lengths of its roads";
-        return Err(artifacts::damaged(Kind::RoadLengths.item(number), &what).into());
+        let what = "it does not have one length for each of its roads";
+        return Err(artifacts::damaged(ArtifactKind::RoadLengths.item(number), &what).into());
     }
     Ok(lengths)
 }

@@ -1,4 +1,4 @@
-//! The lengths of roads come back block by block.
+//! The lengths of roads are read back block by block.
 
 use corniche_spec::artifacts::ArtifactError;
 use corniche_store::MemoryStore;
@@ -22,7 +22,7 @@ fn lengths_come_back_block_by_block() {
         writer.push(length(k)).unwrap();
     }
     writer.finish().unwrap();
-    assert_eq!(store.items(Kind::RoadLengths as u8), [0, 1]);
+    assert_eq!(store.items(ArtifactKind::RoadLengths as u8), [0, 1]);
     let first = lengths_of_block(&store, 0, BLOCK_ROADS).unwrap();
     assert_eq!((first[0], first[BLOCK_ROADS as usize - 1]), (length(0), length(BLOCK_ROADS - 1)));
     assert_eq!(lengths_of_block(&store, 1, 1).unwrap(), [length(BLOCK_ROADS)]);
@@ -36,5 +36,5 @@ fn lengths_come_back_block_by_block() {
 fn a_whole_number_of_blocks_has_no_empty_one() {
     let store = MemoryStore::default();
     lengths_writer(&store).finish().unwrap();
-    assert!(store.items(Kind::RoadLengths as u8).is_empty());
+    assert!(store.items(ArtifactKind::RoadLengths as u8).is_empty());
 }

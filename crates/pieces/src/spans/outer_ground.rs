@@ -1,8 +1,10 @@
-//! The ground of spans where a package has none, or another one than it would have without bounds.
+//! The ground of spans where a package has no ground, or ground that differs from that of a build
+//! without bounds.
 //!
-//! Whole spans are solved, also where bounds cut them. So supports beyond the bounds need ground, as the finest tile there has it when it is meshed
-//! without bounds. Where a tile is cut, its own mesh is another one; spans that go on into tiles that are whole have the ground of the whole tile at
-//! all of their supports, so that tiles that are whole are the same with and without bounds.
+//! Whole spans are solved, even if bounds cut them. So supports beyond the bounds need ground: the
+//! ground that the finest tile there has when it is meshed without bounds. The mesh of a tile that
+//! is cut differs from it. Spans that extend into whole tiles use the ground of the whole tile at
+//! all of their supports, so that whole tiles are the same with and without bounds.
 
 use std::collections::{BTreeMap, HashSet};
 
@@ -11,7 +13,7 @@ use corniche_geom::{
     GridFrame, LatticeBounds, LatticePoint, LatticeRegion, NodeIndex, NodeWindow, TILE_CELLS,
     TILE_NODES, TileId,
 };
-use corniche_spec::{Observer, levels::Levels};
+use corniche_spec::{BuildObserver, levels::Levels};
 use corniche_tileset::OuterGround;
 use corniche_tin::{Placement, Surface, TinSpec};
 use corniche_work::workers;
@@ -19,19 +21,19 @@ use corniche_work::workers;
 use super::span_network::SpanNetwork;
 use crate::ExtractError;
 
-/// A place at which ground is asked for.
+/// A place where a span needs ground.
 #[derive(Debug, Clone, Copy)]
 pub struct AskedPlace {
     pub(crate) at: LatticePoint,
     /// Whether the package's own finest tiles have ground there.
     pub(crate) has_own: bool,
-    /// The span that asks.
+    /// The span that needs the ground.
     pub(crate) span: usize,
 }
 
-/// Where ground comes from that is not the package's own.
+/// A source of ground outside the package.
 pub trait OuterGrounds: Sync {
-    /// For each place its height, metres; `None` where the package's own counts.
+    /// Returns the height of each place, metres; `None` where the package's own ground applies.
     ///
     /// # Errors
     /// See [`ExtractError`].
@@ -42,7 +44,7 @@ pub trait OuterGrounds: Sync {
     ) -> Result<Vec<Option<f64>>, ExtractError>;
 }
 
-/// What a package records.
+/// The ground that a package records.
 impl OuterGrounds for &[OuterGround] {
     fn heights_m(
         &self,
@@ -55,14 +57,14 @@ impl OuterGrounds for &[OuterGround] {
     }
 }
 
-/// Column and row of a finest tile; outside the root, too.
+/// Column and row of a finest tile, also outside the root.
 type TileIndex = [i64; 2];
 
-/// Elevation files of which a part was asked for.
+/// Elevation files of which only a part was requested.
 pub struct WholeDem<'a> {
     /// The elevation files.
     pub dem: &'a Dem,
-    /// The plan of what was asked for.
+    /// The grid plan of the requested part.
     pub plan: &'a GridPlan,
     /// Tolerances of levels.
     pub levels: &'a Levels,
@@ -70,8 +72,8 @@ pub struct WholeDem<'a> {
     pub whole: LatticeBounds,
     /// Worker threads.
     pub threads: usize,
-    /// Who is told of progress.
-    pub observer: &'a dyn Observer,
+    /// Receives progress.
+    pub observer: &'a dyn BuildObserver,
 }
 
 impl WholeDem<'_> {
@@ -79,14 +81,14 @@ impl WholeDem<'_> {
         &self.plan.frame
     }
 
-    /// The finest tiles that hold a place, on their borders, too.
+    /// The finest tiles that contain a place, borders included.
     fn tiles_at(&self, at: LatticePoint) -> impl Iterator<Item = TileIndex> + use<'_> {
         let [column, row] = self.frame().tile_column_row(self.frame().max_level(), at);
         let beside = [1, 0].map(|west| [1, 0].map(|north| [column - west, row - north]));
         beside.into_iter().flatten().filter(move |&tile| self.bounds_of(tile).contains(at))
     }
 
-    /// The nodes of a tile, with so many more around it.
+    /// The nodes of a tile, with `halo` more nodes around it.
     fn window(&self, [column, row]: TileIndex, halo: usize) -> NodeWindow {
         let root = self.frame().root_corner();
         let corner = NodeIndex { i: root.i + column * TILE_CELLS, j: root.j - row * TILE_CELLS };
@@ -104,7 +106,7 @@ impl WholeDem<'_> {
         self.frame().lattice_bounds(self.nodes_of(tile, 0))
     }
 
-    /// Whether a tile is as it is without bounds, as far as there is data.
+    /// Whether a tile is the same as without bounds, as far as there are data.
     fn is_whole(&self, tile: TileIndex) -> bool {
         let Some(clip) = &self.plan.clip else { return true };
         let frame = self.frame();
@@ -118,7 +120,7 @@ impl WholeDem<'_> {
         is_inside && self.plan.polygon.as_deref().is_none_or(is_left)
     }
 
-    /// For each elevation file whether places need its samples.
+    /// Returns for each elevation file whether its samples are needed for these places.
     ///
     /// # Errors
     /// See [`ExtractError`].
@@ -169,15 +171,15 @@ impl OuterGrounds for WholeDem<'_> {
         let finest = self.frame().max_level();
         let frame = self.frame();
         let goes_into_whole = network.needed_where(|ends| {
-            let Some(own) = LatticeBounds::of(&ends) else { return false };
+            let Some(own) = LatticeBounds::around(&ends) else { return false };
             let [west, south] = frame.tile_column_row(finest, own.min);
             let [east, north] = frame.tile_column_row(finest, own.max);
-            // What is beyond the root is not the package's.
+            // Tiles outside the root do not belong to the package.
             let last = (1_i64 << finest) - 1;
             (north.max(0)..=south.min(last))
                 .any(|row| (west.max(0)..=east.min(last)).any(|column| is_whole([column, row])))
         });
-        // Several spans may ask for one place, and it has one ground.
+        // Several spans may need the same place, which has one ground.
         let of_whole: HashSet<LatticePoint> = places
             .iter()
             .filter(|place| goes_into_whole[place.span])
@@ -233,7 +235,7 @@ impl OuterGrounds for WholeDem<'_> {
     }
 }
 
-/// The rectangle of the whole elevation data of a grid, from its corners in working metres.
+/// The rectangle of a grid's whole elevation data, from its corners in working metres.
 #[must_use]
 pub fn whole_rectangle(frame: &GridFrame, bounds: &corniche_geom::Bounds) -> LatticeBounds {
     let corner = |position_m| {

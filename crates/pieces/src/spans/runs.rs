@@ -3,7 +3,7 @@
 //! ```text
 //!             ●──────────●          a run: from the ground to the ground, or to where the tile or the road ends
 //!           ╱              ╲
-//!   ──────○──────╲    ╱──────○──    ○ on the ground: vertices of the road as it is laid
+//!   ──────○──────╲    ╱──────○──    ○ on the ground: vertices of the draped road
 //!                 ╲__╱
 //! ```
 
@@ -12,22 +12,23 @@ use corniche_spans::{Decks, SpanKind};
 use corniche_tileset::{SpanHeight, SpanPoint, SpanRun};
 
 use super::span_network::{OnRoad, SpanNetwork};
-use crate::roads::ground_lines::{GroundLine, GroundVertex, between};
+use crate::roads::ground_lines::{SpanGroundLine, SpanGroundPoint, between};
 
-/// What is nearer to the ground is on it, metres.
+/// Distance from the ground, metres, below which a deck is on the ground.
 const ON_GROUND_M: f64 = 1e-6;
 
-/// A place of a deck.
+/// A point of a deck.
 #[derive(Clone, Copy)]
 struct Station {
     at: LatticePoint,
     along_um: u64,
-    /// The triangle of the tile that gives the ground its height here.
+    /// The triangle of the tile that gives the ground's height here.
     triangle: u32,
-    /// How far the deck is off the ground, metres: below 0 where it is within; `None` where its height is not known.
+    /// The height of the deck off the ground, metres: negative where the deck is within the ground;
+    /// `None` if it is unknown.
     off_m: Option<f64>,
     deck_m: f64,
-    /// Whether a run bends here.
+    /// Whether a run has a vertex here.
     is_bend: bool,
 }
 
@@ -37,17 +38,19 @@ impl Station {
     }
 }
 
-/// What a line has of a bridge or a tunnel.
+/// The runs of a bridge or a tunnel on a line.
 pub(crate) struct LineRuns {
-    /// Where it is off the ground.
+    /// The runs that are off the ground.
     pub(crate) runs: Vec<SpanRun>,
-    /// How far the ground is on the wrong side of it at most, metres: there it stays on the ground.
+    /// The largest distance by which the ground is on the wrong side of the deck, metres: there the
+    /// deck stays on the ground.
     pub(crate) within_m: f64,
 }
 
-/// The runs of a line. Heights are multiples of `quantum_m`, rounded away from the ground, so a bridge is never below it, and a tunnel never above.
+/// Returns the runs of a line. Heights are multiples of `quantum_m`, rounded away from the ground,
+/// so a bridge is never below it, and a tunnel never above.
 pub(crate) fn runs_of(
-    line: &GroundLine,
+    line: &SpanGroundLine,
     (network, decks): (&SpanNetwork, &Decks),
     quantum_m: f64,
 ) -> LineRuns {
@@ -81,7 +84,7 @@ pub(crate) fn runs_of(
         };
         let mut points: Vec<SpanPoint> =
             (0..own.len()).filter(|&at| is_needed(at)).map(|at| point(&own[at])).collect();
-        // What is on the ground at one end counts, of two places on one point of the lattice.
+        // If two places share a lattice point, the one on the ground at an end is used.
         points.dedup_by(|next, before| {
             let is_same = next.at == before.at;
             if is_same && matches!(next.height, SpanHeight::Ground { .. }) {
@@ -98,9 +101,9 @@ pub(crate) fn runs_of(
     LineRuns { runs, within_m }
 }
 
-/// All places of a line at which its deck or the ground bends, or where they meet.
-fn stations(line: &GroundLine, (network, decks): (&SpanNetwork, &Decks)) -> Vec<Station> {
-    let station = |vertex: GroundVertex, is_bend: bool| {
+/// All places of a line at which its deck or the ground bends, or at which they meet.
+fn stations(line: &SpanGroundLine, (network, decks): (&SpanNetwork, &Decks)) -> Vec<Station> {
+    let station = |vertex: SpanGroundPoint, is_bend: bool| {
         let on_road = OnRoad { ordinal: line.ordinal, along_um: vertex.along_um };
         let deck_m =
             network.on_chain(on_road).and_then(|(chain, along_m)| decks.height_m(chain, along_m));
@@ -120,7 +123,7 @@ fn stations(line: &GroundLine, (network, decks): (&SpanNetwork, &Decks)) -> Vec<
             && last.is_off() != next.is_off()
             && from_m * to_m < 0.0
         {
-            // Between two stations deck and ground are straight: they meet here.
+            // Between two stations, deck and ground are straight: they meet here.
             let share = from_m / (from_m - to_m);
             let at = between([last.at, next.at], share);
             if at != last.at && at != next.at {
@@ -132,7 +135,7 @@ fn stations(line: &GroundLine, (network, decks): (&SpanNetwork, &Decks)) -> Vec<
         }
         stations.push(next);
     };
-    let mut before: Option<&GroundVertex> = None;
+    let mut before: Option<&SpanGroundPoint> = None;
     for vertex in &line.vertices {
         if let Some(from) = before {
             let ends_um = [from.along_um, vertex.along_um];
@@ -146,7 +149,7 @@ fn stations(line: &GroundLine, (network, decks): (&SpanNetwork, &Decks)) -> Vec<
                 last_at = at;
                 let height_m = from.height_m + share * (vertex.height_m - from.height_m);
                 let triangle = from.next_triangle;
-                let bend = GroundVertex { at, triangle, height_m, along_um, ..*from };
+                let bend = SpanGroundPoint { at, triangle, height_m, along_um, ..*from };
                 push(station(bend, true), triangle);
             }
         }

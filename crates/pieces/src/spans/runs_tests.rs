@@ -16,11 +16,12 @@ use crate::{
 
 const QUANTUM_M: f64 = 0.125;
 
-/// A bridge of 400 m between two roads, on a lattice of a millimetre or less, with its supports at 100 m and 140 m.
+/// A bridge of 400 m between two roads, on a lattice of a millimetre or less, with its supports at
+/// 100 m and 140 m height.
 struct World {
     network: SpanNetwork,
     decks: Decks,
-    /// Lattice steps to a metre.
+    /// Lattice steps per metre.
     metre: i64,
 }
 
@@ -48,7 +49,7 @@ impl World {
                 met: MetNodes::default(),
             };
             let length_um = (ends[1].0 - ends[0].0) as u64 * 1_000_000;
-            near.push(NearRoad::of(&road, Some(ordinal), &[length_um], true)).unwrap();
+            near.push(NearRoad::from_road(&road, Some(ordinal), &[length_um], true)).unwrap();
         }
         near.finish((&store, &Silent), 100.0).unwrap();
         let projection = FlatProjection::new([1e5; 2]);
@@ -71,9 +72,9 @@ impl World {
         self.found(ground).runs
     }
 
-    /// What the bridge has over such ground.
+    /// The result for the bridge over this ground.
     fn found(&self, ground: &[(i64, f64)]) -> LineRuns {
-        let vertex = |&(metres, height_m): &(i64, f64)| GroundVertex {
+        let vertex = |&(metres, height_m): &(i64, f64)| SpanGroundPoint {
             at: LatticePoint::new((600 + metres) * self.metre, 1000 * self.metre),
             triangle: metres as u32,
             next_triangle: metres as u32 + 1,
@@ -81,7 +82,7 @@ impl World {
             along_um: metres as u64 * 1_000_000,
             is_source: metres == 0 || metres == 400,
         };
-        let line = GroundLine {
+        let line = SpanGroundLine {
             ordinal: 1,
             way_id: 2,
             class: FunctionalRoadClass::new(3).unwrap(),
@@ -92,7 +93,8 @@ impl World {
     }
 }
 
-/// Over a valley the deck is straight from support to support: vertices of the ground between them are left out.
+/// Over a valley the deck is straight from support to support: vertices of the ground between them
+/// are omitted.
 #[test]
 fn a_deck_over_a_valley_is_one_run() {
     let world = World::new();
@@ -104,7 +106,8 @@ fn a_deck_over_a_valley_is_one_run() {
     assert_eq!(points, [ground(0), ground(400)]);
 }
 
-/// Where a hill comes in its way, a bridge lies on the ground, from where the two meet: at 80 m and 312.5 m.
+/// If a hill blocks its way, a bridge follows the ground between the two points where they meet: at
+/// 80 m and 312.5 m.
 #[test]
 fn a_hill_parts_a_deck() {
     let world = World::new();
@@ -121,11 +124,11 @@ fn a_hill_parts_a_deck() {
         (world.found(&ground).within_m - 35.0).abs() < 1e-9,
         "150 m at 150 m, where the deck has 115"
     );
-    // Where all is ground, there is no run.
+    // If the bridge is on the ground everywhere, there is no run.
     assert_eq!(world.runs(&[(0, 100.0), (200, 160.0), (400, 140.0)]), []);
 }
 
-/// A tile that holds the middle alone has a run that ends in the air on both sides.
+/// A tile that contains only the middle of a bridge has a run that ends in the air on both sides.
 #[test]
 fn a_tile_within_a_bridge_has_a_run_without_ground() {
     let world = World::new();

@@ -1,7 +1,8 @@
-//! The heights of all bridges and tunnels, level by level, and their runs by tile.
+//! Computes the heights of all bridges and tunnels, level by level, and their runs by tile.
 //!
-//! Spans go through many tiles, and decks of a level need the ground of that level at all their supports, so they are solved when all tiles are
-//! there. Of all tiles together the network of bridges and tunnels is in memory, and nothing else.
+//! Spans extend over many tiles, and decks of a level need the ground of that level at all their
+//! supports, so they are solved when all tiles are complete. Memory holds the network of bridges
+//! and tunnels of all tiles, and nothing else.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -11,8 +12,8 @@ use std::{
 use corniche_geom::{LatticePoint, TileId};
 use corniche_spans::{Decks, SpanKind, SpanProblem, SpanReason};
 use corniche_spec::{
-    Observer,
-    artifacts::{self, Kind},
+    BuildObserver,
+    artifacts::{self, ArtifactKind},
 };
 use corniche_tileset::{
     OuterGround, SpanRun, encode_spans, limits::MAX_SPAN_POINTS, pmtiles_order,
@@ -32,29 +33,30 @@ use crate::{
     roads::ground_lines,
 };
 
-/// Where the ground is on the wrong side of a bridge or a tunnel by more than this on the finest level, it is told, metres.
+/// If the ground is on the wrong side of a bridge or a tunnel by more than this on the finest
+/// level, metres, it is reported.
 const MOST_WITHIN_M: f64 = 1.0;
 
-/// What solving needs.
+/// The inputs and resources for solving.
 pub struct SpanSolving<'a> {
-    /// What is solved.
+    /// The bridges and tunnels to solve.
     pub of: SpanInputs<'a>,
-    /// The step of heights, metres.
+    /// The height step, metres.
     pub quantum_m: f64,
-    /// The TIN of a tile; `None` where it has no ground.
+    /// Returns the TIN of a tile; `None` if it has no ground.
     pub tin: &'a TinOfTile<'a>,
-    /// The ground where the package has none, or not that of whole tiles.
+    /// The ground where the package has no ground, or not that of whole tiles.
     pub outer: &'a dyn OuterGrounds,
     /// Worker threads.
     pub threads: usize,
-    /// Who is told of progress.
-    pub observer: &'a dyn Observer,
+    /// Receives progress.
+    pub observer: &'a dyn BuildObserver,
 }
 
 type TinOfTile<'a> = dyn Fn(TileId) -> Result<Option<Tin>, ExtractError> + Sync + 'a;
 
 impl SpanSolving<'_> {
-    /// Solves bridges and tunnels, and keeps the sections of all tiles.
+    /// Solves bridges and tunnels, and stores the sections of all tiles.
     ///
     /// # Errors
     /// See [`ExtractError`].
@@ -63,8 +65,8 @@ impl SpanSolving<'_> {
         let observer = self.observer;
         let network = SpanNetwork::load(&self.of)?;
         let mut by_level: BTreeMap<u8, Vec<TileId>> = BTreeMap::new();
-        for item in store.items(Kind::SpanGround as u8) {
-            let id = artifacts::tile_of(Kind::SpanGround.item(item))?;
+        for item in store.items(ArtifactKind::SpanGround as u8) {
+            let id = artifacts::tile_of(ArtifactKind::SpanGround.item(item))?;
             by_level.entry(id.z()).or_default().push(id);
         }
         let all = by_level.values().map(Vec::len).sum::<usize>();
@@ -90,7 +92,7 @@ impl SpanSolving<'_> {
             grounds_m[index] = outer_m.or(own_m);
         }
         let decks = Decks::solve(Arc::clone(&network.spans), &network.crossings, &grounds_m);
-        // Of the joints, which come first, those that the package has ground at have that of the level, too.
+        // The joints come first; those with ground in the package use the ground of the level, too.
         let joints = network.spans.joints().len();
         let joints = needed.partition_point(|&index| index < joints);
         let on_level = |level: u8| -> Result<Vec<Option<f64>>, ExtractError> {
@@ -131,7 +133,7 @@ impl SpanSolving<'_> {
         });
         let is_without = |&&index: &&usize| grounds_m[index].is_none();
         let without_ground = needed.iter().filter(is_without).count() as u64;
-        Ok(SpanTotals::of(&network, &decks, within, (outer.collect(), without_ground)))
+        Ok(SpanTotals::from_network(&network, &decks, within, (outer.collect(), without_ground)))
     }
 
     /// The ground of a level at points of the lattice.
@@ -161,7 +163,7 @@ impl SpanSolving<'_> {
         Ok(grounds_m)
     }
 
-    /// The tiles of a level that hold a point, on their borders too.
+    /// The tiles of a level that contain a point, borders included.
     fn tiles_at(&self, level: u8, point: LatticePoint) -> impl Iterator<Item = TileId> + use<> {
         let frame = *self.of.frame;
         let [column, row] = frame.tile_column_row(level, point);
@@ -172,7 +174,8 @@ impl SpanSolving<'_> {
         })
     }
 
-    /// Keeps the runs of a tile. Returns which of its bridges and tunnels the ground has, not they, and which have more points than a tile can hold.
+    /// Stores the runs of a tile. Returns the bridges and tunnels that remain on the ground, and
+    /// the ways that have more points than a tile can hold.
     fn put_section(
         &self,
         (network, decks): (&SpanNetwork, &Decks),
@@ -211,7 +214,8 @@ impl SpanSolving<'_> {
     }
 }
 
-/// Takes the runs of the ways with the most points away until readers accept what is left. Returns these ways.
+/// Removes the runs of the ways with the most points until readers accept the rest. Returns the
+/// removed ways.
 fn left_out(runs: &mut Vec<SpanRun>) -> impl Iterator<Item = i64> + use<> {
     let mut of_ways: BTreeMap<i64, usize> = BTreeMap::new();
     for run in runs.iter() {

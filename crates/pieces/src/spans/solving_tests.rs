@@ -1,4 +1,5 @@
-//! A tile holds so many points of bridges and tunnels, and the longest way gives way.
+//! A tile holds a limited number of points of bridges and tunnels, and the longest way is skipped
+//! first.
 
 use corniche_geom::LatticePoint;
 use corniche_roads::{FunctionalRoadClass, Structure};

@@ -1,4 +1,5 @@
-//! The network of bridges, tunnels and the roads near them, with where along its road each stretch lies.
+//! The network of bridges, tunnels and the roads near them, with the position of each stretch along
+//! its road.
 
 use std::{collections::HashMap, sync::Arc};
 
@@ -15,51 +16,56 @@ use crate::{
     roads::near_spans::{self, NearRoad},
 };
 
-/// Where bridges and tunnels are found.
+/// The sources of bridges and tunnels.
 #[derive(Clone, Copy)]
 pub struct SpanInputs<'a> {
-    /// Holds the roads near spans, and the ground beneath them; takes the sections.
+    /// The store with the roads near spans and the ground beneath them; the sections are written to
+    /// it.
     pub store: &'a dyn Artifacts,
     /// The package's grid.
     pub frame: &'a GridFrame,
-    /// Lengths come from it, and not from the table of a package, whose extent they must not depend on.
+    /// Measures lengths. The table of a package is not used, because lengths must not depend on the
+    /// table's extent.
     pub projection: &'a (dyn Projection + Sync),
-    /// The rectangle of the whole elevation data, whatever was asked of it: there roads end.
+    /// The rectangle of the whole elevation data, regardless of the requested bounds: roads end
+    /// there.
     pub whole: LatticeBounds,
 }
 
-/// A place along a road.
+/// A position along a road.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct OnRoad {
     /// The number of the road.
     pub ordinal: u32,
-    /// How far along it, micrometres.
+    /// Distance along the road, micrometres.
     pub(crate) along_um: u64,
 }
 
 /// Bridges and tunnels of a build, before their heights are known.
 pub struct SpanNetwork {
-    /// In the order of their roads, and along each.
+    /// Stretches in the order of their roads, and along each road.
     stretches: Vec<Stretch>,
     /// Bridges and tunnels with their junctions.
     pub spans: Arc<Spans>,
     pub(crate) crossings: Crossings,
-    /// For each span whether a road of the package on it reaches what was asked for: only these are counted.
+    /// For each span, whether it has a road of the package that reaches the requested region: only
+    /// these spans are counted.
     pub(crate) is_counted: Vec<bool>,
-    /// The ways of these spans, ascending.
+    /// The ways of the counted spans, ascending.
     pub(crate) counted_ways: Vec<i64>,
-    /// For each span the segments of its roads.
+    /// For each span, the segments of its roads.
     segments: Vec<Vec<[LatticePoint; 2]>>,
-    /// For each span those whose heights its own depend on: what it is lifted over or lowered beneath.
+    /// For each span, the spans on whose heights its own depend: it is lifted over them or lowered
+    /// beneath them.
     depends_on: Vec<Vec<usize>>,
-    /// For each span whether it, or one that depends on it, reaches what was asked for.
+    /// For each span, whether it, or one that depends on it, reaches the requested region.
     is_needed: Vec<bool>,
 }
 
-/// A place whose ground spans need.
+/// A place where spans need ground.
 pub struct SpanPlace {
     pub(crate) at: LatticePoint,
-    /// The span that depends on it; `None` where nothing does that reaches what was asked for.
+    /// The span that depends on it; `None` if no such span reaches the requested region.
     pub(crate) span: Option<usize>,
 }
 
@@ -69,18 +75,19 @@ struct Stretch {
     from_um: u64,
     to_um: u64,
     chain: ChainNumber,
-    /// Where along the chain its ends lie, metres: those at `from_um` and `to_um`.
+    /// Positions of its ends along the chain (roads joined end to end), metres: those at `from_um`
+    /// and `to_um`.
     on_chain_m: [f64; 2],
 }
 
 impl SpanNetwork {
-    /// Finds the spans of the roads that were kept.
+    /// Finds the spans of the stored roads.
     ///
     /// # Errors
     /// See [`ExtractError`].
     pub fn load(inputs: &SpanInputs<'_>) -> Result<Self, ExtractError> {
         let (network, places) = network(inputs)?;
-        let chains = Chains::of(&network, Breaks::JunctionsAndStructures);
+        let chains = Chains::from_network(&network, Breaks::JunctionsAndStructures);
         let known = degrees_of(&network, inputs)?;
         let projected = |at_m: [f64; 2]| {
             let mut position = [at_m];
@@ -152,7 +159,7 @@ impl SpanNetwork {
     /// The places whose ground solving needs, in the order of [`Decks::places`].
     #[must_use]
     pub fn places(&self) -> Vec<SpanPlace> {
-        // Where nothing is moved, nothing needs the ground.
+        // If no span is moved, none needs the ground.
         let of_crossing = |crossing: &Crossing| {
             let [moved, _] = Some(crossing.moved()).filter(|_| crossing.order == Order::Known)?;
             self.spans.span_of(moved.chain)
@@ -166,7 +173,7 @@ impl SpanNetwork {
         .collect()
     }
 
-    /// For each span whether it has a segment that `is_wanted`, or one that has depends on it.
+    /// For each span, whether it, or one that depends on it, has a segment that `is_wanted`.
     pub(crate) fn needed_where(
         &self,
         mut is_wanted: impl FnMut([LatticePoint; 2]) -> bool,
@@ -175,7 +182,7 @@ impl SpanNetwork {
         with_dependencies(&self.depends_on, self.segments.iter().map(&mut has).collect())
     }
 
-    /// The chain at a place of a bridge or a tunnel, and how far along it the place is, metres.
+    /// The chain at a position on a bridge or a tunnel, and the distance along the chain, metres.
     pub(crate) fn on_chain(&self, at: OnRoad) -> Option<(ChainNumber, f64)> {
         let after = self
             .stretches
@@ -187,7 +194,8 @@ impl SpanNetwork {
         Some((own.chain, own.along_m(at.along_um)))
     }
 
-    /// Where bends of a deck between two places of a road lie along it, ascending; both are on one stretch.
+    /// The bends of a deck between two positions of a road, as distances along it, ascending; both
+    /// positions are on one stretch.
     pub(crate) fn bends(
         &self,
         decks: &Decks,
@@ -206,7 +214,7 @@ impl SpanNetwork {
             on_chain_m.sort_by(f64::total_cmp);
             let found = decks.bends_m(stretch.chain, on_chain_m);
             bends.extend(found.into_iter().map(|at_m| stretch.along_um(at_m)));
-            // Where two stretches meet, a deck may bend, too.
+            // A deck may also bend where two stretches meet.
             bends.push(stretch.to_um);
         }
         bends.sort_unstable();
@@ -244,7 +252,7 @@ struct PlacedRoad {
     segments_um: Vec<u64>,
 }
 
-/// For each span those whose heights its own depend on.
+/// For each span, the spans on whose heights its own depend.
 fn depends_on(spans: &Spans, crossings: &[Crossing]) -> Vec<Vec<usize>> {
     let mut depends_on = vec![Vec::new(); spans.len()];
     for crossing in crossings.iter().filter(|crossing| crossing.order == Order::Known) {
@@ -258,7 +266,7 @@ fn depends_on(spans: &Spans, crossings: &[Crossing]) -> Vec<Vec<usize>> {
     depends_on
 }
 
-/// The chosen spans, and all on which their heights depend.
+/// The chosen spans, and all spans on which their heights depend.
 fn with_dependencies(depends_on: &[Vec<usize>], mut is_chosen: Vec<bool>) -> Vec<bool> {
     let mut waiting: Vec<usize> = (0..is_chosen.len()).filter(|&span| is_chosen[span]).collect();
     while let Some(span) = waiting.pop() {
@@ -271,7 +279,7 @@ fn with_dependencies(depends_on: &[Vec<usize>], mut is_chosen: Vec<bool>) -> Vec
     is_chosen
 }
 
-/// Longitude and latitude of all points of a network, by the bits of their places in steps.
+/// Longitude and latitude of all points of a network, by the bits of their positions in steps.
 fn degrees_of(
     network: &Network,
     inputs: &SpanInputs<'_>,
@@ -282,7 +290,7 @@ fn degrees_of(
     Ok(all().map(|point| point.in_steps().map(f64::to_bits)).zip(positions).collect())
 }
 
-/// The roads as a network, and what each of its roads is. They end where the data end.
+/// The roads as a network, with the origin of each road. Roads end at the edge of the data.
 fn network(inputs: &SpanInputs<'_>) -> Result<(Network, Vec<PlacedRoad>), ExtractError> {
     let lengths = TrueLengths::projected(*inputs.frame, inputs.projection);
     let mut builder = NetworkBuilder::default();
@@ -298,7 +306,7 @@ fn network(inputs: &SpanInputs<'_>) -> Result<(Network, Vec<PlacedRoad>), Extrac
         for part in corniche_drape::clip_parts(&road.line, &inputs.whole, OwnedBorders::ALL) {
             let mut placed =
                 PlacedRoad { ordinal, is_reached, from_um: 0, segments_um: Vec::new() };
-            // Of roads on the ground nobody asks where they lie along their ways.
+            // The position along the way is not needed for roads on the ground.
             if let ([_, ..], Some(&first)) = (&segments_um[..], part.segments.first()) {
                 let pieces: Vec<[u64; 2]> =
                     lengths.pieces_um(&road.line, &part, &segments_um).collect();

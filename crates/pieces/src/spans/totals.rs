@@ -1,4 +1,4 @@
-//! What is known of all bridges and tunnels together.
+//! The totals of all bridges and tunnels.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -13,26 +13,27 @@ use serde::{Deserialize, Serialize};
 use super::span_network::SpanNetwork;
 use crate::roads::losses;
 
-/// Counts of bridges and tunnels, and what is to be told of them. They are kept after all sections.
+/// Counts of bridges and tunnels, and the notes about them. They are stored after all sections.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct SpanTotals {
     bridges: u64,
     tunnels: u64,
     crossings: u64,
-    /// What is to be told of spans: the reason, a way, and the node if it is so at a node.
+    /// Notes about spans: the reason, a way, and the node if the note concerns a node.
     pub problems: Vec<(String, i64, Option<i64>)>,
-    /// Ground that is not the package's own, ascending by place.
+    /// Ground that is not the package's own, in ascending order of position.
     pub outer: Vec<OuterGround>,
-    /// At how many places needed by spans there is no ground.
+    /// The number of places without ground that spans need.
     pub without_ground: u64,
-    /// Inputs that are used for it alone: their places in the plan, and what they are.
+    /// Inputs that are used for this ground alone: their indices in the plan, and their records.
     pub inputs: Vec<(u32, InputRecord)>,
 }
 
 impl SpanTotals {
-    /// Counts solved decks, those that a road of the package has where it was asked for; `within` are those that the ground is on the wrong side of.
+    /// Counts solved decks with a road of the package in the requested region; `within` are those
+    /// with the ground on the wrong side.
     #[must_use]
-    pub fn of(
+    pub fn from_network(
         network: &SpanNetwork,
         decks: &Decks,
         within: BTreeSet<SpanProblem>,
@@ -69,17 +70,17 @@ impl SpanTotals {
         }
     }
 
-    /// Says that a package whose terrain is taken does not have all ground that is needed.
+    /// The warning that a package whose terrain is reused lacks ground that spans need.
     #[must_use]
     pub fn told_without_ground(&self, package: &Path) -> String {
         format!(
-            "bridges and tunnels need ground at {} places at which {} has none; if these lie beyond its bounds, and it was made with another extract or other classes, a build from the elevation files has them",
-            self.without_ground,
-            package.display()
+            "bridges and tunnels need ground at {} points, but {package:?} has none there; if these points are outside its bounds, and it was built with another extract or other classes, build from the elevation files with --dem",
+            self.without_ground
         )
     }
 
-    /// What the manifest says of them; how long they are follows from what was kept of all roads.
+    /// The manifest's record of these totals; the lengths follow from the kept lengths of all
+    /// roads.
     #[must_use]
     pub fn counts(&self, kept: &losses::Sums) -> SpanCounts {
         let mut reasons: BTreeMap<String, u64> = BTreeMap::new();

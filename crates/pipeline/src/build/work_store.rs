@@ -1,4 +1,4 @@
-//! Where a build keeps its store, and what it does with one that an earlier build left.
+//! The store of a build: where it is, and what happens to the store of an earlier build.
 
 use std::{
     fs,
@@ -12,20 +12,22 @@ use corniche_ground::TerrainError;
 use corniche_osm::ReadOsmError;
 use corniche_pieces::ExtractError;
 use corniche_plan::BuildPlan;
-use corniche_spec::{Leftovers, Observer, artifacts::Kind, hex::hex, inputs::InputError};
+use corniche_spec::{
+    BuildObserver, Leftovers, artifacts::ArtifactKind, hex::hex, inputs::InputError,
+};
 use corniche_store::{Artifacts as _, Disk, LocalStore, StoreError, StoredPlan};
 use sha2::{Digest as _, Sha256};
 
 use crate::BuildError;
 
-/// Inputs of so many bytes take long to hash: their hashes alone are worth keeping.
+/// Hashing inputs of this many bytes takes so long that their hashes alone are worth keeping.
 const LONG_TO_HASH_BYTES: u64 = 1 << 30;
 
-/// The folder of the store of a build: beside the package, or in `tmp`.
+/// The folder of a build's store: next to the package, or in `tmp`.
 pub(crate) fn folder_of(target: &Path, tmp: Option<&Path>) -> PathBuf {
     let name = target.file_name().unwrap_or_default().to_string_lossy();
     match tmp {
-        // Packages of one name in different folders have stores of their own there.
+        // Packages with the same name in different folders have separate stores there.
         Some(tmp) => {
             let path = std::path::absolute(target).unwrap_or_else(|_| target.to_path_buf());
             let digest = hex(&Sha256::digest(path.as_os_str().as_encoded_bytes()));
@@ -35,7 +37,8 @@ pub(crate) fn folder_of(target: &Path, tmp: Option<&Path>) -> PathBuf {
     }
 }
 
-/// Fails if a store is there that the build may not use; nothing is changed. Returns the bytes that it takes.
+/// Fails if there is a store that the build may not use; changes nothing. Returns the size of the
+/// store in bytes.
 pub(crate) fn look(
     disk: &Arc<dyn Disk>,
     folder: &Path,
@@ -51,7 +54,7 @@ pub(crate) fn look(
     Ok(files.filter_map(|file| Some(file.metadata().ok()?.len())).sum())
 }
 
-/// Fails if the store of an earlier build may not be gone on with.
+/// Fails if the store of an earlier build may not be resumed.
 fn check(
     folder: &Path,
     plan: &BuildPlan,
@@ -68,13 +71,20 @@ fn check(
     Ok(())
 }
 
-/// Makes the store of a build, or goes on with the one that is there, as `leftovers` says. It lies on a disk, in a folder, and is made
-/// durable in an interval.
+/// Where the store of a build is, and how often it is made durable.
+pub(crate) struct StorePlace<'a> {
+    pub(crate) disk: &'a Arc<dyn Disk>,
+    pub(crate) folder: &'a Path,
+    pub(crate) sync_interval: Duration,
+}
+
+/// Creates the store of a build, or resumes the existing one, depending on `leftovers`. The store
+/// is in a folder on a disk, and is synced at an interval.
 pub(crate) fn open(
-    (disk, folder, sync_interval): (&Arc<dyn Disk>, &Path, Duration),
+    StorePlace { disk, folder, sync_interval }: StorePlace<'_>,
     plan: &BuildPlan,
     leftovers: Leftovers,
-    observer: &dyn Observer,
+    observer: &dyn BuildObserver,
 ) -> Result<LocalStore, BuildError> {
     if leftovers == Leftovers::Discard {
         let kept = LocalStore::discard(Arc::clone(disk), folder)?;
@@ -86,8 +96,7 @@ pub(crate) fn open(
     let Some(there) = LocalStore::stored_plan(Arc::clone(disk), folder)? else {
         if leftovers == Leftovers::Resume {
             observer.warning(&format!(
-                "--resume: {} holds nothing to go on from, so the build starts from the beginning",
-                folder.display()
+                "--resume: {folder:?} contains nothing to resume, so the build starts from the beginning"
             ));
         }
         return Ok(LocalStore::create(Arc::clone(disk), folder, &wanted, sync_interval)?);
@@ -96,71 +105,72 @@ pub(crate) fn open(
     let store = LocalStore::open(Arc::clone(disk), folder, &wanted.hash, sync_interval)?;
     if store.repaired() > 0 {
         observer.warning(&format!(
-            "{} artifacts in {} were not complete; they are made again",
-            store.repaired(),
-            folder.display()
+            "{} artifacts in {folder:?} were incomplete; they are computed again",
+            store.repaired()
         ));
     }
     Ok(store)
 }
 
-/// A plan as a store keeps it.
+/// Converts a plan to its form in a store.
 pub(crate) fn stored(plan: &BuildPlan) -> Result<StoredPlan, BuildError> {
     let json = plan.to_json().map_err(|error| BuildError::Start { what: error.to_string() })?;
     Ok(StoredPlan { hash: plan.digest(), bytes: json.into_bytes() })
 }
 
-/// How a plan differs from the one of a store, in words.
+/// Describes how a plan differs from the plan of a store, in words.
 pub(crate) fn differences(plan: &BuildPlan, there: &StoredPlan) -> String {
     let earlier =
         std::str::from_utf8(&there.bytes).ok().and_then(|text| BuildPlan::from_json(text).ok());
     match earlier.map(|earlier| plan.differences(&earlier)) {
         Some(differences) if !differences.is_empty() => differences.join("; "),
-        _ => "it was made by another version of Corniche".to_owned(),
+        _ => "it was created by another version of Corniche".to_owned(),
     }
 }
 
-/// Removes the store of a build that is done. What cannot be removed is only told of: the package is complete.
-pub(crate) fn remove(store: LocalStore, observer: &dyn Observer) {
+/// Deletes the store of a finished build. Files that cannot be deleted cause only a warning,
+/// because the package is complete.
+pub(crate) fn remove(store: LocalStore, observer: &dyn BuildObserver) {
     match store.remove() {
         Ok(kept) => {
             for path in kept {
-                observer.warning(&format!("{} is not Corniche's and was kept", path.display()));
+                observer
+                    .warning(&format!("{path:?} was not created by Corniche and was not deleted"));
             }
         }
         Err(error) => observer.warning(&format!("intermediate results were not removed: {error}")),
     }
 }
 
-/// What a failed build leaves: the store, if a build with `--resume` can go on from it. Tells so.
+/// Handles the store after a failed build: keeps it, with a warning, if a build with `--resume` can
+/// continue from it.
 pub(crate) fn after_failure(
     store: LocalStore,
     folder: &Path,
     plan: &BuildPlan,
     error: &BuildError,
-    observer: &dyn Observer,
+    observer: &dyn BuildObserver,
 ) {
     let input_bytes = plan.inputs.iter().map(|input| input.bytes).fold(0, u64::saturating_add);
-    let has_work = (0..=Kind::LAST as u8)
-        .filter(|&kind| kind != Kind::InputHash as u8 || input_bytes >= LONG_TO_HASH_BYTES)
+    let has_work = (0..=ArtifactKind::LAST as u8)
+        .filter(|&kind| kind != ArtifactKind::InputHash as u8 || input_bytes >= LONG_TO_HASH_BYTES)
         .any(|kind| !store.items(kind).is_empty());
     if is_final(error) || !has_work {
         remove(store, observer);
         return;
     }
-    // What was put since the last time is made durable. If that fails, a little less is there, or nothing any more.
+    // Artifacts since the last sync are made durable. If that fails, some or all of them are lost.
     if matches!(store.flush(), Err(StoreError::Gone { .. })) {
         return;
     }
     observer.warning(&format!(
-        "what was done is kept in {}; the same command with --resume goes on from there, with -O it starts again",
-        folder.display()
+        "progress is saved in {folder:?}; rerun with --resume to continue, or with -O to start over"
     ));
 }
 
-/// Whether the store is of no use any more: it is bound to its inputs and settings, and these must change.
+/// Whether the store is useless now: it is bound to its inputs and settings, and these must change.
 fn is_final(error: &BuildError) -> bool {
-    // An input that is gone may come back, with the disk that it lies on.
+    // A missing input may come back, with its disk.
     if let BuildError::Input(InputError::Changed { path }) = error {
         return path.exists();
     }

@@ -1,11 +1,12 @@
-//! What a planned build is split into, for as many processes as work on it at once.
+//! Splits a planned build into jobs for a number of simultaneous processes.
 //!
 //! ```text
 //!  rectangles of the files ─► nodes of each tile ─┐
 //!  bytes of road pieces ──────────────────────────┴─► costs of tiles ─► subtrees of nearly the same cost ─► jobs
 //! ```
 //!
-//! Estimates come from recorded rates alone: the same plan and stores give the same jobs on every machine.
+//! Estimates are based on recorded rates alone: the same plan and stores give the same jobs on
+//! every machine.
 
 mod grounds;
 mod list;
@@ -18,16 +19,16 @@ use corniche_ground::terrain::ground::GroundSource;
 use corniche_plan::{BuildPlan, Opened, rates};
 use corniche_spec::{
     PlanSettings, Resources,
-    artifacts::{self, Kind},
+    artifacts::{self, ArtifactKind},
     data_tiles::DataTiles,
     memory_shares::MemoryShares,
 };
 use corniche_store::Artifacts as _;
 use corniche_tileset::InputKind;
 
-use grounds::{Grounds, nodes_by_tile};
+use grounds::{LevelTileCosts, nodes_by_tile};
 pub use list::Job;
-use list::{Costs, ExtractCosts, list, micros};
+use list::{BuildCosts, ExtractCosts, list, micros};
 use tile_costs::TileCosts;
 
 use super::{
@@ -37,31 +38,36 @@ use super::{
 };
 use crate::{BuildError, objects::ObjectAccess, steps::roads};
 
-/// More shares are not worth it: each share of nodes reads the ways of all, and the step *roads* after them takes longer than one of sixteen. Their
-/// number does not depend on that of slots, so that another number of slots goes on with the shares that are there.
+/// The largest useful number of shares (chunks of the extract): each share of nodes reads the ways
+/// of all shares, and the following step *roads* takes longer than one of sixteen shares. The
+/// number does not depend on that of slots, so a build with another number of slots can resume with
+/// the existing shares.
 const MOST_SHARES: u64 = 16;
 
-/// What to split, and for whom.
+/// The build to split, and the processes for it.
 #[derive(Debug, Clone)]
 pub struct JobSettings {
-    /// What is built.
+    /// The plan of the build.
     pub plan: BuildPlan,
-    /// Stores with parts: where the roads are in them, it is known how many each tile has. The first need not be there yet.
+    /// Stores with parts: if they contain the roads, the size of each tile's roads is known. The
+    /// first store need not exist yet.
     pub stores: Vec<PathBuf>,
-    /// How many processes work at once.
+    /// The number of processes that run at the same time.
     pub slots: NonZeroU32,
-    /// No part is made smaller than this without need, seconds on one core; `None`: many times what the start of a process takes.
+    /// No part is smaller than this unless necessary, seconds on one core; `None`: a multiple of
+    /// the time to start a process.
     pub least_seconds: Option<f64>,
-    /// What this process may use.
+    /// The resources that this process may use.
     pub resources: Resources,
-    /// Program and version. It must be the one that made the plan.
+    /// Program and version. It must be the program that created the plan.
     pub generator: String,
 }
 
-/// The jobs of a plan, in an order in which one process could do them: those of a step with the most work first, the merge last.
+/// Returns the jobs of a plan, in an order in which one process could run them: those of a step
+/// with the most work first, the merge last.
 ///
 /// # Errors
-/// When the inputs are not those of the plan, or a store cannot be read.
+/// When the inputs do not match the plan, or a store cannot be read.
 pub fn jobs(settings: &JobSettings) -> Result<Vec<Job>, BuildError> {
     let JobSettings { plan, stores, slots, least_seconds, resources, generator } = settings;
     let (_, opened) = open(plan, generator, *resources)?;
@@ -71,10 +77,10 @@ pub fn jobs(settings: &JobSettings) -> Result<Vec<Job>, BuildError> {
     Ok(list(&costs, slots.get(), least_us))
 }
 
-/// A plan and its jobs, as [`jobs`] lists them before anything is made.
+/// Returns a plan and its jobs, as [`jobs`] lists them before any part is built.
 ///
 /// # Errors
-/// When a file cannot be used, the files make no grid, or a setting does not fit them.
+/// When a file cannot be used, the files do not form a grid, or a setting does not match them.
 pub fn plan_with_jobs(
     settings: &PlanSettings,
     resources: Resources,
@@ -84,10 +90,10 @@ pub fn plan_with_jobs(
     let opened = Opened::new(settings)?;
     let costs = costs(&opened, slots.get(), None)?;
     let jobs = list(&costs, slots.get(), costs.least_us());
-    Ok((BuildPlan::of(settings, &opened)?, jobs))
+    Ok((BuildPlan::from_settings(settings, &opened)?, jobs))
 }
 
-/// How many bytes of road pieces each tile has; `None` where the roads are not in the stores yet.
+/// Bytes of road pieces of each tile; `None` if the roads are not in the stores yet.
 fn piece_bytes(
     stores: &[PathBuf],
     plan: &BuildPlan,
@@ -100,8 +106,8 @@ fn piece_bytes(
         return Ok(None);
     }
     let mut bytes = Vec::new();
-    for item in store.items(Kind::RoadPieces as u8) {
-        let key = Kind::RoadPieces.item(item);
+    for item in store.items(ArtifactKind::RoadPieces as u8) {
+        let key = ArtifactKind::RoadPieces.item(item);
         bytes.push((artifacts::tile_of(key)?, store.length(key)?.unwrap_or_default()));
     }
     Ok(Some(bytes))
@@ -111,18 +117,18 @@ fn costs(
     opened: &Opened,
     slots: u32,
     pieces: Option<Vec<(TileId, u64)>>,
-) -> Result<Costs, BuildError> {
+) -> Result<BuildCosts, BuildError> {
     let inputs = opened.inputs.planned()?;
     let input_bytes = inputs.iter().map(|input| input.bytes).fold(0, u64::saturating_add);
     let has_extract = inputs.iter().any(|input| input.kind == InputKind::Osm.name());
     let extract_bytes = opened.extract_bytes()? as f64;
-    let Grounds { heights, mut tiles } = match &opened.source {
+    let LevelTileCosts { heights, mut tiles } = match &opened.source {
         GroundSource::Dem(dem) => {
             let rectangles = dem.file_nodes(&opened.grid)?;
-            let data = DataTiles::of(&opened.grid);
-            Grounds::measured(opened, &nodes_by_tile(&opened.grid.frame, &data, &rectangles))
+            let data = DataTiles::from_plan(&opened.grid);
+            LevelTileCosts::measured(opened, &nodes_by_tile(&opened.grid.frame, &data, &rectangles))
         }
-        GroundSource::Package(terrain) => Grounds::recorded(opened, terrain)?,
+        GroundSource::Package(terrain) => LevelTileCosts::recorded(opened, terrain)?,
     };
     let tiles_count = tiles.len() as f64;
     let pieces =
@@ -134,7 +140,7 @@ fn costs(
             .map(|(id, bytes)| (id, micros(bytes as f64 * rates::TILE_SECONDS_PER_PIECE_BYTE))),
     );
     let max_level = opened.grid.frame.max_level();
-    Ok(Costs {
+    Ok(BuildCosts {
         hashes_us: micros(input_bytes as f64 * rates::SECONDS_PER_HASHED_BYTE),
         extract: has_extract.then(|| extract_costs(extract_bytes, slots)),
         heights: heights.map(|heights| TileCosts::new(max_level, heights)),
@@ -161,7 +167,8 @@ fn extract_costs(extract_bytes: f64, slots: u32) -> ExtractCosts {
     }
 }
 
-/// Bytes of road pieces before anybody knows where the roads are: as if they lay where the ground costs most.
+/// Distributes the bytes of road pieces before the positions of roads are known: as if the roads
+/// were where the ground costs most.
 fn spread(bytes: f64, tiles: &[(TileId, u64)]) -> Vec<(TileId, u64)> {
     let all_us = tiles.iter().map(|(_, cost_us)| cost_us).sum::<u64>().max(1) as f64;
     tiles.iter().map(|&(id, cost_us)| (id, (bytes * cost_us as f64 / all_us) as u64)).collect()

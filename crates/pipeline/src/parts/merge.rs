@@ -1,73 +1,75 @@
-//! The package from all parts.
+//! Writes the package from all parts.
 
 use std::path::PathBuf;
 
 use corniche_geom::TileId;
 use corniche_ground::terrain::ground::GroundSource;
-use corniche_objects::Requests;
+use corniche_objects::StorageRequests;
 use corniche_pieces::layers::defects::replay_defects;
 use corniche_plan::BuildPlan;
-use corniche_spec::{Observer, Resources};
+use corniche_spec::{BuildObserver, Resources};
 use corniche_store::{Existing, LocalStore};
 use corniche_tileset::Manifest;
 
 use super::{
     needed_parts::is_merged,
-    package::PackagePlace,
+    package::PackageDestination,
     planned::open,
     stores::{GivenStores, Stores},
 };
 use crate::{
     BuildError, BuildSummary,
     build::destination,
-    context::Context,
+    context::BuildContext,
     objects::ObjectAccess,
     steps::{coarse_tiles, merge as sums, recorded_tiles},
 };
 
-/// The part that holds what a merge makes, while it runs.
+/// The part that holds the results of a merge while it runs.
 const OWN_PART: &str = "merge";
 
-/// What to merge.
+/// The settings of a merge.
 #[derive(Debug, Clone)]
 pub struct MergeSettings {
-    /// What is built.
+    /// The plan of the build.
     pub plan: BuildPlan,
-    /// Folders of parts, or addresses in object storage. If the first is a folder, it also holds intermediate results while the merge runs.
+    /// Folders of parts, or addresses in object storage. If the first one is a folder, it also
+    /// holds intermediate results while the merge runs.
     pub stores: Vec<PathBuf>,
-    /// Where intermediate results lie else, and a package that then goes to object storage; `None`: the system's folder for temporary files.
+    /// The folder for intermediate results otherwise, and for a package that is then uploaded to
+    /// object storage; `None`: the system's temporary folder.
     pub tmp: Option<PathBuf>,
     /// The package to write: a file, or an address in object storage.
     pub output: PathBuf,
     /// What to do when the package exists.
     pub existing: Existing,
-    /// What the run may use.
+    /// The resources that the run may use.
     pub resources: Resources,
-    /// Program and version. It must be the one that made the plan.
+    /// Program and version. It must be the program that created the plan.
     pub generator: String,
 }
 
-/// What came of it.
+/// The result of a merge.
 #[derive(Debug, Clone)]
 pub struct MergeSummary {
     /// The package.
     pub package: BuildSummary,
-    /// What was asked of object storage; `None` if neither a store nor the package is there.
-    pub requests: Option<Requests>,
+    /// Requests to object storage; `None` if neither a store nor the package is there.
+    pub requests: Option<StorageRequests>,
 }
 
-/// Writes the package of a plan from its parts: the same bytes as [`build`](crate::build) with the plan's settings. The stores stay as
-/// they are.
+/// Writes the package of a plan from its parts: the same bytes as [`build`](crate::build) with the
+/// plan's settings. The stores remain unchanged.
 ///
 /// # Errors
-/// See [`BuildError`]; [`BuildError::Artifact`] if a part is not there.
+/// See [`BuildError`]; [`BuildError::Artifact`] if a part is missing.
 pub fn merge(
     settings: &MergeSettings,
-    observer: &dyn Observer,
+    observer: &dyn BuildObserver,
 ) -> Result<MergeSummary, BuildError> {
     let MergeSettings { plan, stores, tmp, output, existing, resources, generator } = settings;
     let mut access = ObjectAccess::new(*resources);
-    let place = PackagePlace::of(output, *existing, tmp.as_deref(), &mut access)?;
+    let place = PackageDestination::resolve(output, *existing, tmp.as_deref(), &mut access)?;
     let destination = &place.destination;
     let given = GivenStores { names: stores, tmp: tmp.as_deref() };
     let stores = Stores::look(given, plan, access, false)?;
@@ -76,8 +78,8 @@ pub fn merge(
     let finished = destination.begin(destination.claim(observer)?)?;
     let open_stores = stores.open(OWN_PART, &is_merged)?;
     let store = &open_stores.store;
-    let context = Context::new(&plan_settings, *resources, &opened, store, observer);
-    let wanted = sums::Target { finished: finished.path(), named: output };
+    let context = BuildContext::new(&plan_settings, *resources, &opened, store, observer);
+    let wanted = sums::MergeTarget { finished: finished.path(), named: output };
     let merged = run(&context, store, &wanted)
         .and_then(|manifest| Ok((manifest, destination::place(finished)?)));
     let abandoned = open_stores.abandon();
@@ -94,13 +96,13 @@ pub fn merge(
 }
 
 fn run(
-    context: &Context<'_>,
+    context: &BuildContext<'_>,
     store: &LocalStore,
-    target: &sums::Target<'_>,
+    target: &sums::MergeTarget<'_>,
 ) -> Result<Manifest, BuildError> {
     sums::check_complete(context)?;
     if let GroundSource::Package(terrain) = context.source {
-        // Those above the subtrees.
+        // These are the tiles above the subtrees.
         recorded_tiles::make(context, terrain, TileId::ROOT)?;
     }
     if !context.settings.osm.is_empty() {

@@ -1,4 +1,4 @@
-//! A step opens the sealed parts that it can read and no others.
+//! A step opens the sealed parts that it can read, and no others.
 
 use super::*;
 
@@ -12,7 +12,7 @@ fn share(number: u16, of: u16) -> Share {
 
 #[test]
 fn every_name_is_read_as_it_is_made() {
-    for step in Step::ALL {
+    for step in PartStep::ALL {
         let (scope, own) = (tile(5, 17, 3), share(2, 7));
         let name = part_name(step, scope, own);
         let read = PartName::parse(&name).unwrap();
@@ -23,15 +23,15 @@ fn every_name_is_read_as_it_is_made() {
         if step.has_shares() {
             assert_eq!(read.share, own, "{name}");
         }
-        // Its own part is always read: what is there is not made again.
+        // Its own part is always read, because existing artifacts are not computed again.
         assert!(is_needed(step, scope, own, &name), "{name}");
     }
-    // Names that nobody makes can hold anything.
+    // Parts with unknown names may contain anything.
     for name in
         ["", "build", "merge", "heights", "heights-1-9-9", "ways-3-2", "tiles-1-0-0-0", "top-1"]
     {
         assert!(PartName::parse(name).is_none(), "{name}");
-        assert!(is_needed(Step::Hashes, TileId::ROOT, Share::WHOLE, name), "{name}");
+        assert!(is_needed(PartStep::Hashes, TileId::ROOT, Share::WHOLE, name), "{name}");
         assert!(is_merged(name) && has_roads(name), "{name}");
     }
 }
@@ -63,17 +63,17 @@ fn a_step_opens_what_it_can_read_and_nothing_else() {
         "tiles-0-0-0",
     ];
     let opened = |step| names.into_iter().filter(|name| needs(step, name)).collect::<Vec<_>>();
-    assert_eq!(opened(Step::Hashes), ["hashes"]);
-    assert_eq!(opened(Step::Ways), ["ways-1-4", "roads"]);
-    assert_eq!(opened(Step::Nodes), ["ways-1-4", "ways-2-4", "nodes-1-4", "roads"]);
+    assert_eq!(opened(PartStep::Hashes), ["hashes"]);
+    assert_eq!(opened(PartStep::Ways), ["ways-1-4", "roads"]);
+    assert_eq!(opened(PartStep::Nodes), ["ways-1-4", "ways-2-4", "nodes-1-4", "roads"]);
     assert_eq!(
-        opened(Step::Roads),
+        opened(PartStep::Roads),
         ["ways-1-4", "ways-2-4", "ways-1-2", "nodes-1-4", "nodes-2-4", "roads"]
     );
-    assert_eq!(opened(Step::Heights), ["heights-3-2-2", "heights-1-0-0", "heights-5-8-8"]);
-    assert_eq!(opened(Step::Top).len(), 10);
+    assert_eq!(opened(PartStep::Heights), ["heights-3-2-2", "heights-1-0-0", "heights-5-8-8"]);
+    assert_eq!(opened(PartStep::Top).len(), 10);
     assert_eq!(
-        opened(Step::Tiles),
+        opened(PartStep::Tiles),
         [
             "roads",
             "top",

@@ -1,4 +1,4 @@
-//! Where a merge writes its package: a file, or an object, which is sent when the package is complete.
+//! The target of a merge: a file, or an object that is uploaded when the package is complete.
 
 use std::{
     env, fs,
@@ -6,7 +6,7 @@ use std::{
 };
 
 use corniche_objects::{Bucket, ObjectAddress, ObjectError, Upload};
-use corniche_spec::{Observer, PlanSettings, hex::hex};
+use corniche_spec::{BuildObserver, PlanSettings, hex::hex};
 use corniche_store::{Claim, Existing, PARTS_NAME, PLAN_NAME, STORE_NAME, make_own_folder};
 use sha2::{Digest as _, Sha256};
 
@@ -16,11 +16,11 @@ use crate::{
     objects::ObjectAccess,
 };
 
-/// Where a package goes, looked at before any work is done.
-pub(crate) struct PackagePlace {
-    /// Where the file is written.
+/// The target of a package, checked before any work is done.
+pub(crate) struct PackageDestination {
+    /// The path at which the file is written.
     pub(crate) destination: Destination,
-    /// Where it is sent then.
+    /// The object to which the file is then uploaded.
     object: Option<PackageObject>,
 }
 
@@ -28,13 +28,14 @@ struct PackageObject {
     bucket: Bucket,
     address: ObjectAddress,
     existing: Existing,
-    /// Is locked until the package is sent. Its name follows from the address: of two merges of one package at once, one is refused.
+    /// Locked until the package is uploaded. Its name follows from the address: of two simultaneous
+    /// merges of one package, one is rejected.
     _lock: Claim,
-    /// Holds nothing but the file and the lock. Dropped last.
+    /// A folder that contains nothing but the file and the lock. Dropped last.
     _folder: EmptyFolder,
 }
 
-/// Removes a folder that is empty; one in which another merge is at work stays.
+/// Deletes a folder if it is empty; a folder in use by another merge is kept.
 struct EmptyFolder(PathBuf);
 
 impl Drop for EmptyFolder {
@@ -43,16 +44,16 @@ impl Drop for EmptyFolder {
     }
 }
 
-impl PackagePlace {
-    /// Fails where no package may be written, or where one is that is to be kept.
-    pub(crate) fn of(
+impl PackageDestination {
+    /// Fails if no package may be written there, or if the existing one must be kept.
+    pub(crate) fn resolve(
         output: &Path,
         existing: Existing,
         tmp: Option<&Path>,
         access: &mut ObjectAccess,
     ) -> Result<Self, BuildError> {
         let Some(address) = crate::objects::address(output)? else {
-            let destination = Destination::of(output, existing)?;
+            let destination = Destination::resolve(output, existing)?;
             return Ok(Self { destination, object: None });
         };
         if address.key.is_empty() {
@@ -64,7 +65,7 @@ impl PackagePlace {
                 return Err(BuildError::Exists { path: output.to_path_buf() });
             }
             Some(_) => {}
-            // Only a list tells apart a bucket that is missing.
+            // Only a list request reveals a missing bucket.
             None => drop(bucket.list(&address.key)?),
         }
         let digest = hex(&Sha256::digest(address.to_string().as_bytes()));
@@ -75,13 +76,13 @@ impl PackagePlace {
         }
         let lock = claim(&folder.join("merge"), output, &folder)?;
         let file = folder.join(address.file_name());
-        let destination = Destination::of(&file, Existing::Replace)?;
+        let destination = Destination::resolve(&file, Existing::Replace)?;
         let object =
             PackageObject { bucket, address, existing, _lock: lock, _folder: EmptyFolder(folder) };
         Ok(Self { destination, object: Some(object) })
     }
 
-    /// Fails if the package would replace one of the inputs, or an object of one of the stores.
+    /// Fails if the package would overwrite one of the inputs, or an object of one of the stores.
     pub(crate) fn refuse_inputs(
         &self,
         settings: &PlanSettings,
@@ -106,8 +107,8 @@ impl PackagePlace {
         Ok(())
     }
 
-    /// Sends the file that is complete now to where the package belongs.
-    pub(crate) fn send(&self, observer: &dyn Observer) -> Result<(), BuildError> {
+    /// Uploads the complete file, if the package belongs in object storage.
+    pub(crate) fn send(&self, observer: &dyn BuildObserver) -> Result<(), BuildError> {
         let Some(PackageObject { bucket, address, existing, .. }) = &self.object else {
             return Ok(());
         };
@@ -118,16 +119,16 @@ impl PackagePlace {
             existing: *existing,
             should_stop: &|| observer.is_cancelled(),
         });
-        // Where it was stopped or refused: the parts are in the stores, and merging them again takes little.
+        // After an interruption or a rejection the file is not kept: the parts are in the stores,
+        // and merging them again takes little time.
         let is_kept =
             !matches!(sent, Ok(_) | Err(ObjectError::Stopped { .. } | ObjectError::Exists { .. }));
         if is_kept {
-            let file = file.display();
             observer.warning(&format!(
-                "the package is complete, but was not sent; it is kept as {file}"
+                "the package is complete, but was not uploaded; it is kept as {file:?}"
             ));
         } else if let Err(error) = fs::remove_file(file) {
-            observer.warning(&format!("{} was not removed: {error}", file.display()));
+            observer.warning(&format!("{file:?} was not removed: {error}"));
         }
         match sent {
             Ok(_) => Ok(()),

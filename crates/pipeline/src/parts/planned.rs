@@ -1,11 +1,11 @@
-//! What a plan is about, opened and compared with the plan.
+//! Opens the inputs of a plan and compares them with it.
 
 use corniche_plan::{BuildPlan, Opened};
 use corniche_spec::{PlanSettings, Resources, memory_shares::MemoryShares};
 
 use crate::BuildError;
 
-/// Opens the inputs of a plan and fails if they, or this program, are not those of the plan.
+/// Opens the inputs of a plan and fails if the inputs or this program do not match the plan.
 pub(crate) fn open(
     plan: &BuildPlan,
     generator: &str,
@@ -14,6 +14,6 @@ pub(crate) fn open(
     MemoryShares::limit_raster_cache(resources)?;
     let settings = PlanSettings { generator: generator.to_owned(), ..plan.settings()? };
     let opened = Opened::new(&settings)?;
-    plan.check_same(&BuildPlan::of(&settings, &opened)?)?;
+    plan.check_same(&BuildPlan::from_settings(&settings, &opened)?)?;
     Ok((settings, opened))
 }

@@ -1,4 +1,4 @@
-//! The stores that a part or a merge works with: folders, and prefixes in object storage.
+//! The stores of a part or a merge: folders, and prefixes in object storage.
 
 use std::{
     env, fs, io,
@@ -6,9 +6,9 @@ use std::{
     sync::Arc,
 };
 
-use corniche_objects::{ObjectPlace, Requests};
+use corniche_objects::{ObjectPlace, StorageRequests};
 use corniche_plan::BuildPlan;
-use corniche_spec::{Observer, hex::hex};
+use corniche_spec::{BuildObserver, hex::hex};
 use corniche_store::{
     Disk, Folder, Hold, LocalStore, OwnPart, PartsPlace, Publish as _, SYNC_INTERVAL, SealedParts,
     StoreError, StoredPlan, SystemDisk,
@@ -21,24 +21,24 @@ use crate::{
     objects::{ObjectAccess, address},
 };
 
-/// Most processes of one machine that can make the same part at once.
+/// The largest number of processes on one machine that can build the same part at the same time.
 const MOST_COPIES: u32 = 16;
-/// How often a folder may be removed while it is being opened.
+/// The number of tries if a folder is deleted while it is being opened.
 const MOST_TRIES: u32 = 8;
 
-/// What a user says of stores.
+/// The stores as the user gives them.
 #[derive(Clone, Copy)]
 pub(crate) struct GivenStores<'a> {
     /// Folders and addresses. All are read, and the first is written.
     pub(crate) names: &'a [PathBuf],
-    /// Where a part is made that is sent elsewhere then; `None`: the system's folder for temporary files.
+    /// The folder for a part that is then uploaded; `None`: the system's temporary folder.
     pub(crate) tmp: Option<&'a Path>,
 }
 
-/// Stores that are all of one plan.
+/// Stores that all belong to one plan.
 pub(crate) struct Stores<'a> {
     disk: Arc<dyn Disk>,
-    /// Each once; the first is written, too.
+    /// Each store once; the first one is also written.
     all: Vec<OneStore>,
     plan: &'a BuildPlan,
     stored: StoredPlan,
@@ -51,15 +51,17 @@ enum OneStore {
     Objects(Box<ObjectPlace>),
 }
 
-/// A store with a part that is being made, and where that goes when it is done.
+/// A store with a part that is being built, and the destination of the part.
 pub(crate) struct OpenStores<'a> {
     pub(crate) store: LocalStore,
-    /// The place it is sent to, and the folder in which it is made; `None` where it is made in place.
+    /// The place to which the part is uploaded, and the folder in which it is built; `None` if it
+    /// is built in place.
     sent: Option<(&'a ObjectPlace, PathBuf)>,
 }
 
 impl<'a> Stores<'a> {
-    /// Looks which plans the stores are of, and changes nothing. The first need not be there yet if it `may_be_new`.
+    /// Checks to which plans the stores belong, and changes nothing. The first store need not exist
+    /// yet if it `may_be_new`.
     pub(crate) fn look(
         given: GivenStores<'_>,
         plan: &'a BuildPlan,
@@ -91,21 +93,26 @@ impl<'a> Stores<'a> {
             }
         }
         if stores.is_empty() {
-            return Err(BuildError::Start { what: "no store is given".to_owned() });
+            return Err(BuildError::Start {
+                what: "no store is named; pass one with --store".to_owned(),
+            });
         }
         let tmp = given.tmp.map_or_else(env::temp_dir, Path::to_path_buf);
         Ok(Self { disk, all: stores, plan, stored: wanted, tmp, access })
     }
 
-    /// Opens those of their parts that `is_needed` asks for by their names, and a part of this name to write: in the first store if that is a
-    /// folder, else in a folder of its own from which it is sent there.
+    /// Opens those parts whose names `is_needed` accepts, and a part of this name for writing: in
+    /// the first store if that is a folder, otherwise in a separate folder from which it is
+    /// uploaded there.
     pub(crate) fn open(
         &self,
         name: &str,
         is_needed: &dyn Fn(&str) -> bool,
     ) -> Result<OpenStores<'_>, BuildError> {
         match self.all.first() {
-            None => Err(BuildError::Start { what: "no store is given".to_owned() }),
+            None => Err(BuildError::Start {
+                what: "no store is named; pass one with --store".to_owned(),
+            }),
             Some(OneStore::Folder(folder)) => {
                 let store = self.open_in(folder.name(), name, is_needed, Hold::Shared)?;
                 Ok(OpenStores { store, sent: None })
@@ -114,7 +121,8 @@ impl<'a> Stores<'a> {
                 let bound = place.bind(&self.stored)?;
                 refuse_other(place.name(), self.plan, &self.stored, &bound)?;
                 let first = self.tmp.join(self.work_name(place.name(), name));
-                // Of two processes that make the same part, each has a folder of its own. After a kill the folder is free again.
+                // Each of two processes that build the same part has its own folder. After a kill
+                // the folder is free again.
                 let mut copies = (2..=MOST_COPIES).map(|copy| numbered(&first, copy));
                 let mut tries_left = MOST_TRIES;
                 let mut folder = first.clone();
@@ -124,7 +132,7 @@ impl<'a> Stores<'a> {
                             Some(next) => folder = next,
                             None => return Err(StoreError::Locked { path, owner }.into()),
                         },
-                        // The process that made it removed the folder at this moment.
+                        // The process that created the folder deleted it at this moment.
                         Err(StoreError::Io { source, .. })
                             if source.kind() == io::ErrorKind::NotFound && tries_left > 0 =>
                         {
@@ -138,7 +146,7 @@ impl<'a> Stores<'a> {
         }
     }
 
-    /// Opens the needed parts of those stores that are there, to be read alone; `None` if none is.
+    /// Opens the needed parts of existing stores for reading only; `None` if no store exists.
     pub(crate) fn open_to_read(
         &self,
         is_needed: &dyn Fn(&str) -> bool,
@@ -170,12 +178,13 @@ impl<'a> Stores<'a> {
         LocalStore::open_places(disk, sealed, &self.stored.hash, Some((own, hold)))
     }
 
-    /// What was asked of object storage so far; `None` if no store is there.
-    pub(crate) fn requests(&self) -> Option<Requests> {
+    /// Requests to object storage so far; `None` if no store is there.
+    pub(crate) fn requests(&self) -> Option<StorageRequests> {
         self.access.requests()
     }
 
-    /// The name of the folder in which a part for a place is made: the same for each process that makes it, and another for each plan and place.
+    /// The name of the folder in which a part for a place is built. It is the same for each process
+    /// that builds the part, but differs by plan and place.
     fn work_name(&self, place: &Path, part: &str) -> String {
         let mut digest = Sha256::new();
         digest.update(self.stored.hash);
@@ -184,9 +193,11 @@ impl<'a> Stores<'a> {
     }
 }
 
-/// The folder that a person names, which may be a link to one: within it no link is followed.
+/// The folder that the user names, which may be a symbolic link to a folder: inside it no link is
+/// followed.
 fn folder_of_store(name: &Path) -> PathBuf {
-    // Shells complete a link to a folder with a slash, with which the system looks at the folder instead of the link.
+    // Shells complete a link to a folder with a slash, which makes the system read the folder
+    // instead of the link.
     let plain: PathBuf = name.components().collect();
     if plain.is_symlink() { fs::canonicalize(name).unwrap_or(plain) } else { name.to_path_buf() }
 }
@@ -201,36 +212,39 @@ impl OneStore {
 }
 
 impl OpenStores<'_> {
-    /// Ends the part and keeps it where it belongs. Returns where that is; `None` if nothing had to be made.
-    pub(crate) fn keep(self, observer: &dyn Observer) -> Result<Option<PathBuf>, BuildError> {
+    /// Ends the part and writes it to its destination. Returns the destination; `None` if there was
+    /// nothing to compute.
+    pub(crate) fn keep(self, observer: &dyn BuildObserver) -> Result<Option<PathBuf>, BuildError> {
         let Some((place, folder)) = self.sent else { return Ok(self.store.seal()?) };
         let sent = self.store.publish(place, &|| observer.is_cancelled());
         let sent = sent.map_err(|error| {
             tell_of_what_is_kept(&folder, observer);
             if observer.is_cancelled() { BuildError::Interrupted } else { BuildError::from(error) }
         })?;
-        // The part is where it belongs. What cannot be removed is no failure.
+        // The part is complete at its destination, so leftovers that cannot be deleted are not an
+        // error.
         let left = match LocalStore::discard(Arc::new(SystemDisk), &folder) {
-            Ok(left) => left.into_iter().map(|path| path.display().to_string()).collect(),
-            // Another process begins to make the same part there.
+            Ok(left) => left.into_iter().map(|path| format!("{path:?}")).collect(),
+            // Another process is starting to build the same part there.
             Err(StoreError::Locked { .. } | StoreError::Gone { .. }) => Vec::new(),
             Err(error) => vec![error.to_string()],
         };
         if !left.is_empty() {
             let left = left.join(", ");
-            observer.warning(&format!("{} was not removed: {left}", folder.display()));
+            observer.warning(&format!("{folder:?} was not completely removed: {left}"));
         }
         Ok(sent)
     }
 
-    /// Leaves the store after a failure: what was done stays. The user is told where, if that is not the store.
-    pub(crate) fn leave(self, observer: &dyn Observer) {
+    /// Leaves the store after a failure, with all progress. The user is told the folder if it is
+    /// not the store.
+    pub(crate) fn leave(self, observer: &dyn BuildObserver) {
         if let Some((_, folder)) = &self.sent {
             tell_of_what_is_kept(folder, observer);
         }
     }
 
-    /// Gives the part up: what was made of it is removed.
+    /// Abandons the part: its artifacts are deleted.
     pub(crate) fn abandon(self) -> Result<(), BuildError> {
         match self.sent {
             None => Ok(self.store.abandon()?),
@@ -239,7 +253,7 @@ impl OpenStores<'_> {
     }
 }
 
-/// Fails if a store is bound to another plan than what is wanted.
+/// Fails if a store belongs to another plan.
 fn refuse_other(
     store: &Path,
     plan: &BuildPlan,
@@ -253,11 +267,9 @@ fn refuse_other(
     Err(BuildError::OtherPlan { store: store.to_path_buf(), differences })
 }
 
-fn tell_of_what_is_kept(folder: &Path, observer: &dyn Observer) {
-    observer.warning(&format!(
-        "what was done is kept in {}; the same command goes on from there",
-        folder.display()
-    ));
+fn tell_of_what_is_kept(folder: &Path, observer: &dyn BuildObserver) {
+    observer
+        .warning(&format!("progress is saved in {folder:?}; rerun the same command to continue"));
 }
 
 fn numbered(folder: &Path, number: u32) -> PathBuf {

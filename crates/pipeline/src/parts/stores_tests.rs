@@ -1,4 +1,4 @@
-//! A store may be named by a link, however its name is written.
+//! A store may be named by a symbolic link, in any spelling.
 
 use std::os::unix::fs::symlink;
 
@@ -26,7 +26,8 @@ fn a_link_to_a_store_is_followed_with_and_without_a_slash() {
         let own = Some((own, Hold::Shared));
         drop(LocalStore::open_places(Arc::clone(&disk), sealed, &plan.hash, own).unwrap());
     }
-    // What is not there yet, or leads nowhere, is told later by the name that was given.
+    // A path that does not exist yet, or a broken link, is reported later by the name that was
+    // given.
     symlink("nowhere", place.path().join("dead")).unwrap();
     for name in ["missing", "dead"] {
         assert_eq!(folder_of_store(&place.path().join(name)), place.path().join(name));

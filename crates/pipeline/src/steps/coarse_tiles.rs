@@ -1,36 +1,39 @@
-//! The tiles above the finest level: their deviations come from the records of all finest tiles beneath them.
+//! The tiles above the finest level: their deviations are computed from the records of all finest
+//! tiles beneath them.
 
 use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
 use corniche_ground::heights::{pyramid::all_there, rasters};
-use corniche_spec::artifacts::{ArtifactError, Kind, damaged};
+use corniche_spec::artifacts::{ArtifactError, ArtifactKind, damaged};
 use corniche_work::{Stage, workers};
 
 use super::top;
 use crate::{
     BuildError,
-    context::Context,
+    context::BuildContext,
     tile::{
         encode,
         mesh::Meshed,
-        record::{Seen, TileDeviation, TileRecord},
+        record::{TileDeviation, TileRecord, TinStatistics},
         relief,
     },
 };
 
-/// Makes the coarse tiles beneath and at `scope` that are not there yet. All finest tiles beneath must be there.
-pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildError> {
+/// Creates the missing coarse tiles beneath and at `scope`. All finest tiles beneath must be
+/// complete.
+pub(crate) fn make(context: &BuildContext<'_>, scope: TileId) -> Result<(), BuildError> {
     let (store, data) = (context.store, context.data());
     let deviations = deviations(context, scope)?;
     let mut ids: Vec<TileId> = deviations.keys().copied().collect();
     let all = ids.len();
-    ids.retain(|&id| !store.has(Kind::Record.of_tile(id)));
+    ids.retain(|&id| !store.has(ArtifactKind::Record.of_tile(id)));
     ids.sort_unstable_by_key(|&id| corniche_tileset::pmtiles_order(id));
-    // They are there, unless the part that made them for the tiles beneath is not among the stores.
+    // The TINs exist, unless the part that created them for the tiles beneath is not among the
+    // stores.
     top::make_tins(
         context,
-        ids.iter().copied().filter(|&id| !store.has(Kind::Tin.of_tile(id))).collect(),
+        ids.iter().copied().filter(|&id| !store.has(ArtifactKind::Tin.of_tile(id))).collect(),
     )?;
     let step_m = top::height_step_m(context)?;
     workers::make_missing(
@@ -40,12 +43,12 @@ pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildErro
         (&ids, all),
         || Ok(()),
         |(), &id| -> Result<(), BuildError> {
-            // Records of finest tiles say that it has ground.
-            let empty = || damaged(Kind::Tin.of_tile(id), &"it has no ground");
+            // According to the records of finest tiles it has ground.
+            let empty = || damaged(ArtifactKind::Tin.of_tile(id), &"it has no ground");
             let meshed = Meshed::get(store, id)?.ok_or_else(empty)?;
             let deviation = deviations.get(&id).copied().unwrap_or_default();
             let heights = |halo| rasters::with_halo(store, &data, id, halo);
-            // A tile without relief needs them only where it has roads.
+            // A tile without relief needs the heights only if it has roads.
             let (read, relief) = if context.has_relief(id) {
                 let heights = heights(2)?.ok_or_else(empty)?;
                 let relief = relief::of_tile(context, id, &heights, step_m)?;
@@ -64,18 +67,20 @@ pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildErro
     )
 }
 
-/// The deviations of the coarse tiles with ground beneath and at `scope`, from the records of finest tiles.
+/// Collects the deviations of the coarse tiles with ground beneath and at `scope` from the records
+/// of finest tiles.
 fn deviations(
-    context: &Context<'_>,
+    context: &BuildContext<'_>,
     scope: TileId,
 ) -> Result<BTreeMap<TileId, TileDeviation>, BuildError> {
     let store = context.store;
     let data = context.data();
-    let is_missing =
-        |id: TileId| id.ancestor(scope.z()) == scope && !store.has(Kind::Record.of_tile(id));
+    let is_missing = |id: TileId| {
+        id.ancestor(scope.z()) == scope && !store.has(ArtifactKind::Record.of_tile(id))
+    };
     all_there("the tiles", &data.missing(is_missing), "tiles")?;
-    let mut coarse: BTreeMap<TileId, Seen> = BTreeMap::new();
-    // Per finest tile with ground: its own deviation.
+    let mut coarse: BTreeMap<TileId, TinStatistics> = BTreeMap::new();
+    // For each finest tile with ground, its own deviation.
     let mut finest_m: BTreeMap<TileId, f64> = BTreeMap::new();
     for id in data.in_order_within(scope) {
         let record = TileRecord::get(store, id)?
@@ -92,13 +97,13 @@ fn deviations(
     Ok(stored(&coarse, &finest_m))
 }
 
-/// Computes the geometric errors, from the finest level up: the maximum of the tile's own deviation and those of all tiles
-/// beneath it.
+/// Computes the geometric errors, from the finest level up: the maximum of the tile's own deviation
+/// and those of all tiles beneath it.
 ///
-/// A tile may lack ground where its children have some (an island too small for a cell of its level), so what is
-/// beneath counts for the nearest tile above that exists.
+/// A tile may lack ground although its children have some (an island too small for a cell of its
+/// level). The tiles beneath it then count for the nearest tile above that exists.
 fn stored(
-    coarse: &BTreeMap<TileId, Seen>,
+    coarse: &BTreeMap<TileId, TinStatistics>,
     finest_m: &BTreeMap<TileId, f64>,
 ) -> BTreeMap<TileId, TileDeviation> {
     let own_m = |id: &TileId| {
@@ -120,7 +125,7 @@ fn stored(
     for (&id, &seen) in coarse.iter().rev() {
         let children_m = id.children().filter_map(|child| own_m(&child)).fold(0.0, f64::max);
         let beneath = beneath_m.get(&id).copied().unwrap_or_default();
-        let deviation = TileDeviation::of(seen, beneath, children_m);
+        let deviation = TileDeviation::from_statistics(seen, beneath, children_m);
         pass_up(id, deviation.geometric_error_m, &mut beneath_m);
         by_tile.insert(id, deviation);
     }

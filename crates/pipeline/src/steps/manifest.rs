@@ -1,8 +1,8 @@
-//! The manifest: the package's table of contents, from the context and the sums over all tiles, which are folds of their records.
+//! Builds the manifest, the package's table of contents, from the context and the sums over all
+//! tiles, which are folds of their records.
 
 use std::collections::BTreeMap;
 
-use corniche_areas::ClassedLayer;
 use corniche_geom::TileId;
 use corniche_ground::heights::pyramid::HeightSums;
 use corniche_pieces::{
@@ -18,43 +18,42 @@ use corniche_pieces::{
     },
     spans::totals::SpanTotals,
 };
-use corniche_spec::{extent::Outline, manifest_texts, settings_record};
+use corniche_spec::{extent::ExtentOutline, manifest_texts, settings_record};
 use corniche_tileset::{
-    AreaLevelRecord, AreasRecord, Counts, Distribution, FORMAT_VERSION, GrowthRow, InputRecord,
-    LevelRecord, LineLevelRecord, LinesRecord, Manifest, PhotoLevelRecord, SampleSums, SpansRecord,
-    SvTails, VerticalRecord,
+    AreaLevelRecord, AreasRecord, Distribution, FORMAT_VERSION, GrowthRow, InputRecord,
+    LevelRecord, LineLevelRecord, LinesRecord, Manifest, ManifestCounts, PhotoLevelRecord,
+    SampleSums, SpansRecord, SvTails, VerticalRecord,
 };
 
 use crate::{
-    context::Context,
+    context::BuildContext,
     tile::record::{LevelShare, TileRecord},
 };
 
-/// Everything that goes into the manifest.
-pub(crate) struct Outcome<'a> {
-    pub(crate) context: &'a Context<'a>,
+/// The sources of the manifest.
+pub(crate) struct ManifestSources<'a> {
+    pub(crate) context: &'a BuildContext<'a>,
     pub(crate) inputs: Vec<InputRecord>,
-    /// The outline of the elevation files, where they fill no rectangle.
-    pub(crate) outline: Option<Outline>,
+    /// The outline of the elevation files, if they do not fill a rectangle.
+    pub(crate) outline: Option<ExtentOutline>,
     pub(crate) heights: HeightSums,
     pub(crate) roads: Option<(&'a RoadTotals, &'a losses::Sums)>,
     pub(crate) areas: Option<AreaTotals>,
-    /// In order of [`ClassedLayer::ALL`].
-    pub(crate) lines: Vec<Option<LineTotals>>,
+    pub(crate) boundaries: Option<LineTotals>,
     pub(crate) spans: Option<SpanTotals>,
-    pub(crate) tiles: &'a TileSums,
+    pub(crate) tiles: &'a ManifestSums,
 }
 
-/// Puts the manifest together.
-pub(crate) fn of(outcome: &Outcome<'_>) -> Manifest {
-    let Context { settings, grid: plan, levels, .. } = *outcome.context;
+/// Builds the manifest.
+pub(crate) fn build_manifest(outcome: &ManifestSources<'_>) -> Manifest {
+    let BuildContext { settings, grid: plan, levels, .. } = *outcome.context;
     let frame = *levels.frame();
-    let record = settings_record::of(
+    let record = settings_record::record_settings(
         &settings.terrain,
         &settings.roads,
         outcome.context.opened.max_error_m,
         outcome.context.opened.photo.record(),
-        (settings.areas.as_ref(), &settings.lines),
+        (settings.areas.as_ref(), settings.boundaries),
     );
     let mut attribution = settings.attribution.clone();
     for credit in outcome.context.opened.photo.files().into_iter().flat_map(|photo| &photo.credits)
@@ -101,20 +100,20 @@ pub(crate) fn of(outcome: &Outcome<'_>) -> Manifest {
         growth: growth(outcome),
         photos: photos(outcome),
         areas: areas(outcome),
-        boundaries: lines(outcome, ClassedLayer::Boundaries),
+        boundaries: boundaries(outcome),
         spans: spans(outcome),
         sv_tails: outcome.tiles.sv_tails.list(),
     }
 }
 
-fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
+fn level_records(outcome: &ManifestSources<'_>) -> Vec<LevelRecord> {
     let levels = outcome.context.levels;
     let recorded = outcome.context.source.package();
     levels
         .numbers()
         .map(|level| {
             let sums = outcome.tiles.levels.get(&level).cloned().unwrap_or_default();
-            let errors_m = Distribution::of(sums.geometric_errors_m);
+            let errors_m = Distribution::from_values(sums.geometric_errors_m);
             let record = LevelRecord {
                 level,
                 cell_m: levels.frame().level_cell(level),
@@ -122,7 +121,7 @@ fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
                 geometric_error_m: errors_m.map_or(0.0, |errors_m| errors_m.max),
                 errors_m,
                 sample_error: outcome.tiles.samples[usize::from(level)].record(),
-                tightness: Distribution::of(sums.tightness),
+                tightness: Distribution::from_values(sums.tightness),
                 least_class: levels
                     .least_class(level)
                     .map(corniche_roads::FunctionalRoadClass::number),
@@ -135,7 +134,8 @@ fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
                 relief_bytes: sums.relief_bytes,
                 uncovered_nodes: sums.uncovered_nodes,
             };
-            // A package holds the figures of each level that come of comparing its TINs with the heights, but of the tiles not what they are made of.
+            // A package records figures of each level that result from comparing its TINs with the
+            // heights, but not the underlying values of each tile.
             let Some(terrain) = recorded else { return record };
             let &LevelRecord { sample_error, tightness, uncovered_nodes, .. } =
                 &terrain.manifest().levels[usize::from(level)];
@@ -145,15 +145,15 @@ fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
 }
 
 /// Counts of roads: read, kept, and lost by reason.
-fn counts(outcome: &Outcome<'_>) -> Counts {
+fn counts(outcome: &ManifestSources<'_>) -> ManifestCounts {
     let samples = outcome.heights.samples;
     match outcome.roads {
         Some((totals, losses)) => road_counts(samples, totals, losses),
-        None => Counts { samples, ..Counts::default() },
+        None => ManifestCounts { samples, ..ManifestCounts::default() },
     }
 }
 
-fn photos(outcome: &Outcome<'_>) -> Vec<PhotoLevelRecord> {
+fn photos(outcome: &ManifestSources<'_>) -> Vec<PhotoLevelRecord> {
     let levels = outcome.tiles.levels.iter().filter(|(_, sums)| sums.photo_tiles > 0);
     levels
         .map(|(&level, sums)| PhotoLevelRecord {
@@ -164,7 +164,7 @@ fn photos(outcome: &Outcome<'_>) -> Vec<PhotoLevelRecord> {
         .collect()
 }
 
-fn areas(outcome: &Outcome<'_>) -> Option<AreasRecord> {
+fn areas(outcome: &ManifestSources<'_>) -> Option<AreasRecord> {
     let counts = outcome.areas.as_ref()?.counts();
     let level = |(level, SectionSums { tiles, parts: areas, points, bytes })| AreaLevelRecord {
         level,
@@ -177,12 +177,12 @@ fn areas(outcome: &Outcome<'_>) -> Option<AreasRecord> {
     Some(AreasRecord { counts, levels })
 }
 
-fn lines(outcome: &Outcome<'_>, layer: ClassedLayer) -> Option<LinesRecord> {
-    let counts = outcome.lines.get(layer as usize)?.as_ref()?.counts();
-    Some(LinesRecord { counts, levels: line_levels(outcome, SectionLayer::Lines(layer)) })
+fn boundaries(outcome: &ManifestSources<'_>) -> Option<LinesRecord> {
+    let counts = outcome.boundaries.as_ref()?.counts();
+    Some(LinesRecord { counts, levels: line_levels(outcome, SectionLayer::Boundaries) })
 }
 
-fn spans(outcome: &Outcome<'_>) -> Option<SpansRecord> {
+fn spans(outcome: &ManifestSources<'_>) -> Option<SpansRecord> {
     let (_, kept) = outcome.roads?;
     let totals = outcome.spans.as_ref()?;
     Some(SpansRecord {
@@ -192,7 +192,7 @@ fn spans(outcome: &Outcome<'_>) -> Option<SpansRecord> {
     })
 }
 
-fn line_levels(outcome: &Outcome<'_>, layer: SectionLayer) -> Vec<LineLevelRecord> {
+fn line_levels(outcome: &ManifestSources<'_>, layer: SectionLayer) -> Vec<LineLevelRecord> {
     let level = |(level, SectionSums { tiles, parts, points, bytes })| LineLevelRecord {
         level,
         tiles,
@@ -203,13 +203,16 @@ fn line_levels(outcome: &Outcome<'_>, layer: SectionLayer) -> Vec<LineLevelRecor
     sections(outcome, layer).map(level).collect()
 }
 
-/// The sums of a layer on the levels that have some of it.
-fn sections(outcome: &Outcome<'_>, layer: SectionLayer) -> impl Iterator<Item = (u8, SectionSums)> {
+/// The sums of a layer on the levels that contain it.
+fn sections(
+    outcome: &ManifestSources<'_>,
+    layer: SectionLayer,
+) -> impl Iterator<Item = (u8, SectionSums)> {
     let levels = outcome.tiles.levels.iter();
     levels.map(move |(&level, sums)| (level, sums.sections[layer])).filter(|(_, own)| own.tiles > 0)
 }
 
-fn growth(outcome: &Outcome<'_>) -> Vec<GrowthRow> {
+fn growth(outcome: &ManifestSources<'_>) -> Vec<GrowthRow> {
     outcome
         .tiles
         .classes
@@ -233,8 +236,9 @@ fn growth(outcome: &Outcome<'_>) -> Vec<GrowthRow> {
 
 /// Sums over all tiles.
 ///
-/// Whole numbers, maxima, and lists that are sorted before they are used: the order in which records come does not matter.
-pub(crate) struct TileSums {
+/// They are whole numbers, maxima, and lists that are sorted before they are used, so the order of
+/// the records does not matter.
+pub(crate) struct ManifestSums {
     pub(crate) levels: BTreeMap<u8, LevelSums>,
     /// Sums by level and class.
     pub(crate) classes: BTreeMap<(u8, u8), ClassSums>,
@@ -256,17 +260,17 @@ pub(crate) struct LevelSums {
     pub(crate) photo_tiles: u64,
     pub(crate) photo_bytes: u64,
     pub(crate) sections: ByLayer<SectionSums>,
-    /// Geometric errors of its tiles.
+    /// Geometric errors of the level's tiles.
     pub(crate) geometric_errors_m: Vec<f64>,
-    /// Geometric errors of its tiles over their deviations, where those can be measured.
+    /// Ratios of the tiles' geometric errors to their deviations, if those can be measured.
     pub(crate) tightness: Vec<f64>,
-    /// Nodes with data that its tiles do not cover, or that have no tile above them.
+    /// Nodes with data that the level's tiles do not cover, or that have no tile above them.
     pub(crate) uncovered_nodes: u64,
 }
 
-impl TileSums {
-    /// Nothing yet.
-    pub(crate) fn new(context: &Context<'_>) -> Self {
+impl ManifestSums {
+    /// Creates empty sums.
+    pub(crate) fn new(context: &BuildContext<'_>) -> Self {
         let quantum_m = context.levels.quantum_m();
         Self {
             levels: BTreeMap::new(),
@@ -302,7 +306,7 @@ impl TileSums {
         sums.relief_bytes += ground.relief_bytes;
         sums.photo_tiles += u64::from(ground.photo_bytes > 0);
         sums.photo_bytes += ground.photo_bytes;
-        for layer in SectionLayer::all() {
+        for layer in SectionLayer::ALL {
             sums.sections[layer].add(ground.sections[layer]);
         }
         sums.geometric_errors_m.push(deviation.geometric_error_m);

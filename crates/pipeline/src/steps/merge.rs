@@ -1,9 +1,8 @@
-//! Step *merge*: the heights of bridges and tunnels and their runs by tile, the coarse tiles above all subtrees, the sums over all records, the manifest, the
-//! package.
+//! Step *merge*: the heights of bridges and tunnels with their runs by tile, the coarse tiles above
+//! all subtrees, the sums over all records, the manifest, and the package.
 
 use std::path::Path;
 
-use corniche_areas::ClassedLayer;
 use corniche_geom::{LatticePoint, TileId};
 use corniche_ground::{
     heights::pyramid::{HeightSums, all_there},
@@ -25,47 +24,48 @@ use corniche_pieces::{
 };
 use corniche_spec::{
     Defect,
-    artifacts::{self, ArtifactError, Kind},
+    artifacts::{self, ArtifactError, ArtifactKind},
 };
-use corniche_store::{OpenMode, Scratch, open_own};
+use corniche_store::{OpenMode, ScratchSpace, open_own};
 use corniche_tileset::{
-    LevelRecord, Manifest, PayloadBuilder, ReliefLevels, Sections, WriteError, Writer, decode,
+    LevelRecord, Manifest, PackageWriter, PayloadBuilder, ReliefLevels, Sections, WriteError,
+    decode,
 };
 use corniche_tin::Tin;
 use corniche_work::Stage;
 
 use super::{
     hashes,
-    manifest::{self, Outcome, TileSums},
+    manifest::{self, ManifestSources, ManifestSums},
     roads, top,
 };
-use crate::{BuildError, context::Context, tile::record::TileRecord};
+use crate::{BuildError, context::BuildContext, tile::record::TileRecord};
 
-/// Where the package goes.
-pub(crate) struct Target<'a> {
+/// The target of the package.
+pub(crate) struct MergeTarget<'a> {
     /// The file to write.
     pub(crate) finished: &'a Path,
-    /// Its final name, for messages.
+    /// Its final path, for messages.
     pub(crate) named: &'a Path,
 }
 
-/// Fails if one of the steps was not done for all tiles.
-pub(crate) fn check_complete(context: &Context<'_>) -> Result<(), BuildError> {
+/// Fails if one of the steps is not complete for all tiles.
+pub(crate) fn check_complete(context: &BuildContext<'_>) -> Result<(), BuildError> {
     hashes::records(context)?;
     roads::check_done(context)?;
     if let Some(pyramid) = context.pyramid() {
         pyramid.all_patches()?;
     }
     top::check_done(context)?;
-    let is_missing = |id| !context.store.has(Kind::Record.of_tile(id));
+    let is_missing = |id| !context.store.has(ArtifactKind::Record.of_tile(id));
     Ok(all_there("the tiles", &context.data().missing(is_missing), "tiles")?)
 }
 
-/// Adds up all records and writes the package.
+/// Sums up all records and writes the package.
 pub(crate) fn make(
-    context: &Context<'_>,
-    scratch: &dyn Scratch,
-    target: &Target<'_>,
+    context: &BuildContext<'_>,
+    scratch: &dyn ScratchSpace,
+    target: &MergeTarget<'_>,
 ) -> Result<Manifest, BuildError> {
     make_spans(context)?;
     let heights = match context.source {
@@ -76,12 +76,12 @@ pub(crate) fn make(
         GroundSource::Package(terrain) => HeightSums::recorded(terrain.manifest()),
     };
     let roads = roads::totals(context)?;
-    let mut tiles = TileSums::new(context);
+    let mut tiles = ManifestSums::new(context);
     let mut fold = LossFold::new(scratch, context.memory().sorting);
-    for item in context.store.items(Kind::Record as u8) {
-        let id = artifacts::tile_of(Kind::Record.item(item))?;
+    for item in context.store.items(ArtifactKind::Record as u8) {
+        let id = artifacts::tile_of(ArtifactKind::Record.item(item))?;
         if let Some(record) = TileRecord::get(context.store, id)? {
-            if record.ground.is_some() && !context.store.has(Kind::Payload.item(item)) {
+            if record.ground.is_some() && !context.store.has(ArtifactKind::Payload.item(item)) {
                 return Err(ArtifactError::Missing {
                     what: format!("the tile {id}"),
                     step: "tiles",
@@ -105,17 +105,15 @@ pub(crate) fn make(
         Some(totals) => Some(fold.finish(totals, context.store, context.observer)?),
         None => None,
     };
-    let manifest = manifest::of(&Outcome {
+    let manifest = manifest::build_manifest(&ManifestSources {
         context,
         inputs: hashes::records(context)?,
         outline: context.data_outline()?,
         heights,
         roads: roads.as_ref().zip(losses.as_ref()),
         areas: LayerTotals::get(SectionLayer::Areas, context.store)?,
-        lines: (ClassedLayer::ALL.iter())
-            .map(|&layer| LayerTotals::get(SectionLayer::Lines(layer), context.store))
-            .collect::<Result<_, _>>()?,
-        spans: artifacts::get(context.store, Kind::SpanTotals.item(0))?,
+        boundaries: LayerTotals::get(SectionLayer::Boundaries, context.store)?,
+        spans: artifacts::get(context.store, ArtifactKind::SpanTotals.item(0))?,
         tiles: &tiles,
     });
     if let Some(terrain) = context.source.package() {
@@ -125,33 +123,33 @@ pub(crate) fn make(
     if let Some(what) = all_beside_ground(&manifest).filter(|_| !osm.is_empty()) {
         return Err(BuildError::NoGround { osm: osm.clone(), what });
     }
-    // All inputs have been read. If none has changed, the recorded hashes are those of the bytes that were used.
+    // All inputs have been read. If none has changed, the recorded hashes are those of the bytes
+    // that were used.
     context.opened.inputs.check_unchanged()?;
     write(context, target, &manifest)?;
     Ok(manifest)
 }
 
-/// What the extract has, if nothing of it lies on ground.
+/// Returns the kind of objects in the extract, if none of them is on ground.
 fn all_beside_ground(manifest: &Manifest) -> Option<&'static str> {
-    // An extract without a road is taken for the sake of its areas and boundaries.
+    // An extract without roads is used for its areas and boundaries.
     if manifest.counts.roads_in > 0 {
         return (manifest.counts.roads_kept == 0).then_some("road");
     }
     let has_areas = manifest.areas.as_ref().is_some_and(|areas| !areas.levels.is_empty());
-    let mut lines = ClassedLayer::ALL.into_iter().filter_map(|layer| manifest.lines(layer));
-    let has_lines = lines.any(|found| !found.levels.is_empty());
-    (!has_areas && !has_lines).then_some("area or boundary")
+    let has_boundaries = manifest.boundaries.as_ref().is_some_and(|of| !of.levels.is_empty());
+    (!has_areas && !has_boundaries).then_some("area or boundary")
 }
 
-/// Fails if the levels of a package whose terrain was taken are others than what was found in its tiles.
+/// Fails if the levels of a package whose terrain is reused differ from those found in its tiles.
 fn check_levels(
-    context: &Context<'_>,
+    context: &BuildContext<'_>,
     terrain: &RecordedTerrain,
     found: &[LevelRecord],
 ) -> Result<(), BuildError> {
     let drops_relief = context.settings.terrain.relief == ReliefLevels::Off;
     for (said, found) in terrain.manifest().levels.iter().zip(found) {
-        // What depends on the settings for roads may differ.
+        // Values that depend on the settings for roads may differ.
         let wanted = LevelRecord {
             least_class: found.least_class,
             simplify_tolerance_m: found.simplify_tolerance_m,
@@ -159,7 +157,7 @@ fn check_levels(
             ..said.clone()
         };
         if wanted != *found {
-            let what = format!("the tiles of level {} are not what its manifest says", said.level);
+            let what = format!("the tiles of level {} do not match its manifest", said.level);
             return Err(terrain.damaged(&what).into());
         }
     }
@@ -168,24 +166,24 @@ fn check_levels(
 
 /// Writes the package.
 fn write(
-    context: &Context<'_>,
-    target: &Target<'_>,
+    context: &BuildContext<'_>,
+    target: &MergeTarget<'_>,
     manifest: &Manifest,
 ) -> Result<(), BuildError> {
     let failed = |source| BuildError::Write { path: target.named.to_path_buf(), source };
-    let payloads = context.store.items(Kind::Payload as u8);
+    let payloads = context.store.items(ArtifactKind::Payload as u8);
     context.observer.begin(Stage::Package, Some(payloads.len() as u64));
     let file = open_own(target.finished, OpenMode::Change);
     let mut writer = file
         .map_err(WriteError::Io)
-        .and_then(|file| Writer::of_file(file, manifest, payloads.len()))
+        .and_then(|file| PackageWriter::of_file(file, manifest, payloads.len()))
         .map_err(failed)?;
     for item in payloads {
         context.observer.check()?;
-        let key = Kind::Payload.item(item);
+        let key = ArtifactKind::Payload.item(item);
         let id = artifacts::tile_of(key)?;
         let mut payload =
-            context.store.get(key)?.ok_or_else(|| artifacts::damaged(key, &"it is gone"))?;
+            context.store.get(key)?.ok_or_else(|| artifacts::damaged(key, &"it is missing"))?;
         if let Some(spans) = spans_of_tile(context, id)? {
             let mut builder = PayloadBuilder::with_all_of(&payload, id)?;
             builder.add(SectionLayer::Spans.section_of(spans.section))?;
@@ -199,13 +197,13 @@ fn write(
     Ok(())
 }
 
-/// Solves bridges and tunnels, and keeps the sections of all tiles, if they are wanted and not there yet. All tiles must be there. Tells of what is
-/// to be known of them.
-pub(crate) fn make_spans(context: &Context<'_>) -> Result<(), BuildError> {
+/// Solves bridges and tunnels, and stores the sections of all tiles, if they are requested and
+/// missing. All tiles must be complete. Reports the notes about bridges and tunnels.
+pub(crate) fn make_spans(context: &BuildContext<'_>) -> Result<(), BuildError> {
     if !context.settings.roads.spans || context.settings.osm.is_empty() {
         return Ok(());
     }
-    let key = Kind::SpanTotals.item(0);
+    let key = ArtifactKind::SpanTotals.item(0);
     let kept: Option<SpanTotals> = artifacts::get(context.store, key)?;
     let is_kept = kept.is_some();
     let totals = kept.map_or_else(|| solve(context), Ok)?;
@@ -221,7 +219,7 @@ pub(crate) fn make_spans(context: &Context<'_>) -> Result<(), BuildError> {
     Ok(())
 }
 
-fn solve(context: &Context<'_>) -> Result<SpanTotals, BuildError> {
+fn solve(context: &BuildContext<'_>) -> Result<SpanTotals, BuildError> {
     let grid = context.grid;
     let data = grid.clip.map_or(grid.data_bounds, |clip| clip.whole_data_bounds);
     let whole = whole_rectangle(context.frame(), &data);
@@ -251,9 +249,10 @@ fn solve(context: &Context<'_>) -> Result<SpanTotals, BuildError> {
     }
 }
 
-/// The TIN of a tile, out of its payload; `None` where it has no ground. TINs by themselves are only with the parts that made them.
-fn tin_of(context: &Context<'_>, id: TileId) -> Result<Option<Tin>, ExtractError> {
-    let key = Kind::Payload.of_tile(id);
+/// The TIN of a tile, decoded from its payload; `None` if it has no ground. Separate TINs are only
+/// in the parts that created them.
+fn tin_of(context: &BuildContext<'_>, id: TileId) -> Result<Option<Tin>, ExtractError> {
+    let key = ArtifactKind::Payload.of_tile(id);
     let Some(bytes) = context.store.get(key)? else { return Ok(None) };
     let quantum_m = context.levels.quantum_m();
     let payload = decode(&bytes, id, context.frame(), quantum_m, Sections::TERRAIN)
@@ -261,7 +260,10 @@ fn tin_of(context: &Context<'_>, id: TileId) -> Result<Option<Tin>, ExtractError
     Ok(payload.terrain.map(|terrain| terrain.tin).filter(|tin| !tin.is_empty()))
 }
 
-/// The section of spans of a tile, with how much is in it; `None` without spans.
-fn spans_of_tile(context: &Context<'_>, id: TileId) -> Result<Option<TileSection>, BuildError> {
+/// The section of spans (bridges and tunnels) of a tile, with its counts; `None` without spans.
+fn spans_of_tile(
+    context: &BuildContext<'_>,
+    id: TileId,
+) -> Result<Option<TileSection>, BuildError> {
     Ok(TileSection::get(SectionLayer::Spans, context.store, id)?)
 }

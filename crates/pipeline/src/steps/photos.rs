@@ -1,5 +1,5 @@
-//! Part of the steps *heights* and *top*: photos, tile by tile, to textures of finest tiles and rasters of all tiles, within a
-//! subtree.
+//! Part of the steps *heights* and *top*: reads photos within a subtree, tile by tile, into
+//! textures of finest tiles and rasters of all tiles.
 
 use corniche_geom::TileId;
 use corniche_ground::{
@@ -7,16 +7,17 @@ use corniche_ground::{
     photos::{rasters, textures},
 };
 use corniche_photo::PhotoReader;
-use corniche_spec::artifacts::Kind;
+use corniche_spec::artifacts::ArtifactKind;
 use corniche_work::Stage;
 
-use crate::{BuildError, context::Context};
+use crate::{BuildError, context::BuildContext};
 
-/// Reads the photos beneath and at `scope` that are not there yet, and makes the rasters from there up to the scope's own.
-pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildError> {
+/// Reads the missing photos beneath and at `scope`, and creates the rasters from there up to the
+/// scope's own.
+pub(crate) fn make(context: &BuildContext<'_>, scope: TileId) -> Result<(), BuildError> {
     let Some(photos) = context.opened.photo.files() else { return Ok(()) };
     context.make_missing(
-        (Stage::Photos, Kind::PhotoRaster),
+        (Stage::Photos, ArtifactKind::PhotoRaster),
         context.data().in_order_within(scope),
         || Ok(PhotoReader::new(&photos.grid)),
         |reader, id| Ok(textures::make_finest(context.textures(), photos, reader, id)?),
@@ -24,8 +25,8 @@ pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildErro
     make_rasters(context, scope)
 }
 
-/// Makes the rasters that are missing beneath and at `scope`, from those that are there up.
-pub(crate) fn make_rasters(context: &Context<'_>, scope: TileId) -> Result<(), BuildError> {
+/// Creates the missing rasters beneath and at `scope`, from those in the store upwards.
+pub(crate) fn make_rasters(context: &BuildContext<'_>, scope: TileId) -> Result<(), BuildError> {
     if context.opened.photo.files().is_none() {
         return Ok(());
     }
@@ -33,7 +34,7 @@ pub(crate) fn make_rasters(context: &Context<'_>, scope: TileId) -> Result<(), B
     Ok(upwards::make_missing(
         (store, &data),
         (context.observer, context.threads()),
-        Kind::PhotoRaster,
+        ArtifactKind::PhotoRaster,
         scope,
         |id| rasters::put_from_children(store, &data, id),
     )?)

@@ -1,4 +1,5 @@
-//! The tiles of a build whose terrain comes from a package: each tile in one task, from the package's payload to its own.
+//! Builds the tiles of a build whose terrain comes from a package: each tile in one task, from the
+//! package's payload to its own.
 
 use corniche_drape::OwnedBorders;
 use corniche_geom::TileId;
@@ -6,22 +7,22 @@ use corniche_ground::terrain::{
     border_cells::{BorderCells, CellsAround},
     recorded::RecordedTerrain,
 };
-use corniche_spec::artifacts::Kind;
-use corniche_tileset::{Terrain, pmtiles_order};
+use corniche_spec::artifacts::ArtifactKind;
+use corniche_tileset::{TileTerrain, pmtiles_order};
 use corniche_work::{Recent, Stage};
 
 use crate::{
     BuildError,
-    context::Context,
+    context::BuildContext,
     tile::{encode, mesh::Meshed, record::TileDeviation},
 };
 
-/// What the cells of a tile take.
+/// The memory for the cells of a tile.
 const CELLS_BYTES: u64 = size_of::<Option<BorderCells>>() as u64;
 
-/// Makes the tiles beneath and at `scope` that are not there yet.
+/// Creates the missing tiles beneath and at `scope`.
 pub(crate) fn make(
-    context: &Context<'_>,
+    context: &BuildContext<'_>,
     terrain: &RecordedTerrain,
     scope: TileId,
 ) -> Result<(), BuildError> {
@@ -34,17 +35,21 @@ pub(crate) fn make(
 }
 
 fn make_all(
-    context: &Context<'_>,
+    context: &BuildContext<'_>,
     borders: &Borders<'_>,
     stage: Stage,
     mut ids: Vec<TileId>,
 ) -> Result<(), BuildError> {
     ids.sort_unstable_by_key(|&id| pmtiles_order(id));
     let make = |(): &mut (), id| make_tile(context, borders, id);
-    context.make_missing((stage, Kind::Record), ids, || Ok(()), make)
+    context.make_missing((stage, ArtifactKind::Record), ids, || Ok(()), make)
 }
 
-fn make_tile(context: &Context<'_>, borders: &Borders<'_>, id: TileId) -> Result<(), BuildError> {
+fn make_tile(
+    context: &BuildContext<'_>,
+    borders: &Borders<'_>,
+    id: TileId,
+) -> Result<(), BuildError> {
     let owned = || borders.owned(id);
     let record = match borders.ground(id)? {
         Some((bytes, terrain)) => {
@@ -52,7 +57,8 @@ fn make_tile(context: &Context<'_>, borders: &Borders<'_>, id: TileId) -> Result
                 context.has_relief(id).then(|| borders.terrain.relief(id, &bytes)).transpose()?;
             let deviation = TileDeviation {
                 geometric_error_m: terrain.geometric_error_m,
-                // The package does not say it: the manifest takes the figures that are made of it from the package's own.
+                // The package does not record it: the manifest takes the figures derived from it
+                // from the package's own.
                 deviation_m: 0.0,
                 height_range_m: terrain.height_range_m,
                 uncovered_nodes: terrain.uncovered_nodes,
@@ -66,34 +72,35 @@ fn make_tile(context: &Context<'_>, borders: &Borders<'_>, id: TileId) -> Result
     Ok(record.put(context.store, id)?)
 }
 
-/// The grounds of a package, and which cells along the borders of its tiles have ground.
+/// The grounds of a package, with the cells that have ground along the borders of its tiles.
 struct Borders<'a> {
-    context: &'a Context<'a>,
+    context: &'a BuildContext<'a>,
     terrain: &'a RecordedTerrain,
-    /// The border cells of the tiles seen last; `None` for tiles without ground. Tiles come along a Hilbert curve: what is needed again is so soon.
+    /// The border cells of the most recent tiles; `None` for tiles without ground. Tiles are
+    /// visited along a Hilbert curve, so a tile that is needed again is needed soon.
     kept: Recent<TileId, Option<BorderCells>>,
 }
 
 impl<'a> Borders<'a> {
-    fn new(context: &'a Context<'a>, terrain: &'a RecordedTerrain) -> Self {
+    fn new(context: &'a BuildContext<'a>, terrain: &'a RecordedTerrain) -> Self {
         Self { context, terrain, kept: Recent::new(context.memory().grounds) }
     }
 
-    /// The payload of a tile, and its ground decoded; `None` where it has none.
-    fn ground(&self, id: TileId) -> Result<Option<(Vec<u8>, Terrain)>, BuildError> {
+    /// The payload of a tile, and its decoded ground; `None` if it has no ground.
+    fn ground(&self, id: TileId) -> Result<Option<(Vec<u8>, TileTerrain)>, BuildError> {
         let ground = self.terrain.ground(id)?;
         let cells = || Ok::<_, BuildError>(cells_of(ground.as_ref()));
         self.kept.get(id, cells, |_| CELLS_BYTES)?;
         Ok(ground)
     }
 
-    /// The cells of a tile; `None` where it has no ground.
+    /// The border cells of a tile; `None` if it has no ground.
     fn cells(&self, id: TileId) -> Result<Option<BorderCells>, BuildError> {
         let read = || Ok::<_, BuildError>(cells_of(self.terrain.ground(id)?.as_ref()));
         Ok(*self.kept.get(id, read, |_| CELLS_BYTES)?)
     }
 
-    /// What a tile owns of its borders, by the ground on both sides of them.
+    /// The borders that a tile owns, derived from the ground on both sides.
     fn owned(&self, id: TileId) -> Result<OwnedBorders, BuildError> {
         let beside = |east, south| match id.neighbour(east, south) {
             Some(other) => Ok::<_, BuildError>(self.cells(other)?.unwrap_or_default()),
@@ -111,6 +118,6 @@ impl<'a> Borders<'a> {
     }
 }
 
-fn cells_of(ground: Option<&(Vec<u8>, Terrain)>) -> Option<BorderCells> {
-    ground.map(|(_, ground)| BorderCells::of(&ground.tin))
+fn cells_of(ground: Option<&(Vec<u8>, TileTerrain)>) -> Option<BorderCells> {
+    ground.map(|(_, ground)| BorderCells::from_tin(&ground.tin))
 }

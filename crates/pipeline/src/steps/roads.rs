@@ -1,4 +1,4 @@
-//! Step *roads*: the extract to pieces of roads by tile.
+//! Step *roads*: splits the extract into pieces of roads by tile.
 
 use corniche_pieces::{
     extract::{
@@ -7,19 +7,19 @@ use corniche_pieces::{
     },
     roads::{overlap::check_overlap, totals::RoadTotals},
 };
-use corniche_spec::artifacts::{self, ArtifactError, Kind};
-use corniche_store::{Artifacts, Scratch};
+use corniche_spec::artifacts::{self, ArtifactError, ArtifactKind};
+use corniche_store::{Artifacts, ScratchSpace};
 
-use crate::{BuildError, context::Context};
+use crate::{BuildError, context::BuildContext};
 
-/// What is known of all roads, which must be there; `None` without an extract.
-pub(crate) fn totals(context: &Context<'_>) -> Result<Option<RoadTotals>, BuildError> {
+/// The totals of all roads; an error if they are missing, `None` without an extract.
+pub(crate) fn totals(context: &BuildContext<'_>) -> Result<Option<RoadTotals>, BuildError> {
     check_done(context)?;
-    Ok(artifacts::get(context.store, Kind::RoadTotals.item(0))?)
+    Ok(artifacts::get(context.store, ArtifactKind::RoadTotals.item(0))?)
 }
 
-/// Fails if there is an extract and its roads were not partitioned.
-pub(crate) fn check_done(context: &Context<'_>) -> Result<(), BuildError> {
+/// Fails if there is an extract whose roads are not partitioned yet.
+pub(crate) fn check_done(context: &BuildContext<'_>) -> Result<(), BuildError> {
     if context.settings.osm.is_empty() || are_done(context.store) {
         return Ok(());
     }
@@ -29,16 +29,20 @@ pub(crate) fn check_done(context: &Context<'_>) -> Result<(), BuildError> {
 
 /// Whether the roads of an extract are in a store.
 pub(crate) fn are_done(store: &dyn Artifacts) -> bool {
-    store.has(Kind::RoadTotals.item(0))
+    store.has(ArtifactKind::RoadTotals.item(0))
 }
 
-/// Threads for the reading of an extract.
-pub(crate) fn pool(context: &Context<'_>) -> Result<rayon::ThreadPool, BuildError> {
+/// Returns the threads that read an extract.
+pub(crate) fn pool(context: &BuildContext<'_>) -> Result<rayon::ThreadPool, BuildError> {
     Ok(reading_pool(context.threads())?)
 }
 
-/// Reads the extract, if there is one and it was not read yet; fails if none of its roads lies on the elevation data.
-pub(crate) fn make(context: &Context<'_>, scratch: &dyn Scratch) -> Result<(), BuildError> {
+/// Reads the extract, if there is one that was not read yet; fails if none of its roads is on the
+/// elevation data.
+pub(crate) fn make(
+    context: &BuildContext<'_>,
+    scratch: &dyn ScratchSpace,
+) -> Result<(), BuildError> {
     let osm = context.settings.osm.as_slice();
     if osm.is_empty() {
         return Ok(());
@@ -50,7 +54,7 @@ pub(crate) fn make(context: &Context<'_>, scratch: &dyn Scratch) -> Result<(), B
         osm,
         settings: &context.settings.roads,
         areas: context.settings.areas.as_ref(),
-        lines: &context.settings.lines,
+        boundaries: context.settings.boundaries,
         data: context.data(),
         projection: context.projection,
         levels: context.levels,

@@ -1,39 +1,41 @@
-//! Steps *ways* and *nodes*: the two passes over a share of the extract. They may be left out: then the step *roads* makes both.
+//! Steps *ways* and *nodes*: the two passes over a share (chunk) of the extract. They are optional:
+//! without them, the step *roads* runs both.
 
 use corniche_osm::{ReadOsmError, ReadRequest, Share, keep_nodes, keep_ways};
 use corniche_pieces::extract::kept::{kept_in, not_read};
 use corniche_spec::artifacts::ArtifactError;
-use corniche_store::Scratch;
+use corniche_store::ScratchSpace;
 use corniche_work::Stage;
 
 use super::roads::{are_done, pool};
-use crate::{BuildError, context::Context};
+use crate::{BuildError, context::BuildContext};
 
-/// Keeps the road ways of a share that are not there yet; none without an extract, or if the roads are there.
+/// Stores the missing road ways of a share; does nothing without an extract, or if the roads are
+/// complete.
 pub(crate) fn make_ways(
-    context: &Context<'_>,
+    context: &BuildContext<'_>,
     share: Share,
-    scratch: &dyn Scratch,
+    scratch: &dyn ScratchSpace,
 ) -> Result<(), BuildError> {
     read(context, scratch, &|request| {
         keep_ways(request, share, kept_in(context.store), &|| context.observer.is_cancelled())
     })
 }
 
-/// Keeps the places of nodes of a share that are not there yet; none without an extract, or if the roads are there. The ways of all shares
-/// must be there.
+/// Stores the missing node positions of a share; does nothing without an extract, or if the roads
+/// are complete. The ways of all shares must be complete.
 pub(crate) fn make_nodes(
-    context: &Context<'_>,
+    context: &BuildContext<'_>,
     share: Share,
-    scratch: &dyn Scratch,
+    scratch: &dyn ScratchSpace,
 ) -> Result<(), BuildError> {
     let kept = kept_in(context.store);
     read(context, scratch, &|request| {
         keep_nodes(request, share, kept, &|| context.observer.is_cancelled())
     })
-    .map_err(|error| match kept.missing_ways(share.of()) {
+    .map_err(|error| match kept.missing_ways(share.count()) {
         Some(missing) => {
-            let what = format!("share {missing} of the ways");
+            let what = format!("chunk {missing} of the ways");
             ArtifactError::Missing { what, step: "ways" }.into()
         }
         None => error,
@@ -41,8 +43,8 @@ pub(crate) fn make_nodes(
 }
 
 fn read(
-    context: &Context<'_>,
-    scratch: &dyn Scratch,
+    context: &BuildContext<'_>,
+    scratch: &dyn ScratchSpace,
     step: &dyn Fn(&ReadRequest<'_>) -> Result<(), ReadOsmError>,
 ) -> Result<(), BuildError> {
     let Some((path, others)) = context.settings.osm.split_first() else { return Ok(()) };
@@ -55,7 +57,7 @@ fn read(
         path,
         others,
         table: &context.settings.roads.table,
-        // Places on the lattice and areas are the business of the step that makes roads.
+        // Lattice positions and areas are not needed here; the step *roads* computes them.
         place: &|positions_deg| vec![None; positions_deg.len()],
         ring_area_m2: &|_| 0.0,
         seam: None,

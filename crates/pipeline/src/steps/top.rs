@@ -1,25 +1,27 @@
-//! Step *top*: what all subtrees of heights add up to, and the rasters and TINs of the tiles above them. Finest tiles need the TINs of all their ancestors.
+//! Step *top*: the sums over all subtrees of heights, and the rasters and TINs of the tiles above
+//! them. Finest tiles need the TINs of all their ancestors.
 
 use std::collections::BTreeSet;
 
 use corniche_geom::TileId;
 use corniche_ground::heights::rasters;
-use corniche_spec::artifacts::{ArtifactError, Kind, damaged};
+use corniche_spec::artifacts::{ArtifactError, ArtifactKind, damaged};
 use corniche_tileset::{pmtiles_order, tile_of_order};
 use corniche_work::Stage;
 
 use super::photos;
 use crate::{
     BuildError,
-    context::Context,
+    context::BuildContext,
     tile::mesh::{Meshed, mesh_tile},
 };
 
-/// Checks the heights of all subtrees, which must be there, and makes what lies above them.
-pub(crate) fn make(context: &Context<'_>) -> Result<(), BuildError> {
+/// Checks the heights of all subtrees, which must be complete, and creates the coarse tiles above
+/// them.
+pub(crate) fn make(context: &BuildContext<'_>) -> Result<(), BuildError> {
     let mut step_m = 0.0;
     if let Some(pyramid) = context.pyramid() {
-        // Before any tile is made, because no tile has ground where no node has a height.
+        // The check comes before any tile, because no tile has ground if no node has a height.
         let patches = pyramid.all_patches()?;
         pyramid.check(&patches)?;
         pyramid.warn_of_spikes(&patches);
@@ -32,31 +34,31 @@ pub(crate) fn make(context: &Context<'_>) -> Result<(), BuildError> {
         make_tins(context, above_subtrees(context))?;
     }
     photos::make_rasters(context, TileId::ROOT)?;
-    Ok(context.store.put(Kind::Top.item(0), &step_m.to_le_bytes())?)
+    Ok(context.store.put(ArtifactKind::Top.item(0), &step_m.to_le_bytes())?)
 }
 
-/// Fails if the step was not done.
-pub(crate) fn check_done(context: &Context<'_>) -> Result<(), BuildError> {
-    if context.store.has(Kind::Top.item(0)) {
+/// Fails if the step is not complete.
+pub(crate) fn check_done(context: &BuildContext<'_>) -> Result<(), BuildError> {
+    if context.store.has(ArtifactKind::Top.item(0)) {
         return Ok(());
     }
-    let what = "what lies above the subtrees of heights".to_owned();
+    let what = "the coarse tiles above the subtrees".to_owned();
     Err(ArtifactError::Missing { what, step: "top" }.into())
 }
 
-/// The step between heights that the DEM can tell apart, metres ([`corniche_dem::Audit::height_step_m`]). Fails if the step *top*
-/// was not done.
-pub(crate) fn height_step_m(context: &Context<'_>) -> Result<f64, BuildError> {
+/// The smallest height step that the DEM can represent, metres
+/// ([`corniche_dem::Audit::height_step_m`]). Fails if the step *top* is not complete.
+pub(crate) fn height_step_m(context: &BuildContext<'_>) -> Result<f64, BuildError> {
     check_done(context)?;
-    let key = Kind::Top.item(0);
+    let key = ArtifactKind::Top.item(0);
     let bytes = context.store.get(key)?.unwrap_or_default();
-    let bytes = <[u8; 8]>::try_from(&bytes[..]).map_err(|_| damaged(key, &"it is no height"))?;
+    let bytes = <[u8; 8]>::try_from(&bytes[..]).map_err(|_| damaged(key, &"it is not a height"))?;
     Ok(f64::from_le_bytes(bytes))
 }
 
-/// The tiles above all subtrees that heights were made for, in package order.
-fn above_subtrees(context: &Context<'_>) -> Vec<TileId> {
-    let items = context.store.items(Kind::Subtree as u8);
+/// The tiles above all subtrees for which heights were read, in package order.
+fn above_subtrees(context: &BuildContext<'_>) -> Vec<TileId> {
+    let items = context.store.items(ArtifactKind::Subtree as u8);
     let made: BTreeSet<TileId> = items.into_iter().filter_map(tile_of_order).collect();
     let is_in_another = |id: TileId| (0..id.z()).any(|level| made.contains(&id.ancestor(level)));
     let subtrees = made.iter().filter(|&&id| !is_in_another(id));
@@ -67,14 +69,14 @@ fn above_subtrees(context: &Context<'_>) -> Vec<TileId> {
     above
 }
 
-/// Triangulates those of some coarse tiles of the data that are not there yet.
-pub(crate) fn make_tins(context: &Context<'_>, ids: Vec<TileId>) -> Result<(), BuildError> {
+/// Triangulates those coarse tiles of the data whose TINs are missing.
+pub(crate) fn make_tins(context: &BuildContext<'_>, ids: Vec<TileId>) -> Result<(), BuildError> {
     if ids.is_empty() {
         return Ok(());
     }
     let (store, data) = (context.store, context.data());
     context.make_missing(
-        (Stage::CoarseTins, Kind::Tin),
+        (Stage::CoarseTins, ArtifactKind::Tin),
         ids,
         || Ok(()),
         |(), id| {

@@ -1,4 +1,4 @@
-//! A tile's ground and roads to its payload.
+//! Encodes a tile's ground and roads as its payload.
 
 use std::collections::BTreeMap;
 
@@ -12,28 +12,31 @@ use corniche_pieces::{
     },
     roads::{
         ground_lines,
-        lay::{ClassSums, Laid, TileToLayOn, lost_pieces},
+        lay::{ClassSums, DrapedRoads, TileToLayOn, lost_pieces},
         pieces::TilePieces,
         proportions::share,
     },
 };
 use corniche_roads::FunctionalRoadClass;
-use corniche_spec::artifacts::Kind;
-use corniche_tileset::{EncodedTile, PayloadContext, PayloadSizes, Relief, Terrain, TilePayload};
+use corniche_spec::artifacts::ArtifactKind;
+use corniche_tileset::{
+    EncodedTile, PayloadContext, PayloadSizes, Relief, TilePayload, TileTerrain,
+};
 use corniche_tin::Surface;
 
 use super::{
     mesh::Meshed,
     record::{GroundRecord, TileDeviation, TileRecord},
 };
-use crate::{BuildError, context::Context};
+use crate::{BuildError, context::BuildContext};
 
-/// Lays a tile's roads on its ground, encodes both and keeps the payload. The record lacks only what finest tiles say of levels.
+/// Drapes a tile's roads on its ground, encodes both and stores the payload. The record lacks only
+/// the values about levels, which come from finest tiles.
 ///
-/// `earlier` is a payload with this ground, if there is one. `owned` tells which borders are the tile's own; it is asked only where
-/// there are roads.
+/// `earlier` is a payload with this ground, if there is one. `owned` returns the borders that the
+/// tile owns; it is called only if there are roads.
 pub(crate) fn with_ground(
-    context: &Context<'_>,
+    context: &BuildContext<'_>,
     id: TileId,
     (meshed, relief): (Meshed, Option<Relief>),
     deviation: TileDeviation,
@@ -44,21 +47,21 @@ pub(crate) fn with_ground(
     let frame = context.frame();
     let pieces = TilePieces::load(context.store, id)?;
     let mut laid = if pieces.roads.is_empty() {
-        Laid::default()
+        DrapedRoads::default()
     } else {
         let surface = Surface::of_tile(&meshed.tin, frame, id, levels.quantum_m());
         let clip = context.clip();
         let spans = context.settings.roads.spans;
         let lengths = &context.lengths();
         let on = TileToLayOn { id, surface: &surface, owned: owned()?, clip, spans, lengths };
-        Laid::of_tile(&pieces, &on, levels)
+        DrapedRoads::of_tile(&pieces, &on, levels)
     };
     let fates = std::mem::take(&mut laid.fates);
     ground_lines::put(&laid.ground_lines, context.store, id)?;
     let laid_classes = std::mem::take(&mut laid.classes);
     let (vertices, triangles) =
         (meshed.tin.vertices().len() as u64, meshed.tin.triangles().len() as u64);
-    let terrain = Terrain {
+    let terrain = TileTerrain {
         tin: meshed.tin,
         normals: meshed.normals,
         geometric_error_m: deviation.geometric_error_m,
@@ -76,7 +79,7 @@ pub(crate) fn with_ground(
         builder.add(photo)?;
     }
     let mut sections = ByLayer::<SectionOfTile>::default();
-    for layer in SectionLayer::of_extract() {
+    for layer in SectionLayer::OF_EXTRACT {
         if let Some(TileSection { section, parts, points }) =
             TileSection::get(layer, context.store, id)?
         {
@@ -85,10 +88,10 @@ pub(crate) fn with_ground(
         }
     }
     let EncodedTile { bytes, sizes } = builder.seal()?;
-    for layer in SectionLayer::of_extract() {
+    for layer in SectionLayer::OF_EXTRACT {
         sections[layer].bytes = layer.size_in(&sizes).stored;
     }
-    context.store.put(Kind::Payload.of_tile(id), &bytes)?;
+    context.store.put(ArtifactKind::Payload.of_tile(id), &bytes)?;
     Ok(TileRecord {
         ground: Some(GroundRecord {
             vertices,
@@ -105,10 +108,10 @@ pub(crate) fn with_ground(
     })
 }
 
-/// The record of a finest tile without ground: its roads are lost there. `owned` tells which borders are the tile's own. It is
-/// asked only where there are roads.
+/// Returns the record of a finest tile without ground: its roads are lost there. `owned` returns
+/// the borders that the tile owns; it is called only if there are roads.
 pub(crate) fn without_ground(
-    context: &Context<'_>,
+    context: &BuildContext<'_>,
     id: TileId,
     owned: impl FnOnce() -> Result<OwnedBorders, BuildError>,
 ) -> Result<TileRecord, BuildError> {
@@ -122,10 +125,10 @@ pub(crate) fn without_ground(
     Ok(record)
 }
 
-/// What the tile owns of its borders, by the heights on both sides of them. `with_halo` has one node of halo on every side, and is
-/// `None` where no node has a height.
+/// The borders that the tile owns, derived from the heights on both sides. `with_halo` has one node
+/// of halo on every side, and is `None` if no node has a height.
 pub(crate) fn owned_by_heights(
-    context: &Context<'_>,
+    context: &BuildContext<'_>,
     id: TileId,
     with_halo: Option<&HeightGrid>,
 ) -> Result<OwnedBorders, BuildError> {
@@ -137,9 +140,10 @@ pub(crate) fn owned_by_heights(
     }))
 }
 
-/// Which neighbours lay roads, so that a border can be theirs: on the finest level those on the data, on others those with ground.
+/// The neighbours that have roads, so that they may own a border: on the finest level those on the
+/// data, on other levels those with ground.
 pub(crate) fn neighbours(
-    context: &Context<'_>,
+    context: &BuildContext<'_>,
     id: TileId,
     has_ground: impl Fn(TileId) -> Result<bool, BuildError>,
 ) -> Result<Neighbours, BuildError> {
@@ -151,14 +155,16 @@ pub(crate) fn neighbours(
     Ok(Neighbours { east: is_asked(1, 0)?, south: is_asked(0, 1)? })
 }
 
-/// Whether a coarse tile has ground: a cell with a height at each corner. Its raster says so, too, where its TIN is made elsewhere.
-fn has_ground(context: &Context<'_>, id: TileId) -> Result<bool, BuildError> {
+/// Whether a coarse tile has ground: a cell with a height at each corner. The raster is used, in
+/// case the TIN is created in another part.
+fn has_ground(context: &BuildContext<'_>, id: TileId) -> Result<bool, BuildError> {
     let Some(raster) = rasters::get(context.store, &context.data(), id)? else { return Ok(false) };
     Ok((0..TILE_NODES - 1)
         .any(|row| (0..TILE_NODES - 1).any(|column| raster.cell_has_ground(column, row))))
 }
 
-/// Adds vertices by class, and each section's stored bytes shared out by the classes' encoded lengths.
+/// Adds vertices by class, and distributes each section's stored bytes in proportion to the
+/// classes' encoded lengths.
 fn class_sums(
     mut classes: BTreeMap<u8, ClassSums>,
     payload: &TilePayload,

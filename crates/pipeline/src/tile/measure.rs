@@ -1,8 +1,9 @@
-//! How far the TINs of a finest tile and of all its ancestors are from the heights of the finest tile.
+//! Measures how far the TINs of a finest tile and of all its ancestors are from the heights of the
+//! finest tile.
 
 use std::sync::Arc;
 
-use corniche_dem::{Dem, Reader};
+use corniche_dem::{Dem, HeightReader};
 use corniche_geom::{HeightGrid, TileId};
 use corniche_ground::heights::finest::{FinestHeights, own_size};
 use corniche_tileset::SampleSums;
@@ -11,36 +12,37 @@ use corniche_work::Recent;
 
 use super::{
     mesh::Meshed,
-    record::{LevelShare, Seen},
+    record::{LevelShare, TinStatistics},
 };
-use crate::{BuildError, context::Context};
+use crate::{BuildError, context::BuildContext};
 
-/// The grounds above and on a finest tile, root first; `None` where a level has none there.
+/// The grounds of a finest tile and all tiles above it, root first; `None` for a tile without
+/// ground.
 pub(crate) struct Column {
     finest: TileId,
-    grounds: Vec<Arc<Option<Ground>>>,
+    grounds: Vec<Arc<Option<MeasuredGround>>>,
 }
 
 impl Column {
     pub(crate) fn new(
-        context: &Context<'_>,
-        grounds: &Grounds<'_>,
+        context: &BuildContext<'_>,
+        grounds: &GroundCache<'_>,
         finest: TileId,
         tin: Option<&Tin>,
     ) -> Result<Self, BuildError> {
-        let above = (0..finest.z()).map(|level| grounds.of(finest.ancestor(level)));
+        let above = (0..finest.z()).map(|level| grounds.ground_at(finest.ancestor(level)));
         let mut all = above.collect::<Result<Vec<_>, _>>()?;
-        all.push(Arc::new(tin.map(|tin| Ground::new(context, finest, tin))));
+        all.push(Arc::new(tin.map(|tin| MeasuredGround::new(context, finest, tin))));
         Ok(Self { finest, grounds: all })
     }
 
-    /// Measures every level at every node, and at every sample where samples are not nodes. `heights` is `None` where no node
-    /// has one.
+    /// Measures every level at every node, and at every sample if samples are not nodes. `heights`
+    /// is `None` if no node has a height.
     pub(crate) fn measure(
         &self,
-        context: &Context<'_>,
+        context: &BuildContext<'_>,
         dem: &Dem,
-        reader: &mut Reader<'_>,
+        reader: &mut HeightReader<'_>,
         heights: Option<&FinestHeights>,
     ) -> Result<Vec<LevelShare>, BuildError> {
         let none = SampleSums::new(context.levels.quantum_m());
@@ -49,7 +51,7 @@ impl Column {
             .iter()
             .map(|ground| LevelShare {
                 has_ground: ground.is_some(),
-                seen: Seen::default(),
+                seen: TinStatistics::default(),
                 sums: none.clone(),
             })
             .collect();
@@ -65,7 +67,7 @@ impl Column {
 
     fn at_nodes(
         &self,
-        context: &Context<'_>,
+        context: &BuildContext<'_>,
         heights: &FinestHeights,
         nodes_are_samples: bool,
         shares: &mut [LevelShare],
@@ -95,7 +97,7 @@ impl Column {
                     stride: frame.stride(level),
                 };
                 let found = corniche_tin::measure(&ground.buckets, &window, placement, look);
-                Seen { max_abs_m: found.max_abs_m, range_m, uncovered_nodes }
+                TinStatistics { max_abs_m: found.max_abs_m, range_m, uncovered_nodes }
             } else {
                 for row in 0..window.rows() {
                     for column in 0..window.columns() {
@@ -104,18 +106,18 @@ impl Column {
                         }
                     }
                 }
-                Seen { uncovered_nodes, ..Seen::default() }
+                TinStatistics { uncovered_nodes, ..TinStatistics::default() }
             };
         }
     }
 
-    /// Adds the distances to the DEM's own samples. Each sample belongs to one finest tile, by its place rounded to the lattice,
-    /// as places of roads are.
+    /// Adds the distances to the DEM's own samples. Each sample belongs to one finest tile, by its
+    /// position rounded to the lattice, like positions of roads.
     fn at_samples(
         &self,
-        context: &Context<'_>,
+        context: &BuildContext<'_>,
         dem: &Dem,
-        reader: &mut Reader<'_>,
+        reader: &mut HeightReader<'_>,
         shares: &mut [LevelShare],
     ) -> Result<(), BuildError> {
         let (frame, data) = (context.frame(), context.data());
@@ -142,8 +144,8 @@ impl Column {
     }
 }
 
-/// Which nodes of a tile count as samples: not filled voids, and not those on the east and south border, which belong to the
-/// next tile if there can be one.
+/// Which nodes of a tile count as samples. Filled voids do not, nor do nodes on the east and south
+/// border, which belong to the next tile if there can be one.
 fn own_samples(finest: TileId, window: &HeightGrid, filled: &[usize]) -> Vec<bool> {
     let [columns, rows] = own_size(finest);
     let mut is_own = vec![false; window.columns() * window.rows()];
@@ -157,19 +159,19 @@ fn own_samples(finest: TileId, window: &HeightGrid, filled: &[usize]) -> Vec<boo
     is_own
 }
 
-/// Bytes that a triangle takes in buckets, and again in a surface.
+/// Memory for a triangle in buckets and in a surface, bytes.
 const TRIANGLE_BYTES: u64 = 120;
 
-/// A tile's ground.
-pub(crate) struct Ground {
+/// A tile's ground, prepared for measuring.
+pub(crate) struct MeasuredGround {
     pub(crate) buckets: TriangleBuckets,
-    /// Only where samples are not nodes: samples are looked up by their place.
+    /// Only if samples are not nodes: samples are located by their position.
     pub(crate) surface: Option<Surface>,
     bytes: u64,
 }
 
-impl Ground {
-    pub(crate) fn new(context: &Context<'_>, id: TileId, tin: &Tin) -> Self {
+impl MeasuredGround {
+    pub(crate) fn new(context: &BuildContext<'_>, id: TileId, tin: &Tin) -> Self {
         let quantum_m = context.levels.quantum_m();
         let surface = (!context.grid.nodes_are_samples())
             .then(|| Surface::of_tile(tin, context.frame(), id, quantum_m));
@@ -182,26 +184,26 @@ impl Ground {
     }
 }
 
-/// Grounds by tile: those used last, within a budget of memory.
+/// Grounds of the most recently used tiles, within a memory budget.
 ///
-/// Finest tiles are worked on in package order, along a Hilbert curve, so a coarse tile is needed for a while and then never
-/// again.
-pub(crate) struct Grounds<'a> {
-    context: &'a Context<'a>,
-    /// `None` for a tile without ground.
-    recent: Recent<TileId, Option<Ground>>,
+/// Finest tiles are processed in package order, along a Hilbert curve, so a coarse tile is needed
+/// for a while and then never again.
+pub(crate) struct GroundCache<'a> {
+    context: &'a BuildContext<'a>,
+    /// Ground by tile; `None` for a tile without ground.
+    recent: Recent<TileId, Option<MeasuredGround>>,
 }
 
-impl<'a> Grounds<'a> {
-    pub(crate) fn new(context: &'a Context<'a>) -> Self {
+impl<'a> GroundCache<'a> {
+    pub(crate) fn new(context: &'a BuildContext<'a>) -> Self {
         Self { context, recent: Recent::new(context.memory().grounds) }
     }
 
-    /// What is known of a coarse tile: its ground, or that it has none.
-    pub(crate) fn of(&self, id: TileId) -> Result<Arc<Option<Ground>>, BuildError> {
+    /// The ground of a coarse tile, or `None` if it has none.
+    pub(crate) fn ground_at(&self, id: TileId) -> Result<Arc<Option<MeasuredGround>>, BuildError> {
         let make = || {
             let meshed = Meshed::get(self.context.store, id)?;
-            Ok(meshed.map(|meshed| Ground::new(self.context, id, &meshed.tin)))
+            Ok(meshed.map(|meshed| MeasuredGround::new(self.context, id, &meshed.tin)))
         };
         self.recent.get(id, make, |ground| ground.as_ref().map_or(0, |ground| ground.bytes))
     }

@@ -1,8 +1,8 @@
-//! Heights of a tile to its TIN, and the TINs of coarse tiles as artifacts.
+//! Triangulates the heights of a tile, and stores the TINs of coarse tiles as artifacts.
 
 use corniche_geom::{HeightGrid, TileId};
 use corniche_spec::{
-    artifacts::{ArtifactError, Kind, damaged},
+    artifacts::{ArtifactError, ArtifactKind, damaged},
     levels::Levels,
 };
 use corniche_store::Artifacts;
@@ -10,15 +10,15 @@ use corniche_tin::{Tin, TinSpec, TinVertex};
 
 use crate::BuildError;
 
-/// A tile's ground as meshed, before it is measured.
+/// A tile's ground as a mesh, before it is measured.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Meshed {
     pub(crate) tin: Tin,
     pub(crate) normals: Vec<[i8; 2]>,
 }
 
-/// Triangulates the heights of a tile (259 × 259 nodes, one of them halo on every side). The TIN is empty where no cell has
-/// ground.
+/// Triangulates the heights of a tile (259 × 259 nodes, of which one on every side is halo). The
+/// TIN is empty if no cell has ground.
 pub(crate) fn mesh_tile(
     heights_with_halo: &HeightGrid,
     id: TileId,
@@ -35,21 +35,22 @@ pub(crate) fn mesh_tile(
 
 impl Meshed {
     pub(crate) fn put(&self, store: &dyn Artifacts, id: TileId) -> Result<(), ArtifactError> {
-        Ok(store.put(Kind::Tin.of_tile(id), &to_bytes(self))?)
+        Ok(store.put(ArtifactKind::Tin.of_tile(id), &to_bytes(self))?)
     }
 
-    /// The TIN of a coarse tile of the data; `None` where it is empty: the tile has no ground.
+    /// Reads the TIN of a coarse tile of the data; `None` if it is empty, so that the tile has no
+    /// ground.
     pub(crate) fn get(store: &dyn Artifacts, id: TileId) -> Result<Option<Self>, ArtifactError> {
-        let key = Kind::Tin.of_tile(id);
+        let key = ArtifactKind::Tin.of_tile(id);
         let missing =
             || ArtifactError::Missing { what: format!("the TIN of tile {id}"), step: "top" };
         let bytes = store.get(key)?.ok_or_else(missing)?;
-        let meshed = from_bytes(&bytes).ok_or_else(|| damaged(key, &"it is no TIN"))?;
+        let meshed = from_bytes(&bytes).ok_or_else(|| damaged(key, &"it is not a TIN"))?;
         Ok(Some(meshed).filter(|meshed| !meshed.tin.is_empty()))
     }
 }
 
-/// Counts, then vertices (row, column, height), normals, triangles; all little-endian.
+/// Encodes counts, then vertices (row, column, height), normals, triangles; all little-endian.
 fn to_bytes(Meshed { tin, normals }: &Meshed) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(8 + tin.vertices().len() * 10 + tin.triangles().len() * 12);
     bytes.extend((tin.vertices().len() as u32).to_le_bytes());
@@ -65,32 +66,27 @@ fn to_bytes(Meshed { tin, normals }: &Meshed) -> Vec<u8> {
 }
 
 fn from_bytes(bytes: &[u8]) -> Option<Meshed> {
-    let word = |bytes: &[u8]| Some(u32::from_le_bytes(bytes.try_into().ok()?));
-    let half = |bytes: &[u8]| Some(u16::from_le_bytes(bytes.try_into().ok()?));
-    let (counts, rest) = bytes.split_at_checked(8)?;
-    let (vertices, triangles) = (word(&counts[..4])? as usize, word(&counts[4..])? as usize);
+    let (counts, rest) = bytes.split_first_chunk::<8>()?;
+    let count = |at: usize| Some(u32::from_le_bytes(*counts[at..].first_chunk()?) as usize);
+    let (vertices, triangles) = (count(0)?, count(4)?);
     let (vertex_bytes, rest) = rest.split_at_checked(vertices * 8)?;
     let (normal_bytes, triangle_bytes) = rest.split_at_checked(vertices * 2)?;
     if triangle_bytes.len() != triangles * 12 {
         return None;
     }
-    let vertices = vertex_bytes
-        .chunks_exact(8)
-        .map(|b| {
-            Some(TinVertex {
-                row: half(&b[..2])?,
-                column: half(&b[2..4])?,
-                height_q: word(&b[4..])?.cast_signed(),
-            })
-        })
-        .collect::<Option<Vec<_>>>()?;
-    let normals =
-        normal_bytes.chunks_exact(2).map(|b| [b[0].cast_signed(), b[1].cast_signed()]).collect();
-    let triangles = triangle_bytes
-        .chunks_exact(12)
-        .map(|b| Some([word(&b[..4])?, word(&b[4..8])?, word(&b[8..])?]))
-        .collect::<Option<Vec<_>>>()?;
-    Some(Meshed { tin: Tin::from_canonical(vertices, triangles).ok()?, normals })
+    let vertices =
+        vertex_bytes.as_chunks::<8>().0.iter().map(|&[r0, r1, c0, c1, ref height @ ..]| {
+            TinVertex {
+                row: u16::from_le_bytes([r0, r1]),
+                column: u16::from_le_bytes([c0, c1]),
+                height_q: i32::from_le_bytes(*height),
+            }
+        });
+    let normals = normal_bytes.as_chunks().0.iter().map(|step| step.map(u8::cast_signed));
+    let corners = triangle_bytes.as_chunks().0.iter().map(|&corner| u32::from_le_bytes(corner));
+    let corners: Vec<u32> = corners.collect();
+    let (vertices, triangles) = (vertices.collect(), corners.as_chunks().0.to_vec());
+    Some(Meshed { tin: Tin::from_canonical(vertices, triangles).ok()?, normals: normals.collect() })
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! A mesh is read as it was written, and a cut one is refused.
+//! A decoded mesh equals the encoded one, and a truncated one is rejected.
 
 use super::*;
 

@@ -1,4 +1,5 @@
-//! What is kept beside a tile: all that the manifest needs of it. The package is not read for its own table of contents.
+//! The record of a tile: everything that the manifest needs from it, so that the package need not
+//! be read again for its own table of contents.
 
 use std::collections::BTreeMap;
 
@@ -8,42 +9,43 @@ use corniche_pieces::{
     layers::{ByLayer, tile_section::SectionOfTile},
     roads::lay::{ClassSums, RoadFate},
 };
-use corniche_spec::artifacts::{self, ArtifactError, Kind};
+use corniche_spec::artifacts::{self, ArtifactError, ArtifactKind};
 use corniche_store::Artifacts;
 use corniche_tileset::SampleSums;
 use serde::{Deserialize, Serialize};
 
-/// The record of a tile. Sums over tiles are sums of records, in whole numbers, maxima and minima: they do not depend on
-/// the order of tiles or on how these are grouped.
+/// The record of a tile. Sums over tiles are sums of records, in whole numbers, maxima and minima:
+/// they do not depend on the order or grouping of tiles.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct TileRecord {
-    /// `None` where the tile has no ground, and so no payload.
+    /// The tile's ground; `None` if the tile has no ground, and therefore no payload.
     pub(crate) ground: Option<GroundRecord>,
     /// Sums by number of the class.
     pub(crate) classes: BTreeMap<u8, ClassSums>,
-    /// Finest tiles only: what became of roads here, by ordinal.
+    /// Finest tiles only: the fates of roads in this tile, by ordinal.
     pub(crate) fates: Vec<(u32, RoadFate)>,
-    /// Finest tiles only, root first: how far its nodes and samples are from the TINs of its ancestors, and of the tile itself.
+    /// Finest tiles only, root first: distances of its nodes and samples from the TINs of its
+    /// ancestors, and from its own TIN.
     pub(crate) levels: Vec<LevelShare>,
 }
 
-/// Counts of a tile's ground, and how far it is from the heights.
+/// Counts of a tile's ground, and its distance from the heights.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct GroundRecord {
     pub(crate) vertices: u64,
     pub(crate) triangles: u64,
     pub(crate) terrain_bytes: u64,
     pub(crate) relief_bytes: u64,
-    /// 0 without a photo.
+    /// Bytes of the photo; 0 without one.
     pub(crate) photo_bytes: u64,
     pub(crate) sections: ByLayer<SectionOfTile>,
     pub(crate) deviation: TileDeviation,
 }
 
-/// How far the TIN of one tile is from the nodes.
+/// The distance of one tile's TIN from the nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct TileDeviation {
-    /// What the tile stores: never below the deviations of the tiles below it.
+    /// The value that the tile stores: never below the deviations of the tiles below it.
     pub(crate) geometric_error_m: f64,
     /// The largest deviation of the tile itself and of its children, each by its own TIN.
     pub(crate) deviation_m: f64,
@@ -51,19 +53,20 @@ pub(crate) struct TileDeviation {
     pub(crate) uncovered_nodes: u64,
 }
 
-/// The share of one finest tile in what is known of a tile above it, or of itself.
+/// The contribution of one finest tile to the statistics of a tile above it, or of itself.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct LevelShare {
     /// Whether the tile of that level has ground.
     pub(crate) has_ground: bool,
-    pub(crate) seen: Seen,
-    /// Distances to the nodes that are not filled voids, or, where samples are not nodes, to the DEM's samples.
+    pub(crate) seen: TinStatistics,
+    /// Distances to the nodes that are not filled voids, or, where samples are not nodes, to the
+    /// DEM's samples.
     pub(crate) sums: SampleSums,
 }
 
-/// What was seen of a tile's TIN from one finest tile, or from several.
+/// Statistics of a tile's TIN, collected over one or several finest tiles.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub(crate) struct Seen {
+pub(crate) struct TinStatistics {
     /// Largest vertical distance from the TIN to a node, metres.
     pub(crate) max_abs_m: f64,
     /// Lowest and highest node.
@@ -72,8 +75,8 @@ pub(crate) struct Seen {
     pub(crate) uncovered_nodes: u64,
 }
 
-impl Seen {
-    /// Adds what was seen of the same tile from elsewhere, in any order.
+impl TinStatistics {
+    /// Adds other statistics of the same tile, in any order.
     pub(crate) fn merge(&mut self, other: Self) {
         self.max_abs_m = self.max_abs_m.max(other.max_abs_m);
         self.uncovered_nodes += other.uncovered_nodes;
@@ -82,8 +85,9 @@ impl Seen {
 }
 
 impl TileDeviation {
-    /// The record of what was seen of a tile, the largest geometric error beneath it, and the largest own deviation of its children.
-    pub(crate) fn of(seen: Seen, beneath_m: f64, children_m: f64) -> Self {
+    /// Combines the statistics of a tile, the largest geometric error beneath it, and the largest
+    /// own deviation of its children.
+    pub(crate) fn from_statistics(seen: TinStatistics, beneath_m: f64, children_m: f64) -> Self {
         let [low, high] = seen.range_m.unwrap_or([0.0, 0.0]);
         Self {
             geometric_error_m: beneath_m.max(seen.max_abs_m),
@@ -96,10 +100,10 @@ impl TileDeviation {
 
 impl TileRecord {
     pub(crate) fn put(&self, store: &dyn Artifacts, id: TileId) -> Result<(), ArtifactError> {
-        artifacts::put(store, Kind::Record.of_tile(id), self)
+        artifacts::put(store, ArtifactKind::Record.of_tile(id), self)
     }
 
     pub(crate) fn get(store: &dyn Artifacts, id: TileId) -> Result<Option<Self>, ArtifactError> {
-        artifacts::get(store, Kind::Record.of_tile(id))
+        artifacts::get(store, ArtifactKind::Record.of_tile(id))
     }
 }

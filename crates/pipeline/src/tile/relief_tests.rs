@@ -1,4 +1,4 @@
-//! Ripples go, and form stays.
+//! Ripples are removed, and form is preserved.
 
 use proptest::prelude::*;
 
@@ -8,14 +8,14 @@ fn grid(side: usize, height_m: impl Fn(f64, f64) -> f64) -> HeightGrid {
     HeightGrid::from_fn(side, side, |column, row| height_m(column as f64, row as f64) as f32)
 }
 
-/// Mean square of the difference of slopes to the east, of neighbouring nodes.
+/// Mean square of the error of slopes to the east, between neighbouring nodes.
 fn slope_error(grid: &HeightGrid, truth: impl Fn(f64) -> f64) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for row in 0..grid.rows() {
         for column in 1..grid.columns() {
             let at = |column| f64::from(grid.height(column, row).unwrap_or(f32::NAN));
             let found = at(column) - at(column - 1);
-            // The grid lacks the outermost nodes of the truth.
+            // The grid lacks the outermost nodes of the true heights.
             let wanted = truth(column as f64 + 1.0) - truth(column as f64);
             sum += (found - wanted).powi(2);
             count += 1.0;
@@ -30,7 +30,7 @@ fn gentle_ground_in_whole_metres_has_less_than_half_of_its_ripples() {
     let stored = grid(66, |east, _| plane(east).round());
     let before = slope_error(&low_passed(&stored, 0.0), plane);
     let after = slope_error(&low_passed(&stored, 1.0), plane);
-    assert!(after < 0.25 * before, "{after} beside {before}");
+    assert!(after < 0.25 * before, "{after}, before {before}");
 }
 
 #[test]
@@ -65,7 +65,7 @@ proptest! {
                 prop_assert!(f64::from(moved.abs()) <= 0.4 * step_m + 1e-6);
             }
         }
-        // Columns 5 to 7 of both: the last of one tile and its halo, the first of the next.
+        // Columns 5 to 7 of both: the last column of one tile and its halo, the first of the next.
         let east = low_passed(&whole.window(4, 0, 8, 9), step_m);
         for row in 0..7 {
             for column in 0..6 {

@@ -1,5 +1,5 @@
-//! Packages as wide as the earth, built and verified: a strip around the equator, the globe with its poles, and what lies at
-//! a pole.
+//! Packages as wide as the earth are built and verified: a strip around the equator, the globe with
+//! its poles, and data at a pole.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -8,15 +8,16 @@ use std::{path::Path, sync::Mutex};
 use crate::support::{Options, settings, write_samples};
 use corniche_geom::Bounds;
 use corniche_pipeline::build;
-use corniche_spec::Observer;
+use corniche_spec::BuildObserver;
 use corniche_tileset::{FilePackage, Manifest};
 use corniche_verify::{VerifySettings, verify};
 use corniche_work::Silent;
 
-/// Metres to a degree of the equator.
+/// Metres per degree of the equator.
 const DEGREE_M: f64 = 20_037_508.342_789_244 / 180.0;
 
-/// A raster in WGS84 of whole degrees from `west` and `north`, samples in the middle of their cells.
+/// Writes a raster in WGS84 with cells of one degree from `west` and `north`; samples are in the
+/// middle of cells.
 fn degrees(path: &Path, size: [usize; 2], [west, north]: [f64; 2]) {
     let first = [west + 0.5, north - 0.5];
     let height_m = |k: usize| ((k % size[0]) * 7 + (k / size[0]) * 11) % 900;
@@ -49,7 +50,8 @@ fn check_bounds(manifest: &Manifest, expected: [f64; 4]) {
     }
 }
 
-/// Heights of a strip around the equator are the DEM's own samples, from the first column all around to the same one.
+/// The heights of a strip around the equator are the DEM's own samples, from the first column all
+/// around to the same one.
 #[test]
 fn a_strip_around_the_equator_is_built() {
     let folder = tempfile::tempdir().unwrap();
@@ -62,7 +64,7 @@ fn a_strip_around_the_equator_is_built() {
     check_bounds(&manifest, [-179.5, -9.5, 180.5, 9.5]);
 }
 
-/// The globe in its own degrees, with samples between the poles and on them.
+/// A globe in degrees, with samples between the poles and on them.
 #[test]
 fn the_globe_is_built_in_its_own_degrees() {
     let folder = tempfile::tempdir().unwrap();
@@ -73,7 +75,7 @@ fn the_globe_is_built_in_its_own_degrees() {
         let manifest = checked(&dem, options);
         assert_eq!(manifest.counts.samples.with_data, 361 * rows as u64);
         check_bounds(&manifest, [-179.5, 0.5 - north, 180.5, north - 0.5]);
-        // The table for readers without PROJ has room around the data, and none beyond the poles.
+        // The table for readers without PROJ extends around the data, but not beyond the poles.
         let table = &manifest.coordinates;
         let Bounds { min_y, max_y, .. } = table.bounds();
         for y in [min_y, max_y] {
@@ -83,7 +85,7 @@ fn the_globe_is_built_in_its_own_degrees() {
     }
 }
 
-/// So is a globe in a projection that reaches from −180 to 180, and a strip up to a pole.
+/// A globe in a projection that reaches from −180 to 180, and a strip up to a pole.
 #[test]
 fn what_has_longitudes_all_over_is_built() {
     let folder = tempfile::tempdir().unwrap();
@@ -98,7 +100,8 @@ fn what_has_longitudes_all_over_is_built() {
     check_bounds(&checked(&dem, options), [-179.5, 70.5, 180.5, 89.5]);
 }
 
-/// What no CRS holds in one package is refused with a way out, and with no option that nobody gave.
+/// Data that do not fit one package in any CRS are rejected with a way out, and without naming an
+/// option that the user did not give.
 #[test]
 fn what_does_not_fit_one_package_is_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -115,23 +118,23 @@ fn what_does_not_fit_one_package_is_refused() {
     let globe = folder.path().join("globe.tif");
     degrees(&globe, [360, 180], [-180.0, 90.0]);
     let text = refused(&globe, None);
-    check(&text, &["globe.tif", "25000000 m", "equal-area", "give --crs dem"]);
+    check(&text, &["globe.tif", "25000000 m", "equal-area", "pass --crs dem"]);
     assert!(!text.contains("--cell 25000000"), "{text}");
-    // Around a pole there is no longitude that a table could hold.
+    // Around a pole, longitudes cannot be tabulated.
     let arctic = folder.path().join("arctic.tif");
     degrees(&arctic, [360, 20], [-180.0, 90.0]);
-    check(&refused(&arctic, None), &["do not fit one package", "a pole", "--crs dem"]);
+    check(&refused(&arctic, None), &["does not fit one package", "a pole", "--crs dem"]);
     let pole = folder.path().join("pole.tif");
     let values = vec![1.0; 101 * 101];
     write_samples(&pole, [101, 101], (3413, [-500_000.0, 500_000.0], [10_000.0; 2]), values);
-    check(&refused(&pole, None), &["do not fit one package", "a pole"]);
+    check(&refused(&pole, None), &["does not fit one package", "a pole"]);
 }
 
-/// Keeps warnings.
+/// Records warnings.
 #[derive(Default)]
 struct Heard(Mutex<Vec<String>>);
 
-impl Observer for Heard {}
+impl BuildObserver for Heard {}
 
 impl corniche_work::Observer for Heard {
     fn warning(&self, words: &str) {
@@ -139,7 +142,8 @@ impl corniche_work::Observer for Heard {
     }
 }
 
-/// A latitude that changes nothing, in a projection that is true to scale, is told; one that does is not.
+/// A scale latitude without effect, in a projection that is true to scale, causes a warning; one
+/// with an effect does not.
 #[test]
 fn a_latitude_that_changes_nothing_is_told() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,5 +1,6 @@
-//! A build with bounds makes what the whole build makes there: finest tiles that lie inside have the same sections, byte for byte;
-//! ground and roads end at the bounds, and what is left out is counted.
+//! A build with bounds gives the same result as the whole build there: finest tiles inside the
+//! bounds have the same sections, byte for byte; ground and roads end at the bounds, and everything
+//! outside is counted.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -20,18 +21,18 @@ use corniche_drape::DrapedVertex;
 use corniche_geom::{LatticeBounds, TileId};
 use corniche_pipeline::build;
 use corniche_plan::{BuildPlan, plan};
-use corniche_spec::{BuildSettings, Defect, Loss, Observer};
+use corniche_spec::{BuildObserver, BuildSettings, Defect, Loss};
 use corniche_tileset::{FilePackage, Manifest, Sections};
 use corniche_verify::{CheckId, VerifyOsm, VerifySettings, verify};
 use corniche_work::Silent;
 
-/// What a build told of roads.
+/// Records the losses of roads that a build reports.
 #[derive(Default)]
 struct Lost(Mutex<Vec<Loss>>);
 
 impl corniche_work::Observer for Lost {}
 
-impl Observer for Lost {
+impl BuildObserver for Lost {
     fn defect(&self, defect: &Defect) {
         if let Defect::LostRoad { loss, .. } = defect {
             self.0.lock().unwrap().push(*loss);
@@ -39,7 +40,7 @@ impl Observer for Lost {
     }
 }
 
-/// A raster of four by four tiles with voids, and roads all over it and beyond.
+/// A raster of four by four tiles with voids, and roads all over it and outside.
 struct Files {
     folder: tempfile::TempDir,
     raster: Raster,
@@ -59,7 +60,7 @@ impl Files {
             });
             roads.push(StraightRoad { from: [-30.0, k * 25.7], to: [1150.0, 13.0 + k * 24.1] });
         }
-        // In bounds as a whole, and beside them.
+        // Two roads: one wholly inside the bounds, one outside.
         roads.push(StraightRoad { from: [500.0, 500.0], to: [520.0, 501.0] });
         roads.push(StraightRoad { from: [10.0, 10.0], to: [14.0, 11.0] });
         extract::write(&folder.path().join("roads.osm.pbf"), &raster, &roads);
@@ -106,7 +107,7 @@ fn sections(payload: &[u8]) -> BTreeMap<u16, Vec<u8>> {
         .collect()
 }
 
-/// The finest tiles of a package by their place on the grid.
+/// The finest tiles of a package by their position on the grid.
 fn finest(package: &FilePackage) -> BTreeMap<[i64; 2], TileId> {
     let frame = package.manifest().frame;
     let ids = package.tile_ids().unwrap().into_iter().filter(|id| id.z() == frame.max_level());
@@ -115,7 +116,7 @@ fn finest(package: &FilePackage) -> BTreeMap<[i64; 2], TileId> {
         .collect()
 }
 
-/// Compares the finest tiles inside, and returns how many there are.
+/// Compares the finest tiles inside the bounds, and returns their number.
 fn compare(whole: &Path, part: &Path) -> usize {
     let [whole, part] = [whole, part].map(|path| FilePackage::open(path).unwrap());
     let (all, clip) = (finest(&whole), part.manifest().clip.unwrap());
@@ -123,7 +124,7 @@ fn compare(whole: &Path, part: &Path) -> usize {
     let [low, high] = clip.nodes;
     let mut inside = 0;
     for (corner, id) in finest(&part) {
-        // With the ring of nodes around it, which normals and borders depend on.
+        // The ring of nodes around the tile is included, because normals and borders depend on it.
         let is_inside = corner[0] > low.i
             && corner[0] + 256 < high.i
             && corner[1] - 256 > low.j
@@ -135,7 +136,7 @@ fn compare(whole: &Path, part: &Path) -> usize {
             assert!(sections(&own).contains_key(&1), "tile {id} has no ground");
             assert!(sections(&own) == sections(&other), "tile {id} at {corner:?}");
         }
-        // Neither ground nor roads reach beyond the bounds.
+        // Neither ground nor roads extend beyond the bounds.
         let payload = part.payload(id, Sections::ALL).unwrap().unwrap();
         for vertex in payload.terrain.unwrap().tin.vertices() {
             let (i, j) = (corner[0] + i64::from(vertex.column), corner[1] - i64::from(vertex.row));
@@ -201,7 +202,7 @@ fn finest_tiles_inside_bounds_have_the_sections_of_the_whole_build() {
         assert!(!all.roads_lost.iter().any(|loss| loss.reason.contains("bounds")));
         let lost_um: u64 = some.roads_lost.iter().map(|loss| loss.length_um).sum();
         assert_eq!(some.roads_kept_um + lost_um, some.roads_in_um);
-        // What was left out on purpose is no defect; roads over voids still are.
+        // Roads outside the user's bounds are not defects; roads over voids still are.
         let told = told.0.into_inner().unwrap();
         assert!(told.contains(&Loss::NoGround) && !told.contains(&Loss::OutsideBounds));
         assert!(!told.contains(&Loss::OutsideData));
@@ -250,7 +251,7 @@ fn bounds_are_part_of_the_plan_and_of_terrain_that_is_taken() {
     again.plan.terrain.max_error_m = Some(8.0);
     build(&again, &Silent).unwrap();
     assert!(fs::read(&again.output).unwrap() == bytes, "the terrain of a package with bounds");
-    // Other bounds than the package's are refused.
+    // Bounds that differ from the package's are rejected.
     again.plan.terrain.plan.bounds_deg = Some([9.0, 47.0, 9.1, 47.1]);
     again.output = files.at("refused.pmtiles");
     let error = build(&again, &Silent).unwrap_err().to_string();
@@ -300,7 +301,7 @@ fn verify_sees_every_change_of_what_a_package_says_of_its_part() {
 #[test]
 fn files_outside_the_bounds_are_not_read() {
     let files = Files::new();
-    // The same samples in two files, the east half and a file far in the west of it.
+    // The same samples in two files: the eastern half, and a file far in the west of it.
     let height = |column: i64, row: i64| 200.0 * waves(column, row);
     let west = Raster::new([300, 600], [0, 0], height);
     let east = Raster::new([900, 600], [300, 0], |column, row| height(column + 300, row));
@@ -334,7 +335,7 @@ fn files_outside_the_bounds_are_not_read() {
     };
     let report = checked(vec![files.at("east.tif"), files.at("west.tif")]).unwrap();
     assert!(report.checks.iter().all(corniche_verify::Check::holds), "{:#?}", report.checks);
-    // The grid needs all files, and what is used must be the same.
+    // The grid needs all files, and the same files must be used.
     assert!(checked(vec![files.at("east.tif")]).is_err());
     assert!(checked(vec![files.at("west.tif"), files.at("dem.tif")]).is_err());
 }

@@ -1,4 +1,5 @@
-//! Where the vertices of GEO lines lie, by the formulas of FORMAT.md, section 7, implemented here a second time.
+//! Positions of the vertices of GEO lines, by a second implementation of the formulas in FORMAT.md,
+//! section 7.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may unwrap")]
 
@@ -12,13 +13,13 @@ struct Nodes<'a> {
     tin: &'a Tin,
     /// Lattice point of column 0, row 0.
     corner: [i64; 2],
-    /// Lattice steps to a node, east and north.
+    /// Lattice steps from node to node, east and north.
     steps: [i64; 2],
     quantum_m: f64,
 }
 
 impl<'a> Nodes<'a> {
-    /// By the numbers that the manifest records, and section 2's rules.
+    /// Applies the rules of section 2 to the numbers in the manifest.
     fn new(parts: &Parts, id: TileId, tin: &'a Tin) -> Self {
         let json = serde_json::to_value(&parts.manifest).unwrap();
         let number = |at: &str| json.pointer(at).unwrap().as_f64().unwrap();
@@ -103,7 +104,7 @@ impl<'a> Nodes<'a> {
     }
 }
 
-/// All vertices of all lines of the sample, on every level, to the last bit.
+/// Checks all vertices of all lines of the sample, on every level, to the last bit.
 #[test]
 fn positions_of_lines_are_those_of_the_format() {
     let parts = &SOUND.parts;
@@ -138,7 +139,7 @@ fn positions_of_lines_are_those_of_the_format() {
     assert!(crossings > 4000 && sources > 4000, "{crossings} crossings, {sources} source points");
 }
 
-/// The same of x and y in working metres.
+/// Checks x and y in working metres in the same way.
 #[test]
 fn working_metres_are_those_of_the_format() {
     let frame = SOUND.parts.frame();

@@ -1,7 +1,8 @@
-//! A build whose store's disk fails, whenever and however: a clear error, no package, and `--resume` ends it with the same bytes.
+//! The disk of a build's store fails at any time and in any way: there is a clear error and no
+//! package, and `--resume` completes it with the same bytes.
 //!
-//! Source: the tests of `SQLite` that let the n-th call fail for n = 1, 2, 3 … until none fails, and that lose unsynced writes at a
-//! simulated crash.
+//! Source: the tests of `SQLite` that let the n-th call fail for n = 1, 2, 3 … until none fails,
+//! and that lose unsynced writes at a simulated crash.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may unwrap")]
 
@@ -17,26 +18,27 @@ use corniche_pipeline::{BuildError, build_on};
 use corniche_spec::{BuildSettings, Leftovers};
 use corniche_testing::{
     Random,
-    disks::{Failure, MemoryDisk},
+    disks::{DiskFailure, MemoryDisk},
     some_of,
 };
 use corniche_tileset::FilePackage;
 use corniche_work::Silent;
 use tempfile::TempDir;
 
-/// Every artifact is made durable at once.
+/// Every artifact is synced at once.
 const ALWAYS: Duration = Duration::ZERO;
-/// What is there becomes durable when the build ends.
+/// Artifacts are synced when the build ends.
 const NEVER: Duration = Duration::MAX;
 
-/// Where the stores lie, on disks in memory.
+/// The folder of the stores, on disks in memory.
 const STORES: &str = "/stores";
 
-/// A small build of five tiles with roads. The package is on a true disk, the store on one in memory.
+/// A small build of five tiles with roads. The package is on a real disk, the store on one in
+/// memory.
 struct Small {
     folder: TempDir,
     settings: BuildSettings,
-    /// The package of an unbroken build.
+    /// The package of an uninterrupted build.
     whole: Vec<u8>,
 }
 
@@ -45,7 +47,7 @@ impl Small {
         let folder = tempfile::tempdir().unwrap();
         let [dem, osm, output] =
             ["dem.tif", "roads.osm.pbf", "out.pmtiles"].map(|name| folder.path().join(name));
-        // Around a corner of four tiles.
+        // The raster is around a corner of four tiles.
         let raster = Raster::new([24, 20], [-11, -9], |i, j| {
             500.0 + (i * 7 % 13) as f32 + (j * 5 % 11) as f32
         });
@@ -56,7 +58,7 @@ impl Small {
         let options = Options { threads, ..Options::plain(0.5) };
         let settings = BuildSettings {
             tmp: Some(STORES.into()),
-            // There is no free space to ask for in memory.
+            // A disk in memory has no free space to query.
             force: true,
             leftovers: Leftovers::Resume,
             ..settings(dem, Some(osm), output, options)
@@ -74,7 +76,7 @@ impl Small {
         build_on(&disk.disk(), interval, &self.settings, &Silent).map(drop)
     }
 
-    /// Builds, and takes the package away.
+    /// Builds, and removes the package after reading it.
     fn taken_package(&self, disk: &MemoryDisk, interval: Duration) -> Result<Vec<u8>, BuildError> {
         self.build(disk, interval)?;
         let bytes = fs::read(self.output()).unwrap();
@@ -82,7 +84,7 @@ impl Small {
         Ok(bytes)
     }
 
-    /// Nothing is where the package should be, nor beside it.
+    /// Asserts that there is neither a package nor an unfinished file next to its path.
     fn check_no_package(&self) {
         assert_eq!(self.names(), ["dem.tif", "roads.osm.pbf"]);
     }
@@ -95,21 +97,23 @@ impl Small {
         names
     }
 
-    /// The build ends now, with the bytes of an unbroken one, and leaves nothing in the store's place.
+    /// Asserts that the build completes now, with the bytes of an uninterrupted one, and leaves no
+    /// store.
     fn check_goes_on(&self, disk: &MemoryDisk, what: &str) {
         let bytes = self.taken_package(disk, NEVER).unwrap_or_else(|error| {
             panic!("{what}: {}", told(&error));
         });
-        assert!(bytes == self.whole, "{what}: other bytes after going on");
+        assert!(bytes == self.whole, "{what}: different bytes after resuming");
         self.check_no_package();
         assert_eq!(disk.paths(), Vec::<PathBuf>::new(), "{what}");
     }
 
-    /// Lets each call fail in turn until none does (in full; else some of them). `check` is told what came of it; then the build must go on. Returns about how many
-    /// calls there were.
+    /// Lets each call fail in turn until none fails (in full mode; otherwise only some calls).
+    /// `check` receives the result; then the build must resume. Returns about how many calls there
+    /// were.
     fn every_call(
         &self,
-        failure: Failure,
+        failure: DiskFailure,
         interval: Duration,
         check: impl Fn(&MemoryDisk, Result<(), BuildError>, &str) -> MemoryDisk,
     ) -> u64 {
@@ -124,7 +128,8 @@ impl Small {
                 return call;
             }
             if result.is_ok() {
-                // Only removing the store may fail without an error: the package is complete.
+                // Only the deletion of the store may fail without an error, because the package is
+                // complete.
                 assert!(fs::read(self.output()).unwrap() == self.whole, "{what}");
                 fs::remove_file(self.output()).unwrap();
             }
@@ -140,13 +145,13 @@ fn empty_disk() -> MemoryDisk {
     MemoryDisk::with_folder(Path::new(STORES))
 }
 
-/// An error and its causes.
+/// The text of an error and its causes.
 fn told(error: &dyn Error) -> String {
     let causes = std::iter::successors(error.source(), |&error| error.source());
     causes.fold(error.to_string(), |said, cause| format!("{said}: {cause}"))
 }
 
-/// It is the disk's fault, not that of the inputs, and the store's place is named.
+/// Asserts that the error blames the disk, not the inputs, and names the store.
 fn check_error(error: &BuildError, what: &str) -> String {
     let said = told(error);
     assert!(!error.is_unusable_input(), "{what}: {said}");
@@ -163,12 +168,12 @@ fn the_build_has_five_tiles_and_the_same_bytes_on_any_disk() {
     for interval in [ALWAYS, NEVER] {
         assert!(small.taken_package(&empty_disk(), interval).unwrap() == small.whole);
     }
-    assert!(Small::new(2).whole == small.whole, "two threads make other bytes");
+    assert!(Small::new(2).whole == small.whole, "two threads give different bytes");
 }
 
 fn a_device_that_fails_at_any_call(threads: usize) {
     let small = Small::new(threads);
-    let calls = small.every_call(Failure::Device, ALWAYS, |disk, result, what| {
+    let calls = small.every_call(DiskFailure::Device, ALWAYS, |disk, result, what| {
         if let Err(error) = result {
             check_error(&error, what);
         }
@@ -191,12 +196,12 @@ fn a_device_that_fails_at_any_call_is_an_error_and_the_build_goes_on_with_two_th
 fn a_disk_that_is_full_at_any_call_says_so_and_the_build_goes_on_when_there_is_room() {
     for threads in [1, 2] {
         let small = Small::new(threads);
-        let calls = small.every_call(Failure::Full, NEVER, |disk, result, what| {
+        let calls = small.every_call(DiskFailure::Full, NEVER, |disk, result, what| {
             if let Err(error) = result {
                 let said = check_error(&error, what);
                 assert!(said.contains("the disk is full"), "{what}: {said}");
                 assert!(said.contains("--tmp"), "{what}: {said}");
-                // While it is full, going on fails in the same way.
+                // While the disk is full, resuming fails in the same way.
                 check_error(&small.build(disk, NEVER).unwrap_err(), what);
                 small.check_no_package();
             }
@@ -209,7 +214,7 @@ fn a_disk_that_is_full_at_any_call_says_so_and_the_build_goes_on_when_there_is_r
 
 #[test]
 fn an_interrupted_or_short_call_is_survived_without_a_trace() {
-    for (failure, threads) in [(Failure::Interrupted, 1), (Failure::Short, 2)] {
+    for (failure, threads) in [(DiskFailure::Interrupted, 1), (DiskFailure::Short, 2)] {
         let small = Small::new(threads);
         small.every_call(failure, NEVER, |disk, result, what| {
             result.unwrap_or_else(|error| panic!("{what}: {}", told(&error)));
@@ -218,14 +223,15 @@ fn an_interrupted_or_short_call_is_survived_without_a_trace() {
     }
 }
 
-/// As by SIGKILL: the machine goes on.
+/// A failure like SIGKILL: the machine keeps running.
 #[test]
 fn a_process_that_dies_at_any_call_can_be_gone_on_from() {
     let small = Small::new(1);
-    small.every_call(Failure::Death, NEVER, |disk, _, _| disk.after_kill());
+    small.every_call(DiskFailure::Death, NEVER, |disk, _, _| disk.after_kill());
 }
 
-/// As by a loss of power at any time: some of what was not made durable is lost, some is torn. Several crashes follow each other.
+/// A failure like a power loss at any time: some of the unsynced data are lost, some are torn.
+/// Several crashes follow each other.
 #[test]
 fn a_crash_at_any_time_loses_work_but_never_changes_a_byte() {
     let small = [Small::new(1), Small::new(2)];
@@ -242,25 +248,26 @@ fn a_crash_at_any_time_loses_work_but_never_changes_a_byte() {
             if random.below(3) == 0 { (NEVER, calls) } else { (ALWAYS, calls_to_sync) };
         let mut disk = empty_disk();
         for crash in 0..3 {
-            disk.fail_after(random.below(calls as i64) as u64, Failure::Death);
+            disk.fail_after(random.below(calls as i64) as u64, DiskFailure::Death);
             if small.build(&disk, interval).is_ok() {
                 let what = format!("seed {seed}, crash {crash}");
                 assert!(fs::read(small.output()).unwrap() == small.whole, "{what}");
                 fs::remove_file(small.output()).unwrap();
             }
             small.check_no_package();
-            // Nothing more reaches the disk, not even what is done at the end.
-            disk.fail_after(0, Failure::Death);
+            // Nothing more reaches the disk, not even what is written at the end.
+            disk.fail_after(0, DiskFailure::Death);
             disk = disk.after_crash(&mut random);
             went_on +=
                 u32::from(disk.paths().iter().any(|path| is_journal_with_entries(&disk, path)));
         }
         small.check_goes_on(&disk, &format!("seed {seed}"));
     }
-    assert!(went_on > 30, "only {went_on} of 90 crashes left any work: the test does not see much");
+    assert!(went_on > 30, "only {went_on} of 90 crashes left any work: the test checks too little");
 }
 
-/// Whether a file lists artifacts: it is a journal that is longer than its header of 48 bytes.
+/// Whether a file lists artifacts: such a file is a journal that is longer than its header of 48
+/// bytes.
 fn is_journal_with_entries(disk: &MemoryDisk, path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension == "journal")
         && disk.content(path).is_some_and(|bytes| bytes.len() > 48)

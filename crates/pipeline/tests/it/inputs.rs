@@ -1,4 +1,4 @@
-//! Inputs that are unusual or cannot be used, through the whole pipeline.
+//! Unusual and unusable inputs, through the whole pipeline.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -7,7 +7,7 @@ use std::{fs, path::Path, sync::Mutex};
 use crate::support::{Options, Raster, build_files, build_raster, settings, terrain::waves};
 use corniche_pipeline::{BuildError, build};
 use corniche_plan::PlanError;
-use corniche_spec::Observer;
+use corniche_spec::BuildObserver;
 use corniche_spec::inputs::InputError;
 use corniche_tileset::FilePackage;
 use corniche_verify::{VerifyError, VerifySettings, verify};
@@ -17,7 +17,7 @@ fn hills() -> Raster {
     Raster::new([300, 200], [5, 9], |column, row| 100.0 * waves(column, row))
 }
 
-/// Names that only GDAL understands: here a file inside another, as in an archive.
+/// A name that only GDAL understands: here a file inside another, as in an archive.
 #[test]
 fn a_raster_inside_another_file_is_read() {
     let folder = tempfile::tempdir().unwrap();
@@ -29,12 +29,13 @@ fn a_raster_inside_another_file_is_read() {
     let built = build_files(Path::new(&inside), None, Options::plain(5.0)).unwrap();
     let plain = build_files(&dem, None, Options::plain(5.0)).unwrap();
     assert_eq!(built.tiles, plain.tiles);
-    // The hash is that of the bytes that GDAL delivers.
+    // The hash covers the bytes that GDAL delivers.
     let [inside, whole] = [&built, &plain].map(|built| &built.manifest.inputs[0]);
     assert_eq!((inside.bytes, &inside.sha256), (bytes.len() as u64, &whole.sha256));
 }
 
-/// A raster is named inside its container; the container is hashed, and no folder gets into the package.
+/// A raster is named inside its container; the container is hashed, and the package contains no
+/// folder names.
 #[test]
 fn a_raster_of_a_container_is_read_and_its_container_hashed() {
     let folder = tempfile::tempdir().unwrap();
@@ -48,13 +49,14 @@ fn a_raster_of_a_container_is_read_and_its_container_hashed() {
     assert_eq!((inside.name.as_str(), &inside.sha256), ("GTIFF_DIR:1:dem.tif", &whole.sha256));
 }
 
-/// Steps of 32 bits reach neither a sentinel that nobody declared nor, when they are tiny, any mountain.
+/// Height steps of 32 bits reach neither an undeclared nodata value nor, if they are tiny, any
+/// mountain.
 #[test]
 fn a_height_that_steps_do_not_reach_is_refused_as_bad_input() {
     for (height_m, max_error_m) in [(6e6_f32, 0.05), (-6e6, 0.05), (600.0, 1e-5)] {
         let mut raster = hills();
         raster.heights_m[150 * 300 + 100] = height_m;
-        // Allowed by an option; otherwise the samples would be refused before.
+        // An option allows these heights; otherwise the samples would be rejected earlier.
         let options = Options { height_range_m: Some([-1e7, 1e7]), ..Options::plain(max_error_m) };
         let refused = build_raster(&raster, options).err().unwrap();
         assert!(refused.is_unusable_input(), "{height_m}: {refused}");
@@ -63,7 +65,8 @@ fn a_height_that_steps_do_not_reach_is_refused_as_bad_input() {
     }
 }
 
-/// If an input is replaced at any stage of the run and given its old modification time, no package is written.
+/// If an input is replaced at any stage of the run and given its old modification time, no package
+/// is written.
 #[test]
 fn an_input_exchanged_at_any_stage_ends_the_build() {
     let folder = tempfile::tempdir().unwrap();
@@ -87,7 +90,7 @@ fn an_input_exchanged_at_any_stage_ends_the_build() {
     build(&settings(dem, None, output, Options::plain(5.0)), &Silent).unwrap();
 }
 
-/// Does something once, when a stage begins.
+/// Runs an action once, when a stage starts.
 struct At<'a> {
     stage: Stage,
     act: Mutex<Option<Box<dyn FnOnce() + Send + 'a>>>,
@@ -102,7 +105,7 @@ impl corniche_work::Observer for At<'_> {
     }
 }
 
-impl Observer for At<'_> {}
+impl BuildObserver for At<'_> {}
 
 /// Replaces a raster by one with other heights, the same length and the same modification time.
 fn exchange(path: &Path) {
@@ -114,7 +117,8 @@ fn exchange(path: &Path) {
     fs::rename(&other, path).unwrap();
 }
 
-/// What is repeated and far beyond all others is found whatever the threads, and named with its exact count.
+/// A repeated value far beyond all others is found with any number of threads, and is reported with
+/// its exact count.
 #[test]
 fn a_value_that_no_height_has_is_refused_before_anything_is_made_of_it() {
     let mut raster = hills();
@@ -126,7 +130,7 @@ fn a_value_that_no_height_has_is_refused_before_anything_is_made_of_it() {
         build_raster(&raster, options).err().map(|refused| {
             assert!(refused.is_unusable_input(), "{refused}");
             let text = refused.to_string();
-            // The folder's name is this run's own.
+            // The name of the folder differs in each run.
             text.split_once("hold").map_or(text.clone(), |(_, rest)| rest.to_owned())
         })
     };
@@ -147,7 +151,8 @@ fn a_tolerance_beyond_what_numbers_hold_is_refused_as_such() {
             "{max_error_m}: {refused}"
         );
     }
-    // The largest that is not: a tile has its corners, and where the data end in it a few more.
+    // The largest tolerance that is accepted: a tile has its corners, and a few more vertices where
+    // the data end in it.
     let built = build_raster(&hills(), Options::plain(1e9)).unwrap();
     assert!(built.grounds().all(|(_, ground)| (4..=9).contains(&ground.tin.vertices().len())));
     // The smallest: level ground needs no more.

@@ -1,4 +1,5 @@
-//! Integration tests of `corniche-pipeline`, in one binary. The first line of each module says what holds.
+//! Integration tests of `corniche-pipeline`, in one binary. The first line of each module says what
+//! is tested.
 
 mod around_the_globe;
 mod bounds;

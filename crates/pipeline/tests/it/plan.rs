@@ -1,4 +1,4 @@
-//! The plan of a build: the same for the same files and settings, and another one for any other.
+//! The plan of a build is the same for the same files and settings, and differs for any others.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests may unwrap")]
 
@@ -16,7 +16,7 @@ fn settings() -> PlanSettings {
     let classes = classes.map(|(value, class)| (value.to_owned(), class)).to_vec();
     let table = FrcTable::new("few", classes, vec!["steps".to_owned()], 7).unwrap();
     PlanSettings {
-        lines: Vec::new(),
+        boundaries: false,
         dem: vec![sample("pass/pass-dem.tif")],
         terrain_of: None,
         osm: vec![sample("pass/pass.osm.pbf")],
@@ -44,13 +44,13 @@ fn the_plan_of_the_same_files_and_settings_is_the_same() {
     assert_eq!(plan, again);
     assert_eq!(plan.hash(), again.hash());
     assert_eq!(plan.differences(&again), [""; 0]);
-    // Written and read, it is the same to the last bit.
+    // After writing and reading, the plan is the same to the last bit.
     let text = plan.to_json().unwrap();
     let read = BuildPlan::from_json(&text).unwrap();
     assert_eq!(read, plan);
     assert_eq!(read.to_json().unwrap(), text);
     assert_eq!(read.hash(), plan.hash());
-    // And from its own settings a worker makes it again.
+    // A worker creates the same plan again from the plan's own settings.
     let own = read.settings().unwrap();
     read.check_same(&BuildPlan::make(&own).unwrap()).unwrap();
 }
@@ -72,7 +72,7 @@ fn leaves(value: &Value, pointer: &str, found: &mut Vec<String>) {
     }
 }
 
-/// Other values that may stand in place of one.
+/// Other valid values for a value.
 fn others(value: &Value) -> Vec<Value> {
     match value {
         Value::String(text) => vec![json!(format!("{text}x"))],
@@ -91,13 +91,13 @@ fn others(value: &Value) -> Vec<Value> {
     }
 }
 
-/// What is said of a changed setting: the option's name, made from the field's.
+/// The name of the option in the message about a changed setting, derived from the field's name.
 fn option(pointer: &str) -> String {
     let field = pointer.split('/').nth(2).unwrap();
     let units = ["_m", "_deg", "_cells"];
     let name = units.iter().find_map(|unit| field.strip_suffix(unit)).unwrap_or(field);
     match field {
-        "frc_table_sha256" => "changed by hand".to_owned(),
+        "frc_table_sha256" => "edited by hand".to_owned(),
         "class_max_cell_m" => "class-max-cell".to_owned(),
         _ => format!("--{} is ", name.replace('_', "-")),
     }
@@ -116,14 +116,14 @@ fn every_other_value_makes_another_plan_and_is_named() {
             *changed.pointer_mut(&pointer).unwrap() = other;
             serde_json::from_value::<BuildPlan>(changed).ok()
         });
-        let changed = changed.unwrap_or_else(|| panic!("{pointer} takes no other value"));
+        let changed = changed.unwrap_or_else(|| panic!("{pointer} has no other valid value"));
         assert_ne!(changed.hash(), plan.hash(), "{pointer}");
         let said = changed.differences(&plan);
         assert_eq!(said.len(), 1, "{pointer}: {said:?}");
         let expected = match pointer.split('/').nth(1).unwrap() {
             "plan_version" => "version".to_owned(),
             "generator" => {
-                "this is corniche 0.0.0x, the store was made by corniche 0.0.0".to_owned()
+                "this is corniche 0.0.0x, but the store was created by corniche 0.0.0".to_owned()
             }
             "libraries" => "GDAL".to_owned(),
             "inputs" => "pass".to_owned(),
@@ -132,11 +132,11 @@ fn every_other_value_makes_another_plan_and_is_named() {
                 if pointer.ends_with("name") { "by hand" } else { "--frc-table" }.to_owned()
             }
             "attribution" => {
-                "--attribution is a creditx, the store was made with a credit".to_owned()
+                "--attribution is a creditx, but the store was created with a credit".to_owned()
             }
-            "grid" => "the store was made with".to_owned(),
+            "grid" => "the store was created with".to_owned(),
             "levels" => "level ".to_owned(),
-            other => panic!("{other} is expected to be named how?"),
+            other => panic!("no expected message is known for {other}"),
         };
         assert!(said[0].contains(&expected), "{pointer}: {said:?}");
     }
@@ -157,7 +157,7 @@ fn a_changed_file_is_named_with_what_changed() {
     drop(file);
     let touched = BuildPlan::make(&own).unwrap();
     let error = plan.check_same(&touched).unwrap_err().to_string();
-    assert!(error.contains("dem.tif was changed since"), "{error}");
+    assert!(error.contains("dem.tif has changed since"), "{error}");
     assert!(error.contains("it was written 3.0 minutes later"), "{error}");
     assert_ne!(touched.hash(), plan.hash());
 
@@ -166,9 +166,10 @@ fn a_changed_file_is_named_with_what_changed() {
     bytes.extend(b"more");
     fs::write(&dem, bytes).unwrap();
     let said = BuildPlan::make(&own).unwrap().differences(&plan);
-    assert!(said[0].contains(&format!("it had {size} bytes and has {}", size + 4)), "{said:?}");
+    assert!(said[0].contains(&format!("it had {size} bytes and now has {}", size + 4)), "{said:?}");
 
-    // The same file in another place is another input: its name alone does not say which release it is.
+    // The same file at another path is another input, because its name alone does not identify the
+    // release.
     let other = folder.path().join("other");
     fs::create_dir(&other).unwrap();
     fs::rename(&dem, other.join("dem.tif")).unwrap();
@@ -177,7 +178,8 @@ fn a_changed_file_is_named_with_what_changed() {
     assert!(said[0].contains("the list of input files"), "{said:?}");
 }
 
-/// The last bits of numbers follow from the settings, so a worker with other libraries notices it.
+/// The last bits of numbers follow from the settings, so a worker with other libraries notices the
+/// difference.
 #[test]
 fn a_worker_that_derives_another_grid_says_so() {
     let plan = BuildPlan::make(&settings()).unwrap();
@@ -190,9 +192,9 @@ fn a_worker_that_derives_another_grid_says_so() {
 #[test]
 fn what_is_no_plan_is_refused() {
     let text = BuildPlan::make(&settings()).unwrap().to_json().unwrap();
-    let later = text.replace("\"plan_version\": 8", "\"plan_version\": 9");
+    let later = text.replace("\"plan_version\": 9", "\"plan_version\": 10");
     let error = BuildPlan::from_json(&later).unwrap_err().to_string();
-    assert!(error.contains("version 9") && error.contains("version 8"), "{error}");
+    assert!(error.contains("version 10") && error.contains("version 9"), "{error}");
     for bad in ["", "{}", "[7]", &text[..text.len() / 2], "\"plan\""] {
         let error = BuildPlan::from_json(bad).unwrap_err().to_string();
         assert!(error.contains("corniche plan -o"), "{bad}: {error}");

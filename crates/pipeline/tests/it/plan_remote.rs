@@ -1,4 +1,4 @@
-//! What a plan knows of a file on a server.
+//! The record of a file on a server in a plan.
 
 use std::{
     fs,
@@ -12,7 +12,7 @@ use corniche_roads::{ClassFilter, FrcTable};
 use corniche_spec::{PhotoChoice, PlanSettings, RoadSettings, TerrainSettings};
 use corniche_testing::sample;
 
-/// Answers requests for one file, whole or a part of it, with an `ETag`.
+/// Serves one file, as a whole or in ranges, with an `ETag`.
 fn serve(listener: &TcpListener, content: &[u8]) {
     for stream in listener.incoming().flatten() {
         let _ = answer(stream, content);
@@ -62,7 +62,7 @@ fn a_file_on_a_server_is_known_by_its_size_and_etag() {
     let table = FrcTable::new("one", vec![("motorway".to_owned(), 0)], Vec::new(), 0).unwrap();
     let dem = format!("/vsicurl/http://{address}/dem.tif");
     let settings = PlanSettings {
-        lines: Vec::new(),
+        boundaries: false,
         dem: vec![dem.clone().into()],
         terrain_of: None,
         osm: Vec::new(),

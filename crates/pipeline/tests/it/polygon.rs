@@ -1,5 +1,6 @@
-//! A build with a polygon: the same as with bounds where the polygon is a rectangle between nodes; ground and roads end at the outline
-//! elsewhere, what is left out is counted, and verify sees the same area.
+//! A build with a polygon gives the same result as one with bounds if the polygon is a rectangle
+//! between nodes. Otherwise ground and roads end at the outline, everything outside is counted, and
+//! verify uses the same area.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -15,7 +16,7 @@ use crate::support::{
     terrain::rough_with_voids,
 };
 use corniche_drape::DrapedVertex;
-use corniche_gis::Polygon;
+use corniche_gis::RegionPolygons;
 use corniche_pipeline::build;
 use corniche_plan::{BuildPlan, plan};
 use corniche_spec::BuildSettings;
@@ -23,13 +24,13 @@ use corniche_tileset::{FilePackage, GeoRoad, Sections};
 use corniche_verify::{VerifyError, VerifyOsm, VerifyReport, VerifySettings, verify};
 use corniche_work::Silent;
 
-/// A raster of four by three tiles with voids, and roads all over it and beyond.
+/// A raster of four by three tiles with voids, and roads all over it and outside.
 struct Files {
     folder: tempfile::TempDir,
     raster: Raster,
 }
 
-/// Across the raster in all directions, and two short ones.
+/// Roads across the raster in all directions, and two short ones.
 fn roads() -> Vec<StraightRoad> {
     let mut roads = Vec::new();
     for k in 0..30 {
@@ -56,13 +57,13 @@ impl Files {
     }
 
     /// A polygon in the raster's own CRS: rings of (column, row).
-    fn polygon(&self, name: &str, rings: &[&[[f64; 2]]]) -> Polygon {
+    fn polygon(&self, name: &str, rings: &[&[[f64; 2]]]) -> RegionPolygons {
         let ring = |ring: &&[[f64; 2]]| ring.iter().map(|&at| self.raster.position_m(at)).collect();
         self.polygon_m(name, &rings.iter().map(ring).collect::<Vec<_>>())
     }
 
-    /// The same by coordinates.
-    fn polygon_m(&self, name: &str, rings: &[Vec<[f64; 2]>]) -> Polygon {
+    /// A polygon given by coordinates.
+    fn polygon_m(&self, name: &str, rings: &[Vec<[f64; 2]>]) -> RegionPolygons {
         let ring = |ring: &Vec<[f64; 2]>| {
             let corners = ring.iter().chain(&ring[..1]);
             let corners: Vec<String> = corners.map(|[x, y]| format!("[{x},{y}]")).collect();
@@ -76,10 +77,15 @@ impl Files {
         );
         let path = self.at(name);
         fs::write(&path, text).unwrap();
-        Polygon::read(&path).unwrap()
+        RegionPolygons::read(&path).unwrap()
     }
 
-    fn settings(&self, name: &str, max_error_m: f64, polygon: Option<&Polygon>) -> BuildSettings {
+    fn settings(
+        &self,
+        name: &str,
+        max_error_m: f64,
+        polygon: Option<&RegionPolygons>,
+    ) -> BuildSettings {
         let osm = Some(self.at("roads.osm.pbf"));
         let options = Options { fill_voids: 8, ..Options::plain(max_error_m) };
         let mut settings = settings(self.at("dem.tif"), osm, self.at(name), options);
@@ -91,7 +97,7 @@ impl Files {
     fn verify(
         &self,
         package: &Path,
-        polygon: Option<&Polygon>,
+        polygon: Option<&RegionPolygons>,
     ) -> Result<VerifyReport, VerifyError> {
         let osm = VerifyOsm {
             paths: vec![self.at("roads.osm.pbf")],
@@ -109,7 +115,7 @@ impl Files {
         verify(&FilePackage::open(package)?, &settings, &Silent)
     }
 
-    fn check_verify(&self, package: &Path, polygon: &Polygon) {
+    fn check_verify(&self, package: &Path, polygon: &RegionPolygons) {
         let report = self.verify(package, Some(polygon)).unwrap();
         let broken: Vec<_> = report.checks.iter().filter(|check| !check.holds()).collect();
         assert!(broken.is_empty(), "{broken:#?}");
@@ -130,7 +136,7 @@ fn a_rectangle_between_nodes_makes_the_tiles_of_bounds() {
     settings.plan.terrain.plan.bounds_deg =
         Some([west_north[0], east_south[1], east_south[0], west_north[1]]);
     let with_bounds = made(&settings);
-    // The nodes that the bounds are rounded to, as a polygon.
+    // A polygon through the nodes to which the bounds are rounded.
     let (clip, frame) = (with_bounds.manifest().clip, with_bounds.manifest().frame);
     let [low, high] = clip.unwrap().nodes.map(|node| [frame.x_m(node.i), frame.y_m(node.j)]);
     let own =
@@ -142,8 +148,9 @@ fn a_rectangle_between_nodes_makes_the_tiles_of_bounds() {
     assert_eq!(polygon.roads_kept, bounds.roads_kept);
     // Cuts are rounded to micrometres in another order.
     assert!(polygon.roads_kept_um.abs_diff(bounds.roads_kept_um) < 1000);
-    // Ground is the same on all levels, roads on the ground on the finest: on coarser ones and beside the ground they end at the outline,
-    // while with bounds they end with the ground.
+    // Ground is the same on all levels, and roads on the ground are the same on the finest level.
+    // On coarser levels and outside the ground, roads end at the outline, while with bounds they
+    // end with the ground.
     let ids = with_bounds.tile_ids().unwrap();
     assert_eq!(with_polygon.tile_ids().unwrap(), ids);
     let mut roads = 0;
@@ -152,8 +159,9 @@ fn a_rectangle_between_nodes_makes_the_tiles_of_bounds() {
             .map(|package| package.payload(id, Sections::ALL).unwrap().unwrap());
         assert!(polygon.terrain == bounds.terrain, "ground of tile {id}");
         if id.z() == frame.max_level() {
-            // An end on the outline is rounded to the lattice before the rest is cut by tiles. That turns the line by half a step, which
-            // a border that the line meets at a narrow angle shows as up to thirty.
+            // An end on the outline is rounded to the lattice before the rest is cut by tiles. This
+            // turns the line by half a step, which moves its crossing with a border at a narrow
+            // angle by up to thirty steps.
             let key =
                 |road: &GeoRoad| (road.class, road.way_id, road.part, road.line.vertices.len());
             let keys = |roads: &[GeoRoad]| roads.iter().map(key).collect::<Vec<_>>();
@@ -176,7 +184,8 @@ fn a_rectangle_between_nodes_makes_the_tiles_of_bounds() {
     files.check_verify(&files.at("polygon.pmtiles"), &own);
 }
 
-/// Whether a point is in a triangle with a hole, in columns and rows; at most `reach` beyond its outline.
+/// Whether a point is in a triangle with a hole, in columns and rows, or at most `reach` outside
+/// its outline.
 fn is_in(triangle: &[[f64; 2]; 3], hole: &[[f64; 2]; 4], [x, y]: [f64; 2], reach: f64) -> bool {
     let outside = |[a, b]: [[f64; 2]; 2]| {
         let length = (b[0] - a[0]).hypot(b[1] - a[1]);
@@ -190,7 +199,7 @@ fn is_in(triangle: &[[f64; 2]; 3], hole: &[[f64; 2]; 4], [x, y]: [f64; 2], reach
 #[test]
 fn ground_and_roads_end_at_the_outline_and_what_is_left_out_is_counted() {
     let files = Files::new();
-    // With rows that run southwards, these wind so that the inside is on the positive side.
+    // Because rows count southwards, these rings have their inside on the positive side.
     let triangle = [[120.0, 60.0], [820.5, 90.25], [300.75, 640.0]];
     let hole = [[350.0, 200.0], [420.5, 210.0], [410.0, 300.5], [340.0, 280.0]];
     let own = files.polygon("triangle.geojson", &[&triangle, &hole]);
@@ -220,7 +229,7 @@ fn ground_and_roads_end_at_the_outline_and_what_is_left_out_is_counted() {
                 frame.x_m(corner.i + i64::from(vertex.column) * stride),
                 frame.y_m(corner.j - i64::from(vertex.row) * stride),
             ];
-            // Corners of cells that it enters: at most a diagonal of a cell beyond.
+            // Corners of the cells that it enters are at most a diagonal of a cell outside.
             assert!(is_in(&triangle, &hole, to_raster(at), 1.42), "{:?}", to_raster(at));
             nodes += 1;
         }
@@ -239,7 +248,8 @@ fn ground_and_roads_end_at_the_outline_and_what_is_left_out_is_counted() {
     }
     assert!(nodes > 1000 && kept > 100, "{nodes} {kept}");
 
-    // Counts: all that comes in is kept or lost, and what is lost outside the polygon is what it encloses less of.
+    // All roads are either kept or lost, and the length lost outside the polygon is the length that
+    // the polygon does not enclose.
     let counts = &part.manifest().counts;
     let lost_um: u64 = counts.roads_lost.iter().map(|loss| loss.length_um).sum();
     assert_eq!(counts.roads_kept_um + lost_um, counts.roads_in_um);
@@ -251,7 +261,7 @@ fn ground_and_roads_end_at_the_outline_and_what_is_left_out_is_counted() {
     assert!((inside - expected).abs() < 1e-3, "{inside} of the roads' length, not {expected}");
 }
 
-/// The share of the length of the roads that lies inside, by looking at many points of each.
+/// The fraction of the roads' length that is inside, estimated from many points of each road.
 fn expected_inside_share(triangle: &[[f64; 2]; 3], hole: &[[f64; 2]; 4]) -> f64 {
     let (mut all, mut inside) = (0.0, 0.0);
     for StraightRoad { from, to } in roads() {
@@ -278,7 +288,7 @@ fn the_polygon_is_part_of_the_plan_and_of_terrain_that_is_taken() {
     let (a, b) = (planned(&with), planned(&files.settings("b.pmtiles", 30.0, Some(&other))));
     let said = a.differences(&b).join("; ");
     assert!(said.contains("a.geojson") && said.contains("b.geojson"), "{said}");
-    // Workers read the polygon again, from where the plan says, and see that it is the same.
+    // Workers read the polygon again, from the path in the plan, and verify that it is the same.
     let read = BuildPlan::from_json(&a.to_json().unwrap()).unwrap();
     assert_eq!(BuildPlan::make(&read.settings().unwrap()).unwrap(), a);
     fs::copy(files.at("b.geojson"), files.at("a.geojson")).unwrap();
@@ -301,7 +311,7 @@ fn the_polygon_is_part_of_the_plan_and_of_terrain_that_is_taken() {
         let error = build(&again, &Silent).unwrap_err().to_string();
         assert!(error.contains("--polygon"), "{error}");
     }
-    // So does verify.
+    // Verify also rejects other polygons.
     let refused = |polygon| files.verify(&with.output, polygon).unwrap_err();
     assert!(matches!(refused(None), VerifyError::PolygonMissing { .. }));
     assert!(matches!(refused(Some(&other)), VerifyError::OtherPolygon { .. }));
@@ -314,7 +324,7 @@ fn the_polygon_is_part_of_the_plan_and_of_terrain_that_is_taken() {
 #[test]
 fn a_polygon_between_roads_or_voids_is_refused_with_what_is_wrong() {
     let files = Files::new();
-    // Within a cell, and without a road.
+    // A polygon within a cell, and without a road.
     let own = files.polygon("cell.geojson", &[&[[600.1, 333.1], [600.2, 333.1], [600.2, 333.2]]]);
     let error = build(&files.settings("cell.pmtiles", 30.0, Some(&own)), &Silent).unwrap_err();
     assert!(error.to_string().contains("--polygon"), "{error}");

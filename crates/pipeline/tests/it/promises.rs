@@ -1,4 +1,4 @@
-//! `docs/promises.md` lists the checks that there are, and the fields that none of them sees.
+//! `docs/promises.md` lists all checks, and the fields that none of them tests.
 
 use std::fs;
 

@@ -1,4 +1,5 @@
-//! A reader from before there were sections of spans, frozen: it finds the roads of bridges and tunnels where they always were.
+//! A frozen reader from before there were sections of spans still finds the roads of bridges and
+//! tunnels in their old places.
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
 use std::{collections::BTreeMap, path::Path};
@@ -16,11 +17,11 @@ use crate::support::{
 
 /// The last kind of section that the frozen reader knows.
 const LAST_KIND: u16 = 12;
-/// Spans, which it does not.
+/// The kind of the spans section, which the frozen reader does not know.
 const SPANS: u16 = 13;
 
-/// The stored bytes of a tile's sections with the kinds that are known, and all kinds of its table. This follows the table of section 3 of the
-/// format as it was written first, and must never be changed.
+/// The stored bytes of a tile's sections of known kinds, and all kinds in its table. This follows
+/// the table of section 3 of the format as it was first published, and must never be changed.
 fn sections(payload: &[u8]) -> (BTreeMap<u16, &[u8]>, Vec<u16>) {
     let half = |at: usize| u16::from_le_bytes(payload[at..at + 2].try_into().unwrap());
     let word = |at: usize| u32::from_le_bytes(payload[at..at + 4].try_into().unwrap()) as usize;

@@ -1,5 +1,5 @@
-//! A build that takes the terrain of a package makes the package that a build from the elevation files makes, byte for byte; and
-//! it takes no terrain that could differ.
+//! A build that reuses the terrain of a package gives the same package as a build from the
+//! elevation files, byte for byte, and rejects any terrain that could differ.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -20,7 +20,7 @@ use corniche_geom::TileId;
 use corniche_pipeline::{BuildError, build};
 use corniche_plan::plan;
 use corniche_roads::ClassFilter;
-use corniche_spec::{BuildSettings, Leftovers, Observer};
+use corniche_spec::{BuildObserver, BuildSettings, Leftovers};
 use corniche_store::Existing;
 use corniche_testing::{Random, some_of};
 use corniche_tileset::{Manifest, Sections, pmtiles_order};
@@ -63,13 +63,14 @@ impl Files {
         fs::read(&settings.output).unwrap()
     }
 
-    /// Builds with the old extract, without one, and with the new one from the DEM and from both packages; the three last are the same.
+    /// Builds with the old extract, without one, and with the new one from the DEM and from both
+    /// packages; the last three packages are equal.
     fn check(&self, name: &str) {
         Self::bytes(&self.settings(Some("old.osm.pbf"), "old.pmtiles"));
         Self::bytes(&self.settings(None, "bare.pmtiles"));
         let full = Self::bytes(&self.settings(Some("new.osm.pbf"), "full.pmtiles"));
         let bare = fs::read(self.at("bare.pmtiles")).unwrap();
-        // The elevation file is not needed any more.
+        // The elevation file is no longer needed.
         fs::remove_file(self.at("dem.tif")).unwrap();
         let new = Some("new.osm.pbf");
         for package in ["old.pmtiles", "bare.pmtiles", "full.pmtiles"] {
@@ -84,7 +85,8 @@ impl Files {
     }
 }
 
-/// Roads at random, and roads exactly along columns and rows of nodes, those on borders of tiles among them.
+/// Random roads, and roads exactly along columns and rows of nodes, including those on borders of
+/// tiles.
 fn roads(
     seed: u64,
     count: usize,
@@ -113,7 +115,7 @@ type OtherSetting = fn(&mut BuildSettings);
 #[test]
 fn every_terrain_with_voids_on_borders_gives_the_same_package() {
     let size = [601, 560];
-    // The first border of tiles lies so many columns and rows from the first sample.
+    // The first border of tiles is this many columns and rows from the first sample.
     let corner = [200, 130];
     let shift = corner.map(|nodes| TILE - nodes);
     for (number, (name, relief)) in some_of(TERRAINS.into_iter().enumerate(), [3, 2, 1]) {
@@ -129,7 +131,8 @@ fn every_terrain_with_voids_on_borders_gives_the_same_package() {
     }
 }
 
-/// Samples that are not nodes, an island without a cell on coarse levels, and data that fill the root.
+/// Samples that are not nodes, an island without a cell on coarse levels, and data that fill the
+/// root.
 #[test]
 fn resampled_data_and_islands_give_the_same_package() {
     for (size, cell_m) in [([1001, 500], Some(35.0)), ([513, 513], None), ([1030, 301], Some(20.0))]
@@ -152,14 +155,14 @@ fn sample_settings(output: PathBuf) -> BuildSettings {
     made
 }
 
-/// The same settings with the terrain of a package in place of a DEM.
+/// The same settings with the terrain of a package instead of a DEM.
 fn of_package(mut settings: BuildSettings, package: PathBuf) -> BuildSettings {
     settings.plan.dem.clear();
     settings.plan.terrain_of = Some(package);
     settings
 }
 
-/// A package in a folder of its own, and the settings of a build with its terrain.
+/// A package in a separate folder, and the settings of a build with its terrain.
 fn from_package(folder: &Path, name: &str) -> BuildSettings {
     let made = sample_settings(folder.join(format!("from-{name}")));
     of_package(made, folder.join(name))
@@ -190,12 +193,12 @@ fn settings_for_roads_credits_threads_and_memory_are_those_of_the_new_build() {
     }
 }
 
-/// Stops after so many tiles.
+/// Stops after a number of tiles.
 struct StopAfter {
     tiles: AtomicU64,
 }
 
-impl Observer for StopAfter {}
+impl BuildObserver for StopAfter {}
 
 impl corniche_work::Observer for StopAfter {
     fn advance(&self, stage: Stage, by: u64) {
@@ -237,13 +240,13 @@ fn a_build_that_was_stopped_goes_on_but_not_with_another_package() {
     let again = BuildSettings { leftovers: Leftovers::Resume, ..made.clone() };
     let error = build(&again, &Silent).unwrap_err();
     assert!(matches!(error, BuildError::OtherBuild { .. }), "{error}");
-    assert!(error.to_string().contains("sound.pmtiles was changed"), "{error}");
+    assert!(error.to_string().contains("sound.pmtiles has changed"), "{error}");
 }
 
-/// What is wrong with a package.
+/// A change that makes a package invalid.
 type Change = fn(&mut Manifest, &mut Vec<(TileId, Vec<u8>)>);
 
-/// Builds with the terrain of a package that is not as it should be, and returns what the build says of it.
+/// Builds with the terrain of an invalid package, and returns the error message.
 fn refused(change: impl FnOnce(&mut Manifest, &mut Vec<(TileId, Vec<u8>)>)) -> String {
     let folder = tempfile::tempdir().unwrap();
     let (mut manifest, mut tiles) = (SOUND.parts.manifest.clone(), SOUND.encoded.clone());
@@ -264,7 +267,7 @@ fn packages_of_other_programs_and_settings_are_refused() {
     for (from, to) in [("tests", "older"), ("GDAL ", "GDAL 1"), ("PROJ ", "PROJ 1")] {
         let said = refused(|manifest, _| manifest.generator = manifest.generator.replace(from, to));
         assert!(
-            said.contains(&format!("made by {}", if from == "tests" { to } else { "tests" })),
+            said.contains(&format!("built by {}", if from == "tests" { to } else { "tests" })),
             "{said}"
         );
         assert!(said.contains("this is tests, GDAL "), "{said}");
@@ -272,14 +275,14 @@ fn packages_of_other_programs_and_settings_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("sound.pmtiles"), &SOUND.bytes).unwrap();
     let changes: [(&str, OtherSetting); 10] = [
-        ("--max-error is 3, it was made with 10", |s| s.plan.terrain.max_error_m = Some(3.0)),
-        ("--fill-voids is 0, it was made with 32", |s| s.plan.terrain.plan.fill_voids = 0),
-        ("--crs is utm, it was made with not given", |s| {
+        ("--max-error is 3, but it was built with 10", |s| s.plan.terrain.max_error_m = Some(3.0)),
+        ("--fill-voids is 0, but it was built with 32", |s| s.plan.terrain.plan.fill_voids = 0),
+        ("--crs is utm, but it was built with not given", |s| {
             s.plan.terrain.plan.crs = Some("utm".to_owned());
         }),
         ("--cell is 20,20, ", |s| s.plan.terrain.plan.cell = Some(20.0.into())),
         ("--cell-every is 2, ", |s| s.plan.terrain.plan.cell_every = Some(2)),
-        ("--vertical-shift is 1, it was made with 0", |s| {
+        ("--vertical-shift is 1, but it was built with 0", |s| {
             s.plan.terrain.open.vertical_shift_m = 1.0;
         }),
         ("--nodata is 0, ", |s| s.plan.terrain.open.nodata = vec![0.0]),
@@ -306,15 +309,15 @@ fn packages_that_contradict_themselves_are_refused() {
             m.data_bounds.max_x -= 3000.0;
             m.data_bounds.min_y += 3000.0;
         }),
-        ("its CRS has another name", |m, _| m.crs = "EPSG:25832".to_owned()),
+        ("the name of its CRS differs", |m, _| m.crs = "EPSG:25832".to_owned()),
         ("its CRS cannot be used", |m, _| m.crs_wkt = "nothing".to_owned()),
         ("settings do not match their hash", |m, _| m.settings_sha256 = "0".repeat(64)),
-        ("level 2 are not what its manifest says", |m, _| m.levels[2].triangles += 1),
-        ("level 3 are not what its manifest says", |m, _| m.levels[3].terrain_bytes -= 1),
-        ("level 0 are not what its manifest says", |m, _| {
+        ("level 2 do not match its manifest", |m, _| m.levels[2].triangles += 1),
+        ("level 3 do not match its manifest", |m, _| m.levels[3].terrain_bytes -= 1),
+        ("level 0 do not match its manifest", |m, _| {
             m.levels[0].geometric_error_m += 1.0;
         }),
-        ("level 3 are not what its manifest says", |_, tiles| {
+        ("level 3 do not match its manifest", |_, tiles| {
             tiles.pop();
         }),
         ("cannot be used", |_, tiles| {
@@ -380,14 +383,14 @@ fn the_package_is_no_target_and_the_plan_says_what_it_makes() {
     assert_eq!(estimate.nodes, SOUND.parts.manifest.counts.samples.nodes);
     let kinds: Vec<&str> = planned.inputs.iter().map(|input| input.kind.as_str()).collect();
     assert_eq!(kinds, ["terrain", "osm"]);
-    // A worker makes the same plan from the plan.
+    // A worker creates the same plan from the plan.
     let again = planned.settings().unwrap();
     assert_eq!(again.terrain_of.as_deref(), Some(package.as_path()));
     assert_eq!(plan(&again, settings.resources, &Silent).unwrap().0, planned);
     // The grid is that of a plan from the elevation files.
     let from_dem = sample_settings(folder.path().join("x.pmtiles")).plan;
     let (mut from_dem, _) = plan(&from_dem, settings.resources, &Silent).unwrap();
-    // GDAL writes the datum in one of two forms, whichever this thread has used before.
+    // GDAL writes the datum in one of two forms, depending on which this thread used before.
     from_dem.grid.crs_wkt.clone_from(&planned.grid.crs_wkt);
     assert_eq!(from_dem.levels, planned.levels);
     assert_eq!(from_dem.grid, planned.grid);
@@ -399,11 +402,11 @@ fn the_package_is_no_target_and_the_plan_says_what_it_makes() {
     assert!(fs::read(&package).unwrap() == SOUND.bytes);
 }
 
-/// The stored section of the old package is what the encoder would make again.
+/// The stored section of the old package equals what the encoder would produce again.
 #[test]
 fn a_payload_with_the_stored_ground_is_the_payload_encoded_anew() {
     let manifest = &SOUND.parts.manifest;
-    let context = corniche_tileset::PayloadContext::of(manifest);
+    let context = corniche_tileset::PayloadContext::from_manifest(manifest);
     let mut tiles = SOUND.encoded.clone();
     tiles.sort_by_key(|(id, _)| pmtiles_order(*id));
     for ((id, bytes), tile) in tiles.iter().zip(&SOUND.parts.tiles) {

@@ -1,4 +1,4 @@
-//! Cells that are no squares: every promise on scenes with cells of 1 : 1.5, wide and tall.
+//! Cells that are not square: all checks pass on scenes with cells of 1 : 1.5, wide and tall.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -16,10 +16,11 @@ use corniche_verify::{VerifyReport, VerifySettings, verify};
 use corniche_work::Silent;
 use proptest::prelude::*;
 
-/// East and north: standing, lying, and a square beside them.
+/// Sides of cells, east and north: tall, wide, and a square for comparison.
 const CELLS: [[f64; 2]; 3] = [[10.0, 15.0], [15.0, 10.0], [12.0, 12.0]];
 
-/// Roads between places of a raster of `size` samples, in shares of it: across tiles, along rows, columns and diagonals.
+/// Roads between places of a raster of `size` samples, given as fractions of it: across tiles,
+/// along rows, columns and diagonals.
 fn roads(size: [usize; 2], shares: &[[f64; 4]]) -> Vec<StraightRoad> {
     let [columns, rows] = size.map(|samples| (samples - 1) as f64);
     let given = shares.iter().map(|[x0, y0, x1, y1]| StraightRoad {
@@ -34,7 +35,7 @@ fn roads(size: [usize; 2], shares: &[[f64; 4]]) -> Vec<StraightRoad> {
     given.chain(fixed).collect()
 }
 
-/// What verify says of a package, with the DEM it is made of.
+/// The report of verify on a package, with the DEM from which it was built.
 fn report(package: &std::path::Path, dem: &std::path::Path) -> VerifyReport {
     let settings = VerifySettings {
         dem: vec![dem.to_path_buf()],
@@ -53,7 +54,7 @@ fn manifest(package: &std::path::Path) -> Manifest {
 proptest! {
     #![proptest_config(ProptestConfig { cases: corniche_testing::cases(1, 3, 24), max_shrink_iters: 8, ..ProptestConfig::default() })]
 
-    /// Seams, drape, errors: all that packages promise holds whatever the sides of a cell.
+    /// Seams, draping and errors: all properties of packages hold for any sides of a cell.
     #[test]
     fn every_promise_holds_on_rectangles(
         shape in 0_usize..3,
@@ -84,17 +85,17 @@ proptest! {
         let report = report(&package, &dem);
         let broken: Vec<_> = report.checks.iter().filter(|check| !check.holds()).collect();
         prop_assert!(broken.is_empty(), "{:#?}", broken);
-        // The bound asked for, at the DEM's own samples.
+        // The requested bound, at the DEM's own samples.
         let finest = manifest.levels.last().unwrap();
         prop_assert!(finest.sample_error.max_m <= max_error_m + manifest.vertical.quantum_m);
         prop_assert!(manifest.counts.roads_kept > 0);
     }
 }
 
-/// On a plane every normal is the plane's, in metres and not in cells.
+/// On a plane, every normal is the plane's normal in metres, not in cells.
 #[test]
 fn normals_are_those_of_metres_not_of_cells() {
-    // Slopes in metres a metre; the normal is (−0.3, 0.2, 1).
+    // Slopes in metres per metre; the normal is (−0.3, 0.2, 1).
     let slope = [0.3, -0.2];
     let sum = 0.3 + 0.2 + 1.0;
     let code = [-0.3, 0.2].map(|part: f64| (127.0 * part / sum).round() as i8);
@@ -120,7 +121,8 @@ fn normals_are_those_of_metres_not_of_cells() {
     }
 }
 
-/// Where one length stands for a cell, it is the shorter side: the default error is a sixteenth of it.
+/// If a cell is represented by a single length, it is the shorter side: the default error is a
+/// sixteenth of it.
 #[test]
 fn the_shorter_side_stands_for_the_cell() {
     for cell_m in CELLS {
@@ -135,7 +137,7 @@ fn the_shorter_side_stands_for_the_cell() {
         let manifest = manifest(&package);
         let shorter_m = Cell::from(cell_m).fitted().shorter_m();
         assert!((manifest.settings.max_error_m - shorter_m / 16.0).abs() < 1e-9);
-        // Eight cells, at least 40 m.
+        // The margin is eight cells, but at least 40 m.
         let margins = manifest.levels.iter().map(|level| level.width_margin_m);
         let sides = manifest.levels.iter().map(|level| level.cell_m.shorter_m());
         assert!(
@@ -144,7 +146,8 @@ fn the_shorter_side_stands_for_the_cell() {
     }
 }
 
-/// Roads on degrees, too: the DEM's own CRS, cells of 56 × 93 m, one package from a square of SRTM's spacing.
+/// Roads with cells in degrees: the DEM's own CRS, cells of 56 × 93 m, one package from a square
+/// with SRTM's spacing.
 #[test]
 fn every_promise_holds_on_degrees() {
     let folder = tempfile::tempdir().unwrap();
@@ -154,7 +157,7 @@ fn every_promise_holds_on_degrees() {
     crate::support::write_degrees(&dem, 500, north_west, 1.0 / 1200.0, |[lon, lat]| {
         300.0 + 150.0 * (lon * 90.0).sin() + 150.0 * (lat * 120.0).cos()
     });
-    // A raster of the same place in UTM, for the roads' ends alone.
+    // A raster of the same place in UTM, used only for the roads' ends.
     let origin = [500_000.0, 5_872_000.0];
     let place = Raster {
         columns: 2,
@@ -185,7 +188,7 @@ fn every_promise_holds_on_degrees() {
     let broken: Vec<_> = report.checks.iter().filter(|check| !check.holds()).collect();
     assert!(broken.is_empty(), "{broken:#?}");
     assert_eq!((manifest.counts.roads_in, manifest.counts.roads_kept), (4, 4));
-    // Straight lines in UTM, where lengths are true to 4 · 10⁻⁴ on the meridian.
+    // Straight lines in UTM, in which lengths near the meridian are true to 4 · 10⁻⁴.
     let length_m = |from: [f64; 2], to: [f64; 2]| (to[0] - from[0]).hypot(to[1] - from[1]);
     let expected_m: f64 = ends.iter().map(|&(from, to)| length_m(from, to) / 0.9996).sum();
     let found_m = manifest.counts.roads_in_um as f64 / 1e6;

@@ -1,4 +1,5 @@
-//! Roads beside the elevation data are outside of them, also in the padding of their tiles; over voids they are not.
+//! Roads outside the elevation data are lost as such, also in the padding of the data's tiles;
+//! roads over voids are not.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -29,7 +30,8 @@ fn raster() -> Raster {
     )
 }
 
-/// Roads, each with where it is to be lost: wholly in the padding, from the data into it, over the void, and beyond all tiles.
+/// Roads, each with the place of its loss: wholly in the padding, from the data into the padding,
+/// over the void, and outside all tiles.
 const ROADS: [StraightRoad; 4] = [
     StraightRoad { from: [70.0, 20.0], to: [120.0, 20.0] },
     StraightRoad { from: [30.0, 10.0], to: [90.0, 10.0] },
@@ -37,7 +39,7 @@ const ROADS: [StraightRoad; 4] = [
     StraightRoad { from: [300.0, 20.0], to: [310.0, 20.0] },
 ];
 
-/// The geodesic's length between two (column, row), micrometres.
+/// The geodesic's length between two positions (column, row), micrometres.
 fn true_um(raster: &Raster, from: [f64; 2], to: [f64; 2]) -> u64 {
     let places = utm_to_degrees(&[from, to].map(|at| raster.position_m(at)));
     let [from, to] = [places[0], places[1]].map(|[lon, lat]| Point::new(lon, lat));
@@ -79,7 +81,7 @@ fn roads_in_the_padding_of_tiles_are_outside_the_data() {
     let raster = raster();
     let length = |from, to| true_um(&raster, from, to);
     let wholly = length(ROADS[0].from, ROADS[0].to) + length(ROADS[3].from, ROADS[3].to);
-    // The last samples are those of column 59.
+    // Column 59 has the last samples.
     let beside = wholly + length([59.0, 10.0], ROADS[1].to);
     let void = length(ROADS[2].from, ROADS[2].to);
     let lost = |reason: &str| -> &RoadLoss {

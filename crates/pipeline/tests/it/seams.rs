@@ -1,5 +1,6 @@
-//! P3 on made-up terrains: two tiles have the same bits on their common border, the heights beneath a tile are within its
-//! stored range and error, and none of this depends on the number of threads.
+//! P3 on synthetic terrains: two tiles have the same bits on their common border, the heights
+//! beneath a tile are within its stored range and error, and nothing depends on the number of
+//! threads.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -11,14 +12,16 @@ use crate::support::{
 };
 use corniche_tin::{Tin, TinVertex};
 
-/// A way to lay a raster over tiles: samples, cells from a tile corner, and the cell asked for.
+/// A way to place a raster on tiles: its samples, its offset in cells from a tile corner, and the
+/// requested cell.
 struct Tiling {
     size: [usize; 2],
     shift: [i64; 2],
     cell_m: Option<f64>,
 }
 
-/// Two by two tiles exactly; data that begin and end inside tiles; cells of two and of three and a half samples.
+/// Exactly two by two tiles; data that start and end inside tiles; cells of two and of three and a
+/// half samples.
 const TILINGS: [Tiling; 4] = [
     Tiling { size: [513, 513], shift: [0, 0], cell_m: None },
     Tiling { size: [301, 700], shift: [37, 201], cell_m: None },
@@ -26,7 +29,7 @@ const TILINGS: [Tiling; 4] = [
     Tiling { size: [1001, 500], shift: [100, 7], cell_m: Some(35.0) },
 ];
 
-/// Builds a terrain on a tiling and checks all that tiles promise each other.
+/// Builds a terrain on a tiling and checks all agreements between tiles.
 fn check(tiling: &Tiling, relief: fn(i64, i64) -> f32, is_void: fn(i64, i64) -> bool) -> Built {
     let raster = Raster::new(tiling.size, tiling.shift, |column, row| {
         if is_void(column, row) { f32::NAN } else { relief(column, row) }
@@ -72,7 +75,7 @@ fn tiles_agree_when_heights_are_averaged() {
 
 #[test]
 fn bytes_are_the_same_for_any_number_of_threads() {
-    // The last three are the rough ones.
+    // The last three terrains are the rough ones.
     for (name, relief) in TERRAINS.into_iter().skip(3) {
         let raster = Raster::new([520, 400], [99, 77], |column, row| {
             if scattered_void(column, row) { f32::NAN } else { relief(column, row) }
@@ -86,7 +89,7 @@ fn bytes_are_the_same_for_any_number_of_threads() {
     }
 }
 
-/// The checks above find each kind of disagreement, made by hand.
+/// The checks above find each kind of disagreement, created by hand.
 #[test]
 fn disagreement_is_seen() {
     let (_, relief) = TERRAINS[5];

@@ -1,4 +1,5 @@
-//! Several extracts make the tiles that one extract with all of it makes; nothing depends on their order.
+//! Several extracts give the same tiles as one extract with all their content; nothing depends on
+//! their order.
 
 #![allow(
     clippy::unwrap_used,
@@ -20,10 +21,10 @@ use corniche_pipeline::build;
 use corniche_plan::{BuildPlan, plan};
 use corniche_spec::{BuildSettings, extract_bounds, inputs::extract_names};
 use corniche_testing::{
-    pbf::{Block, plain_header, raw},
+    pbf::{BlockBuilder, plain_header, raw},
     real_data,
 };
-use corniche_tileset::{Counts, FilePackage};
+use corniche_tileset::{FilePackage, ManifestCounts};
 use corniche_verify::{VerifyError, VerifyOsm, VerifyReport, VerifySettings, verify};
 use corniche_work::Silent;
 
@@ -45,10 +46,10 @@ impl Files {
         self.folder.path().join(name)
     }
 
-    /// Writes the ways with these ids and all of their nodes: way k runs from west to east along nodes of a grid, and shares nodes with
-    /// ways of other ids.
+    /// Writes the ways with these ids and all of their nodes: way k runs from west to east along
+    /// nodes of a grid, and shares nodes with ways of other ids.
     fn extract(&self, name: &str, ids: RangeInclusive<i64>) -> PathBuf {
-        let (mut block, mut nodes) = (Block::new(), BTreeMap::new());
+        let (mut block, mut nodes) = (BlockBuilder::new(), BTreeMap::new());
         for id in ids {
             let node_ids: Vec<i64> = (0..8).map(|k| 1 + (id * 3 + k * 7) % 97).collect();
             for &node in &node_ids {
@@ -60,7 +61,7 @@ impl Files {
             let highway = ["primary", "residential", "moat"][id as usize % 3];
             block.way(id, &[("highway", highway), ("name", "Weg")], &node_ids);
         }
-        let mut of_nodes = Block::new();
+        let mut of_nodes = BlockBuilder::new();
         of_nodes.dense(&nodes.into_values().collect::<Vec<_>>());
         let data = [of_nodes, block].map(|block| raw(b"OSMData", &block.bytes()));
         let path = self.at(name);
@@ -90,7 +91,7 @@ fn verified(package: &Path, osm: &[PathBuf]) -> Result<VerifyReport, VerifyError
 }
 
 /// All tiles and counts of a package.
-fn content(path: &Path) -> (BTreeMap<TileId, Vec<u8>>, Counts) {
+fn content(path: &Path) -> (BTreeMap<TileId, Vec<u8>>, ManifestCounts) {
     let package = FilePackage::open(path).unwrap();
     let ids = package.tile_ids().unwrap();
     let tiles = ids.into_iter().map(|id| (id, package.tile(id).unwrap().unwrap())).collect();
@@ -116,14 +117,14 @@ fn overlapping_parts_make_the_tiles_and_counts_of_the_whole() {
     assert!(of_parts == tiles, "tiles of two extracts");
     assert_eq!(counts_of_parts, counts);
     assert_eq!((counts.highways_in, counts.roads_in), (60, 40));
-    // The order in which they are named changes no byte, and one that is named twice is read once.
+    // The order of the extracts changes no byte, and an extract that is named twice is read once.
     let turned = made(&files.settings("turned.pmtiles", &second));
     assert!(fs::read(&turned).unwrap() == fs::read(&parts).unwrap(), "another order");
     let inputs = FilePackage::open(&parts).unwrap().manifest().inputs.clone();
     let names: Vec<&str> = inputs.iter().map(|input| input.name.as_str()).collect();
     assert_eq!(names, ["dem.tif", "east.osm.pbf", "west.osm.pbf"]);
 
-    // verify reads them again, and needs all of them.
+    // Verify reads the extracts again, and needs all of them.
     let report = verified(&parts, &second).unwrap();
     let broken: Vec<_> = report.checks.iter().filter(|check| !check.holds()).collect();
     assert!(broken.is_empty(), "{broken:#?}");
@@ -145,10 +146,10 @@ fn a_plan_names_every_extract_and_sees_a_changed_one() {
     assert_eq!(read.settings().unwrap().osm, settings.plan.osm);
     files.extract("west.osm.pbf", 22..=60);
     let said = BuildPlan::make(&settings.plan).unwrap().differences(&planned).join("; ");
-    assert!(said.contains("west.osm.pbf was changed"), "{said}");
+    assert!(said.contains("west.osm.pbf has changed"), "{said}");
 }
 
-/// Cuts an extract in two that overlap, as a user would.
+/// Cuts an extract into two that overlap, as a user would.
 fn cut(osm: &Path, folder: &Path, boxes: [&str; 2]) -> Option<Vec<PathBuf>> {
     let cut = |(name, bounds): (&str, &str)| {
         let path = folder.join(name);
@@ -188,7 +189,7 @@ fn a_country_in_two_parts_makes_the_tiles_of_the_whole() {
     assert!(counts.roads_in > 100, "{counts:?}");
     assert!(of_two == tiles, "tiles of two parts");
     assert_eq!(counts_of_two, counts);
-    // Where they are by their headers: around both boxes, and a little more.
+    // Their bounds by their headers: around both boxes, with a margin.
     let [west, south, east, north] = extract_bounds(&parts).unwrap();
     assert!(west < 9.0 && south < 46.5 && east > 10.0 && north > 47.8);
     assert!(west > 8.9 && south > 46.4 && east < 10.1 && north < 47.9);

@@ -1,6 +1,6 @@
-//! Tiles of mixed levels with skirts as deep as the viewer makes them (own error + neighbour's error) leave no hole:
-//! rays that come from above and end below the ground meet ground or skirt, and with skirts of half that depth some
-//! do not.
+//! Tiles of mixed levels whose skirts are as deep as the viewer makes them (own error + neighbour's
+//! error) leave no hole: rays that come from above and end below the ground hit ground or skirt.
+//! With skirts of half that depth some rays do not.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -14,8 +14,8 @@ use crate::support::{
     terrain::{bits, noise, waves},
 };
 
-/// Depths of the skirts of a cut as the viewer's rule has them (its own tests hold it to that): where tiles of two levels
-/// share a stretch of border, both skirts are as deep as both errors together.
+/// Depths of the skirts of a cut by the viewer's rule (the viewer's tests check this rule): where
+/// tiles of two levels share a stretch of border, both skirts are as deep as both errors together.
 fn skirt_depths_m(built: &Built, cut: &BTreeSet<TileId>) -> BTreeMap<TileId, f64> {
     let mut depths_m: BTreeMap<TileId, f64> = cut.iter().map(|&id| (id, 0.0)).collect();
     let error_m = |id: TileId| built.ground(id).unwrap().geometric_error_m;
@@ -27,7 +27,7 @@ fn skirt_depths_m(built: &Built, cut: &BTreeSet<TileId>) -> BTreeMap<TileId, f64
                 inner.max_x.min(outer.max_x) - inner.min_x.max(outer.min_x),
                 inner.max_y.min(outer.max_y) - inner.min_y.max(outer.min_y),
             ];
-            // A part of the borders, not only a corner.
+            // The tiles share a part of the borders, not only a corner.
             if shared[0] >= 0.0 && shared[1] >= 0.0 && shared[0] + shared[1] > 0.0 {
                 for id in [a, b] {
                     let depth_m = depths_m.get_mut(&id).unwrap();
@@ -39,7 +39,7 @@ fn skirt_depths_m(built: &Built, cut: &BTreeSet<TileId>) -> BTreeMap<TileId, f64
     depths_m
 }
 
-/// A cut through the quadtree: `split` says which tiles to go on from.
+/// A cut through the quadtree: `split` selects the tiles that are refined further.
 fn cut(built: &Built, split: impl Fn(TileId) -> bool) -> BTreeSet<TileId> {
     let mut cut = BTreeSet::new();
     let mut left = vec![TileId::ROOT];
@@ -54,10 +54,11 @@ fn cut(built: &Built, split: impl Fn(TileId) -> bool) -> BTreeSet<TileId> {
     cut
 }
 
-/// Stretches of border of drawn tiles by the line they lie on: axis and position of the line, then along it.
+/// Stretches of the borders of drawn tiles, by the line that contains them: axis and position of
+/// the line, then the position along it.
 type Borders = BTreeMap<(usize, i64), Vec<[(f64, f64); 2]>>;
 
-/// The meshes of a cut with skirts of `share` of their depth.
+/// The meshes of a cut with skirts of the fraction `share` of their depth.
 fn scene(built: &Built, depths_m: &BTreeMap<TileId, f64>, share: f64) -> (Scene, Borders) {
     let (mut scene, mut borders) = (Scene::default(), Borders::new());
     let corner = built.frame().root_corner();
@@ -75,7 +76,8 @@ fn scene(built: &Built, depths_m: &BTreeMap<TileId, f64>, share: f64) -> (Scene,
             scene.add(corners.map(place));
             for k in 0..3 {
                 let ends = [corners[k], corners[(k + 1) % 3]].map(place);
-                // Along a line of the tile's border: x or y is the same whole number of sides at both ends.
+                // An edge on the tile's border: x or y is the same whole number of tile sides at
+                // both ends.
                 let line = (0..2).find(|&axis| {
                     ends[0][axis].to_bits() == ends[1][axis].to_bits()
                         && (ends[0][axis] as i64) % side == 0
@@ -93,7 +95,7 @@ fn scene(built: &Built, depths_m: &BTreeMap<TileId, f64>, share: f64) -> (Scene,
     (scene, borders)
 }
 
-/// Numbers that look random, from 0 to 1.
+/// Pseudo-random numbers from 0 to 1.
 struct Dice(u64);
 
 impl Dice {
@@ -103,19 +105,19 @@ impl Dice {
     }
 }
 
-/// What rays are cast over.
+/// The field over which rays are cast.
 struct Field {
     /// Columns and rows of data, in cells.
     size: [f64; 2],
     /// First column and row, in cells from the root's corner.
     corner: [f64; 2],
     range_m: [f64; 2],
-    /// Nodes, row by row, beside which some drawn tile may lack ground.
+    /// Nodes, row by row, next to which a drawn tile may lack ground.
     bare: Vec<bool>,
 }
 
 impl Field {
-    /// Whether the plan of a ray lies on ground of every level drawn.
+    /// Whether the ray's path in plan has ground on every drawn level.
     fn holds(&self, from: Point, to: Point) -> bool {
         let steps = ((to[0] - from[0]).hypot(to[1] - from[1]) * 2.0).ceil().max(1.0) as u32;
         (0..=steps).all(|step| {
@@ -127,7 +129,8 @@ impl Field {
         })
     }
 
-    /// A ray through a point, from above all ground to below it, `run` cells long in plan on its whole way.
+    /// A ray through a point, from above all ground to below it; its whole length in plan is `run`
+    /// cells.
     fn through(&self, at: Point, azimuth: f64, run: f64) -> [Point; 2] {
         let [low_m, high_m] = [self.range_m[0] - 1.0, self.range_m[1] + 1.0];
         let per_metre = run / (high_m - low_m);
@@ -139,8 +142,8 @@ impl Field {
     }
 }
 
-/// Casts rays anywhere and rays aimed between the two sides of borders; gives how many were cast and how many met
-/// nothing.
+/// Casts rays anywhere, and rays aimed between the two sides of borders; returns how many were cast
+/// and how many hit nothing.
 fn cast(field: &Field, scene: &Scene, borders: &Borders, rays: usize) -> [usize; 2] {
     let mut dice = Dice(1);
     let (mut cast, mut lost) = (0, 0);
@@ -150,7 +153,7 @@ fn cast(field: &Field, scene: &Scene, borders: &Borders, rays: usize) -> [usize;
             lost += usize::from(!scene.hits(ray[0], ray[1]));
         }
     };
-    // Steep to shallow: from a cell on the way down to hundreds.
+    // Steep to shallow rays: from one cell in plan up to hundreds.
     let run = |dice: &mut Dice| 2.0_f64.powf(10.0 * dice.roll() - 1.0);
     for _ in 0..rays {
         let height_m = field.range_m[0] + dice.roll() * (field.range_m[1] - field.range_m[0]);
@@ -187,10 +190,11 @@ fn cast(field: &Field, scene: &Scene, borders: &Borders, rays: usize) -> [usize;
     [cast, lost]
 }
 
-/// Where a ray may be cast for a cut whose coarsest cell is `stride`: farther than that from voids.
+/// The area in which rays may be cast for a cut whose coarsest cell is `stride`: farther than that
+/// from voids.
 fn field(built: &Built, raster: &Raster, stride: i64) -> Field {
     let (columns, rows) = (raster.columns as i64, raster.rows as i64);
-    // Beyond the data all is void.
+    // Everything outside the data is void.
     let at_edge = |index: usize| {
         let (column, row) = (index as i64 % columns, index as i64 / columns);
         let inside = (stride..columns - stride).contains(&column);
@@ -215,8 +219,9 @@ fn field(built: &Built, raster: &Raster, stride: i64) -> Field {
     }
 }
 
-/// Hills, cliffs and spikes; and needles on borders of tiles that coarse levels miss, so that the gap there is nearly
-/// all of their error. Heights by raster column and row, its first sample `shift` from a corner of tiles.
+/// Hills, cliffs and spikes, with needles on borders of tiles that coarse levels miss, so that the
+/// gap there is nearly all of their error. Heights by raster column and row; the first sample is
+/// `shift` from a corner of tiles.
 fn rough(shift: [i64; 2], column: i64, row: i64) -> f32 {
     let at = [column + shift[0], row + shift[1]];
     let on_border =
@@ -230,7 +235,7 @@ fn rough(shift: [i64; 2], column: i64, row: i64) -> f32 {
     80.0 * waves(column / 4, row / 3) + cliff + spike
 }
 
-/// Builds, cuts, and casts: nothing is lost with whole skirts; with half of them something is.
+/// Builds, cuts, and casts rays: whole skirts leave no hole; skirts of half the depth do.
 fn check(raster: &Raster, splits: &[&dyn Fn(TileId) -> bool], rays: usize) {
     let built = build_raster(raster, Options::plain(20.0)).unwrap();
     let (mut rays_cast, mut holes) = (0, [0; 2]);
@@ -251,11 +256,11 @@ fn check(raster: &Raster, splits: &[&dyn Fn(TileId) -> bool], rays: usize) {
         }
     }
     assert!(rays_cast > rays, "{rays_cast} rays were cast");
-    // The check sees: half as deep leaves holes, none at all leaves more.
+    // The check works: skirts of half the depth leave holes, no skirts leave more.
     assert!(holes[0] > 0 && holes[1] > holes[0], "{holes:?} of {rays_cast}");
 }
 
-/// Whether a tile lies in the western half.
+/// Whether a tile is in the western half.
 fn is_west(id: TileId) -> bool {
     id.z() > 0 && id.ancestor(1).x() == 0
 }
@@ -267,7 +272,7 @@ fn random(id: TileId) -> bool {
 #[test]
 fn no_hole_between_levels_up_to_two_apart() {
     let raster = Raster::new([2049, 513], [0, 0], |c, r| rough([0, 0], c, r));
-    // Level 1 beside level 3; every second tile of a level one finer; anything.
+    // Level 1 next to level 3; every second tile refined by one level; any mixture.
     let chequered = |id: TileId| id.z() < 2 || id.z() == 2 && (id.x() + id.y()).is_multiple_of(2);
     check(&raster, &[&|id| !is_west(id), &chequered, &random], 6000);
 }
@@ -282,7 +287,8 @@ fn is_west_or_root(id: TileId) -> bool {
     id.z() == 0 || is_west(id)
 }
 
-/// Data that begin and end inside tiles, with voids: where all levels drawn have ground there is no hole either.
+/// Data that start and end inside tiles, with voids: where all drawn levels have ground, there is
+/// no hole either.
 #[test]
 fn no_hole_on_ground_with_voids() {
     let raster = Raster::new([1700, 490], [90, 33], |column, row| {

@@ -1,5 +1,5 @@
-//! What the tests of this crate share: rasters with known heights, packages built from them by the true pipeline and
-//! taken apart, and plain arithmetic on what is found.
+//! Common helpers of this crate's tests: rasters with known heights, packages built from them by
+//! the real pipeline and taken apart, and simple arithmetic on the results.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may unwrap")]
 
@@ -24,7 +24,7 @@ use corniche_spec::{
     BuildSettings, Leftovers, PhotoChoice, PlanSettings, Resources, RoadSettings, TerrainSettings,
 };
 use corniche_store::Existing;
-use corniche_tileset::{FilePackage, Manifest, ReliefLevels, Sections, Terrain, TilePayload};
+use corniche_tileset::{FilePackage, Manifest, ReliefLevels, Sections, TilePayload, TileTerrain};
 use corniche_tin::Tin;
 use corniche_work::Silent;
 
@@ -35,7 +35,8 @@ pub(crate) const TILE: i64 = 256;
 /// UTM 32 N: the rasters' CRS.
 pub(crate) const EPSG: u32 = 32632;
 
-/// A raster of heights whose sample (column, row) is the global node (`west` + column, `north` − row).
+/// A raster of heights whose sample (column, row) is the global node (`west` + column, `north` −
+/// row).
 pub(crate) struct Raster {
     pub(crate) columns: usize,
     pub(crate) rows: usize,
@@ -50,13 +51,13 @@ pub(crate) struct Raster {
 }
 
 impl Raster {
-    /// A raster whose north-west sample lies `shift` cells east and south of a corner of tiles.
+    /// A raster whose north-west sample is `shift` cells east and south of a corner of tiles.
     pub(crate) fn new(
         [columns, rows]: [usize; 2],
         shift: [i64; 2],
         height_m: impl Fn(i64, i64) -> f32,
     ) -> Self {
-        // In the middle of the zone and of Europe.
+        // The position is in the middle of the zone and of Europe.
         let (west, north) = (200 * TILE + shift[0], 2080 * TILE - shift[1]);
         let heights_m = (0..rows as i64)
             .flat_map(|row| (0..columns as i64).map(move |column| (column, row)))
@@ -94,7 +95,8 @@ impl Raster {
     }
 }
 
-/// Writes a GeoTIFF of `side` × `side` samples in WGS84, the first at `north_west`, heights by longitude and latitude.
+/// Writes a GeoTIFF of `side` × `side` samples in WGS84, the first at `north_west`, heights by
+/// longitude and latitude.
 pub(crate) fn write_degrees(
     path: &Path,
     side: usize,
@@ -122,10 +124,10 @@ pub(crate) fn write_samples(
     raster.nodata(-9999.0).write_values(path, values);
 }
 
-/// How a package is built.
+/// The options of a build.
 #[derive(Clone, Copy)]
 pub(crate) struct Options {
-    /// Working CRS, where it is not the raster's own.
+    /// Working CRS, if it is not the raster's own.
     pub(crate) crs: Option<&'static str>,
     pub(crate) cell_m: Option<f64>,
     pub(crate) max_error_m: f64,
@@ -135,7 +137,7 @@ pub(crate) struct Options {
 }
 
 impl Options {
-    /// The raster's own cell; no voids are filled.
+    /// Options with the raster's own cell and without filled voids.
     pub(crate) fn plain(max_error_m: f64) -> Self {
         Self {
             crs: None,
@@ -148,14 +150,14 @@ impl Options {
     }
 }
 
-/// A package and all that is in it.
+/// A package and its content.
 pub(crate) struct Built {
     pub(crate) bytes: Vec<u8>,
     pub(crate) manifest: Manifest,
     pub(crate) tiles: BTreeMap<TileId, TilePayload>,
 }
 
-/// The one place where the tests of this crate say all that can be set.
+/// The settings of a build; the only place where the tests of this crate list all of them.
 pub(crate) fn settings(
     dem: PathBuf,
     osm: Option<PathBuf>,
@@ -164,7 +166,7 @@ pub(crate) fn settings(
 ) -> BuildSettings {
     BuildSettings {
         plan: PlanSettings {
-            lines: Vec::new(),
+            boundaries: false,
             dem: vec![dem],
             terrain_of: None,
             osm: osm.into_iter().collect(),
@@ -252,11 +254,11 @@ impl Built {
     }
 
     /// The tiles with ground, by id.
-    pub(crate) fn grounds(&self) -> impl DoubleEndedIterator<Item = (TileId, &Terrain)> {
+    pub(crate) fn grounds(&self) -> impl DoubleEndedIterator<Item = (TileId, &TileTerrain)> {
         self.tiles.iter().filter_map(|(&id, tile)| Some((id, tile.terrain.as_ref()?)))
     }
 
-    pub(crate) fn ground(&self, id: TileId) -> Option<&Terrain> {
+    pub(crate) fn ground(&self, id: TileId) -> Option<&TileTerrain> {
         self.tiles.get(&id)?.terrain.as_ref()
     }
 

@@ -1,4 +1,5 @@
-//! Lengths of roads are true lengths in any CRS, and the lengths of parts add up exactly, in micrometres.
+//! Lengths of roads are true lengths in any CRS, and the lengths of parts add up exactly, in
+//! micrometres.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -8,11 +9,11 @@ use corniche_verify::{VerifySettings, verify};
 use corniche_work::Silent;
 use geo::{Distance, Geodesic, Point};
 
-/// Where the DEMs lie: longitudes and latitudes.
+/// Longitudes and latitudes of the DEMs.
 const WEST_DEG: f64 = 9.0;
 const NORTH_DEG: f64 = 47.2;
 
-/// Roads that wander over the DEM, its voids and its edge: the same every time.
+/// Roads that wander over the DEM, its voids and its edge, the same in each run.
 fn roads() -> Vec<Vec<[f64; 2]>> {
     let mut state = 12_345_u64;
     let mut next = || {
@@ -33,7 +34,7 @@ fn roads() -> Vec<Vec<[f64; 2]>> {
         .collect()
 }
 
-/// Karney's geodesics on WGS84, as `geo` has them.
+/// Karney's geodesics on WGS84, as implemented by `geo`.
 fn geodesic_m(roads: &[Vec<[f64; 2]>]) -> f64 {
     let pair_m = |pair: &[[f64; 2]]| {
         let [from, to] = [pair[0], pair[1]].map(|[lon, lat]| Point::new(lon, lat));
@@ -92,7 +93,8 @@ fn lengths_are_those_of_geodesics_in_every_crs_and_parts_add_up_exactly() {
             counts.roads_kept_um + lost_um.iter().sum::<u64>(),
             "EPSG:{epsg}"
         );
-        // Losses outside count beyond the tiles of the data: none where one tile is larger than all of it.
+        // Losses outside count beyond the tiles of the data: there are none if one tile is larger
+        // than all data.
         assert!(lost_um[1] > 10_000_000_000, "EPSG:{epsg}: {lost_um:?}");
         assert!(epsg != 4326 || lost_um[0] > 1_000_000_000, "EPSG:{epsg}: {lost_um:?}");
         let by_class: u64 = counts.classes.iter().map(|&(_, um)| um).sum();

@@ -1,5 +1,5 @@
-//! `verify` sees each kind of wrong area: a sound package is taken apart, one thing is made wrong, and it is put together again. Then exactly
-//! the expected checks are broken.
+//! `verify` detects each kind of invalid area: a valid package is taken apart, one area is made
+//! invalid, and the package is reassembled. Then exactly the expected checks fail.
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
 use corniche_testing::{package::with_section, some_of};
@@ -12,11 +12,11 @@ use crate::support::{
 };
 use corniche_areas::{AreaClass, AreaObject, AreaTable};
 use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, TileId};
-use corniche_gis::Polygon;
+use corniche_gis::RegionPolygons;
 use corniche_pipeline::build;
 use corniche_tileset::{
-    AreaRecord, AreaRings, FilePackage, Manifest, Sections, Writer, decode_areas, encode_areas,
-    payload_sizes, pmtiles_order,
+    AreaRecord, AreaRings, FilePackage, Manifest, PackageWriter, Sections, decode_areas,
+    encode_areas, payload_sizes, pmtiles_order,
 };
 use corniche_verify::{
     CheckId, Needs, VerifyError, VerifyOsm, VerifyReport, VerifySettings, verify,
@@ -29,18 +29,18 @@ fn table() -> AreaTable {
     AreaTable::new("test", tags.map(|(tag, class)| (tag.to_owned(), class)).to_vec()).unwrap()
 }
 
-/// A package with areas, taken apart.
+/// A package with areas that is taken apart.
 struct Apart {
     folder: TempDir,
-    /// The polygon that it was cut with.
-    polygon: Option<Polygon>,
+    /// The polygon to which it is clipped.
+    polygon: Option<RegionPolygons>,
     manifest: Manifest,
     tiles: BTreeMap<u64, Tile>,
 }
 
 struct Tile {
     id: TileId,
-    /// As it was stored.
+    /// The tile as it was stored.
     whole: Vec<u8>,
     without_areas: Vec<u8>,
     areas: Vec<AreaRecord>,
@@ -48,12 +48,13 @@ struct Tile {
 }
 
 impl Apart {
-    /// The sample with a lake, and a wood with a clearing, which lie on several tiles.
+    /// The sample with a lake, and a wood with a clearing, which extend over several tiles.
     fn sound() -> Self {
         Self::built(tempfile::tempdir().unwrap(), None)
     }
 
-    /// The same cut with a polygon, which leaves out the south-west of the lake and some of the wood.
+    /// The sample clipped to a polygon, which excludes the south-west of the lake and some of the
+    /// wood.
     fn cut() -> Self {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("polygon.geojson");
@@ -62,10 +63,10 @@ impl Apart {
             "[{west},{south}],[{east},{south}],[{east},{north}],[{west},{north}],[{west},{south}]"
         );
         fs::write(&path, format!(r#"{{"type":"Polygon","coordinates":[[{corners}]]}}"#)).unwrap();
-        Self::built(folder, Some(Polygon::read(&path).unwrap()))
+        Self::built(folder, Some(RegionPolygons::read(&path).unwrap()))
     }
 
-    fn built(folder: TempDir, polygon: Option<Polygon>) -> Self {
+    fn built(folder: TempDir, polygon: Option<RegionPolygons>) -> Self {
         let path = folder.path().join("sound.pmtiles");
         let osm = corniche_testing::extract_with_areas(folder.path());
         let options = Options::plain(MAX_ERROR_M);
@@ -87,7 +88,7 @@ impl Apart {
         Self { folder, polygon, manifest, tiles }
     }
 
-    /// Changes the areas of a tile, and corrects the sums that the manifest records of them.
+    /// Changes the areas of a tile, and updates the sums that the manifest records of them.
     fn change(&mut self, id: TileId, change: impl FnOnce(&mut Vec<AreaRecord>)) {
         let tile = self.tiles.get_mut(&pmtiles_order(id)).unwrap();
         let before = counts(&tile.areas, stored_bytes(&tile.whole, id));
@@ -104,9 +105,12 @@ impl Apart {
 
     fn put_together(&self) -> PathBuf {
         let path = self.folder.path().join("changed.pmtiles");
-        let mut writer =
-            Writer::of_file(std::fs::File::create(&path).unwrap(), &self.manifest, usize::MAX)
-                .unwrap();
+        let mut writer = PackageWriter::of_file(
+            std::fs::File::create(&path).unwrap(),
+            &self.manifest,
+            usize::MAX,
+        )
+        .unwrap();
         for tile in self.tiles.values() {
             writer.add(tile.id, &tile.bytes(&self.manifest.frame)).unwrap();
         }
@@ -114,12 +118,13 @@ impl Apart {
         path
     }
 
-    /// Puts it together and asserts that exactly these checks are broken.
+    /// Reassembles the package and asserts that exactly these checks fail.
     fn assert_breaks(&self, expected: &[CheckId]) {
         assert_broken(report_on(&self.put_together(), Against::Itself), expected);
     }
 
-    /// The same with the extract that it was made from, of whose checks exactly these are broken.
+    /// Reassembles the package and asserts that exactly these checks fail against the extract from
+    /// which it was built.
     fn assert_breaks_against_extract(&self, expected: &[CheckId]) {
         let report = self.against_extract(Some(table())).unwrap();
         let broken = report.checks.iter().filter(|check| !check.holds());
@@ -144,7 +149,8 @@ impl Apart {
         verify(&FilePackage::open(&self.put_together())?, &settings, &Silent)
     }
 
-    /// A finest tile beside another one, an area on the border between both, and the numbers of polygon, ring and two points there.
+    /// A finest tile with a neighbour, an area on the border between them, and the indices of
+    /// polygon, ring and two points there.
     fn on_a_border(&self) -> OnBorder {
         let frame = &self.manifest.frame;
         for tile in self.tiles.values().filter(|tile| tile.id.z() == frame.max_level()) {
@@ -170,7 +176,7 @@ impl Apart {
                 }
             }
         }
-        panic!("no area lies on two tiles");
+        panic!("no area extends over two tiles");
     }
 
     /// A tile with an area.
@@ -184,7 +190,7 @@ struct OnBorder {
     id: TileId,
     area: usize,
     polygon: usize,
-    /// Of the polygon's outer ring.
+    /// The outer ring of the polygon.
     points: [usize; 2],
     is_upright: bool,
 }
@@ -205,7 +211,7 @@ fn stored_bytes(payload: &[u8], id: TileId) -> u64 {
     payload_sizes(payload, id).unwrap().areas.stored
 }
 
-/// Tiles, areas, points, bytes.
+/// Numbers of tiles, areas, points and bytes.
 fn counts(areas: &[AreaRecord], bytes: u64) -> [u64; 4] {
     let rings = areas.iter().flat_map(|area| &area.polygons).flat_map(|part| &part.rings);
     let points = rings.map(|ring| ring.len() as u64).sum();
@@ -218,7 +224,7 @@ fn nothing_is_broken_when_nothing_was_changed() {
     let tiles: Vec<TileId> = sound.tiles.values().map(|tile| tile.id).collect();
     assert!(tiles.iter().filter(|id| id.z() == sound.manifest.frame.max_level()).count() > 1);
     sound.assert_breaks(&[]);
-    // Nor when everything was encoded again.
+    // It also passes after everything was encoded again.
     for id in tiles {
         if !sound.tiles[&pmtiles_order(id)].areas.is_empty() {
             sound.change(id, |_| {});
@@ -264,7 +270,7 @@ fn a_point_that_moves_along_a_border() {
         let ring = &mut areas[area].polygons[polygon].rings[0];
         let other = ring[second];
         let LatticePoint { u, v } = &mut ring[first];
-        // Towards the other one.
+        // The point moves towards the other one.
         if is_upright {
             *v += (other.v - *v).signum();
         } else {
@@ -274,7 +280,7 @@ fn a_point_that_moves_along_a_border() {
     apart.assert_breaks(&[CheckId::AreaSeams]);
 }
 
-/// The outline runs along the border from corner to corner, so the neighbour has nothing there.
+/// The outline runs along the border from corner to corner, so the neighbour has no area there.
 #[test]
 fn an_outline_along_a_border_is_one_of_one_tile() {
     for (levels_above, beside, expected) in
@@ -286,7 +292,7 @@ fn an_outline_along_a_border_is_one_of_one_tile() {
         let mut ids = apart.tiles.values().map(|tile| tile.id).filter(|id| id.z() == level);
         let id = ids.find(|id| id.neighbour(0, 1).is_some_and(is_there)).unwrap();
         let LatticeBounds { min, max } = apart.manifest.frame.tile_lattice_bounds(id);
-        // On the lattices of all levels: their spacings are powers of two.
+        // The point is on the lattices of all levels, because their spacings are powers of two.
         let side = 1 << ((max.u - min.u) / 4).ilog2();
         let west = (min.u / side + 1) * side + beside;
         let corners = [[west, min.v], [west + side, min.v], [west, min.v + side]];
@@ -300,7 +306,7 @@ fn an_outline_along_a_border_is_one_of_one_tile() {
     }
 }
 
-/// The manifest's rows of `docs/lab/fields.md` that are about areas.
+/// The rows about areas in `docs/lab/tables/fields-manifest.csv`.
 #[test]
 fn fields_of_areas_in_the_manifest() {
     type Change = fn(&mut Manifest);
@@ -322,7 +328,7 @@ fn fields_of_areas_in_the_manifest() {
         rehash(&mut apart.manifest);
         apart.assert_breaks(&[CheckId::AreaSums]);
     }
-    // Levels in another order are refused by readers, as are classes that there are not.
+    // Readers reject levels in another order, and classes that do not exist.
     let refused: [Change; 2] = [
         |manifest| manifest.areas.as_mut().unwrap().levels.reverse(),
         |manifest| manifest.areas.as_mut().unwrap().counts.kept[0].class = 99,
@@ -332,8 +338,12 @@ fn fields_of_areas_in_the_manifest() {
         change(&mut apart.manifest);
         let path = apart.folder.path().join("refused.pmtiles");
         assert!(
-            Writer::of_file(std::fs::File::create(&path).unwrap(), &apart.manifest, usize::MAX)
-                .is_err()
+            PackageWriter::of_file(
+                std::fs::File::create(&path).unwrap(),
+                &apart.manifest,
+                usize::MAX
+            )
+            .is_err()
         );
     }
 }
@@ -354,7 +364,7 @@ fn areas_that_are_not_those_of_the_extract() {
     let changes: [Change; 3] = [
         |area| area.class = AreaClass::Rock,
         |area| area.name.push('e'),
-        // By one step of the lattice, inside.
+        // The point moves by one lattice step, to the inside.
         |area| {
             let ring = &mut area.polygons[0].rings[0];
             let inner = ring[ring.len() / 2];
@@ -403,8 +413,11 @@ fn an_area_that_reaches_beyond_the_polygon() {
 fn another_table_of_areas_is_refused() {
     let sound = Apart::sound();
     for (other, expected) in [
-        (None, "the package has areas; give their table, \"test\", with --areas"),
-        (Some(table().with_sea(true)), "another table of areas that is called \"test\", too"),
+        (None, "the package has areas; pass their table \"test\" with --areas"),
+        (
+            Some(table().with_sea(true)),
+            "another table of areas, read from a file and also called \"test\"",
+        ),
     ] {
         let error = sound.against_extract(other).unwrap_err();
         assert!(error.to_string().contains(expected), "{error}");

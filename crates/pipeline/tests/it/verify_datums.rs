@@ -1,4 +1,5 @@
-//! `verify` of a package of several bands in a datum of its own, as it is and as an earlier version would have written it.
+//! `verify` of a package from several bands in another datum, as it is and as an earlier version
+//! would have written it.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may unwrap")]
 
@@ -17,7 +18,7 @@ use corniche_verify::{CheckId, VerifyReport, VerifySettings, verify};
 use corniche_work::Silent;
 use tempfile::TempDir;
 
-/// A package of the first of two bands in ETRS89, and what it was made of.
+/// A package from the first of two bands in ETRS89, and its inputs.
 struct OfTwoBands {
     folder: TempDir,
     dem: PathBuf,
@@ -44,7 +45,7 @@ impl OfTwoBands {
         Self { folder, dem, manifest, tiles }
     }
 
-    /// The report on the package with its manifest changed, against its elevation.
+    /// The report on the package with a changed manifest, against its elevation files.
     fn changed(&self, change: impl Fn(&mut Manifest)) -> VerifyReport {
         let mut manifest = self.manifest.clone();
         change(&mut manifest);
@@ -57,7 +58,8 @@ impl OfTwoBands {
     }
 }
 
-/// Before the band was recorded it was the first one, and no file with several was refused.
+/// Before the band was recorded, the first one was used, and files with several bands were
+/// accepted.
 #[test]
 fn without_a_recorded_band_the_first_one_was_read() {
     let sound = OfTwoBands::build();
@@ -68,7 +70,7 @@ fn without_a_recorded_band_the_first_one_was_read() {
     assert!(!nodes.holds(), "heights are those of the second band");
 }
 
-/// Packages that were written before operations were recorded have the same `generator`.
+/// Packages written before operations were recorded have the same `generator`.
 #[test]
 fn other_operations_between_datums_are_told_in_words_and_none_are_those_of_before() {
     let sound = OfTwoBands::build();
@@ -86,7 +88,7 @@ fn other_operations_between_datums_are_told_in_words_and_none_are_those_of_befor
         assert_eq!(
             check.examples,
             [
-                "between datums the package records \"ETRS89 to WGS 84 (9)\" from EPSG:25832 to EPSG:4326 (1 m); PROJ now takes \
+                "between geodetic datums, the package records \"ETRS89 to WGS 84 (9)\" from EPSG:25832 to EPSG:4326 (1 m); PROJ now uses \
               \"ETRS89 to WGS 84 (1)\" from EPSG:25832 to EPSG:4326 (1 m): one of its grids may have been installed or removed \
               since the build, so build the package again"
             ]

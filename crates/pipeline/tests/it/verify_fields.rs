@@ -1,6 +1,8 @@
-//! Every field of the manifest, changed in turn and put together again with checksums that fit: which check sees it.
+//! Changes every field of the manifest in turn and reassembles the package with matching checksums:
+//! which check detects the change.
 //!
-//! The fields are the leaves of its JSON: one that is not in the list below fails the test.
+//! The fields are the leaves of the manifest's JSON: a field that is missing from the list below
+//! fails the test.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may unwrap")]
 
@@ -10,7 +12,7 @@ use std::fmt::Write as _;
 use crate::support::{
     parts::{Against, Parts, SOUND},
     seen::{
-        Seen::{self, By, OtherInput, Refused, Unseen},
+        SeenBy::{self, By, OtherInput, Refused, Unseen},
         check, row,
     },
 };
@@ -19,15 +21,15 @@ use corniche_verify::CheckId as C;
 use serde_json::{Value, json};
 use sha2::{Digest as _, Sha256};
 
-/// A leaf of the manifest, another value of it, and what sees that.
+/// A leaf of the manifest, another value for it, and the check that detects it.
 struct Change {
     /// JSON pointer.
     at: &'static str,
     new: fn(&Value) -> Value,
-    seen: Seen,
+    seen: SeenBy,
 }
 
-const fn change(at: &'static str, new: fn(&Value) -> Value, seen: Seen) -> Change {
+const fn change(at: &'static str, new: fn(&Value) -> Value, seen: SeenBy) -> Change {
     Change { at, new, seen }
 }
 
@@ -50,14 +52,14 @@ fn text(_: &Value) -> Value {
     json!("something else")
 }
 
-const FREE_TEXT: &str = "a text for people; nothing else tells it";
-const RENAMED: &str = "files may be renamed, and are known by their content";
-const NO_DEM_CRS: &str = "no effect on files that name a CRS; the settings' hash alone tells it";
-const NO_OTHER_BAND: &str = "no effect on files with one band; the settings' hash alone tells it";
+const FREE_TEXT: &str = "a text for people; nothing else depends on it";
+const RENAMED: &str = "files may be renamed, and are identified by their content";
+const NO_DEM_CRS: &str = "no effect on files that name a CRS; only the settings' hash changes";
+const NO_OTHER_BAND: &str = "no effect on files with one band; only the settings' hash changes";
 const NO_LATITUDE: &str =
-    "no effect on a CRS that is true to scale; the settings' hash alone tells it";
+    "no effect on a CRS that is true to scale; only the settings' hash changes";
 
-/// Other values of every leaf of the manifest.
+/// Other values for every leaf of the manifest.
 const MANIFEST: &[Change] = &[
     change("/format_version", one_more, Refused),
     change("/generator", text, Unseen(FREE_TEXT)),
@@ -135,7 +137,7 @@ const MANIFEST: &[Change] = &[
     change("/levels/1/errors_m/max", one_more, By(C::LevelSums)),
     change("/levels/1/tightness/count", one_more, By(C::Recorded)),
     change("/levels/1/tightness/min", |_| json!(0.9), By(C::Recorded)),
-    // The sample's ratios are all 1: another one in the middle alone is no distribution.
+    // The sample's ratios are all 1: changing only the middle one gives no valid distribution.
     change("/levels/1/tightness/median", |_| json!(1.5), Refused),
     change("/levels/1/tightness/p95", |_| json!(1.5), Refused),
     change("/levels/1/tightness/max", one_more, By(C::Recorded)),
@@ -222,7 +224,7 @@ const MANIFEST: &[Change] = &[
     change("/sv_tails/0/3", one_more, By(C::SvTails)),
 ];
 
-/// Values of fields that the sample's manifest leaves out.
+/// Values of fields that the sample's manifest omits.
 const LEFT_OUT: &[Change] = &[
     change("/datum_operations", |_| operation_of("EPSG:4267", "EPSG:4326"), By(C::Crs)),
     change("/datum_operations", |_| operation_of("EPSG:4267", "EPSG:32632"), By(C::DemPlan)),
@@ -234,7 +236,8 @@ fn operation_of(from: &str, to: &str) -> Value {
     json!([{ "from": from, "to": to, "operation": "NAD27 to WGS 84 (6)", "accuracy_m": 7.0 }])
 }
 
-/// Whether the places in a list mean different things: pairs and triples, not lists of one kind of thing.
+/// Whether the positions in a list have different meanings, as in pairs and triples, rather than
+/// being items of one kind.
 fn is_tuple(list: &[Value]) -> bool {
     list.len() <= 4 && list.iter().any(Value::is_number)
 }
@@ -243,7 +246,7 @@ fn step(list: &[Value], index: &str) -> String {
     if is_tuple(list) { format!(".{index}") } else { "[]".to_owned() }
 }
 
-/// The names of all leaves. An empty list is one.
+/// The names of all leaves. An empty list is a leaf.
 fn leaves(value: &Value, name: &str, found: &mut Vec<String>) {
     match value {
         Value::Object(fields) => {
@@ -281,7 +284,8 @@ fn name_of(manifest: &Value, at: &str) -> String {
     name
 }
 
-/// Every leaf of the manifest's JSON has a change here, and every change is seen as it says (in full; else each so many-th).
+/// Every leaf of the manifest's JSON has a change here, and every change has the expected result
+/// (in full mode; otherwise only some of the changes).
 #[test]
 fn every_field_of_the_manifest_is_seen_or_listed_as_unseen() {
     let sound = serde_json::to_value(&SOUND.parts.manifest).unwrap();
@@ -316,7 +320,7 @@ fn every_field_of_the_manifest_is_seen_or_listed_as_unseen() {
     assert!(failed.is_empty(), "{failed:#?}");
 }
 
-/// Fields that are left out where they say nothing new are seen where they are there.
+/// Changes of optional fields are detected if the fields are present.
 #[test]
 fn fields_that_the_manifest_leaves_out_are_seen_once_they_are_there() {
     let sound = serde_json::to_value(&SOUND.parts.manifest).unwrap();

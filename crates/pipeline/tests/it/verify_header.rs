@@ -1,4 +1,5 @@
-//! Every byte of a package's header behind the places of its parts, and every text beside its manifest, changed in turn: which check sees it.
+//! Changes every byte of a package's header after the offsets of its parts, and every text next to
+//! its manifest, in turn: which check detects the change.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may unwrap")]
 
@@ -13,9 +14,9 @@ use serde_json::{Value, json};
 
 /// Offset and length of the metadata in the header.
 const METADATA: Range<usize> = 24..40;
-/// Counts of entries and contents, clustered.
+/// Counts of entries and contents, and the clustered flag.
 const COUNTS: Range<usize> = 80..97;
-/// From the levels to the end of the header.
+/// The bytes from the levels to the end of the header.
 const FOR_TOOLS: Range<usize> = 100..127;
 
 fn in_a_file<T>(bytes: &[u8], look: impl FnOnce(&Path) -> T) -> T {
@@ -25,8 +26,8 @@ fn in_a_file<T>(bytes: &[u8], look: impl FnOnce(&Path) -> T) -> T {
     look(&path)
 }
 
-/// Before these bytes lie the places of the parts, which checksums tell of; the count of tiles is refused by readers, and
-/// so are compressions and type.
+/// The bytes before these are the offsets of the parts, which checksums protect; readers reject
+/// wrong counts of tiles, compressions and types.
 #[test]
 fn every_byte_of_the_header_behind_the_places_is_seen() {
     for at in some_of(72..FOR_TOOLS.end, [7, 3, 1]) {
@@ -43,7 +44,7 @@ fn every_byte_of_the_header_behind_the_places_is_seen() {
     }
 }
 
-/// The sound package with other metadata, behind its last byte.
+/// The valid package with other metadata, appended after its last byte.
 fn with_metadata(change: impl FnOnce(&mut Value)) -> Vec<u8> {
     let mut bytes = SOUND.bytes.clone();
     let number =

@@ -1,6 +1,8 @@
-//! Every field of a payload, changed in turn and put together again with checksums that fit: which check sees it.
+//! Changes every field of a payload in turn and reassembles the package with matching checksums:
+//! which check detects the change.
 //!
-//! Fields are listed by patterns that name every one, so that a new one does not compile.
+//! Fields are listed by patterns that name every field, so that a new field does not compile until
+//! it is listed.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may unwrap")]
 
@@ -13,18 +15,19 @@ use std::{
 use crate::support::{
     parts::{Parts, SOUND},
     seen::{
-        Seen::{self, By, Refused},
+        SeenBy::{self, By, Refused},
         check, row,
     },
 };
 use corniche_drape::{DrapedLine, DrapedVertex, SvLine};
 use corniche_geom::{HeightGrid, LatticePoint};
 use corniche_roads::{Form, FunctionalRoadClass, Oneway, RoadAttributes, Structure};
-use corniche_tileset::{GeoRoad, Relief, RoadRecord, SvRoad, Terrain, TilePayload};
+use corniche_tileset::{GeoRoad, Relief, RoadRecord, SvRoad, TilePayload, TileTerrain};
 use corniche_tin::{Tin, TinVertex};
 use corniche_verify::CheckId as C;
 
-/// Lists fields of types by patterns that name all of them: one that is added does not compile until it is named.
+/// Lists fields of types by patterns that name all fields: a new field does not compile until it is
+/// named.
 macro_rules! fields {
     ($($type:ident { $($field:ident),* $(,)? })*) => {
         const PAYLOAD: &[&str] = &[$($(concat!(stringify!($type), ".", stringify!($field)),)*)*];
@@ -34,7 +37,7 @@ macro_rules! fields {
 
 fields! {
     TilePayload { id, terrain, relief, roads_geo, roads_sv, attributes }
-    Terrain { tin, normals, geometric_error_m, height_range_m, uncovered_nodes }
+    TileTerrain { tin, normals, geometric_error_m, height_range_m, uncovered_nodes }
     TinVertex { row, column, height_q }
     GeoRoad { way_id, part, class, line }
     DrapedLine { lead_in, vertices, lead_out }
@@ -48,7 +51,7 @@ fields! {
     }
 }
 
-/// The same of the variants of a vertex, and of what has no open fields.
+/// Lists the variants of a vertex, and values without public fields.
 const VARIANTS: &[&str] = &[
     "Source.point",
     "Source.triangle",
@@ -63,8 +66,8 @@ const _: fn(DrapedVertex) = |vertex| match vertex {
     | DrapedVertex::Vertex { vertex: _ } => (),
 };
 
-/// A field of a payload, a change to it, and what sees that.
-type PayloadChange = (&'static str, fn(&mut Parts), Seen);
+/// A field of a payload, a change to it, and the check that detects it.
+type PayloadChange = (&'static str, fn(&mut Parts), SeenBy);
 
 const CHANGES: &[PayloadChange] = &[
     ("TilePayload.terrain", |parts| bare(parts).terrain = None, By(C::LevelSums)),
@@ -74,15 +77,19 @@ const CHANGES: &[PayloadChange] = &[
     ("TilePayload.roads_geo", |parts| drop(busy(parts).roads_geo.remove(0)), By(C::Methods)),
     ("TilePayload.roads_sv", without_sv, By(C::Methods)),
     ("TilePayload.attributes", |parts| drop(busy(parts).attributes.pop()), By(C::Attributes)),
-    ("Terrain.tin", without_ground, By(C::LevelSums)),
+    ("TileTerrain.tin", without_ground, By(C::LevelSums)),
     ("Tin.triangles", flip, By(C::Bound)),
     ("TinVertex.row", |parts| move_vertex(parts, |v| v.row += 1), By(C::Nodes)),
     ("TinVertex.column", |parts| move_vertex(parts, |v| v.column += 1), By(C::Nodes)),
     ("TinVertex.height_q", |parts| move_vertex(parts, |v| v.height_q += 1), By(C::Nodes)),
-    ("Terrain.normals", |parts| ground(parts).normals[40][1] += 1, By(C::Normals)),
-    ("Terrain.geometric_error_m", |parts| ground(parts).geometric_error_m *= 0.999, By(C::Bound)),
-    ("Terrain.height_range_m", |parts| ground(parts).height_range_m[0] -= 0.001, By(C::Ranges)),
-    ("Terrain.uncovered_nodes", |parts| ground(parts).uncovered_nodes += 1, By(C::Uncovered)),
+    ("TileTerrain.normals", |parts| ground(parts).normals[40][1] += 1, By(C::Normals)),
+    (
+        "TileTerrain.geometric_error_m",
+        |parts| ground(parts).geometric_error_m *= 0.999,
+        By(C::Bound),
+    ),
+    ("TileTerrain.height_range_m", |parts| ground(parts).height_range_m[0] -= 0.001, By(C::Ranges)),
+    ("TileTerrain.uncovered_nodes", |parts| ground(parts).uncovered_nodes += 1, By(C::Uncovered)),
     ("GeoRoad.way_id", |parts| geo(parts, |road| road.way_id += 1 << 40), By(C::Methods)),
     ("GeoRoad.part", |parts| geo(parts, |road| road.part += 1), By(C::Order)),
     (
@@ -179,7 +186,7 @@ const CHANGES: &[PayloadChange] = &[
     ),
 ];
 
-/// The relief of other ground: a finest tile's, turned upside down.
+/// The relief of other ground: that of a finest tile, turned upside down.
 fn other_relief(parts: &mut Parts) {
     let cell = parts.manifest.levels.last().unwrap().cell_m;
     let quantum_m = parts.manifest.vertical.quantum_m;
@@ -206,11 +213,11 @@ fn bare(parts: &mut Parts) -> &mut TilePayload {
     &mut parts.tiles[index]
 }
 
-fn ground(parts: &mut Parts) -> &mut Terrain {
+fn ground(parts: &mut Parts) -> &mut TileTerrain {
     bare(parts).terrain.as_mut().unwrap()
 }
 
-/// Changes the GEO road with the most vertices of the busiest tile, and sorts them again.
+/// Changes the GEO road with the most vertices in the busiest tile, and sorts the roads again.
 fn geo(parts: &mut Parts, change: impl Fn(&mut GeoRoad)) {
     let tile = busy(parts);
     let longest =
@@ -219,7 +226,7 @@ fn geo(parts: &mut Parts, change: impl Fn(&mut GeoRoad)) {
     tile.roads_geo.sort_by_key(|road| (road.class, road.way_id, road.part));
 }
 
-/// Changes the SV road of the same kind.
+/// Changes the SV road with the most vertices in the busiest tile.
 fn sv(parts: &mut Parts, change: impl Fn(&mut SvRoad)) {
     let frame = *parts.frame();
     let tile = busy(parts);
@@ -244,7 +251,7 @@ fn without_ground(parts: &mut Parts) {
     (ground.tin, ground.normals) = (Tin::default(), Vec::new());
 }
 
-/// Takes a way's SV lines away, its GEO lines stay.
+/// Removes a way's SV lines; its GEO lines remain.
 fn without_sv(parts: &mut Parts) {
     let tile = busy(parts);
     let way_id = tile.roads_geo[0].way_id;
@@ -273,7 +280,7 @@ fn is_crossing(vertex: &DrapedVertex) -> bool {
     matches!(vertex, DrapedVertex::Crossing { .. })
 }
 
-/// Changes an inner vertex of the busiest tile's longest line.
+/// Changes an inner vertex of the longest line of the busiest tile.
 fn vertex(parts: &mut Parts, wanted: fn(&DrapedVertex) -> bool, change: fn(&mut DrapedVertex)) {
     geo(parts, |road| {
         let inner = road.line.vertices.iter_mut().skip(1).find(|vertex| wanted(vertex));
@@ -307,7 +314,7 @@ fn skip_crossing(parts: &mut Parts) {
     });
 }
 
-/// Moves a source point a few millimetres, so that it stays in its triangle.
+/// Moves a source point by a few millimetres, so that it stays in its triangle.
 fn move_source(parts: &mut Parts) {
     vertex(parts, is_source, |vertex| {
         if let DrapedVertex::Source { point, .. } = vertex {
@@ -316,7 +323,7 @@ fn move_source(parts: &mut Parts) {
     });
 }
 
-/// Moves the point that a line without a source point at its end comes from or leads to, a little.
+/// Slightly moves the point before or after a line that has no source point at that end.
 fn lead(parts: &mut Parts, end: fn(&mut DrapedLine) -> &mut Option<LatticePoint>) {
     let mut roads = parts.tiles.iter_mut().flat_map(|tile| &mut tile.roads_geo);
     let point = roads.find_map(|road| end(&mut road.line).as_mut()).expect("a line with a lead");
@@ -341,7 +348,7 @@ fn move_vertex(parts: &mut Parts, change: fn(&mut TinVertex)) {
     panic!("no vertex can be moved");
 }
 
-/// Turns the edge between two triangles over, where that makes the most of a difference.
+/// Flips the edge between two triangles where that makes the largest difference.
 fn flip(parts: &mut Parts) {
     let tin = &mut ground(parts).tin;
     let at = |v: u32| tin.vertices()[v as usize];
@@ -359,7 +366,7 @@ fn flip(parts: &mut Parts) {
     let mut best: Option<(i64, Tin)> = None;
     for (&(a, b), &(left, c)) in &opposite {
         let Some(&(right, d)) = opposite.get(&(b, a)) else { continue };
-        // a–b becomes d–c.
+        // The edge a–b becomes d–c.
         if a > b || area(a, d, c) <= 0 || area(d, b, c) <= 0 {
             continue;
         }
@@ -377,13 +384,13 @@ fn flip(parts: &mut Parts) {
 
 /// Changes a way's attributes in one tile.
 fn record(parts: &mut Parts, change: fn(&mut RoadAttributes)) {
-    // A way that other tiles have too: the busiest tile's first one of its parent.
+    // A way that other tiles have, too: the first way that the busiest tile shares with its parent.
     let parent = busy(parts).id.parent().unwrap();
     let above = parts.index_of(parent).unwrap();
     change(&mut parts.tiles[above].attributes[0].attributes);
 }
 
-/// Changes a way's attributes wherever it is.
+/// Changes a way's attributes in all tiles.
 fn everywhere(parts: &mut Parts, change: fn(&mut RoadAttributes)) {
     let way_id = busy(parts).attributes[0].way_id;
     let records = parts.tiles.iter_mut().flat_map(|tile| &mut tile.attributes);
@@ -392,12 +399,12 @@ fn everywhere(parts: &mut Parts, change: fn(&mut RoadAttributes)) {
     }
 }
 
-/// Every field of a payload has a change here, and every change is seen as it says.
+/// Every field of a payload has a change here, and every change has the expected result.
 #[test]
 fn every_field_of_a_payload_is_seen() {
     let mut all: Vec<&str> = PAYLOAD.iter().chain(VARIANTS).copied().collect();
     all.sort_unstable();
-    // Written apart: a payload with another tile's name.
+    // A separate case: a payload with the id of another tile.
     let mut listed: Vec<&str> = CHANGES.iter().map(|&(name, ..)| name).collect();
     listed.push("TilePayload.id");
     listed.sort_unstable();
@@ -425,7 +432,7 @@ fn every_field_of_a_payload_is_seen() {
     assert!(failed.is_empty(), "{failed:#?}");
 }
 
-/// A payload says which tile it is; in another's place it is not taken.
+/// A payload contains the id of its tile; it is rejected in another tile's place.
 #[test]
 fn a_payload_in_another_tiles_place_is_seen() {
     let mut tiles = SOUND.encoded.clone();

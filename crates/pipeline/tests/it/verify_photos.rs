@@ -1,5 +1,5 @@
-//! `verify` sees each kind of wrong photo: a sound package is taken apart, one photo is made wrong, and it is put together again. Then exactly
-//! the expected checks are broken.
+//! `verify` detects each kind of invalid photo: a valid package is taken apart, one photo is made
+//! invalid, and the package is reassembled. Then exactly the expected checks fail.
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
 use std::{
@@ -17,14 +17,14 @@ use corniche_pipeline::build;
 use corniche_spec::{PhotoChoice, PhotoSettings};
 use corniche_testing::{ColourImage, package::with_section};
 use corniche_tileset::{
-    FilePackage, Manifest, Photo, Section, Sections, TilePayload, Writer, decode_photo,
+    FilePackage, Manifest, PackageWriter, Photo, Section, Sections, TilePayload, decode_photo,
     encode_photo, photo_section, pmtiles_order,
 };
 use corniche_verify::{CheckId, Needs, VerifyError, VerifyReport, VerifySettings, verify};
 use corniche_work::Silent;
 use tempfile::TempDir;
 
-/// A package with photos, taken apart.
+/// A package with photos that is taken apart.
 struct Apart {
     folder: TempDir,
     manifest: Manifest,
@@ -33,7 +33,7 @@ struct Apart {
 }
 
 impl Apart {
-    /// Four finest tiles under photos that change from place to place.
+    /// Four finest tiles with photos that vary from place to place.
     fn sound() -> Self {
         let folder = tempfile::tempdir().unwrap();
         let at = |name: &str| folder.path().join(name);
@@ -57,10 +57,10 @@ impl Apart {
         let photos = PhotoSettings { files: vec![photo], levels: Some(1), quality: 85 };
         settings.plan.photo = PhotoChoice::Files(photos);
         build(&settings, &Silent).unwrap();
-        Self::of(folder, &path)
+        Self::from_package(folder, &path)
     }
 
-    fn of(folder: TempDir, path: &Path) -> Self {
+    fn from_package(folder: TempDir, path: &Path) -> Self {
         let package = FilePackage::open(path).unwrap();
         let mut tiles = BTreeMap::new();
         for id in package.tile_ids().unwrap() {
@@ -71,12 +71,13 @@ impl Apart {
         Self { folder, manifest: package.manifest().clone(), tiles }
     }
 
-    /// Puts it together and asserts that exactly these checks are broken.
+    /// Reassembles the package and asserts that exactly these checks fail.
     fn assert_breaks(&self, expected: &[CheckId]) {
         assert_broken(report_on(&self.put_together(), Against::Itself), expected);
     }
 
-    /// The same with the photo that it was made from, and whatever is broken without it.
+    /// Asserts that these checks fail against the photo from which it was built, and that the same
+    /// checks fail as without it.
     fn assert_breaks_against_photo(&self, expected: &[CheckId]) {
         let report = self.against(self.folder.path().join("photo.tif")).unwrap();
         let broken = report.checks.iter().filter(|check| !check.holds());
@@ -100,9 +101,12 @@ impl Apart {
 
     fn put_together(&self) -> PathBuf {
         let path = self.folder.path().join("changed.pmtiles");
-        let mut writer =
-            Writer::of_file(std::fs::File::create(&path).unwrap(), &self.manifest, usize::MAX)
-                .unwrap();
+        let mut writer = PackageWriter::of_file(
+            std::fs::File::create(&path).unwrap(),
+            &self.manifest,
+            usize::MAX,
+        )
+        .unwrap();
         for (id, payload, photo) in self.tiles.values() {
             let bytes = match photo {
                 Some(photo) => with_section(payload, *id, photo.clone()),
@@ -118,7 +122,8 @@ impl Apart {
         &mut self.tiles.get_mut(&pmtiles_order(id)).unwrap().2
     }
 
-    /// Replaces a photo by what becomes of it decoded, and the recorded bytes of its level.
+    /// Replaces a photo by a decoded and changed version, and updates the recorded bytes of its
+    /// level.
     fn change(&mut self, id: TileId, change: impl Fn(&mut Photo)) {
         let section = self.photo_mut(id).take().unwrap();
         let empty = &self.tiles[&pmtiles_order(id)].1;
@@ -130,20 +135,20 @@ impl Apart {
         *self.photo_mut(id) = changed;
     }
 
-    /// Corrects the manifest's bytes.
+    /// Updates the manifest's sums of bytes.
     fn record(&mut self, id: TileId, before: usize, now: usize) {
         let level = self.manifest.photos.iter_mut().find(|level| level.level == id.z()).unwrap();
         level.bytes = level.bytes - before as u64 + now as u64;
     }
 }
 
-/// The same payload without its photo: encoded again.
+/// The payload encoded again without its photo.
 fn without_photo(package: &FilePackage, id: TileId, bytes: &[u8]) -> Vec<u8> {
     let manifest = package.manifest();
     let (frame, quantum_m) = (manifest.frame, manifest.vertical.quantum_m);
     let tile: TilePayload =
         corniche_tileset::decode(bytes, id, &frame, quantum_m, Sections::ALL).unwrap();
-    let context = corniche_tileset::PayloadContext::of(manifest);
+    let context = corniche_tileset::PayloadContext::from_manifest(manifest);
     corniche_tileset::encode(&tile, &context).unwrap().bytes
 }
 
@@ -203,7 +208,7 @@ fn a_coarse_photo_that_is_not_that_of_the_tiles_beneath() {
 fn a_photo_that_ends_one_texel_too_early() {
     let mut apart = Apart::sound();
     apart.change(child(0), |photo| {
-        // The four that make one of the parent's.
+        // The four tiles that form one tile of the parent's level.
         for row in [300, 301] {
             let at = (row * photo.side() + 300) * 4;
             photo.rgba[at..at + 8].fill(0);
@@ -216,7 +221,7 @@ fn a_photo_that_ends_one_texel_too_early() {
 fn a_photo_that_cannot_be_decoded() {
     let mut apart = Apart::sound();
     let mut bytes = apart.photo_mut(child(2)).as_ref().unwrap().bytes().to_vec();
-    // The beginning of the JPEG picture.
+    // The start of the JPEG image.
     let at = bytes.windows(2).position(|pair| pair == [0xff, 0xd8]).unwrap();
     bytes[at] = 0;
     *apart.photo_mut(child(2)) = Some(Section::of_photo(bytes));
@@ -239,7 +244,8 @@ fn the_photo_that_a_package_was_made_from_agrees_with_it() {
     Apart::sound().assert_breaks_against_photo(&[]);
 }
 
-/// All tiles, so that neighbours and levels agree with each other: nothing but the file tells.
+/// All tiles change, so that neighbours and levels agree with each other: only the comparison with
+/// the file detects it.
 fn move_all(apart: &mut Apart, [east, south]: [usize; 2]) {
     for id in apart.tiles.values().map(|(id, ..)| *id).collect::<Vec<_>>() {
         apart.change(id, |photo| {
@@ -267,7 +273,7 @@ fn photos_that_lie_one_texel_beside_their_place() {
 
 #[test]
 fn a_single_photo_that_lies_one_texel_beside_its_place() {
-    // Inside the photo all texels are covered before and after.
+    // All texels inside the photo are covered before and after.
     let mut apart = Apart::sound();
     apart.change(TileId::ROOT, |photo| {
         let covered: Vec<u8> = photo.rgba.iter().skip(3).step_by(4).copied().collect();
@@ -284,7 +290,7 @@ fn a_single_photo_that_lies_one_texel_beside_its_place() {
 fn the_photo_of_another_place_and_another_photo() {
     let mut apart = Apart::sound();
     for id in apart.tiles.values().map(|(id, ..)| *id).collect::<Vec<_>>() {
-        // As from another flight: a little brighter, in one colour.
+        // The photo looks like one from another flight: a little brighter, in one colour.
         apart.change(id, |photo| {
             for texel in photo.rgba.chunks_exact_mut(4).filter(|texel| texel[3] != 0) {
                 texel[1] = texel[1].saturating_add(4);
@@ -322,18 +328,18 @@ fn photos_beside_a_package_without_any_are_refused() {
     assert!(matches!(error, VerifyError::NoPhotos), "{error}");
 }
 
-/// The manifest's rows of `docs/lab/fields.md` that are about photos.
+/// The rows about photos in `docs/lab/tables/fields-manifest.csv`.
 #[test]
 fn fields_of_photos_in_the_manifest() {
     type Change = fn(&mut Manifest);
     let counts: [Change; 2] =
         [|manifest| manifest.photos[1].tiles += 1, |manifest| manifest.settings.photo = None];
-    // Levels that the package does not have, or in another order, are refused by readers.
+    // Readers reject levels that the package does not have, and levels in another order.
     let mut apart = Apart::sound();
     apart.manifest.photos[1].level = 5;
     let path = apart.folder.path().join("refused.pmtiles");
     assert!(
-        Writer::of_file(std::fs::File::create(&path).unwrap(), &apart.manifest, usize::MAX)
+        PackageWriter::of_file(std::fs::File::create(&path).unwrap(), &apart.manifest, usize::MAX)
             .is_err()
     );
     for change in counts {
@@ -346,7 +352,7 @@ fn fields_of_photos_in_the_manifest() {
     apart.manifest.settings.photo.as_mut().unwrap().levels = 2;
     rehash(&mut apart.manifest);
     apart.assert_breaks(&[CheckId::PhotoWhole]);
-    // Coded better than it says is no broken promise; worse is.
+    // A better encoding than recorded is valid; a worse one is not.
     for (quality, expected) in [(70, &[][..]), (97, &[CheckId::PhotoColours][..])] {
         let mut apart = Apart::sound();
         apart.manifest.settings.photo.as_mut().unwrap().quality = quality;

@@ -1,4 +1,5 @@
-//! `verify` sees what is wrong with roads across tiles, levels and methods, and beside the extract.
+//! `verify` detects errors of roads across tiles, levels and methods, and differences from the
+//! extract.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may unwrap")]
 
@@ -14,14 +15,14 @@ use corniche_verify::CheckId;
 /// A level above the finest that shows classes of the sample.
 const ABOVE: u8 = 1;
 
-/// A way that lies inside tiles of that level, and its class.
+/// A way inside tiles of that level, and its class.
 fn way_above(parts: &Parts) -> (i64, FunctionalRoadClass) {
     let tile = parts.tiles_above(ABOVE).max_by_key(|tile| tile.roads_geo.len()).unwrap();
     let longest = tile.roads_geo.iter().max_by_key(|road| road.line.vertices.len()).unwrap();
     (longest.way_id, longest.class)
 }
 
-/// Changes the tiles of that level, and lets the growth table follow.
+/// Changes the tiles of that level, and updates the growth table.
 fn change(parts: &mut Parts, change: impl Fn(&mut TilePayload)) {
     let level = parts.frame().max_level() - ABOVE;
     for tile in parts.tiles.iter_mut().filter(|tile| tile.id.z() == level) {
@@ -122,13 +123,14 @@ fn a_name_that_differs_between_levels_and_one_that_the_extract_has_not() {
     change(&mut parts, rename);
     parts.assert_breaks(Against::Itself, &[CheckId::Attributes]);
 
-    // The same in all tiles: the extract alone tells.
+    // The change is the same in all tiles: only the comparison with the extract detects it.
     parts.tiles.iter_mut().for_each(rename);
     parts.assert_breaks(Against::Itself, &[]);
     parts.assert_breaks(Against::Osm, &[CheckId::OsmAttributes]);
 }
 
-/// A point beyond the tile's border has no GEO line beneath it; the extract tells where it belongs, to the step.
+/// A point outside the tile's border has no GEO line beneath it; the extract determines its
+/// position, to the step.
 #[test]
 fn an_sv_point_in_the_margin_moved_by_a_lattice_step() {
     let mut parts = Parts::sound();
@@ -145,7 +147,7 @@ fn an_sv_point_in_the_margin_moved_by_a_lattice_step() {
             let tile = &parts.tiles[index];
             let bounds = frame.tile_lattice_bounds(tile.id);
             let road = outside(tile.id, tile)?;
-            // Wholly outside, so that no segment reaches over the tile.
+            // The new point is wholly outside, so that no segment extends over the tile.
             let points = &tile.roads_sv[road].line.points;
             points[..3].iter().all(|&point| !bounds.contains(point)).then_some((index, road))
         })
@@ -165,7 +167,7 @@ fn stored_errors_three_times_too_large() {
     for level in &mut parts.manifest.levels {
         let of_level = parts.tiles.iter().filter(|tile| tile.id.z() == level.level);
         let errors_m = of_level.filter_map(|tile| Some(tile.terrain.as_ref()?.geometric_error_m));
-        level.errors_m = Distribution::of(errors_m.collect());
+        level.errors_m = Distribution::from_values(errors_m.collect());
         level.geometric_error_m = level.errors_m.unwrap().max;
     }
     parts.assert_breaks(Against::Itself, &[]);
@@ -182,7 +184,7 @@ fn growth_that_the_extract_does_not_have() {
     parts.assert_breaks(Against::Osm, &[CheckId::OsmGrowth]);
 }
 
-/// Roads out of order never come into a package: the encoding refuses them.
+/// Roads out of order are never in a package, because the encoding rejects them.
 #[test]
 fn roads_out_of_order_cannot_be_encoded() {
     let mut parts = Parts::sound();
@@ -206,7 +208,8 @@ fn a_road_dropped_from_a_finest_tile() {
     parts.assert_breaks(Against::Itself, &[CheckId::Methods, CheckId::Length, CheckId::Growth]);
 }
 
-/// The tile, road and vertex of the first vertex inside a line that is as wanted, `above` the finest level.
+/// The tile, road and vertex of the first vertex inside a line that meets the condition, `above`
+/// levels above the finest.
 fn find_vertex(
     parts: &Parts,
     above: u8,
@@ -229,7 +232,7 @@ fn a_line_that_skips_the_edge_it_crosses() {
     let is_crossing = |vertex: &DrapedVertex| matches!(vertex, DrapedVertex::Crossing { .. });
     let (id, road, vertex) = find_vertex(&parts, 0, is_crossing);
     let index = parts.index_of(id).unwrap();
-    // The line goes straight on, so that its length in plan stays what it was.
+    // The line continues straight on, so that its length in plan does not change.
     parts.tiles[index].roads_geo[road].line.vertices.remove(vertex);
     parts.assert_breaks(Against::Itself, &[CheckId::OnTin, CheckId::Growth]);
 }
@@ -238,7 +241,7 @@ fn a_line_that_skips_the_edge_it_crosses() {
 fn a_line_with_a_point_moved_far_away() {
     let mut parts = Parts::sound();
     let is_source = |vertex: &DrapedVertex| matches!(vertex, DrapedVertex::Source { .. });
-    // Above the finest level, where lengths are not counted.
+    // The level is above the finest, where lengths are not counted.
     let (id, road, vertex) = find_vertex(&parts, 1, is_source);
     let surface = parts.surface(id);
     let index = parts.index_of(id).unwrap();
@@ -255,7 +258,8 @@ fn a_line_with_a_point_moved_far_away() {
         })
         .unwrap();
 
-    // Naming the old triangle with the new point, or the new one with the old point, is no line at all.
+    // Naming the old triangle with the new point, or the new triangle with the old point, is
+    // invalid.
     for (point, triangle) in [(corner(far), near), (from, far as u32)] {
         parts.tiles[index].roads_geo[road].line.vertices[vertex] =
             DrapedVertex::Source { point, triangle };

@@ -1,5 +1,6 @@
-//! `verify` sees each kind of broken promise: a sound package is taken apart, one thing in it is made wrong, and
-//! it is put together again with matching checksums. Then exactly the expected checks are broken.
+//! `verify` detects each kind of broken promise: a valid package is taken apart, one thing in it is
+//! made invalid, and it is reassembled with matching checksums. Then exactly the expected checks
+//! fail.
 
 use std::fs;
 
@@ -21,14 +22,15 @@ fn no_check_is_broken_when_nothing_was_changed() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("same.pmtiles");
     parts.write(&path).unwrap();
-    // So whatever the other tests find is caused by their one change.
+    // This shows that the failures in the other tests are caused by their one change.
     assert!(
         fs::read(&path).unwrap() == SOUND.bytes,
-        "taking apart and putting together changes bytes"
+        "taking the package apart and reassembling it changes bytes"
     );
     let report = assert_broken(report_on(&path, Against::Dem), &[]);
     assert_eq!(report.tiles, parts.tiles.len() as u64);
-    // It has no photos, areas, boundaries and spans; `verify_photos.rs`, `verify_areas.rs` and `verify_spans.rs` have some.
+    // The package has no photos, areas, boundaries and spans; `verify_photos.rs`, `verify_areas.rs`
+    // and `verify_spans.rs` have some.
     let mut others = report.checks.iter().filter(|check| {
         let id = check.id.id();
         !["photo.", "areas.", "boundaries.", "spans.", "P6.structures"]
@@ -43,7 +45,7 @@ fn a_stored_error_below_the_true_one() {
     let mut parts = Parts::sound();
     let id = parts.worst_finest();
     parts.terrain_mut(id).geometric_error_m /= 2.0;
-    // The manifest's figures no longer fit either.
+    // The manifest's figures no longer match either.
     parts.assert_breaks(Against::Dem, &[CheckId::Bound, CheckId::LevelSums, CheckId::Recorded]);
 }
 
@@ -53,7 +55,7 @@ fn a_border_vertex_that_the_neighbour_has_elsewhere() {
     let on_border = |vertex: &TinVertex, column| {
         vertex.column == column && (1..LAST_NODE).contains(&vertex.row)
     };
-    // A vertex inside an eastern border, so that one neighbour alone shares it.
+    // A vertex inside an eastern border, so that only one neighbour shares it.
     let (id, east, vertex) = parts
         .tiles_above(0)
         .find_map(|tile| {
@@ -129,7 +131,8 @@ fn a_hole_in_the_ground() {
     let tin = &mut parts.terrain_mut(id).tin;
     let vertices = tin.vertices().to_vec();
     let mut triangles = tin.triangles().to_vec();
-    // The largest triangle with others all around, so that the nodes on its outline keep their ground.
+    // The largest triangle that is surrounded by others, so that the nodes on its outline keep
+    // their ground.
     let (triangle, hole) = triangles
         .iter()
         .map(|corners| corners.map(|corner| vertices[corner as usize]))
@@ -144,7 +147,7 @@ fn a_hole_in_the_ground() {
         &[CheckId::LevelSums, CheckId::Samples, CheckId::Stray, CheckId::Uncovered],
     );
 
-    // Counting the nodes of the hole as uncovered does not make it allowed.
+    // Counting the nodes of the hole as uncovered does not make it valid.
     parts.terrain_mut(id).uncovered_nodes += nodes_inside(&hole);
     parts.assert_breaks(
         Against::Dem,
@@ -212,7 +215,7 @@ fn a_finest_tile_off_by_more_than_the_bound() {
         ],
     );
 
-    // Storing the true error does not make the error allowed.
+    // Storing the true error does not make the error valid.
     let mut above = Some(id);
     while let Some(ancestor) = above {
         let stored_m = &mut parts.terrain_mut(ancestor).geometric_error_m;
@@ -285,13 +288,14 @@ fn a_height_range_that_leaves_nodes_out() {
     parts.assert_breaks(Against::Dem, &[CheckId::Vertices, CheckId::Ranges]);
 }
 
-/// The scales that are recorded are those at the files' corners, which every 7th sample need not reach.
+/// The recorded scales are those at the files' corners, which the check of every 7th sample need
+/// not reach.
 #[test]
 fn a_package_of_every_seventh_sample_keeps_its_promises() {
     let folder = tempfile::tempdir().unwrap();
     let (dem, output) = (folder.path().join("dem.tif"), folder.path().join("built.pmtiles"));
     let height_m = |[lon, lat]: [f64; 2]| 500.0 + 300.0 * (lon * 200.0).sin() * (lat * 150.0).cos();
-    // Three arc seconds.
+    // The cell is three arc seconds.
     write_degrees(&dem, 361, [9.0, 47.3], 1.0 / 1200.0, height_m);
     let mut settings = settings(dem.clone(), None, output.clone(), Options::plain(MAX_ERROR_M));
     settings.plan.terrain.plan.cell_every = Some(7);
@@ -308,7 +312,7 @@ fn heights_of_the_package_that_are_not_the_root_tiles() {
     parts.assert_breaks(Against::Itself, &[CheckId::RootHeights]);
 }
 
-/// If the grid is not the one that the elevation files give, checks that were not made do not count as holding.
+/// If the grid does not match the elevation files, checks that were not run do not count as passed.
 #[test]
 fn checks_that_could_not_be_made_do_not_hold() {
     let mut parts = Parts::sound();

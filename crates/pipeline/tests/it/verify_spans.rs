@@ -1,5 +1,5 @@
-//! `verify` sees each kind of wrong bridge or tunnel: one field of one run is changed, the sums are corrected, and exactly the expected checks are
-//! broken.
+//! `verify` detects each kind of invalid bridge or tunnel: one field of one run is changed, the
+//! sums are updated, and exactly the expected checks fail.
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
 use std::path::PathBuf;
@@ -9,7 +9,7 @@ use corniche_pipeline::build;
 use corniche_roads::{FunctionalRoadClass, Structure};
 use corniche_testing::package::with_section;
 use corniche_tileset::{
-    FilePackage, Manifest, RoadRecord, Sections, SpanCounts, SpanHeight, SpanRun, Writer,
+    FilePackage, Manifest, PackageWriter, RoadRecord, Sections, SpanCounts, SpanHeight, SpanRun,
     decode_spans, encode_spans, payload_sizes,
 };
 use corniche_tin::{Placement, Surface};
@@ -23,7 +23,7 @@ use crate::support::{
     settings,
 };
 
-/// A package with bridges and tunnels, taken apart.
+/// A package with bridges and tunnels that is taken apart.
 struct Apart {
     folder: TempDir,
     manifest: Manifest,
@@ -60,7 +60,7 @@ impl Apart {
         Self { folder, manifest, tiles }
     }
 
-    /// The first tile of the finest level and a run of it for which this holds.
+    /// The first tile of the finest level with a run that meets the condition, and this run.
     fn find(&self, is_it: impl Fn(&SpanRun) -> bool) -> [usize; 2] {
         let finest = self.manifest.frame.max_level();
         let found = self.tiles.iter().enumerate().filter(|(_, tile)| tile.id.z() == finest);
@@ -69,7 +69,7 @@ impl Apart {
         found.next().unwrap()
     }
 
-    /// A run from the ground to the ground with a point between.
+    /// A run from ground to ground with a point between.
     fn bridge(&self) -> [usize; 2] {
         self.find(|run| {
             let is_on = |at: usize| matches!(run.points[at].height, SpanHeight::Ground { .. });
@@ -80,7 +80,7 @@ impl Apart {
         })
     }
 
-    /// Changes the runs of a tile, and corrects the sums that the manifest records of them.
+    /// Changes the runs of a tile, and updates the sums that the manifest records of them.
     fn change(&mut self, tile: usize, change: impl FnOnce(&mut Vec<SpanRun>)) {
         let Tile { id, bytes, without_spans, runs } = &mut self.tiles[tile];
         let sums = |runs: &[SpanRun], bytes: &[u8]| {
@@ -105,9 +105,12 @@ impl Apart {
 
     fn put_together(&self) -> PathBuf {
         let path = self.folder.path().join("changed.pmtiles");
-        let mut writer =
-            Writer::of_file(std::fs::File::create(&path).unwrap(), &self.manifest, usize::MAX)
-                .unwrap();
+        let mut writer = PackageWriter::of_file(
+            std::fs::File::create(&path).unwrap(),
+            &self.manifest,
+            usize::MAX,
+        )
+        .unwrap();
         for tile in &self.tiles {
             writer.add(tile.id, &tile.bytes).unwrap();
         }
@@ -115,7 +118,7 @@ impl Apart {
         path
     }
 
-    /// The checks of the package alone that are broken, and whether those against the extract are.
+    /// The failing checks of the package alone, and whether the checks against the extract fail.
     fn broken(&self) -> (Vec<CheckId>, bool) {
         let report = report_on(&self.put_together(), Against::Osm);
         let broken = report.checks.iter().filter(|check| !check.holds()).map(|check| check.id);
@@ -128,7 +131,8 @@ impl Apart {
         (own, !osm.is_empty())
     }
 
-    /// Changes a run of a tile; exactly these checks of the package alone must be broken, and `osm.spans`.
+    /// Changes a run of a tile; exactly these checks of the package alone must fail, and
+    /// `osm.spans`.
     fn sees(
         &mut self,
         [tile, run]: [usize; 2],
@@ -148,7 +152,7 @@ fn each_field_of_a_run_is_seen() {
     assert_eq!(apart.broken(), (Vec::new(), false));
     let at = apart.bridge();
     let last = apart.tiles[at[0]].runs[at[1]].points.len() - 1;
-    // Higher is a bridge as well; that it is another one, the extract tells.
+    // A higher run is also a valid bridge; only the extract reveals that it is a different one.
     let raise = |run: &mut SpanRun, by: i64| {
         if let SpanHeight::Steps(steps) = &mut run.points[1].height {
             *steps += by;
@@ -202,8 +206,8 @@ fn the_class_of_a_run_is_that_of_its_way() {
     assert_eq!(apart.broken(), (vec![CheckId::SpanEnds], true));
 }
 
-/// What carries the roads of a package is told by its tiles. It is compared with what the manifest says of bridges and tunnels, and with what is left
-/// for the ground.
+/// Tiles store the structure that carries each road. It is compared with the manifest's records of
+/// bridges and tunnels, and with the remainder on the ground.
 #[test]
 fn metres_that_the_manifest_has_of_the_wrong_structure_are_seen() {
     let mut apart = Apart::sound();
@@ -235,7 +239,8 @@ fn metres_that_the_manifest_has_of_the_wrong_structure_are_seen() {
     assert_eq!(more_than_all, [(CheckId::Structures, 2)]);
 }
 
-/// The true lengths by structure are those of the lines in the tiles, measured here as chords of an ellipsoid's plane at each segment.
+/// The true lengths by structure are those of the lines in the tiles, measured here as chords in a
+/// plane of the ellipsoid at each segment.
 #[test]
 fn bridges_and_tunnels_are_as_long_as_their_lines() {
     let Apart { manifest, folder, .. } = Apart::sound();
@@ -269,11 +274,12 @@ fn bridges_and_tunnels_are_as_long_as_their_lines() {
     let told_m = [all_m - bridges_m - tunnels_m, bridges_m, tunnels_m];
     assert!(found_m.iter().all(|m| *m > 50.0), "{found_m:?}");
     for (found_m, told_m) in found_m.into_iter().zip(told_m) {
-        assert!((found_m - told_m).abs() < 1e-4 * told_m, "{found_m} m, {told_m} m are told");
+        assert!((found_m - told_m).abs() < 1e-4 * told_m, "{found_m} m, {told_m} m are recorded");
     }
 }
 
-/// The distance of two near places in degrees, by the radii of curvature of WGS84 half-way between them.
+/// The distance between two nearby positions in degrees, by the radii of curvature of WGS84
+/// half-way between them.
 fn plane_m([west, south]: [f64; 2], [east, north]: [f64; 2]) -> f64 {
     let (axis_m, squared) = (6_378_137.0, 0.006_694_379_990_14);
     let middle = f64::midpoint(south, north).to_radians();

@@ -1,5 +1,6 @@
-//! Voids through the whole pipeline: no spike, no wall, no road in the air, and every node with data that a TIN does
-//! not cover beside a void or the data's edge. All of it by counting nodes and cells of the raster that was written.
+//! Voids through the whole pipeline: there is no spike, no wall and no road in the air, and every
+//! node with data that a TIN does not cover is next to a void or the data's edge. Everything is
+//! checked by counting nodes and cells of the raster that was written.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -17,7 +18,8 @@ use support::{
 };
 
 const SIDE: usize = 601;
-/// Where four tiles meet, and the middle of a border and of a tile: columns and rows of the rasters.
+/// The corner of four tiles, and the middle of a border and of a tile: columns and rows of the
+/// rasters.
 const CORNER: i64 = 300;
 const ANCHORS: [[i64; 2]; 3] =
     [[CORNER, CORNER], [CORNER, CORNER + 128], [CORNER - 120, CORNER + 120]];
@@ -33,7 +35,7 @@ fn raster(is_void: &dyn Fn(i64, i64) -> bool) -> Raster {
     })
 }
 
-/// Builds and compares with what counting says.
+/// Builds and compares with the counted values.
 fn check(name: &str, is_void: &dyn Fn(i64, i64) -> bool, fill_voids: u32) {
     let raster = raster(is_void);
     let options = Options { fill_voids, ..Options::plain(MAX_ERROR_M) };
@@ -41,7 +43,7 @@ fn check(name: &str, is_void: &dyn Fn(i64, i64) -> bool, fill_voids: u32) {
     check_ground(name, &built, &filled(&raster, i64::from(fill_voids)), &raster);
 }
 
-/// Whether a node lies in a square of `side` nodes around an anchor.
+/// Whether a node is in a square of `side` nodes around an anchor.
 fn in_square([column, row]: [i64; 2], [east, south]: [i64; 2], side: i64) -> bool {
     let from = side / 2;
     (0..side).contains(&(column - east + from)) && (0..side).contains(&(row - south + from))
@@ -63,16 +65,17 @@ fn islands_of_every_size_on_corners_borders_and_inside() {
         check(&format!("islands of {side}"), &sea, 0);
         check(&format!("islands of {side}, filled within 8"), &sea, 8);
     }
-    // A single node has no ground; beside an island it is allowed.
+    // A single node has no ground; next to an island it is allowed.
     let rock = |c, r| !(in_square([c, r], ANCHORS[0], 9) || [c, r] == ANCHORS[1]);
-    check("a rock beside an island", &rock, 0);
+    check("a rock next to an island", &rock, 0);
 }
 
 #[test]
 #[ignore = "slow: ten builds of six tiles"]
 fn holes_and_islands_as_large_as_tiles() {
     for side in [255, 256, 257, 258, 400] {
-        // From the corner of tiles to the east and south: a whole tile, one node less, one more.
+        // Squares from the corner of tiles to the east and south: a whole tile, one node less, one
+        // more.
         let square =
             |c: i64, r: i64| (0..side).contains(&(c - CORNER)) && (0..side).contains(&(r - CORNER));
         check(&format!("a hole of {side}"), &square, 8);
@@ -91,7 +94,7 @@ fn checkerboards_stripes_and_scattered_nodes() {
     check("single columns void", &|c, _| c % 16 == 12, 0);
     check("pairs of columns with data", &|c, _| c % 3 == 2, 0);
     check("every column of a border void", &|c, _| c == CORNER, 0);
-    check("all but two columns beside a border void", &|c, _| c != CORNER && c != CORNER + 1, 0);
+    check("all but two columns next to a border void", &|c, _| c != CORNER && c != CORNER + 1, 0);
     check("scattered", &|c, r| bits(c, r, 1).is_multiple_of(50), 0);
     check("scattered, filled within 3", &|c, r| bits(c, r, 1).is_multiple_of(3), 3);
 }
@@ -111,7 +114,8 @@ fn data_that_end_across_the_grid() {
     check("a disc", &disc, 32);
 }
 
-/// Every second node: along the diagonals through a void there is no data, so none is filled, and no cell is whole.
+/// Every second node is void: there is no data along the diagonals through a void, so none is
+/// filled, and no cell is complete.
 #[test]
 fn a_board_of_single_nodes_has_no_ground() {
     for fill_voids in [0, 32] {

@@ -1,5 +1,6 @@
-//! Spans are solved whole and cut afterwards: bounds, polygons and chosen classes change no height of a bridge or a tunnel, and tiles that lie inside have
-//! the sections of the whole build, byte for byte.
+//! Spans are solved as a whole and cut afterwards: bounds, polygons and chosen classes change no
+//! height of a bridge or a tunnel, and tiles inside have the sections of the whole build, byte for
+//! byte.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -10,7 +11,7 @@ use std::{
 };
 
 use corniche_geom::{LatticePoint, TileId};
-use corniche_gis::Polygon;
+use corniche_gis::RegionPolygons;
 use corniche_pipeline::build;
 use corniche_spec::BuildSettings;
 use corniche_testing::{cases, real_data, sample};
@@ -52,7 +53,7 @@ fn within(mut settings: BuildSettings, bounds_deg: [f64; 4]) -> BuildSettings {
     settings
 }
 
-/// All checks against the extract hold.
+/// Asserts that all checks against the extract pass.
 fn holds(package: &FilePackage, settings: &BuildSettings) {
     let plan = &settings.plan;
     let osm = VerifyOsm {
@@ -100,12 +101,14 @@ fn runs(package: &FilePackage, id: TileId) -> Vec<SpanRun> {
     decode_spans(&bytes, id, &manifest.frame, manifest.vertical.quantum_m).unwrap()
 }
 
-/// How many tiles that lie inside have spans; all are those of the whole package. `is_inside` tells of nodes.
+/// Compares the tiles inside with those of the whole package, and returns how many of them have
+/// spans. `is_inside` tests nodes.
 fn compare(whole: &FilePackage, part: &FilePackage, is_inside: impl Fn([i64; 2]) -> bool) -> usize {
     let all = finest(whole);
     let mut with_spans = 0;
     for (corner, id) in finest(part) {
-        // With two rings of nodes around it, which slopes and their low-pass depend on.
+        // Two rings of nodes around the tile are included, because slopes and their low-pass filter
+        // depend on them.
         let nodes = (-2..=258).flat_map(|row| (-2..=258).map(move |column| [column, row]));
         let mut nodes = nodes.map(|[column, row]| [corner[0] + column, corner[1] - row]);
         if !nodes.all(&is_inside) {
@@ -125,7 +128,8 @@ fn compare(whole: &FilePackage, part: &FilePackage, is_inside: impl Fn([i64; 2])
     with_spans
 }
 
-/// Places on bridges and in tunnels of a package, WGS84 degrees: the middle of each run of its finest tiles.
+/// Positions on bridges and in tunnels of a package, WGS84 degrees: the middle of each run of its
+/// finest tiles.
 fn middles(package: &FilePackage) -> Vec<[f64; 2]> {
     let manifest = package.manifest();
     let middle = |run: SpanRun| {
@@ -136,7 +140,7 @@ fn middles(package: &FilePackage) -> Vec<[f64; 2]> {
     finest(package).into_values().flat_map(|id| runs(package, id)).map(middle).collect()
 }
 
-/// Bounds of which one side, each in turn, passes through a place: on the other sides they reach `size` degrees.
+/// Four bounds, each with another side through a position; the other sides are `size` degrees away.
 fn bounds_through([lon, lat]: [f64; 2], side: usize, [width, height]: [f64; 2]) -> [f64; 4] {
     let [w, h] = [width / 2.0, height / 2.0];
     match side % 4 {
@@ -147,13 +151,14 @@ fn bounds_through([lon, lat]: [f64; 2], side: usize, [width, height]: [f64; 2]) 
     }
 }
 
-/// The same as a quadrilateral, a little askew: through the place goes the middle of its side.
+/// Four quadrilaterals, slightly rotated: the middle of one side is at the position.
 fn askew([west, south, east, north]: [f64; 4]) -> [[f64; 2]; 4] {
     let [a, b] = [(east - west) * 0.06, (north - south) * 0.06];
     [[west + a, south + b], [east - a, south - b], [east + a, north - b], [west - a, north + b]]
 }
 
-/// Packages within bounds and polygons that cut spans have the tiles of the whole package wherever they lie inside.
+/// Packages within bounds and polygons that cut spans have the tiles of the whole package wherever
+/// the tiles are inside.
 fn cut_spans_are_whole(region: &Region, tiles_wide: f64) {
     let folder = tempfile::tempdir().unwrap();
     let whole = built(&region.settings(folder.path(), "whole"));
@@ -194,12 +199,13 @@ fn cut_spans_are_whole(region: &Region, tiles_wide: f64) {
         let text = format!(r#"{{"type":"Polygon","coordinates":[[{}]]}}"#, ring.join(","));
         fs::write(&path, text).unwrap();
         let mut settings = region.settings(folder.path(), "polygon");
-        settings.plan.terrain.plan.polygon = Some(Polygon::read(&path).unwrap());
+        settings.plan.terrain.plan.polygon = Some(RegionPolygons::read(&path).unwrap());
         let part = built(&settings);
         let frame = part.manifest().frame;
         let is_within = |[i, j]: [i64; 2]| {
             let is_data = (first.i..=last.i).contains(&i) && (first.j..=last.j).contains(&j);
-            // Of a convex polygon all of a tile is inside where its rim is; a cell of room for edges that bend.
+            // A tile is inside a convex polygon if its border is; one cell of margin allows for
+            // edges that are curved.
             let room = 1.0 / 2000.0;
             let [lon, lat] = manifest.coordinates.wgs84_from_working([frame.x_m(i), frame.y_m(j)]);
             let is_left = |k: usize| {
@@ -243,7 +249,8 @@ fn spans_of_liechtenstein_are_whole_within_bounds() {
     cut_spans_are_whole(&region, 2.4);
 }
 
-/// The heights of a way's bridge or tunnel at places along the east axis of the package's CRS, from the runs of finest tiles.
+/// The heights of a way's bridge or tunnel at positions along the east axis of the package's CRS,
+/// from the runs of finest tiles.
 fn decks_at(package: &FilePackage, way_id: i64, easts: &[f64]) -> Vec<Option<f64>> {
     let manifest = package.manifest();
     let frame = &manifest.frame;
@@ -275,9 +282,10 @@ fn decks_at(package: &FilePackage, way_id: i64, easts: &[f64]) -> Vec<Option<f64
     decks
 }
 
-/// How far the ground of the cases may be from their closed forms, which decks then are, too, metres.
+/// The largest distance of the cases' ground, and therefore of the decks, from the closed forms,
+/// metres.
 const CASE_ERROR_M: f64 = 0.05;
-/// Right values are given to a hundredth.
+/// The expected values are given to a hundredth.
 const ROUNDED_M: f64 = 0.01;
 
 fn case(folder: &str, dem: &str, osm: &str) -> Option<Region> {
@@ -295,7 +303,8 @@ fn assert_near(found: &[Option<f64>], wanted: &[f64], what: &str) {
     }
 }
 
-/// A bridge of 5.4 km that bounds cut has the heights of the whole bridge, and a tile that is whole its bytes.
+/// A bridge of 5.4 km that bounds cut has the heights of the whole bridge, and a tile inside has
+/// the same bytes.
 #[test]
 fn a_bridge_that_bounds_cut_has_its_own_heights() {
     let Some(region) = case("bounds-cut-span", "valley.tif", "bridge.osm.pbf") else { return };
@@ -307,7 +316,7 @@ fn a_bridge_that_bounds_cut_has_its_own_heights() {
     for (name, bounds) in [
         ("cut", [8.999_343, 46.935_532, 9.091_995, 46.971_527]),
         ("half", [8.999_343, 46.935_532, 9.060_453, 46.971_527]),
-        // From the other end, and of the middle alone.
+        // The bridge from the other end, and the middle alone.
         ("east", [9.02, 46.935_532, 9.2, 46.971_527]),
         ("middle", [9.02, 46.935_532, 9.06, 46.971_527]),
     ] {
@@ -329,7 +338,7 @@ fn a_bridge_that_bounds_cut_has_its_own_heights() {
     }
 }
 
-/// A portal that only meets streets of classes that are off carries its tunnel.
+/// A portal whose only roads on the ground have classes that are off carries its tunnel.
 #[test]
 fn classes_that_are_off_carry_spans() {
     let Some(region) = case("classes-portal", "hill.tif", "tunnel.osm.pbf") else { return };

@@ -1,4 +1,4 @@
-//! Servers that misbehave, each in its own way: what is told of them, and how often they are asked.
+//! Servers that misbehave, each in its own way: the error messages, and the numbers of requests.
 #![allow(clippy::unwrap_used, reason = "tests may unwrap")]
 
 use std::{
@@ -9,7 +9,7 @@ use std::{
 use crate::support::{Mode, Server, settings, source};
 use corniche_tileset::{BlockingSource as _, SourceError};
 
-/// Some blocks and a part of one.
+/// Some whole blocks and a part of one.
 const BYTES: usize = 1_000_000;
 const SECRET: &str = "do-not-tell-0123456789";
 
@@ -17,7 +17,8 @@ fn read(server: &Server) -> Result<Vec<u8>, SourceError> {
     source(&server.url()).read(0, 100)
 }
 
-/// What is said of a server that always answers so, at the first request and at a later one, and how many requests it got each time.
+/// The errors from a server that always answers like this, at the first request and at a later one,
+/// with the number of requests each time.
 fn told(mode: &Mode) -> [(String, usize); 2] {
     let server = Server::start(BYTES);
     server.always(mode.clone());
@@ -35,41 +36,41 @@ fn told(mode: &Mode) -> [(String, usize); 2] {
     [(first.to_string(), first_count), (later.to_string(), server.take_log().len())]
 }
 
-/// Each is named, in words of its own, and at once where another try cannot help.
+/// Each fault has its own message, without retries if they cannot help.
 #[test]
 fn each_kind_is_named() {
     let all = 1 + settings().retries as usize;
     let cases = [
         (Mode::Status(404, ""), "no such file (404 Not Found)", 1),
         (Mode::Status(410, ""), "no such file (410 Gone)", 1),
-        (Mode::Status(403, ""), "refuses access (403 Forbidden)", 1),
-        (Mode::Status(401, ""), "refuses access (401 Unauthorized)", 1),
+        (Mode::Status(403, ""), "denies access (403 Forbidden)", 1),
+        (Mode::Status(401, ""), "denies access (401 Unauthorized)", 1),
         (Mode::Status(418, ""), "answers 418", 1),
-        (Mode::Status(304, ""), "304 Not Modified, without the address", 1),
+        (Mode::Status(304, ""), "304 Not Modified, without a Location", 1),
         (
             Mode::Status(503, ""),
-            "busy or broken (503 Service Unavailable), also after 4 tries",
+            "overloaded or failing (503 Service Unavailable), even after 4 tries",
             all,
         ),
-        (Mode::Status(500, ""), "busy or broken (500", all),
-        (Mode::Status(429, ""), "busy or broken (429", all),
-        (Mode::Status(503, "Retry-After: 3600\r\n"), "come back in 3600 seconds", 1),
-        (Mode::IgnoreRanges, "knows no range requests", 1),
-        (Mode::Gzip(206), "compresses the package on its way (Content-Encoding: gzip)", 1),
-        (Mode::Gzip(200), "compresses the package on its way (Content-Encoding: gzip)", 1),
-        (Mode::ContentRange("bytes 7-106/1000000"), "other bytes than asked for: bytes 7-106", 1),
-        (Mode::ContentRange("bytes 0-9/*"), "does not tell how long the file is", 1),
-        (Mode::ContentRange("nonsense"), "other bytes than asked for: nonsense", 1),
-        (Mode::Fewer(10), "bytes of 65536, also after 4 tries", all),
-        (Mode::More(10), "more than the 65536 bytes", 1),
-        (Mode::MoreUnsaid, "more than the 65536 bytes", 1),
-        (Mode::CutBody(1000), "breaks off again and again (4 tries)", all),
-        (Mode::Cut, "breaks off again and again (4 tries)", all),
-        (Mode::Silent, "does not answer within 0.3 seconds, also after 4 tries", all),
-        (Mode::Stuck, "does not answer within 0.3 seconds, also after 4 tries", all),
-        (Mode::Dripping, "slower than 1048576 bytes a second", 1),
-        (Mode::DrippingHead, "does not answer within 0.3 seconds, also after 4 tries", all),
-        (Mode::Noise, "speaks no HTTP", 1),
+        (Mode::Status(500, ""), "overloaded or failing (500", all),
+        (Mode::Status(429, ""), "overloaded or failing (429", all),
+        (Mode::Status(503, "Retry-After: 3600\r\n"), "retry in 3600 seconds", 1),
+        (Mode::IgnoreRanges, "ignores range requests", 1),
+        (Mode::Gzip(206), "compresses the package in transit (Content-Encoding: gzip)", 1),
+        (Mode::Gzip(200), "compresses the package in transit (Content-Encoding: gzip)", 1),
+        (Mode::ContentRange("bytes 7-106/1000000"), "other bytes than requested: bytes 7-106", 1),
+        (Mode::ContentRange("bytes 0-9/*"), "does not report the length of the file", 1),
+        (Mode::ContentRange("nonsense"), "other bytes than requested: nonsense", 1),
+        (Mode::Fewer(10), "bytes instead of 65536, even after 4 tries", all),
+        (Mode::More(10), "more than the 65536 requested bytes", 1),
+        (Mode::MoreUnsaid, "more than the 65536 requested bytes", 1),
+        (Mode::CutBody(1000), "keeps breaking (4 tries)", all),
+        (Mode::Cut, "keeps breaking (4 tries)", all),
+        (Mode::Silent, "does not answer within 0.3 seconds, even after 4 tries", all),
+        (Mode::Stuck, "does not answer within 0.3 seconds, even after 4 tries", all),
+        (Mode::Dripping, "less than 1048576 bytes per second", 1),
+        (Mode::DrippingHead, "does not answer within 0.3 seconds, even after 4 tries", all),
+        (Mode::Noise, "does not speak HTTP", 1),
     ];
     for (mode, said, count) in cases {
         for (told, asked) in told(&mode) {
@@ -79,7 +80,7 @@ fn each_kind_is_named() {
     }
 }
 
-/// What only the network or the server is to blame for ends with another exit code.
+/// Failures of the network or the server have another exit code.
 #[test]
 fn what_may_pass_is_told_from_what_stays() {
     let may_pass = |mode: Mode| {
@@ -154,12 +155,12 @@ fn a_file_that_changes_is_never_mixed() {
         assert!(told.contains(said) && told.contains("run the same command again"), "{told}");
         assert!(error.may_pass);
         assert_eq!(server.take_log().len(), 1, "another try cannot help");
-        // What is here is still of the first version, and nothing of another one comes.
+        // The cached bytes are still of the first version, and no bytes of another version arrive.
         assert!(source.read(0, 100).is_ok());
         assert!(source.read(900_000, 100).is_err());
         assert!(server.take_log().is_empty(), "it is known");
     }
-    // Without an `ETag` the date counts.
+    // Without an `ETag`, the date identifies the version.
     let server = Server::start(BYTES);
     server.state().version = "Last-Modified: Monday\r\n".to_owned();
     let source = source(&server.url());
@@ -178,14 +179,14 @@ fn redirections_are_followed_once_and_then_known() {
     source.read(0, 100).unwrap();
     source.read(500_000, 100).unwrap();
     assert_eq!((server.take_log().len(), other.take_log().len()), (1, 2));
-    // The other place was valid for a while only.
+    // The target of the redirection was valid for a while only.
     other.next([Mode::Status(403, "")]);
     source.read(900_000, 100).unwrap();
     assert_eq!((server.take_log().len(), other.take_log().len()), (1, 2));
-    // It is gone for good.
+    // The target is permanently gone.
     other.always(Mode::Status(403, ""));
     let told = source.read(200_000, 100).unwrap_err().to_string();
-    assert!(told.contains("refuses access"), "{told}");
+    assert!(told.contains("denies access"), "{told}");
 }
 
 #[test]
@@ -198,14 +199,14 @@ fn redirections_that_lead_nowhere_are_named() {
         (told, server.take_log().len())
     };
     let (circle, count) = told(format!("{}?{SECRET}", server.url()));
-    assert!(circle.contains("in a circle (to http://127.0.0.1:"), "{circle}");
+    assert!(circle.contains("in a loop (to http://127.0.0.1:"), "{circle}");
     assert_eq!(count, 2);
-    assert!(told("ftp://maps.example/x".to_owned()).0.contains("redirects to nowhere"));
-    // A circle of two.
+    assert!(told("ftp://maps.example/x".to_owned()).0.contains("sends an invalid redirect"));
+    // A loop of two addresses.
     let other = Server::start(BYTES);
     other.always(Mode::Redirect(server.url()));
-    assert!(told(other.url()).0.contains("in a circle"));
-    // Ever new places.
+    assert!(told(other.url()).0.contains("in a loop"));
+    // Endless new addresses.
     server.next((0..20).map(|k| Mode::Redirect(format!("/place-{k}"))));
     let error = read(&server).unwrap_err().to_string();
     assert!(error.contains("more than 10 times"), "{error}");
@@ -216,13 +217,13 @@ fn a_host_that_is_not_there_is_told_at_once() {
     let begun = Instant::now();
     let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
     let told = source(&format!("http://127.0.0.1:{port}/x")).length().unwrap_err();
-    assert!(told.reason.contains("nobody listens there") && told.may_pass, "{told}");
+    assert!(told.reason.contains("no server answers there") && told.may_pass, "{told}");
     let told = source("http://no-such-host.invalid/x").length().unwrap_err();
-    assert!(told.reason.contains("no host of this name"), "{told}");
+    assert!(told.reason.contains("host name cannot be resolved"), "{told}");
     assert!(begun.elapsed() < Duration::from_secs(10), "it is no matter of patience");
 }
 
-/// A server that is gone for a while in the middle of the work is waited for.
+/// A server that goes away for a while in the middle of the work is waited for.
 #[test]
 fn a_server_that_goes_away_later_is_asked_again() {
     let server = Server::start(BYTES);
@@ -232,7 +233,7 @@ fn a_server_that_goes_away_later_is_asked_again() {
     assert!(source.read(500_000, 100).is_ok());
 }
 
-/// Who looks at a thousand tiles all the same does not wait a thousand times.
+/// A caller that reads a thousand tiles anyway does not wait a thousand times.
 #[test]
 fn a_server_that_stays_away_is_not_waited_for_again() {
     let server = Server::start(BYTES);
@@ -262,7 +263,7 @@ fn user_name_and_password_reach_their_server_alone_and_are_not_told() {
     assert_eq!(asked.target, format!("/x?key={SECRET}"));
     assert!(asked.authorization.as_ref().unwrap().starts_with("Basic "));
     assert_eq!(asked.encoding, "identity");
-    // To another place on the same server they go along, also when it is known.
+    // To another address on the same server the credentials are sent along, even once it is known.
     server.next([Mode::Redirect("/elsewhere".to_owned())]);
     let redirected = source(&url(&server));
     redirected.read(0, 100).unwrap();
@@ -270,7 +271,7 @@ fn user_name_and_password_reach_their_server_alone_and_are_not_told() {
     let asked = server.take_log();
     assert_eq!(asked.len(), 3);
     assert!(asked.iter().all(|asked| asked.authorization.is_some()), "{asked:?}");
-    // To another server they do not.
+    // To another server they are not sent.
     let other = Server::start(BYTES);
     server.next([Mode::Redirect(other.url())]);
     let elsewhere = source(&url(&server));

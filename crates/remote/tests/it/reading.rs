@@ -1,10 +1,10 @@
-//! What is read of a server that behaves, and with how many requests.
+//! Reading from a server that behaves, and the number of requests.
 #![allow(clippy::unwrap_used, reason = "tests may unwrap")]
 
 use std::{sync::Arc, thread};
 
 use crate::support::{Server, settings, source};
-use corniche_remote::{HttpAddress, PackagePlace, Requests, Web};
+use corniche_remote::{HttpAddress, PackagePlace, ServerRequests, Web};
 use corniche_testing::Random;
 use corniche_tileset::{BlockingSource as _, FilePackage};
 
@@ -26,7 +26,7 @@ fn any_bytes_come_as_they_are_on_the_server() {
         let beyond = source.read(1, bytes).unwrap_err().to_string();
         assert!(beyond.contains(&format!("only {bytes} bytes")), "{beyond}");
         let blocks = bytes.div_ceil(65_536) as u64;
-        let Requests { count, received_bytes } = source.requests();
+        let ServerRequests { count, received_bytes } = source.requests();
         assert!(count <= blocks, "{count} requests for {blocks} blocks");
         assert_eq!(received_bytes, bytes as u64, "each byte once");
     }
@@ -51,7 +51,7 @@ fn neighbouring_reads_share_requests() {
     for at in 0..200_u64 {
         source.read(at * 100_000, 90_000).unwrap();
     }
-    let Requests { count, received_bytes } = source.requests();
+    let ServerRequests { count, received_bytes } = source.requests();
     // 1, 2, 4 … 64 blocks, then 64 each time: 7 + 3.
     assert_eq!((count, server.take_log().len()), (10, 10));
     assert!(received_bytes <= 20_000_000, "nothing twice");
@@ -66,7 +66,7 @@ fn an_empty_file_is_no_package() {
     assert!(told.contains(&server.url()) && told.contains("not a PMTiles file"), "{told}");
 }
 
-/// Threads, a file and an address give the same tiles.
+/// Threads, a file and an address return the same tiles.
 #[test]
 fn a_package_is_the_same_by_its_address() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! A web server on the loopback that misbehaves when it is told to.
+//! A web server on the loopback that misbehaves on request.
 #![allow(clippy::unwrap_used, reason = "each test file uses some of it; tests may unwrap")]
 
 use std::{
@@ -11,10 +11,10 @@ use std::{
 
 use corniche_remote::{HttpAddress, HttpSettings, HttpSource, Web};
 
-/// What an answer is like.
+/// The kind of answer.
 #[derive(Debug, Clone)]
 pub(crate) enum Mode {
-    /// As it should be.
+    /// A correct answer.
     Right,
     /// A status and further headers, without the file.
     Status(u16, &'static str),
@@ -22,29 +22,29 @@ pub(crate) enum Mode {
     IgnoreRanges,
     /// The whole file, or the range, with `Content-Encoding: gzip`.
     Gzip(u16),
-    /// Another `Content-Range`, with the bytes that were asked for.
+    /// A wrong `Content-Range`, with the requested bytes.
     ContentRange(&'static str),
-    /// So many bytes fewer, and a head that says so.
+    /// This many bytes fewer, with a matching head.
     Fewer(usize),
-    /// So many bytes more, and a head that says so.
+    /// This many bytes more, with a matching head.
     More(usize),
-    /// More bytes than asked for, without a length: until the connection ends.
+    /// More bytes than requested, without a length: until the connection ends.
     MoreUnsaid,
-    /// The connection ends after so many bytes of the body.
+    /// The connection ends after this many bytes of the body.
     CutBody(usize),
     /// The connection ends before the answer.
     Cut,
     /// No answer.
     Silent,
-    /// The head, half of the body, and then nothing.
+    /// The head and half of the body, and then nothing.
     Stuck,
-    /// The head, and then a byte now and then.
+    /// The head, and then a byte from time to time.
     Dripping,
-    /// A byte of the head now and then.
+    /// A byte of the head from time to time.
     DrippingHead,
-    /// To another place.
+    /// A redirection to this address.
     Redirect(String),
-    /// What is no HTTP.
+    /// An answer that is not HTTP.
     Noise,
 }
 
@@ -52,11 +52,11 @@ pub(crate) struct State {
     pub(crate) bytes: Vec<u8>,
     /// `ETag` and `Last-Modified`, whole lines.
     pub(crate) version: String,
-    /// What the next requests get, one after the other; then all are answered as they should be.
+    /// The kinds of the next answers, in order; afterwards `always` applies.
     pub(crate) next: Vec<Mode>,
-    /// What all others get.
+    /// The kind of all other answers.
     pub(crate) always: Mode,
-    /// Method, path, range of each request, and other headers that matter.
+    /// Method, path and range of each request, and other relevant headers.
     pub(crate) log: Vec<Asked>,
 }
 
@@ -74,7 +74,7 @@ pub(crate) struct Server {
     state: Arc<Mutex<State>>,
 }
 
-/// Short pauses.
+/// Settings with short pauses.
 pub(crate) fn settings() -> HttpSettings {
     HttpSettings {
         retries: 3,
@@ -87,7 +87,7 @@ pub(crate) fn settings() -> HttpSettings {
 }
 
 impl Server {
-    /// With a file of so many bytes, at any path.
+    /// Starts a server with a file of this many bytes, at any path.
     pub(crate) fn start(bytes: usize) -> Self {
         let bytes = (0..bytes).map(|k| (k * 31 % 251) as u8).collect();
         Self::with(bytes)
@@ -130,7 +130,7 @@ impl Server {
         self.state().next = modes.into_iter().collect();
     }
 
-    /// The ranges asked for since the last call.
+    /// The requested ranges since the last call.
     pub(crate) fn take_ranges(&self) -> Vec<String> {
         self.take_log().into_iter().map(|asked| asked.range).collect()
     }
@@ -150,7 +150,7 @@ impl Server {
         let _ = stream.shutdown(Shutdown::Both);
     }
 
-    /// Whether the connection goes on.
+    /// Answers a request; returns whether the connection stays open.
     fn answer(&self, mut stream: &TcpStream, asked: &Asked) -> io::Result<bool> {
         let mut state = self.state();
         state.log.push(asked.clone());

@@ -1,4 +1,4 @@
-//! More connections than there may be: which of them give way.
+//! When there are too many connections, the right ones are closed.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -10,7 +10,7 @@ use std::{
 
 use crate::serving::{CONNECTIONS, start};
 
-/// Asks for the page, and leaves the connection open.
+/// Requests the page, and leaves the connection open.
 fn ask_and_stay(address: SocketAddr) -> TcpStream {
     let mut stream = TcpStream::connect(address).unwrap();
     stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
@@ -21,7 +21,8 @@ fn ask_and_stay(address: SocketAddr) -> TcpStream {
     stream
 }
 
-/// Connections on which nothing is asked give way, whatever was said on them before: nothing, half a request, or a whole one.
+/// Idle connections are closed, whatever was sent on them before: nothing, half a request, or a
+/// whole one.
 #[test]
 fn idle_connections_give_way() {
     let running = start();
@@ -39,7 +40,7 @@ fn idle_connections_give_way() {
         assert!(begun.elapsed() < Duration::from_secs(10), "{:?}", begun.elapsed());
         drop(idle);
     }
-    // Those that have asked stay as long as there is room, and the last ones longest.
+    // Connections with requests stay as long as there is space, and the last ones longest.
     let kept: Vec<TcpStream> =
         (0..2 * CONNECTIONS).map(|_| ask_and_stay(running.address)).collect();
     let mut last = kept.last().unwrap();
@@ -49,7 +50,8 @@ fn idle_connections_give_way() {
     assert!(String::from_utf8_lossy(&answers).contains("HTTP/1.1 200"), "it was closed");
 }
 
-/// A client that takes its answer slowly is not idle: it gets all of it while others come.
+/// A client that receives its answer slowly is not idle: it gets the whole answer while others
+/// connect.
 #[test]
 fn what_is_being_answered_does_not_give_way() {
     let running = start();

@@ -1,4 +1,5 @@
-//! Integration tests of `corniche-serve`, in one binary. The first line of each module says what holds.
+//! Integration tests of `corniche-serve`, in one binary. The first line of each module states what
+//! is tested.
 
 mod connections;
 mod serving;

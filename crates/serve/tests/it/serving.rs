@@ -1,4 +1,4 @@
-//! The server on a real socket: what it sends, to whom, and what it refuses.
+//! The server on a real socket: its answers, its clients, and its errors.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -18,26 +18,28 @@ use std::{
 };
 
 use bytes::Bytes;
-use corniche_serve::{Answered, Content, OnDisk, Readers, Routes, ServeError, Server, Watch};
+use corniche_serve::{
+    Answered, FileContent, OnDisk, Readers, Routes, ServeError, Server, ServerWatch,
+};
 use tempfile::TempDir;
 
 const PAGE: &str = "<!doctype html><title>A map</title>";
 
-/// How long is waited for clients that do not read.
+/// The waiting time for clients that do not read.
 const PATIENCE: Duration = Duration::from_millis(500);
-/// How many clients there are at once.
+/// The largest number of clients at once.
 pub(crate) const CONNECTIONS: usize = 16;
 
-/// More than is read at once.
+/// More bytes than are read at once.
 const PACKAGE_BYTES: usize = 700_001;
 
-/// A file of which the first bytes tell the versions apart.
+/// A file whose first bytes distinguish its versions.
 #[derive(Debug)]
 struct Told(PathBuf);
 
 impl OnDisk for Told {
     fn open(&self) -> io::Result<File> {
-        // A link is not followed.
+        // Links are not followed.
         if !fs::symlink_metadata(&self.0)?.is_file() {
             return Err(io::ErrorKind::NotFound.into());
         }
@@ -79,17 +81,17 @@ fn start_at(host: &str) -> Running {
     let bytes: Vec<u8> = (0..PACKAGE_BYTES).map(|k| (k * 31 % 251) as u8).collect();
     fs::write(&package, &bytes).unwrap();
     let mut routes = Routes::default();
-    let of = |text: &'static str| Content::Memory(Bytes::from_static(text.as_bytes()));
+    let of = |text: &'static str| FileContent::Memory(Bytes::from_static(text.as_bytes()));
     routes.add("index.html", of(PAGE), Readers::AnyPage);
     routes.add("corniche-map.js", of("export {};"), Readers::AnyPage);
     routes.add("corniche_web_bg.wasm", of("\0asm"), Readers::AnyPage);
     routes.add("empty.css", of(""), Readers::AnyPage);
     routes.add("examples/fly.html", of(PAGE), Readers::AnyPage);
-    routes.add("long.js", Content::Memory("export {};\n".repeat(200).into()), Readers::AnyPage);
+    routes.add("long.js", FileContent::Memory("export {};\n".repeat(200).into()), Readers::AnyPage);
     routes.add("packages.json", of("[]"), Readers::OwnPages);
     routes.add(
         "packages/a b.pmtiles",
-        Content::Disk(Arc::new(Told(package.clone()))),
+        FileContent::Disk(Arc::new(Told(package.clone()))),
         Readers::AnyPage,
     );
     let server = Server::bind(host, 0).unwrap().with_limits(PATIENCE, CONNECTIONS);
@@ -100,7 +102,7 @@ fn start_at(host: &str) -> Running {
     let thread = thread::spawn(move || {
         let is_stopped = || stop.load(Ordering::SeqCst);
         let observer = Arc::new(move |one: &Answered| log.lock().unwrap().push(one.clone()));
-        server.serve(routes, &Watch { is_stopped: &is_stopped, observer }).unwrap();
+        server.serve(routes, &ServerWatch { is_stopped: &is_stopped, observer }).unwrap();
     });
     Running { address, package, bytes, answered, is_stopped, thread: Some(thread), _folder: folder }
 }
@@ -122,7 +124,7 @@ impl Answer {
     }
 }
 
-/// Sends these bytes and reads to the end of the connection.
+/// Sends these bytes, and reads to the end of the connection.
 fn exchange(address: SocketAddr, request: &str) -> Answer {
     let mut stream = TcpStream::connect(address).unwrap();
     stream.set_read_timeout(Some(Duration::from_mins(1))).unwrap();
@@ -209,7 +211,7 @@ fn a_page_is_packed_for_clients_that_unpack_it() {
     let mut unpacked = String::new();
     brotli::Decompressor::new(&*packed.body, 4096).read_to_string(&mut unpacked).unwrap();
     assert_eq!(unpacked, text);
-    // A cache keeps both apart.
+    // A cache keeps both versions separate.
     assert_ne!(packed.header("etag"), plain.header("etag"));
     assert_eq!([&plain, &packed].map(|answer| answer.header("vary")), ["accept-encoding"; 2]);
     let again = server.get("/long.js", &[accepts, ("If-None-Match", packed.header("etag"))]);
@@ -237,7 +239,6 @@ fn ranges_have_the_bytes_of_the_file() {
         assert_eq!(answer.header("content-range"), said, "{range}");
         assert_eq!(answer.header("content-length"), (end - first).to_string(), "{range}");
     }
-    // What is in memory has ranges, too.
     let answer = server.get("/index.html", &[("Range", "bytes=2-8")]);
     assert_eq!((answer.status, answer.text().as_str()), (206, "doctype"));
     for range in [format!("bytes={PACKAGE_BYTES}-"), "bytes=-0".to_owned(), "bytes=7-3".to_owned()]
@@ -245,7 +246,7 @@ fn ranges_have_the_bytes_of_the_file() {
         let answer = server.get(PACKAGE, &[("Range", &range)]);
         assert_eq!(answer.status, 416, "{range}");
         assert_eq!(answer.header("content-range"), format!("bytes */{PACKAGE_BYTES}"), "{range}");
-        assert!(answer.text().contains(&format!("it has {PACKAGE_BYTES}")), "{}", answer.text());
+        assert!(answer.text().contains(&format!("which has {PACKAGE_BYTES}")), "{}", answer.text());
         assert_eq!(answer.header("access-control-allow-origin"), "*", "{range}");
     }
     assert_eq!(server.get("/empty.css", &[("Range", "bytes=0-")]).status, 416);
@@ -253,7 +254,7 @@ fn ranges_have_the_bytes_of_the_file() {
     assert_eq!((head.status, head.header("content-length")), (200, "700001"));
 }
 
-/// Some answers come on one connection, and each ends where it must.
+/// Several answers are sent on one connection, and each has the right length.
 #[test]
 fn a_connection_serves_several_requests() {
     let server = start();
@@ -271,7 +272,7 @@ fn a_connection_serves_several_requests() {
     assert_eq!(first.body[first.body.len() - 3..], server.bytes[7..10]);
 }
 
-/// A new version has a new tag, so that whoever reads the old one by ranges learns of it.
+/// A new version has a new tag, so that clients that read the old one by ranges notice it.
 #[test]
 fn a_file_that_changes_gets_another_tag_and_one_that_goes_is_missed() {
     let mut server = start();
@@ -293,7 +294,7 @@ fn a_file_that_changes_gets_another_tag_and_one_that_goes_is_missed() {
     assert!(after.body == server.bytes[..10], "it is the new version");
     assert_eq!(if_range(&server), 200, "all of the new version");
     assert_eq!(server.get(PACKAGE, &[("If-Match", &tag)]).status, 412);
-    // Before the year in which times begin.
+    // Before 1970.
     let early = UNIX_EPOCH - Duration::from_secs(9);
     File::options().write(true).open(&server.package).unwrap().set_modified(early).unwrap();
     assert_eq!(server.get(PACKAGE, &[]).status, 200);
@@ -307,14 +308,14 @@ fn a_file_that_changes_gets_another_tag_and_one_that_goes_is_missed() {
         );
     }
     let gone = server.get(PACKAGE, &[]).text();
-    assert!(gone.contains("packages/a b.pmtiles was there") && gone.contains("gone"), "{gone}");
+    assert!(gone.contains("packages/a b.pmtiles existed") && gone.contains("is missing"), "{gone}");
     assert!(!gone.contains("any name"), "where it lies is nobody's business: {gone}");
-    // A folder in its place is no file.
+    // A folder at its path is not a file.
     fs::create_dir(&server.package).unwrap();
     assert_eq!(server.get(PACKAGE, &[]).status, 404);
 }
 
-/// A file that becomes shorter while it is sent: the client sees that bytes are missing.
+/// If a file becomes shorter while it is sent, the client notices that bytes are missing.
 #[test]
 fn a_file_that_shrinks_under_an_answer_ends_the_connection() {
     let server = start();
@@ -335,7 +336,7 @@ fn a_file_that_shrinks_under_an_answer_ends_the_connection() {
     assert!(head.contains(&format!("content-length: {length}\r\n")), "{head}");
     file.set_len(1 << 20).unwrap();
     let mut rest = Vec::new();
-    // The end may come as one of the connection or as a reset.
+    // The client sees the end as a close or as a reset.
     let _ = stream.read_to_end(&mut rest);
     assert!((rest.len() as u64) < length - 1000, "all bytes came: {}", rest.len());
     assert_eq!(server.get("/", &[]).status, 200, "the server goes on");
@@ -411,7 +412,7 @@ fn pages_of_other_servers_may_read_packages_and_not_the_list_of_them() {
     }
 }
 
-/// A page whose name was made to lead here must not be taken for one of this server.
+/// A page whose domain name points here must not be treated as a page of this server.
 #[test]
 fn other_names_than_its_own_are_refused_on_the_loopback() {
     let server = start();
@@ -438,7 +439,7 @@ fn other_names_than_its_own_are_refused_on_the_loopback() {
     );
     assert_eq!(exchange(server.address, &two).status, 403);
     assert_eq!(exchange(server.address, "GET / HTTP/1.1\r\nConnection: close\r\n\r\n").status, 400);
-    // Old clients, which no browser is, name no host.
+    // Old clients, which are not browsers, send no host.
     assert_eq!(exchange(server.address, "GET / HTTP/1.0\r\n\r\n").status, 200);
 }
 
@@ -457,15 +458,14 @@ fn a_port_in_use_and_a_strange_address_are_told() {
     let in_use = Server::bind("127.0.0.1", port).unwrap_err();
     assert!(matches!(in_use, ServeError::InUse { .. }), "{in_use}");
     assert!(in_use.to_string().contains(&port.to_string()), "{in_use}");
-    // Addresses of a net that is kept for documentation.
+    // Addresses of a network that is reserved for documentation.
     for host in ["192.0.2.7", "nowhere.invalid", ""] {
         let refused = Server::bind(host, 0).unwrap_err();
         assert!(matches!(refused, ServeError::NoAddress { .. }), "{host}: {refused}");
     }
-    // As in an address of the web.
     match Server::bind("[::1]", 0) {
         Ok(server) => assert!(server.address().is_ipv6()),
-        // Without IPv6.
+        // On machines without IPv6.
         Err(refused) => assert!(
             matches!(refused, ServeError::NoAddress { .. } | ServeError::Listen { .. }),
             "{refused}"
@@ -473,7 +473,7 @@ fn a_port_in_use_and_a_strange_address_are_told() {
     }
 }
 
-/// It stops although a client holds a connection, and lets go of its port.
+/// The server stops although a client holds a connection, and frees its port.
 #[test]
 fn it_stops_when_it_is_told() {
     let server = start();
@@ -504,7 +504,7 @@ fn every_answer_is_told() {
     assert_eq!(server.answered.lock().unwrap()[..], expected);
 }
 
-/// Times can be set, and are the same for two files of one archive. On Unix the system's own note of a change is asked, too.
+/// Times can be set, and are equal for files of one archive; on Unix the change time counts, too.
 #[test]
 #[cfg(unix)]
 fn a_version_is_told_by_its_bytes_and_not_by_times_alone() {
@@ -526,7 +526,7 @@ fn a_version_is_told_by_its_bytes_and_not_by_times_alone() {
     assert_eq!(tag(&server), before, "the first one again");
 }
 
-/// As many clients as connections ask for far more than buffers hold, and read nothing: others are answered, and their answers end before the end.
+/// Clients on all connections request much and read nothing: they are aborted, others are answered.
 #[test]
 fn clients_that_do_not_read_are_not_waited_for() {
     let server = start();
@@ -541,7 +541,7 @@ fn clients_that_do_not_read_are_not_waited_for() {
         })
         .collect();
     assert_eq!(server.get("/", &[]).status, 200);
-    // A busy machine may fill the buffers of the last one late: who reads before it was given up gets all.
+    // On a busy machine the last buffers fill late, and a client that reads then gets everything.
     thread::sleep(PATIENCE * 10);
     for mut stream in deaf {
         stream.set_read_timeout(Some(Duration::from_secs(30))).unwrap();
@@ -552,7 +552,7 @@ fn clients_that_do_not_read_are_not_waited_for() {
     }
 }
 
-/// The system asks for more only when much of its buffer is free, which must not be so large that a slow client takes too long for that.
+/// The system's buffer must be small, because it accepts more bytes only when much of it is free.
 #[test]
 fn a_slow_client_that_reads_gets_all() {
     let server = start();
@@ -574,7 +574,7 @@ fn a_slow_client_that_reads_gets_all() {
     assert!(got > length, "{got} bytes of more than {length}");
 }
 
-/// Scripts of the page itself run by their hashes; what is no page has no policy; every answer says that its type is what it is.
+/// Inline scripts run by their hashes; only pages have a policy; no answer's type may be guessed.
 #[test]
 fn pages_have_a_policy_and_may_be_embedded() {
     let server = start();

@@ -23,11 +23,10 @@ pub enum InputError {
     Dem(#[from] DemError),
     #[error(transparent)]
     Address(#[from] corniche_objects::ObjectError),
-    #[error("the run could not be set up: {what}")]
+    #[error("cannot start: {what}")]
     Setting { what: String },
     #[error(
-        "{path:?} changed while it was read, so the package could mix old and new content; nothing was written; run the \
-         same command again when no program writes to the file"
+        "{path:?} changed while it was read, so nothing was written (a package could mix old and new content); run the command again when no program writes to the file"
     )]
     Changed { path: PathBuf },
     #[error("interrupted; no package was written")]
@@ -37,7 +36,7 @@ pub enum InputError {
 corniche_dem::from_dem_errors!(InputError);
 
 impl InputError {
-    /// Whether the cause is an input or a setting, rather than a failure while the run went on.
+    /// Whether the cause is an input or a setting, rather than a failure during the run.
     #[must_use]
     pub fn is_unusable_input(&self) -> bool {
         match self {

@@ -1,19 +1,20 @@
-//! Inputs on servers: what users call them, what GDAL calls them, and how GDAL reaches them.
+//! Inputs on servers: their names for users and for GDAL, and how GDAL reaches the servers.
 
 use std::{
     collections::HashSet,
     path::{Path, PathBuf},
 };
 
-use corniche_gis::{Sought, expand_name, set_unless_set, unpack_name};
+use corniche_gis::{SoughtFiles, expand_name, set_unless_set, unpack_name};
 use corniche_objects::{ObjectAddress, StorageSettings};
 
 use super::error::InputError;
 
-/// The name by which GDAL knows an input: `s3://BUCKET/NAME` is `/vsis3/BUCKET/NAME`, `https://…` is `/vsicurl/https://…`. Other names stay as they are.
+/// Returns the name by which GDAL knows an input: `s3://BUCKET/NAME` becomes `/vsis3/BUCKET/NAME`,
+/// `https://…` becomes `/vsicurl/https://…`. Other names stay as they are.
 ///
 /// # Errors
-/// Where it begins as an address in object storage and is none.
+/// When the name begins like an address in object storage but is not a valid one.
 pub fn input_name(path: PathBuf) -> Result<PathBuf, corniche_objects::ObjectError> {
     let Some(text) = path.to_str() else { return Ok(path) };
     if let Some(ObjectAddress { bucket, key }) = ObjectAddress::parse(text)? {
@@ -25,24 +26,24 @@ pub fn input_name(path: PathBuf) -> Result<PathBuf, corniche_objects::ObjectErro
     Ok(path)
 }
 
-/// The elevation files that names stand for, as GDAL knows them, in the order in which they have precedence: folders, patterns, `@LIST`, archives
-/// and addresses included; see [`expand_name`] and [`unpack_name`].
+/// Expands names into elevation files, as GDAL knows them, in order of precedence. Folders,
+/// patterns, `@LIST`, archives and addresses are expanded; see [`expand_name`] and [`unpack_name`].
 ///
 /// # Errors
-/// When a name stands for no file, or is no address.
+/// When a name matches no file, or is not a valid address.
 pub fn elevation_names(names: &[PathBuf]) -> Result<Vec<PathBuf>, InputError> {
-    raster_names(names, Sought::Elevation)
+    raster_names(names, SoughtFiles::Elevation)
 }
 
-/// The rasters that names stand for.
-fn raster_names(names: &[PathBuf], sought: Sought) -> Result<Vec<PathBuf>, InputError> {
+/// Expands names into rasters.
+fn raster_names(names: &[PathBuf], sought: SoughtFiles) -> Result<Vec<PathBuf>, InputError> {
     let mut plain = Vec::new();
     for name in names {
         for name in expand_name(name, sought)? {
             plain.push(input_name(name)?);
         }
     }
-    // An archive on a server is looked into.
+    // Archives on a server are opened, too.
     reach_servers(plain.iter().map(PathBuf::as_path))?;
     let mut files = Vec::new();
     for name in plain {
@@ -51,27 +52,29 @@ fn raster_names(names: &[PathBuf], sought: Sought) -> Result<Vec<PathBuf>, Input
     Ok(files)
 }
 
-/// The photos that names stand for, in the order in which they were named: the first lies on top. Names are as for elevation files.
+/// Expands names into photos, in the order of the names: the first photo is on top. Names are
+/// expanded as for elevation files.
 ///
 /// # Errors
-/// As [`elevation_names`].
+/// See [`elevation_names`].
 pub fn photo_names(names: &[PathBuf]) -> Result<Vec<PathBuf>, InputError> {
-    raster_names(names, Sought::Photos)
+    raster_names(names, SoughtFiles::Photos)
 }
 
-/// The extracts that names stand for, sorted by file name and then by path, each once: folders, patterns and `@LIST` included. What is made of
-/// them does not depend on the order in which they were named.
+/// Expands names, including folders, patterns and `@LIST`, into extracts. The extracts are sorted
+/// by file name and then by path, each once, so that the result does not depend on the order of the
+/// names.
 ///
 /// # Errors
-/// When a name stands for no file, or is no address.
+/// When a name matches no file, or is not a valid address.
 pub fn extract_names(names: &[PathBuf]) -> Result<Vec<PathBuf>, InputError> {
     let mut files = Vec::new();
     for name in names {
-        for name in expand_name(name, Sought::Extracts)? {
+        for name in expand_name(name, SoughtFiles::Extracts)? {
             files.push(input_name(name)?);
         }
     }
-    // One file may be written in several ways.
+    // One file may have been named in several ways.
     let place = |path: &PathBuf| path.canonicalize().unwrap_or_else(|_| path.clone());
     let key = |path: &PathBuf| (path.file_name().map(ToOwned::to_owned), place(path));
     files.sort_by_cached_key(key);
@@ -80,8 +83,9 @@ pub fn extract_names(names: &[PathBuf]) -> Result<Vec<PathBuf>, InputError> {
     Ok(files)
 }
 
-/// Tells GDAL how servers are reached, before it is asked for the first of these files, which may be on servers, or name others that are. Its own
-/// settings count for more, and are left alone. Fails with the setting that GDAL refused.
+/// Configures how GDAL reaches servers, before GDAL reads the first of these files, which may be on
+/// servers or name other files that are. GDAL's own settings take precedence and are left alone.
+/// Fails with the setting that GDAL rejected.
 pub(crate) fn reach_servers<'a>(
     files: impl IntoIterator<Item = &'a Path>,
 ) -> Result<(), InputError> {
@@ -100,14 +104,14 @@ pub(crate) fn reach_servers<'a>(
     Ok(())
 }
 
-/// GDAL's options for what the environment says.
+/// GDAL's options for the settings of the environment.
 fn options(settings: &StorageSettings) -> Vec<(&'static str, String)> {
     let text = str::to_owned;
-    // What fails for a moment is tried again. GDAL does so only if it is told.
+    // Temporary failures are retried. GDAL retries only if it is configured to.
     let mut options = vec![
         ("GDAL_HTTP_MAX_RETRY", text("8")),
         ("GDAL_HTTP_RETRY_DELAY", text("0.5")),
-        // A server that sends fewer bytes a second for a minute is given up.
+        // A connection is given up after a minute with fewer bytes per second than this.
         ("GDAL_HTTP_LOW_SPEED_LIMIT", text("1024")),
         ("GDAL_HTTP_LOW_SPEED_TIME", text("60")),
     ];

@@ -1,4 +1,4 @@
-//! Names on servers become those of GDAL.
+//! Names on servers are converted to names of GDAL.
 
 use super::*;
 

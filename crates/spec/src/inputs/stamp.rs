@@ -1,4 +1,4 @@
-//! Size, times and identity of a file, by which a change of its content is noticed.
+//! Size, times and identity of a file, which reveal a change of its content.
 
 use std::{
     fs::{self, Metadata},
@@ -10,10 +10,11 @@ use std::{
 
 use corniche_gis::VirtualFile;
 
-/// Common file systems other than FAT note times at least this finely. Two writes within this time may carry the same time.
+/// Common file systems other than FAT record times at least this finely. Two writes within this
+/// time may have the same time.
 const CLOCK: Duration = Duration::from_millis(20);
 
-/// What is noted of a file before it is read.
+/// The state of a file that is recorded before it is read.
 #[derive(Debug)]
 pub(crate) enum Stamp {
     /// A file on disk; for a raster in an archive, the archive.
@@ -22,13 +23,14 @@ pub(crate) enum Stamp {
     Remote { path: PathBuf, bytes: u64, etag: Option<String> },
 }
 
-/// The content of a file cannot change without a change of one of these values: neither by writing, nor by exchanging the
-/// file, nor by exchanging it and setting its old time.
+/// The state of a file. Its content cannot change without a change of one of these values: neither
+/// by writing, nor by replacing the file, nor by replacing it and restoring its old time.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct FileState {
-    size: u64,
+    /// In bytes.
+    pub(crate) size: u64,
     modified: Option<SystemTime>,
-    /// Device and inode, and the time of the last change of anything, which nobody can set.
+    /// Device and inode, and the time of the last status change (ctime), which programs cannot set.
     #[cfg(unix)]
     identity: [i64; 4],
 }
@@ -47,20 +49,20 @@ impl Stamp {
         Ok(Self::Remote { path: path.to_path_buf(), bytes, etag: VirtualFile::etag(path) })
     }
 
-    /// Whether the file is still there and what it was; an error where it cannot be looked at.
+    /// Whether the file still exists and is unchanged; an error if its state cannot be read.
     pub(crate) fn still_holds(&self) -> io::Result<bool> {
         match self {
             Self::File(path, state) => match fs::metadata(path) {
-                Ok(now) => Ok(FileState::of(&now) == *state),
+                Ok(now) => Ok(FileState::from_metadata(&now) == *state),
                 Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
                 Err(error) => Err(error),
             },
             Self::Remote { path, bytes, etag } => {
-                // Else GDAL answers without asking the server.
+                // Without this call GDAL answers from its cache and does not ask the server.
                 VirtualFile::forget(path);
                 let now = VirtualFile::open(path)?.into_size()?;
                 match (etag, VirtualFile::etag(path)) {
-                    (Some(_), None) => Err(io::Error::other("the server does not tell its ETag")),
+                    (Some(_), None) => Err(io::Error::other("the server no longer sends its ETag")),
                     (then, etag) => Ok(now == *bytes && etag == *then),
                 }
             }
@@ -69,13 +71,8 @@ impl Stamp {
 }
 
 impl FileState {
-    /// The size in bytes.
-    pub(crate) fn size(&self) -> u64 {
-        self.size
-    }
-
-    /// When it was written last, nanoseconds after the start of 1970 (negative: before); `None` where the file system does not
-    /// tell.
+    /// Time of the last modification, nanoseconds since the start of 1970 (negative: before);
+    /// `None` if the file system does not record it.
     pub(crate) fn modified_ns(&self) -> Option<i64> {
         let time = self.modified?;
         let nanoseconds = match time.duration_since(SystemTime::UNIX_EPOCH) {
@@ -85,7 +82,7 @@ impl FileState {
         Some(nanoseconds)
     }
 
-    fn of(found: &Metadata) -> Self {
+    fn from_metadata(found: &Metadata) -> Self {
         Self {
             size: found.len(),
             modified: found.modified().ok(),
@@ -103,10 +100,11 @@ impl FileState {
     }
 }
 
-/// The state of a file, once enough time has passed since its last change for the next one to carry another time.
+/// Returns the state of a file, once enough time has passed since its last change that the next
+/// change will have another time.
 fn settled(path: &Path) -> io::Result<FileState> {
     let mut found = fs::metadata(path)?;
-    // A file that is written continuously never settles. Its next change is then noticed by its time.
+    // A file that is written continuously never settles. Its time reveals its next change.
     for _ in 0..3 {
         let age = found.modified().ok().and_then(|time| time.elapsed().ok());
         if age.is_none_or(|age| age >= CLOCK) {
@@ -115,11 +113,12 @@ fn settled(path: &Path) -> io::Result<FileState> {
         thread::sleep(CLOCK);
         found = fs::metadata(path)?;
     }
-    Ok(FileState::of(&found))
+    Ok(FileState::from_metadata(&found))
 }
 
-/// A name as GDAL takes it, with the path of the file on disk in it made absolute: of a virtual file's archive, of a container
-/// (`GPKG:dem.gpkg:heights`), or the whole name. Names of files on a server stay as they are.
+/// Returns a name as GDAL takes it, with the path of the file on disk made absolute. The file on
+/// disk is the archive of a virtual file, a container (`GPKG:dem.gpkg:heights`), or the whole name.
+/// Names of files on a server stay as they are.
 pub(crate) fn absolute(name: &str) -> io::Result<String> {
     let file = if name.starts_with("/vsi") {
         match container(name) {
@@ -136,12 +135,12 @@ pub(crate) fn absolute(name: &str) -> io::Result<String> {
         return Ok(name.to_owned());
     }
     let whole = std::path::absolute(&file)?;
-    // Both are made of `name`, which is text.
+    // Both paths are parts of `name`, which is text.
     Ok(name.replacen(&*file.to_string_lossy(), &whole.to_string_lossy(), 1))
 }
 
-/// The file on disk in which a virtual one lies: `/vsizip//data/a.zip/inner.hgt`, `/vsisubfile/7_100,/data/a`,
-/// `/vsizip/{/data/a}/inner.hgt`.
+/// The file on disk that contains a virtual file: `/vsizip//data/a.zip/inner.hgt`,
+/// `/vsisubfile/7_100,/data/a`, `/vsizip/{/data/a}/inner.hgt`.
 ///
 /// `None` for a file on a server, even if a part of its name is the path of a local file.
 fn container(name: &str) -> Option<PathBuf> {

@@ -1,4 +1,4 @@
-//! Whatever is done to an input file shows in its stamp.
+//! Every change of an input file is visible in its stamp.
 
 use super::*;
 

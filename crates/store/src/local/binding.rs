@@ -1,7 +1,8 @@
-//! What makes a folder a store: the header that binds it to a plan, and the plan itself.
+//! Turns a folder into a store: the header that binds it to a plan, and the plan itself.
 //!
-//! The file `store` is the common header, then the plan's length (8 bytes), its CRC-32 (4) and the CRC-32 of these 12 bytes (4). It gets its name last,
-//! when all else is durable: a folder without it is no store yet, whatever else of a store it has.
+//! The file `store` is the common header, then the plan's length (8 bytes), its CRC-32 (4) and the
+//! CRC-32 of these 12 bytes (4). It gets its name last, when everything else is durable: a folder
+//! without this file is not yet a store, even if it has other files of a store.
 
 use std::{path::Path, sync::Arc};
 
@@ -10,33 +11,36 @@ use crate::{
     files::Files,
     local::{
         header::{self, FileKind, HEADER_BYTES, u32_at, u64_at},
-        layout::{self, Found},
+        layout::{self, StoreFolderFiles},
         lock::{self, Signature},
     },
 };
 
-/// What a folder is.
+/// The state of a folder.
 pub(crate) enum FolderState {
-    /// There is nothing.
+    /// The folder does not exist.
     Absent,
-    /// Empty, or what is left of making or removing a store.
+    /// The folder is empty, or has the remains of creating or deleting a store.
     Free,
-    /// A store.
+    /// The folder is a store.
     Store,
 }
 
-/// Looks at a folder. That it is ours is proved by what its files say, never by their names.
+/// Inspects a folder. The content of its files, never their names, proves that Corniche created it.
 ///
 /// # Errors
-/// [`StoreError::NotAStore`] where it holds something that is not the store's.
-pub(crate) fn state(files: &Arc<Files>, folder: &Path) -> Result<(FolderState, Found), StoreError> {
+/// [`StoreError::NotAStore`] if it contains something that does not belong to a store.
+pub(crate) fn state(
+    files: &Arc<Files>,
+    folder: &Path,
+) -> Result<(FolderState, StoreFolderFiles), StoreError> {
     let Some(found) = layout::look(files, folder)? else {
-        return Ok((FolderState::Absent, Found::default()));
+        return Ok((FolderState::Absent, StoreFolderFiles::default()));
     };
     let not_ours = |what: String| Err(StoreError::NotAStore { path: folder.to_owned(), what });
     let has_header = found.has(layout::STORE);
     if !has_header && let Some(name) = found.foreign.first() {
-        return not_ours(format!("it holds {name:?}"));
+        return not_ours(format!("it contains {name:?}"));
     }
     let signature =
         if found.has(layout::LOCK) { lock::signature(files, folder)? } else { Signature::None };
@@ -46,15 +50,15 @@ pub(crate) fn state(files: &Arc<Files>, folder: &Path) -> Result<(FolderState, F
             not_ours(format!("its {:?} was not written by Corniche", layout::LOCK))
         }
         (Signature::None, Some(name)) if !(has_header && is_header(files, folder)?) => {
-            not_ours(format!("nothing says that Corniche made its {name:?}"))
+            not_ours(format!("its {name:?} may not have been created by Corniche"))
         }
         _ if has_header => Ok((FolderState::Store, found)),
         _ => Ok((FolderState::Free, found)),
     }
 }
 
-/// Empties a lock that says something else than ours where the header proves that the folder is a store, so that it can be discarded: a lock holds
-/// nothing that is lost.
+/// Empties a lock file with foreign content if the header proves that the folder is a store, so
+/// that the store can be discarded: a lock file contains nothing of value.
 pub(crate) fn clear_damaged_lock(files: &Arc<Files>, folder: &Path) -> Result<(), StoreError> {
     let found = layout::look(files, folder)?.unwrap_or_default();
     let is_store = found.has(layout::STORE) && is_header(files, folder)?;
@@ -64,13 +68,13 @@ pub(crate) fn clear_damaged_lock(files: &Arc<Files>, folder: &Path) -> Result<()
     Ok(())
 }
 
-/// Whether the file `store` begins as the header of a store does, of any version.
+/// Whether the file `store` begins like the header of a store of any version.
 fn is_header(files: &Arc<Files>, folder: &Path) -> Result<bool, StoreError> {
     let file = files.open(&folder.join(layout::STORE), OpenMode::Read)?;
     Ok(header::begins_as(FileKind::Store, &file.read_start(HEADER_BYTES)?))
 }
 
-/// The content of a store's header, the file `store`.
+/// Returns the content of a store's header, the file `store`.
 #[must_use]
 pub fn store_header(plan: &StoredPlan) -> Vec<u8> {
     let mut record = header::encode(FileKind::Store, &plan.hash).to_vec();
@@ -81,10 +85,12 @@ pub fn store_header(plan: &StoredPlan) -> Vec<u8> {
     record
 }
 
-/// The plan that a header, the content of the file `store` at `path`, says that `bytes` are.
+/// Returns the plan `bytes` with its hash, after checking them against a header, which is the
+/// content of the file `store` at `path`.
 ///
 /// # Errors
-/// [`StoreError::OtherVersion`]; [`StoreError::Damaged`] where the header is none, or they do not belong together.
+/// [`StoreError::OtherVersion`]; [`StoreError::Damaged`] if the header is invalid, or header and
+/// plan do not belong together.
 pub fn plan_of_header(
     header: &[u8],
     bytes: Vec<u8>,
@@ -92,13 +98,13 @@ pub fn plan_of_header(
 ) -> Result<StoredPlan, StoreError> {
     let (hash, length, crc) = decode_header(header, path)?;
     if bytes.len() as u64 != length || crc32fast::hash(&bytes) != crc {
-        let what = "it is not the plan that the store was made with";
+        let what = "it is not the plan with which the store was created";
         return Err(FileKind::Store.damaged(&path.with_file_name(layout::PLAN), what));
     }
     Ok(StoredPlan { hash, bytes })
 }
 
-/// Makes a folder a store. If two processes do it at once with the same plan, nothing is wrong.
+/// Makes a folder a store. Two processes may do it at once with the same plan.
 pub(crate) fn bind(files: &Arc<Files>, folder: &Path, plan: &StoredPlan) -> Result<(), StoreError> {
     let record = store_header(plan);
     for (name, bytes) in [(layout::PLAN, &plan.bytes), (layout::STORE, &record)] {
@@ -113,7 +119,7 @@ pub(crate) fn bind(files: &Arc<Files>, folder: &Path, plan: &StoredPlan) -> Resu
     sync_parent(files, folder)
 }
 
-/// Makes durable that the folder is there.
+/// Makes the existence of the folder durable.
 fn sync_parent(files: &Files, folder: &Path) -> Result<(), StoreError> {
     match folder.parent() {
         Some(parent) if parent.as_os_str().is_empty() => files.sync_folder(Path::new(".")),
@@ -122,13 +128,13 @@ fn sync_parent(files: &Files, folder: &Path) -> Result<(), StoreError> {
     }
 }
 
-/// The hash in a store's header.
+/// Reads the hash in a store's header.
 pub(crate) fn read_hash(files: &Arc<Files>, folder: &Path) -> Result<PlanHash, StoreError> {
     let header = read_header(files, folder)?;
     decode_header(&header, &folder.join(layout::STORE)).map(|(hash, ..)| hash)
 }
 
-/// Does the same as `read_hash`, and the hash must be `plan`.
+/// Reads the hash and checks that it is `plan`.
 pub(crate) fn check_hash(
     files: &Arc<Files>,
     folder: &Path,
@@ -141,7 +147,7 @@ pub(crate) fn check_hash(
     }
 }
 
-/// The plan that a store is bound to.
+/// Reads the plan to which a store is bound.
 pub(crate) fn read_plan(files: &Arc<Files>, folder: &Path) -> Result<StoredPlan, StoreError> {
     let header = read_header(files, folder)?;
     let path = folder.join(layout::PLAN);
@@ -150,23 +156,23 @@ pub(crate) fn read_plan(files: &Arc<Files>, folder: &Path) -> Result<StoredPlan,
     plan_of_header(&header, bytes, &folder.join(layout::STORE))
 }
 
-/// The content of the header of a folder that must be a store.
+/// Reads the header of a folder that must be a store.
 fn read_header(files: &Arc<Files>, folder: &Path) -> Result<Vec<u8>, StoreError> {
     read_whole(files, &folder.join(layout::STORE))?
         .ok_or_else(|| StoreError::NoStore { path: folder.to_owned() })
 }
 
-/// The plan's hash, length and CRC-32.
+/// Decodes the plan's hash, length and CRC-32.
 fn decode_header(bytes: &[u8], path: &Path) -> Result<(PlanHash, u64, u32), StoreError> {
     let hash = header::decode(FileKind::Store, bytes, path)?;
     let rest = &bytes[HEADER_BYTES as usize..];
     if rest.len() != 16 || u32_at(rest, 12) != crc32fast::hash(&rest[..12]) {
-        return Err(FileKind::Store.damaged(path, "its checksum is wrong"));
+        return Err(FileKind::Store.damaged(path, "its checksum does not match"));
     }
     Ok((hash, u64_at(rest, 0), u32_at(rest, 8)))
 }
 
-/// The content of a file; `None` if it is not there.
+/// Reads the content of a file; `None` if it does not exist.
 fn read_whole(files: &Arc<Files>, path: &Path) -> Result<Option<Vec<u8>>, StoreError> {
     let file = files.open_if_there(path, OpenMode::Read)?;
     file.map(|file| file.read_start(u64::MAX)).transpose()

@@ -1,4 +1,5 @@
-//! What is written about an artifact: in a journal by order of putting, at the end of a sealed part by key.
+//! The entry of an artifact: in a journal in the order of storing, at the end of a sealed part by
+//! key.
 //!
 //! ```text
 //!  0        8        16       20     24     25      28    32
@@ -7,35 +8,37 @@
 //!  └────────┴────────┴────────┴──────┴──────┴───────┴─────┘     check: CRC-32 of the entry's number (8 bytes) and the 28 before
 //! ```
 //!
-//! The number is in the check so that an entry that is whole, but not where it was written, is not taken for one.
+//! The check includes the number, so that an intact entry in another position is not mistaken for a
+//! valid one.
 
 use std::path::Path;
 
 use crate::{
-    Key, StoreError,
+    ArtifactKey, StoreError,
     local::{
         header::{HEADER_BYTES, u32_at, u64_at},
         index::OFFSET_LIMIT,
     },
 };
 
-/// Bytes of an entry.
+/// Number of bytes of an entry.
 pub(crate) const ENTRY_BYTES: usize = 32;
 
-/// Where an artifact is in its file.
+/// The position of an artifact in its file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Entry {
-    pub(crate) key: Key,
+pub(crate) struct ArtifactEntry {
+    pub(crate) key: ArtifactKey,
     pub(crate) offset: u64,
     pub(crate) length: u32,
-    /// CRC-32 of the artifact.
+    /// The CRC-32 of the artifact.
     pub(crate) crc: u32,
 }
 
-/// What is found in a part is handed out one by one, with the file it is in, so that it need not be in memory twice.
-pub(crate) type Visit<'a> = dyn FnMut(&Path, Entry) -> Result<(), StoreError> + 'a;
+/// Called for each entry of a part, with the file that contains it, so that the list need not be in
+/// memory twice.
+pub(crate) type Visit<'a> = dyn FnMut(&Path, ArtifactEntry) -> Result<(), StoreError> + 'a;
 
-impl Entry {
+impl ArtifactEntry {
     pub(crate) fn encode(&self, number: u64) -> [u8; ENTRY_BYTES] {
         let mut bytes = [0; ENTRY_BYTES];
         bytes[..8].copy_from_slice(&self.key.item.to_le_bytes());
@@ -48,13 +51,14 @@ impl Entry {
         bytes
     }
 
-    /// The entry of this number, if that is what the bytes are, and if it lies within a file whose artifacts end at `end`.
+    /// Decodes the entry of this number; `None` if the bytes are not that entry, or if its artifact
+    /// is not within a file whose artifacts end at `end`.
     pub(crate) fn decode(number: u64, bytes: &[u8], end: u64) -> Option<Self> {
         if bytes.len() != ENTRY_BYTES || u32_at(bytes, 28) != check(number, &bytes[..28]) {
             return None;
         }
         let entry = Self {
-            key: Key { kind: bytes[24], item: u64_at(bytes, 0) },
+            key: ArtifactKey { kind: bytes[24], item: u64_at(bytes, 0) },
             offset: u64_at(bytes, 8),
             length: u32_at(bytes, 16),
             crc: u32_at(bytes, 20),
@@ -65,7 +69,7 @@ impl Entry {
         fits.then_some(entry)
     }
 
-    /// Where the artifact ends.
+    /// The end of the artifact.
     pub(crate) fn end(&self) -> Option<u64> {
         self.offset.checked_add(u64::from(self.length))
     }

@@ -1,4 +1,4 @@
-//! The sealed parts of a store that lie in a folder.
+//! The sealed parts of a store in a folder.
 
 use std::{
     path::{Path, PathBuf},
@@ -19,14 +19,14 @@ pub struct Folder {
 }
 
 impl Folder {
-    /// The folder at `path`, which need not be there.
+    /// Creates the place for the folder at `path`, which need not exist.
     #[must_use]
     pub fn new(disk: Arc<dyn Disk>, path: &Path) -> Self {
-        Self::of(&Files::new(disk), path)
+        Self::at_path(&Files::new(disk), path)
     }
 
-    /// The same, with the bytes counted in `files`.
-    pub(crate) fn of(files: &Arc<Files>, path: &Path) -> Self {
+    /// Creates the place with the bytes counted in `files`.
+    pub(crate) fn at_path(files: &Arc<Files>, path: &Path) -> Self {
         Self { files: Arc::clone(files), path: path.to_owned() }
     }
 }

@@ -1,4 +1,4 @@
-//! The bytes that every file of a store begins with.
+//! The bytes at the beginning of every file of a store.
 //!
 //! ```text
 //!  0      8        12                                44    48
@@ -11,18 +11,18 @@ use std::path::Path;
 
 use crate::{PlanHash, StoreError};
 
-/// The format of stores that this version writes, and the only one that it reads.
+/// The format version of stores that this program writes, and the only one that it reads.
 pub const VERSION: u32 = 1;
-/// Bytes of a header.
+/// Number of bytes of a header.
 pub(crate) const HEADER_BYTES: u64 = 48;
 
-/// What a file is.
+/// The kind of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum FileKind {
     Store,
     Journal,
     Data,
-    /// Begins as data does: it was data before.
+    /// Begins like a data file, because it was one before.
     Sealed,
 }
 
@@ -35,14 +35,14 @@ impl FileKind {
         }
     }
 
-    /// The error about such a file that is damaged: what is wrong, and what to do.
+    /// Returns the error about a damaged file of this kind: what is wrong, and what to do.
     pub(crate) fn damaged(self, path: &Path, what: &str) -> StoreError {
         let remedy = match self {
-            Self::Store => "remove the store and start again (build: with -O)",
+            Self::Store => "delete the store and start over (build: with -O)",
             Self::Journal | Self::Data => {
-                "remove the file and run the same command again (build: with --resume)"
+                "delete the file and run the same command again (build: with --resume)"
             }
-            Self::Sealed => "remove the file and make the part again",
+            Self::Sealed => "delete the file and create the part again",
         };
         StoreError::Damaged { path: path.to_owned(), what: format!("{what}; {remedy}") }
     }
@@ -63,21 +63,21 @@ pub(crate) fn begins_as(kind: FileKind, bytes: &[u8]) -> bool {
     bytes.len() as u64 >= HEADER_BYTES && bytes.starts_with(kind.magic())
 }
 
-/// The plan's hash in a header.
+/// Decodes the plan's hash in a header.
 ///
 /// # Errors
-/// Where it is of another version, damaged, or no header of this kind of file.
+/// When the header has another version, is damaged, or is not a header of this kind of file.
 pub(crate) fn decode(kind: FileKind, bytes: &[u8], path: &Path) -> Result<PlanHash, StoreError> {
     let damaged = |what| kind.damaged(path, what);
     let Some((bytes, _)) = bytes.split_first_chunk::<{ HEADER_BYTES as usize }>() else {
         return Err(damaged("it is too short"));
     };
     if &bytes[..8] != kind.magic() {
-        return Err(damaged("it does not begin as such a file begins"));
+        return Err(damaged("it does not begin with the bytes that mark a file of this kind"));
     }
     let found = u32_at(bytes, 8);
     if found != VERSION {
-        // What is of another version, and may be removed, is the whole store.
+        // The whole store has another version and may be deleted, so the error names the store.
         let path = match kind {
             FileKind::Store => path.parent().unwrap_or(path),
             FileKind::Journal | FileKind::Data | FileKind::Sealed => path,
@@ -85,14 +85,14 @@ pub(crate) fn decode(kind: FileKind, bytes: &[u8], path: &Path) -> Result<PlanHa
         return Err(StoreError::OtherVersion { path: path.to_owned(), found, known: VERSION });
     }
     if u32_at(bytes, 44) != crc32fast::hash(&bytes[..44]) {
-        return Err(damaged("the checksum of its header is wrong"));
+        return Err(damaged("the checksum of its header does not match"));
     }
     let mut plan = [0; 32];
     plan.copy_from_slice(&bytes[12..44]);
     Ok(plan)
 }
 
-/// Does the same as `decode`, and the hash must be `plan`.
+/// Decodes the hash and checks that it is `plan`.
 pub(crate) fn check(
     kind: FileKind,
     bytes: &[u8],
@@ -106,14 +106,14 @@ pub(crate) fn check(
     }
 }
 
-/// The integer at a place that is there.
+/// Reads the integer at a position, which must be within the bytes.
 pub(crate) fn u32_at(bytes: &[u8], at: usize) -> u32 {
     let mut word = [0; 4];
     word.copy_from_slice(&bytes[at..at + 4]);
     u32::from_le_bytes(word)
 }
 
-/// The integer at a place that is there.
+/// Reads the integer at a position, which must be within the bytes.
 pub(crate) fn u64_at(bytes: &[u8], at: usize) -> u64 {
     let mut word = [0; 8];
     word.copy_from_slice(&bytes[at..at + 8]);

@@ -1,5 +1,5 @@
-//! Who uses what: locks that the kernel gives back when a process ends, however it ends. So a lock never outlives its owner, and a file
-//! whose lock is free has no owner.
+//! Locks on files, which the kernel releases when a process ends, however it ends. So a lock never
+//! outlives its owner, and a file whose lock is free has no owner.
 
 use std::{
     path::{Path, PathBuf},
@@ -14,19 +14,22 @@ use crate::{
     local::layout,
 };
 
-/// How often one tries again where another process came in between. That happens once at most, unless the file system gives wrong answers.
+/// The number of attempts if another process intervenes. This happens at most once, unless the file
+/// system gives wrong answers.
 const TRIES: u32 = 100;
-/// What a lock begins with; random digits follow, and the end of the line.
+/// The beginning of a lock file; random digits and the end of the line follow.
 const MARK: &str = "corniche store ";
-/// What the line begins with that says who holds it.
+/// The beginning of the line that names the holder.
 const OWNER: &str = "process ";
-/// So much of a lock is read at most.
+/// The largest number of bytes of a lock file that are read.
 const MOST_BYTES: usize = 300;
 
-/// Takes the lock of the store in `folder`. `Hold::Alone` for a build, `Hold::Shared` for those that each make a part of their own.
+/// Takes the lock of the store in `folder`: `Hold::Alone` for a build, `Hold::Shared` for processes
+/// that each write their own part.
 ///
 /// # Errors
-/// [`StoreError::Locked`] if another process has it; [`StoreError::Gone`] if its file is removed again and again.
+/// [`StoreError::Locked`] if another process holds it; [`StoreError::Gone`] if its file is deleted
+/// again and again.
 pub(crate) fn lock_store(
     files: &Arc<Files>,
     folder: &Path,
@@ -38,7 +41,8 @@ pub(crate) fn lock_store(
             let owner = read_owner(&file);
             return Err(StoreError::Locked { path: folder.to_owned(), owner });
         }
-        // The last owner may have removed the file after we opened it: then it guards nothing any more.
+        // The last owner may have deleted the file after this process opened it: then its lock no
+        // longer protects anything.
         if file.is_in_place()? {
             sign(&file)?;
             return Ok(file);
@@ -47,7 +51,8 @@ pub(crate) fn lock_store(
     Err(StoreError::Gone { path: folder.to_owned() })
 }
 
-/// Creates a file that no other process takes for a leftover: its lock is held. `name` gives a path for each suffix.
+/// Creates a file that no other process mistakes for a leftover, because its lock is held. `name`
+/// returns a path for each suffix.
 pub(crate) fn create_owned(
     files: &Arc<Files>,
     name: impl Fn(&str) -> PathBuf,
@@ -57,7 +62,8 @@ pub(crate) fn create_owned(
             Err(error) if is_kind(&error, std::io::ErrorKind::AlreadyExists) => continue,
             file => file?,
         };
-        // Between the two calls another process may have taken it for a leftover and removed it.
+        // Between the two calls another process may have mistaken the file for a leftover and
+        // deleted it.
         if file.try_lock(Hold::Alone)? && file.is_in_place()? {
             return Ok(file);
         }
@@ -65,30 +71,33 @@ pub(crate) fn create_owned(
     Err(StoreError::Gone { path: name("") })
 }
 
-/// Opens a file if its owner is dead, and becomes its owner. `None` if its owner lives, or the file is gone.
+/// Opens a file if its owner is dead, and becomes its owner. `None` if its owner is alive, or the
+/// file does not exist.
 pub(crate) fn adopt(files: &Arc<Files>, path: &Path) -> Result<Option<OpenFile>, StoreError> {
     let Some(file) = files.open_if_there(path, OpenMode::Change)? else { return Ok(None) };
     Ok((file.try_lock(Hold::Alone)? && file.is_in_place()?).then_some(file))
 }
 
-/// What a file says that has the name of a store's lock.
+/// The content of a file that has the name of a store's lock.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Signature {
-    /// Nothing, the beginning of our line, or the owner alone, as older versions had it: nothing is lost when it is written.
+    /// Nothing, the beginning of Corniche's line, or only the owner (written by older versions): it
+    /// can be overwritten without loss.
     None,
-    /// It says that a store is here, in so many bytes, which are written before anything else of the store and never changed.
+    /// It says in this many bytes that this is a store. They are written before anything else of
+    /// the store and never change.
     Store(u64),
-    /// Something that is not ours.
+    /// Something that Corniche did not write.
     Foreign,
 }
 
-/// What the lock in a folder says; [`Signature::None`] where it is not there.
+/// Reads the content of the lock file in a folder; [`Signature::None`] if it does not exist.
 pub(crate) fn signature(files: &Arc<Files>, folder: &Path) -> Result<Signature, StoreError> {
     let Some(file) = files.open_if_there(&folder.join(layout::LOCK), OpenMode::Read)? else {
         return Ok(Signature::None);
     };
     match signature_of(&file) {
-        // Windows lets nobody read what is locked; who holds it has written into it before.
+        // On Windows a locked file cannot be read; its holder has already written into it.
         Err(_) if cfg!(windows) => Ok(Signature::Store(0)),
         signature => signature,
     }
@@ -104,7 +113,7 @@ fn signature_of(file: &OpenFile) -> Result<Signature, StoreError> {
     })
 }
 
-/// Empties the lock in a folder if what it says is not ours and nobody holds it.
+/// Empties the lock file in a folder if Corniche did not write its content and nobody holds it.
 pub(crate) fn clear_foreign(files: &Arc<Files>, folder: &Path) -> Result<(), StoreError> {
     if signature(files, folder)? != Signature::Foreign {
         return Ok(());
@@ -116,9 +125,11 @@ pub(crate) fn clear_foreign(files: &Arc<Files>, folder: &Path) -> Result<(), Sto
     file.set_length(0)
 }
 
-/// Writes into a lock that is held: that a store is here, unless it says so, and who works here.
+/// Writes into a lock file that is held: that this is a store, unless it says so already, and who
+/// works here.
 ///
-/// Others that share it may read and sign it meanwhile. So the mark is never cut off, and the file gets shorter only once the new text is there.
+/// Other holders of a shared lock may read and write the file at the same time. So the mark is
+/// never truncated, and the file only becomes shorter after the new text is written.
 fn sign(file: &OpenFile) -> Result<(), StoreError> {
     let owner = format!("{OWNER}{} on {}\n", process::id(), host());
     match signature_of(file)? {
@@ -133,7 +144,8 @@ fn sign(file: &OpenFile) -> Result<(), StoreError> {
             });
         }
     }
-    // Durable before what it speaks for, also where it was signed by a process that died before it could see to that.
+    // The mark must be durable before the files that it protects, even if it was written by a
+    // process that died before it could sync.
     file.sync()?;
     file.files().sync_folder(file.path().parent().unwrap_or(file.path()))
 }
@@ -144,12 +156,14 @@ fn write_to_end(file: &OpenFile, text: &str, offset: u64) -> Result<(), StoreErr
     file.set_length(offset + text.len() as u64)
 }
 
-/// Process id and random digits: two processes, of one machine or of two, never choose the same.
+/// Returns the process id with random digits: no two processes, on one machine or on two, choose
+/// the same suffix.
 pub(crate) fn suffix() -> String {
     format!("{}-{}", process::id(), random_digits())
 }
 
-/// The beginning of a lock, which is short. It can get longer or shorter meanwhile, so its length is not asked.
+/// Reads the beginning of a lock file, which is short. It can become longer or shorter meanwhile,
+/// so its length is not used.
 fn read_text(file: &OpenFile) -> Result<String, StoreError> {
     let mut bytes = vec![0; MOST_BYTES];
     let length = file.read_up_to(&mut bytes, 0)?;
@@ -157,7 +171,8 @@ fn read_text(file: &OpenFile) -> Result<String, StoreError> {
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-/// What the lock's owner wrote into it. It is for people only, so that not being able to read it is no error.
+/// Reads the text that the lock's owner wrote into the file. It is only for users, so it is no
+/// error if it cannot be read.
 fn read_owner(file: &OpenFile) -> String {
     let text = read_text(file).unwrap_or_default();
     let owner = text.lines().find(|line| line.starts_with(OWNER));

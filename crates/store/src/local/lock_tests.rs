@@ -1,4 +1,5 @@
-//! Holders that share a lock read and sign it side by side, and a line that a kill cut off is written anew.
+//! Holders that share a lock read and write it at the same time, and an incomplete line, left by a
+//! kill, is written again.
 
 use std::{fs, thread};
 
@@ -12,7 +13,7 @@ fn folder() -> (tempfile::TempDir, Arc<Files>) {
 #[test]
 fn holders_that_share_a_lock_sign_it_side_by_side() {
     let (folder, files) = folder();
-    // An owner with a long name was there before.
+    // The previous owner had a longer name.
     let old = format!("{MARK}0123456789abcdef\n{OWNER}1234567 on {}\n", "n".repeat(60));
     fs::write(folder.path().join(layout::LOCK), old).unwrap();
     thread::scope(|scope| {

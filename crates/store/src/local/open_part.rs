@@ -1,7 +1,9 @@
-//! The part that is being written: artifacts one after the other in a data file, and a journal of them.
+//! The part that is being written: artifacts one after another in a data file, and a journal of
+//! them.
 //!
-//! The journal never names what might not be there: first the data is made durable, then the entries are written, then they are made durable.
-//! So what a crash leaves is a journal that is right up to some entry. What follows there is cut off at the next start.
+//! The journal never refers to data that may be missing: first the data is made durable, then the
+//! entries are written, then the entries are made durable. So after a crash the journal is correct
+//! up to some entry. The rest is truncated at the next start.
 
 use std::{
     mem,
@@ -13,13 +15,15 @@ use std::{
     time::{Duration, Instant},
 };
 
+use corniche_work::locked;
+
 use crate::{
-    Key, OpenMode, PartFile as _, PlanHash, StoreError,
+    ArtifactKey, OpenMode, PartFile as _, PlanHash, StoreError,
     files::{Files, OpenFile},
     local::{
-        entry::{ENTRY_BYTES, Entry, Visit},
+        entry::{ArtifactEntry, ENTRY_BYTES, Visit},
         header::{self, FileKind, HEADER_BYTES},
-        index::{Index, Location, OFFSET_LIMIT, PART_LIMIT},
+        index::{ArtifactLocation, Index, OFFSET_LIMIT, PART_LIMIT},
         layout, lock, sealed_part,
     },
 };
@@ -27,28 +31,28 @@ use crate::{
 /// The number of the open part in the index.
 pub(crate) const OPEN_PART: u32 = PART_LIMIT - 1;
 
-/// A part that artifacts are added to, by any number of threads.
+/// A part to which any number of threads add artifacts.
 #[derive(Debug)]
 pub(crate) struct OpenPart {
     name: String,
     data: OpenFile,
     journal: OpenFile,
     interval: Duration,
-    /// Where the next artifact goes in the data file.
+    /// The offset of the next artifact in the data file.
     end: AtomicU64,
-    /// Entries of artifacts that are written, in order of putting, but not in the journal yet.
-    pending: Mutex<Vec<Entry>>,
-    /// How many entries the journal has. Who syncs holds it.
+    /// Entries of artifacts that are written, in the order of storing, but not in the journal yet.
+    pending: Mutex<Vec<ArtifactEntry>>,
+    /// Number of entries in the journal. The thread that syncs holds it.
     journaled: Mutex<u64>,
     synced_at: Mutex<Instant>,
-    /// A sync failed: what the system keeps of the unsynced writes is unknown, so nothing may be built on them.
-    /// The text says why.
+    /// Set after a failed sync: the state of the unsynced writes is unknown, so nothing may rely on
+    /// them. The text is the cause.
     failed: OnceLock<String>,
 }
 
 impl OpenPart {
-    /// Goes on with a part that a dead process left, or makes a new one. Also returns how many entries were cut off: torn, of an artifact that is
-    /// damaged, or after such a one.
+    /// Resumes a part that a dead process left, or creates one. Also returns the number of
+    /// truncated entries: incomplete, of a damaged artifact, or after such an entry.
     pub(crate) fn open(
         files: &Arc<Files>,
         folder: &Path,
@@ -59,14 +63,14 @@ impl OpenPart {
     ) -> Result<(Self, u64), StoreError> {
         let found = layout::look(files, folder)?.unwrap_or_default();
         let mut left = Vec::new();
-        for journal in found.of(layout::Role::Journal) {
+        for journal in found.files_with_role(layout::Role::Journal) {
             if layout::part_of_journal(journal) == Some(name)
                 && let Some(journal) = lock::adopt(files, &folder.join(journal))?
             {
                 left.push((journal.length()?, journal));
             }
         }
-        // If it was begun more than once, go on with the one that holds most.
+        // If the part was begun more than once, resume the one with the most artifacts.
         left.sort_by_key(|(length, _)| *length);
         let longest = left.pop();
         for (_, journal) in left {
@@ -101,7 +105,8 @@ impl OpenPart {
         Ok(Self::new(name, data, journal, interval, HEADER_BYTES, 0))
     }
 
-    /// Goes on with a part whose journal has entries and is owned by now; `None` if it was sealed, and only the journal was left.
+    /// Resumes a part whose journal has entries and is now owned by this process; `None` if the
+    /// part was sealed, and only the journal is left.
     fn resume(
         files: &Arc<Files>,
         journal: OpenFile,
@@ -119,7 +124,8 @@ impl OpenPart {
             header::check(kind, &file.read_start(HEADER_BYTES)?, file.path(), plan)?;
         }
         let Replayed { entries: journaled, end, dropped } = replay(&journal, &data, visit)?;
-        // Durable before anything is added: else an old entry could come back behind a new one.
+        // This must be durable before anything is added: otherwise an old entry could reappear
+        // after a new one.
         journal.set_length(journal_bytes(journaled))?;
         journal.sync()?;
         data.set_length(end)?;
@@ -149,16 +155,16 @@ impl OpenPart {
         }
     }
 
-    /// The file with its artifacts.
+    /// The file with the artifacts.
     pub(crate) fn data(&self) -> &OpenFile {
         &self.data
     }
 
-    /// Adds an artifact, and makes durable what is there if the last time is long ago and nobody else is at it.
+    /// Adds an artifact, and syncs if the last sync is long ago and no other thread is syncing.
     pub(crate) fn put(
         &self,
         index: &RwLock<Index>,
-        key: Key,
+        key: ArtifactKey,
         bytes: &[u8],
     ) -> Result<(), StoreError> {
         self.check_not_failed()?;
@@ -172,18 +178,20 @@ impl OpenPart {
             too_large("an artifact of so many bytes", bytes.len() as u64, u64::from(u32::MAX))
         })?;
         let crc = crc32fast::hash(bytes);
-        // Reserve first, write outside any lock: threads do not wait for each other's disk.
+        // Reserve space first, write without a lock: threads do not wait for each other's disk
+        // writes.
         let offset = self.end.fetch_add(u64::from(length), Ordering::Relaxed);
         if offset + u64::from(length) >= OFFSET_LIMIT {
             return Err(too_large("so many bytes in one part", offset, OFFSET_LIMIT));
         }
         self.data.write_all_at(bytes, offset)?;
         {
-            // Nobody sees the artifact before its entry is in line: whatever is made from it gets a later entry.
+            // No thread sees the artifact before its entry is pending: the entry of everything that
+            // is computed from it comes later.
             let mut pending = locked(&self.pending);
-            let place = Location { part: OPEN_PART, offset, length, crc };
+            let place = ArtifactLocation { part: OPEN_PART, offset, length, crc };
             if index.write().unwrap_or_else(PoisonError::into_inner).insert(key, place) {
-                pending.push(Entry { key, offset, length, crc });
+                pending.push(ArtifactEntry { key, offset, length, crc });
             }
         }
         if locked(&self.synced_at).elapsed() < self.interval {
@@ -196,14 +204,14 @@ impl OpenPart {
         }
     }
 
-    /// Makes durable all that was put before.
+    /// Makes all stored artifacts durable.
     pub(crate) fn flush(&self) -> Result<(), StoreError> {
         self.sync(locked(&self.journaled))
     }
 
     fn sync(&self, mut journaled: MutexGuard<'_, u64>) -> Result<(), StoreError> {
         self.check_not_failed()?;
-        // All of these are written: an entry gets here after its data.
+        // The data of all these entries is written: an entry is added after its data.
         let batch = mem::take(&mut *locked(&self.pending));
         if !batch.is_empty() {
             self.journal(&batch, *journaled)
@@ -214,8 +222,8 @@ impl OpenPart {
         Ok(())
     }
 
-    /// Data first, then the entries that name it.
-    fn journal(&self, batch: &[Entry], journaled: u64) -> Result<(), StoreError> {
+    /// Syncs the data first, then the entries that refer to it.
+    fn journal(&self, batch: &[ArtifactEntry], journaled: u64) -> Result<(), StoreError> {
         for file in [&self.data, &self.journal] {
             if !file.is_in_place()? {
                 return Err(StoreError::Gone { path: file.path().to_owned() });
@@ -231,15 +239,15 @@ impl OpenPart {
         self.journal.sync()
     }
 
-    /// From here on nothing is kept any more, because of `cause`.
+    /// Stops storing: from now on, every call fails with `cause`.
     pub(crate) fn give_up(&self, cause: String) {
-        // The first cause is the one to be told.
+        // Only the first cause is reported.
         let _ = self.failed.set(cause);
     }
 
-    /// Removes the part.
+    /// Deletes the part.
     pub(crate) fn abandon(self) -> Result<(), StoreError> {
-        self.give_up("the part was given up".to_owned());
+        self.give_up("the part was abandoned".to_owned());
         remove(self.data.files(), &self.journal)
     }
 
@@ -249,14 +257,20 @@ impl OpenPart {
         })
     }
 
-    /// Ends the part, of which `index` says what it holds. Returns where it is now; `None` if it holds nothing, and is removed.
+    /// Seals the part, whose content is in `index`. Returns its path; `None` if it is empty, and is
+    /// deleted.
     pub(crate) fn seal(self, folder: &Path, index: &Index) -> Result<Option<PathBuf>, StoreError> {
         self.flush()?;
         let files = self.data.files();
         let mut entries = index
             .iter()
             .filter(|(_, place)| place.part == OPEN_PART)
-            .map(|(key, Location { offset, length, crc, .. })| Entry { key, offset, length, crc })
+            .map(|(key, ArtifactLocation { offset, length, crc, .. })| ArtifactEntry {
+                key,
+                offset,
+                length,
+                crc,
+            })
             .peekable();
         let path = if entries.peek().is_none() {
             files.remove(self.data.path())?;
@@ -271,27 +285,30 @@ impl OpenPart {
 }
 
 impl Drop for OpenPart {
-    /// Keeps what was put since the last time. That it may fail is no loss: the work of the last seconds is done again.
+    /// Makes the artifacts since the last sync durable. A failure is acceptable: the work of the
+    /// last seconds is repeated.
     fn drop(&mut self) {
         let _ = self.flush();
     }
 }
 
-/// Removes both files of a part that is owned. The journal goes last: data without one is nobody's.
+/// Deletes both files of a part that this process owns. The journal is deleted last: data without a
+/// journal belongs to nobody.
 fn remove(files: &Arc<Files>, journal: &OpenFile) -> Result<(), StoreError> {
     files.remove(&layout::data_of_journal(journal.path()))?;
     files.remove(journal.path())
 }
 
-/// Removes what dead processes left of parts whose journal is not there: data that nothing tells the meaning of.
+/// Deletes the data files that dead processes left without a journal: nothing describes their
+/// content.
 pub(crate) fn remove_data_without_journal(
     files: &Arc<Files>,
     folder: &Path,
 ) -> Result<(), StoreError> {
     let found = layout::look(files, folder)?.unwrap_or_default();
-    for name in found.of(layout::Role::Data) {
+    for name in found.files_with_role(layout::Role::Data) {
         let data = folder.join(name);
-        // A living owner has made the journal first, and locked it; it is there while the data is.
+        // A living owner has created and locked the journal first; it exists as long as the data.
         if !files.exists(&layout::journal_of_data(&data))? {
             files.remove(&data)?;
         }
@@ -299,20 +316,21 @@ pub(crate) fn remove_data_without_journal(
     Ok(())
 }
 
-/// What was found in a journal.
+/// The result of reading a journal.
 struct Replayed {
-    /// How many entries are right.
+    /// Number of valid entries.
     entries: u64,
-    /// Where their last artifact ends.
+    /// The end of their last artifact.
     end: u64,
-    /// How many more there were.
+    /// Number of dropped entries.
     dropped: u64,
 }
 
-/// Reads a journal up to the first entry that is torn or whose artifact is not what was put; hands out the entries before it.
+/// Reads a journal up to the first entry that is incomplete or whose artifact is damaged; passes on
+/// the entries before it.
 ///
-/// Nothing after it is kept, even if it is whole: it may have been made from what is lost, or be the mark that says that all before it is
-/// there.
+/// All later entries are dropped, even if they are intact: they may have been computed from the
+/// lost ones, or be the mark which says that everything before it is complete.
 fn replay(
     journal: &OpenFile,
     data: &OpenFile,
@@ -329,7 +347,9 @@ fn replay(
         bytes.resize((journal_end - from).min(ENTRIES_AT_ONCE * ENTRY_BYTES as u64) as usize, 0);
         journal.read_exact_at(&mut bytes, from)?;
         for entry in bytes.chunks(ENTRY_BYTES) {
-            let Some(entry) = Entry::decode(entries, entry, data_end) else { break 'journal };
+            let Some(entry) = ArtifactEntry::decode(entries, entry, data_end) else {
+                break 'journal;
+            };
             artifact.resize(entry.length as usize, 0);
             data.read_exact_at(&mut artifact, entry.offset)?;
             if crc32fast::hash(&artifact) != entry.crc {
@@ -343,11 +363,7 @@ fn replay(
     Ok(Replayed { entries, end, dropped: count - entries })
 }
 
-/// The length of a journal of so many entries.
+/// The length of a journal with this number of entries.
 fn journal_bytes(entries: u64) -> u64 {
     HEADER_BYTES + entries * ENTRY_BYTES as u64
-}
-
-fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

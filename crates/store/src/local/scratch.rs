@@ -1,14 +1,14 @@
-//! Scratch space in a file of a store, removed when it is no longer needed.
+//! Scratch space in a file of a store, which is deleted when it is no longer needed.
 
 use std::{
     io,
     sync::atomic::{AtomicU64, Ordering},
 };
 
-use crate::{PartFile as _, Scratch, Span, files::OpenFile};
+use crate::{PartFile as _, ScratchRange, ScratchSpace, files::OpenFile};
 
-/// Scratch space in a file of a store, which is removed when this is dropped. What a killed process leaves is removed when its store is opened
-/// the next time.
+/// Scratch space in a file of a store, which is deleted when this value is dropped. Files of killed
+/// processes are deleted when their store is opened the next time.
 #[derive(Debug)]
 pub struct LocalScratch {
     file: OpenFile,
@@ -16,22 +16,22 @@ pub struct LocalScratch {
 }
 
 impl LocalScratch {
-    /// Scratch space in a file that is empty and owned.
+    /// Creates scratch space in a file that is empty and owned by this process.
     pub(crate) fn new(file: OpenFile) -> Self {
         Self { file, end: AtomicU64::new(0) }
     }
 }
 
-impl Scratch for LocalScratch {
-    fn append(&self, bytes: &[u8]) -> io::Result<Span> {
+impl ScratchSpace for LocalScratch {
+    fn append(&self, bytes: &[u8]) -> io::Result<ScratchRange> {
         let length = bytes.len() as u64;
-        // Reserve first, so that writers do not wait for each other's disk.
+        // Reserve space first, so that writers do not wait for each other's disk writes.
         let offset = self.end.fetch_add(length, Ordering::Relaxed);
         self.file.write_all_at(bytes, offset)?;
-        Ok(Span { offset, length })
+        Ok(ScratchRange { offset, length })
     }
 
-    fn read(&self, span: Span) -> io::Result<Vec<u8>> {
+    fn read(&self, span: ScratchRange) -> io::Result<Vec<u8>> {
         if span
             .offset
             .checked_add(span.length)
@@ -47,7 +47,7 @@ impl Scratch for LocalScratch {
 
 impl Drop for LocalScratch {
     fn drop(&mut self) {
-        // If it cannot be removed now, it is removed when the store is opened the next time.
+        // If the file cannot be deleted now, it is deleted when the store is opened the next time.
         let _ = self.file.files().remove(self.file.path());
     }
 }

@@ -1,4 +1,4 @@
-//! A part that is done: nothing is added to it any more, and its name says what it holds.
+//! A part that is complete: nothing is added to it any more, and its name depends on its content.
 //!
 //! ```text
 //!  ┌────────┬───────────┬─ ─ ─┬───────────┬─────────────────────────┬────────┐
@@ -10,8 +10,9 @@
 //!           └─────────┴───────┴─────┴─────┴───────┘
 //! ```
 //!
-//! Its file is `parts/NAME.DIGEST.part`. The digest is the first 16 bytes of the SHA-256 over kind, item, length and CRC-32 of each artifact, by
-//! key: the order in which threads finished does not matter, and the same part made twice gets the same name.
+//! Its file is `parts/NAME.DIGEST.part`. The digest is the first 16 bytes of the SHA-256 over kind,
+//! item, length and CRC-32 of each artifact, by key: the order in which threads finished does not
+//! matter, and two copies of the same part get the same name.
 
 use std::{
     fmt::Write as _,
@@ -21,10 +22,10 @@ use std::{
 use sha2::{Digest as _, Sha256};
 
 use crate::{
-    Key, PartFile, PlanHash, StoreError,
+    ArtifactKey, PartFile, PlanHash, StoreError,
     files::OpenFile,
     local::{
-        entry::{ENTRY_BYTES, Entry, Visit},
+        entry::{ArtifactEntry, ENTRY_BYTES, Visit},
         header::{self, FileKind, HEADER_BYTES, u32_at, u64_at},
         layout,
     },
@@ -32,20 +33,21 @@ use crate::{
 
 const FOOTER_BYTES: usize = 32;
 const FOOTER_MAGIC: &[u8; 8] = b"CORNSEAL";
-/// How many entries are written at once.
+/// Number of entries that are written at once.
 const ENTRIES_AT_ONCE: usize = 2048;
-/// How much of a list is read at once.
+/// Number of bytes of a list that are read at once.
 const LIST_BYTES_AT_ONCE: u64 = 32_768 * ENTRY_BYTES as u64;
-/// How much of what lies before the footer is read with it.
+/// Number of bytes before the footer that are read together with it.
 const TAIL_BYTES: u64 = 2048 * ENTRY_BYTES as u64;
 
-/// Ends a data file whose artifacts end at `end`, makes it durable and gives it its name in the folder of parts. `entries` are sorted by key.
-/// If the same part is there already, the file is removed.
+/// Completes a data file whose artifacts end at `end`, makes it durable, and gives it its name in
+/// the folder of parts. `entries` are sorted by key. If the same part already exists, the file is
+/// deleted.
 pub(crate) fn seal(
     data: &OpenFile,
     folder: &Path,
     part: &str,
-    entries: impl Iterator<Item = Entry>,
+    entries: impl Iterator<Item = ArtifactEntry>,
     end: u64,
 ) -> Result<PathBuf, StoreError> {
     let mut digest = Digest::default();
@@ -84,16 +86,18 @@ pub(crate) fn seal(
     Ok(path)
 }
 
-/// Fails unless a file is a whole sealed part of this plan, and the one that its name says. The artifacts are not read: each is checked when
-/// it is.
+/// Fails unless a file is a complete sealed part of this plan, and the part that its name says. The
+/// artifacts are not read: each of them is checked when it is read.
 ///
 /// # Errors
-/// [`StoreError::Damaged`], [`StoreError::OtherPlan`] and [`StoreError::OtherVersion`]; where it cannot be read.
+/// [`StoreError::Damaged`], [`StoreError::OtherPlan`] and [`StoreError::OtherVersion`]; when the
+/// file cannot be read.
 pub fn check_sealed(file: &dyn PartFile, plan: &PlanHash) -> Result<(), StoreError> {
     read_list(file, plan, &mut |_, _| Ok(()))
 }
 
-/// Hands out what a sealed part holds, by key. What is wrong with it is noticed by the end of the list.
+/// Passes on the entries of a sealed part, by key. Damage of the part is reported at the end of the
+/// list at the latest.
 pub(crate) fn read_list(
     file: &dyn PartFile,
     plan: &PlanHash,
@@ -108,20 +112,23 @@ pub(crate) fn read_list(
 
     let ended = length.checked_sub(FOOTER_BYTES as u64).filter(|&ended| ended >= HEADER_BYTES);
     let ended = ended.ok_or_else(|| damaged("it is too short"))?;
-    // The end of the list comes with the footer: of most parts that is all of it, and elsewhere than on a disk each reading takes long.
+    // The end of the list is read together with the footer: for most parts this is the whole list,
+    // and in places other than a disk each request takes long.
     let tail_from = ended - (ended - HEADER_BYTES).min(TAIL_BYTES);
     let mut tail = vec![0; (length - tail_from) as usize];
     file.read_alone_at(&mut tail, tail_from)?;
     let footer = tail.split_off((ended - tail_from) as usize);
-    let (from, count) =
-        decode_footer(&footer).ok_or_else(|| damaged("it does not end as a sealed part ends"))?;
+    let (from, count) = decode_footer(&footer)
+        .ok_or_else(|| damaged("it does not end with the footer of a sealed part"))?;
     let entry_bytes = count.checked_mul(ENTRY_BYTES as u64);
     if entry_bytes.and_then(|bytes| from.checked_add(bytes)) != Some(ended) {
-        return Err(damaged("its list of artifacts has another length than it says"));
+        return Err(damaged(
+            "its list of artifacts does not have the length that its footer gives",
+        ));
     }
 
     let mut digest = Digest::default();
-    let mut last: Option<Key> = None;
+    let mut last: Option<ArtifactKey> = None;
     let mut bytes = Vec::new();
     let mut number = 0;
     while number < count {
@@ -134,9 +141,9 @@ pub(crate) fn read_list(
             file.read_alone_at(&mut bytes, offset)?;
         }
         for entry in bytes.chunks(ENTRY_BYTES) {
-            let entry = Entry::decode(number, entry, from)
+            let entry = ArtifactEntry::decode(number, entry, from)
                 .filter(|entry| last.is_none_or(|last| last < entry.key))
-                .ok_or_else(|| damaged("its list of artifacts is wrong"))?;
+                .ok_or_else(|| damaged("its list of artifacts is invalid"))?;
             digest.add(&entry);
             visit(path, entry)?;
             last = Some(entry.key);
@@ -145,7 +152,7 @@ pub(crate) fn read_list(
     }
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     if layout::digest_of_sealed(&name) != Some(&digest.finish()) {
-        return Err(damaged("it holds something else than its name says"));
+        return Err(damaged("its content does not match its name"));
     }
     Ok(())
 }
@@ -167,12 +174,12 @@ fn decode_footer(bytes: &[u8]) -> Option<(u64, u64)> {
     whole.then(|| (u64_at(bytes, 0), u64_at(bytes, 8)))
 }
 
-/// What a part holds, as a short text.
+/// The digest of the content of a part.
 #[derive(Default)]
 struct Digest(Sha256);
 
 impl Digest {
-    fn add(&mut self, entry: &Entry) {
+    fn add(&mut self, entry: &ArtifactEntry) {
         self.0.update([entry.key.kind]);
         self.0.update(entry.key.item.to_le_bytes());
         self.0.update(entry.length.to_le_bytes());

@@ -1,13 +1,15 @@
-//! What is written beside its target until it is complete, and how a later run knows it for ours.
+//! Files that are written next to their target until they are complete, and how a later run
+//! recognises them.
 //!
 //! ```text
-//!   .NAME.unfinished          the claim: a line with a random id, written before anything else; its lock tells whether someone writes
-//!   .NAME.ID.unfinished       what is made, a file or a folder
-//!   .NAME.ID.replaced         a folder that was there, for as long as the new one takes its place
+//!   .NAME.unfinished          the claim: a line with a random id, written first; locked while a program writes
+//!   .NAME.ID.unfinished       the unfinished file or folder
+//!   .NAME.ID.replaced         the old folder, while the new one takes its place
 //! ```
 //!
-//! A killed run leaves its claim, and with it the id: what has that id in its name is ours, and nothing else is. The next run takes the
-//! claim over. Whatever else has the name of the claim is left alone, and told.
+//! A killed run leaves its claim, and with it the id: files with this id in their name belong to
+//! Corniche, and no other files do. The next run takes over the claim. Any other file with the name
+//! of the claim is left alone and reported.
 
 use std::{
     fs::{self, File, TryLockError},
@@ -26,27 +28,28 @@ use crate::{
     ids::{Marked, marked, random_digits},
 };
 
-/// How often it is tried again when another program ends at the same moment, and removes its claim.
+/// The number of attempts if another program ends at the same moment and deletes its claim.
 const TRIES: usize = 5;
-/// What a claim begins with; the id follows, and the end of the line.
+/// The beginning of a claim; the id and the end of the line follow.
 const MARK: &str = "corniche unfinished ";
-/// Longer is no claim.
+/// Longer files are not claims.
 const MOST_BYTES: u64 = 100;
-/// The ending of what is made.
+/// The ending of the unfinished file or folder.
 const UNFINISHED: &str = "unfinished";
-/// The ending of what was there.
+/// The ending of the replaced folder.
 const REPLACED: &str = "replaced";
 
-/// What to do with what exists at a target.
+/// How to handle an existing file at a target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Existing {
-    /// It stays, and nothing is written.
+    /// Keeps the existing file; nothing is written.
     Keep,
-    /// It is replaced.
+    /// Replaces the existing file.
     Replace,
 }
 
-/// The right to write at a target, for as long as this lives: a file beside it, which is locked.
+/// The right to write to a target, for as long as this value lives: a locked file next to the
+/// target.
 #[derive(Debug)]
 pub struct Claim {
     target: PathBuf,
@@ -60,17 +63,18 @@ fn beside(target: &Path, id: &str, end: &str) -> PathBuf {
     target.with_file_name(format!(".{name}.{id}.{end}"))
 }
 
-/// The longest name that a file has beside its target while it is written.
+/// The longest name of a file next to its target while the target is written.
 pub(crate) fn longest_name(target: &Path) -> PathBuf {
     beside(target, &random_digits(), UNFINISHED)
 }
 
 impl Claim {
-    /// Claims a target, which need not exist. What a killed run left beside it is neither used nor removed by that.
+    /// Claims a target, which need not exist. Leftovers of a killed run next to it are neither used
+    /// nor deleted by this.
     ///
     /// # Errors
-    /// Of kind `ResourceBusy` if another program writes there; else where the folder cannot be written, or something that is not ours has the
-    /// name of the claim.
+    /// With kind `ResourceBusy` if another program writes there; otherwise when the folder cannot
+    /// be written, or a file that does not belong to Corniche has the name of the claim.
     pub fn take(target: &Path) -> io::Result<Self> {
         let name = target.file_name().unwrap_or_default().to_string_lossy();
         let path = target.with_file_name(format!(".{name}.{UNFINISHED}"));
@@ -80,14 +84,18 @@ impl Claim {
             if !is_at(&file, &path)? {
                 continue;
             }
-            // It becomes a claim, which is removed when it is dropped, only once it is known to be ours or to say nothing.
+            // The file becomes a claim, which is deleted when it is dropped, only after it is known
+            // to be empty or to belong to Corniche.
             let text = read(&file)?;
             let said = marked(&text, MARK);
             let id = match said {
                 Marked::Id(id, "") => id.to_owned(),
                 Marked::Begun => random_digits(),
                 Marked::Id(..) | Marked::Other => {
-                    return Err(in_the_way(&path, "it was not made by this version of Corniche"));
+                    return Err(in_the_way(
+                        &path,
+                        "it was not created by this version of Corniche",
+                    ));
                 }
             };
             let mut claim = Self { target: target.to_path_buf(), path, file, id };
@@ -99,25 +107,25 @@ impl Claim {
         Err(busy())
     }
 
-    /// What is claimed.
+    /// The claimed target.
     #[must_use]
     pub fn target(&self) -> &Path {
         &self.target
     }
 
-    /// The file that is locked.
+    /// The locked file.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Where what becomes the target is made.
+    /// The path of the unfinished file or folder that becomes the target.
     #[must_use]
     pub fn unfinished(&self) -> PathBuf {
         self.beside(UNFINISHED)
     }
 
-    /// Where what was at the target is put for as long as the new takes its place.
+    /// The path of the old folder while the new one takes its place.
     #[must_use]
     pub fn replaced(&self) -> PathBuf {
         self.beside(REPLACED)
@@ -127,10 +135,10 @@ impl Claim {
         beside(&self.target, &self.id, end)
     }
 
-    /// Begins the file that becomes the target. What a killed run left of it is removed.
+    /// Begins the file that becomes the target. Leftovers of a killed run are deleted.
     ///
     /// # Errors
-    /// Where the folder cannot be written.
+    /// When the folder cannot be written.
     pub fn begin_file(self, existing: Existing) -> io::Result<UnfinishedFile> {
         let path = self.unfinished();
         remove_left(&path)?;
@@ -139,30 +147,32 @@ impl Claim {
         Ok(UnfinishedFile { file, existing, claim: self })
     }
 
-    /// Begins the folder that becomes the target, or holds what does. What killed runs left of this target is removed.
+    /// Begins the folder that becomes the target, or contains the file that does. Leftovers of
+    /// killed runs with this target are deleted.
     ///
     /// # Errors
-    /// Where the folder cannot be written.
+    /// When the folder cannot be written.
     pub fn begin_folder(self) -> io::Result<UnfinishedFolder> {
         let path = self.unfinished();
         for left in [&path, &self.replaced()] {
             remove_left(left)?;
         }
-        // What is not finished is no concern of other users.
+        // Unfinished files are not for other users.
         create_private_folder(&path)?;
         Ok(UnfinishedFolder { path, claim: self })
     }
 
-    /// Makes durable that this claim is there, so that what has its id is ours also after the machine failed.
+    /// Makes the claim durable, so that files with its id are recognised even after a failure of
+    /// the machine.
     ///
     /// # Errors
-    /// Where the disk fails.
+    /// When the disk fails.
     pub fn sync(&self) -> io::Result<()> {
         self.file.sync_all()?;
         sync_folder(folder_of(&self.path))
     }
 
-    /// Writes the claim, in the place of one that was begun.
+    /// Writes the claim, or completes one that was begun.
     fn sign(&mut self) -> io::Result<()> {
         self.file.set_len(0)?;
         self.file.rewind()?;
@@ -172,7 +182,7 @@ impl Claim {
 
 impl Drop for Claim {
     fn drop(&mut self) {
-        // What is still there is known by the claim alone, and a later run removes both.
+        // Only the claim identifies the remaining files; a later run deletes both.
         let is_needed =
             [UNFINISHED, REPLACED].map(|end| self.beside(end)).iter().any(|path| is_there(path));
         if !is_needed && is_at(&self.file, &self.path).unwrap_or(false) {
@@ -181,23 +191,24 @@ impl Drop for Claim {
     }
 }
 
-/// A file that is made beside its target. It is removed if it is dropped before it gets there.
+/// A file that is written next to its target. It is deleted if it is dropped before it is moved
+/// there.
 #[derive(Debug)]
 pub struct UnfinishedFile {
-    // Dropped before what claims it.
+    // Dropped before the claim.
     file: NamedTempFile,
     existing: Existing,
     claim: Claim,
 }
 
 impl UnfinishedFile {
-    /// Where it is.
+    /// The path of the unfinished file.
     #[must_use]
     pub fn path(&self) -> &Path {
         self.file.path()
     }
 
-    /// Where it will be.
+    /// The path of the target.
     #[must_use]
     pub fn target(&self) -> &Path {
         &self.claim.target
@@ -206,9 +217,10 @@ impl UnfinishedFile {
     /// Moves the finished file to its target, durably; returns its size.
     ///
     /// # Errors
-    /// Of kind `AlreadyExists` if there is something at the target that is to be kept; else when the disk does not take it.
+    /// With kind `AlreadyExists` if the target exists and is to be kept; otherwise when the disk
+    /// fails.
     pub fn place(self) -> io::Result<u64> {
-        // The claim is held until the file is in its place.
+        // The claim is held until the file is at its target.
         let Self { file, existing, claim } = self;
         place(file.into_temp_path(), &claim.target, existing)
     }
@@ -224,8 +236,8 @@ impl io::Write for UnfinishedFile {
     }
 }
 
-/// A folder that is made beside the target that it, or a file in it, becomes. It is removed when it is dropped; what cannot be removed is removed
-/// by the next run with this target.
+/// A folder that is written next to its target, which it becomes, or a file in it. It is deleted
+/// when it is dropped; files that cannot be deleted are deleted by the next run with this target.
 #[derive(Debug)]
 pub struct UnfinishedFolder {
     path: PathBuf,
@@ -233,7 +245,7 @@ pub struct UnfinishedFolder {
 }
 
 impl UnfinishedFolder {
-    /// Where it is.
+    /// The path of the folder.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
@@ -245,12 +257,13 @@ impl UnfinishedFolder {
         &self.claim
     }
 
-    /// Gives the folder the permissions of any new folder: for one that becomes the target itself. Until then it is this user's alone.
+    /// Gives the folder the permissions of any new folder, if it becomes the target itself. Until
+    /// then only this user can access it.
     ///
     /// # Errors
-    /// Where the disk fails.
+    /// When the disk fails.
     pub fn open_to_others(&self) -> io::Result<()> {
-        // What the process masks can be read only by setting it, for all threads.
+        // The process's file mode mask can only be read by setting it, which affects all threads.
         let any = self.path.join(".permissions");
         fs::create_dir(&any)?;
         let permissions = any.metadata()?.permissions();
@@ -261,7 +274,7 @@ impl UnfinishedFolder {
     /// Moves a finished file of the folder to the target, durably; returns its size.
     ///
     /// # Errors
-    /// Those of [`UnfinishedFile::place`].
+    /// Same as [`UnfinishedFile::place`].
     pub fn place_file(self, name: &str, existing: Existing) -> io::Result<u64> {
         place(TempPath::try_from_path(self.path.join(name))?, &self.claim.target, existing)
     }
@@ -273,23 +286,25 @@ impl Drop for UnfinishedFolder {
     }
 }
 
-/// What a file says that has the name of a claim.
+/// Reads the content of a file that has the name of a claim.
 fn read(file: &File) -> io::Result<String> {
     let mut bytes = Vec::new();
     file.take(MOST_BYTES).read_to_end(&mut bytes)?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-/// Writes the bytes of a finished file to the disk, moves it to its target, and makes its name durable. Returns its size.
+/// Syncs a finished file to disk, moves it to its target, and makes its name durable. Returns its
+/// size.
 fn place(path: TempPath, target: &Path, existing: Existing) -> io::Result<u64> {
     let file = open_own(&path, OpenMode::Read)?;
     file.sync_all()?;
     let bytes = file.metadata()?.len();
     let placed = match existing {
         Existing::Replace => path.persist(target),
-        // This fails where the other would replace what someone put there in the meantime.
+        // This fails if a file was created at the target in the meantime.
         Existing::Keep => match path.persist_noclobber(target) {
-            // Not every file system can do that. Without it only the check at the start protects an existing file.
+            // Not every file system supports this. Without it, only the check at the start protects
+            // an existing file.
             Err(refused) if refused.error.kind() != io::ErrorKind::AlreadyExists => {
                 refused.path.persist(target)
             }
@@ -309,13 +324,13 @@ fn lock(file: &File) -> io::Result<()> {
     match file.try_lock() {
         Ok(()) => Ok(()),
         Err(TryLockError::WouldBlock) => Err(busy()),
-        // Some network file systems have no locks. There the last one to finish wins.
+        // Some network file systems have no locks. There the last program to finish wins.
         Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => Ok(()),
         Err(TryLockError::Error(error)) => Err(error),
     }
 }
 
-/// Removes what a killed run left under a name with the id of its claim.
+/// Deletes the leftovers of a killed run under a name with the id of its claim.
 fn remove_left(path: &Path) -> io::Result<()> {
     match path.symlink_metadata() {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),

@@ -1,4 +1,5 @@
-//! What a killed program left is taken over by its id, of two programs one is refused, and nothing of others is touched.
+//! Leftovers of a killed program are recognised by their id, only one of two programs gets a claim,
+//! and no foreign file is touched.
 
 use super::*;
 
@@ -12,7 +13,7 @@ fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// A folder with a target's name, and what a killed program left beside it.
+/// Creates a folder with a target's name, and leftovers of a killed program next to it.
 fn left(files: &[&str], folders: &[&str]) -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join(".x.csv.unfinished"), format!("{MARK}{ID}\n")).unwrap();
@@ -41,7 +42,7 @@ fn what_a_killed_program_left_is_taken_over_at_each_of_its_steps() {
     ];
     for (files, folders) in steps {
         let (folder, target) = left(files, folders);
-        // One that refuses to go on leaves all as it is.
+        // A program that is rejected leaves everything unchanged.
         let before = names(folder.path());
         drop(Claim::take(&target).unwrap());
         if !files.is_empty() || !folders.is_empty() {
@@ -68,14 +69,14 @@ fn of_two_programs_one_is_refused_and_the_other_goes_on() {
     let first = Claim::take(&target).unwrap();
     assert_eq!(Claim::take(&target).unwrap_err().kind(), io::ErrorKind::ResourceBusy);
     first.begin_file(Existing::Keep).unwrap().place().unwrap();
-    // A finished one is nobody's any more, and is not touched.
+    // A finished file is no longer a leftover, and is not touched.
     fs::write(&target, "all of it").unwrap();
     drop(Claim::take(&target).unwrap().begin_file(Existing::Keep).unwrap());
     assert_eq!(names(folder.path()), ["x.csv"]);
     assert_eq!(fs::read(&target).unwrap(), b"all of it");
 }
 
-/// A kill between making the claim and the end of its line, as a full disk cuts it.
+/// A kill, or a full disk, between creating the claim and the end of its line.
 #[test]
 fn a_claim_that_was_only_begun_proves_nothing_and_is_used() {
     let line = format!("{MARK}{ID}\n");
@@ -111,7 +112,7 @@ fn what_others_have_put_there_is_refused_by_name_and_left() {
         fs::write(&there, text).unwrap();
         let error = Claim::take(&folder.path().join("x.csv")).unwrap_err();
         let told = error.to_string();
-        assert!(told.contains(".x.csv.unfinished is in the way"), "{told}");
+        assert!(told.contains(".x.csv.unfinished\" is in the way"), "{told}");
         assert_eq!(fs::read_to_string(&there).unwrap(), text);
     }
 }

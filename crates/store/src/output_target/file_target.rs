@@ -1,4 +1,4 @@
-//! Where a file may be written, and whether two names mean one place.
+//! The file to write for a path, and whether two paths lead to the same file.
 
 use std::{
     fs, io,
@@ -7,35 +7,37 @@ use std::{
 
 use super::{claim::longest_name, own_files::folder_of};
 
-/// Why nothing can be written at a place.
+/// Why a path cannot be the target of a file.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
 pub enum TargetError {
-    #[error("{path:?} names a folder; give the name of a file")]
+    #[error("{path:?} names a folder; pass the name of a file")]
     Folder { path: PathBuf },
-    #[error("{path:?} is {found}, which no file may replace; choose another name")]
+    #[error("{path:?} is {found} and cannot be overwritten; choose another name")]
     NoFile { path: PathBuf, found: &'static str },
     #[error(
-        "{path:?} is a link that leads nowhere; delete it, or name the file that it should lead to"
+        "{path:?} is a symbolic link to a file that does not exist; delete the link, or name the file that it should point to"
     )]
     DeadLink { path: PathBuf },
     #[error(
-        "the name of {path:?} is too long for this file system, with what is added to it while the file is written; choose a shorter one"
+        "the name of {path:?} is too long for this file system, because a suffix is added to it while the file is written; choose a shorter name"
     )]
     LongName { path: PathBuf },
-    #[error("{path:?} cannot be looked at")]
+    #[error("{path:?} cannot be inspected")]
     Unknown { path: PathBuf, source: io::Error },
 }
 
-/// Where a file goes that is to be written at `path`: `path` itself, or the file that a link there leads to, so that the
-/// link stays a link.
+/// Returns the file to write for `path`: `path` itself, or the file to which a link there points,
+/// so that the link is preserved.
 ///
-/// What stands there is a regular file or nothing; whether it may be replaced is for the caller to know.
+/// A regular file exists at the returned path, or nothing; the caller decides whether an existing
+/// file may be replaced.
 ///
 /// # Errors
-/// When `path` names a folder (also by ending in a slash), a link that leads nowhere, or what is neither a file nor a
-/// folder: a device, a pipe, a socket. When the name is too long for a file that is written beside it.
+/// When `path` names a folder (also by ending in a slash), a link to a file that does not exist, or
+/// something that is neither a file nor a folder: a device, a pipe, a socket. When the name is too
+/// long for the file that is written next to it.
 pub fn file_target(path: &Path) -> Result<PathBuf, TargetError> {
     let own = || path.to_path_buf();
     let ends_in_slash = path
@@ -56,7 +58,7 @@ pub fn file_target(path: &Path) -> Result<PathBuf, TargetError> {
     let there = match path.symlink_metadata() {
         Ok(there) => there,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(own()),
-        // A file where a folder should be.
+        // A component of the path is a file instead of a folder.
         Err(error) => return Err(unknown(error)),
     };
     let is_link = there.file_type().is_symlink();
@@ -79,13 +81,14 @@ pub fn file_target(path: &Path) -> Result<PathBuf, TargetError> {
     }
 }
 
-/// Whether two paths lead to one file, which need not exist yet.
+/// Whether two paths lead to the same file, which need not exist yet.
 #[must_use]
 pub fn is_same_file(one: &Path, other: &Path) -> bool {
     place_of(one) == place_of(other)
 }
 
-/// Where a file is or will be, whatever way its path is written: for one that does not exist yet, its folder's place.
+/// Returns the absolute path of a file, however its path is written: if it does not exist yet, from
+/// the location of its folder.
 fn place_of(path: &Path) -> PathBuf {
     if let Ok(place) = path.canonicalize() {
         return place;
@@ -103,11 +106,11 @@ fn name_of(kind: fs::FileType) -> &'static str {
         kind if kind.is_fifo() => "a pipe",
         kind if kind.is_socket() => "a socket",
         kind if kind.is_block_device() || kind.is_char_device() => "a device",
-        _ => "no regular file",
+        _ => "not a regular file",
     }
 }
 
 #[cfg(not(unix))]
 fn name_of(_: fs::FileType) -> &'static str {
-    "no regular file"
+    "not a regular file"
 }

@@ -1,4 +1,4 @@
-//! What is lacking where a file cannot be written: the disk's room, or a larger limit on the size of files.
+//! What is lacking if a file cannot be written: disk space, or a larger limit on the size of files.
 
 use std::{
     fmt, fs,
@@ -6,12 +6,12 @@ use std::{
     path::Path,
 };
 
-/// What is lacking where a file cannot be written. Its text goes behind what was not written.
+/// What is lacking if a file cannot be written. Its text follows the name of the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LackOfRoom {
-    /// The disk is full, or this user's share of it.
+    /// The disk is full, or this user's quota is used up.
     Disk,
-    /// Files may not be as large.
+    /// The file would be larger than allowed.
     FileSize,
 }
 
@@ -20,16 +20,16 @@ impl fmt::Display for LackOfRoom {
         f.write_str(match self {
             Self::Disk => "the disk is full; free space, or choose another folder",
             Self::FileSize => {
-                "files may not be so large here (ulimit -f, or the file system's own limit); raise the limit, or choose another folder"
+                "the limit on the size of files is reached (ulimit -f, or the limit of the file system); raise it, or choose another folder"
             }
         })
     }
 }
 
 impl LackOfRoom {
-    /// What an error of the system says.
+    /// Derives the cause from an error of the operating system.
     #[must_use]
-    pub fn of(error: &io::Error) -> Option<Self> {
+    pub fn from_io_error(error: &io::Error) -> Option<Self> {
         match error.kind() {
             ErrorKind::StorageFull | ErrorKind::QuotaExceeded => Some(Self::Disk),
             ErrorKind::FileTooLarge => Some(Self::FileSize),
@@ -37,10 +37,11 @@ impl LackOfRoom {
         }
     }
 
-    /// What the system says of a file that a library failed to write and still has, where the library keeps the error to itself.
+    /// Determines the cause for an existing file that a library failed to write, if the library
+    /// does not pass on the error.
     #[must_use]
     pub fn at(path: &Path) -> Option<Self> {
-        /// What a library writes at once may have no room although less would have.
+        /// A library may fail to write a large block, although a smaller one would fit.
         const AT_ONCE_BYTES: u64 = 1 << 20;
         if free_bytes(path).is_some_and(|free| free < AT_ONCE_BYTES) {
             return Some(Self::Disk);
@@ -50,14 +51,14 @@ impl LackOfRoom {
         limit_bytes().is_some_and(is_near).then_some(Self::FileSize)
     }
 
-    /// The text behind what could not be written, if there is one.
+    /// Returns the text that follows the name of the file, if there is any.
     #[must_use]
     pub fn advice(room: Option<Self>) -> String {
         room.map_or_else(String::new, |room| format!(": {room}"))
     }
 }
 
-/// The room that is left where a file lies, for this user.
+/// The free disk space at a file's location, for this user.
 #[cfg(unix)]
 fn free_bytes(path: &Path) -> Option<u64> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
@@ -65,7 +66,7 @@ fn free_bytes(path: &Path) -> Option<u64> {
     Some(found.f_bavail.saturating_mul(found.f_frsize))
 }
 
-/// How large a file of this process may become.
+/// The largest size that a file of this process may have.
 #[cfg(unix)]
 fn limit_bytes() -> Option<u64> {
     rustix::process::getrlimit(rustix::process::Resource::Fsize).current

@@ -1,12 +1,15 @@
-//! Files of ours in folders that others may have prepared: no link is followed, nothing is waited for, and what is there already is a regular
-//! file of this user.
+//! Opens Corniche's files in folders that others may have prepared: no link is followed, no call
+//! blocks, and an existing file must be a regular file of this user.
 //!
-//! On Unix a file of a folder that is ours is opened, renamed and removed by a handle of that folder, which is opened without following a link
-//! either. That holds for the last two names of a path and for one call. Each call opens the folder anew by its path: links further up are
-//! followed, and a folder that is exchanged for another between two calls is not noticed. Folders themselves are made, removed and made durable
-//! by their paths; the system follows no link where it makes or removes one.
+//! On Unix a file in one of these folders is opened, renamed and deleted by a handle of the folder,
+//! which is opened without following a link, too. This protects the last two components of a path
+//! during one call. Each call opens the folder again by its path: links further up are followed,
+//! and a folder that is exchanged between two calls is not detected. Folders themselves are
+//! created, deleted and made durable by their paths; the system follows no link when it creates or
+//! deletes one.
 //!
-//! Elsewhere only the file's own name is protected: links of folders are followed, and who owns a file is not asked.
+//! On other systems only the file's own name is protected: links to folders are followed, and the
+//! owner of a file is not checked.
 
 use std::{
     fs::{self, File, FileType},
@@ -16,19 +19,21 @@ use std::{
 
 use crate::OpenMode;
 
-/// Opens a file of ours. The folder around it may be reached by links, as whoever names it wants it; the file's own name may not be one.
+/// Opens a file of Corniche. The path of its folder may contain links, as the user chose it; the
+/// file's own name must not be a link.
 ///
 /// # Errors
-/// Of kinds `NotFound` and `AlreadyExists` as `mode` says; where what is there is no regular file, or none of this user to be written.
+/// With kinds `NotFound` and `AlreadyExists` according to `mode`; when the existing file is not a
+/// regular file, or does not belong to this user.
 pub fn open_own(path: &Path, mode: OpenMode) -> io::Result<File> {
     checked(system::open(path, mode), path, mode)
 }
 
-/// Makes a folder of this user's alone, or takes the one that is there if it is such a folder: for names that others can know beforehand, in
-/// folders that all write to.
+/// Creates a folder that only this user can access, or accepts an existing folder of this kind: for
+/// predictable names in folders to which everybody can write.
 ///
 /// # Errors
-/// Where it cannot be made, or something else has its name.
+/// When the folder cannot be created, or something else has its name.
 pub fn make_own_folder(path: &Path) -> io::Result<()> {
     match system::create_private_folder(path) {
         Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
@@ -42,7 +47,7 @@ pub fn make_own_folder(path: &Path) -> io::Result<()> {
     }
 }
 
-/// The folder that a file is in, or will be: the working folder where its name says none.
+/// Returns the folder of a file, which need not exist: the working folder if the path has none.
 #[must_use]
 pub fn folder_of(file: &Path) -> &Path {
     file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
@@ -51,13 +56,14 @@ pub fn folder_of(file: &Path) -> &Path {
 /// Makes the names in a folder durable.
 ///
 /// # Errors
-/// Where the disk fails.
+/// When the disk fails.
 #[cfg(unix)]
 pub fn sync_folder(folder: &Path) -> io::Result<()> {
     File::open(folder)?.sync_all()
 }
 
-/// Elsewhere a folder cannot be opened as a file; its names are durable when the system says so.
+/// On other systems a folder cannot be opened as a file; its names become durable when the system
+/// decides.
 ///
 /// # Errors
 /// None.
@@ -66,17 +72,18 @@ pub fn sync_folder(_: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Makes all that is below a folder durable, and the folder; returns how many bytes its files have.
+/// Makes all files below a folder durable, and the folder itself; returns the number of bytes of
+/// its files.
 ///
-/// On Linux all of the file system is: tens of thousands of small files, one after the other, take minutes. Before Linux 5.8 it does not tell that writing
-/// failed.
+/// On Linux the whole file system is synced: tens of thousands of small files, one after another,
+/// would take minutes. Before Linux 5.8 this call does not report failed writes.
 ///
 /// # Errors
-/// Where the disk fails.
+/// When the disk fails.
 pub fn sync_tree(folder: &Path) -> io::Result<u64> {
     #[cfg(target_os = "linux")]
     match rustix::fs::syncfs(File::open(folder)?) {
-        // Programs that stand in for Linux may not know this call.
+        // Programs that emulate Linux may not support this call.
         Err(rustix::io::Errno::NOSYS) => {}
         synced => {
             synced?;
@@ -88,7 +95,8 @@ pub fn sync_tree(folder: &Path) -> io::Result<u64> {
     })
 }
 
-/// How many bytes the files below a folder have. `sync` is called for each file, and for each folder after what is in it.
+/// Returns the number of bytes of the files below a folder. `sync` is called for each file, and for
+/// each folder after its content.
 fn bytes_below(folder: &Path, sync: &impl Fn(&Path) -> io::Result<()>) -> io::Result<u64> {
     let mut bytes = 0;
     for entry in fs::read_dir(folder)? {
@@ -104,22 +112,23 @@ fn bytes_below(folder: &Path, sync: &impl Fn(&Path) -> io::Result<()>) -> io::Re
     Ok(bytes)
 }
 
-/// What stands in the way, in words.
+/// Returns the error about a path that is in the way.
 pub(crate) fn in_the_way(path: &Path, what: &str) -> io::Error {
-    let told = format!("{} is in the way: {what}; look at it and move it away", path.display());
+    let told = format!("{path:?} is in the way: {what}; check it and move it away");
     io::Error::new(io::ErrorKind::InvalidInput, told)
 }
 
-/// Whether something of this name is there, be it a link that leads nowhere.
+/// Whether something of this name exists, including a link to a file that does not exist.
 pub(crate) fn is_there(path: &Path) -> bool {
     path.symlink_metadata().is_ok()
 }
 
-/// A file that was opened, if it is one to work in.
+/// Returns an opened file if it may be used.
 fn checked(opened: io::Result<File>, path: &Path, mode: OpenMode) -> io::Result<File> {
     let file = match opened {
         Ok(file) => file,
-        // Systems have several words for a link that is not followed, and for a socket that is opened.
+        // Systems have different errors for a link that is not followed, and for a socket that is
+        // opened.
         Err(error)
             if !matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::AlreadyExists) =>
         {
@@ -139,11 +148,11 @@ fn checked(opened: io::Result<File>, path: &Path, mode: OpenMode) -> io::Result<
     Ok(file)
 }
 
-/// What something is that is no regular file.
+/// Describes something that is not a regular file.
 fn name_of(kind: FileType) -> Option<&'static str> {
     match kind {
         kind if kind.is_file() => None,
-        kind if kind.is_symlink() => Some("a link, which is not followed there"),
+        kind if kind.is_symlink() => Some("a symbolic link, which is not followed here"),
         kind if kind.is_dir() => Some("a folder"),
         _ => Some("a pipe, a socket or a device"),
     }
@@ -151,7 +160,7 @@ fn name_of(kind: FileType) -> Option<&'static str> {
 
 #[cfg(unix)]
 pub(crate) mod system {
-    //! The calls of Unix.
+    //! The system calls for Unix.
 
     use std::{
         ffi::{OsStr, OsString},
@@ -171,11 +180,12 @@ pub(crate) mod system {
     };
 
     use super::{checked, folder_of, in_the_way, is_there};
-    use crate::{FileId, Listed, OpenMode};
+    use crate::{FileId, FolderItem, OpenMode};
 
-    /// What is asked of every file: its name is no link, and opening a pipe does not wait for its other end.
+    /// The flags for every file: its name is not a link, and opening a pipe does not wait for its
+    /// other end.
     const SAFELY: OFlags = OFlags::NOFOLLOW.union(OFlags::NONBLOCK).union(OFlags::CLOEXEC);
-    /// What files are made with, less what the process masks.
+    /// The permissions of new files, minus those that the process masks.
     const PERMISSIONS: Mode = Mode::from_raw_mode(0o666);
 
     pub(crate) fn open(path: &Path, mode: OpenMode) -> io::Result<File> {
@@ -190,12 +200,13 @@ pub(crate) mod system {
         options.open(path)
     }
 
-    /// Fails unless a file is of this user and has one name: a second one may be that of a file which is dear to someone.
+    /// Fails unless a file belongs to this user and has one name: a second name may belong to a
+    /// file that must not be changed.
     pub(crate) fn check_owner(found: &Metadata, path: &Path) -> io::Result<()> {
         if found.nlink() > 1 {
             return Err(in_the_way(path, "the same file has a second name elsewhere"));
         }
-        // Some file systems give all files to one user, whoever makes them.
+        // Some file systems assign all files to one user, whoever creates them.
         if found.uid() != geteuid().as_raw() && found.uid() != owner_of_new(folder_of(path))? {
             return Err(in_the_way(path, "it belongs to another user"));
         }
@@ -213,12 +224,12 @@ pub(crate) mod system {
         Err(in_the_way(path, "it belongs to another user"))
     }
 
-    /// Whom a file belongs to that is made in a folder.
+    /// Returns the owner of a file that is created in a folder.
     fn owner_of_new(folder: &Path) -> io::Result<u32> {
         Ok(tempfile::tempfile_in(folder)?.metadata()?.uid())
     }
 
-    /// A folder of ours, opened without following a link at its name.
+    /// A folder that was opened without following a link at its name.
     pub(crate) struct OwnFolder(OwnedFd);
 
     impl OwnFolder {
@@ -228,20 +239,20 @@ pub(crate) mod system {
                 let error = io::Error::from(error);
                 let is_link = path.symlink_metadata().is_ok_and(|found| found.is_symlink());
                 if is_link {
-                    in_the_way(path, "it is a link, which is not followed there")
+                    in_the_way(path, "it is a symbolic link, which is not followed here")
                 } else {
                     error
                 }
             })
         }
 
-        /// The folder around a file, and the file's name in it.
+        /// Opens the folder around a file, and returns the file's name in it.
         pub(crate) fn around(path: &Path) -> io::Result<(Self, &OsStr)> {
             let name = path.file_name().ok_or(io::ErrorKind::InvalidFilename)?;
             Ok((Self::open(folder_of(path))?, name))
         }
 
-        /// Opens the file `name`; `path` is what it is called in messages.
+        /// Opens the file `name`; `path` is its path in messages.
         pub(crate) fn open_file(
             &self,
             name: &OsStr,
@@ -259,7 +270,7 @@ pub(crate) mod system {
             checked(opened.map_err(io::Error::from), path, mode)
         }
 
-        pub(crate) fn list(&self) -> io::Result<Vec<Listed>> {
+        pub(crate) fn list(&self) -> io::Result<Vec<FolderItem>> {
             let mut listed = Vec::new();
             for entry in Dir::read_from(&self.0)? {
                 let entry = entry?;
@@ -275,12 +286,12 @@ pub(crate) mod system {
                     known => known,
                 };
                 let name = OsString::from_vec(name.to_bytes().to_vec());
-                listed.push(Listed { name, is_folder: kind == FileType::Directory });
+                listed.push(FolderItem { name, is_folder: kind == FileType::Directory });
             }
             Ok(listed)
         }
 
-        /// Gives the file `from` in this folder the name `to` in a folder of ours.
+        /// Renames the file `from` in this folder to `to` in another opened folder.
         pub(crate) fn rename(&self, from: &OsStr, (folder, to): (&Self, &OsStr)) -> io::Result<()> {
             Ok(renameat(&self.0, from, &folder.0, to)?)
         }
@@ -291,7 +302,7 @@ pub(crate) mod system {
 
         pub(crate) fn identity(&self, name: &OsStr) -> io::Result<FileId> {
             let found = statat(&self.0, name, AtFlags::SYMLINK_NOFOLLOW)?;
-            // As the standard library does it: systems have these numbers in types of their own.
+            // The standard library does the same: systems have different types for these numbers.
             #[allow(clippy::unnecessary_cast, reason = "they are i32 on macOS, and u64 on Linux")]
             Ok(FileId(found.st_dev as u64, found.st_ino as u64))
         }
@@ -309,7 +320,7 @@ pub(crate) mod system {
 
 #[cfg(not(unix))]
 pub(crate) mod system {
-    //! The calls of Windows, as far as they go.
+    //! The system calls for Windows, as far as they go.
 
     use std::{
         fs::{File, Metadata},
@@ -320,7 +331,7 @@ pub(crate) mod system {
 
     use crate::OpenMode;
 
-    /// `FILE_FLAG_OPEN_REPARSE_POINT`: a link itself is opened, not what it leads to.
+    /// `FILE_FLAG_OPEN_REPARSE_POINT`: opens a link itself, not the file to which it points.
     const NO_FOLLOWING: u32 = 0x0020_0000;
 
     pub(crate) fn open(path: &Path, mode: OpenMode) -> io::Result<File> {
@@ -334,7 +345,7 @@ pub(crate) mod system {
         options.open(path)
     }
 
-    /// Owners are not asked here.
+    /// The owner is not checked on this system.
     pub(crate) fn check_owner(_: &Metadata, _: &Path) -> io::Result<()> {
         Ok(())
     }
@@ -347,7 +358,7 @@ pub(crate) mod system {
         Ok(())
     }
 
-    /// An open file keeps its name here.
+    /// On this system an open file keeps its name.
     pub(crate) fn is_at(_: &File, _: &Path) -> io::Result<bool> {
         Ok(true)
     }

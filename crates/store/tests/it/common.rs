@@ -1,4 +1,4 @@
-//! What the tests of the store share.
+//! Functions that the tests of the store share.
 #![allow(
     dead_code,
     clippy::unwrap_used,
@@ -13,8 +13,8 @@ use std::{
 };
 
 use corniche_store::{
-    Artifacts, Disk, Folder, Hold, Key, LocalStore, OwnPart, PartsPlace, PlanHash, SealedParts,
-    StoreError, StoredPlan,
+    ArtifactKey, Artifacts, Disk, Folder, Hold, LocalStore, OwnPart, PartsPlace, PlanHash,
+    SealedParts, StoreError, StoredPlan,
 };
 use corniche_testing::{Random, disks::MemoryDisk};
 
@@ -35,12 +35,12 @@ pub(crate) fn plan() -> StoredPlan {
     StoredPlan { hash: [7; 32], bytes: b"{\"cell\": 30}".to_vec() }
 }
 
-pub(crate) fn key(kind: u8, item: u64) -> Key {
-    Key { kind, item }
+pub(crate) fn key(kind: u8, item: u64) -> ArtifactKey {
+    ArtifactKey { kind, item }
 }
 
-/// What belongs to a key in these tests: as a build does it, the key decides.
-pub(crate) fn artifact(key: Key) -> Vec<u8> {
+/// Returns the artifact of a key in these tests: the key determines it, as in a build.
+pub(crate) fn artifact(key: ArtifactKey) -> Vec<u8> {
     let mut random = Random::new(key.item << 8 | u64::from(key.kind));
     let length = random.below(700) as usize;
     (0..length).map(|_| random.bits() as u8).collect()
@@ -54,7 +54,8 @@ pub(crate) fn open(disk: &MemoryDisk, interval: Duration) -> Result<LocalStore, 
     LocalStore::open(disk.disk(), folder(), &plan().hash, interval)
 }
 
-/// Opens all sealed parts of some folders as one, and a part of its own to write if asked, where several processes may work at once.
+/// Opens all sealed parts of some folders together, and a part to write if requested, where several
+/// processes may work at once.
 pub(crate) fn open_parts(
     disk: Arc<dyn Disk>,
     folders: &[&Path],
@@ -69,7 +70,7 @@ pub(crate) fn open_parts(
     LocalStore::open_places(disk, sealed, plan, own.map(|own| (own, Hold::Shared)))
 }
 
-/// As a build does it: goes on if there is a store, else begins one.
+/// Resumes the store if there is one, else creates it, like a build.
 pub(crate) fn create_or_open(
     disk: &MemoryDisk,
     interval: Duration,
@@ -83,8 +84,8 @@ pub(crate) fn create_or_open(
     }
 }
 
-/// The store holds exactly these, by every way of asking.
-pub(crate) fn check_holds(store: &LocalStore, expected: &BTreeMap<Key, Vec<u8>>) {
+/// Checks that the store holds exactly these artifacts, with all functions that return them.
+pub(crate) fn check_holds(store: &LocalStore, expected: &BTreeMap<ArtifactKey, Vec<u8>>) {
     for kind in 0..=5 {
         let items: Vec<u64> =
             expected.keys().filter(|key| key.kind == kind).map(|key| key.item).collect();
@@ -96,7 +97,7 @@ pub(crate) fn check_holds(store: &LocalStore, expected: &BTreeMap<Key, Vec<u8>>)
     }
 }
 
-/// Every artifact that the store holds is right.
+/// Checks that every artifact in the store is correct.
 pub(crate) fn check_all_right(store: &LocalStore) -> usize {
     let mut count = 0;
     for kind in 0..=5 {
@@ -109,7 +110,9 @@ pub(crate) fn check_all_right(store: &LocalStore) -> usize {
     count
 }
 
-pub(crate) fn all_of(keys: impl IntoIterator<Item = Key>) -> BTreeMap<Key, Vec<u8>> {
+pub(crate) fn all_of(
+    keys: impl IntoIterator<Item = ArtifactKey>,
+) -> BTreeMap<ArtifactKey, Vec<u8>> {
     keys.into_iter().map(|key| (key, artifact(key))).collect()
 }
 

@@ -1,24 +1,26 @@
-//! Whatever fails and whenever: a clear error, and what is there afterwards is right.
+//! Whatever fails and whenever: the error is clear, and the content of the store is correct
+//! afterwards.
 //!
-//! Source: the tests of `SQLite` that let the n-th call fail for n = 1, 2, 3 … until none fails, and that lose unsynced writes at a simulated
-//! crash.
+//! Source: the tests of `SQLite` that let the n-th call fail for n = 1, 2, 3 … until none fails,
+//! and that lose unsynced writes in a simulated crash.
 #![allow(clippy::unwrap_used, reason = "tests may unwrap")]
 
 use std::{collections::BTreeSet, path::Path, time::Duration};
 
 use crate::common::*;
-use corniche_store::{Artifacts, Key, LocalStore, OwnPart, Scratch, StoreError};
+use corniche_store::{ArtifactKey, Artifacts, LocalStore, OwnPart, ScratchSpace, StoreError};
 use corniche_testing::{
     Random,
-    disks::{Failure, MemoryDisk},
+    disks::{DiskFailure, MemoryDisk},
 };
 
-/// What a small build does with its store: puts of two kinds, a mark behind each group, some reading, scratch space. Goes on from what is
-/// there, as a build does. `after` is told of each put that has returned and of each flush.
+/// Uses a store like a small build: stores artifacts of two kinds, a mark after each group, some
+/// reading, scratch space. Resumes from the existing artifacts, like a build. `after` is called
+/// after each stored artifact and after each flush.
 fn build(store: &LocalStore, after: &mut dyn FnMut(Done)) -> Result<(), StoreError> {
     for group in 0..6 {
         if store.has(mark(group)) {
-            // The mark is put last: with it all of the group is there.
+            // The mark is stored last: if it exists, all artifacts of the group exist.
             for key in group_keys(group) {
                 assert_eq!(store.get(key)?, Some(artifact(key)), "{key:?} behind its mark");
             }
@@ -45,21 +47,21 @@ fn build(store: &LocalStore, after: &mut dyn FnMut(Done)) -> Result<(), StoreErr
 }
 
 enum Done {
-    Put(Key),
+    Put(ArtifactKey),
     Flush,
 }
 
-fn mark(group: u64) -> Key {
+fn mark(group: u64) -> ArtifactKey {
     key(5, group)
 }
 
-fn group_keys(group: u64) -> impl Iterator<Item = Key> {
+fn group_keys(group: u64) -> impl Iterator<Item = ArtifactKey> {
     (0..5).map(move |n| key((n % 2) as u8, group * 5 + n))
 }
 
 const ALL: usize = 6 * 6;
 
-/// The store's error in an error of its scratch space.
+/// Returns the store's error inside an error of its scratch space.
 fn unwrapped(error: std::io::Error) -> StoreError {
     *error.into_inner().unwrap().downcast::<StoreError>().unwrap()
 }
@@ -69,7 +71,8 @@ fn build_from_scratch(disk: &MemoryDisk, interval: Duration) -> Result<(), Store
     build(&store, &mut |_| {})
 }
 
-/// The build ends after any failure: on this disk, and with nothing but what a build without failure leaves.
+/// Checks that the build can be completed on this disk after any failure, with the same files as a
+/// build without failure.
 fn check_goes_on(disk: &MemoryDisk) {
     build_from_scratch(disk, NEVER).unwrap();
     let store = open(disk, NEVER).unwrap();
@@ -79,8 +82,8 @@ fn check_goes_on(disk: &MemoryDisk) {
     assert_eq!(disk.paths(), NOTHING);
 }
 
-/// Lets each call fail in turn until the build passes; returns how many calls there were.
-fn every_call(failure: Failure, check: impl Fn(&MemoryDisk, Result<(), StoreError>)) -> u64 {
+/// Lets each call fail in turn until the build succeeds; returns the number of calls.
+fn every_call(failure: DiskFailure, check: impl Fn(&MemoryDisk, Result<(), StoreError>)) -> u64 {
     for call in 0.. {
         let disk = empty_disk();
         disk.fail_after(call, failure);
@@ -96,8 +99,8 @@ fn every_call(failure: Failure, check: impl Fn(&MemoryDisk, Result<(), StoreErro
 
 #[test]
 fn a_device_that_fails_at_any_call_is_a_clear_error_and_the_build_goes_on_afterwards() {
-    let calls = every_call(Failure::Device, |disk, result| {
-        // Only what is done when something is dropped can fail in silence: removing scratch space.
+    let calls = every_call(DiskFailure::Device, |disk, result| {
+        // Only an operation during a drop can fail silently: deleting scratch space.
         if let Err(error) = result {
             let StoreError::Io { path, source, .. } = &error else { panic!("{error}") };
             assert!(path.starts_with("/data"), "{error}");
@@ -110,7 +113,7 @@ fn a_device_that_fails_at_any_call_is_a_clear_error_and_the_build_goes_on_afterw
 
 #[test]
 fn a_disk_that_is_full_at_any_call_says_so_and_the_build_goes_on_when_there_is_room() {
-    let calls = every_call(Failure::Full, |disk, result| {
+    let calls = every_call(DiskFailure::Full, |disk, result| {
         let needs_no_room_any_more = result.is_ok();
         if let Err(error) = result {
             let text = error.to_string();
@@ -119,7 +122,7 @@ fn a_disk_that_is_full_at_any_call_says_so_and_the_build_goes_on_when_there_is_r
                 text.contains("the disk is full; free space and run the same command"),
                 "{text}"
             );
-            // While it is full, going on fails in the same way, and harms nothing.
+            // While the disk is full, resuming fails in the same way, and does no harm.
             assert!(build_from_scratch(disk, ALWAYS).is_err());
         }
         disk.make_room();
@@ -133,7 +136,7 @@ fn a_disk_that_is_full_at_any_call_says_so_and_the_build_goes_on_when_there_is_r
 
 #[test]
 fn an_interrupted_or_short_call_is_survived_without_a_trace() {
-    for failure in [Failure::Interrupted, Failure::Short] {
+    for failure in [DiskFailure::Interrupted, DiskFailure::Short] {
         every_call(failure, |disk, result| {
             result.unwrap();
             check_goes_on(disk);
@@ -141,25 +144,26 @@ fn an_interrupted_or_short_call_is_survived_without_a_trace() {
     }
 }
 
-/// As by SIGKILL: the machine goes on.
+/// The process is killed at any call, and the machine continues.
 #[test]
 fn a_process_that_dies_at_any_call_can_be_gone_on_from() {
-    every_call(Failure::Death, |disk, _| check_goes_on(&disk.after_kill()));
+    every_call(DiskFailure::Death, |disk, _| check_goes_on(&disk.after_kill()));
 }
 
-/// As by a loss of power, at any call, with 200 different losses and more: all that comes back is right, and what was made durable is there.
+/// Power is lost at any call, with 200 different losses and more: everything that reappears is
+/// correct, and everything that was made durable exists.
 #[test]
 fn a_crash_loses_what_was_not_made_durable_and_nothing_else() {
     let mut lost_some = 0;
     for seed in 0..600 {
         let mut random = Random::new(seed);
         let disk = empty_disk();
-        disk.fail_after(random.below(320) as u64, Failure::Death);
-        // Several crashes, one after the other, before the build may end.
+        disk.fail_after(random.below(320) as u64, DiskFailure::Death);
+        // Several crashes, one after another, before the build may complete.
         let mut durable = BTreeSet::new();
         let mut disk = disk;
         for _ in 0..3 {
-            let mut put: BTreeSet<Key> = durable.clone();
+            let mut put: BTreeSet<ArtifactKey> = durable.clone();
             let store = create_or_open(&disk, NEVER);
             if let Ok(store) = &store {
                 let _ = build(store, &mut |done| match done {
@@ -167,8 +171,8 @@ fn a_crash_loses_what_was_not_made_durable_and_nothing_else() {
                     Done::Flush => durable.clone_from(&put),
                 });
             }
-            // Nothing more reaches the disk, not even what is done when the store is dropped.
-            disk.fail_after(0, Failure::Death);
+            // Nothing more reaches the disk, not even operations when the store is dropped.
+            disk.fail_after(0, DiskFailure::Death);
             drop(store);
             disk = disk.after_crash(&mut random);
             if !durable.is_empty() {
@@ -177,14 +181,14 @@ fn a_crash_loses_what_was_not_made_durable_and_nothing_else() {
                 assert!(durable.iter().all(|key| store.has(*key)), "seed {seed}");
                 lost_some += usize::from(there < put.len());
             }
-            disk.fail_after(random.below(200) as u64, Failure::Death);
+            disk.fail_after(random.below(200) as u64, DiskFailure::Death);
         }
         check_goes_on(&disk.after_crash(&mut random));
     }
     assert!(lost_some > 100, "only {lost_some} crashes cost anything: the test does not see much");
 }
 
-/// What was cut off never comes back behind what is written in its place: a mark would stand for something lost.
+/// Truncated entries never reappear after the new ones: a mark would then refer to lost artifacts.
 #[test]
 fn a_mark_that_was_cut_off_does_not_come_back_at_the_next_crash() {
     let damaged_disk = || {
@@ -193,7 +197,7 @@ fn a_mark_that_was_cut_off_does_not_come_back_at_the_next_crash() {
         for key in [key(1, 0), key(1, 1)] {
             store.put(key, &artifact(key)).unwrap();
         }
-        // A mark may hold nothing, and then no checksum of its own can tell that it is an old one.
+        // A mark may be empty, and then no checksum can tell that it is an old one.
         store.put(mark(0), b"").unwrap();
         drop(store);
         let is_data = |path: &std::path::PathBuf| path.extension().is_some_and(|e| e == "data");
@@ -208,11 +212,11 @@ fn a_mark_that_was_cut_off_does_not_come_back_at_the_next_crash() {
         let mut random = Random::new(seed);
         let store = open(&disk, NEVER).unwrap();
         assert_eq!(store.repaired(), 2);
-        // Long enough that the place of the mark lies within the file again.
+        // The artifact is long enough for the position of the mark to be within the file again.
         store.put(key(1, 7), &[7; 2000]).unwrap();
-        disk.fail_after(random.below(9) as u64, Failure::Death);
+        disk.fail_after(random.below(9) as u64, DiskFailure::Death);
         let _ = store.flush();
-        disk.fail_after(0, Failure::Death);
+        disk.fail_after(0, DiskFailure::Death);
         drop(store);
         let store = open(&disk.after_crash(&mut random), NEVER).unwrap();
         assert!(store.has(key(1, 0)) && !store.has(mark(0)), "seed {seed}");
@@ -222,7 +226,7 @@ fn a_mark_that_was_cut_off_does_not_come_back_at_the_next_crash() {
     }
 }
 
-/// As above, with parts that are sealed: a part is there as a whole or not at all.
+/// The same with parts that are sealed: a part exists as a whole or not at all.
 #[test]
 fn a_crash_while_a_part_is_sealed_leaves_a_whole_part_or_none() {
     let (mut whole, mut none) = (0, 0);
@@ -236,7 +240,7 @@ fn a_crash_while_a_part_is_sealed_leaves_a_whole_part_or_none() {
             build(&store, &mut |_| {})?;
             store.seal()
         };
-        disk.fail_after(random.below(330) as u64, Failure::Death);
+        disk.fail_after(random.below(330) as u64, DiskFailure::Death);
         let result = make(&disk);
         let disk = disk.after_crash(&mut random);
         let read = open_parts(disk.disk(), &[folder()], &plan().hash, None);
@@ -248,7 +252,7 @@ fn a_crash_while_a_part_is_sealed_leaves_a_whole_part_or_none() {
         assert!(there == ALL || there == 0 && result.is_err(), "seed {seed}: {there}");
         whole += u32::from(there == ALL);
         none += u32::from(there == 0);
-        // Made again, it is the same part.
+        // Written again, it is the same part.
         make(&disk).unwrap();
         let store = open_parts(disk.disk(), &[folder()], &plan().hash, None).unwrap();
         assert_eq!(check_all_right(&store), ALL);
@@ -262,7 +266,7 @@ fn a_crash_while_a_part_is_sealed_leaves_a_whole_part_or_none() {
 /// Each call fails in turn while a part is sealed.
 #[test]
 fn sealing_that_fails_at_any_call_can_be_done_again() {
-    for failure in [Failure::Device, Failure::Full, Failure::Death] {
+    for failure in [DiskFailure::Device, DiskFailure::Full, DiskFailure::Death] {
         for call in 0.. {
             let mut disk = empty_disk();
             let (plan, interval) = (&plan(), NEVER);
@@ -278,7 +282,7 @@ fn sealing_that_fails_at_any_call_can_be_done_again() {
                 break;
             }
             disk.make_room();
-            if failure == Failure::Death {
+            if failure == DiskFailure::Death {
                 disk = disk.after_kill();
             }
             let store = open_part(&disk).unwrap();
@@ -294,14 +298,15 @@ fn sealing_that_fails_at_any_call_can_be_done_again() {
     }
 }
 
-/// Each call fails in turn while a store is removed; then it can be removed again, or a new one be made.
+/// Each call fails in turn while a store is deleted; then it can be deleted again, or a new one can
+/// be created.
 #[test]
 fn removing_that_fails_at_any_call_can_be_done_again() {
     for call in 0.. {
         let disk = empty_disk();
         build_from_scratch(&disk, NEVER).unwrap();
         let store = open(&disk, NEVER).unwrap();
-        disk.fail_after(call, Failure::Device);
+        disk.fail_after(call, DiskFailure::Device);
         let result = store.remove();
         if disk.is_failure_to_come() {
             result.unwrap();
@@ -314,7 +319,8 @@ fn removing_that_fails_at_any_call_can_be_done_again() {
     }
 }
 
-/// As by a loss of power at each call while a store is removed: what comes back is still known for ours, and a new store can be made there.
+/// Power is lost at each call while a store is deleted: the remaining files are still recognised,
+/// and a new store can be created there.
 #[test]
 fn a_crash_while_a_store_is_removed_leaves_nothing_that_nobody_knows() {
     for call in 0.. {
@@ -323,11 +329,11 @@ fn a_crash_while_a_store_is_removed_leaves_nothing_that_nobody_knows() {
             let disk = empty_disk();
             build_from_scratch(&disk, NEVER).unwrap();
             let store = open(&disk, NEVER).unwrap();
-            disk.fail_after(call, Failure::Death);
+            disk.fail_after(call, DiskFailure::Death);
             let result = store.remove();
             was_removed = disk.is_failure_to_come();
             assert!(!was_removed || result.is_ok());
-            disk.fail_after(0, Failure::Death);
+            disk.fail_after(0, DiskFailure::Death);
             let disk = disk.after_crash(&mut Random::new(seed));
             build_from_scratch(&disk, NEVER)
                 .unwrap_or_else(|error| panic!("call {call}, seed {seed}: {error}"));
@@ -338,17 +344,17 @@ fn a_crash_while_a_store_is_removed_leaves_nothing_that_nobody_knows() {
     }
 }
 
-/// After a sync that failed nothing may be built on what was put: the system may have dropped it.
+/// After a failed sync nothing may rely on the stored artifacts: the system may have dropped them.
 #[test]
 fn nothing_is_kept_any_more_after_a_failed_sync() {
     let disk = empty_disk();
     let store = create(&disk, NEVER).unwrap();
     store.put(key(1, 1), &artifact(key(1, 1))).unwrap();
-    // Four looks at names and files, then the data is synced.
-    disk.fail_after(4, Failure::Device);
+    // Four calls inspect names and files, then the data is synced.
+    disk.fail_after(4, DiskFailure::Device);
     let error = store.flush().unwrap_err();
     assert!(
-        matches!(&error, StoreError::Io { doing: "make durable", path, .. } if path.extension().unwrap() == "data"),
+        matches!(&error, StoreError::Io { doing: "sync", path, .. } if path.extension().unwrap() == "data"),
         "{error}"
     );
     for error in [store.flush().unwrap_err(), store.put(key(1, 2), b"").unwrap_err()] {

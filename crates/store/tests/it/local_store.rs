@@ -1,4 +1,4 @@
-//! A store in a folder: what is put comes back, now, later and after a torn end.
+//! A store in a folder: stored artifacts are returned at once, later, and after an incomplete end.
 #![allow(clippy::unwrap_used, reason = "tests may unwrap")]
 
 use std::{
@@ -10,8 +10,8 @@ use std::{
 };
 
 use crate::common::*;
-use corniche_store::{Artifacts, LocalStore, Scratch, StoreError, StoredPlan};
-use corniche_testing::disks::{Failure, MemoryDisk};
+use corniche_store::{Artifacts, LocalStore, ScratchSpace, StoreError, StoredPlan};
+use corniche_testing::disks::{DiskFailure, MemoryDisk};
 use proptest::prelude::*;
 
 #[derive(Debug, Clone)]
@@ -33,7 +33,7 @@ fn steps() -> impl Strategy<Value = Vec<Step>> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// The store says what a map would say, and still does when it is opened again.
+    /// The store gives the same results as a map, also after it is opened again.
     #[test]
     fn store_equals_a_map(steps in steps()) {
         let disk = empty_disk();
@@ -44,7 +44,7 @@ proptest! {
                 Step::Put(kind, item) => {
                     let key = key(kind, item);
                     store.put(key, &artifact(key)).unwrap();
-                    // A second put of a key changes nothing.
+                    // Storing a key again changes nothing.
                     store.put(key, b"something else").unwrap();
                     map.insert(key, artifact(key));
                 }
@@ -60,13 +60,14 @@ proptest! {
     }
 }
 
-/// The file of the open part with this ending.
+/// Returns the file of the open part with this ending.
 fn part_file(disk: &MemoryDisk, ending: &str) -> std::path::PathBuf {
     let is_it = |path: &std::path::PathBuf| path.extension().is_some_and(|found| found == ending);
     disk.paths().into_iter().find(is_it).unwrap()
 }
 
-/// Wherever the last entries of the journal are torn off, the entries before are there, and those after are made again.
+/// Wherever the end of the journal is torn off, the entries before are kept, and the later
+/// artifacts are computed again.
 #[test]
 fn a_journal_torn_at_any_byte_keeps_the_entries_before() {
     let disk = empty_disk();
@@ -83,7 +84,7 @@ fn a_journal_torn_at_any_byte_keeps_the_entries_before() {
             let torn = disk.after_kill();
             let mut bytes = journal[..cut].to_vec();
             let missing = journal.len() - cut;
-            // Torn off, or the room for it was there already, with other bytes in it.
+            // The end is missing, or its space was already allocated, with other bytes in it.
             bytes.extend(garbage.iter().cycle().take(garbage.map_or(0, |_| missing)));
             torn.set_content(&path, &bytes);
             let whole = 6 - missing.div_ceil(32);
@@ -100,7 +101,8 @@ fn a_journal_torn_at_any_byte_keeps_the_entries_before() {
     }
 }
 
-/// A damaged artifact is not taken, and neither is what was put after it: it may be the mark that says that all is there.
+/// A damaged artifact is dropped, and so is everything that was stored after it: it may be the mark
+/// which says that all artifacts are complete.
 #[test]
 fn what_was_put_after_a_damaged_artifact_is_dropped_with_it() {
     let disk = empty_disk();
@@ -120,7 +122,7 @@ fn what_was_put_after_a_damaged_artifact_is_dropped_with_it() {
     check_holds(&store, &all_of(keys[..4].iter().copied()));
 }
 
-/// An entry that is whole, but stands where another was written, is not taken: neither it nor what follows.
+/// An intact entry in the position of another one is dropped, together with everything after it.
 #[test]
 fn an_entry_in_the_wrong_place_is_torn() {
     let disk = empty_disk();
@@ -139,7 +141,7 @@ fn an_entry_in_the_wrong_place_is_torn() {
     check_holds(&store, &all_of(keys[..2].iter().copied()));
 }
 
-/// A bit that falls over while the store is open is found when the artifact is read.
+/// A bit that flips while the store is open is detected when the artifact is read.
 #[test]
 fn reading_a_damaged_artifact_is_an_error() {
     let disk = empty_disk();
@@ -153,7 +155,8 @@ fn reading_a_damaged_artifact_is_an_error() {
     check_damaged(&error, &path, "run the same command again (build: with --resume)");
 }
 
-/// Only what the interval asks for is made durable on the way; a loss of power costs no more than that.
+/// Artifacts are only made durable at the requested interval; a loss of power costs no more than
+/// that.
 #[test]
 fn the_interval_says_how_much_is_lost() {
     for (interval, expected) in [(ALWAYS, 10), (NEVER, 0), (Duration::from_hours(1), 0)] {
@@ -162,15 +165,16 @@ fn the_interval_says_how_much_is_lost() {
         for item in 0..10 {
             store.put(key(1, item), &artifact(key(1, item))).unwrap();
         }
-        // The process is dead before it can keep the rest.
-        disk.fail_after(0, Failure::Death);
+        // The process is dead before it can store the rest.
+        disk.fail_after(0, DiskFailure::Death);
         drop(store);
         let store = open(&disk.after_kill(), NEVER).unwrap();
         assert_eq!(store.items(1).len(), expected);
     }
 }
 
-/// Threads that put, wait for each other and put again: what one has seen is in the journal before what it made from it.
+/// Threads that store, wait for each other and store again: artifacts that a thread has seen are in
+/// the journal before those that it computed from them.
 #[test]
 fn a_later_put_of_any_thread_is_later_in_the_journal() {
     let disk = empty_disk();
@@ -201,7 +205,7 @@ fn a_later_put_of_any_thread_is_later_in_the_journal() {
     assert_eq!(check_all_right(&open(&disk, NEVER).unwrap()), 120);
 }
 
-/// A device that takes its time holds up the thread that syncs, and no other.
+/// A slow device holds up the thread that syncs, and no other thread.
 #[test]
 fn puts_and_gets_go_on_while_another_thread_syncs() {
     let disk = empty_disk();
@@ -226,9 +230,9 @@ fn puts_and_gets_go_on_while_another_thread_syncs() {
         assert!(is_syncing);
         syncing.join().unwrap().unwrap();
     });
-    // What was put meanwhile is durable after the next sync.
+    // Artifacts that were stored meanwhile are durable after the next sync.
     store.flush().unwrap();
-    disk.fail_after(0, Failure::Death);
+    disk.fail_after(0, DiskFailure::Death);
     drop(store);
     assert_eq!(check_all_right(&open(&disk.after_kill(), NEVER).unwrap()), 101);
 }
@@ -256,11 +260,11 @@ fn a_store_of_another_version_is_refused() {
     let error = open(&disk, NEVER).unwrap_err();
     assert!(error.is_unusable(), "{error}");
     let other = StoreError::OtherVersion { path: folder().into(), found: 2, known: 1 };
-    // It is the folder that can be removed.
+    // The error names the folder that can be deleted.
     assert_eq!(error.to_string(), other.to_string());
     let error = LocalStore::stored_plan(disk.disk(), folder()).unwrap_err();
     assert_eq!(error.to_string(), other.to_string());
-    // It can still be removed.
+    // The store can still be deleted.
     assert_eq!(LocalStore::discard(disk.disk(), folder()).unwrap(), NOTHING);
     assert_eq!(disk.paths(), NOTHING);
 }
@@ -276,11 +280,11 @@ fn a_header_or_a_plan_with_a_wrong_bit_is_refused() {
         bytes[at] ^= 0x10;
         disk.set_content(&path, &bytes);
         let error = LocalStore::stored_plan(disk.disk(), folder()).unwrap_err();
-        check_damaged(&error, &path, "remove the store and start again (build: with -O)");
+        check_damaged(&error, &path, "delete the store and start over (build: with -O)");
     }
 }
 
-/// What the error about a damaged file says helps.
+/// The advice in the error about a damaged file helps.
 #[test]
 fn a_part_with_a_damaged_header_is_made_again_when_the_named_file_is_removed() {
     for file in ["journal", "data"] {
@@ -293,7 +297,7 @@ fn a_part_with_a_damaged_header_is_made_again_when_the_named_file_is_removed() {
         bytes[3] ^= 0x10;
         disk.set_content(&path, &bytes);
         let error = open(&disk, NEVER).unwrap_err();
-        check_damaged(&error, &path, "remove the file and run the same command again");
+        check_damaged(&error, &path, "delete the file and run the same command again");
         disk.disk().remove(&path).unwrap();
         let store = open(&disk, NEVER).unwrap();
         check_holds(&store, &all_of([]));
@@ -301,7 +305,7 @@ fn a_part_with_a_damaged_header_is_made_again_when_the_named_file_is_removed() {
     }
 }
 
-/// An error about damage names the file and what to do.
+/// Checks that an error about damage names the file and what to do.
 fn check_damaged(error: &StoreError, path: &Path, remedy: &str) {
     assert!(matches!(error, StoreError::Damaged { path: found, .. } if found == path), "{error}");
     assert!(error.to_string().contains(remedy), "{error}");
@@ -410,7 +414,8 @@ fn a_store_that_was_removed_while_it_is_in_use_says_so() {
     assert!(matches!(&error, StoreError::Failed { cause, .. } if *cause == earlier), "{error}");
 }
 
-/// The same on the file system of the machine, with what a test double cannot show: real locks, real identities.
+/// The same test on the file system of the machine, with properties that a test double does not
+/// have: real locks, real identities.
 #[test]
 fn works_on_the_file_system_of_the_machine() {
     let temporary = tempfile::tempdir().unwrap();

@@ -1,11 +1,12 @@
-//! Names that the file system cannot have are refused as that, before anything is made.
+//! Names that are too long for the file system are rejected before anything is created.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 #![cfg(unix)]
 
 use corniche_store::{Claim, TargetError, file_target};
 
-/// Names of files have 255 bytes at most on every usual file system; what is written lies beside its target under a longer name.
+/// Names of files have at most 255 bytes on every usual file system; files are written next to
+/// their target under a longer name.
 #[test]
 fn a_name_is_too_long_with_what_is_added_to_it() {
     let folder = tempfile::tempdir().unwrap();
@@ -18,7 +19,7 @@ fn a_name_is_too_long_with_what_is_added_to_it() {
     let longest = (1..300).find(|&bytes| is_long(bytes)).unwrap() - 1;
     assert!((200..255).contains(&longest), "{longest}");
     assert!((longest + 1..5000).step_by(97).all(is_long));
-    // The longest that is taken can be written.
+    // The longest accepted name can be written.
     let claim = Claim::take(&named(longest)).unwrap();
     drop(claim.begin_file(corniche_store::Existing::Keep).unwrap());
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);

@@ -1,4 +1,5 @@
-//! Integration tests of `corniche-store`, in one binary. The first line of each module says what holds.
+//! Integration tests of `corniche-store`, in one binary. The first line of each module states what
+//! it tests.
 
 mod common;
 mod faults;

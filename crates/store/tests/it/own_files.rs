@@ -1,4 +1,4 @@
-//! Links, pipes and files with two names are not worked in, whoever put them there.
+//! Links, pipes and files with two names are not used, whoever put them there.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 #![cfg(unix)]
@@ -28,7 +28,7 @@ fn prepared() -> Prepared {
     Prepared { folder, victim }
 }
 
-/// Each way to put something else in the place of a file.
+/// Puts something else in the position of a file.
 fn put(way: &str, victim: &Path, place: &Path) {
     match way {
         "link" => symlink(victim, place).unwrap(),
@@ -56,7 +56,7 @@ fn the_lock_of_a_store_and_the_claim_of_a_target_are_files_of_ours() {
         assert!(store.join("lock").symlink_metadata().is_ok(), "{way}");
         put(way, &victim, &folder.path().join(".x.unfinished"));
         let error = Claim::take(&folder.path().join("x")).unwrap_err();
-        assert!(error.to_string().contains(".x.unfinished is in the way"), "{way}: {error}");
+        assert!(error.to_string().contains(".x.unfinished\" is in the way"), "{way}: {error}");
         assert_eq!(fs::read(&victim).unwrap(), b"mine", "{way}");
         assert!(!folder.path().join("nowhere").exists() && !store.join("nowhere").exists());
     }
@@ -72,27 +72,27 @@ fn a_folder_of_ours_is_no_link() {
     let plan = StoredPlan { hash: [7; 32], bytes: b"{}".to_vec() };
     let error = LocalStore::create(Arc::new(SystemDisk), &store, &plan, SYNC_INTERVAL).unwrap_err();
     let told = std::error::Error::source(&error).map(ToString::to_string).unwrap_or_default();
-    assert!(told.contains("it is a link"), "{error}: {told}");
+    assert!(told.contains("it is a symbolic link"), "{error}: {told}");
     assert_eq!(fs::read_dir(&elsewhere).unwrap().count(), 0);
-    // Not at a later moment either.
+    // Later calls do not follow the link either.
     for call in [
         SystemDisk.open(&store.join("a"), OpenMode::New).map(drop),
         SystemDisk.remove(&store.join("a")),
         SystemDisk.rename(&store.join("a"), &store.join("b")),
         SystemDisk.list(&store).map(drop),
     ] {
-        assert!(call.unwrap_err().to_string().contains("it is a link"));
+        assert!(call.unwrap_err().to_string().contains("it is a symbolic link"));
     }
-    assert!(make_own_folder(&store).unwrap_err().to_string().contains("it is a link"));
+    assert!(make_own_folder(&store).unwrap_err().to_string().contains("it is a symbolic link"));
 }
 
-/// Opening one would wait for someone who writes to it.
+/// Opening a pipe would wait for a writer.
 #[test]
 fn a_pipe_among_the_parts_is_refused_at_once() {
     let Prepared { folder, victim } = prepared();
     let parts = folder.path().join("parts");
     fs::create_dir(&parts).unwrap();
-    for (way, what) in [("pipe", "a pipe"), ("link", "a link")] {
+    for (way, what) in [("pipe", "a pipe"), ("link", "a symbolic link")] {
         let name = format!("a.{}.part", way.replace(' ', ""));
         put(way, &victim, &parts.join(&name));
         let error = Folder::new(Arc::new(SystemDisk), folder.path()).open(&name).unwrap_err();
@@ -101,7 +101,8 @@ fn a_pipe_among_the_parts_is_refused_at_once() {
     }
 }
 
-/// A name proves nothing: files that are called as those of a store are kept, and so is what lies beside them.
+/// A name proves nothing: files with the names of a store's files are kept, and so are the files
+/// next to them.
 #[test]
 fn files_with_the_names_of_a_store_are_not_removed() {
     let own = ["store", "plan.json", "a.1-0123456789abcdef.data", "1-0123456789abcdef.scratch"];

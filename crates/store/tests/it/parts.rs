@@ -1,11 +1,11 @@
-//! Sealed parts: made by several processes, in any order, some twice, and read as one.
+//! Sealed parts, written by several processes, in any order, some of them twice, are read together.
 #![allow(clippy::unwrap_used, reason = "tests may unwrap")]
 
 use std::path::{Path, PathBuf};
 
 use crate::common::*;
 use corniche_store::{
-    Artifacts, Folder, Key, LocalStore, OwnPart, SealedParts, StoreError, StoredPlan,
+    ArtifactKey, Artifacts, Folder, LocalStore, OwnPart, SealedParts, StoreError, StoredPlan,
 };
 use corniche_testing::{Random, disks::MemoryDisk};
 
@@ -17,8 +17,8 @@ fn open_part(disk: &MemoryDisk, folder: &Path, name: &str) -> Result<LocalStore,
     open_parts(disk.disk(), &[], &plan().hash, Some(own(folder, name, &plan())))
 }
 
-/// Makes and seals a part that holds `keys`, in this order.
-fn make_part(disk: &MemoryDisk, folder: &Path, name: &str, keys: &[Key]) -> PathBuf {
+/// Writes and seals a part with `keys`, in this order.
+fn make_part(disk: &MemoryDisk, folder: &Path, name: &str, keys: &[ArtifactKey]) -> PathBuf {
     let store = open_part(disk, folder, name).unwrap();
     for &key in keys {
         store.put(key, &artifact(key)).unwrap();
@@ -26,7 +26,7 @@ fn make_part(disk: &MemoryDisk, folder: &Path, name: &str, keys: &[Key]) -> Path
     store.seal().unwrap().unwrap()
 }
 
-fn keys(kind: u8, items: std::ops::Range<u64>) -> Vec<Key> {
+fn keys(kind: u8, items: std::ops::Range<u64>) -> Vec<ArtifactKey> {
     items.map(|item| key(kind, item)).collect()
 }
 
@@ -42,10 +42,10 @@ fn parts_of_several_folders_are_read_as_one() {
     check_holds(&store, &all);
     let error = store.put(key(3, 0), b"more").unwrap_err();
     assert!(matches!(error, StoreError::ReadOnly { .. }), "{error}");
-    // What is there already need not be kept again.
+    // Existing artifacts need not be stored again.
     store.put(key(2, 0), b"same").unwrap();
 
-    // And with a part of its own, which may lie in a third folder.
+    // The same with an own part, which may be in a third folder.
     let (folder, plan) = (Path::new("/data/third"), plan());
     let own = own(folder, "merge", &plan);
     let store = open_parts(disk.disk(), &[first, second], &plan.hash, Some(own)).unwrap();
@@ -55,7 +55,7 @@ fn parts_of_several_folders_are_read_as_one() {
     check_holds(&store, &all);
 }
 
-/// Parts that are not wanted are not even opened: one that is damaged is no error then.
+/// Parts that are not needed are not even opened: a damaged one is no error then.
 #[test]
 fn parts_that_are_not_wanted_are_as_if_they_were_not_there() {
     let disk = empty_disk();
@@ -75,7 +75,8 @@ fn parts_that_are_not_wanted_are_as_if_they_were_not_there() {
     assert!(matches!(open(&|_| true).unwrap_err(), StoreError::Damaged { .. }));
 }
 
-/// The name of a part depends on what it holds, not on the order in which it was put, and a second copy is dropped.
+/// The name of a part depends on its content, not on the order in which its artifacts were stored,
+/// and a second copy is deleted.
 #[test]
 fn a_part_made_twice_is_one_file() {
     let disk = empty_disk();
@@ -90,7 +91,7 @@ fn a_part_made_twice_is_one_file() {
     let fewer = make_part(&disk, Path::new("/data/c"), "heights", &keys[1..]);
     assert_ne!(first.file_name(), fewer.file_name());
 
-    // Two at once in one folder: neither sees the other's before both are sealed.
+    // Two parts at once in one folder: neither process sees the other part before both are sealed.
     let folder = Path::new("/data/d");
     let stores = [(); 2].map(|()| open_part(&disk, folder, "heights").unwrap());
     for store in &stores {
@@ -131,7 +132,8 @@ fn a_killed_part_is_gone_on_with_by_the_next_process_of_its_name_only() {
     }
     store.flush().unwrap();
     let files = disk.paths().len();
-    // While it lives, a second one makes its own, and finds none of its artifacts.
+    // While the first process lives, a second one writes its own part, and finds none of the first
+    // one's artifacts.
     let second = open_part(&disk, folder(), "heights").unwrap();
     assert_eq!(second.items(1), NO_ITEMS);
     drop(second);
@@ -143,11 +145,11 @@ fn a_killed_part_is_gone_on_with_by_the_next_process_of_its_name_only() {
     store.put(key(1, 10), &artifact(key(1, 10))).unwrap();
     let path = store.seal().unwrap().unwrap();
     assert_eq!(path, make_part(&empty_disk(), folder(), "heights", &keys(1, 0..11)));
-    // The journal and data of `roads` are still there, and nothing of `heights`.
+    // The journal and the data of `roads` still exist, and nothing of `heights`.
     assert_eq!(killed.paths().len(), files - 2 + 2 + 1);
 }
 
-/// Of several that were killed the one that holds most is gone on with, and the others are removed.
+/// The killed part with the most artifacts is resumed, and the others are deleted.
 #[test]
 fn the_longest_of_several_killed_parts_is_gone_on_with() {
     for counts in [[3, 9, 5], [9, 1, 0], [0, 0, 9]] {
@@ -182,7 +184,7 @@ fn parts_of_another_plan_are_refused_by_name() {
     let both = [first, second];
     let error = open_parts(disk.disk(), &both, &plan().hash, None).unwrap_err();
     assert!(matches!(&error, StoreError::OtherPlan { path } if path == second), "{error}");
-    // Copied into the right folder, it is still the wrong part.
+    // A copy in the right folder is still the wrong part.
     let copy = first.join("parts").join(path.file_name().unwrap());
     disk.set_content(&copy, &disk.content(&path).unwrap());
     let error = open_parts(disk.disk(), &[first], &plan().hash, None).unwrap_err();
@@ -202,7 +204,8 @@ fn two_parts_that_contradict_each_other_are_refused() {
     assert!(matches!(error, StoreError::Differs { kind: 1, item: 2, .. }), "{error}");
 }
 
-/// Whichever byte of a sealed part is wrong: an error that names it, at opening or when the artifact is read.
+/// Any wrong byte of a sealed part causes an error that names the part, on opening or when the
+/// artifact is read.
 #[test]
 fn any_wrong_byte_of_a_sealed_part_is_noticed() {
     let disk = empty_disk();
@@ -232,7 +235,7 @@ fn any_wrong_byte_of_a_sealed_part_is_noticed() {
         let error = open_parts(disk.disk(), &[folder()], &plan().hash, None).unwrap_err();
         assert!(matches!(&error, StoreError::Damaged { .. }), "{error}");
         let said = error.to_string();
-        assert!(said.contains("remove the file and make the part again"), "{said}");
+        assert!(said.contains("delete the file and create the part again"), "{said}");
     }
 }
 
@@ -263,7 +266,8 @@ fn a_name_that_is_no_file_name_is_refused() {
     assert_eq!(disk.paths(), NOTHING);
 }
 
-/// Two processes on the file system of the machine, as far as one test process can be two: locks are held by open files.
+/// Two processes on the file system of the machine, simulated by one test process: locks are held
+/// by open files.
 #[test]
 fn parts_work_on_the_file_system_of_the_machine() {
     let temporary = tempfile::tempdir().unwrap();

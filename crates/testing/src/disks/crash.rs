@@ -1,13 +1,15 @@
-//! What a simulated disk holds after a loss of power, by chance within what real disks may do.
+//! The random content of a simulated disk after a loss of power, within the behaviour of real
+//! disks.
 
-use super::state::{Content, ContentChange, Node, State};
+use super::state::{ContentChange, DiskContent, DiskNode, State};
 use crate::Random;
 
-/// Devices write at least so many bytes as a whole.
+/// Devices write at least this many bytes as a whole.
 const SECTOR_BYTES: usize = 512;
 
-/// What a loss of power leaves: all that was synced; each change of a name or of content since with even odds, whatever became of those before;
-/// and of the writes among them one in four torn.
+/// Returns the content after a loss of power: everything that was synced; each later change of a
+/// name or of content with even odds, whatever happened to the earlier ones; and one in four of the
+/// writes among them is torn.
 pub(crate) fn crashed(state: &State, random: &mut Random) -> State {
     let mut names = state.durable_names.clone();
     for change in &state.changes {
@@ -15,10 +17,10 @@ pub(crate) fn crashed(state: &State, random: &mut Random) -> State {
             change.apply(&mut names);
         }
     }
-    // A name within a folder that was lost is lost with it.
+    // A name in a folder that was lost is lost, too.
     let folders: Vec<_> = names
         .iter()
-        .filter(|(_, node)| **node == Node::Folder)
+        .filter(|(_, node)| **node == DiskNode::Folder)
         .map(|(path, _)| path.clone())
         .collect();
     names.retain(|path, _| {
@@ -28,7 +30,7 @@ pub(crate) fn crashed(state: &State, random: &mut Random) -> State {
     State { durable_names: names.clone(), names, files, ..State::default() }
 }
 
-fn crashed_content(file: &Content, random: &mut Random) -> Content {
+fn crashed_content(file: &DiskContent, random: &mut Random) -> DiskContent {
     let mut bytes = file.durable.clone();
     for change in &file.changes {
         if random.below(2) == 0 {
@@ -41,10 +43,10 @@ fn crashed_content(file: &Content, random: &mut Random) -> Content {
             change => change.apply(&mut bytes),
         }
     }
-    Content::of(bytes)
+    DiskContent::from_bytes(bytes)
 }
 
-/// The first part of a write, or all of it with garbage in one sector.
+/// Returns the first part of a write, or all of it with garbage in one sector.
 fn torn(offset: usize, written: &[u8], random: &mut Random) -> ContentChange {
     let mut bytes = written.to_vec();
     let at = random.below(bytes.len().max(1) as i64) as usize;

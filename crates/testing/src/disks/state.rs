@@ -1,4 +1,4 @@
-//! The names and contents of a simulated disk, and which changes are not yet safe on it.
+//! The names and contents of a simulated disk, and the changes that are not durable yet.
 
 use std::{
     collections::BTreeMap,
@@ -8,38 +8,38 @@ use std::{
 
 use corniche_store::Hold;
 
-use super::failure::Failure;
+use super::failure::DiskFailure;
 
-/// Tells open files apart.
-pub(crate) type Owner = u64;
+/// Distinguishes open files.
+pub(crate) type FileOwner = u64;
 
-/// What a name stands for: a folder, or a file by its number.
+/// The target of a name: a folder, or a file by its number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Node {
+pub(crate) enum DiskNode {
     Folder,
     File(usize),
 }
 
 #[derive(Debug, Clone, Default)]
 pub(crate) struct State {
-    /// As the code sees them.
-    pub(crate) names: BTreeMap<PathBuf, Node>,
-    /// As they surely are after a crash.
-    pub(crate) durable_names: BTreeMap<PathBuf, Node>,
-    /// What leads from the latter to the former.
+    /// The names as the code sees them.
+    pub(crate) names: BTreeMap<PathBuf, DiskNode>,
+    /// The names that certainly exist after a crash.
+    pub(crate) durable_names: BTreeMap<PathBuf, DiskNode>,
+    /// The changes that lead from the durable names to the current ones.
     pub(crate) changes: Vec<NameChange>,
-    /// By number. A file that has no name any more stays.
-    pub(crate) files: Vec<Content>,
+    /// The files by number. A file without a name remains.
+    pub(crate) files: Vec<DiskContent>,
     pub(crate) calls: u64,
-    /// The number of the call that fails, and how.
-    pub(crate) planned: Option<(u64, Failure)>,
+    /// The number of the call that fails, and its failure.
+    pub(crate) planned: Option<(u64, DiskFailure)>,
     pub(crate) is_full: bool,
-    /// Syncs of files wait.
+    /// Whether syncs of files wait.
     pub(crate) holds_syncs: bool,
-    /// How many do.
+    /// The number of waiting syncs.
     pub(crate) held_syncs: u32,
     pub(crate) is_dead: bool,
-    pub(crate) owners: Owner,
+    pub(crate) owners: FileOwner,
 }
 
 /// A change of names. It happens as a whole or not at all.
@@ -47,7 +47,7 @@ pub(crate) struct State {
 pub(crate) enum NameChange {
     Add {
         path: PathBuf,
-        node: Node,
+        node: DiskNode,
     },
     Rename {
         from: PathBuf,
@@ -56,7 +56,7 @@ pub(crate) enum NameChange {
     Remove {
         path: PathBuf,
     },
-    /// A rename of which one folder is synced already.
+    /// A rename of which one folder is already synced.
     HalfSynced {
         from: PathBuf,
         to: PathBuf,
@@ -74,8 +74,8 @@ impl NameChange {
         }
     }
 
-    /// Does it, if it can be done: an earlier change may be missing.
-    pub(crate) fn apply(&self, names: &mut BTreeMap<PathBuf, Node>) {
+    /// Applies the change if possible: an earlier change may be missing.
+    pub(crate) fn apply(&self, names: &mut BTreeMap<PathBuf, DiskNode>) {
         match self {
             Self::Add { path, node } => {
                 names.insert(path.clone(), *node);
@@ -91,7 +91,7 @@ impl NameChange {
         }
     }
 
-    /// What is left of it to be made durable when a folder has been synced.
+    /// Returns the part of the change that still has to become durable after a folder was synced.
     fn after_sync(&self, folder: &Path) -> Option<Self> {
         let is_in = |path: &Path| path.parent() == Some(folder);
         match self {
@@ -113,23 +113,23 @@ impl NameChange {
 impl State {
     pub(crate) fn with_folder(folder: &Path) -> Self {
         let names: BTreeMap<_, _> =
-            folder.ancestors().map(|path| (path.to_owned(), Node::Folder)).collect();
+            folder.ancestors().map(|path| (path.to_owned(), DiskNode::Folder)).collect();
         Self { durable_names: names.clone(), names, ..Self::default() }
     }
 
-    /// Counts a call. `true` if it is to do half of its work.
+    /// Counts a call. Returns `true` if the call should do half of its work.
     pub(crate) fn count(&mut self, needs_room: bool) -> io::Result<bool> {
         let number = self.calls;
         self.calls += 1;
         let mut is_short = false;
         if let Some((_, failure)) = self.planned.take_if(|(planned, _)| *planned <= number) {
             match failure {
-                Failure::Full => self.is_full = true,
-                // The number that Linux gives to EIO.
-                Failure::Device => return Err(io::Error::from_raw_os_error(5)),
-                Failure::Interrupted => return Err(io::ErrorKind::Interrupted.into()),
-                Failure::Short => is_short = true,
-                Failure::Death => self.is_dead = true,
+                DiskFailure::Full => self.is_full = true,
+                // This is Linux's number of EIO.
+                DiskFailure::Device => return Err(io::Error::from_raw_os_error(5)),
+                DiskFailure::Interrupted => return Err(io::ErrorKind::Interrupted.into()),
+                DiskFailure::Short => is_short = true,
+                DiskFailure::Death => self.is_dead = true,
             }
         }
         if self.is_dead {
@@ -141,22 +141,22 @@ impl State {
         Ok(is_short)
     }
 
-    pub(crate) fn next_owner(&mut self) -> Owner {
+    pub(crate) fn next_owner(&mut self) -> FileOwner {
         self.owners += 1;
         self.owners
     }
 
     pub(crate) fn file_at(&self, path: &Path) -> Option<usize> {
         match self.names.get(path) {
-            Some(Node::File(number)) => Some(*number),
+            Some(DiskNode::File(number)) => Some(*number),
             _ => None,
         }
     }
 
     pub(crate) fn add_file(&mut self, path: &Path) -> usize {
         let number = self.files.len();
-        self.files.push(Content::default());
-        self.change(NameChange::Add { path: path.to_owned(), node: Node::File(number) });
+        self.files.push(DiskContent::default());
+        self.change(NameChange::Add { path: path.to_owned(), node: DiskNode::File(number) });
         number
     }
 
@@ -171,8 +171,8 @@ impl State {
 
     pub(crate) fn check_folder(&self, path: &Path) -> io::Result<()> {
         match self.names.get(path) {
-            Some(Node::Folder) => Ok(()),
-            Some(Node::File(_)) => Err(io::ErrorKind::NotADirectory.into()),
+            Some(DiskNode::Folder) => Ok(()),
+            Some(DiskNode::File(_)) => Err(io::ErrorKind::NotADirectory.into()),
             None => Err(io::ErrorKind::NotFound.into()),
         }
     }
@@ -203,16 +203,16 @@ impl State {
     }
 }
 
-/// What a file holds.
+/// The content of a file.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Content {
-    /// As the code sees it.
+pub(crate) struct DiskContent {
+    /// The content as the code sees it.
     pub(crate) bytes: Vec<u8>,
-    /// As it surely is after a crash, if no change was made after the sync.
+    /// The content that certainly exists after a crash, if no change was made after the sync.
     pub(crate) durable: Vec<u8>,
-    /// What leads from the latter to the former.
+    /// The changes that lead from the durable content to the current one.
     pub(crate) changes: Vec<ContentChange>,
-    locks: Vec<(Owner, Hold)>,
+    locks: Vec<(FileOwner, Hold)>,
 }
 
 #[derive(Debug, Clone)]
@@ -236,8 +236,8 @@ impl ContentChange {
     }
 }
 
-impl Content {
-    pub(crate) fn of(bytes: Vec<u8>) -> Self {
+impl DiskContent {
+    pub(crate) fn from_bytes(bytes: Vec<u8>) -> Self {
         Self { durable: bytes.clone(), bytes, ..Self::default() }
     }
 
@@ -266,7 +266,7 @@ impl Content {
         }
     }
 
-    pub(crate) fn try_lock(&mut self, owner: Owner, hold: Hold) -> bool {
+    pub(crate) fn try_lock(&mut self, owner: FileOwner, hold: Hold) -> bool {
         let is_free = (self.locks.iter().filter(|(other, _)| *other != owner))
             .all(|(_, other)| hold == Hold::Shared && *other == Hold::Shared);
         if is_free {
@@ -276,7 +276,7 @@ impl Content {
         is_free
     }
 
-    pub(crate) fn unlock(&mut self, owner: Owner) {
+    pub(crate) fn unlock(&mut self, owner: FileOwner) {
         self.locks.retain(|(other, _)| *other != owner);
     }
 }

@@ -1,25 +1,26 @@
-//! A hostile package, and what must come of it.
+//! A hostile package, and the expected outcome of reading it.
 
-/// What must come of reading a package.
+/// The expected outcome of reading a package.
 #[derive(Debug, Clone, Copy)]
-pub enum Outcome {
-    /// An error whose text has this in it.
+pub enum ReadOutcome {
+    /// An error whose text contains this text.
     Refused(&'static str),
-    /// It is read to its end.
+    /// The package is read completely.
     Read,
 }
 
-/// A package, what must come of reading it, and the memory that this may take beyond its own bytes.
+/// A package, the expected outcome of reading it, and the memory that this may take in addition to
+/// the package's bytes.
 #[derive(Debug)]
 #[expect(missing_docs, reason = "the names say what they are")]
 pub struct Case {
     pub name: &'static str,
     pub bytes: Vec<u8>,
-    pub outcome: Outcome,
+    pub outcome: ReadOutcome,
     pub limit_mib: usize,
 }
 
-/// Most cases: an error long before anything large.
+/// Returns a case like most: an error long before anything large is read.
 pub(crate) fn refused(name: &'static str, bytes: Vec<u8>, reason: &'static str) -> Case {
-    Case { name, bytes, outcome: Outcome::Refused(reason), limit_mib: 4 }
+    Case { name, bytes, outcome: ReadOutcome::Refused(reason), limit_mib: 4 }
 }

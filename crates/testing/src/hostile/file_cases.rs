@@ -1,61 +1,61 @@
-//! Hostile packages with a wrong header or wrong directories.
+//! Hostile packages with an invalid header or invalid directories.
 
 use corniche_tileset::limits::MAX_DIRECTORY_ENTRIES;
 
 use crate::{
     package,
-    pmtiles::{Entry, directory, gzip, put_varint},
+    pmtiles::{RawDirectoryEntry, directory, gzip, put_varint},
 };
 
 use super::{
-    case::{Case, Outcome, refused},
-    parts::Parts,
+    case::{Case, ReadOutcome, refused},
+    parts::PackageParts,
 };
 
-/// A directory of one entry at most, and the tiles of the good package after it.
-fn with_root(entries: &[Entry]) -> Vec<u8> {
+/// A directory of at most one entry, followed by the tiles of the good package.
+fn with_root(entries: &[RawDirectoryEntry]) -> Vec<u8> {
     let root = gzip(&directory(entries));
-    Parts { root, tiles: 0, ..Parts::good() }.assemble()
+    PackageParts { root, tiles: 0, ..PackageParts::good() }.assemble()
 }
 
-/// Leaves under a root of one leaf entry for tile 0.
+/// Leaf directories under a root with one leaf entry for tile 0.
 fn with_leaves(leaves: Vec<u8>, first_length: u64) -> Vec<u8> {
-    let root = directory(&[Entry { step: 0, run: 0, length: first_length, offset: 1 }]);
-    Parts { root: gzip(&root), leaves, tiles: 0, ..Parts::good() }.assemble()
+    let root = directory(&[RawDirectoryEntry { step: 0, run: 0, length: first_length, offset: 1 }]);
+    PackageParts { root: gzip(&root), leaves, tiles: 0, ..PackageParts::good() }.assemble()
 }
 
-fn tile_entry(step: u64) -> Entry {
-    Entry { step, run: 1, length: 20, offset: 1 }
+fn tile_entry(step: u64) -> RawDirectoryEntry {
+    RawDirectoryEntry { step, run: 1, length: 20, offset: 1 }
 }
 
-/// A gzip leaf whose only entry points at the offset and length given, without padding.
+/// A gzip leaf whose only entry points to the given offset and length, without padding.
 fn leaf_to(offset: u64, length: u64) -> Vec<u8> {
-    gzip(&directory(&[Entry { step: 0, run: 0, length, offset: offset + 1 }]))
+    gzip(&directory(&[RawDirectoryEntry { step: 0, run: 0, length, offset: offset + 1 }]))
 }
 
 pub(crate) fn all() -> Vec<Case> {
-    let good = Parts::good;
+    let good = PackageParts::good;
     let number = |value: u64| value.to_le_bytes();
     let mut cases = vec![
         Case {
             name: "the good package, by the specification",
             bytes: good().assemble(),
-            outcome: Outcome::Read,
+            outcome: ReadOutcome::Read,
             limit_mib: 2,
         },
         Case {
             name: "the good package, by the writer",
             bytes: package::written(),
-            outcome: Outcome::Read,
+            outcome: ReadOutcome::Read,
             limit_mib: 2,
         },
         refused("no bytes", vec![], "not a PMTiles file"),
         refused("another file", b"\x89PNG\r\n".repeat(50), "not a PMTiles file"),
         refused("PMTiles 4", good().with_header(7, &[4]), "version 4 is not supported"),
         refused("tiles that are pictures", good().with_header(99, &[2]), "ordinary PMTiles"),
-        refused("root beyond the end", good().with_header(8, &number(1 << 40)), "cut off"),
+        refused("root beyond the end", good().with_header(8, &number(1 << 40)), "truncated"),
         refused("root that wraps around", good().with_header(8, &number(u64::MAX)), "the header"),
-        refused("root of 2^63 bytes", good().with_header(16, &number(1 << 63)), "cut off"),
+        refused("root of 2^63 bytes", good().with_header(16, &number(1 << 63)), "truncated"),
         refused("root inside the header", good().with_header(8, &number(100)), "overlap"),
         refused(
             "root on top of the metadata",
@@ -71,21 +71,26 @@ pub(crate) fn all() -> Vec<Case> {
             "root of 5 MiB",
             {
                 let root = vec![0; 5 << 20];
-                Parts { root, ..good() }.assemble()
+                PackageParts { root, ..good() }.assemble()
             },
-            "larger than readers accept",
+            "is larger than readers accept",
         ),
         refused(
             "root that is no gzip",
-            Parts { root: vec![7; 40], ..good() }.assemble(),
+            PackageParts { root: vec![7; 40], ..good() }.assemble(),
             "the root directory",
         ),
     ];
     let mut endless = Vec::new();
     put_varint(&mut endless, 1 << 63);
-    let raw = |bytes: &[u8]| Parts { root: gzip(bytes), ..good() }.assemble();
-    let too_many: Vec<Entry> = (0..=MAX_DIRECTORY_ENTRIES as u64)
-        .map(|k| Entry { step: k.min(1), run: 1, length: 20, offset: u64::from(k == 0) })
+    let raw = |bytes: &[u8]| PackageParts { root: gzip(bytes), ..good() }.assemble();
+    let too_many: Vec<RawDirectoryEntry> = (0..=MAX_DIRECTORY_ENTRIES as u64)
+        .map(|k| RawDirectoryEntry {
+            step: k.min(1),
+            run: 1,
+            length: 20,
+            offset: u64::from(k == 0),
+        })
         .collect();
     cases.push(refused("2^63 entries", raw(&endless), "the root directory"));
     cases.push(Case {
@@ -96,7 +101,7 @@ pub(crate) fn all() -> Vec<Case> {
         limit_mib: 20,
         ..refused("a directory of 256 MiB of zeros", raw(&vec![0; 256 << 20]), "the root directory")
     });
-    let entry = |run, length, offset| [Entry { step: 0, run, length, offset }];
+    let entry = |run, length, offset| [RawDirectoryEntry { step: 0, run, length, offset }];
     cases.extend([
         refused(
             "a run of 2^32 tiles",
@@ -121,7 +126,7 @@ pub(crate) fn all() -> Vec<Case> {
         refused("a tile beyond all levels", with_root(&[tile_entry(u64::MAX / 2)]), "a directory"),
         refused("a tile beyond the finest level", with_root(&[tile_entry(21)]), "a directory"),
     ]);
-    // A leaf is as long as its own length makes it: try until both agree.
+    // A leaf contains its own length: try until both agree.
     let own_length = (20..60).find(|&length| leaf_to(0, length).len() as u64 == length).unwrap();
     let itself = leaf_to(0, own_length);
     cases.push(refused(
@@ -129,7 +134,7 @@ pub(crate) fn all() -> Vec<Case> {
         with_leaves(itself, own_length),
         "a directory",
     ));
-    // Readers ignore bytes after the end of gzip data, so every leaf may be given as 64 bytes long.
+    // Readers ignore bytes after the end of gzip data, so every leaf can claim to be 64 bytes long.
     let chain: Vec<u8> = (0..6_u64)
         .flat_map(|depth| {
             let mut leaf = leaf_to(64 * (depth + 1), 64);
@@ -148,13 +153,13 @@ pub(crate) fn all() -> Vec<Case> {
     let empty = gzip(&[0]);
     let length = empty.len() as u64;
     cases.push(refused("an empty leaf", with_leaves(empty, length), "a leaf directory"));
-    // Many leaves, each of as many tiles as a directory may list, of bytes that are not there.
+    // Many leaves, each with as many tiles as a directory may list, without bytes for these tiles.
     let mut leaves = Vec::new();
     let mut root = Vec::new();
     let tiles = MAX_DIRECTORY_ENTRIES as u64;
     for k in 0..64 {
-        let entries: Vec<Entry> = (0..tiles)
-            .map(|n| Entry {
+        let entries: Vec<RawDirectoryEntry> = (0..tiles)
+            .map(|n| RawDirectoryEntry {
                 step: if n == 0 { k * tiles } else { 1 },
                 run: 1,
                 length: 20,
@@ -162,7 +167,7 @@ pub(crate) fn all() -> Vec<Case> {
             })
             .collect();
         let leaf = gzip(&directory(&entries));
-        root.push(Entry {
+        root.push(RawDirectoryEntry {
             step: if k == 0 { 0 } else { tiles },
             run: 0,
             length: leaf.len() as u64,
@@ -170,7 +175,8 @@ pub(crate) fn all() -> Vec<Case> {
         });
         leaves.extend(leaf);
     }
-    let bytes = Parts { root: gzip(&directory(&root)), leaves, tiles: 0, ..good() }.assemble();
+    let bytes =
+        PackageParts { root: gzip(&directory(&root)), leaves, tiles: 0, ..good() }.assemble();
     cases.push(Case {
         limit_mib: 8,
         ..refused("eight million tiles in small leaves", bytes, "a directory")

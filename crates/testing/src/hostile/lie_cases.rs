@@ -1,4 +1,5 @@
-//! Sound bytes with coordinates that nobody can have written: whoever works from the coordinate and not from the bytes never ends.
+//! Valid bytes with impossible coordinates: code whose work depends on the coordinates, and not on
+//! the bytes, never ends.
 
 use corniche_drape::SvLine;
 use corniche_geom::{GridFrame, LatticePoint, NodeIndex, TileId};
@@ -7,14 +8,14 @@ use corniche_tileset::{PayloadContext, SvRoad, TilePayload, encode};
 use serde_json::{Value, json};
 
 use super::{
-    case::{Case, Outcome, refused},
-    parts::{Parts, metadata},
+    case::{Case, ReadOutcome, refused},
+    parts::{PackageParts, metadata},
 };
 use crate::{package, pmtiles::gzip};
 
-/// The sound package with other values in its manifest.
+/// The valid package with other values in its manifest.
 fn with_values(values: &[(&str, Value)]) -> Vec<u8> {
-    Parts { metadata: manifest(values), ..Parts::good() }.assemble()
+    PackageParts { metadata: manifest(values), ..PackageParts::good() }.assemble()
 }
 
 fn manifest(values: &[(&str, Value)]) -> Vec<u8> {
@@ -25,12 +26,12 @@ fn manifest(values: &[(&str, Value)]) -> Vec<u8> {
     gzip(metadata.to_string().as_bytes())
 }
 
-/// Tile 0/0/0 alone, with roads for shadow volumes through these points.
+/// A package of tile 0/0/0, with roads for shadow volumes through these points.
 fn sv_roads(lines: impl IntoIterator<Item = Vec<LatticePoint>>) -> Vec<u8> {
     sv_roads_on(package::payload(TileId::ROOT), lines)
 }
 
-/// The tile with as many triangles as a tile can have.
+/// A tile with the largest number of triangles.
 fn full_tile() -> TilePayload {
     let mut tile = package::payload(TileId::ROOT);
     if let Some(terrain) = &mut tile.terrain {
@@ -52,17 +53,18 @@ fn sv_roads_on(
     };
     tile.roads_sv = (0..).zip(lines).map(road).collect();
     let bytes = encode(&tile, &package::context()).unwrap().bytes;
-    Parts { metadata: manifest(&[]), ..Parts::of_tiles(&[bytes]) }.assemble()
+    PackageParts { metadata: manifest(&[]), ..PackageParts::of_tiles(&[bytes]) }.assemble()
 }
 
-/// A package whose grid lies as far from zero as grids may, in a system of degrees that are so short that it goes around the earth for ever.
+/// A package whose grid is as far from zero as grids may be, in a CRS with such short degrees that
+/// it goes around the earth many times.
 fn around_the_earth(crs: &str) -> Vec<u8> {
     let corner = NodeIndex { i: (1 << 32) - 2048, j: 1024 };
     let values = [("/crs_wkt", json!(crs)), ("/metres_per_unit", json!([1e-6, 1e-6]))];
     on_grid(corner, package::MAX_LEVEL, &values)
 }
 
-/// The ground of the sound package on another grid, all of which is data.
+/// The ground of the valid package on another grid, which is completely covered by data.
 fn on_grid(corner: NodeIndex, max_level: u8, values: &[(&str, Value)]) -> Vec<u8> {
     let cell = package::frame().cell();
     let frame = GridFrame::new([0.5, 0.25], cell, corner, max_level).unwrap();
@@ -83,15 +85,16 @@ fn on_grid(corner: NodeIndex, max_level: u8, values: &[(&str, Value)]) -> Vec<u8
         encode(&tile, &context).unwrap().bytes
     };
     let tiles: Vec<Vec<u8>> = package::ids().into_iter().map(tile).collect();
-    Parts { metadata: manifest(&values), ..Parts::of_tiles(&tiles) }.assemble()
+    PackageParts { metadata: manifest(&values), ..PackageParts::of_tiles(&tiles) }.assemble()
 }
 
-/// A text that a terminal obeys: it clears the screen, goes back to the begin of the line and turns what follows around; and no XML 1.0.
-/// Its second line imitates one of ours.
+/// A text with control characters: it clears the screen, returns to the beginning of the line and
+/// reverses the following text; it is also not valid in XML 1.0. Its second line imitates a line of
+/// Corniche.
 pub const COMMANDING: &str =
     "a\u{1b}[2J\u{9b}31m\rb\u{7}\u{8}\u{202e}c\u{2066}<&>\u{fffe}\"'\ncorniche: forged";
 
-/// The sound package with such texts wherever it has texts that are told.
+/// The valid package with these texts in all fields that programs print.
 #[must_use]
 pub fn commanding_texts() -> Vec<u8> {
     let text = || json!(COMMANDING);
@@ -113,7 +116,7 @@ pub(crate) fn all() -> Vec<Case> {
     let bounds = package::frame().tile_lattice_bounds(TileId::ROOT);
     let from = LatticePoint::new(bounds.min.u + 5000, bounds.min.v + 5000);
     let far = |steps: i64| LatticePoint::new(from.u + steps, from.v + steps / 3);
-    let read = |name, bytes| Case { name, bytes, outcome: Outcome::Read, limit_mib: 64 };
+    let read = |name, bytes| Case { name, bytes, outcome: ReadOutcome::Read, limit_mib: 64 };
     let back = (0..50).map(|k| if k % 2 == 0 { far(-(1 << 40)) } else { far(1 << 40) });
     let across = |segments: i64| {
         (0..segments).map(move |k| if k % 2 == 0 { from } else { bounds.max }).collect()
@@ -121,7 +124,7 @@ pub(crate) fn all() -> Vec<Case> {
     let bounds_at = |x: f64| json!({ "min_x": x, "min_y": 0, "max_x": 2.0 * x, "max_y": 1000 });
     let mut table = metadata()["corniche"]["coordinates"].clone();
     table["bounds"] = bounds_at(1e17);
-    // Tables that are in order by themselves, and spread small data over the globe.
+    // Tables that are valid by themselves, but spread small data over the globe.
     let spread = |factor: f64, offset: f64| {
         let mut table = metadata()["corniche"]["coordinates"].clone();
         let Some(samples) = table["samples_deg"].as_array_mut() else { return table };

@@ -1,26 +1,26 @@
-//! Metadata that are too large or nested too deeply, or have unusable numbers.
+//! Metadata that are too large or nested too deeply, or have invalid numbers.
 
 use serde_json::{Value, json};
 
 use crate::pmtiles::gzip;
 
 use super::{
-    case::{Case, Outcome, refused},
-    parts::{Parts, metadata},
+    case::{Case, ReadOutcome, refused},
+    parts::{PackageParts, metadata},
 };
 
 fn with_metadata(text: &[u8]) -> Vec<u8> {
-    Parts { metadata: gzip(text), ..Parts::good() }.assemble()
+    PackageParts { metadata: gzip(text), ..PackageParts::good() }.assemble()
 }
 
-/// The good manifest with another value at a place.
+/// The good manifest with another value at a JSON pointer.
 fn with_value(pointer: &str, value: Value) -> Vec<u8> {
     let mut metadata = metadata();
     *metadata.pointer_mut(&format!("/corniche{pointer}")).unwrap() = value;
     with_metadata(metadata.to_string().as_bytes())
 }
 
-/// The good manifest as that of a part of its data, with these corners.
+/// The good manifest for a part of its data, with these corners.
 fn with_clip(nodes: [[i64; 2]; 2], north: f64) -> Vec<u8> {
     let mut metadata = metadata();
     let degrees = json!({ "min_x": 9, "min_y": 47, "max_x": 10, "max_y": north });
@@ -32,7 +32,7 @@ fn with_clip(nodes: [[i64; 2]; 2], north: f64) -> Vec<u8> {
     with_metadata(metadata.to_string().as_bytes())
 }
 
-/// The good metadata with raw text in place of the value of `attribution`.
+/// The good metadata with raw text as the value of `attribution`.
 fn with_attribution(text: &str) -> Vec<u8> {
     let mut metadata = metadata();
     metadata["corniche"]["attribution"] = json!("HERE");
@@ -119,13 +119,13 @@ pub(crate) fn all() -> Vec<Case> {
         refused("an ordinary file's", with_metadata(b"{\"name\":\"x\"}"), "ordinary PMTiles"),
         refused(
             "no gzip",
-            Parts { metadata: vec![3; 99], ..Parts::good() }.assemble(),
+            PackageParts { metadata: vec![3; 99], ..PackageParts::good() }.assemble(),
             "the metadata",
         ),
         refused(
             "a flipped byte",
             {
-                let mut parts = Parts::good();
+                let mut parts = PackageParts::good();
                 let middle = parts.metadata.len() / 2;
                 parts.metadata[middle] ^= 0x55;
                 parts.assemble()
@@ -147,7 +147,7 @@ pub(crate) fn all() -> Vec<Case> {
         ),
     ]);
     let limited = |limit_mib, case: Case| Case { limit_mib, ..case };
-    // Twice what is decompressed, while a buffer grows, and what gzip needs.
+    // The limit is twice the decompressed size, because a buffer grows, plus the memory of gzip.
     cases.push(limited(
         52,
         refused("256 MiB of blanks", with_metadata(&vec![b' '; 256 << 20]), "the metadata"),
@@ -156,7 +156,7 @@ pub(crate) fn all() -> Vec<Case> {
     deep.truncate(deep.len() - 1);
     let (open, close) = ("[".repeat(1_000_000), "]".repeat(1_000_000));
     deep = format!("{deep},\"other\":{open}{close}}}");
-    let read = |name, bytes, limit_mib| Case { name, bytes, outcome: Outcome::Read, limit_mib };
+    let read = |name, bytes, limit_mib| Case { name, bytes, outcome: ReadOutcome::Read, limit_mib };
     cases.push(read("a million brackets under a foreign key", with_metadata(deep.as_bytes()), 16));
     let texts = format!("[\"\"{}]", ",\"\"".repeat(5_500_000));
     cases.push(limited(

@@ -1,4 +1,4 @@
-//! The small package in pieces, so that each can be wrong by itself.
+//! The small package in pieces, so that each piece can be invalid by itself.
 
 use corniche_tileset::{
     AreaCounts, AreaTableRecord, AreasRecord, InputRecord, LineCounts, LinesRecord, Manifest,
@@ -7,35 +7,35 @@ use corniche_tileset::{
 
 use crate::{
     package,
-    payload::{Section, with_right_table_checksum},
-    pmtiles::{self, Entry, directory, gzip},
+    payload::{RawSection, with_right_table_checksum},
+    pmtiles::{self, RawDirectoryEntry, directory, gzip},
 };
 
-/// The pieces of a file, as they are stored.
-pub(crate) struct Parts {
+/// The pieces of a file as they are stored.
+pub(crate) struct PackageParts {
     pub(crate) root: Vec<u8>,
     pub(crate) metadata: Vec<u8>,
     pub(crate) leaves: Vec<u8>,
     pub(crate) data: Vec<u8>,
-    /// How many tiles the header counts.
+    /// The number of tiles in the header.
     pub(crate) tiles: u64,
 }
 
-impl Parts {
-    /// The sound package: four tiles, no leaf directories.
+impl PackageParts {
+    /// Returns the valid package: four tiles, no leaf directories.
     pub(crate) fn good() -> Self {
         let tiles: Vec<Vec<u8>> = package::ids().into_iter().map(package::encoded).collect();
         Self::of_tiles(&tiles)
     }
 
-    /// Payloads in the places of the sound package's first tiles.
+    /// Replaces the payloads of the valid package's first tiles.
     pub(crate) fn of_tiles(tiles: &[Vec<u8>]) -> Self {
         let mut entries = Vec::new();
         let (mut last, mut offset) = (0, 1);
         for (id, tile) in package::ids().into_iter().zip(tiles) {
             let order = corniche_tileset::pmtiles_order(id);
             let length = tile.len() as u64;
-            entries.push(Entry { step: order - last, run: 1, length, offset });
+            entries.push(RawDirectoryEntry { step: order - last, run: 1, length, offset });
             (last, offset) = (order, offset + length);
         }
         Self {
@@ -47,12 +47,12 @@ impl Parts {
         }
     }
 
-    /// The file.
+    /// Assembles the file.
     pub(crate) fn assemble(&self) -> Vec<u8> {
         pmtiles::file([&self.root, &self.metadata, &self.leaves, &self.data], self.tiles)
     }
 
-    /// The file with other bytes at a place of its header.
+    /// Assembles the file with other bytes at an offset of its header.
     pub(crate) fn with_header(&self, at: usize, bytes: &[u8]) -> Vec<u8> {
         let mut file = self.assemble();
         file[at..at + bytes.len()].copy_from_slice(bytes);
@@ -60,8 +60,8 @@ impl Parts {
     }
 }
 
-/// The sound package's metadata, in a system that PROJ knows and with an extract, areas, boundaries and spans, so that no command stops before it
-/// has read tiles.
+/// The valid package's metadata, in a CRS that PROJ knows and with an extract, areas, boundaries
+/// and spans, so that no command ends before it has read tiles.
 pub(crate) fn metadata() -> serde_json::Value {
     let (kind, name) = ("osm".to_owned(), "pass.osm.pbf".to_owned());
     let extract = InputRecord { kind, name, bytes: 1, sha256: "0".repeat(64) };
@@ -87,30 +87,32 @@ pub(crate) fn metadata() -> serde_json::Value {
     })
 }
 
-/// `count` numbers in planes of which every byte is `byte`.
+/// Appends `count` numbers in planes in which every byte is `byte`.
 pub(crate) fn planes(blob: &mut Vec<u8>, planes: u8, count: usize, byte: u8) {
     blob.push(planes);
     blob.resize(blob.len() + usize::from(planes) * count, byte);
 }
 
-/// A section as one zstd frame.
-pub(crate) fn zstd_section(kind: u16, raw: &[u8]) -> Section {
+/// Returns a section as one zstd frame.
+pub(crate) fn zstd_section(kind: u16, raw: &[u8]) -> RawSection {
     let stored = zstd::bulk::compress(raw, 3).unwrap();
-    Section { kind, compression: 1, raw_length: raw.len() as u32, stored }
+    RawSection { kind, compression: 1, raw_length: raw.len() as u32, stored }
 }
 
-/// A payload of tile 0/0/0 with right offsets and checksums.
-pub(crate) fn payload(sections: &[Section]) -> Vec<u8> {
+/// Returns a payload of tile 0/0/0 with correct offsets and checksums.
+pub(crate) fn payload(sections: &[RawSection]) -> Vec<u8> {
     crate::payload::payload(corniche_geom::TileId::ROOT, sections)
 }
 
-/// A payload with other bytes at a place of its header or section table, and a checksum that fits.
+/// Returns a payload with other bytes at an offset of its header or section table, and a matching
+/// checksum.
 pub(crate) fn resealed(mut payload: Vec<u8>, at: usize, bytes: &[u8]) -> Vec<u8> {
     payload[at..at + bytes.len()].copy_from_slice(bytes);
     with_right_table_checksum(payload)
 }
 
-/// The sections of the sound package's tile 0/0/0, decompressed by zstd's own decoder, in the order of their kinds.
+/// The sections of the valid package's tile 0/0/0, decompressed by zstd's own decoder, in the order
+/// of their kinds.
 pub(crate) fn raw_sections() -> Vec<Vec<u8>> {
     let bytes = package::encoded("0/0/0".parse().unwrap());
     let number = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;

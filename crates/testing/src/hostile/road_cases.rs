@@ -1,17 +1,17 @@
-//! Hostile packages with wrong road sections or road attributes.
+//! Hostile packages with invalid road sections or road attributes.
 
 use crate::{
     package::{QUANTUM_M, context, frame},
-    payload::Section,
+    payload::RawSection,
     pmtiles::put_varint,
 };
 use corniche_drape::{DrapedLine, DrapedVertex, SvLine};
 use corniche_roads::FunctionalRoadClass;
-use corniche_tileset::{GeoRoad, PayloadContext, SvRoad, Terrain, TilePayload, encode};
+use corniche_tileset::{GeoRoad, PayloadContext, SvRoad, TilePayload, TileTerrain, encode};
 use corniche_tin::{Placement, Surface, Tin, TinVertex};
 
 use super::{
-    case::{Case, Outcome, refused},
+    case::{Case, ReadOutcome, refused},
     parts::{payload, planes, raw_sections, zstd_section},
     tile_cases::{with_sections, with_tile},
 };
@@ -22,10 +22,10 @@ const CODED_GEO: u16 = 10;
 const CODED_SV: u16 = 11;
 const ATTRIBUTES: u16 = 4;
 const TAGS: u16 = 5;
-/// Bytes of the table of classes.
+/// Number of bytes of the table of classes.
 const TABLE: usize = 72;
 
-/// A road section with lines of class 0 alone.
+/// A road section with lines of class 0 only.
 fn road_section(lines: u32, blob: &[u8]) -> Vec<u8> {
     let mut raw = lines.to_le_bytes().to_vec();
     raw.extend((blob.len() as u32).to_le_bytes());
@@ -34,7 +34,7 @@ fn road_section(lines: u32, blob: &[u8]) -> Vec<u8> {
     raw
 }
 
-/// Way ids 1, 2, 3 …, part 0, and for each the same number of points.
+/// Heads with way ids 1, 2, 3 …, part 0, and the same number of points for each line.
 fn heads(lines: usize, points: u64) -> Vec<u8> {
     let mut blob = vec![2; lines];
     blob.resize(2 * lines, 0);
@@ -42,7 +42,7 @@ fn heads(lines: usize, points: u64) -> Vec<u8> {
     blob
 }
 
-/// An SV section of lines that go east by two steps a point.
+/// An SV section of lines that go east by two steps per point.
 fn sv_lines(lines: usize, points: usize) -> Vec<u8> {
     let mut blob = heads(lines, points as u64);
     planes(&mut blob, 1, lines * points, 4);
@@ -52,7 +52,8 @@ fn sv_lines(lines: usize, points: usize) -> Vec<u8> {
     road_section(lines as u32, &blob)
 }
 
-/// The same lines as a coded section: points on a grid of half a metre, which takes the writer to it.
+/// A coded section of the same lines: the points are on a grid of half a metre, so that the writer
+/// chooses this kind.
 fn coded_sv_lines(lines: i64, points: i64) -> Vec<u8> {
     let context = PayloadContext { metres_per_unit: [5e6; 2], ..context() };
     let class = FunctionalRoadClass::new(0).unwrap();
@@ -75,16 +76,16 @@ fn coded_sv_lines(lines: i64, points: i64) -> Vec<u8> {
     bytes
 }
 
-/// A coded section with lines of class 0 alone.
+/// A coded section with lines of class 0 only.
 fn coded_section(steps_m: [f64; 2], lines: u32, bits: &[u8]) -> Vec<u8> {
     [steps_m.map(f64::to_le_bytes).concat(), road_section(lines, bits)].concat()
 }
 
 /// Cases of coded road sections.
 fn coded_cases() -> Vec<Case> {
-    let plain = |raw: Vec<u8>| with_sections(&[Section::plain(CODED_SV, raw)]);
+    let plain = |raw: Vec<u8>| with_sections(&[RawSection::plain(CODED_SV, raw)]);
     let steps = |steps_m: [f64; 2]| plain(coded_section(steps_m, 1, &[0x55; 40]));
-    let read = |name, limit_mib, bytes| Case { name, bytes, outcome: Outcome::Read, limit_mib };
+    let read = |name, limit_mib, bytes| Case { name, bytes, outcome: ReadOutcome::Read, limit_mib };
     vec![
         read("a million coded lines of four points", 512, with_tile(coded_sv_lines(1 << 20, 4))),
         read("one coded line of four million points", 512, with_tile(coded_sv_lines(1, 1 << 22))),
@@ -103,21 +104,22 @@ fn coded_cases() -> Vec<Case> {
         ),
         refused(
             "coded roads without ground",
-            with_sections(&[Section::plain(CODED_GEO, coded_section([0.5; 2], 1, &[0; 40]))]),
-            "without the ground",
+            with_sections(&[RawSection::plain(CODED_GEO, coded_section([0.5; 2], 1, &[0; 40]))]),
+            "without ground",
         ),
         refused(
             "roads in planes and coded",
             with_sections(&[
-                Section::plain(SV, sv_lines(2, 3)),
-                Section::plain(CODED_SV, coded_section([0.5; 2], 1, &[0; 40])),
+                RawSection::plain(SV, sv_lines(2, 3)),
+                RawSection::plain(CODED_SV, coded_section([0.5; 2], 1, &[0; 40])),
             ]),
             "two sections for the same objects",
         ),
     ]
 }
 
-/// Lists of the attributes section: texts, then one list of eight bytes and seven of `widths` bytes an item.
+/// The lists of an attributes section: texts, then one list with eight bytes and seven lists with
+/// `widths` bytes per item.
 fn attributes(texts: &[&[u8]], ways: usize, name: u32) -> Vec<u8> {
     let mut raw = (texts.len() as u64).to_le_bytes().to_vec();
     for text in texts {
@@ -134,7 +136,8 @@ fn attributes(texts: &[&[u8]], ways: usize, name: u32) -> Vec<u8> {
     raw
 }
 
-/// A road tags section: texts, and six columns of planes, each with one byte for all ways.
+/// A road tags section: texts, and six columns of planes, each with one byte that applies to all
+/// ways.
 fn tags(texts: &[&[u8]], ways: usize, column: [(u8, u8); 6]) -> Vec<u8> {
     let mut raw = Vec::new();
     put_varint(&mut raw, texts.len() as u64);
@@ -148,7 +151,7 @@ fn tags(texts: &[&[u8]], ways: usize, column: [(u8, u8); 6]) -> Vec<u8> {
     raw
 }
 
-/// Cases of the road tags section, each over ways without names.
+/// Cases of the road tags section, each for ways without names.
 fn tag_cases() -> Vec<Case> {
     let over = |ways: usize, raw: &[u8]| {
         with_sections(&[
@@ -158,7 +161,7 @@ fn tag_cases() -> Vec<Case> {
     };
     let refusal = |name, raw: &[u8], words| {
         let ways = attributes(&[b""], 3, 0);
-        let sections = [Section::plain(ATTRIBUTES, ways), Section::plain(TAGS, raw.to_vec())];
+        let sections = [RawSection::plain(ATTRIBUTES, ways), RawSection::plain(TAGS, raw.to_vec())];
         refused(name, with_sections(&sections), words)
     };
     let none = [(0, 0); 6];
@@ -180,12 +183,12 @@ fn tag_cases() -> Vec<Case> {
                 1 << 20,
                 &tags(&all, 1 << 20, [(1, 2), (1, 1), (1, 2), (1, 1), (1, 2), (4, 1)]),
             ),
-            outcome: Outcome::Read,
+            outcome: ReadOutcome::Read,
             limit_mib: 480,
         },
         refused(
             "tags without ways",
-            with_sections(&[Section::plain(TAGS, tags(&all, 3, none))]),
+            with_sections(&[RawSection::plain(TAGS, tags(&all, 3, none))]),
             "number of texts",
         ),
         refusal(
@@ -196,7 +199,7 @@ fn tag_cases() -> Vec<Case> {
         refusal("texts of tags in disorder", &tags(&[b"b", b"a"], 3, none), "texts are not sorted"),
         refusal("a text of a tag twice", &tags(&[b"a", b"a"], 3, none), "texts are not sorted"),
         refusal("an empty text of a tag", &tags(&[b""], 3, none), "texts are not sorted"),
-        refusal("a tag that is no UTF-8", &tags(&[&[0xff]], 3, none), "no UTF-8"),
+        refusal("a tag that is not UTF-8", &tags(&[&[0xff]], 3, none), "not UTF-8"),
         refusal("256 lanes", &tags(&[], 3, with(4, (2, 1))), "a number of lanes"),
         refusal("a width of 5 bytes", &tags(&[], 3, with(5, (5, 1))), "a width"),
         refusal(
@@ -212,7 +215,7 @@ fn tag_cases() -> Vec<Case> {
                 "a million ways, four million texts, no bytes",
                 with_sections(&[
                     zstd_section(ATTRIBUTES, &attributes(&[b""], 1 << 20, 0)),
-                    Section::plain(TAGS, many.clone()),
+                    RawSection::plain(TAGS, many.clone()),
                 ]),
                 "end too early",
             )
@@ -228,7 +231,8 @@ fn tag_cases() -> Vec<Case> {
     ]
 }
 
-/// A fan of 512 triangles around the tile's corner, and a line that is said to cross one edge of it after another.
+/// A fan of 512 triangles around the tile's corner, and a line that claims to cross one of its
+/// edges after another.
 ///
 /// To cross an edge, the reader must find it among all edges around the corner.
 fn around_a_hub(crossings: usize) -> Vec<u8> {
@@ -242,7 +246,8 @@ fn around_a_hub(crossings: usize) -> Vec<u8> {
     let surface = Surface::new(&tin, Placement::of_tile(&frame(), id, QUANTUM_M));
     let bounds = frame().tile_lattice_bounds(id);
     let side = bounds.max.u - bounds.min.u;
-    // From the east to the west, south of the corner: the corner is on the right, the far ends on the left.
+    // The line goes from east to west, south of the corner: the corner is on its right, the far
+    // ends are on its left.
     let point = |k: i64| {
         corniche_geom::LatticePoint::new(bounds.max.u - side * k / 8, bounds.max.v - side / 2)
     };
@@ -250,7 +255,8 @@ fn around_a_hub(crossings: usize) -> Vec<u8> {
         let point = point(k);
         DrapedVertex::Source { point, triangle: surface.locate(point).unwrap() }
     };
-    // The rim's vertices by their numbers in the TIN; the last in the fan has no edge that starts at the corner.
+    // The rim's vertices by their numbers in the TIN; the last one in the fan has no edge that
+    // starts at the corner.
     let hub_ends: Vec<u32> = surface.fan(0).iter().map(|&edge| surface.ends(edge)[1]).collect();
     let last = (1..at.len() as u32).find(|vertex| !hub_ends.contains(vertex)).unwrap();
     let crossing = DrapedVertex::Crossing { a: 0, b: last };
@@ -259,7 +265,7 @@ fn around_a_hub(crossings: usize) -> Vec<u8> {
     line.push(source(1));
     let line = DrapedLine { lead_in: None, vertices: line, lead_out: None };
     let class = FunctionalRoadClass::new(0).unwrap();
-    let terrain = Terrain {
+    let terrain = TileTerrain {
         normals: vec![[0, 0]; tin.vertices().len()],
         tin,
         geometric_error_m: 0.0,
@@ -277,7 +283,8 @@ fn around_a_hub(crossings: usize) -> Vec<u8> {
     encode(&tile, &context()).unwrap().bytes
 }
 
-/// The same with so many crossings that the writer would refuse it: a short one's, its line made longer.
+/// The same package with so many crossings that the writer would reject it: the line of a short one
+/// is extended.
 fn around_a_hub_for_ever() -> Vec<u8> {
     let short = around_a_hub(4);
     let number = |at: usize| u32::from_le_bytes(short[at..at + 4].try_into().unwrap()) as usize;
@@ -291,7 +298,8 @@ fn around_a_hub_for_ever() -> Vec<u8> {
     };
     let (terrain, geo) = (section(0), section(1));
     let blob = &geo[TABLE..];
-    // A crossing that is not as guessed: none before it, its kind, its ends 0 and `last`. Four of them stand here.
+    // A crossing that differs from its guess: the gap 0, the kind, the ends 0 and `last`. There are
+    // four of them in succession.
     let surprises = (0..blob.len())
         .find(|&at| {
             let Some(&[count, 1, 2, 0, ..]) = blob.get(at..) else { return false };
@@ -315,19 +323,22 @@ fn varint_length(bytes: &[u8]) -> usize {
 
 pub(crate) fn all() -> Vec<Case> {
     let limited = |limit_mib, case: Case| Case { limit_mib, ..case };
-    let read = |name, limit_mib, bytes| Case { name, bytes, outcome: Outcome::Read, limit_mib };
+    let read = |name, limit_mib, bytes| Case { name, bytes, outcome: ReadOutcome::Read, limit_mib };
     let raws = raw_sections();
     let alone = |kind: u16, raw: &[u8]| with_sections(&[zstd_section(kind, raw)]);
     let over_ground = |raw: &[u8]| {
-        with_sections(&[Section::plain(1, raws[0].clone()), Section::plain(GEO, raw.to_vec())])
+        with_sections(&[
+            RawSection::plain(1, raws[0].clone()),
+            RawSection::plain(GEO, raw.to_vec()),
+        ])
     };
-    let plain = |kind: u16, raw: Vec<u8>| with_sections(&[Section::plain(kind, raw)]);
+    let plain = |kind: u16, raw: Vec<u8>| with_sections(&[RawSection::plain(kind, raw)]);
     let with_list = |at: usize, length: u64| {
         let mut raw = attributes(&[b""], 3, 0);
         raw[at..at + 8].copy_from_slice(&length.to_le_bytes());
         plain(ATTRIBUTES, raw)
     };
-    // Two points a line, all of them in the same place: they take no bytes.
+    // Two points per line, all of them at the same position: they take no bytes.
     let mut still = heads(1, 1 << 22);
     (0..2).for_each(|_| planes(&mut still, 0, 0, 0));
     let mut far = heads(1, 2);
@@ -358,12 +369,12 @@ pub(crate) fn all() -> Vec<Case> {
         refused(
             "four million points in one place",
             plain(SV, road_section(1, &still)),
-            "segment without length",
+            "segment of zero length",
         ),
         refused(
             "the same over ground",
             over_ground(&road_section(1, &still)),
-            "segment without length",
+            "segment of zero length",
         ),
         refused(
             "more points than may be",
@@ -388,8 +399,8 @@ pub(crate) fn all() -> Vec<Case> {
         ),
         refused(
             "roads without ground",
-            with_sections(&[Section::plain(GEO, raws[1].clone())]),
-            "without the ground",
+            with_sections(&[RawSection::plain(GEO, raws[1].clone())]),
+            "without ground",
         ),
         refused(
             "four million surprises, no bytes",
@@ -402,7 +413,7 @@ pub(crate) fn all() -> Vec<Case> {
             refused(
                 "600 000 crossings at a hub",
                 with_tile(around_a_hub_for_ever()),
-                "GEO roads section: it takes more than the limit",
+                "GEO roads section: decoding takes more than the limit",
             ),
         ),
         read("300 000 crossings at a hub", 64, with_tile(around_a_hub(300_000))),
@@ -420,7 +431,7 @@ pub(crate) fn all() -> Vec<Case> {
             "a text that does not exist",
         ),
         refused(
-            "a text that is no UTF-8",
+            "a text that is not UTF-8",
             plain(ATTRIBUTES, attributes(&[&[0xff]], 3, 0)),
             "the records",
         ),

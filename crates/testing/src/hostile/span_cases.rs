@@ -1,21 +1,22 @@
-//! Hostile packages with a wrong section of spans.
+//! Hostile packages with an invalid spans section.
 
 use std::iter;
 
 use corniche_geom::TileId;
 use corniche_tileset::limits::MAX_SPAN_POINTS;
 
-use crate::{package, payload::Section, pmtiles::put_varint, random::Random};
+use crate::{package, payload::RawSection, pmtiles::put_varint, random::Random};
 
 use super::{
-    case::{Case, Outcome, refused},
+    case::{Case, ReadOutcome, refused},
     parts::{planes, raw_sections, zstd_section},
     tile_cases::{with_sections, with_tile},
 };
 
 const SPANS: u16 = 13;
 
-/// The columns of a section: classes and ends, ways, lengths, points east and north, heights, triangles.
+/// The columns of a section: classes and ends, ways, lengths, points east and north, heights,
+/// triangles.
 const CODES: usize = 0;
 const WAYS: usize = 1;
 const LENGTHS: usize = 2;
@@ -23,7 +24,7 @@ const EAST: usize = 3;
 const HEIGHTS: usize = 5;
 const TRIANGLES: usize = 6;
 
-/// A section of so many runs with these columns.
+/// A section with this number of runs and these columns.
 fn section(runs: u64, columns: &[Vec<u8>]) -> Vec<u8> {
     let mut raw = Vec::new();
     put_varint(&mut raw, runs);
@@ -31,14 +32,14 @@ fn section(runs: u64, columns: &[Vec<u8>]) -> Vec<u8> {
     raw
 }
 
-/// A column of so many numbers, each of so many bytes, which are all the same.
+/// A column of `count` numbers of `width` bytes, which are all the same.
 fn column(width: u8, count: usize, byte: u8) -> Vec<u8> {
     let mut column = Vec::new();
     planes(&mut column, width, count, byte);
     column
 }
 
-/// Columns of runs of class 0 that go east by a step a point, at a height of 0.
+/// Columns of runs of class 0 that go east by one step per point, at a height of 0.
 fn columns(runs: usize, points: usize) -> Vec<Vec<u8>> {
     let mut columns = vec![vec![0]; 7];
     let more = (points - 2).to_le_bytes();
@@ -58,16 +59,17 @@ fn numbers(values: &[u64]) -> Vec<u8> {
     iter::once(width as u8).chain((0..width).flat_map(plane)).collect()
 }
 
-/// How many points the spans of a tile of [`attacks`] have: some, as many as may be, and more.
+/// The numbers of points of the spans in a tile of [`attack`]: some, as many as allowed, and more.
 const ATTACK_POINTS: [usize; 4] = [1 << 14, MAX_SPAN_POINTS, 1 << 20, 1 << 22];
-/// How they follow each other.
+/// The number of patterns of their positions.
 const ATTACK_PATTERNS: usize = 5;
-/// How they are shared out among runs.
+/// The number of ways to distribute them to runs.
 const ATTACK_RUNS: usize = 5;
-/// How many [`attack`]s there are.
+/// The number of [`attack`]s.
 pub const ATTACKS: usize = ATTACK_POINTS.len() * ATTACK_PATTERNS * ATTACK_RUNS;
 
-/// One of [`ATTACKS`] packages whose spans follow no road: many points in few bytes, all over a tile. Those that have no more than may be are read.
+/// Returns one of [`ATTACKS`] packages whose spans follow no road: many points in few bytes, all
+/// over a tile. Packages within the limit of points are read.
 #[must_use]
 pub fn attack(number: usize) -> Case {
     let (number, sharing) = (number / ATTACK_RUNS, number % ATTACK_RUNS);
@@ -79,7 +81,8 @@ pub fn attack(number: usize) -> Case {
     let place = |k: usize| {
         let along = side * k as i64 / count as i64;
         match pattern {
-            // Along the tile, across it, forth and back over a fiftieth of it, anywhere, and between two corners.
+            // Along the tile, across it, back and forth over a fiftieth of it, anywhere, and
+            // between two corners.
             0 => [along, side / 2 + (k % 2) as i64],
             1 => [along, side * (k % 2) as i64],
             2 => [along, side / 2 + side / 55 * (k % 2) as i64],
@@ -87,14 +90,14 @@ pub fn attack(number: usize) -> Case {
             _ => [side * (k % 2) as i64 + (k % 7) as i64, side * (k % 2) as i64],
         }
     };
-    // From the tile's north-western corner.
+    // The positions are relative to the tile's north-western corner.
     let points: Vec<[i64; 2]> = (0..count).map(place).map(|[east, south]| [east, -south]).collect();
     let step = |axis: usize| {
         let before = iter::once(0).chain(points.iter().map(|point| point[axis]));
         let steps = points.iter().zip(before).map(|(point, before)| point[axis] - before);
         numbers(&steps.map(|by| ((by << 1) ^ (by >> 63)) as u64).collect::<Vec<_>>())
     };
-    // One run, runs of two, of a hundred, as many as may be, and one way's.
+    // One run, runs of two points, of 128, as many runs as allowed, and runs of one way.
     let points_of_run = [count, 2, 128, count.div_ceil(1 << 20).max(2), 128][sharing];
     let runs = count / points_of_run;
     let ways = vec![u64::from(sharing != 4) * 2; runs];
@@ -107,41 +110,41 @@ pub fn attack(number: usize) -> Case {
         numbers(&(0..count as u64).map(|k| if k == 0 { 600 } else { k % 3 }).collect::<Vec<_>>()),
         numbers(&[]),
     ];
-    // Beside roads: without any, no bridge is drawn.
+    // The tile also has roads: without roads, no bridge is drawn.
     let spans = corniche_tileset::Section::of_spans(section(runs as u64, &columns));
     let tile = package::encoded(TileId::ROOT);
     let bytes = with_tile(package::with_section(&tile, TileId::ROOT, spans));
     let outcome = if count > MAX_SPAN_POINTS {
-        Outcome::Refused("points of a section")
+        ReadOutcome::Refused("points of a section")
     } else {
-        Outcome::Read
+        ReadOutcome::Read
     };
     Case { name: "spans that follow no road", bytes, outcome, limit_mib: 64 }
 }
 
 /// A package whose tile has ground and this section.
 fn beside_ground(raw: &[u8]) -> Vec<u8> {
-    // Short ones do not become smaller.
+    // Short sections do not become smaller by compression.
     let spans = if raw.len() < 1000 {
-        Section::plain(SPANS, raw.to_vec())
+        RawSection::plain(SPANS, raw.to_vec())
     } else {
         zstd_section(SPANS, raw)
     };
-    with_sections(&[Section::plain(1, raw_sections().swap_remove(0)), spans])
+    with_sections(&[RawSection::plain(1, raw_sections().swap_remove(0)), spans])
 }
 
 pub(crate) fn all() -> Vec<Case> {
     let read = |name, runs: usize, points| {
         let bytes = beside_ground(&section(runs as u64, &columns(runs, points)));
-        Case { name, bytes, outcome: Outcome::Read, limit_mib: 512 }
+        Case { name, bytes, outcome: ReadOutcome::Read, limit_mib: 512 }
     };
-    // Two runs of three points with another column.
+    // Two runs of three points, with another column.
     let with = |at: usize, column: Vec<u8>| {
         let mut columns = columns(2, 3);
         columns[at] = column;
         beside_ground(&section(2, &columns))
     };
-    // One of which the first point is on the ground: five heights and a triangle.
+    // A run whose first point is on the ground: five heights and a triangle.
     let on_ground = |triangle: &[u8]| {
         let mut columns = columns(2, 3);
         columns[CODES] = vec![1, 1, 0];
@@ -155,11 +158,11 @@ pub(crate) fn all() -> Vec<Case> {
         read("a quarter of a million points of a run", 1, MAX_SPAN_POINTS),
         refused("more runs than may be", empty((1 << 20) + 1), "number of runs"),
         refused("2^64 - 1 runs", empty(u64::MAX), "number of runs"),
-        // Points take memory once their steps are known to have bytes.
+        // Memory for points is only allocated if there are bytes for their steps.
         refused(
             "a hundred thousand runs, no bytes",
             empty(MAX_SPAN_POINTS as u64 / 2),
-            "segment without length",
+            "segment of zero length",
         ),
         refused("runs of 2^64 points", with(LENGTHS, column(8, 2, 255)), "points of a section"),
         refused(
@@ -176,16 +179,16 @@ pub(crate) fn all() -> Vec<Case> {
         refused("class 2^61 - 1", with(CODES, column(8, 2, 255)), "a class of runs"),
         refused("classes upside down", with(CODES, vec![1, 8, 0]), "runs are not sorted"),
         refused("ways upside down", with(WAYS, column(1, 2, 1)), "runs are not sorted"),
-        refused("points in one place", with(EAST, column(0, 6, 0)), "segment without length"),
-        refused("a step of 0", with(EAST, vec![1, 2, 2, 0, 2, 2, 2]), "segment without length"),
+        refused("points in one place", with(EAST, column(0, 6, 0)), "segment of zero length"),
+        refused("a step of 0", with(EAST, vec![1, 2, 2, 0, 2, 2, 2]), "segment of zero length"),
         refused("points at the end of the world", with(EAST, column(8, 6, 255)), "far away"),
         refused("points a little too far", with(EAST, column(8, 6, 1)), "far away"),
-        refused("heights of 2^63", with(HEIGHTS, column(8, 6, 255)), "not valid: a height"),
-        refused("heights beyond 32 bits", with(HEIGHTS, column(4, 6, 254)), "not valid: a height"),
+        refused("heights of 2^63", with(HEIGHTS, column(8, 6, 255)), "invalid: a height"),
+        refused("heights beyond 32 bits", with(HEIGHTS, column(4, 6, 254)), "invalid: a height"),
         Case {
             name: "a triangle that there is",
             bytes: on_ground(&[29]),
-            outcome: Outcome::Read,
+            outcome: ReadOutcome::Read,
             limit_mib: 4,
         },
         refused("a triangle too many", on_ground(&[30]), "a triangle under a run"),
@@ -204,7 +207,7 @@ pub(crate) fn all() -> Vec<Case> {
         ),
         refused(
             "spans without ground",
-            with_sections(&[Section::plain(SPANS, whole)]),
+            with_sections(&[RawSection::plain(SPANS, whole)]),
             "in a tile without ground",
         ),
     ]

@@ -1,15 +1,15 @@
-//! The sound package with each text of its metadata in turn made to do harm: endless, empty, or with characters that terminals, formats or libraries
-//! take for something else.
+//! The valid package with each text of its metadata in turn made harmful: endless, empty, or with
+//! characters that terminals, formats or libraries interpret.
 
 use serde_json::{Value, json};
 
 use super::{
     lie_cases::COMMANDING,
-    parts::{Parts, metadata},
+    parts::{PackageParts, metadata},
 };
 use crate::pmtiles::gzip;
 
-/// A package, and what is wrong with it.
+/// A package, and its harmful text.
 #[derive(Debug)]
 #[expect(missing_docs, reason = "the names say what they are")]
 pub struct TextCase {
@@ -17,13 +17,13 @@ pub struct TextCase {
     pub bytes: Vec<u8>,
 }
 
-/// Every text of the metadata, with every harm.
+/// Iterates over every text of the metadata, with every harmful content.
 pub fn text_cases() -> impl Iterator<Item = TextCase> {
     let metadata = with_all_texts();
     let mut places = Vec::new();
     texts(&metadata, String::new(), &mut places);
     let harms = [
-        // No width of a column may come from it: Rust's formatting takes 16 bits.
+        // The text must not determine the width of a column: Rust's formatting takes 16 bits.
         ("66 000 characters", "x".repeat(66_000)),
         ("a million characters", "é ü ".repeat(250_000)),
         ("a NUL", "a\0b".to_owned()),
@@ -36,13 +36,13 @@ pub fn text_cases() -> impl Iterator<Item = TextCase> {
             let mut metadata = metadata.clone();
             *metadata.pointer_mut(&place).unwrap() = json!(text);
             let metadata = gzip(metadata.to_string().as_bytes());
-            let bytes = Parts { metadata, ..Parts::good() }.assemble();
+            let bytes = PackageParts { metadata, ..PackageParts::good() }.assemble();
             TextCase { name: format!("{place}: {harm}"), bytes }
         })
     })
 }
 
-/// Metadata that have some text wherever there can be one.
+/// Metadata with a text in every possible field.
 fn with_all_texts() -> Value {
     let mut metadata = metadata();
     let manifest = &mut metadata["corniche"];
@@ -65,7 +65,7 @@ fn with_all_texts() -> Value {
     metadata
 }
 
-/// The places of all texts.
+/// Collects the JSON pointers of all texts.
 fn texts(value: &Value, place: String, places: &mut Vec<String>) {
     match value {
         Value::String(_) => places.push(place),

@@ -1,18 +1,18 @@
-//! Hostile packages with a wrong envelope of a payload or wrong terrain.
+//! Hostile packages with an invalid payload envelope or invalid terrain.
 
-use crate::{package, payload::Section, pmtiles::put_varint};
+use crate::{package, payload::RawSection, pmtiles::put_varint};
 
 use super::{
-    case::{Case, Outcome, refused},
-    parts::{Parts, payload, raw_sections, resealed, zstd_section},
+    case::{Case, ReadOutcome, refused},
+    parts::{PackageParts, payload, raw_sections, resealed, zstd_section},
 };
 
 /// A package whose tile 0/0/0 has these bytes.
 pub(crate) fn with_tile(tile: Vec<u8>) -> Vec<u8> {
-    Parts::of_tiles(&[tile]).assemble()
+    PackageParts::of_tiles(&[tile]).assemble()
 }
 
-pub(crate) fn with_sections(sections: &[Section]) -> Vec<u8> {
+pub(crate) fn with_sections(sections: &[RawSection]) -> Vec<u8> {
     with_tile(payload(sections))
 }
 
@@ -20,11 +20,11 @@ fn good() -> Vec<u8> {
     package::encoded("0/0/0".parse().unwrap())
 }
 
-/// The good terrain with other bytes at a place of its record.
+/// The good terrain with other bytes at an offset of its record.
 fn with_terrain(at: usize, bytes: &[u8]) -> Vec<u8> {
     let mut raw = raw_sections().swap_remove(0);
     raw[at..at + bytes.len()].copy_from_slice(bytes);
-    with_sections(&[Section::plain(1, raw)])
+    with_sections(&[RawSection::plain(1, raw)])
 }
 
 /// A payload with a terrain section: its measures, then these numbers, shifts and coded bits.
@@ -37,15 +37,15 @@ fn with_record(uncovered: u64, triangles: u64, shifts: [u8; 2], bits: &[u8]) -> 
     put_varint(&mut raw, triangles);
     raw.extend(shifts);
     raw.extend(bits);
-    with_sections(&[Section::plain(1, raw)])
+    with_sections(&[RawSection::plain(1, raw)])
 }
 
-/// As many triangles as may be, from these bits.
+/// The largest number of triangles, from these bits.
 fn with_bits(bits: &[u8]) -> Vec<u8> {
     with_record(0, 131_072, [0, 0], bits)
 }
 
-/// Bytes without order, the same every time.
+/// Random bytes, the same in every run.
 fn noise(length: usize) -> Vec<u8> {
     let mut state = 1_u32;
     let mut next = || {
@@ -55,9 +55,9 @@ fn noise(length: usize) -> Vec<u8> {
     (0..length).map(|_| next()).collect()
 }
 
-/// A zstd frame of one RLE block after another: 128 KiB for 4 bytes.
+/// A zstd frame of one RLE block after another: 128 KiB per 4 bytes.
 fn rle_frame(blocks: usize, window: u8) -> Vec<u8> {
-    // Magic, descriptor without sizes, window.
+    // The magic, a descriptor without sizes, the window.
     let mut frame = vec![0x28, 0xb5, 0x2f, 0xfd, 0, window];
     for block in 0..blocks {
         let header = (128 << 10 << 3) | 1 << 1 | u32::from(block + 1 == blocks);
@@ -68,16 +68,17 @@ fn rle_frame(blocks: usize, window: u8) -> Vec<u8> {
 }
 
 fn frame_of(raw_length: u32, stored: Vec<u8>) -> Vec<u8> {
-    with_sections(&[Section { kind: 1, compression: 1, raw_length, stored }])
+    with_sections(&[RawSection { kind: 1, compression: 1, raw_length, stored }])
 }
 
 pub(crate) fn all() -> Vec<Case> {
     let limited = |limit_mib, case: Case| Case { limit_mib, ..case };
     let raws = raw_sections();
     let terrain = || zstd_section(1, &raws[0]);
-    // The first entry of the section table: kind, compression, reserved, offset, stored, raw, checksum.
+    // The first entry of the section table: kind, compression, reserved, offset, stored, raw,
+    // checksum.
     let entry = |at: usize, value: u32| with_tile(resealed(good(), 16 + at, &value.to_le_bytes()));
-    let two = |second: Section| payload(&[terrain(), second]);
+    let two = |second: RawSection| payload(&[terrain(), second]);
     let mut cases = vec![
         refused(
             "another magic",
@@ -88,12 +89,12 @@ pub(crate) fn all() -> Vec<Case> {
         refused(
             "another tile",
             with_tile(package::encoded("1/1/0".parse().unwrap())),
-            "those of tile 1/1/0",
+            "belong to tile 1/1/0",
         ),
         refused(
             "a tile that cannot be",
             with_tile(resealed(good(), 7, &[9, 255, 255, 255, 255])),
-            "those of tile 9/4294967295/0",
+            "belong to tile 9/4294967295/0",
         ),
         refused(
             "half a payload",
@@ -108,11 +109,11 @@ pub(crate) fn all() -> Vec<Case> {
                 bytes[20] ^= 1;
                 bytes
             }),
-            "the checksum does not fit",
+            "the checksum does not match",
         ),
         refused("a section at 2^32 - 1", entry(4, u32::MAX), "end too early"),
         refused("a section of 4 GiB", entry(8, u32::MAX), "end too early"),
-        refused("a section on the header", entry(4, 0), "end to end"),
+        refused("a section on the header", entry(4, 0), "not contiguous"),
         refused(
             "sections that overlap",
             with_tile({
@@ -120,7 +121,7 @@ pub(crate) fn all() -> Vec<Case> {
                 let first = u32::from_le_bytes(bytes[20..24].try_into().unwrap());
                 resealed(bytes, 40, &first.to_le_bytes())
             }),
-            "end to end",
+            "not contiguous",
         ),
         refused(
             "bytes after the sections",
@@ -143,22 +144,22 @@ pub(crate) fn all() -> Vec<Case> {
                 bytes[100] ^= 1;
                 bytes
             }),
-            "terrain section: the checksum does not fit",
+            "terrain section: the checksum does not match",
         ),
         refused(
             "a damaged section of an unknown kind",
             with_tile({
-                let mut bytes = two(Section::plain(99, vec![1, 2, 3]));
+                let mut bytes = two(RawSection::plain(99, vec![1, 2, 3]));
                 let last = bytes.len() - 1;
                 bytes[last] ^= 1;
                 bytes
             }),
-            "section of an unknown kind: the checksum does not fit",
+            "section of an unknown kind: the checksum does not match",
         ),
         Case {
             name: "a section of an unknown kind",
-            bytes: with_tile(two(Section::plain(99, vec![1, 2, 3]))),
-            outcome: Outcome::Read,
+            bytes: with_tile(two(RawSection::plain(99, vec![1, 2, 3]))),
+            outcome: ReadOutcome::Read,
             limit_mib: 2,
         },
         refused(
@@ -195,11 +196,7 @@ pub(crate) fn all() -> Vec<Case> {
     ];
     let f64_at = |at: usize, value: f64| with_terrain(at, &value.to_le_bytes());
     cases.extend([
-        refused(
-            "an error that is no number",
-            f64_at(0, f64::NAN),
-            "not valid: the geometric error",
-        ),
+        refused("an error that is no number", f64_at(0, f64::NAN), "invalid: the geometric error"),
         refused("a negative error", f64_at(0, -1.0), "the geometric error"),
         refused("an infinite error", f64_at(0, f64::INFINITY), "the geometric error"),
         refused("an error of 1e308", f64_at(0, 1e308), "the geometric error"),
@@ -224,7 +221,8 @@ pub(crate) fn all() -> Vec<Case> {
         limited(12, refused("nothing but zeros", with_bits(&vec![0; 200_000]), "terrain section")),
         limited(12, refused("noise", with_bits(&noise(200_000)), "terrain section")),
     ]);
-    // A frame that is what it says, of the largest size: 64 MiB, the window, and the window's buffer while it grows.
+    // A correct frame of the largest size: 64 MiB, the window, and the window's buffer while it
+    // grows.
     let largest = rle_frame(512, 0x80);
     cases.push(limited(
         176,
@@ -233,7 +231,7 @@ pub(crate) fn all() -> Vec<Case> {
     cases
 }
 
-/// A header that announces 255 sections, and nothing after it.
+/// A header that announces 255 sections, with nothing after it.
 fn resealed_count() -> Vec<u8> {
     let mut bytes = payload(&[]);
     bytes[6] = 255;

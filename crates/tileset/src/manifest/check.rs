@@ -1,39 +1,45 @@
-//! The limits that every manifest must keep, so that code that reads it can calculate without further checks.
+//! The limits that every manifest must stay within, so that code that reads it can calculate
+//! without further checks.
 //!
-//! The numbers in a package can be anything: a count of 2^64 − 1 would overflow the first sum, a coordinate of 1e308
-//! the first product, and comparisons with NaN would give wrong answers.
+//! The numbers in a package can be anything: a count of 2^64 − 1 would overflow the first sum, a
+//! coordinate of 1e308 the first product, and comparisons with NaN would give wrong results.
 
-use corniche_areas::{AreaClass, ClassedLayer};
+use corniche_areas::{AreaClass, BoundaryClass};
 use corniche_geom::{Bounds, Cell, MAX_COORDINATE_M, MAX_LATTICE_STEPS, NodeIndex, TileId};
 use corniche_roads::FrcTable;
 use corniche_settings::{MAX_MEASURE_M, MAX_NODATA};
 
 use crate::limits::MAX_PHOTO_LEVELS;
 use crate::manifest::contents::{AreasRecord, LineLevelRecord, LinesRecord, Manifest, SpansRecord};
-use crate::manifest::counts::{Counts, GrowthRow};
+use crate::manifest::counts::{GrowthRow, ManifestCounts};
 use crate::manifest::credits::MOST_CREDITS_BYTES;
 use crate::manifest::levels::{Distribution, LevelRecord, SampleErrorRecord};
 use crate::manifest::sv_tails::{LEAST_TAIL_BYTES, MOST_TAILS, SvTail};
 use crate::tile_order::pmtiles_order;
 
-/// How far beyond a tile its roads reach at most: so many cells of its level and so many metres more. Writers take eight cells, or 40 true metres
-/// at a scale of 1000 at most where that is more, rounded up to whole finest cells.
+/// The largest margin around a tile that its roads reach: a number of cells of the level, plus a
+/// number of metres. Writers take eight cells, or 40 true metres at a scale of at most 1000 where
+/// that is more, rounded up to whole finest cells.
 const MARGIN: (f64, f64) = (9.0, 4e4);
-/// Longitudes of the table go on for some turns at most: writers carry each to its neighbour's, half a turn away at most, over 128 of them.
+/// Longitudes in the table continue for a limited number of turns: writers move each longitude to
+/// less than half a turn from its neighbour's, over at most 128 of them.
 const MOST_DEG: f64 = 65.0 * 360.0;
-/// Heights are 32-bit steps of the quantum, so they stay below 2^(31 + 27) metres and within [`MAX_MEASURE_M`].
+/// Heights are 32-bit steps of the quantum, so they stay below 2^(31 + 27) metres and within
+/// [`MAX_MEASURE_M`].
 const QUANTUM_EXPONENTS: std::ops::RangeInclusive<i32> = -64..=27;
-/// No single count and no sum of a list of counts is larger: as many nodes as a grid of 2^22 tiles a side has, with
-/// their borders counted twice. Seven such numbers can be added in 64 bits.
+/// The largest single count, and the largest sum of a list of counts: the number of nodes of a grid
+/// of 2^22 tiles per side, with their borders counted twice. Seven of these numbers can be added in
+/// 64 bits.
 const MAX_COUNT: u64 = 1 << 61;
-/// Length in the working CRS over true length: Mercator reaches 57 a degree from the pole.
+/// Length in the working CRS divided by true length: Mercator reaches 57 one degree from the pole.
 const POINT_SCALES: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
-/// Working metres to a unit of the CRS, without its sign: a millimetre to a radian, and far beyond both.
+/// Working metres per unit of the CRS, without the sign: a millimetre is the smallest known unit, a
+/// radian the largest, and the limits are far beyond both.
 const FACTORS: std::ops::RangeInclusive<f64> = 1e-6..=1e9;
 /// Classes 0 to 8.
 const CLASSES: usize = corniche_roads::FunctionalRoadClass::COUNT;
 
-/// Whether heights can be whole steps of it: a power of two of usable size.
+/// Whether heights can be whole steps of this quantum: a power of two of usable size.
 pub(crate) fn is_height_quantum(quantum_m: f64) -> bool {
     QUANTUM_EXPONENTS
         .into_iter()
@@ -41,14 +47,15 @@ pub(crate) fn is_height_quantum(quantum_m: f64) -> bool {
 }
 
 impl Manifest {
-    /// What is wrong with it, if anything.
+    /// Checks the manifest, and describes the first invalid value.
     pub(crate) fn check(&self) -> Result<(), String> {
         let frame = &self.frame;
         let is_near = frame.origin_m().iter().all(|value| value.abs() <= MAX_COORDINATE_M);
         that(is_near, "frame.origin_m", frame.origin_m())?;
         bounds("data_bounds", &self.data_bounds, [MAX_COORDINATE_M; 2])?;
         self.check_data_in_root()?;
-        // Longitudes go on beyond 180° where the data crosses the antimeridian, and half a pixel may lie beyond a pole.
+        // Longitudes continue past 180° where the data crosses the antimeridian, and half a pixel
+        // may be beyond a pole.
         bounds("wgs84_bounds", &self.wgs84_bounds, [720.0, 91.0])?;
         if let Some(clip) = &self.clip {
             bounds("clip.whole_data_bounds", &clip.whole_data_bounds, [MAX_COORDINATE_M; 2])?;
@@ -78,13 +85,14 @@ impl Manifest {
         ] {
             that(values.iter().all(|value| POINT_SCALES.contains(value)), name, values)?;
         }
-        // From degrees to metres the factor is about 1e5; the units of projections have much smaller ones.
+        // The factor from degrees to metres is about 1e5; the factors of the units of projections
+        // are much smaller.
         let are_factors = self.metres_per_unit.iter().all(|factor| FACTORS.contains(&factor.abs()));
         that(are_factors, "metres_per_unit", self.metres_per_unit)?;
         let quantum_m = self.vertical.quantum_m;
         that(is_height_quantum(quantum_m), "vertical.quantum_m", quantum_m)?;
         let [low_m, high_m] = self.vertical.range_m;
-        // Heights as they were read, also impossible ones, but within the range of an f32.
+        // Heights as they were read may be implausible, but they are within the range of an f32.
         let is_range =
             low_m <= high_m && low_m >= f64::from(f32::MIN) && high_m <= f64::from(f32::MAX);
         that(is_range, "vertical.range_m", self.vertical.range_m)?;
@@ -110,21 +118,22 @@ impl Manifest {
         check_sum("growth", self.growth.iter().flat_map(GrowthRow::counts))?;
         self.check_photos()?;
         self.check_areas()?;
-        ClassedLayer::ALL.into_iter().try_for_each(|layer| self.check_lines(layer))?;
+        self.check_boundaries()?;
         self.check_spans()?;
         self.check_sv_tails()?;
         if self.crs_wkt.contains('\0') {
-            return Err("crs_wkt holds a NUL, which cannot be".to_owned());
+            return Err("crs_wkt contains a NUL character, which is invalid".to_owned());
         }
-        // With what parts one from the next.
+        // Two more bytes for each text: the separator between texts.
         let credits: usize = self.attribution.iter().map(|credit| credit.len() + 2).sum();
         that(credits <= MOST_CREDITS_BYTES, "the number of bytes of attribution", credits)?;
         let accuracies_m = self.datum_operations.iter().filter_map(|found| found.accuracy_m);
-        all_measures("datum_operations.accuracy_m", &accuracies_m.collect::<Vec<_>>())?;
+        all_measures("datum_operations.accuracy_m", accuracies_m)?;
         check_sum("inputs", self.inputs.iter().map(|input| input.bytes))
     }
 
-    /// The data's rectangle is one of nodes of the root tile, whose positions are rounded.
+    /// The rectangle of the data is a rectangle of nodes of the root tile; their positions are
+    /// rounded.
     fn check_data_in_root(&self) -> Result<(), String> {
         let root = self.frame.tile_bounds(TileId::ROOT);
         let Cell { east_m, north_m } = self.frame.cell();
@@ -147,14 +156,14 @@ impl Manifest {
         check_sum("photos", self.photos.iter().flat_map(|photos| [photos.tiles, photos.bytes]))
     }
 
-    fn check_lines(&self, layer: ClassedLayer) -> Result<(), String> {
-        let Some(LinesRecord { counts, levels }) = self.lines(layer) else { return Ok(()) };
+    fn check_boundaries(&self) -> Result<(), String> {
+        let Some(LinesRecord { counts, levels }) = &self.boundaries else { return Ok(()) };
         let lengths_um = counts.kept.iter().map(|kept| kept.length_um);
-        check_sum(&format!("{}.counts.kept.length_um", layer.name()), lengths_um)?;
+        check_sum("boundaries.counts.kept.length_um", lengths_um)?;
         let levels = levels.iter().map(LineLevelRecord::figures);
         let kept = counts.kept.iter().map(|kept| (kept.class, kept.ways));
-        let is_class = |class| layer.class(class).is_some();
-        self.check_layer(layer.name(), levels, kept, is_class, &counts.lost)
+        let is_class = |class| BoundaryClass::from_number(class).is_some();
+        self.check_layer("boundaries", levels, kept, is_class, &counts.lost)
     }
 
     fn check_spans(&self) -> Result<(), String> {
@@ -188,15 +197,15 @@ impl Manifest {
 
     fn check_areas(&self) -> Result<(), String> {
         let Some(AreasRecord { counts, levels }) = &self.areas else { return Ok(()) };
-        let areas_km2: Vec<f64> = counts.kept.iter().map(|kept| kept.area_km2).collect();
-        all_measures("areas.counts.kept.area_km2", &areas_km2)?;
+        let areas_km2 = counts.kept.iter().map(|kept| kept.area_km2);
+        all_measures("areas.counts.kept.area_km2", areas_km2)?;
         let levels = levels.iter().map(|of| (of.level, [of.tiles, of.areas, of.points, of.bytes]));
         let kept = counts.kept.iter().map(|kept| (kept.class, kept.areas));
         let is_class = |class| AreaClass::from_number(class).is_some();
         self.check_layer("areas", levels, kept, is_class, &counts.lost)
     }
 
-    /// Checks the numbers of each level, and of objects by class and by reason.
+    /// Checks the numbers of each level, and the numbers of objects by class and by reason.
     fn check_layer(
         &self,
         name: &str,
@@ -239,7 +248,7 @@ impl Manifest {
     }
 }
 
-/// Numbers of levels or classes: each once, ascending, known.
+/// Checks numbers of levels or classes: each of them once, ascending, known.
 fn check_ascending(
     name: &str,
     numbers: impl Iterator<Item = u8>,
@@ -290,7 +299,7 @@ fn level_counts(record: &LevelRecord) -> [u64; 8] {
     ]
 }
 
-fn check_counts(counts: &Counts) -> Result<(), String> {
+fn check_counts(counts: &ManifestCounts) -> Result<(), String> {
     let samples = &counts.samples;
     for count in [samples.nodes, samples.with_data, samples.filled, samples.void] {
         check_sum("counts.samples", [count])?;
@@ -298,10 +307,10 @@ fn check_counts(counts: &Counts) -> Result<(), String> {
     check_sum("counts", [counts.roads_in, counts.roads_kept, counts.highways_in])?;
     check_sum("counts", [counts.roads_in_um])?;
     check_sum("counts", [counts.roads_kept_um])?;
-    check_sum("counts.roads_lost", counts.roads_lost.iter().map(|loss| loss.roads))?;
-    check_sum("counts.roads_lost", counts.roads_lost.iter().map(|loss| loss.length_um))?;
-    check_sum("counts.left_out", counts.left_out.iter().map(|left_out| left_out.ways))?;
-    check_sum("counts.left_out", counts.left_out.iter().map(|left_out| left_out.length_um))?;
+    let lost = counts.roads_lost.iter().map(|loss| (loss.roads, loss.length_um));
+    check_sums("counts.roads_lost", lost)?;
+    let left_out = counts.left_out.iter().map(|left_out| (left_out.ways, left_out.length_um));
+    check_sums("counts.left_out", left_out)?;
     let names = [
         &counts.defects,
         &counts.unknown_highways,
@@ -312,20 +321,25 @@ fn check_counts(counts: &Counts) -> Result<(), String> {
         check_sum("counts", list.iter().map(|&(_, count)| count))?;
     }
     that(counts.classes.len() <= CLASSES, "the number of counts.classes", counts.classes.len())?;
-    check_sum("counts.classes", counts.classes.iter().map(|&(count, _)| count))?;
-    check_sum("counts.classes", counts.classes.iter().map(|&(_, length_um)| length_um))
+    check_sums("counts.classes", counts.classes.iter().copied())
+}
+
+/// Checks the sum of the counts, and the sum of the lengths.
+fn check_sums(name: &str, pairs: impl Iterator<Item = (u64, u64)> + Clone) -> Result<(), String> {
+    check_sum(name, pairs.clone().map(|(count, _)| count))?;
+    check_sum(name, pairs.map(|(_, length_um)| length_um))
 }
 
 fn that(holds: bool, name: &str, value: impl std::fmt::Debug) -> Result<(), String> {
-    if holds { Ok(()) } else { Err(format!("{name} is {value:?}, which cannot be")) }
+    if holds { Ok(()) } else { Err(format!("{name} is {value:?}, which is invalid")) }
 }
 
-/// A length: not negative, and within the limit.
+/// Checks a length: not negative, and within the limit.
 fn measure(name: &str, value_m: f64) -> Result<(), String> {
     that((0.0..=MAX_MEASURE_M).contains(&value_m), name, value_m)
 }
 
-/// Lengths that something is divided by.
+/// Checks lengths that are used as divisors.
 fn all_positive(name: &str, values_m: [f64; 2]) -> Result<(), String> {
     values_m.iter().try_for_each(|&value_m| {
         that(value_m > 0.0, name, value_m)?;
@@ -333,20 +347,17 @@ fn all_positive(name: &str, values_m: [f64; 2]) -> Result<(), String> {
     })
 }
 
-/// Coordinates or differences.
-fn all_measures(name: &str, values_m: &[f64]) -> Result<(), String> {
-    values_m.iter().try_for_each(|value| that(value.abs() <= MAX_MEASURE_M, name, value))
+/// Checks coordinates or differences of coordinates.
+fn all_measures(name: &str, mut values: impl Iterator<Item = f64>) -> Result<(), String> {
+    values.try_for_each(|value| that(value.abs() <= MAX_MEASURE_M, name, value))
 }
 
 fn bounds(name: &str, bounds: &Bounds, limits: [f64; 2]) -> Result<(), String> {
     let [min_x, min_y, max_x, max_y] = bounds.to_array();
-    let within = |value: f64, limit: f64| value.abs() <= limit;
-    let sound = min_x <= max_x
-        && min_y <= max_y
-        && within(min_x, limits[0])
-        && within(max_x, limits[0])
-        && within(min_y, limits[1])
-        && within(max_y, limits[1]);
+    let sound = [[min_x, max_x], [min_y, max_y]]
+        .iter()
+        .zip(limits)
+        .all(|([min, max], limit)| min <= max && min.abs() <= limit && max.abs() <= limit);
     that(sound, name, bounds.to_array())
 }
 
@@ -355,7 +366,7 @@ fn check_sum(name: &str, counts: impl IntoIterator<Item = u64>) -> Result<(), St
     if sum.is_some_and(|sum| sum <= MAX_COUNT) {
         Ok(())
     } else {
-        Err(format!("the counts of {name} add up to more than {MAX_COUNT}, which cannot be"))
+        Err(format!("the counts of {name} add up to more than {MAX_COUNT}, which is impossible"))
     }
 }
 

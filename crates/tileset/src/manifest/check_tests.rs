@@ -10,7 +10,7 @@ fn a_height_quantum_is_a_power_of_two_of_usable_size() {
     for not in [0.0, -0.25, 0.3, 3.0, f64::NAN, f64::INFINITY, 2_f64.powi(28), 2_f64.powi(-65)] {
         assert!(!is_height_quantum(not), "{not}");
     }
-    // Any height is a measure, and its square an f32.
+    // Any height is a valid measure, and its square fits in an f32.
     let highest_m = f64::from(i32::MIN).abs() * 2_f64.powi(27);
     assert!(highest_m <= MAX_MEASURE_M && MAX_MEASURE_M * MAX_MEASURE_M < f64::from(f32::MAX));
 }

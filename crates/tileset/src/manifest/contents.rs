@@ -1,6 +1,5 @@
 //! The manifest of a package: everything that a reader must know before it reads a tile.
 
-use corniche_areas::ClassedLayer;
 use corniche_geom::{
     Bounds, ClipRecord, CoordinateTable, DatumOperationRecord, GridFrame, LatticePoint, NodeIndex,
     ScaleRecord,
@@ -8,7 +7,7 @@ use corniche_geom::{
 use corniche_settings::SettingsRecord;
 use serde::{Deserialize, Serialize};
 
-use crate::manifest::counts::{Counts, GrowthRow};
+use crate::manifest::counts::{GrowthRow, ManifestCounts};
 use crate::manifest::inputs::{InputKind, InputRecord};
 use crate::manifest::levels::LevelRecord;
 use crate::manifest::sv_tails::SvTail;
@@ -18,46 +17,53 @@ use crate::manifest::sv_tails::SvTail;
 /// Nothing here depends on threads, memory, dates or paths: inputs are named by file name and hash.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
-    /// Version of the encodings; readers refuse any other.
+    /// Version of the encodings; readers reject all other versions.
     pub format_version: u32,
-    /// Program and version that wrote the package, with its GDAL and PROJ.
+    /// Program and version that wrote the package, with the versions of GDAL and PROJ.
     pub generator: String,
-    /// Says that z/x/y is a local quadtree in the working CRS, not the web's.
+    /// A text which says that z/x/y is a local quadtree in the working CRS, not the quadtree of web
+    /// maps.
     pub tiling: String,
-    /// CRS: "EPSG:…" where it has a code, else its name. Its coordinates times `metres_per_unit` are working metres.
+    /// The CRS: "EPSG:…" if it has a code, else its name. Its coordinates times `metres_per_unit`
+    /// are working metres.
     pub crs: String,
-    /// CRS as WKT2.
+    /// The CRS as WKT2.
     pub crs_wkt: String,
-    /// Working metres to a unit of the CRS's coordinates, east and north; negative where an axis counts westwards or
-    /// southwards.
+    /// Working metres per unit of the CRS's coordinates, [east, north]; negative where an axis
+    /// counts westwards or southwards.
     pub metres_per_unit: [f64; 2],
-    /// Working metres to a true metre, at the centre: the geometric mean along both axes.
+    /// Working metres per true metre at the centre: the geometric mean along both axes.
     pub point_scale: f64,
-    /// The same along each axis, at the centre and over the data's rim.
+    /// Working metres per true metre along each axis, at the centre and along the edge of the data.
     pub scale: ScaleRecord,
     /// The grid.
     pub frame: GridFrame,
-    /// Rectangle of the DEM's nodes, working metres.
+    /// Rectangle of the DEM's nodes, in working metres.
     pub data_bounds: Bounds,
-    /// The same in WGS84 degrees.
+    /// Rectangle of the DEM's nodes, in WGS84 degrees.
     pub wgs84_bounds: Bounds,
-    /// The part of the elevation files that the package is of (`--bounds`, `--polygon`); left out where it is of all.
+    /// The part of the elevation files that the package covers (`--bounds`, `--polygon`); omitted
+    /// if it covers all of them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub clip: Option<ClipRecord>,
-    /// The outline of the elevation files on the lattice: polygons, each of its outer ring and its holes, of [u, v]. Left out where they fill the rectangle of
-    /// their nodes, and in packages of before.
+    /// The outline of the elevation files on the lattice: polygons, each with its outer ring and
+    /// its holes, of [u, v]. Omitted where the files fill the rectangle of their nodes, and in
+    /// packages of older versions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub outline: Option<Vec<Vec<Vec<[i64; 2]>>>>,
-    /// How nodes relate to the DEM's samples, in words: "nodes are the DEM's samples", "bilinear from …".
+    /// How nodes relate to the DEM's samples, as text: "nodes are the DEM's samples", "bilinear
+    /// from …".
     pub resampling: String,
-    /// Whether nodes and the DEM's samples are the same points: the error bounds then hold at every sample.
+    /// Whether nodes and the DEM's samples are the same points; if they are, error bounds hold at
+    /// every sample.
     pub nodes_are_samples: bool,
-    /// What heights are: their step, unit and datum.
+    /// Heights: their step, unit and datum.
     pub vertical: VerticalRecord,
-    /// How positions come from one datum to another; left out where all datums are that of WGS84, and in packages of before.
+    /// The operations that transform positions from one datum to another. Omitted where all datums
+    /// are that of WGS84, and in packages of older versions.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub datum_operations: Vec<DatumOperationRecord>,
-    /// WGS84 ⇄ working CRS without PROJ.
+    /// The table that converts between WGS84 and the working CRS without PROJ.
     pub coordinates: CoordinateTable,
     /// One record per level, root first.
     pub levels: Vec<LevelRecord>,
@@ -65,38 +71,40 @@ pub struct Manifest {
     pub settings: SettingsRecord,
     /// SHA-256 of the settings as JSON.
     pub settings_sha256: String,
-    /// What was read.
+    /// The input files.
     pub inputs: Vec<InputRecord>,
-    /// Credits to show wherever the package is shown.
+    /// The attribution of the data sources, which must be shown wherever the package is shown.
     pub attribution: Vec<String>,
-    /// What came in, what was kept, what was lost and why.
-    pub counts: Counts,
-    /// What clipping costs, per level and class.
+    /// Numbers of samples and roads: read, kept, and lost by reason.
+    pub counts: ManifestCounts,
+    /// Growth per level and class: the vertices and bytes that clipping to the terrain adds.
     pub growth: Vec<GrowthRow>,
-    /// The photos of each level that has some, root first; left out without any.
+    /// The photos of each level that has any, root first; omitted if there are none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub photos: Vec<PhotoLevelRecord>,
-    /// The areas; left out in packages made without.
+    /// The areas; omitted in packages that were built without areas.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub areas: Option<AreasRecord>,
-    /// The boundaries; left out in packages made without.
+    /// The boundaries; omitted in packages that were built without boundaries.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub boundaries: Option<LinesRecord>,
-    /// Bridges and tunnels off the ground; left out in packages made without.
+    /// Spans (bridges and tunnels between two points on the ground); omitted in packages that were
+    /// built without spans.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spans: Option<SpansRecord>,
-    /// The tiles that end with most SV roads, in the order of tiles in the package; left out where none has many, and in packages of before.
+    /// The tiles whose SV roads, at the end of the payload, take the most bytes, in the order of
+    /// tiles in the package. Omitted if no tile has many, and in packages of older versions.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sv_tails: Vec<SvTail>,
 }
 
 impl Manifest {
-    /// The input files of a kind, in the order in which they were named.
+    /// The input files of a kind, in the order in which they were given.
     pub fn inputs_of(&self, kind: InputKind) -> impl Iterator<Item = &InputRecord> {
         self.inputs.iter().filter(move |input| kind.is_of(input))
     }
 
-    /// Whether the package was built with an extract, and so may have roads.
+    /// Whether the package was built with an OSM extract, so that it may have roads.
     #[must_use]
     pub fn has_extract(&self) -> bool {
         self.inputs_of(InputKind::Osm).next().is_some()
@@ -108,7 +116,8 @@ impl Manifest {
         self.clip.as_ref().map_or(self.wgs84_bounds, |clip| clip.whole_wgs84_bounds)
     }
 
-    /// The outline of the elevation files: polygons, each of its outer ring and its holes; `None` where they fill their rectangle.
+    /// The outline of the elevation files: polygons, each with its outer ring and its holes; `None`
+    /// where the files fill their rectangle.
     #[must_use]
     pub fn data_outline(&self) -> Option<Vec<Vec<Vec<LatticePoint>>>> {
         let ring =
@@ -117,25 +126,26 @@ impl Manifest {
         self.outline.as_ref().map(|polygons| polygons.iter().map(polygon).collect())
     }
 
-    /// Whether a longitude and a latitude lie in the rectangle of the data, in which longitudes may run on past 180 degrees.
+    /// Whether a longitude and a latitude are in the rectangle of the data, in which longitudes may
+    /// continue past 180 degrees.
     #[must_use]
     pub fn covers_deg(&self, [lon, lat]: [f64; 2]) -> bool {
         let is_inside = |turn: f64| self.wgs84_bounds.contains([lon + turn, lat]);
         [0.0, 360.0, -360.0].into_iter().any(is_inside)
     }
 
-    /// What the data covers, for whoever named a place outside; and that the two numbers of the place would fit the other way around, where they would.
+    /// Describes the area that the package covers, for messages about a position outside, or says
+    /// that the position would be inside if its two numbers were swapped.
     #[must_use]
     pub fn covered_text(&self, [lon, lat]: [f64; 2]) -> String {
-        let swapped = if !self.covers_deg([lon, lat]) && self.covers_deg([lat, lon]) {
-            format!("; longitude comes first: {lat},{lon} lies inside")
+        if !self.covers_deg([lon, lat]) && self.covers_deg([lat, lon]) {
+            format!("longitude comes first: {lat},{lon} is inside the package")
         } else {
-            String::new()
-        };
-        format!("{}{swapped}", self.wgs84_bounds.degrees_text())
+            format!("the package covers {}", self.wgs84_bounds.degrees_text())
+        }
     }
 
-    /// South-western and north-eastern node of the data's rectangle.
+    /// South-western and north-eastern node of the rectangle of the data.
     #[must_use]
     pub fn data_nodes(&self) -> [NodeIndex; 2] {
         let ([west, south], [east_m, north_m]) =
@@ -148,37 +158,31 @@ impl Manifest {
         [node(bounds.min_x, bounds.min_y), node(bounds.max_x, bounds.max_y)]
     }
 
-    /// What is recorded of a layer of lines; `None` in packages made without.
-    #[must_use]
-    pub const fn lines(&self, layer: ClassedLayer) -> Option<&LinesRecord> {
-        match layer {
-            ClassedLayer::Boundaries => self.boundaries.as_ref(),
-        }
-    }
-
-    /// Rectangle of the nodes of all elevation files, working metres.
+    /// Rectangle of the nodes of all elevation files, in working metres.
     #[must_use]
     pub fn whole_data_bounds(&self) -> Bounds {
         self.clip.as_ref().map_or(self.data_bounds, |clip| clip.whole_data_bounds)
     }
 }
 
-/// Heights: step, unit, datum.
+/// Heights: their step, unit and datum.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct VerticalRecord {
-    /// One step of `height_q`, metres; a power of two.
+    /// One step of `height_q`, in metres; a power of two.
     pub quantum_m: f64,
     /// Always "metre": other units are converted on reading.
     pub unit: String,
     /// Vertical datum as far as the inputs name one, else "unknown".
     pub datum: String,
-    /// What was done to the inputs' heights, in words: "as in the files", a transformation, a shift.
+    /// How the heights of the inputs were treated, as text: "as in the files", a transformation, a
+    /// shift.
     pub treatment: String,
-    /// The step between heights that the DEM can tell apart, metres: 1 where all are whole metres; left out where they have
-    /// fractions. Slopes of reliefs are taken from heights that are low-passed by it.
+    /// The step between heights that the DEM can distinguish, in metres: 1 if all heights are whole
+    /// metres. Omitted if heights have fractions. Slopes of reliefs are computed from heights that
+    /// are low-pass filtered with this step.
     #[serde(default, skip_serializing_if = "is_no_step")]
     pub height_step_m: f64,
-    /// Lowest and highest node, metres. Values that no land has tell of an undeclared "no data".
+    /// Lowest and highest node, in metres. Implausible values indicate an undeclared nodata value.
     pub range_m: [f64; 2],
 }
 
@@ -188,14 +192,15 @@ fn is_no_step<Step: PartialOrd + Default>(step_m: &Step) -> bool {
 }
 
 impl VerticalRecord {
-    /// The datum of inputs that name none.
+    /// The datum recorded for inputs that name none.
     pub const UNKNOWN_DATUM: &str = "unknown";
 
-    /// Ratios of errors are taken of errors at least so large: below, they are ratios of rounding.
+    /// The smallest error for which ratios of errors are computed: ratios of smaller errors only
+    /// show rounding.
     ///
-    /// A height quantum over √2. Errors that are simple fractions of a quantum are common (they are differences of
-    /// heights that are whole steps), and none of them lies on this limit, so that two ways of computing them agree
-    /// on which side of it they are.
+    /// It is a height quantum divided by √2. Errors that are simple fractions of a quantum are
+    /// common (they are differences of heights that are whole steps), and none of them equals this
+    /// limit, so two ways of computing an error agree on which side of the limit it is.
     #[must_use]
     pub fn least_measured_error_m(quantum_m: f64) -> f64 {
         quantum_m * std::f64::consts::FRAC_1_SQRT_2
@@ -205,20 +210,21 @@ impl VerticalRecord {
 /// The areas of a package.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AreasRecord {
-    /// What became of the extract's.
+    /// Numbers of objects read, kept and lost.
     pub counts: AreaCounts,
-    /// What each level has that has some, root first.
+    /// The areas of each level that has any, root first.
     pub levels: Vec<AreaLevelRecord>,
 }
 
-/// Objects of the extract with the tags of an area: `objects` = those of `kept` + those of `lost`.
+/// Objects of the extract that have the tags of an area: `objects` = objects of `kept` + objects of
+/// `lost`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AreaCounts {
-    /// How many there are.
+    /// Number of objects.
     pub objects: u64,
-    /// Areas that objects became, by class, wherever they lie.
+    /// Number of areas per class, inside and outside the built region.
     pub kept: Vec<AreaClassRecord>,
-    /// Objects that became no area: reason, how many.
+    /// Objects that did not become areas: reason and number.
     pub lost: Vec<(String, u64)>,
 }
 
@@ -227,9 +233,10 @@ pub struct AreaCounts {
 pub struct AreaClassRecord {
     /// The class's number.
     pub class: u8,
-    /// How many.
+    /// Number of areas.
     pub areas: u64,
-    /// The true area of the objects, square kilometres, wherever they lie; where areas overlap, each counts.
+    /// The true area of the objects in square kilometres, inside and outside the built region;
+    /// where areas overlap, each of them counts.
     pub area_km2: f64,
 }
 
@@ -240,7 +247,7 @@ pub struct AreaLevelRecord {
     pub level: u8,
     /// Tiles with areas.
     pub tiles: u64,
-    /// Areas of these tiles; one that lies in several tiles counts in each.
+    /// Areas in these tiles; an area in several tiles counts in each of them.
     pub areas: u64,
     /// Points of all rings.
     pub points: u64,
@@ -262,22 +269,24 @@ pub struct PhotoLevelRecord {
 /// The bridges and tunnels of a package, whose heights are estimates.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SpansRecord {
-    /// What was found in the extract.
+    /// Numbers of spans found in the extract.
     pub counts: SpanCounts,
-    /// The runs off the ground that tiles have, by level; levels without any are left out.
+    /// The runs of the tiles, by level (a run is a stretch of a span that is off the ground);
+    /// levels without runs are omitted.
     pub levels: Vec<LineLevelRecord>,
-    /// Ground on which they are carried and which the package does not have: where bounds cut them, that of the finest tiles without bounds. Ascending.
+    /// Ground on which spans are carried and which the package does not contain: where bounds cut
+    /// spans, the ground of the finest tiles without bounds. In ascending order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub outer_grounds: Vec<OuterGround>,
 }
 
-/// The ground at a place of the lattice: u, v, and its height in metres.
+/// The ground at a lattice point: u, v, and the height in metres.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(from = "(i64, i64, f64)", into = "(i64, i64, f64)")]
 pub struct OuterGround {
-    /// Where it is.
+    /// The lattice point.
     pub at: LatticePoint,
-    /// Its height, metres.
+    /// The height, in metres.
     pub height_m: f64,
 }
 
@@ -293,31 +302,33 @@ impl From<OuterGround> for (i64, i64, f64) {
     }
 }
 
-/// Bridges and tunnels, each with all ways that it connects.
+/// Numbers of bridges and tunnels, each with all ways that it connects.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SpanCounts {
-    /// Bridges.
+    /// Number of bridges.
     pub bridges: u64,
-    /// Tunnels.
+    /// Number of tunnels.
     pub tunnels: u64,
-    /// The true length in plan of the ways of bridges that are kept at the finest level, micrometres: a part of `roads_kept_um`.
+    /// The true length in plan of the ways of bridges, as far as they are kept at the finest level,
+    /// in micrometres: a part of `roads_kept_um`.
     #[serde(default)]
     pub bridges_um: u64,
-    /// The same of all tunnels.
+    /// The true length in plan of the ways of tunnels, as far as they are kept at the finest level,
+    /// in micrometres: a part of `roads_kept_um`.
     #[serde(default)]
     pub tunnels_um: u64,
-    /// Where they cross other roads or each other.
+    /// Number of crossings with other roads and with each other.
     pub crossings: u64,
-    /// How often there is a reason to look at one.
+    /// Reasons to inspect a span, each with its number of occurrences.
     pub reasons: Vec<(String, u64)>,
 }
 
-/// A layer of lines of a package.
+/// The boundaries of a package.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LinesRecord {
-    /// What was in the extract.
+    /// Numbers of ways read, kept and lost.
     pub counts: LineCounts,
-    /// What tiles have of them, by level; levels without any are left out.
+    /// The lines of the tiles, by level; levels without lines are omitted.
     pub levels: Vec<LineLevelRecord>,
 }
 
@@ -326,9 +337,9 @@ pub struct LinesRecord {
 pub struct LineCounts {
     /// Ways that have a class; each counts once, in its most important class.
     pub ways: u64,
-    /// Ways that were read, by class, wherever they lie.
+    /// Ways that were read, by class, inside and outside the built region.
     pub kept: Vec<LineClassRecord>,
-    /// Ways that were left out, by reason.
+    /// Ways that were skipped, by reason.
     pub lost: Vec<(String, u64)>,
 }
 
@@ -337,9 +348,9 @@ pub struct LineCounts {
 pub struct LineClassRecord {
     /// Number of the class.
     pub class: u8,
-    /// How many ways.
+    /// Number of ways.
     pub ways: u64,
-    /// The true length of the ways in plan, micrometres, wherever they lie.
+    /// The true length of the ways in plan, in micrometres, inside and outside the built region.
     pub length_um: u64,
 }
 
@@ -348,18 +359,18 @@ pub struct LineClassRecord {
 pub struct LineLevelRecord {
     /// The level.
     pub level: u8,
-    /// Tiles with some.
+    /// Tiles with lines.
     pub tiles: u64,
-    /// Parts of lines in these tiles; what comes near several tiles counts in each.
+    /// Parts of lines in these tiles; a part near several tiles counts in each of them.
     pub parts: u64,
-    /// The number of their points.
+    /// Number of points of the parts.
     pub points: u64,
-    /// Stored bytes of their sections of the layer.
+    /// Stored bytes of the layer's sections in these tiles.
     pub bytes: u64,
 }
 
 impl LineLevelRecord {
-    /// Its level, and its numbers in the order of the fields.
+    /// The level, and the numbers in the order of the fields.
     #[must_use]
     pub fn figures(&self) -> (u8, [u64; 4]) {
         (self.level, [self.tiles, self.parts, self.points, self.bytes])

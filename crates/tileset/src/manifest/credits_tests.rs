@@ -1,4 +1,4 @@
-//! Credits are plain text on one line, of bounded length; texts from files are made so.
+//! Attribution texts are plain text on one line, of limited length; texts from files are converted.
 
 use super::*;
 

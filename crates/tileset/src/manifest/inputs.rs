@@ -1,50 +1,42 @@
-//! The input files of a package, and what each is.
+//! The input files of a package, and their kinds.
 
 use serde::{Deserialize, Serialize};
 
-/// What an input is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum InputKind {
-    /// A raster that was named.
-    Dem,
-    /// A file that such a raster refers to, or that lies beside it and belongs to it.
-    DemPart,
-    /// A photo that was named.
-    Photo,
-    /// A file that such a photo refers to, or that lies beside it and belongs to it.
-    PhotoPart,
-    /// A package whose terrain is taken. It is no input of the package that is made: that has the files of this one.
-    Terrain,
-    /// The polygon that says which part is wanted.
-    Polygon,
-    /// The extract.
-    Osm,
+corniche_roads::listed! {
+    /// The kind of an input.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum InputKind {
+        /// An elevation file that was given.
+        Dem = "dem",
+        /// A file that a given elevation file refers to, or a sidecar file of it.
+        DemPart = "dem-part",
+        /// A photo that was given.
+        Photo = "photo",
+        /// A file that a given photo refers to, or a sidecar file of it.
+        PhotoPart = "photo-part",
+        /// A package whose terrain is used. It is not recorded as an input of the new package,
+        /// which records the input files of this package instead.
+        Terrain = "terrain",
+        /// The polygon that selects the region to build.
+        Polygon = "polygon",
+        /// The OSM extract.
+        Osm = "osm",
+    }
+
+    /// The word for it in the manifest.
+    pub fn name() -> &'static str;
 }
 
 impl InputKind {
-    /// The kinds that a manifest has.
+    /// The kinds that are recorded in a manifest.
     pub const RECORDED: [Self; 6] =
         [Self::Dem, Self::DemPart, Self::Photo, Self::PhotoPart, Self::Polygon, Self::Osm];
-    /// The kinds that the terrain is made from.
+    /// The kinds of the inputs of the terrain.
     pub const OF_TERRAIN: [Self; 2] = [Self::Dem, Self::DemPart];
-    /// The kinds that photos are made from.
+    /// The kinds of the inputs of photos.
     pub const OF_PHOTOS: [Self; 2] = [Self::Photo, Self::PhotoPart];
 
-    /// The word for it in the manifest.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Dem => "dem",
-            Self::DemPart => "dem-part",
-            Self::Photo => "photo",
-            Self::PhotoPart => "photo-part",
-            Self::Terrain => "terrain",
-            Self::Polygon => "polygon",
-            Self::Osm => "osm",
-        }
-    }
-
-    /// Whether a record of the manifest is about an input of this kind.
+    /// Whether a record of the manifest describes an input of this kind.
     #[must_use]
     pub fn is_of(self, record: &InputRecord) -> bool {
         record.kind == self.name()
@@ -54,12 +46,15 @@ impl InputKind {
 /// An input file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct InputRecord {
-    /// "dem"; "dem-part", a file that the one before it refers to or that belongs to it; "photo"; "photo-part", likewise; "polygon"; or "osm".
+    /// "dem"; "dem-part", a file that the preceding "dem" refers to, or a sidecar file of it;
+    /// "photo"; "photo-part", likewise; "polygon"; or "osm".
     pub kind: String,
     /// File name without folders.
     pub name: String,
-    /// Size of the file; of a file inside an archive or on a server, of what GDAL delivers.
+    /// Size of the file; for a file in an archive or on a server, the number of bytes that GDAL
+    /// delivers.
     pub bytes: u64,
-    /// SHA-256 of as many bytes; empty for an elevation file outside the bounds of the package, of which no sample is used.
+    /// SHA-256 of these bytes; empty for an elevation file outside the bounds of the package, of
+    /// which no sample is used.
     pub sha256: String,
 }

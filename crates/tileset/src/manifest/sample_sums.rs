@@ -4,16 +4,19 @@ use serde::{Deserialize, Serialize};
 
 use super::levels::SampleErrorRecord;
 
-/// Distances are summed in whole parts of the height quantum; this is the number of parts in a quantum.
+/// Distances are summed in whole parts of the height quantum; this is the number of parts per
+/// quantum.
 const PARTS_TO_A_QUANTUM: f64 = 256.0;
-/// Up to this many quanta, bins are one quantum wide; farther out, the width of a bin is a 4096th of the distance.
+/// Up to this many quanta, bins are one quantum wide; farther out, the width of a bin is a 4096th
+/// of the distance.
 const FINE_BINS: u64 = 1 << 12;
-/// Longest distance summed, in parts: its square times 2^60 samples fits 128 bits.
+/// The largest summed distance, in parts: its square times 2^60 samples fits in 128 bits.
 const MOST_PARTS: f64 = (1_u64 << 33) as f64;
 
 /// How far a level's TINs are from samples of the DEM.
 ///
-/// Integers and a maximum: what comes out does not depend on the order in which samples come or sums are merged.
+/// All sums are integers, and a maximum: the result does not depend on the order in which samples
+/// are added or sums are merged.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SampleSums {
     quantum_m: f64,
@@ -22,7 +25,7 @@ pub struct SampleSums {
     max_m: f64,
     /// Squares of distances in parts of a quantum.
     squares: u128,
-    /// How many distances lie in each bin, from 0 on.
+    /// Number of distances in each bin, starting at distance 0.
     #[serde(with = "sparse")]
     bins: Vec<u64>,
 }
@@ -34,7 +37,7 @@ impl SampleSums {
         Self { quantum_m, on_tin: 0, off_tin: 0, max_m: 0.0, squares: 0, bins: Vec::new() }
     }
 
-    /// Adds a sample by its distance to the TIN; `None` where there is no triangle.
+    /// Adds a sample with its distance to the TIN; `None` if there is no triangle at the sample.
     #[inline]
     pub fn add(&mut self, distance_m: Option<f64>) {
         let Some(distance_m) = distance_m else {
@@ -53,7 +56,7 @@ impl SampleSums {
         self.bins[bin] += 1;
     }
 
-    /// Adds the samples of the other.
+    /// Adds the samples of `other`.
     pub fn merge(&mut self, other: &Self) {
         self.on_tin += other.on_tin;
         self.off_tin += other.off_tin;
@@ -67,7 +70,7 @@ impl SampleSums {
         }
     }
 
-    /// The figures that the package stores.
+    /// The numbers that the package stores.
     #[must_use]
     pub fn record(&self) -> SampleErrorRecord {
         let part_m = self.quantum_m / PARTS_TO_A_QUANTUM;
@@ -81,14 +84,15 @@ impl SampleSums {
         }
     }
 
-    /// The end, or the largest distance, of the bin in which the distance lies that 99 % of all do not exceed.
+    /// The distance that 99 % of the samples do not exceed: the end of its bin, at most the largest
+    /// distance.
     fn p99_m(&self) -> f64 {
         let wanted = self.on_tin - self.on_tin / 100;
         let mut seen = 0;
         for (bin, &count) in self.bins.iter().enumerate() {
             seen += count;
             let end = end_of(bin);
-            // What is beyond all 64 bits shares the last bin.
+            // The last bin also holds all distances beyond 64 bits.
             if seen >= wanted && end < 2_f64.powi(63) {
                 return (end * self.quantum_m).min(self.max_m);
             }
@@ -97,7 +101,7 @@ impl SampleSums {
     }
 }
 
-/// Most bins of a tile are empty: written are pairs of bin and count.
+/// Most bins of a tile are empty, so only pairs of bin and count are written.
 mod sparse {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -120,16 +124,17 @@ mod sparse {
     }
 }
 
-/// A number from 0 to [`MOST_PARTS`], rounded, half up. `f64::round` calls a function on processors for which programs are made.
+/// Rounds a number from 0 to [`MOST_PARTS`], half up. `f64::round` is a function call on the
+/// processors for which the programs are compiled.
 #[inline]
 fn round(number: f64) -> u64 {
     let whole = number as i64;
     (whole + i64::from(number - whole as f64 >= 0.5)) as u64
 }
 
-/// The bin of a distance of so many whole quanta.
+/// The bin of a distance of this many whole quanta.
 fn bin_of(quanta: u64) -> usize {
-    // How many times the distance is halved until it is less than 2 · `FINE_BINS`.
+    // The number of times that the distance is halved until it is less than 2 · `FINE_BINS`.
     let halved = (quanta / FINE_BINS).checked_ilog2().unwrap_or(0);
     if quanta < FINE_BINS {
         quanta as usize
@@ -138,7 +143,7 @@ fn bin_of(quanta: u64) -> usize {
     }
 }
 
-/// Where a bin ends, in quanta.
+/// The end of a bin, in quanta.
 fn end_of(bin: usize) -> f64 {
     let bin = bin as u64;
     if bin < FINE_BINS {

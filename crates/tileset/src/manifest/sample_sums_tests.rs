@@ -1,4 +1,4 @@
-//! Sums of sample errors are the same in any split and order.
+//! Sums of sample errors are the same for any split and order of samples.
 
 use proptest::prelude::*;
 
@@ -12,9 +12,9 @@ fn figures_of_an_even_spread() {
     let record = sums.record();
     assert_eq!((record.on_tin, record.off_tin), (1000, 1));
     assert!((record.max_m - 9.99).abs() < 1e-12);
-    // Of 0 to 10 evenly: 10 / √3.
+    // The root mean square of 0 to 10, evenly distributed: 10 / √3.
     assert!((record.rms_m - 5.771).abs() < 0.002, "{record:?}");
-    // 990 of them are below 9.9, in the bin from 9.75 to 10.
+    // 990 samples are below 9.9, which is in the bin from 9.75 to 10.
     assert!((record.p99_m - 9.99).abs() < 1e-12, "{record:?}");
     assert_eq!(SampleSums::new(1.0).record().on_tin, 0);
 }

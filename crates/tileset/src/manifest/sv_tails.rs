@@ -1,4 +1,5 @@
-//! Which tiles have many SV roads at their end, so that who draws by GEO need not fetch these bytes.
+//! The list of tiles that end with many bytes of SV roads, so that readers that draw by GEO need
+//! not read these bytes.
 
 use std::{cmp::Reverse, collections::BTreeSet};
 
@@ -7,18 +8,19 @@ use serde::{Deserialize, Serialize};
 
 use crate::tile_order::{pmtiles_order, tile_of_order};
 
-/// SV roads of fewer bytes are not worth a list: neighbouring tiles are fetched as one range over gaps of this size.
+/// SV roads with fewer bytes are not listed: neighbouring tiles are read as one range across gaps
+/// of this size.
 pub(crate) const LEAST_TAIL_BYTES: u32 = 4096;
-/// The list is read before the first tile, so it stays small: some 6 kB compressed.
+/// The list is read before the first tile, so it stays small: about 6 kB compressed.
 pub(crate) const MOST_TAILS: usize = 1000;
 
-/// A tile whose payload ends with many SV roads.
+/// A tile whose payload ends with many bytes of SV roads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "[u32; 4]", try_from = "[u32; 4]")]
 pub struct SvTail {
     /// The tile.
     pub tile: TileId,
-    /// How many bytes at the end of its payload are the SV roads section.
+    /// Number of bytes of the SV roads section at the end of the payload.
     pub bytes: u32,
 }
 
@@ -32,27 +34,28 @@ impl TryFrom<[u32; 4]> for SvTail {
     type Error = TileIdError;
 
     fn try_from([z, x, y, bytes]: [u32; 4]) -> Result<Self, TileIdError> {
-        // A level beyond the last number is no level either.
+        // A level beyond 255 is invalid, too.
         let tile = TileId::new(u8::try_from(z).unwrap_or(u8::MAX), x, y)?;
         Ok(Self { tile, bytes })
     }
 }
 
-/// Collects the list for a manifest, from the SV roads of all tiles in any order.
+/// Collects the list for a manifest from the SV roads of all tiles, in any order.
 #[derive(Debug, Clone, Default)]
 pub struct SvTails {
-    /// The smallest first; of tiles with the same bytes, the one that comes last in a package.
+    /// The smallest sections first; of sections of equal size, the tile that is last in a package.
     largest: BTreeSet<(u32, Reverse<u64>)>,
 }
 
 impl SvTails {
-    /// Nothing yet.
+    /// Returns a collection without tiles.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Takes a tile whose payload ends with so many bytes of SV roads; 0 without any.
+    /// Adds a tile with the number of bytes of SV roads at the end of its payload; 0 if there are
+    /// none.
     pub fn add(&mut self, tile: TileId, bytes: u64) {
         let Some(bytes) = u32::try_from(bytes).ok().filter(|&bytes| bytes >= LEAST_TAIL_BYTES)
         else {
@@ -64,7 +67,7 @@ impl SvTails {
         }
     }
 
-    /// The tiles that have most, in the order of tiles in a package.
+    /// The tiles with the largest sections, in the order of tiles in a package.
     #[must_use]
     pub fn list(&self) -> Vec<SvTail> {
         let mut tails: Vec<SvTail> = (self.largest.iter())

@@ -15,7 +15,7 @@ fn a_tail_is_written_as_four_numbers_and_read_again() {
     let json = serde_json::to_string(&tail).unwrap();
     assert_eq!(json, "[3,2,5,179496]");
     assert_eq!(serde_json::from_str::<SvTail>(&json).unwrap(), tail);
-    // No tile: beyond its level, and a level that no byte holds.
+    // Not a tile: a column beyond its level, and a level that does not fit in a byte.
     for wrong in ["[3,8,0,5000]", "[256,0,0,5000]", "[300,0,0,5000]", "[3,2,5,-1]"] {
         serde_json::from_str::<SvTail>(wrong).unwrap_err();
     }
@@ -34,7 +34,8 @@ fn few_bytes_are_not_listed() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
 
-    /// The list is that of all tiles, sorted by bytes and then by their place, and cut: by another way to make it, in any order of tiles.
+    /// The list contains all tiles, sorted by bytes and then by position, and capped. The test
+    /// computes it in another way, with tiles in any order.
     #[test]
     fn the_largest_are_listed_in_the_order_of_tiles(
         sizes in prop::collection::vec(4000_u64..4200, 0..2500),

@@ -1,7 +1,8 @@
-//! A file in which nothing lies between the root directory and the metadata.
+//! Writes a file without a gap between the root directory and the metadata.
 //!
-//! The crate pmtiles keeps the first 16 384 bytes for header and root directory, as it writes them last. A package of a hundred
-//! tiles needs 2 % of them. Here all that it writes behind those bytes goes to a place further in front:
+//! The crate pmtiles reserves the first 16 384 bytes for header and root directory, because it
+//! writes them last. A package of a hundred tiles needs 2 % of them. Here everything that the crate
+//! writes behind those bytes is moved towards the front:
 //!
 //! ```text
 //! the writer's places   ├ header ┤ root ┤ zeros ............ 16384 ┤ metadata ┤ tiles …
@@ -12,43 +13,48 @@ use std::io::{self, Seek, SeekFrom, Write};
 
 use crate::package::header::{HEADER_BYTES, INITIAL_BYTES};
 
-/// Where the header has offsets of what lies behind the root directory: metadata, leaf directories, data.
+/// Positions in the header that hold offsets of parts behind the root directory: metadata, leaf
+/// directories, data.
 const OFFSETS: [usize; 3] = [24, 40, 56];
 
-/// Most bytes of a tile in the root directory, compressed or not: four numbers of at most ten bytes.
+/// The largest number of bytes of a tile in the root directory, compressed or not: four numbers of
+/// at most ten bytes.
 const ENTRY_BYTES: usize = 40;
-/// What a gzip frame needs at most beside that: head, end, and a part in 2000 for what cannot be compressed.
+/// The largest number of additional bytes of a gzip frame: its head, its end, and a 2000th of
+/// content that cannot be compressed.
 const FRAME_BYTES: usize = 128;
 
-/// Writes to `out` as to a file that begins with [`INITIAL_BYTES`] for header and root directory, but keeps fewer.
+/// Writes to `out` as to a file that begins with [`INITIAL_BYTES`] for header and root directory,
+/// but reserves fewer bytes.
 #[derive(Debug)]
 pub(crate) struct CloseUp<W> {
     out: W,
-    /// The writer's place.
+    /// The position of the PMTiles writer.
     at: u64,
-    /// Where `out` is.
+    /// The position in `out`.
     out_at: Option<u64>,
-    /// The first bytes were passed: what comes to them now is header and root directory, no zeros.
+    /// Whether the zeros at the beginning have been passed: bytes written there now belong to
+    /// header and root directory.
     is_past_zeros: bool,
     header: [u8; HEADER_BYTES],
-    /// How much further in front things lie.
+    /// The number of bytes by which parts move towards the front.
     shift: u64,
 }
 
 impl<W: Write + Seek> CloseUp<W> {
-    /// A file of at most `tiles` tiles, written from the start of `out` on.
+    /// Begins a file of at most `tiles` tiles at the start of `out`.
     pub(crate) fn new(out: W, tiles: usize) -> Self {
         let root = tiles.saturating_mul(ENTRY_BYTES).saturating_add(FRAME_BYTES);
         let shift = (INITIAL_BYTES - HEADER_BYTES).saturating_sub(root) as u64;
         Self { out, at: 0, out_at: None, is_past_zeros: false, header: [0; HEADER_BYTES], shift }
     }
 
-    /// Where what is kept for header and root directory ends in the file.
+    /// The end of the space that is reserved for header and root directory in the file.
     fn kept(&self) -> u64 {
         INITIAL_BYTES as u64 - self.shift
     }
 
-    /// Puts a part of the header to what there is of it, and the header into the file.
+    /// Adds a part of the header to the parts that are there, and writes the header to the file.
     fn write_header(&mut self, part: &[u8]) -> io::Result<()> {
         let from = self.at as usize;
         self.header[from..from + part.len()].copy_from_slice(part);
@@ -95,9 +101,10 @@ impl<W: Write + Seek> Write for CloseUp<W> {
         } else if self.at < self.kept() {
             self.write_at(self.at, &bytes[..until(self.kept())])?
         } else if self.at < INITIAL_BYTES as u64 {
-            // Zeros that are left out. A root directory comes so far only if there are more tiles than were announced.
+            // These zeros are omitted. A root directory extends to here only if there are more
+            // tiles than were announced.
             if self.is_past_zeros {
-                return Err(io::Error::other("a root directory of more tiles than were announced"));
+                return Err(io::Error::other("the root directory has more tiles than announced"));
             }
             until(INITIAL_BYTES as u64)
         } else {

@@ -1,10 +1,11 @@
-//! The parts of a small package are moved up to its root directory, without a gap.
+//! In a small package, the parts after the root directory follow it without a gap.
 
 use std::io::Cursor;
 
 use super::*;
 
-/// What a writer with its own places writes, a few bytes at a time: zeros, then what lies behind them, then header and root.
+/// Writes a file as the PMTiles writer does, a few bytes at a time: zeros, then the parts behind
+/// them, then header and root directory.
 fn written(tiles: usize, root: &[u8], behind: &[u8], step: usize) -> Result<Vec<u8>, io::Error> {
     let mut out = Cursor::new(Vec::new());
     let mut file = CloseUp::new(&mut out, tiles);
@@ -51,7 +52,7 @@ fn with_many_tiles_all_stays_where_it_is() {
 fn a_root_directory_that_is_too_large_is_an_error() {
     let kept = 2 * ENTRY_BYTES + FRAME_BYTES;
     assert!(written(2, &vec![3; kept], &[9; 10], 64).is_ok());
-    // Also where what does not fit is zeros, as at the end of a gzip frame.
+    // This also applies if the bytes that do not fit are zeros, as at the end of a gzip frame.
     let longer = [vec![3; kept], vec![0]].concat();
     assert!(written(2, &longer, &[9; 10], 64).is_err());
 }

@@ -1,4 +1,4 @@
-//! PMTiles directories: where the tiles are.
+//! PMTiles directories: the positions of the tiles in the file.
 
 use std::io::Read;
 
@@ -7,29 +7,30 @@ use flate2::read::GzDecoder;
 
 use crate::limits::{MAX_DIRECTORY_BYTES, MAX_DIRECTORY_ENTRIES, MIN_PAYLOAD_BYTES};
 
-/// One tile, `first`, with a `run` of 1; or, with a `run` of 0, a leaf directory of the tiles from `first` on.
+/// An entry: with a `run` of 1 the tile `first`; with a `run` of 0 a leaf directory of the tiles
+/// from `first` on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Entry {
+pub(crate) struct DirectoryEntry {
     pub(crate) first: u64,
     pub(crate) run: u32,
-    /// Relative to the data, or to the leaves.
+    /// Offset relative to the start of the data, or of the leaf directories.
     pub(crate) offset: u64,
     pub(crate) length: u32,
 }
 
-/// Entries by ascending tile.
+/// Entries in ascending order of their tiles.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Directory {
-    pub(crate) entries: Vec<Entry>,
+    pub(crate) entries: Vec<DirectoryEntry>,
 }
 
 impl Directory {
-    /// Reads a directory as it is stored; `None` when the bytes are none.
+    /// Parses a directory as it is stored; `None` if the bytes are not a directory.
     ///
-    /// Source: PMTiles version 3 specification, section 4.2: four columns of varints, tile ids as differences,
-    /// offset 0 for "right after the entry before".
+    /// Source: PMTiles version 3 specification, section 4.2: four columns of varints, tile ids as
+    /// differences, offset 0 for "right after the entry before".
     ///
-    /// Memory: the decompressed bytes and 24 bytes an entry.
+    /// Memory: the decompressed bytes, and 24 bytes per entry.
     pub(crate) fn parse(stored: &[u8]) -> Option<Self> {
         let bytes = gunzip(stored, MAX_DIRECTORY_BYTES)?;
         let mut bytes = bytes.as_slice();
@@ -38,7 +39,7 @@ impl Directory {
         if count > MAX_DIRECTORY_ENTRIES.min(bytes.len() / 4) {
             return None;
         }
-        let mut entries = vec![Entry { first: 0, run: 0, offset: 0, length: 0 }; count];
+        let mut entries = vec![DirectoryEntry { first: 0, run: 0, offset: 0, length: 0 }; count];
         let mut first = 0_u64;
         for (index, entry) in entries.iter_mut().enumerate() {
             let step = varint(&mut bytes).ok()?;
@@ -49,8 +50,8 @@ impl Directory {
             entry.first = first;
         }
         for entry in &mut entries {
-            // Each payload contains its tile's id, so no two are equal and a run is never longer than 1; and a run of
-            // four thousand million tiles would not fit in memory.
+            // Each payload contains its tile's id, so no two payloads are equal and a run is never
+            // longer than 1. A run of four thousand million tiles would not fit in memory.
             entry.run = u32::try_from(varint(&mut bytes).ok()?).ok().filter(|&run| run <= 1)?;
         }
         for entry in &mut entries {
@@ -60,15 +61,15 @@ impl Directory {
                 .filter(|&length| length >= shortest)?;
         }
         let mut after = None;
-        // Where the last leaf and the last tile end.
+        // The end of the last leaf and the end of the last tile.
         let mut ends = [0_u64; 2];
         for entry in &mut entries {
             entry.offset = match varint(&mut bytes).ok()? {
                 0 => after?,
                 offset => offset - 1,
             };
-            // In a clustered file, later tiles lie at higher offsets. So tiles do not share bytes, and a file cannot
-            // list more tiles than it has bytes for.
+            // In a clustered file, later tiles have higher offsets. So tiles do not share bytes,
+            // and a file cannot list more tiles than it has bytes for.
             let end = &mut ends[entry.run as usize];
             if entry.offset < *end {
                 return None;
@@ -79,15 +80,15 @@ impl Directory {
         bytes.is_empty().then_some(Self { entries })
     }
 
-    /// The entry that holds a tile, or the leaf that might.
-    pub(crate) fn find(&self, order: u64) -> Option<Entry> {
+    /// Finds the entry of a tile, or the leaf directory that may contain the tile.
+    pub(crate) fn find(&self, order: u64) -> Option<DirectoryEntry> {
         let after = self.entries.partition_point(|entry| entry.first <= order);
         let entry = *self.entries.get(after.checked_sub(1)?)?;
         (entry.run == 0 || order == entry.first).then_some(entry)
     }
 }
 
-/// Decompresses gzip of at most `limit` bytes; `None` when it is damaged, unfinished or larger.
+/// Decompresses gzip of at most `limit` bytes; `None` if it is damaged, incomplete or larger.
 pub(crate) fn gunzip(stored: &[u8], limit: usize) -> Option<Vec<u8>> {
     let mut bytes = Vec::new();
     GzDecoder::new(stored).take(limit as u64 + 1).read_to_end(&mut bytes).ok()?;

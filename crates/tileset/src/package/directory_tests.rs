@@ -1,4 +1,4 @@
-//! Hostile directories are refused.
+//! Hostile directories are rejected.
 
 use corniche_testing::pmtiles::gzip;
 
@@ -13,8 +13,8 @@ fn hostile_directories_are_refused() {
         &[][..],
         // A count of 2^63 entries, with one entry.
         &[0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x7f, 0, 1, 1, 1],
-        // A length below a payload's; the first offset "after the one before"; a byte too many; the same tile
-        // twice; a run of two tiles; two tiles that share a byte; an empty leaf.
+        // A length below a payload's; the first offset "after the one before"; a byte too many; the
+        // same tile twice; a run of two tiles; two tiles that share a byte; an empty leaf.
         &[1, 5, 1, 19, 1],
         &[1, 5, 1, 29, 0],
         &[1, 5, 1, 29, 1, 0],

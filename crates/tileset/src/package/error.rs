@@ -10,75 +10,75 @@ use crate::package::source::SourceError;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum OpenError {
-    /// The file's name, around what is wrong with it.
-    #[error("cannot use package {path:?}")]
+    /// Adds the name of the file to an error.
+    #[error("{}", not_usable(.path, .source))]
     File {
         /// The file.
         path: std::path::PathBuf,
-        /// What is wrong.
+        /// The error.
         source: Box<OpenError>,
     },
-    /// Its bytes cannot be read.
+    /// The bytes of the package cannot be read.
     #[error(transparent)]
     Source(#[from] SourceError),
-    /// It is something else.
+    /// The file is not a PMTiles file.
     #[error("this is not a PMTiles file, so it is not a Corniche package")]
     NotPmtiles,
-    /// It is what a failed download leaves.
-    #[error("this is {found}, and not a package; {advice}")]
+    /// The file is the result of a failed download.
+    #[error("this is {found}, not a package; {advice}")]
     StandIn {
-        /// What it is.
+        /// What the file is.
         found: &'static str,
-        /// What to do.
+        /// Advice for the user.
         advice: &'static str,
     },
-    /// It is of another version of PMTiles.
+    /// The file has another version of PMTiles.
     #[error("PMTiles version {found} is not supported; Corniche packages are version 3")]
     PmtilesVersion {
-        /// The version it says.
+        /// The version of the file.
         found: u8,
     },
-    /// It holds something other than Corniche's tiles.
+    /// The file has other tiles than Corniche's.
     #[error(
         "this is an ordinary PMTiles file, not a Corniche package; build one with `corniche build`"
     )]
     OrdinaryPmtiles,
-    /// It was written by another version of this program.
+    /// The package has another version of the format.
     #[error(
-        "format version {found} is not supported; this program reads version {FORMAT_VERSION}: build the package again"
+        "format version {found} is not supported; this program reads version {FORMAT_VERSION}; build the package again"
     )]
     Version {
-        /// The version it says.
+        /// The version of the package.
         found: u64,
     },
-    /// It ends too early.
+    /// The file is truncated.
     #[error(
-        "the file is cut off: it needs {needed} bytes and has {actual}; fetch or build it again"
+        "the file is truncated: it should have {needed} bytes but has {actual}; download or build it again"
     )]
     Truncated {
-        /// Bytes that the header speaks of.
+        /// Number of bytes according to the header.
         needed: u64,
-        /// Bytes that there are.
+        /// Number of bytes of the file.
         actual: u64,
     },
-    /// A part of it makes no sense.
-    #[error("the file is damaged: {what}; fetch or build it again")]
+    /// A part of the file is invalid.
+    #[error("the file is damaged: {what}; download or build it again")]
     Damaged {
-        /// Which part.
+        /// The invalid part.
         what: &'static str,
     },
     /// The manifest cannot be read.
     #[error(
-        "the package's manifest is damaged, or written by another version of Corniche: {reason}; fetch or build it again"
+        "the package's manifest is damaged, or was written by another version of Corniche: {reason}; download or build the package again"
     )]
     Manifest {
-        /// What is wrong.
+        /// The cause of the error.
         reason: String,
     },
 }
 
 impl OpenError {
-    /// What is wrong with a manifest, in no more of its words than are read.
+    /// The error of a manifest, whose text is shortened to a readable length.
     pub(crate) fn manifest(reason: impl std::fmt::Display) -> Self {
         const MOST_CHARS: usize = 500;
         let mut reason = reason.to_string();
@@ -89,7 +89,8 @@ impl OpenError {
         Self::Manifest { reason }
     }
 
-    /// Whether nothing is known to be wrong with the package: the network or a server failed, and the same may succeed later.
+    /// Whether the package may be fine: the network or a server failed, and the same request may
+    /// succeed later.
     #[must_use]
     pub fn may_pass(&self) -> bool {
         match self {
@@ -100,27 +101,35 @@ impl OpenError {
     }
 }
 
+/// The error of a file. An error of its source names the file itself.
+fn not_usable(path: &std::path::Path, source: &OpenError) -> String {
+    match source {
+        OpenError::Source(error) => error.to_string(),
+        _ => format!("cannot use package {path:?}"),
+    }
+}
+
 /// Why a tile could not be read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReadError {
-    /// Its bytes cannot be read.
+    /// The bytes of the tile cannot be read.
     #[error("tile {tile}: {source}")]
     Source {
-        /// Which tile.
+        /// The tile.
         tile: TileId,
-        /// Why not.
+        /// The error of the source.
         source: SourceError,
     },
-    /// The directory does not tell where it is.
+    /// The directory does not give the position of the tile.
     #[error("tile {tile}: {source}")]
     Directory {
-        /// Which tile.
+        /// The tile.
         tile: TileId,
-        /// What is wrong.
+        /// The error of the package.
         source: OpenError,
     },
-    /// Its bytes are damaged.
+    /// The bytes of the tile are damaged.
     #[error(transparent)]
     Decode(#[from] DecodeError),
 }

@@ -13,7 +13,8 @@ use crate::package::source::{AnySource, BlockingSource, ByteSource as _, FileSou
 use crate::package::tool_record::ToolRecord;
 use crate::{Manifest, Sections, TilePayload};
 
-/// A package on disk, or elsewhere where threads can wait for its bytes: the same as [`Package`] without `async`.
+/// A package on disk, or from a source that threads can wait for: the same as [`Package`], without
+/// `async`.
 #[derive(Debug)]
 pub struct FilePackage {
     package: Package<AnySource>,
@@ -25,17 +26,18 @@ impl FilePackage {
     /// Opens a file.
     ///
     /// # Errors
-    /// As [`Package::open`], with the name of the file.
+    /// Same as [`Package::open`], with the name of the file.
     pub fn open(path: &Path) -> Result<Self, OpenError> {
         let source = FileSource::open(path).map_err(|error| named(path, error.into()))?;
         let file_name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         Self::of_source(path, file_name, Arc::new(source))
     }
 
-    /// Opens what `source` gives. `name` stands for the path of a file: an address, say; `file_name` is what the file would be called.
+    /// Opens a package from `source`. `name` takes the place of the file's path (for example an
+    /// address); `file_name` is the name that the file would have.
     ///
     /// # Errors
-    /// As [`Package::open`], with this name.
+    /// Same as [`Package::open`], with this name.
     pub fn of_source(
         name: &Path,
         file_name: String,
@@ -46,7 +48,7 @@ impl FilePackage {
         Ok(Self { package, path: name.to_path_buf(), file_name })
     }
 
-    /// The package itself, whose methods are `async`.
+    /// Returns the underlying package, whose methods are `async`.
     #[must_use]
     pub fn into_package(self) -> Package<AnySource> {
         self.package
@@ -58,35 +60,36 @@ impl FilePackage {
         Self { package: self.package.with_datum(datum, dem_vertical_crs), ..self }
     }
 
-    /// The file, or the address in its place.
+    /// The path of the file, or the address in its place.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The name of the file, without its folder. At an address it is the last part of the path, so what is written of a package does not depend on where
-    /// it is.
+    /// The name of the file, without its folder. For an address it is the last part of the path, so
+    /// that files written from a package do not depend on its location.
     #[must_use]
     pub fn file_name(&self) -> &str {
         &self.file_name
     }
 
-    /// How many bytes the package has.
+    /// Returns the number of bytes of the package.
     ///
     /// # Errors
-    /// When that cannot be found out.
+    /// When the number cannot be determined.
     pub fn bytes(&self) -> Result<u64, OpenError> {
         let length = pollster::block_on(self.package.source().length());
         length.map_err(|error| named(&self.path, error.into()))
     }
 
-    /// The first read of its bytes that failed, if one has. Those who take a tile that cannot be read for a damaged one ask for it.
+    /// The first read of the package's bytes that failed, if any. Callers that treat unreadable
+    /// tiles as damaged use it to distinguish the two.
     #[must_use]
     pub fn failed_read(&self) -> Option<&SourceError> {
         self.package.source().failure()
     }
 
-    /// The table of contents.
+    /// The manifest.
     #[must_use]
     pub fn manifest(&self) -> &Manifest {
         self.package.manifest()
@@ -95,7 +98,7 @@ impl FilePackage {
     /// See [`Package::tool_record`].
     ///
     /// # Errors
-    /// As [`Package::tool_record`], with the name of the file.
+    /// Same as [`Package::tool_record`], with the name of the file.
     pub fn tool_record(&self) -> Result<ToolRecord, OpenError> {
         pollster::block_on(self.package.tool_record()).map_err(|error| named(&self.path, error))
     }
@@ -103,7 +106,7 @@ impl FilePackage {
     /// See [`Package::tile_ids`].
     ///
     /// # Errors
-    /// As [`Package::tile_ids`], with the name of the file.
+    /// Same as [`Package::tile_ids`], with the name of the file.
     pub fn tile_ids(&self) -> Result<Vec<TileId>, OpenError> {
         pollster::block_on(self.package.tile_ids()).map_err(|error| named(&self.path, error))
     }
@@ -111,7 +114,7 @@ impl FilePackage {
     /// See [`Package::tile`].
     ///
     /// # Errors
-    /// As [`Package::tile`].
+    /// Same as [`Package::tile`].
     pub fn tile(&self, id: TileId) -> Result<Option<Vec<u8>>, ReadError> {
         pollster::block_on(self.package.tile(id))
     }
@@ -119,7 +122,7 @@ impl FilePackage {
     /// See [`Package::payload`].
     ///
     /// # Errors
-    /// As [`Package::payload`].
+    /// Same as [`Package::payload`].
     pub fn payload(&self, id: TileId, wanted: Sections) -> Result<Option<TilePayload>, ReadError> {
         pollster::block_on(self.package.payload(id, wanted))
     }

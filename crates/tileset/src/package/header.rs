@@ -5,34 +5,38 @@ use std::ops::Range;
 use crate::limits::{MAX_DIRECTORY_BYTES, MAX_METADATA_BYTES};
 use crate::package::error::OpenError;
 
-/// Bytes of the header.
+/// Number of bytes of the header.
 pub(crate) const HEADER_BYTES: usize = 127;
-/// Header and root directory lie within the first bytes of the file.
+/// Header and root directory are within the first bytes of the file.
 pub(crate) const INITIAL_BYTES: usize = 16_384;
 
-/// Bytes of the file, from and how many.
+/// A range of bytes of the file: offset and length.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Span {
+pub(crate) struct ByteSpan {
     pub(crate) offset: u64,
     pub(crate) length: u64,
 }
 
-/// The bytes of a file that tell which package it is: header, root directory, manifest and leaf directories, of which `start` has the first and
-/// `file_length` says how long the file is. `None` if it is no package.
+/// The ranges of a file that identify a package: header, root directory, manifest and leaf
+/// directories. `start` holds the first bytes of the file, and `file_length` is the length of the
+/// whole file. Returns `None` if the file is not a package.
 #[must_use]
 pub fn telling_ranges(start: &[u8], file_length: u64) -> Option<[Range<u64>; 4]> {
-    let Header { root, metadata, leaves, .. } = Header::parse(start, file_length).ok()?;
-    let header = Span { offset: 0, length: HEADER_BYTES as u64 };
-    // The header was checked: no sum is too large.
-    Some([header, root, metadata, leaves].map(|Span { offset, length }| offset..offset + length))
+    let PackageHeader { root, metadata, leaves, .. } =
+        PackageHeader::parse(start, file_length).ok()?;
+    let header = ByteSpan { offset: 0, length: HEADER_BYTES as u64 };
+    // The header was checked, so no sum overflows.
+    Some(
+        [header, root, metadata, leaves].map(|ByteSpan { offset, length }| offset..offset + length),
+    )
 }
 
-/// Some bytes of a header, from one on.
+/// Returns some bytes of a header, beginning at `from`.
 pub(crate) fn bytes_at<const N: usize>(header: &[u8; HEADER_BYTES], from: usize) -> [u8; N] {
     std::array::from_fn(|index| header[from + index])
 }
 
-/// What a reader needs of the header.
+/// The fields of the header that a reader needs.
 ///
 /// ```text
 ///   0 "PMTiles" 7 version 8 root 24 metadata 40 leaves 56 data (offset, length: u64 each)
@@ -41,17 +45,17 @@ pub(crate) fn bytes_at<const N: usize>(header: &[u8; HEADER_BYTES], from: usize)
 ///
 /// Source: PMTiles version 3 specification, section 3.
 #[derive(Debug, Clone)]
-pub(crate) struct Header {
-    pub(crate) root: Span,
-    pub(crate) metadata: Span,
-    pub(crate) leaves: Span,
-    pub(crate) data: Span,
-    /// How many tiles there are; 0 where the writer did not know.
+pub(crate) struct PackageHeader {
+    pub(crate) root: ByteSpan,
+    pub(crate) metadata: ByteSpan,
+    pub(crate) leaves: ByteSpan,
+    pub(crate) data: ByteSpan,
+    /// Number of tiles; 0 if the writer did not know it.
     pub(crate) tiles: u64,
 }
 
-impl Header {
-    /// Reads the header of a file of `file_length` bytes from its first bytes.
+impl PackageHeader {
+    /// Parses the header of a file of `file_length` bytes from its first bytes.
     pub(crate) fn parse(bytes: &[u8], file_length: u64) -> Result<Self, OpenError> {
         if !bytes.starts_with(b"PMTiles") {
             return Err(OpenError::NotPmtiles);
@@ -63,7 +67,7 @@ impl Header {
             return Err(OpenError::PmtilesVersion { found: bytes[7] });
         }
         let number = |at: usize| u64::from_le_bytes(bytes_at(bytes, at));
-        let span = |at: usize| Span { offset: number(at), length: number(at + 8) };
+        let span = |at: usize| ByteSpan { offset: number(at), length: number(at + 8) };
         let header = Self {
             root: span(8),
             metadata: span(24),
@@ -72,23 +76,23 @@ impl Header {
             tiles: number(72),
         };
         let [internal, tiles, kind] = [bytes[97], bytes[98], bytes[99]];
-        // 2 is gzip, 1 none; kind 0 is "other".
+        // 2 is gzip, 1 is none; tile type 0 is "other".
         if (internal, tiles, kind) != (2, 1, 0) {
             return Err(OpenError::OrdinaryPmtiles);
         }
         let mut spans = [header.root, header.metadata, header.leaves, header.data];
-        for Span { offset, length } in spans {
+        for ByteSpan { offset, length } in spans {
             let end =
                 offset.checked_add(length).ok_or(OpenError::Damaged { what: "the header" })?;
             if end > file_length {
                 return Err(OpenError::Truncated { needed: end, actual: file_length });
             }
         }
-        // The parts must not overlap: a root directory whose bytes are also those of a leaf would hide all other
-        // tiles.
+        // The parts must not overlap: a root directory whose bytes also belong to a leaf would hide
+        // all other tiles.
         spans.sort_by_key(|span| span.offset);
         let mut end = HEADER_BYTES as u64;
-        for Span { offset, length } in spans.into_iter().filter(|span| span.length > 0) {
+        for ByteSpan { offset, length } in spans.into_iter().filter(|span| span.length > 0) {
             if offset < end {
                 return Err(OpenError::Damaged { what: "the header: parts of the file overlap" });
             }
@@ -98,7 +102,7 @@ impl Header {
             || header.metadata.length > MAX_METADATA_BYTES as u64
         {
             return Err(OpenError::Damaged {
-                what: "the header: root directory or metadata larger than readers accept",
+                what: "the header: the root directory or the metadata is larger than readers accept",
             });
         }
         Ok(header)

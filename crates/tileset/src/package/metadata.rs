@@ -1,29 +1,30 @@
-//! The JSON metadata of a PMTiles file, with the manifest under a key of its own.
+//! The JSON metadata of a PMTiles file, which contains the manifest under its own key.
 
 use serde::{Deserialize, Serialize};
 
 use crate::Manifest;
 
-/// Version of a package's encodings, in [`Manifest::format_version`](crate::Manifest::format_version). Readers
-/// refuse any other.
+/// Version of a package's encodings, in
+/// [`Manifest::format_version`](crate::Manifest::format_version). Readers reject all other
+/// versions.
 pub const FORMAT_VERSION: u32 = 1;
 
-/// The JSON metadata of the file: what PMTiles tools show, and the manifest under a key of its own.
+/// The JSON metadata of the file: texts for PMTiles tools, and the manifest under its own key.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Metadata<M> {
     #[serde(default)]
     pub(crate) name: String,
     #[serde(default)]
     pub(crate) description: String,
-    /// All credits in one line, as the PMTiles specification has it.
+    /// All attribution texts in one line, as the PMTiles specification requires.
     #[serde(default)]
     pub(crate) attribution: String,
     pub(crate) corniche: M,
 }
 
 impl<'a> Metadata<&'a Manifest> {
-    /// What goes with a manifest.
-    pub(crate) fn of(manifest: &'a Manifest) -> Self {
+    /// Returns the metadata for a manifest.
+    pub(crate) fn from_manifest(manifest: &'a Manifest) -> Self {
         Self {
             name: "Corniche package".to_owned(),
             description: format!(

@@ -1,4 +1,5 @@
-//! The reader of packages from any source of bytes: manifest, list of tiles, tiles.
+//! The reader of packages from any source of bytes: reads the manifest, the list of tiles, and
+//! tiles.
 
 use std::{
     collections::BTreeMap,
@@ -8,9 +9,9 @@ use std::{
 use corniche_geom::TileId;
 use serde::{Deserialize, de::IgnoredAny};
 
-use crate::package::directory::{self, Directory, Entry};
+use crate::package::directory::{self, Directory, DirectoryEntry};
 use crate::package::error::{OpenError, ReadError};
-use crate::package::header::{HEADER_BYTES, Header, INITIAL_BYTES, Span};
+use crate::package::header::{ByteSpan, HEADER_BYTES, INITIAL_BYTES, PackageHeader};
 use crate::package::metadata::{FORMAT_VERSION, Metadata};
 use crate::package::source::{ByteSource, SourceError};
 use crate::package::tool_record::ToolRecord;
@@ -23,37 +24,39 @@ use crate::{
     },
 };
 
-/// Leaf directories read before, by offset, and how many entries they have.
+/// Leaf directories that were read before, by offset, and the number of their entries.
 #[derive(Debug, Default)]
 struct Leaves {
     by_offset: BTreeMap<u64, Arc<Directory>>,
     entries: usize,
 }
 
-/// A package open for reading.
+/// A package that is open for reading.
 ///
-/// Reads are range requests: header, root directory and manifest when it is opened, then a leaf directory now and
-/// then and one range for each tile. It can be shared between threads when its source can.
+/// Reads are range requests: header, root directory and manifest on opening, later a leaf directory
+/// from time to time, and one range for each tile. Threads can share a package if they can share
+/// its source.
 #[derive(Debug)]
 pub struct Package<S> {
     source: S,
-    header: Header,
+    header: PackageHeader,
     manifest: Manifest,
     root: Directory,
     leaves: Mutex<Leaves>,
 }
 
 impl<S: ByteSource> Package<S> {
-    /// Reads header, root directory and manifest.
+    /// Opens a package: reads header, root directory and manifest.
     ///
     /// # Errors
-    /// When the source cannot be read, is no Corniche package of this version, is cut off or damaged.
+    /// When the source cannot be read, is not a Corniche package of this version, or is truncated
+    /// or damaged.
     pub async fn open(source: S) -> Result<Self, OpenError> {
         let length = source.length().await?;
         let initial = source.read(0, length.min(INITIAL_BYTES as u64) as usize).await?;
-        let header = Header::parse(&initial, length)?;
-        // Before the directory, so that a PMTiles file of another program is reported as such, whatever else is wrong
-        // with it.
+        let header = PackageHeader::parse(&initial, length)?;
+        // The metadata is read before the directory, so that a PMTiles file of another program is
+        // reported as such, whatever else is wrong with it.
         let metadata = read_metadata(&source, &header).await?;
         let manifest = Manifest::in_metadata(&metadata)?;
         let root_in_initial = usize::try_from(header.root.offset)
@@ -68,20 +71,20 @@ impl<S: ByteSource> Package<S> {
         Ok(Self { source, header, manifest, root, leaves: Mutex::default() })
     }
 
-    /// Where its bytes come from.
+    /// The source of the package's bytes.
     #[must_use]
     pub fn source(&self) -> &S {
         &self.source
     }
 
-    /// The table of contents.
+    /// The manifest.
     #[must_use]
     pub fn manifest(&self) -> &Manifest {
         &self.manifest
     }
 
-    /// The same package, whose heights are said to be those of another datum, as if it had been built with this `--dem-vertical-crs`. The heights
-    /// themselves stay as they are.
+    /// Returns the same package with another name for the datum of its heights, as if it had been
+    /// built with this `--dem-vertical-crs`. The heights themselves do not change.
     #[must_use]
     pub fn with_datum(self, datum: String, dem_vertical_crs: &str) -> Self {
         let mut package = self;
@@ -90,16 +93,16 @@ impl<S: ByteSource> Package<S> {
         package
     }
 
-    /// The metadata in which the manifest is, as JSON: another instance of this program reads it with [`Manifest::in_metadata`]. It is read from the
-    /// file again.
+    /// Returns the metadata, which contains the manifest, as JSON: another instance of this program
+    /// reads it with [`Manifest::in_metadata`]. The metadata is read from the file again.
     ///
     /// # Errors
-    /// When it cannot be read.
+    /// When the metadata cannot be read.
     pub async fn metadata(&self) -> Result<Vec<u8>, OpenError> {
         read_metadata(&self.source, &self.header).await
     }
 
-    /// What the file says for PMTiles tools. It is read from the file again.
+    /// Returns the fields for PMTiles tools. They are read from the file again.
     ///
     /// # Errors
     /// When header or metadata cannot be read.
@@ -108,21 +111,24 @@ impl<S: ByteSource> Package<S> {
         ToolRecord::parse(&header, &read_metadata(&self.source, &self.header).await?)
     }
 
-    /// All tiles, in the order in which they are stored: by level, then along a Hilbert curve.
+    /// Returns all tiles in the order in which they are stored: by level, then along a Hilbert
+    /// curve.
     ///
     /// # Errors
-    /// When a leaf directory cannot be read or is damaged, or there are fewer or more tiles than the header says.
+    /// When a leaf directory cannot be read or is damaged, or the number of tiles differs from that
+    /// in the header.
     pub async fn tile_ids(&self) -> Result<Vec<TileId>, OpenError> {
         const DAMAGED: OpenError = OpenError::Damaged { what: "a directory" };
         let mut ids = Vec::new();
-        // Directories still to be listed, the next one last.
+        // Directories that are still to be listed, the next one last.
         let mut open: Vec<(Arc<Directory>, usize)> = vec![(Arc::new(self.root.clone()), 0)];
         let mut last: Option<TileId> = None;
         let mut data_end = 0;
         while let Some((directory, at)) = open.pop() {
             let Some(&entry) = directory.entries.get(at) else { continue };
             open.push((directory, at + 1));
-            // Every entry leads to later tiles only, so the listing ends, also if a leaf points to another leaf.
+            // Every entry leads to later tiles only, so the listing ends even if a leaf points to
+            // another leaf.
             if last.is_some_and(|last| entry.first <= pmtiles_order(last)) || ids.len() >= MAX_TILES
             {
                 return Err(DAMAGED);
@@ -138,7 +144,8 @@ impl<S: ByteSource> Package<S> {
             let id = tile_of_order(entry.first)
                 .filter(|id| id.z() <= self.manifest.frame.max_level())
                 .ok_or(DAMAGED)?;
-            // As within a directory, tiles share no bytes: so a small file cannot list many tiles.
+            // Tiles must not share bytes, as within a directory: so a small file cannot list many
+            // tiles.
             if entry.offset < data_end {
                 return Err(DAMAGED);
             }
@@ -157,19 +164,20 @@ impl<S: ByteSource> Package<S> {
         Ok(ids)
     }
 
-    /// The payload of a tile as bytes; `None` when the package has no such tile.
+    /// Returns the payload of a tile as bytes; `None` if the package has no such tile.
     ///
     /// # Errors
-    /// When it cannot be read, or the directory is damaged.
+    /// When the payload cannot be read, or the directory is damaged.
     pub async fn tile(&self, id: TileId) -> Result<Option<Vec<u8>>, ReadError> {
         self.tile_for(id, Sections::ALL).await
     }
 
-    /// The same, without SV roads at its end where they are not wanted and the manifest tells how many bytes they are. [`decode`](crate::decode) takes it for these
-    /// sections.
+    /// Returns the payload like [`Package::tile`], but without the SV roads at its end if `wanted`
+    /// does not include them and the manifest lists their number of bytes.
+    /// [`decode`](crate::decode) accepts the shortened payload for these sections.
     ///
     /// # Errors
-    /// As [`Package::tile`].
+    /// Same as [`Package::tile`].
     pub async fn tile_for(
         &self,
         id: TileId,
@@ -181,7 +189,7 @@ impl<S: ByteSource> Package<S> {
         for _ in 0..MAX_DIRECTORY_DEPTH {
             let Some(entry) = found else { return Ok(None) };
             if entry.run > 0 {
-                let Span { offset, length } = self.header.data;
+                let ByteSpan { offset, length } = self.header.data;
                 let end = entry.offset.checked_add(u64::from(entry.length));
                 if end.is_none_or(|end| end > length) || entry.length > MAX_PAYLOAD_BYTES {
                     return Err(damaged("a directory points outside the tiles"));
@@ -201,10 +209,10 @@ impl<S: ByteSource> Package<S> {
         Err(damaged("directories are nested too deep"))
     }
 
-    /// The wanted sections of a tile, decoded; `None` when the package has no such tile.
+    /// Returns the wanted sections of a tile, decoded; `None` if the package has no such tile.
     ///
     /// # Errors
-    /// When it cannot be read or is damaged; the error names the tile and the section.
+    /// When the tile cannot be read or is damaged; the error names the tile and the section.
     pub async fn payload(
         &self,
         id: TileId,
@@ -214,17 +222,18 @@ impl<S: ByteSource> Package<S> {
         Ok(Some(self.manifest.decode(&bytes, id, wanted)?))
     }
 
-    /// How many bytes the SV roads at the end of the tile at a place take, where the manifest tells.
+    /// Returns the number of bytes of the SV roads at the end of the tile at a position, or 0 if
+    /// the manifest does not list the tile.
     fn sv_tail_bytes(&self, order: u64) -> u32 {
         let tails = &self.manifest.sv_tails;
         let place = tails.binary_search_by_key(&order, |tail| pmtiles_order(tail.tile));
         place.map_or(0, |place| tails[place].bytes)
     }
 
-    /// A leaf directory, read once and kept for a while.
-    async fn leaf(&self, entry: Entry) -> Result<Arc<Directory>, OpenError> {
+    /// Returns a leaf directory, which is read once and cached for a while.
+    async fn leaf(&self, entry: DirectoryEntry) -> Result<Arc<Directory>, OpenError> {
         const DAMAGED: OpenError = OpenError::Damaged { what: "a leaf directory" };
-        // Otherwise listing and searching could give different answers about what is in it.
+        // Without this check, listing and searching could disagree about the content of a leaf.
         let begins =
             |leaf: &Directory| leaf.entries.first().is_some_and(|first| first.first == entry.first);
         // A poisoned lock only means that another thread panicked between two whole directories.
@@ -238,7 +247,7 @@ impl<S: ByteSource> Package<S> {
         if let Some(leaf) = kept {
             return if begins(&leaf) { Ok(leaf) } else { Err(DAMAGED) };
         }
-        let Span { offset, length } = self.header.leaves;
+        let ByteSpan { offset, length } = self.header.leaves;
         let end = entry.offset.checked_add(u64::from(entry.length));
         if end.is_none_or(|end| end > length) || entry.length > MAX_DIRECTORY_BYTES as u32 {
             return Err(OpenError::Damaged {
@@ -259,28 +268,32 @@ impl<S: ByteSource> Package<S> {
     }
 }
 
-async fn read_span(source: &impl ByteSource, span: Span) -> Result<Vec<u8>, SourceError> {
-    // The header's limits keep lengths far below what a usize holds.
+async fn read_span(source: &impl ByteSource, span: ByteSpan) -> Result<Vec<u8>, SourceError> {
+    // The header's limits keep lengths far below the range of a usize.
     source.read(span.offset, span.length as usize).await
 }
 
-/// The metadata's JSON.
-async fn read_metadata(source: &impl ByteSource, header: &Header) -> Result<Vec<u8>, OpenError> {
+/// Reads the metadata and decompresses its JSON.
+async fn read_metadata(
+    source: &impl ByteSource,
+    header: &PackageHeader,
+) -> Result<Vec<u8>, OpenError> {
     directory::gunzip(&read_span(source, header.metadata).await?, MAX_METADATA_BYTES)
         .ok_or(OpenError::Damaged { what: "the metadata" })
 }
 
 impl Manifest {
-    /// The manifest in the [metadata](Package::metadata) of a package.
+    /// Reads the manifest from the [metadata](Package::metadata) of a package.
     ///
     /// # Errors
-    /// When there is none, or one of another version, or it makes no sense.
+    /// When there is no manifest, or it has another version, or it is invalid.
     pub fn in_metadata(metadata: &[u8]) -> Result<Self, OpenError> {
         let failed = |error: serde_json::Error| OpenError::manifest(error);
-        // The text is read three times, each time with more of its fields, and never into a tree of JSON values: such a tree
-        // can take a hundred times the memory of the text.
+        // The text is parsed three times, each time with more of its fields, and never into a tree
+        // of JSON values: the tree can take a hundred times the memory of the text.
         let object: Metadata<Option<IgnoredAny>> = parse(metadata).map_err(|error| {
-            // An ordinary file may have any object; a package has one with the key `corniche`.
+            // An ordinary PMTiles file may have any object as metadata; the metadata of a package
+            // has the key `corniche`.
             if error.is_data() { OpenError::OrdinaryPmtiles } else { failed(error) }
         })?;
         if object.corniche.is_none() {
@@ -300,7 +313,7 @@ fn parse<'a, T: Deserialize<'a>>(metadata: &'a [u8]) -> Result<Metadata<T>, serd
     serde_json::from_slice(metadata)
 }
 
-/// What is read before the rest of the manifest, which may be of another version.
+/// The fields that are read before the rest of the manifest, which may have another version.
 #[derive(Deserialize)]
 struct Version {
     format_version: u64,

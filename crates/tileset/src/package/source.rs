@@ -6,39 +6,41 @@ use std::future::Future;
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{}", self.text())]
 pub struct SourceError {
-    /// What is read: a path or an address.
+    /// The name of the source: a path or an address.
     pub name: String,
-    /// First byte asked for.
+    /// Offset of the first requested byte.
     pub offset: u64,
-    /// How many.
+    /// Number of requested bytes.
     pub length: usize,
-    /// What went wrong.
+    /// The cause of the error.
     pub reason: String,
-    /// Whether what was asked for is fine and only the network, a server or a disk failed, so that the same read may succeed later.
+    /// Whether the request was valid and only the network, a server or a disk failed, so that the
+    /// same read may succeed later.
     pub may_pass: bool,
 }
 
 impl SourceError {
-    /// Nothing was asked for yet where the source could not even be opened.
+    /// If the length is 0, nothing was requested yet: the source could not even be opened.
     fn text(&self) -> String {
         let Self { name, offset, length, reason, may_pass: _ } = self;
         match length {
-            0 => format!("cannot open {name}: {reason}"),
-            _ => format!("cannot read {length} bytes at {offset} of {name}: {reason}"),
+            0 => format!("cannot open {name:?}: {reason}"),
+            _ => format!("cannot read {length} bytes at {offset} of {name:?}: {reason}"),
         }
     }
 }
 
-/// Where the bytes of a package come from: a file, memory, a server that answers range requests.
+/// A source of the bytes of a package: a file, memory, a server that answers range requests.
 ///
-/// Futures need not be `Send`, so that a browser's can be used; adapters that are used from several threads
-/// make them so.
+/// Futures need not be `Send`, so that a browser's futures can be used; adapters that are used from
+/// several threads return `Send` futures.
 pub trait ByteSource {
-    /// How many bytes there are.
+    /// Returns the number of bytes of the source.
     fn length(&self) -> impl Future<Output = Result<u64, SourceError>>;
 
-    /// Exactly `length` bytes from `offset` on; fewer are an error. The reader asks for no more than
-    /// [`MAX_PAYLOAD_BYTES`](crate::limits::MAX_PAYLOAD_BYTES) at once, and never past [`ByteSource::length`].
+    /// Reads exactly `length` bytes from `offset` on; fewer bytes are an error. The reader requests
+    /// at most [`MAX_PAYLOAD_BYTES`](crate::limits::MAX_PAYLOAD_BYTES) at once, and never reads
+    /// past [`ByteSource::length`].
     fn read(
         &self,
         offset: u64,
@@ -94,22 +96,23 @@ mod waiting {
 
     use super::{ByteSource, SourceError};
 
-    /// Where the bytes of a package come from, for threads that wait for them: a file, or a server behind a crate of its own.
+    /// A source of the bytes of a package for threads that wait for them: a file, or a server,
+    /// which has a crate of its own.
     pub trait BlockingSource: Debug + Send + Sync {
         /// See [`ByteSource::length`].
         ///
         /// # Errors
-        /// When it cannot be found out.
+        /// When the length cannot be determined.
         fn length(&self) -> Result<u64, SourceError>;
 
         /// See [`ByteSource::read`].
         ///
         /// # Errors
-        /// When the bytes cannot be read, or there are fewer.
+        /// When the bytes cannot be read, or the source has fewer.
         fn read(&self, offset: u64, length: usize) -> Result<Vec<u8>, SourceError>;
     }
 
-    /// Any source for threads that wait. Clones read from the same one.
+    /// Any source, for threads that wait. Clones read from the same source.
     #[derive(Debug, Clone)]
     pub struct AnySource {
         source: Arc<dyn BlockingSource>,
@@ -123,7 +126,8 @@ mod waiting {
             Self { source, failure: Arc::default() }
         }
 
-        /// The first read that failed, if one has: for those who take a tile that cannot be read for a damaged one.
+        /// The first read that failed, if any. Callers that treat unreadable tiles as damaged use
+        /// it to distinguish the two.
         #[must_use]
         pub fn failure(&self) -> Option<&SourceError> {
             self.failure.get()
@@ -131,7 +135,7 @@ mod waiting {
 
         fn noted<T>(&self, read: Result<T, SourceError>) -> Result<T, SourceError> {
             read.inspect_err(|error| {
-                // Only the first one is kept.
+                // Only the first error is kept.
                 let _ = self.failure.set(error.clone());
             })
         }
@@ -158,7 +162,8 @@ mod file {
 
     use super::{BlockingSource, SourceError};
 
-    /// A package on disk, read at positions: several threads may read at once.
+    /// A package on disk. Several threads may read from it at once, because reads name their
+    /// positions.
     #[derive(Debug)]
     pub struct FileSource {
         file: File,
@@ -169,16 +174,18 @@ mod file {
         /// Opens a file for reading.
         ///
         /// # Errors
-        /// When it cannot be opened.
+        /// When the file cannot be opened.
         pub fn open(path: &Path) -> Result<Self, SourceError> {
             let failed = |error: io::Error| failure(path, 0, 0, &error);
-            // This test comes before opening, which would block for ever on a pipe.
+            // This check comes before opening, which would block forever on a pipe.
             let metadata = fs::metadata(path).map_err(failed)?;
             if metadata.is_dir() {
                 return Err(failed(io::ErrorKind::IsADirectory.into()));
             }
             if !metadata.is_file() {
-                return Err(failed(io::Error::other("this is no ordinary file; copy it to one")));
+                return Err(failed(io::Error::other(
+                    "not a regular file; copy it to a regular file",
+                )));
             }
             let file = File::open(path).map_err(failed)?;
             Ok(Self { file, path: path.to_path_buf() })
@@ -191,7 +198,7 @@ mod file {
             offset,
             length,
             reason: error.to_string(),
-            // What is wrong with a file stays so until someone acts.
+            // An error of a file persists until someone fixes it.
             may_pass: false,
         }
     }

@@ -1,4 +1,4 @@
-//! What a package says for PMTiles tools, beside its manifest.
+//! The fields of a package that PMTiles tools show, in addition to the manifest.
 
 use corniche_geom::{Bounds, Seam};
 use serde::de::IgnoredAny;
@@ -8,45 +8,45 @@ use crate::package::error::OpenError;
 use crate::package::header::{HEADER_BYTES, bytes_at};
 use crate::package::metadata::Metadata;
 
-/// Steps of the header's degrees in a degree.
+/// The number of steps per degree in the header.
 const STEPS_PER_DEGREE: f64 = 1e7;
 
-/// What PMTiles tools show of a package: fields of the file's header, and the texts beside the manifest. This reader
-/// uses none of it.
+/// The fields of a package that PMTiles tools show: fields of the file's header, and the texts next
+/// to the manifest. This reader uses none of them.
 ///
 /// Source: PMTiles version 3 specification, sections 3 and 5.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ToolRecord {
     /// Number of tile ids that have a payload.
     pub addressed_tiles: u64,
-    /// Directory entries that are tiles.
+    /// Directory entries that point to tiles.
     pub tile_entries: u64,
-    /// Different payloads.
+    /// Number of different payloads.
     pub tile_contents: u64,
-    /// 1 where tiles lie in the order of their ids.
+    /// 1 if tiles are stored in the order of their ids.
     pub clustered: u8,
-    /// Least and largest level.
+    /// Smallest and largest level.
     pub zooms: [u8; 2],
-    /// West, south, east and north, 10⁻⁷ degrees.
+    /// West, south, east and north, in steps of 10⁻⁷ degrees.
     pub bounds_e7: [i32; 4],
-    /// Level at which tools begin.
+    /// The level at which tools open the map.
     pub center_zoom: u8,
-    /// Longitude and latitude, 10⁻⁷ degrees.
+    /// Longitude and latitude of the centre, in steps of 10⁻⁷ degrees.
     pub center_e7: [i32; 2],
-    /// What the file is called.
+    /// The name of the package.
     pub name: String,
-    /// What is in it.
+    /// A description of the content.
     pub description: String,
-    /// All credits in one line.
+    /// All attribution texts in one line.
     pub attribution: String,
 }
 
 impl ToolRecord {
-    /// What a package of this manifest and so many tiles says.
+    /// Returns the record for a package with this manifest and this number of tiles.
     #[must_use]
-    pub fn of(manifest: &Manifest, tiles: u64) -> Self {
+    pub fn from_manifest(manifest: &Manifest, tiles: u64) -> Self {
         let bounds = header_bounds(manifest.wgs84_bounds);
-        let Metadata { name, description, attribution, .. } = Metadata::of(manifest);
+        let Metadata { name, description, attribution, .. } = Metadata::from_manifest(manifest);
         Self {
             addressed_tiles: tiles,
             tile_entries: tiles,
@@ -62,7 +62,7 @@ impl ToolRecord {
         }
     }
 
-    /// The record that the header's bytes and the metadata's JSON make.
+    /// Parses the record from the header's bytes and the metadata's JSON.
     pub(crate) fn parse(header: &[u8], metadata: &[u8]) -> Result<Self, OpenError> {
         let Some(bytes) = header.first_chunk::<HEADER_BYTES>() else {
             let actual = header.len() as u64;
@@ -88,8 +88,9 @@ impl ToolRecord {
     }
 }
 
-/// A rectangle in degrees as the header can have it. Its numbers end at 214.75 degrees: what reaches beyond, such as a grid that counts from 0 to
-/// 360, counts as all around the earth, as does a full turn.
+/// Converts a rectangle in degrees to one that fits in the header, whose numbers end at 214.75
+/// degrees. A rectangle that extends beyond (such as a grid that counts from 0 to 360 degrees) or
+/// covers a full turn becomes −180 to 180 degrees.
 pub(crate) fn header_bounds(bounds: Bounds) -> Bounds {
     let most = f64::from(i32::MAX) / STEPS_PER_DEGREE;
     let degrees = Seam::of_degrees();
@@ -101,7 +102,7 @@ pub(crate) fn header_bounds(bounds: Bounds) -> Bounds {
     Bounds { min_x: west, max_x: east, ..bounds }
 }
 
-/// Degrees in the header's steps.
+/// Converts degrees to steps of the header.
 fn e7(degrees: f64) -> i32 {
     (degrees * STEPS_PER_DEGREE).round() as i32
 }

@@ -28,30 +28,30 @@ pub enum WriteError {
     /// The PMTiles writer failed.
     #[error("cannot write the package")]
     Pmtiles(#[source] PmtError),
-    /// The manifest does not survive being written as JSON.
+    /// The manifest cannot be represented as JSON.
     #[error("the manifest cannot be written: {reason}")]
     Manifest {
-        /// Why not.
+        /// The cause of the error.
         reason: String,
     },
-    /// Tiles come in another order than they are stored in.
+    /// Tiles were added in another order than that in which they are stored.
     #[error(
-        "tile {tile} comes after {previous}, but tiles are written in ascending pmtiles_order, each once"
+        "tile {tile} comes after {previous}, but tiles must be written in ascending pmtiles_order, each once"
     )]
     Order {
-        /// The tile added.
+        /// The tile that was added.
         tile: TileId,
-        /// The tile added before.
+        /// The tile that was added before it.
         previous: TileId,
     },
-    /// A tile lies beyond the finest level, or its bytes are too few or too many for a payload.
+    /// A tile is beyond the finest level, or it has too few or too many bytes for a payload.
     #[error(
-        "tile {tile} is no tile of this package: {bytes} bytes are no payload, or it lies beyond level {max_level}"
+        "tile {tile} does not belong to this package: its {bytes} bytes are not a payload, or it is beyond level {max_level}"
     )]
     Tile {
-        /// The tile added.
+        /// The tile that was added.
         tile: TileId,
-        /// How many bytes it has.
+        /// Number of its bytes.
         bytes: usize,
         /// The package's finest level.
         max_level: u8,
@@ -67,21 +67,25 @@ impl From<PmtError> for WriteError {
     }
 }
 
-/// Writes a package: PMTiles version 3 of type "other", tiles as they are, directories and metadata gzip.
+/// Writes a package: PMTiles version 3 of type "other", with tiles as they are, and directories and
+/// metadata as gzip.
 ///
-/// The header comes last: until [`Writer::finish`] the file begins with zeros, and no reader takes it for a package.
-pub struct Writer<W: Write + Seek> {
+/// The header is written last: until [`PackageWriter::finish`] the file begins with zeros, and no
+/// reader mistakes it for a package.
+pub struct PackageWriter<W: Write + Seek> {
     tiles: PmTilesStreamWriter<CloseUp<W>>,
     file: Option<Arc<File>>,
     max_level: u8,
     previous: Option<TileId>,
 }
 
-impl Writer<Arc<File>> {
-    /// Writes to a file that was made for it, and is open, at most so many tiles: a package of few is up to 16 KB smaller.
+impl PackageWriter<Arc<File>> {
+    /// Writes at most `tiles` tiles to an open file that was created for the package. A package of
+    /// few tiles is up to 16 KB smaller.
     ///
     /// # Errors
-    /// When that fails, or the manifest cannot be written. When there are more tiles, [`Writer::finish`] may fail.
+    /// When writing fails, or the manifest is invalid. If there are more tiles than announced,
+    /// [`PackageWriter::finish`] may fail.
     pub fn of_file(file: File, manifest: &Manifest, tiles: usize) -> Result<Self, WriteError> {
         let file = Arc::new(file);
         let mut writer = Self::new(Arc::clone(&file), manifest, tiles)?;
@@ -90,11 +94,13 @@ impl Writer<Arc<File>> {
     }
 }
 
-impl<W: Write + Seek> Writer<W> {
-    /// Writes to `out`, which is empty, at most so many tiles: a package of few is up to 16 KB smaller.
+impl<W: Write + Seek> PackageWriter<W> {
+    /// Writes at most `tiles` tiles to `out`, which is empty. A package of few tiles is up to 16 KB
+    /// smaller.
     ///
     /// # Errors
-    /// When that fails, or the manifest cannot be written. When there are more tiles, [`Writer::finish`] may fail.
+    /// When writing fails, or the manifest is invalid. If there are more tiles than announced,
+    /// [`PackageWriter::finish`] may fail.
     pub fn new(out: W, manifest: &Manifest, tiles: usize) -> Result<Self, WriteError> {
         let bounds = header_bounds(manifest.wgs84_bounds);
         let [lon, lat] = bounds.center();
@@ -112,10 +118,10 @@ impl<W: Write + Seek> Writer<W> {
         Ok(Self { tiles, file: None, max_level, previous: None })
     }
 
-    /// Adds the payload of a tile. Tiles come in ascending [`pmtiles_order`], each once.
+    /// Adds the payload of a tile. Tiles must be added in ascending [`pmtiles_order`], each once.
     ///
     /// # Errors
-    /// When they do not, or writing fails.
+    /// When the tiles are in another order, or writing fails.
     pub fn add(&mut self, id: TileId, payload: &[u8]) -> Result<(), WriteError> {
         if let Some(previous) =
             self.previous.filter(|&previous| pmtiles_order(previous) >= pmtiles_order(id))
@@ -132,10 +138,10 @@ impl<W: Write + Seek> Writer<W> {
         Ok(())
     }
 
-    /// Writes directories and header, and has a file's bytes put on disk.
+    /// Writes directories and header, and syncs a file to disk.
     ///
     /// # Errors
-    /// When that fails; the file is then no package.
+    /// When writing fails; the file is not a package then.
     pub fn finish(self) -> Result<(), WriteError> {
         self.tiles.finalize()?;
         if let Some(file) = self.file {
@@ -145,7 +151,8 @@ impl<W: Write + Seek> Writer<W> {
     }
 }
 
-/// The metadata, checked to read back as the same manifest: JSON knows neither infinity nor not-a-number.
+/// Returns the metadata as JSON, after checking that it reads back as the same manifest: JSON has
+/// neither infinity nor NaN.
 fn to_json(manifest: &Manifest) -> Result<String, WriteError> {
     if manifest.format_version != FORMAT_VERSION {
         let reason =
@@ -154,7 +161,7 @@ fn to_json(manifest: &Manifest) -> Result<String, WriteError> {
     }
     manifest.check().map_err(|reason| WriteError::Manifest { reason })?;
     let failed = |error: serde_json::Error| WriteError::Manifest { reason: error.to_string() };
-    let json = serde_json::to_string(&Metadata::of(manifest)).map_err(failed)?;
+    let json = serde_json::to_string(&Metadata::from_manifest(manifest)).map_err(failed)?;
     let back: Metadata<Manifest> = serde_json::from_str(&json).map_err(failed)?;
     if back.corniche != *manifest {
         return Err(WriteError::Manifest {

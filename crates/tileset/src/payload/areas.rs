@@ -1,5 +1,5 @@
-//! The areas of a tile: parts of water, forest and so on that lie in it, read and written apart from the rest of the payload, as most
-//! readers do not want them.
+//! The areas of a tile: the parts of water, forest and other areas that are in it. They are read
+//! and written separately from the rest of the payload, because most readers do not need them.
 
 mod coded_rings;
 mod decode;
@@ -11,15 +11,15 @@ use corniche_geom::{GridFrame, LatticeBounds, TileId};
 
 use crate::payload::damage::{Damage, DecodeError};
 use crate::payload::envelope::{self, StoredSection};
-use crate::payload::section_kind::{AREAS, Kind};
+use crate::payload::section_kind::{AREAS, SectionKind};
 
 use decode::decode;
 #[cfg(feature = "write")]
 pub use encode::encode_areas;
 pub use record::{AreaRecord, AreaRings};
 
-/// Reads the areas of a tile from the bytes of its payload; none if it has none. Memory is bounded by the
-/// [`limits`](crate::limits), whatever the bytes say.
+/// Reads the areas of a tile from the bytes of its payload; empty if it has none. Memory stays
+/// within the [`limits`](crate::limits), whatever the bytes say.
 ///
 /// # Errors
 /// When the bytes are not a payload of tile `id`, or the section is damaged.
@@ -29,10 +29,10 @@ pub fn decode_areas(
     frame: &GridFrame,
 ) -> Result<Vec<AreaRecord>, DecodeError> {
     let bounds = frame.tile_lattice_bounds(id);
-    envelope::read_part(bytes, id, Kind::Areas.name(), |sections| decode_in(sections, bounds))
+    envelope::read_part(bytes, id, SectionKind::Areas, |sections| decode_in(sections, bounds))
 }
 
-/// The areas of these sections of a payload.
+/// Reads the areas from the sections of a payload.
 pub(crate) fn decode_in(
     sections: &[StoredSection<'_>],
     bounds: LatticeBounds,

@@ -1,4 +1,4 @@
-//! Areas come back from both of their encodings, and damaged sections are refused.
+//! Areas round-trip in both of their encodings, and damaged sections are rejected.
 
 use corniche_areas::{AreaClass, AreaObject};
 use corniche_geom::{LatticeBounds, LatticePoint, NodeIndex};
@@ -22,7 +22,7 @@ fn bounds() -> LatticeBounds {
     frame().tile_lattice_bounds(id())
 }
 
-/// A triangle from a place in the tile, given in steps from its south-western corner.
+/// A triangle at a point of the tile, in steps from its south-western corner.
 fn triangle(u: i64, v: i64, side: i64) -> Vec<LatticePoint> {
     let corner = bounds().min;
     [[0, 0], [side, 0], [0, side]]
@@ -52,12 +52,12 @@ fn forest() -> AreaRecord {
     }
 }
 
-/// A payload with nothing but this section of kind 8.
+/// A payload that only has this section of kind 8.
 fn payload(section: &[u8]) -> Vec<u8> {
-    payload_of(Kind::Areas, section)
+    payload_of(SectionKind::Areas, section)
 }
 
-fn payload_of(kind: Kind, section: &[u8]) -> Vec<u8> {
+fn payload_of(kind: SectionKind, section: &[u8]) -> Vec<u8> {
     builder::payload_of(id(), [(kind, section.to_vec())])
 }
 
@@ -74,19 +74,19 @@ fn with(section: Section) -> Vec<u8> {
     encoded.bytes
 }
 
-/// Whether a payload takes a section more.
+/// Whether the section can be added to a payload.
 fn takes(payload: &[u8], section: Section) -> bool {
     PayloadBuilder::with_all_of(payload, id()).unwrap().add(section).is_ok()
 }
 
-/// The section of kind 8, then that of kind 12.
-fn raw(areas: &[AreaRecord], step: i64) -> [(Kind, Vec<u8>); 2] {
-    let of = |kind: Kind, bytes: &[u8]| {
+/// The section of kind 8, then the section of kind 12.
+fn raw(areas: &[AreaRecord], step: i64) -> [(SectionKind, Vec<u8>); 2] {
+    let of = |kind: SectionKind, bytes: &[u8]| {
         let sections = envelope::open(bytes, id()).unwrap();
         (kind, envelope::section(&sections, kind).unwrap().unwrap())
     };
     let planes = with(in_planes(areas, bounds(), step));
-    [of(Kind::Areas, &planes), of(Kind::CodedAreas, &encoded(areas, step))]
+    [of(SectionKind::Areas, &planes), of(SectionKind::CodedAreas, &encoded(areas, step))]
 }
 
 #[test]
@@ -156,7 +156,8 @@ fn every_shorter_section_is_refused() {
     }
 }
 
-/// Half of its points are those of the first, backwards, around the first's beginning, too.
+/// Half of its points are those of the first area, backwards, also across the beginning of the
+/// first ring.
 #[test]
 fn a_border_that_two_areas_share_is_coded_once() {
     let corner = bounds().min;
@@ -169,7 +170,7 @@ fn a_border_that_two_areas_share_is_coded_once() {
         polygons: vec![AreaRings { rings: vec![ring] }],
         ..forest()
     };
-    // The ring begins in the middle of what is shared.
+    // The ring begins in the middle of the shared points.
     let mut first = [&shared[..], &west].concat();
     first.rotate_left(100);
     let back: Vec<_> = shared.iter().rev().copied().collect();
@@ -204,7 +205,7 @@ fn a_section_in_a_store_comes_back() {
 fn hostile_numbers_are_refused_before_memory_is_taken_for_them() {
     let damage =
         |section: &[u8]| decode_areas(&payload(section), id(), &frame()).unwrap_err().damage;
-    // A lattice of no spacing; more areas than are allowed.
+    // A lattice with a spacing of 0; more areas than are allowed.
     assert_eq!(damage(&[0, 0]), Damage::Invalid("the spacing of the areas' lattice"));
     assert_eq!(damage(&[1, 255, 255, 255, 127]), Damage::Invalid("number of areas"));
     // One area of 2^56 polygons; one ring of 2^56 points.
@@ -214,7 +215,7 @@ fn hostile_numbers_are_refused_before_memory_is_taken_for_them() {
     assert!(matches!(damage(&head(1 << 56)), Damage::TooLarge { what: "number of polygons", .. }));
     let ring = |points: u64| [head(0), planes(0), planes(points)].concat();
     assert!(matches!(damage(&ring(1 << 56)), Damage::TooLarge { what: "number of points", .. }));
-    // Another class; a point outside.
+    // An unknown class; a point outside the tile.
     let class = [
         vec![1, 1],
         planes(99 << 1),
@@ -228,7 +229,7 @@ fn hostile_numbers_are_refused_before_memory_is_taken_for_them() {
     .concat();
     assert_eq!(damage(&class), Damage::Invalid("a class of areas"));
     let far = |steps: u64| {
-        // Three numbers in planes: the first has all the bytes.
+        // Three numbers in planes: the first number has all the bytes.
         let mut columns = vec![8];
         for byte in steps.to_le_bytes() {
             columns.extend([byte, 0, 0]);
@@ -249,7 +250,7 @@ fn decoding_everything_checks_areas() {
 }
 
 proptest! {
-    /// Any bytes give areas in the tile or an error.
+    /// Any bytes decode to areas in the tile, or to an error.
     #[test]
     fn any_bytes_are_areas_or_an_error(bytes in prop::collection::vec(any::<u8>(), 0..200), cut in 0_usize..100, by in any::<u8>()) {
         for (kind, mut real) in raw(&[lake(), forest()], 64) {
@@ -263,7 +264,8 @@ proptest! {
         }
     }
 
-    /// Rings of a few places, so that they share points and borders in every way, also with themselves, on and beside the coarse lattice.
+    /// Rings of a few points, so that they share points and borders in every way, also with
+    /// themselves, on the coarse lattice and off it.
     #[test]
     fn rings_that_share_points_come_back(
         rings in prop::collection::vec(prop::collection::vec((0_i64..4, 0_i64..4), 3..12), 1..9),

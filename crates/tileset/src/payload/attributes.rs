@@ -1,4 +1,5 @@
-//! The road attributes section: records by way, with each text stored once. What came later is in the road tags section.
+//! The road attributes section: one record per way, with each text stored once. Later additions are
+//! in the road tags section.
 
 use corniche_roads::{Form, Oneway, RoadAttributes, Structure};
 use serde::de::DeserializeOwned;
@@ -8,14 +9,14 @@ use crate::payload::damage::Damage;
 use crate::payload::number_codes::take_room;
 use crate::payload::tile_payload::RoadRecord;
 
-/// The whole section, in `bincode`'s legacy layout: every list starts with its length as u64. Lists after
-/// `texts` have one item per way.
+/// The whole section, in `bincode`'s legacy layout: every list begins with its length as a u64.
+/// Lists after `texts` have one item per way.
 #[derive(Default)]
 #[cfg_attr(feature = "write", derive(serde::Serialize))]
-struct Record {
-    /// Sorted, each once.
+struct AttributesTable {
+    /// The texts, sorted, each once.
     texts: Vec<String>,
-    /// Ascending; each as its difference from the one before.
+    /// The way ids, ascending; each as its difference from the id before.
     way_id_steps: Vec<i64>,
     forms: Vec<u8>,
     structures: Vec<u8>,
@@ -27,10 +28,10 @@ struct Record {
     surfaces: Vec<u32>,
 }
 
-/// Decodes the section's bytes into lists, and checks that their lengths and indices fit each other.
-fn decode_record(bytes: &[u8]) -> Result<Record, Damage> {
+/// Decodes the section's bytes into lists, and checks that their lengths and indices match.
+fn decode_record(bytes: &[u8]) -> Result<AttributesTable, Damage> {
     let mut rest = bytes;
-    let record = Record {
+    let record = AttributesTable {
         texts: list(&mut rest, 3 * MAX_WAYS)?,
         way_id_steps: list(&mut rest, MAX_WAYS)?,
         forms: list(&mut rest, MAX_WAYS)?,
@@ -63,7 +64,8 @@ fn decode_record(bytes: &[u8]) -> Result<Record, Damage> {
 pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<RoadRecord>, Damage> {
     let record = decode_record(bytes)?;
     let count = record.way_id_steps.len();
-    // A long text that every way uses is copied for each way. With the limit, a small section cannot become a large tile.
+    // A long text that every way uses is copied for each way. The limit prevents a small section
+    // from becoming a large tile.
     let mut room = MAX_TEXT_BYTES;
     let mut text = |index: u32| {
         let text = record
@@ -99,7 +101,8 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<RoadRecord>, Damage> {
     Ok(roads)
 }
 
-/// Takes one list of the record off the front of the bytes. Its length is checked before the items are read.
+/// Takes one list of the record from the front of the bytes. Its length is checked before its items
+/// are read.
 fn list<T: DeserializeOwned>(bytes: &mut &[u8], limit: usize) -> Result<Vec<T>, Damage> {
     let length = bytes.first_chunk().map(|&length| u64::from_le_bytes(length));
     let length = length.ok_or(Damage::TooShort)?;
@@ -114,7 +117,7 @@ fn list<T: DeserializeOwned>(bytes: &mut &[u8], limit: usize) -> Result<Vec<T>, 
     Ok(list)
 }
 
-/// The section's bytes, or what of the roads cannot be encoded.
+/// Encodes the section; an error describes what cannot be encoded.
 #[cfg(feature = "write")]
 pub(crate) fn encode(roads: &[RoadRecord]) -> Result<Vec<u8>, &'static str> {
     if !roads.is_sorted_by(|a, b| a.way_id < b.way_id) {
@@ -136,15 +139,17 @@ pub(crate) fn encode(roads: &[RoadRecord]) -> Result<Vec<u8>, &'static str> {
     texts.sort_unstable();
     texts.dedup();
     let index = |text: &str| texts.partition_point(|&other| other < text) as u32;
-    let mut record =
-        Record { texts: texts.iter().map(|&text| text.to_owned()).collect(), ..Record::default() };
+    let mut record = AttributesTable {
+        texts: texts.iter().map(|&text| text.to_owned()).collect(),
+        ..AttributesTable::default()
+    };
     let mut previous = 0_i64;
     for RoadRecord { way_id, attributes } in roads {
         record
             .way_id_steps
             .push(way_id.checked_sub(previous).ok_or("way ids that are too far apart")?);
         previous = *way_id;
-        // A variant's number is its index in the list `ALL`, by which it is read.
+        // The number of a variant is its index in the list `ALL`, by which it is read.
         record.forms.push(attributes.form as u8);
         record.structures.push(attributes.structure as u8);
         record.layers.push(attributes.layer);

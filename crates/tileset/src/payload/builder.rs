@@ -1,4 +1,4 @@
-//! The payload of a tile is put together: each layer gives its section, and all of them are sealed once.
+//! Assembles the payload of a tile: each layer adds its section, then the payload is sealed once.
 
 use corniche_geom::TileId;
 use corniche_roads::FunctionalRoadClass;
@@ -6,45 +6,46 @@ use corniche_roads::FunctionalRoadClass;
 use crate::limits::MAX_SECTION_BYTES;
 use crate::payload::damage::EncodeError;
 use crate::payload::envelope::{self, MAGIC, STORED, SectionSize, StoredSection, VERSION, ZSTD};
-use crate::payload::section_kind::Kind;
+use crate::payload::section_kind::SectionKind;
 use crate::payload::sizes::PayloadSizes;
 
-/// Bytes before the section table.
+/// Number of bytes before the section table.
 const HEADER_BYTES: usize = 16;
-/// Bytes of one entry of the section table.
+/// Number of bytes of an entry of the section table.
 const ENTRY_BYTES: usize = 20;
-/// zstd's level: from 16 on it splits blocks where the statistics change, which suits streams laid end to end; 19
-/// saves less than 1 % more at twice the time.
+/// The compression level of zstd: from 16 on zstd splits blocks where the statistics change, which
+/// suits streams that follow each other; 19 saves less than 1 % more and takes twice the time.
 const COMPRESSION_LEVEL: i32 = 16;
 
-/// What a layer has in a tile, encoded as a section of its payload.
+/// The content of a layer in a tile, encoded as a section of its payload.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Section {
-    pub(crate) kind: Kind,
+    pub(crate) kind: SectionKind,
     pub(crate) bytes: Vec<u8>,
 }
 
 impl Section {
-    /// Its bytes before compression.
+    /// The bytes of the section before compression.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
 
-    /// What [`Section::of_areas`] and its like take: its bytes, and where a layer has two kinds of section, a first one that tells which it is.
+    /// Returns the bytes for [`Section::of_areas`] and the corresponding functions of other layers:
+    /// the bytes of the section, preceded by the kind if the layer has two kinds of section.
     #[must_use]
     pub fn into_bytes(self) -> Vec<u8> {
         match self.kind {
-            Kind::Areas => [&[0], &self.bytes[..]].concat(),
-            Kind::CodedAreas => [&[1], &self.bytes[..]].concat(),
+            SectionKind::Areas => [&[0], &self.bytes[..]].concat(),
+            SectionKind::CodedAreas => [&[1], &self.bytes[..]].concat(),
             _ => self.bytes,
         }
     }
 
-    /// How large it is in the payload of a tile.
+    /// Returns the size of the section in the payload of a tile.
     ///
     /// # Errors
-    /// When it is larger than readers accept.
+    /// When the section is larger than readers accept.
     pub fn size(&self, tile: TileId) -> Result<SectionSize, EncodeError> {
         let stored = compressed(tile, self)?;
         let stored = stored.as_ref().unwrap_or(&self.bytes).len() as u64;
@@ -57,29 +58,30 @@ impl Section {
 pub struct EncodedTile {
     /// The payload.
     pub bytes: Vec<u8>,
-    /// The sizes of its parts.
+    /// The sizes of the payload's parts.
     pub sizes: PayloadSizes,
 }
 
-/// The payload of a tile while it is put together.
+/// The payload of a tile while it is assembled.
 #[derive(Debug)]
 pub struct PayloadBuilder<'a> {
     tile: TileId,
     sections: Vec<Content<'a>>,
-    /// Bytes of each class in the sections of roads, GEO and SV, before compression; 0 where these were stored before.
+    /// Bytes of each class in the road sections, GEO and SV, before compression; 0 for sections
+    /// taken from another payload.
     pub(crate) class_bytes: [[u64; FunctionalRoadClass::COUNT]; 2],
 }
 
-/// What a section is made of.
+/// The content of a section.
 #[derive(Debug)]
 enum Content<'a> {
     New(Section),
-    /// Bytes as another payload of the tile has them.
-    Stored(Kind, StoredSection<'a>),
+    /// Bytes as they are stored in another payload of the tile.
+    Stored(SectionKind, StoredSection<'a>),
 }
 
 impl Content<'_> {
-    fn kind(&self) -> Kind {
+    fn kind(&self) -> SectionKind {
         match self {
             Self::New(section) => section.kind,
             Self::Stored(kind, _) => *kind,
@@ -88,16 +90,17 @@ impl Content<'_> {
 }
 
 impl<'a> PayloadBuilder<'a> {
-    /// A payload without any section.
+    /// Begins a payload without sections.
     #[must_use]
     pub fn new(tile: TileId) -> Self {
         Self { tile, sections: Vec::new(), class_bytes: Default::default() }
     }
 
-    /// A payload with all sections of another one of the tile, which stay as they are stored there. What the classes of its roads take is not looked at.
+    /// Begins a payload with all sections of another payload of the tile, as they are stored there.
+    /// The sizes of the classes of its roads are not determined.
     ///
     /// # Errors
-    /// When the bytes are no payload of the tile, or have a section of unknown kind.
+    /// When the bytes are not a payload of the tile, or have a section of an unknown kind.
     pub fn with_all_of(payload: &'a [u8], tile: TileId) -> Result<Self, EncodeError> {
         let refused = |what| EncodeError::Unencodable { tile, section: "other sections", what };
         let sections = envelope::open(payload, tile).map_err(|_| refused("a damaged payload"))?;
@@ -110,31 +113,33 @@ impl<'a> PayloadBuilder<'a> {
         Ok(builder)
     }
 
-    /// Takes the section of a kind as it is stored in another payload of the tile.
-    pub(crate) fn add_stored(&mut self, kind: Kind, stored: StoredSection<'a>) {
+    /// Adds a section as it is stored in another payload of the tile.
+    pub(crate) fn add_stored(&mut self, kind: SectionKind, stored: StoredSection<'a>) {
         self.sections.push(Content::Stored(kind, stored));
     }
 
     /// Adds a section.
     ///
     /// # Errors
-    /// When the payload has one for the same objects already, or bridges and tunnels come before the ground.
+    /// When the payload already has a section for the same objects, or spans (bridges and tunnels)
+    /// are added before the ground.
     pub fn add(&mut self, section: Section) -> Result<(), EncodeError> {
         let mut kinds = self.sections.iter().map(Content::kind);
         let name = section.kind.name();
-        let refused = |what| EncodeError::Unencodable { tile: self.tile, section: name, what };
-        // Both kinds of a layer that can be in one of two have one name.
+        let refused = section.kind.refused(self.tile);
+        // Both kinds of section of a layer have the same name.
         if kinds.clone().any(|other| other.name() == name) {
-            return Err(refused("beside others"));
+            return Err(refused("a second section of the same kind"));
         }
-        if section.kind == Kind::Spans && !kinds.any(|other| other == Kind::Terrain) {
+        if section.kind == SectionKind::Spans && !kinds.any(|other| other == SectionKind::Terrain) {
             return Err(refused("without ground"));
         }
         self.sections.push(Content::New(section));
         Ok(())
     }
 
-    /// Puts header, table and sections together, SV roads last; compresses each new section where that makes it smaller.
+    /// Assembles header, table and sections, SV roads last. Compresses each new section if this
+    /// makes it smaller.
     ///
     /// # Errors
     /// When a section is larger than readers accept.
@@ -178,15 +183,18 @@ impl<'a> PayloadBuilder<'a> {
         table.extend(body);
         let size = |kind| {
             let of_kind = sizes.iter().find(|(of, _)| *of == kind);
-            of_kind.map_or_else(SectionSize::default, |(_, size)| *size)
+            of_kind.map(|(_, size)| *size).unwrap_or_default()
         };
         let sv_tail = sizes.last().filter(|(kind, _)| kind.is_sv());
         let sv_tail = sv_tail.map_or(0, |(_, size)| size.stored);
-        Ok(EncodedTile { bytes: table, sizes: PayloadSizes::of(size, sv_tail, class_bytes) })
+        Ok(EncodedTile {
+            bytes: table,
+            sizes: PayloadSizes::from_sections(size, sv_tail, class_bytes),
+        })
     }
 }
 
-/// A section compressed; `None` where that does not make it smaller.
+/// Compresses a section; `None` if this does not make it smaller.
 fn compressed(tile: TileId, section: &Section) -> Result<Option<Vec<u8>>, EncodeError> {
     let Section { kind, bytes } = section;
     let section = kind.name();
@@ -209,9 +217,12 @@ fn smaller(raw: &[u8]) -> std::io::Result<Option<Vec<u8>>> {
     Ok(Some(compressed).filter(|compressed| compressed.len() < raw.len()))
 }
 
-/// A payload of any sections, also of some that no writer puts beside each other.
+/// Returns a payload of any sections, including combinations that no writer creates.
 #[cfg(test)]
-pub(crate) fn payload_of<const N: usize>(tile: TileId, sections: [(Kind, Vec<u8>); N]) -> Vec<u8> {
+pub(crate) fn payload_of<const N: usize>(
+    tile: TileId,
+    sections: [(SectionKind, Vec<u8>); N],
+) -> Vec<u8> {
     let mut builder = PayloadBuilder::new(tile);
     let section = |(kind, bytes)| Content::New(Section { kind, bytes });
     builder.sections.extend(sections.map(section));

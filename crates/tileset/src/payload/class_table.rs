@@ -1,5 +1,5 @@
-//! Lines by class: the table at the start of both road sections, and the heads of the lines before the points of each
-//! class.
+//! Lines by class: the table at the start of both road sections, and the heads of the lines, which
+//! precede the points of each class.
 
 use corniche_roads::FunctionalRoadClass;
 use corniche_varints::zigzag;
@@ -8,10 +8,10 @@ use crate::limits::{MAX_LINES, MAX_POINTS};
 use crate::payload::damage::Damage;
 use crate::payload::number_codes::{Cursor, take_room};
 
-/// Class, number of lines, and their bytes.
+/// A class, its number of lines, and their bytes.
 pub(crate) type ClassBlob<'a> = (FunctionalRoadClass, usize, &'a [u8]);
 
-/// The lines of each class that has any, by class.
+/// Reads the table: the lines of each class that has any, in the order of classes.
 pub(crate) fn decode<'a>(cursor: &mut Cursor<'a>) -> Result<Vec<ClassBlob<'a>>, Damage> {
     let mut counts = Vec::with_capacity(FunctionalRoadClass::COUNT);
     let mut all_lines = 0;
@@ -38,18 +38,19 @@ pub(crate) fn decode<'a>(cursor: &mut Cursor<'a>) -> Result<Vec<ClassBlob<'a>>, 
         .collect()
 }
 
-/// What is stored of a line before its points.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Head {
+/// The fields of a line that are stored before its points.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) struct LineHead {
     pub(crate) way_id: i64,
     pub(crate) part: u32,
-    /// How many points it has.
+    /// Number of points.
     pub(crate) points: usize,
-    /// Two bits, as the section says.
+    /// Two flag bits, which depend on the kind of section.
     pub(crate) flags: u8,
 }
 
-/// Takes the points of a line from the `room` that its section has left.
+/// Subtracts the points of a line from `room`, the number of points that its section may still
+/// have.
 pub(crate) fn take_points(room: &mut usize, points: usize) -> Result<(), Damage> {
     take_room(room, points, MAX_POINTS, "points of a section")
 }
@@ -61,8 +62,8 @@ pub(crate) struct LineOrder {
 }
 
 impl LineOrder {
-    /// Fails if `next` is not after the line before it.
-    pub(crate) fn check(&mut self, next: &Head) -> Result<(), Damage> {
+    /// Fails if `next` does not follow the line before it in the sort order.
+    pub(crate) fn check(&mut self, next: &LineHead) -> Result<(), Damage> {
         let next = Some((next.way_id, next.part));
         if next <= self.last {
             return Err(Damage::Invalid("lines are not sorted"));
@@ -72,26 +73,27 @@ impl LineOrder {
     }
 }
 
-/// The heads of a class.
+/// The heads of the lines of a class.
 pub(crate) struct Heads {
-    pub(crate) heads: Vec<Head>,
-    /// Points of all of them.
+    pub(crate) heads: Vec<LineHead>,
+    /// Number of points of all lines.
     pub(crate) points: usize,
 }
 
 impl Heads {
-    /// Way ids as differences, all of them; then parts; then points and flags. Points are taken from the `room`
-    /// that the section has left.
+    /// Reads the heads: all way ids as differences, then parts, then numbers of points with flags.
+    /// The points are subtracted from `room`, the number that the section may still have.
     pub(crate) fn decode(
         cursor: &mut Cursor<'_>,
         lines: usize,
         room: &mut usize,
     ) -> Result<Self, Damage> {
-        // Each line takes at least three bytes, so a wrong count in the table cannot make this larger than the section allows.
+        // Each line takes at least three bytes, so a wrong count in the table cannot allocate more
+        // than the section allows.
         if lines > cursor.left() / 3 {
             return Err(Damage::TooShort);
         }
-        let mut heads = vec![Head { way_id: 0, part: 0, points: 0, flags: 0 }; lines];
+        let mut heads = vec![LineHead::default(); lines];
         let mut way_id = 0_i64;
         for head in &mut heads {
             way_id = way_id.wrapping_add(zigzag(cursor.varint()?));
@@ -112,7 +114,7 @@ impl Heads {
         Ok(Self { heads, points })
     }
 
-    /// How many points each line has.
+    /// The number of points of each line.
     pub(crate) fn point_counts(&self) -> impl ExactSizeIterator<Item = usize> + Clone {
         self.heads.iter().map(|head| head.points)
     }
@@ -125,10 +127,11 @@ pub(crate) use write::{encode, put_heads};
 mod write {
     use corniche_varints::{push_varint, to_zigzag};
 
-    use super::{FunctionalRoadClass, Head, MAX_LINES, MAX_POINTS};
+    use super::{FunctionalRoadClass, LineHead, MAX_LINES, MAX_POINTS};
     use crate::payload::source_grid::SourceGrid;
 
-    /// Writes the grid of a coded section, the table, and the lines of each class with `put`; also gives the number of bytes that each class takes.
+    /// Writes the grid of a coded section, the table, and the lines of each class with `put`; also
+    /// returns the number of bytes of each class.
     pub(crate) fn encode<R>(
         roads: &[R],
         grid: Option<SourceGrid<'_>>,
@@ -160,7 +163,7 @@ mod write {
     }
 
     /// The inverse of [`Heads::decode`](super::Heads::decode).
-    pub(crate) fn put_heads(out: &mut Vec<u8>, heads: &[Head]) {
+    pub(crate) fn put_heads(out: &mut Vec<u8>, heads: &[LineHead]) {
         let mut previous = 0_i64;
         for head in heads {
             push_varint(out, to_zigzag(head.way_id.wrapping_sub(previous)));

@@ -2,23 +2,40 @@
 
 use std::collections::HashMap;
 
-use corniche_geom::LatticePoint;
+use corniche_geom::{GridFrame, LatticePoint};
 
 use crate::limits::MAX_POINTS;
-use crate::payload::class_table::{Head, take_points};
+use crate::payload::class_table::{self, ClassBlob, LineHead, take_points};
 use crate::payload::damage::Damage;
 use crate::payload::magnitudes::Magnitudes;
+use crate::payload::number_codes::Cursor;
 use crate::payload::points::{FAR, is_near};
 #[cfg(feature = "write")]
-use crate::payload::range_coder::Writer;
-use crate::payload::range_coder::{Bits, Model, Reader};
+use crate::payload::range_coder::BitWriter;
+use crate::payload::range_coder::{BitReader, Bits, Model};
 use crate::payload::source_grid::SourceGrid;
 use crate::payload::turned_steps::{StepCoder, length};
 
-/// Points of the grid are within so many steps from 0: more than once around the earth.
+/// Points of the grid are within this many steps of 0: more than once around the earth.
 const REACH: i64 = 1 << 33;
 
-/// What a coder knows of a class's lines.
+/// Calls a function with the lines of each class in a road section, and with a coder if they are
+/// range-coded bits; `coded_in` is the package's frame in that case.
+pub(crate) fn for_each_class<'f>(
+    bytes: &[u8],
+    coded_in: Option<&'f GridFrame>,
+    corner: LatticePoint,
+    mut take: impl FnMut(ClassBlob<'_>, Option<LineCoder<'f>>) -> Result<(), Damage>,
+) -> Result<(), Damage> {
+    let mut cursor = Cursor::new(bytes);
+    let grid = coded_in.map(|frame| SourceGrid::read(&mut cursor, frame)).transpose()?;
+    for of_class in class_table::decode(&mut cursor)? {
+        take(of_class, grid.map(|grid| LineCoder::new(grid, corner)))?;
+    }
+    cursor.finish()
+}
+
+/// The state of a coder: what it knows of the lines of a class.
 pub(crate) struct LineCoder<'f> {
     grid: SourceGrid<'f>,
     corner: LatticePoint,
@@ -32,22 +49,22 @@ pub(crate) struct LineCoder<'f> {
     off_grid: [Magnitudes<1, 1>; 2],
     is_known: [[Model; 2]; 3],
     steps_back: Magnitudes<1, 1>,
-    /// Different points so far, on the grid and on the lattice: roads meet at some of them.
+    /// The different points so far, on the grid and on the lattice: roads meet at some of them.
     known: Vec<([i64; 2], LatticePoint)>,
-    /// Where a point is among them; in a writer.
+    /// The index of each point in this list; only used by a writer.
     known_at: HashMap<LatticePoint, usize>,
     was_known: bool,
     way_id: i64,
     /// The last point, on the grid.
     at: [i64; 2],
-    /// The step to it, if there was one in its line.
+    /// The step to the last point, if its line had one.
     before: Option<[i64; 2]>,
 }
 
-const UNKNOWN: Damage = Damage::Invalid("a point that was not there before");
+const UNKNOWN: Damage = Damage::Invalid("a reference to a point that does not exist");
 
 impl<'f> LineCoder<'f> {
-    /// The coder of the lines of one class of a tile with this south-western corner.
+    /// Creates the coder for the lines of one class, in a tile with this south-western corner.
     pub(crate) fn new(grid: SourceGrid<'f>, corner: LatticePoint) -> Self {
         Self {
             grid,
@@ -71,8 +88,12 @@ impl<'f> LineCoder<'f> {
         }
     }
 
-    /// Codes the head of the next line. A reader's head does not matter.
-    pub(crate) fn code_head<B: Bits>(&mut self, bits: &mut B, head: Head) -> Result<Head, Damage> {
+    /// Codes the head of the next line. A reader's head is ignored.
+    pub(crate) fn code_head<B: Bits>(
+        &mut self,
+        bits: &mut B,
+        head: LineHead,
+    ) -> Result<LineHead, Damage> {
         let step = head.way_id.wrapping_sub(self.way_id);
         let way_id = self.way_id.wrapping_add(self.way_ids.code(bits, [0; 2], step));
         self.way_id = way_id;
@@ -87,15 +108,15 @@ impl<'f> LineCoder<'f> {
         }
         self.before = None;
         self.was_known = false;
-        Ok(Head { way_id, part, points, flags })
+        Ok(LineHead { way_id, part, points, flags })
     }
 
-    /// Codes point `number` of a line. A reader has no `asked`.
+    /// Codes point `number` of a line. A reader passes no `asked`.
     pub(crate) fn code_point<B: Bits>(
         &mut self,
         bits: &mut B,
         number: usize,
-        head: &Head,
+        head: &LineHead,
         asked: Option<LatticePoint>,
     ) -> Result<LatticePoint, Damage> {
         let place = match number {
@@ -160,16 +181,16 @@ impl<'f> LineCoder<'f> {
         if is_near(point, self.corner) { Ok(point) } else { Err(FAR) }
     }
 
-    /// Reads head and `points` of the next line, which take the `room` that the section has left; calls `after_each` after each point, with its
-    /// number.
+    /// Reads the head and the `points` of the next line, which are subtracted from the section's
+    /// `room`; calls `after_each` after each point with its number.
     pub(crate) fn read_line(
         &mut self,
-        bits: &mut Reader<'_>,
+        bits: &mut BitReader<'_>,
         room: &mut usize,
         points: &mut Vec<LatticePoint>,
-        mut after_each: impl FnMut(&mut Self, &mut Reader<'_>, usize) -> Result<(), Damage>,
-    ) -> Result<Head, Damage> {
-        let head = self.code_head(bits, Head { way_id: 0, part: 0, points: 0, flags: 0 })?;
+        mut after_each: impl FnMut(&mut Self, &mut BitReader<'_>, usize) -> Result<(), Damage>,
+    ) -> Result<LineHead, Damage> {
+        let head = self.code_head(bits, LineHead::default())?;
         take_points(room, head.points)?;
         bits.check_end()?;
         points.clear();
@@ -177,7 +198,7 @@ impl<'f> LineCoder<'f> {
             bits.check_end()?;
             let point = self.code_point(bits, number, &head, None)?;
             if points.last() == Some(&point) {
-                return Err(Damage::Invalid("a segment without length"));
+                return Err(Damage::Invalid("a segment of zero length"));
             }
             points.push(point);
             after_each(self, bits, number)?;
@@ -185,7 +206,7 @@ impl<'f> LineCoder<'f> {
         Ok(head)
     }
 
-    /// Binary digits of the step to the last point; 0 after the first point of a line.
+    /// Number of binary digits of the step to the last point; 0 after the first point of a line.
     pub(crate) fn last_length(&self) -> usize {
         self.before.map_or(0, |[east, north]| length(east).max(length(north)))
     }
@@ -193,16 +214,16 @@ impl<'f> LineCoder<'f> {
 
 #[cfg(feature = "write")]
 impl LineCoder<'_> {
-    /// Writes head and points of the next line, and calls `after_each` after each point, with its number. Fails where a number has no code: a
-    /// step of 2^32 or more.
+    /// Writes the head and the points of the next line, and calls `after_each` after each point
+    /// with its number. Fails if a number has no code: a step of 2^32 or more.
     pub(crate) fn write_line(
         &mut self,
-        bits: &mut Writer,
-        head: Head,
+        bits: &mut BitWriter,
+        head: LineHead,
         points: &[LatticePoint],
-        mut after_each: impl FnMut(&mut Self, &mut Writer, usize),
+        mut after_each: impl FnMut(&mut Self, &mut BitWriter, usize),
     ) -> Result<(), &'static str> {
-        const NO_CODE: &str = "a way or a point too far from the one before";
+        const NO_CODE: &str = "a way or a point too far from the previous one";
         if self.code_head(bits, head) != Ok(head) {
             return Err(NO_CODE);
         }

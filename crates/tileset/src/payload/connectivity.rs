@@ -1,7 +1,9 @@
-//! Which vertices make triangles. Both sides guess; only wrong guesses cost bits.
+//! Finds the triangles of the vertices. Writer and reader make the same guesses; only wrong guesses
+//! cost bits.
 //!
-//! The triangles of a TIN are nearly a Delaunay triangulation of its vertices, so a reader that knows the
-//! vertices can guess them. Writer and reader walk over the triangles in the same order, from edge to edge:
+//! The triangles of a TIN are nearly a Delaunay triangulation of its vertices, so a reader that
+//! knows the vertices can guess them. Writer and reader walk over the triangles in the same order,
+//! from edge to edge:
 //!
 //! ```text
 //!            c?                 a gate a ► b: the triangle below it, with corner d, is known;
@@ -13,67 +15,72 @@
 //!            d
 //! ```
 //!
-//! The guesses are exact integer arithmetic. To compute the Delaunay triangulation itself would not be enough: nodes
-//! of a grid often lie on one circle, and boundaries are constrained edges.
+//! The guesses are computed in exact integer arithmetic. Computing the Delaunay triangulation
+//! itself would not be enough: nodes of a grid are often on one circle, and boundaries are
+//! constrained edges.
 //!
-//! Source for the walk: Touma & Gotsman 1998, *Triangle Mesh Compression*, and for guessing connectivity from
-//! positions: Lewiner, Lopes, Mello & Velho 2005, *`GEncode`: Geometry-driven compression for general meshes*.
-//! What we changed: all positions come first, sorted, which is cheaper than positions in walking order.
+//! Source for the walk: Touma & Gotsman 1998, *Triangle Mesh Compression*, and for guessing
+//! connectivity from positions: Lewiner, Lopes, Mello & Velho 2005, *`GEncode`: Geometry-driven
+//! compression for general meshes*. What we changed: all positions come first, sorted, which is
+//! cheaper than positions in walking order.
 
 use std::collections::{BTreeSet, VecDeque};
 
-use crate::payload::corner_guess::{Corner, Nodes};
+use crate::payload::corner_guess::{GateCorner, GridVertices};
 use crate::payload::damage::Damage;
-use crate::payload::work_limit::Work;
+use crate::payload::work_limit::StepBudget;
 
-/// There is no triangle on the left of the gate.
+/// There is no triangle to the left of the gate.
 pub(crate) const NONE: u8 = 0;
 /// Guesses 1 … 6 have their own symbols.
 pub(crate) const GUESSES: u8 = 6;
-/// The vertex is named.
+/// The vertex is given as a named number.
 pub(crate) const NAMED: u8 = GUESSES + 1;
 
-/// A vertex, and what was known when the walk came to it.
+/// A vertex, and the gate through which the walk reached it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Reached {
     pub(crate) vertex: u32,
-    /// `[a, b, d]` of the gate; the vertex itself three times where a walk starts.
+    /// The vertices `[a, b, d]` of the gate; three times the vertex itself where a walk starts.
     pub(crate) gate: [u32; 3],
 }
 
 /// Directed edges that have a triangle on their left.
 ///
-/// The first few of each origin are in a list: most vertices have six, and the memory of a list is near where the
-/// walk is (one hash table for all edges took 50 % longer). The others are in a tree, so that a vertex with a
-/// thousand triangles is not slow.
+/// The first few edges of each origin are in a list: most vertices have six, and the lists of
+/// neighbours are close together in memory (one hash table for all edges took 50 % longer). The
+/// other edges are in a tree, so that a vertex with a thousand triangles is not slow.
 #[derive(Debug)]
 pub(crate) struct Edges<'w> {
     origins: Vec<Origin>,
-    /// Next in the list of the same origin, target.
+    /// Next index in the list of the same origin, and target.
     listed: Vec<[u32; 2]>,
-    /// Origin and target, of origins whose lists are full.
+    /// Origin and target of the edges of origins whose lists are full.
     more: BTreeSet<[u32; 2]>,
-    work: &'w Work,
+    work: &'w StepBudget,
 }
 
-/// What is known of the edges of an origin.
+/// The edges of an origin.
 #[derive(Debug, Clone, Copy)]
 struct Origin {
-    /// A bit for each target, by its number modulo 64: most edges that do not exist need no look at the list.
+    /// A bit for each target, by its number modulo 64: for most edges that do not exist, the list
+    /// need not be searched.
     targets: u64,
     first: u32,
-    /// How long the list is.
+    /// Length of the list.
     length: u32,
 }
 
 const END: u32 = u32::MAX;
-/// A list has no more edges than this; a lookup in the tree also counts as this many steps.
+/// The largest length of a list; a lookup in the tree also counts as this many steps.
 const LIST_EDGES: u32 = 16;
 
 impl<'w> Edges<'w> {
-    /// No edges yet, of so many vertices and triangles. Looking at an edge counts as `work`.
-    pub(crate) fn new(vertices: usize, triangles: usize, work: &'w Work) -> Self {
-        // A section may claim more triangles than its vertices can have: at most two each.
+    /// Creates a structure without edges for this many vertices and triangles. Each examined edge
+    /// counts as `work`.
+    pub(crate) fn new(vertices: usize, triangles: usize, work: &'w StepBudget) -> Self {
+        // A section may claim more triangles than its vertices can have: at most two for each
+        // vertex.
         let triangles = triangles.min(2 * vertices);
         Self {
             origins: vec![Origin { targets: 0, first: END, length: 0 }; vertices],
@@ -83,7 +90,7 @@ impl<'w> Edges<'w> {
         }
     }
 
-    /// How many vertices edges may have.
+    /// The number of vertices.
     pub(crate) fn vertices(&self) -> usize {
         self.origins.len()
     }
@@ -134,7 +141,7 @@ impl<'w> Edges<'w> {
         self.listed.push([next, b]);
     }
 
-    /// Adds a triangle; an edge that has a triangle on that side already makes it fail.
+    /// Adds a triangle; fails if an edge already has a triangle on this side.
     pub(crate) fn add(&mut self, [a, b, c]: [u32; 3]) -> Result<(), Damage> {
         for [from, to] in [[a, b], [b, c], [c, a]] {
             if from == to || self.has(from, to) {
@@ -145,7 +152,7 @@ impl<'w> Edges<'w> {
         Ok(())
     }
 
-    /// Adds a triangle whose edges are known to have none on that side.
+    /// Adds a triangle whose edges are known to have no triangle on this side.
     #[inline]
     fn add_new(&mut self, [a, b, c]: [u32; 3]) {
         for [from, to] in [[a, b], [b, c], [c, a]] {
@@ -156,50 +163,51 @@ impl<'w> Edges<'w> {
 
 /// The guesses at a gate.
 pub(crate) struct Guesses<'g, 'w> {
-    /// `[a, b, d]`: the gate a ► b has the corner d on its right.
+    /// The vertices `[a, b, d]`: the gate a ► b has the corner d on its right.
     pub(crate) gate: [u32; 3],
-    pub(crate) nodes: &'g Nodes<'w>,
+    pub(crate) nodes: &'g GridVertices<'w>,
     edges: &'g Edges<'w>,
 }
 
 impl Guesses<'_, '_> {
-    /// The best.
+    /// The best guess.
     #[inline]
-    pub(crate) fn first(&self) -> Option<Corner> {
+    pub(crate) fn first(&self) -> Option<GateCorner> {
         let [a, b, _] = self.gate;
         self.nodes.best_corner([a, b], |c| self.edges.allow([a, b, c]))
     }
 
-    /// The best of the vertices that are not among these.
-    pub(crate) fn best_but(&self, no: &[u32]) -> Option<Corner> {
+    /// The best of the vertices that are not in `no`.
+    pub(crate) fn best_but(&self, no: &[u32]) -> Option<GateCorner> {
         let [a, b, _] = self.gate;
         self.nodes.best_corner([a, b], |c| !no.contains(&c) && self.edges.allow([a, b, c]))
     }
 }
 
-/// What is to the left of a gate.
+/// The answer at a gate: what is to its left.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Answer {
+pub(crate) enum GateAnswer {
     /// No triangle.
     Nothing,
-    /// A vertex that was guessed, so its edges to the gate have no triangle yet.
+    /// A guessed vertex, whose edges to the gate have no triangle yet.
     Guessed(u32),
     /// Any vertex.
     Named(u32),
 }
 
-/// What decides which triangles the walk finds: the triangles themselves when writing, the symbols when reading.
+/// Decides which triangles the walk finds: when writing from the triangles themselves, when reading
+/// from the symbols.
 pub(crate) trait Guide {
-    /// A triangle to start from, not found yet.
+    /// A triangle to start from that has not been found yet.
     fn start(&mut self, found: &Edges<'_>) -> Result<[u32; 3], Damage>;
-    /// What is to the left of a gate.
-    fn corner(&mut self, guesses: &Guesses<'_, '_>) -> Result<Answer, Damage>;
+    /// The answer at a gate.
+    fn corner(&mut self, guesses: &Guesses<'_, '_>) -> Result<GateAnswer, Damage>;
 }
 
-/// Walks until `count` triangles are found; gives them and the vertices in the order of the walk. Fails when that
-/// takes more than the work allowed to `nodes`.
+/// Walks until `count` triangles are found; returns them, and the vertices in the order of the
+/// walk. Fails if the walk takes more work than the budget of `nodes` allows.
 pub(crate) fn walk(
-    nodes: &Nodes<'_>,
+    nodes: &GridVertices<'_>,
     count: usize,
     guide: &mut impl Guide,
 ) -> Result<(Vec<[u32; 3]>, Vec<Reached>), Damage> {
@@ -217,8 +225,8 @@ pub(crate) fn walk(
             }
             let answer = guide.corner(&Guesses { gate, nodes, edges: &edges })?;
             work.check()?;
-            let (Answer::Guessed(c) | Answer::Named(c)) = answer else { continue };
-            if let Answer::Guessed(_) = answer {
+            let (GateAnswer::Guessed(c) | GateAnswer::Named(c)) = answer else { continue };
+            if let GateAnswer::Guessed(_) = answer {
                 edges.add_new([a, b, c]);
             } else {
                 check_vertex(c, nodes)?;
@@ -251,7 +259,7 @@ pub(crate) fn walk(
     Ok((triangles, order))
 }
 
-fn check_vertex(vertex: u32, nodes: &Nodes<'_>) -> Result<(), Damage> {
+fn check_vertex(vertex: u32, nodes: &GridVertices<'_>) -> Result<(), Damage> {
     if (vertex as usize) < nodes.len() {
         Ok(())
     } else {

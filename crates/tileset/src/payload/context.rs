@@ -1,4 +1,4 @@
-//! The corner, the placement and the scale that give numbers in a payload their meaning.
+//! The reference of the numbers in a payload: corner, placement and scale.
 
 use corniche_geom::{GridFrame, LatticePoint, TILE_NODES, TileId};
 use corniche_tin::Placement;
@@ -8,23 +8,23 @@ use crate::payload::damage::{Damage, DecodeError};
 use crate::payload::envelope::{self, StoredSection};
 use crate::payload::terrain::record::Scale;
 
-/// What positions and heights in a payload are relative to.
+/// The values that positions and heights in a payload are relative to.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Context {
+pub(crate) struct CodingContext {
     pub(crate) corner: LatticePoint,
     pub(crate) placement: Placement,
     pub(crate) scale: Scale,
 }
 
-impl Context {
-    /// Opens the payload of a tile, and tells what its numbers are relative to.
+impl CodingContext {
+    /// Opens the payload of a tile, and returns its sections and the reference of its numbers.
     pub(crate) fn open<'b>(
         bytes: &'b [u8],
         id: TileId,
         frame: &GridFrame,
         quantum_m: f64,
     ) -> Result<(Self, Vec<StoredSection<'b>>), DecodeError> {
-        let failed = |damage| DecodeError { tile: id, part: "header", damage };
+        let failed = |damage: Damage| damage.in_header(id);
         let context = Self::new(id, frame, quantum_m).map_err(failed)?;
         Ok((context, envelope::open_read(bytes, id).map_err(failed)?))
     }

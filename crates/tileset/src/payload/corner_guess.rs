@@ -1,41 +1,44 @@
-//! Vertices as nodes of a tile's grid, and the search for the corner that a Delaunay triangulation would take.
+//! Vertices as nodes of a tile's grid, and the search for the corner that a Delaunay triangulation
+//! would choose.
 
 use corniche_geom::TILE_NODES;
 
 use crate::payload::near_corners::{MARGIN, NearCorners, NearNode, STRIDE};
-use crate::payload::work_limit::Work;
+use crate::payload::work_limit::StepBudget;
 
 /// Vertices of a tile's grid, sorted by row, then column.
 #[derive(Debug)]
-pub(crate) struct Nodes<'w> {
+pub(crate) struct GridVertices<'w> {
     /// Column and row.
     at: Vec<[i32; 2]>,
     grid: Box<Grid>,
     near_corners: &'static NearCorners,
-    work: &'w Work,
+    work: &'w StepBudget,
 }
 
-/// Which nodes have a vertex, and which vertex that is.
+/// An index from nodes to vertices.
 #[derive(Debug)]
 struct Grid {
-    /// A bit for each node, row by row, in groups of 64, the westernmost node of a group in its lowest bit. Rows are [`STRIDE`] bits apart, and there are
-    /// [`MARGIN`] nodes without vertex on every side.
+    /// A bit for each node, row by row, in groups of 64, with the westernmost node of a group in
+    /// its lowest bit. Rows are [`STRIDE`] bits apart, and there are [`MARGIN`] nodes without a
+    /// vertex on every side.
     groups: [u64; GROUPS],
-    /// How many vertices come before each group.
+    /// The number of vertices before each group.
     before: [u32; GROUPS],
 }
 
-/// Groups of 64 nodes: a power of two, so that a place modulo it needs no check of bounds.
+/// The number of groups of 64 nodes: a power of two, so that an index modulo this number needs no
+/// bounds check.
 const GROUPS: usize = ((TILE_NODES + 2 * MARGIN) * STRIDE).div_ceil(64).next_power_of_two();
 
-/// The bit of a node.
+/// The index of the bit of a node.
 #[inline]
 fn place(column: i32, row: i32) -> usize {
     (row as usize + MARGIN) * STRIDE + column as usize + MARGIN
 }
 
 impl Grid {
-    /// `at` as in [`Nodes::new`].
+    /// Creates the index; `at` as in [`GridVertices::new`].
     fn new(at: &[[i32; 2]]) -> Self {
         let mut groups = [0_u64; GROUPS];
         for &[column, row] in at {
@@ -51,13 +54,13 @@ impl Grid {
         Self { groups, before }
     }
 
-    /// Whether the node at a place has a vertex.
+    /// Whether the node at an index has a vertex.
     #[inline]
     fn has_vertex(&self, place: usize) -> bool {
         self.groups[place / 64 % GROUPS] >> (place % 64) & 1 == 1
     }
 
-    /// The vertex at a place that has one.
+    /// The vertex of a node that has one.
     #[inline]
     fn vertex(&self, place: usize) -> u32 {
         let group = place / 64 % GROUPS;
@@ -65,7 +68,8 @@ impl Grid {
         self.before[group] + west.count_ones()
     }
 
-    /// Which of 64 nodes from a place on have vertices, the first in the lowest bit.
+    /// The 64 nodes from an index on as bits: 1 for nodes with a vertex, the first node in the
+    /// lowest bit.
     #[inline]
     fn from(&self, place: usize) -> u64 {
         let (group, shift) = (place / 64, place % 64);
@@ -74,10 +78,10 @@ impl Grid {
     }
 }
 
-/// The last column, and the last row.
+/// The number of the last column and of the last row.
 const LAST: i32 = TILE_NODES as i32 - 1;
 
-/// So many nodes of a list count as a step of the walk: they take as long as a row.
+/// This many examined nodes of a list count as a step of the walk: they take as long as a row.
 const NODES_OF_A_STEP: usize = 16;
 
 /// Marks the limit of a search before any vertex is found.
@@ -85,24 +89,27 @@ const NO_VERTEX: u32 = u32::MAX;
 
 /// The best corner of a gate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Corner {
+pub(crate) struct GateCorner {
     pub(crate) vertex: u32,
-    /// Whether another vertex sees the gate under the same angle: it lies on the same circle.
+    /// Whether another vertex sees the gate under the same angle, which means that it is on the
+    /// same circle.
     pub(crate) is_tied: bool,
     /// The cotangent of the angle is dot / cross; cross is positive.
     pub(crate) dot: i64,
     pub(crate) cross: i64,
 }
 
-impl<'w> Nodes<'w> {
-    /// `at` holds columns and rows below [`TILE_NODES`], sorted by row, then column. Searches count as `work`.
-    pub(crate) fn new(at: impl Iterator<Item = [u16; 2]>, work: &'w Work) -> Self {
+impl<'w> GridVertices<'w> {
+    /// Creates the vertices from columns and rows below [`TILE_NODES`], sorted by row, then column.
+    /// Searches count as `work`.
+    pub(crate) fn new(at: impl Iterator<Item = [u16; 2]>, work: &'w StepBudget) -> Self {
         let at: Vec<[i32; 2]> = at.map(|node| node.map(i32::from)).collect();
         let grid = Box::new(Grid::new(&at));
         Self { at, grid, near_corners: NearCorners::get(), work }
     }
 
-    /// How the corner on the right of a ► b sees this gate: dot and cross, which is positive. For one on the left cross is negative.
+    /// How the corner d to the right of a ► b sees this gate: dot and cross, which is positive. For
+    /// a corner on the left, cross is negative.
     pub(crate) fn behind(&self, [a, b, d]: [u32; 3]) -> [i64; 2] {
         let [[ac, ar], [bc, br], [dc, dr]] =
             [a, b, d].map(|vertex| self.at[vertex as usize].map(i64::from));
@@ -120,22 +127,22 @@ impl<'w> Nodes<'w> {
         self.at.len()
     }
 
-    /// What searches count as.
-    pub(crate) fn work(&self) -> &'w Work {
+    /// The budget that searches are counted in.
+    pub(crate) fn work(&self) -> &'w StepBudget {
         self.work
     }
 
-    /// The allowed vertex strictly to the left of a ► b that sees it under the largest angle; of several the
-    /// one with the smallest index.
+    /// Finds the allowed vertex strictly to the left of a ► b that sees it under the largest angle;
+    /// of several vertices the one with the smallest index.
     #[inline]
     pub(crate) fn best_corner(
         &self,
         [a, b]: [u32; 2],
         allowed: impl Fn(u32) -> bool,
-    ) -> Option<Corner> {
+    ) -> Option<GateCorner> {
         let ends = [a, b].map(|vertex| self.at[vertex as usize]);
         let [[ac, ar], [bc, br]] = ends;
-        let near = self.near_corners.of([bc - ac, br - ar]);
+        let near = self.near_corners.near([bc - ac, br - ar]);
         let origin = place(ac, ar);
         let vertex_of = |node: &NearNode| {
             let place = origin.wrapping_add_signed(node.offset());
@@ -164,24 +171,30 @@ impl<'w> Nodes<'w> {
             is_tied = vertex_of(&pair[1]).is_some_and(&allowed);
         }
         let [dot, cross] = self.behind([a, b, vertex]);
-        Some(Corner { vertex, is_tied, dot, cross: -cross })
+        Some(GateCorner { vertex, is_tied, dot, cross: -cross })
     }
 
-    /// The same without the lists of near nodes.
+    /// Finds the corner without the lists of near nodes.
     ///
-    /// Rows are searched outwards from the gate until they leave a box around the circle through the best vertex so far. Floating
-    /// point only bounds the search, by more than its error; decisions are exact.
+    /// Rows are searched outwards from the gate until they leave a box around the circle through
+    /// the best vertex so far. Floating point only limits the search, by more than its error;
+    /// decisions are exact.
     #[inline(never)]
-    fn far_corner(&self, [a, b]: [[i32; 2]; 2], allowed: impl Fn(u32) -> bool) -> Option<Corner> {
+    fn far_corner(
+        &self,
+        [a, b]: [[i32; 2]; 2],
+        allowed: impl Fn(u32) -> bool,
+    ) -> Option<GateCorner> {
         let gate = Gate::new(a, b);
-        // Nearly every corner sees its gate under more than 27° or 4°: try small circles before the half-plane.
+        // Nearly every corner sees its gate under more than 27° or 4°: search small circles before
+        // the half-plane.
         let found = [Some(2), Some(16), None].into_iter().find_map(|limit_cot| {
             let mut best = Best::within(limit_cot, &gate);
             let steps = self.search(&gate, &allowed, &mut best);
             self.work.add(steps);
             (best.vertex != NO_VERTEX).then_some(best)
         });
-        found.map(|Best { vertex, is_tied, dot, cross, .. }| Corner {
+        found.map(|Best { vertex, is_tied, dot, cross, .. }| GateCorner {
             vertex,
             is_tied,
             dot: i64::from(dot),
@@ -189,14 +202,15 @@ impl<'w> Nodes<'w> {
         })
     }
 
-    /// Looks for better vertices than `best`; gives how many steps that took: rows and vertices.
+    /// Searches for vertices better than `best`; returns the number of steps taken: rows and
+    /// vertices.
     fn search(&self, gate: &Gate, allowed: &impl Fn(u32) -> bool, best: &mut Best) -> usize {
         let mut steps = 0;
         let middle = i32::midpoint(gate.a[1], gate.b[1]);
-        // First to the side where the vertex is, then to the other.
+        // First search the side where the vertex is, then the other side.
         let ahead = if gate.dx > 0 { -1 } else { 1 };
         for (mut row, step) in [(middle, ahead), (middle - ahead, -ahead)] {
-            // The box reaches to the gate's middle or beyond.
+            // The box extends to the middle of the gate or beyond.
             while row >= best.rows[0] && row <= best.rows[1] {
                 steps += 1 + self.search_row(row, gate, allowed, best);
                 row += step;
@@ -245,7 +259,7 @@ impl<'w> Nodes<'w> {
     }
 }
 
-/// Whether a gate lies on the border of the grid and has no node on its left.
+/// Whether a gate is on the border of the grid and has no nodes on its left.
 fn is_on_rim([[ac, ar], [bc, br]]: [[i32; 2]; 2]) -> bool {
     (ar == br && (ar == 0 && ac < bc || ar == LAST && ac > bc))
         || (ac == bc && (ac == 0 && ar > br || ac == LAST && ar < br))
@@ -256,10 +270,11 @@ struct Gate {
     /// Column and row.
     a: [i32; 2],
     b: [i32; 2],
-    /// The way from a to b; y grows against the row.
+    /// The vector from a to b; y grows upwards, against the row.
     dx: i32,
     dy: i32,
-    /// Columns that the edge's line goes east from one row to the next one north, times 2^32, rounded.
+    /// The number of columns by which the edge's line moves east per row to the north, times 2^32,
+    /// rounded.
     slope: i64,
 }
 
@@ -270,10 +285,12 @@ impl Gate {
         Self { a, b, dx, dy, slope }
     }
 
-    /// First and last column of a row that can hold nodes strictly to the left of the edge; none, or one more, may do so.
+    /// The first and the last column of a row that can contain nodes strictly to the left of the
+    /// edge; the row may contain none, or the range may have one column too many.
     ///
-    /// The line meets the row at a whole number of columns, where nodes are on the line, or at least 1/256 from it: the slope's
-    /// error, at most 2^−24 over all rows, does not matter.
+    /// The line meets the row at a whole number of columns, where nodes are on the line, or at a
+    /// distance of at least 1/256 from it: the slope's error, at most 2^−24 over all rows, does not
+    /// matter.
     #[inline]
     fn columns_on_left(&self, row: i32) -> [i32; 2] {
         let north = self.a[1] - row;
@@ -287,19 +304,21 @@ impl Gate {
     }
 }
 
-/// The best vertex so far and how it sees the gate: cot of the angle = dot / cross. Or the limit of a search, which is [`NO_VERTEX`].
+/// The best vertex so far and how it sees the gate: the cotangent of the angle is dot / cross. Or
+/// the limit of a search, with the vertex [`NO_VERTEX`].
 struct Best {
     vertex: u32,
     is_tied: bool,
     dot: i32,
     cross: i32,
-    /// First and last column and row of a box around the circle through the gate and the vertex, within the grid.
+    /// The first and the last column, and the first and the last row, of a box around the circle
+    /// through the gate and the vertex, within the grid.
     columns: [i32; 2],
     rows: [i32; 2],
 }
 
 impl Best {
-    /// No vertex, in a search for those that see the gate under an angle with at most this cotangent.
+    /// Begins a search for vertices that see the gate under an angle with at most this cotangent.
     fn within(limit_cot: Option<i32>, gate: &Gate) -> Self {
         let whole = [0, LAST];
         // A vertex sees the gate under a cotangent of at most 2 · 256².
@@ -312,7 +331,7 @@ impl Best {
         best
     }
 
-    /// Takes a vertex that is better, or as good as the best (`is_equal`).
+    /// Takes a vertex that is better than the best one, or equally good (`is_equal`).
     #[inline]
     fn take(&mut self, vertex: u32, [dot, cross]: [i32; 2], is_equal: bool, gate: &Gate) {
         if is_equal && self.vertex != NO_VERTEX {
@@ -326,18 +345,19 @@ impl Best {
         }
     }
 
-    /// Puts the box around the circle through a, b and the vertex: its centre is cot / 2 gate lengths to the left of the gate's middle.
+    /// Fits the box to the circle through a, b and the vertex, whose centre is cot / 2 gate lengths
+    /// to the left of the gate's middle.
     #[inline]
     fn shrink_box(&mut self, &Gate { a, b, dx, dy, .. }: &Gate) {
         let half_cot = f64::from(self.dot) / f64::from(2 * self.cross);
         let (dx, dy) = (f64::from(dx), f64::from(dy));
-        // Left of (dx, dy) is (−dy, dx); rows grow downwards.
+        // The vector to the left of (dx, dy) is (−dy, dx); rows grow downwards.
         let center = [
             f64::from(a[0] + b[0]) / 2.0 - half_cot * dy,
             f64::from(a[1] + b[1]) / 2.0 - half_cot * dx,
         ];
         let radius = ((dx * dx + dy * dy) * (0.25 + half_cot * half_cot)).sqrt() * (1.0 + 1e-9);
-        // Truncation is towards 0: less than a cell.
+        // The cast rounds towards 0, by less than a cell.
         let within =
             |at: f64| [((at - radius) as i32).max(0), ((at + radius) as i32 + 1).min(LAST)];
         [self.columns, self.rows] = center.map(within);

@@ -1,21 +1,22 @@
-//! The bounded search for a corner finds what a search through all vertices finds.
+//! The bounded search for a corner finds the same vertex as a search through all vertices.
 
 use proptest::prelude::*;
 
 use super::*;
 
 proptest! {
-    /// The bounded search finds what a search through all allowed vertices finds, at the first and at the last rows and columns.
+    /// The bounded search finds the same vertex as a search through all allowed vertices, also in
+    /// the first and the last rows and columns.
     #[test]
     fn agrees_with_trying_all(
         set in prop::collection::btree_set((0..30_u16, 0..30_u16), 3..60), a in any::<prop::sample::Index>(),
         b in any::<prop::sample::Index>(), first in prop::sample::select(vec![0, TILE_NODES as u16 - 30]), divisor in 1..5_usize,
     ) {
         let at: Vec<[u16; 2]> = set.iter().map(|&(row, column)| [first + column, first + row]).collect();
-        // All are allowed where the divisor is 1.
+        // All vertices are allowed if the divisor is 1.
         let allowed = |c: usize| c.is_multiple_of(divisor);
-        let work = Work::new(u64::MAX);
-        let nodes = Nodes::new(at.iter().copied(), &work);
+        let work = StepBudget::new(u64::MAX);
+        let nodes = GridVertices::new(at.iter().copied(), &work);
         let (a, b) = (a.index(at.len()), b.index(at.len()));
         prop_assume!(a != b);
         let xy = |k: usize| [f64::from(at[k][0]), -f64::from(at[k][1])];

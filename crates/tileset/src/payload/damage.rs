@@ -2,44 +2,47 @@
 
 use corniche_geom::TileId;
 
-/// What is wrong with bytes that should be a payload or a section of one.
+/// What is wrong with the bytes of a payload or section.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum Damage {
-    /// The bytes end before what they announce.
+    /// The bytes end too early.
     #[error("the bytes end too early")]
     TooShort,
-    /// They do not begin as a payload does.
+    /// The bytes do not begin as a payload does.
     #[error("the bytes are not a Corniche tile")]
     Magic,
-    /// They were written by another version.
+    /// The payload has another version.
     #[error("payload version {found} is not supported; this program reads version {supported}")]
     Version {
-        /// The version they say.
+        /// The version of the payload.
         found: u16,
-        /// The version this program reads.
+        /// The version that this program reads.
         supported: u16,
     },
-    /// The checksum does not fit.
-    #[error("the checksum does not fit: the bytes were damaged")]
+    /// The checksum does not match.
+    #[error("the checksum does not match: the bytes are damaged")]
     Checksum,
     /// The payload belongs to another tile.
-    #[error("the bytes are those of tile {found}")]
+    #[error("the bytes belong to tile {found}")]
     OtherTile {
-        /// The tile they say, as `z/x/y`; may be one that cannot exist.
+        /// The id of the tile in the payload, as `z/x/y`; it may be invalid.
         found: String,
     },
-    /// A length is beyond what a reader accepts.
+    /// A length is larger than readers accept.
     #[error("{what}: {length} is more than the limit of {limit}")]
     TooLarge {
-        /// What is too large.
+        /// The value that is too large.
         what: &'static str,
-        /// How large.
+        /// The length.
         length: u64,
         /// The limit.
         limit: u64,
     },
-    /// Decoding takes more steps than are allowed for a tile of this size; no writer makes such a tile.
-    #[error("it takes more than the limit of {limit} steps to decode: no writer makes such a tile")]
+    /// Decoding takes more steps than a tile of this size may take; no writer creates a tile like
+    /// this.
+    #[error(
+        "decoding takes more than the limit of {limit} steps; no writer creates a tile like this"
+    )]
     TooMuchWork {
         /// The limit, in the steps of [`limits`](crate::limits).
         limit: u64,
@@ -47,34 +50,41 @@ pub enum Damage {
     /// Decompression failed.
     #[error("cannot decompress: {reason}")]
     Decompress {
-        /// What the decompressor says.
+        /// The error of the decompressor.
         reason: String,
     },
-    /// A value that no writer writes: what is not valid.
-    #[error("not valid: {0}")]
+    /// A value is invalid: no writer writes it.
+    #[error("invalid: {0}")]
     Invalid(&'static str),
     /// The triangles are not a TIN.
     #[error("not a TIN: {0}")]
     Tin(#[from] corniche_tin::TinError),
-    /// The tile lies beyond the finest level of the package.
-    #[error("the package has no level {level}; its finest is {finest}")]
+    /// The tile is beyond the finest level of the package.
+    #[error("the package has no level {level}; its finest level is {finest}")]
     Level {
         /// The tile's level.
         level: u8,
-        /// The finest level.
+        /// The package's finest level.
         finest: u8,
     },
 }
 
+impl Damage {
+    /// Returns the error for damage in the header of a payload.
+    pub(crate) fn in_header(self, tile: TileId) -> DecodeError {
+        DecodeError { tile, part: "header", damage: self }
+    }
+}
+
 /// Why bytes could not be decoded into a tile.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("tile {tile}, {part}: {damage}; the package is damaged, fetch or build it again")]
+#[error("tile {tile}, {part}: {damage}; the package is damaged, download or build it again")]
 pub struct DecodeError {
-    /// Which tile.
+    /// The tile.
     pub tile: TileId,
-    /// Which part of it: "header" or the name of a section.
+    /// The part of the tile: "header", or the name of a section.
     pub part: &'static str,
-    /// What is wrong.
+    /// The damage.
     pub damage: Damage,
 }
 
@@ -82,14 +92,14 @@ pub struct DecodeError {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EncodeError {
-    /// The payload holds what the encoding cannot express.
+    /// The payload contains something that the encoding cannot represent.
     #[error("tile {tile}, {section}: cannot encode {what}")]
     Unencodable {
-        /// Which tile.
+        /// The tile.
         tile: TileId,
-        /// Which section.
+        /// The section.
         section: &'static str,
-        /// What cannot be encoded.
+        /// The content that cannot be encoded.
         what: &'static str,
     },
     /// A section is larger than readers accept.
@@ -97,23 +107,23 @@ pub enum EncodeError {
         "tile {tile}, {section}: {bytes} bytes are more than readers accept ({limit}); show fewer roads on this level or use a larger --max-error"
     )]
     TooLarge {
-        /// Which tile.
+        /// The tile.
         tile: TileId,
-        /// Which section.
+        /// The section.
         section: &'static str,
-        /// Its size before compression.
+        /// The size of the section before compression.
         bytes: usize,
-        /// The largest size.
+        /// The largest accepted size.
         limit: usize,
     },
     /// The compressor failed.
     #[error("tile {tile}, {section}: cannot compress: {reason}")]
     Compress {
-        /// Which tile.
+        /// The tile.
         tile: TileId,
-        /// Which section.
+        /// The section.
         section: &'static str,
-        /// What the compressor says.
+        /// The error of the compressor.
         reason: String,
     },
 }

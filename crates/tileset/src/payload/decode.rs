@@ -1,27 +1,30 @@
-//! A payload is decoded: the sections that the caller wants.
+//! Decodes the sections of a payload that the caller wants.
 
-use corniche_areas::ClassedLayer;
 use corniche_geom::{GridFrame, TileId};
 use corniche_tin::Surface;
 
-use crate::payload::context::Context;
+use crate::payload::context::CodingContext;
 use crate::payload::damage::{Damage, DecodeError};
+use crate::payload::envelope::StoredSection;
 use crate::payload::relief::Relief;
-use crate::payload::section_kind::{GEO, Kind, SV, Sections, TwoKinds};
-use crate::payload::tile_payload::{GeoRoad, Terrain, TilePayload};
+use crate::payload::section_kind::{GEO, SV, SectionKind, Sections, TwoKinds};
+use crate::payload::tile_payload::{GeoRoad, TilePayload, TileTerrain};
 use crate::payload::{
     areas, attributes, envelope, lines, road_tags, roads_geo, roads_sv, spans, terrain,
 };
 
-/// Reads the wanted sections of a payload; sections that are absent or not wanted are empty or `None`.
+/// Decodes the wanted sections of a payload; sections that are absent or not wanted are empty or
+/// `None`.
 ///
-/// `frame` and `quantum_m` are those of the package's manifest. Memory and work are bounded by the
-/// [`limits`](crate::limits), whatever the bytes say. Sections that are not wanted are not looked into, so damage in
-/// them goes unnoticed; [`Sections::ALL`] also checks those that this version cannot decode. Without SV roads, `bytes` may be what
+/// `frame` and `quantum_m` are those of the package's manifest. Memory and work stay within the
+/// [`limits`](crate::limits), whatever the bytes say. Sections that are not wanted are not
+/// inspected, so damage in them is not detected; [`Sections::ALL`] also checks sections that this
+/// version cannot decode. If SV roads are not wanted, `bytes` may be the shortened payload that
 /// [`Package::tile_for`](crate::Package::tile_for) reads.
 ///
 /// # Errors
-/// When the bytes are not a payload of tile `id`, or a wanted section is damaged; the error names both.
+/// When the bytes are not a payload of tile `id`, or a wanted section is damaged; the error names
+/// both.
 pub fn decode(
     bytes: &[u8],
     id: TileId,
@@ -29,72 +32,59 @@ pub fn decode(
     quantum_m: f64,
     wanted: Sections,
 ) -> Result<TilePayload, DecodeError> {
-    let (context, sections) = Context::open(bytes, id, frame, quantum_m)?;
-    let failed = |part| move |damage| DecodeError { tile: id, part, damage };
+    let (context, sections) = CodingContext::open(bytes, id, frame, quantum_m)?;
     if wanted == Sections::ALL {
-        envelope::check_unknown(&sections).map_err(failed("section of an unknown kind"))?;
+        let part = "section of an unknown kind";
+        let failed = |damage| DecodeError { tile: id, part, damage };
+        envelope::check_unknown(&sections).map_err(failed)?;
     }
-    let inside = |kind: Kind| failed(kind.name());
-    let read = |kind: Kind, section: Sections| {
-        if !wanted.contains(section) {
-            return Ok(None);
-        }
-        envelope::section(&sections, kind).map_err(inside(kind))
-    };
-    let read_roads = |roads: TwoKinds, section: Sections| {
-        if !wanted.contains(section) {
-            return Ok(None);
-        }
-        let found = envelope::section_of_two(&sections, roads).map_err(inside(roads.planes))?;
-        Ok(found.map(|(bytes, is_coded)| (bytes, is_coded.then_some(frame))))
-    };
-    let roads_geo = read_roads(GEO, Sections::ROADS_GEO)?;
-    let spans = read(Kind::Spans, Sections::SPANS)?;
+    let reader = SectionReader { sections: &sections, wanted, tile: id };
+    let roads_geo = reader.roads(GEO, Sections::ROADS_GEO)?;
+    let spans = reader.read(SectionKind::Spans, Sections::SPANS, Ok)?;
     let needs_terrain =
         wanted.contains(Sections::TERRAIN) || roads_geo.is_some() || spans.is_some();
     let ground = if needs_terrain {
-        let bytes = envelope::section(&sections, Kind::Terrain).map_err(inside(Kind::Terrain))?;
-        bytes
-            .map(|bytes| terrain::decode(&bytes, context.scale))
-            .transpose()
-            .map_err(inside(Kind::Terrain))?
+        // The terrain is decoded even if it is only needed for another section.
+        let decode = |bytes: Vec<u8>| terrain::decode(&bytes, context.scale);
+        reader.read(SectionKind::Terrain, Sections::NONE, decode)?
     } else {
         None
     };
     if let Some(bytes) = spans {
-        let ground = ground.as_ref().ok_or(spans::WITHOUT_GROUND).map_err(inside(Kind::Spans))?;
+        let damaged = SectionKind::Spans.damaged(id);
+        let ground = ground.as_ref().ok_or(spans::WITHOUT_GROUND).map_err(damaged)?;
         let triangles = ground.tin.triangles().len();
-        spans::decode(&bytes, context.corner, triangles).map_err(inside(Kind::Spans))?;
+        spans::decode(&bytes, context.corner, triangles).map_err(damaged)?;
     }
-    let relief = read(Kind::Relief, Sections::RELIEF)?
-        .map(|bytes| Relief::decode(&bytes))
-        .transpose()
-        .map_err(inside(Kind::Relief))?;
+    let relief =
+        reader.read(SectionKind::Relief, Sections::RELIEF, |bytes| Relief::decode(&bytes))?;
     let roads_geo = roads_geo
-        .map(|(bytes, coded_in)| decode_geo(&bytes, coded_in, ground.as_ref(), &context))
+        .map(|(bytes, is_coded)| {
+            decode_geo(&bytes, is_coded.then_some(frame), ground.as_ref(), &context)
+        })
         .transpose()
-        .map_err(inside(Kind::RoadsGeo))?;
-    let roads_sv = read_roads(SV, Sections::ROADS_SV)?
-        .map(|(bytes, coded_in)| roads_sv::decode(&bytes, coded_in, context.corner, quantum_m))
+        .map_err(SectionKind::RoadsGeo.damaged(id))?;
+    let roads_sv = reader
+        .roads(SV, Sections::ROADS_SV)?
+        .map(|(bytes, is_coded)| {
+            roads_sv::decode(&bytes, is_coded.then_some(frame), context.corner, quantum_m)
+        })
         .transpose()
-        .map_err(inside(Kind::RoadsSv))?;
-    let mut records = read(Kind::Attributes, Sections::ATTRIBUTES)?
-        .map(|bytes| attributes::decode(&bytes))
-        .transpose()
-        .map_err(inside(Kind::Attributes))?
-        .unwrap_or_default();
-    if let Some(bytes) = read(Kind::RoadTags, Sections::ATTRIBUTES)? {
-        road_tags::decode(&bytes, &mut records).map_err(inside(Kind::RoadTags))?;
-    }
-    // The picture itself is decoded for those who ask for it.
-    let _checked = read(Kind::Photo, Sections::PHOTO)?;
+        .map_err(SectionKind::RoadsSv.damaged(id))?;
+    let records = reader
+        .read(SectionKind::Attributes, Sections::ATTRIBUTES, |bytes| attributes::decode(&bytes))?;
+    let mut records = records.unwrap_or_default();
+    reader.read(SectionKind::RoadTags, Sections::ATTRIBUTES, |bytes| {
+        road_tags::decode(&bytes, &mut records)
+    })?;
+    // The image itself is only decoded on request.
+    reader.read(SectionKind::Photo, Sections::PHOTO, Ok)?;
     if wanted.contains(Sections::AREAS) {
-        areas::decode_in(&sections, frame.tile_lattice_bounds(id)).map_err(inside(Kind::Areas))?;
+        let bounds = frame.tile_lattice_bounds(id);
+        areas::decode_in(&sections, bounds).map_err(SectionKind::Areas.damaged(id))?;
     }
-    for layer in ClassedLayer::ALL {
-        if wanted.contains(Sections::lines(layer)) {
-            lines::decode_in(&sections, layer).map_err(inside(Kind::of_lines(layer)))?;
-        }
+    if wanted.contains(Sections::BOUNDARIES) {
+        lines::decode_in(&sections).map_err(SectionKind::Boundaries.damaged(id))?;
     }
     Ok(TilePayload {
         id,
@@ -106,15 +96,52 @@ pub fn decode(
     })
 }
 
-/// Decodes the GEO roads, which need the ground that they lie on.
+/// Reads the wanted sections, and names the damaged section in errors.
+struct SectionReader<'a> {
+    sections: &'a [StoredSection<'a>],
+    wanted: Sections,
+    tile: TileId,
+}
+
+impl SectionReader<'_> {
+    /// Returns a section decoded by `decode`; `None` if it is absent or not wanted.
+    fn read<T>(
+        &self,
+        kind: SectionKind,
+        section: Sections,
+        decode: impl FnOnce(Vec<u8>) -> Result<T, Damage>,
+    ) -> Result<Option<T>, DecodeError> {
+        if !self.wanted.contains(section) {
+            return Ok(None);
+        }
+        let found = envelope::section(self.sections, kind);
+        let read = found.and_then(|bytes| bytes.map(decode).transpose());
+        read.map_err(kind.damaged(self.tile))
+    }
+
+    /// Returns the bytes of the roads of one method, and whether they are range-coded bits.
+    fn roads(
+        &self,
+        roads: TwoKinds,
+        section: Sections,
+    ) -> Result<Option<(Vec<u8>, bool)>, DecodeError> {
+        if !self.wanted.contains(section) {
+            return Ok(None);
+        }
+        let found = envelope::section_of_two(self.sections, roads);
+        found.map_err(roads.planes.damaged(self.tile))
+    }
+}
+
+/// Decodes the GEO roads, which need the ground beneath them.
 fn decode_geo(
     bytes: &[u8],
     coded_in: Option<&GridFrame>,
-    ground: Option<&Terrain>,
-    context: &Context,
+    ground: Option<&TileTerrain>,
+    context: &CodingContext,
 ) -> Result<Vec<GeoRoad>, Damage> {
     let Some(ground) = ground else {
-        return Err(Damage::Invalid("roads without the ground they lie on"));
+        return Err(Damage::Invalid("roads in a tile without ground"));
     };
     let surface = Surface::new(&ground.tin, context.placement);
     roads_geo::decode(bytes, coded_in, context.corner, &surface)

@@ -1,4 +1,4 @@
-//! Header, section table and sections of a payload, without the contents of sections.
+//! Header, section table and sections of a payload, without the content of sections.
 
 use std::io::Read;
 
@@ -8,50 +8,50 @@ use ruzstd::decoding::{BlockDecodingStrategy, FrameDecoder};
 use crate::limits::MAX_SECTION_BYTES;
 use crate::payload::damage::{Damage, DecodeError};
 use crate::payload::number_codes::Cursor;
-use crate::payload::section_kind::{Kind, TwoKinds};
+use crate::payload::section_kind::{SectionKind, TwoKinds};
 
-/// First bytes of every payload: "Corniche Tile".
+/// The first bytes of every payload: "Corniche Tile".
 pub(crate) const MAGIC: [u8; 4] = *b"CRNT";
 /// Version of the payload's layout.
 pub(crate) const VERSION: u16 = 1;
-/// Stored bytes follow without compression.
+/// The section is stored without compression.
 pub(crate) const STORED: u8 = 0;
-/// Stored bytes are one zstd frame.
+/// The section is stored as one zstd frame.
 pub(crate) const ZSTD: u8 = 1;
 
-/// A section as it lies in the payload.
+/// A section as it is stored in the payload.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StoredSection<'a> {
     kind: u16,
     pub(crate) compression: u8,
     pub(crate) raw_length: u32,
     pub(crate) checksum: u32,
-    /// How many bytes it has in a whole payload.
+    /// The stored length of the section in a complete payload.
     stored_length: usize,
-    /// The bytes themselves; none where the payload was read without its last section.
+    /// The stored bytes; empty if the payload was read without its last section.
     pub(crate) bytes: &'a [u8],
 }
 
 impl StoredSection<'_> {
-    /// Its kind, if this version knows it.
-    pub(crate) fn known_kind(&self) -> Option<Kind> {
-        Kind::ALL.iter().copied().find(|&kind| kind as u16 == self.kind)
+    /// The kind of the section, if this version knows it.
+    pub(crate) fn known_kind(&self) -> Option<SectionKind> {
+        SectionKind::ALL.iter().copied().find(|&kind| kind as u16 == self.kind)
     }
 
-    /// Whether its bytes are there.
+    /// Whether the bytes of the section were read.
     fn is_read(&self) -> bool {
         self.bytes.len() == self.stored_length
     }
 }
 
-/// Takes a whole payload apart. Sections are not looked into yet; they lie end to end up to the payload's last byte, so
-/// that each byte is covered by one checksum.
+/// Splits a complete payload into sections. Their content is not inspected yet; they are contiguous
+/// up to the payload's last byte, so that each byte is covered by one checksum.
 pub(crate) fn open(bytes: &[u8], id: TileId) -> Result<Vec<StoredSection<'_>>, Damage> {
     let sections = open_read(bytes, id)?;
     if sections.iter().all(StoredSection::is_read) { Ok(sections) } else { Err(Damage::TooShort) }
 }
 
-/// The same of a payload that may have been read without SV roads at its end.
+/// Splits a payload that may have been read without the SV roads at its end.
 pub(crate) fn open_read(bytes: &[u8], id: TileId) -> Result<Vec<StoredSection<'_>>, Damage> {
     let mut cursor = Cursor::new(bytes);
     if cursor.array::<4>()? != MAGIC {
@@ -84,7 +84,7 @@ pub(crate) fn open_read(bytes: &[u8], id: TileId) -> Result<Vec<StoredSection<'_
             bytes: stored.unwrap_or_default(),
         };
         let is_last = sections.len() + 1 == usize::from(count);
-        let may_be_missing = is_last && section.known_kind().is_some_and(Kind::is_sv);
+        let may_be_missing = is_last && section.known_kind().is_some_and(SectionKind::is_sv);
         if stored.is_none() && !(may_be_missing && offset == bytes.len()) {
             return Err(Damage::TooShort);
         }
@@ -98,7 +98,7 @@ pub(crate) fn open_read(bytes: &[u8], id: TileId) -> Result<Vec<StoredSection<'_
     let mut end = bytes.len() - cursor.left();
     for [from, to] in ends {
         if from != end {
-            return Err(Damage::Invalid("sections do not lie end to end"));
+            return Err(Damage::Invalid("sections are not contiguous"));
         }
         end = to;
     }
@@ -110,21 +110,20 @@ pub(crate) fn open_read(bytes: &[u8], id: TileId) -> Result<Vec<StoredSection<'_
             return Err(Damage::Invalid("two sections of one kind"));
         }
     }
-    // This check comes after the checksum, so its error means a payload in the wrong place, not a flipped bit.
+    // This check comes after the checksum, so its error means a payload in the position of another
+    // tile, not a flipped bit.
     if (z, x, y) != (id.z(), id.x(), id.y()) {
         return Err(Damage::OtherTile { found: format!("{z}/{x}/{y}") });
     }
     Ok(sections)
 }
 
-/// The bytes of the section of one kind, decompressed and checked; `None` where it is absent.
+/// Returns the bytes of the section of one kind, decompressed and checked; `None` if it is absent.
 pub(crate) fn section(
     sections: &[StoredSection<'_>],
-    kind: Kind,
+    kind: SectionKind,
 ) -> Result<Option<Vec<u8>>, Damage> {
-    let Some(section) = sections.iter().find(|section| section.kind == kind as u16) else {
-        return Ok(None);
-    };
+    let Some(section) = find(sections, kind) else { return Ok(None) };
     if !section.is_read() {
         return Err(Damage::TooShort);
     }
@@ -142,26 +141,26 @@ pub(crate) fn section(
     match section.compression {
         STORED if section.bytes.len() == raw_length => Ok(Some(section.bytes.to_vec())),
         STORED => Err(Damage::Invalid("the length of an uncompressed section")),
-        // Writers compress where that makes a section smaller.
+        // Writers only compress a section if this makes it smaller.
         ZSTD if section.bytes.len() < raw_length => decompress(section.bytes, raw_length).map(Some),
         ZSTD => Err(Damage::Invalid("the length of a compressed section")),
         _ => Err(Damage::Invalid("an unknown compression")),
     }
 }
 
-/// Reads something of the bytes of a payload by itself; damage is told with the tile and the part.
+/// Reads a section separately from the bytes of a payload; errors name the tile and the section.
 pub(crate) fn read_part<T>(
     bytes: &[u8],
     tile: TileId,
-    part: &'static str,
+    kind: SectionKind,
     read: impl FnOnce(&[StoredSection<'_>]) -> Result<T, Damage>,
 ) -> Result<T, DecodeError> {
-    let failed = |part| move |damage| DecodeError { tile, part, damage };
-    let sections = open_read(bytes, tile).map_err(failed("header"))?;
-    read(&sections).map_err(failed(part))
+    let sections = open_read(bytes, tile).map_err(|damage| damage.in_header(tile))?;
+    read(&sections).map_err(kind.damaged(tile))
 }
 
-/// The same of roads or areas, and whether their points are range-coded bits: a section of one of two kinds.
+/// Returns the bytes of roads or areas, which are in one of two kinds of section, and whether their
+/// points are range-coded bits.
 pub(crate) fn section_of_two(
     sections: &[StoredSection<'_>],
     kinds: TwoKinds,
@@ -173,43 +172,45 @@ pub(crate) fn section_of_two(
     }
 }
 
-/// The section of one kind as it is stored; `None` where it is absent.
-#[cfg(feature = "write")]
-pub(crate) fn find<'a>(sections: &[StoredSection<'a>], kind: Kind) -> Option<StoredSection<'a>> {
+/// Returns the section of one kind as it is stored; `None` if it is absent.
+pub(crate) fn find<'a>(
+    sections: &[StoredSection<'a>],
+    kind: SectionKind,
+) -> Option<StoredSection<'a>> {
     sections.iter().find(|section| section.kind == kind as u16).copied()
 }
 
-/// How large the section of one kind is; 0 where it is absent.
-pub(crate) fn size(sections: &[StoredSection<'_>], kind: Kind) -> SectionSize {
-    let of_kind = sections.iter().find(|section| section.kind == kind as u16);
-    of_kind.map_or_else(SectionSize::default, |section| SectionSize {
+/// Returns the size of the section of one kind; 0 if it is absent.
+pub(crate) fn size(sections: &[StoredSection<'_>], kind: SectionKind) -> SectionSize {
+    let size = |section: StoredSection<'_>| SectionSize {
         raw: u64::from(section.raw_length),
         stored: section.stored_length as u64,
-    })
+    };
+    find(sections, kind).map(size).unwrap_or_default()
 }
 
-/// How many bytes SV roads take at the end of the payload; 0 where another section is the last.
+/// Returns the number of bytes of SV roads at the end of the payload; 0 if another section is the
+/// last.
 pub(crate) fn sv_tail_bytes(sections: &[StoredSection<'_>]) -> u64 {
-    let last = sections.last().filter(|last| last.known_kind().is_some_and(Kind::is_sv));
+    let last = sections.last().filter(|last| last.known_kind().is_some_and(SectionKind::is_sv));
     last.map_or(0, |last| last.stored_length as u64)
 }
 
-/// Checks sections of kinds that this version does not know, as far as it can.
+/// Checks sections of kinds that this version does not know, as far as possible.
 pub(crate) fn check_unknown(sections: &[StoredSection<'_>]) -> Result<(), Damage> {
-    let unknown =
-        |section: &&StoredSection<'_>| Kind::ALL.iter().all(|&kind| section.kind != kind as u16);
+    let unknown = |section: &&StoredSection<'_>| section.known_kind().is_none();
     let intact = |section: &StoredSection<'_>| crc32fast::hash(section.bytes) == section.checksum;
     if sections.iter().filter(unknown).all(intact) { Ok(()) } else { Err(Damage::Checksum) }
 }
 
-/// Decompresses one zstd frame, no more and no other, that must come to exactly `length` bytes.
+/// Decompresses exactly one zstd frame, whose content must have exactly `length` bytes.
 fn decompress(mut bytes: &[u8], length: usize) -> Result<Vec<u8>, Damage> {
     let failed = |error: &dyn std::fmt::Display| Damage::Decompress { reason: error.to_string() };
     let mut decoder = FrameDecoder::new();
     // A window never needs to be larger than the content; zstd's own smallest window is 1 KiB.
     decoder.set_max_window_size(length.max(1024) as u64);
     let mut out = vec![0; length];
-    // Not `decode_all`: it takes any number of frames, each of which may be empty.
+    // `decode_all` is not used here: it accepts any number of frames, each of which may be empty.
     decoder.init(&mut bytes).map_err(|error| failed(&error))?;
     let mut written = 0;
     loop {
@@ -218,7 +219,7 @@ fn decompress(mut bytes: &[u8], length: usize) -> Result<Vec<u8>, Damage> {
             .map_err(|error| failed(&error))?;
         written += decoder.read(&mut out[written..]).map_err(|error| failed(&error))?;
         if decoder.can_collect() > 0 {
-            return Err(Damage::Invalid("a section is longer than it says"));
+            return Err(Damage::Invalid("a section is longer than its table entry says"));
         }
         if decoder.is_finished() {
             break;
@@ -228,12 +229,12 @@ fn decompress(mut bytes: &[u8], length: usize) -> Result<Vec<u8>, Damage> {
         return Err(Damage::Invalid("bytes after the compressed section"));
     }
     if written != length {
-        return Err(Damage::Invalid("a section is shorter than it says"));
+        return Err(Damage::Invalid("a section is shorter than its table entry says"));
     }
     Ok(out)
 }
 
-/// How large a section is.
+/// The size of a section.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct SectionSize {
     /// Bytes before compression.
@@ -243,7 +244,7 @@ pub struct SectionSize {
 }
 
 impl SectionSize {
-    /// This, or `other` if this section is absent.
+    /// Returns this size, or `other` if this section is absent.
     pub(crate) fn or(self, other: Self) -> Self {
         if self.stored > 0 { self } else { other }
     }

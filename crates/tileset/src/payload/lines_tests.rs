@@ -1,12 +1,9 @@
-//! Lines with classes come back from their section, and damage is told.
+//! Lines with classes round-trip in their section, and damage is reported.
 
-use corniche_areas::BoundaryClass;
 use proptest::prelude::*;
 
 use super::*;
 use crate::payload::builder::Section;
-
-const LAYER: ClassedLayer = ClassedLayer::Boundaries;
 
 fn tile() -> TileId {
     TileId::new(1, 1, 0).unwrap()
@@ -14,7 +11,7 @@ fn tile() -> TileId {
 
 fn boundary(way_id: i64, class: BoundaryClass, points: &[(i64, i64)]) -> LineRecord {
     let points = points.iter().map(|&(u, v)| LatticePoint::new(u, v)).collect();
-    LineRecord { way_id, class: LAYER.class(class.number()).unwrap(), points }
+    LineRecord { way_id, class, points }
 }
 
 #[test]
@@ -24,22 +21,22 @@ fn what_is_encoded_comes_back() {
         boundary(i64::MAX, BoundaryClass::Admin8, &[(64, 64), (0, 64)]),
         boundary(i64::MIN, BoundaryClass::Protected, &[(64, 64), (0, 64), (64, 64)]),
     ];
-    let section = encode_lines(tile(), LAYER, 64, &boundaries).unwrap().unwrap();
-    assert_eq!(section.lines(LAYER, tile()).unwrap(), boundaries);
-    assert_eq!(encode_lines(tile(), LAYER, 64, &[]).unwrap(), None);
+    let section = encode_boundaries(tile(), 64, &boundaries).unwrap().unwrap();
+    assert_eq!(section.boundaries(tile()).unwrap(), boundaries);
+    assert_eq!(encode_boundaries(tile(), 64, &[]).unwrap(), None);
 }
 
 #[test]
 fn what_cannot_be_read_is_not_written() {
     let refused = |step, points: &[(i64, i64)]| {
         let boundary = boundary(1, BoundaryClass::Admin2, points);
-        encode_lines(tile(), LAYER, step, &[boundary]).unwrap_err().to_string()
+        encode_boundaries(tile(), step, &[boundary]).unwrap_err().to_string()
     };
-    assert!(refused(0, &[(0, 0), (1, 1)]).contains("without spacing"));
-    assert!(refused(1, &[(0, 0)]).contains("less than two"));
-    assert!(refused(1, &[(0, 0), (0, 0)]).contains("twice"));
-    assert!(refused(4, &[(0, 0), (4, 6)]).contains("beside the lattice"));
-    assert!(refused(1, &[(0, 0), (i64::MAX, 0)]).contains("beside the lattice"));
+    assert!(refused(0, &[(0, 0), (1, 1)]).contains("a spacing of 0"));
+    assert!(refused(1, &[(0, 0)]).contains("fewer than two"));
+    assert!(refused(1, &[(0, 0), (0, 0)]).contains("two equal points"));
+    assert!(refused(4, &[(0, 0), (4, 6)]).contains("not on the lattice"));
+    assert!(refused(1, &[(0, 0), (i64::MAX, 0)]).contains("not on the lattice"));
 }
 
 proptest! {
@@ -59,25 +56,25 @@ proptest! {
             })
             .filter(|boundary| boundary.points.len() >= 2)
             .collect();
-        if let Some(section) = encode_lines(tile(), LAYER, step, &boundaries).unwrap() {
-            prop_assert_eq!(section.lines(LAYER, tile()).unwrap(), boundaries);
+        if let Some(section) = encode_boundaries(tile(), step, &boundaries).unwrap() {
+            prop_assert_eq!(section.boundaries(tile()).unwrap(), boundaries);
         }
     }
 
-    /// Damage is told; nothing panics, and what is read could have been written.
+    /// Damage is reported; nothing panics, and everything that is read could have been written.
     #[test]
     fn damaged_bytes_are_refused_or_read(at in 0_usize..60, value in any::<u8>(), cut in 0_usize..60) {
         let boundaries = [
             boundary(7, BoundaryClass::Admin4, &[(0, 0), (-640, 128), (6400, 64), (64, 0)]),
             boundary(9, BoundaryClass::Admin6, &[(64, 64), (0, 64)]),
         ];
-        let section = encode_lines(tile(), LAYER, 64, &boundaries).unwrap().unwrap();
+        let section = encode_boundaries(tile(), 64, &boundaries).unwrap().unwrap();
         let mut bytes = section.into_bytes();
         if let Some(byte) = bytes.get_mut(at) {
             *byte = value;
         }
         bytes.truncate(bytes.len().saturating_sub(cut / 10));
-        if let Ok(read) = Section::of_lines(LAYER, bytes).lines(LAYER, tile()) {
+        if let Ok(read) = Section::of_boundaries(bytes).boundaries(tile()) {
             for boundary in read {
                 prop_assert!(boundary.points.len() >= 2);
             }

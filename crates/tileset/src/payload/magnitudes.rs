@@ -1,13 +1,14 @@
-//! How numbers become bits: by their length in binary, which two contexts foretell.
+//! Codes numbers as bits: by their length in binary, which is predicted from two contexts.
 
 use crate::payload::range_coder::{Bits, Model};
 
-/// Binary digits of a magnitude, at most.
+/// The largest number of binary digits of a magnitude.
 const LENGTHS: usize = 33;
-/// Digits behind the leading 1 that have models: the first two.
+/// The number of digits after the leading 1 that have models.
 const MODELLED_DIGITS: usize = 2;
 
-/// What a coder knows of the numbers of one kind. Each number comes with two contexts, `FIRST` and `SECOND` of them.
+/// The state of a coder of numbers of one kind. Each number has two contexts, with `FIRST` and
+/// `SECOND` possible values.
 #[derive(Debug, Clone)]
 pub(crate) struct Magnitudes<const FIRST: usize, const SECOND: usize> {
     by_first: Vec<[Model; LENGTHS]>,
@@ -30,7 +31,7 @@ impl<const FIRST: usize, const SECOND: usize> Magnitudes<FIRST, SECOND> {
         if magnitude != 0 && bits.even(u32::from(number < 0)) == 1 { -magnitude } else { magnitude }
     }
 
-    /// The same for a number that is not negative, or whose sign is coded elsewhere.
+    /// Codes a number that is not negative, or whose sign is coded elsewhere.
     pub(crate) fn code_magnitude<B: Bits>(
         &mut self,
         bits: &mut B,
@@ -66,7 +67,8 @@ impl<const FIRST: usize, const SECOND: usize> Magnitudes<FIRST, SECOND> {
     }
 }
 
-/// Half-octaves: 0 for 0, then 1, 2, 4 for 1, 2, 4, with one class between powers of two.
+/// Returns the half-octave of a number: 0 for 0, then 1, 2, 4 for 1, 2, 4, with one class between
+/// powers of two.
 pub(crate) fn half_octave(sum: u64) -> usize {
     match sum {
         0 | 1 => sum as usize,

@@ -1,7 +1,9 @@
-//! For each short gate, the nodes on its left in the order in which a search for corners would take them.
+//! For each short gate, the nodes on its left in the order in which a search for corners would
+//! examine them.
 //!
-//! Most gates are a few cells long, and their corner is among the first nodes that see them under a large angle. So these nodes are sorted
-//! once for each gate, and a search asks one after the other whether it has a vertex:
+//! Most gates are a few cells long, and their corner is among the first nodes that see them under a
+//! large angle. So these nodes are sorted once for each gate, and a search checks one after another
+//! whether it has a vertex:
 //!
 //! ```text
 //!      8 6 5 6 8        a gate a ► b and the order of the nodes on its left: equal numbers lie on one circle
@@ -14,16 +16,16 @@ use std::sync::LazyLock;
 
 use corniche_geom::TILE_NODES;
 
-/// Neither the columns nor the rows of a gate differ by more.
+/// The largest difference of the columns, and of the rows, of a gate.
 const LONGEST: i32 = 8;
-/// Nodes of a list, at most.
+/// The largest number of nodes of a list.
 const NODES: usize = 128;
-/// Nodes of a list are no farther from the gate's first end, in columns or rows.
+/// The largest distance of the nodes of a list from the gate's first end, in columns or rows.
 pub(crate) const MARGIN: usize = 16;
-/// From a node to the one below it, in a grid whose rows have a margin between them.
+/// The distance from a node to the node below it, in a grid whose rows have a margin between them.
 pub(crate) const STRIDE: usize = TILE_NODES + MARGIN;
 
-/// Gates of each column or row difference.
+/// The number of different column differences, and of row differences.
 const SIDE: usize = 2 * LONGEST as usize + 1;
 
 static LISTS: LazyLock<NearCorners> = LazyLock::new(NearCorners::new);
@@ -31,7 +33,7 @@ static LISTS: LazyLock<NearCorners> = LazyLock::new(NearCorners::new);
 /// The lists of all short gates.
 #[derive(Debug)]
 pub(crate) struct NearCorners {
-    /// Where the list of each gate begins, and where the last one ends.
+    /// The start of the list of each gate, and the end of the last list.
     starts: Vec<u32>,
     nodes: Vec<NearNode>,
 }
@@ -41,7 +43,7 @@ pub(crate) struct NearCorners {
 pub(crate) struct NearNode(i16);
 
 impl NearNode {
-    /// How far the node is behind the gate's first end, in a grid with rows of [`STRIDE`].
+    /// The offset of the node from the gate's first end, in a grid with rows of [`STRIDE`].
     #[inline]
     pub(crate) fn offset(self) -> isize {
         isize::from(self.0 >> 1)
@@ -55,15 +57,17 @@ impl NearNode {
 }
 
 impl NearCorners {
-    /// The lists, which the first call makes.
+    /// Returns the lists, which the first call computes.
     pub(crate) fn get() -> &'static Self {
         &LISTS
     }
 
-    /// The nodes to the left of a gate that goes so many columns east and rows south, by the angle under which they see it, the largest first; of equal
-    /// ones by row, then column. Any node that the list lacks sees it under a smaller angle than all of them. Empty for a long gate.
+    /// The nodes to the left of a gate that goes this many columns east and rows south, sorted by
+    /// the angle under which they see the gate, the largest first; nodes with equal angles by row,
+    /// then column. Every node that is not in the list sees the gate under a smaller angle than all
+    /// nodes in it. Empty for a long gate.
     #[inline]
-    pub(crate) fn of(&self, [columns, rows]: [i32; 2]) -> &[NearNode] {
+    pub(crate) fn near(&self, [columns, rows]: [i32; 2]) -> &[NearNode] {
         if columns.abs() > LONGEST || rows.abs() > LONGEST {
             return &[];
         }
@@ -83,17 +87,17 @@ impl NearCorners {
     }
 }
 
-/// A node beside a gate: the cotangent under which it sees the gate, then its place.
+/// A node near a gate: the cotangent under which it sees the gate, then its position.
 #[derive(Debug, Clone, Copy)]
-struct Seen {
+struct SeenNode {
     dot: i32,
-    /// Above 0.
+    /// The cross product, which is above 0.
     cross: i32,
     row: i32,
     column: i32,
 }
 
-impl Seen {
+impl SeenNode {
     /// Whether it sees the gate under the same angle as another node.
     fn ties(&self, other: &Self) -> bool {
         self.dot * other.cross == other.dot * self.cross
@@ -102,19 +106,20 @@ impl Seen {
 
 fn list([columns, rows]: [i32; 2]) -> impl Iterator<Item = NearNode> {
     let reach = MARGIN as i32;
-    let mut seen: Vec<Seen> = (-reach..=reach)
+    let mut seen: Vec<SeenNode> = (-reach..=reach)
         .flat_map(|row| (-reach..=reach).map(move |column| [column, row]))
         .filter_map(|[column, row]| {
             let cross = rows * column - columns * row;
             let dot = column * (column - columns) + row * (row - rows);
-            (cross > 0).then_some(Seen { dot, cross, row, column })
+            (cross > 0).then_some(SeenNode { dot, cross, row, column })
         })
         .collect();
-    let by_angle = |a: &Seen, b: &Seen| {
+    let by_angle = |a: &SeenNode, b: &SeenNode| {
         (a.dot * b.cross).cmp(&(b.dot * a.cross)).then([a.row, a.column].cmp(&[b.row, b.column]))
     };
     if seen.len() > NODES {
-        // Others may tie with the last one, so those that tie with it are left out.
+        // Nodes outside the list may tie with the last one, so all nodes that tie with it are
+        // omitted.
         let (before, &mut last, _) = seen.select_nth_unstable_by(NODES, by_angle);
         let kept = before.len();
         seen.truncate(kept);

@@ -1,14 +1,15 @@
-//! The lists of nodes beside short gates hold what they promise.
+//! The lists of nodes near short gates are complete and sorted.
 
 use super::*;
 
-/// No node outside a list sees its gate under as large an angle as one of the list, also beyond the margin.
+/// No node outside a list sees its gate under as large an angle as a node of the list, even beyond
+/// the margin.
 #[test]
 fn lists_lack_no_better_node() {
     let lists = NearCorners::get();
     for rows in -LONGEST..=LONGEST {
         for columns in -LONGEST..=LONGEST {
-            let nodes = lists.of([columns, rows]);
+            let nodes = lists.near([columns, rows]);
             assert_eq!(nodes.is_empty(), columns == 0 && rows == 0);
             let place = |node: &NearNode| {
                 let from_corner = node.offset() + (MARGIN * STRIDE + MARGIN) as isize;
@@ -43,6 +44,6 @@ fn lists_lack_no_better_node() {
 /// Gates beyond the table have no list.
 #[test]
 fn long_gates_have_no_list() {
-    assert!(NearCorners::get().of([LONGEST + 1, 0]).is_empty());
-    assert!(NearCorners::get().of([3, -LONGEST - 1]).is_empty());
+    assert!(NearCorners::get().near([LONGEST + 1, 0]).is_empty());
+    assert!(NearCorners::get().near([3, -LONGEST - 1]).is_empty());
 }

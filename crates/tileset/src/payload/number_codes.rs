@@ -4,8 +4,9 @@ use corniche_varints::{BadVarint, varint};
 
 use crate::payload::damage::Damage;
 
-/// Writes the number of bytes that the largest value needs, then the lowest byte of all values, then their
-/// second bytes, and so on: high bytes are nearly all alike and cost nothing once compressed.
+/// Writes the number of bytes that the largest value needs, then the lowest byte of all values,
+/// then their second bytes, and so on: high bytes are nearly all equal and take almost no space
+/// after compression.
 ///
 /// ```text
 ///   n │ byte 0 of v0 v1 v2 … │ byte 1 of v0 v1 v2 … │ … n planes
@@ -28,7 +29,7 @@ pub(crate) struct Planes<'a> {
 }
 
 impl<'a> Planes<'a> {
-    /// The numbers.
+    /// Iterates over the numbers.
     pub(crate) fn iter(self) -> impl Iterator<Item = u64> + 'a {
         (0..self.count).map(move |index| {
             let bytes = self.bytes.iter().skip(index).step_by(self.count.max(1));
@@ -36,7 +37,8 @@ impl<'a> Planes<'a> {
         })
     }
 
-    /// The sum of the numbers with `each` added to every one; refused beyond `most`, before anything is allocated for it.
+    /// The sum of the numbers with `each` added to every number; fails if it is larger than `most`,
+    /// before memory is allocated for it.
     pub(crate) fn total(self, each: u64, most: usize, what: &'static str) -> Result<usize, Damage> {
         let mut sum = 0_u64;
         for number in self.iter() {
@@ -48,13 +50,16 @@ impl<'a> Planes<'a> {
         Ok(sum as usize)
     }
 
-    /// Whether all numbers are 0 because no byte stands for any of them.
+    /// Whether all numbers are 0 because there are no planes.
     pub(crate) fn is_absent(self) -> bool {
         self.bytes.is_empty()
     }
 }
 
-/// Takes values off the front of a byte slice.
+/// The largest spacing of the points of a section's lattice: a tile has 2^40 steps.
+pub(crate) const MOST_SPACING: i64 = 1 << 40;
+
+/// Takes values from the front of a byte slice.
 #[derive(Debug, Clone)]
 pub(crate) struct Cursor<'a> {
     bytes: &'a [u8],
@@ -88,13 +93,19 @@ impl<'a> Cursor<'a> {
         })
     }
 
-    /// A varint that may not be above `limit`; `what` names it in the error.
+    /// Takes a varint that is at most `limit`; `what` names it in the error.
     pub(crate) fn bounded(&mut self, limit: usize, what: &'static str) -> Result<usize, Damage> {
         let value = self.varint()?;
         usize::try_from(value).ok().filter(|&value| value <= limit).ok_or(Damage::Invalid(what))
     }
 
-    /// What [`put_planes`] wrote for `count` values. The caller bounds `count`.
+    /// Takes the spacing of a section's lattice of points; `what` names it in the error.
+    pub(crate) fn spacing(&mut self, what: &'static str) -> Result<i64, Damage> {
+        let step = i64::try_from(self.varint()?).ok();
+        step.filter(|step| (1..=MOST_SPACING).contains(step)).ok_or(Damage::Invalid(what))
+    }
+
+    /// Takes the planes that [`put_planes`] wrote for `count` values. The caller limits `count`.
     pub(crate) fn planes(&mut self, count: usize) -> Result<Planes<'a>, Damage> {
         let planes = self.byte()?;
         if planes > 8 {
@@ -103,22 +114,35 @@ impl<'a> Cursor<'a> {
         Ok(Planes { bytes: self.take(count * usize::from(planes))?, count })
     }
 
+    /// Takes several planes, one after another.
+    pub(crate) fn columns<const N: usize>(
+        &mut self,
+        count: usize,
+    ) -> Result<[Planes<'a>; N], Damage> {
+        let mut columns = [Planes { bytes: &[], count }; N];
+        for column in &mut columns {
+            *column = self.planes(count)?;
+        }
+        Ok(columns)
+    }
+
     pub(crate) fn is_empty(&self) -> bool {
         self.bytes.is_empty()
     }
 
-    /// How many bytes are left.
+    /// The number of remaining bytes.
     pub(crate) fn left(&self) -> usize {
         self.bytes.len()
     }
 
-    /// Fails if bytes are left.
+    /// Fails if bytes remain.
     pub(crate) fn finish(&self) -> Result<(), Damage> {
         if self.is_empty() { Ok(()) } else { Err(Damage::Invalid("bytes left over at the end")) }
     }
 }
 
-/// Takes from the `room` that a section has left of `most`; `what` names it in the error.
+/// Subtracts from `room`, the remainder of the section's limit `most`; `what` names the limited
+/// value in the error.
 pub(crate) fn take_room(
     room: &mut usize,
     taken: usize,

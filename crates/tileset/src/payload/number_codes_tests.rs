@@ -1,4 +1,4 @@
-//! Varints, zigzag numbers and planes come back, and overlong ones are refused.
+//! Varints, zigzag numbers and planes round-trip, and overlong ones are rejected.
 
 use corniche_varints::{push_varint, to_zigzag, zigzag};
 use proptest::prelude::*;

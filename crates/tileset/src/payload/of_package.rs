@@ -1,4 +1,4 @@
-//! Payloads of the tiles of a package, decoded and placed as its manifest says.
+//! Decodes payloads of the tiles of a package, with the frame and the height step of its manifest.
 
 use corniche_geom::TileId;
 use corniche_tin::{Surface, Tin};
@@ -14,7 +14,7 @@ impl Manifest {
     /// Reads the wanted sections of a tile's payload, as [`decode`] does.
     ///
     /// # Errors
-    /// Those of [`decode`].
+    /// Same as [`decode`].
     pub fn decode(
         &self,
         bytes: &[u8],
@@ -27,15 +27,15 @@ impl Manifest {
     /// Reads the spans of a tile's payload, as [`decode_spans`] does.
     ///
     /// # Errors
-    /// Those of [`decode_spans`].
+    /// Same as [`decode_spans`].
     pub fn decode_spans(&self, bytes: &[u8], id: TileId) -> Result<Vec<SpanRun>, DecodeError> {
         decode_spans(bytes, id, &self.frame, self.vertical.quantum_m)
     }
 
-    /// The ground of a tile with this TIN, on the package's lattice.
+    /// Returns the ground of a tile with this TIN, on the package's lattice.
     ///
     /// # Panics
-    /// When the tile's level is beyond the package's finest one.
+    /// When the tile's level is beyond the package's finest level.
     #[must_use]
     pub fn surface(&self, id: TileId, tin: &Tin) -> Surface {
         Surface::of_tile(tin, &self.frame, id, self.vertical.quantum_m)

@@ -1,5 +1,6 @@
-//! The photo of a tile: a picture of the ground from above, read and written apart from the rest of the payload. Most readers do not
-//! want it, and it can be copied from one payload to another as it is.
+//! The photo of a tile: an image of the ground from above. It is read and written separately from
+//! the rest of the payload: most readers do not need it, and it can be copied from one payload to
+//! another unchanged.
 
 mod coverage;
 mod decode;
@@ -11,20 +12,20 @@ use corniche_geom::TileId;
 
 use crate::payload::damage::DecodeError;
 use crate::payload::envelope;
-use crate::payload::section_kind::Kind;
+use crate::payload::section_kind::SectionKind;
 
 #[cfg(feature = "write")]
 pub use encode::{encode_photo, photo_section};
 pub use image::{PHOTO_BORDER, Photo};
 
-/// Reads the photo of a tile from the bytes of its payload; `None` if it has none. Memory and work are bounded by
-/// [`MAX_PHOTO_LEVELS`](crate::limits::MAX_PHOTO_LEVELS), whatever the bytes say.
+/// Reads the photo of a tile from the bytes of its payload; `None` if it has none. Memory and work
+/// are limited by [`MAX_PHOTO_LEVELS`](crate::limits::MAX_PHOTO_LEVELS), whatever the bytes say.
 ///
 /// # Errors
 /// When the bytes are not a payload of tile `id`, or the photo is damaged.
 pub fn decode_photo(bytes: &[u8], id: TileId) -> Result<Option<Photo>, DecodeError> {
-    envelope::read_part(bytes, id, Kind::Photo.name(), |sections| {
-        let section = envelope::section(sections, Kind::Photo)?;
+    envelope::read_part(bytes, id, SectionKind::Photo, |sections| {
+        let section = envelope::section(sections, SectionKind::Photo)?;
         section.map(|section| decode::decode(&section)).transpose()
     })
 }

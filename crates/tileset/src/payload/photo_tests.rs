@@ -1,4 +1,4 @@
-//! Photos come back within their loss, with their coverage exact, and hostile sections are refused.
+//! Photos round-trip within their loss, with exact coverage, and hostile sections are rejected.
 
 use super::image::side;
 use super::*;
@@ -11,7 +11,7 @@ fn id() -> TileId {
     TileId::new(1, 1, 0).unwrap()
 }
 
-/// A photo with smooth colours, without any where `is_none`.
+/// A photo with smooth colours, and no photo where `is_none`.
 fn photo(levels: u8, is_none: impl Fn(usize, usize) -> bool) -> Photo {
     let side = side(levels);
     let rgba = (0..side * side)
@@ -29,7 +29,7 @@ fn photo(levels: u8, is_none: impl Fn(usize, usize) -> bool) -> Photo {
 
 /// A payload of one section.
 fn payload(section: &[u8]) -> Vec<u8> {
-    builder::payload_of(id(), [(Kind::Photo, section.into())])
+    builder::payload_of(id(), [(SectionKind::Photo, section.into())])
 }
 
 fn section_of(photo: &Photo, quality: u8) -> Section {
@@ -57,7 +57,7 @@ fn photos_come_back_within_their_loss_and_coverage_exactly() {
     }
 }
 
-/// JPEG's example tables, as older packages have them, give the same texels from more bytes.
+/// JPEG's example tables, which older packages have, give the same texels from more bytes.
 #[test]
 fn tables_of_the_pictures_own_change_no_texel() {
     let written = photo(1, |_, _| false);
@@ -86,7 +86,7 @@ fn no_texel_no_section() {
 
 #[test]
 fn a_payload_keeps_its_other_sections_and_takes_one_photo() {
-    let roads = builder::payload_of(id(), [(Kind::RoadsSv, vec![7; 100])]);
+    let roads = builder::payload_of(id(), [(SectionKind::RoadsSv, vec![7; 100])]);
     let section = section_of(&photo(0, |_, _| false), 80);
     let mut builder = PayloadBuilder::with_all_of(&roads, id()).unwrap();
     builder.add(section.clone()).unwrap();
@@ -94,7 +94,7 @@ fn a_payload_keeps_its_other_sections_and_takes_one_photo() {
     assert_eq!(photo_section(&both, id()).unwrap(), Some(section.clone()));
     assert_eq!(photo_section(&roads, id()).unwrap(), None);
     let sections = envelope::open(&both, id()).unwrap();
-    assert_eq!(envelope::section(&sections, Kind::RoadsSv).unwrap(), Some(vec![7; 100]));
+    assert_eq!(envelope::section(&sections, SectionKind::RoadsSv).unwrap(), Some(vec![7; 100]));
     assert!(PayloadBuilder::with_all_of(&both, id()).unwrap().add(section).is_err());
     assert!(PayloadBuilder::with_all_of(&both[1..], id()).is_err());
 }
@@ -103,7 +103,7 @@ fn a_payload_keeps_its_other_sections_and_takes_one_photo() {
 fn hostile_sections_are_refused_within_limits() {
     let good = section_of(&photo(0, |column, _| column < 8), 80).bytes().to_vec();
     assert!(decode_photo(&payload(&good), id()).unwrap().is_some());
-    // Every cut, and a flipped byte at every place of the head.
+    // Truncated at every length, and with a flipped byte at every position of the head.
     let last_scan = good.windows(2).rposition(|two| two == [0xff, 0xda]).unwrap();
     for length in (0..good.len()).step_by(97).chain(0..8).chain([last_scan, good.len() - 2]) {
         assert!(decode_photo(&payload(&good[..length]), id()).is_err(), "{length} bytes");
@@ -115,14 +115,14 @@ fn hostile_sections_are_refused_within_limits() {
     assert_eq!(damage(&[1, 0, 1, 0]), Damage::Invalid(what));
     let what = "a run of texels beyond the last";
     assert_eq!(damage(&[1, 0, 0xff, 0xff, 0x7f]), Damage::Invalid(what));
-    // The colours of a picture of another size.
+    // The colours of an image of another size.
     let mut other = section_of(&photo(1, |_, _| false), 80).bytes().to_vec();
     other[1] = 0;
     assert!(decode_photo(&payload(&other), id()).is_err());
     for at in (0..good.len()).step_by(11) {
         let mut bent = good.clone();
         bent[at] ^= 0x55;
-        // Any answer will do, but no panic.
+        // Any result is accepted, but no panic.
         let _answer = decode_photo(&payload(&bent), id());
     }
 }
@@ -134,7 +134,7 @@ fn a_flipped_byte_breaks_the_checksum() {
     bytes[last] ^= 1;
     let error = decode_photo(&bytes, id()).unwrap_err();
     assert_eq!((error.part, &error.damage), ("photo section", &Damage::Checksum));
-    // Reading everything sees it, too; reading the ground does not look.
+    // Reading all sections detects the damage, too; reading the ground does not inspect the photo.
     let frame = corniche_geom::GridFrame::covering(
         [0.0; 2],
         corniche_geom::Cell::from([10.0; 2]),

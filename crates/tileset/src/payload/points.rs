@@ -1,4 +1,4 @@
-//! Lattice points as differences from one to the next.
+//! Lattice points, stored as differences from one point to the next.
 
 use corniche_geom::LatticePoint;
 use corniche_varints::zigzag;
@@ -6,7 +6,8 @@ use corniche_varints::zigzag;
 use crate::payload::damage::Damage;
 use crate::payload::number_codes::Cursor;
 
-/// Points lie within this many lattice steps of the tile's corner, so that orientations stay exact.
+/// Points are within this many lattice steps of the tile's corner, so that orientation tests stay
+/// exact.
 const REACH_STEPS: u64 = 1 << 55;
 
 pub(crate) const FAR: Damage = Damage::Invalid("a point far away from its tile");
@@ -16,16 +17,18 @@ pub(crate) fn is_near(point: LatticePoint, corner: LatticePoint) -> bool {
     point.u.abs_diff(corner.u).max(point.v.abs_diff(corner.v)) <= REACH_STEPS
 }
 
-/// The points of lines that have so many each, the first relative to `corner`. Neighbours in a line differ. The caller bounds the numbers.
+/// Decodes the points of lines with given numbers of points, the first relative to `corner`.
+/// Neighbouring points of a line differ. The caller limits the numbers.
 pub(crate) fn decode_points(
     cursor: &mut Cursor<'_>,
     lines: impl ExactSizeIterator<Item = usize> + Clone,
     corner: LatticePoint,
 ) -> Result<Vec<LatticePoint>, Damage> {
-    const STILL: Damage = Damage::Invalid("a segment without length");
+    const STILL: Damage = Damage::Invalid("a segment of zero length");
     let count = lines.clone().sum();
-    let (east, north) = (cursor.planes(count)?, cursor.planes(count)?);
-    // Every point except a line's first takes at least one byte, so the number of points is bounded by the bytes.
+    let [east, north] = cursor.columns(count)?;
+    // Every point except the first of a line takes at least one byte, so the number of points is
+    // limited by the bytes.
     if count > lines.len() && east.is_absent() && north.is_absent() {
         return Err(STILL);
     }

@@ -1,24 +1,28 @@
-//! A binary arithmetic coder whose probabilities follow what was coded before.
+//! A binary arithmetic coder whose probabilities adapt to the bits coded so far.
 //!
-//! Source: Martin 1979, *Range encoding*, in the form that LZMA uses (32-bit range, carries through a byte that is held back);
-//! probabilities are the mean of two that adapt with different speed.
+//! Source: Martin 1979, *Range encoding*, in the form that LZMA uses (32-bit range, carries through
+//! a byte that is held back). Each probability is the mean of two estimates that adapt at different
+//! speeds.
 
 use crate::payload::damage::Damage;
 
-/// What both directions of coding have in common: code that says which bit comes where is written once. A coder that writes
-/// takes `bit` and returns it; one that reads ignores it and returns what it read.
+/// The common interface of both directions of coding, so that the code which defines the order of
+/// bits is written once. A writer takes `bit` and returns it; a reader ignores it and returns the
+/// bit that it read.
 pub(crate) trait Bits {
-    /// A bit with the probability of `model`, which learns from it.
+    /// Codes a bit with the probability of `model`, which adapts to it.
     fn bit(&mut self, model: &mut Model, bit: u32) -> u32;
-    /// A bit with the mean of the probabilities of two models, both of which learn from it.
+    /// Codes a bit with the mean of the probabilities of two models, which both adapt to it.
     fn mixed(&mut self, models: [&mut Model; 2], bit: u32) -> u32;
-    /// A bit that is as often 0 as 1.
+    /// Codes a bit that is 0 or 1 with equal probability.
     fn even(&mut self, bit: u32) -> u32;
 }
 
-/// How probable a 0 is, in 65 536ths: one estimate that learns fast, in the upper half, and one that learns slowly.
+/// The probability of a 0 in 65 536ths: one estimate that adapts fast, in the upper half, and one
+/// that adapts slowly.
 ///
-/// They are one number, because they are read as one: a processor waits for memory where it reads at once what it has just written in two parts.
+/// Both are in one integer because they are read together: a processor stalls if it reads in one
+/// piece what it has just written in two.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Model(u32);
 
@@ -28,11 +32,11 @@ impl Default for Model {
     }
 }
 
-/// Neither bit is ever less probable than this, in 65 536ths.
+/// The smallest probability of either bit, in 65 536ths.
 const LEAST: u32 = 48;
 
 impl Model {
-    /// Knows nothing yet.
+    /// A model that has not adapted to any bits yet.
     pub(crate) const NEW: Self = Self(1 << 31 | 1 << 15);
 
     /// The sum of both estimates.
@@ -46,13 +50,13 @@ impl Model {
         (self.sum() >> 1).clamp(LEAST, (1 << 16) - LEAST)
     }
 
-    /// The mean of two models' estimates.
+    /// The mean of the estimates of two models.
     #[inline]
     fn of_zero_in_both([one, other]: [&Self; 2]) -> u32 {
         ((one.sum() + other.sum()) >> 2).clamp(LEAST, (1 << 16) - LEAST)
     }
 
-    /// A 16th of the fast estimate, and a 128th of the slow one.
+    /// A 16th of the fast estimate, and a 128th of the slow estimate.
     #[inline]
     fn parts(estimates: u32) -> u32 {
         ((estimates >> 4) & 0x0fff_0000) | ((estimates & 0xffff) >> 7)
@@ -68,30 +72,30 @@ impl Model {
     }
 }
 
-/// Below this the range is widened by a byte.
+/// If the range is smaller than this, it is widened by a byte.
 const LEAST_RANGE: u32 = 1 << 24;
 
 /// Writes bits.
 #[cfg(feature = "write")]
 #[derive(Debug)]
-pub(crate) struct Writer {
+pub(crate) struct BitWriter {
     out: Vec<u8>,
     low: u64,
     range: u32,
-    /// The byte that a carry may still change, and how many bytes of 255 follow it.
+    /// The byte that a carry may still change, and the number of bytes of 255 that follow it.
     held: u8,
     after_held: u64,
     is_first: bool,
 }
 
 #[cfg(feature = "write")]
-impl Writer {
-    /// Writes behind what is in `out`.
+impl BitWriter {
+    /// Begins to write after the bytes that are already in `out`.
     pub(crate) fn new(out: Vec<u8>) -> Self {
         Self { out, low: 0, range: u32::MAX, held: 0, after_held: 0, is_first: true }
     }
 
-    /// All bytes.
+    /// Returns all bytes.
     pub(crate) fn finish(mut self) -> Vec<u8> {
         for _ in 0..5 {
             self.shift();
@@ -116,7 +120,8 @@ impl Writer {
         self.low = (self.low & 0x00ff_ffff) << 8;
     }
 
-    /// Without a branch on the bit, which nobody foretells where it says something.
+    /// Narrows the range without a branch on the bit, because the processor cannot predict bits
+    /// that carry information.
     #[inline]
     fn narrow(&mut self, bound: u32, bit: u32) {
         self.low += u64::from(bound & bit.wrapping_neg());
@@ -129,7 +134,7 @@ impl Writer {
 }
 
 #[cfg(feature = "write")]
-impl Bits for Writer {
+impl Bits for BitWriter {
     #[inline]
     fn bit(&mut self, model: &mut Model, bit: u32) -> u32 {
         self.narrow((self.range >> 16) * model.of_zero(), bit);
@@ -152,18 +157,18 @@ impl Bits for Writer {
     }
 }
 
-/// Reads bits. Beyond the end it reads zeros, so that work is bounded by what is asked for; [`Reader::is_exact`] tells
-/// afterwards.
+/// Reads bits. Beyond the end it reads zeros, so that work is limited by the number of requested
+/// bits; [`BitReader::is_exact`] reports afterwards whether all bytes were read, and no more.
 #[derive(Debug)]
-pub(crate) struct Reader<'a> {
+pub(crate) struct BitReader<'a> {
     bytes: &'a [u8],
-    /// Bytes taken, those beyond the end included.
+    /// Number of bytes read, including those beyond the end.
     taken: usize,
     code: u32,
     range: u32,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> BitReader<'a> {
     pub(crate) fn new(bytes: &'a [u8]) -> Self {
         let mut reader = Self { bytes, taken: 0, code: 0, range: u32::MAX };
         for _ in 0..4 {
@@ -172,22 +177,22 @@ impl<'a> Reader<'a> {
         reader
     }
 
-    /// Whether more was read than there is. A string that was written whole is never read beyond its end.
+    /// Whether more bytes were read than there are. A complete string is never read beyond its end.
     pub(crate) fn is_past_end(&self) -> bool {
         self.taken > self.bytes.len()
     }
 
-    /// Whether exactly the bytes that are there were read.
+    /// Whether all bytes, and no more, were read.
     pub(crate) fn is_exact(&self) -> bool {
         self.taken == self.bytes.len()
     }
 
-    /// Fails where more was read than there is: beyond the end come zeros, as many as one asks for.
+    /// Fails if more bytes were read than there are: beyond the end come any number of zeros.
     pub(crate) fn check_end(&self) -> Result<(), Damage> {
         if self.is_past_end() { Err(Damage::TooShort) } else { Ok(()) }
     }
 
-    /// Fails unless exactly the bytes that are there were read.
+    /// Fails unless all bytes, and no more, were read.
     pub(crate) fn finish(&self) -> Result<(), Damage> {
         if self.is_exact() { Ok(()) } else { Err(Damage::Invalid("the length of the coded bits")) }
     }
@@ -199,14 +204,14 @@ impl<'a> Reader<'a> {
         self.code = (self.code << 8) | u32::from(byte);
     }
 
-    /// The bit is 0: the code is below the bound.
+    /// Handles a bit of 0: the code is below the bound.
     #[inline]
     fn take_zero(&mut self, bound: u32) {
         self.range = bound;
         self.widen_range();
     }
 
-    /// The bit is 1.
+    /// Handles a bit of 1: the code is at or above the bound.
     #[inline]
     fn take_one(&mut self, bound: u32) {
         self.code -= bound;
@@ -223,9 +228,9 @@ impl<'a> Reader<'a> {
     }
 }
 
-// One branch for each bit with a model, and all that follows from the bit behind it: a processor that foretells the branch goes on with the
-// next bit before this one is computed.
-impl Bits for Reader<'_> {
+// Each bit with a model has one branch, and everything that depends on the bit follows it: a
+// processor that predicts the branch starts with the next bit before this one is computed.
+impl Bits for BitReader<'_> {
     #[inline]
     fn bit(&mut self, model: &mut Model, _: u32) -> u32 {
         let bound = (self.range >> 16) * model.of_zero();
@@ -256,13 +261,13 @@ impl Bits for Reader<'_> {
         }
     }
 
-    /// Nobody foretells such a bit, so there is no branch.
+    /// The processor cannot predict these bits, so there is no branch.
     #[inline]
     fn even(&mut self, _: u32) -> u32 {
         let bound = self.range >> 1;
         let bit = u32::from(self.code >= bound);
         self.code -= bound & bit.wrapping_neg();
-        // What is left of an odd range for a 1 is larger by one.
+        // For an odd range, the part for a 1 is larger by one.
         self.range = bound + (self.range & bit);
         self.widen_range();
         bit

@@ -1,11 +1,11 @@
-//! Range-coded bits come back and take about as many bytes as their entropy says.
+//! Range-coded bits round-trip, and take about as many bytes as their entropy requires.
 
 use corniche_testing::Random;
 
 use super::*;
 
-/// Bits with changing statistics come back, the reader takes exactly the bytes there are, and they take about as many bytes
-/// as their entropy says.
+/// Bits with changing statistics round-trip, the reader reads exactly the existing bytes, and their
+/// number is close to the entropy of the bits.
 #[test]
 fn bits_come_back_and_take_what_their_entropy_says() {
     let mut random = Random::new(5);
@@ -13,7 +13,7 @@ fn bits_come_back_and_take_what_their_entropy_says() {
         let bits: Vec<u32> =
             (0..40_000).map(|_| u32::from(random.below(256) < ones_in_256)).collect();
         let mut models = [Model::default(); 2];
-        let mut writer = Writer::new(vec![7]);
+        let mut writer = BitWriter::new(vec![7]);
         for (k, &bit) in bits.iter().enumerate() {
             if k % 100 == 0 {
                 writer.even(bit);
@@ -29,7 +29,7 @@ fn bits_come_back_and_take_what_their_entropy_says() {
         let length = bytes.len() as f64;
         assert!((0.98 * least..1.06 * least + 60.0).contains(&length), "{p}: {length}, {least}");
         let mut models = [Model::default(); 2];
-        let mut reader = Reader::new(&bytes[1..]);
+        let mut reader = BitReader::new(&bytes[1..]);
         for (k, &bit) in bits.iter().enumerate() {
             let read =
                 if k % 100 == 0 { reader.even(0) } else { reader.bit(&mut models[k % 2], 0) };
@@ -41,14 +41,14 @@ fn bits_come_back_and_take_what_their_entropy_says() {
 
 #[test]
 fn a_cut_is_noticed_and_reading_beyond_it_ends() {
-    let mut writer = Writer::new(Vec::new());
+    let mut writer = BitWriter::new(Vec::new());
     let mut model = Model::default();
     for k in 0..1000 {
         writer.bit(&mut model, k % 3 / 2);
     }
     let bytes = writer.finish();
     for cut in [0, 1, 5, bytes.len() - 1] {
-        let (mut reader, mut model) = (Reader::new(&bytes[..cut]), Model::default());
+        let (mut reader, mut model) = (BitReader::new(&bytes[..cut]), Model::default());
         (0..1000).for_each(|_| {
             reader.bit(&mut model, 0);
         });

@@ -5,9 +5,10 @@
 //!   slopes of the border nodes ─► whole 256ths ─► minus those of the decoded heights ─┘
 //! ```
 //!
-//! Shading shows slopes, so coefficients are quantised by how much they change slopes ([`steps`]). What this leaves wrong is
-//! another error in each tile, and along a border the eye would see it. So the slopes of border nodes are stored besides, and
-//! all tiles that have a node take its slopes from the same heights.
+//! Shading shows slopes, so coefficients are quantised by how much they change slopes ([`steps`]).
+//! The remaining errors differ from tile to tile, and would be visible along a border. So the
+//! slopes of border nodes are stored separately, and all tiles that have a node compute its slopes
+//! from the same heights.
 
 mod border;
 mod coefficients;
@@ -26,27 +27,27 @@ use corniche_geom::{Cell, HeightGrid};
 use crate::payload::damage::Damage;
 use crate::payload::number_codes::Cursor;
 #[cfg(feature = "write")]
-use crate::payload::range_coder::Writer;
-use crate::payload::range_coder::{Bits, Reader};
+use crate::payload::range_coder::BitWriter;
+use crate::payload::range_coder::{BitReader, Bits};
 use border::BORDER_NODES;
-use coefficients::{Numbers, code_band, code_mask, code_smooth};
-use head::Head;
+use coefficients::{NumberModel, code_band, code_mask, code_smooth};
+use head::ReliefHead;
 use wavelet::{LEVELS, SIDE, SMOOTH, rough_bands};
 
-/// The relief of a tile: heights of all its nodes, exact enough to be shaded, and the slopes of the nodes on its border, which
-/// are the same in all tiles that have the node.
+/// The relief of a tile: heights of all its nodes, which are exact enough for shading, and the
+/// slopes of the nodes on its border, which are the same in all tiles that have the node.
 #[derive(Debug, Clone)]
 pub struct Relief {
     coded: Vec<u8>,
     heights: HeightGrid,
     greatest_error_m: f64,
-    /// The slopes of border nodes, by [`border::index`]; `None` where the node has no height.
+    /// The slopes of the border nodes, by [`border::index`]; `None` if the node has no height.
     border: Vec<Option<[i32; 2]>>,
-    /// Marks of water, row by row; empty without water.
+    /// Marks of water, row by row; empty if there is no water.
     water: Vec<bool>,
 }
 
-// All else follows from the bytes.
+// All other fields follow from the bytes.
 impl PartialEq for Relief {
     fn eq(&self, other: &Self) -> bool {
         self.coded == other.coded
@@ -54,36 +55,40 @@ impl PartialEq for Relief {
 }
 
 impl Relief {
-    /// Heights of the tile's own 257 × 257 nodes, metres; row 0 in the north. Gaps are those of the level's raster.
+    /// Heights of the tile's own 257 × 257 nodes in metres; row 0 is in the north. Gaps are those
+    /// of the level's raster.
     #[must_use]
     pub fn heights(&self) -> &HeightGrid {
         &self.heights
     }
 
-    /// Which of the tile's own nodes are water, row by row: those at or below 0 m whose neighbours have the same height. `None` if
-    /// none is.
+    /// Which of the tile's own nodes are water, row by row: nodes at or below 0 m whose neighbours
+    /// have the same height. `None` if there are none.
     #[must_use]
     pub fn water(&self) -> Option<&[bool]> {
         (!self.water.is_empty()).then_some(&self.water[..])
     }
 
-    /// No height is farther from the level's raster than this, but for the rounding of a 32-bit number.
+    /// The largest distance of a height from the level's raster, apart from the rounding to 32-bit
+    /// numbers.
     #[must_use]
     pub fn greatest_error_m(&self) -> f64 {
         self.greatest_error_m
     }
 
-    /// The rise in metres per metre east and per metre north at a node on the tile's border, in whole 256ths: the raster's,
-    /// rounded. `None` where the node has no height, and for nodes that are not on the border.
+    /// The rise in metres per metre east and per metre north at a node on the tile's border, in
+    /// whole 256ths: the slopes of the raster, rounded. `None` if the node has no height or is not
+    /// on the border.
     #[must_use]
     pub fn border_slope(&self, column: usize, row: usize) -> Option<[f64; 2]> {
         let steps = self.border[border::index(column, row)?]?;
         Some(steps.map(|steps| f64::from(steps) / border::STEPS_PER_ONE))
     }
 
-    /// The rise in metres per metre east and per metre north at all nodes, row by row, row 0 in the north; `cell` is the distance of its nodes. On
-    /// the border the slopes that it stores, inside those of its heights, by the rule of vertex normals ([`corniche_tin::gradient`]).
-    /// Nodes without height are level.
+    /// The rise in metres per metre east and per metre north at all nodes, row by row, row 0 in the
+    /// north; `cell` is the spacing of its nodes. On the border these are the stored slopes, inside
+    /// the slopes of the heights, by the rule of vertex normals ([`corniche_tin::gradient`]). Nodes
+    /// without a height are level.
     pub fn slopes(&self, cell: Cell) -> impl Iterator<Item = [f64; 2]> {
         let last = SIDE - 1;
         (0..SIDE).flat_map(move |row| {
@@ -97,29 +102,31 @@ impl Relief {
         })
     }
 
-    /// How many bytes it takes in memory.
+    /// The number of bytes in memory.
     #[must_use]
     pub fn memory_bytes(&self) -> usize {
         let (heights, border) = (self.heights.raw(), &self.border[..]);
         self.coded.len() + size_of_val(heights) + size_of_val(border) + self.water.len()
     }
 
-    /// Its bytes in a payload.
+    /// The bytes of the relief in a payload.
     #[cfg(feature = "write")]
     pub(crate) fn coded(&self) -> &[u8] {
         &self.coded
     }
 
-    /// Compresses the raster of a tile's level. `with_halo` has the tile's 257 × 257 nodes and one more on every side, `cell` is
-    /// the distance of its nodes, `quantum_m` the package's height step. All tiles of a level must have the same `cell` and
-    /// `quantum_m`. Equal heights make equal bytes, on every processor.
+    /// Compresses the raster of a tile's level. `with_halo` has the tile's 257 × 257 nodes and one
+    /// more node on every side, `cell` is the spacing of its nodes, `quantum_m` is the package's
+    /// height step. All tiles of a level must have the same `cell` and `quantum_m`. Equal heights
+    /// result in equal bytes on every processor.
     ///
-    /// What is coded, and what slopes are taken from, is `shown`: the raster itself, or one that was low-passed. Gaps and water are the
-    /// raster's, and the error is that from the raster.
+    /// `shown` is the raster that is coded and from which slopes are computed: the raster itself,
+    /// or a low-pass filtered one. Gaps and water are those of the raster, and so is the reference
+    /// of the error.
     ///
     /// # Errors
-    /// With what cannot be encoded: a tile without any height, or heights of 2^38 units and more (a unit is a 512th of the cell or a
-    /// 64th of the height step, whichever is larger).
+    /// When something cannot be encoded: a tile without any height, or heights of 2^38 units and
+    /// more (a unit is a 512th of the cell or a 64th of the height step, whichever is larger).
     ///
     /// # Panics
     /// When a grid has another size.
@@ -141,13 +148,13 @@ impl Relief {
         wavelet::forward(&mut square);
         quantise::quantise(&mut square, &steps);
         let mut found = square.clone();
-        let unencodable = |_| "heights that leave the range of the code";
+        let unencodable = |_| "heights outside the range of the code";
         quantise::reconstruct(&mut found, &steps).map_err(unencodable)?;
         let errors = of_raster.iter().zip(&found).zip(&mask).filter(|(_, there)| **there);
-        // Half a unit more for the rounding to whole units.
+        // Half a unit more, for the rounding to whole units.
         let error = errors.map(|((unit, found), _)| unit.abs_diff(*found)).max().unwrap_or(0) + 1;
         let water = water::of_raster(with_halo);
-        let head = Head {
+        let head = ReliefHead {
             has_voids: mask.iter().any(|there| !there),
             has_water: water.contains(&true),
             exponent,
@@ -157,16 +164,17 @@ impl Relief {
         };
         let border = border::of_raster(shown, cell);
         let mut parts = Parts { mask, water, square, border };
-        let mut writer = Writer::new(head.to_bytes());
+        let mut writer = BitWriter::new(head.to_bytes());
         let units = parts.code(&mut writer, &head).map_err(unencodable)?;
         Ok(Self::assemble(writer.finish(), &head, &units, parts))
     }
 
-    /// Reads what [`Relief::coded`] gives. Memory and time do not depend on what the bytes say.
+    /// Decodes the bytes of [`Relief::coded`]. Memory and time do not depend on the content of the
+    /// bytes.
     pub(crate) fn decode(bytes: &[u8]) -> Result<Self, Damage> {
         let mut cursor = Cursor::new(bytes);
-        let head = Head::read(&mut cursor)?;
-        let mut reader = Reader::new(&bytes[bytes.len() - cursor.left()..]);
+        let head = ReliefHead::read(&mut cursor)?;
+        let mut reader = BitReader::new(&bytes[bytes.len() - cursor.left()..]);
         let mut parts = Parts::new();
         let units = parts.code(&mut reader, &head)?;
         if !reader.is_exact() {
@@ -175,7 +183,7 @@ impl Relief {
         Ok(Self::assemble(bytes.to_vec(), &head, &units, parts))
     }
 
-    fn assemble(coded: Vec<u8>, head: &Head, units: &[i64], parts: Parts) -> Self {
+    fn assemble(coded: Vec<u8>, head: &ReliefHead, units: &[i64], parts: Parts) -> Self {
         let unit_m = head::unit_m(head.exponent);
         let heights_m = units
             .iter()
@@ -192,11 +200,11 @@ impl Relief {
     }
 }
 
-/// What is coded behind the head.
+/// The values that are coded after the head.
 struct Parts {
-    /// Which nodes have a height.
+    /// Whether each node has a height.
     mask: Vec<bool>,
-    /// Which nodes are water.
+    /// Whether each node is water.
     water: Vec<bool>,
     /// Quantised coefficients.
     square: Vec<i64>,
@@ -204,7 +212,7 @@ struct Parts {
 }
 
 impl Parts {
-    /// What a reader begins with.
+    /// Returns the values with which a reader begins.
     fn new() -> Self {
         Self {
             mask: vec![true; SIDE * SIDE],
@@ -214,8 +222,8 @@ impl Parts {
         }
     }
 
-    /// Codes all of it, in either direction, and gives the heights in units.
-    fn code<B: Bits>(&mut self, bits: &mut B, head: &Head) -> Result<Vec<i64>, Damage> {
+    /// Codes all values, in either direction, and returns the heights in units.
+    fn code<B: Bits>(&mut self, bits: &mut B, head: &ReliefHead) -> Result<Vec<i64>, Damage> {
         if head.has_voids {
             code_mask(bits, &mut self.mask);
         }
@@ -223,8 +231,8 @@ impl Parts {
             code_mask(bits, &mut self.water);
         }
         code_smooth(bits, &mut self.square, SMOOTH);
-        // What is learned of coarse divisions is shared: they have few numbers each.
-        let mut numbers = vec![[const { Numbers::new() }; 3]; KINDS];
+        // The coarse divisions share their models, because each of them has few numbers.
+        let mut numbers = vec![[const { NumberModel::new() }; 3]; KINDS];
         for level in (0..LEVELS).rev() {
             for (k, band) in rough_bands(level).into_iter().enumerate() {
                 let parent = (level + 1 < LEVELS).then(|| rough_bands(level + 1)[k]);
@@ -239,7 +247,7 @@ impl Parts {
     }
 }
 
-/// Divisions that learn apart: the finest, the next, all others.
+/// Number of groups of divisions with their own models: the finest, the next, all others.
 const KINDS: usize = 3;
 
 #[cfg(all(test, feature = "write"))]

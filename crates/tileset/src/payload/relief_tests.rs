@@ -1,4 +1,5 @@
-//! Reliefs keep their stated error, and neighbours have the same slopes on their border.
+//! Reliefs stay within their stated error, and neighbouring tiles have the same slopes on their
+//! border.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may unwrap")]
 
@@ -9,7 +10,7 @@ use super::*;
 const CELL: Cell = Cell { east_m: 20.0, north_m: 30.0 };
 const QUANTUM_M: f64 = 0.125;
 
-/// A raster with its halo: `height_m(column, row)` of the tile's nodes, from −1 on.
+/// A raster with its halo: `height_m(column, row)` for the tile's nodes, from −1 on.
 fn raster(height_m: impl Fn(f64, f64) -> f64) -> HeightGrid {
     HeightGrid::from_fn(SIDE + 2, SIDE + 2, |column, row| {
         height_m(column as f64 - 1.0, row as f64 - 1.0) as f32
@@ -20,7 +21,8 @@ fn hills(east: f64, south: f64) -> f64 {
     700.0 + 90.0 * (east / 23.0).sin() * (south / 31.0).cos() + 6.0 * (east * 0.9 + south).sin()
 }
 
-/// Compresses, checks that the bytes give the same relief back, and that it keeps what it promises.
+/// Compresses a raster, and checks that the bytes decode to the same relief and that it fulfils its
+/// promises.
 fn check(with_halo: &HeightGrid) -> Relief {
     let relief = Relief::of_heights(with_halo, with_halo, CELL, QUANTUM_M).unwrap();
     let read = Relief::decode(relief.coded()).unwrap();
@@ -63,7 +65,8 @@ fn rough_hills_stay_within_the_stated_error_and_keep_their_slopes() {
     });
     let relief = check(&with_halo);
     assert!(relief.greatest_error_m() < 0.35 * CELL.shorter_m(), "{}", relief.greatest_error_m());
-    // Slopes of inner nodes: as wrong as a tenth of the step for each of some 13 coefficients that reach a node.
+    // The error of slopes of inner nodes: a tenth of the step for each of about 13 coefficients
+    // that affect a node.
     let mut sum = 0.0;
     for row in 1..SIDE - 1 {
         for column in 1..SIDE - 1 {
@@ -110,8 +113,8 @@ fn voids_of_every_shape_come_back() {
     assert!(Relief::of_heights(&nothing, &nothing, CELL, QUANTUM_M).is_err());
 }
 
-/// Two tiles side by side: their shared nodes have the same slopes, to the bit, although the heights of both are rounded
-/// differently.
+/// Two adjacent tiles: their shared nodes have the same slopes, to the bit, although the heights of
+/// both tiles are rounded differently.
 #[test]
 fn neighbours_have_the_same_slopes_on_their_border() {
     let last = (SIDE - 1) as f64;
@@ -137,7 +140,8 @@ fn high_and_low_heights_come_back() {
     assert!(Relief::of_heights(&beyond, &beyond, CELL, QUANTUM_M).is_err());
 }
 
-/// Any change of bytes is an error or another relief, never a panic, and takes no more memory or time.
+/// Any change of the bytes results in an error or another relief, never in a panic, and takes no
+/// more memory or time.
 #[test]
 fn changed_and_cut_bytes_never_panic() {
     let bytes = check(&raster(hills)).coded().to_vec();
@@ -191,7 +195,8 @@ fn weights_are_those_of_the_transform() {
     }
 }
 
-/// Level ground at or below 0 is water; the shore, land below 0 that is not level, and level land above 0 are none.
+/// Level ground at or below 0 m is water; the shore, land below 0 m that is not level, and level
+/// land above 0 m are not.
 #[test]
 fn level_ground_at_the_sea_is_water_and_comes_back() {
     let with_halo = raster(|east, south| {

@@ -1,5 +1,5 @@
-//! The road tags section: what more is known of the ways of the road attributes section, one column for each tag. A tag that no
-//! way of the tile has takes one byte.
+//! The road tags section: further tags of the ways in the road attributes section, one column per
+//! tag. A tag that no way of the tile has takes one byte.
 
 use std::num::{NonZeroU8, NonZeroU32};
 
@@ -10,7 +10,7 @@ use crate::payload::damage::Damage;
 use crate::payload::number_codes::{Cursor, Planes, take_room};
 use crate::payload::tile_payload::RoadRecord;
 
-/// Columns of texts.
+/// Number of columns of texts.
 const TEXT_COLUMNS: usize = 4;
 
 /// The texts of a way, in the order of their columns.
@@ -20,21 +20,21 @@ fn texts(attributes: &RoadAttributes) -> [&String; TEXT_COLUMNS] {
     [highway, max_speed, sac_scale, tracktype]
 }
 
-/// The same, to be filled in.
+/// The texts of a way as mutable references, in the order of their columns.
 fn texts_mut(attributes: &mut RoadAttributes) -> [&mut String; TEXT_COLUMNS] {
     let RoadAttributes { highway, max_speed, sac_scale, tracktype, .. } = attributes;
     [highway, max_speed, sac_scale, tracktype]
 }
 
-/// Adds what the section's bytes say to the ways of the tile.
+/// Adds the tags in the section's bytes to the ways of the tile.
 pub(crate) fn decode(bytes: &[u8], roads: &mut [RoadRecord]) -> Result<(), Damage> {
     let cursor = &mut Cursor::new(bytes);
     let known = known_texts(cursor, roads.len())?;
     let text_columns: Vec<Planes<'_>> =
         (0..TEXT_COLUMNS).map(|_| cursor.planes(roads.len())).collect::<Result<_, _>>()?;
-    let [lanes, widths] = [cursor.planes(roads.len())?, cursor.planes(roads.len())?];
+    let [lanes, widths] = cursor.columns(roads.len())?;
     cursor.finish()?;
-    // As for the texts of the other section: a shared text is copied for each way.
+    // A shared text is copied for each way, as in the road attributes section.
     let used: usize = roads.iter().map(|road| road.attributes.text_bytes()).sum();
     let mut room = MAX_TEXT_BYTES.saturating_sub(used);
     for (column, indices) in text_columns.into_iter().enumerate() {
@@ -54,10 +54,10 @@ pub(crate) fn decode(bytes: &[u8], roads: &mut [RoadRecord]) -> Result<(), Damag
     Ok(())
 }
 
-/// The texts that the columns point to: sorted, each once, none empty.
+/// Reads the texts that the columns refer to: sorted, each once, none empty.
 fn known_texts<'a>(cursor: &mut Cursor<'a>, ways: usize) -> Result<Vec<&'a str>, Damage> {
     let count = cursor.bounded(TEXT_COLUMNS * ways, "number of texts")?;
-    // A text has a length and a byte at least.
+    // A text takes at least its length and one byte.
     if count > cursor.left() / 2 {
         return Err(Damage::TooShort);
     }
@@ -65,7 +65,7 @@ fn known_texts<'a>(cursor: &mut Cursor<'a>, ways: usize) -> Result<Vec<&'a str>,
     for _ in 0..count {
         let length = cursor.bounded(cursor.left(), "length of a text")?;
         let text = str::from_utf8(cursor.take(length)?)
-            .map_err(|_| Damage::Invalid("a text that is no UTF-8"))?;
+            .map_err(|_| Damage::Invalid("a text that is not UTF-8"))?;
         if texts.last().copied().unwrap_or_default() >= text {
             return Err(Damage::Invalid("texts are not sorted"));
         }
@@ -74,7 +74,8 @@ fn known_texts<'a>(cursor: &mut Cursor<'a>, ways: usize) -> Result<Vec<&'a str>,
     Ok(texts)
 }
 
-/// The section's bytes; `None` if no way has any of the tags. The caller has checked the ways and their texts.
+/// Encodes the section; `None` if no way has any of the tags. The caller has checked the ways and
+/// their texts.
 #[cfg(feature = "write")]
 pub(crate) fn encode(roads: &[RoadRecord]) -> Option<Vec<u8>> {
     use corniche_varints::push_varint;

@@ -7,7 +7,8 @@ fn ways() -> Vec<RoadRecord> {
     [3, 7, 9].map(record).to_vec()
 }
 
-/// Bytes put together by FORMAT.md, not by the writer: a track, a path, and a way of which nothing more is known.
+/// Bytes assembled by hand according to FORMAT.md, not by the writer: a track, a path, and a way
+/// without further tags.
 #[rustfmt::skip]
 const BY_HAND: &[u8] = &[
     // Texts, sorted.
@@ -60,7 +61,7 @@ fn the_bytes_are_those_of_the_specification() {
     assert_eq!(encode(&roads).unwrap(), BY_HAND);
 }
 
-/// A tag that no way has takes a byte; without any tag there is no section.
+/// A tag that no way has takes one byte; without any tags there is no section.
 #[test]
 fn absent_tags_take_a_byte_or_none() {
     let mut roads = ways();

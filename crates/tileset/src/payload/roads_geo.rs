@@ -1,4 +1,5 @@
-//! The GEO roads section: source points, and the vertices that do not follow from them.
+//! The GEO roads section: source points, and the vertices that do not follow from them. (GEO roads
+//! are drawn as geometry on the TIN.)
 
 mod surprises;
 
@@ -8,51 +9,45 @@ use corniche_roads::FunctionalRoadClass;
 use corniche_tin::Surface;
 
 use crate::limits::{MAX_LINE_VERTICES, MAX_POINTS, MAX_ROUTE_STEPS};
-use crate::payload::class_table::{self, Head, Heads, LineOrder};
-use crate::payload::coded_lines::LineCoder;
+use crate::payload::class_table::{ClassBlob, Heads, LineHead, LineOrder};
+use crate::payload::coded_lines::{LineCoder, for_each_class};
 use crate::payload::damage::Damage;
 use crate::payload::number_codes::{Cursor, take_room};
 use crate::payload::points::decode_points;
-use crate::payload::range_coder::Reader;
+use crate::payload::range_coder::BitReader;
 use crate::payload::roads_geo::surprises::{
     CROSSING, END, SOURCE, SurpriseCoder, Surprises, VERTEX,
 };
-use crate::payload::route_guess::Route;
-use crate::payload::source_grid::SourceGrid;
+use crate::payload::route_guess::RouteGuess;
 use crate::payload::tile_payload::GeoRoad;
-use crate::payload::work_limit::Work;
+use crate::payload::work_limit::StepBudget;
 
-/// Decodes a section; `coded_in` is the package's frame where its lines are range-coded bits.
+/// Decodes a section; if its lines are range-coded bits, `coded_in` is the package's frame.
 pub(crate) fn decode(
     bytes: &[u8],
     coded_in: Option<&GridFrame>,
     corner: LatticePoint,
     surface: &Surface,
 ) -> Result<Vec<GeoRoad>, Damage> {
-    let mut cursor = Cursor::new(bytes);
-    let grid = coded_in.map(|frame| SourceGrid::read(&mut cursor, frame)).transpose()?;
     let mut section = Section {
         surface,
-        work: Work::new(MAX_ROUTE_STEPS),
+        work: StepBudget::new(MAX_ROUTE_STEPS),
         points: MAX_POINTS,
         vertices: MAX_LINE_VERTICES,
         roads: Vec::new(),
     };
-    for (class, lines, blob) in class_table::decode(&mut cursor)? {
-        match grid {
-            Some(grid) => section.add_coded(class, lines, blob, LineCoder::new(grid, corner))?,
-            None => section.add(class, lines, blob, corner)?,
-        }
-    }
-    cursor.finish()?;
+    for_each_class(bytes, coded_in, corner, |of_class, coder| match coder {
+        Some(coder) => section.add_coded(of_class, coder),
+        None => section.add(of_class, corner),
+    })?;
     Ok(section.roads)
 }
 
-/// A section that is being read.
+/// A section while it is read.
 struct Section<'s> {
     surface: &'s Surface,
-    work: Work,
-    /// How many points, and vertices of lines, it may still have.
+    work: StepBudget,
+    /// The number of points, and of vertices of lines, that the section may still have.
     points: usize,
     vertices: usize,
     roads: Vec<GeoRoad>,
@@ -62,9 +57,7 @@ impl Section<'_> {
     /// Adds the lines of a class.
     fn add(
         &mut self,
-        class: FunctionalRoadClass,
-        lines: usize,
-        blob: &[u8],
+        (class, lines, blob): ClassBlob<'_>,
         corner: LatticePoint,
     ) -> Result<(), Damage> {
         let mut blob = Cursor::new(blob);
@@ -79,15 +72,13 @@ impl Section<'_> {
         blob.finish()
     }
 
-    /// The same of range-coded bits.
+    /// Adds the lines of a class from range-coded bits.
     fn add_coded(
         &mut self,
-        class: FunctionalRoadClass,
-        lines: usize,
-        blob: &[u8],
+        (class, lines, blob): ClassBlob<'_>,
         mut coder: LineCoder<'_>,
     ) -> Result<(), Damage> {
-        let mut bits = Reader::new(blob);
+        let mut bits = BitReader::new(blob);
         let mut surprises = SurpriseCoder::new();
         let mut points = Vec::new();
         let mut order = LineOrder::default();
@@ -104,16 +95,16 @@ impl Section<'_> {
     fn add_line(
         &mut self,
         class: FunctionalRoadClass,
-        head: Head,
+        head: LineHead,
         points: &[LatticePoint],
         surprises: &mut impl Surprises,
     ) -> Result<(), Damage> {
-        // Flag bits of the point count: 1 lead-in, 2 lead-out.
+        // Flags of the number of points: 1 is lead-in, 2 is lead-out.
         let leads = [head.flags & 1 != 0, head.flags & 2 != 0];
         if points.len() < leads.iter().filter(|&&lead| lead).count() {
             return Err(Damage::Invalid("a line without points"));
         }
-        let route = Route::new(self.surface, points, leads, &self.work);
+        let route = RouteGuess::new(self.surface, points, leads, &self.work);
         let vertices = decode_line(surprises, route, &mut self.vertices)?;
         let line = DrapedLine {
             lead_in: points.first().copied().filter(|_| leads[0]),
@@ -127,7 +118,7 @@ impl Section<'_> {
 
 fn decode_line(
     surprises: &mut impl Surprises,
-    mut route: Route<'_>,
+    mut route: RouteGuess<'_>,
     room: &mut usize,
 ) -> Result<Vec<DrapedVertex>, Damage> {
     let mut left = surprises.count()?;
@@ -149,21 +140,21 @@ fn decode_line(
         route.go(vertex)?;
     }
     if left > 0 || route.next_source().is_some() || vertices.len() < 2 {
-        return Err(Damage::Invalid("a line that ends before its points do"));
+        return Err(Damage::Invalid("a line that ends before all its points are used"));
     }
-    // Lines are many and short, so the spare capacity of their vectors would double the memory.
+    // Lines are many and short, so spare capacity of their vectors would double the memory.
     vertices.shrink_to_fit();
     Ok(vertices)
 }
 
-/// How many vertices are as guessed before the next surprise, if any is left.
+/// The number of vertices that are as guessed before the next surprise, if any is left.
 fn gap(surprises: &mut impl Surprises, left: usize) -> Result<usize, Damage> {
     if left > 0 { surprises.gap() } else { Ok(0) }
 }
 
 fn decode_surprise(
     surprises: &mut impl Surprises,
-    route: &Route<'_>,
+    route: &RouteGuess<'_>,
 ) -> Result<Option<DrapedVertex>, Damage> {
     let surface = route.surface();
     let last_vertex =
@@ -175,7 +166,7 @@ fn decode_surprise(
         END => None,
         SOURCE => {
             let triangle = index(last_triangle, "a triangle under a road")?;
-            let point = route.next_source().ok_or(Damage::Invalid("a source point too many"))?;
+            let point = route.next_source().ok_or(Damage::Invalid("too many source points"))?;
             if !surface.triangle_holds(triangle, point) {
                 return Err(Damage::Invalid("a source point outside its triangle"));
             }
@@ -206,20 +197,22 @@ mod write {
     use corniche_roads::FunctionalRoadClass;
 
     use super::{
-        Damage, DrapedLine, DrapedVertex, GeoRoad, LatticePoint, LineCoder, MAX_LINE_VERTICES,
-        MAX_POINTS, MAX_ROUTE_STEPS, Route, SourceGrid, Surface, SurpriseCoder, Work, class_table,
+        Damage, DrapedLine, DrapedVertex, GeoRoad, LatticePoint, LineCoder, LineHead,
+        MAX_LINE_VERTICES, MAX_POINTS, MAX_ROUTE_STEPS, RouteGuess, StepBudget, Surface,
+        SurpriseCoder,
     };
     use crate::payload::{
-        class_table::Head,
+        class_table,
         points::put_points,
-        range_coder::Writer,
+        range_coder::BitWriter,
         roads_geo::surprises::{Surprise, put_surprises},
+        source_grid::SourceGrid,
     };
 
     const MANY_VERTICES: &str = "more than four million vertices of lines; show fewer roads on this level or use a larger --max-error";
 
-    /// The section's bytes and how many of them each class takes, or what of the roads cannot be encoded. With a grid its lines are
-    /// range-coded bits.
+    /// Encodes the section: returns its bytes and the number of bytes of each class, or a
+    /// description of what cannot be encoded. With a grid, its lines are range-coded bits.
     pub(crate) fn encode(
         roads: &[GeoRoad],
         grid: Option<SourceGrid<'_>>,
@@ -229,15 +222,15 @@ mod write {
         if roads.iter().map(|road| road.line.vertices.len()).sum::<usize>() > MAX_LINE_VERTICES {
             return Err(MANY_VERTICES);
         }
-        // The same limit as a reader's, because a reader takes the same steps.
-        let work = Work::new(MAX_ROUTE_STEPS);
+        // The limit is that of a reader, because a reader takes the same steps.
+        let work = StepBudget::new(MAX_ROUTE_STEPS);
         let mut all_points = 0;
         class_table::encode(
             roads,
             grid,
             |road| (road.class, road.way_id, road.part),
             |of_class, out| {
-                let lines = of_class.iter().map(|road| Line::new(road, surface, &work));
+                let lines = of_class.iter().map(|road| RoadColumns::new(road, surface, &work));
                 let lines = lines.collect::<Result<Vec<_>, _>>()?;
                 all_points += lines.iter().map(|line| line.points.len()).sum::<usize>();
                 if all_points > MAX_POINTS {
@@ -251,33 +244,38 @@ mod write {
         )
     }
 
-    /// A road, taken apart.
-    struct Line {
-        head: Head,
+    /// The encoded fields of a road.
+    struct RoadColumns {
+        head: LineHead,
         points: Vec<LatticePoint>,
         surprises: Vec<Surprise>,
     }
 
-    impl Line {
-        fn new(road: &GeoRoad, surface: &Surface, work: &Work) -> Result<Self, &'static str> {
+    impl RoadColumns {
+        fn new(road: &GeoRoad, surface: &Surface, work: &StepBudget) -> Result<Self, &'static str> {
             let points: Vec<LatticePoint> = points_of(&road.line).collect();
             if points.windows(2).any(|pair| pair[0] == pair[1]) {
-                return Err("a segment without length");
+                return Err("a segment of zero length");
             }
             let leads = [road.line.lead_in.is_some(), road.line.lead_out.is_some()];
-            let head = Head {
+            let head = LineHead {
                 way_id: road.way_id,
                 part: road.part,
                 points: points.len(),
                 flags: u8::from(leads[0]) | u8::from(leads[1]) << 1,
             };
-            let surprises = surprises_of(&road.line, Route::new(surface, &points, leads, work))?;
+            let surprises =
+                surprises_of(&road.line, RouteGuess::new(surface, &points, leads, work))?;
             Ok(Self { head, points, surprises })
         }
     }
 
-    fn put(out: &mut Vec<u8>, lines: &[Line], corner: LatticePoint) -> Result<(), &'static str> {
-        let heads: Vec<Head> = lines.iter().map(|line| line.head).collect();
+    fn put(
+        out: &mut Vec<u8>,
+        lines: &[RoadColumns],
+        corner: LatticePoint,
+    ) -> Result<(), &'static str> {
+        let heads: Vec<LineHead> = lines.iter().map(|line| line.head).collect();
         let points: Vec<LatticePoint> =
             lines.iter().flat_map(|line| line.points.iter().copied()).collect();
         class_table::put_heads(out, &heads);
@@ -290,10 +288,10 @@ mod write {
 
     fn put_coded(
         out: &mut Vec<u8>,
-        lines: &[Line],
+        lines: &[RoadColumns],
         mut coder: LineCoder<'_>,
     ) -> Result<(), &'static str> {
-        let mut bits = Writer::new(Vec::new());
+        let mut bits = BitWriter::new(Vec::new());
         let mut surprises = SurpriseCoder::new();
         for line in lines {
             coder.write_line(&mut bits, line.head, &line.points, |_, _, _| ())?;
@@ -303,7 +301,7 @@ mod write {
         Ok(())
     }
 
-    /// Lead-in, source points and lead-out.
+    /// Iterates over lead-in, source points and lead-out.
     pub(crate) fn points_of(line: &DrapedLine) -> impl Iterator<Item = LatticePoint> {
         let sources = line.vertices.iter().filter_map(|vertex| match vertex {
             DrapedVertex::Source { point, .. } => Some(*point),
@@ -314,7 +312,7 @@ mod write {
 
     fn surprises_of(
         line: &DrapedLine,
-        mut route: Route<'_>,
+        mut route: RouteGuess<'_>,
     ) -> Result<Vec<Surprise>, &'static str> {
         let surface = route.surface();
         let (vertex_count, triangle_count) = (surface.points().len(), surface.triangles().len());
@@ -333,7 +331,7 @@ mod write {
                 None => true,
             };
             if !fits {
-                return Err("a line that does not lie on the tile's TIN");
+                return Err("a line that is not on the tile's TIN");
             }
             if route.guess().map_err(too_much)? == vertex {
                 as_guessed += 1;
@@ -349,6 +347,6 @@ mod write {
     }
 
     fn too_much(_: Damage) -> &'static str {
-        "roads that take readers too many steps to follow"
+        "roads whose decoding takes too many steps"
     }
 }

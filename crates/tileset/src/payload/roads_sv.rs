@@ -1,4 +1,5 @@
-//! The SV roads section: plan lines, and how high the ground is along each segment.
+//! The SV roads section: lines in plan, and the height range of the ground along each segment. (SV
+//! roads are drawn by shadow volumes.)
 
 mod ground_ranges;
 
@@ -8,43 +9,37 @@ use corniche_roads::FunctionalRoadClass;
 use corniche_varints::zigzag;
 
 use crate::limits::MAX_POINTS;
-use crate::payload::class_table::{self, Head, Heads, LineOrder};
-use crate::payload::coded_lines::LineCoder;
+use crate::payload::class_table::{ClassBlob, Heads, LineHead, LineOrder};
+use crate::payload::coded_lines::{LineCoder, for_each_class};
 use crate::payload::damage::Damage;
 use crate::payload::number_codes::Cursor;
 use crate::payload::points::decode_points;
-use crate::payload::range_coder::Reader;
+use crate::payload::range_coder::BitReader;
 use crate::payload::roads_sv::ground_ranges::RangeCoder;
-use crate::payload::source_grid::SourceGrid;
 use crate::payload::tile_payload::SvRoad;
 
-/// Heights stay below this many quanta, where f64 knows every whole number.
+/// Heights stay below this many quanta, so that every whole number is exact as f64.
 const REACH_Q: f64 = (1_u64 << 53) as f64;
 
-/// Decodes a section; `coded_in` is the package's frame where its lines are range-coded bits.
+/// Decodes a section; if its lines are range-coded bits, `coded_in` is the package's frame.
 pub(crate) fn decode(
     bytes: &[u8],
     coded_in: Option<&GridFrame>,
     corner: LatticePoint,
     quantum_m: f64,
 ) -> Result<Vec<SvRoad>, Damage> {
-    let mut cursor = Cursor::new(bytes);
-    let grid = coded_in.map(|frame| SourceGrid::read(&mut cursor, frame)).transpose()?;
     let mut section = Section { quantum_m, points: MAX_POINTS, roads: Vec::new() };
-    for (class, lines, blob) in class_table::decode(&mut cursor)? {
-        match grid {
-            Some(grid) => section.add_coded(class, lines, blob, LineCoder::new(grid, corner))?,
-            None => section.add(class, lines, blob, corner)?,
-        }
-    }
-    cursor.finish()?;
+    for_each_class(bytes, coded_in, corner, |of_class, coder| match coder {
+        Some(coder) => section.add_coded(of_class, coder),
+        None => section.add(of_class, corner),
+    })?;
     Ok(section.roads)
 }
 
-/// A section that is being read.
+/// A section while it is read.
 struct Section {
     quantum_m: f64,
-    /// How many points it may still have.
+    /// The number of points that the section may still have.
     points: usize,
     roads: Vec<SvRoad>,
 }
@@ -53,9 +48,7 @@ impl Section {
     /// Adds the lines of a class.
     fn add(
         &mut self,
-        class: FunctionalRoadClass,
-        lines: usize,
-        blob: &[u8],
+        (class, lines, blob): ClassBlob<'_>,
         corner: LatticePoint,
     ) -> Result<(), Damage> {
         let mut blob = Cursor::new(blob);
@@ -63,7 +56,7 @@ impl Section {
         heads.heads.iter().try_for_each(check_head)?;
         let points = decode_points(&mut blob, heads.point_counts(), corner)?;
         let segments = heads.points - heads.heads.len();
-        let (lows, spans) = (blob.planes(segments)?, blob.planes(segments)?);
+        let [lows, spans] = blob.columns(segments)?;
         blob.finish()?;
         let mut low_q = 0_i64;
         let mut ranges = Vec::with_capacity(segments);
@@ -81,22 +74,20 @@ impl Section {
         Ok(())
     }
 
-    /// The same of range-coded bits.
+    /// Adds the lines of a class from range-coded bits.
     fn add_coded(
         &mut self,
-        class: FunctionalRoadClass,
-        lines: usize,
-        blob: &[u8],
+        (class, lines, blob): ClassBlob<'_>,
         mut coder: LineCoder<'_>,
     ) -> Result<(), Damage> {
-        let mut bits = Reader::new(blob);
+        let mut bits = BitReader::new(blob);
         let mut order = LineOrder::default();
         let mut range_coder = RangeCoder::new();
         let (mut points, mut ranges_m) = (Vec::new(), Vec::new());
         let quantum_m = self.quantum_m;
         for _ in 0..lines {
             ranges_m.clear();
-            let add_range = |coder: &mut LineCoder<'_>, bits: &mut Reader<'_>, number: usize| {
+            let add_range = |coder: &mut LineCoder<'_>, bits: &mut BitReader<'_>, number: usize| {
                 if number > 0 {
                     let (low_q, span) = range_coder.code(bits, coder.last_length(), (0, 0));
                     ranges_m.push(range_m(low_q, span, quantum_m)?);
@@ -115,7 +106,7 @@ impl Section {
     fn add_line(
         &mut self,
         class: FunctionalRoadClass,
-        head: &Head,
+        head: &LineHead,
         points: Vec<LatticePoint>,
         ground_range_m: Vec<[f64; 2]>,
     ) {
@@ -124,7 +115,7 @@ impl Section {
     }
 }
 
-/// A ground range in metres.
+/// Converts a ground range to metres.
 fn range_m(low_q: i64, span: u64, quantum_m: f64) -> Result<[f64; 2], Damage> {
     let high_q = low_q.checked_add_unsigned(span).filter(|&high| (high as f64) < REACH_Q);
     let high_q = high_q.filter(|_| low_q as f64 > -REACH_Q);
@@ -132,7 +123,7 @@ fn range_m(low_q: i64, span: u64, quantum_m: f64) -> Result<[f64; 2], Damage> {
     Ok([low_q as f64 * quantum_m, high_q as f64 * quantum_m])
 }
 
-fn check_head(head: &Head) -> Result<(), Damage> {
+fn check_head(head: &LineHead) -> Result<(), Damage> {
     if head.points < 2 || head.flags != 0 {
         return Err(Damage::Invalid("a line of fewer than two points"));
     }
@@ -147,15 +138,14 @@ mod write {
     use corniche_roads::FunctionalRoadClass;
     use corniche_varints::to_zigzag;
 
-    use super::{
-        LatticePoint, LineCoder, MAX_POINTS, REACH_Q, RangeCoder, SourceGrid, SvRoad, class_table,
-    };
+    use super::{LatticePoint, LineCoder, LineHead, MAX_POINTS, REACH_Q, RangeCoder, SvRoad};
     use crate::payload::{
-        class_table::Head, number_codes::put_planes, points::put_points, range_coder::Writer,
+        class_table, number_codes::put_planes, points::put_points, range_coder::BitWriter,
+        source_grid::SourceGrid,
     };
 
-    /// The section's bytes and how many of them each class takes, or what of the roads cannot be encoded. With a grid its lines are
-    /// range-coded bits.
+    /// Encodes the section: returns its bytes and the number of bytes of each class, or a
+    /// description of what cannot be encoded. With a grid, its lines are range-coded bits.
     pub(crate) fn encode(
         roads: &[SvRoad],
         grid: Option<SourceGrid<'_>>,
@@ -206,7 +196,7 @@ mod write {
         mut coder: LineCoder<'_>,
         quantum_m: f64,
     ) -> Result<(), &'static str> {
-        let mut bits = Writer::new(Vec::new());
+        let mut bits = BitWriter::new(Vec::new());
         let mut range_coder = RangeCoder::new();
         for road in roads {
             let line = &road.line;
@@ -220,28 +210,29 @@ mod write {
                 }
             })?;
             if !is_exact {
-                return Err("a height too far from the one before");
+                return Err("a height too far from the height before it");
             }
         }
         out.extend(bits.finish());
         Ok(())
     }
 
-    fn head_of(SvRoad { way_id, part, line, .. }: &SvRoad) -> Result<Head, &'static str> {
+    fn head_of(SvRoad { way_id, part, line, .. }: &SvRoad) -> Result<LineHead, &'static str> {
         if line.points.len() < 2 || line.points.windows(2).any(|pair| pair[0] == pair[1]) {
-            return Err("a line without length");
+            return Err("a line of zero length");
         }
         if line.ground_range_m.len() != line.points.len() - 1 {
-            return Err("ground ranges that are not one for each segment");
+            return Err("a number of ground ranges that is not the number of segments");
         }
-        Ok(Head { way_id: *way_id, part: *part, points: line.points.len(), flags: 0 })
+        Ok(LineHead { way_id: *way_id, part: *part, points: line.points.len(), flags: 0 })
     }
 
-    /// Lowest ground and how much higher the highest is, in quanta: outwards. A quantum is a power of two, so dividing by it loses nothing.
+    /// Converts a ground range to quanta, rounded outwards: the lowest ground, and the highest
+    /// minus the lowest. A quantum is a power of two, so dividing by it is exact.
     fn range_q([low_m, high_m]: [f64; 2], quantum_m: f64) -> Result<(i64, u64), &'static str> {
         let (low, high) = ((low_m / quantum_m).floor(), (high_m / quantum_m).ceil());
         if !(low.abs() < REACH_Q && high.abs() < REACH_Q && low <= high) {
-            return Err("a ground range that is none");
+            return Err("an invalid ground range");
         }
         Ok((low as i64, (high as i64 - low as i64) as u64))
     }

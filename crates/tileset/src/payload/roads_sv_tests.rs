@@ -1,4 +1,4 @@
-//! SV lines come back with the ground around them.
+//! SV lines round-trip with the height ranges of their ground.
 
 use std::sync::LazyLock;
 
@@ -6,25 +6,28 @@ use corniche_geom::NodeIndex;
 use proptest::prelude::*;
 
 use super::*;
+use crate::payload::source_grid::SourceGrid;
 
 const QUANTUM_M: f64 = 0.25;
 
-/// Place, lowest ground of the segment to it, and how much higher its highest is, in height steps.
+/// A point: its position, the lowest ground of the segment to it, and the highest minus the lowest
+/// ground, in height steps.
 type Point = ([i64; 2], i32, u32);
 
-/// Its lattice has 2^14 steps to 10 m.
+/// A frame whose lattice has 2^14 steps per 10 m.
 static FRAME: LazyLock<GridFrame> = LazyLock::new(|| {
     GridFrame::new([0.5, 0.25], 10.0, NodeIndex { i: -512, j: 1024 }, 2).expect("a frame")
 });
 
-/// Steps of 1/256 m.
+/// A grid with steps of 1/256 m.
 fn grid() -> SourceGrid<'static> {
     let steps = [1_f64 / 256.0; 2].map(f64::to_le_bytes).concat();
     SourceGrid::read(&mut Cursor::new(&steps), &FRAME).expect("a grid")
 }
 
 proptest! {
-    /// Lines with ground of any heights, most points beside the grid, come back as range-coded bits.
+    /// Lines with ground of any heights, most of their points off the grid, round-trip as
+    /// range-coded bits.
     #[test]
     fn coded_lines_come_back_with_their_ground(
         lines in prop::collection::btree_map(

@@ -1,9 +1,9 @@
-//! Where a line goes next over a TIN, guessed from its source points.
+//! Guesses where a line continues on a TIN, from its source points.
 //!
-//! The vertices of a draped line nearly always follow from its source points and the TIN: go straight from one
-//! point to the next and list the edges crossed. Writer and reader guess every vertex by the same exact
-//! integer tests, and the section lists only the vertices where the guess is wrong (and where a line ends
-//! early): a crossing costs no bits.
+//! The vertices of a draped line nearly always follow from its source points and the TIN: go
+//! straight from one point to the next and list the edges that are crossed. Writer and reader guess
+//! every vertex by the same exact integer tests, and the section lists only the vertices where the
+//! guess is wrong (and where a line ends early): a crossing costs no bits.
 //!
 //! ```text
 //!              c                 From half-edge x ► y (the line p ► q came in over it) or from inside:
@@ -18,19 +18,20 @@ use corniche_geom::{LatticeBounds, LatticePoint, cross};
 use corniche_tin::{NO_TWIN, Surface};
 
 use crate::payload::damage::Damage;
-use crate::payload::work_limit::Work;
+use crate::payload::work_limit::StepBudget;
 
-/// Follows one line vertex by vertex: first it is asked for a guess, then it is given the true vertex.
-pub(crate) struct Route<'a> {
+/// Follows one line, vertex by vertex: the caller first requests a guess, then passes the true
+/// vertex.
+pub(crate) struct RouteGuess<'a> {
     surface: &'a Surface,
     /// All points: lead-in, source points, lead-out.
     points: &'a [LatticePoint],
     /// Index of the next source point to be reached.
     next: usize,
-    /// Source points end here; what follows is the lead-out.
+    /// The end of the source points; the lead-out follows.
     end: usize,
     place: RoutePlace,
-    work: &'a Work,
+    work: &'a StepBudget,
 }
 
 #[derive(Clone, Copy)]
@@ -47,20 +48,20 @@ enum RoutePlace {
     Outside,
 }
 
-impl<'a> Route<'a> {
-    /// `leads` tells whether the first and the last of `points` are lead-in and lead-out. Looking at triangles and
-    /// edges counts as `work`.
+impl<'a> RouteGuess<'a> {
+    /// Begins a route; `leads` says whether the first and the last of `points` are lead-in and
+    /// lead-out. Each examined triangle or edge counts as `work`.
     pub(crate) fn new(
         surface: &'a Surface,
         points: &'a [LatticePoint],
         leads: [bool; 2],
-        work: &'a Work,
+        work: &'a StepBudget,
     ) -> Self {
         let end = points.len() - usize::from(leads[1]);
         Self { surface, points, next: usize::from(leads[0]), end, place: RoutePlace::Start, work }
     }
 
-    /// The TIN it goes over.
+    /// The TIN on which the line is.
     pub(crate) fn surface(&self) -> &'a Surface {
         self.surface
     }
@@ -70,8 +71,8 @@ impl<'a> Route<'a> {
         self.points[..self.end].get(self.next).copied()
     }
 
-    /// The next vertex, as far as the points tell; `None` where they say that the line ends. Fails when that took
-    /// more work than is allowed.
+    /// Guesses the next vertex from the points; `None` if the line ends according to them. Fails if
+    /// that takes more work than is allowed.
     pub(crate) fn guess(&self) -> Result<Option<DrapedVertex>, Damage> {
         let vertex = self.best_guess();
         self.work.check()?;
@@ -80,25 +81,26 @@ impl<'a> Route<'a> {
 
     fn best_guess(&self) -> Option<DrapedVertex> {
         if let RoutePlace::Start = self.place {
-            // A line with a lead-in starts on the boundary. Where it starts is not guessed, because that would need a search.
+            // A line with a lead-in starts on the boundary. Its start is not guessed, because
+            // guessing it would need a search.
             let point = if self.next == 0 { self.next_source()? } else { return None };
             return locate(self.surface, point, self.work)
                 .map(|triangle| DrapedVertex::Source { point, triangle });
         }
         let (p, q) = (*self.points.get(self.next.checked_sub(1)?)?, *self.points.get(self.next)?);
-        let line = Line { surface: self.surface, p, q, work: self.work };
+        let line = GuessSegment { surface: self.surface, p, q, work: self.work };
         let vertex = match self.place {
             RoutePlace::Triangle(triangle) => line.after_point(triangle),
             RoutePlace::HalfEdge(half_edge) => line.ahead(half_edge / 3, p, None),
             RoutePlace::Vertex(vertex) => line.after_vertex(vertex),
             RoutePlace::Start | RoutePlace::Outside => None,
         }?;
-        // The lead-out is a direction, never reached.
+        // The lead-out is only a direction and is never reached.
         (self.next < self.end || !matches!(vertex, DrapedVertex::Source { .. })).then_some(vertex)
     }
 
-    /// Goes to `vertex`, whatever the guess was. Indices must be within the TIN. Fails when that took more work than
-    /// is allowed.
+    /// Moves on to `vertex`, whatever the guess was. Indices must be within the TIN. Fails if that
+    /// takes more work than is allowed.
     pub(crate) fn go(&mut self, vertex: DrapedVertex) -> Result<(), Damage> {
         self.place = match vertex {
             DrapedVertex::Source { triangle, .. } => {
@@ -113,7 +115,8 @@ impl<'a> Route<'a> {
         Ok(self.work.check()?)
     }
 
-    /// The half-edge between a and b over which the line comes in: it starts to the left of p ► q.
+    /// Returns the half-edge between a and b over which the line enters: it starts to the left of p
+    /// ► q.
     fn entering(&self, a: u32, b: u32) -> Option<u32> {
         let (p, q) = (*self.points.get(self.next.checked_sub(1)?)?, *self.points.get(self.next)?);
         let left_start = cross(p, q, self.surface.points()[a as usize]) > 0;
@@ -126,20 +129,21 @@ impl<'a> Route<'a> {
 }
 
 /// The segment from p to q.
-struct Line<'a> {
+struct GuessSegment<'a> {
     surface: &'a Surface,
     p: LatticePoint,
     q: LatticePoint,
-    work: &'a Work,
+    work: &'a StepBudget,
 }
 
-impl Line<'_> {
+impl GuessSegment<'_> {
     fn corners(&self, triangle: u32) -> [LatticePoint; 3] {
         self.surface.triangles()[triangle as usize]
             .map(|vertex| self.surface.points()[vertex as usize])
     }
 
-    /// The next vertex within `triangle`, seen from `here`, which is the TIN vertex `at` if that is given.
+    /// Guesses the next vertex within `triangle`, seen from `here`, which is the TIN vertex `at` if
+    /// that is given.
     fn ahead(&self, triangle: u32, here: LatticePoint, at: Option<u32>) -> Option<DrapedVertex> {
         let Self { surface, p, q, work } = *self;
         let corners = self.corners(triangle);
@@ -148,7 +152,8 @@ impl Line<'_> {
             return Some(DrapedVertex::Source { point: q, triangle });
         }
         if sides.iter().all(|&side| side >= 0) {
-            // On a border several triangles hold it; the one with the smallest index counts.
+            // On a border several triangles contain the point; the one with the smallest index
+            // counts.
             return Some(DrapedVertex::Source { point: q, triangle: locate(surface, q, work)? });
         }
         let names = surface.triangles()[triangle as usize];
@@ -171,7 +176,8 @@ impl Line<'_> {
             .map(|k| DrapedVertex::Vertex { vertex: names[k] })
     }
 
-    /// Whether the line, standing at `here` in the triangle, goes on inside it or along its border.
+    /// Whether the line, which is at `here` in the triangle, continues inside the triangle or along
+    /// its border.
     fn goes_into(&self, triangle: u32, here: LatticePoint) -> bool {
         let corners = self.corners(triangle);
         (0..3).all(|k| {
@@ -180,7 +186,7 @@ impl Line<'_> {
         })
     }
 
-    /// The vertex that follows the source point p in `triangle`.
+    /// Guesses the vertex after the source point p in `triangle`.
     fn after_point(&self, triangle: u32) -> Option<DrapedVertex> {
         let corners = self.corners(triangle);
         if let Some(k) = corners.iter().position(|&corner| corner == self.p) {
@@ -196,7 +202,7 @@ impl Line<'_> {
         }
     }
 
-    /// The vertex that follows a TIN vertex on the line.
+    /// Guesses the vertex after a TIN vertex on the line.
     fn after_vertex(&self, vertex: u32) -> Option<DrapedVertex> {
         let here = self.surface.points()[vertex as usize];
         let fan = self.surface.fan(vertex);
@@ -206,14 +212,14 @@ impl Line<'_> {
     }
 }
 
-/// [`Surface::locate`], its steps counted: the triangle with the smallest index that holds `point`. In a hostile TIN
-/// all triangles may lie around one point.
-fn locate(surface: &Surface, point: LatticePoint, work: &Work) -> Option<u32> {
+/// Same as [`Surface::locate`], with steps counted: finds the triangle with the smallest index that
+/// contains `point`. In a hostile TIN all triangles may be around one point.
+fn locate(surface: &Surface, point: LatticePoint, work: &StepBudget) -> Option<u32> {
     let mut found = None;
     let mut steps = 0;
     surface.visit_triangles_near(LatticeBounds::at(point), |triangle| {
         steps += 1;
-        // Those around one point come in ascending order.
+        // The triangles around one point come in ascending order.
         if found.is_none() && surface.triangle_holds(triangle, point) {
             found = Some(triangle);
         }

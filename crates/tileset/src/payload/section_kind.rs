@@ -2,24 +2,29 @@
 
 use std::ops::BitOr;
 
-use corniche_areas::ClassedLayer;
+use corniche_geom::TileId;
 use serde::{Deserialize, Serialize};
 
-/// Declares the kinds, so that the list of all kinds has every kind.
+#[cfg(feature = "write")]
+use crate::payload::damage::EncodeError;
+use crate::payload::damage::{Damage, DecodeError};
+
+/// Declares the kinds, so that the list of all kinds is complete.
 macro_rules! kinds {
     ($($kind:ident = $number:literal, $name:literal;)+) => {
-        /// The kinds of section that this version knows, by the number that a payload stores; a reader skips others.
+        /// The kinds of section that this version knows, with the number that a payload stores;
+        /// readers skip other kinds.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         #[repr(u16)]
-        pub(crate) enum Kind {
+        pub(crate) enum SectionKind {
             $($kind = $number,)+
         }
 
-        impl Kind {
+        impl SectionKind {
             /// All kinds.
             pub(crate) const ALL: &'static [Self] = &[$(Self::$kind),+];
 
-            /// Its name in errors.
+            /// The name of the kind in errors.
             pub(crate) fn name(self) -> &'static str {
                 match self {
                     $(Self::$kind => $name,)+
@@ -45,96 +50,108 @@ kinds! {
     Spans = 13, "spans section";
 }
 
-impl Kind {
-    /// Whether it has SV roads. They are written last, so that those who draw by GEO can read a payload without them.
+impl SectionKind {
+    /// Returns a function that turns damage of a section of this kind into an error.
+    pub(crate) fn damaged(self, tile: TileId) -> impl Fn(Damage) -> DecodeError + Copy {
+        move |damage| DecodeError { tile, part: self.name(), damage }
+    }
+
+    /// Returns a function that turns a value which this kind of section cannot hold into an error.
+    #[cfg(feature = "write")]
+    pub(crate) fn refused(self, tile: TileId) -> impl Fn(&'static str) -> EncodeError + Copy {
+        move |what| EncodeError::Unencodable { tile, section: self.name(), what }
+    }
+
+    /// Whether the section has SV roads. They are written last, so that readers that draw by GEO
+    /// can read a payload without them.
     pub(crate) const fn is_sv(self) -> bool {
         matches!(self, Self::RoadsSv | Self::CodedSv)
     }
 
-    /// Whether its bytes do not become smaller by compression.
+    /// Whether compression does not make the section's bytes smaller.
     #[cfg(feature = "write")]
     pub(crate) const fn is_dense(self) -> bool {
         matches!(self, Self::Terrain | Self::CodedGeo | Self::CodedSv | Self::Photo)
     }
-
-    /// The kind of the sections of a layer of lines.
-    pub(crate) const fn of_lines(layer: ClassedLayer) -> Self {
-        match layer {
-            ClassedLayer::Boundaries => Self::Boundaries,
-        }
-    }
 }
 
-/// The two kinds of section that roads of a method, or areas, can be in.
+/// The two kinds of section in which the roads of a method, or the areas, can be stored.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TwoKinds {
-    /// Numbers in planes.
-    pub(crate) planes: Kind,
-    /// Range-coded bits.
-    pub(crate) coded: Kind,
+    /// The kind with numbers in planes.
+    pub(crate) planes: SectionKind,
+    /// The kind with range-coded bits.
+    pub(crate) coded: SectionKind,
 }
 
-/// Centre-lines on the TIN.
-pub(crate) const GEO: TwoKinds = TwoKinds { planes: Kind::RoadsGeo, coded: Kind::CodedGeo };
-/// Plan lines for shadow volumes.
-pub(crate) const SV: TwoKinds = TwoKinds { planes: Kind::RoadsSv, coded: Kind::CodedSv };
-/// Areas.
-pub(crate) const AREAS: TwoKinds = TwoKinds { planes: Kind::Areas, coded: Kind::CodedAreas };
+/// The kinds of GEO roads: centre-lines on the TIN.
+pub(crate) const GEO: TwoKinds =
+    TwoKinds { planes: SectionKind::RoadsGeo, coded: SectionKind::CodedGeo };
+/// The kinds of SV roads: lines in plan for shadow volumes.
+pub(crate) const SV: TwoKinds =
+    TwoKinds { planes: SectionKind::RoadsSv, coded: SectionKind::CodedSv };
+/// The kinds of areas.
+pub(crate) const AREAS: TwoKinds =
+    TwoKinds { planes: SectionKind::Areas, coded: SectionKind::CodedAreas };
 
-/// Which sections of a payload to decode; combine them with `|`.
+/// The set of sections of a payload to decode; combine sets with `|`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Sections(u16);
 
 impl Sections {
-    /// None: checks the header alone.
+    /// No sections: only the header is checked.
     pub const NONE: Self = Self(0);
     /// The ground.
-    pub const TERRAIN: Self = Self::of(Kind::Terrain);
-    /// Centre-lines on the TIN. Reads the ground too, which they lie on.
-    pub const ROADS_GEO: Self = Self::of(Kind::RoadsGeo).and(Self::of(Kind::CodedGeo));
-    /// Plan lines for shadow volumes.
-    pub const ROADS_SV: Self = Self::of(Kind::RoadsSv).and(Self::of(Kind::CodedSv));
-    /// The attributes of each way, of both sections that have some.
-    pub const ATTRIBUTES: Self = Self::of(Kind::Attributes).and(Self::of(Kind::RoadTags));
+    pub const TERRAIN: Self = Self::from_kind(SectionKind::Terrain);
+    /// Centre-lines on the TIN (GEO roads). The ground is read, too, because they are on it.
+    pub const ROADS_GEO: Self =
+        Self::from_kind(SectionKind::RoadsGeo).and(Self::from_kind(SectionKind::CodedGeo));
+    /// Lines in plan for shadow volumes (SV roads).
+    pub const ROADS_SV: Self =
+        Self::from_kind(SectionKind::RoadsSv).and(Self::from_kind(SectionKind::CodedSv));
+    /// The attributes of each way, from both sections that have some.
+    pub const ATTRIBUTES: Self =
+        Self::from_kind(SectionKind::Attributes).and(Self::from_kind(SectionKind::RoadTags));
     /// The raster of the level, for shading.
-    pub const RELIEF: Self = Self::of(Kind::Relief);
-    /// The photo. [`decode`](crate::decode) checks it; [`decode_photo`](crate::decode_photo) gives it.
-    pub const PHOTO: Self = Self::of(Kind::Photo);
-    /// Areas. [`decode`](crate::decode) checks them; [`decode_areas`](crate::decode_areas) gives them.
-    pub const AREAS: Self = Self::of(Kind::Areas).and(Self::of(Kind::CodedAreas));
-    /// Runs of bridges and tunnels that are off the ground. [`decode`](crate::decode) checks them, and reads the ground too, on which their ends lie;
-    /// [`decode_spans`](crate::decode_spans) gives them.
-    pub const SPANS: Self = Self::of(Kind::Spans);
-    /// Everything, checksums of sections of unknown kinds included.
+    pub const RELIEF: Self = Self::from_kind(SectionKind::Relief);
+    /// The photo. [`decode`](crate::decode) checks it; [`decode_photo`](crate::decode_photo)
+    /// returns it.
+    pub const PHOTO: Self = Self::from_kind(SectionKind::Photo);
+    /// The areas. [`decode`](crate::decode) checks them; [`decode_areas`](crate::decode_areas)
+    /// returns them.
+    pub const AREAS: Self =
+        Self::from_kind(SectionKind::Areas).and(Self::from_kind(SectionKind::CodedAreas));
+    /// The boundaries. [`decode`](crate::decode) checks them;
+    /// [`decode_boundaries`](crate::decode_boundaries) returns them.
+    pub const BOUNDARIES: Self = Self::from_kind(SectionKind::Boundaries);
+    /// The runs of spans, which are stretches of bridges and tunnels off the ground.
+    /// [`decode`](crate::decode) checks them, and reads the ground, too, because their ends are on
+    /// it; [`decode_spans`](crate::decode_spans) returns them.
+    pub const SPANS: Self = Self::from_kind(SectionKind::Spans);
+    /// All sections, including the checksums of sections of unknown kinds.
     pub const ALL: Self = Self::all();
 
-    /// The lines of a layer. [`decode`](crate::decode) checks them; [`decode_lines`](crate::decode_lines) gives them.
-    #[must_use]
-    pub const fn lines(layer: ClassedLayer) -> Self {
-        Self::of(Kind::of_lines(layer))
-    }
-
-    /// One bit for each kind, by its number.
-    const fn of(kind: Kind) -> Self {
+    /// One bit per kind, by its number.
+    const fn from_kind(kind: SectionKind) -> Self {
         Self(1 << (kind as u16 - 1))
     }
 
     const fn all() -> Self {
         let (mut all, mut k) = (Self::NONE, 0);
-        while k < Kind::ALL.len() {
-            all = all.and(Self::of(Kind::ALL[k]));
+        while k < SectionKind::ALL.len() {
+            all = all.and(Self::from_kind(SectionKind::ALL[k]));
             k += 1;
         }
         all
     }
 
-    /// These and `other`; as `|`, for constants.
+    /// Returns the union with `other`; like `|`, but for constants.
     #[must_use]
     pub const fn and(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// Whether all of `other` are among these.
+    /// Whether all sections of `other` are in this set.
     #[must_use]
     pub const fn contains(self, other: Self) -> bool {
         self.0 & other.0 == other.0

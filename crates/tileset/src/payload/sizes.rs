@@ -1,26 +1,26 @@
-//! How large the parts of a payload are, without decoding what they say.
+//! The sizes of the parts of a payload, without decoding their content.
 
-use corniche_areas::ClassedLayer;
 use corniche_geom::TileId;
 use corniche_roads::FunctionalRoadClass;
 
 use crate::payload::damage::{Damage, DecodeError};
 use crate::payload::envelope::SectionSize;
 use crate::payload::number_codes::Cursor;
-use crate::payload::section_kind::{AREAS, GEO, Kind, SV, TwoKinds};
+use crate::payload::section_kind::{AREAS, GEO, SV, SectionKind, TwoKinds};
 use crate::payload::source_grid::GRID_BYTES;
 use crate::payload::{class_table, envelope};
 
 /// Sizes of the sections of a payload, and of the classes in its road sections.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct PayloadSizes {
-    /// The terrain section; 0 where absent, as all that follow.
+    /// The terrain section; all sizes are 0 if the section is absent.
     pub terrain: SectionSize,
     /// The GEO roads section.
     pub roads_geo: SectionSize,
     /// The SV roads section.
     pub roads_sv: SectionSize,
-    /// Bytes of the SV roads that the payload ends with; 0 where another section is the last, as in packages of before.
+    /// Bytes of the SV roads at the end of the payload; 0 if another section is the last, as in
+    /// packages of older versions.
     pub sv_tail: u64,
     /// The road attributes section.
     pub attributes: SectionSize,
@@ -32,49 +32,50 @@ pub struct PayloadSizes {
     pub photo: SectionSize,
     /// The areas section.
     pub areas: SectionSize,
-    /// The section of each layer of lines, in order of [`ClassedLayer::ALL`].
-    pub lines: [SectionSize; ClassedLayer::ALL.len()],
+    /// The boundaries section.
+    pub boundaries: SectionSize,
     /// The spans section.
     pub spans: SectionSize,
-    /// Bytes of each class in the GEO section before compression: they determine the class's share of the stored bytes.
+    /// Bytes of each class in the GEO section before compression: the stored bytes are distributed
+    /// to classes in proportion to them.
     pub geo_class_bytes: [u64; FunctionalRoadClass::COUNT],
-    /// The same for the SV section.
+    /// Bytes of each class in the SV section before compression.
     pub sv_class_bytes: [u64; FunctionalRoadClass::COUNT],
 }
 
 impl PayloadSizes {
-    /// The sizes of sections of which `size` knows the kinds that are there, with the bytes of the classes of GEO and SV roads.
-    pub(crate) fn of(
-        size: impl Fn(Kind) -> SectionSize,
+    /// Returns the sizes of sections, which `size` gives for each kind, with the bytes of the
+    /// classes of GEO and SV roads.
+    pub(crate) fn from_sections(
+        size: impl Fn(SectionKind) -> SectionSize,
         sv_tail: u64,
         [geo_class_bytes, sv_class_bytes]: [[u64; FunctionalRoadClass::COUNT]; 2],
     ) -> Self {
         let either = |kinds: TwoKinds| size(kinds.planes).or(size(kinds.coded));
         Self {
-            terrain: size(Kind::Terrain),
+            terrain: size(SectionKind::Terrain),
             roads_geo: either(GEO),
             roads_sv: either(SV),
             sv_tail,
-            attributes: size(Kind::Attributes),
-            road_tags: size(Kind::RoadTags),
-            relief: size(Kind::Relief),
-            photo: size(Kind::Photo),
+            attributes: size(SectionKind::Attributes),
+            road_tags: size(SectionKind::RoadTags),
+            relief: size(SectionKind::Relief),
+            photo: size(SectionKind::Photo),
             areas: either(AREAS),
-            lines: ClassedLayer::ALL.map(|layer| size(Kind::of_lines(layer))),
-            spans: size(Kind::Spans),
+            boundaries: size(SectionKind::Boundaries),
+            spans: size(SectionKind::Spans),
             geo_class_bytes,
             sv_class_bytes,
         }
     }
 }
 
-/// Sizes of the parts of a payload of tile `id`.
+/// Returns the sizes of the parts of a payload of tile `id`.
 ///
 /// # Errors
 /// When the bytes are not a payload of that tile, or a road section is damaged.
 pub fn payload_sizes(bytes: &[u8], id: TileId) -> Result<PayloadSizes, DecodeError> {
-    let failed = |part| move |damage| DecodeError { tile: id, part, damage };
-    let sections = envelope::open(bytes, id).map_err(failed("header"))?;
+    let sections = envelope::open(bytes, id).map_err(|damage| damage.in_header(id))?;
     let class_bytes = |roads: TwoKinds| -> Result<[u64; FunctionalRoadClass::COUNT], Damage> {
         let mut sizes = [0; FunctionalRoadClass::COUNT];
         if let Some((raw, is_coded)) = envelope::section_of_two(&sections, roads)? {
@@ -86,8 +87,8 @@ pub fn payload_sizes(bytes: &[u8], id: TileId) -> Result<PayloadSizes, DecodeErr
         }
         Ok(sizes)
     };
-    let of_classes = |roads: TwoKinds| class_bytes(roads).map_err(failed(roads.planes.name()));
+    let of_classes = |roads: TwoKinds| class_bytes(roads).map_err(roads.planes.damaged(id));
     let size = |kind| envelope::size(&sections, kind);
     let class_bytes = [of_classes(GEO)?, of_classes(SV)?];
-    Ok(PayloadSizes::of(size, envelope::sv_tail_bytes(&sections), class_bytes))
+    Ok(PayloadSizes::from_sections(size, envelope::sv_tail_bytes(&sections), class_bytes))
 }

@@ -1,4 +1,5 @@
-//! The spans of a tile: stretches of bridges and tunnels that are off the ground, read and written apart from the rest of the payload.
+//! The spans of a tile: stretches of bridges and tunnels that are off the ground. They are read and
+//! written separately from the rest of the payload.
 
 #[cfg(feature = "write")]
 mod encode;
@@ -11,32 +12,34 @@ use corniche_roads::{FunctionalRoadClass, Structure};
 use corniche_varints::zigzag;
 
 use crate::limits::{MAX_LINES, MAX_SPAN_POINTS};
-use crate::payload::context::Context;
+use crate::payload::context::CodingContext;
 use crate::payload::damage::{Damage, DecodeError};
 use crate::payload::envelope;
 use crate::payload::number_codes::{Cursor, take_room};
 use crate::payload::points::decode_points;
-use crate::payload::section_kind::Kind;
+use crate::payload::section_kind::SectionKind;
 use crate::payload::terrain;
 
 #[cfg(feature = "write")]
 pub use encode::encode_spans;
 pub use span_run::{SpanHeight, SpanPoint, SpanRun};
 
-/// Bits of a run's first number.
+/// The flag bits of a run's first number.
 const FIRST_ON_GROUND: u64 = 1;
 const LAST_ON_GROUND: u64 = 2;
 const TUNNEL: u64 = 4;
-/// The class is in the bits from this one on.
+/// The class begins at this bit.
 const CLASS_BIT: u32 = 3;
 
-/// There is ground beneath bridges and above tunnels.
+/// Bridges need ground beneath them, and tunnels need ground above them.
 pub(crate) const WITHOUT_GROUND: Damage = Damage::Invalid("spans in a tile without ground");
 
-/// Reads the spans of a tile from the bytes of its payload; none if it has none. Memory is bounded by the
-/// [`limits`](crate::limits), whatever the bytes say. Triangles that points name are those of the tile's TIN.
+/// Reads the spans of a tile from the bytes of its payload; empty if it has none. Memory stays
+/// within the [`limits`](crate::limits), whatever the bytes say. The triangles to which points
+/// refer are those of the tile's TIN.
 ///
-/// `frame` and `quantum_m` are those of the package's manifest. The triangles themselves are not decoded.
+/// `frame` and `quantum_m` are those of the package's manifest. The triangles themselves are not
+/// decoded.
 ///
 /// # Errors
 /// When the bytes are not a payload of tile `id`, or the section is damaged.
@@ -46,19 +49,18 @@ pub fn decode_spans(
     frame: &GridFrame,
     quantum_m: f64,
 ) -> Result<Vec<SpanRun>, DecodeError> {
-    let (context, sections) = Context::open(bytes, id, frame, quantum_m)?;
-    let failed = |part| move |damage| DecodeError { tile: id, part, damage };
-    let inside = failed(Kind::Spans.name());
-    let Some(section) = envelope::section(&sections, Kind::Spans).map_err(inside)? else {
+    let (context, sections) = CodingContext::open(bytes, id, frame, quantum_m)?;
+    let damaged = SectionKind::Spans.damaged(id);
+    let Some(section) = envelope::section(&sections, SectionKind::Spans).map_err(damaged)? else {
         return Ok(Vec::new());
     };
     let ground = terrain::record_in(&sections, context.scale);
-    let ground = ground.map_err(failed(Kind::Terrain.name()))?;
-    let triangles = ground.ok_or(WITHOUT_GROUND).map_err(inside)?.triangles;
-    decode(&section, context.corner, triangles).map_err(inside)
+    let ground = ground.map_err(SectionKind::Terrain.damaged(id))?;
+    let triangles = ground.ok_or(WITHOUT_GROUND).map_err(damaged)?.triangles;
+    decode(&section, context.corner, triangles).map_err(damaged)
 }
 
-/// Reads the section's bytes, in a tile with so many triangles.
+/// Decodes the section's bytes, in a tile with this number of triangles.
 pub(crate) fn decode(
     bytes: &[u8],
     corner: LatticePoint,
@@ -66,8 +68,7 @@ pub(crate) fn decode(
 ) -> Result<Vec<SpanRun>, Damage> {
     let cursor = &mut Cursor::new(bytes);
     let count = cursor.bounded(MAX_LINES, "number of runs")?;
-    let [codes, ways, lengths] =
-        [cursor.planes(count)?, cursor.planes(count)?, cursor.planes(count)?];
+    let [codes, ways, lengths] = cursor.columns(count)?;
     let mut room = MAX_SPAN_POINTS;
     let mut points_of = Vec::with_capacity(count);
     for length in lengths.iter() {
@@ -102,23 +103,24 @@ pub(crate) fn decode(
     Ok(runs)
 }
 
-/// The class in a run's first number.
+/// Returns the class in a run's first number.
 fn class(code: u64) -> Result<FunctionalRoadClass, Damage> {
     let class = u8::try_from(code >> CLASS_BIT).ok().and_then(FunctionalRoadClass::new);
     class.ok_or(Damage::Invalid("a class of runs"))
 }
 
-/// Heights of points that are off the ground, each as the difference to the one before, and the triangles of the others.
+/// Decodes the heights of points off the ground, each as the difference from the height before, and
+/// the triangles of the other points.
 struct Heights<S, N> {
     steps: S,
     named: N,
     last: i64,
-    /// How many triangles the tile has.
+    /// The number of triangles of the tile.
     triangles: usize,
 }
 
 impl<S: Iterator<Item = u64>, N: Iterator<Item = u64>> Heights<S, N> {
-    /// The points of a run with their heights.
+    /// Adds heights to the points of a run.
     fn lift(&mut self, points: &[LatticePoint], code: u64) -> Result<Vec<SpanPoint>, Damage> {
         let is_last = iter::repeat_n(false, points.len().saturating_sub(1)).chain([true]);
         let is_first = iter::once(true).chain(iter::repeat(false));
@@ -146,7 +148,7 @@ impl<S: Iterator<Item = u64>, N: Iterator<Item = u64>> Heights<S, N> {
     }
 }
 
-/// Whether a height in steps is one that ground can have.
+/// Whether ground can have a height of this many steps.
 fn is_height(steps: i64) -> bool {
     i32::try_from(steps).is_ok()
 }

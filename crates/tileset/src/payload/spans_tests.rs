@@ -1,4 +1,4 @@
-//! Spans come back from their section bit for bit, their ends have the ground's height, and damage is told.
+//! Spans round-trip bit for bit, their ends have the height of the ground, and damage is reported.
 
 use corniche_drape::{DrapedLine, DrapedVertex, positions};
 use corniche_testing::package;
@@ -17,7 +17,7 @@ fn frame() -> GridFrame {
     package::frame()
 }
 
-/// A point so many steps from the tile's corner.
+/// A point this many steps from the tile's corner.
 fn at(u: i64, v: i64) -> LatticePoint {
     let corner = frame().lattice_of_node(frame().tile_corner(tile()));
     LatticePoint::new(corner.u + u, corner.v + v)
@@ -35,7 +35,7 @@ fn run(class: u8, way_id: i64, structure: Structure, points: Vec<SpanPoint>) -> 
     SpanRun { way_id, class: FunctionalRoadClass::new(class).unwrap(), structure, points }
 }
 
-/// The example of the specification.
+/// The example in the specification.
 fn bridge() -> SpanRun {
     let points = vec![low(64, -128, 0), high(96, -128, 400), high(96, -130, 380)];
     run(3, 1000, Structure::Bridge, points)
@@ -62,7 +62,7 @@ fn section_of(runs: &[SpanRun]) -> Section {
     encode_spans(tile(), &frame(), runs).unwrap().unwrap()
 }
 
-/// The small package's tile with these spans.
+/// The tile of the small package, with these spans.
 fn payload_with(section: Section) -> (Vec<u8>, SectionSize) {
     let payload = package::encoded(tile());
     let mut builder = PayloadBuilder::with_all_of(&payload, tile()).unwrap();
@@ -105,7 +105,7 @@ fn the_bytes_are_those_of_the_specification() {
     assert_eq!(metres, [SpanHeight::Steps(400), SpanHeight::Steps(380)], "100 m and 95 m");
 }
 
-/// As a source point of a GEO road there, to the last bit.
+/// The ends have the height of a source point of a GEO road there, to the last bit.
 #[test]
 fn ends_on_the_ground_have_its_height() {
     let terrain = package::payload(tile()).terrain.unwrap();
@@ -132,27 +132,27 @@ fn what_cannot_be_read_is_not_written() {
     let refused = |runs: &[SpanRun]| encode_spans(tile(), &frame(), runs).unwrap_err().to_string();
     let one = |points| refused(&[run(3, 1, Structure::Bridge, points)]);
     let two = || vec![high(0, 0, 1), high(1, 0, 1)];
-    assert!(refused(&[run(3, 1, Structure::Ground, two())]).contains("on the ground"));
-    assert!(one(vec![]).contains("less than two"));
-    assert!(one(vec![high(0, 0, 1)]).contains("less than two"));
-    assert!(one(vec![high(0, 0, 1), high(0, 0, 2)]).contains("twice"));
+    assert!(refused(&[run(3, 1, Structure::Ground, two())]).contains("neither a bridge"));
+    assert!(one(vec![]).contains("fewer than two"));
+    assert!(one(vec![high(0, 0, 1)]).contains("fewer than two"));
+    assert!(one(vec![high(0, 0, 1), high(0, 0, 2)]).contains("two equal points"));
     assert!(one(vec![high(0, 0, 1), low(1, 1, 2), high(3, 3, 1)]).contains("between the ends"));
     assert!(one(vec![high(0, 0, 1), high(0, (1 << 55) + 1, 2)]).contains("far away"));
-    assert!(one(vec![high(0, 0, 1), high(1, 0, 1 << 31)]).contains("no ground has"));
-    assert!(one(vec![high(0, 0, 1), low(1, 0, 1 << 17)]).contains("no ground has"));
+    assert!(one(vec![high(0, 0, 1), high(1, 0, 1 << 31)]).contains("an impossible height"));
+    assert!(one(vec![high(0, 0, 1), low(1, 0, 1 << 17)]).contains("an impossible height"));
     let order = |a, b| [run(3, a, Structure::Bridge, two()), run(3, b, Structure::Bridge, two())];
     assert!(refused(&order(2, 1)).contains("not sorted"));
     assert!(encode_spans(tile(), &frame(), &order(1, 1)).is_ok(), "two runs of a way");
-    // A tile has spans once, and ground.
+    // A tile has only one spans section, and needs ground for it.
     let section = || section_of(&runs());
     let (bytes, _) = payload_with(section());
     let again = PayloadBuilder::with_all_of(&bytes, tile()).unwrap().add(section()).unwrap_err();
-    assert!(again.to_string().contains("beside others"), "{again}");
+    assert!(again.to_string().contains("a second section of the same kind"), "{again}");
     let bare = PayloadBuilder::new(tile()).add(section()).unwrap_err();
     assert!(bare.to_string().contains("without ground"), "{bare}");
 }
 
-/// Whoever reads everything, or spans alone, is told; who reads something else is not.
+/// Reading all sections, or only spans, reports an error; reading other sections does not.
 #[test]
 fn triangles_that_the_tile_does_not_have_are_refused() {
     let triangles = package::payload(tile()).terrain.unwrap().tin.triangles().len() as u32;
@@ -175,7 +175,7 @@ fn every_cut_and_every_flipped_bit_is_noticed() {
     for length in some_of(0..whole.len(), [61, 9, 1]) {
         assert!(decode_all(&whole[..length]).is_err(), "cut to {length} bytes");
     }
-    // SV roads come after them.
+    // SV roads come after the spans.
     let end = whole.len() - payload_sizes(&whole, tile()).unwrap().sv_tail as usize;
     for bit in some_of(8 * (end - 100)..8 * end, [5, 3, 1]) {
         let mut damaged = whole.clone();
@@ -185,10 +185,10 @@ fn every_cut_and_every_flipped_bit_is_noticed() {
     }
 }
 
-type Numbers = (u8, i64, bool, [bool; 2], Vec<(i64, i64, i32, u32)>);
+type RunNumbers = (u8, i64, bool, [bool; 2], Vec<(i64, i64, i32, u32)>);
 
-/// A run of these numbers, without points that would stand where the one before does.
-fn run_of((class, way_id, is_tunnel, ends, points): Numbers) -> SpanRun {
+/// A run of these numbers, without points whose position in plan is that of the point before.
+fn run_of((class, way_id, is_tunnel, ends, points): RunNumbers) -> SpanRun {
     let structure = if is_tunnel { Structure::Tunnel } else { Structure::Bridge };
     let mut points: Vec<_> = points
         .into_iter()
@@ -221,7 +221,7 @@ proptest! {
         }
     }
 
-    /// Damage is told; nothing panics, and what is read could have been written.
+    /// Damage is reported; nothing panics, and everything that is read could have been written.
     #[test]
     fn damaged_bytes_are_refused_or_read(at in 0_usize..120, value in any::<u8>(), cut in 0_usize..60) {
         let mut bytes = section_of(&runs()).into_bytes();

@@ -1,28 +1,28 @@
-//! What the ground of a tile states about itself, without its triangles.
+//! The summary of the ground of a tile, without its triangles.
 
 use corniche_geom::{GridFrame, TileId};
 
-use crate::payload::context::Context;
+use crate::payload::context::CodingContext;
 use crate::payload::damage::DecodeError;
-use crate::payload::section_kind::Kind;
+use crate::payload::section_kind::SectionKind;
 use crate::payload::terrain;
 use crate::payload::tile_payload::TerrainSummary;
 
-/// Reads what the ground of a tile states about itself; `None` without ground. Its triangles are not decoded: this is for tiles that
-/// are looked at to find those that are drawn.
+/// Reads the summary of the ground of a tile; `None` without ground. The triangles are not decoded:
+/// this function is for tiles that are inspected to find the tiles to draw.
 ///
 /// # Errors
-/// When the bytes are not a payload of tile `id`, the section is damaged, or what it states is impossible. What the triangles are coded
-/// in is covered by the section's checksum alone.
+/// When the bytes are not a payload of tile `id`, the section is damaged, or the summary is
+/// invalid. The coded bits of the triangles are only covered by the section's checksum.
 pub fn terrain_summary(
     bytes: &[u8],
     id: TileId,
     frame: &GridFrame,
     quantum_m: f64,
 ) -> Result<Option<TerrainSummary>, DecodeError> {
-    let (context, sections) = Context::open(bytes, id, frame, quantum_m)?;
-    let failed = |damage| DecodeError { tile: id, part: Kind::Terrain.name(), damage };
-    let record = terrain::record_in(&sections, context.scale).map_err(failed)?;
+    let (context, sections) = CodingContext::open(bytes, id, frame, quantum_m)?;
+    let record = terrain::record_in(&sections, context.scale);
+    let record = record.map_err(SectionKind::Terrain.damaged(id))?;
     Ok(record.map(|record| TerrainSummary {
         geometric_error_m: record.geometric_error_m,
         height_range_m: record.height_range_m,

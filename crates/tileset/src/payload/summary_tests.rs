@@ -19,7 +19,8 @@ fn a_summary_says_what_the_decoded_ground_says() {
         let bytes = package.tile(id).unwrap().unwrap();
         let summary = terrain_summary(&bytes, id, &frame, quantum_m).unwrap();
         let decoded = decode(&bytes, id, &frame, quantum_m, Sections::TERRAIN).unwrap().terrain;
-        let stated = |ground: &crate::Terrain| (ground.geometric_error_m, ground.height_range_m);
+        let stated =
+            |ground: &crate::TileTerrain| (ground.geometric_error_m, ground.height_range_m);
         assert_eq!(
             summary.map(|ground| (ground.geometric_error_m, ground.height_range_m)),
             decoded.as_ref().map(stated),
@@ -36,7 +37,7 @@ fn damage_anywhere_in_the_section_is_noticed() {
     let (frame, quantum_m) = (package.manifest().frame, package.manifest().vertical.quantum_m);
     let id = package.tile_ids().unwrap()[0];
     let bytes = package.tile(id).unwrap().unwrap();
-    // The first byte of the first section, which is the terrain, comes after the table.
+    // The first byte of the first section, which is the terrain, follows the table.
     let sections = usize::from(bytes[6]);
     let first = 16 + 20 * sections + 4;
     let stored = u32::from_le_bytes(bytes[24..28].try_into().unwrap()) as usize;

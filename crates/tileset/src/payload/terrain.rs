@@ -1,4 +1,4 @@
-//! The TERRAIN section: vertices, triangles, heights, normals.
+//! The terrain section: vertices, triangles, heights, normals.
 
 pub(crate) mod record;
 

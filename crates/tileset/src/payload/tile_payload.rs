@@ -1,4 +1,4 @@
-//! A decoded tile: its ground, its roads for both methods, and what is known of their ways.
+//! A decoded tile: its ground, its roads for both methods, and the attributes of their ways.
 
 use corniche_drape::{DrapedLine, SvLine};
 use corniche_geom::TileId;
@@ -7,46 +7,49 @@ use corniche_tin::Tin;
 
 use crate::payload::relief::Relief;
 
-/// All that a tile holds, decoded, but for what is read by itself: its photo ([`decode_photo`](crate::decode_photo)), areas, lines and spans. A section
-/// that is absent from the bytes is empty or `None` here.
+/// The decoded content of a tile, except the parts that are read separately: its photo
+/// ([`decode_photo`](crate::decode_photo)), areas, lines and spans. Sections that are absent from
+/// the bytes are empty or `None` here.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TilePayload {
     /// The tile.
     pub id: TileId,
-    /// Its ground; `None` for a tile without any.
-    pub terrain: Option<Terrain>,
-    /// The raster of its level, for shading; `None` in packages without.
+    /// The ground of the tile; `None` for a tile without ground.
+    pub terrain: Option<TileTerrain>,
+    /// The raster of its level, for shading; `None` in packages without relief.
     pub relief: Option<Relief>,
-    /// Centre-lines on the TIN, sorted by class, way id, part.
+    /// Centre-lines on the TIN (GEO roads), sorted by class, way id, part.
     pub roads_geo: Vec<GeoRoad>,
-    /// Plan lines for shadow volumes, sorted by class, way id, part.
+    /// Lines in plan for shadow volumes (SV roads), sorted by class, way id, part.
     pub roads_sv: Vec<SvRoad>,
-    /// What is known of each way that occurs in this tile, sorted by way id.
+    /// The attributes of each way that occurs in this tile, sorted by way id.
     pub attributes: Vec<RoadRecord>,
 }
 
 /// The ground of a tile.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Terrain {
+pub struct TileTerrain {
     /// The triangles.
     pub tin: Tin,
-    /// Unit normal of the DEM at each vertex, octahedron-coded (Meyer et al. 2010, *On Floating-Point Normal
-    /// Vectors*), in steps of 1/127.
+    /// Unit normal of the DEM at each vertex, octahedron-coded (Meyer et al. 2010, *On
+    /// Floating-Point Normal Vectors*), in steps of 1/127.
     pub normals: Vec<[i8; 2]>,
-    /// Error of drawing this tile instead of the full-resolution DEM; never below its children's.
+    /// Error in metres of drawing this tile instead of the full-resolution DEM; never below that of
+    /// its children.
     pub geometric_error_m: f64,
-    /// Heights of the lowest and the highest full-resolution node beneath the tile.
+    /// Heights in metres of the lowest and the highest full-resolution node beneath the tile.
     pub height_range_m: [f64; 2],
-    /// Full-resolution nodes with data beneath that the TIN does not cover (next to voids and data edges).
+    /// Full-resolution nodes with data beneath the tile that the TIN does not cover (next to voids
+    /// and data edges).
     pub uncovered_nodes: u64,
 }
 
-/// What the ground of a tile states about itself.
+/// The summary of the ground of a tile.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TerrainSummary {
-    /// See [`Terrain::geometric_error_m`].
+    /// See [`TileTerrain::geometric_error_m`].
     pub geometric_error_m: f64,
-    /// See [`Terrain::height_range_m`].
+    /// See [`TileTerrain::height_range_m`].
     pub height_range_m: [f64; 2],
 }
 
@@ -76,11 +79,11 @@ pub struct SvRoad {
     pub line: SvLine,
 }
 
-/// What is known of a way.
+/// The attributes of a way.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RoadRecord {
     /// OSM's id of the way.
     pub way_id: i64,
-    /// What its tags say.
+    /// The attributes from its tags.
     pub attributes: RoadAttributes,
 }

@@ -1,7 +1,7 @@
 //! Steps from one point of a line to the next as range-coded bits.
 //!
-//! A road or an outline goes on in about the direction it had, so a step is turned and mirrored until the step before it points between
-//! east and north-east:
+//! A road or an outline mostly continues in its previous direction, so a step is turned and
+//! mirrored until the step before it points between east and north-east:
 //!
 //! ```text
 //!        across                    p is the step before, in the first octant; the next step is coded as
@@ -14,19 +14,19 @@
 use crate::payload::magnitudes::Magnitudes;
 use crate::payload::range_coder::{Bits, Model};
 
-/// Binary digits of a step, from 0 to 32 and more: what is above counts as 32.
+/// The number of possible counts of binary digits of a step: 0 to 32, and larger steps count as 32.
 const LENGTHS: usize = 33;
-/// Fourths of the slope of the step before, and none before.
+/// The number of slope classes of the step before: quarters, and one for no step before.
 const SLOPES: usize = 5;
-/// Lengths of a step along that contexts of the step across tell apart.
+/// The number of lengths of a step along that the contexts of the step across distinguish.
 const ALONG_LENGTHS: usize = 20;
 
-/// Binary digits of a number.
+/// The number of binary digits of a number.
 pub(crate) fn length(number: i64) -> usize {
     (u64::BITS - number.unsigned_abs().leading_zeros()) as usize
 }
 
-/// What a coder knows of steps.
+/// The state of a coder of steps.
 pub(crate) struct StepCoder {
     along: Magnitudes<LENGTHS, SLOPES>,
     across: Magnitudes<{ ALONG_LENGTHS * SLOPES }, LENGTHS>,
@@ -44,7 +44,7 @@ impl StepCoder {
         }
     }
 
-    /// Codes a step behind the step `before`, if there was one.
+    /// Codes a step that follows the step `before`, if there was one.
     pub(crate) fn code<B: Bits>(
         &mut self,
         bits: &mut B,

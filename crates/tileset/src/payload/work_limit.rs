@@ -1,6 +1,6 @@
-//! A decoder that takes more steps for one tile than are allowed says that the tile is damaged.
+//! If a tile takes more steps to decode than are allowed, the decoder reports it as damaged.
 
-pub(crate) use corniche_geom::Work;
+pub(crate) use corniche_geom::StepBudget;
 
 use corniche_geom::TooMuchWork;
 

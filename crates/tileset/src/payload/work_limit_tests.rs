@@ -1,4 +1,4 @@
-//! How far real and hard tiles stay below the limits of work. Prints figures; run with `--nocapture`.
+//! Real and hard tiles stay far below the limits of work. Prints figures; run with `--nocapture`.
 #![allow(clippy::print_stdout, reason = "these tests print figures")]
 
 use corniche_drape::{DrapedVertex, drape};
@@ -9,26 +9,27 @@ use corniche_tin::{Placement, Surface, Tin, TinSpec, TinVertex, height_quantum_m
 use super::*;
 use crate::limits::{MAX_ROUTE_STEPS, max_walk_steps};
 use crate::payload::connectivity::walk;
-use crate::payload::corner_guess::Nodes;
-use crate::payload::range_coder::Writer;
-use crate::payload::route_guess::Route;
-use crate::payload::terrain::encode::Recorder;
+use crate::payload::corner_guess::GridVertices;
+use crate::payload::range_coder::BitWriter;
+use crate::payload::route_guess::RouteGuess;
+use crate::payload::terrain::encode::TerrainRecorder;
 
 const SRTM: &str = "liechtenstein/N47E009.hgt";
 
-/// Steps of the writer's walk, which looks at no less than a reader's, and what it may take.
+/// The steps of the writer's walk, which examines at least as much as a reader's, and the number of
+/// allowed steps.
 fn walk_steps(tin: &Tin) -> [u64; 2] {
     let (vertices, triangles) = (tin.vertices(), tin.triangles());
-    let work = Work::new(u64::MAX);
-    let nodes = Nodes::new(vertices.iter().map(|v| [v.column, v.row]), &work);
-    let mut bits = Writer::new(Vec::new());
-    let mut recorder = Recorder::new(vertices.len(), triangles, &mut bits);
+    let work = StepBudget::new(u64::MAX);
+    let nodes = GridVertices::new(vertices.iter().map(|v| [v.column, v.row]), &work);
+    let mut bits = BitWriter::new(Vec::new());
+    let mut recorder = TerrainRecorder::new(vertices.len(), triangles, &mut bits);
     let (found, _) = walk(&nodes, triangles.len(), &mut recorder).expect("a TIN");
     assert_eq!(found.len(), triangles.len());
     [work.done(), max_walk_steps(vertices.len(), triangles.len())]
 }
 
-/// Asserts that a tile takes at most one in `factor` of the allowed steps.
+/// Asserts that a tile takes at most a `factor`th of the allowed steps.
 fn check(name: &str, heights: &HeightGrid, max_error_m: f64, factor: u64) {
     let quantum_m = height_quantum_m(max_error_m);
     let tin = triangulate(heights, TinSpec { max_error_m, quantum_m }).expect("usable heights");
@@ -44,7 +45,7 @@ fn check(name: &str, heights: &HeightGrid, max_error_m: f64, factor: u64) {
     assert!(steps * factor <= allowed, "{name}: {steps} steps of {allowed}");
 }
 
-/// Noise of ±50 m by node, the same every time.
+/// Noise of ±50 m per node, the same in every run.
 fn noise(column: usize, row: usize) -> f32 {
     let mut state =
         (column as u32).wrapping_mul(0x9e37_79b9) ^ (row as u32).wrapping_mul(0x85eb_ca6b);
@@ -55,7 +56,7 @@ fn noise(column: usize, row: usize) -> f32 {
     (state >> 16) as f32 / 655.36 - 50.0
 }
 
-/// A corner of the tile that all vertices of the two far borders share triangles with.
+/// All vertices of the two far borders share triangles with one corner of the tile.
 #[test]
 fn a_fan_of_the_whole_border_stays_below_the_limit() {
     let rim =
@@ -69,7 +70,7 @@ fn a_fan_of_the_whole_border_stays_below_the_limit() {
     assert!(10 * steps <= allowed, "{steps} steps of {allowed}");
 }
 
-/// Also just below what the whole walk takes.
+/// The limit is just below the number of steps of the whole walk.
 #[test]
 fn a_walk_beyond_its_limit_is_refused() {
     let tin = triangulate(
@@ -79,10 +80,10 @@ fn a_walk_beyond_its_limit_is_refused() {
     let tin = tin.expect("usable heights");
     let [whole, _] = walk_steps(&tin);
     for limit in [0, whole / 2, whole - whole / 16] {
-        let work = Work::new(limit);
-        let nodes = Nodes::new(tin.vertices().iter().map(|v| [v.column, v.row]), &work);
-        let mut bits = Writer::new(Vec::new());
-        let mut recorder = Recorder::new(tin.vertices().len(), tin.triangles(), &mut bits);
+        let work = StepBudget::new(limit);
+        let nodes = GridVertices::new(tin.vertices().iter().map(|v| [v.column, v.row]), &work);
+        let mut bits = BitWriter::new(Vec::new());
+        let mut recorder = TerrainRecorder::new(tin.vertices().len(), tin.triangles(), &mut bits);
         let outcome = walk(&nodes, tin.triangles().len(), &mut recorder).map(|_| ());
         assert_eq!(outcome, Err(Damage::TooMuchWork { limit }));
     }
@@ -121,7 +122,7 @@ fn hard_boundaries_stay_below_the_limits() {
         check(name, &HeightGrid::from_fn(259, 259, ramp), 5.0, 10);
         check(name, &HeightGrid::from_fn(259, 259, rough), 30.0, 10);
     }
-    // Few vertices that all see each other: on the border alone, and around a peak.
+    // Few vertices that all see each other: only on the border, and around a peak.
     let is_border = |c: usize, r: usize| c <= 1 || r <= 1 || c >= 257 || r >= 257;
     let frame = |c: usize, r: usize| if is_border(c, r) { noise(c, r) } else { 0.0 };
     check("rough border", &HeightGrid::from_fn(259, 259, frame), 60.0, 10);
@@ -131,9 +132,9 @@ fn hard_boundaries_stay_below_the_limits() {
         frame(c, r) + 10.0 * (129.0 - distance).max(0.0)
     };
     check("peak", &HeightGrid::from_fn(259, 259, cone), 5.0, 10);
-    // As many triangles as a tile can have.
+    // The largest number of triangles of a tile.
     check("every node", &HeightGrid::from_fn(259, 259, noise), 0.01, 10);
-    // Rims that share no row with anything but each other.
+    // Rims that share no row except with each other.
     let bowl =
         |c: usize, r: usize| ((c as f32 - 129.0).powi(2) + (r as f32 - 129.0).powi(2)) / 50.0;
     check("bowl", &HeightGrid::from_fn(259, 259, bowl), 0.5, 10);
@@ -149,7 +150,7 @@ fn following_roads_stays_far_below_the_limit() {
     let surface = Surface::new(&tin, Placement::of_tile(&frame, TileId::ROOT, spec.quantum_m));
     let bounds = frame.tile_lattice_bounds(TileId::ROOT);
     let side = bounds.max.u - bounds.min.u;
-    let work = Work::new(u64::MAX);
+    let work = StepBudget::new(u64::MAX);
     let mut vertices = 0;
     for way in 0..500_i64 {
         let point = |k: i64| {
@@ -165,7 +166,7 @@ fn following_roads_stays_far_below_the_limit() {
             let points: Vec<LatticePoint> =
                 line.lead_in.into_iter().chain(points).chain(line.lead_out).collect();
             let leads = [line.lead_in.is_some(), line.lead_out.is_some()];
-            let mut route = Route::new(&surface, &points, leads, &work);
+            let mut route = RouteGuess::new(&surface, &points, leads, &work);
             for &vertex in &line.vertices {
                 route.guess().expect("no limit");
                 route.go(vertex).expect("no limit");
@@ -178,7 +179,7 @@ fn following_roads_stays_far_below_the_limit() {
         work.done(),
         work.done() as f64 / f64::from(vertices)
     );
-    // What a full section takes at that rate.
+    // The steps of a full section at this rate.
     let full = work.done() / vertices as u64 * crate::limits::MAX_LINE_VERTICES as u64;
     assert!(4 * full <= MAX_ROUTE_STEPS, "{full} steps of {MAX_ROUTE_STEPS}");
 }

@@ -1,7 +1,7 @@
-//! Packages made to do harm: each is refused for the right reason, or read, within a stated memory. Prints a table; run with
-//! `--nocapture`.
+//! Packages that are created to do harm: each of them is rejected for the right reason, or is read,
+//! within a stated memory. Prints a table; run with `--nocapture`.
 //!
-//! One test alone, so that the memory it measures is that of one reader.
+//! This is a single test, so that the measured memory is that of one reader.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
@@ -10,14 +10,15 @@
 
 use std::time::Instant;
 
-use corniche_testing::hostile::{Case, FAMILIES, Outcome};
+use corniche_testing::hostile::{Case, FAMILIES, ReadOutcome};
 use corniche_tileset::{MemorySource, Package, Sections};
 use peak_alloc::PeakAlloc;
 
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
 
-/// Opens a package, lists its tiles and reads all of them; gives their number, or the text of the error.
+/// Opens a package, lists its tiles and reads all of them; returns their number, or the text of the
+/// error.
 fn read(bytes: Vec<u8>) -> Result<usize, String> {
     pollster::block_on(async {
         let package = Package::open(MemorySource::new(bytes)).await.map_err(|e| e.to_string())?;
@@ -49,8 +50,8 @@ fn hostile_packages_are_refused_within_the_limits() {
                 "| {family}: {name} | {told} | {peak_mib:.1} | {limit_mib} | {elapsed_ms:.1} |"
             );
             let as_expected = match (&outcome, &result) {
-                (Outcome::Refused(reason), Err(error)) => error.contains(reason),
-                (Outcome::Read, Ok(_)) => true,
+                (ReadOutcome::Refused(reason), Err(error)) => error.contains(reason),
+                (ReadOutcome::Read, Ok(_)) => true,
                 _ => false,
             };
             if !as_expected || peak_mib > limit_mib as f64 {

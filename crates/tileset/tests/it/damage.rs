@@ -1,4 +1,5 @@
-//! A package that is cut at any length or has any single bit flipped: it is refused, or its content is unchanged.
+//! A package that is truncated at any length, or in which any single bit is flipped, is rejected,
+//! or its content is unchanged.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
@@ -35,7 +36,7 @@ fn every_cut_is_refused() {
     }
 }
 
-/// No flipped bit changes what is read: it causes an error, or lies where nothing is read.
+/// No flipped bit changes the content: it causes an error, or is in bytes that are not read.
 #[test]
 fn no_flipped_bit_changes_the_content() {
     let whole = written();
@@ -53,7 +54,7 @@ fn no_flipped_bit_changes_the_content() {
     let covered: usize = regions.iter().map(|(_, range, _)| range.len()).sum();
     assert_eq!(covered, whole.len(), "the regions are all of the file");
     println!("| bits of | tried | refused | content equal |\n|---|---|---|---|");
-    // Odd steps come to every bit of a byte.
+    // Odd steps reach every bit of a byte.
     for (name, range, step) in regions {
         let mut outcomes = [0_u32; 2];
         for bit in some_of((8 * range.start..8 * range.end).step_by(step), [61, 9, 1]) {
@@ -74,7 +75,7 @@ fn no_flipped_bit_changes_the_content() {
     }
 }
 
-/// A whole payload in the place of another tile's is noticed by the tile that it names.
+/// A payload in the position of another tile is detected by the id of the tile that it contains.
 #[test]
 fn tiles_exchanged_are_refused() {
     let ids = ids();
@@ -87,6 +88,6 @@ fn tiles_exchanged_are_refused() {
     exchanged[at_first..at_first + first.len()].copy_from_slice(&second);
     exchanged[at_second..at_second + second.len()].copy_from_slice(&first);
     let error = read(exchanged).unwrap_err();
-    let expected = format!("tile {}, header: the bytes are those of tile {}", ids[2], ids[3]);
+    let expected = format!("tile {}, header: the bytes belong to tile {}", ids[2], ids[3]);
     assert!(error.starts_with(&expected), "{error}");
 }

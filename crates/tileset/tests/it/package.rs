@@ -1,4 +1,4 @@
-//! Packages come back as they were written; other files and damaged packages are refused.
+//! Packages read back as they were written; other files and damaged packages are rejected.
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
 use std::{fs, io::Cursor};
@@ -6,9 +6,9 @@ use std::{fs, io::Cursor};
 use corniche_geom::{Cell, GridFrame, NodeIndex, TileId};
 use corniche_testing::package;
 use corniche_tileset::{
-    FilePackage, LevelRecord, Manifest, MemorySource, OpenError, Package, PayloadContext,
-    ReadError, Sections, SettingsRecord, Terrain, TilePayload, VerticalRecord, WriteError, Writer,
-    encode, pmtiles_order,
+    FilePackage, LevelRecord, Manifest, MemorySource, OpenError, Package, PackageWriter,
+    PayloadContext, ReadError, Sections, SettingsRecord, TilePayload, TileTerrain, VerticalRecord,
+    WriteError, encode, pmtiles_order,
 };
 use corniche_tin::{Tin, TinVertex};
 
@@ -45,7 +45,7 @@ fn payload(id: TileId) -> TilePayload {
     let vertex = |row, column| TinVertex { row, column, height_q: 8 * id.x() as i32 };
     let tin = Tin::new(vec![vertex(0, 0), vertex(0, 256), vertex(256, 0)], &[[0, 2, 1]]).unwrap();
     let normals = vec![[0, 0]; 3];
-    let terrain = Terrain {
+    let terrain = TileTerrain {
         tin,
         normals,
         geometric_error_m: 0.0,
@@ -65,7 +65,7 @@ fn payload(id: TileId) -> TilePayload {
 /// A package with three tiles.
 fn three_tiles() -> Vec<u8> {
     let manifest = manifest(2);
-    let context = PayloadContext::of(&manifest);
+    let context = PayloadContext::from_manifest(&manifest);
     let encoded = |id| (id, encode(&payload(id), &context).unwrap().bytes);
     package::written_with(&manifest, ["0/0/0", "1/1/0", "2/3/1"].map(tile).map(encoded))
 }
@@ -102,9 +102,10 @@ fn a_created_file_is_what_is_written_to_memory() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("three.pmtiles");
     let manifest = manifest(2);
-    let context = PayloadContext::of(&manifest);
+    let context = PayloadContext::from_manifest(&manifest);
     let mut writer =
-        Writer::of_file(std::fs::File::create(&path).unwrap(), &manifest, usize::MAX).unwrap();
+        PackageWriter::of_file(std::fs::File::create(&path).unwrap(), &manifest, usize::MAX)
+            .unwrap();
     for id in ["0/0/0", "1/1/0", "2/3/1"].map(tile) {
         writer.add(id, &encode(&payload(id), &context).unwrap().bytes).unwrap();
     }
@@ -125,12 +126,12 @@ fn a_package_is_a_clustered_pmtiles_file_with_true_bounds() {
     assert_eq!(header.n_addressed_tiles().map(std::num::NonZero::get), Some(3));
 }
 
-/// A package of few tiles has no 16 KB for their directory, and is otherwise the same.
+/// A package of few tiles does not reserve 16 KB for their directory, and is otherwise the same.
 #[test]
 fn few_tiles_keep_little_for_their_directory() {
     let wide = three_tiles();
     let mut bytes = Cursor::new(Vec::new());
-    let mut writer = Writer::new(&mut bytes, &manifest(2), 3).unwrap();
+    let mut writer = PackageWriter::new(&mut bytes, &manifest(2), 3).unwrap();
     let package = open(wide.clone()).unwrap();
     for id in pollster::block_on(package.tile_ids()).unwrap() {
         writer.add(id, &pollster::block_on(package.tile(id)).unwrap().unwrap()).unwrap();
@@ -150,7 +151,7 @@ fn few_tiles_keep_little_for_their_directory() {
 fn many_tiles_need_leaf_directories_and_are_all_found() {
     let manifest = manifest(8);
     let mut bytes = Cursor::new(Vec::new());
-    let mut writer = Writer::new(&mut bytes, &manifest, usize::MAX).unwrap();
+    let mut writer = PackageWriter::new(&mut bytes, &manifest, usize::MAX).unwrap();
     let every = (0..256).flat_map(|x| (0..256).map(move |y| TileId::new(8, x, y).unwrap()));
     let mut ids: Vec<TileId> = every.filter(|id| (id.x() * 31 + id.y() * 17) % 3 != 0).collect();
     ids.sort_by_key(|&id| pmtiles_order(id));
@@ -173,7 +174,7 @@ fn many_tiles_need_leaf_directories_and_are_all_found() {
 
 #[test]
 fn order_is_level_then_hilbert_curve() {
-    // From the PMTiles specification's table of tile ids.
+    // The table is from the tile ids in the PMTiles specification.
     for (text, order) in
         [("0/0/0", 0), ("1/0/0", 1), ("1/0/1", 2), ("1/1/1", 3), ("1/1/0", 4), ("2/0/0", 5)]
     {
@@ -184,7 +185,7 @@ fn order_is_level_then_hilbert_curve() {
 #[test]
 fn tiles_out_of_order_or_beyond_the_levels_are_refused() {
     let mut bytes = Cursor::new(Vec::new());
-    let mut writer = Writer::new(&mut bytes, &manifest(2), usize::MAX).unwrap();
+    let mut writer = PackageWriter::new(&mut bytes, &manifest(2), usize::MAX).unwrap();
     let payload = [7; 20];
     writer.add(tile("1/1/1"), &payload).unwrap();
     assert!(matches!(writer.add(tile("1/0/0"), &payload), Err(WriteError::Order { .. })));
@@ -194,7 +195,7 @@ fn tiles_out_of_order_or_beyond_the_levels_are_refused() {
     let mut bad = manifest(2);
     bad.point_scale = f64::NAN;
     assert!(matches!(
-        Writer::new(Cursor::new(Vec::new()), &bad, usize::MAX),
+        PackageWriter::new(Cursor::new(Vec::new()), &bad, usize::MAX),
         Err(WriteError::Manifest { .. })
     ));
 }
@@ -223,12 +224,12 @@ fn ordinary_pmtiles_and_other_files_are_refused() {
     assert!(matches!(broken, OpenError::Manifest { .. }), "{broken}");
     assert!(matches!(open(Vec::new()), Err(OpenError::NotPmtiles)));
     assert!(matches!(open(b"\x89PNG and so on".to_vec()), Err(OpenError::NotPmtiles)));
-    // A device or a pipe has no length to be read by; a pipe would even make the reader wait.
+    // A device or a pipe has no length; opening a pipe would even make the reader wait.
     #[cfg(unix)]
     {
         let source = FilePackage::open("/dev/null".as_ref()).unwrap_err();
         let source = std::error::Error::source(&source).unwrap().to_string();
-        assert!(source.contains("no ordinary file"), "{source}");
+        assert!(source.contains("not a regular file"), "{source}");
     }
     let missing = FilePackage::open("no/such.pmtiles".as_ref()).unwrap_err();
     assert!(missing.to_string().contains("no/such.pmtiles"));
@@ -237,7 +238,7 @@ fn ordinary_pmtiles_and_other_files_are_refused() {
 #[test]
 fn every_cut_is_noticed_when_opening() {
     let bytes = three_tiles();
-    // The last bytes of the file are tiles; only the header tells their length.
+    // The last bytes of the file are tiles; only the header gives their length.
     for length in (0..bytes.len()).rev().step_by(7).chain(0..200) {
         let error = open(bytes[..length].to_vec()).map(|_| ()).expect_err("a cut file");
         let clear = matches!(error, OpenError::NotPmtiles | OpenError::Truncated { .. });
@@ -258,7 +259,7 @@ fn a_flipped_bit_in_a_tile_is_an_error_that_names_it() {
     assert!(pollster::block_on(package.payload(tile("1/1/0"), Sections::ALL)).unwrap().is_some());
 }
 
-/// Every bit of header and root directory: an error, or something that still ends.
+/// Each flipped bit of header and root directory causes an error, or a reading that still ends.
 #[test]
 fn no_flipped_bit_of_header_or_directory_panics() {
     let bytes = three_tiles();

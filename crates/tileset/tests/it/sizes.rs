@@ -1,4 +1,4 @@
-//! How small tiles come out on real ground. Prints figures; run with `--nocapture`.
+//! Tiles of real ground are small. Prints figures; run with `--nocapture`.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
@@ -9,12 +9,14 @@ use corniche_drape::{DrapedVertex, drape};
 use corniche_geom::{GridFrame, LatticePoint, NodeIndex, Polyline, TileId};
 use corniche_roads::FunctionalRoadClass;
 use corniche_testing::srtm_heights;
-use corniche_tileset::{GeoRoad, PayloadContext, Sections, Terrain, TilePayload, decode, encode};
+use corniche_tileset::{
+    GeoRoad, PayloadContext, Sections, TilePayload, TileTerrain, decode, encode,
+};
 use corniche_tin::{Placement, Surface, TinSpec, height_quantum_m, normals, triangulate};
 
 const CELL_M: f64 = 90.0;
 
-/// A wandering line within the tile, as roads do: 30 m segments that turn a little each time.
+/// A winding line within the tile, like a road: 30 m segments that turn a little each time.
 fn road(seed: u64, min: LatticePoint, side: i64, step: f64) -> Polyline {
     let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
     let mut random = || {
@@ -61,7 +63,7 @@ fn real_ground_and_roads_come_out_small_and_whole() {
             crossings.filter(|vertex| matches!(vertex, DrapedVertex::Crossing { .. })).count();
         let normals = normals(&grid, &tin, CELL_M.into(), 0);
         let (vertices, triangles) = (tin.vertices().len() as f64, tin.triangles().len() as f64);
-        let terrain = Terrain {
+        let terrain = TileTerrain {
             tin,
             normals,
             geometric_error_m: 22.0,
@@ -94,7 +96,7 @@ fn real_ground_and_roads_come_out_small_and_whole() {
             terrain_ms.fold(f64::INFINITY, f64::min)
         );
 
-        // The same roads reduced to their source points: the difference is what crossings cost.
+        // The same roads reduced to their source points: the difference is the size of crossings.
         let points = payload.roads_geo.iter().flat_map(|road| &road.line.vertices);
         let points = points.filter(|vertex| matches!(vertex, DrapedVertex::Source { .. })).count();
         println!(
@@ -112,7 +114,7 @@ fn real_ground_and_roads_come_out_small_and_whole() {
             (encoded.sizes.terrain.stored as f64) < 3.0 * triangles,
             "terrain is no longer compact"
         );
-        // A lattice point alone is worth about five bytes; crossings must cost next to nothing beside.
+        // A lattice point alone takes about five bytes; crossings must add almost nothing.
         assert!(
             (encoded.sizes.roads_geo.stored as f64) < 6.5 * points as f64,
             "roads are no longer compact"

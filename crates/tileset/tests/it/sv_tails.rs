@@ -1,21 +1,22 @@
-//! Who does not want SV roads reads a tile without the bytes that they take at its end.
+//! A reader that does not request SV roads reads a tile without the bytes of the SV roads at its
+//! end.
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
 use std::sync::Mutex;
 
-use corniche_areas::ClassedLayer;
 use corniche_drape::SvLine;
 use corniche_geom::{GridFrame, LatticePoint, NodeIndex, TileId};
 use corniche_roads::{FunctionalRoadClass, RoadAttributes};
 use corniche_testing::package;
 use corniche_tileset::{
     ByteSource, Damage, Manifest, MemorySource, Package, PayloadContext, Photo, RoadRecord,
-    Sections, SourceError, SvRoad, SvTail, SvTails, Terrain, TilePayload, decode, decode_areas,
-    decode_lines, decode_photo, decode_spans, encode, encode_photo, payload_sizes, terrain_summary,
+    Sections, SourceError, SvRoad, SvTail, SvTails, TilePayload, TileTerrain, decode, decode_areas,
+    decode_boundaries, decode_photo, decode_spans, encode, encode_photo, payload_sizes,
+    terrain_summary,
 };
 use corniche_tin::{Tin, TinVertex};
 
-/// A package in memory that notes how many bytes each read is of.
+/// A package in memory that records the number of bytes of each read.
 struct Noting {
     memory: MemorySource,
     lengths: Mutex<Vec<usize>>,
@@ -56,7 +57,7 @@ fn payload(roads: u32) -> TilePayload {
     };
     TilePayload {
         id: TileId::ROOT,
-        terrain: Some(Terrain {
+        terrain: Some(TileTerrain {
             normals: vec![[0, 0]; 3],
             tin,
             geometric_error_m: 0.0,
@@ -74,7 +75,7 @@ fn payload(roads: u32) -> TilePayload {
 
 /// The payload of a tile with a photo, which is added to it last.
 fn with_a_photo(manifest: &Manifest, roads: u32) -> Vec<u8> {
-    let encoded = encode(&payload(roads), &PayloadContext::of(manifest)).unwrap().bytes;
+    let encoded = encode(&payload(roads), &PayloadContext::from_manifest(manifest)).unwrap().bytes;
     let mut photo = Photo { levels: 0, rgba: Vec::new() };
     photo.rgba = vec![200; photo.side() * photo.side() * 4];
     let photo = encode_photo(TileId::ROOT, &photo, 80).unwrap().unwrap();
@@ -93,7 +94,7 @@ fn a_tile_is_read_without_sv_roads_at_its_end() {
     assert_eq!(sv_tails, [SvTail { tile: TileId::ROOT, bytes: tail as u32 }]);
     let (length, tail) = (bytes.len(), tail as usize);
 
-    // As read by those who know nothing of the list, and by those who do.
+    // Once as read by readers that do not know the list, and once as read by readers that do.
     for (sv_tails, left_out) in [(Vec::new(), 0), (sv_tails, tail)] {
         let manifest = Manifest { sv_tails, ..sound.clone() };
         let package = package::written_with(&manifest, [(TileId::ROOT, bytes.clone())]);
@@ -109,12 +110,11 @@ fn a_tile_is_read_without_sv_roads_at_its_end() {
         assert_eq!(sv.unwrap().unwrap().roads_sv.len(), 2000);
         let part = pollster::block_on(package.tile_for(TileId::ROOT, wanted)).unwrap().unwrap();
         assert_eq!(part, bytes[..length - left_out]);
-        // All that reads a payload takes it.
+        // Everything that reads a payload accepts the shortened one.
         let id = TileId::ROOT;
         assert_eq!(decode_photo(&part, id), decode_photo(&bytes, id));
         assert_eq!(decode_areas(&part, id, frame), decode_areas(&bytes, id, frame));
-        let lines = |bytes: &[u8]| decode_lines(bytes, id, ClassedLayer::Boundaries);
-        assert_eq!(lines(&part), lines(&bytes));
+        assert_eq!(decode_boundaries(&part, id), decode_boundaries(&bytes, id));
         let spans = |bytes: &[u8]| decode_spans(bytes, id, frame, quantum_m);
         assert_eq!(spans(&part), spans(&bytes));
         let summary = |bytes: &[u8]| terrain_summary(bytes, id, frame, quantum_m);
@@ -125,7 +125,7 @@ fn a_tile_is_read_without_sv_roads_at_its_end() {
     }
 }
 
-/// A payload may lack nothing but SV roads at its end, and those only whole.
+/// Only the SV roads section at the end may be missing from a payload, and only as a whole.
 #[test]
 fn nothing_else_may_be_missing() {
     let manifest = manifest();
@@ -143,7 +143,7 @@ fn nothing_else_may_be_missing() {
     }
     assert_eq!(read(without, Sections::ROADS_SV), Err(Damage::TooShort));
     assert_eq!(read(without, Sections::ALL), Err(Damage::TooShort));
-    // Without roads a photo is the last, and nothing may be missing.
+    // Without roads, a photo is the last section, and nothing may be missing.
     let bare = with_a_photo(&manifest, 0);
     assert_eq!(payload_sizes(&bare, TileId::ROOT).unwrap().sv_tail, 0);
     for length in 0..bare.len() {
@@ -152,7 +152,8 @@ fn nothing_else_may_be_missing() {
     }
 }
 
-/// A list that does not fit the tile makes an error of what is read, never another tile.
+/// A list that does not match the tile causes an error for the wanted sections, and never another
+/// tile.
 #[test]
 fn a_wrong_list_is_an_error() {
     let sound = manifest();

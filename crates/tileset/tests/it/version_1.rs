@@ -1,16 +1,17 @@
-//! A package that was written when version 1 of the format began is read as it was then: its ground, roads, attributes and relief, bit for bit.
+//! A package that was written when version 1 of the format began is read as it was then, bit for
+//! bit: its ground, roads, attributes and relief.
 //!
-//! `data/version-1.pmtiles` stays as it is; `data-samples/SOURCES.md` says how it was made. When this test fails, packages that
-//! people have are no longer read.
+//! `data/version-1.pmtiles` never changes; `data-samples/SOURCES.md` says how it was created. If
+//! this test fails, existing packages of users can no longer be read.
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
 use std::path::Path;
 
 use corniche_drape::DrapedVertex;
 use corniche_geom::LatticePoint;
-use corniche_tileset::{FilePackage, GeoRoad, Relief, Sections, SvRoad, Terrain};
+use corniche_tileset::{FilePackage, GeoRoad, Relief, Sections, SvRoad, TileTerrain};
 
-/// Checksums of what was decoded, in little-endian bytes.
+/// Checksums of the decoded values, in little-endian bytes.
 #[derive(Default)]
 struct Sums {
     vertices: crc32fast::Hasher,
@@ -24,7 +25,7 @@ struct Sums {
 }
 
 impl Sums {
-    fn add_ground(&mut self, ground: &Terrain) {
+    fn add_ground(&mut self, ground: &TileTerrain) {
         for vertex in ground.tin.vertices() {
             self.vertices.update(&vertex.row.to_le_bytes());
             self.vertices.update(&vertex.column.to_le_bytes());
@@ -101,8 +102,8 @@ fn add_point(sum: &mut crc32fast::Hasher, point: LatticePoint) {
     sum.update(&point.v.to_le_bytes());
 }
 
-/// What was decoded: tiles, vertices, triangles, GEO roads, SV roads; and the sums of vertices, triangles, normals, measures, GEO roads, SV roads,
-/// attributes, relief.
+/// What was decoded: numbers of tiles, vertices, triangles, GEO roads and SV roads; and checksums
+/// of vertices, triangles, normals, measures, GEO roads, SV roads, attributes and relief.
 fn decoded(name: &str) -> ([usize; 5], [u32; 8]) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name);
     let package = FilePackage::open(&path).unwrap();
@@ -156,7 +157,7 @@ fn a_package_of_version_1_is_read_bit_for_bit() {
     );
 }
 
-/// With coded road sections, and normals with all their steps.
+/// The package has coded road sections, and normals with all their steps.
 #[test]
 fn a_package_in_degrees_is_read_bit_for_bit() {
     let (counts, sums) = decoded("version-1-degrees.pmtiles");

@@ -1,10 +1,10 @@
-//! A grid of buckets over bounding boxes.
+//! A grid of buckets for bounding boxes.
 
 use corniche_geom::{IndexLists, LatticeBounds, LatticePoint};
 
-/// Indices of boxes by the squares they meet, each square's in ascending order.
+/// Indices of boxes by the squares that they meet, in ascending order for each square.
 ///
-/// The side of a square is a power of two steps, so that finding one is a shift.
+/// The side of a square is a power of two steps, so that finding a square is a shift.
 #[derive(Debug, Clone)]
 pub(crate) struct Buckets {
     bounds: LatticeBounds,
@@ -17,18 +17,18 @@ pub(crate) struct Buckets {
 
 impl Default for Buckets {
     fn default() -> Self {
-        // Bounds that hold no point: nothing is ever found.
+        // Bounds without points: nothing is ever found.
         let bounds = LatticeBounds { min: LatticePoint::new(1, 1), max: LatticePoint::new(0, 0) };
         Self { bounds, shift: 0, columns: 0, rows: 0, items: IndexLists::default() }
     }
 }
 
 impl Buckets {
-    /// Sorts boxes into about as many squares as there are boxes, or fewer where boxes are large: the
-    /// number of entries stays within eight for each box, whatever the boxes are.
+    /// Sorts boxes into about as many squares as there are boxes, or fewer if boxes are large: the
+    /// number of entries is at most eight per box, whatever the boxes are.
     pub(crate) fn new(boxes: &[LatticeBounds]) -> Self {
         let corners: Vec<LatticePoint> = boxes.iter().flat_map(|b| [b.min, b.max]).collect();
-        let Some(bounds) = LatticeBounds::of(&corners) else {
+        let Some(bounds) = LatticeBounds::around(&corners) else {
             return Self::default();
         };
         let longest = (bounds.max.u - bounds.min.u).max(bounds.max.v - bounds.min.v);
@@ -56,7 +56,7 @@ impl Buckets {
         }
     }
 
-    /// The boxes whose square holds `point`, ascending.
+    /// The boxes of the square that contains `point`, ascending.
     pub(crate) fn at(&self, point: LatticePoint) -> &[u32] {
         if !self.bounds.contains(point) {
             return &[];
@@ -65,7 +65,8 @@ impl Buckets {
         self.bucket(column, row)
     }
 
-    /// The boxes in squares that meet `near`, ascending, without repetition; `out` is cleared first.
+    /// Finds the boxes of squares that meet `near`, ascending, without repetition; `out` is cleared
+    /// first.
     pub(crate) fn near(&self, near: LatticeBounds, out: &mut Vec<u32>) {
         out.clear();
         self.visit(near, |item| out.push(item));
@@ -73,7 +74,7 @@ impl Buckets {
         out.dedup();
     }
 
-    /// Visits the boxes in squares that meet `near`, square by square.
+    /// Visits the boxes of squares that meet `near`, square by square.
     pub(crate) fn visit(&self, near: LatticeBounds, mut visit: impl FnMut(u32)) {
         if self.items.is_empty() || !self.bounds.intersects(&near) {
             return;
@@ -90,8 +91,9 @@ impl Buckets {
         }
     }
 
-    /// Visits the boxes in squares that lie within `around` steps of a segment along each axis, square by square: of a long segment that runs
-    /// askew far fewer than meet its bounding box.
+    /// Visits the boxes of squares within `around` steps of a segment along each axis, square by
+    /// square: for a long diagonal segment these are far fewer than those that meet its bounding
+    /// box.
     pub(crate) fn visit_along(
         &self,
         [p, q]: [[f64; 2]; 2],
@@ -109,7 +111,7 @@ impl Buckets {
         }
         let row_of = |v: f64| (((v - min[1]) / side).floor().max(0.0) as usize).min(self.rows - 1);
         for row in row_of(low)..=row_of(high) {
-            // The part of the segment that comes near this row.
+            // The part of the segment near this row.
             let south = min[1] + row as f64 * side;
             let band = [south - around, south + side + around];
             let rise = q[1] - p[1];
@@ -135,17 +137,17 @@ impl Buckets {
         }
     }
 
-    /// Column and row of the square of a point within the bounds.
+    /// The column and the row of the square of a point within the bounds.
     fn square(&self, point: LatticePoint) -> [usize; 2] {
         [point.u - self.bounds.min.u, point.v - self.bounds.min.v]
             .map(|offset| (offset >> self.shift) as usize)
     }
 
     fn bucket(&self, column: usize, row: usize) -> &[u32] {
-        self.items.of(row * self.columns + column)
+        self.items.list(row * self.columns + column)
     }
 
-    /// Puts each box into the squares that it meets.
+    /// Adds each box to the squares that it meets.
     fn fill(&mut self, boxes: &[LatticeBounds]) {
         let columns = self.columns;
         let squares = |index: usize| {

@@ -1,5 +1,5 @@
-//! Heights and shapes at the limits of what a tile can be: whatever the TIN is asked for, it keeps its promises or
-//! says what cannot be kept.
+//! Heights and shapes at the limits of a tile: the TIN fulfils its promises, or an error says which
+//! one it cannot fulfil.
 
 use corniche_geom::HeightGrid;
 use corniche_testing::{check_covers_ground, check_tin};
@@ -12,7 +12,7 @@ fn spec(max_error_m: f64) -> TinSpec {
     TinSpec { max_error_m, quantum_m: height_quantum_m(max_error_m) }
 }
 
-/// Triangulates, and checks every promise by plain means.
+/// Triangulates, and checks every promise with simple methods.
 fn check(heights: &HeightGrid, spec: TinSpec) -> Result<Tin, TriangulateError> {
     let tin = triangulate(heights, spec)?;
     check_tin(&tin);
@@ -24,7 +24,7 @@ fn check(heights: &HeightGrid, spec: TinSpec) -> Result<Tin, TriangulateError> {
     Ok(tin)
 }
 
-/// As [`check`], where the TIN must come out.
+/// Triangulates and checks like [`check`], and fails if there is no TIN.
 fn sound(heights: &HeightGrid, max_error_m: f64) -> Tin {
     match check(heights, spec(max_error_m)) {
         Ok(tin) => tin,
@@ -32,7 +32,7 @@ fn sound(heights: &HeightGrid, max_error_m: f64) -> Tin {
     }
 }
 
-/// Ground cells of the tile, halo left out.
+/// The ground cells of the tile, without the halo.
 fn ground_cells(heights: &HeightGrid) -> impl Iterator<Item = [usize; 2]> {
     (1..heights.rows() - 2)
         .flat_map(|row| (1..heights.columns() - 2).map(move |column| [column, row]))
@@ -40,7 +40,7 @@ fn ground_cells(heights: &HeightGrid) -> impl Iterator<Item = [usize; 2]> {
         .map(|[column, row]| [column - 1, row - 1])
 }
 
-/// Column and row of a triangle's corners.
+/// The columns and rows of a triangle's corners.
 fn corners(tin: &Tin, triangle: [u32; 3]) -> [[i64; 2]; 3] {
     triangle.map(|vertex| {
         let vertex = tin.vertices()[vertex as usize];
@@ -53,7 +53,8 @@ fn turn(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// Seen from above the TIN is the ground: as large, and over the middle of every ground cell. Exact integers.
+/// Seen from above the TIN is the ground: it has the same area, and covers the middle of every
+/// ground cell. Exact integers.
 fn check_area(tin: &Tin, heights: &HeightGrid) {
     let doubled: i64 = tin
         .triangles()
@@ -75,7 +76,7 @@ fn check_area(tin: &Tin, heights: &HeightGrid) {
     }
 }
 
-/// A vertex is a node with a height, to the nearest step.
+/// A vertex is a node with a height, rounded to the nearest step.
 fn check_vertices(tin: &Tin, heights: &HeightGrid, quantum_m: f64) {
     for vertex in tin.vertices() {
         let node = heights.height(usize::from(vertex.column) + 1, usize::from(vertex.row) + 1);
@@ -110,10 +111,10 @@ impl PartialOrd for Fraction {
     }
 }
 
-/// The unit of exact heights: 2^-30 m. Heights of these tests are whole multiples of it.
+/// The unit of exact heights: 2^-30 m. Heights in these tests are multiples of it.
 const FINEST_M: f64 = 1.0 / (1_u64 << 30) as f64;
 
-/// A height in whole units.
+/// Converts a height to whole units.
 fn units(metres: f64) -> i128 {
     let scaled = metres / FINEST_M;
     assert!(scaled.fract() == 0.0 && scaled.abs() < 2e37, "{metres} m is no whole number of units");
@@ -121,12 +122,13 @@ fn units(metres: f64) -> i128 {
 }
 
 fn exact(metres: f64) -> Fraction {
-    // Rounded up: a tolerance need not be a multiple of the unit.
+    // The result is rounded up: a tolerance need not be a multiple of the unit.
     let scaled = (metres / FINEST_M).ceil();
     Fraction { over: if scaled < 1e37 { scaled as i128 } else { 10_i128.pow(37) }, under: 1 }
 }
 
-/// The largest error at any node that the TIN covers: every node against every triangle, in integers.
+/// The largest error at any node that the TIN covers: every node against every triangle, in
+/// integers.
 fn worst_error(tin: &Tin, heights: &HeightGrid, quantum_m: f64) -> Fraction {
     let mut worst = Fraction { over: 0, under: 1 };
     for &triangle in tin.triangles() {
@@ -138,7 +140,8 @@ fn worst_error(tin: &Tin, heights: &HeightGrid, quantum_m: f64) -> Fraction {
             for column in 0..heights.columns() - 2 {
                 let node = [column as i64, row as i64];
                 let weights = [turn(b, c, node), turn(c, a, node), turn(a, b, node)];
-                // Rows count to the south, so what is counter-clockwise from above turns the other way here.
+                // Rows count to the south, so triangles that are counter-clockwise seen from above
+                // are clockwise here.
                 if weights.iter().any(|&weight| weight > 0) {
                     continue;
                 }
@@ -159,14 +162,15 @@ fn worst_error(tin: &Tin, heights: &HeightGrid, quantum_m: f64) -> Fraction {
     worst
 }
 
-/// A tile with a halo of its own heights, computed by column and row.
+/// A tile with a halo of its own heights, which are computed from column and row.
 fn tile(side: usize, height_m: impl Fn(usize, usize) -> f32) -> HeightGrid {
     HeightGrid::from_fn(side + 2, side + 2, height_m)
 }
 
 #[test]
 fn heights_fill_the_whole_range_of_steps_and_not_one_more() {
-    // Steps of 1 m: ±(2^31 − 2) are the last that are taken; f32 has no number between 2^31 − 128 and 2^31.
+    // Steps of 1 m: ±(2^31 − 2) are the last accepted heights; f32 has no number between 2^31 − 128
+    // and 2^31.
     let spec = TinSpec { max_error_m: 32.0, quantum_m: 1.0 };
     let last = 2_147_483_520.0_f32;
     let heights = tile(9, |c, r| if (c + r) % 3 == 0 { last } else { -last });
@@ -181,14 +185,16 @@ fn heights_fill_the_whole_range_of_steps_and_not_one_more() {
         let refused = check(&heights, spec);
         assert_eq!(refused, Err(TriangulateError::Height { height_m: beyond, quantum_m: 1.0 }));
     }
-    // In the halo alone it does no harm to the tile, but the neighbour that has it would refuse: so does this one.
+    // An invalid height only in the halo does no harm to the tile, but the neighbour that contains
+    // it would reject it: so this tile rejects it, too.
     let halo = tile(9, |c, _| if c == 0 { 1e30 } else { 0.0 });
     assert!(matches!(check(&halo, spec), Err(TriangulateError::Height { .. })));
 }
 
 #[test]
 fn steps_of_1e30_metres_are_steps() {
-    // A quantum so high that 1e30 m fits. In which order nodes that are equally far come depends on the unit: small numbers are compared in
+    // With this quantum 1e30 m fits. The order of equally distant nodes depends on the unit: small
+    // numbers are compared in 32-bit floats, large ones exactly.
     // 32-bit floats, large ones exactly.
     let low = tile(17, |c, r| if (c / 4 + r / 4) % 2 == 0 { 0.0 } else { 1024.0 });
     let high = tile(17, |c, r| if (c / 4 + r / 4) % 2 == 0 { 0.0 } else { 2.0_f32.powi(100) });
@@ -211,9 +217,9 @@ fn steps_of_1e30_metres_are_steps() {
 fn a_tolerance_of_almost_nothing_makes_every_uneven_node_a_vertex() {
     let noise = tile(17, |c, r| ((c * c * 7919 + r * r * 10_473 + c * r * 31) % 1009) as f32);
     assert_eq!(sound(&noise, 1.0 / 1024.0).vertices().len(), 17 * 17);
-    // Level ground needs no more than four, however little is allowed.
+    // Level ground needs only four vertices, however small the tolerance is.
     assert_eq!(sound(&tile(17, |_, _| 1009.0), 1.0 / 1024.0).vertices().len(), 4);
-    // Below what 32-bit steps resolve at this height it is refused.
+    // A tolerance below the resolution of 32-bit steps at this height is rejected.
     let fine = TinSpec { max_error_m: 1e-9, quantum_m: height_quantum_m(1e-9) };
     assert!(matches!(check(&noise, fine), Err(TriangulateError::Height { .. })));
     let none =
@@ -230,13 +236,13 @@ fn a_huge_tolerance_leaves_the_boundary_alone() {
         check_covers_ground(&tin, &noise);
         assert_eq!((tin.vertices().len(), tin.triangles().len()), (4, 2), "{max_error_m}");
     }
-    // With a void inside, its corners too.
+    // With a void inside, its corners are vertices, too.
     let holed =
         tile(17, |c, r| if (7..10).contains(&c) && (7..10).contains(&r) { GAP } else { 5.0 });
     assert_eq!(sound(&holed, 1e9).vertices().len(), 4 + 4);
 }
 
-/// A quantum as high as the tolerance: rounding alone takes up half of it.
+/// With a quantum as large as the tolerance, rounding alone uses half of the tolerance.
 #[test]
 fn the_highest_quantum_still_keeps_the_tolerance() {
     let noise =
@@ -247,7 +253,7 @@ fn the_highest_quantum_still_keeps_the_tolerance() {
     assert!(matches!(check(&noise, too_high), Err(TriangulateError::Spec { .. })));
 }
 
-/// Values that stand beside nodata in real files: denormals, and both zeros.
+/// Values that occur next to nodata in real files: denormals, and both zeros.
 #[test]
 fn tiny_heights_are_zero() {
     let tiny = [4e-27_f32, -4e-27, f32::MIN_POSITIVE, 1e-45, 0.0, -0.0];
@@ -270,7 +276,7 @@ fn the_smallest_and_thinnest_tiles_are_whole() {
     }
 }
 
-/// A window drawn in characters, halo included: `#` a height, anything else a gap.
+/// A window drawn in characters, halo included: `#` is a height, any other character is a gap.
 fn drawn(rows: &[&str]) -> HeightGrid {
     HeightGrid::from_fn(rows[0].len(), rows.len(), |c, r| {
         let relief = (c * c * 3 + r * 5) % 11;
@@ -292,13 +298,14 @@ fn a_halo_of_gaps_or_of_ground_alone_changes_nothing_inside() {
 
 #[test]
 fn cells_that_touch_in_a_point_share_a_vertex_and_no_edge() {
-    // One cell, two corner to corner, and a whole chain of them, inside and on the tile's corner.
+    // One cell, two cells corner to corner, and a whole chain of them, inside and on the tile's
+    // corner.
     let cases: [(&[&str], usize, usize); 5] = [
         (&["......", ".##...", ".##...", "......", "......", "......"], 4, 2),
         (&["......", ".##...", ".###..", "..##..", "......", "......"], 7, 4),
         (&["......", "..##..", ".###..", ".##...", "......", "......"], 7, 4),
         (&[".......", ".##....", ".###...", "..###..", "...##..", "......."], 10, 6),
-        // Around a void cell: four cells, each touching two others in a point.
+        // Four cells around a void cell, each touching two others in a point.
         (&[".......", "..##...", ".####..", ".##.##.", "..####.", "...##..", "......."], 16, 11),
     ];
     for (rows, vertices, triangles) in &cases[..4] {
@@ -316,7 +323,7 @@ fn cells_that_touch_in_a_point_share_a_vertex_and_no_edge() {
 #[test]
 fn checkerboards_of_voids_have_exactly_the_ground_between() {
     for (period, cells) in [(2, 0), (3, 0), (4, 1), (6, 1), (8, 1)] {
-        // Squares of half a period, ground and void by turns.
+        // Squares of half a period, alternating between ground and void.
         let half = period / 2;
         let board = tile(33, |c, r| {
             if (c / half.max(1) + r / half.max(1)) % 2 == 0 { (c + r) as f32 } else { GAP }
@@ -327,7 +334,8 @@ fn checkerboards_of_voids_have_exactly_the_ground_between() {
     // Single void nodes in a regular pattern: every cell that touches one is lost.
     let holes = tile(33, |c, r| if c % 5 == 2 && r % 5 == 2 { GAP } else { (c * r) as f32 });
     assert!(!sound(&holes, 0.5).is_empty());
-    // Columns of ground one cell wide between columns of void, and columns of nodes without any cell.
+    // Columns of ground one cell wide between columns of void, and columns of nodes without any
+    // cell.
     let stripes = tile(33, |c, r| if c % 3 == 0 { GAP } else { (c * 7 + r) as f32 });
     assert_eq!(ground_cells(&stripes).count(), 11 * 32);
     sound(&stripes, 0.5);
@@ -335,7 +343,8 @@ fn checkerboards_of_voids_have_exactly_the_ground_between() {
     assert_eq!(sound(&columns, 0.5), Tin::default());
 }
 
-/// Small windows of anything: flat, sloping, rough, with gaps singly and in runs, in the halo too.
+/// Small windows of any kind: flat, sloping, rough, with single gaps and runs of gaps, even in the
+/// halo.
 fn window() -> impl Strategy<Value = HeightGrid> {
     let height = prop_oneof![
         4 => (-8_i32..8).prop_map(|steps| steps as f32 / 4.0),
@@ -347,7 +356,7 @@ fn window() -> impl Strategy<Value = HeightGrid> {
         move |(columns, rows, kind)| {
             prop::collection::vec(height.clone(), columns * rows).prop_map(move |heights_m| {
                 HeightGrid::from_fn(columns, rows, |c, r| match kind {
-                    // As drawn; in runs of two; or with gaps where the drawn node is one, on a plane.
+                    // Random nodes; runs of two; or gaps at random nodes on a plane.
                     0 => heights_m[r * columns + c],
                     1 => heights_m[r / 2 * columns + c / 2],
                     _ if heights_m[r * columns + c].is_nan() => GAP,
@@ -361,8 +370,8 @@ fn window() -> impl Strategy<Value = HeightGrid> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(1500))]
 
-    /// Whatever the heights: exact invariants, exact boundary, and no covered node farther than the tolerance, by
-    /// integer arithmetic over every node and every triangle.
+    /// Whatever the heights: exact invariants, exact boundary, and no covered node farther than the
+    /// tolerance, by integer arithmetic over every node and every triangle.
     #[test]
     fn any_small_window_is_kept(heights in window(), tolerance in 0_usize..6) {
         let max_error_m = [0.002, 0.125, 1.0, 7.0, 300.0, 1e6][tolerance];

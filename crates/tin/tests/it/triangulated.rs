@@ -1,4 +1,4 @@
-//! Every node of a tile lies within the tolerance of its TIN, and simple ground has few triangles.
+//! Every node of a tile is within the tolerance of its TIN, and simple ground has few triangles.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -12,7 +12,7 @@ use proptest::prelude::*;
 const SPEC: TinSpec = TinSpec { max_error_m: 2.0, quantum_m: 1.0 / 16.0 };
 const GAP: f32 = f32::NAN;
 
-/// Triangulates and checks everything that is promised of any TIN.
+/// Triangulates and checks all promises of a TIN.
 fn check(heights: &HeightGrid, spec: TinSpec) -> Tin {
     let tin = triangulate(heights, spec).unwrap();
     check_tin(&tin);
@@ -21,8 +21,8 @@ fn check(heights: &HeightGrid, spec: TinSpec) -> Tin {
     tin
 }
 
-/// Every node on the ground is within the tolerance: by barycentric coordinates, node against triangle,
-/// without the row walk that the code under test uses.
+/// Checks that every node on the ground is within the tolerance: by barycentric coordinates, node
+/// against triangle, without the row walk of the tested code.
 fn check_error(tin: &Tin, heights: &HeightGrid, spec: TinSpec) {
     let mut reached = BTreeSet::new();
     for triangle in tin.triangles() {
@@ -65,7 +65,8 @@ fn check_error(tin: &Tin, heights: &HeightGrid, spec: TinSpec) {
     assert_eq!(reached.len(), nodes.filter(|&(c, r)| on_ground(c, r)).count(), "nodes covered");
 }
 
-/// A tile drawn in characters: `#` a height of 5 m, anything else a gap; a halo of gaps is added.
+/// A tile drawn in characters: `#` is a height of 5 m, any other character is a gap; a halo of gaps
+/// is added.
 fn drawn(rows: &[&str]) -> HeightGrid {
     HeightGrid::from_fn(rows[0].len() + 2, rows.len() + 2, |c, r| {
         let inside = (1..=rows[0].len()).contains(&c) && (1..=rows.len()).contains(&r);
@@ -99,7 +100,8 @@ fn a_saddle_is_met_within_the_tolerance() {
     let saddle = HeightGrid::from_fn(67, 67, |c, r| (c as f32 - 33.0) * (r as f32 - 33.0) / 8.0);
     let (coarse, fine) =
         (check(&saddle, SPEC), check(&saddle, TinSpec { max_error_m: 0.5, quantum_m: 1.0 / 64.0 }));
-    // The error of a saddle's triangles falls with the square of their size: a quarter takes four times as many.
+    // The error of a saddle's triangles falls with the square of their size: a quarter of the error
+    // takes four times as many triangles.
     let growth = fine.triangles().len() as f64 / coarse.triangles().len() as f64;
     assert!((2.5..6.0).contains(&growth), "{growth}");
 }
@@ -127,7 +129,7 @@ fn without_ground_there_is_nothing() {
         check(&HeightGrid::from_fn(20, 20, |c, r| if (c + r) % 2 == 0 { 1.0 } else { GAP }), SPEC),
         Tin::default()
     );
-    // Ground in the halo only.
+    // Ground only in the halo.
     assert_eq!(
         check(&HeightGrid::from_fn(20, 20, |c, _| if c < 2 { 1.0 } else { GAP }), SPEC),
         Tin::default()
@@ -138,16 +140,16 @@ fn without_ground_there_is_nothing() {
 fn ground_in_awkward_shapes_is_covered_exactly() {
     // A single cell.
     assert_eq!(size(&check(&drawn(&["......", ".##...", ".##...", "......"]), SPEC)), (4, 2));
-    // Two that touch in a point; their node is one vertex.
+    // Two cells that touch in a point; the shared node is one vertex.
     assert_eq!(size(&check(&drawn(&["....#", ".##..", ".###.", "..##.", "....."]), SPEC)), (7, 4));
-    // Two voids that touch in a point, inside.
+    // Two voids that touch in a point, inside the tile.
     check(
         &drawn(&[
             "########", "########", "##.#####", "########", "####.###", "########", "########",
         ]),
         SPEC,
     );
-    // Corridors of one cell around voids, at the border too.
+    // Corridors of one cell around voids, even at the border.
     check(
         &drawn(&[
             "##########",
@@ -161,7 +163,7 @@ fn ground_in_awkward_shapes_is_covered_exactly() {
         ]),
         SPEC,
     );
-    // Ground on the border only.
+    // Ground only on the border.
     check(&drawn(&["##....", "##....", "##..##", "##..##"]), SPEC);
     // An island of one cell in a lake, in an island.
     let island =
@@ -211,7 +213,7 @@ fn real_tile_has_known_counts() {
 /// Vertices and triangles of a tile of the Alps with gaps, at 5, 20 and 80 m.
 const GOLDEN: [(usize, usize); 3] = [(22201, 43656), (5569, 10730), (1026, 1820)];
 
-/// Terrain from nothing to cliffs, with gaps from none to most.
+/// Terrain from flat to cliffs, with gaps from none to most nodes.
 fn terrain(columns: usize, rows: usize) -> impl Strategy<Value = HeightGrid> {
     let relief = prop_oneof![Just(0.0_f32), Just(1.0), Just(30.0), Just(3000.0)];
     (relief, prop_oneof![Just(0_u8), Just(5), Just(60), Just(180)], any::<u64>()).prop_map(
@@ -241,22 +243,22 @@ fn hash(mut value: u64) -> u64 {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
-    /// No node of the ground lies farther from the TIN than the tolerance; the TIN covers the ground and
-    /// nothing else; the same heights give the same TIN.
+    /// No node of the ground is farther from the TIN than the tolerance; the TIN covers the ground
+    /// and nothing else; the same heights give the same TIN.
     #[test]
     fn every_tin_keeps_its_promises(heights in (4_usize..40, 4_usize..40).prop_flat_map(|(c, r)| terrain(c, r)), max_error_m in 0.1_f64..50.0) {
         let spec = TinSpec { max_error_m, quantum_m: height_quantum_m(max_error_m) };
         prop_assert_eq!(check(&heights, spec), triangulate(&heights, spec).unwrap());
     }
 
-    /// Two tiles cut from one raster share their border bit for bit, each computed alone, wherever both
-    /// have ground: side by side and one above the other.
+    /// Two tiles cut from one raster share their border bit for bit, each of them computed
+    /// separately, wherever both have ground: next to each other and one above the other.
     #[test]
     fn neighbours_share_their_border(raster in terrain(35, 35), max_error_m in 0.1_f64..50.0) {
         let spec = TinSpec { max_error_m, quantum_m: height_quantum_m(max_error_m) };
         let tile = |c: usize, r: usize| triangulate(&raster.window(16 * c, 16 * r, 19, 19), spec).unwrap();
         let ground = |c: usize, r: usize| raster.cell_has_ground(c, r);
-        // Border edges along column `c` (or row `c` when turned), as pairs of (position, height).
+        // Border edges along column `c` (or row `c` if `turned`), as pairs of (position, height).
         let edges = |tin: &Tin, at: u16, turned: bool| {
             let mut found = BTreeSet::new();
             for triangle in tin.triangles() {
@@ -274,7 +276,8 @@ proptest! {
         };
         for turned in [false, true] {
             let (first, second) = (tile(0, 0), if turned { tile(0, 1) } else { tile(1, 0) });
-            // The shared line is raster column (or row) 17; segment s lies between nodes s + 1 and s + 2.
+            // The shared line is raster column (or row) 17; segment s is between nodes s + 1 and s
+            // + 2.
             let both = |s: u16| {
                 let s = usize::from(s) + 1;
                 if turned { ground(s, 16) && ground(s, 17) } else { ground(16, s) && ground(17, s) }

@@ -1,12 +1,14 @@
-//! Credits are written into the lower right corner of a picture.
+//! Draws the attribution into the lower right corner of a picture.
 
 use image::RgbaImage;
 
-use super::letters::{Letters, draw_box, line_px};
+use super::letters::{BOX, BOX_OPACITY, Letters, fill, line_px};
 
-/// Writes credits into the lower right corner, on a light box. Without credits the picture stays as it is.
+/// Draws the attribution into the lower right corner, on a light box. Without any text the picture
+/// stays unchanged.
 ///
-/// Lines that are too long for the picture are broken between words. Returns width and height of the box.
+/// Lines that are too long for the picture are wrapped between words. Returns width and height of
+/// the box.
 pub fn draw_attribution(picture: &mut RgbaImage, credits: &[String]) -> [u32; 2] {
     let (width, height) = picture.dimensions();
     let line_px = line_px(height);
@@ -18,10 +20,10 @@ pub fn draw_attribution(picture: &mut RgbaImage, credits: &[String]) -> [u32; 2]
     if lines.is_empty() {
         return [0; 2];
     }
-    let widest_px = letters.widest_px(lines.iter().map(String::as_str));
+    let widest_px = letters.widest_px(&lines);
     let left = width.saturating_sub(widest_px + 2 * pad_px);
     let top = height.saturating_sub(lines.len() as u32 * line_px + pad_px);
-    draw_box(picture, left..width, top..height);
+    fill(picture, left..width, top..height, BOX, BOX_OPACITY);
     for (line, row) in lines.iter().zip(0_u32..) {
         let x_px = width as f32 - pad_px as f32 - letters.width_px(line);
         let y_px = (top + pad_px / 2 + row * line_px) as f32;

@@ -1,4 +1,4 @@
-//! Credits stand in the lower right corner, and long ones are broken into lines.
+//! The attribution is in the lower right corner, and long lines are wrapped.
 
 use ab_glyph::{Font as _, FontRef};
 

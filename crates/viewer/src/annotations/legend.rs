@@ -1,27 +1,29 @@
-//! A legend is drawn into the lower left corner of a picture: rows of samples, heights, scale bar and an arrow to the north.
+//! Draws a legend into the lower left corner of a picture: rows of samples, heights, a scale bar
+//! and a north arrow.
 
 use image::RgbaImage;
 
 use super::{
     legend_row::LegendRow,
-    letters::{INK, Letters, blend, draw_opaque_box, fill, line_px, of_255},
+    letters::{BOX, INK, Letters, blend, fill, line_px, of_255},
 };
 use corniche_styles::Rgb;
 
-/// What a legend tells.
+/// The contents of a legend.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Legend {
-    /// How much true ground a pixel covers in the middle of the picture, metres; from east to west as on the parallel in the middle of the data.
+    /// True metres of ground per pixel in the middle of the picture, from east to west along the
+    /// parallel in the middle of the data.
     pub pixel_m: f64,
-    /// Where north is: clockwise from the picture's upward direction.
+    /// The direction of north, clockwise from the picture's upward direction.
     pub north_deg: f64,
-    /// The picture in print is so many times smaller than the ground, if that is known.
+    /// The denominator of the scale of the printed picture, if it is known.
     pub scale: Option<u32>,
     /// The colour of the ground in the middle of the picture, behind the samples.
     pub ground: Rgb,
-    /// What the picture shows, the most important first.
+    /// The rows of what the picture shows, the most important first.
     pub rows: Vec<LegendRow>,
-    /// The heights of the ground in the picture, if colours tell them.
+    /// The heights of the ground in the picture, if colours show heights.
     pub heights: Option<LegendHeights>,
 }
 
@@ -30,14 +32,14 @@ pub struct Legend {
 pub struct LegendHeights {
     /// The lowest and the highest ground in the picture, metres.
     pub range_m: [f64; 2],
-    /// Colours from the lowest ground to the highest, evenly spread.
+    /// Colours from the lowest ground to the highest, at equal steps.
     pub colors: Vec<Rgb>,
 }
 
-/// The scale bar is about this part of the picture's width.
+/// Maximum length of the scale bar, as a share of the picture's width.
 const BAR_SHARE: f64 = 0.12;
 
-/// Where the parts of a row are. All lengths are pixels.
+/// The horizontal layout of a row. All lengths are pixels.
 struct Columns {
     line: u32,
     pad: u32,
@@ -45,7 +47,7 @@ struct Columns {
 }
 
 impl Columns {
-    fn of(picture: &RgbaImage) -> Self {
+    fn from_image(picture: &RgbaImage) -> Self {
         let line = line_px(picture.height());
         Self { line, pad: line / 2, sample: 2 * line }
     }
@@ -55,27 +57,29 @@ impl Columns {
         2 * self.pad + self.sample
     }
 
-    /// How long the ramp of heights is.
+    /// The length of the ramp of heights.
     fn ramp(&self) -> u32 {
         4 * self.line
     }
 }
 
-/// What stands on the picture already where a legend could lie, pixels.
+/// Space on the picture that is already taken near the legend, pixels.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Taken {
-    /// How high the title is, from the top.
+pub struct OccupiedMargins {
+    /// Height of the title, from the top.
     pub title_px: u32,
-    /// Width and height of the credits in the lower right corner.
+    /// Width and height of the attribution in the lower right corner.
     pub credits_px: [u32; 2],
 }
 
-/// Draws a legend into the lower left corner, on an opaque box: a sample and a name in each row, the colours of heights, an arrow to the north, and a bar
-/// with its length on the ground in the middle of the picture. Where there is no room beside the credits it lies above them. What does not fit between
-/// them and the title is counted in a last row. Tells whether the picture is too small even so, so that a part is cut off.
-pub fn draw_legend(picture: &mut RgbaImage, legend: &Legend, taken: Taken) -> bool {
+/// Draws a legend into the lower left corner, on an opaque box: a sample and a name in each row,
+/// the colours of heights, a north arrow, and a bar with its length on the ground in the middle of
+/// the picture. If the legend does not fit next to the attribution, it is drawn above. Rows that do
+/// not fit below the title are counted in a last row. Returns whether the picture is still too
+/// small, so that a part of the legend is cut off.
+pub fn draw_legend(picture: &mut RgbaImage, legend: &Legend, taken: OccupiedMargins) -> bool {
     let width = picture.width();
-    let columns = Columns::of(picture);
+    let columns = Columns::from_image(picture);
     let Columns { line, pad, .. } = columns;
     let Some(letters) = Letters::new(line) else { return false };
     let bar_m = bar_length_m(f64::from(width) * BAR_SHARE * legend.pixel_m);
@@ -85,14 +89,13 @@ pub fn draw_legend(picture: &mut RgbaImage, legend: &Legend, taken: Taken) -> bo
 
     let ends = legend.heights.as_ref().map(|heights| heights.range_m.map(height_text));
     let below = 1 + u32::from(ends.is_some());
-    let labels = legend.rows.iter().map(|row| row.label.as_str());
-    let label_px = columns.text() + letters.widest_px(labels);
+    let labels: Vec<&String> = legend.rows.iter().map(|row| &row.label).collect();
+    let label_px = columns.text() + letters.widest_px(&labels);
     let ramp_px = ends.as_ref().map(|[low, high]| {
-        let texts_px = letters.widest_px([low.as_str()].into_iter())
-            + letters.widest_px([high.as_str()].into_iter());
+        let texts_px = letters.widest_px(&[low]) + letters.widest_px(&[high]);
         3 * pad + columns.ramp() + texts_px
     });
-    let bar_line_px = 2 * pad + bar_px + letters.widest_px([bar_text.as_str()].into_iter());
+    let bar_line_px = 2 * pad + bar_px + letters.widest_px(&[&bar_text]);
     let widest_px = bar_line_px.max(label_px).max(ramp_px.unwrap_or(0));
     let wanted_px = widest_px + pad + 2 * line;
     let right = wanted_px.min(width);
@@ -105,7 +108,7 @@ pub fn draw_legend(picture: &mut RgbaImage, legend: &Legend, taken: Taken) -> bo
     let (rows, rest) = fitting(&legend.rows, room);
     let lines = rows.len() as u32 + u32::from(rest.is_some()) + below;
     let top = height.saturating_sub(lines.max(2) * line + pad);
-    draw_opaque_box(picture, 0..right, top..height);
+    fill(picture, 0..right, top..height, BOX, 1.0);
 
     let above_row = |row: u32| top + pad / 2 + row * line;
     for (row, number) in rows.iter().zip(0_u32..) {
@@ -135,7 +138,7 @@ pub fn draw_legend(picture: &mut RgbaImage, legend: &Legend, taken: Taken) -> bo
     wanted_px > width || lines.max(2) * line > room_px
 }
 
-/// The rows for which there is room, and, if these are not all, a text for one more that says how many lack.
+/// Returns the rows that fit, and, if some do not, a text for one more row with their number.
 fn fitting(rows: &[LegendRow], room: usize) -> (&[LegendRow], Option<String>) {
     if rows.len() <= room {
         return (rows, None);
@@ -144,7 +147,7 @@ fn fitting(rows: &[LegendRow], room: usize) -> (&[LegendRow], Option<String>) {
     (&rows[..shown], Some(format!("and {} more", rows.len() - shown)))
 }
 
-/// The lowest height, the colours from it to the highest one, and that.
+/// Draws the lowest height, the colours from it to the highest one, and the highest height.
 fn draw_ramp(
     picture: &mut RgbaImage,
     letters: &Letters,
@@ -155,7 +158,7 @@ fn draw_ramp(
     let Columns { line, pad, .. } = *columns;
     let ramp = columns.ramp();
     letters.draw(picture, low, pad as f32, above as f32);
-    let left = pad + letters.widest_px([low.as_str()].into_iter()) + pad / 2;
+    let left = pad + letters.widest_px(&[low]) + pad / 2;
     for column in 0..ramp {
         let place = column as usize * colors.len() / ramp as usize;
         let Some(color) = colors.get(place) else { continue };
@@ -165,20 +168,21 @@ fn draw_ramp(
     letters.draw(picture, high, (left + ramp + pad / 2) as f32, above as f32);
 }
 
-/// What stands beside a scale bar.
+/// The text next to the scale bar.
 fn scale_text(bar_m: f64, scale: Option<u32>) -> String {
     let length = bar_length(bar_m);
     scale.map_or(length.clone(), |scale| format!("{length}   1 : {}", grouped(u64::from(scale))))
 }
 
-/// A height in words: "2 340 m".
+/// Formats a height: "2 340 m".
 fn height_text(height_m: f64) -> String {
     let metres = height_m.round();
     let sign = if metres < 0.0 { "−" } else { "" };
     format!("{sign}{} m", grouped(metres.abs() as u64))
 }
 
-/// A whole number in groups of three: "1 234 567". No-break spaces are between them; some fonts lack the narrow one.
+/// Formats a whole number in groups of three: "1 234 567". The separators are no-break spaces; some
+/// fonts lack the narrow one.
 #[must_use]
 pub fn grouped(number: u64) -> String {
     let digits = number.to_string();
@@ -192,11 +196,11 @@ pub fn grouped(number: u64) -> String {
     text
 }
 
-/// The longest length for a scale bar that is not longer than `most_m`: 1, 2 or 5 times a power of ten, metres. `None` where
-/// `most_m` is no positive number.
+/// Returns the longest length for a scale bar that is at most `most_m`: 1, 2 or 5 times a power of
+/// ten, metres. `None` if `most_m` is not a positive number.
 #[must_use]
 pub fn bar_length_m(most_m: f64) -> Option<f64> {
-    // This form also refuses NaN.
+    // This form also rejects NaN.
     if !(most_m > 0.0 && most_m.is_finite()) {
         return None;
     }
@@ -205,7 +209,7 @@ pub fn bar_length_m(most_m: f64) -> Option<f64> {
     Some(step * power)
 }
 
-/// Such a length in words: "20 m", "5 km", "10 cm", "2 mm".
+/// Formats the length of a scale bar: "20 m", "5 km", "10 cm", "2 mm".
 #[must_use]
 pub fn bar_length(m: f64) -> String {
     if m >= 1000.0 {
@@ -219,18 +223,18 @@ pub fn bar_length(m: f64) -> String {
     }
 }
 
-/// A slim triangle that points to the north, its right half light.
+/// Draws a slim triangle that points north, with a light right half.
 fn draw_arrow(picture: &mut RgbaImage, [x, y]: [f64; 2], radius: f64, north_deg: f64) {
     let (sine, cosine) = north_deg.to_radians().sin_cos();
     let reach = radius.ceil() as i64;
     for row in -reach..=reach {
         for column in -reach..=reach {
-            // Turned back: `along` grows to the north, `across` to the east.
+            // Rotated so that `along` grows to the north and `across` to the east.
             let (right, up) = (column as f64, -row as f64);
             let (along, across) = (right * sine + up * cosine, right * cosine - up * sine);
             let share = (along + radius) / (2.0 * radius);
             let half = 0.55 * radius * (1.0 - share);
-            // Notched at its base.
+            // The arrow has a notch at its base.
             let inside = (0.0..=1.0).contains(&share)
                 && across.abs() <= half
                 && along + radius >= 0.5 * (0.55 * radius - across.abs()).max(0.0);

@@ -1,39 +1,39 @@
-//! A row of a legend: what something is called, and a sample of how it is drawn.
+//! A row of a legend: a label, and a sample of how the labelled feature is drawn.
 
 use image::RgbaImage;
 
 use super::letters::{fill, of_255};
 use corniche_styles::{LineStyle, Rgb, RoadBand};
 
-/// Colours of lines that differ by no more than this in each channel are taken for the same one: on lines of some pixels the eye does not
-/// tell them apart.
+/// Colours of lines that differ by at most this in each channel count as the same: on lines of a
+/// few pixels the eye does not see the difference.
 const ALIKE_ON_LINES: f32 = 0.09;
-/// The same for edges of roads, which are a pixel or two wide.
+/// The same limit for edges of roads, which are a pixel or two wide.
 const ALIKE_ON_EDGES: f32 = 0.15;
-/// The same for areas, of which more is seen.
+/// The same limit for areas, which are larger on the picture.
 const ALIKE_ON_AREAS: f32 = 0.03;
-/// Lines whose widths differ by less are taken for equally wide.
+/// Lines whose widths differ by less count as equally wide.
 const ALIKE_PX: f32 = 1.0;
-/// A dash of the edge of a tunnel and the gap after it have this length together.
+/// Length of a dash of a tunnel's edge and the gap after it together.
 const TUNNEL_DASH_PX: u32 = 12;
 
 /// A row of a legend.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LegendRow {
-    /// What people call it.
+    /// The label of the row.
     pub label: String,
-    /// How it is drawn.
+    /// How the labelled feature is drawn.
     pub sample: LegendSample,
 }
 
-/// How something is drawn, with its colours as over the ground.
+/// How a feature is drawn, with the colours that it has over the ground.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LegendSample {
     /// A road.
     Road(LegendRoad),
     /// A road under the ground, whose edge is dashed.
     Tunnel(LegendRoad),
-    /// A line beside the roads, such as a boundary.
+    /// A line that is not a road, such as a boundary.
     Line(LineStyle),
     /// An area.
     Area(Rgb),
@@ -42,25 +42,26 @@ pub enum LegendSample {
 /// How a road is drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LegendRoad {
-    /// Its width in the picture, without its edge.
+    /// Width of the road in the picture, without its edge.
     pub width_px: f32,
-    /// The colours of its surface, from its edges to its middle.
+    /// Colours of the surface, from its edges to its middle.
     pub bands: Vec<RoadBand>,
-    /// Its edge, if it has one.
+    /// The edge of the road, if it has one.
     pub edge: Option<LegendEdge>,
 }
 
 /// The edge of a road.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LegendEdge {
-    /// Its colour.
+    /// Colour of the edge.
     pub color: Rgb,
-    /// Its width.
+    /// Width of the edge.
     pub width_px: u32,
 }
 
 impl LegendRow {
-    /// Rows of which none looks like another: those that are drawn alike stand in the row of the first of them, with all their labels.
+    /// Merges rows that look alike into the first of them, with all their labels, so that all rows
+    /// look different.
     #[must_use]
     pub fn joined(rows: Vec<Self>) -> Vec<Self> {
         let mut joined: Vec<Self> = Vec::new();
@@ -76,7 +77,7 @@ impl LegendRow {
 }
 
 impl LegendSample {
-    /// Whether nobody could tell both apart in a picture.
+    /// Whether nobody could distinguish the two samples in a picture.
     fn looks_like(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Road(one), Self::Road(other)) | (Self::Tunnel(one), Self::Tunnel(other)) => {
@@ -97,7 +98,7 @@ impl LegendSample {
         }
     }
 
-    /// Draws it into a cell of a legend, of which the upper left corner and the size are given.
+    /// Draws the sample into a cell of a legend, given by its upper left corner and its size.
     pub(crate) fn draw(&self, picture: &mut RgbaImage, corner: [u32; 2], size: [u32; 2]) {
         let [[left, top], [width, height]] = [corner, size];
         match self {
@@ -130,7 +131,8 @@ impl LegendRoad {
             && self.bands.iter().zip(&other.bands).all(|(one, other)| is_like(one, other))
     }
 
-    /// Draws it. `dash_px` is the length of a dash of its edge and the gap after it, which are equally long; `None`: the edge is solid.
+    /// Draws the road. `dash_px` is the length of a dash of its edge and the gap after it, which
+    /// are equally long; `None`: the edge is solid.
     fn draw(
         &self,
         picture: &mut RgbaImage,
@@ -139,7 +141,8 @@ impl LegendRoad {
         dash_px: Option<u32>,
     ) {
         let edge_px = self.edge.map_or(0, |edge| edge.width_px);
-        // With more bands a sample is thicker, so that each of them is seen, as far as a line has room.
+        // With more bands a sample is thicker, so that each band is visible, as far as the line has
+        // space.
         let least = (2 * self.bands.len() as u32).saturating_sub(1).max(1);
         let most = (height * 3 / 4).saturating_sub(2 * edge_px).max(1);
         let thick = (self.width_px.round() as u32).max(least).min(most);
@@ -161,7 +164,8 @@ impl LegendRoad {
     }
 }
 
-/// How many of the `thick` pixels across a road lie on each side of a band that takes this share of its width. One or two at least are the band's.
+/// Returns how many of the `thick` pixels across a road are on each side of a band with this share
+/// of its width. The band has at least one or two pixels.
 fn beside_px(thick: u32, width_share: f32) -> u32 {
     let exact = 0.5 * thick as f32 * (1.0 - width_share);
     (exact.round() as u32).min(thick.saturating_sub(1) / 2)

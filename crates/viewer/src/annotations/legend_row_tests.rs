@@ -1,4 +1,4 @@
-//! Rows that look alike are joined, and others are not.
+//! Rows that look alike are merged, and others are not.
 
 use corniche_styles::Dash;
 
@@ -77,11 +77,12 @@ fn the_edge_of_a_tunnel_is_dashed() {
     let edges: Vec<u32> = (0..14).filter(|y| of_row(*y).contains('#')).collect();
     assert_eq!(edges, [4, 9]);
     assert_eq!(of_row(4), "######......######......");
-    // The surface goes on.
+    // The surface continues without gaps.
     assert!((0..24).all(|x| picture.get_pixel(x, 6).0[0] == 204));
 }
 
-/// The band in the middle of a road is as wide as its share, to a pixel: not all but the rims of a thin road.
+/// The band in the middle of a road has its share of the width, to a pixel. On a thin road it does
+/// not fill everything except the rims.
 #[test]
 fn a_middle_band_has_its_share_of_the_pixels() {
     for (width_px, share, expected) in

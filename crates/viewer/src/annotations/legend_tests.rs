@@ -1,4 +1,4 @@
-//! A legend shows each class, a scale bar of the right length and where north is.
+//! A legend shows each class, a scale bar of the correct length and the direction of north.
 
 use corniche_styles::{LineStyle, RoadBand};
 
@@ -81,11 +81,11 @@ fn without_a_length_there_is_no_bar() {
     }
 }
 
-/// 500 m at 10 m a pixel are 50 pixels.
+/// At 10 m per pixel, 500 m are 50 pixels.
 #[test]
 fn the_bar_is_as_long_as_it_says() {
     let mut picture = picture();
-    draw_legend(&mut picture, &legend(0.0), Taken::default());
+    draw_legend(&mut picture, &legend(0.0), OccupiedMargins::default());
     let dark = |x: u32, y: u32| picture.get_pixel(x, y).0[..3] == [32, 36, 40];
     let longest = (400..480)
         .map(|y| {
@@ -102,18 +102,18 @@ fn the_bar_is_as_long_as_it_says() {
 #[test]
 fn each_class_has_its_colours() {
     let mut picture = picture();
-    draw_legend(&mut picture, &legend(0.0), Taken::default());
+    draw_legend(&mut picture, &legend(0.0), OccupiedMargins::default());
     for color in [[255, 0, 0], [255, 255, 0], [0, 0, 255], [0, 255, 255], [255, 0, 255]] {
         let count = picture.pixels().filter(|pixel| pixel.0[..3] == color).count();
         assert!(count > 40, "{color:?}: {count}");
     }
 }
 
-/// Three pixels thick, six of ten along it.
+/// The line is three pixels thick, and covers six of ten pixels along it.
 #[test]
 fn boundaries_have_their_dashes() {
     let mut picture = picture();
-    draw_legend(&mut picture, &legend(0.0), Taken::default());
+    draw_legend(&mut picture, &legend(0.0), OccupiedMargins::default());
     let is_line = |x: u32, y: u32| picture.get_pixel(x, y).0[..3] == [255, 0, 255];
     let rows: Vec<u32> = (0..480).filter(|&y| (0..640).any(|x| is_line(x, y))).collect();
     assert_eq!(rows.len(), 3, "{rows:?}");
@@ -123,7 +123,7 @@ fn boundaries_have_their_dashes() {
     assert!(columns.iter().all(|x| (x - first) % 10 < 6), "{columns:?}");
 }
 
-/// The arrow's dark half lies west of its axis; the tip turns with the north.
+/// The arrow's dark half is west of its axis; the tip turns with the north.
 #[test]
 fn the_arrow_points_to_the_north() {
     let tip = |north_deg: f64| {
@@ -133,7 +133,7 @@ fn the_arrow_points_to_the_north() {
             |x: i64, y: i64| picture.get_pixel(x as u32, y as u32).0[..3] != [90, 120, 90];
         [[100, 82], [118, 100], [100, 118], [82, 100]].map(|[x, y]| changed(x, y))
     };
-    // At the base there is a notch.
+    // The base has a notch.
     assert_eq!(tip(0.0), [true, false, false, false]);
     assert_eq!(tip(90.0), [false, true, false, false]);
     assert_eq!(tip(180.0), [false, false, true, false]);
@@ -144,35 +144,37 @@ fn the_arrow_points_to_the_north() {
 fn a_legend_without_room_says_so() {
     for (size_px, is_cut) in [([40, 20], true), ([120, 300], true), ([640, 480], false)] {
         let mut picture = RgbaImage::new(size_px[0], size_px[1]);
-        assert_eq!(draw_legend(&mut picture, &legend(30.0), Taken::default()), is_cut);
+        assert_eq!(draw_legend(&mut picture, &legend(30.0), OccupiedMargins::default()), is_cut);
         assert!(picture.pixels().any(|pixel| pixel.0[0] > 0), "{size_px:?}: something is drawn");
     }
 }
 
-/// Where both do not fit side by side, the legend lies above the credits; and below the title it has fewer rows.
+/// If both do not fit side by side, the legend is drawn above the attribution; below the title it
+/// has fewer rows.
 #[test]
 fn a_legend_keeps_clear_of_credits_and_title() {
     let drawn = |credits_px, title_px| {
         let mut picture = RgbaImage::new(640, 480);
-        draw_legend(&mut picture, &legend(0.0), Taken { title_px, credits_px });
+        draw_legend(&mut picture, &legend(0.0), OccupiedMargins { title_px, credits_px });
         let rows = (0..480).filter(|row| picture.get_pixel(3, *row).0[0] > 0);
         (rows.clone().min().unwrap(), rows.max().unwrap())
     };
     let (top, bottom) = drawn([0, 0], 0);
     assert_eq!(bottom, 479);
-    assert_eq!(drawn([200, 30], 0), (top, bottom), "beside short credits");
-    assert_eq!(drawn([600, 30], 0), (top - 30, bottom - 30), "above long ones");
+    assert_eq!(drawn([200, 30], 0), (top, bottom), "next to a short attribution");
+    assert_eq!(drawn([600, 30], 0), (top - 30, bottom - 30), "above a long one");
     let title_px = top + 20;
     assert!(drawn([0, 0], title_px).0 >= title_px, "below the title");
 }
 
-/// The colours of the box, of ink and of both mixed, and those of samples: nothing of the picture beneath.
+/// Only the colours of the box, the ink, mixes of both, and samples occur: nothing of the picture
+/// below.
 #[test]
 fn nothing_shows_through_the_box() {
     let drawn = |ground: [u8; 3]| {
         let [red, green, blue] = ground;
         let mut picture = RgbaImage::from_pixel(640, 480, image::Rgba([red, green, blue, 255]));
-        draw_legend(&mut picture, &legend(0.0), Taken::default());
+        draw_legend(&mut picture, &legend(0.0), OccupiedMargins::default());
         picture
     };
     let (dark, light) = (drawn([0; 3]), drawn([200, 250, 200]));
@@ -213,13 +215,13 @@ fn heights_are_whole_metres_in_groups_of_three_digits() {
     }
 }
 
-/// From the lowest at the left to the highest at the right.
+/// The ramp runs from the lowest height at the left to the highest at the right.
 #[test]
 fn heights_have_a_ramp() {
     let colors = vec![[1.0, 0.5, 0.0], [0.0, 0.5, 1.0]];
     let heights = Some(LegendHeights { range_m: [412.0, 2340.0], colors });
     let mut picture = picture();
-    draw_legend(&mut picture, &Legend { heights, ..legend(0.0) }, Taken::default());
+    draw_legend(&mut picture, &Legend { heights, ..legend(0.0) }, OccupiedMargins::default());
     let columns = |color: [u8; 3]| {
         let is_it = |x: &u32| (0..480).any(|y| picture.get_pixel(*x, y).0[..3] == color);
         (0..640).filter(is_it).collect::<Vec<u32>>()

@@ -6,12 +6,14 @@ use ab_glyph::{Font, FontRef, PxScale, ScaleFont, point};
 use corniche_styles::Rgb;
 use image::RgbaImage;
 
-/// Smallest and largest height of a line of text, pixels.
+/// Minimum and maximum height of a line of text, pixels.
 const LINE_PX: RangeInclusive<u32> = 14..=28;
-/// How many lines of text would fill the picture's height; their height stays within [`LINE_PX`].
+/// How many lines of text fill the picture's height; the height of a line stays within [`LINE_PX`].
 const LINES_PER_PICTURE: u32 = 52;
 /// Colour and opacity of the box behind the letters.
-const BOX: ([f32; 3], f32) = ([255.0, 255.0, 255.0], 0.78);
+pub(crate) const BOX: [f32; 3] = [255.0; 3];
+/// Opacity of a translucent box.
+pub(crate) const BOX_OPACITY: f32 = 0.78;
 /// Colour of letters.
 pub(crate) const INK: [f32; 3] = [32.0, 36.0, 40.0];
 
@@ -29,12 +31,14 @@ pub(crate) struct Letters {
 impl Letters {
     /// Letters for lines of this height.
     pub(crate) fn new(line_px: u32) -> Option<Self> {
-        // The font is part of the program, so it can be parsed; otherwise nothing could be written.
+        // The font is embedded in the program, so it can be parsed; otherwise nothing could be
+        // written.
         let font = FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT).ok()?;
         Some(Self { font, scale: PxScale::from(line_px as f32) })
     }
 
-    /// The letters of a text that the font does not have, each once. It draws a box in their places.
+    /// Returns the characters of a text that the font lacks, each once. Boxes are drawn instead of
+    /// them.
     pub(crate) fn lacking(&self, text: &str) -> String {
         let mut lacking = String::new();
         let letters = text.chars().filter(|letter| !letter.is_whitespace());
@@ -51,12 +55,12 @@ impl Letters {
         text.chars().map(|letter| scaled.h_advance(scaled.glyph_id(letter))).sum()
     }
 
-    /// The widest of some lines.
-    pub(crate) fn widest_px<'a>(&self, lines: impl Iterator<Item = &'a str>) -> u32 {
-        lines.map(|line| self.width_px(line)).fold(0.0, f32::max).ceil() as u32
+    /// Width of the widest line.
+    pub(crate) fn widest_px(&self, lines: &[impl AsRef<str>]) -> u32 {
+        lines.iter().map(|line| self.width_px(line.as_ref())).fold(0.0, f32::max).ceil() as u32
     }
 
-    /// Breaks `text` between words so that each line fits into `room_px` if its words do.
+    /// Wraps `text` between words so that each line fits into `room_px`, if its words do.
     pub(crate) fn wrap(&self, text: &str, room_px: f32) -> Vec<String> {
         let mut lines: Vec<String> = Vec::new();
         for word in text.split_whitespace() {
@@ -94,17 +98,7 @@ impl Letters {
     }
 }
 
-/// A light box through which nothing shows, to write on.
-pub(crate) fn draw_opaque_box(picture: &mut RgbaImage, columns: Range<u32>, rows: Range<u32>) {
-    fill(picture, columns, rows, BOX.0, 1.0);
-}
-
-/// A light box through which a little shows, to write on.
-pub(crate) fn draw_box(picture: &mut RgbaImage, columns: Range<u32>, rows: Range<u32>) {
-    fill(picture, columns, rows, BOX.0, BOX.1);
-}
-
-/// A rectangle of one colour, 0 to 255.
+/// Fills a rectangle with one colour, 0 to 255.
 pub(crate) fn fill(
     picture: &mut RgbaImage,
     columns: Range<u32>,
@@ -119,12 +113,12 @@ pub(crate) fn fill(
     }
 }
 
-/// A colour of shares in parts of 255.
+/// Converts a colour from 0 to 1 to 0 to 255.
 pub(crate) fn of_255(color: Rgb) -> [f32; 3] {
     color.map(|part| part * 255.0)
 }
 
-/// Mixes a colour into a pixel; outside the picture, nothing.
+/// Blends a colour into a pixel; does nothing outside the picture.
 pub(crate) fn blend(picture: &mut RgbaImage, x: u32, y: u32, color: [f32; 3], opacity: f32) {
     let Some(pixel) = picture.get_pixel_mut_checked(x, y) else { return };
     for (channel, wanted) in pixel.0.iter_mut().zip(color) {

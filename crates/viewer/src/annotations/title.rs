@@ -1,33 +1,34 @@
-//! A title is written into the upper left corner of a picture.
+//! Draws a title into the upper left corner of a picture.
 
 use image::RgbaImage;
 
-use super::letters::{Letters, draw_opaque_box, line_px};
+use super::letters::{BOX, Letters, fill, line_px};
 
-/// Letters of a title are so many times as high as others.
+/// Size of the letters of a title, relative to other letters.
 const SIZE: u32 = 2;
 
-/// What of a title is not seen as it was written.
+/// The parts of a title that are not visible as they were written.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct TitleFlaws {
-    /// Letters that the font lacks; a box stands in their places.
+    /// Characters that the font lacks; boxes are drawn instead of them.
     pub lacking: String,
-    /// Whether the picture is too small for it, so that a part is cut off.
+    /// Whether the picture is too small for the title, so that a part is cut off.
     pub is_cut: bool,
 }
 
-/// A title as it was written.
+/// A title that was drawn.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct WrittenTitle {
-    /// How high its box is.
+    /// Height of the box of the title.
     pub height_px: u32,
-    /// What is not seen of it.
+    /// The parts of the title that are not visible.
     pub flaws: TitleFlaws,
 }
 
-/// Writes a title into the upper left corner, on an opaque box. A title without letters changes nothing.
+/// Draws a title into the upper left corner, on an opaque box. A title without letters changes
+/// nothing.
 ///
-/// A title that is too long for the picture is broken between words.
+/// A title that is too long for the picture is wrapped between words.
 pub fn draw_title(picture: &mut RgbaImage, title: &str) -> WrittenTitle {
     let (width, height) = picture.dimensions();
     let line_px = SIZE * line_px(height);
@@ -38,10 +39,10 @@ pub fn draw_title(picture: &mut RgbaImage, title: &str) -> WrittenTitle {
     if lines.is_empty() {
         return WrittenTitle::default();
     }
-    let widest_px = letters.widest_px(lines.iter().map(String::as_str));
+    let widest_px = letters.widest_px(&lines);
     let right = widest_px + 2 * pad_px;
     let bottom = lines.len() as u32 * line_px + pad_px;
-    draw_opaque_box(picture, 0..right.min(width), 0..bottom.min(height));
+    fill(picture, 0..right.min(width), 0..bottom.min(height), BOX, 1.0);
     for (line, row) in lines.iter().zip(0_u32..) {
         letters.draw(picture, line, pad_px as f32, (pad_px / 2 + row * line_px) as f32);
     }

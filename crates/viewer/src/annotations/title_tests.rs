@@ -1,4 +1,4 @@
-//! A title stands on an opaque box, and what of it is not seen is told.
+//! A title is drawn on an opaque box, and its invisible parts are reported.
 
 use super::*;
 
@@ -19,7 +19,8 @@ fn a_title_stands_on_white_in_the_upper_left_corner() {
     assert_eq!(rgb(0, 0), [255; 3]);
     assert_eq!(rgb(639, 0), GROUND);
     assert_eq!(rgb(0, 479), GROUND);
-    // In the box nothing of the ground shows: all is white, ink or between both, which are grey.
+    // The ground is not visible in the box: all pixels are white, ink or a mix of both, which is
+    // grey.
     let columns = (0..640).take_while(|x| rgb(*x, 0) == [255; 3]).count() as u32;
     let rows = (0..480).take_while(|y| rgb(0, *y) == [255; 3]).count() as u32;
     assert!(columns > 100 && columns < 320 && rows > 28 && rows < 60, "{columns} {rows}");

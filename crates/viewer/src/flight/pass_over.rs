@@ -1,33 +1,36 @@
-//! The flight over a package that is drawn when the user gives none.
+//! The default flight over a package, for users who give none.
 
 use corniche_geom::Bounds;
 
 use super::{Flight, FlightError, Keyframe, Pose};
 use crate::camera::Orientation;
 
-/// Keyframes of the pass.
+/// Number of keyframes of the flight.
 const KEYFRAMES: usize = 33;
-/// How many times the ground is looked up between two keyframes.
+/// How many times the ground height is looked up between two keyframes.
 const LOOKS: usize = 16;
-/// The share of the longer side that the camera flies along; near the end nothing would be ahead of it.
+/// Share of the longer side along which the camera flies; near the end no ground would be ahead of
+/// it.
 const REACH: f64 = 0.8;
-/// The path swings to either side by this share of the shorter side.
+/// Amplitude of the path to either side, as a share of the shorter side.
 const SWING: f64 = 0.15;
-/// Height over the ground as a share of the shorter side.
+/// Height above the ground as a share of the shorter side.
 const CLEARANCE: f64 = 0.05;
-/// The least height over the ground.
+/// Minimum height above the ground.
 const MIN_CLEARANCE_M: f64 = 30.0;
-/// Speed in true metres per second: the flight over Bavaria of Vaaraniemi, Treib & Westermann 2011, section 7.
+/// Speed in true metres per second, as in the flight over Bavaria of Vaaraniemi, Treib & Westermann
+/// 2011, section 7.
 const SPEED_M_PER_S: f64 = 950.0;
-/// Small packages are flown over more slowly.
+/// Minimum duration: small packages are flown over more slowly.
 const MIN_DURATION_S: f64 = 10.0;
 const PITCH_DEG: f64 = 65.0;
 
 impl Flight {
-    /// An oblique pass along the longer side of `plan`, swinging to both sides, always well above the ground.
+    /// Creates an oblique flight along the longer side of `plan`, swinging to both sides, always
+    /// well above the ground.
     ///
-    /// `height_at` gives the true height of the ground. Where it gives none, the path is above the highest ground of the
-    /// whole path. `None` if there is no ground beneath any of it.
+    /// `height_at` returns the true height of the ground. Where it returns none, the path is above
+    /// the highest ground of the whole path. `None` if there is no ground below the path.
     ///
     /// # Errors
     /// The errors of `height_at`.
@@ -58,14 +61,14 @@ impl Flight {
             let both = [k.checked_sub(1).and_then(known), known(k)];
             both.into_iter().flatten().fold(f64::NEG_INFINITY, f64::max)
         };
-        // A keyframe is above all ground between it and both its neighbours. Between two keyframes the height is between
-        // theirs.
+        // A keyframe is above all ground between it and both its neighbours. Between two keyframes
+        // the height is between their heights.
         let heights_m: [f64; KEYFRAMES] = std::array::from_fn(|k| beside(k) + clearance_m);
         Ok(self::in_plan(plan, &heights_m).ok())
     }
 }
 
-/// The path at these heights; an error if the bounds have no area.
+/// Returns the path at these heights; an error if the bounds have no area.
 fn in_plan(plan: Bounds, heights_m: &[f64; KEYFRAMES]) -> Result<Flight, FlightError> {
     let (width_m, height_m) = (plan.width(), plan.height());
     let (long_m, short_m) = (width_m.max(height_m), width_m.min(height_m));
@@ -75,7 +78,7 @@ fn in_plan(plan: Bounds, heights_m: &[f64; KEYFRAMES]) -> Result<Flight, FlightE
         let angle = std::f64::consts::TAU * share(k);
         let along_m = REACH * long_m * share(k);
         let across_m = SWING * short_m * angle.sin();
-        // Metres sideways per metre ahead.
+        // Sideways metres per metre ahead.
         let turn = SWING * short_m * std::f64::consts::TAU * angle.cos() / (REACH * long_m);
         let [center_x, center_y] = plan.center();
         let (x, y, heading_deg) = if width_m > height_m {

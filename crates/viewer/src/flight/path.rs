@@ -3,10 +3,10 @@
 use super::{FlightError, Keyframe, Pose, keyframe::KEYFRAMES};
 use crate::camera::Orientation;
 
-/// Times, positions, heights and headings with larger numbers are mistakes.
+/// Times, positions, heights and headings above this are mistakes.
 const MOST: f64 = 1e9;
 
-/// A path of the camera. Times ascend and every number is finite and in its range.
+/// A path of the camera. Times ascend, and every number is finite and within its range.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Flight {
     times_s: Vec<f64>,
@@ -17,10 +17,12 @@ pub struct Flight {
 }
 
 impl Flight {
-    /// A flight along keyframes. From one to the next the heading turns in the shorter direction.
+    /// Creates a flight along keyframes. From one to the next the heading turns in the shorter
+    /// direction.
     ///
     /// # Errors
-    /// When there are too few or too many keyframes, times do not ascend, or a number is out of range.
+    /// When there are too few or too many keyframes, times do not ascend, or a number is out of
+    /// range.
     pub fn new(keyframes: &[Keyframe]) -> Result<Self, FlightError> {
         if !KEYFRAMES.contains(&keyframes.len()) {
             return Err(FlightError::Count { count: keyframes.len() });
@@ -47,7 +49,7 @@ impl Flight {
         Ok(Self { times_s, values, slopes })
     }
 
-    /// Its keyframes in order. Headings may be below 0° or above 360°.
+    /// Keyframes in order. Headings may be below 0° or above 360°.
     pub fn keyframes(&self) -> impl Iterator<Item = Keyframe> {
         self.times_s.iter().zip(&self.values).map(|(time_s, value)| {
             let [x, y, height_m, heading_deg, pitch_deg] = *value;
@@ -56,22 +58,23 @@ impl Flight {
         })
     }
 
-    /// When it begins and ends, seconds.
+    /// Start and end time, seconds.
     #[must_use]
     pub fn span_s(&self) -> [f64; 2] {
         [self.times_s[0], self.times_s[self.times_s.len() - 1]]
     }
 
-    /// How long it takes, seconds.
+    /// Duration, seconds.
     #[must_use]
     pub fn duration_s(&self) -> f64 {
         let [begin_s, end_s] = self.span_s();
         end_s - begin_s
     }
 
-    /// The camera at a time; before the beginning and after the end it stands still.
+    /// Returns the camera at a time; before the start and after the end it stands still.
     ///
-    /// Source: Fritsch & Butland 1984, *A Method for Constructing Local Monotone Piecewise Cubic Interpolants*.
+    /// Source: Fritsch & Butland 1984, *A Method for Constructing Local Monotone Piecewise Cubic
+    /// Interpolants*.
     #[must_use]
     pub fn at(&self, time_s: f64) -> Pose {
         let [begin_s, end_s] = self.span_s();
@@ -80,8 +83,8 @@ impl Flight {
         let k = after.clamp(1, self.times_s.len() - 1) - 1;
         let step_s = self.times_s[k + 1] - self.times_s[k];
         let t = (time_s - self.times_s[k]) / step_s;
-        // Hermite's cubic polynomials: two with the value 1 at one end, two with the slope 1 at one end; every other value
-        // and slope at the ends is 0.
+        // Hermite's cubic polynomials: two with the value 1 at one end, two with the slope 1 at one
+        // end; every other value and slope at the ends is 0.
         let [value_0, value_1] = [(1.0 + 2.0 * t) * (1.0 - t) * (1.0 - t), t * t * (3.0 - 2.0 * t)];
         let [slope_0, slope_1] = [t * (1.0 - t) * (1.0 - t), t * t * (t - 1.0)];
         let [x, y, height_m, heading_deg, pitch_deg] = [0, 1, 2, 3, 4].map(|axis| {
@@ -89,7 +92,7 @@ impl Flight {
             let between = value_0 * from
                 + value_1 * to
                 + step_s * (slope_0 * self.slopes[k][axis] + slope_1 * self.slopes[k + 1][axis]);
-            // Between the two in exact arithmetic; rounding may add an ulp.
+            // Exact arithmetic gives a value between the two; rounding may add an ulp.
             between.clamp(from.min(to), from.max(to))
         });
         Pose { eye_m: [x, y, height_m], orientation: Orientation { heading_deg, pitch_deg } }
@@ -116,11 +119,13 @@ fn check(keyframe: &Keyframe, number: usize) -> Result<(), FlightError> {
     Ok(())
 }
 
-/// Derivatives at the keyframes, such that no value between two keyframes is beyond the values at these two.
+/// Derivatives at the keyframes, chosen so that no value between two keyframes is beyond the values
+/// at these keyframes.
 ///
-/// At inner keyframes it is the weighted harmonic mean of the slopes of both sides, or 0 where their signs differ (Fritsch &
-/// Butland 1984, formula 5, with the weights for unequal steps by Fritsch, Butland & Carlson). At the first and the last
-/// keyframe it is the slope of the only side, which the same theorem allows.
+/// At inner keyframes the derivative is the weighted harmonic mean of the slopes of both sides, or
+/// 0 if their signs differ (Fritsch & Butland 1984, formula 5, with the weights for unequal steps
+/// by Fritsch, Butland & Carlson). At the first and the last keyframe the derivative is the slope
+/// of the only side, which the same theorem allows.
 fn slopes(times_s: &[f64], values: &[[f64; 5]]) -> Vec<[f64; 5]> {
     let last = times_s.len() - 1;
     let step_s = |k: usize| times_s[k + 1] - times_s[k];

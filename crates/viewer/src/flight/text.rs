@@ -1,4 +1,4 @@
-//! Flights are read from text and written to it, in the coordinates of a CRS.
+//! Reads and writes flights as text, in the coordinates of a CRS.
 
 use corniche_geom::CoordinateTable;
 use corniche_tileset::Manifest;
@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 use super::{Flight, FlightError, Keyframe, Pose};
 use crate::camera::Orientation;
 
-/// What x and y of a package are: coordinates of a CRS times factors.
+/// How x and y of a package are defined: coordinates of a CRS times factors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WorkingCrs<'a> {
-    /// The name of the CRS, as it is in packages.
+    /// Name of the CRS, as in packages.
     pub crs: &'a str,
     /// Working metres for one unit of its coordinates, east and north.
     pub metres_per_unit: [f64; 2],
@@ -19,21 +19,21 @@ pub struct WorkingCrs<'a> {
 impl<'a> WorkingCrs<'a> {
     /// The working CRS of a package.
     #[must_use]
-    pub fn of(manifest: &'a Manifest) -> Self {
+    pub fn from_manifest(manifest: &'a Manifest) -> Self {
         Self { crs: &manifest.crs, metres_per_unit: manifest.metres_per_unit }
     }
 }
 
 impl Flight {
-    /// Reads the text of a flight, as described at the top of [`flight`](crate::flight). `working` and `coordinates` are the
-    /// package's.
+    /// Parses the text of a flight, as described at the top of [`flight`](crate::flight). `working`
+    /// and `coordinates` belong to the package.
     ///
-    /// If the text has other factors for the same CRS, its metres are converted: divided by its factors and multiplied by
-    /// the package's.
+    /// If the text has other factors for the same CRS, its metres are converted: divided by its
+    /// factors and multiplied by the package's factors.
     ///
     /// # Errors
-    /// When the text is not a flight or has impossible values; the message names the line or the keyframe. When it is for a
-    /// package in another CRS.
+    /// When the text is not a valid flight or has impossible values; the message names the line or
+    /// the keyframe. When the flight is for a package in another CRS.
     pub fn parse(
         text: &str,
         working: WorkingCrs<'_>,
@@ -44,10 +44,10 @@ impl Flight {
         Self::of_record(&record, working, coordinates)
     }
 
-    /// Does the same as [`Self::parse`] for a text that was read already.
+    /// Does the same as [`Self::parse`] for a text that was parsed already.
     ///
     /// # Errors
-    /// When it has impossible values, or is for a package in another CRS.
+    /// When the record has impossible values, or is for a package in another CRS.
     pub fn of_record(
         file: &FlightRecord,
         working: WorkingCrs<'_>,
@@ -65,7 +65,7 @@ impl Flight {
         if factors.iter().any(|factor| !factor.is_normal()) {
             return Err(FlightError::Factors { factors });
         }
-        // 1 exactly where both have the same factors.
+        // Exactly 1 if both have the same factors.
         let carry = [0, 1].map(|axis| working.metres_per_unit[axis] / factors[axis]);
         let keyframes: Result<Vec<Keyframe>, FlightError> = file
             .keyframe
@@ -76,16 +76,18 @@ impl Flight {
         Self::new(&keyframes?)
     }
 
-    /// The text of this flight, in the working metres of a package: [`Self::parse`] reads back the same flight.
+    /// Formats this flight as text, in the working metres of a package: [`Self::parse`] reads back
+    /// the same flight.
     ///
     /// # Errors
-    /// Never for a flight that this crate made; the function that writes TOML returns a `Result`.
+    /// Never for a flight that this crate created; the function that writes TOML returns a
+    /// `Result`.
     pub fn to_text(&self, working: WorkingCrs<'_>) -> Result<String, FlightError> {
         toml::to_string(&self.record(working))
             .map_err(|error| FlightError::Syntax { message: error.to_string() })
     }
 
-    /// What is in the text of this flight, in the working metres of a package.
+    /// Returns the contents of the text of this flight, in the working metres of a package.
     #[must_use]
     pub fn record(&self, working: WorkingCrs<'_>) -> FlightRecord {
         let keyframe = self.keyframes().map(|Keyframe { time_s, pose }| {
@@ -109,7 +111,7 @@ impl Flight {
     }
 }
 
-/// What the text of a flight says, as it is described at the top of [`flight`](crate::flight).
+/// The contents of the text of a flight, as described at the top of [`flight`](crate::flight).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FlightRecord {
@@ -138,7 +140,7 @@ struct KeyframeRecord {
 }
 
 impl KeyframeRecord {
-    /// The keyframe, x and y times `carry`.
+    /// Returns the keyframe with x and y multiplied by `carry`.
     fn place(
         &self,
         number: usize,
@@ -152,7 +154,7 @@ impl KeyframeRecord {
                     ("lon_deg", lon_deg, 360.0, "within ±360 degrees"),
                     ("lat_deg", lat_deg, 90.0, "within ±90 degrees"),
                 ] {
-                    // Written so that NaN fails.
+                    // This form also rejects NaN.
                     if !(-most..=most).contains(&value) {
                         return Err(FlightError::Range { number, name, value, range });
                     }

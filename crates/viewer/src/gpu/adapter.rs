@@ -2,7 +2,8 @@
 
 use super::GpuError;
 
-/// The adapter that the environment names, else the fastest, else a software adapter.
+/// Returns the adapter that the environment names, or else the fastest one, or else a software
+/// adapter.
 pub(crate) async fn adapter(
     instance: &wgpu::Instance,
     surface: Option<&wgpu::Surface<'_>>,

@@ -1,4 +1,4 @@
-//! The areas of a tile on the graphics card.
+//! GPU buffers of the areas of a tile.
 
 use corniche_areas::AreaClass;
 use wgpu::{
@@ -22,37 +22,37 @@ const CORNER_ATTRIBUTES: [VertexAttribute; 2] = vertex_attr_array![0 => Float32x
 const BOX_ATTRIBUTES: [VertexAttribute; 3] =
     vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Uint32];
 
-/// An instance for each wall.
+/// Vertex layout with one instance per wall.
 pub(crate) const WALLS: VertexBufferLayout<'static> = VertexBufferLayout {
     array_stride: WALL_BYTES,
     step_mode: VertexStepMode::Instance,
     attributes: &WALL_ATTRIBUTES,
 };
-/// A vertex for each corner of caps.
+/// Vertex layout with one vertex per corner of the caps.
 pub(crate) const CORNERS: VertexBufferLayout<'static> = VertexBufferLayout {
     array_stride: CORNER_BYTES,
     step_mode: VertexStepMode::Vertex,
     attributes: &CORNER_ATTRIBUTES,
 };
-/// An instance for the box around each class.
+/// Vertex layout with one instance for the box around each class.
 pub(crate) const BOXES: VertexBufferLayout<'static> = VertexBufferLayout {
     array_stride: BOX_BYTES,
     step_mode: VertexStepMode::Instance,
     attributes: &BOX_ATTRIBUTES,
 };
 
-/// Corners of the strip of triangles of a wall and of a box, as `shaders/areas.wgsl` counts them.
+/// Corners of the triangle strips of a wall and of a box, in the order of `shaders/areas.wgsl`.
 const WALL_CORNERS: u32 = 4;
 const BOX_CORNERS: u32 = 14;
 
-/// The areas of a tile on the graphics card.
+/// The areas of a tile on the GPU.
 pub(crate) struct AreaBuffers {
     walls: Buffer,
     corners: Buffer,
     triangles: Buffer,
     boxes: Buffer,
     pub(crate) classes: Vec<ClassVolumes>,
-    /// The box around all of them, as in [`AreaVolumes`].
+    /// Box around all areas, as in [`AreaVolumes`].
     pub(crate) box_in_tile: [[f32; 3]; 2],
 }
 
@@ -75,7 +75,7 @@ impl AreaBuffers {
         })
     }
 
-    /// Bytes of the buffers that [`AreaBuffers::new`] makes.
+    /// Size of the buffers that [`AreaBuffers::new`] creates, bytes.
     pub(crate) fn bytes_of(areas: &AreaVolumes) -> u64 {
         areas.walls.len() as u64 * WALL_BYTES
             + areas.corners.len() as u64 * CORNER_BYTES
@@ -83,7 +83,7 @@ impl AreaBuffers {
             + areas.classes.len() as u64 * BOX_BYTES
     }
 
-    /// Bytes of its buffers.
+    /// Size of the buffers, bytes.
     pub(crate) fn gpu_bytes(&self) -> u64 {
         [&self.walls, &self.corners, &self.triangles, &self.boxes]
             .into_iter()
@@ -91,7 +91,7 @@ impl AreaBuffers {
             .sum()
     }
 
-    /// Draws the walls of a class. Pipeline and bind groups are set.
+    /// Draws the walls of a class. The caller sets pipeline and bind groups.
     pub(crate) fn draw_walls(&self, pass: &mut RenderPass<'_>, class: AreaClass) {
         if let Some(volumes) = self.of_class(class) {
             pass.set_vertex_buffer(0, self.walls.slice(..));
@@ -99,7 +99,8 @@ impl AreaBuffers {
         }
     }
 
-    /// Draws the upper or the lower caps of a class: the pipeline says which. Pipeline and bind groups are set.
+    /// Draws the upper or the lower caps of a class, depending on the pipeline. The caller sets
+    /// pipeline and bind groups.
     pub(crate) fn draw_caps(&self, pass: &mut RenderPass<'_>, class: AreaClass) {
         if let Some(volumes) = self.of_class(class) {
             pass.set_vertex_buffer(0, self.corners.slice(..));
@@ -108,7 +109,7 @@ impl AreaBuffers {
         }
     }
 
-    /// Draws the box around a class. Pipeline and bind groups are set.
+    /// Draws the box around a class. The caller sets pipeline and bind groups.
     pub(crate) fn draw_box(&self, pass: &mut RenderPass<'_>, class: AreaClass) {
         let place = self.classes.iter().position(|volumes| volumes.class == class);
         if let Some(place) = place.map(|place| place as u32) {

@@ -1,17 +1,18 @@
-//! Layouts and bind groups, in one place for all drawables.
+//! Layouts and bind groups of all drawables.
 
 use wgpu::{
     BindGroup, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry,
-    BindingResource, BindingType, Device, ShaderStages, TextureSampleType, TextureView,
+    BindingResource, BindingType, BufferUsages, Device, ShaderStages, TextureSampleType,
+    TextureView,
 };
 
 use super::Gpu;
 
-/// Colours, labels and depths are read texel by texel. Depths are bound as ordinary numbers, because OpenGL's shading
-/// language cannot read them texel by texel in another way.
+/// Colours, labels and depths are read texel by texel. Depths are bound as ordinary numbers,
+/// because the shading language of OpenGL cannot read depths texel by texel otherwise.
 pub(crate) const UNFILTERED: TextureSampleType = TextureSampleType::Float { filterable: false };
 
-/// The layout of a bind group.
+/// Creates the layout of a bind group.
 pub(crate) fn layout(
     device: &Device,
     label: &str,
@@ -20,8 +21,8 @@ pub(crate) fn layout(
     device.create_bind_group_layout(&BindGroupLayoutDescriptor { label: Some(label), entries })
 }
 
-/// A uniform block for all stages. With `dynamic_bytes` it is one of many blocks of that size in one buffer, and its
-/// offset is given when it is bound.
+/// A uniform block for all stages. With `dynamic_bytes` it is one of many blocks of that size in
+/// one buffer, and its offset is set when it is bound.
 pub(crate) fn uniform(
     binding: u32,
     dynamic_bytes: Option<std::num::NonZeroU64>,
@@ -74,4 +75,15 @@ pub(crate) fn group(
         layout,
         entries: &entries,
     })
+}
+
+/// Uploads rows as a uniform block, and creates a bind group for it alone.
+pub(crate) fn block(
+    gpu: &Gpu,
+    label: &str,
+    layout: &BindGroupLayout,
+    rows: &[[f32; 4]],
+) -> BindGroup {
+    let block = gpu.buffer(label, bytemuck::cast_slice(rows), BufferUsages::UNIFORM);
+    group(gpu, layout, &[block.as_entire_binding()])
 }

@@ -1,4 +1,4 @@
-//! The graphics device: how it is opened, what it can do, and how its faults are noticed.
+//! The graphics device: how to open it, its capabilities, and its faults.
 
 use std::sync::{
     Arc, Mutex,
@@ -10,24 +10,24 @@ use wgpu::Features;
 
 use super::{GpuError, ReadBackError, adapter::adapter};
 
-/// What a device must be able to do so that the passes of a frame can be timed.
+/// Features that a device needs to time the passes of a frame.
 pub(crate) const TIMESTAMPS: Features =
     Features::TIMESTAMP_QUERY.union(Features::TIMESTAMP_QUERY_INSIDE_ENCODERS);
 
 /// A graphics device.
 pub struct Gpu {
-    /// The adapter that the device belongs to; it knows what surfaces can do.
+    /// Adapter of the device; it knows the capabilities of surfaces.
     pub adapter: wgpu::Adapter,
     /// Name and backend of the adapter, for reports: "llvmpipe (…) (vulkan)".
     pub adapter_name: String,
-    /// The device of `wgpu`: makes buffers, textures and pipelines.
+    /// Device of `wgpu`: creates buffers, textures and pipelines.
     pub device: wgpu::Device,
-    /// The queue of `wgpu`: takes commands.
+    /// Queue of `wgpu`: receives commands.
     pub queue: wgpu::Queue,
     faults: Arc<Faults>,
 }
 
-/// What the device reports by callbacks.
+/// Faults that the device reports by callbacks.
 #[derive(Default)]
 struct Faults {
     is_lost: AtomicBool,
@@ -35,13 +35,13 @@ struct Faults {
 }
 
 impl Faults {
-    /// Notes the faults of `device` from now on.
-    fn of(device: &wgpu::Device) -> Arc<Self> {
+    /// Records the faults of `device` from now on.
+    fn from_device(device: &wgpu::Device) -> Arc<Self> {
         let faults = Arc::new(Self::default());
         let seen = Arc::clone(&faults);
         device.set_device_lost_callback(move |_, _| seen.is_lost.store(true, Ordering::Release));
         let seen = Arc::clone(&faults);
-        // Without a handler the process would end.
+        // Without a handler the process would abort.
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             let mut first = locked(&seen.first);
             first.get_or_insert_with(|| error.to_string());
@@ -50,8 +50,8 @@ impl Faults {
     }
 }
 
-/// Names of the graphics interfaces that the program was built for, as `WGPU_BACKEND` takes them. Which of them a machine has is found
-/// out when something is drawn.
+/// Names of the graphics APIs that the program was built for, as `WGPU_BACKEND` takes them. Drawing
+/// finds out which of them a machine supports.
 #[must_use]
 pub fn backends() -> Vec<String> {
     let built_in = wgpu::Instance::enabled_backend_features();
@@ -59,27 +59,31 @@ pub fn backends() -> Vec<String> {
 }
 
 impl Gpu {
-    /// A device of the fastest adapter, or of a software adapter if there is no other; no window is needed.
+    /// Opens a device of the fastest adapter, or of a software adapter if there is no other. No
+    /// window is needed.
     ///
-    /// As in other programs that use wgpu, environment variables may choose: `WGPU_BACKEND` (vulkan, gl, metal, dx12) and
-    /// `WGPU_ADAPTER_NAME` (a part of the adapter's name).
+    /// Environment variables can choose the adapter, as in other programs that use wgpu:
+    /// `WGPU_BACKEND` (vulkan, gl, metal, dx12) and `WGPU_ADAPTER_NAME` (a part of the adapter's
+    /// name).
     ///
     /// # Errors
-    /// When there is no adapter, or none with the name that the environment asks for, or it gives no device.
+    /// When there is no adapter, or none with the name that the environment requests, or the
+    /// adapter provides no device.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn new() -> Result<Self, GpuError> {
         match std::env::var("WGPU_BACKEND") {
             Ok(names) => Self::with_backends(wgpu::Backends::from_comma_list(&names)),
-            // OpenGL only if there is nothing better.
+            // OpenGL is the last choice.
             Err(_) => Self::with_backends(wgpu::Backends::PRIMARY)
                 .or_else(|_| Self::with_backends(wgpu::Backends::SECONDARY)),
         }
     }
 
-    /// Does the same as [`Gpu::new`] with these backends only.
+    /// Does the same as [`Gpu::new`], but with these backends only.
     ///
     /// # Errors
-    /// When they have no adapter, or none with the name that the environment asks for, or it gives no device.
+    /// When they have no adapter, or none with the name that the environment requests, or the
+    /// adapter provides no device.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn with_backends(backends: wgpu::Backends) -> Result<Self, GpuError> {
         let descriptor = wgpu::InstanceDescriptor {
@@ -89,11 +93,12 @@ impl Gpu {
         pollster::block_on(Self::request(&wgpu::Instance::new(descriptor), None))
     }
 
-    /// A device for a window: its adapter can show pictures on `surface`, which `instance` made. The instance decides
-    /// which backends are tried; `WGPU_ADAPTER_NAME` may choose the adapter here too.
+    /// Opens a device for a window: its adapter can present pictures on `surface`, which `instance`
+    /// created. The instance decides which backends are tried; `WGPU_ADAPTER_NAME` may choose the
+    /// adapter here, too.
     ///
     /// # Errors
-    /// When no such adapter can show pictures there or it gives no device.
+    /// When no such adapter can present pictures there, or the adapter provides no device.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn for_window(
         instance: &wgpu::Instance,
@@ -102,10 +107,10 @@ impl Gpu {
         pollster::block_on(Self::request(instance, Some(surface)))
     }
 
-    /// A device, with or without a window, for callers that must not wait.
+    /// Opens a device, with or without a window, for callers that must not wait.
     ///
     /// # Errors
-    /// When there is no such adapter or it gives no device.
+    /// When there is no such adapter, or the adapter provides no device.
     pub async fn request(
         instance: &wgpu::Instance,
         surface: Option<&wgpu::Surface<'_>>,
@@ -113,7 +118,8 @@ impl Gpu {
         let adapter = adapter(instance, surface).await?;
         let info = adapter.get_info();
         let adapter_name = format!("{} ({})", info.name, info.backend);
-        // All other limits are WebGPU's defaults. No shader depends on how large a picture may be.
+        // All other limits are WebGPU's defaults. No shader depends on the maximum size of a
+        // picture.
         let required_limits = wgpu::Limits {
             max_texture_dimension_2d: adapter.limits().max_texture_dimension_2d,
             ..wgpu::Limits::default()
@@ -128,46 +134,46 @@ impl Gpu {
             .request_device(&descriptor)
             .await
             .map_err(|source| GpuError::NoDevice { adapter: adapter_name.clone(), source })?;
-        let faults = Faults::of(&device);
+        let faults = Faults::from_device(&device);
         Ok(Self { adapter, adapter_name, device, queue, faults })
     }
 
-    /// Whether the adapter is a program on the processor, not a graphics card.
+    /// Whether the adapter is software on the CPU, not a GPU.
     #[must_use]
     pub fn is_software(&self) -> bool {
         self.adapter.get_info().device_type == wgpu::DeviceType::Cpu
     }
 
-    /// Whether the device is lost, for instance because its driver was reset. All that was made with it is lost too: a
-    /// window makes everything again.
+    /// Whether the device is lost, for instance because its driver was reset. All resources that
+    /// were created with the device are lost, too: a window creates them again.
     #[must_use]
     pub fn is_lost(&self) -> bool {
         self.faults.is_lost.load(Ordering::Acquire)
     }
 
-    /// Whether there is a fault that [`Gpu::take_fault`] will tell.
+    /// Whether there is a fault that [`Gpu::take_fault`] will return.
     #[must_use]
     pub fn has_fault(&self) -> bool {
         locked(&self.faults.first).is_some()
     }
 
-    /// The first fault since this was asked last: memory ran out, or the renderer made a mistake. What was drawn since
-    /// then cannot be trusted. Reading pixels back reports the same fault.
+    /// Returns the first fault since the last call: memory ran out, or the renderer made a mistake.
+    /// Pictures drawn since then cannot be trusted. Reading pixels back reports the same fault.
     #[must_use]
     pub fn take_fault(&self) -> Option<String> {
         locked(&self.faults.first).take()
     }
 
-    /// Largest side of a picture in samples: the adapter's own limit.
+    /// Maximum side of a picture in samples: the adapter's own limit.
     #[must_use]
     pub fn max_side_px(&self) -> u32 {
         self.device.limits().max_texture_dimension_2d
     }
 
-    /// Waits until everything submitted so far is drawn.
+    /// Waits until all submitted work is drawn.
     ///
     /// # Errors
-    /// When the device is lost, or it had a fault since this was asked last.
+    /// When the device is lost, or it had a fault since the last check.
     pub fn finish(&self) -> Result<(), ReadBackError> {
         self.device
             .poll(wgpu::PollType::wait_indefinitely())
@@ -175,12 +181,12 @@ impl Gpu {
         self.check()
     }
 
-    /// Fails when the device had a fault since this was asked last.
+    /// Fails when the device had a fault since the last check.
     pub(crate) fn check(&self) -> Result<(), ReadBackError> {
         self.take_fault().map_or(Ok(()), |what| Err(ReadBackError::Fault { what }))
     }
 
-    /// Has recorded commands done.
+    /// Records commands and submits them.
     pub fn submit(&self, label: &str, record: impl FnOnce(&mut wgpu::CommandEncoder)) {
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some(label) };
         let mut encoder = self.device.create_command_encoder(&descriptor);
@@ -188,7 +194,7 @@ impl Gpu {
         self.queue.submit([encoder.finish()]);
     }
 
-    /// A texture with so many sizes, each half as large as the one before.
+    /// Creates a texture with `sizes` mip levels, each half as large as the previous one.
     #[must_use]
     pub fn texture(
         &self,
@@ -210,9 +216,9 @@ impl Gpu {
         })
     }
 
-    /// A buffer with these contents, whose length is a multiple of 4.
+    /// Creates a buffer with these contents, whose length is a multiple of 4.
     ///
-    /// `wgpu`'s own helper maps the buffer instead, and panics when the device is lost.
+    /// The helper of `wgpu` maps the buffer instead, and panics when the device is lost.
     pub(crate) fn buffer(
         &self,
         label: &str,

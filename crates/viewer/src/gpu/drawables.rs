@@ -1,40 +1,51 @@
-//! What can be drawn, one file for each kind of thing, as in `re_renderer/src/renderer/` of rerun.
+//! Drawables: one file for each kind of thing that can be drawn, as in `re_renderer/src/renderer/`
+//! of rerun.
 //!
-//! A drawable knows how to draw one kind of thing and is never changed once it is made. Its file has all that belongs to
-//! that kind:
+//! A drawable knows how to draw one kind of thing and is immutable after its creation. Its file
+//! contains everything for that kind:
 //!
-//! - its shader's text (`SHADER`, joined from files of `shaders/`),
+//! - the text of its shader (`SHADER`, joined from files of `shaders/`),
 //! - its own bind group layouts and its pipelines (`new` or `pipeline`),
-//! - the uniforms that it alone needs (`rows`), in the order of the shader's structure,
+//! - the uniforms that only this drawable needs (`rows`), in the order of the shader's structure,
 //! - the layout of its vertices or instances, and the buffers that a tile or a frame has of them,
-//! - how it is drawn (`draw`).
+//! - the draw calls (`draw`).
 //!
-//! Terrain, roads, connectors and composite draw into a pass that the renderer began, so that several drawables can share
-//! one. [`average`], [`difference`], [`depth_numbers`], the search for blocks with roads ([`composite`]) and depths and labels of [`decks`] begin and end passes of their own:
-//! each of them replaces all that is in its target, and no other drawable can share that pass.
+//! Terrain, roads, connectors and composite draw into a pass that the renderer began, so that
+//! several drawables can share one pass. [`average`], [`difference`], [`depth_numbers`], the search
+//! for blocks with roads ([`composite`]) and depths and labels of [`decks`] begin and end passes of
+//! their own: each of them replaces the whole contents of its target, and no other drawable can
+//! share that pass.
 //!
 //! A drawable may use
 //!
-//! - the leaf modules of `gpu`: `pipeline`, `bindings`, `shared_bindings`, `uniforms`, `passes`, `formats`, `targets`,
-//!   `picture`, `ground_buffers`, `area_buffers`, `tile_textures` and `road_instances`;
+//! - the leaf modules of `gpu`: `pipeline`, `bindings`, `shared_bindings`, `uniforms`, `passes`,
+//!   `formats`, `targets`, `picture`, `ground_buffers`, `area_buffers`, `tile_textures` and
+//!   `road_instances`;
 //! - of the crate: `tiles`, `scene`, `options`, `frame_view` and `style`.
 //!
-//! It uses neither the renderer nor another drawable, with two exceptions: [`level_connectors`] makes instances in the
-//! formats of [`sv_roads`] and [`decks`], and [`decks`] has the colours of [`composite`].
+//! It uses neither the renderer nor another drawable, with two exceptions: [`level_connectors`]
+//! creates instances in the formats of [`sv_roads`] and [`decks`], and [`decks`] uses the colours
+//! of [`composite`].
 //!
-//! # How a drawable is added
+//! # How to add a drawable
 //!
-//! 1. Write the shader in `shaders/`. Declarations that it shares with others go into a file that several shaders join.
-//! 2. Write `drawables/NAME.rs` with the parts above. `shader_tests.rs` finds each `shader!` by itself and validates it
-//!    without a GPU. If there are new uniforms, add the structure to the test of their lengths.
-//! 3. If tiles carry its data: add its buffers to `TileBuffers`, and its bytes to `tile_bytes`. If it draws the triangles of
-//!    the ground: `ground_buffers` has them, with the layout of their vertices, and `pipeline::depth_test` the depth state.
-//! 4. If it draws into a texture of its own: add that to `Targets`, and its format to `formats`.
-//! 5. Add it to `Renderer`: a field, a line in `Renderer::new`, and a call in the pass in which it is drawn. Things over the
-//!    map are drawn after the composite. `passes::begin` begins a pass, with cleared targets or with what is in them. A new
-//!    pass is counted to one of the five times that `timings` measures.
-//! 6. If users choose it or how it looks: add that to `RoadOptions` or to a struct beside it, and to `Style`; from there to
-//!    the drawable's `rows`, or to `uniforms` if other drawables need it too.
+//! 1. Write the shader in `shaders/`. Put declarations that several shaders need into a file of
+//!    their own, which these shaders join.
+//! 2. Write `drawables/NAME.rs` with the parts above. `shader_tests.rs` finds each `shader!`
+//!    automatically and validates it without a GPU. If there are new uniforms, add the structure to
+//!    the test of their lengths.
+//! 3. If tiles carry its data: add its buffers to `TileBuffers`, and its bytes to `tile_bytes`. If
+//!    it draws the triangles of the ground: `ground_buffers` has them, with the layout of their
+//!    vertices, and `pipeline::depth_test` the depth state.
+//! 4. If it draws into a texture of its own: add the texture to `Targets`, and its format to
+//!    `formats`.
+//! 5. Add it to `Renderer`: a field, a line in `Renderer::new`, and a call in the pass in which it
+//!    is drawn. Things over the map are drawn after the composite. `passes::begin` begins a pass
+//!    that clears its targets or keeps their contents. A new pass counts towards one of the five
+//!    times that `timings` measures.
+//! 6. If users choose it or its look: add the option to `RoadOptions` or to a struct next to it,
+//!    and to `Style`; from there to the drawable's `rows`, or to `uniforms` if other drawables need
+//!    it, too.
 
 pub(crate) mod areas;
 pub(crate) mod average;

@@ -1,4 +1,4 @@
-//! The ground of a tile on the graphics card, which any drawable may draw with a pipeline of its own.
+//! GPU buffers of the ground of a tile, which any drawable may draw with its own pipeline.
 
 use std::{ops::Range, sync::OnceLock};
 
@@ -14,30 +14,31 @@ use crate::tiles::{GroundMesh, GroundVertex};
 const VERTEX_BYTES: u64 = size_of::<GroundVertex>() as u64;
 const ATTRIBUTES: [VertexAttribute; 2] = vertex_attr_array![0 => Float32x3, 1 => Snorm8x4];
 
-/// The vertices of [`GroundBuffers`], as a pipeline needs them.
+/// The vertex layout of [`GroundBuffers`] for pipelines.
 pub(crate) const GROUND_VERTICES: VertexBufferLayout<'static> = VertexBufferLayout {
     array_stride: VERTEX_BYTES,
     step_mode: VertexStepMode::Vertex,
     attributes: &ATTRIBUTES,
 };
 
-/// The ground of a tile on the graphics card.
+/// The ground of a tile on the GPU.
 pub(crate) struct GroundBuffers {
     vertices: Buffer,
     indices: Buffer,
     index_format: IndexFormat,
-    /// The indices of the ground, then those of the skirts, then those of edges of the ground inside the tile.
+    /// Indices of the ground; they are followed by the indices of the skirts, then of the edges of
+    /// the ground inside the tile.
     pub(crate) surface: Range<u32>,
     pub(crate) skirts: Range<u32>,
-    /// The skirts and what comes behind them: wherever the ground may end.
+    /// Indices of the skirts and of all that follows: everywhere the ground may end.
     pub(crate) walls: Range<u32>,
-    /// Three indices for each triangle of the ground, from which the edges are made.
+    /// Three indices for each triangle of the ground; the wireframe is built from them.
     triangles: Vec<u32>,
     edges: OnceLock<Buffer>,
 }
 
 impl GroundBuffers {
-    /// Uploads the ground of a tile; `None` if there is none.
+    /// Uploads the ground of a tile; `None` if the tile has no ground.
     pub(crate) fn new(gpu: &Gpu, mesh: &GroundMesh) -> Option<Self> {
         let buffer = |contents: &[u8], usage| gpu.buffer("tile", contents, usage);
         let all = mesh.indices.len() as u32;
@@ -55,25 +56,26 @@ impl GroundBuffers {
         })
     }
 
-    /// Bytes of the buffers that [`GroundBuffers::new`] makes of a mesh.
+    /// Size of the buffers that [`GroundBuffers::new`] creates for a mesh, bytes.
     pub(crate) fn bytes_of(mesh: &GroundMesh) -> u64 {
         mesh.vertices.len() as u64 * VERTEX_BYTES
             + index_buffer_bytes(mesh.indices.len() as u64, index_format(mesh))
     }
 
-    /// Bytes of its buffers; the edges count once they have been drawn.
+    /// Size of the buffers, bytes; the wireframe counts once it has been drawn.
     pub(crate) fn gpu_bytes(&self) -> u64 {
         let buffers = [&self.vertices, &self.indices].into_iter().chain(self.edges.get());
         buffers.map(Buffer::size).sum()
     }
 
-    /// Draws a part of the triangles. Pipeline and bind groups are set.
+    /// Draws a range of the triangles. The caller sets pipeline and bind groups.
     pub(crate) fn draw_part(&self, pass: &mut RenderPass<'_>, part: &Range<u32>) {
         self.draw(pass, (&self.indices, self.index_format), part.clone());
     }
 
-    /// Draws the edges of the ground's triangles as lines. Pipeline and bind groups are set. The buffer with two indices for each edge is made when they
-    /// are first drawn, because few pictures show them.
+    /// Draws the edges of the ground's triangles as lines. The caller sets pipeline and bind
+    /// groups. The buffer with two indices for each edge is created at the first use, because few
+    /// pictures show edges.
     pub(crate) fn draw_edges(&self, gpu: &Gpu, pass: &mut RenderPass<'_>) {
         let edges = self.edges.get_or_init(|| {
             gpu.buffer("edges", bytemuck::cast_slice(&edges(&self.triangles)), BufferUsages::INDEX)
@@ -93,8 +95,8 @@ impl GroundBuffers {
     }
 }
 
-/// Two bytes for each index of a mesh whose vertices allow it, else four. The largest number of two bytes has a meaning of its own in
-/// strips of triangles and is left out.
+/// Two bytes per index if the number of vertices allows it, otherwise four. The largest two-byte
+/// number has a special meaning in triangle strips and is not used.
 fn index_format(mesh: &GroundMesh) -> IndexFormat {
     if u16::try_from(mesh.vertices.len()).is_ok() {
         IndexFormat::Uint16
@@ -103,15 +105,15 @@ fn index_format(mesh: &GroundMesh) -> IndexFormat {
     }
 }
 
-/// Bytes of so many indices, a multiple of 4 as buffers need it.
+/// Size of this many indices in bytes, rounded up to a multiple of 4 as buffers need it.
 fn index_buffer_bytes(indices: u64, format: IndexFormat) -> u64 {
     (indices * u64::from(format.byte_size())).next_multiple_of(4)
 }
 
-/// The contents of the buffer of indices.
+/// The contents of the index buffer.
 fn index_bytes(indices: &[u32], format: IndexFormat) -> Vec<u8> {
     let mut bytes = match format {
-        // All of them are below the number of vertices.
+        // All indices are below the number of vertices.
         IndexFormat::Uint16 => {
             let short: Vec<u16> = indices.iter().map(|at| *at as u16).collect();
             bytemuck::cast_slice(&short).to_vec()
@@ -122,7 +124,7 @@ fn index_bytes(indices: &[u32], format: IndexFormat) -> Vec<u8> {
     bytes
 }
 
-/// Each edge of some triangles, once.
+/// The edges of some triangles, each once.
 fn edges(triangles: &[u32]) -> Vec<[u32; 2]> {
     let mut edges: Vec<[u32; 2]> = triangles
         .chunks_exact(3)

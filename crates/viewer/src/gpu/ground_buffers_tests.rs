@@ -1,4 +1,4 @@
-//! Edges of the ground are drawn once, and indices are as narrow as they can be.
+//! Edges of the ground are drawn once, and indices are as narrow as possible.
 
 use super::*;
 
@@ -8,7 +8,7 @@ fn triangles_that_share_an_edge_have_it_once() {
     assert!(edges(&[]).is_empty());
 }
 
-/// A flat strip of so many vertices, with its first and its last triangle.
+/// Returns a flat strip with this many vertices; it has only its first and its last triangle.
 fn strip(vertices: u32) -> GroundMesh {
     let vertex =
         |at: u32| GroundVertex { position_in_tile: [at as f32, 0.0, 0.0], normal_skirt: [0; 4] };

@@ -1,29 +1,30 @@
-//! What each sample of a drawing is made of, read back: tests compare it with references on the processor, and a legend lists what it shows. Else
-//! programs read the picture only.
+//! Reads back the layers of a drawing, sample by sample: tests compare them with references on the
+//! CPU, and a legend lists the features of the picture. Other programs read the picture only.
 
 use super::{Gpu, ReadBackError, drawables::depth_numbers::depth_numbers, targets::Targets};
 
-/// This bit of the owner of a sample is set if the sample shows a skirt or a wall.
+/// This bit of a sample's owner is set for skirts and walls.
 const SKIRT_BIT: u32 = 1 << 31;
 
-/// This bit is set on walls alone.
+/// This bit of a sample's owner is set for walls only.
 const WALL_BIT: u32 = 1 << 30;
 
-/// Which tile a sample of the terrain pass shows. Tiles are numbered by their place in the list that was drawn.
+/// The tile that a sample of the terrain pass shows. Tiles are numbered by their position in the
+/// list that was drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Owner {
-    /// None: the sample shows no ground.
+pub enum TileOwner {
+    /// No tile: the sample shows no ground.
     Nobody,
-    /// A tile's ground.
+    /// The ground of a tile.
     Ground(usize),
-    /// A tile's skirt.
+    /// The skirt of a tile.
     Skirt(usize),
-    /// The wall along the edge of the data, of a tile.
+    /// The wall of a tile along the edge of the data.
     Wall(usize),
 }
 
-impl Owner {
-    fn of(pixel: u32) -> Self {
+impl TileOwner {
+    fn from_pixel(pixel: u32) -> Self {
         match (pixel & !(SKIRT_BIT | WALL_BIT)).checked_sub(1) {
             None => Self::Nobody,
             Some(tile) if pixel & WALL_BIT != 0 => Self::Wall(tile as usize),
@@ -33,14 +34,16 @@ impl Owner {
     }
 }
 
-/// The owners that texels tell, four bytes each.
-pub(crate) fn owners(texels: &[u8]) -> impl Iterator<Item = Owner> {
-    texels.chunks_exact(4).map(|b| Owner::of(u32::from_le_bytes([b[0], b[1], b[2], b[3]])))
+/// Decodes owners from texels, four bytes each.
+pub(crate) fn owners(texels: &[u8]) -> impl Iterator<Item = TileOwner> {
+    texels
+        .chunks_exact(4)
+        .map(|b| TileOwner::from_pixel(u32::from_le_bytes([b[0], b[1], b[2], b[3]])))
 }
 
 impl Targets {
-    /// The colours of the terrain pass: four bytes a sample. The last is 255 for ground, 128 for a skirt, 0 where nothing
-    /// was drawn.
+    /// Reads the colours of the terrain pass: four bytes per sample. The last byte is 255 for
+    /// ground, 128 for a skirt, 0 where nothing was drawn.
     ///
     /// # Errors
     /// When the device is lost or could not draw.
@@ -48,7 +51,8 @@ impl Targets {
         self.ground.read(gpu)
     }
 
-    /// The terrain's depth buffer, sample by sample: near plane divided by view depth, 0 without ground.
+    /// Reads the terrain's depth buffer, sample by sample: near plane divided by view depth, 0
+    /// without ground.
     ///
     /// # Errors
     /// When the device is lost or could not draw.
@@ -57,16 +61,17 @@ impl Targets {
         Ok(bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect())
     }
 
-    /// Which tile each sample of the terrain pass shows.
+    /// Reads the tile that each sample of the terrain pass shows.
     ///
     /// # Errors
     /// When the device is lost or could not draw.
-    pub fn read_owners(&self, gpu: &Gpu) -> Result<Vec<Owner>, ReadBackError> {
+    pub fn read_owners(&self, gpu: &Gpu) -> Result<Vec<TileOwner>, ReadBackError> {
         let texels = self.owners.read(gpu)?;
         Ok(owners(&texels).collect())
     }
 
-    /// The label of the deck of each sample, as decks were drawn last; `None` if none ever were. 1 is a side, 2 an underside, others are labels of roads.
+    /// Reads the deck label of each sample in the last drawing of decks; `None` if no decks have
+    /// been drawn. 1 is a side, 2 an underside, others are labels of roads.
     ///
     /// # Errors
     /// When the device is lost or could not draw.
@@ -74,7 +79,7 @@ impl Targets {
         self.drawn_decks().map(|decks| decks.labels.labels.read(gpu)).transpose()
     }
 
-    /// The road label of each sample, as `gpu::labels` draws them; 0 without a road.
+    /// Reads the road label of each sample, as defined in `gpu::labels`; 0 without a road.
     ///
     /// # Errors
     /// When the device is lost or could not draw.

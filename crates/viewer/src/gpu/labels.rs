@@ -1,4 +1,4 @@
-//! The labels of roads as samples of a picture have them: what stands for which road.
+//! The labels of roads in the samples of a picture, and their meaning.
 //!
 //! ```text
 //!   0                nothing
@@ -9,27 +9,28 @@
 //!                                   └────────────────┴──────────┘
 //! ```
 //!
-//! Of two labels the larger one stays. So a road above the ground hides every tunnel, every other road hides a service
-//! road, a more important class hides a less important one, and where two roads of a class meet, the inner bands of each lie on the outer ones of both.
+//! Of two labels the larger one stays. So a road above the ground hides every tunnel, every other
+//! road hides a service road, and a more important class hides a less important one. Where two
+//! roads of a class meet, the inner bands of both are above the outer bands of both.
 
 use corniche_styles::RoadBands;
 
-/// Smaller labels are those of tunnels.
+/// Labels below this are labels of tunnels.
 const SERVICE_LABELS: u8 = 20;
 
-/// Whether a label is that of a tunnel.
+/// Whether a label is the label of a tunnel.
 #[must_use]
 pub fn is_tunnel(label: u8) -> bool {
     label != 0 && label < SERVICE_LABELS
 }
 
-/// Whether a label is that of a service road.
+/// Whether a label is the label of a service road.
 #[must_use]
 pub fn is_service(label: u8) -> bool {
     (SERVICE_LABELS..2 * RoadBands::MOST as u8).contains(&label)
 }
 
-/// The class of a road with this label; `None` without a road.
+/// Returns the class of a road with this label; `None` without a road.
 #[must_use]
 pub fn class_of(label: u8) -> Option<u8> {
     match label {

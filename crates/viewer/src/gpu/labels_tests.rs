@@ -1,4 +1,4 @@
-//! The labels that tests expect of roads, as `gpu/labels.rs` lists them.
+//! The labels of roads that tests expect, as defined in `gpu/labels.rs`.
 
 use corniche_styles::RoadBands;
 
@@ -7,7 +7,7 @@ pub(crate) fn road_label(class: u8, band: u8) -> u8 {
     (10 - class) * RoadBands::MOST as u8 + band
 }
 
-/// The label of a tunnel, on a dash of its edge or between two.
+/// The label of a tunnel, on a dash of its edge or in a gap.
 pub(crate) fn tunnel_label(class: u8, is_dash: bool) -> u8 {
     (9 - class) * 2 + u8::from(is_dash)
 }

@@ -1,9 +1,9 @@
-//! Render passes are begun here, always with the same rules for what is cleared.
+//! Begins render passes, with uniform rules for clearing.
 
 use wgpu::{CommandEncoder, LoadOp, Operations, RenderPipeline, StoreOp, TextureView};
 
-/// Begins a pass. With `LoadOp::Clear(())` its targets are cleared first: colours 0, depth 0, which is infinitely far. With
-/// `LoadOp::Load` the pass draws over what earlier passes drew.
+/// Begins a pass. With `LoadOp::Clear(())` its targets are cleared first: colours to 0, depth to 0,
+/// which is infinitely far. With `LoadOp::Load` the pass draws over the results of earlier passes.
 pub(crate) fn begin<'e>(
     encoder: &'e mut CommandEncoder,
     label: &str,
@@ -21,7 +21,8 @@ pub(crate) fn begin<'e>(
     begin_with(encoder, label, colors, depth, load)
 }
 
-/// Begins a pass that draws over `color`, with a stencil that is all 0 and is forgotten at its end.
+/// Begins a pass that draws over `color`, with a stencil that is 0 everywhere and is discarded at
+/// the end.
 pub(crate) fn begin_with_stencil<'e>(
     encoder: &'e mut CommandEncoder,
     label: &str,
@@ -59,9 +60,7 @@ fn begin_with<'e>(
         label: Some(label),
         color_attachments: &attachments,
         depth_stencil_attachment: depth_stencil,
-        timestamp_writes: None,
-        occlusion_query_set: None,
-        multiview_mask: None,
+        ..Default::default()
     })
 }
 

@@ -1,4 +1,4 @@
-//! The picture on the graphics card that passes draw into, with its samples for each pixel.
+//! The picture on the GPU into which passes draw, with its samples per pixel.
 
 use wgpu::TextureView;
 
@@ -6,14 +6,15 @@ use super::{
     Gpu, GpuError, ReadBack, ReadBackError, formats::COLOR, target_texture::TargetTexture,
 };
 
-/// Most samples on each side of a pixel. Sums of so many colours are exact, and the eye sees no difference to more than
-/// sixteen samples a pixel.
+/// Maximum number of samples on each side of a pixel. Sums of this many colours are exact, and with
+/// more than sixteen samples per pixel the eye sees no difference.
 pub const MAX_SAMPLES_PER_SIDE: u32 = 4;
 
-/// The picture that is shown: a texture of colours as sRGB encodes them. Its format is not an sRGB format, so that no
-/// colour is converted.
+/// The final picture: a texture of colours, encoded as sRGB. Its format is not an sRGB format, so
+/// that no colour is converted.
 ///
-/// With several samples a pixel there is a second, larger texture: samples are drawn there and averaged into the picture.
+/// With several samples per pixel there is a second, larger texture: samples are drawn there and
+/// averaged into the picture.
 pub struct Picture {
     /// Width and height in pixels.
     pub size_px: [u32; 2],
@@ -24,11 +25,11 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// A picture with this width and height and as many samples on each side of a pixel.
+    /// Creates a picture with this width and height and this many samples on each side of a pixel.
     ///
     /// # Errors
-    /// When the size has a 0, when its samples are more than the adapter can draw, or when there are no samples or too many
-    /// a pixel.
+    /// When the size has a 0, when it has more samples than the adapter can draw, or when there are
+    /// no samples or too many per pixel.
     pub fn new(gpu: &Gpu, size_px: [u32; 2], samples_per_side: u32) -> Result<Self, GpuError> {
         let sampled_px = sampled_px(gpu, size_px, samples_per_side)?;
         let samples =
@@ -37,13 +38,13 @@ impl Picture {
         Ok(Self { size_px, samples_per_side, samples, pixels })
     }
 
-    /// A view of it to bind, for instance in a window.
+    /// The view of the picture for binding, for instance in a window.
     #[must_use]
     pub fn view(&self) -> &TextureView {
         &self.pixels.view
     }
 
-    /// Four bytes a pixel (red, green, blue, 255), rows from the top.
+    /// Reads four bytes per pixel (red, green, blue, 255), rows from the top.
     ///
     /// # Errors
     /// When the device is lost or could not draw.
@@ -51,29 +52,30 @@ impl Picture {
         self.pixels.read(gpu)
     }
 
-    /// The bytes of [`Picture::read`] as an image.
+    /// Reads the bytes of [`Picture::read`] as an image.
     ///
     /// # Errors
     /// When the device is lost or could not draw.
     #[cfg(feature = "annotations")]
     pub fn read_image(&self, gpu: &Gpu) -> Result<image::RgbaImage, ReadBackError> {
         let [width, height] = self.size_px;
-        // Four bytes for each pixel, so there is always an image.
+        // There are four bytes per pixel, so this is always an image.
         Ok(image::RgbaImage::from_raw(width, height, self.read(gpu)?).unwrap_or_default())
     }
 
-    /// Asks for the bytes of [`Picture::read`] without waiting for them.
+    /// Requests the bytes of [`Picture::read`] without waiting for them.
     #[must_use]
     pub fn begin_read(&self, gpu: &Gpu) -> ReadBack {
         ReadBack::begin(gpu, &self.pixels.texture)
     }
 
-    /// The texture that passes draw into: the samples, or the pixels themselves if each has one sample.
+    /// The texture into which passes draw: the samples, or the pixels themselves if each has one
+    /// sample.
     pub(crate) fn drawn(&self) -> &TextureView {
         self.samples.as_ref().map_or(&self.pixels.view, |samples| &samples.view)
     }
 
-    /// The samples, if there are several a pixel.
+    /// The samples, if there are several per pixel.
     pub(crate) fn samples(&self) -> Option<&TextureView> {
         self.samples.as_ref().map(|samples| &samples.view)
     }

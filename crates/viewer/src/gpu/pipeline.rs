@@ -1,4 +1,4 @@
-//! Render pipelines are made of recipes, and shaders are joined from their files.
+//! Builds render pipelines from recipes, and joins shaders from their files.
 
 use wgpu::{
     BindGroupLayout, BlendState, ColorWrites, CompareFunction, DepthStencilState, Device,
@@ -7,11 +7,12 @@ use wgpu::{
 
 use super::formats::{COLOR, DEPTH};
 
-/// A shader's name and its text, complete as it is compiled.
+/// A shader: its name and its complete text.
 pub(crate) type Shader = (&'static str, &'static str);
 
-/// A [`Shader`]: its name, then the files of `shaders/`, without their comments, that are joined into its text, in this order. WGSL has no `include`,
-/// so declarations that several shaders need are in files of their own. For files in `drawables/`.
+/// Defines a [`Shader`]: its name, then the files of `shaders/` that are joined into its text, in
+/// this order, without their comments. WGSL has no `include`, so declarations that several shaders
+/// need are in files of their own. For use in `drawables/`.
 macro_rules! shader {
     ($name:literal: $($file:literal),+) => {
         ($name, concat!($(include_str!(concat!(env!("OUT_DIR"), "/shaders/", $file, ".wgsl"))),+))
@@ -19,10 +20,11 @@ macro_rules! shader {
 }
 pub(crate) use shader;
 
-/// The names that most shaders give their vertex and fragment stages.
+/// Names of the vertex and fragment stages in most shaders.
 pub(crate) const ENTRIES: [&str; 2] = ["vertex", "fragment"];
 
-/// A test against the depth buffer of the ground, which the pipeline may also write. Depth is reversed: nearer is greater.
+/// A test against the depth buffer of the ground, which the pipeline may also write. Depth is
+/// reversed: nearer is greater.
 pub(crate) fn depth_test(compare: CompareFunction, is_written: bool) -> DepthStencilState {
     DepthStencilState {
         format: DEPTH,
@@ -33,7 +35,7 @@ pub(crate) fn depth_test(compare: CompareFunction, is_written: bool) -> DepthSte
     }
 }
 
-/// What pipelines differ in.
+/// The parameters in which pipelines differ.
 #[derive(Clone)]
 pub(crate) struct PipelineRecipe<'a> {
     pub(crate) shader: Shader,
@@ -42,7 +44,7 @@ pub(crate) struct PipelineRecipe<'a> {
     pub(crate) groups: &'a [Option<&'a BindGroupLayout>],
     pub(crate) buffer: Option<VertexBufferLayout<'a>>,
     pub(crate) topology: PrimitiveTopology,
-    /// Which way round the corners of a front face go.
+    /// Winding order of front faces.
     pub(crate) front_face: FrontFace,
     pub(crate) cull: Option<wgpu::Face>,
     pub(crate) depth: Option<DepthStencilState>,
@@ -52,8 +54,9 @@ pub(crate) struct PipelineRecipe<'a> {
 }
 
 impl<'a> PipelineRecipe<'a> {
-    /// A pipeline that draws one triangle over a whole picture.
-    pub(crate) fn full_screen(
+    /// A recipe for triangles, such as one over a whole picture: draws colours, both sides, without
+    /// depth test.
+    pub(crate) fn new(
         shader: Shader,
         groups: &'a [Option<&'a BindGroupLayout>],
         constants: &'a [(&'a str, f64)],
@@ -73,7 +76,7 @@ impl<'a> PipelineRecipe<'a> {
         }
     }
 
-    /// Compiles the shader and makes the pipeline.
+    /// Compiles the shader and creates the pipeline.
     pub(crate) fn build(&self, device: &Device) -> RenderPipeline {
         let (name, source) = self.shader;
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {

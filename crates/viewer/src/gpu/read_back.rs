@@ -1,4 +1,4 @@
-//! Textures are read back from the graphics card, in bands where they are large.
+//! Reads textures back from the GPU, in bands if they are large.
 
 use std::sync::mpsc::{self, Receiver, TryRecvError};
 
@@ -6,9 +6,10 @@ use wgpu::{BufferAsyncError, BufferUsages, Origin3d, TexelCopyBufferInfo, TexelC
 
 use super::{Gpu, ReadBackError};
 
-/// The texels of a texture, row by row from the top, without gaps. Waits until the texture is drawn.
+/// Reads the texels of a texture, row by row from the top, without gaps. Waits until the texture is
+/// drawn.
 ///
-/// The texture can be copied from, and its format has one plane of whole texels.
+/// The texture must allow copies, and its format must have one plane of whole texels.
 ///
 /// # Errors
 /// When the device is lost or could not draw.
@@ -16,8 +17,9 @@ pub(crate) fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>
     read_by_bands(gpu, texture, gpu.device.limits().max_buffer_size)
 }
 
-/// Does the same as [`read_texture`] in bands of rows. A band has at most `most_bytes`, but at least one row: the largest pictures have
-/// more bytes than a buffer may have. Bands are read one after another, so that there is one buffer at a time.
+/// Does the same as [`read_texture`] in bands of rows. A band has at most `most_bytes`, but at
+/// least one row: the largest pictures exceed the maximum size of a buffer. Bands are read one
+/// after another, so that there is one buffer at a time.
 fn read_by_bands(
     gpu: &Gpu,
     texture: &wgpu::Texture,
@@ -36,14 +38,15 @@ fn read_by_bands(
     Ok(texels)
 }
 
-/// The texels of a texture as they are when all commands submitted before are done; they are on their way back.
+/// The texels of a texture after all previously submitted commands; they are being read back.
 pub struct ReadBack {
     layout: Layout,
     bands: Vec<Band>,
 }
 
 impl ReadBack {
-    /// Asks for all texels of a texture. The texture can be copied from, and its format has one plane of whole texels.
+    /// Requests all texels of a texture. The texture must allow copies, and its format must have
+    /// one plane of whole texels.
     #[must_use]
     pub fn begin(gpu: &Gpu, texture: &wgpu::Texture) -> Self {
         Self::by_bands(gpu, texture, gpu.device.limits().max_buffer_size)
@@ -58,7 +61,7 @@ impl ReadBack {
     /// Whether all texels have arrived; never waits.
     ///
     /// # Errors
-    /// When the device is lost, or it had a fault since it was asked last.
+    /// When the device is lost, or it had a fault since the last check.
     pub fn has_arrived(&mut self, gpu: &Gpu) -> Result<bool, ReadBackError> {
         gpu.device.poll(wgpu::PollType::Poll).map_err(|source| ReadBackError::Poll { source })?;
         gpu.check()?;
@@ -70,10 +73,10 @@ impl ReadBack {
         Ok(true)
     }
 
-    /// The texels; waits for those that have not arrived.
+    /// Returns the texels; waits for those that have not arrived.
     ///
     /// # Errors
-    /// As [`ReadBack::has_arrived`].
+    /// Same as [`ReadBack::has_arrived`].
     pub fn into_texels(mut self, gpu: &Gpu) -> Result<Vec<u8>, ReadBackError> {
         if !self.has_arrived(gpu)? {
             gpu.finish()?;
@@ -89,7 +92,7 @@ impl ReadBack {
     }
 }
 
-/// How the rows of a texture lie in buffers.
+/// The layout of a texture's rows in buffers.
 struct Layout {
     width: u32,
     height: u32,
@@ -103,7 +106,7 @@ impl Layout {
         let (width, height) = (texture.width(), texture.height());
         let row_bytes = width * texture.format().block_copy_size(None).unwrap_or(4);
         let padded_bytes = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        // No more than the texture's height, which is a u32.
+        // At most the texture's height, which is a u32.
         let band_rows = (most_bytes / u64::from(padded_bytes)).clamp(1, u64::from(height)) as u32;
         Self { width, height, row_bytes, padded_bytes, band_rows }
     }
@@ -120,7 +123,7 @@ impl Layout {
     }
 }
 
-/// Some rows of a texture in a buffer that can be mapped.
+/// A band of rows of a texture in a buffer that can be mapped.
 struct Band {
     buffer: wgpu::Buffer,
     mapped: Receiver<Result<(), BufferAsyncError>>,
@@ -138,7 +141,7 @@ impl Band {
         copy_rows(gpu, texture, layout, [top, rows], &buffer);
         let (sender, mapped) = mpsc::channel();
         buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
-            // Sending fails when the band was dropped; then nobody needs the answer.
+            // Sending fails if the band was dropped; then nobody needs the result.
             let _ = sender.send(result);
         });
         Self { buffer, mapped, is_mapped: false }
@@ -156,7 +159,7 @@ impl Band {
         Ok(self.is_mapped)
     }
 
-    /// Appends its rows, which have arrived.
+    /// Appends the rows of the band, which must have arrived.
     fn append_to(self, texels: &mut Vec<u8>, layout: &Layout) -> Result<(), ReadBackError> {
         let mapped = self
             .buffer
@@ -170,7 +173,7 @@ impl Band {
     }
 }
 
-/// Submits the copy of some rows of a texture, from `top` on, to a buffer.
+/// Submits the copy of some rows of a texture, starting at `top`, to a buffer.
 fn copy_rows(
     gpu: &Gpu,
     texture: &wgpu::Texture,

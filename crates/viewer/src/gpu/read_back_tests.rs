@@ -1,4 +1,4 @@
-//! Textures that are read back in bands come back whole.
+//! Textures that are read back in bands are complete.
 
 use std::time::{Duration, Instant};
 
@@ -20,8 +20,8 @@ fn gpu() -> Option<Gpu> {
     }
 }
 
-/// A texture of 37 × 11 texels with ascending bytes is read in bands of all rows, in bands of several rows (the last band is
-/// shorter), and row by row.
+/// Reads a texture of 37 × 11 texels with ascending bytes in one band of all rows, in bands of
+/// several rows (the last band is shorter), and row by row.
 #[test]
 fn bands_add_up_to_the_picture() {
     let Some(gpu) = gpu() else { return };
@@ -50,13 +50,13 @@ fn bands_add_up_to_the_picture() {
         while !asking.has_arrived(&gpu).unwrap() {
             assert!(begun.elapsed() < Duration::from_mins(1), "{most_bytes}");
         }
-        assert!(asking.has_arrived(&gpu).unwrap(), "and stays there");
+        assert!(asking.has_arrived(&gpu).unwrap(), "and stays available");
         assert!(asking.into_texels(&gpu).unwrap() == texels, "{most_bytes}");
     }
     let [mut asked, waited] = [(); 2].map(|()| ReadBack::begin(&gpu, &texture));
     gpu.device.destroy();
     let begun = Instant::now();
-    // The bytes that were asked for may still arrive, or the request may fail. It must not stay open.
+    // The requested bytes may still arrive, or the request may fail. It must not stay pending.
     while matches!(asked.has_arrived(&gpu), Ok(false)) {
         assert!(begun.elapsed() < Duration::from_mins(1), "the request neither succeeds nor fails");
     }
@@ -66,14 +66,14 @@ fn bands_add_up_to_the_picture() {
     assert!(read_texture(&gpu, &texture).is_err());
 }
 
-/// Depths come back in bands, too, which a depth texture itself cannot.
+/// Depths can be read back in bands, too, although a depth texture itself cannot.
 #[test]
 fn depths_are_read_in_bands() {
     let Some(gpu) = gpu() else { return };
     let depth = TargetTexture::new(&gpu, "depth", DEPTH, [70, 11]);
     let descriptor = wgpu::CommandEncoderDescriptor { label: None };
     let mut encoder = gpu.device.create_command_encoder(&descriptor);
-    // A value of which a float has all digits.
+    // A value that uses all digits of a float.
     let value = 0.123_456_79_f32;
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: None,

@@ -1,4 +1,4 @@
-//! The renderer draws tiles into targets, pass by pass, and holds nothing of any frame.
+//! The renderer draws tiles into targets, pass by pass, and has no state of any frame.
 
 #[cfg(all(feature = "annotations", not(target_arch = "wasm32")))]
 mod read_seen;
@@ -14,19 +14,19 @@ use super::{
         areas::{AreaTile, StencilAreas},
         average::Average,
         composite::Composite,
-        decks::Decks,
-        difference::Difference,
+        decks::DeckDrawable,
+        difference::DifferenceDrawable,
         label_blocks::LabelBlocks,
         label_colors::LabelColors,
         level_connectors::LevelConnectors,
         line_layers,
-        terrain::Terrain,
+        terrain::{GroundOfTile, TerrainDrawable},
     },
     passes::{begin, begin_with_stencil},
     picture::Picture,
     pipeline::ENTRIES,
-    road_instances::{RoadBuffers, RoadInstance, RoadPipeline},
-    shared_bindings::{SharedBindings, SharedLayouts},
+    road_instances::{RoadBuffers, RoadInstance, RoadPipeline, RoadsOfTile},
+    shared_bindings::{DrawnFrame, SharedBindings, SharedLayouts},
     target_texture::TargetTexture,
     targets::{LabelTargets, Targets},
     tile_buffers::{DrawTile, TileBuffers},
@@ -40,29 +40,30 @@ use crate::{
     tiles::{LineLayer, RoadSegment, RoadVolume},
 };
 
-/// Knows how to draw tiles; holds nothing of any frame. What not every picture needs is made when a picture first needs it.
+/// Draws tiles; has no state of any frame. Resources that not every picture needs are created at
+/// first use.
 pub struct Renderer {
     layouts: SharedLayouts,
-    terrain: Terrain,
+    terrain: TerrainDrawable,
     areas: OnceLock<StencilAreas>,
     geo_roads: OnceLock<RoadPipeline>,
     sv_roads: OnceLock<RoadPipeline>,
-    decks: OnceLock<Decks>,
+    decks: OnceLock<DeckDrawable>,
     blocks: LabelBlocks,
     composite: Composite,
     line_colors: OnceLock<LabelColors>,
     average: Average,
-    difference: OnceLock<Difference>,
+    difference: OnceLock<DifferenceDrawable>,
 }
 
 impl Renderer {
-    /// Makes the pipelines that every picture needs.
+    /// Creates the pipelines that every picture needs.
     #[must_use]
     pub fn new(gpu: &Gpu) -> Self {
         let device = &gpu.device;
         let layouts = SharedLayouts::new(device);
         Self {
-            terrain: Terrain::new(device, &layouts),
+            terrain: TerrainDrawable::new(device, &layouts),
             areas: OnceLock::new(),
             geo_roads: OnceLock::new(),
             sv_roads: OnceLock::new(),
@@ -81,7 +82,7 @@ impl Renderer {
         self.draw_timed(gpu, view, tiles, targets, None);
     }
 
-    /// Does the same as [`Renderer::draw`]; `timer` notes how long each pass takes.
+    /// Does the same as [`Renderer::draw`]; `timer` records how long each pass takes.
     pub fn draw_timed(
         &self,
         gpu: &Gpu,
@@ -91,16 +92,16 @@ impl Renderer {
         mut timer: Option<&mut PassTimer>,
     ) {
         let shared = &self.shared(gpu, view, tiles, targets);
-        let passes = FramePasses { renderer: self, gpu, shared, view, targets };
+        let frame = DrawnFrame { gpu, shared, view, targets };
         let method = view.roads.method;
         let on_ground = LevelConnectors::on_ground;
-        let roads = DrawnRoads::new(gpu, tiles, view, |tile| tile.roads(method), on_ground);
+        let roads = DrawnRoads::new(frame, tiles, |tile| tile.roads(method), on_ground);
         let areas = areas_of(tiles, view, |tile| &tile.areas);
         let drawn_style = view.style.with_drawn_areas();
         let drawn_view = &FrameView { style: &drawn_style, ..*view };
         let drawn_areas = areas_of(tiles, drawn_view, |tile| &tile.drawn_areas);
         let of_decks = LevelConnectors::of_decks;
-        let decks = DrawnRoads::new(gpu, tiles, view, |tile| tile.decks(method), of_decks);
+        let decks = DrawnRoads::new(frame, tiles, |tile| tile.decks(method), of_decks);
         if let Some(timer) = &mut timer {
             timer.begin([!areas.is_empty() || !drawn_areas.is_empty(), !decks.is_empty()]);
         }
@@ -111,27 +112,28 @@ impl Renderer {
         };
         gpu.submit("frame", |encoder| {
             mark(encoder, 0);
-            passes.terrain(encoder, tiles);
+            self.pass_terrain(frame, encoder, tiles);
             mark(encoder, 1);
-            passes.areas(encoder, &areas, &targets.ground);
-            let drawn = FramePasses { view: drawn_view, ..passes };
-            drawn.areas(encoder, &drawn_areas, &targets.ground);
+            self.pass_areas(frame, encoder, &areas, &targets.ground);
+            let drawn = DrawnFrame { view: drawn_view, ..frame };
+            self.pass_areas(drawn, encoder, &drawn_areas, &targets.ground);
             mark(encoder, 2);
-            passes.labels(encoder, &roads, &targets.roads);
+            self.pass_labels(frame, encoder, &roads, &targets.roads);
             mark(encoder, 3);
-            passes.decks(encoder, &decks);
+            self.pass_decks(frame, encoder, &decks);
             mark(encoder, 4);
-            passes.composite(encoder, &decks);
+            self.pass_composite(frame, encoder, &decks);
             for layer in LineLayer::ALL {
-                passes.lines(encoder, tiles, layer);
+                self.pass_lines(frame, encoder, tiles, layer);
             }
             self.average.draw(gpu, encoder, &targets.picture);
             mark(encoder, 5);
         });
     }
 
-    /// Shows in `into` where the roads of two drawings differ, over the first one's picture in pale grey. Both were
-    /// drawn with the same camera; all three have the same size and samples.
+    /// Draws into `into` where the roads of two drawings differ, over the picture of the first one
+    /// in pale grey. Both must have been drawn with the same camera; all three must have the same
+    /// size and samples.
     ///
     /// # Errors
     /// When the sizes differ.
@@ -148,7 +150,7 @@ impl Renderer {
         if !is_same {
             return Err(GpuError::SizesDiffer { sizes_px });
         }
-        let difference = self.difference.get_or_init(|| Difference::new(&gpu.device));
+        let difference = self.difference.get_or_init(|| DifferenceDrawable::new(&gpu.device));
         gpu.submit("difference", |encoder| {
             difference.draw(gpu, encoder, first, second, into);
             self.average.draw(gpu, encoder, into);
@@ -172,7 +174,7 @@ impl Renderer {
         self.geo_roads.get_or_init(|| self.roads_on_ground::<RoadSegment>(gpu))
     }
 
-    /// Connectors are drawn as shadow volumes whatever the method.
+    /// The pipeline of shadow volumes; connectors are drawn as shadow volumes with either method.
     fn sv_roads(&self, gpu: &Gpu) -> &RoadPipeline {
         self.sv_roads.get_or_init(|| self.roads_on_ground::<RoadVolume>(gpu))
     }
@@ -182,131 +184,151 @@ impl Renderer {
         RoadPipeline::new::<T>(&gpu.device, layouts, &layouts.ground, ENTRIES, None)
     }
 
-    fn decks(&self, gpu: &Gpu) -> &Decks {
-        self.decks.get_or_init(|| Decks::new(&gpu.device, &self.layouts))
+    fn decks(&self, gpu: &Gpu) -> &DeckDrawable {
+        self.decks.get_or_init(|| DeckDrawable::new(&gpu.device, &self.layouts))
     }
 }
 
-/// What the passes of a frame draw with and into.
-#[derive(Clone, Copy)]
-struct FramePasses<'a> {
-    renderer: &'a Renderer,
-    gpu: &'a Gpu,
-    shared: &'a SharedBindings,
-    view: &'a FrameView<'a>,
-    targets: &'a Targets,
-}
-
-impl FramePasses<'_> {
-    /// Colour, depth and owner of the ground.
-    fn terrain(self, encoder: &mut CommandEncoder, tiles: &[DrawTile<'_>]) {
-        let Self { renderer, gpu, shared, view, targets } = self;
-        let Targets { ground, depth, owners, .. } = targets;
+/// The passes of a frame.
+impl Renderer {
+    /// Draws colour, depth and owner of the ground.
+    fn pass_terrain(
+        &self,
+        frame: DrawnFrame<'_>,
+        encoder: &mut CommandEncoder,
+        tiles: &[DrawTile<'_>],
+    ) {
+        let Targets { ground, depth, owners, .. } = frame.targets;
         let colors = [&ground.view, &owners.view];
         let mut pass = begin(encoder, "terrain", &colors, Some(&depth.view), LoadOp::Clear(()));
         let grounds: Vec<_> = tiles
             .iter()
             .enumerate()
-            .filter_map(|(index, tile)| {
-                Some((index, tile.buffers.ground.as_ref()?, &tile.buffers.textures))
+            .filter_map(|(index, draw)| {
+                let TileBuffers { ground, textures, .. } = draw.buffers;
+                Some(GroundOfTile { tile: index, ground: ground.as_ref()?, textures })
             })
             .collect();
-        renderer.terrain.draw(gpu, &mut pass, shared, &grounds, view);
+        self.terrain.draw(frame, &mut pass, &grounds);
     }
 
-    /// Areas, over colours such as those of the ground. Without areas there is no such pass.
-    fn areas(self, encoder: &mut CommandEncoder, areas: &[AreaTile<'_>], into: &TargetTexture) {
-        let Self { renderer, gpu, shared, view, targets } = self;
+    /// Draws areas over colours such as those of the ground. Without areas there is no areas pass.
+    fn pass_areas(
+        &self,
+        frame: DrawnFrame<'_>,
+        encoder: &mut CommandEncoder,
+        areas: &[AreaTile<'_>],
+        into: &TargetTexture,
+    ) {
         if areas.is_empty() {
             return;
         }
-        let stencil = &targets.stencil(gpu).view;
+        let stencil = &frame.targets.stencil(frame.gpu).view;
         let mut pass = begin_with_stencil(encoder, "areas", &into.view, stencil);
-        let new = || StencilAreas::new(&gpu.device, &renderer.layouts);
-        renderer.areas.get_or_init(new).draw(gpu, &mut pass, shared, areas, view);
+        let new = || StencilAreas::new(&frame.gpu.device, &self.layouts);
+        self.areas.get_or_init(new).draw(frame, &mut pass, areas);
     }
 
-    /// Labels of roads, or of lines of a layer: of each tile those of the classes that are shown there.
-    fn labels(self, encoder: &mut CommandEncoder, roads: &DrawnRoads<'_>, targets: &LabelTargets) {
-        let Self { renderer, gpu, shared, view, .. } = self;
-        // The pass clears the labels even when it draws nothing.
+    /// Draws labels of roads, or of lines of a layer: for each tile the classes that are shown
+    /// there.
+    fn pass_labels(
+        &self,
+        DrawnFrame { gpu, shared, view, .. }: DrawnFrame<'_>,
+        encoder: &mut CommandEncoder,
+        roads: &DrawnRoads<'_>,
+        targets: &LabelTargets,
+    ) {
+        // The pass clears the labels even if it draws nothing.
         let mut pass = begin(encoder, "labels", &[&targets.labels.view], None, LoadOp::Clear(()));
         let pipeline = match view.roads.method {
-            RoadMethod::Geometry => renderer.geo_roads(gpu),
-            RoadMethod::ShadowVolumes => renderer.sv_roads(gpu),
+            RoadMethod::Geometry => self.geo_roads(gpu),
+            RoadMethod::ShadowVolumes => self.sv_roads(gpu),
             RoadMethod::None => return,
         };
         pipeline.draw(&mut pass, shared, &shared.ground, &roads.of_tiles);
         if !roads.connectors.is_empty() {
-            roads.connectors.draw(&mut pass, shared, &shared.ground, renderer.sv_roads(gpu));
+            roads.connectors.draw(&mut pass, shared, &shared.ground, self.sv_roads(gpu));
         }
     }
 
-    /// A layer of lines, over the samples of the picture. Where no tile has such lines, or the style draws none, there is no such pass.
-    fn lines(self, encoder: &mut CommandEncoder, tiles: &[DrawTile<'_>], layer: LineLayer) {
-        let Self { renderer, gpu, shared, targets, .. } = self;
-        let style = layer.style_of(self.view.style);
-        let view = &view_of_lines(self.view, &style);
-        let lines = DrawnRoads::of_layer(gpu, tiles, view, layer);
+    /// Draws a layer of lines over the samples of the picture. If no tile has such lines, or the
+    /// style draws none, there is no lines pass.
+    fn pass_lines(
+        &self,
+        frame: DrawnFrame<'_>,
+        encoder: &mut CommandEncoder,
+        tiles: &[DrawTile<'_>],
+        layer: LineLayer,
+    ) {
+        let style = layer.style_of(frame.view.style);
+        let frame = DrawnFrame { view: &view_of_lines(frame.view, &style), ..frame };
+        let lines = DrawnRoads::of_layer(frame, tiles, layer);
         if lines.is_empty() {
             return;
         }
-        let shared = &shared.with_view(gpu, &renderer.layouts, view, targets);
+        let frame =
+            DrawnFrame { shared: &SharedBindings::with_view(frame, &self.layouts), ..frame };
+        let DrawnFrame { gpu, view, targets, .. } = frame;
         let labels = targets.lines(gpu);
-        FramePasses { shared, view, ..self }.labels(encoder, &lines, labels);
-        renderer.blocks.find(gpu, encoder, shared, labels);
+        self.pass_labels(frame, encoder, &lines, labels);
+        self.blocks.find(frame, encoder, labels);
         let into = [targets.picture.drawn()];
         let mut pass = begin(encoder, "lines", &into, None, LoadOp::Load);
-        let colors = renderer
-            .line_colors
-            .get_or_init(|| line_layers::line_colors(&gpu.device, &renderer.layouts));
+        let new = || line_layers::line_colors(&gpu.device, &self.layouts);
+        let colors = self.line_colors.get_or_init(new);
         let rows = line_layers::rows(view, layer);
-        colors.bind(gpu, &mut pass, shared, &rows, (targets, labels), &[&targets.roads.labels]);
+        colors.bind(frame, &mut pass, &rows, labels, &[&targets.roads.labels]);
         colors.draw(&mut pass, targets);
     }
 
-    /// The samples of the picture. What is drawn over the map, such as labels, is drawn after the composite: in this pass, or
-    /// in one with `LoadOp::Load` if it needs a depth test.
-    fn composite(self, encoder: &mut CommandEncoder, decks: &DrawnRoads<'_>) {
-        let Self { renderer, gpu, shared, view, targets } = self;
+    /// Draws the samples of the picture. Drawables over the map, such as labels, are drawn after
+    /// the composite: in this pass, or in one with `LoadOp::Load` if they need a depth test.
+    fn pass_composite(
+        &self,
+        frame: DrawnFrame<'_>,
+        encoder: &mut CommandEncoder,
+        decks: &DrawnRoads<'_>,
+    ) {
+        let DrawnFrame { gpu, view, targets, .. } = frame;
         if view.roads.method != RoadMethod::None {
-            renderer.blocks.find(gpu, encoder, shared, &targets.roads);
+            self.blocks.find(frame, encoder, &targets.roads);
         }
         if !decks.is_empty() {
-            renderer.blocks.find(gpu, encoder, shared, &targets.decks(gpu).labels);
+            self.blocks.find(frame, encoder, &targets.decks(gpu).labels);
         }
         let into = [targets.picture.drawn()];
         let mut pass = begin(encoder, "composite", &into, None, LoadOp::Clear(()));
-        renderer.composite.draw(gpu, &mut pass, shared, view, targets);
+        self.composite.draw(frame, &mut pass);
         if !decks.is_empty() {
-            let seen = (targets, targets.decks(gpu));
-            renderer.decks(gpu).draw_colors(gpu, &mut pass, shared, view, seen);
+            self.decks(gpu).draw_colors(frame, &mut pass);
         }
     }
 
-    /// Depths and labels of decks of bridges. Without decks there are no such passes.
-    fn decks(self, encoder: &mut CommandEncoder, decks: &DrawnRoads<'_>) {
-        let Self { renderer, gpu, shared, targets, .. } = self;
+    /// Draws depths and labels of decks of bridges. Without decks there are no deck passes.
+    fn pass_decks(
+        &self,
+        frame: DrawnFrame<'_>,
+        encoder: &mut CommandEncoder,
+        decks: &DrawnRoads<'_>,
+    ) {
         if !decks.is_empty() {
-            let drawn = (&decks.of_tiles[..], &decks.connectors);
-            let into = (targets, targets.decks(gpu));
-            renderer.decks(gpu).draw(gpu, encoder, shared, drawn, into);
+            self.decks(frame.gpu).draw(frame, encoder, &decks.of_tiles, &decks.connectors);
         }
     }
 }
 
 /// The roads of all tiles of a frame, their decks of bridges, or their lines of one layer.
 struct DrawnRoads<'a> {
-    /// The roads of tiles, each with its index in the list of tiles of the frame and the classes that are shown there.
-    of_tiles: Vec<(usize, &'a RoadBuffers, ClassSet)>,
+    /// The roads of tiles, each with its index in the list of tiles of the frame and the classes
+    /// that are shown there.
+    of_tiles: Vec<RoadsOfTile<'a>>,
     connectors: LevelConnectors,
 }
 
 impl<'a> DrawnRoads<'a> {
     fn new(
-        gpu: &Gpu,
+        DrawnFrame { gpu, view, .. }: DrawnFrame<'_>,
         tiles: &[DrawTile<'a>],
-        view: &FrameView<'_>,
         of: impl Fn(&'a TileBuffers) -> Option<&'a RoadBuffers>,
         connect: impl Fn(&Gpu, &[BorderTile<'_>], &[ClassSet]) -> LevelConnectors,
     ) -> Self {
@@ -316,23 +338,25 @@ impl<'a> DrawnRoads<'a> {
             tiles.iter().zip(&roads).map(|(tile, roads)| tile.border(*roads)).collect();
         let connectors = connect(gpu, &borders, &shown);
         let of_tiles = roads.into_iter().zip(shown).enumerate();
-        let of_tiles = of_tiles.filter_map(|(index, (roads, shown))| Some((index, roads?, shown)));
+        let of_tiles = of_tiles.filter_map(|(tile, (roads, classes))| {
+            Some(RoadsOfTile { tile, roads: roads?, classes })
+        });
         Self { of_tiles: of_tiles.collect(), connectors }
     }
 
-    /// The lines of a layer; `view` is the layer's.
-    fn of_layer(gpu: &Gpu, tiles: &[DrawTile<'a>], view: &FrameView<'_>, layer: LineLayer) -> Self {
-        let of = |tile| TileBuffers::lines(tile, layer, view.roads.method);
-        Self::new(gpu, tiles, view, of, LevelConnectors::on_ground)
+    /// The lines of a layer; the view must be the view of the layer.
+    fn of_layer(frame: DrawnFrame<'_>, tiles: &[DrawTile<'a>], layer: LineLayer) -> Self {
+        let of = |tile| TileBuffers::lines(tile, layer, frame.view.roads.method);
+        Self::new(frame, tiles, of, LevelConnectors::on_ground)
     }
 
-    /// Whether nothing of them is shown.
+    /// Whether none of the roads is shown.
     fn is_empty(&self) -> bool {
-        self.of_tiles.iter().all(|(_, roads, shown)| roads.runs(*shown).is_empty())
+        self.of_tiles.iter().all(|of| of.roads.runs(of.classes).is_empty())
     }
 }
 
-/// The tiles that have areas of a class that is drawn, among those that `of` finds on a tile.
+/// The tiles that have areas of a drawn class; `of` returns the areas of a tile.
 fn areas_of<'a>(
     tiles: &[DrawTile<'a>],
     view: &FrameView<'_>,

@@ -1,18 +1,19 @@
-//! The tiles that lie on the graphics card while the view changes.
+//! The tiles that stay on the GPU while the view changes.
 
 use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
 
 use super::{DrawTile, Gpu, TileBuffers};
-use crate::{lod::Drawn, tiles::TileGeometry};
+use crate::{lod::DrawnTile, tiles::TileGeometry};
 
-/// The tiles on the graphics card, for views that change.
+/// The tiles on the GPU, for views that change.
 #[derive(Default)]
 pub struct ResidentTiles(pub(crate) BTreeMap<TileId, TileBuffers>);
 
 impl ResidentTiles {
-    /// Removes tiles and uploads others. A tile is shaded by the slopes of its parent too, which must be there before it.
+    /// Evicts tiles and uploads others. A tile is also shaded by the slopes of its parent, which
+    /// must be resident before it.
     pub fn change(&mut self, gpu: &Gpu, evict: &[TileId], upload: &[TileGeometry]) {
         for id in evict {
             self.0.remove(id);
@@ -24,26 +25,26 @@ impl ResidentTiles {
         }
     }
 
-    /// Bytes on the graphics card.
+    /// Size of all tiles on the GPU, bytes.
     #[must_use]
     pub fn gpu_bytes(&self) -> u64 {
         self.0.values().map(TileBuffers::gpu_bytes).sum()
     }
 
-    /// Removes all.
+    /// Evicts all tiles.
     pub fn clear(&mut self) {
         self.0.clear();
     }
 
-    /// A tile, to replace what a person draws on it.
+    /// A tile, for replacing user-drawn lines and areas on it.
     pub fn get_mut(&mut self, id: TileId) -> Option<&mut TileBuffers> {
         self.0.get_mut(&id)
     }
 
-    /// The tiles of a selection, with their skirts; those that are not there are left out.
+    /// The tiles of a selection, with their skirts; tiles that are not resident are omitted.
     #[must_use]
-    pub fn draw_list(&self, drawn: &[Drawn]) -> Vec<DrawTile<'_>> {
-        let tile = |drawn: &Drawn| {
+    pub fn draw_list(&self, drawn: &[DrawnTile]) -> Vec<DrawTile<'_>> {
+        let tile = |drawn: &DrawnTile| {
             let buffers = self.0.get(&drawn.id)?;
             Some(DrawTile { buffers, skirt_depth_m: drawn.skirt_depth_m })
         };

@@ -1,12 +1,12 @@
-//! What both methods of drawing roads, and decks of bridges, have in common: an instance for each piece of a road, sorted by class, and a
-//! pipeline that draws labels.
+//! Common parts of both methods of drawing roads, and of decks of bridges: an instance for each
+//! piece of a road, sorted by class, and a pipeline that draws labels.
 
 use std::ops::Range;
 
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 use wgpu::{
     BindGroup, BlendComponent, BlendFactor, BlendOperation, BlendState, Buffer, BufferUsages,
-    ColorWrites, Device, FrontFace, PrimitiveTopology, RenderPass, RenderPipeline, VertexAttribute,
+    ColorWrites, Device, PrimitiveTopology, RenderPass, RenderPipeline, VertexAttribute,
     VertexBufferLayout, VertexStepMode,
 };
 
@@ -18,17 +18,17 @@ use super::{
 };
 use crate::{
     options::ClassSet,
-    tiles::{RoadEnd, RoadList},
+    tiles::{RoadEnd, RoadKind, RoadList},
 };
 
-/// The most important label stays, in whatever order roads are drawn.
+/// Keeps the most important label, in any order of drawing.
 const LARGEST: BlendComponent = BlendComponent {
     src_factor: BlendFactor::One,
     dst_factor: BlendFactor::One,
     operation: BlendOperation::Max,
 };
 
-/// A road's own width as an instance has it: metres above 0, lanes below it, 0 for neither.
+/// Encodes a road's own width for an instance: metres above 0, lanes below 0, 0 for no own width.
 pub(crate) fn own_width_value(own: OwnWidth) -> f32 {
     match own {
         OwnWidth::Unknown => 0.0,
@@ -37,15 +37,22 @@ pub(crate) fn own_width_value(own: OwnWidth) -> f32 {
     }
 }
 
-/// Draws roads by one method into the labels.
+/// Encodes class and look of a road, and a bit for each end; shaders read them from the lowest nine
+/// bits.
+pub(crate) fn kind_bits(RoadKind { class, look, .. }: RoadKind, ends: [bool; 2]) -> u32 {
+    let [start, end] = ends.map(u32::from);
+    u32::from(class.number()) | (look as u32) << 4 | start << 7 | end << 8
+}
+
+/// Draws the labels of roads with one method.
 pub(crate) struct RoadPipeline {
     pipeline: RenderPipeline,
     corners: Range<u32>,
 }
 
 impl RoadPipeline {
-    /// The pipeline for pieces of a kind. `drawn` is the layout of what is bound at group 2. With `depth` that alone is drawn; without it labels are, of
-    /// which the largest stays.
+    /// Creates the pipeline for one kind of pieces. `drawn` is the layout of bind group 2. With
+    /// `depth` only depth is drawn; without it labels are drawn, and the largest label stays.
     pub(crate) fn new<T: RoadInstance>(
         device: &Device,
         layouts: &SharedLayouts,
@@ -55,43 +62,43 @@ impl RoadPipeline {
     ) -> Self {
         let largest = BlendState { color: LARGEST, alpha: LARGEST };
         let is_labelled = depth.is_none();
+        let groups = [Some(&layouts.frame), Some(&layouts.tile), Some(drawn)];
         let pipeline = PipelineRecipe {
-            shader: T::SHADER,
             entries,
-            groups: &[Some(&layouts.frame), Some(&layouts.tile), Some(drawn)],
             buffer: Some(VertexBufferLayout {
                 array_stride: size_of::<T::Words>() as u64,
                 step_mode: VertexStepMode::Instance,
                 attributes: T::ATTRIBUTES,
             }),
             topology: PrimitiveTopology::TriangleStrip,
-            front_face: FrontFace::Ccw,
             cull: T::CULL,
             depth,
             targets: if is_labelled { &[(LABEL, ColorWrites::ALL)] } else { &[] },
             blend: is_labelled.then_some(largest),
-            constants: &[],
+            ..PipelineRecipe::new(T::SHADER, &groups, &[])
         };
         Self { pipeline: pipeline.build(device), corners: T::CORNERS }
     }
 
-    /// Draws roads of some tiles, each given with its index in the list of tiles of the frame and the classes to draw. One
-    /// draw per tile is enough, because the target keeps the largest label: neither the order of classes nor that of tiles matters.
+    /// Draws the roads of some tiles, each given with its index in the list of tiles of the frame
+    /// and the classes to draw. One draw call per tile is enough, because the target keeps the
+    /// largest label: the order of classes and tiles has no effect.
     pub(crate) fn draw(
         &self,
         pass: &mut RenderPass<'_>,
         shared: &SharedBindings,
         drawn: &BindGroup,
-        tiles: &[(usize, &RoadBuffers, ClassSet)],
+        tiles: &[RoadsOfTile<'_>],
     ) {
         self.begin(pass, shared, drawn);
-        for (index, roads, classes) in tiles {
-            shared.set_tile(pass, *index);
+        for RoadsOfTile { tile, roads, classes } in tiles {
+            shared.set_tile(pass, *tile);
             roads.draw(pass, *classes, &self.corners);
         }
     }
 
-    /// Draws instances that are in one buffer for all tiles: which of them belong to the tile with this index.
+    /// Draws a range of instances from one buffer for all tiles; the range belongs to the tile with
+    /// this index.
     pub(crate) fn draw_instances(
         &self,
         pass: &mut RenderPass<'_>,
@@ -115,27 +122,36 @@ impl RoadPipeline {
     }
 }
 
-/// The roads of a tile on the graphics card, as one method draws them.
+/// The roads of a tile to draw.
+pub(crate) struct RoadsOfTile<'a> {
+    /// The index of the tile in the list of tiles of the frame.
+    pub(crate) tile: usize,
+    pub(crate) roads: &'a RoadBuffers,
+    /// The classes to draw.
+    pub(crate) classes: ClassSet,
+}
+
+/// The roads of a tile on the GPU, for one method.
 #[derive(Default)]
 pub(crate) struct RoadBuffers {
     /// One instance for each piece, in order of class; `None` without roads.
     instances: Option<Buffer>,
-    /// Which instances belong to each class.
+    /// The range of instances of each class.
     class_ranges: [Range<u32>; FunctionalRoadClass::COUNT],
-    /// Where the roads meet the tile's border.
+    /// Points where the roads meet the tile's border.
     pub(crate) ends: Vec<RoadEnd>,
 }
 
-/// A piece of a road or of a deck, which is one instance.
+/// A piece of a road or of a deck, drawn as one instance.
 pub(crate) trait RoadInstance {
-    /// The instance, as words.
+    /// The words of an instance.
     type Words: bytemuck::Pod;
     const SHADER: Shader;
-    /// The words as the shader takes them.
+    /// The layout of the words for the shader.
     const ATTRIBUTES: &'static [VertexAttribute];
-    /// Corners of the strip of triangles that is drawn for each instance.
+    /// Corners of the triangle strip that is drawn for each instance.
     const CORNERS: Range<u32>;
-    /// Which faces are not drawn.
+    /// The faces to cull.
     const CULL: Option<wgpu::Face>;
     /// The words of this piece.
     fn words(&self) -> Self::Words;
@@ -146,21 +162,17 @@ impl RoadBuffers {
     pub(crate) fn new<T: RoadInstance>(gpu: &Gpu, list: &RoadList<T>) -> Self {
         let instances: Vec<T::Words> = list.all().iter().map(T::words).collect();
         let bytes: &[u8] = bytemuck::cast_slice(&instances);
-        let mut class_ranges = [const { 0..0 }; FunctionalRoadClass::COUNT];
-        for (class, range) in FunctionalRoadClass::all().zip(&mut class_ranges) {
-            *range = list.range_of(class);
-        }
         let instances =
             (!bytes.is_empty()).then(|| gpu.buffer("roads", bytes, BufferUsages::VERTEX));
-        Self { instances, class_ranges, ends: list.ends().to_vec() }
+        Self { instances, class_ranges: list.ranges.clone(), ends: list.ends().to_vec() }
     }
 
-    /// Bytes of the buffer that a list takes.
+    /// Size of the buffer for a list, bytes.
     pub(crate) fn bytes_of<T: RoadInstance>(list: &RoadList<T>) -> u64 {
         (list.all().len() * size_of::<T::Words>()) as u64
     }
 
-    /// Bytes of its buffer.
+    /// Size of the buffer, bytes.
     pub(crate) fn gpu_bytes(&self) -> u64 {
         self.instances.as_ref().map_or(0, Buffer::size)
     }
@@ -180,7 +192,7 @@ impl RoadBuffers {
         runs
     }
 
-    /// Draws the roads of these classes; an instance has these corners.
+    /// Draws the roads of these classes; `corners` are the corners of an instance.
     fn draw(&self, pass: &mut RenderPass<'_>, classes: ClassSet, corners: &Range<u32>) {
         let Some(instances) = &self.instances else { return };
         pass.set_vertex_buffer(0, instances.slice(..));

@@ -1,4 +1,4 @@
-//! Road classes side by side are drawn at once.
+//! Adjacent road classes are drawn in one call.
 
 use super::*;
 

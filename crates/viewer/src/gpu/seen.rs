@@ -1,4 +1,5 @@
-//! What a finished picture shows: which classes, and which heights. A class counts if it has as much of the picture as some pixels.
+//! The classes and heights that a finished picture shows. A class counts if it covers as much of
+//! the picture as a few pixels.
 
 use corniche_areas::AreaClass;
 use corniche_roads::FunctionalRoadClass;
@@ -7,18 +8,19 @@ use glam::DVec2;
 use super::labels::{class_of, is_tunnel};
 use crate::{camera::Camera, options::ClassSet};
 
-/// A class is in a picture if so many pixels show it. Fewer are not seen.
+/// Minimum number of pixels of a class in a picture. Fewer pixels are not noticed.
 const LEAST_PX: u32 = 4;
-/// Boundaries are not drawn so near to roads of class [`LAST_WIDE_ROAD`] and above, as in `shaders/lines.wgsl`.
+/// Boundaries are not drawn this close to roads of class [`LAST_WIDE_ROAD`] and above, as in
+/// `shaders/lines.wgsl`.
 const BOUNDARY_APART_PX: u32 = 2;
 const LAST_WIDE_ROAD: u8 = 6;
-/// Smaller labels of decks are those of their sides and undersides.
+/// Deck labels below this are labels of sides and undersides.
 const DECK_ROADS: u8 = 3;
 
-/// What a picture shows.
+/// The classes and heights that a picture shows.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Seen {
-    /// Classes of roads, with those of tunnels.
+pub(crate) struct ShownTiles {
+    /// Classes of roads, including tunnels.
     pub(crate) roads: ClassSet,
     /// Classes of roads in tunnels.
     pub(crate) tunnels: ClassSet,
@@ -34,29 +36,29 @@ pub(crate) struct Seen {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SeenArea {
     pub(crate) class: AreaClass,
-    /// The mean true height of the ground on which it is seen; `None` if that is not known.
+    /// The mean true height of the visible ground under the areas; `None` if it is unknown.
     pub(crate) height_m: Option<f64>,
 }
 
-/// What the samples of a picture show, all in one order.
+/// The samples of a picture, all in the same order.
 pub(crate) struct SeenSamples<'a> {
-    /// How many samples a pixel has on each side.
+    /// Number of samples on each side of a pixel.
     pub(crate) per_side: u32,
-    /// How many samples a row of them has.
+    /// Number of samples in a row.
     pub(crate) columns: u32,
-    /// The label of the road on the ground, as `gpu::labels` has them.
+    /// Labels of roads on the ground, as defined in `gpu::labels`.
     pub(crate) roads: &'a [u8],
-    /// The labels of decks, which hide the ground.
+    /// Labels of decks, which hide the ground.
     pub(crate) decks: Option<&'a [u8]>,
     /// Labels of boundaries.
     pub(crate) boundaries: Option<&'a [u8]>,
-    /// Numbers of classes of areas plus 1, 0 without.
+    /// Numbers of area classes plus 1; 0 without an area.
     pub(crate) areas: Option<&'a [u8]>,
 }
 
 impl SeenSamples<'_> {
-    /// The classes that they show. Heights are not among them.
-    pub(crate) fn seen(&self) -> Seen {
+    /// Returns the visible classes, without heights.
+    pub(crate) fn seen(&self) -> ShownTiles {
         let (mut roads, mut areas) = ([0_u32; 256], [0_u32; 256]);
         for (place, road) in self.roads.iter().enumerate() {
             let at = |samples: Option<&[u8]>| samples.and_then(|all| all.get(place).copied());
@@ -81,7 +83,7 @@ impl SeenSamples<'_> {
         let least = LEAST_PX * self.per_side * self.per_side;
         let is_seen = |class: &AreaClass| areas[usize::from(class.number()) + 1] >= least;
         let area = |class| SeenArea { class, height_m: None };
-        Seen {
+        ShownTiles {
             roads: classes(&roads, least, |_| true),
             tunnels: classes(&roads, least, is_tunnel),
             boundaries: classes(&boundaries, least, |_| true),
@@ -92,7 +94,8 @@ impl SeenSamples<'_> {
 }
 
 impl SeenSamples<'_> {
-    /// Whether a boundary makes room for a road at a sample, as `shaders/lines.wgsl` has it; four samples around it are looked at.
+    /// Whether a boundary is hidden at a sample because it is close to a road, as in
+    /// `shaders/lines.wgsl`. Checks four samples around it.
     fn is_beside_road(&self, place: usize) -> bool {
         let across = (BOUNDARY_APART_PX * self.per_side) as usize;
         let down = across * self.columns as usize;
@@ -109,7 +112,7 @@ impl SeenSamples<'_> {
     }
 }
 
-/// The classes of which so many samples have labels, of those that are wanted.
+/// The wanted classes of which at least `least` samples have labels.
 fn classes(counts: &[u32; 256], least: u32, is_wanted: impl Fn(u8) -> bool) -> ClassSet {
     let mut of_classes = [0_u32; FunctionalRoadClass::COUNT];
     let there = (0_u8..=u8::MAX).zip(counts).filter(|(_, count)| **count > 0);
@@ -125,8 +128,9 @@ fn classes(counts: &[u32; 256], least: u32, is_wanted: impl Fn(u8) -> bool) -> C
         .collect()
 }
 
-/// The true heights of the ground at some samples, each with its place among the samples of the camera's picture, row by row, and its value in the depth
-/// buffer. World heights are `vertical_scale` times true ones. Samples without ground are left out.
+/// The true heights of the ground at some samples. Each sample is given by its index in the
+/// camera's picture, row by row, and its value in the depth buffer. World heights are
+/// `vertical_scale` times true heights. Samples without ground are skipped.
 pub(crate) fn heights_m(
     camera: &Camera,
     vertical_scale: f64,
@@ -141,8 +145,8 @@ pub(crate) fn heights_m(
     })
 }
 
-impl Seen {
-    /// The same with the heights of samples, of which `areas` has the classes as [`SeenSamples`] has them.
+impl ShownTiles {
+    /// Adds the heights of samples; `areas` has their classes as in [`SeenSamples`].
     pub(crate) fn with_heights(
         mut self,
         heights_m: impl Iterator<Item = (usize, f64)>,

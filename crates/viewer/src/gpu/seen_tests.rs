@@ -1,4 +1,5 @@
-//! A class is in a picture if as much as some pixels shows it, and heights are those of the ground that is seen.
+//! A class is in a picture if it covers as much as a few pixels, and heights are those of the
+//! visible ground.
 
 use corniche_geom::Bounds;
 
@@ -33,12 +34,12 @@ fn bands_service_roads_and_tunnels_count_for_their_class() {
     let seen = samples(&roads).seen();
     assert_eq!(numbers(seen.roads), [2, 4, 5]);
     assert_eq!(numbers(seen.tunnels), [4]);
-    // With four samples a pixel, four of them are one pixel.
+    // With four samples per pixel, four samples are one pixel.
     let seen = SeenSamples { per_side: 2, ..samples(&roads) }.seen();
     assert!(numbers(seen.roads).is_empty());
 }
 
-/// Sides and undersides of bridges hide roads and are none themselves.
+/// Sides and undersides of bridges hide roads and do not count as roads.
 #[test]
 fn decks_hide_what_is_beneath_them() {
     let roads = [road_label(3, 0); 12];
@@ -56,7 +57,8 @@ fn areas_beneath_roads_are_not_seen() {
     assert_eq!(seen.areas, [SeenArea { class: forest, height_m: None }]);
 }
 
-/// Three rows of eight samples: those of a boundary on a road or within two pixels of it are not drawn.
+/// Three rows of eight samples: samples of a boundary on a road or within two pixels of it are not
+/// drawn.
 #[test]
 fn boundaries_make_room_for_roads() {
     let country = road_label(0, 0);
@@ -70,12 +72,13 @@ fn boundaries_make_room_for_roads() {
     assert_eq!(of(&nothing), [0, 4]);
     let below = [[0; 8], [0; 8], [road_label(5, 0); 8]].concat();
     assert!(of(&below).is_empty());
-    // Paths and tunnels are no such roads.
+    // Boundaries are drawn on paths and tunnels.
     assert_eq!(of(&[[0; 8], [0; 8], [road_label(8, 0); 8]].concat()), [0, 4]);
     assert_eq!(of(&[[0; 8], [0; 8], [tunnel_label(5, true); 8]].concat()), [0, 4]);
 }
 
-/// The depth of each sample is computed from a place on the ground, and the heights come back.
+/// The depth of each sample is computed from a point on the ground; the same heights are computed
+/// from the depths.
 #[test]
 fn heights_come_back_from_depths() {
     let from_above = Camera::from_above(glam::DVec2::ZERO, 2.0, 30.0, [200.0, 3000.0], [4, 4]);
@@ -92,7 +95,8 @@ fn heights_come_back_from_depths() {
             let depth_m = (height_m * 2.0 - start.z) / ray.z;
             let (_, seen_m) = camera.project(start + ray * depth_m).unwrap();
             assert!((seen_m - depth_m).abs() < 1e-6, "{seen_m} {depth_m}");
-            // The depth buffer's value, found by bisection, since the camera has it the other way around.
+            // The depth buffer's value is found by bisection, since the camera only has the inverse
+            // function.
             let (mut low, mut high) = (1e-12, 1.0);
             for _ in 0..200 {
                 let middle = f64::midpoint(low, high);
@@ -110,7 +114,7 @@ fn heights_come_back_from_depths() {
     }
 }
 
-/// The lowest and the highest are those of all samples, means those of each class.
+/// The range is that of all samples, the mean that of each class.
 #[test]
 fn areas_have_their_mean_heights() {
     let [forest, water] = [AreaClass::Forest, AreaClass::Water];
@@ -126,7 +130,8 @@ fn areas_have_their_mean_heights() {
     assert_eq!(none.heights_m, None);
 }
 
-/// The first sample of a row does not lie beside the last ones of the row before it, and bridges hide boundaries.
+/// The first sample of a row is not next to the last ones of the previous row, and bridges hide
+/// boundaries.
 #[test]
 fn boundaries_at_the_rim_and_beneath_bridges() {
     let column = |of: usize, label: u8| {

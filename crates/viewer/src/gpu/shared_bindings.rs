@@ -6,8 +6,8 @@
 //! | 1 | a tile's uniform block | with each tile, by an offset |
 //! | 2 | depth and owner of each sample of the ground | with each frame |
 //!
-//! The terrain has others: 2 for its colours, 3 for a tile's textures ([`tile_textures`](super::tile_textures)). Areas have 3
-//! for their colours.
+//! The terrain uses other groups: 2 for its colours, 3 for a tile's textures
+//! ([`tile_textures`](super::tile_textures)). Areas use 3 for their colours.
 
 use std::num::NonZeroU64;
 
@@ -18,7 +18,7 @@ use wgpu::{
 
 use super::{
     Gpu,
-    bindings::{UNFILTERED, group, layout, texture, textures, uniform},
+    bindings::{UNFILTERED, block, group, layout, texture, textures, uniform},
     targets::Targets,
     uniforms,
 };
@@ -54,7 +54,7 @@ pub(crate) struct SharedBindings {
 }
 
 impl SharedBindings {
-    /// Uploads the uniform blocks of a frame and of its tiles, in the order in which they are drawn.
+    /// Uploads the uniform blocks of a frame and of its tiles, in drawing order.
     pub(crate) fn new(
         gpu: &Gpu,
         layouts: &SharedLayouts,
@@ -79,15 +79,11 @@ impl SharedBindings {
         }
     }
 
-    /// The same with the frame's block of another view of the same tiles with the same camera.
-    pub(crate) fn with_view(
-        &self,
-        gpu: &Gpu,
-        layouts: &SharedLayouts,
-        view: &FrameView<'_>,
-        targets: &Targets,
-    ) -> Self {
-        Self { frame: frame_group(gpu, layouts, view, targets), ..self.clone() }
+    /// Creates the bindings of a frame with the block of its view: another view of the same tiles
+    /// with the same camera.
+    pub(crate) fn with_view(frame: DrawnFrame<'_>, layouts: &SharedLayouts) -> Self {
+        let DrawnFrame { gpu, shared, view, targets } = frame;
+        Self { frame: frame_group(gpu, layouts, view, targets), ..shared.clone() }
     }
 
     /// Binds the frame.
@@ -95,10 +91,19 @@ impl SharedBindings {
         pass.set_bind_group(0, &self.frame, &[]);
     }
 
-    /// Binds the tile with this index in the list that is drawn.
+    /// Binds the tile with this index in the list of tiles of the frame.
     pub(crate) fn set_tile(&self, pass: &mut RenderPass<'_>, index: usize) {
         pass.set_bind_group(1, &self.tiles, &[index as u32 * self.tile_stride]);
     }
+}
+
+/// The inputs and targets of the passes of a frame.
+#[derive(Clone, Copy)]
+pub(crate) struct DrawnFrame<'a> {
+    pub(crate) gpu: &'a Gpu,
+    pub(crate) shared: &'a SharedBindings,
+    pub(crate) view: &'a FrameView<'a>,
+    pub(crate) targets: &'a Targets,
 }
 
 /// Uploads the uniform block of a frame.
@@ -109,13 +114,12 @@ fn frame_group(
     targets: &Targets,
 ) -> BindGroup {
     let rows = uniforms::frame_rows(view, targets.picture.samples_per_side);
-    let frame = gpu.buffer("frame", bytemuck::cast_slice(&rows), BufferUsages::UNIFORM);
-    group(gpu, &layouts.frame, &[frame.as_entire_binding()])
+    block(gpu, "frame", &layouts.frame, &rows)
 }
 
 /// Uploads the uniform blocks of tiles, `stride` bytes apart.
 fn tile_blocks(gpu: &Gpu, tiles: &[[[f32; 4]; 2]], stride: usize) -> Buffer {
-    // At least one block, so that there is something to bind without tiles.
+    // There is at least one block, so that a buffer can be bound even without tiles.
     let mut blocks = vec![0_u8; stride * tiles.len().max(1)];
     for (rows, block) in tiles.iter().zip(blocks.chunks_exact_mut(stride)) {
         block[..uniforms::TILE_BYTES as usize].copy_from_slice(bytemuck::cast_slice(rows));

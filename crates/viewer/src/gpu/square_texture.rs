@@ -1,10 +1,11 @@
-//! A square texture is made of its texels.
+//! Creates square textures from their texels.
 
 use wgpu::{Extent3d, TextureFormat, TextureUsages, TextureView};
 
 use super::Gpu;
 
-/// A square texture of some sizes, the largest first, each half as large as the one before: side and texels.
+/// Creates a square texture with mip levels, the largest first, each half as large as the previous
+/// one: side and texels.
 pub(crate) fn square<'a>(
     gpu: &Gpu,
     format: TextureFormat,
@@ -27,7 +28,7 @@ pub(crate) fn square<'a>(
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-/// A square texture of one size.
+/// Creates a square texture with one mip level.
 pub(crate) fn of_one_size(
     gpu: &Gpu,
     format: TextureFormat,

@@ -1,4 +1,4 @@
-//! A texture that passes draw into, with its only view.
+//! A texture into which passes draw, with its only view.
 
 use wgpu::{TextureFormat, TextureUsages, TextureView};
 
@@ -11,7 +11,7 @@ pub(crate) struct TargetTexture {
 }
 
 impl TargetTexture {
-    /// A texture that can be drawn into, bound and read back.
+    /// Creates a texture that can be drawn into, bound and read back.
     pub(crate) fn new(gpu: &Gpu, label: &str, format: TextureFormat, size_px: [u32; 2]) -> Self {
         let usage = TextureUsages::RENDER_ATTACHMENT
             | TextureUsages::TEXTURE_BINDING
@@ -21,7 +21,7 @@ impl TargetTexture {
         Self { texture, view }
     }
 
-    /// Its texels, row by row from the top.
+    /// Reads the texels, row by row from the top.
     pub(crate) fn read(&self, gpu: &Gpu) -> Result<Vec<u8>, ReadBackError> {
         read_texture(gpu, &self.texture)
     }

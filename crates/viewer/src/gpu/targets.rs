@@ -1,4 +1,4 @@
-//! All textures that the passes of a frame draw into.
+//! The textures into which the passes of a frame draw.
 
 use std::sync::OnceLock;
 
@@ -9,8 +9,9 @@ use super::{
     target_texture::TargetTexture,
 };
 
-/// Samples on each side of a block. With smaller blocks fewer samples without a road are drawn again; with larger ones there
-/// are fewer blocks to look at. On software Vulkan 8, 16 and 32 take equally long, within the noise.
+/// Samples on each side of a block. With smaller blocks, fewer samples without a road are drawn
+/// again; with larger ones there are fewer blocks to check. On software Vulkan 8, 16 and 32 take
+/// equally long, within the noise.
 pub(crate) const BLOCK_SIDE: u32 = 16;
 
 /// The labels of roads, or of lines of one layer, sample by sample.
@@ -30,38 +31,39 @@ impl LabelTargets {
     }
 }
 
-/// What is drawn of decks of bridges.
+/// The depths and labels of decks of bridges.
 pub(crate) struct DeckTargets {
-    /// The depth of the nearest deck, as the ground's; 0 where none is seen.
+    /// The depth of the nearest deck, encoded like the ground's; 0 without a deck.
     pub(crate) depth: TargetTexture,
     pub(crate) labels: LabelTargets,
 }
 
-/// The textures that the passes draw into: a picture and, sample by sample, what it is made of.
+/// The textures into which the passes draw: a picture and its layers, sample by sample.
 pub struct Targets {
     pub(crate) ground: TargetTexture,
     pub(crate) depth: TargetTexture,
     pub(crate) owners: TargetTexture,
     pub(crate) roads: LabelTargets,
-    /// Made when areas are first drawn.
+    /// Created when areas are first drawn.
     stencil: OnceLock<TargetTexture>,
-    /// Made when lines beside roads are first drawn.
+    /// Created when lines that are not roads are first drawn.
     lines: OnceLock<LabelTargets>,
-    /// Made when decks are first drawn.
+    /// Created when decks are first drawn.
     decks: OnceLock<DeckTargets>,
     /// The picture.
     pub picture: Picture,
 }
 
 impl Targets {
-    /// Targets for a picture of this size, with so many samples on each side of a pixel; 1 takes the pixel's centre
-    /// alone. Besides the picture they take 17 bytes for each sample, one more once areas
-    /// have been drawn, one more once lines beside roads have been and five more once decks of bridges have been, and one byte for each
-    /// block of 16 × 16 samples.
+    /// Creates the targets for a picture of this size, with `samples_per_side` samples on each side
+    /// of a pixel; with 1, only the pixel's centre is sampled. Besides the picture they take 17
+    /// bytes per sample, one more once areas have been drawn, one more once lines that are not
+    /// roads have been drawn, five more once decks of bridges have been drawn, and one byte for
+    /// each block of 16 × 16 samples.
     ///
     /// # Errors
-    /// When the size has a 0, when its samples are more than the adapter can draw, or when there are no samples or too many
-    /// a pixel.
+    /// When the size has a 0, when it has more samples than the adapter can draw, or when there are
+    /// no samples or too many per pixel.
     pub fn new(gpu: &Gpu, size_px: [u32; 2], samples_per_side: u32) -> Result<Self, GpuError> {
         let picture = Picture::new(gpu, size_px, samples_per_side)?;
         let sampled_px = picture.sampled_px();
@@ -78,20 +80,21 @@ impl Targets {
         })
     }
 
-    /// The stencil in which volumes of areas are counted. It is a texture of its own, because a pass cannot write the stencil of a texture
-    /// whose depth it reads.
+    /// The stencil that counts area volumes. It is a separate texture, because a pass cannot write
+    /// the stencil of a texture whose depth it reads.
     pub(crate) fn stencil(&self, gpu: &Gpu) -> &TargetTexture {
         let sampled_px = self.picture.sampled_px();
         self.stencil.get_or_init(|| TargetTexture::new(gpu, "area counts", STENCIL, sampled_px))
     }
 
-    /// The labels of lines beside the roads. All layers take turns in them: those of roads are still needed after a picture is drawn.
+    /// The labels of lines that are not roads. All layers share them, but not with roads: the
+    /// labels of roads are still needed after a picture is drawn.
     pub(crate) fn lines(&self, gpu: &Gpu) -> &LabelTargets {
         let sampled_px = self.picture.sampled_px();
         self.lines.get_or_init(|| LabelTargets::new(gpu, "line labels", sampled_px))
     }
 
-    /// What is drawn of decks.
+    /// The targets of decks, created at first use.
     pub(crate) fn decks(&self, gpu: &Gpu) -> &DeckTargets {
         let sampled_px = self.picture.sampled_px();
         self.decks.get_or_init(|| DeckTargets {
@@ -100,12 +103,13 @@ impl Targets {
         })
     }
 
-    /// What was drawn of decks; `None` if none were yet.
+    /// The targets of decks; `None` if no decks have been drawn yet.
     pub(crate) fn drawn_decks(&self) -> Option<&DeckTargets> {
         self.decks.get()
     }
 
-    /// How many blocks its samples are divided into. Blocks on the right and at the bottom may reach beyond the samples.
+    /// The number of blocks in the picture. Blocks at the right and at the bottom may extend beyond
+    /// the samples.
     pub(crate) fn block_count(&self) -> u32 {
         self.picture.sampled_px().map(|side| side.div_ceil(BLOCK_SIDE)).iter().product()
     }

@@ -1,4 +1,4 @@
-//! The buffers of a tile on the graphics card, and how many bytes they take.
+//! The GPU buffers of a tile, and their size.
 
 use corniche_geom::TileId;
 use glam::{DVec3, DVec4};
@@ -14,7 +14,7 @@ use super::{
     uniforms::row,
 };
 use crate::{
-    camera::{Projection, WorldBox},
+    camera::{CameraProjection, WorldBox},
     class_scale,
     frame_view::FrameView,
     options::{ClassSet, RoadMethod},
@@ -25,7 +25,7 @@ use crate::{
     },
 };
 
-/// A tile on the graphics card.
+/// A tile on the GPU.
 pub struct TileBuffers {
     id: TileId,
     pub(crate) reference_m: [f64; 3],
@@ -35,20 +35,20 @@ pub struct TileBuffers {
     pub(crate) textures: TileTextures,
     /// `None` without areas.
     pub(crate) areas: Option<AreaBuffers>,
-    /// The areas that a person draws.
+    /// User-drawn areas.
     pub(crate) drawn_areas: Option<AreaBuffers>,
     roads: LayerBuffers,
     /// Bridges, for both methods.
     decks: RoadBuffers,
     layers: [LayerBuffers; LineLayer::ALL.len()],
     width_margin_m: f64,
-    /// Lowest and highest true height of its ground and its decks; `None` without ground.
+    /// Lowest and highest true height of the ground and the decks; `None` without ground.
     height_range_m: Option<[f64; 2]>,
-    /// Triangles of its ground, without those of its skirts.
+    /// Triangles of the ground, without the triangles of skirts.
     pub triangles: u64,
 }
 
-/// A layer of lines of a tile on the graphics card, for both methods.
+/// A layer of lines of a tile on the GPU, for both methods.
 struct LayerBuffers {
     segments: RoadBuffers,
     volumes: RoadBuffers,
@@ -63,7 +63,7 @@ impl LayerBuffers {
         Self::new(gpu, segments, volumes)
     }
 
-    fn of(&self, method: RoadMethod) -> Option<&RoadBuffers> {
+    fn for_method(&self, method: RoadMethod) -> Option<&RoadBuffers> {
         match method {
             RoadMethod::Geometry => Some(&self.segments),
             RoadMethod::ShadowVolumes => Some(&self.volumes),
@@ -80,12 +80,12 @@ impl LayerBuffers {
 pub struct DrawTile<'a> {
     /// The tile.
     pub buffers: &'a TileBuffers,
-    /// How far its skirt hangs down, true metres.
+    /// Depth of the skirt, true metres.
     pub skirt_depth_m: f64,
 }
 
-/// Bytes that a tile will take on the graphics card, known before it is uploaded. Its wireframe is not counted: it is made
-/// when it is first shown.
+/// Size of a tile on the GPU, bytes, computed before the upload. Its wireframe is not counted: it
+/// is created when it is first shown.
 #[must_use]
 pub fn tile_bytes(tile: &TileGeometry) -> u64 {
     GroundBuffers::bytes_of(&tile.ground)
@@ -94,7 +94,7 @@ pub fn tile_bytes(tile: &TileGeometry) -> u64 {
         + RoadBuffers::bytes_of(&tile.roads)
         + RoadBuffers::bytes_of(&tile.volumes)
         + RoadBuffers::bytes_of(&tile.decks)
-        + LineLayer::ALL.map(|layer| layer_bytes(tile.lines.of(layer))).iter().sum::<u64>()
+        + LineLayer::ALL.map(|layer| layer_bytes(tile.lines.tile_layer(layer))).iter().sum::<u64>()
 }
 
 fn layer_bytes(lines: &TileLayer) -> u64 {
@@ -102,8 +102,8 @@ fn layer_bytes(lines: &TileLayer) -> u64 {
 }
 
 impl TileBuffers {
-    /// Uploads a tile. `above` has the slopes of its parent, which the tile shows where the eye is far; `None` if it has no
-    /// parent, or is to be shaded by its own slopes alone.
+    /// Uploads a tile. `above` has the slopes of its parent, which shade the tile far from the eye;
+    /// `None` if it has no parent, or is to be shaded only by its own slopes.
     #[must_use]
     pub fn new(gpu: &Gpu, tile: &TileGeometry, above: Option<&SlopeChain>) -> Self {
         Self {
@@ -116,20 +116,21 @@ impl TileBuffers {
             drawn_areas: None,
             roads: LayerBuffers::new(gpu, &tile.roads, &tile.volumes),
             decks: RoadBuffers::new(gpu, &tile.decks),
-            layers: LineLayer::ALL.map(|layer| LayerBuffers::of_lines(gpu, tile.lines.of(layer))),
+            layers: LineLayer::ALL
+                .map(|layer| LayerBuffers::of_lines(gpu, tile.lines.tile_layer(layer))),
             width_margin_m: tile.width_margin_m,
             height_range_m: tile.summary.map(|ground| ground.height_range_m),
             triangles: (tile.ground.surface_indices / 3) as u64,
         }
     }
 
-    /// Its slopes and those of the tiles above it, for the tiles beneath it.
+    /// The slopes of the tile and its ancestors, for its children.
     #[must_use]
     pub fn slopes(&self) -> &SlopeChain {
         &self.textures.slopes
     }
 
-    /// Bytes of its buffers on the graphics card; its wireframe counts once it has been shown.
+    /// Size of the buffers on the GPU, bytes; the wireframe counts once it has been shown.
     #[must_use]
     pub fn gpu_bytes(&self) -> u64 {
         let ground_bytes = self.ground.as_ref().map_or(0, GroundBuffers::gpu_bytes);
@@ -145,40 +146,40 @@ impl TileBuffers {
             + self.layers.iter().map(LayerBuffers::gpu_bytes).sum::<u64>()
     }
 
-    /// Replaces a layer of its lines by what the tile now has of it.
+    /// Replaces a layer of lines by the tile's current lines of that layer.
     pub fn replace_lines(&mut self, gpu: &Gpu, layer: LineLayer, lines: &TileLayer) {
         self.layers[layer as usize] = LayerBuffers::of_lines(gpu, lines);
     }
 
-    /// Replaces the areas that a person draws by what the tile now has of them.
+    /// Replaces the user-drawn areas by the tile's current ones.
     pub fn replace_drawn_areas(&mut self, gpu: &Gpu, areas: &AreaVolumes) {
         self.drawn_areas = AreaBuffers::new(gpu, areas);
     }
 
-    /// The volumes of its areas, class by class.
+    /// The volumes of the areas, class by class.
     #[must_use]
     pub fn area_classes(&self) -> &[ClassVolumes] {
         self.areas.as_ref().map_or(&[], |areas| &areas.classes)
     }
 
-    /// Its roads as a method draws them.
+    /// The roads for a method.
     pub(crate) fn roads(&self, method: RoadMethod) -> Option<&RoadBuffers> {
-        self.roads.of(method)
+        self.roads.for_method(method)
     }
 
-    /// Its decks of bridges, which are part of the roads, whatever the method.
+    /// The decks of bridges, which are part of the roads with every method.
     pub(crate) fn decks(&self, method: RoadMethod) -> Option<&RoadBuffers> {
         self.roads(method).map(|_| &self.decks)
     }
 
-    /// The lines of a layer as a method draws them.
+    /// The lines of a layer for a method.
     pub(crate) fn lines(&self, layer: LineLayer, method: RoadMethod) -> Option<&RoadBuffers> {
-        self.layers[layer as usize].of(method)
+        self.layers[layer as usize].for_method(method)
     }
 }
 
 impl DrawTile<'_> {
-    /// Where roads, or lines, of it meet its border.
+    /// Data for connectors: points where the roads, or lines, of the tile meet its border.
     pub(crate) fn border<'b>(&'b self, roads: Option<&'b RoadBuffers>) -> BorderTile<'b> {
         let TileBuffers { id, reference_m, size_m: [east_m, north_m], .. } = *self.buffers;
         BorderTile {
@@ -190,7 +191,7 @@ impl DrawTile<'_> {
         }
     }
 
-    /// How many segments or volumes of its roads, and pieces of decks, are drawn in a view.
+    /// The number of road segments or volumes, and pieces of decks, that are drawn in a view.
     #[must_use]
     pub fn road_segments(&self, view: &FrameView<'_>) -> u64 {
         let (tile, method) = (self.buffers, view.roads.method);
@@ -199,31 +200,33 @@ impl DrawTile<'_> {
         drawn.map(|range| u64::from(range.end - range.start)).sum()
     }
 
-    /// The classes of its roads that are shown somewhere.
+    /// The classes of roads that are shown anywhere in the tile.
     pub(crate) fn shown_classes(&self, view: &FrameView<'_>) -> ClassSet {
         class_scale::shown_classes(view, self.nearest_m(view))
     }
 
-    /// No ground that its roads paint is nearer to the eye, world metres.
+    /// Lower bound of the distance from the eye to the ground that the tile's roads paint, world
+    /// metres.
     fn nearest_m(&self, view: &FrameView<'_>) -> f64 {
         let TileBuffers { reference_m, size_m, width_margin_m, .. } = *self.buffers;
         let Some(height_range_m) = self.buffers.height_range_m else { return 0.0 };
         let plan = plan_around(reference_m, size_m);
         let ground =
             WorldBox::new(plan, height_range_m.map(|height_m| height_m * view.vertical_scale()));
-        // GEO also paints the neighbours' ground, within the margin. Twice the margin allows for slopes of 60 degrees there.
+        // GEO also paints the neighbours' ground, within the margin. Twice the margin covers slopes
+        // of up to 60 degrees there.
         let around_m = 2.0 * width_margin_m + self.skirt_depth_m * view.vertical_scale();
         match view.camera.projection {
-            Projection::Perspective => {
+            CameraProjection::Perspective => {
                 (ground.distance_m(view.camera.eye_in_world) - around_m).max(0.0)
             }
             // The same for all ground.
-            Projection::FromAbove { .. } => view.camera.focus_m,
+            CameraProjection::FromAbove { .. } => view.camera.focus_m,
         }
     }
 
-    /// What shaders are told of it: the block `struct Tile` of `shaders/tile.wgsl`. `number` is its number in the frame, from 1; numbers below 2^24 are
-    /// exact in f32.
+    /// The tile's uniforms: the block `struct Tile` of `shaders/tile.wgsl`. `number` is the tile's
+    /// number in the frame, from 1; numbers below 2^24 are exact in f32.
     pub(crate) fn rows(&self, view: &FrameView<'_>, number: u32) -> [[f32; 4]; 2] {
         let TileBuffers { reference_m: [x, y, height_m], size_m, width_margin_m, .. } =
             *self.buffers;
@@ -236,7 +239,8 @@ impl DrawTile<'_> {
         ]
     }
 
-    /// Some of its areas with its index in the list of tiles of the frame, and how they are counted.
+    /// The areas of the tile with its index in the list of tiles of the frame, and how they are
+    /// counted.
     pub(crate) fn counted<'a>(
         &self,
         index: usize,
@@ -249,12 +253,13 @@ impl DrawTile<'_> {
         let skirt = DVec3::Z * self.skirt_depth_m;
         let volumes =
             WorldBox { min: (reference + low - skirt) * scale, max: (reference + high) * scale };
-        // The corners of the near plane are farther from the eye than its middle. The rest is for rounding.
+        // The corners of the near plane are farther from the eye than its middle. The remainder is
+        // for rounding.
         let reach_m = 1.01
             * view.camera.near_m
             * view.camera.half_extent_at_unit_depth().extend(1.0).length();
         // From above no face is cut off by the near plane.
-        let is_near = view.camera.projection == Projection::Perspective
+        let is_near = view.camera.projection == CameraProjection::Perspective
             && volumes.distance_m(view.camera.eye_in_world) <= reach_m;
         (index, areas, if is_near { Counting::Behind } else { Counting::InFront })
     }

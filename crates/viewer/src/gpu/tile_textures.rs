@@ -1,4 +1,4 @@
-//! The textures of a tile's ground on the graphics card, in one bind group.
+//! The textures of a tile's ground on the GPU, in one bind group.
 
 use corniche_tileset::PHOTO_BORDER;
 use wgpu::{
@@ -14,25 +14,25 @@ use super::{
 };
 use crate::tiles::{PhotoImage, ShadingSlopes, TileGeometry};
 
-/// Colours are mixed as they are stored, like all others of the ground.
+/// Format of photos. Colours are mixed as they are stored, like all other colours of the ground.
 const PHOTO: TextureFormat = TextureFormat::Rgba8Unorm;
-/// Along a grazing view so many samples of a photo are averaged.
+/// Number of samples of a photo that are averaged in a grazing view, at most.
 const ANISOTROPY: u16 = 16;
-/// Whether a node is water.
+/// Format of the water mask of nodes.
 const WATER: TextureFormat = TextureFormat::R8Unorm;
 
-/// The number of the bind group.
+/// Number of the bind group.
 const GROUP: u32 = 3;
 
-/// The textures of a tile's ground, as `shaders/relief.wgsl` and `shaders/photo.wgsl` declare them.
+/// The textures of a tile's ground, as declared in `shaders/relief.wgsl` and `shaders/photo.wgsl`.
 pub(crate) struct TileTextures {
     group: BindGroup,
     pub(crate) slopes: SlopeChain,
     bytes: u64,
 }
 
-/// The layout of the bind group: the block `struct TileTextures`, a sampler, the tile's slopes; the photo, its sampler; the water;
-/// the slopes of coarser levels.
+/// The layout of the bind group: the block `struct TileTextures`, a sampler, the tile's slopes; the
+/// photo and its sampler; the water; the slopes of coarser levels.
 pub(crate) fn layout_of(device: &Device) -> BindGroupLayout {
     let sampler = |binding| BindGroupLayoutEntry {
         binding,
@@ -47,7 +47,7 @@ pub(crate) fn layout_of(device: &Device) -> BindGroupLayout {
     layout(device, "tile textures", &entries)
 }
 
-/// Rows of the block `struct TileTextures`.
+/// Number of rows of the block `struct TileTextures`.
 pub(crate) const ROWS: usize = 3;
 
 /// The block `struct TileTextures`.
@@ -63,7 +63,8 @@ fn rows(tile: &TileGeometry, slopes: &SlopeChain) -> [[f32; 4]; ROWS] {
 }
 
 impl TileTextures {
-    /// Uploads the textures of a tile, `above` which there are these slopes. What it does not have is one texel that nothing reads.
+    /// Uploads the textures of a tile; `above` has the slopes of its ancestors. A missing texture
+    /// is replaced by one texel that is never read.
     pub(crate) fn new(gpu: &Gpu, tile: &TileGeometry, above: Option<&SlopeChain>) -> Self {
         let none = of_one_size(gpu, PHOTO, 1, &[0; 4]);
         let slopes = SlopeChain::new(gpu, tile, above);
@@ -104,20 +105,20 @@ impl TileTextures {
         Self { group, slopes, bytes: Self::bytes_of(tile) }
     }
 
-    /// Bytes of the textures that [`TileTextures::new`] makes.
+    /// Size of the textures that [`TileTextures::new`] creates, bytes.
     pub(crate) fn bytes_of(tile: &TileGeometry) -> u64 {
         let water = tile.shading.as_ref().map_or(0, |slopes| slopes.water.len());
         let photo = tile.photo.as_ref().map_or(0, PhotoImage::bytes);
-        // With one texel for what is not there.
+        // A missing texture takes one texel.
         SlopeChain::bytes_of(tile) + (4 + water + ROWS * size_of::<[f32; 4]>()) as u64 + photo
     }
 
-    /// Bytes on the graphics card.
+    /// Size on the GPU, bytes.
     pub(crate) fn gpu_bytes(&self) -> u64 {
         self.bytes
     }
 
-    /// Binds them.
+    /// Binds the textures.
     pub(crate) fn set(&self, pass: &mut RenderPass<'_>) {
         pass.set_bind_group(GROUP, &self.group, &[]);
     }

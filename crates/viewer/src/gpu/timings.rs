@@ -1,4 +1,4 @@
-//! How long the passes of a frame take on the graphics card.
+//! Measures how long the passes of a frame take on the GPU.
 
 use std::sync::mpsc::{Receiver, Sender, channel};
 
@@ -12,28 +12,29 @@ use super::{Gpu, ReadBackError, device::TIMESTAMPS};
 const MARKS: u32 = 6;
 /// Bytes of all marks of a frame; each is a u64.
 const MARK_BYTES: u64 = 8 * MARKS as u64;
-/// The times of so many frames may be waited for at once. A graphics card is two or three frames behind the processor.
+/// Number of frames whose times may be pending. A GPU is two or three frames behind the CPU.
 const FRAMES: usize = 4;
 
-/// Milliseconds that the passes of a frame took on the graphics card.
+/// Times of the passes of a frame on the GPU, milliseconds.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PassTimes {
-    /// The pass of the terrain.
+    /// Time of the terrain pass.
     pub terrain_ms: f64,
-    /// Areas; 0 where none were drawn.
+    /// Time of areas; 0 if none were drawn.
     pub areas_ms: f64,
-    /// The passes of roads.
+    /// Time of the passes of roads.
     pub roads_ms: f64,
-    /// The passes of decks of bridges; 0 where none were drawn.
+    /// Time of the passes of decks of bridges; 0 if none were drawn.
     pub decks_ms: f64,
-    /// Composite, with the pass before it that finds blocks with roads, and the averaging of samples.
+    /// Time of the composite, including the preceding pass that finds blocks with roads, and the
+    /// averaging of samples.
     pub composite_ms: f64,
 }
 
-/// Notes when the passes of frames begin and end.
+/// Records when the passes of frames begin and end.
 ///
 /// ```text
-///  frame n ──► marks ──► resolved ──► readable[k] ──► mapped when the card is done with n ──► taken, free again
+///  frame n ──► marks ──► resolved ──► readable[k] ──► mapped when the GPU has finished n ──► taken, free again
 /// ```
 ///
 /// A frame is not timed if no readable buffer is free.
@@ -45,14 +46,14 @@ pub struct PassTimer {
     free: Vec<usize>,
     /// The readable buffer of the frame that is being recorded.
     current: Option<usize>,
-    /// Tells for each readable buffer whether its frame has areas, and decks.
+    /// For each readable buffer: whether its frame has areas, and decks.
     has: [[bool; 2]; FRAMES],
     sender: Sender<Mapped>,
     receiver: Receiver<Mapped>,
     period_ns: f64,
 }
 
-/// Which readable buffer was to be mapped, and whether it was.
+/// A readable buffer, and whether it could be mapped.
 type Mapped = (usize, Result<(), wgpu::BufferAsyncError>);
 
 impl PassTimes {
@@ -64,7 +65,7 @@ impl PassTimes {
 }
 
 impl PassTimer {
-    /// `None` when the adapter cannot write timestamps.
+    /// Creates a timer; `None` if the adapter cannot write timestamps.
     #[must_use]
     pub fn new(gpu: &Gpu) -> Option<Self> {
         if !gpu.device.features().contains(TIMESTAMPS) {
@@ -97,7 +98,8 @@ impl PassTimer {
         })
     }
 
-    /// Begins a frame, with areas and with decks. Without them it has no such passes, though some time passes between the marks around them.
+    /// Begins a frame; `has` tells whether it has areas, and decks. Without them there are no such
+    /// passes, but some time passes between the marks around them.
     pub(crate) fn begin(&mut self, has: [bool; 2]) {
         self.current = self.free.pop();
         if let Some(slot) = self.current {
@@ -105,7 +107,8 @@ impl PassTimer {
         }
     }
 
-    /// Notes that the part with this number begins, 0 first; with [`MARKS`] − 1, that the last part has ended.
+    /// Marks the start of the part with this number, 0 first; [`MARKS`] − 1 marks the end of the
+    /// last part.
     pub(crate) fn mark(&mut self, encoder: &mut CommandEncoder, number: u32) {
         let Some(slot) = self.current else { return };
         encoder.write_timestamp(&self.marks, number);
@@ -115,14 +118,14 @@ impl PassTimer {
             encoder.copy_buffer_to_buffer(&self.resolved, 0, readable, 0, MARK_BYTES);
             let sender = self.sender.clone();
             encoder.map_buffer_on_submit(readable, wgpu::MapMode::Read, .., move |result| {
-                // Sending fails when the timer was dropped; then nobody needs the times.
+                // Sending fails if the timer was dropped; then nobody needs the times.
                 let _ = sender.send((slot, result));
             });
             self.current = None;
         }
     }
 
-    /// Waits for the frame drawn last and returns how long its passes took.
+    /// Waits for the frame drawn last and returns the times of its passes.
     ///
     /// # Errors
     /// When the device is lost.
@@ -131,8 +134,8 @@ impl PassTimer {
         self.newest()?.ok_or(ReadBackError::Untimed)
     }
 
-    /// How long the passes of the newest finished frame took; `None` if none has finished since this was asked last. Never
-    /// waits.
+    /// Returns the times of the passes of the newest finished frame; `None` if no frame has
+    /// finished since the last call. Never waits.
     ///
     /// # Errors
     /// When the device is lost.
@@ -141,8 +144,8 @@ impl PassTimer {
         self.newest()
     }
 
-    /// The times of the newest finished frame. Frames finish in order; the buffers of all that have finished are free
-    /// again.
+    /// The times of the newest finished frame. Frames finish in order; the buffers of all finished
+    /// frames become free again.
     fn newest(&mut self) -> Result<Option<PassTimes>, ReadBackError> {
         let mut newest = None;
         while let Ok((slot, result)) = self.receiver.try_recv() {

@@ -1,14 +1,16 @@
-//! The uniform blocks that drawables share: rows of four f32, in the order of the shaders' structures.
+//! The uniform blocks that drawables share: rows of four f32, in the order of the shaders'
+//! structures.
 //!
-//! The frame's block is shared because all drawables need the camera, and because GEO roads, SV roads and the composite must
-//! compute the same road widths. What one drawable alone needs, such as the colours of the ground, is in the drawable's file.
+//! The frame's block is shared because all drawables need the camera, and because GEO roads, SV
+//! roads and the composite must compute the same road widths. Uniforms of a single drawable, such
+//! as the colours of the ground, are in the drawable's file.
 
 use glam::DVec4;
 
 use corniche_styles::{Dash, OwnWidths, RoadBands};
 
 use crate::{
-    camera::Projection,
+    camera::CameraProjection,
     class_scale,
     frame_view::FrameView,
     options::{CapTest, Caps, Quads, RoadMethod},
@@ -17,10 +19,10 @@ use crate::{
 /// Bytes of a tile's block.
 pub(crate) const TILE_BYTES: u64 = 32;
 
-/// The frame's block, as `struct Frame` of `shaders/common.wgsl` declares it.
+/// The frame's block, as declared by `struct Frame` of `shaders/common.wgsl`.
 pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f32; 4]> {
     let style = view.style;
-    // The passes know samples only: for them the picture has as many pixels as there are samples.
+    // The passes know samples only: for them the picture has as many pixels as samples.
     let camera = view.camera.supersampled(samples_per_side);
     let axes = camera.world_from_view;
     let half = camera.half_extent();
@@ -46,7 +48,7 @@ pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
         ]
         .map(row),
     );
-    // Half of what is drawn for each metre of a road's own width: 0 if own widths do not count.
+    // Half the drawn width per metre of a road's own width: 0 if own widths are ignored.
     let half_of_own = if style.own_widths.is_some() { 0.5 * constant } else { 0.0 };
     let lane_m = style.own_widths.and_then(|widths| widths.lane_m).unwrap_or_default();
     rows.push([
@@ -70,14 +72,14 @@ pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
     let is_level = view.roads.quads == Quads::Level;
     let part_distance_m = class_scale::part_distance_m(style, view.camera) as f32;
     let parallel = match camera.projection {
-        Projection::Perspective => [0.0, 0.0],
-        Projection::FromAbove { far_m } => [far_m as f32, camera.focus_m as f32],
+        CameraProjection::Perspective => [0.0, 0.0],
+        CameraProjection::FromAbove { far_m } => [far_m as f32, camera.focus_m as f32],
     };
     rows.push([part_distance_m, if is_level { 1.0 } else { 0.0 }, parallel[0], parallel[1]]);
     rows.extend(style.roads.iter().map(|road| {
         let bands = road.bands.all().len() as f32;
         let half_width_m = road.width_m / 2.0 * constant;
-        // In pixels of the picture: how many samples a pixel has changes nothing.
+        // In pixels of the picture: the number of samples per pixel has no effect.
         let full_m = class_scale::distance_m(road.max_pixel_m, view.camera, view.point_scale);
         [half_width_m, road.min_width_px / 2.0 * samples, bands, full_m as f32]
     }));
@@ -107,19 +109,19 @@ pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
         [first, gap, second, road.dash.least_px]
     }));
     rows.extend(style.roads.iter().flat_map(|road| {
-        // Without a pattern, a number that is no width.
+        // Without a pattern, a number that is not a valid width.
         let widths = road.dash.widths.unwrap_or([-1.0; Dash::WIDTHS]);
         bytemuck::cast::<_, [[f32; 4]; Dash::WIDTHS / 4]>(widths)
     }));
     rows
 }
 
-/// A row of a block, in f32.
+/// Converts a row of a block to f32.
 pub(crate) fn row(values: DVec4) -> [f32; 4] {
     values.as_vec4().to_array()
 }
 
-/// A row of a colour and one more number.
+/// A row with a colour and one more number.
 pub(crate) fn color([red, green, blue]: [f32; 3], last: f32) -> [f32; 4] {
     [red, green, blue, last]
 }

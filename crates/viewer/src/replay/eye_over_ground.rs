@@ -1,55 +1,58 @@
-//! The heights of the ground beneath a flight, looked up before it begins, and what follows for the eye.
+//! The heights of the ground below a flight, looked up before it begins, and the height of the eye
+//! that follows from them.
 
-use super::{ReplayError, ReplayOptions, timetable::Timetable};
+use super::{ReplayOptions, timetable::Timetable};
 use crate::{
+    draw_error::DrawError,
     eye_height::{clearance_m, focus_m, rounded_up_m},
     flight::{Flight, Pose},
     lod::GroundSummary,
     tiles::{BlockingPackage, TileStore},
 };
 
-/// At most about this many tiles are kept while heights are looked up.
+/// Number of tiles that are kept, at most, while heights are looked up.
 const LOOK_UP_TILES: usize = 256;
 
-/// The flight that is drawn when the user gives none: over the roads, or over the whole package if it has none. `is_stopped` is
-/// called often; once it returns true,
-/// the result is [`ReplayError::Stopped`].
+/// The default flight, if the user gives none: over the roads, or over the whole package if it has
+/// no roads. `is_stopped` is called often; once it returns true, the result is
+/// [`DrawError::FlightStopped`].
 ///
 /// # Errors
-/// When a tile cannot be read, there is no ground, or it was stopped.
+/// When a tile cannot be read, there is no ground, or the flight was stopped.
 pub fn default_flight(
     package: &dyn BlockingPackage,
     is_stopped: &dyn Fn() -> bool,
-) -> Result<Flight, ReplayError> {
+) -> Result<Flight, DrawError> {
     let extent = TileStore::new(package).map_extent(package.manifest().data_bounds)?;
-    let extent = extent.ok_or(ReplayError::NoGround)?;
+    let extent = extent.ok_or(DrawError::NothingBeneath)?;
     let mut ground = GroundLookUp::new(package, is_stopped);
-    Flight::over(extent.plan, &mut |at| ground.height_m(at))?.ok_or(ReplayError::NoGround)
+    Flight::over(extent.plan, &mut |at| ground.height_m(at))?.ok_or(DrawError::NothingBeneath)
 }
 
-/// The frames in which the flight comes too near to the ground.
+/// The frames in which the flight is too close to the ground.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Lifted {
-    /// How many.
+    /// Number of these frames.
     pub frames: u32,
-    /// The most by which the eye is lifted, true metres, rounded up to a tenth.
+    /// Maximum lift of the eye, true metres, rounded up to a tenth.
     pub most_m: f64,
 }
 
-/// How the eye stands above the ground in one frame.
+/// The eye above the ground in one frame.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Stand {
-    /// How much it is lifted, true metres.
+    /// Lift of the eye, true metres.
     pub(crate) lift_m: f64,
-    /// How far away it looks, world metres.
+    /// Distance of the focus, world metres.
     pub(crate) focus_m: f64,
 }
 
-/// How the eye stands in every frame of a flight.
+/// The eye above the ground in every frame of a flight.
 ///
-/// A window lifts the eye where the ground is in its way, and the focus depends on the height above the ground. A flight
-/// does the same, so that the same path gives the same pictures. Between two keyframes a path may cut through a ridge, and
-/// the window that recorded it may have had coarser ground only. But no window lets the eye go beneath the coarsest ground.
+/// A window lifts the eye above the ground, and the focus depends on the height above the ground. A
+/// flight does the same, so that the same path gives the same pictures. Between two keyframes a
+/// path may cut through a ridge, and the window that recorded it may have had coarser ground only.
+/// But no window lets the eye go below the coarsest ground.
 pub(crate) struct Survey {
     stands: Vec<Stand>,
     /// Frames in which the eye was too low.
@@ -57,18 +60,19 @@ pub(crate) struct Survey {
 }
 
 impl Survey {
-    /// Looks at the ground beneath each keyframe and each frame. `coarsest` is the root's ground.
+    /// Looks up the ground below each keyframe and each frame. `coarsest` is the ground of the
+    /// root.
     ///
     /// # Errors
-    /// When a keyframe is farther beneath the ground than the largest error of the coarsest ground, a tile cannot be read,
-    /// or it was stopped.
+    /// When a keyframe is farther below the ground than the largest error of the coarsest ground, a
+    /// tile cannot be read, or the flight was stopped.
     pub(crate) fn new(
         package: &dyn BlockingPackage,
         timetable: Timetable<'_>,
         options: &ReplayOptions,
         coarsest: GroundSummary,
         is_stopped: &dyn Fn() -> bool,
-    ) -> Result<Self, ReplayError> {
+    ) -> Result<Self, DrawError> {
         let mut ground = GroundLookUp::new(package, is_stopped);
         for keyframe in timetable.flight.keyframes() {
             let [x, y, height_m] = keyframe.pose.eye_m;
@@ -76,11 +80,11 @@ impl Survey {
                 && ground_m - height_m > coarsest.geometric_error_m
             {
                 let depth_m = rounded_up_m(ground_m - height_m);
-                return Err(ReplayError::UnderGround { time_s: keyframe.time_s, depth_m });
+                return Err(DrawError::UnderGround { time_s: keyframe.time_s, depth_m });
             }
         }
         let point_scale = package.manifest().point_scale;
-        let scale = options.exaggeration * point_scale;
+        let scale = options.picture.exaggeration * point_scale;
         let [lowest_m, highest_m] = coarsest.height_range_m;
         let base_m = f64::midpoint(lowest_m, highest_m);
         let mut stands = Vec::with_capacity(timetable.frames as usize);
@@ -102,13 +106,13 @@ impl Survey {
         Ok(Self { stands, lifted })
     }
 
-    /// How the eye stands in a frame of the flight.
+    /// The eye above the ground in a frame of the flight.
     pub(crate) fn stand(&self, frame: u32) -> Stand {
         self.stands[frame as usize]
     }
 }
 
-/// Looks up true heights of the ground in the finest tiles. It keeps some of the tiles.
+/// Looks up true heights of the ground in the finest tiles. It caches some of the tiles.
 struct GroundLookUp<'a> {
     package: &'a dyn BlockingPackage,
     store: TileStore<'a>,
@@ -120,9 +124,9 @@ impl<'a> GroundLookUp<'a> {
         Self { package, store: TileStore::new(package), is_stopped }
     }
 
-    fn height_m(&mut self, at: [f64; 2]) -> Result<Option<f64>, ReplayError> {
+    fn height_m(&mut self, at: [f64; 2]) -> Result<Option<f64>, DrawError> {
         if (self.is_stopped)() {
-            return Err(ReplayError::Stopped);
+            return Err(DrawError::FlightStopped);
         }
         if self.store.len() > LOOK_UP_TILES {
             self.store = TileStore::new(self.package);

@@ -4,21 +4,23 @@ use std::{collections::BTreeMap, time::Instant};
 
 use corniche_geom::TileId;
 
-use super::{ReplayError, elapsed::ms_since, frame_tiles::FrameTiles};
+use super::{FrameRecord, elapsed::ms_since};
 use crate::{
     camera::{Camera, WorldBox},
+    draw_error::DrawError,
     gpu::{Gpu, ResidentTiles, SlopeChain, TileBuffers, tile_bytes},
-    lod::Drawn,
+    lod::DrawnTile,
     tiles::BlockingPackage,
 };
 
-/// All tiles that have no finer tiles beneath them, loaded before the flight begins.
+/// All tiles that have no children, loaded before the flight begins.
 #[derive(Default)]
 pub(crate) struct FinestTiles {
     pub(crate) tiles: ResidentTiles,
-    /// The lowest and highest true height of their ground; tiles without ground are left out.
+    /// The lowest and highest true height of the ground of each tile; tiles without ground are not
+    /// included.
     height_ranges_m: BTreeMap<TileId, [f64; 2]>,
-    /// Bytes of the slopes of all tiles above them, by which they are shaded where the eye is far.
+    /// Bytes of the slopes of all ancestors, with which tiles far from the eye are shaded.
     pub(crate) above_bytes: u64,
 }
 
@@ -28,13 +30,13 @@ impl FinestTiles {
         package: &dyn BlockingPackage,
         budget_bytes: u64,
         is_stopped: &dyn Fn() -> bool,
-    ) -> Result<Self, ReplayError> {
+    ) -> Result<Self, DrawError> {
         let mut finest = Self::default();
         let mut next = vec![(TileId::ROOT, SlopeChain::default())];
         let mut gpu_bytes = 0;
         while let Some((id, above)) = next.pop() {
             if is_stopped() {
-                return Err(ReplayError::Stopped);
+                return Err(DrawError::FlightStopped);
             }
             let tile = package.load(id)?;
             let mut children = Vec::new();
@@ -44,7 +46,7 @@ impl FinestTiles {
             let is_finest = children.is_empty();
             gpu_bytes += if is_finest { tile_bytes(&tile) } else { SlopeChain::bytes_of(&tile) };
             if gpu_bytes > budget_bytes {
-                return Err(ReplayError::OverBudget {
+                return Err(DrawError::OverBudget {
                     wanted_bytes: gpu_bytes,
                     budget_bytes,
                     or_less: ", or draw by level of detail",
@@ -63,19 +65,19 @@ impl FinestTiles {
         Ok(finest)
     }
 
-    /// Chooses all of them.
-    pub(crate) fn all(&self) -> FrameTiles {
+    /// Selects all tiles.
+    pub(crate) fn all(&self) -> (Vec<DrawnTile>, FrameRecord) {
         let started = Instant::now();
         self.choose(started, |_, _| true)
     }
 
-    /// Chooses those in view. World heights are true heights times `vertical_scale`.
+    /// Selects the tiles in view. World heights are true heights times `vertical_scale`.
     pub(crate) fn in_view(
         &self,
         package: &dyn BlockingPackage,
         camera: &Camera,
         vertical_scale: f64,
-    ) -> FrameTiles {
+    ) -> (Vec<DrawnTile>, FrameRecord) {
         let started = Instant::now();
         let frustum = camera.frustum();
         self.choose(started, |id, range_m| {
@@ -84,13 +86,17 @@ impl FinestTiles {
         })
     }
 
-    fn choose(&self, started: Instant, is_drawn: impl Fn(TileId, [f64; 2]) -> bool) -> FrameTiles {
+    fn choose(
+        &self,
+        started: Instant,
+        is_drawn: impl Fn(TileId, [f64; 2]) -> bool,
+    ) -> (Vec<DrawnTile>, FrameRecord) {
         let drawn = self
             .height_ranges_m
             .iter()
             .filter(|(id, range_m)| is_drawn(**id, **range_m))
-            .map(|(id, _)| Drawn { id: *id, skirt_depth_m: 0.0 })
+            .map(|(id, _)| DrawnTile { id: *id, skirt_depth_m: 0.0 })
             .collect();
-        FrameTiles { drawn, select_ms: ms_since(started), ..FrameTiles::default() }
+        (drawn, FrameRecord { select_ms: ms_since(started), ..FrameRecord::default() })
     }
 }

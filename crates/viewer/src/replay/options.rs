@@ -1,9 +1,7 @@
 //! Options of a flight: which ground is drawn, how tiles are loaded and how frames are timed.
 
-use corniche_styles::Style;
-
 use crate::{
-    options::RoadOptions,
+    picture_options::PictureOptions,
     range::{self, OutOfRange},
     stream::StreamBudget,
 };
@@ -22,35 +20,23 @@ pub enum Detail {
 /// How a flight is drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReplayOptions {
-    /// Width and height of the picture.
-    pub size_px: [u32; 2],
-    /// How roads are drawn.
-    pub roads: RoadOptions,
+    /// How each picture is drawn.
+    pub picture: PictureOptions,
     /// How much of the ground is drawn.
     pub detail: Detail,
-    /// A tile is refined while its error looks larger than this.
-    pub screen_space_error_px: f64,
-    /// A tile is refined while one of its cells looks larger than this, pixels.
-    pub cell_px: f64,
-    /// Factor on heights; 1 is true.
-    pub exaggeration: f64,
-    /// Samples per pixel along each side, averaged; 1 takes the pixel's centre alone.
-    pub supersampling: u32,
-    /// Colours and widths.
-    pub style: Style,
-    /// What may be loaded and kept.
+    /// Limits for loading and keeping tiles.
     pub budget: StreamBudget,
-    /// Tiles are loaded in advance for where the camera will be in this many seconds; with 0 none are.
+    /// Tiles are loaded in advance for the camera's position in this many seconds; 0 loads none in
+    /// advance.
     pub ahead_s: f64,
-    /// How many frames the flight has, evenly spread from its beginning to its end.
+    /// Number of frames, at equal steps from the beginning of the flight to its end.
     pub frames: u32,
 }
 
-/// Checks the numbers among the options.
+/// Checks the numbers of the options.
 pub(crate) fn check(options: &ReplayOptions) -> Result<(), OutOfRange> {
-    range::check_ground(options.screen_space_error_px, options.cell_px, options.exaggeration)?;
-    range::check_supersampling(options.supersampling)?;
-    range::within("a look ahead", options.ahead_s, 0.0..=3600.0, "0 to 3600 seconds")?;
+    options.picture.check()?;
+    range::within("a look-ahead time", options.ahead_s, 0.0..=3600.0, "0 to 3600 seconds")?;
     let frames = f64::from(options.frames);
     range::within("a number of frames", frames, 1.0..=1e6, "1 to 1 000 000")
 }

@@ -1,34 +1,27 @@
-//! Tiles that are loaded and evicted while a flight goes on, as the streamer plans.
+//! Tiles that are loaded and evicted during a flight, as the streamer plans.
 
 use std::{collections::BTreeMap, time::Instant};
 
 use corniche_geom::TileId;
 
-use super::{ReplayError, elapsed::ms_since, frame_tiles::FrameTiles};
+use super::{FrameRecord, elapsed::ms_since};
 use crate::{
     camera::Camera,
+    draw_error::DrawError,
     gpu::{Gpu, ResidentTiles, tile_bytes},
-    lod::Quality,
+    lod::{DrawnTile, Quality},
     stream::{StreamBudget, Streamer, TileFacts},
     tiles::{BlockingPackage, TileGeometry},
 };
 
-/// How long a frame may wait for its tiles.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Patience {
-    /// It is drawn with the tiles that are there; those that it requests are there for the next frame.
-    None,
-    /// It is drawn once no tile is missing or no more tiles fit.
-    UntilSettled,
-}
-
-/// Tiles that are loaded and evicted as a [`Streamer`] plans. Each arrives in the frame after it was requested.
+/// Tiles that are loaded and evicted as a [`Streamer`] plans. Each tile arrives in the frame after
+/// its request.
 pub(crate) struct StreamedTiles<'a> {
     gpu: &'a Gpu,
     package: &'a dyn BlockingPackage,
     budget: StreamBudget,
     streamer: Streamer,
-    /// Decoded, but not on the graphics card.
+    /// Tiles that are decoded, but not on the GPU.
     decoded: BTreeMap<TileId, TileGeometry>,
     pub(crate) tiles: ResidentTiles,
 }
@@ -49,42 +42,46 @@ impl<'a> StreamedTiles<'a> {
         }
     }
 
-    /// Prepares a frame seen from `camera`. Tiles for `ahead`, where the camera will be later, are loaded too.
+    /// Prepares a frame seen from `camera`. With `is_patient` it returns when no tile is missing or
+    /// no more tiles fit; otherwise it uses the tiles that are loaded, and requested tiles are
+    /// available in the next frame. It also loads tiles for `ahead`, the later position of the
+    /// camera.
     pub(crate) fn advance(
         &mut self,
         camera: &Camera,
         ahead: Option<&Camera>,
         quality: Quality,
-        patience: Patience,
+        is_patient: bool,
         is_stopped: &dyn Fn() -> bool,
-    ) -> Result<FrameTiles, ReplayError> {
-        let mut frame = FrameTiles::default();
+    ) -> Result<(Vec<DrawnTile>, FrameRecord), DrawError> {
+        let mut frame = FrameRecord::default();
         loop {
             if is_stopped() {
-                return Err(ReplayError::Stopped);
+                return Err(DrawError::FlightStopped);
             }
-            let is_settled = self.step(camera, ahead, quality, &mut frame)?;
+            let (is_settled, drawn) = self.step(camera, ahead, quality, &mut frame)?;
             if is_settled && let Some(root) = self.decoded.get(&TileId::ROOT) {
-                return Err(ReplayError::OverBudget {
+                return Err(DrawError::OverBudget {
                     wanted_bytes: tile_bytes(root),
                     budget_bytes: self.budget.gpu_bytes,
                     or_less: "",
                 });
             }
-            if is_settled || patience == Patience::None {
-                return Ok(frame);
+            if is_settled || !is_patient {
+                return Ok((drawn, frame));
             }
         }
     }
 
-    /// Carries out one plan in its order. Returns whether it loads and uploads nothing, so that only drawing is left.
+    /// Executes one plan in its order. Returns whether the plan loads and uploads nothing, so that
+    /// only drawing is left, and the tiles to draw.
     fn step(
         &mut self,
         camera: &Camera,
         ahead: Option<&Camera>,
         quality: Quality,
-        frame: &mut FrameTiles,
-    ) -> Result<bool, ReplayError> {
+        frame: &mut FrameRecord,
+    ) -> Result<(bool, Vec<DrawnTile>), DrawError> {
         let started = Instant::now();
         let plan = self.streamer.plan(self.package, camera, ahead, quality);
         frame.select_ms += ms_since(started);
@@ -107,11 +104,10 @@ impl<'a> StreamedTiles<'a> {
         }
         frame.decode_ms += ms_since(started);
 
-        frame.evicted += plan.evict.len();
-        frame.uploaded += plan.upload.len();
-        frame.loaded += plan.load.len();
-        frame.missing = plan.missing;
-        frame.drawn = plan.drawn;
-        Ok(plan.load.is_empty() && plan.upload.is_empty())
+        frame.tiles_evicted += plan.evict.len();
+        frame.tiles_uploaded += plan.upload.len();
+        frame.tiles_loaded += plan.load.len();
+        frame.tiles_missing = plan.missing;
+        Ok((plan.load.is_empty() && plan.upload.is_empty(), plan.drawn))
     }
 }

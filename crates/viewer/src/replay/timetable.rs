@@ -15,7 +15,7 @@ impl Timetable<'_> {
         self.flight.duration_s() / f64::from(self.frames.saturating_sub(1).max(1))
     }
 
-    /// When a frame is, on the flight's clock.
+    /// Time of a frame in the flight.
     pub(crate) fn time_s(&self, frame: u32) -> f64 {
         self.flight.span_s()[0] + f64::from(frame) * self.step_s()
     }

@@ -6,22 +6,22 @@ use corniche_geom::TileId;
 
 use crate::tiles::{RoadEnd, RoadKind};
 
-/// Ends of one way in two tiles belong together if they are at most this share of the coarser tile apart: two of
-/// its cells, far more than simplification moves a line.
+/// Maximum distance between ends of one way in two tiles that are connected, as a share of the
+/// coarser tile: two of its cells, far more than simplification moves a line.
 const MAX_OFFSET_SHARE: f64 = 2.0 / 256.0;
 
-/// What connectors need to know of a tile that is drawn.
+/// The data of a drawn tile that connectors need.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BorderTile<'a> {
-    /// Which tile.
+    /// Id of the tile.
     pub(crate) id: TileId,
-    /// The shorter of its sides, metres.
+    /// Length of the shorter side, metres.
     pub(crate) side_m: f64,
-    /// How far its skirt hangs down, true metres.
+    /// Depth of the skirt, true metres.
     pub(crate) skirt_depth_m: f64,
-    /// Its reference point.
+    /// Reference point of the tile.
     pub(crate) reference_m: [f64; 3],
-    /// Where its roads meet its border.
+    /// Points where roads meet the tile's border.
     pub(crate) ends: &'a [RoadEnd],
 }
 
@@ -34,28 +34,29 @@ pub(crate) struct BorderTile<'a> {
 ///   ━━━━━━━━━●                 except by the connector ╱, which paints the ground and skirts of both tiles.
 /// ```
 ///
-/// Agrawal, Radhakrishna & Joshi 2006, *Geometry-based Mapping and Rendering of Vector Data over LOD Phototextured
-/// 3D Terrain Models*, section 4.4.2 (special case 2), move the vector points onto the triangles that fill the
-/// crack. Our cracks are filled by vertical skirts, where there is nothing to move a point onto.
+/// Agrawal, Radhakrishna & Joshi 2006, *Geometry-based Mapping and Rendering of Vector Data over
+/// LOD Phototextured 3D Terrain Models*, section 4.4.2 (special case 2), move the vector points
+/// onto the triangles that fill the crack. Our cracks are filled by vertical skirts, where there is
+/// nothing to move a point onto.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LevelConnector {
     /// Index of the finer tile in the list.
     pub(crate) fine: usize,
-    /// Index of the coarser one.
+    /// Index of the coarser tile in the list.
     pub(crate) coarse: usize,
-    /// What the road is.
+    /// Kind of the road.
     pub(crate) kind: RoadKind,
-    /// Its two ends in plan, working CRS: that in the finer tile, then that in the coarser one.
+    /// The two ends in plan, working CRS: first in the finer tile, then in the coarser one.
     pub(crate) ends_m: [[f64; 2]; 2],
-    /// The true height of each end; the lowest, where only a range is known.
+    /// The true height of each end; the lowest, if only a range is known.
     pub(crate) heights_m: [f64; 2],
-    /// The lowest and the highest true height at which there may be ground or a skirt to paint.
+    /// The lowest and the highest true height of the ground and skirts to paint.
     pub(crate) height_range_m: [f64; 2],
-    /// Working metres across the road for each true metre across it.
+    /// Working metres across the road per true metre across it.
     pub(crate) width_factor: f32,
 }
 
-/// The connectors between tiles that are drawn together, in order of the finer tiles, then of class.
+/// Returns the connectors between drawn tiles, in order of the finer tiles, then of class.
 pub(crate) fn level_connectors(tiles: &[BorderTile<'_>]) -> Vec<LevelConnector> {
     let index_of: BTreeMap<TileId, usize> =
         tiles.iter().enumerate().map(|(index, tile)| (tile.id, index)).collect();
@@ -86,7 +87,8 @@ pub(crate) fn level_connectors(tiles: &[BorderTile<'_>]) -> Vec<LevelConnector> 
     found
 }
 
-/// Where the way continues in the tile beyond: its nearest end on the side that faces this tile.
+/// The continuation of the way in the neighbouring tile: its nearest end on the side that faces
+/// this tile.
 fn partner<'a>(end: &RoadEnd, beyond: &BorderTile<'a>) -> Option<&'a RoadEnd> {
     let distance_m =
         |other: &RoadEnd| libm::hypot(other.at_m[0] - end.at_m[0], other.at_m[1] - end.at_m[1]);

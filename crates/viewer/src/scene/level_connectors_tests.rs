@@ -1,11 +1,11 @@
-//! A way is connected to where it goes on in a tile of another level, and to nothing else.
+//! A way is connected to its continuation in a tile of another level, and to nothing else.
 
 use corniche_roads::FunctionalRoadClass;
 
 use super::*;
-use crate::tiles::roads::ends::Side;
+use crate::tiles::roads::ends::TileSide;
 
-fn end(way_id: i64, side: Side, at_m: [f64; 2], height_m: f64) -> RoadEnd {
+fn end(way_id: i64, side: TileSide, at_m: [f64; 2], height_m: f64) -> RoadEnd {
     let class = FunctionalRoadClass::new(3).expect("a class");
     RoadEnd {
         way_id,
@@ -17,7 +17,8 @@ fn end(way_id: i64, side: Side, at_m: [f64; 2], height_m: f64) -> RoadEnd {
     }
 }
 
-/// Compares the connectors between a coarse tile of 200 m (1/0/0) and the finer tile of 100 m to its east (2/2/0).
+/// Compares the connectors between a coarse tile of 200 m (1/0/0) and the finer tile of 100 m to
+/// its east (2/2/0).
 fn check(coarse: &[RoadEnd], fine: &[RoadEnd], expected: &[[[f64; 2]; 2]]) {
     let id = |z, x, y| TileId::new(z, x, y).expect("a tile");
     let tiles = [
@@ -43,27 +44,27 @@ fn check(coarse: &[RoadEnd], fine: &[RoadEnd], expected: &[[[f64; 2]; 2]]) {
 #[test]
 fn a_way_is_connected_to_where_it_goes_on() {
     let coarse = [
-        end(7, Side::East, [200.0, 150.0], 10.0),
-        end(7, Side::East, [200.0, 141.0], 10.0),
-        end(8, Side::East, [200.0, 140.0], 10.0),
+        end(7, TileSide::East, [200.0, 150.0], 10.0),
+        end(7, TileSide::East, [200.0, 141.0], 10.0),
+        end(8, TileSide::East, [200.0, 140.0], 10.0),
     ];
-    let fine = [end(7, Side::West, [200.0, 140.0], 12.0)];
+    let fine = [end(7, TileSide::West, [200.0, 140.0], 12.0)];
     check(&coarse, &fine, &[[[200.0, 140.0], [200.0, 141.0]]]);
 }
 
 #[test]
 fn ends_far_apart_or_on_other_sides_are_not_connected() {
-    let coarse = [end(7, Side::East, [200.0, 150.0], 10.0)];
-    check(&coarse, &[end(7, Side::West, [200.0, 140.0], 12.0)], &[]);
-    check(&coarse, &[end(7, Side::North, [200.0, 150.0], 12.0)], &[]);
-    check(&[], &[end(7, Side::West, [200.0, 150.0], 12.0)], &[]);
+    let coarse = [end(7, TileSide::East, [200.0, 150.0], 10.0)];
+    check(&coarse, &[end(7, TileSide::West, [200.0, 140.0], 12.0)], &[]);
+    check(&coarse, &[end(7, TileSide::North, [200.0, 150.0], 12.0)], &[]);
+    check(&[], &[end(7, TileSide::West, [200.0, 150.0], 12.0)], &[]);
 }
 
 #[test]
 fn a_connector_reaches_over_both_heights_and_the_deeper_skirt() {
     let id = |z, x, y| TileId::new(z, x, y).expect("a tile");
-    let coarse = [end(7, Side::East, [200.0, 150.0], 10.0)];
-    let fine = [end(7, Side::West, [200.0, 150.0], 12.0)];
+    let coarse = [end(7, TileSide::East, [200.0, 150.0], 10.0)];
+    let fine = [end(7, TileSide::West, [200.0, 150.0], 12.0)];
     let tiles = [
         BorderTile {
             id: id(1, 0, 0),

@@ -1,52 +1,47 @@
-// Areas as stencil shadow volumes: a closed prism over each polygon, from below all ground in it to above it.
+// Areas as stencil shadow volumes: a closed prism over each polygon, from below all ground in the
+// polygon to above it.
 //
-// Source: Schneider & Klein 2007, Efficient and Accurate Rendering of Vector Data on Virtual Landscapes, Journal of WSCG 15.
+// Source: Schneider & Klein 2007, Efficient and Accurate Rendering of Vector Data on Virtual
+// Landscapes, Journal of WSCG 15.
 //
 //      eye                              A face between the eye and the ground counts +1 if it is seen from outside and −1 if from
-//         ╲      ┌──top──┐              inside (z-pass). Ground outside all prisms then has the count 0. Or the faces behind the ground
-//          ╲+1   │       │              count, with the other signs (z-fail): this also holds with the eye inside, or where the near
-//       ────╲────┼──→────┼──── ground   plane cuts a face off.
+//         ╲      ┌──top──┐              inside (z-pass). Ground outside all prisms then has the count 0. Alternatively, faces behind the
+//          ╲+1   │       │              ground count, with opposite signs (z-fail): this is also correct with the eye inside, or where
+//       ────╲────┼──→────┼──── ground   the near plane cuts a face off.
 //            ╲   │   −1  │
 //                └─bottom┘
 //
-// What we changed: no depths are compared. A depth between two far vertices is interpolated with an error that is large beside
-// the smallest depths, and on the ground that error is some metres. Instead the place of the ground is computed from its depth,
-// and a face is in front of it if the eye and that place are on different sides of the face. For walls this is the test in plan
-// that roads have (coverage.wgsl), so an edge is as exact as the ground's place. Faces only say which pixels ask.
+// What we changed: depths are not compared. The interpolated depth between two far vertices has an
+// error that is large compared with the smallest depths; on the ground it is some metres. Instead
+// the position of the ground is computed from its depth, and a face is in front of the ground if
+// the eye and that position are on different sides of the face. For walls this is the test in plan
+// that roads use (coverage.wgsl), so an edge is as exact as the position of the ground. Faces only
+// select pixels for the test.
 
 struct Face {
-    // Faces of a volume must meet without a gap, whichever pipeline draws them.
+    // Faces of a volume must meet without a gap, with any pipeline.
     @invariant @builtin(position) clip: vec4<f32>,
     // Walls: both ends in plan, relative to the eye. Caps: xy is 0, z the height above the eye.
     @location(0) @interpolate(flat) ends: vec4<f32>,
 }
 
-// 1 draws upper caps, 0 lower ones.
+// 1 draws upper caps, 0 draws lower caps.
 override IS_TOP: u32 = 0u;
-// 1 counts faces behind the ground, 0 those in front of it.
+// 1 counts faces behind the ground, 0 counts faces in front of it.
 override IS_FAIL: u32 = 0u;
 
 // `heights` are bottom and top above the tile's reference point, true metres.
 fn height_of(heights: vec2<f32>, is_top: bool) -> f32 {
     let height = tile.offset.z + select(heights.x, heights.y, is_top) * frame.scale.y;
-    // Skirts are painted as the ground they hang from.
+    // Skirts are painted like the ground from which they hang.
     return height - select(tile.offset.w, 0.0, is_top);
 }
 
-// From above no face may be cut off above or beneath all ground, and depths are not compared. Walls are then seen edge-on and cover
-// nothing.
-fn clip_of(position: vec3<f32>) -> vec4<f32> {
-    var clip = frame.clip_from_relative * vec4(position, 1.0);
-    if is_from_above() {
-        clip.z = 0.5;
-    }
-    return clip;
-}
-
+// In a view from above, walls are edge-on and cover nothing.
 @vertex
 fn wall_vertex(@builtin(vertex_index) corner: u32, @location(0) start: vec2<f32>, @location(1) end: vec2<f32>,
     @location(2) heights: vec2<f32>) -> Face {
-    //  2 ── 3     seen from outside: the inside is on the left of the way from start to end
+    //  2 ── 3     seen from outside: the inside is on the left in the direction from start to end
     //  │  ╲ │
     //  0 ── 1
     let plan = tile.offset.xy + select(start, end, (corner & 1u) == 1u);
@@ -66,14 +61,17 @@ fn cap_vertex(@location(0) place: vec2<f32>, @location(1) heights: vec2<f32>) ->
     return out;
 }
 
-// On which side of the line through a and b a place is. Both tiles and both areas of a common edge ask with the same line.
+// The side of the line through a and b on which a position is. Both tiles and both areas at a
+// common edge use the same line.
 fn is_left(a: vec2<f32>, b: vec2<f32>, at: vec2<f32>) -> bool {
     return (b.x - a.x) * (at.y - a.y) - (b.y - a.y) * (at.x - a.x) > 0.0;
 }
 
-// Whether a ray from the eye to a place on the ground passes the wall over a–b, which it is known to meet somewhere.
+// Whether a ray from the eye to a position on the ground passes the wall over a–b. The ray is known
+// to meet the wall somewhere.
 fn is_beyond_wall(a: vec2<f32>, b: vec2<f32>, at: vec2<f32>, ray: vec2<f32>) -> bool {
-    // Along the ray the wall is nowhere but between its ends. This decides where the wall is seen edge-on: then its line is the ray.
+    // Along the ray, the wall is only between its ends. This decides if the wall is seen edge-on:
+    // then its line is the ray.
     let along = vec2(dot(a, ray), dot(b, ray));
     let ground_along = dot(at, ray);
     if ground_along > max(along.x, along.y) {
@@ -88,7 +86,8 @@ fn is_beyond_wall(a: vec2<f32>, b: vec2<f32>, at: vec2<f32>, ray: vec2<f32>) -> 
     return is_left(first, last, vec2(0.0)) != is_left(first, last, at);
 }
 
-// Where the tile's own ground or skirt is at a pixel; w is 0 if the pixel shows something else, or lies beside the picture.
+// Position of the tile's own ground or skirt at a pixel; w is 0 if the pixel shows something else
+// or is outside the picture.
 fn own_ground(center: vec2<f32>) -> vec4<f32> {
     let pixel = vec2<i32>(floor(center));
     let is_outside = any(pixel < vec2(0)) || any(pixel >= vec2<i32>(textureDimensions(owners)));
@@ -98,7 +97,7 @@ fn own_ground(center: vec2<f32>) -> vec4<f32> {
     return vec4(position_at(center, textureLoad(terrain_depth, pixel, 0).r), 1.0);
 }
 
-// The stencil operation counts whatever is not discarded.
+// The stencil operation counts fragments that are not discarded.
 @fragment
 fn wall_fragment(in: Face) {
     let ground = own_ground(in.clip.xy);
@@ -120,27 +119,25 @@ fn cap_fragment(in: Face) {
 
 const AREA_CLASSES = 8u;
 
-// By the numbers of the classes.
+// Indexed by the numbers of the classes.
 struct Looks {
     // rgb; w: opacity.
     colors: array<vec4<f32>, AREA_CLASSES>,
-    // x: the slope from which on nothing is painted, tangent of the angle; y: up to which all is.
+    // x: the slope from which on nothing is painted, tangent of the angle; y: the slope up to which
+    // everything is painted.
     steepest: array<vec4<f32>, AREA_CLASSES>,
 }
 
 @group(3) @binding(0) var<uniform> looks: Looks;
-
-// The corners of a box as one strip of twelve triangles, all counter-clockwise seen from outside:
-// bit 0: east, bit 1: north, bit 2: top.
-const STRIP = array<u32, 14>(0u, 1u, 4u, 5u, 7u, 1u, 3u, 0u, 2u, 4u, 6u, 7u, 2u, 3u);
 
 struct Covered {
     @builtin(position) clip: vec4<f32>,
     @location(0) @interpolate(flat) area_class: u32,
 }
 
-// The box around the volumes of a class. Only its far faces are drawn: one fragment for each pixel that sees the box, also with the
-// eye inside. The stencil says which of them are painted.
+// The box around the volumes of a class. Only its far faces are drawn: one fragment for each pixel
+// that sees the box, also with the eye inside. The stencil decides which of these pixels are
+// painted.
 @vertex
 fn box_vertex(@builtin(vertex_index) index: u32, @location(0) low: vec3<f32>, @location(1) high: vec3<f32>,
     @location(2) area_class: u32) -> Covered {
@@ -154,7 +151,8 @@ fn box_vertex(@builtin(vertex_index) index: u32, @location(0) low: vec3<f32>, @l
     return out;
 }
 
-// From the place of a tile's own ground at a pixel to that at the pixel beside it, on the side where it is nearer. Where there is none, 0.
+// The step from the position of a tile's own ground at a pixel to the position at the adjacent
+// pixel, on the side where that is nearer. 0 if neither pixel shows the tile's ground.
 fn step_on_ground(center: vec2<f32>, here: vec3<f32>, aside: vec2<f32>) -> vec3<f32> {
     let after = own_ground(center + aside);
     let before = own_ground(center - aside);
@@ -164,11 +162,11 @@ fn step_on_ground(center: vec2<f32>, here: vec3<f32>, aside: vec2<f32>) -> vec3<
     return select(select(vec3(0.0), back, before.w != 0.0), forth, is_forth);
 }
 
-// How steep a tile's own ground is at a pixel: tangent of the angle.
+// The slope of a tile's own ground at a pixel: tangent of the angle.
 fn slope_at(center: vec2<f32>) -> f32 {
     let here = own_ground(center).xyz;
     let normal = cross(step_on_ground(center, here, vec2(1.0, 0.0)), step_on_ground(center, here, vec2(0.0, 1.0)));
-    // Where the ground is a pixel wide, nothing is told.
+    // If the ground is only one pixel wide, its slope is unknown.
     return select(length(normal.xy) / max(abs(normal.z), 1e-9) / frame.scale.y, 0.0, dot(normal, normal) == 0.0);
 }
 

@@ -1,5 +1,5 @@
-// Computes the mean of the samples of a pixel, rounded to the nearest of the 256 steps of a colour. It is computed in whole
-// numbers, so that it is the same on every adapter.
+// Computes the mean of the samples of a pixel, rounded to the nearest of the 256 steps of a colour.
+// The computation uses whole numbers, so that the result is the same on every adapter.
 
 @group(0) @binding(0) var samples: texture_2d<f32>;
 

@@ -1,5 +1,6 @@
-// Finds the blocks of the picture that have roads. The result for a block is the largest label in it and around it, as far
-// as an outline may reach. The composite draws roads only in blocks with a label.
+// Finds the blocks of the picture that have roads. The result for a block is the largest label in
+// it and around it, as far as an outline may reach. The composite draws roads only in blocks with a
+// label.
 
 @group(1) @binding(0) var road_labels: texture_2d<f32>;
 
@@ -8,9 +9,9 @@ override BLOCK: i32 = 16;
 
 @fragment
 fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) f32 {
-    // The edges of bridges reach farthest.
+    // The edges of bridges extend farthest.
     let radius = i32(ceil(1.5 * frame.road_scale.z));
-    let last = vec2<i32>(i32(frame.right.w), i32(frame.up.w)) - 1;
+    let last = last_pixel();
     let corner = vec2<i32>(position.xy) * BLOCK;
     let first = max(corner - radius, vec2(0));
     let end = min(corner + (BLOCK - 1 + radius), last);

@@ -1,33 +1,35 @@
-// Decides whether the ground at a pixel is road. The rule is the same for both methods; quads (GEO) and boxes (SV) only
-// select the pixels for which it is applied.
+// Decides whether the ground at a pixel is road. The rule is the same for both methods; quads (GEO)
+// and boxes (SV) only select the pixels for which it is applied.
 //
-// The terrain's depth is read, and from it the position of the ground at the pixel's centre is computed. The ground is road
-// if its distance in plan to the segment is at most half the road's width. For an upright volume this is the same as the
-// test of Vaaraniemi, Treib & Westermann 2011, High-Quality Cartographic Roads on High-Resolution DEMs, section 5.1: whether
-// the ground lies between the points where the ray from the eye enters and leaves the volume. But they compute these points
-// as roots of a quadratic, which is imprecise for a narrow road far from the eye: at about 7 km a tenth of all pixels near
-// caps are wrong. The distance in plan is precise there.
+// The terrain's depth is read, and from it the position of the ground at the pixel's centre is
+// computed. The ground is road if its distance in plan to the segment is at most half the road's
+// width. For an upright volume this is the same as the test of Vaaraniemi, Treib & Westermann 2011,
+// High-Quality Cartographic Roads on High-Resolution DEMs, section 5.1: whether the ground lies
+// between the points where the ray from the eye enters and leaves the volume. But they compute
+// these points as roots of a quadratic, which is imprecise for a narrow road far from the eye: at
+// about 7 km a tenth of all pixels near caps are wrong. The distance in plan is precise there.
 //
-// At a grazing angle a road would be thinner than a pixel and break into dashes. So there is a second rule: ground is also
-// road if on the picture the pixel's centre is nearer to the segment than the least half width in pixels. Where the segment
-// lies on the picture is computed from the ground at this pixel and at its neighbours towards the segment. In plan this
-// ground may be at most `stretch` times the least half width away. Otherwise a road on a crest would be painted on the
-// valley behind it.
+// At a grazing angle a road would be thinner than a pixel and break into dashes. So there is a
+// second rule: ground is also road if on the picture the pixel's centre is closer to the segment
+// than the minimum half width in pixels. The position of the segment on the picture is computed
+// from the ground at this pixel and at its neighbours towards the segment. In plan this ground may
+// be at most `stretch` times the minimum half width away. Otherwise a road on a crest would be
+// painted on the valley behind it.
 
-// What the vertex stage of a road gives its fragment stage, by either method.
+// The output of a road's vertex stage for its fragment stage, for both methods.
 struct RoadFragment {
     @builtin(position) clip: vec4<f32>,
     @location(0) @interpolate(flat) start: vec2<f32>,
     @location(1) @interpolate(flat) start_to_end: vec2<f32>,
-    // Lowest four bits: class; three bits: look; one bit each if the segment ends flat at its start and at its end. Above, for a
-    // connector, the number of the other tile it belongs to, else 0.
+    // Lowest four bits: class; three bits: look; one bit each if the segment ends flat at its start
+    // and at its end. Above, for a connector, the number of its other tile, otherwise 0.
     @location(2) @interpolate(flat) class_and_other: u32,
     // Half the road's width near the eye, world metres.
     @location(3) @interpolate(flat) half_width_m: f32,
-    // Where dashes are. x: how far along the line the segment's start is, world metres; y: how many such metres there are along the line
-    // to a metre in plan, more than 1 uphill.
+    // Dash positions. x: the distance of the segment's start along the line, world metres; y: such
+    // metres along the line per metre in plan, more than 1 uphill.
     @location(4) @interpolate(flat) dash: vec2<f32>,
-    // How long the part of the network is that the road belongs to, world metres.
+    // Length of the part of the network to which the road belongs, world metres.
     @location(5) @interpolate(flat) part_m: f32,
 }
 
@@ -35,17 +37,23 @@ fn road_of(in: RoadFragment) -> Road {
     return Road(in.class_and_other & 15u, (in.class_and_other >> 4u) & 7u, in.half_width_m, in.part_m);
 }
 
-// A segment of a road in plan, relative to the eye; or in the picture.
+// A segment of a road in plan, relative to the eye, or on the picture.
 struct Segment {
     start: vec2<f32>,
     start_to_end: vec2<f32>,
-    // Whether it ends flat, at its start and at its end: there the road goes on as another one.
+    // Whether it ends flat at its start and at its end, because the road continues there as another
+    // one.
     flat_start: bool,
     flat_end: bool,
 }
 
 fn segment_of(in: RoadFragment) -> Segment {
     return Segment(in.start, in.start_to_end, (in.class_and_other & 128u) != 0u, (in.class_and_other & 256u) != 0u);
+}
+
+// The direction of a segment of some length; any direction if it has no length.
+fn direction_of(start_to_end: vec2<f32>, length_m: f32) -> vec2<f32> {
+    return select(vec2(1.0, 0.0), start_to_end / length_m, length_m > 1e-6);
 }
 
 const MAX_STRETCH = 8.0;
@@ -61,7 +69,8 @@ fn stretch_of(distance_m: f32, height_m: f32) -> f32 {
     return clamp(1.5 * distance_m / max(abs(height_m), 1e-3), 1.0, MAX_STRETCH);
 }
 
-// How many bands a road has. Slip roads lack the narrow ones; tunnels and service roads have one colour.
+// Number of bands of a road. Slip roads lack the narrow ones; tunnels and service roads have one
+// colour.
 fn band_count(road: Road) -> u32 {
     if is_under_ground(road.look) || road.look == SERVICE {
         return 1u;
@@ -73,7 +82,8 @@ fn has_caps() -> bool {
     return frame.road_options.x > 0.5;
 }
 
-// Vector from the nearest point of a segment. Beyond a flat end, and beyond any end of a road without caps, its length is `NEVER`.
+// Vector from the nearest point of a segment. Beyond a flat end, and beyond any end of a road
+// without caps, its length is `NEVER`.
 fn from_segment(at: vec2<f32>, segment: Segment) -> vec2<f32> {
     let from_start = at - segment.start;
     let length_squared = dot(segment.start_to_end, segment.start_to_end);
@@ -86,16 +96,16 @@ fn from_segment(at: vec2<f32>, segment: Segment) -> vec2<f32> {
     return from_start - share * segment.start_to_end;
 }
 
-// The pixel that is `step` away from another, and the ground that it shows.
+// The pixel at an offset of `step` from another, and the ground that it shows.
 struct Neighbour {
     depth_buffer: f32,
-    // In plan, relative to the eye.
+    // Position in plan, relative to the eye.
     position: vec2<f32>,
     to_segment_m: f32,
 }
 
 fn neighbour(pixel: vec2<i32>, step: vec2<i32>, segment: Segment) -> Neighbour {
-    let last = vec2<i32>(i32(frame.right.w), i32(frame.up.w)) - 1;
+    let last = last_pixel();
     let at = pixel + step;
     var out: Neighbour;
     if any(at < vec2(0)) || any(at > last) {
@@ -109,9 +119,9 @@ fn neighbour(pixel: vec2<i32>, step: vec2<i32>, segment: Segment) -> Neighbour {
     return out;
 }
 
-// How far the position of the ground changes in plan from this pixel to the next one, on the side where the segment is
-// nearer. If that side has no ground or a silhouette, the other side is used: within one triangle the depth buffer is linear,
-// so both sides have the same change.
+// The change of the ground's position in plan from this pixel to the next one, on the side where
+// the segment is closer. If that side has no ground or a silhouette, the other side is used: within
+// one triangle the depth buffer is linear, so both sides have the same change.
 fn plan_step(pixel: vec2<i32>, step: vec2<i32>, depth_buffer: f32, position: vec2<f32>, segment: Segment) -> vec2<f32> {
     let ahead = neighbour(pixel, step, segment);
     let behind = neighbour(pixel, -step, segment);
@@ -134,8 +144,9 @@ fn px_from_plan(right: vec2<f32>, down: vec2<f32>, area: f32) -> mat2x2<f32> {
     return mat2x2(vec2(down.y, -right.y) / area, vec2(-down.x, right.x) / area);
 }
 
-// Distance in pixels from the middle of this pixel to the image of a segment. `right` and `down` map pixels to plan; their
-// inverse maps the segment to pixels. (Its nearest point in the picture is not its nearest in plan.)
+// Distance in pixels from the centre of this pixel to the image of a segment. `right` and `down`
+// map pixels to plan; their inverse maps the segment to pixels. (Its nearest point on the picture
+// is not its nearest in plan.)
 fn seen_px(right: vec2<f32>, down: vec2<f32>, at: vec2<f32>, segment: Segment) -> f32 {
     let area = right.x * down.y - right.y * down.x;
     if area == 0.0 {
@@ -146,13 +157,15 @@ fn seen_px(right: vec2<f32>, down: vec2<f32>, at: vec2<f32>, segment: Segment) -
     return length(from_segment(vec2(0.0), seen));
 }
 
-// A tick across the road at the portals of a tunnel: half its length as a share of half the width of the tunnel, and its breadth.
+// A tick across the road at the portals of a tunnel: half its length as a share of half the width
+// of the tunnel, and its thickness.
 const TICK_REACH = 3.4;
 const TICK_BREADTH = 0.4;
-// The tick of a narrower road would be a blot.
+// On narrower roads the tick would be a blot.
 const LEAST_TICK_PX = 1.2;
 
-// Whether the ground at a place is on the tick of a tunnel. Its segments end flat at portals alone.
+// Whether the ground at a position is on the tick of a tunnel. The segments of a tunnel end flat
+// only at portals.
 fn is_tick(segment: Segment, road: Road, position: vec3<f32>, distance_m: f32) -> bool {
     let half_m = scaled_half_width_m(road, distance_m);
     let length_m = length(segment.start_to_end);
@@ -171,7 +184,7 @@ fn is_tick(segment: Segment, road: Road, position: vec3<f32>, distance_m: f32) -
 }
 
 // The label that a segment gives the ground at a pixel: 0 if that ground is not on the road.
-// `width_share` says how wide the road is there, of its width.
+// `width_share` is the share of the road's width there.
 fn label_at(pixel: vec2<i32>, center: vec2<f32>, depth_buffer: f32, segment: Segment, road: Road, widest_m: f32, width_share: f32) -> u32 {
     let position = position_at(center, depth_buffer);
     let distance_m = distance_to(position);
@@ -185,13 +198,14 @@ fn label_at(pixel: vec2<i32>, center: vec2<f32>, depth_buffer: f32, segment: Seg
     if is_bore(road.look) && is_tick(segment, road, position, distance_m) {
         return band_label(road, 1u);
     }
-    // Each band is treated as a road of its own, of which every width is smaller. So what is within one is within all before.
+    // Each band is treated as a road of its own whose widths are all smaller. So a pixel in one
+    // band is also in all previous bands.
     let bands = band_count(road);
     let part = width_share * part_share(road, distance_m);
     let half_m = part * scaled_half_width_m(road, distance_m);
     let looks_m = part * stretch_of(distance_m, position.z)
         * least_half_width_m(road, scale_depth_of(depth_buffer));
-    // How many bands are known to be there.
+    // The number of bands that are known to cover the pixel.
     var within = 0u;
     while within < bands && plan_m <= band_share(road.class_number, within) * half_m {
         within++;
@@ -213,8 +227,8 @@ fn label_at(pixel: vec2<i32>, center: vec2<f32>, depth_buffer: f32, segment: Seg
     return band_label(road, within);
 }
 
-// An upper bound of the half width of a road, no part of which is farther away than `far_m`, or nearer to the eye's height
-// than `near_height_m`.
+// An upper bound of the half width of a road whose points are at most `far_m` away, and not closer
+// to the eye's height than `near_height_m`.
 fn bounding_radius_m(road: Road, far_m: f32, near_height_m: f32) -> f32 {
     let first = max(scaled_half_width_m(road, far_m), MAX_STRETCH * least_half_width_m(road, far_m));
     let reach_m = far_m + 2.0 * first;
@@ -223,8 +237,8 @@ fn bounding_radius_m(road: Road, far_m: f32, near_height_m: f32) -> f32 {
     return half_m * select(1.0, TICK_REACH, is_bore(road.look));
 }
 
-// The label of the innermost of so many bands of a road. More important classes have larger labels, and each band of a class
-// has a larger one than the band that it lies on.
+// The label of the innermost of `within` bands of a road. More important classes have larger
+// labels, and each band of a class has a larger label than the band below it.
 fn band_label(road: Road, within: u32) -> u32 {
     if within == 0u {
         return NOTHING;
@@ -235,18 +249,20 @@ fn band_label(road: Road, within: u32) -> u32 {
     return (CLASSES + 1u - road.class_number) * BANDS + within - 1u;
 }
 
-// The smallest number of pixels that a dash of a tunnel and the gap after it may have together. They have fewer than twice as many.
+// Minimum number of pixels of a tunnel's dash and the gap after it together. The actual number is
+// less than twice as large.
 const TUNNEL_DASH_PX = 12.0;
 
-// Where in its pattern a place of a line is.
+// A position on a line relative to its pattern.
 struct InPattern {
-    // 0 to 1.
+    // Position within the pattern, 0 to 1.
     share: f32,
-    // How many times longer the pattern is on the picture than it is at least: 1 to 2.
+    // Length of the pattern on the picture relative to its minimum length: 1 to 2.
     stretch: f32,
 }
 
-// `from_start_m` is how far from the segment's start the place is, in plan along the segment.
+// `from_start_m` is the distance of the position from the segment's start, in plan along the
+// segment.
 fn in_pattern(in: RoadFragment, position: vec3<f32>, from_start_m: f32, least_px: f32) -> InPattern {
     let along_m = in.dash.x + in.dash.y * from_start_m;
     let least_m = least_px * pixel_m_at(distance_to(position));
@@ -265,8 +281,9 @@ fn pattern_width(class_number: u32, place: u32) -> f32 {
     return frame.pattern_widths[class_number * (PATTERN_WIDTHS / 4u) + place / 4u][place % 4u];
 }
 
-// How far from the start of a segment, in plan along it, its point is that is seen nearest to the middle of a pixel. In plan another
-// one is nearest: shapes across the line would be sheared on the picture.
+// The distance along a segment in plan from its start to the point that is closest to the centre of
+// a pixel on the picture. The closest point in plan is another one: with it, shapes across the line
+// would be sheared on the picture.
 fn seen_from_start_m(pixel: vec2<i32>, depth_buffer: f32, position: vec2<f32>, segment: Segment) -> f32 {
     let right = plan_step(pixel, vec2(1, 0), depth_buffer, position, segment);
     let down = plan_step(pixel, vec2(0, 1), depth_buffer, position, segment);
@@ -281,7 +298,8 @@ fn seen_from_start_m(pixel: vec2<i32>, depth_buffer: f32, position: vec2<f32>, s
     return segment_m * dot(from_start, along) / max(dot(along, along), 1e-12);
 }
 
-// How wide a line is at a place, as a share of its width. What its pattern has keeps its length where the pattern gets longer.
+// The width of a line at a position, as a share of its full width. The shapes of a pattern keep
+// their length where the pattern gets longer.
 fn width_share(in: RoadFragment, pixel: vec2<i32>, depth_buffer: f32, position: vec3<f32>) -> f32 {
     let class_number = in.class_and_other & 15u;
     if pattern_width(class_number, 0u) < 0.0 {
@@ -296,7 +314,7 @@ fn width_share(in: RoadFragment, pixel: vec2<i32>, depth_buffer: f32, position: 
     return mix(pattern_width(class_number, before), pattern_width(class_number, after), fract(at));
 }
 
-// The label of a line at a place: none in a gap. The label of a tunnel is odd on a dash.
+// The label of a line at a position: none in a gap. The label of a tunnel is odd on a dash.
 fn label_on(label: u32, in: RoadFragment, position: vec3<f32>) -> u32 {
     let road = road_of(in);
     if label == NOTHING {
@@ -316,7 +334,7 @@ fn label_on(label: u32, in: RoadFragment, position: vec3<f32>) -> u32 {
     return select(NOTHING, label, is_dash);
 }
 
-// A label as the target stores it; blending keeps the largest.
+// A label as it is stored in the target; blending keeps the largest.
 fn stored(label: u32) -> f32 {
     return f32(label) / 255.0;
 }

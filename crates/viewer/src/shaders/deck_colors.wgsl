@@ -1,64 +1,54 @@
-// Draws decks of bridges over the picture of ground and roads: block by block, what their labels say. An edge around the upper of two
-// decks, or around a deck over the ground, shows which one is above, also where the drop between them is less than a pixel high.
+// Draws the labels of bridge decks as colours over the picture of ground and roads, block by block.
+// An edge around the upper of two decks, or around a deck over the ground, shows which one is
+// above, even if the height difference between them is less than a pixel.
 
 @group(1) @binding(4) var deck_depth: texture_2d<f32>;
 // The labels of roads on the ground.
 @group(1) @binding(5) var ground_labels: texture_2d<f32>;
 
-// Within a pixel a road rises or falls by no more than this share of the pixel's side, and ground that is painted as a part of a deck.
+// Within a pixel, a road rises or falls by at most this share of the pixel's side; ground that is
+// painted as a part of a deck may be steeper (`STEEPEST_GROUND`).
 const STEEPEST = 0.08;
-// A road of the same class may be the same deck, which rises along its way by no more than this.
+// A road of the same class may be the same deck, which rises along its way by at most this slope.
 const STEEPEST_ALONG = 0.15;
 const STEEPEST_GROUND = 1.5;
-// So many times higher than the ground a deck must be to have an edge over a road of its class.
+// A deck over a road of its own class must be this many times higher than elsewhere to have an
+// edge.
 const BESIDE_A_BEGINNING = 4.0;
 // Bridges have wider edges than roads on the ground.
 const WIDER_EDGE = 1.5;
-// What is left of the slab's colour on its underside.
+// Brightness of the underside relative to the slab's colour.
 const IN_SHADE = 0.7;
 
-// The depth of what is seen at a pixel: a deck, else the ground.
+// The visible depth at a pixel: of a deck, otherwise of the ground.
 fn depth_at(pixel: vec2<i32>) -> f32 {
     return max(textureLoad(terrain_depth, pixel, 0).r, textureLoad(deck_depth, pixel, 0).r);
 }
 
-// Whether the deck that is seen at a pixel is painted on the ground.
+// Whether the visible deck at a pixel is painted on the ground.
 fn is_painted(pixel: vec2<i32>) -> bool {
     return textureLoad(deck_depth, pixel, 0).r <= textureLoad(terrain_depth, pixel, 0).r * (1.0 + 4e-6);
-}
-
-fn deck_sight_at(position: vec2<f32>) -> Sight {
-    let pixel = min(vec2<i32>(position), vec2<i32>(i32(frame.right.w), i32(frame.up.w)) - 1);
-    var sight: Sight;
-    sight.depth_buffer = depth_at(pixel);
-    if sight.depth_buffer == 0.0 {
-        return sight;
-    }
-    sight.depth = scale_depth_of(sight.depth_buffer);
-    sight.distance_m = sight.depth * length(ray_at(position));
-    let reach = sight.distance_m / colors.haze.w;
-    sight.haze = 1.0 - exp(-reach * reach);
-    return sight;
 }
 
 fn is_slab(label: u32) -> bool {
     return label <= UNDERSIDE_LABEL;
 }
 
-// The label of a road that has its edge at a pixel, and how much of that edge is drawn.
+// The label of a road that has its edge at a pixel, and the share of that edge that is drawn.
 struct Edge {
     label: u32,
     share: f32,
 }
 
-// The edge of the most important road around a pixel that has one there: of a deck that lies higher than what is seen at the pixel, or as
-// high where that is no road. Where one deck rises above another its edge begins gradually.
+// The edge of the most important road around a pixel: of a deck that is higher than the visible
+// surface at the pixel, or as high if that surface is not a road. Where one deck rises above
+// another, its edge fades in.
 fn edge_at(pixel: vec2<i32>, own: u32, sight: Sight) -> Edge {
-    // Where a deck begins, the road goes on on the ground.
+    // Where a deck begins, the road continues on the ground.
     let road = select(own, label_of(textureLoad(ground_labels, pixel, 0).r), own == 0u);
     let is_bare = own == 0u && road == 0u;
     let radius = i32(ceil(WIDER_EDGE * frame.road_scale.z));
-    let last = vec2<i32>(i32(frame.right.w), i32(frame.up.w)) - 1;
+    let last = last_pixel();
     let place = position_at(vec2<f32>(pixel) + 0.5, sight.depth_buffer);
     let pixel_m = pixel_m_at(sight.distance_m);
     let own_is_painted = own != 0u && is_painted(pixel);
@@ -83,7 +73,7 @@ fn edge_at(pixel: vec2<i32>, own: u32, sight: Sight) -> Edge {
             let above_m = there.z - place.z;
             // Roads that meet have no edge between them, as on the ground.
             let is_free = is_bare || (above_m >= -same_m && own != 0u && is_slab(own));
-            // The ground beside the middle of a road may be lower than a deck that begins there.
+            // Next to the middle of a road, the ground may be lower than a deck that begins there.
             let least_m = same_m * select(1.0, BESIDE_A_BEGINNING, own == 0u && class_of(road) == class_of(label));
             let share = select(smoothstep(least_m, 1.5 * least_m, above_m), 1.0, is_free);
             if share > 0.0 && (share > most.share || rank_of(label) > rank_of(most.label)) {
@@ -94,13 +84,13 @@ fn edge_at(pixel: vec2<i32>, own: u32, sight: Sight) -> Edge {
     return most;
 }
 
-// Premultiplied.
+// The result is premultiplied.
 @fragment
 fn deck_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let pixel = vec2<i32>(position.xy);
-    let sight = deck_sight_at(position.xy);
+    let sight = sight_of(position.xy, depth_at(min(pixel, last_pixel())));
     let facing = facing_of(position.xy, sight);
-    // In the sky there is neither a deck nor its edge.
+    // The sky has neither a deck nor its edge.
     if sight.depth_buffer == 0.0 {
         discard;
     }

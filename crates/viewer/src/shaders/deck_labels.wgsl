@@ -1,4 +1,5 @@
-// The labels of decks, beside those of roads, and which decks are equally high: for the passes that draw labels and for their colours.
+// The labels of decks, in addition to the labels of roads, and which decks are equally high: for
+// the passes that draw labels and for their colours.
 
 // Decks whose heights differ by less, true metres, count as equally high.
 const SAME_HEIGHT_M = 0.25;

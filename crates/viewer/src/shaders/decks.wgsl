@@ -7,30 +7,35 @@
 //        │______________________________│╱      A box around it only selects pixels. For each of them the ray from the
 //            underside                          eye is followed to where it enters the piece.
 //
-// Widths are drawn larger than they are, so ground beside a deck may be higher than the deck: on a hillside, and where bridges
-// begin. Such ground would bury a part of the road or flicker through it. So ground that is in the piece in plan, and
-// higher than its underside, is painted as the road is.
+// Drawn widths are larger than true widths, so the ground next to a deck may be higher than the
+// deck: on a hillside, and where bridges begin. Such ground would bury a part of the road or
+// flicker through it. So ground that is within the piece in plan, and higher than its underside, is
+// painted like the road.
 //
-// The same boxes are drawn three times. The first time they find the depth of the nearest deck at each pixel, then the labels of
-// roads, then those of sides and undersides. Of decks that are equally high the largest label stays, as on the ground; of others
-// that of the nearest. Labels of sides are the smallest, so the step between two decks that overlap and are almost equally high is no line.
+// The same boxes are drawn three times: first to find the depth of the nearest deck at each pixel,
+// then for the labels of roads, then for the labels of sides and undersides. Of equally high decks
+// the largest label stays, as on the ground; otherwise the label of the nearest deck stays. Labels
+// of sides are the smallest, so the step between two decks that overlap and are almost equally high
+// is not a line.
 
 struct DeckIn {
     @builtin(vertex_index) corner: u32,
-    // True heights above the reference point.
+    // Plan position and true height above the reference point.
     @location(0) start_in_tile: vec3<f32>,
     @location(1) end_in_tile: vec3<f32>,
-    // What lies in the direction of these vectors from the start and from the end does not belong to the piece; 0 where it has a round cap.
+    // Mitres at the start and at the end: the piece is cut off perpendicular to these unit vectors;
+    // 0 for a round cap.
     @location(2) mitres: vec4<f32>,
-    // x: thickness of the slab, true metres; y: world metres across the road for each true metre.
+    // x: thickness of the slab, true metres; y: world metres across the road per true metre.
     @location(3) slab_width_factor: vec2<f32>,
-    // Lowest four bits: class; three bits: look; one bit each if the deck comes down to the ground at its start and at its end; one bit for a ribbon.
+    // Lowest four bits: class; three bits: look; one bit each if the deck comes down to the ground
+    // at its start and at its end; one bit for a ribbon.
     @location(4) class_and_look: u32,
     // The road's own width, as `road_with` takes it.
     @location(5) own_width: f32,
-    // As in RoadFragment.
+    // Same as in RoadFragment.
     @location(6) dash: vec2<f32>,
-    // x: as part_m in RoadFragment; y: how long the deck is, world metres.
+    // x: same as part_m in RoadFragment; y: length of the deck, world metres.
     @location(7) lengths: vec2<f32>,
 }
 
@@ -43,15 +48,16 @@ struct DeckFragment {
     // xy: half the width at the start and at the end; z: thickness of the slab. World metres.
     @location(3) @interpolate(flat) size: vec3<f32>,
     @location(4) @interpolate(flat) class_and_look: u32,
-    // As in RoadFragment.
+    // Same as in RoadFragment.
     @location(5) @interpolate(flat) half_width_m: f32,
     @location(6) @interpolate(flat) dash: vec2<f32>,
     @location(7) @interpolate(flat) part_m: f32,
-    // Whether the deck is so short that the more important road is drawn above, as on the ground.
+    // Whether the deck is so short that the more important road is drawn on top, as on the ground.
     @location(8) @interpolate(flat) is_short: u32,
 }
 
-// How thick a ribbon is, world metres: a road that is laid on nothing. Ground hides it, but for so much that what lies exactly on the ground is seen.
+// Thickness of a ribbon, world metres. A ribbon is a road that is not draped on the ground. Ground
+// hides it, except for a tolerance that keeps a ribbon exactly on the ground visible.
 const RIBBON_M = 0.05;
 const OVER_RIBBON_M = 0.25;
 
@@ -59,14 +65,15 @@ fn is_ribbon(class_and_look: u32) -> bool {
     return (class_and_look & 512u) != 0u;
 }
 
-// So many times farther than class 0 is wider, because carriageways lie beside each other.
+// How far a deck is extended, relative to how much too wide class 0 is drawn, because carriageways
+// are next to each other.
 const WIDEST_BENEATH = 1.5;
 // Half the width of a carriageway, true metres.
 const TRUE_HALF_WIDTH_M = 6.0;
-// So many half widths of class 0 a deck must be long: a quarter more than such a road is wide.
+// Minimum length of a deck in half widths of class 0: a quarter more than such a road is wide.
 const SHORTEST_DECK = 2.5;
 
-// How far from a place a point beside it is seen, pixels for each metre of `step`.
+// The offset on the picture of a point next to a position, pixels per metre of `step`.
 fn seen_step(at: vec3<f32>, step: vec3<f32>) -> vec2<f32> {
     let right = frame.right.xyz * (0.5 * frame.right.w / dot(frame.right.xyz, frame.right.xyz));
     let up = frame.up.xyz * (0.5 * frame.up.w / dot(frame.up.xyz, frame.up.xyz));
@@ -79,7 +86,8 @@ fn seen_step(at: vec3<f32>, step: vec3<f32>) -> vec2<f32> {
     return (straight - seen * dot(step, frame.forward.xyz)) / depth;
 }
 
-// Half the width of a deck at a place: as roads on the ground have it, but the same on the whole cross-section.
+// Half the width of a deck at a position: the same rule as for roads on the ground, but constant
+// over the whole cross-section.
 fn half_width_at(road: Road, at: vec3<f32>, along: vec3<f32>) -> f32 {
     let distance_m = distance_to(at);
     let half_m = scaled_half_width_m(road, distance_m);
@@ -93,26 +101,29 @@ fn half_width_at(road: Road, at: vec3<f32>, along: vec3<f32>) -> f32 {
         let least_px = frame.road_widths[road.class_number].y * px_share(road.class_number, road.look);
         looks_m = min(least_px / max(seen_px, 1e-9), stretched_m);
     }
-    // No wider than roads on the ground.
+    // At most as wide as roads on the ground.
     return min(part_share(road, distance_m) * max(half_m, looks_m), tile.base.y);
 }
 
-// How much farther than it is a deck is drawn where it comes down to the ground: as far as a carriageway of class 0 beneath it is drawn wider than it is.
+// How far a drawn deck is extended where it comes down to the ground: as far as a carriageway of
+// class 0 below it is drawn too wide.
 fn approach_m(at: vec3<f32>, deck_m: f32) -> f32 {
     let beneath = road_with(0u, CARRIAGEWAY, 0.0, frame.road_options.z);
     let wider_m = scaled_half_width_m(beneath, distance_to(at)) - TRUE_HALF_WIDTH_M * frame.road_options.z;
-    // And its edge.
+    // The edge of the road is added.
     let edge_m = 3.0 * pixel_m_at(distance_to(at));
     return select(0.0, min(WIDEST_BENEATH * wider_m + edge_m, deck_m), wider_m > 0.0);
 }
 
-// Where a deck is shorter than roads beneath it are wide, it would cut them to pieces: then the more important road is on top.
+// A deck that is shorter than the width of roads below it would cut them to pieces: in this case
+// the more important road is on top.
 fn is_short(at: vec3<f32>, deck_m: f32) -> bool {
     let beneath = road_with(0u, PLAIN, 0.0, frame.road_options.z);
     return deck_m < SHORTEST_DECK * scaled_half_width_m(beneath, distance_to(at));
 }
 
-// A mitre, if it lies within the piece: where a wide road turns around a narrow bend, the piece ends in a half disc instead.
+// The mitre, if it fits within the piece. Where a wide road turns around a narrow bend, the piece
+// ends in a half disc instead.
 fn mitre_within(mitre: vec2<f32>, outward: vec2<f32>, half_width_m: f32, length_m: f32) -> vec2<f32> {
     let cosine = dot(mitre, outward);
     let sine = abs(mitre.x * outward.y - mitre.y * outward.x);
@@ -130,9 +141,9 @@ fn vertex(in: DeckIn) -> DeckFragment {
     out.start = tile.offset.xyz + in.start_in_tile * stretched;
     out.start_to_end = (in.end_in_tile - in.start_in_tile) * stretched;
     let length_m = length(out.start_to_end.xy);
-    let direction = select(vec2(1.0, 0.0), out.start_to_end.xy / length_m, length_m > 1e-6);
+    let direction = direction_of(out.start_to_end.xy, length_m);
     let along = vec3(direction, select(0.0, out.start_to_end.z / length_m, length_m > 1e-6));
-    // The road beneath is drawn wider than it is, too, and must not cut the bridge off from the road that it belongs to.
+    // The road below is drawn too wide, too, and must not separate the bridge from its own road.
     let lands = vec2((in.class_and_look & 128u) != 0u, (in.class_and_look & 256u) != 0u);
     let before_m = select(0.0, approach_m(out.start, in.lengths.y), lands.x);
     let after_m = select(0.0, approach_m(out.start + out.start_to_end, in.lengths.y), lands.y);
@@ -154,23 +165,13 @@ fn vertex(in: DeckIn) -> DeckFragment {
 
     let widest_m = max(out.size.x, out.size.y);
     let pad_m = 1e-6 * max(length(out.start), length(end)) + 0.01;
-    let corner = STRIP[in.corner];
-    let at_end = f32(corner & 1u);
-    let side = f32((corner >> 1u) & 1u) * 2.0 - 1.0;
-    let outward = direction * (at_end * 2.0 - 1.0);
-    let across = vec2(-direction.y, direction.x) * side;
-    let plan = out.start.xy + out.start_to_end.xy * at_end + (outward + across) * (widest_m + pad_m);
     let low = min(out.start.z, end.z) - out.size.z - pad_m;
     let high = max(out.start.z, end.z) + highest_ground_m(widest_m, in.class_and_look) + pad_m;
-    out.clip = frame.clip_from_relative * vec4(plan, select(low, high, (corner & 4u) != 0u), 1.0);
-    if is_from_above() {
-        // As for volumes.
-        out.clip.z = 0.5;
-    }
+    out.clip = box_corner(in.corner, out.start.xy, out.start_to_end.xy, direction, widest_m + pad_m, vec2(low, high));
     return out;
 }
 
-// How much higher than the road ground may be that is painted as the road.
+// Maximum height above the road of ground that is painted as the road.
 fn highest_ground_m(half_width_m: f32, class_and_look: u32) -> f32 {
     return select(2.0 * half_width_m, OVER_RIBBON_M, is_ribbon(class_and_look)) * frame.scale.y;
 }
@@ -179,17 +180,17 @@ const NONE = 0u;
 const TOP = 1u;
 const SIDE = 2u;
 const UNDERSIDE = 3u;
-// Where the ray comes out of another part of the deck, or in at its end.
+// The ray leaves another part of the deck, or enters at its end.
 const INNER = 4u;
 
-// Where a ray is in a convex body: between these depths. `face` is where it enters.
+// The depth range of a ray within a convex body. `face` is the face through which it enters.
 struct Inside {
     enter: f32,
     exit: f32,
     face: u32,
 }
 
-// What is left of it where `first + depth · each` is at most 0.
+// The part of the range in which `first + depth · each` is at most 0.
 fn cut(inside: Inside, first: f32, each: f32, face: u32) -> Inside {
     var out = inside;
     if each > 0.0 {
@@ -206,7 +207,7 @@ fn cut(inside: Inside, first: f32, each: f32, face: u32) -> Inside {
     return out;
 }
 
-// What is left of it in a disc around the point from which `origin` is counted.
+// The part of the range within a disc around the origin of `origin`.
 fn cut_by_disc(inside: Inside, origin: vec2<f32>, way: vec2<f32>, radius_m: f32) -> Inside {
     var out = inside;
     let squared = dot(way, way);
@@ -216,7 +217,8 @@ fn cut_by_disc(inside: Inside, origin: vec2<f32>, way: vec2<f32>, radius_m: f32)
         }
         return out;
     }
-    // Counted from the point of the ray that is nearest, because the difference of two large squares would be imprecise.
+    // Computed from the point of the ray that is nearest to the disc's centre, because the
+    // difference of two large squares would be imprecise.
     let nearest = -dot(origin, way) / squared;
     let beside = origin + nearest * way;
     let rest = radius_m * radius_m - dot(beside, beside);
@@ -247,17 +249,17 @@ fn nearer(a: Inside, b: Inside) -> Inside {
     return a;
 }
 
-// Where the ray through a pixel enters a piece of a deck.
+// The point where the ray through a pixel enters a piece of a deck.
 fn entry(in: DeckFragment, center: vec2<f32>) -> Inside {
     let way = ray_at(center);
     let origin = ray_start_at(center) - in.start;
     let length_m = length(in.start_to_end.xy);
-    let direction = select(vec2(1.0, 0.0), in.start_to_end.xy / length_m, length_m > 1e-6);
+    let direction = direction_of(in.start_to_end.xy, length_m);
     let normal = vec2(-direction.y, direction.x);
     let o = vec2(dot(origin.xy, direction), dot(origin.xy, normal));
     let w = vec2(dot(way.xy, direction), dot(way.xy, normal));
-    // What the mitres leave.
-    // From above, heights may be stretched so much that a deck is over the plane of the eye.
+    // The part between the mitres. In a view from above, heights may be exaggerated so much that a
+    // deck is above the plane of the eye.
     var all = Inside(first_depth(), NEVER, INNER);
     all = cut(all, dot(origin.xy, in.mitres.xy), dot(way.xy, in.mitres.xy), INNER);
     all = cut(all, dot(origin.xy - in.start_to_end.xy, in.mitres.zw), dot(way.xy, in.mitres.zw), INNER);
@@ -287,11 +289,11 @@ fn entry(in: DeckFragment, center: vec2<f32>) -> Inside {
     return found;
 }
 
-// Where a place is in plan beside a piece.
+// A position in plan relative to a piece.
 struct Beside {
-    // Its distance from the segment as a share of half the width there; more than 1 outside.
+    // Distance from the segment as a share of half the width there; more than 1 outside.
     share: f32,
-    // The height of the road there, relative to the eye.
+    // Height of the road there, relative to the eye.
     road_z: f32,
     half_width_m: f32,
 }
@@ -312,15 +314,15 @@ fn beside(in: DeckFragment, at: vec2<f32>) -> Beside {
     return out;
 }
 
-// The ends of pieces are drawn farther away by this share.
+// The ends of pieces are drawn this share farther away.
 const BEHIND = 2e-5;
 
-// What is seen of a piece at a pixel.
+// The visible part of a piece at a pixel.
 struct Seen {
     face: u32,
     view_depth: f32,
     position: vec3<f32>,
-    // As of Beside.
+    // Same as in Beside.
     share: f32,
 }
 
@@ -330,14 +332,15 @@ fn seen_at(in: DeckFragment) -> Seen {
     let ground_depth = select(NEVER, view_depth_of(ground), ground > 0.0);
     let found = entry(in, center);
     var out = Seen(NONE, NEVER, vec3(0.0), NEVER);
-    // An eye in a slab sees nothing of it.
+    // An eye within a slab does not see the slab.
     let is_met = found.enter <= found.exit && found.exit >= first_depth() && found.enter <= ground_depth
         && (found.face != INNER || found.enter > frame.forward.w);
     if is_met {
         out.face = found.face;
         out.view_depth = found.enter;
         if found.face == INNER {
-            // Where nothing goes on, the end is closed as a side is. Where something does, that is nearer.
+            // If no piece continues here, the end is closed like a side. Otherwise the next piece
+            // is nearer.
             out.face = SIDE;
             out.view_depth = found.enter * (1.0 + BEHIND);
         }
@@ -392,14 +395,14 @@ fn road_fragment(in: DeckFragment) -> @location(0) f32 {
     while within < bands && seen.share <= band_share(road.class_number, within) {
         within++;
     }
-    // Rounding may leave the edge of the road outside of it.
+    // Rounding may place the edge of the road just outside.
     let label = band_label(road, max(within, 1u));
     let as_road = RoadFragment(in.clip, in.start.xy, in.start_to_end.xy, in.class_and_look, in.half_width_m, in.dash, in.part_m);
     let shown = label_on(label, as_road, seen.position);
     if in.is_short == 1u && stored(label) < textureLoad(ground_labels, vec2<i32>(in.clip.xy), 0).r {
         discard;
     }
-    // In the gaps between dashes the slab is seen.
+    // The slab is visible in the gaps between dashes.
     return stored(select(shown, SIDE_LABEL, shown == NOTHING));
 }
 

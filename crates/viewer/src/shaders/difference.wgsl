@@ -9,7 +9,7 @@ const FIRST_ONLY = vec3(213.0, 94.0, 0.0) / 255.0;
 const SECOND_ONLY = vec3(0.0, 114.0, 178.0) / 255.0;
 const OTHER_LABEL = vec3(204.0, 121.0, 167.0) / 255.0;
 
-// What is left of the picture's contrast.
+// Remaining share of the picture's contrast.
 const CONTRAST = 0.35;
 
 @fragment

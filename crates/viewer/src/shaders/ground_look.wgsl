@@ -1,7 +1,8 @@
 // The look of the ground: its colour by height, and the light on it.
 //
-// The rules are those of Imhof, Cartographic Relief Presentation (1965; English edition 1982), chapters 9, 10 and 13; the
-// formulas are ours. Colours are mixed as they are stored, in sRGB: the picture is a map and not a photograph.
+// The rules are those of Imhof, Cartographic Relief Presentation (1965; English edition 1982),
+// chapters 9, 10 and 13; the formulas are ours. Colours are mixed as they are stored, in sRGB: the
+// picture is a map and not a photograph.
 
 const TINT_STOPS = 12u;
 
@@ -11,17 +12,18 @@ struct GroundColors {
     light: vec4<f32>,
     // xyz: towards the second light; w: how much darker steep slopes are.
     second_light: vec4<f32>,
-    // x: lowest ground; y: 1 / height range; z: how much steeper the gentlest slopes are shaded; w: number of stops.
+    // x: lowest ground; y: 1 / height range; z: how many times steeper the gentlest slopes are
+    // shaded; w: number of stops.
     heights: vec4<f32>,
-    // rgb; w: how much of the haze's colour far valleys take.
+    // rgb; w: how strongly far valleys take the haze's colour.
     haze: vec4<f32>,
     // rgb; w: 1 / distance at which a valley has two thirds of its haze.
     shadow: vec4<f32>,
     // rgb; w: height of the wall along the edge of the data, world metres.
     sunlit: vec4<f32>,
-    // rgb; w: how strongly photos are seen.
+    // rgb; w: how strongly photos are visible.
     water: vec4<f32>,
-    // rgb; w: how many pixels large a cell of the relief may look.
+    // rgb; w: maximum size of a cell of the relief on the picture, pixels.
     wall: vec4<f32>,
     // rgb; w: height, metres.
     tint: array<vec4<f32>, TINT_STOPS>,
@@ -32,8 +34,8 @@ struct GroundColors {
 // Slopes gentler than this are shaded as if they were steeper; tangent of the angle.
 const GENTLE_SLOPE = 0.12;
 
-// Colour of the ground at a true height: between the two stops that it lies between. Only these two are mixed: to mix all of them in
-// turn gives the same colour and took a tenth of the time of a picture on software Vulkan.
+// Colour of the ground at a true height: the mix of its two adjacent stops. Mixing all stops in
+// turn gives the same colour, but took a tenth of the time of a picture on software Vulkan.
 fn tint_at(height_m: f32) -> vec3<f32> {
     let last = u32(colors.heights.w) - 1u;
     var k = min(1u, last);
@@ -46,16 +48,18 @@ fn tint_at(height_m: f32) -> vec3<f32> {
     return mix(below.rgb, above.rgb, t);
 }
 
-// How much light a slope gets from one direction: 1 on level ground, less on slopes turned away, below 0 beyond a right angle.
+// Light on a slope from one direction: 1 on level ground, less on slopes turned away, below 0
+// beyond a right angle.
 fn light_from(towards: vec3<f32>, normal: vec3<f32>) -> f32 {
     return dot(normal, towards) / max(towards.z, 0.17);
 }
 
 // The light on a slope: 1 on level ground.
 //
-// A slope that runs along the light is neither lit nor in shadow, and its form is lost. There the second light, from farther
-// left, takes over. (Mark, Multidirectional, oblique-weighted, shaded-relief image of the Island of Hawaii, 1992, weights
-// several lights by the aspect in the same way.)
+// A slope that runs parallel to the light is neither lit nor in shadow, so its form would be lost.
+// There the second light, from farther left, takes over. (Mark, Multidirectional, oblique-weighted,
+// shaded-relief image of the Island of Hawaii, 1992, weights several lights by the aspect in the
+// same way.)
 fn light_on(normal: vec3<f32>) -> f32 {
     let across = cross(vec3(colors.light.xy, 0.0), vec3(normal.xy, 0.0)).z;
     let along = length(colors.light.xy) * length(normal.xy);
@@ -64,7 +68,8 @@ fn light_on(normal: vec3<f32>) -> f32 {
     return mix(first, light_from(colors.second_light.xyz, normal), 0.6 * turned);
 }
 
-// The light on a slope from where the first light is, turned by 60° to that side from which the slope gets less.
+// Light on a slope from the direction of the first light, turned by 60° to the side from which the
+// slope gets less.
 fn light_from_the_side(normal: vec3<f32>) -> f32 {
     let across = length(colors.light.xy);
     let level = colors.light.xy / max(across, 1e-6);
@@ -73,24 +78,26 @@ fn light_from_the_side(normal: vec3<f32>) -> f32 {
     return normal.z + (0.5 * along - 0.866 * beside) * across / max(colors.light.z, 0.17);
 }
 
-// What slopes that face the light lack, so that they keep their form: all of them are nearly as bright, whatever their
-// steepness. A ridge that runs up to the light has two sides; the side light shades that which turns away from it, and, on both,
-// what is steep. 0 on level ground and on slopes that the light misses, and without a step anywhere.
+// Darkening for slopes that face the light, so that they keep their form: without it all of them
+// are nearly equally bright, whatever their steepness. A ridge that runs up to the light has two
+// sides; the side light shades the side that is turned away from it, and the steep parts of both.
+// The value is 0 on level ground and on slopes that the light misses, and has no step anywhere.
 fn lacking_in_light(normal: vec3<f32>) -> f32 {
     let lacking = max(1.0 - light_from_the_side(normal), 0.0);
     let faces = smoothstep(0.0, 0.3, light_from(colors.light.xyz, normal) - 1.0);
     return 1.2 * faces * lacking * lacking / (lacking + 0.2);
 }
 
-// Shades a colour, more or less strongly. `normal` is the unit normal of the ground as it is drawn, exaggeration included.
+// Shades a colour with a strength. `normal` is the unit normal of the drawn ground, exaggeration
+// included.
 fn shaded(color: vec3<f32>, normal: vec3<f32>, strength: f32) -> vec3<f32> {
-    // Gentle ground is shaded as if it were steeper; steep ground as it is.
+    // Gentle ground is shaded as if it were steeper; steep ground is shaded as it is.
     let slope = length(normal.xy) / max(normal.z, 1e-3);
     let s2 = GENTLE_SLOPE * GENTLE_SLOPE;
     let steeper = 1.0 + (colors.heights.z - 1.0) * s2 / (s2 + slope * slope);
     let seen = normalize(vec3(normal.xy * steeper, normal.z));
     let light = light_on(seen);
-    // Shadow grows ever more slowly and is never full, so that shadow sides keep their form.
+    // Shadow grows more and more slowly and is never full, so that shadow sides keep their form.
     let lacking = max(1.0 - light, 0.0) + lacking_in_light(seen);
     let steep = strength * colors.second_light.w * (1.0 - seen.z);
     let dark = strength * colors.light.w * (1.0 - exp(-1.15 * lacking));
@@ -99,7 +106,7 @@ fn shaded(color: vec3<f32>, normal: vec3<f32>, strength: f32) -> vec3<f32> {
     return mix(in_shadow, colors.sunlit.rgb, bright * (1.0 - steep));
 }
 
-// Far valleys take the colour of the haze, so that the heights come forward.
+// Tints far valleys with the haze, so that the heights stand out.
 fn hazy(color: vec3<f32>, height_m: f32, distance_m: f32) -> vec3<f32> {
     let share = clamp((height_m - colors.heights.x) * colors.heights.y, 0.0, 1.0);
     let near = exp(-distance_m * colors.shadow.w);

@@ -1,4 +1,5 @@
-// What drawings read that turn labels into colours: the labels, the blocks in which there are some, and the depth of the ground.
+// Inputs of shaders that turn labels into colours: the labels, the blocks that have labels, and the
+// depth of the ground.
 
 @group(1) @binding(0) var terrain_depth: texture_2d<f32>;
 @group(1) @binding(1) var road_labels: texture_2d<f32>;
@@ -7,7 +8,7 @@
 // Pixels on each side of a block.
 override BLOCK: u32 = 16u;
 
-// The label that a value in the target stands for.
+// Converts a value of the target to a label.
 fn label_of(stored: f32) -> u32 {
     return u32(round(stored * 255.0));
 }
@@ -20,8 +21,8 @@ fn look_of(label: u32) -> u32 {
     return select(select(PLAIN, SERVICE, label < ROAD_LABELS), TUNNEL, is_tunnel(label));
 }
 
-// Of two roads that meet, the one of the higher rank has the edge: tunnels have 1 to 9, service roads 10 to 18, other roads 19
-// to 27. 0 is no road.
+// Where two roads meet, the one of the higher rank has the edge: tunnels have 1 to 9, service roads
+// 10 to 18, other roads 19 to 27. 0 means no road.
 fn rank_of(label: u32) -> u32 {
     switch look_of(label) {
         case TUNNEL: { return label / 2u; }
@@ -34,7 +35,7 @@ fn class_of(label: u32) -> u32 {
     return (3u * CLASSES - rank_of(label)) % CLASSES;
 }
 
-// Two triangles for each block, row by row; those of a block without roads have no area.
+// Two triangles for each block, row by row; the triangles of a block without roads have no area.
 @vertex
 fn block_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
     let number = index / 6u;
@@ -47,7 +48,12 @@ fn block_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f3
     let in_block = index % 6u;
     let corner = select(in_block, in_block - 2u, in_block > 2u);
     let side = select(vec2(0u), vec2(corner & 1u, corner >> 1u), has_roads);
-    // The last blocks reach over the edge of the picture, where nothing is drawn.
-    let pixel = vec2<f32>((block + side) * BLOCK);
-    return vec4(2.0 * pixel.x / frame.right.w - 1.0, 1.0 - 2.0 * pixel.y / frame.up.w, 0.0, 1.0);
+    // The last blocks may extend beyond the edge of the picture, where nothing is drawn.
+    return vec4(in_clip_space(vec2<f32>((block + side) * BLOCK)), 0.0, 1.0);
+}
+
+// The share of a colour that haze hides on the way from the eye.
+fn haze_at(distance_m: f32) -> f32 {
+    let reach = distance_m / colors.haze.w;
+    return 1.0 - exp(-reach * reach);
 }

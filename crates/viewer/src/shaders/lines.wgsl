@@ -1,10 +1,10 @@
-// Lines beside the roads, over the picture: block by block, what their labels say.
+// Draws the labels of lines that are not roads as colours over the picture, block by block.
 
 // The same fields as in gpu/drawables/line_layers.rs, in the same order.
 struct LineColors {
     // rgb; w: distance at which haze hides two thirds of a colour.
     haze: vec4<f32>,
-    // x: 1 for lines that make room for roads.
+    // x: 1 for lines that are hidden near roads.
     layer: vec4<f32>,
     bands: array<vec4<f32>, BANDS * CLASSES>,
 }
@@ -12,19 +12,21 @@ struct LineColors {
 @group(1) @binding(3) var<uniform> colors: LineColors;
 @group(1) @binding(4) var labels_of_roads: texture_2d<f32>;
 
-// A line is not drawn so near to a road, pixels of the final picture, and pale within twice as much.
+// A line is not drawn this close to a road, in pixels of the final picture, and pale within twice
+// this distance.
 const APART_PX = 2.0;
 const PALE = 0.3;
-// Roads of these classes and above are wide enough to be found by samples on a circle, and to be taken for what follows them.
+// Roads of these classes and above are wide enough to be found by samples on a circle, and to be
+// confused with lines that follow them.
 const LAST_ROAD = 6u;
 
 fn is_road(pixel: vec2<i32>) -> bool {
-    let last = vec2<i32>(i32(frame.right.w), i32(frame.up.w)) - 1;
+    let last = last_pixel();
     let label = label_of(textureLoad(labels_of_roads, clamp(pixel, vec2(0), last), 0).r);
     return label != 0u && !is_tunnel(label) && class_of(label) <= LAST_ROAD;
 }
 
-// Whether there is a road on a circle around a pixel: samples lie at most two pixels from each other.
+// Whether there is a road on a circle around a pixel. Samples are at most two pixels apart.
 fn is_road_around(pixel: vec2<i32>, radius_px: f32, samples: u32) -> bool {
     for (var k = 0u; k < samples; k++) {
         let angle = 6.2831853 * f32(k) / f32(samples);
@@ -36,8 +38,8 @@ fn is_road_around(pixel: vec2<i32>, radius_px: f32, samples: u32) -> bool {
     return false;
 }
 
-// How much of a line is drawn at a pixel. A boundary that follows a road would be taken for the dashes of a tunnel; one that crosses it leaves
-// the road whole.
+// Share of a line that is drawn at a pixel. A boundary that follows a road would look like the
+// dashes of a tunnel; with this rule a boundary that crosses a road leaves the road whole.
 fn share_beside_roads(pixel: vec2<i32>) -> f32 {
     if colors.layer.x == 0.0 {
         return 1.0;
@@ -58,9 +60,7 @@ fn line_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f3
     }
     let line_class = class_of(label);
     let distance_m = scale_depth_of(depth_buffer) * length(ray_at(position.xy));
-    let reach = distance_m / colors.haze.w;
-    let haze = 1.0 - exp(-reach * reach);
-    let color = mix(colors.bands[line_class * BANDS + label % BANDS].rgb, colors.haze.rgb, 0.5 * haze);
+    let color = mix(colors.bands[line_class * BANDS + label % BANDS].rgb, colors.haze.rgb, 0.5 * haze_at(distance_m));
     let opacity = frame.road_limits[line_class].z * share_beside_roads(pixel);
     return vec4(color, opacity * shown_share(line_class, PLAIN, distance_m));
 }

@@ -1,11 +1,12 @@
-// Roads as geometry (GEO): one quad per piece of a road in one triangle of the ground.
+// Roads as geometry (GEO): one quad for each piece of a road in one triangle of the ground.
 //
-// Source: Vaaraniemi, Treib & Westermann 2011, High-Quality Cartographic Roads on High-Resolution DEMs, section 4.
-// The paper's quad is level and lies under a segment and the caps at its ends. If the ground is not flat across the road's
-// width, then on the picture a part of that ground lies outside the quad, most of all where the eye sees it at a grazing
-// angle. There the road is drawn too narrow or breaks into dashes (Fig. 15 of the paper). Here a quad stands for a *bed*: a
-// box around the piece. The box is as wide as the road, and it reaches from the lowest to the highest ground beside the
-// piece, measured from the plane in which the piece lies.
+// Source: Vaaraniemi, Treib & Westermann 2011, High-Quality Cartographic Roads on High-Resolution
+// DEMs, section 4. The paper's quad is level and covers a segment and the caps at its ends. If the
+// ground is not flat across the road's width, then on the picture a part of that ground is outside
+// the quad, especially at a grazing angle. There the road is drawn too narrow or breaks into dashes
+// (Fig. 15 of the paper). Here a quad represents a *bed*: a box around the piece. The box is as
+// wide as the road, and it extends from the lowest to the highest ground next to the piece,
+// measured from the plane of the piece.
 //
 //       from the side               from above                            as the eye sees it
 //                                    ┌───┬─────┬───────────┐                ┌──────────────┐
@@ -16,45 +17,48 @@
 //                                  caps where the road does not
 //                                  go straight on, at a and b
 //
-// The quad only selects pixels. Whether a pixel is road is decided by the distance of its ground from the whole segment of
-// which this is a piece (coverage.wgsl). This replaces the paper's depth test with its bias: ground that is not near the
-// road is not painted, whether it is in front of the road, behind a ridge or beside the piece.
+// The quad only selects pixels. Whether a pixel is road depends on the distance of its ground from
+// the whole segment to which the piece belongs (coverage.wgsl). This replaces the paper's depth
+// test with its bias: ground that is not near the road is not painted, whether it is in front of
+// the road, behind a ridge or next to the piece.
 
 struct SegmentIn {
     @builtin(vertex_index) corner: u32,
-    // The segment that this is a piece of, in plan: start and end.
+    // The segment to which the piece belongs, in plan: start and end.
     @location(0) segment_in_tile: vec4<f32>,
-    // xy: which part of it, from 0 to 1; zw: how the plane rises along the piece and to its left.
+    // xy: the range of the piece in the segment, from 0 to 1; zw: how the plane rises along the
+    // piece and to its left.
     @location(1) shares_slopes: vec4<f32>,
-    // Height of the piece's start; world metres across the road for each true metre.
+    // Height of the piece's start; world metres across the road per true metre.
     @location(2) height_width_factor: vec2<f32>,
-    // Lowest four bits: class. Then one bit for a cap at the start, one for a cap at the end, and one for each of the three
-    // reaches, if ground of other tiles may be within it. Then three bits for the look, and two if the segment ends flat at its start
-    // and at its end.
+    // Lowest four bits: class. Then three bits for the look, and two if the segment ends flat at
+    // its start and at its end. Then one bit for a cap at the start, one for a cap at the end, and
+    // one for each of the three reaches, if ground of other tiles may be within it.
     @location(3) class_and_flags: u32,
-    // At most how far the ground lies below and above the plane. xy: for each metre of distance, within the first reach;
-    // zw: anywhere within the first reach.
+    // Maximum distance of the ground below and above the plane. xy: per metre of distance, within
+    // the first reach; zw: anywhere within the first reach.
     @location(4) rises_near: vec4<f32>,
-    // At most how far, anywhere within the second reach (xy) and within the third (zw).
+    // Maximum distance anywhere within the second reach (xy) and within the third (zw).
     @location(5) farther: vec4<f32>,
     // The road's own width, as `road_with` takes it.
     @location(6) own_width: f32,
-    // As in RoadFragment.
+    // Same as in RoadFragment.
     @location(7) dash: vec2<f32>,
-    // As in RoadFragment.
+    // Same as in RoadFragment.
     @location(8) part_m: f32,
 }
 
-const AT_START = 0x10u;
-const AT_END = 0x20u;
-const LEAVES_TILE = 0x40u;
-const LOOK_SHIFT = 9u;
-// The quad is drawn this many times farther away and larger: it looks the same, and the near plane does not cut it.
+const AT_START = 0x200u;
+const AT_END = 0x400u;
+const LEAVES_TILE = 0x800u;
+// The quad is drawn this many times farther away and larger: it looks the same, and the near plane
+// does not clip it.
 const AWAY = 1024.0;
-// A quad can stand for a bed only if no point of the bed is nearer than this share of the distance to its plane.
+// A quad can represent a bed only if no point of the bed is nearer than this share of the distance
+// to the quad's plane.
 const LEAST_NEAREST = 0.05;
 
-// How far the ground within a radius is below and above the plane, at most, world metres.
+// Maximum distance of the ground within a radius below and above the plane, world metres.
 fn leaving_m(in: SegmentIn, radius_m: f32) -> vec2<f32> {
     let near_m = tile.base.w;
     var most = min(in.rises_near.xy * radius_m, in.rises_near.zw);
@@ -66,11 +70,12 @@ fn leaving_m(in: SegmentIn, radius_m: f32) -> vec2<f32> {
         most = in.farther.xy;
         leaves_tile = in.class_and_flags & (LEAVES_TILE << 1u);
     }
-    // A neighbour's ground is higher or lower than this tile's by no more than the depth of the skirts.
+    // A neighbour's ground is higher or lower than this tile's by at most the depth of the skirts.
     return most * frame.scale.y + select(0.0, tile.offset.w, leaves_tile != 0u);
 }
 
-// A bed: its points are start + along · x + across · y + up · z, with x, y and z within these ranges.
+// A bed: its points are start + along · x + across · y + up · z, with x, y and z within these
+// ranges.
 struct RoadBed {
     start: vec3<f32>,
     along: vec3<f32>,
@@ -80,8 +85,8 @@ struct RoadBed {
     z: vec2<f32>,
 }
 
-// A plane in front of the eye, at the distance `plane_m` along `normal`, and the rectangle on it, along `u` and `v`, in which
-// a bed is seen.
+// A plane in front of the eye, at the distance `plane_m` along `normal`, and the rectangle on it,
+// along `u` and `v`, that covers a bed on the picture.
 struct Shown {
     u: vec3<f32>,
     v: vec3<f32>,
@@ -89,11 +94,12 @@ struct Shown {
     plane_m: f32,
     least: vec2<f32>,
     most: vec2<f32>,
-    // Distance along the normal of the bed's nearest point, divided by the distance of the plane.
+    // Distance of the bed's nearest point along the normal, divided by the distance of the plane.
     nearest: f32,
 }
 
-// Uses the plane through the bed's axis that faces the eye. On this plane the quad that hides the bed is smallest.
+// Uses the plane through the bed's axis that faces the eye. On this plane the quad that hides the
+// bed is smallest.
 fn shown_about_axis(bed: RoadBed) -> Shown {
     var out: Shown;
     let along_m = length(bed.along);
@@ -121,7 +127,7 @@ fn shown_about_axis(bed: RoadBed) -> Shown {
     return out;
 }
 
-// Uses the plane through the middle of the bed, for an eye that is on the bed's axis or near it.
+// Uses the plane through the middle of the bed, for an eye on or near the bed's axis.
 fn shown_from_its_end(bed: RoadBed) -> Shown {
     var out: Shown;
     let middle = bed.start + bed.along * (0.5 * (bed.x.x + bed.x.y));
@@ -147,11 +153,11 @@ fn shown_from_its_end(bed: RoadBed) -> Shown {
     return out;
 }
 
-// In a view from above the quad that hides a bed is the bed's plan.
+// In a view from above the quad that covers a bed is the bed's plan.
 fn shown_from_above(bed: RoadBed) -> Shown {
     var out: Shown;
     out.u = vec3(bed.along.xy, 0.0);
-    // As the cross product of the normal and u.
+    // Equal to the cross product of the normal and u.
     out.v = vec3(-bed.across.xy, 0.0);
     out.normal = frame.forward.xyz;
     let start = vec2(dot(bed.start.xy, out.u.xy), dot(bed.start.xy, out.v.xy));
@@ -168,12 +174,12 @@ fn least_of(values: vec4<f32>) -> f32 {
 @vertex
 fn vertex(in: SegmentIn) -> RoadFragment {
     let vertical_scale = frame.scale.y;
-    let look = (in.class_and_flags >> LOOK_SHIFT) & 7u;
+    let look = (in.class_and_flags >> 4u) & 7u;
     let road = road_with(in.class_and_flags & 15u, look, in.own_width, in.height_width_factor.y);
     let start = tile.offset.xy + in.segment_in_tile.xy;
     let start_to_end = in.segment_in_tile.zw - in.segment_in_tile.xy;
     let segment_m = length(start_to_end);
-    let direction = select(vec2(1.0, 0.0), start_to_end / segment_m, segment_m > 1e-6);
+    let direction = direction_of(start_to_end, segment_m);
     let left = vec2(-direction.y, direction.x);
     let slopes = in.shares_slopes.zw * vertical_scale;
     let a = vec3(start + start_to_end * in.shares_slopes.x, tile.offset.z + in.height_width_factor.x * vertical_scale);
@@ -182,12 +188,14 @@ fn vertex(in: SegmentIn) -> RoadFragment {
     let b = a + along * length_m;
 
     let far_m = max(distance_to(a), distance_to(b));
-    // The quad is made a little larger, so that rounding of positions does not cut off ground at the edge. The fragment
-    // shader decides for each pixel.
+    // The quad is enlarged a little, so that rounding of positions does not cut off ground at the
+    // edge. The fragment shader decides for each pixel.
     let pad_m = 1e-6 * max(length(a), length(b)) + 0.01;
-    // No wider than the tile's margin, as for volumes: neighbouring tiles have no roads from farther away.
+    // At most as wide as the tile's margin, as for volumes: neighbouring tiles have no roads from
+    // farther away.
     let widest_m = min(bounding_radius_m(road, far_m, 0.0), tile.base.y) + pad_m;
-    // The fragment shader uses the ground at its pixel, which may be nearer to the eye's height than the piece, or farther.
+    // The fragment shader uses the ground at its pixel, which may be closer to the eye's height
+    // than the piece, or farther.
     let tilted_m = widest_m * length(slopes);
     let beside_m = leaving_m(in, widest_m) + tilted_m;
     let heights = vec2(min(a.z, b.z) - beside_m.x, max(a.z, b.z) + beside_m.y);
@@ -219,28 +227,24 @@ fn vertex(in: SegmentIn) -> RoadFragment {
     let side = vec2(f32(in.corner & 1u), f32(in.corner >> 1u));
     let at = mix(shown.least, shown.most, side);
     var position = shown.u * at.x + shown.v * at.y + shown.normal * shown.plane_m;
-    // The eye is in the bed or very near to it, so the bed may be anywhere in the picture. The quad covers all of it.
+    // The eye is within the bed or very close to it, so the bed may be anywhere on the picture. The
+    // quad covers all of it.
     if shown.nearest < LEAST_NEAREST {
         let everywhere = 1.01 * (2.0 * side - 1.0);
         position = frame.forward.xyz + everywhere.x * frame.right.xyz + everywhere.y * frame.up.xyz;
     }
-    // The paper's quad: as high as the piece all across the road.
+    // The paper's quad: as high as the piece, all across the road.
     if frame.network.y > 0.5 {
         let across = mix(bed.y.x, bed.y.y, side.y);
         position = bed.start + bed.along * mix(bed.x.x, bed.x.y, side.x) + vec3(left * across, 0.0);
     }
 
     var out: RoadFragment;
-    if is_from_above() {
-        out.clip = frame.clip_from_relative * vec4(position, 1.0);
-        out.clip.z = 0.5;
-    } else {
-        out.clip = frame.clip_from_relative * vec4(position * AWAY, 1.0);
-    }
+    out.clip = clip_of(select(position * AWAY, position, is_from_above()));
     out.start = start;
     out.start_to_end = start_to_end;
-    // Look and flat ends.
-    out.class_and_other = road.class_number | (((in.class_and_flags >> LOOK_SHIFT) & 31u) << 4u);
+    // Class, look and flat ends.
+    out.class_and_other = in.class_and_flags & 511u;
     out.half_width_m = road.half_width_m;
     out.dash = in.dash;
     out.part_m = in.part_m;
@@ -251,8 +255,8 @@ fn vertex(in: SegmentIn) -> RoadFragment {
 fn fragment(in: RoadFragment) -> @location(0) f32 {
     let pixel = vec2<i32>(in.clip.xy);
     let owner = textureLoad(owners, pixel, 0).r;
-    // Sky and skirts are not painted. The ground of any tile is painted: near a border each of the two tiles paints on both
-    // sides.
+    // Sky and skirts are not painted. The ground of any tile is painted: near a border each of the
+    // two tiles paints on both sides.
     if owner == 0u || (owner & SKIRT) != 0u {
         discard;
     }

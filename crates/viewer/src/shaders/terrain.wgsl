@@ -1,15 +1,17 @@
 // Draws the terrain: from vertices relative to the tile to colour, depth and owner.
 //
-// The owner says which tile the pixel shows: 0 for none, else the number of the tile in this frame, with the highest bit
-// set on skirts, and the highest two on walls. Roads read it: skirts do not count as ground, and a volume paints its own tile only. Skirts are drawn by
-// a pipeline of their own, so that not even their upper edge counts as ground.
-// Alpha says the same in the colour target: 1 ground, 0.5 skirt, 0 nothing.
+// The owner is the tile that the pixel shows: 0 for none, otherwise the number of the tile in this
+// frame, with the highest bit set on skirts, and the highest two on walls. Roads read it: skirts do
+// not count as ground, and a volume paints only its own tile. Skirts have a pipeline of their own,
+// so that not even their upper edge counts as ground. The alpha of the colour target has the same
+// information: 1 ground, 0.5 skirt, 0 nothing.
 
-// 0 draws ground, 1 skirts, 2 the walls along the edge of the data, which hang beneath the skirts.
+// 0 draws ground, 1 skirts, 2 the walls along the edge of the data, which hang below the skirts.
 override SKIRT: u32 = 0u;
-// Lines of the wireframe are moved towards the eye by this many sides of a pixel. The edges of triangles lie in the
-// ground, but a line is drawn at pixel centres beside the edge, where sloping ground may be nearer. With this move a line
-// is hidden only where the ground slopes more steeply than that.
+// Lines of the wireframe are moved towards the eye by this many pixel sides. The edges of triangles
+// are in the ground, but a line is drawn at pixel centres next to the edge, where sloping ground
+// may be nearer. With this offset a line is hidden only where the ground slopes more steeply than
+// that.
 override PULL_PX: f32 = 0.0;
 
 struct VertexIn {
@@ -22,7 +24,7 @@ struct VertexOut {
     @builtin(position) clip: vec4<f32>,
     @location(0) normal: vec3<f32>,
     @location(1) height_m: f32,
-    // Relative to the eye, world metres.
+    // Position relative to the eye, world metres.
     @location(2) position: vec3<f32>,
     // Metres from the tile's middle, east and north.
     @location(3) plan_in_tile: vec2<f32>,
@@ -49,7 +51,7 @@ fn vertex(in: VertexIn) -> VertexOut {
     } else {
         out.clip.z *= 1.0 + PULL_PX * frame.scale.x;
     }
-    // Stretching the ground upwards flattens its normals' vertical part.
+    // Exaggeration reduces the vertical part of normals.
     out.normal = vec3(in.normal_skirt.xy * vertical_scale, in.normal_skirt.z);
     out.height_m = tile.base.x + in.position_in_tile.z;
     out.plan_in_tile = in.position_in_tile.xy;
@@ -57,7 +59,7 @@ fn vertex(in: VertexIn) -> VertexOut {
 }
 
 fn owner_of_pixel() -> u32 {
-    // The bits as shaders/drawn_ground.wgsl has them.
+    // The bits as defined in shaders/drawn_ground.wgsl.
     return u32(tile.base.z) | (min(SKIRT, 1u) << 31u) | (select(0u, 1u, SKIRT == 2u) << 30u);
 }
 
@@ -69,7 +71,7 @@ fn fragment(in: VertexOut) -> Pixel {
     let photo_share = photo.a * colors.water.w;
     var color = mix(colors.water.rgb, photo.rgb, photo_share);
     if !is_water(in.plan_in_tile) {
-        // A photo has shadows of its own.
+        // A photo contains shadows itself.
         color = shaded(mix(tint_at(in.height_m), photo.rgb, photo_share), normal, 1.0 - 0.5 * photo_share);
     }
     color = hazy(color, in.height_m, distance_m);
@@ -78,7 +80,7 @@ fn fragment(in: VertexOut) -> Pixel {
 
 @fragment
 fn wall_fragment(in: VertexOut) -> Pixel {
-    // The wall's own direction, from how its position changes in the picture.
+    // The direction of the wall, derived from the change of its position on the picture.
     let across = cross(dpdx(in.position), dpdy(in.position));
     let facing = abs(dot(normalize(across.xy + vec2(1e-20, 0.0)), normalize(colors.light.xy + vec2(0.0, 1e-20))));
     let color = colors.wall.rgb * (0.85 + 0.2 * facing);

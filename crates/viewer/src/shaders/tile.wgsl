@@ -1,10 +1,11 @@
-// The block of a tile that is drawn, as gpu/uniforms.rs fills it.
+// The uniforms of a drawn tile, filled in by gpu/uniforms.rs.
 
 struct Tile {
     // xyz: the tile's reference point minus the eye; w: depth of the skirt, world metres.
     offset: vec4<f32>,
-    // x: true height of the reference point; y: widest half width that may be drawn, world metres; z: the tile's
-    // number in this frame, from 1; w: within how many world metres near heights hold.
+    // x: true height of the reference point; y: maximum half width of drawn roads, world metres; z:
+    // the tile's number in this frame, from 1; w: distance within which near heights apply, world
+    // metres.
     base: vec4<f32>,
 }
 

@@ -1,6 +1,8 @@
-// Roads as shadow volumes (SV): one box per segment, from below the lowest ground beneath it to above the highest.
+// Roads as shadow volumes (SV): one box per segment, from below the lowest ground in it to above
+// the highest.
 //
-// Source: Vaaraniemi, Treib & Westermann 2011, High-Quality Cartographic Roads on High-Resolution DEMs, section 5.
+// Source: Vaaraniemi, Treib & Westermann 2011, High-Quality Cartographic Roads on High-Resolution
+// DEMs, section 5.
 //
 //            ┌───────────────┐ ─ highest ground beneath
 //           ╱│              ╱│     Only faces that look away from the eye are drawn: each pixel that sees the
@@ -10,44 +12,46 @@
 //          │╱              │╱
 //          └───────────────┘
 //
-// What we changed: the box spans the heights of the ground within the road's width, not those of the whole tile; and the
-// distance of the ground to the segment decides (coverage.wgsl). With `road_options.y` the paper's own test is used.
+// What we changed: the box spans the heights of the ground within the road's width, not of the
+// whole tile; and the distance of the ground to the segment decides (coverage.wgsl). With
+// `road_options.y` the paper's own test is used.
 //
-// A volume paints the ground of its own tile alone. Every tile has all lines within the width margin around it, so
-// wide roads are not cut at borders. Where tiles of two levels meet, the roads of one tile are not painted on the ground of
-// the other. Skirts do not count as ground; only connectors (scene/level_connectors.rs) paint them.
+// A volume paints only the ground of its own tile. Every tile has all lines within the width margin
+// around it, so wide roads are not cut off at borders. Where tiles of two levels meet, the roads of
+// one tile are not painted on the ground of the other. Skirts do not count as ground; only
+// connectors (scene/level_connectors.rs) paint skirts.
 
 struct VolumeIn {
     @builtin(vertex_index) corner: u32,
     @location(0) start_in_tile: vec2<f32>,
     @location(1) end_in_tile: vec2<f32>,
     @location(2) height_range_in_tile: vec2<f32>,
-    // Lowest and highest ground beneath the segment.
+    // Lowest and highest ground below the segment.
     @location(3) near_range_in_tile: vec2<f32>,
-    // x: how much lower or higher the ground may be for each metre away from the segment, up to `tile.base.w` away;
-    // y: world metres across the road for each true metre.
+    // x: how much lower or higher the ground may be per metre away from the segment, up to
+    // `tile.base.w` away; y: world metres across the road per true metre.
     @location(4) near_rise_width_factor: vec2<f32>,
-    // As in RoadFragment.
+    // Same as in RoadFragment.
     @location(5) class_and_other: u32,
     // The road's own width, as `road_with` takes it.
     @location(6) own_width: f32,
-    // As in RoadFragment.
+    // Same as in RoadFragment.
     @location(7) dash: vec2<f32>,
-    // As in RoadFragment.
+    // Same as in RoadFragment.
     @location(8) part_m: f32,
 }
 
 struct Reach {
     radius_m: f32,
-    // Relative to the eye.
+    // Heights relative to the eye.
     heights: vec2<f32>,
 }
 
-// Half the width of a road whose ground lies between these heights, and these heights.
+// Half the width of a road whose ground is between these heights, and these heights.
 fn reach_over(heights: vec2<f32>, road: Road, plan_m: f32) -> Reach {
     let far_m = distance_to(vec3(plan_m, 0.0, max(abs(heights.x), abs(heights.y))));
     let near_height_m = select(0.0, min(abs(heights.x), abs(heights.y)), heights.x * heights.y > 0.0);
-    // Heights are known within the margin only.
+    // Heights are known only within the margin.
     return Reach(min(bounding_radius_m(road, far_m, near_height_m), tile.base.y), heights);
 }
 
@@ -75,32 +79,20 @@ fn vertex(in: VolumeIn) -> RoadFragment {
     let a = tile.offset.xy + in.start_in_tile;
     let ab = in.end_in_tile - in.start_in_tile;
     let length_m = length(ab);
-    let direction = select(vec2(1.0, 0.0), ab / length_m, length_m > 1e-6);
+    let direction = direction_of(ab, length_m);
 
     let plan_m = max(length(a), length(a + ab));
     let reach = reach_of(in, road, plan_m);
     let radius_m = reach.radius_m;
-    // The box is made a little larger, so that rounding of positions does not cut off ground at the edge. The fragment
-    // shader decides for each pixel. The ground beside connectors is not known. It rises or falls by more than the road's
-    // width only on cliffs.
+    // The box is enlarged a little, so that rounding of positions does not cut off ground at the
+    // edge. The fragment shader decides for each pixel. The ground next to connectors is unknown.
+    // It rises or falls by more than the road's width only on cliffs.
     let pad_m = 1e-6 * length(vec3(plan_m, reach.heights)) + 0.01;
     let pad_height_m = pad_m + select(0.0, 2.0 * radius_m * vertical_scale, is_connector);
     let heights = reach.heights + vec2(-pad_height_m, pad_height_m);
 
-    let corner = STRIP[in.corner];
-    let at_end = f32(corner & 1u);
-    let side = f32((corner >> 1u) & 1u) * 2.0 - 1.0;
-    let along = direction * (at_end * 2.0 - 1.0);
-    let across = vec2(-direction.y, direction.x) * side;
-    let plan = a + ab * at_end + (along + across) * (radius_m + pad_m);
-    let height = select(heights.x, heights.y, (corner & 4u) != 0u);
-
     var out: RoadFragment;
-    out.clip = frame.clip_from_relative * vec4(plan, height, 1.0);
-    if is_from_above() {
-        // Boxes reach beyond the planes between which all ground is, and must not be cut there. Their depth is not tested.
-        out.clip.z = 0.5;
-    }
+    out.clip = box_corner(in.corner, a, ab, direction, radius_m + pad_m, heights);
     out.start = a;
     out.start_to_end = ab;
     out.class_and_other = in.class_and_other;
@@ -110,8 +102,9 @@ fn vertex(in: VolumeIn) -> RoadFragment {
     return out;
 }
 
-// The distances at which a ray from the eye along the unit vector `ray` enters and leaves the cap around an end, as the
-// paper computes them. If it misses the cap, the entry is behind the exit. `cap` is relative to the ray's start.
+// The distances at which a ray from the eye along the unit vector `ray` enters and leaves the cap
+// at an end, as the paper computes them. If the ray misses the cap, the entry is behind the exit.
+// `cap` is relative to the ray's start.
 fn through_cap(ray: vec3<f32>, cap: vec2<f32>, radius_m: f32) -> vec2<f32> {
     let c = -cap;
     if is_from_above() {
@@ -126,7 +119,8 @@ fn through_cap(ray: vec3<f32>, cap: vec2<f32>, radius_m: f32) -> vec2<f32> {
     return (vec2(-2.0 * vc) + vec2(-1.0, 1.0) * sqrt(d)) / (2.0 * vv);
 }
 
-// The distances at which `origin + distance · speed` comes between `low` and `high` and leaves that range.
+// The distances at which `origin + distance · speed` comes between `low` and `high` and leaves that
+// range.
 fn through_slab(origin: f32, speed: f32, low: f32, high: f32) -> vec2<f32> {
     if abs(speed) < 1e-9 {
         return select(vec2(NEVER, -NEVER), vec2(-NEVER, NEVER), origin >= low && origin <= high);
@@ -135,7 +129,7 @@ fn through_slab(origin: f32, speed: f32, low: f32, high: f32) -> vec2<f32> {
     return vec2(min(t.x, t.y), max(t.x, t.y));
 }
 
-// The paper's test, section 5.2: z0 < zt < z1. `share` of the road's width.
+// The paper's test, section 5.2: z0 < zt < z1. `share` is the share of the road's width.
 fn is_road_by_the_paper(center: vec2<f32>, depth_buffer: f32, start_from_eye: vec2<f32>, start_to_end: vec2<f32>,
     road: Road, share: f32) -> bool {
     let position = position_at(center, depth_buffer);
@@ -148,7 +142,7 @@ fn is_road_by_the_paper(center: vec2<f32>, depth_buffer: f32, start_from_eye: ve
         * max(scaled_half_width_m(road, distance_m), least_half_width_m(road, scale_depth_of(depth_buffer))));
 
     let length_m = length(start_to_end);
-    let direction = select(vec2(1.0, 0.0), start_to_end / length_m, length_m > 1e-6);
+    let direction = direction_of(start_to_end, length_m);
     let normal = vec2(-direction.y, direction.x);
     let along = through_slab(-dot(start, direction), dot(ray.xy, direction), 0.0, length_m);
     let across = through_slab(-dot(start, normal), dot(ray.xy, normal), -radius_m, radius_m);

@@ -1,4 +1,5 @@
-//! The areas of a tile as volumes: a closed prism over each polygon, from below all ground in it to above it.
+//! The areas of a tile as volumes: a closed prism over each polygon, from below all ground in the
+//! polygon to above it.
 //!
 //! ```text
 //!  rings ──► border strips ──► plan mesh ──► walls (edges with inside on one side alone)
@@ -6,10 +7,12 @@
 //!                                   └──────► caps  (triangles inside, once at the bottom, once at the top)
 //! ```
 //!
-//! Walls and caps come from one mesh, so each edge of a prism belongs to exactly two of its faces, with the same ends. Then a ray
-//! enters the prism as often as it leaves it, also in the graphics card's arithmetic.
+//! Walls and caps come from one mesh, so each edge of a prism belongs to exactly two of its faces,
+//! with the same ends. Then a ray enters the prism as often as it leaves it, also in the GPU's
+//! arithmetic.
 //!
-//! Source: Schneider & Klein 2007, *Efficient and Accurate Rendering of Vector Data on Virtual Landscapes*, Journal of WSCG 15.
+//! Source: Schneider & Klein 2007, *Efficient and Accurate Rendering of Vector Data on Virtual
+//! Landscapes*, Journal of WSCG 15.
 
 mod border_strips;
 mod plan_mesh;
@@ -20,7 +23,8 @@ use std::ops::Range;
 
 use corniche_areas::{AreaClass, AreaObject};
 use corniche_geom::{
-    GridFrame, LatticeBounds, LatticePoint, MOST_TILE_STEPS, TileId, TooMuchWork, Work,
+    Bounds, GridFrame, LatticeBounds, LatticePoint, MOST_TILE_STEPS, StepBudget, TileId,
+    TooMuchWork,
 };
 use corniche_tileset::{AreaRecord, AreaRings};
 
@@ -28,34 +32,34 @@ use self::{
     border_strips::{Strip, with_strips},
     plan_mesh::PlanMesh,
 };
-use super::{GroundMesh, blocks, ground_mesh::relative};
+use super::{GroundMesh, blocks, ground_mesh::relative_in_plan};
 
-/// How far volumes reach beyond the ground in them, below and above, as a share of a cell of the tile's level. The ground's heights
-/// are rounded when they are drawn; this is far more.
+/// How far volumes extend beyond their ground, below and above, as a share of a cell of the tile's
+/// level. This is far more than the rounding of the ground's heights when they are drawn.
 const PAD_CELLS: f64 = 0.125;
 
-/// How wide strips along the tile's border are, as a share of a cell of the tile's level. Positions on the border are rounded when they
-/// are drawn; this is far more.
+/// Width of the strips along the tile's border, as a share of a cell of the tile's level. This is
+/// far more than the rounding of positions on the border when they are drawn.
 const STRIP_CELLS: f64 = 0.25;
 
 /// An area that cannot be drawn.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("the outline of {object} ({class}) crosses itself")]
 pub struct BadArea {
-    /// The object of OSM.
+    /// OSM object of the area.
     pub object: AreaObject,
-    /// What it is.
+    /// Class of the area.
     pub class: AreaClass,
 }
 
 /// Why the areas of a tile cannot be drawn.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum BadAreas {
-    /// One of them.
+    /// An area cannot be drawn.
     #[error(transparent)]
     Area(#[from] BadArea),
-    /// They lie over so many triangles that no writer can have meant it.
-    #[error("its areas cannot be laid on its ground")]
+    /// The areas cover more triangles than any writer can have intended.
+    #[error("the areas of the tile cannot be draped on its ground")]
     TooMuch(#[from] TooMuchWork),
 }
 
@@ -65,7 +69,7 @@ pub enum BadAreas {
 pub struct AreaWall {
     /// Metres from the tile's reference point, east and north.
     pub start_in_tile: [f32; 2],
-    /// The other end.
+    /// End of the wall, metres from the reference point, east and north.
     pub end_in_tile: [f32; 2],
     /// Bottom, without the skirt, and top: true metres above the reference point.
     pub heights_in_tile: [f32; 2],
@@ -86,13 +90,14 @@ pub struct AreaCorner {
 pub struct ClassVolumes {
     /// The class.
     pub class: AreaClass,
-    /// Which walls are theirs.
+    /// Range of the walls of the class.
     pub walls: Range<u32>,
-    /// Which indices of [`AreaVolumes::triangles`] are theirs.
+    /// Range of the indices of the class in [`AreaVolumes::triangles`].
     pub triangles: Range<u32>,
-    /// West, south and bottom, then east, north and top of all of them, in metres from the reference point.
+    /// Box around all volumes of the class: west, south and bottom, then east, north and top, in
+    /// metres from the reference point.
     pub box_in_tile: [[f32; 3]; 2],
-    /// How many there are.
+    /// Number of polygons of the class.
     pub polygons: u32,
 }
 
@@ -108,14 +113,14 @@ pub struct AreaVolumes {
     /// Indices of `corners`, three for each triangle of a cap, counter-clockwise seen from above.
     #[serde(with = "blocks::plain")]
     pub triangles: Vec<u32>,
-    /// The classes that the tile has, in order of their numbers.
+    /// The classes of the tile, in order of their numbers.
     pub classes: Vec<ClassVolumes>,
-    /// The box around all of them, as [`ClassVolumes::box_in_tile`]; `None` without any.
+    /// The box around all volumes, as [`ClassVolumes::box_in_tile`]; `None` without volumes.
     pub box_in_tile: Option<[[f32; 3]; 2]>,
 }
 
 impl AreaVolumes {
-    /// The volumes of some areas of a tile over its ground; none without ground.
+    /// Creates the volumes of some areas of a tile over its ground; without ground there are none.
     pub(crate) fn new(
         areas: &[AreaRecord],
         id: TileId,
@@ -124,7 +129,7 @@ impl AreaVolumes {
         reference_m: [f64; 3],
     ) -> Result<Self, BadAreas> {
         let mut volumes = Self::default();
-        let work = Work::new(MOST_TILE_STEPS);
+        let work = StepBudget::new(MOST_TILE_STEPS);
         let site = Site::new(id, frame, ground, reference_m);
         for class in AreaClass::ALL {
             let (first_wall, first_index) = (volumes.walls.len(), volumes.triangles.len());
@@ -146,7 +151,7 @@ impl AreaVolumes {
         Ok(volumes)
     }
 
-    /// Several sets of volumes of one tile as one.
+    /// Merges several sets of volumes of one tile.
     #[must_use]
     pub fn joined(parts: &[&Self]) -> Self {
         let mut joined = Self::default();
@@ -171,13 +176,14 @@ impl AreaVolumes {
         joined
     }
 
-    /// Whether there are none.
+    /// Whether there are no volumes.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.classes.is_empty()
     }
 
-    /// What was added since there were so many walls and indices are the volumes of a class, if there are some.
+    /// Ends a class: all walls and indices after these numbers are its volumes. Does nothing
+    /// without polygons.
     fn end_class(
         &mut self,
         class: AreaClass,
@@ -200,7 +206,7 @@ impl AreaVolumes {
         self.box_in_tile = self.classes.iter().map(|class| class.box_in_tile).reduce(united);
     }
 
-    /// Adds the prism over a mesh; `around` grows by it.
+    /// Adds the prism over a mesh, and extends `around` by its box.
     fn add(
         &mut self,
         site: &Site<'_>,
@@ -221,15 +227,13 @@ impl AreaVolumes {
             heights_in_tile,
         }));
         self.triangles.extend(mesh.triangles.iter().flatten().map(|index| first + index));
-        let [low, high] = around;
         for AreaCorner { place_in_tile: [x, y], heights_in_tile: [bottom, top] } in corners {
-            *low = [low[0].min(*x), low[1].min(*y), low[2].min(*bottom)];
-            *high = [high[0].max(*x), high[1].max(*y), high[2].max(*top)];
+            *around = united(*around, [[*x, *y, *bottom], [*x, *y, *top]]);
         }
     }
 }
 
-/// The box around nothing.
+/// The empty box.
 const NOWHERE: [[f32; 3]; 2] = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
 
 /// The box around two boxes.
@@ -240,7 +244,7 @@ fn united([low, high]: [[f32; 3]; 2], [other_low, other_high]: [[f32; 3]; 2]) ->
     ]
 }
 
-/// Where the areas of a tile are placed.
+/// The tile in which areas are placed.
 struct Site<'a> {
     frame: &'a GridFrame,
     tile: LatticeBounds,
@@ -269,25 +273,23 @@ impl<'a> Site<'a> {
         }
     }
 
-    /// What is inside the rings; `None` if they cross.
+    /// The mesh of the inside of the rings; `None` if they cross.
     fn mesh(&self, AreaRings { rings }: &AreaRings) -> Option<PlanMesh> {
         let rings: Vec<_> = rings.iter().map(|ring| with_strips(ring, self.strip)).collect();
         PlanMesh::inside(&rings, self.tile.min)
     }
 
     fn place_in_tile(&self, point: LatticePoint) -> [f32; 2] {
-        let [x, y] = self.frame.position_m(point);
-        let [x, y, _] = relative([x, y, 0.0], self.reference_m);
-        [x, y]
+        relative_in_plan(self.frame.position_m(point), self.reference_m)
     }
 
     /// Bottom and top of a volume over these points; `None` without ground near them.
-    fn heights_in_tile(&self, points: &[LatticePoint], work: &Work) -> Option<[f32; 2]> {
-        let places = points.iter().map(|point| self.place_in_tile(*point).map(f64::from));
-        let [low, high] = places.fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |box_m, at| {
-            let [low, high] = box_m;
-            [[low[0].min(at[0]), low[1].min(at[1])], [high[0].max(at[0]), high[1].max(at[1])]]
-        });
+    fn heights_in_tile(&self, points: &[LatticePoint], work: &StepBudget) -> Option<[f32; 2]> {
+        let mut around = Bounds::EMPTY;
+        for point in points {
+            around.include(self.place_in_tile(*point).map(f64::from));
+        }
+        let (low, high) = ([around.min_x, around.min_y], [around.max_x, around.max_y]);
         let [lowest_m, highest_m] = self.ground.height_range_within(low, high, work)?;
         Some([(lowest_m - self.pad_m) as f32, (highest_m + self.pad_m) as f32])
     }

@@ -1,11 +1,11 @@
-//! Prisms over areas are closed, and areas reach a little beyond their tile.
+//! Prisms over areas are closed, and areas extend a little beyond their tile.
 
 use std::collections::BTreeMap;
 
 use corniche_geom::{Cell, NodeIndex};
 
 use super::*;
-use crate::tiles::GroundVertex;
+use crate::tiles::{GroundVertex, relative};
 
 type Ring = Vec<LatticePoint>;
 
@@ -21,14 +21,14 @@ fn mesh(rings: &[Ring]) -> PlanMesh {
     PlanMesh::inside(rings, LatticePoint::new(0, 0)).expect("rings that do not cross")
 }
 
-/// Twice the area inside rings by the shoelace formula; holes go the other way round.
+/// Twice the area inside rings by the shoelace formula; holes have the opposite direction.
 fn doubled_area(rings: &[Ring]) -> i64 {
     let pairs = rings.iter().flat_map(|ring| ring.iter().zip(ring.iter().cycle().skip(1)));
     pairs.map(|(a, b)| a.u * b.v - b.u * a.v).sum()
 }
 
-/// Whether triangles and walls close a prism: every edge of a triangle is met once by another triangle or by a wall, and each point of
-/// the rings is a corner.
+/// Checks that triangles and walls close a prism: every edge of a triangle meets one other triangle
+/// or wall, and each point of the rings is a corner.
 fn check(rings: &[Ring]) -> PlanMesh {
     let mesh = mesh(rings);
     let mut sum_of_edge: BTreeMap<[u32; 2], i32> = BTreeMap::new();
@@ -101,7 +101,7 @@ fn sides_along_the_border_are_moved_outwards() {
         "a corner of the tile"
     );
     let touching = [[50, 20], [100, 30], [50, 40]];
-    assert_eq!(stripped(&touching), ring(&touching), "a point on the border is no side");
+    assert_eq!(stripped(&touching), ring(&touching), "a single point on the border is not a side");
     let whole = [[0, 0], [100, 0], [100, 100], [0, 100]];
     assert_eq!(stripped(&whole), ring(&[[-5, -7], [105, -7], [105, 107], [-5, 107]]));
 }
@@ -176,9 +176,10 @@ fn an_outline_that_crosses_itself_is_named() {
     assert_eq!(nowhere, Ok(AreaVolumes::default()));
 }
 
-/// Forty thousand areas as large as the tile over a hundred thousand triangles: the bytes are few, the pairs are not.
+/// Forty thousand areas as large as the tile over a hundred thousand triangles: few bytes, but many
+/// pairs.
 #[test]
-#[ignore = "slow: a thousand million triangles are looked at before the limit is reached"]
+#[ignore = "slow: a thousand million triangles are checked before the limit is reached"]
 fn too_many_areas_over_too_many_triangles_are_refused() {
     let (frame, reference_m) = (frame(), [1280.0, 1280.0, 100.0]);
     let square = [[0.0, 0.0], [2560.0, 0.0], [2560.0, 2560.0], [0.0, 2560.0]];

@@ -1,4 +1,5 @@
-//! Long lists of a tile as blocks of bytes. A page takes decoded tiles from its workers: read element by element, a town would take longer than a frame.
+//! Stores long lists of a tile as blocks of bytes. A web page receives decoded tiles from its
+//! workers: reading the tile of a town element by element would take longer than a frame.
 
 use std::{fmt, marker::PhantomData};
 
@@ -8,15 +9,15 @@ use serde::{
     de::{Error, Visitor},
 };
 
-/// What stands in a block as words of fixed length.
+/// A value that is stored in a block as words of fixed length.
 pub(crate) trait Recorded: Copy + Default {
-    /// Its words.
+    /// The words of a value.
     type Words: Pod + AsMut<[u32]>;
 
-    /// Passes all fields through words; `None` if nothing has those that are read.
+    /// Passes all fields through words; `None` if the words are not valid.
     fn pass(&mut self, through: &mut Passage<'_>) -> Option<()>;
 
-    /// All of it, as words.
+    /// Returns the value as words.
     fn words(&self) -> Self::Words {
         let mut words = Self::Words::zeroed();
         let mut piece = *self;
@@ -24,7 +25,7 @@ pub(crate) trait Recorded: Copy + Default {
         words
     }
 
-    /// What has these words; `None` if nothing has.
+    /// Returns the value with these words; `None` if they are not valid.
     fn of_words(mut words: Self::Words) -> Option<Self> {
         let mut read = Self::default();
         read.pass(&mut Passage::new(words.as_mut(), true))?;
@@ -32,7 +33,8 @@ pub(crate) trait Recorded: Copy + Default {
     }
 }
 
-/// Words that fields are written to, or read from, one after the other. The last one holds bits.
+/// Words into which fields are written, or from which they are read, one after the other. The last
+/// word holds bits.
 pub(crate) struct Passage<'a> {
     words: &'a mut [u32],
     is_read: bool,
@@ -45,7 +47,7 @@ impl<'a> Passage<'a> {
         Self { words, is_read, used_words: 0, used_bits: 0 }
     }
 
-    /// Writes a word, or reads another.
+    /// Writes a word, or reads one.
     pub(crate) fn word(&mut self, word: u32) -> u32 {
         let place = &mut self.words[self.used_words];
         self.used_words += 1;
@@ -55,7 +57,7 @@ impl<'a> Passage<'a> {
         *place
     }
 
-    /// The same with so many bits of the last word.
+    /// Writes or reads `count` bits of the last word.
     pub(crate) fn bits(&mut self, bits: u32, count: u32) -> u32 {
         let [.., last] = &mut *self.words else { return bits };
         if !self.is_read {
@@ -81,7 +83,7 @@ impl<'a> Passage<'a> {
 
 /// Lists of plain values.
 pub(crate) mod plain {
-    use super::{Block, Deserializer, PhantomData, Pod, Serializer};
+    use super::{Deserializer, PhantomData, Pod, Serializer, ValueBlock};
 
     pub(crate) fn serialize<T: Pod, S: Serializer>(
         list: &[T],
@@ -93,11 +95,11 @@ pub(crate) mod plain {
     pub(crate) fn deserialize<'de, T: Pod, D: Deserializer<'de>>(
         deserializer: D,
     ) -> Result<Vec<T>, D::Error> {
-        deserializer.deserialize_byte_buf(Block(PhantomData))
+        deserializer.deserialize_byte_buf(ValueBlock(PhantomData))
     }
 }
 
-/// Lists of what is [`Recorded`].
+/// Lists of [`Recorded`] values.
 pub(crate) mod records {
     use super::{Deserializer, Error, Recorded, Serializer, plain};
 
@@ -114,11 +116,11 @@ pub(crate) mod records {
     ) -> Result<Vec<T>, D::Error> {
         let words: Vec<T::Words> = plain::deserialize(deserializer)?;
         let list: Option<Vec<T>> = words.into_iter().map(T::of_words).collect();
-        list.ok_or_else(|| D::Error::custom("a record of nothing"))
+        list.ok_or_else(|| D::Error::custom("a record with invalid values"))
     }
 }
 
-/// Lists of indices: how many starts there are, the starts, the indices.
+/// Lists of indices: the number of starts, the starts, the indices.
 pub(crate) mod index_lists {
     use corniche_geom::IndexLists;
 
@@ -140,14 +142,14 @@ pub(crate) mod index_lists {
             let (starts, indices) = rest.split_at_checked(*count as usize)?;
             IndexLists::of_parts(starts.to_vec(), indices.to_vec())
         });
-        lists.ok_or_else(|| D::Error::custom("no lists of indices"))
+        lists.ok_or_else(|| D::Error::custom("the lists of indices are invalid"))
     }
 }
 
 /// Reads a block of plain values.
-struct Block<T>(PhantomData<T>);
+struct ValueBlock<T>(PhantomData<T>);
 
-impl<T: Pod> Visitor<'_> for Block<T> {
+impl<T: Pod> Visitor<'_> for ValueBlock<T> {
     type Value = Vec<T>;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -158,7 +160,7 @@ impl<T: Pod> Visitor<'_> for Block<T> {
         if !bytes.len().is_multiple_of(size_of::<T>()) {
             return Err(E::invalid_length(bytes.len(), &self));
         }
-        // Bytes that lie where such values may lie are copied at once.
+        // Bytes with the alignment of the values are copied at once.
         Ok(match bytemuck::try_cast_slice(bytes) {
             Ok(list) => list.to_vec(),
             Err(_) => bytemuck::pod_collect_to_vec(bytes),

@@ -1,25 +1,24 @@
-//! From the bytes of a tile to what is drawn of it.
+//! Decodes the bytes of a tile into drawable geometry.
 
 use std::sync::Arc;
 
-use corniche_areas::ClassedLayer;
 use corniche_geom::{TileId, TooMuchWork};
 use corniche_styles::Style;
 use corniche_tileset::{
-    DecodeError, Manifest, Sections, SpanRun, decode_areas, decode_lines, decode_photo,
+    DecodeError, Manifest, Sections, SpanRun, decode_areas, decode_boundaries, decode_photo,
 };
 use serde::{Deserialize, Serialize};
 
 use super::{
     LayerLine, LineLayer, LineMethods, LoadTileError, Overlays, PhotoImage, PlanScale,
-    TileGeometry, TileLines, TileSurface,
+    TileGeometry, TileSurface,
 };
 use crate::options::{Mapping, RoadMethod};
 
-/// The lines of people's own files take too much work on a tile.
+/// The lines from users' files take too much work on a tile.
 #[derive(Debug, thiserror::Error)]
 #[error(
-    "the lines of {files} cross too much of its ground with too many points; simplify them (ogr2ogr -simplify), or cut them to what is shown \
+    "the lines of {files} have too many points on the ground of this tile; simplify the lines (ogr2ogr -simplify), or clip them to the area shown \
      (ogr2ogr -clipsrc)"
 )]
 struct TooManyOverlays {
@@ -27,29 +26,29 @@ struct TooManyOverlays {
     source: TooMuchWork,
 }
 
-/// What every picture needs of a tile.
+/// The sections that every picture needs.
 const GROUND: Sections = Sections::TERRAIN.and(Sections::RELIEF);
 
-const BOUNDARIES: Sections = Sections::lines(ClassedLayer::Boundaries);
-
-/// What is read of tiles. It needs no package, only its manifest: tiles may be decoded in other threads, or in the workers of a page.
+/// Which parts of tiles are read. It needs only the manifest of a package: tiles may be decoded in
+/// other threads, or in the workers of a web page.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct TileDecoder {
     sections: Sections,
     /// Which of photos, areas and boundaries are read.
     layers: Sections,
     mapping: Mapping,
-    /// They do not go to other instances.
+    /// The overlays, which are not transferred to other instances.
     #[serde(skip)]
     overlays: Arc<Overlays>,
 }
 
 impl Default for TileDecoder {
-    /// Reads all that a picture may show: roads for both methods, photos, areas and boundaries.
+    /// Reads everything that a picture may show: roads for both methods, photos, areas and
+    /// boundaries.
     fn default() -> Self {
         Self {
             sections: GROUND | Sections::ROADS_GEO | Sections::ROADS_SV | Sections::ATTRIBUTES,
-            layers: Sections::PHOTO | Sections::AREAS | BOUNDARIES,
+            layers: Sections::PHOTO | Sections::AREAS | Sections::BOUNDARIES,
             mapping: Mapping::default(),
             overlays: Arc::default(),
         }
@@ -57,7 +56,7 @@ impl Default for TileDecoder {
 }
 
 impl TileDecoder {
-    /// Reads, beside the ground, only the roads that one method needs, with their attributes.
+    /// Reads, besides the ground, only the roads that one method needs, with their attributes.
     #[must_use]
     pub fn for_method(self, method: RoadMethod) -> Self {
         let roads = match method {
@@ -68,42 +67,43 @@ impl TileDecoder {
         Self { sections: GROUND | roads, ..self }
     }
 
-    /// Reads only what a picture in this style shows, with roads by this method: no photos, areas or boundaries where the style hides
-    /// them. Photos take most of the time and the memory where there are some.
+    /// Reads only what a picture in this style shows, with roads by this method: no photos, areas
+    /// or boundaries if the style hides them. If there are photos, they take most of the time and
+    /// memory.
     #[must_use]
     pub fn for_look(self, method: RoadMethod, style: &Style) -> Self {
         self.for_method(method).with_layers_of(style)
     }
 
-    /// Reads photos, areas and boundaries only where the style shows them.
+    /// Reads photos, areas and boundaries only if the style shows them.
     #[must_use]
     pub fn with_layers_of(self, style: &Style) -> Self {
         let of = |is_shown, layer| if is_shown { layer } else { Sections::NONE };
         let layers = of(style.photo > 0.0, Sections::PHOTO)
             | of(style.has_areas(), Sections::AREAS)
-            | of(style.has_boundaries(), BOUNDARIES);
+            | of(style.has_boundaries(), Sections::BOUNDARIES);
         Self { layers, ..self }
     }
 
-    /// Lays roads as geometry on the ground, or not.
+    /// Sets whether roads as geometry are draped on the ground.
     #[must_use]
     pub fn with_mapping(self, mapping: Mapping) -> Self {
         Self { mapping, ..self }
     }
 
-    /// Lays lines of people's own files on the tiles.
+    /// Drapes lines from users' files on the tiles.
     #[must_use]
     pub fn with_overlays(self, overlays: Arc<Overlays>) -> Self {
         Self { overlays, ..self }
     }
 
-    /// The sections that it reads.
+    /// The sections to read.
     #[must_use]
     pub fn sections(&self) -> Sections {
         self.sections | Sections::SPANS | self.layers
     }
 
-    /// The methods for which lines are prepared: those of the roads that are read.
+    /// The methods for which lines are prepared: the methods of the roads that are read.
     fn line_methods(&self) -> LineMethods {
         match [Sections::ROADS_GEO, Sections::ROADS_SV].map(|of| self.sections.contains(of)) {
             [true, true] => LineMethods::Both,
@@ -112,7 +112,8 @@ impl TileDecoder {
         }
     }
 
-    /// The tile of a package with this manifest; `None` for bytes stands for a tile that is not stored itself, but tiles beneath it are.
+    /// Decodes a tile of a package with this manifest; `None` for bytes means that the tile itself
+    /// is not stored, but some of its descendants are.
     ///
     /// # Errors
     /// When the bytes are damaged.
@@ -122,15 +123,14 @@ impl TileDecoder {
         id: TileId,
         manifest: &Manifest,
     ) -> Result<TileGeometry, LoadTileError> {
-        let (frame, quantum_m) = (&manifest.frame, manifest.vertical.quantum_m);
         let Some(bytes) = payload else {
-            return Ok(TileGeometry::assemble(id, None, &TileLines::default(), frame, quantum_m));
+            return Ok(TileGeometry::empty(id, &manifest.frame));
         };
-        let tile = self.read(bytes, id, manifest);
-        tile.map_err(|source| LoadTileError { id, source })
+        self.read(bytes, id, manifest).map_err(LoadTileError::for_tile(id))
     }
 
-    /// The bridges and tunnels of a tile; `None` if the package tells nothing of them, or no roads are read.
+    /// The bridges and tunnels of a tile; `None` if the package has no data about them, or no roads
+    /// are read.
     pub(crate) fn spans(
         &self,
         payload: &[u8],
@@ -152,7 +152,8 @@ impl TileDecoder {
         let Manifest { frame, coordinates, point_scale, .. } = manifest;
         let quantum_m = manifest.vertical.quantum_m;
         let decoded = manifest.decode(payload, id, self.sections)?;
-        // The manifest has a record for every level of the frame: the reader of manifests checks that.
+        // The manifest has a record for every level of the frame; the reader of manifests checks
+        // this.
         let margin_m = manifest.levels[usize::from(id.z())].width_margin_m;
         let scale = PlanScale::of_tile(coordinates, frame.tile_bounds(id), *point_scale);
         let spans = self.spans(payload, id, manifest)?;
@@ -166,8 +167,8 @@ impl TileDecoder {
             self.mapping,
         )?;
         let methods = self.line_methods();
-        let boundaries = if self.layers.contains(BOUNDARIES) {
-            decode_lines(payload, id, ClassedLayer::Boundaries)?
+        let boundaries = if self.layers.contains(Sections::BOUNDARIES) {
+            decode_boundaries(payload, id)?
         } else {
             Vec::new()
         };

@@ -1,4 +1,4 @@
-//! Areas that a person draws.
+//! Areas that users draw on the map.
 
 use corniche_areas::{AreaObject, Polygon, cut_out, surrounded};
 use corniche_geom::{GridFrame, LatticeBounds, LatticePoint};
@@ -7,25 +7,28 @@ use corniche_tileset::{AreaRecord, AreaRings};
 
 use super::{AreaVolumes, TileGeometry};
 
-/// An area that a person draws, in plan. Where its outline crosses itself, the even-odd rule says what is inside.
+/// A user-drawn area in plan. If its outline crosses itself, the even-odd rule decides what is
+/// inside.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct DrawnArea {
     polygons: Vec<Polygon>,
 }
 
 impl DrawnArea {
-    /// What a closed line surrounds; its first point comes after the last. `None` if it is far too intricate.
+    /// The area inside a closed line; its first point follows the last. `None` if the line is far
+    /// too intricate.
     #[must_use]
     pub fn new(outline: &[LatticePoint]) -> Option<Self> {
         surrounded(&[outline], 1).ok().map(|polygons| Self { polygons })
     }
 
-    /// The volumes over the part of it in a tile; none where that is far too intricate. Their class is [`Style::DRAWN_AREAS`].
+    /// The volumes over the part of the area in a tile; none if it is far too intricate. Their
+    /// class is [`Style::DRAWN_AREAS`].
     #[must_use]
     pub fn over(&self, tile: &TileGeometry, frame: &GridFrame) -> AreaVolumes {
         let bounds = frame.tile_lattice_bounds(tile.id);
         let is_near = |polygon: &&Polygon| {
-            let around = LatticeBounds::of(polygon.outer().points());
+            let around = LatticeBounds::around(polygon.outer().points());
             around.is_some_and(|around| around.intersects(&bounds))
         };
         let near: Vec<Polygon> = self.polygons.iter().filter(is_near).cloned().collect();

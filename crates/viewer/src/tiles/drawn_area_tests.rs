@@ -1,12 +1,12 @@
-//! The parts of a drawn area in all tiles make up the area.
+//! The parts of a drawn area in all tiles form the area.
 
 use corniche_testing::package::written;
 
 use super::*;
 use crate::tiles::{MapPackage as _, PackageSource, TileSource as _};
 
-/// In plan the volumes over all tiles of a level have the area that was drawn, with a hole by the even-odd rule where its outline turns
-/// around a place twice.
+/// In plan the volumes over all tiles of a level have the size of the drawn area, with a hole by
+/// the even-odd rule where its outline encloses a point twice.
 #[test]
 fn the_parts_in_tiles_make_up_the_area() {
     let folder = tempfile::tempdir().unwrap();
@@ -19,7 +19,8 @@ fn the_parts_in_tiles_make_up_the_area() {
         let at_m = [bounds.min_x + x * bounds.width(), bounds.min_y + y * bounds.height()];
         frame.snap(at_m).unwrap()
     };
-    // Around a large square and then around a small one inside it: there the outline has gone around twice.
+    // The outline runs around a large square and then around a small one inside it, so it encloses
+    // the small square twice.
     let square = |from: f64, to: f64| {
         [at(from, from), at(to, from), at(to, to), at(from, to), at(from, from)]
     };
@@ -41,7 +42,8 @@ fn the_parts_in_tiles_make_up_the_area() {
     };
     let root_m2 = covered(corniche_geom::TileId::ROOT).unwrap();
     assert!((root_m2 - expected_m2).abs() < 1e-3 * expected_m2, "{root_m2} {expected_m2}");
-    // A quarter of it lies in each child. Along the borders of tiles volumes reach a quarter of a cell outwards.
+    // A quarter of the area is in each child. Along the borders of tiles, volumes extend a quarter
+    // of a cell outwards.
     let children = corniche_geom::TileId::ROOT.children();
     let with_ground: Vec<f64> = children.into_iter().filter_map(covered).collect();
     assert!(!with_ground.is_empty());

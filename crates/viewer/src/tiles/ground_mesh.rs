@@ -1,7 +1,7 @@
 //! The mesh of a tile's ground, with skirts and with walls along voids.
 
 use bytemuck::{Pod, Zeroable};
-use corniche_geom::{GridFrame, TILE_CELLS, TileId, Work};
+use corniche_geom::{GridFrame, StepBudget, TILE_CELLS, TileId};
 use corniche_tin::{Tin, decode_normal};
 use serde::{Deserialize, Serialize};
 
@@ -13,28 +13,31 @@ use super::{blocks, triangle_grid::TriangleGrid};
 pub(crate) struct GroundVertex {
     /// Metres from the tile's reference point; z is true height, before exaggeration.
     pub(crate) position_in_tile: [f32; 3],
-    /// Unit normal (east, north, up) in steps of 1/127; then 127 at the lower edge of a skirt, else 0.
+    /// Unit normal (east, north, up) in steps of 1/127; then 127 at the lower edge of a skirt,
+    /// otherwise 0.
     pub(crate) normal_skirt: [i8; 4],
 }
 
-/// Triangles of a tile's ground, then those of its skirts, then those beneath edges of voids.
+/// Triangles of a tile's ground, then of its skirts, then below edges of voids.
 ///
-/// A skirt hangs from every edge on the tile's border. Its lower vertices have the position and normal of the upper ones
-/// and a flag; the vertex shader lowers them as far as the drawn neighbours make necessary. Edges of the ground inside the tile
-/// get the same curtain, as a wall: no crack is there, but the data ends.
+/// A skirt hangs from every edge on the tile's border. Its lower vertices have the position and
+/// normal of the upper ones and a flag; the vertex shader lowers them as far as the drawn
+/// neighbours require. Edges of the ground inside the tile get the same curtain, as a wall: no
+/// crack is there, but the data ends.
 ///
-/// What is near a place is looked up in a grid made from the triangles: once made, a mesh must not be changed.
+/// Look-ups use a grid that is built from the triangles: a mesh must not be changed after its
+/// creation.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct GroundMesh {
     /// Vertices of the TIN in its order, then the lower vertices of the skirts.
     #[serde(with = "blocks::plain")]
     pub(crate) vertices: Vec<GroundVertex>,
-    /// Three per triangle; the ground first.
+    /// Three indices per triangle; the ground first.
     #[serde(with = "blocks::plain")]
     pub(crate) indices: Vec<u32>,
-    /// How many of the indices are ground.
+    /// Number of indices of the ground.
     pub(crate) surface_indices: usize,
-    /// How many of the indices are ground or skirts.
+    /// Number of indices of the ground and the skirts.
     pub(crate) skirt_indices: usize,
     pub(crate) triangle_grid: TriangleGrid,
 }
@@ -68,7 +71,7 @@ impl GroundMesh {
         mesh
     }
 
-    /// Triangles without skirts, three indices each.
+    /// A mesh without skirts, from triangles with three indices each.
     pub(crate) fn of_surface(
         vertices: Vec<GroundVertex>,
         indices: impl Iterator<Item = u32>,
@@ -86,7 +89,8 @@ impl GroundMesh {
         Self { vertices, indices, surface_indices, skirt_indices, triangle_grid }
     }
 
-    /// The corners of a triangle of the ground, relative to the tile's reference point; heights are true.
+    /// The corners of a triangle of the ground, relative to the tile's reference point; heights are
+    /// true.
     pub(crate) fn corners(&self, triangle: u32) -> [[f64; 3]; 3] {
         let first = triangle as usize * 3;
         [0, 1, 2].map(|k| {
@@ -95,13 +99,15 @@ impl GroundMesh {
         })
     }
 
-    /// Lowest and highest height of the triangles whose bounding boxes meet a box in plan, all relative to the tile's reference point;
-    /// `None` if there is none. Looking at sixteen triangles is a step of `work`: it takes so much less than other steps.
+    /// Lowest and highest height of the triangles whose bounding boxes intersect a box in plan, all
+    /// relative to the tile's reference point; `None` if there are no such triangles. Sixteen
+    /// triangles count as one step of `work`, because checking a triangle is much cheaper than
+    /// other steps.
     pub(crate) fn height_range_within(
         &self,
         low: [f64; 2],
         high: [f64; 2],
-        work: &Work,
+        work: &StepBudget,
     ) -> Option<[f64; 2]> {
         let mut range: Option<[f64; 2]> = None;
         for (number, triangle) in self.triangle_grid.within(low, high).enumerate() {
@@ -132,14 +138,15 @@ impl GroundMesh {
         }
     }
 
-    /// Curtains beneath the edges of the ground inside the tile: those that one triangle alone has.
+    /// Adds curtains below the edges of the ground inside the tile: edges that belong to one
+    /// triangle only.
     fn add_walls(&mut self, tin: &Tin) {
         let sides = |corners: &[u32; 3]| [0, 1, 2].map(|k| (corners[k], corners[(k + 1) % 3]));
         let mut all: Vec<(u32, u32)> = tin.triangles().iter().flat_map(sides).collect();
         all.sort_unstable();
         for corners in tin.triangles() {
             for (from, to) in sides(corners) {
-                // The triangle beyond has the same edge the other way round.
+                // The neighbouring triangle has the same edge in the other direction.
                 if all.binary_search(&(to, from)).is_err() && !on_border(tin, from, to) {
                     self.hang(from, to);
                 }
@@ -147,7 +154,7 @@ impl GroundMesh {
         }
     }
 
-    /// Two triangles beneath the edge `from`–`to`.
+    /// Adds two triangles below the edge `from`–`to`.
     fn hang(&mut self, from: u32, to: u32) {
         let lower = self.vertices.len() as u32;
         for upper in [from, to] {
@@ -159,7 +166,7 @@ impl GroundMesh {
     }
 }
 
-/// Whether an edge lies along one side of the tile.
+/// Whether an edge is on one side of the tile.
 fn on_border(tin: &Tin, from: u32, to: u32) -> bool {
     let last = TILE_CELLS as u16;
     let [a, b] = [from, to].map(|index| tin.vertices()[index as usize]);
@@ -167,10 +174,15 @@ fn on_border(tin: &Tin, from: u32, to: u32) -> bool {
         || (a.column == b.column && (a.column == 0 || a.column == last))
 }
 
-/// A position relative to a reference point: the difference in f64, then rounded. All f32 positions are made here, so that
-/// none loses precision.
+/// A position relative to a reference point: the difference in f64, then rounded. All f32 positions
+/// are computed here, so that none loses precision.
 pub(crate) fn relative(position_m: [f64; 3], reference_m: [f64; 3]) -> [f32; 3] {
     [0, 1, 2].map(|axis| (position_m[axis] - reference_m[axis]) as f32)
+}
+
+/// Does the same as [`relative`] for a position in plan.
+pub(crate) fn relative_in_plan(at_m: [f64; 2], reference_m: [f64; 3]) -> [f32; 2] {
+    [0, 1].map(|axis| (at_m[axis] - reference_m[axis]) as f32)
 }
 
 #[cfg(test)]

@@ -1,11 +1,12 @@
-//! Vertices are relative to the reference point, and skirts hang from the borders alone.
+//! Vertices are relative to the reference point, and skirts hang only from the borders.
 
 use corniche_geom::NodeIndex;
 use corniche_tin::TinVertex;
 
 use super::*;
 
-/// Two triangles that cover a whole tile with cells of 10 m. The eastern vertices are 256 steps high.
+/// Two triangles that cover a whole tile with cells of 10 m. The eastern vertices are 256 steps
+/// high.
 fn square() -> GroundMesh {
     let vertex = |row, column, height_q| TinVertex { row, column, height_q };
     let corners =

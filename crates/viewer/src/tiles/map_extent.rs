@@ -1,4 +1,4 @@
-//! What a first view of a package shows: where its roads are.
+//! The extent of the first view of a package: the region of its roads.
 
 use std::collections::BTreeMap;
 
@@ -12,28 +12,29 @@ use super::{TileGeometry, distance};
 pub struct MapExtent {
     /// The rectangle, working metres.
     pub plan: Bounds,
-    /// All ground in it lies between these true heights.
+    /// All ground in the rectangle is between these true heights.
     pub heights_m: [f64; 2],
 }
 
-/// So much of the roads' length may lie west of the rectangle, and as much east, north and south of it: a single road that
-/// leads far away does not make the map small.
+/// Maximum share of the roads' length west of the rectangle, and also east, north and south of it:
+/// a single road that leads far away does not make the map small.
 const TAIL: f64 = 0.01;
 
 /// Width of the margin around the roads, as a share of the longer side of their rectangle.
 const MARGIN: f64 = 0.08;
 
-/// A map is at least so wide: a share of the longer side of the data.
+/// Minimum width of a map, as a share of the longer side of the data.
 const LEAST_SHARE: f64 = 0.01;
 
 impl MapExtent {
-    /// The rectangle of the roads of some tiles, which are all of a level, with a margin, within the rectangle of the `data`.
-    /// `None` if there are no roads on them. Where most of the roads, by class and length, lie in one cluster, it is that of the cluster.
+    /// The rectangle of the roads of some tiles, which must be all tiles of a level, with a margin,
+    /// within the rectangle of the `data`. `None` if they have no roads. If most of the roads, by
+    /// class and length, are in one cluster, the rectangle is that of the cluster.
     ///
-    /// A coarse level has the important roads alone, simplified. That is enough to tell where they are.
+    /// A coarse level has only the important roads, simplified. That is enough to locate them.
     #[must_use]
     pub fn of_roads(tiles: &[&TileGeometry], data: Bounds) -> Option<Self> {
-        let pieces: Vec<Piece> = tiles.iter().flat_map(|tile| pieces(tile)).collect();
+        let pieces: Vec<RoadStretch> = tiles.iter().flat_map(|tile| pieces(tile)).collect();
         let pieces = densest_cluster(pieces);
         let [min_x, max_x] = without_tails(&pieces, 0)?;
         let [min_y, max_y] = without_tails(&pieces, 1)?;
@@ -41,7 +42,7 @@ impl MapExtent {
         Some(Self { plan, heights_m: heights_in(tiles, plan) })
     }
 
-    /// All of the `data`, whose ground lies between these heights.
+    /// The extent of all `data`, whose ground is between these heights.
     #[must_use]
     pub fn of_data(data: Bounds, heights_m: [f64; 2]) -> Self {
         Self { plan: data, heights_m }
@@ -50,47 +51,40 @@ impl MapExtent {
 
 /// A piece of a road.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Piece {
-    /// Where it begins and ends in the working CRS.
+struct RoadStretch {
+    /// Start and end in the working CRS.
     ends: [[f64; 2]; 2],
     class: FunctionalRoadClass,
 }
 
-impl Piece {
+impl RoadStretch {
     fn length_m(&self) -> f64 {
         distance(self.ends[0], self.ends[1])
     }
 
-    /// A place on it.
+    /// A point on the piece.
     fn at(&self, share: f64) -> [f64; 2] {
         along(self.ends[0], self.ends[1], share)
     }
 
-    /// How much it counts: important roads count more.
+    /// Weight of the piece: important roads have a larger weight.
     fn weight(&self) -> f64 {
         self.length_m() * f64::from(FunctionalRoadClass::COUNT as u8 - self.class.number())
     }
 }
 
-/// Roads are sought in so many cells along the longer side of their rectangle.
+/// Number of cells along the longer side of the roads' rectangle for finding clusters.
 const CELLS: f64 = 64.0;
-/// A cluster is all roads of a map if it has this share of their weight.
+/// A cluster replaces all roads of a map if it has this share of their weight.
 const MOST: f64 = 0.5;
 
-/// The pieces of the cluster that has most of them; all pieces, if none has. Cells with roads are of one cluster if they touch, or if one empty
-/// cell lies between them.
-fn densest_cluster(pieces: Vec<Piece>) -> Vec<Piece> {
-    let ends = || pieces.iter().flat_map(|piece| piece.ends);
-    let bounds =
-        ends().fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], at| {
-            [0, 1].map(|side| {
-                [0, 1].map(|axis| {
-                    if side == 0 { low[axis].min(at[axis]) } else { high[axis].max(at[axis]) }
-                })
-            })
-        });
-    let [low, high] = bounds;
-    let cell_m = (high[0] - low[0]).max(high[1] - low[1]) / CELLS;
+/// The pieces of the cluster with more than half of the weight; all pieces if there is no such
+/// cluster. Cells with roads belong to one cluster if they touch, or if only one empty cell is
+/// between them.
+fn densest_cluster(pieces: Vec<RoadStretch>) -> Vec<RoadStretch> {
+    let around = Bounds::around(pieces.iter().flat_map(|piece| &piece.ends));
+    let low = [around.min_x, around.min_y];
+    let cell_m = around.width().max(around.height()) / CELLS;
     if !(cell_m > 0.0 && cell_m.is_finite()) {
         return pieces;
     }
@@ -113,7 +107,7 @@ fn densest_cluster(pieces: Vec<Piece>) -> Vec<Piece> {
         }
         clusters += 1;
     }
-    let cluster = |piece: &Piece| cells.get(&cell(piece.at(0.0))).copied().flatten();
+    let cluster = |piece: &RoadStretch| cells.get(&cell(piece.at(0.0))).copied().flatten();
     let mut weights: BTreeMap<usize, f64> = BTreeMap::new();
     for piece in &pieces {
         if let Some(own) = cluster(piece) {
@@ -130,7 +124,7 @@ fn densest_cluster(pieces: Vec<Piece>) -> Vec<Piece> {
     }
 }
 
-fn pieces(tile: &TileGeometry) -> impl Iterator<Item = Piece> {
+fn pieces(tile: &TileGeometry) -> impl Iterator<Item = RoadStretch> {
     let [x, y, _] = tile.reference_m;
     let on_ground = tile.roads.all().iter().map(|piece| {
         (part_of(piece.start_in_tile, piece.end_in_tile, piece.shares), piece.kind.class)
@@ -138,13 +132,14 @@ fn pieces(tile: &TileGeometry) -> impl Iterator<Item = Piece> {
     let in_plan = tile.volumes.all().iter().map(|volume| {
         (part_of(volume.start_in_tile, volume.end_in_tile, [0.0, 1.0]), volume.kind.class)
     });
-    on_ground.chain(in_plan).map(move |(ends, class)| Piece {
+    on_ground.chain(in_plan).map(move |(ends, class)| RoadStretch {
         ends: ends.map(|[east, north]| [x + east, y + north]),
         class,
     })
 }
 
-/// The heights of the ground in a rectangle, as far as the vertices of tiles tell; of all their ground if none is there.
+/// The range of heights of the tiles' vertices in a rectangle; of all their ground if none is
+/// inside.
 fn heights_in(tiles: &[&TileGeometry], plan: Bounds) -> [f64; 2] {
     let heights = tiles.iter().flat_map(|tile| {
         let [x, y, height_m] = tile.reference_m;
@@ -157,7 +152,7 @@ fn heights_in(tiles: &[&TileGeometry], plan: Bounds) -> [f64; 2] {
     span(heights).or_else(|| span(all)).unwrap_or_default()
 }
 
-/// What all these ranges lie in.
+/// The union of all ranges.
 fn span(ranges: impl Iterator<Item = [f64; 2]>) -> Option<[f64; 2]> {
     ranges.reduce(|[low, high], [next_low, next_high]| [low.min(next_low), high.max(next_high)])
 }
@@ -169,8 +164,8 @@ fn part_of(start: [f32; 2], end: [f32; 2], shares: [f32; 2]) -> [[f64; 2]; 2] {
         .map(|share| [0, 1].map(|axis| start[axis] + f64::from(share) * (end[axis] - start[axis])))
 }
 
-/// The range of one coordinate without the tails; `None` without any length.
-fn without_tails(pieces: &[Piece], axis: usize) -> Option<[f64; 2]> {
+/// The range of one coordinate without the tails; `None` if the total length is 0.
+fn without_tails(pieces: &[RoadStretch], axis: usize) -> Option<[f64; 2]> {
     let mut along: Vec<(f64, f64)> =
         pieces.iter().map(|piece| (piece.at(0.5)[axis], piece.length_m())).collect();
     along.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -182,7 +177,7 @@ fn without_tails(pieces: &[Piece], axis: usize) -> Option<[f64; 2]> {
     Some([end_of_tail(along.iter(), tail_m)?, end_of_tail(along.iter().rev(), tail_m)?])
 }
 
-/// Where so much length has been passed.
+/// The coordinate at which this length has been passed.
 fn end_of_tail<'a>(mut along: impl Iterator<Item = &'a (f64, f64)>, tail_m: f64) -> Option<f64> {
     let mut passed_m = 0.0;
     along.find_map(|(at, length_m)| {
@@ -191,7 +186,7 @@ fn end_of_tail<'a>(mut along: impl Iterator<Item = &'a (f64, f64)>, tail_m: f64)
     })
 }
 
-/// A rectangle with its margin, within the data.
+/// Adds the margin to a rectangle, within the data.
 fn with_margin(roads: Bounds, data: Bounds) -> Bounds {
     let least_m = LEAST_SHARE * data.width().max(data.height());
     let margin_m = (MARGIN * roads.width().max(roads.height())).max(least_m / 2.0);

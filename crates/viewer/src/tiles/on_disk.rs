@@ -8,7 +8,7 @@ use corniche_tileset::{AnySource, FilePackage, OpenError};
 use super::{LoadTileError, PackageTiles, TileGeometry, TileSource};
 use crate::lod::GroundSummary;
 
-/// A package in a file, or elsewhere where threads can wait for its tiles.
+/// A package in a file or in another source for which threads can wait.
 pub type PackageSource = PackageTiles<AnySource>;
 
 impl PackageSource {
@@ -20,7 +20,7 @@ impl PackageSource {
         Self::of_file(FilePackage::open(path)?)
     }
 
-    /// Lists the tiles of a package that is open.
+    /// Lists the tiles of an open package.
     ///
     /// # Errors
     /// When its directories cannot be read or are damaged.

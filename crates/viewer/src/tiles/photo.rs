@@ -1,14 +1,15 @@
-//! The photo of a tile in four sizes, ready for the graphics card.
+//! The photo of a tile in four sizes, ready for the GPU.
 
 use corniche_tileset::Photo;
 use serde::{Deserialize, Serialize};
 
 use super::blocks;
 
-/// The photo of a tile, ready to be uploaded: four sizes, each half as large as the one before.
+/// The photo of a tile, ready to be uploaded: four sizes, each half as large as the previous one.
 ///
-/// More sizes are not needed: a tile whose texels are more than eight times too fine is replaced by a coarser one. And in more the
-/// border, of eight texels, would not reach around the tile any more.
+/// More sizes are not needed: a tile whose texels are more than eight times too fine is replaced by
+/// a coarser one. Also, in smaller sizes the border of eight texels would no longer surround the
+/// tile.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PhotoImage {
     /// Texels along a side, border included.
@@ -19,10 +20,10 @@ pub struct PhotoImage {
 }
 
 impl PhotoImage {
-    /// How many sizes there are.
+    /// Number of sizes.
     pub(crate) const SIZES: usize = 4;
 
-    /// Makes the smaller sizes.
+    /// Creates the smaller sizes.
     #[must_use]
     pub fn new(photo: Photo) -> Self {
         let side = photo.side();
@@ -36,7 +37,8 @@ impl PhotoImage {
         Self { side: side as u32, rgba }
     }
 
-    /// The texels of each size: their side, and red, green, blue and alpha of each, row by row from the north; the finest size first.
+    /// The texels of each size: their side, and red, green, blue and alpha of each, row by row from
+    /// the north; the finest size first.
     pub(crate) fn sizes(&self) -> impl Iterator<Item = (u32, &[u8])> {
         let mut rest = &self.rgba[..];
         (0..Self::SIZES).map(move |level| {
@@ -54,8 +56,9 @@ impl PhotoImage {
     }
 }
 
-/// The same half as large: the mean of each square of four texels, alpha likewise. Texels without a photo have colours that go on from
-/// those beside them, so colours need no weights.
+/// Returns the photo at half its size: the mean of each square of four texels, alpha likewise.
+/// Texels without a photo have colours that continue those of their neighbours, so colours need no
+/// weights.
 fn halved(rgba: &[u8], side: usize) -> Vec<u8> {
     let half = side / 2;
     let row_bytes = side * 4;

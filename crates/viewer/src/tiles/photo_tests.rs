@@ -1,4 +1,4 @@
-//! Each size of a photo is the mean of the one before and keeps the border.
+//! Each size of a photo is the mean of the previous one and keeps the border.
 
 use super::*;
 

@@ -1,12 +1,12 @@
-//! Working metres to a true metre within one tile, east and north.
+//! Working metres per true metre within one tile, east and north.
 
 use corniche_geom::{Bounds, CoordinateTable, width_factor};
 
-/// How many working metres there are to a true metre in a tile, towards the east and towards the
-/// north. Roads get their true widths by it.
+/// Working metres per true metre in a tile, towards the east and towards the north. It gives roads
+/// their true widths.
 ///
-/// The scale is computed at the four corners and interpolated between them. This is enough, because it changes evenly, by
-/// about 10⁻⁴ over a kilometre.
+/// The scale is computed at the four corners and interpolated between them. This is precise enough,
+/// because it changes smoothly, by about 10⁻⁴ over a kilometre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanScale {
     corners: Bounds,
@@ -22,8 +22,8 @@ impl PlanScale {
         Self { corners, scales: [scale; 4] }
     }
 
-    /// The scale of a tile. Outside the bounds of `table` it is the scale at the nearest position inside. Where the table has
-    /// no scale, it is `otherwise` along both axes.
+    /// The scale of a tile. Outside the bounds of `table`, it is the scale at the nearest position
+    /// inside. Where the table has no scale, it is `otherwise` along both axes.
     #[must_use]
     pub fn of_tile(table: &CoordinateTable, tile: Bounds, otherwise: f64) -> Self {
         let known = table.bounds();
@@ -56,7 +56,7 @@ impl PlanScale {
         })
     }
 
-    /// Working metres across a segment of a road for each true metre across it, at its middle.
+    /// Working metres across a segment of a road per true metre across it, at its middle.
     #[must_use]
     pub fn across(&self, [[x, y], [to_x, to_y]]: [[f64; 2]; 2]) -> f64 {
         let middle = [f64::midpoint(x, to_x), f64::midpoint(y, to_y)];

@@ -1,46 +1,47 @@
-//! What the roads of a tile ask of its ground when they are placed.
+//! Properties of a tile's ground that are needed for placing its roads.
 
-use corniche_drape::{RoadPiece, near_ground, road_bed};
-use corniche_geom::{Bounds, GridFrame, TileId, Work};
+use corniche_drape::{GroundSegment, near_ground, road_bed};
+use corniche_geom::{Bounds, GridFrame, StepBudget, TileId};
 use corniche_tin::Surface;
 
 use super::{
     Bed, GroundLine,
-    roads::Piece,
+    roads::LinePiece,
     slopes::{Plane, Slopes},
 };
 
-/// Answers what the roads of a tile need to know of its ground when they are placed.
+/// Computes the properties of a tile's ground that are needed for placing its roads.
 ///
-/// This is computed when a tile is decoded. It is not stored, because it follows from what is stored and takes only a few
-/// microseconds a segment.
-pub(crate) struct Relief<'a> {
+/// They are computed when a tile is decoded. They are not stored, because they follow from stored
+/// data and take only a few microseconds per segment.
+pub(crate) struct RoadRelief<'a> {
     frame: &'a GridFrame,
     /// `None` without ground or without roads.
     surface: Option<&'a Surface>,
     tile: Bounds,
-    /// The distances within which the bounds of a bed hold; see [`Bed::reaches_m`].
+    /// The distances within which the bounds of a bed apply; see [`Bed::reaches_m`].
     reaches_m: [f64; 3],
-    /// When too much was done, answers are made up: whoever counts must look at it in the end.
-    work: &'a Work,
+    /// After too much work, results are invalid: the caller must check the budget at the end.
+    work: &'a StepBudget,
 }
 
-impl<'a> Relief<'a> {
+impl<'a> RoadRelief<'a> {
     /// The ground of tile `id`, whose roads are drawn up to `width_margin_m` wide to each side.
     pub(crate) fn new(
         id: TileId,
         surface: Option<&'a Surface>,
         frame: &'a GridFrame,
         width_margin_m: f64,
-        work: &'a Work,
+        work: &'a StepBudget,
     ) -> Self {
         let tile = frame.tile_bounds(id);
         let reaches_m = Bed::reaches_m([tile.width(), tile.height()], width_margin_m);
         Self { frame, surface, tile, reaches_m, work }
     }
 
-    /// The range of true heights of the ground beneath a segment in plan, and how many metres it grows per metre away from it;
-    /// `None` when there is no ground within [`NearHeights::reach_m`].
+    /// The range of true heights of the ground below a segment in plan, and how many metres it
+    /// grows per metre away from the segment; `None` if there is no ground within
+    /// [`NearHeights::reach_m`].
     pub(crate) fn near(&self, ends_m: [[f64; 2]; 2]) -> Option<([f64; 2], f64)> {
         self.work.check().ok()?;
         let ends = ends_m.map(|at| self.frame.fraction_of_position(at));
@@ -50,21 +51,23 @@ impl<'a> Relief<'a> {
         Some((found.range_m, found.rise_m / self.frame.lattice_step_m()))
     }
 
-    /// The ground for roads that are much wider than a cell; `None` without ground or without lines.
+    /// The ground for roads that are much wider than a cell; `None` without ground or without
+    /// lines.
     pub(crate) fn wide(&self, lines: &[GroundLine]) -> Option<Slopes> {
         let surface = self.surface.filter(|_| !lines.is_empty())?;
         Some(Slopes::of_surface(surface, self.tile, self.frame))
     }
 
-    /// The ground beside a piece of a road; `wide` is the same ground for wide roads. Without ground the bed is level.
-    pub(crate) fn bed(&self, piece: &Piece, wide: Option<&Slopes>) -> Bed {
+    /// The ground next to a piece of a road; `wide` is the same ground for wide roads. Without
+    /// ground the bed is level.
+    pub(crate) fn bed(&self, piece: &LinePiece, wide: Option<&Slopes>) -> Bed {
         let (Some(surface), Some(wide), Ok(())) = (self.surface, wide, self.work.check()) else {
             return Bed::default();
         };
         let step_m = self.frame.lattice_step_m();
         let [[x, y, height_m], [_, _, end_height_m]] = piece.ends_m;
         let (direction, length_m) = (piece.direction(), piece.length_m());
-        let road_piece = RoadPiece {
+        let road_piece = GroundSegment {
             start: self.frame.fraction_of_position([x, y]),
             direction,
             length: length_m / step_m,
@@ -86,17 +89,15 @@ impl<'a> Relief<'a> {
             let corners_m = corners(piece, reach_m);
             if k > 0 {
                 let found = wide.leaving(&plane, corners_m);
-                // The ground of a narrower strip is also ground of the wider one.
+                // A wider strip includes the ground of the narrower one.
                 most_m[k] = [0, 1].map(|side| found[side].max(most_m[k - 1][side]));
             }
-            let Bounds { min_x, min_y, max_x, max_y } = self.tile;
-            leaves_tile[k] = corners_m
-                .iter()
-                .any(|[x, y]| !(min_x..=max_x).contains(x) || !(min_y..=max_y).contains(y));
+            leaves_tile[k] = corners_m.iter().any(|at| !self.tile.contains(*at));
         }
         for (most_m, leaves_tile) in most_m.iter_mut().zip(leaves_tile) {
             if leaves_tile {
-                // Nothing is known of the neighbour's ground. It is assumed to be as rough as this tile's, from the border on.
+                // The neighbour's ground is unknown. It is assumed to be as rough as this tile's,
+                // from the border on.
                 *most_m = [2.0 * most_m[0].max(most_m[1]); 2];
             }
         }
@@ -112,7 +113,7 @@ impl<'a> Relief<'a> {
 }
 
 /// The corners of the rectangle around a piece of a road and its caps, counter-clockwise.
-fn corners(piece: &Piece, reach_m: f64) -> [[f64; 2]; 4] {
+fn corners(piece: &LinePiece, reach_m: f64) -> [[f64; 2]; 4] {
     let ([x, y, _], [east, north]) = (piece.ends_m[0], piece.direction());
     let beyond_m = piece.has_caps.map(|has_cap| if has_cap { reach_m } else { 0.0 });
     let (first_m, last_m) = (-beyond_m[0], piece.length_m() + beyond_m[1]);

@@ -1,4 +1,4 @@
-//! The roads of a tile: lines as the package has them, cut into the pieces that are uploaded.
+//! The roads of a tile: lines as in the package, cut into the pieces that are uploaded.
 
 mod cut;
 mod dashes;
@@ -18,12 +18,13 @@ mod unmapped;
 mod volumes;
 
 pub(crate) use self::{
-    cut::OffGround,
+    cut::OffGroundRoads,
     dashes::dash_of_segment_m,
+    decks::GroundNet,
     ends::RoadEnd,
     ground_beside::{Bed, NearHeights},
     parts::{InNet, OPEN_M},
-    segments::Piece,
+    segments::LinePiece,
 };
 pub use self::{
     dashes::DashPlace,
@@ -35,9 +36,6 @@ pub use self::{
     segments::{RoadSegment, RoadSegments},
     volumes::{RoadVolume, RoadVolumes},
 };
-
-#[cfg(test)]
-pub(crate) use self::decks::GroundNet;
 
 #[cfg(test)]
 #[path = "roads_tests.rs"]

@@ -1,13 +1,13 @@
-//! Pieces of roads are in order of class, and lines end on the border where they were cut.
+//! Pieces of roads are in order of class, and lines end at the border where they were cut.
 
 #![expect(clippy::float_cmp, reason = "these numbers are exact")]
 
-use corniche_geom::{Bounds, Work};
+use corniche_geom::{Bounds, StepBudget};
 use corniche_roads::FunctionalRoadClass;
 
 use super::{
     super::PlanScale,
-    ends::{Side, ground_ends, plan_ends},
+    ends::{TileSide, ground_ends, plan_ends},
     *,
 };
 
@@ -22,9 +22,9 @@ fn ground_line(number: u8, points_m: Vec<[f64; 3]>) -> GroundLine {
 }
 
 fn segments(lines: &[GroundLine]) -> RoadSegments {
-    let work = Work::unlimited();
+    let work = StepBudget::unlimited();
     let none = TileLines::default();
-    let decks = OffGround::new(&none, TILE, &work);
+    let decks = OffGroundRoads::new(&none, TILE, &work);
     let (lines, _) = InNet::all_of(lines, &decks, 0.0);
     RoadSegments::of_lines(&lines, &decks, [10.0, 20.0, 1.0], &PlanScale::default(), |_| {
         Bed::default()
@@ -54,7 +54,7 @@ fn pieces_of_a_segment_have_caps_at_its_ends_only() {
     let line = GroundLine { sources_m, ..ground_line(2, points_m) };
     let roads = segments(&[line]);
     let found: Vec<_> = roads.all().iter().map(|piece| (piece.shares, piece.has_caps)).collect();
-    // The last line ends halfway along its segment, at the tile's border or beside a void.
+    // The last line ends halfway along its segment, at the tile's border or at a void.
     let expected =
         [([0.0, 0.25], [true, false]), ([0.25, 1.0], [false, true]), ([0.0, 0.5], [true, true])];
     assert_eq!(found, expected);
@@ -72,9 +72,9 @@ fn volumes_are_relative_sorted_by_class_and_never_lower_or_shallower_than_the_gr
     };
     let lines = [line(5, [10.0, 20.0], [7.1, 9.3]), line(2, [20.0, 20.0], [1.0, 2.0])];
     let near = |[start, _]: [[f64; 2]; 2]| (start == [10.0, 20.0]).then_some(([8.1, 8.3], 0.7));
-    let work = Work::unlimited();
+    let work = StepBudget::unlimited();
     let none = TileLines::default();
-    let decks = OffGround::new(&none, TILE, &work);
+    let decks = OffGroundRoads::new(&none, TILE, &work);
     let (lines, _) = InNet::all_of(&lines, &decks, 8.0);
     let roads = RoadVolumes::new(&lines, &decks, [10.0, 20.0, 1.0], &PlanScale::default(), near);
     assert_eq!((roads.range_of(class(2)), roads.range_of(class(5))), (0..1, 1..2));
@@ -93,20 +93,23 @@ fn volumes_are_relative_sorted_by_class_and_never_lower_or_shallower_than_the_gr
 
 #[test]
 fn a_line_on_the_ground_ends_on_the_border_it_was_cut_at() {
-    let check = |points_m: Vec<[f64; 3]>, expected: &[(Side, f64)]| {
+    let check = |points_m: Vec<[f64; 3]>, expected: &[(TileSide, f64)]| {
         let ends = ground_ends([ground_line(4, points_m)].iter(), TILE, &PlanScale::default());
         let found: Vec<_> = ends.iter().map(|end| (end.side, end.height_range_m[0])).collect();
         assert_eq!(found, expected);
     };
-    check(vec![[0.0, 50.0, 3.0], [40.0, 50.0, 4.0]], &[(Side::West, 3.0)]);
-    check(vec![[10.0, 0.0, 3.0], [100.0, 50.0, 4.0]], &[(Side::South, 3.0), (Side::East, 4.0)]);
-    check(vec![[10.0, 99.0, 3.0], [40.0, 100.0, 4.0]], &[(Side::North, 4.0)]);
+    check(vec![[0.0, 50.0, 3.0], [40.0, 50.0, 4.0]], &[(TileSide::West, 3.0)]);
+    check(
+        vec![[10.0, 0.0, 3.0], [100.0, 50.0, 4.0]],
+        &[(TileSide::South, 3.0), (TileSide::East, 4.0)],
+    );
+    check(vec![[10.0, 99.0, 3.0], [40.0, 100.0, 4.0]], &[(TileSide::North, 4.0)]);
     check(vec![[10.0, 10.0, 3.0], [0.0, 50.0, 3.5], [40.0, 50.0, 4.0]], &[]);
 }
 
 #[test]
 fn a_line_in_plan_crosses_the_border_where_it_passes_to_the_other_side() {
-    let check = |points_m: Vec<[f64; 2]>, expected: &[(Side, [f64; 2])]| {
+    let check = |points_m: Vec<[f64; 2]>, expected: &[(TileSide, [f64; 2])]| {
         let ground_range_m = vec![[1.0, 2.0]; points_m.len() - 1];
         let line = PlanLine {
             dashes: None,
@@ -119,11 +122,11 @@ fn a_line_in_plan_crosses_the_border_where_it_passes_to_the_other_side() {
         let found: Vec<_> = ends.iter().map(|end| (end.side, end.at_m)).collect();
         assert_eq!(found, expected);
     };
-    check(vec![[-10.0, 40.0], [10.0, 60.0]], &[(Side::West, [0.0, 50.0])]);
-    check(vec![[-10.0, 40.0], [0.0, 50.0], [10.0, 60.0]], &[(Side::West, [0.0, 50.0])]);
+    check(vec![[-10.0, 40.0], [10.0, 60.0]], &[(TileSide::West, [0.0, 50.0])]);
+    check(vec![[-10.0, 40.0], [0.0, 50.0], [10.0, 60.0]], &[(TileSide::West, [0.0, 50.0])]);
     check(
         vec![[50.0, 150.0], [50.0, -50.0]],
-        &[(Side::South, [50.0, 0.0]), (Side::North, [50.0, 100.0])],
+        &[(TileSide::South, [50.0, 0.0]), (TileSide::North, [50.0, 100.0])],
     );
     check(vec![[-10.0, 140.0], [10.0, 160.0]], &[]);
     check(vec![[20.0, 20.0], [60.0, 60.0]], &[]);

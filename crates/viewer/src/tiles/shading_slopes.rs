@@ -7,13 +7,14 @@ use serde::{Deserialize, Serialize};
 
 use super::blocks;
 
-/// The slopes of the ground at all nodes of a tile, as texels: rise in metres per metre east and north, row 0 in the north.
+/// The slopes of the ground at all nodes of a tile, as texels: rise in metres per metre east and
+/// north, row 0 in the north.
 ///
-/// Slopes and not normals, so that a stretched ground needs one product; both are mixed along a straight line between nodes. Half
-/// precision is exact to a 2048th of the slope.
+/// The texels are slopes instead of normals, so that exaggeration needs only one product; both are
+/// interpolated linearly between nodes. Half precision is exact to a 2048th of the slope.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ShadingSlopes {
-    /// Bits of half-precision numbers.
+    /// Bits of half-precision slopes.
     #[serde(with = "blocks::plain")]
     pub(crate) texels: Vec<[u16; 2]>,
     /// 255 where a node is water, else 0; empty without water.
@@ -21,16 +22,18 @@ pub(crate) struct ShadingSlopes {
     pub(crate) water: Vec<u8>,
 }
 
-/// Steeper slopes are cut: half precision ends at 65504.
+/// Steeper slopes are clamped: half precision ends at 65504.
 const STEEPEST: f64 = 32_768.0;
 
 impl ShadingSlopes {
-    /// Texels on a side.
+    /// Number of texels on a side.
     pub(crate) const SIDE: usize = TILE_NODES;
 
-    /// The slopes of a relief whose nodes are a `cell` apart. Nodes without height are level; no pixel of the ground reads them.
+    /// The slopes of a relief with nodes at a distance of `cell`. Nodes without height are level;
+    /// no pixel of the ground reads them.
     pub(crate) fn new(relief: &Relief, cell: Cell) -> Self {
-        // By way of f32, as some processors do it anyway: else it would be rounded twice on these and once on others.
+        // Converted by way of f32, as some processors do anyway: otherwise slopes would be rounded
+        // twice on these and once on others.
         let half = |slope: f64| f16::from_f32(slope.clamp(-STEEPEST, STEEPEST) as f32).to_bits();
         let texels = relief.slopes(cell).map(|slopes| slopes.map(half)).collect();
         let water = relief.water().unwrap_or_default();

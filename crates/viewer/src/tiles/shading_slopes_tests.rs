@@ -1,4 +1,4 @@
-//! Texels of slopes are the slopes of the ground.
+//! The texels of slopes equal the slopes of the ground.
 
 use corniche_geom::HeightGrid;
 
@@ -6,7 +6,7 @@ use super::*;
 
 const CELL: Cell = Cell { east_m: 10.0, north_m: 20.0 };
 
-/// A slope that grows to the east and falls to the north, with a hole.
+/// Ground that rises to the east more and more and falls to the north, with a hole.
 fn relief() -> Relief {
     let heights = HeightGrid::from_fn(259, 259, |column, row| {
         if (100..110).contains(&column) && (100..110).contains(&row) {
@@ -25,7 +25,7 @@ fn texels_are_the_slopes_of_the_ground() {
         for column in 0..257 {
             let [east, north] =
                 slopes.texels[row * 257 + column].map(|bits| f16::from_bits(bits).to_f64());
-            // Near the hole, heights are less exact: what fills it is not smooth.
+            // Near the hole, heights are less exact: its filling is not smooth.
             if (92..116).contains(&column) && (92..116).contains(&row) {
                 continue;
             }

@@ -1,7 +1,8 @@
-//! Which part of a segment lies in a rectangle along the axes, so that only that part is walked.
+//! The part of a segment inside an axis-aligned rectangle, so that only that part is processed.
 
-/// Between which shares of its length a segment may lie in a rectangle, lowest and highest along each axis; the second is below the first
-/// if nowhere.
+/// The shares of a segment's length between which it may be in a rectangle, given by the lowest and
+/// highest coordinate along each axis. The second share is below the first if the segment is
+/// outside.
 pub(crate) fn shares_in(from: [f64; 2], way: [f64; 2], around: [[f64; 2]; 2]) -> [f64; 2] {
     let mut shares = [0.0_f64, 1.0];
     for ((start, [low, high]), step) in from.into_iter().zip(around).zip(way) {

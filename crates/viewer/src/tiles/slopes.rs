@@ -1,4 +1,5 @@
-//! The ground of a tile in squares: the mean slope of each, and how far the ground departs from it.
+//! The ground of a tile in squares: the mean slope of each square, and how far the ground deviates
+//! from it.
 
 use std::ops::RangeInclusive;
 
@@ -8,14 +9,14 @@ use corniche_tin::Surface;
 /// Squares along each side of a tile.
 const SIDE: usize = 128;
 
-/// A plane over the working CRS; heights are true ones.
+/// A plane over the working CRS; heights are true heights.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Plane {
-    /// A position on it.
+    /// A point of the plane.
     pub(crate) at_m: [f64; 2],
-    /// Its height there.
+    /// Height of the plane at that point.
     pub(crate) height_m: f64,
-    /// Metres that it rises per metre east and per metre north.
+    /// Rise of the plane in metres per metre east and per metre north.
     pub(crate) gradient: [f64; 2],
 }
 
@@ -27,22 +28,23 @@ impl Plane {
     }
 }
 
-/// The ground of a tile in squares of two cells: the mean slope of each, and how far its ground departs from that slope.
+/// The ground of a tile in squares of two cells: the mean slope of each square, and how far its
+/// ground deviates from that slope.
 ///
-/// From this follow bounds on how far the ground around a road departs from a plane, for roads as wide as many triangles.
-/// The bounds are no tighter than squares of two cells allow.
+/// These data give bounds on how far the ground around a road deviates from a plane, for roads as
+/// wide as many triangles. The bounds are no tighter than squares of two cells allow.
 pub(crate) struct Slopes {
     tile: Bounds,
     side_m: [f64; 2],
-    /// Row by row from the south; `None` without ground.
+    /// The squares, row by row from the south; `None` without ground.
     squares: Vec<Option<Square>>,
 }
 
 #[derive(Debug, Clone, Copy)]
 struct Square {
-    /// The slope of a plane that has the height 0 in the middle of the square.
+    /// Slope of a plane that has height 0 in the middle of the square.
     gradient: [f64; 2],
-    /// The lowest and the highest ground, measured from that plane.
+    /// The lowest and the highest ground, relative to that plane.
     range_m: [f64; 2],
 }
 
@@ -68,7 +70,7 @@ impl Slopes {
                     .map(|rise_m| rise_m / frame.lattice_step_m()),
             })
             .collect();
-        // First the mean slope of each square, then how far its ground departs from it.
+        // First the mean slope of each square, then how far its ground deviates from the slope.
         let mut sums = vec![([0.0; 2], 0.0); SIDE * SIDE];
         for triangle in &triangles {
             slopes.visit(triangle, |square, [low, high]| {
@@ -96,16 +98,11 @@ impl Slopes {
         slopes
     }
 
-    /// The most by which the ground is below and above a plane within a rectangle that may be rotated; its corners are given
-    /// in order around it. Both are 0 without ground there.
+    /// Maximum distance of the ground below and above a plane within a rectangle that may be
+    /// rotated; its corners are given in order around it. Both are 0 without ground there.
     pub(crate) fn leaving(&self, plane: &Plane, corners_m: [[f64; 2]; 4]) -> [f64; 2] {
-        let (low, high) = corners_m.iter().fold(
-            ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]),
-            |(low, high), at| {
-                ([0, 1].map(|k| at[k].min(low[k])), [0, 1].map(|k| at[k].max(high[k])))
-            },
-        );
-        let [columns, rows] = self.ranges(low, high);
+        let Bounds { min_x, min_y, max_x, max_y } = Bounds::around(&corners_m);
+        let [columns, rows] = self.ranges([min_x, min_y], [max_x, max_y]);
         let half_m = self.side_m.map(|side_m| side_m / 2.0);
         let mut leaving_m = [0.0_f64; 2];
         for row in rows {
@@ -126,8 +123,8 @@ impl Slopes {
         leaving_m
     }
 
-    /// Visits each square that the bounding box of a triangle meets, with the south-west and the north-east corner of their
-    /// intersection.
+    /// Visits each square that the bounding box of a triangle intersects, with the south-west and
+    /// the north-east corner of their intersection.
     fn visit(&self, triangle: &Triangle, mut visit: impl FnMut(usize, [[f64; 2]; 2])) {
         let [a, b, c] = triangle.corners_m;
         let low = [0, 1].map(|axis| a[axis].min(b[axis]).min(c[axis]));
@@ -151,7 +148,7 @@ impl Slopes {
         let origin = [self.tile.min_x, self.tile.min_y];
         [0, 1].map(|axis| {
             let index = |at_m: f64| {
-                // The cast turns what is below 0 into 0.
+                // The cast turns negative values into 0.
                 (((at_m - origin[axis]) / self.side_m[axis]) as usize).min(SIDE - 1)
             };
             index(low[axis])..=index(high[axis])
@@ -166,8 +163,8 @@ impl Slopes {
 }
 
 impl Triangle {
-    /// The lowest and the highest height above a plane that the triangle may have in a box. Bounds are the triangle's own
-    /// plane in that box, and the heights of its corners.
+    /// The lowest and the highest height above a plane that the triangle may have in a box. The
+    /// bounds come from the triangle's own plane in that box, and from the heights of its corners.
     fn above(&self, plane: &Plane, [low, high]: [[f64; 2]; 2]) -> [f64; 2] {
         let above_m = |[x, y, height_m]: [f64; 3]| height_m - plane.height_at_m([x, y]);
         let [a, b, c] = self.corners_m.map(above_m);
@@ -183,8 +180,8 @@ impl Triangle {
     }
 }
 
-/// Whether a square and a rectangle that may be rotated meet. It is false only if a side of the rectangle separates them, so
-/// it is true for some that do not meet.
+/// Whether a square and a rectangle that may be rotated may intersect. The result is false only if
+/// a side of the rectangle separates them, so it is true for some that do not intersect.
 fn may_meet(middle: [f64; 2], half_m: [f64; 2], corners_m: [[f64; 2]; 4]) -> bool {
     (0..4).all(|k| {
         let ([x, y], [to_x, to_y]) = (corners_m[k], corners_m[(k + 1) % 4]);

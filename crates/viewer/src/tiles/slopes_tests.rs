@@ -1,4 +1,4 @@
-//! No ground departs from a plane by more than the bounds from its slopes.
+//! The ground deviates from a plane by at most the bounds from its slopes.
 
 use corniche_geom::{Cell, NodeIndex, TILE_CELLS, TileId};
 use corniche_tin::{Placement, Tin, TinVertex};
@@ -8,8 +8,8 @@ use super::*;
 
 const STEP: u16 = 8;
 
-/// A tile with a vertex at every eighth node. `height_q` gives heights by column and row of the vertices, in steps of half a
-/// metre.
+/// Returns a tile with a vertex at every eighth node. `height_q` returns heights by column and row
+/// of the vertices, in steps of half a metre.
 fn ground(height_q: impl Fn(u16, u16) -> i32) -> (GridFrame, Surface) {
     let frame = GridFrame::new(
         [0.5, 0.25],
@@ -34,8 +34,8 @@ fn ground(height_q: impl Fn(u16, u16) -> i32) -> (GridFrame, Surface) {
     (frame, Surface::new(&Tin::new(vertices, &triangles).unwrap(), placement))
 }
 
-/// The corners of a rectangle around a place, counter-clockwise. It is turned by an angle; `half_m` are half its length and
-/// half its width.
+/// Returns the corners of a rectangle around a point, counter-clockwise, rotated by an angle.
+/// `half_m` has half its length and half its width.
 fn turned([x, y]: [f64; 2], angle_rad: f64, half_m: [f64; 2]) -> [[f64; 2]; 4] {
     let (sin, cos) = angle_rad.sin_cos();
     [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[along, across]| {
@@ -45,7 +45,7 @@ fn turned([x, y]: [f64; 2], angle_rad: f64, half_m: [f64; 2]) -> [[f64; 2]; 4] {
 }
 
 proptest! {
-    /// No ground in a rectangle is farther from a plane than the bounds from the slopes.
+    /// The ground in a rectangle is never farther from a plane than the bounds from the slopes.
     #[test]
     fn no_ground_leaves_a_plane_by_more(
         seed in 0_i32..1000, steep in 1_i32..60, angle_rad in 0.0..6.3_f64,
@@ -66,7 +66,7 @@ proptest! {
             let at = frame.snap([at_m[0] + a * cos - b * sin, at_m[1] + a * sin + b * cos]).unwrap();
             let Some(triangle) = surface.locate(at) else { continue };
             let leaves_m = surface.height_at_point_m(triangle, at) - plane.height_at_m(frame.position_m(at));
-            // A place may be moved by up to a millimetre when it is placed on the lattice.
+            // Snapping to the lattice moves a point by up to a millimetre.
             prop_assert!(leaves_m <= above_m + 0.1 && -leaves_m <= below_m + 0.1, "{leaves_m} {below_m} {above_m}");
         }
     }
@@ -76,12 +76,14 @@ proptest! {
 fn a_plane_does_not_leave_itself() {
     let (frame, surface) = ground(|column, row| 64 * i32::from(column) - 32 * i32::from(row));
     let slopes = Slopes::of_surface(&surface, frame.tile_bounds(TileId::ROOT), &frame);
-    // The plane rises by 32 m for each 80 m eastwards and by 16 m for each 120 m northwards. In the south-west it is 32 rows
-    // of 16 m below sea level. Positions of cells are rounded to the lattice, by less than a millimetre.
+    // The plane rises by 32 m for each 80 m eastwards and by 16 m for each 120 m northwards. In the
+    // south-west it is 32 rows of 16 m below sea level. Positions of cells are rounded to the
+    // lattice, by less than a millimetre.
     let plane = Plane { at_m: [0.5, 0.25], height_m: -512.0, gradient: [0.4, 16.0 / 120.0] };
     let leaving_m = slopes.leaving(&plane, turned([1280.0, 1280.0], 0.3, [400.0, 100.0]));
     assert!(leaving_m.iter().all(|m| *m < 0.1), "{leaving_m:?}");
-    // A level plane of the same height in the south-west: eastwards the ground leaves it by at most 0.4 m for each metre.
+    // A level plane with the same height in the south-west: eastwards the ground deviates from it
+    // by at most 0.4 m per metre.
     let level = Plane { gradient: [0.0; 2], ..plane };
     let [below_m, above_m] = slopes.leaving(&level, turned([100.5, 0.25], 0.0, [100.0, 10.0]));
     assert!(

@@ -1,4 +1,4 @@
-//! The tiles that were loaded so far, for a picture that needs all of them at once.
+//! The tiles loaded so far, for a picture that needs all of them at once.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -10,38 +10,40 @@ use std::{
 use corniche_geom::{Bounds, TileId};
 use corniche_work::workers::in_order;
 
-use super::{LoadTileError, MapExtent, TileGeometry, TileSource};
-use crate::lod::{Drawn, GroundSummary, Node, Request, TileTree};
+use super::{CatalogTree, LoadTileError, MapExtent, TileGeometry, TileSource};
+use crate::lod::{DrawnTile, GroundSummary, TileTree};
 
-/// More tiles than these are not loaded to find out where roads are.
+/// Maximum number of tiles that are loaded to find out where roads are.
 const FEW_TILES: usize = 64;
 
-/// So many threads load tiles at most: more would compete with one that draws, each takes memory of its own, and far away all ask one server.
+/// Maximum number of loader threads: more would compete with the drawing thread, each needs memory
+/// of its own, and with a remote package all of them send requests to one server.
 pub const MOST_LOADERS: usize = 4;
 
-/// A tile is shaded with its own slopes and with those of so many tiles above it.
+/// Number of ancestors whose slopes shade a tile, besides its own slopes.
 pub(crate) const MOST_SLOPES_ABOVE: usize = 3;
 
-/// The tiles loaded so far. Of tiles that are only passed while tiles are chosen it holds errors and heights. Only in a page, where there are no threads, is
-/// their source one that threads cannot share.
+/// The tiles loaded so far. For tiles that are only visited during tile selection it holds errors
+/// and heights. Only in a web page, which has no threads, may the source be one that threads cannot
+/// share.
 pub struct TileStore<'a, S: ?Sized = dyn TileSource + Sync + 'a> {
     source: &'a S,
     tiles: BTreeMap<TileId, TileGeometry>,
     /// The summaries of all tiles that were read in any way.
     summaries: BTreeMap<TileId, Option<GroundSummary>>,
-    /// Tiles of which nothing but slopes is drawn.
+    /// Tiles of which only slopes are drawn.
     coarser: BTreeMap<TileId, TileGeometry>,
 }
 
-/// What is to be loaded of a tile for a picture.
+/// The part of a tile to load for a picture.
 #[derive(Debug, Clone, Copy)]
-enum Wanted {
+enum WantedTile {
     Whole(TileId),
     Slopes(TileId),
 }
 
 impl<'a, S: TileSource + ?Sized> TileStore<'a, S> {
-    /// An empty store of the tiles of `source`.
+    /// Creates an empty store for the tiles of `source`.
     #[must_use]
     pub fn new(source: &'a S) -> Self {
         Self {
@@ -52,18 +54,11 @@ impl<'a, S: TileSource + ?Sized> TileStore<'a, S> {
         }
     }
 
-    /// Loads the requested tiles, in order, if they are not loaded yet.
+    /// Loads a tile, unless it is loaded already.
     ///
     /// # Errors
-    /// At the first tile that cannot be read.
-    pub fn load(&mut self, requests: &[Request]) -> Result<(), LoadTileError> {
-        for request in requests {
-            self.load_tile(request.id)?;
-        }
-        Ok(())
-    }
-
-    fn load_tile(&mut self, id: TileId) -> Result<(), LoadTileError> {
+    /// When the tile cannot be read.
+    pub fn load(&mut self, id: TileId) -> Result<(), LoadTileError> {
         if !self.tiles.contains_key(&id) {
             let tile = self.source.load(id)?;
             self.summaries.insert(id, tile.summary);
@@ -72,10 +67,11 @@ impl<'a, S: TileSource + ?Sized> TileStore<'a, S> {
         Ok(())
     }
 
-    /// Reads errors and heights of a tile, if they are not known yet. For [`TileTree`] the tile is loaded then.
+    /// Reads errors and heights of a tile, unless they are known already. For [`TileTree`] the tile
+    /// then counts as loaded.
     ///
     /// # Errors
-    /// When it cannot be read.
+    /// When the tile cannot be read.
     pub fn pass(&mut self, id: TileId) -> Result<(), LoadTileError> {
         if !self.summaries.contains_key(&id) {
             self.summaries.insert(id, self.source.summary(id)?);
@@ -83,24 +79,30 @@ impl<'a, S: TileSource + ?Sized> TileStore<'a, S> {
         Ok(())
     }
 
-    /// What is missing of tiles that are drawn, and of those above them with whose slopes they are shaded.
-    fn missing(&self, drawn: &[Drawn]) -> Vec<Wanted> {
+    /// The tiles as a tree for tile selection, with the ground of the loaded and visited tiles.
+    #[must_use]
+    pub fn tree(&self) -> impl TileTree {
+        CatalogTree { catalog: self.source, ground_of: |id| self.summaries.get(&id).copied() }
+    }
+
+    /// The missing parts of drawn tiles, and of their ancestors whose slopes shade them.
+    fn missing(&self, drawn: &[DrawnTile]) -> Vec<WantedTile> {
         let whole = drawn.iter().map(|drawn| drawn.id).filter(|id| !self.tiles.contains_key(id));
-        let above = |drawn: &Drawn| {
+        let above = |drawn: &DrawnTile| {
             iter::successors(drawn.id.parent(), |id| id.parent()).take(MOST_SLOPES_ABOVE)
         };
         let above: BTreeSet<TileId> = drawn.iter().flat_map(above).collect();
         let slopes = above.into_iter().filter(|id| self.with_slopes(*id).is_none());
-        whole.map(Wanted::Whole).chain(slopes.map(Wanted::Slopes)).collect()
+        whole.map(WantedTile::Whole).chain(slopes.map(WantedTile::Slopes)).collect()
     }
 
-    /// Whether the tile or anything beneath it exists.
+    /// Whether the tile or any descendant exists.
     #[must_use]
     pub fn exists(&self, id: TileId) -> bool {
         self.source.exists(id)
     }
 
-    /// How many tiles were read, in whole or in part.
+    /// Number of tiles that were read, in whole or in part.
     #[must_use]
     pub fn len(&self) -> usize {
         self.summaries.len()
@@ -112,7 +114,7 @@ impl<'a, S: TileSource + ?Sized> TileStore<'a, S> {
         self.summaries.is_empty()
     }
 
-    /// A tile of which at least the slopes are loaded.
+    /// A tile whose slopes, at least, are loaded.
     #[must_use]
     pub fn with_slopes(&self, id: TileId) -> Option<&TileGeometry> {
         self.tiles.get(&id).or_else(|| self.coarser.get(&id))
@@ -124,8 +126,8 @@ impl<'a, S: TileSource + ?Sized> TileStore<'a, S> {
         self.tiles.get(&id)
     }
 
-    /// The ground of the root tile, of which it reads no more: the lowest and highest true height of all ground, and the error of the
-    /// coarsest ground. `None` without any ground.
+    /// The ground of the root tile: the lowest and highest true height of all ground, and the error
+    /// of the coarsest ground. Reads nothing else of the root. `None` without any ground.
     ///
     /// # Errors
     /// When the root cannot be read.
@@ -137,24 +139,25 @@ impl<'a, S: TileSource + ?Sized> TileStore<'a, S> {
         Ok(self.summaries.get(&TileId::ROOT).copied().flatten())
     }
 
-    /// What a first view shows: where the roads of the coarsest level with roads are, else all of the data, whose rectangle is
-    /// `data`. Loads the tiles down to that level, as long as they are few. `None` without any ground.
+    /// The extent of the first view: the roads of the coarsest level with roads, otherwise all of
+    /// the data, whose rectangle is `data`. Loads the tiles down to that level, as long as they are
+    /// few. `None` without any ground.
     ///
     /// # Errors
     /// When a tile cannot be read.
     pub fn map_extent(&mut self, data: Bounds) -> Result<Option<MapExtent>, LoadTileError> {
         let Some(ground) = self.coarsest_ground()? else { return Ok(None) };
-        // Without roads nothing tells where they are, and all levels would be searched for them.
+        // Without roads all levels would be searched for them in vain.
         let mut level = if self.source.may_have_roads() { vec![TileId::ROOT] } else { Vec::new() };
         while !level.is_empty() && level.len() <= FEW_TILES {
             for id in &level {
-                self.load_tile(*id)?;
+                self.load(*id)?;
             }
             let tiles: Vec<&TileGeometry> = level.iter().filter_map(|id| self.get(*id)).collect();
             if let Some(extent) = MapExtent::of_roads(&tiles, data) {
                 return Ok(Some(extent));
             }
-            if level[0].z() == self.max_level() {
+            if level[0].z() == self.source.frame().max_level() {
                 break;
             }
             level = level.into_iter().flat_map(TileId::children).collect();
@@ -163,13 +166,14 @@ impl<'a, S: TileSource + ?Sized> TileStore<'a, S> {
         Ok(Some(MapExtent::of_data(data, ground.height_range_m)))
     }
 
-    /// True height of the ground at a position, from the finest tile that has ground there; loads it.
+    /// True height of the ground at a position, from the finest tile that has ground there, which
+    /// it loads.
     ///
     /// # Errors
     /// When a tile cannot be read.
     pub fn ground_height_m(&mut self, at: [f64; 2]) -> Result<Option<f64>, LoadTileError> {
         for id in self.source.tiles_at(at).into_iter().rev() {
-            self.load_tile(id)?;
+            self.load(id)?;
             let height_m = self.get(id).and_then(|tile| tile.ground_height_m(at));
             if height_m.is_some() {
                 return Ok(height_m);
@@ -180,21 +184,21 @@ impl<'a, S: TileSource + ?Sized> TileStore<'a, S> {
 }
 
 impl<S: TileSource + Sync + ?Sized> TileStore<'_, S> {
-    /// Loads tiles that are drawn, and the slopes of those tiles above them that they are shaded with, by several threads. `check` is asked before the
-    /// first and after each.
+    /// Loads the drawn tiles, and the slopes of the ancestors that shade them, with several
+    /// threads. `check` is called before the first tile and after each.
     ///
     /// # Errors
-    /// When one of them cannot be read, or `check` fails.
+    /// When a tile cannot be read, or `check` fails.
     pub fn load_drawn<E: From<LoadTileError> + Send>(
         &mut self,
-        drawn: &[Drawn],
+        drawn: &[DrawnTile],
         check: impl Fn() -> Result<(), E>,
     ) -> Result<(), E> {
         let (source, wanted) = (self.source, self.missing(drawn));
         let processors = thread::available_parallelism().map_or(1, NonZeroUsize::get);
         let load = |wanted| match wanted {
-            Wanted::Whole(id) => source.load(id),
-            Wanted::Slopes(id) => source.load_slopes(id),
+            WantedTile::Whole(id) => source.load(id),
+            WantedTile::Slopes(id) => source.load_slopes(id),
         };
         check()?;
         in_order(
@@ -204,32 +208,14 @@ impl<S: TileSource + Sync + ?Sized> TileStore<'_, S> {
             |(), index| Ok(load(wanted[index])?),
             |index, tile| {
                 let (tiles, id) = match wanted[index] {
-                    Wanted::Whole(id) => (&mut self.tiles, id),
-                    Wanted::Slopes(id) => (&mut self.coarser, id),
+                    WantedTile::Whole(id) => (&mut self.tiles, id),
+                    WantedTile::Slopes(id) => (&mut self.coarser, id),
                 };
                 self.summaries.insert(id, tile.summary);
                 tiles.insert(id, tile);
                 check()
             },
         )
-    }
-}
-
-impl<S: TileSource + ?Sized> TileTree for TileStore<'_, S> {
-    fn node(&self, id: TileId) -> Node {
-        match self.summaries.get(&id) {
-            Some(summary) => Node::Loaded(*summary),
-            None if self.source.exists(id) => Node::Listed,
-            None => Node::Absent,
-        }
-    }
-
-    fn plan_bounds(&self, id: TileId) -> Bounds {
-        self.source.frame().tile_bounds(id)
-    }
-
-    fn max_level(&self) -> u8 {
-        self.source.frame().max_level()
     }
 }
 

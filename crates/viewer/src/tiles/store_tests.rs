@@ -1,4 +1,4 @@
-//! The tiles of a picture are loaded once each, by several threads, and no more of them than it needs.
+//! The tiles of a picture are loaded once each, by several threads, and only those that it needs.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -8,7 +8,7 @@ use std::{
 };
 
 use corniche_geom::{GridFrame, NodeIndex};
-use corniche_tileset::Terrain;
+use corniche_tileset::TileTerrain;
 use corniche_tin::{Tin, TinVertex};
 
 use super::*;
@@ -16,7 +16,8 @@ use crate::tiles::{TileCatalog, TileLines};
 
 const LEVELS: u8 = 2;
 
-/// Flat ground in all tiles of three levels, without a road. It counts how often it is asked, and some tiles are damaged.
+/// Flat ground in all tiles of three levels, without a road. It counts its requests, and some tiles
+/// are damaged.
 struct Counted {
     frame: GridFrame,
     may_have_roads: bool,
@@ -37,7 +38,7 @@ impl Counted {
         }
     }
 
-    /// How many tiles were loaded, whole and for their slopes.
+    /// Returns how many tiles were loaded completely, and how many for their slopes.
     fn counts(&self) -> [usize; 2] {
         [&self.loaded, &self.slopes].map(|count| count.load(Ordering::SeqCst))
     }
@@ -48,7 +49,7 @@ impl Counted {
         }
         let vertex = |row, column| TinVertex { row, column, height_q: 100 };
         let corners = vec![vertex(0, 0), vertex(0, 256), vertex(256, 0), vertex(256, 256)];
-        let terrain = Terrain {
+        let terrain = TileTerrain {
             tin: Tin::new(corners, &[[0, 2, 1], [1, 2, 3]]).unwrap(),
             normals: vec![[0, 0]; 4],
             geometric_error_m: 1.0,
@@ -89,12 +90,12 @@ impl TileSource for Counted {
     }
 }
 
-fn drawn(z: u8, x: u32, y: u32) -> Drawn {
-    Drawn { id: TileId::new(z, x, y).unwrap(), skirt_depth_m: 0.0 }
+fn drawn(z: u8, x: u32, y: u32) -> DrawnTile {
+    DrawnTile { id: TileId::new(z, x, y).unwrap(), skirt_depth_m: 0.0 }
 }
 
 /// All tiles of the finest level, row by row.
-fn finest() -> Vec<Drawn> {
+fn finest() -> Vec<DrawnTile> {
     (0..4).flat_map(|y| (0..4).map(move |x| drawn(LEVELS, x, y))).collect()
 }
 
@@ -122,7 +123,7 @@ fn tiles_that_are_drawn_and_slopes_above_them_are_loaded_once() {
     assert!(store.get(TileId::ROOT).is_none() && store.with_slopes(TileId::ROOT).is_some());
 }
 
-/// Whichever thread is faster, the error is that of the first damaged tile in the order of drawing.
+/// Whichever thread is faster, the error belongs to the first damaged tile in drawing order.
 #[test]
 fn the_first_damaged_tile_is_told() {
     let damaged = [9, 6, 12].map(|place| finest()[place].id).to_vec();
@@ -147,7 +148,7 @@ fn a_picture_that_is_stopped_loads_no_more() {
     let stopped = TileStore::new(&source).load_drawn(&finest(), || Err(Stopped));
     assert!(stopped.is_err());
     assert_eq!(source.counts(), [0, 0]);
-    // Stopped after the second tile.
+    // Loading is stopped after the second tile.
     let asked = Cell::new(0);
     let mut store = TileStore::new(&source);
     let stopped = store.load_drawn(&finest(), || {

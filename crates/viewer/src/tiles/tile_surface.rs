@@ -1,4 +1,4 @@
-//! The ground of a tile that is shown, on which lines can be laid later.
+//! The ground of a displayed tile, on which lines can be draped later.
 
 use corniche_geom::{GridFrame, MOST_TILE_STEPS};
 use corniche_tileset::Manifest;
@@ -7,17 +7,17 @@ use corniche_tin::{Tin, TinVertex};
 use super::{PlanScale, TileGeometry, TileSurface};
 
 impl TileSurface {
-    /// The ground of a tile that is shown; `None` if it has none.
+    /// The ground of a displayed tile; `None` if it has none.
     ///
-    /// It is made of the tile's triangles as they are drawn: their corners are nodes of the tile's raster, and their heights are whole steps,
-    /// so rounding gives the very TIN of the package back.
+    /// It is built from the drawn triangles: their corners are nodes of the tile's raster, and
+    /// their heights are whole steps, so rounding restores the exact TIN of the package.
     #[must_use]
-    pub fn of(tile: &TileGeometry, manifest: &Manifest) -> Option<Self> {
+    pub fn from_geometry(tile: &TileGeometry, manifest: &Manifest) -> Option<Self> {
         let tin = tin_of(tile, &manifest.frame, manifest.vertical.quantum_m)?;
         Some(Self::new(tile, &tin, manifest))
     }
 
-    /// The ground of a tile of a package, whose TIN is this one.
+    /// The ground of a tile of a package with this TIN.
     pub(crate) fn new(tile: &TileGeometry, tin: &Tin, manifest: &Manifest) -> Self {
         let Manifest { frame, coordinates, point_scale, .. } = manifest;
         Self {
@@ -33,7 +33,7 @@ impl TileSurface {
     }
 }
 
-/// The TIN that a tile was made of.
+/// Restores the TIN of a tile.
 fn tin_of(tile: &TileGeometry, frame: &GridFrame, quantum_m: f64) -> Option<Tin> {
     let mesh = &tile.ground;
     let triangles = mesh.indices[..mesh.surface_indices].as_chunks::<3>().0;

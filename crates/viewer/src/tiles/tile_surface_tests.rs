@@ -1,4 +1,4 @@
-//! A drawn tile gives its TIN back, and lines laid later lie on it.
+//! The TIN can be restored from a drawn tile, and lines that are draped later are on it.
 
 use corniche_testing::package::written;
 use corniche_tileset::{FilePackage, Sections};
@@ -6,7 +6,7 @@ use corniche_tileset::{FilePackage, Sections};
 use super::*;
 use crate::tiles::{LayerLine, LineMethods, PackageSource, TileSource as _};
 
-/// Vertices and triangles come back as the package has them.
+/// The restored vertices and triangles are those of the package.
 #[test]
 fn a_drawn_tile_gives_its_tin_back() {
     let folder = tempfile::tempdir().unwrap();
@@ -28,7 +28,7 @@ fn a_drawn_tile_gives_its_tin_back() {
     assert!(compared > 3, "{compared} tiles");
 }
 
-/// A line across the package lies on the ground of every tile of every level, to a centimetre.
+/// A line across the package is on the ground of every tile of every level, to a centimetre.
 #[test]
 fn a_drawn_line_lies_on_the_ground_of_every_level() {
     let folder = tempfile::tempdir().unwrap();
@@ -47,7 +47,7 @@ fn a_drawn_line_lies_on_the_ground_of_every_level() {
     let mut levels = std::collections::BTreeMap::new();
     for id in package.tile_ids().unwrap() {
         let tile = source.load(id).unwrap().without_roads();
-        let Some(surface) = TileSurface::of(&tile, manifest) else { continue };
+        let Some(surface) = TileSurface::from_geometry(&tile, manifest) else { continue };
         let laid = surface.lay(&lines, LineMethods::Geometry).unwrap();
         for segment in laid.segments.all() {
             let along = |axis: usize| {
@@ -56,7 +56,7 @@ fn a_drawn_line_lies_on_the_ground_of_every_level() {
             };
             let height_m = f64::from(segment.height_in_tile) + tile.reference_m[2];
             let ground_m = tile.ground_height_m([along(0), along(1)]).unwrap();
-            // In the plan positions of f32 a steep slope has some millimetres of height.
+            // On a steep slope, rounding plan positions to f32 changes heights by some millimetres.
             assert!((height_m - ground_m).abs() <= 0.01, "{id}: {height_m} over {ground_m}");
             *levels.entry(id.z()).or_insert(0) += 1;
         }

@@ -1,4 +1,4 @@
-//! Every triangle that holds a place is found in the grid.
+//! Every triangle that contains a point is found in the grid.
 
 use corniche_geom::barycentric;
 use proptest::prelude::*;
@@ -32,8 +32,8 @@ fn holds([a, b, c]: Triangle, at: [f64; 2]) -> bool {
 }
 
 proptest! {
-    /// The cell of a place lists every triangle that contains the place, in the order of the surface. This also holds on
-    /// borders of cells and of the surface.
+    /// The cell of a point lists every triangle that contains the point, in the order of the
+    /// surface. This also applies to borders of cells and of the surface.
     #[test]
     fn every_triangle_that_holds_a_place_is_found_there(
         center in prop::array::uniform2(-99.0..99.0_f32),
@@ -59,7 +59,7 @@ proptest! {
         for triangle in &expected {
             prop_assert!(near.contains(triangle), "{triangle} at {at:?}");
         }
-        // They are also found along a line through the place.
+        // They are also found along a line through the point.
         for (from, to) in [([-150.0, at[1]], [150.0, at[1]]), ([at[0], 150.0], [at[0], -150.0])] {
             let met: Vec<u32> = grid.along(from, to).flat_map(|(_, near)| near).collect();
             for triangle in &expected {
@@ -72,7 +72,8 @@ proptest! {
 #[test]
 fn a_cell_holds_a_part_of_many_triangles_and_a_grid_of_none_is_empty() {
     let grid = TriangleGrid::new(fan([0.0, 0.0], 4000).into_iter());
-    // The worst case: all triangles are slivers. A cell then has at most those between the middle and one side of the rim.
+    // The worst case: all triangles are slivers. A cell then has at most those between the middle
+    // and one side of the rim.
     assert!(grid.at([90.0, 5.0]).len() < 1200, "{}", grid.at([90.0, 5.0]).len());
     let shares: Vec<f64> =
         grid.along([150.0, 3.0], [-150.0, 4.0]).map(|(share, _)| share).collect();

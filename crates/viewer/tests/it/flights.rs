@@ -1,4 +1,4 @@
-//! What flights report about the graphics card: the bytes of a tile and the times of the passes.
+//! Checks what flights report about the GPU: the bytes of a tile and the times of the passes.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "this is test code, helpers included")]
 
 use std::time::Instant;
@@ -17,7 +17,7 @@ use corniche_viewer::{
 };
 use glam::DVec3;
 
-/// The memory budget relies on the number of bytes that is computed before a tile is uploaded.
+/// The memory budget relies on the number of bytes computed before a tile is uploaded.
 #[test]
 fn a_tile_takes_as_many_bytes_as_told_before() {
     let Some(gpu) = gpu() else { return };
@@ -50,7 +50,7 @@ fn passes_take_some_time_and_no_more_than_the_frame() {
         let view = FrameView {
             camera: &camera,
             style: &style,
-            roads: RoadOptions::of(method),
+            roads: RoadOptions::for_method(method),
             exaggeration: 1.0,
             point_scale: 1.0,
             height_range_m: [90.0, 1910.0],
@@ -68,10 +68,14 @@ fn passes_take_some_time_and_no_more_than_the_frame() {
         let sum_ms = passes.total_ms();
         assert!(sum_ms <= frame_ms, "{passes:?} in {frame_ms} ms");
         assert!(passes.terrain_ms > 0.0 && passes.composite_ms > 0.0, "{passes:?}");
-        assert!(passes.areas_ms.abs() < f64::EPSILON, "no areas, no time: {passes:?}");
+        assert!(
+            passes.areas_ms.abs() < f64::EPSILON,
+            "without areas there is no time for areas: {passes:?}"
+        );
         passes
     };
-    // The timer can be used for many frames; the smallest of several times is the least disturbed by other programs.
+    // The timer can be used for many frames; the smallest of several times is least disturbed by
+    // other programs.
     let least_ms = |method| (0..5).map(|_| frame(method).roads_ms).fold(f64::INFINITY, f64::min);
     let [bare_ms, volumes_ms] = [RoadMethod::None, RoadMethod::ShadowVolumes].map(least_ms);
     assert!(bare_ms < volumes_ms, "roads take time: {volumes_ms} ms, without {bare_ms} ms");

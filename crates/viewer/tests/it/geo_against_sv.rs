@@ -1,19 +1,21 @@
-//! GEO against SV: in how many pixels do the two methods differ, over seeded views of whole packages?
+//! GEO against SV: in how many pixels do the two methods differ, over seeded views of whole
+//! packages?
 //!
 //! ```text
 //!  seed ──► place on a road, distance, heading, pitch ──► GEO ──┐
 //!                                                   └───► SV ───┴─► pixels whose labels differ, outside the band
 //! ```
 //!
-//! Pitch 0 to 85 degrees, distance 300 m to 30 km (even in its logarithm), any heading; 640 × 480 pixels, one sample
-//! each. A view counts when SV shows at least 1000 pixels of road. Pixels whose label the reference in f64 calls uncertain
-//! within 0.05 px are left out, as rounding to f32 decides them. The gate: no view differs in more than 0.3 % of SV's
-//! pixels of roads.
+//! Pitch 0 to 85 degrees, distance 300 m to 30 km (uniform in its logarithm), any heading; 640 ×
+//! 480 pixels, one sample each. A view counts if SV shows at least 1000 pixels of road. Pixels
+//! whose label the reference in f64 calls uncertain within 0.05 px are skipped, because rounding to
+//! f32 decides them. The gate: no view differs in more than 0.3 % of SV's pixels of roads.
 //!
-//! `CORNICHE_GEO_QUADS=level` looks at the paper's level quads instead of ours (its Fig. 15), and fails on nothing.
-//! Without packages a made-up country is used. `CORNICHE_TEST_PACKAGES` names packages (as in `PATH`),
-//! `CORNICHE_GEO_VIEWS` the number of views for each (10 without it). With `CORNICHE_GEO_REPORT` views above the
-//! gate are listed and the test does not fail on them: `scripts/geo-against-sv` does so for eight packages.
+//! `CORNICHE_GEO_QUADS=level` checks the paper's level quads instead of ours (its Fig. 15), and
+//! never fails. Without packages a synthetic country is used. `CORNICHE_TEST_PACKAGES` names
+//! packages (separated as in `PATH`), `CORNICHE_GEO_VIEWS` the number of views for each (default:
+//! 10). With `CORNICHE_GEO_REPORT`, views above the gate are listed and the test does not fail:
+//! `scripts/geo-against-sv` uses this for eight packages.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "this is test code, helpers included")]
 
 use crate::oracle::reference;
@@ -33,12 +35,12 @@ use corniche_viewer::{
 use self::{
     atlas::Atlas,
     support::{gpu, scene::Tile},
-    views::{Seen, View, Views},
+    views::{PixelAgreement, View, Views},
 };
 
-/// SV must show so many pixels of road, or a view does not count.
+/// Minimum number of road pixels in SV; views with fewer pixels do not count.
 const LEAST_PIXELS: usize = 1000;
-/// Most pixels in which GEO may differ, over SV's.
+/// Maximum share of SV's road pixels in which GEO may differ.
 const GATE: f64 = 0.003;
 
 const SEED: u64 = 9;
@@ -46,13 +48,13 @@ const SEED: u64 = 9;
 /// The result of all views of one package.
 struct Found {
     name: String,
-    /// By their share, least first.
-    views: Vec<(View, Seen)>,
+    /// The views, sorted by share, smallest first.
+    views: Vec<(View, PixelAgreement)>,
     tried: usize,
 }
 
 impl Found {
-    /// Looks at a package from `count` views.
+    /// Draws a package from `count` views.
     fn in_package(gpu: &corniche_viewer::gpu::Gpu, path: &Path, count: usize) -> Self {
         let source = PackageSource::open(path).unwrap();
         let mut atlas = Atlas::open(gpu, path, &source);
@@ -81,7 +83,7 @@ impl Found {
         100.0 * self.views[(quantile * last as f64).ceil() as usize].1.share()
     }
 
-    fn above(&self) -> impl Iterator<Item = &(View, Seen)> {
+    fn above(&self) -> impl Iterator<Item = &(View, PixelAgreement)> {
         self.views.iter().rev().filter(|(_, seen)| seen.share() > GATE)
     }
 
@@ -108,14 +110,14 @@ impl Found {
     }
 }
 
-/// Geometry, with the quads that the environment asks for.
+/// The geometry method, with the quads that the environment sets.
 fn geometry() -> RoadOptions {
     let quads = match std::env::var("CORNICHE_GEO_QUADS").as_deref() {
         Ok("level") => Quads::Level,
-        Ok(other) => panic!("CORNICHE_GEO_QUADS is {other:?}; it may be level"),
+        Ok(other) => panic!("CORNICHE_GEO_QUADS is {other:?}; the only valid value is level"),
         Err(_) => Quads::Beds,
     };
-    RoadOptions { quads, ..RoadOptions::of(RoadMethod::Geometry) }
+    RoadOptions { quads, ..RoadOptions::for_method(RoadMethod::Geometry) }
 }
 
 fn view_count() -> usize {
@@ -139,13 +141,14 @@ fn geometry_differs_from_volumes_in_three_pixels_of_a_thousand_at_most() {
         above += found.above().count();
     }
     if std::env::var_os("CORNICHE_GEO_REPORT").is_some() || geometry().quads == Quads::Level {
-        println!("{above} views above the gate of {GATE}: told, not judged");
+        println!("{above} views above the gate of {GATE}: reported, not a failure");
         return;
     }
     assert_eq!(above, 0, "views in which GEO and SV differ in more than {GATE} of SV's pixels");
 }
 
-/// The reference makes roads as wide as the drawing does, where working metres are no true ones.
+/// In the reference, roads are as wide as in the drawing, even if working metres are not true
+/// metres.
 #[test]
 fn roads_of_the_reference_are_as_wide_as_the_drawn_ones() {
     let folder = tempfile::tempdir().unwrap();
@@ -162,11 +165,12 @@ fn roads_of_the_reference_are_as_wide_as_the_drawn_ones() {
         assert_eq!(factors(&tile.geometry.volumes), drawn, "{id:?}");
         widest = drawn.iter().fold(widest, |widest, factor| widest.max((factor - 1.0).abs()));
     }
-    // Else any reference would do.
+    // Otherwise any reference would pass.
     assert!(widest > 1e-3, "{widest}");
 }
 
-/// The comparison finds differences: SV against SV without caps differs far more than the limit.
+/// The comparison finds differences: SV against SV without caps differs far more than the gate
+/// allows.
 #[test]
 fn roads_without_their_caps_are_beyond_the_gate() {
     let Some(gpu) = gpu() else { return };
@@ -182,12 +186,12 @@ fn roads_without_their_caps_are_beyond_the_gate() {
         })
         .unwrap();
     let caps = corniche_viewer::Caps::None;
-    let options = RoadOptions { caps, ..RoadOptions::of(RoadMethod::Geometry) };
+    let options = RoadOptions { caps, ..RoadOptions::for_method(RoadMethod::Geometry) };
     let seen = atlas.compare_with(&camera, options);
     assert!(seen.share() > GATE, "{} of {}", seen.differing, seen.of_roads);
 }
 
-/// On a slope the paper's level quads miss ground that ours cover.
+/// On a slope, the paper's level quads miss ground that ours cover.
 #[test]
 fn level_quads_are_beyond_the_gate() {
     let Some(gpu) = gpu() else { return };
@@ -196,7 +200,8 @@ fn level_quads_are_beyond_the_gate() {
     let source = PackageSource::open(&path).unwrap();
     let mut atlas = Atlas::open(&gpu, &path, &source);
     let mut views = Views::new(atlas.places(), SEED);
-    let options = RoadOptions { quads: Quads::Level, ..RoadOptions::of(RoadMethod::Geometry) };
+    let options =
+        RoadOptions { quads: Quads::Level, ..RoadOptions::for_method(RoadMethod::Geometry) };
     let mut seen = std::iter::repeat_with(|| views.next_view()).filter_map(|view| {
         let camera = atlas.camera(&view)?;
         let seen = atlas.compare_with(&camera, options);

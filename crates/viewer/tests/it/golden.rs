@@ -1,8 +1,9 @@
-//! Pictures as they were looked at and found right, against pictures drawn now: how ground, roads, edges, haze,
-//! wireframe and differences are put together. Which pixel is which road is the oracle's business.
+//! Compares drawings with pictures that a person has checked: how ground, roads, edges, haze,
+//! wireframe and differences are combined. The oracle checks which pixel shows which road.
 //!
-//! They hold for software Vulkan (llvmpipe) alone; cards differ by more than the tolerance at every edge.
-//! `CORNICHE_BLESS=1 cargo test -p corniche-viewer --test it golden` accepts the pictures drawn now. Look at them.
+//! The pictures are valid for software Vulkan (llvmpipe) only; GPUs differ by more than the
+//! tolerance at every edge. `CORNICHE_BLESS=1 cargo test -p corniche-viewer --test it golden`
+//! accepts the current drawings. Look at them.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "this is test code, helpers included")]
 
 use crate::support;
@@ -28,7 +29,7 @@ fn golden() -> Golden {
     Golden::of_crate(env!("CARGO_MANIFEST_DIR"), option_env!("CARGO_TARGET_TMPDIR"))
 }
 
-/// The software adapter, or `None` and a line on the terminal.
+/// The software adapter, or `None` and a message on the terminal.
 fn software() -> Option<Gpu> {
     let gpu = gpu()?;
     let is_pinned = ["llvmpipe", "vulkan"].iter().all(|part| gpu.adapter_name.contains(part));
@@ -41,7 +42,7 @@ fn software() -> Option<Gpu> {
     is_pinned.then_some(gpu)
 }
 
-/// So uneven across the roads that the quads of geometry leave part of them out.
+/// Ground so uneven across the roads that level quads of geometry would miss a part of the roads.
 fn steep(x: f64, y: f64) -> f64 {
     400.0 + 40.0 * (x / 60.0).sin() * (y / 75.0).cos()
 }
@@ -53,17 +54,17 @@ fn camera(distance_m: f64, pitch_deg: f64) -> Camera {
 
 fn view<'a>(camera: &'a Camera, style: &'a Style, method: RoadMethod) -> FrameView<'a> {
     let height_range_m = [250.0, 500.0];
-    FrameView { height_range_m, ..Scene::view(camera, style, RoadOptions::of(method)) }
+    FrameView { height_range_m, ..Scene::view(camera, style, RoadOptions::for_method(method)) }
 }
 
-/// A junction of four classes, the most important of two colours, from nearby; edges two pixels wide.
+/// A junction of four classes from nearby, with a main road of two colours and edges of two pixels.
 fn near(gpu: &Gpu, style: &Style, method: RoadMethod) -> Targets {
     let camera = camera(900.0, 55.0);
     let scene = one_tile(4, steep, &junction(), style.clone());
     scene.draw_view(gpu, &view(&camera, style, method), 1)
 }
 
-/// The atlas with wider roads.
+/// The road atlas with wider roads.
 fn near_style() -> Style {
     let mut style = Style { outline_px: 2, ..Style::road_atlas() };
     style.roads.iter_mut().for_each(|road| road.width_m *= 2.0);
@@ -105,7 +106,7 @@ fn a_wireframe_looks_as_it_did() {
 #[test]
 fn the_difference_of_two_methods_looks_as_it_did() {
     let Some(gpu) = software() else { return };
-    // The methods hardly differ: so the second has a wider motorway and a wider side road.
+    // The methods hardly differ, so the second drawing has a wider motorway and a wider side road.
     let first = near(&gpu, &near_style(), RoadMethod::Geometry);
     let mut wider = near_style();
     wider.roads[0].width_m *= 1.3;

@@ -1,4 +1,4 @@
-//! What the graphics card draws, against references computed in f64 on the CPU.
+//! Compares what the GPU draws with references computed in f64 on the CPU.
 //!
 //! Software Vulkan is enough. Without any adapter each test reports itself skipped.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "this is test code, helpers included")]
@@ -32,7 +32,8 @@ fn camera(height_m: f64, distance_m: f64, heading_deg: f64, pitch_deg: f64) -> C
     )
 }
 
-/// The root tile with this ground and straight roads, given as class, from and to relative to the centre.
+/// Returns the root tile with this ground and straight roads, given as class, start and end
+/// relative to the centre.
 fn scene(
     step: u16,
     height_m: impl Fn(f64, f64) -> f64,
@@ -48,15 +49,17 @@ fn scene(
     (TileId::ROOT, ground, lines, 0.0)
 }
 
-/// How a drawing disagrees with the reference: covered iff the ground's plan position is within half the width.
+/// The disagreement of a drawing with the reference: a pixel is covered if the ground's plan
+/// position is within half the width.
 struct Disagreement {
     /// Pixels that should be covered.
     covered: usize,
-    /// Pixels that are covered although they should not be, the boundary being farther than the band away.
+    /// Pixels that are covered although they should not be, with a distance to the boundary of more
+    /// than the band.
     extra: usize,
-    /// Pixels that are not covered although they should be, likewise.
+    /// Pixels that are not covered although they should be, with the same band.
     missing: usize,
-    /// Pixels left out because the depth jumps around them.
+    /// Pixels that are skipped because the depth jumps around them.
     excluded: usize,
 }
 
@@ -66,7 +69,7 @@ impl Disagreement {
     }
 }
 
-/// Compares labels with a reference from the device's own depth, unprojected in f64.
+/// Compares labels with a reference that uses the device's own depth, unprojected in f64.
 fn compare(
     drawing: &support::Drawing,
     camera: &Camera,
@@ -96,7 +99,8 @@ fn compare(
     sum
 }
 
-/// Points every 2 m along the centre-lines that the depth buffer says are in view, but whose pixel has no road.
+/// Counts points every 2 m along the centre-lines that are in view according to the depth buffer,
+/// but whose pixel has no road.
 fn hidden_centerline_points(
     drawing: &support::Drawing,
     camera: &Camera,
@@ -118,7 +122,8 @@ fn hidden_centerline_points(
             }
             let index = at.y as usize * SIZE[0] as usize + at.x as usize;
             let ground_m = camera.near_m / f64::from(drawing.depth[index]);
-            // Half a pixel beside the line, the ground is this much nearer or farther at a grazing angle.
+            // Half a pixel off the line, the ground is this much nearer or farther at a grazing
+            // angle.
             let in_view = (ground_m - depth_m).abs() < 0.02 * depth_m;
             hidden +=
                 usize::from(in_view && !drawing.is_at_jump(index) && drawing.labels[index] == 0);

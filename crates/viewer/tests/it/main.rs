@@ -1,4 +1,5 @@
-//! Integration tests of `corniche-viewer`, in one binary. The first line of each module says what holds.
+//! Integration tests of `corniche-viewer`, in one binary. The first line of each module describes
+//! what it checks.
 
 mod flights;
 mod geo_against_sv;

@@ -1,13 +1,15 @@
-//! Where the composite draws edges of roads, against the plain filter over labels and depths on the CPU.
+//! Compares the edges of roads that the composite draws with a plain filter over labels and depths
+//! on the CPU.
 //!
-//! Edges are what differs between two pictures of which one was drawn without: their colour is no other's.
+//! Edges are the differences between two pictures, one of which was drawn without edges: no other
+//! feature has their colour.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "this is test code, helpers included")]
 
 use crate::support::{frame, gpu, ground_line, lay, plain_style, terrain, triangles};
 use corniche_geom::TileId;
 use corniche_styles::{RoadStyle, Style};
 use corniche_viewer::{
-    FrameView, Outline, RoadMethod, RoadOptions,
+    FrameView, RoadMethod, RoadOptions, RoadOutline,
     camera::{Camera, Orientation},
     for_tests::{class_of, is_service, is_tunnel},
     gpu::{DrawTile, Gpu, Renderer, Targets, TileBuffers},
@@ -15,7 +17,7 @@ use corniche_viewer::{
 };
 use glam::DVec2;
 
-/// As in `shaders/composite.wgsl`.
+/// Same as in `shaders/composite.wgsl`.
 const FARTHER: f32 = 1.1;
 
 fn center() -> DVec2 {
@@ -29,7 +31,7 @@ fn style(width_m: f32) -> Style {
     Style { roads, haze_reach: 1e6, ..plain }
 }
 
-/// The root tile with this ground and roads given by class and ends in plan.
+/// Returns the root tile with this ground and with roads given by class and ends in plan.
 fn tile(step: u16, height_m: impl Fn(f64, f64) -> f64, roads: &[(u8, [DVec2; 2])]) -> TileGeometry {
     let ground = terrain(TileId::ROOT, step, height_m);
     let mesh = triangles(TileId::ROOT, &ground);
@@ -43,7 +45,7 @@ fn tile(step: u16, height_m: impl Fn(f64, f64) -> f64, roads: &[(u8, [DVec2; 2])
     TileGeometry::assemble(TileId::ROOT, Some(&ground), &lines, &frame(), crate::support::QUANTUM_M)
 }
 
-/// What edges are drawn with.
+/// The resources for drawing edges.
 struct Edges<'a> {
     gpu: &'a Gpu,
     renderer: Renderer,
@@ -58,12 +60,12 @@ impl<'a> Edges<'a> {
         Self { gpu, renderer: Renderer::new(gpu), camera, style, targets }
     }
 
-    fn picture(&self, tile: &TileGeometry, outline: Outline) -> Vec<u8> {
+    fn picture(&self, tile: &TileGeometry, outline: RoadOutline) -> Vec<u8> {
         let buffers = TileBuffers::new(self.gpu, tile, None);
         let view = FrameView {
             camera: self.camera,
             style: &self.style,
-            roads: RoadOptions { outline, ..RoadOptions::of(RoadMethod::Geometry) },
+            roads: RoadOptions { outline, ..RoadOptions::for_method(RoadMethod::Geometry) },
             exaggeration: 1.0,
             point_scale: 1.0,
             height_range_m: [0.0, 1000.0],
@@ -77,15 +79,16 @@ impl<'a> Edges<'a> {
         self.targets.picture.read(self.gpu).unwrap()
     }
 
-    /// Checks that edges are drawn in exactly the pixels where the plain filter finds them; returns their number.
+    /// Checks that edges are drawn in exactly the pixels where the plain filter finds them; returns
+    /// their number.
     fn check(&self, tile: &TileGeometry, what: &str) -> usize {
-        let bare = self.picture(tile, Outline::None);
+        let bare = self.picture(tile, RoadOutline::None);
         let labels = self.targets.read_labels(self.gpu).unwrap();
         let depth = self.targets.read_depth(self.gpu).unwrap();
         let [width, height] = self.targets.picture.size_px.map(|side| side as usize);
         let samples = self.targets.picture.samples_per_side as usize;
         let mut total = 0;
-        for (outline, radius_px) in [(Outline::Kernel3, 1), (Outline::Kernel5, 2)] {
+        for (outline, radius_px) in [(RoadOutline::Kernel3, 1), (RoadOutline::Kernel5, 2)] {
             let drawn = self.picture(tile, outline);
             let is_edge =
                 plain_filter(&labels, &depth, width * samples, (radius_px * samples) as i64);
@@ -107,7 +110,8 @@ impl<'a> Edges<'a> {
     }
 }
 
-/// Whether a sample without a road, or in a tunnel, is on the edge of a more important road: looked for around every sample, with no short cut.
+/// Whether a sample without a road, or in a tunnel, is on the edge of a more important road: the
+/// plain filter checks every sample, without optimization.
 fn plain_filter(labels: &[u8], depth: &[f32], width: usize, radius: i64) -> Vec<bool> {
     let height = labels.len() / width;
     let around = |at: usize, end: usize| {
@@ -132,7 +136,8 @@ fn plain_filter(labels: &[u8], depth: &[f32], width: usize, radius: i64) -> Vec<
         .collect()
 }
 
-/// Roads above the ground count more than those beneath it, service roads least of them; all bands of a class count the same.
+/// Roads above the ground are more important than roads below it, service roads are the least
+/// important of them; all bands of a class are equally important.
 fn importance(label: u8) -> u8 {
     let class = class_of(label).map_or(0, |class| 9 - class);
     match label {
@@ -143,16 +148,18 @@ fn importance(label: u8) -> u8 {
     }
 }
 
-/// A dot so far from all others that no edge but its own can be drawn by mistake where its edge must be: beyond three
-/// of the blocks in which the composite looks for roads. One more, so that dots lie everywhere in their blocks.
+/// Distance between dots, so large that only the edge of the dot itself can be drawn at its
+/// position: more than three of the blocks in which the composite looks for roads. One more pixel,
+/// so that dots are at different positions in their blocks.
 const DOT_EVERY: u32 = 3 * 16 + 1;
 
-/// Wherever a road as small as a sample lies in its block and in the picture, its edge is whole.
+/// The edge of a road as small as a sample is complete at any position in its block and in the
+/// picture.
 #[test]
 fn a_dot_has_its_edge_wherever_it_lies() {
     let Some(gpu) = gpu() else { return };
     for samples in [1, 2] {
-        // No whole number of blocks.
+        // Not a whole number of blocks.
         let size_px = [203, 149].map(|side| side / samples);
         let orientation = Orientation { heading_deg: 0.0, pitch_deg: 0.0 };
         let camera = Camera::look_at(center().extend(0.0), 1000.0, orientation, size_px);
@@ -182,7 +189,7 @@ fn a_dot_has_its_edge_wherever_it_lies() {
 #[test]
 fn edges_are_where_the_plain_filter_finds_them() {
     let Some(gpu) = gpu() else { return };
-    // Ridges of which some hide roads behind their crests, and roads of several classes that cross.
+    // Ridges, some of which hide roads behind their crests, and crossing roads of several classes.
     let ridges =
         |x: f64, y: f64| 300.0 + 120.0 * ((y - center().y) / 90.0).sin() * (x / 400.0).cos();
     let at = |x: f64, y: f64| center() + DVec2::new(x, y);
@@ -205,8 +212,8 @@ fn edges_are_where_the_plain_filter_finds_them() {
     ] {
         let orientation = Orientation { heading_deg: 25.0, pitch_deg: 70.0 };
         let camera = Camera::look_at(center().extend(300.0), 1500.0, orientation, size_px);
-        // Edges fade around roads thinner than four pixels, or thirteen where the ground is seen flat; these are about that wide
-        // at the far end of the ground.
+        // Edges fade around roads thinner than four pixels, or thirteen where the ground is seen
+        // flat; these are about that wide at the far end of the ground.
         let width_m = 26.0 * 1500.0 * camera.pixel_at_unit_depth_m();
         let edges = Edges::new(&gpu, &camera, style(width_m as f32), samples);
         let count = edges.check(&tile, &format!("{size_px:?} with {samples}"));
@@ -214,7 +221,8 @@ fn edges_are_where_the_plain_filter_finds_them() {
     }
 }
 
-/// The edge of a wide road goes on over a street of two pixels, and is open where a wide street meets it.
+/// The edge of a wide road continues over a street of two pixels, and is open where a wide street
+/// meets it.
 #[test]
 fn edges_are_open_for_wide_streets_alone() {
     let Some(gpu) = gpu() else { return };
@@ -229,9 +237,9 @@ fn edges_are_open_for_wide_streets_alone() {
         style.roads[5].width_m = street_px * pixel_m;
         style.roads[5].carriageway_width_m = street_px * pixel_m;
         let edges = Edges::new(&gpu, &camera, style, 1);
-        let bare = edges.picture(&tile, Outline::None);
+        let bare = edges.picture(&tile, RoadOutline::None);
         let labels = edges.targets.read_labels(&gpu).unwrap();
-        let drawn = edges.picture(&tile, Outline::Kernel3);
+        let drawn = edges.picture(&tile, RoadOutline::Kernel3);
         let pairs = drawn.chunks_exact(4).zip(bare.chunks_exact(4));
         let over = pairs
             .zip(&labels)

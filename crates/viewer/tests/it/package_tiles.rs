@@ -1,4 +1,4 @@
-//! Tiles from bytes that arrive later, as from a server: no call waits for them.
+//! Tiles from bytes that arrive later, as from a server: no call waits for the bytes.
 #![allow(clippy::unwrap_used, reason = "this is test code, helpers included")]
 
 use std::{
@@ -16,7 +16,7 @@ use corniche_viewer::{
     CameraRequest, RoadMethod, SightedGround,
     camera::Camera,
     gpu::tile_bytes,
-    lod::{Drawn, Quality},
+    lod::{DrawnTile, Quality},
     stream::{StreamBudget, Streamer, TileFacts},
     tiles::{
         MapPackage as _, PackageSource, PackageTiles, TileCatalog, TileDecoder, TileGeometry,
@@ -24,7 +24,7 @@ use corniche_viewer::{
     },
 };
 
-/// What becomes of bytes that are asked for.
+/// The state of requested bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Line {
     Waiting,
@@ -65,7 +65,7 @@ fn poll<T>(work: Pin<&mut impl Future<Output = T>>) -> Poll<T> {
 fn done<T>(work: impl Future<Output = T>) -> T {
     match poll(pin!(work)) {
         Poll::Ready(result) => result,
-        Poll::Pending => panic!("it waits for something"),
+        Poll::Pending => panic!("the future is still pending"),
     }
 }
 
@@ -89,10 +89,10 @@ fn several_tiles_are_under_way_at_once_and_each_is_one_request() {
     assert!(poll(first.as_mut()).is_pending());
     assert!(poll(second.as_mut()).is_pending());
     line.set(Line::Open);
-    // In another order than they were asked for.
+    // The responses arrive in another order than the requests.
     let loaded = [&mut third, &mut second, &mut first].map(|load| match poll(load.as_mut()) {
         Poll::Ready(tile) => tile.unwrap(),
-        Poll::Pending => panic!("its bytes are there"),
+        Poll::Pending => panic!("its bytes have arrived"),
     });
     assert_eq!(asked.get(), 3);
 
@@ -122,17 +122,18 @@ fn what_does_not_come_costs_one_tile() {
     let loaded = done(tiles.tile(tile("1/0/1"))).unwrap();
     assert!(
         loaded.roads.all().is_empty() && loaded.volumes.all().is_empty(),
-        "without roads, as asked"
+        "without roads, as requested"
     );
 }
 
-/// Streams tiles for one view until nothing is missing. `load` is called once for each frame with the tiles that are
-/// asked for, and returns the tiles that have arrived. Returns what is drawn, and what is on the graphics card.
+/// Streams tiles for one view until no tile is missing. `load` is called once per frame with the
+/// requested tiles, and returns the tiles that have arrived. Returns the drawn tiles and the tiles
+/// on the GPU.
 fn settled(
     catalog: &dyn TileCatalog,
     camera: &Camera,
     mut load: impl FnMut(&[TileId]) -> Vec<TileGeometry>,
-) -> (Vec<Drawn>, BTreeMap<TileId, TileGeometry>) {
+) -> (Vec<DrawnTile>, BTreeMap<TileId, TileGeometry>) {
     let budget =
         StreamBudget { tiles_in_flight: 4, upload_bytes_per_frame: 1 << 30, gpu_bytes: 1 << 30 };
     let quality = Quality::by_error(0.1, 1.0);
@@ -155,7 +156,7 @@ fn settled(
     panic!("something is still missing after 200 frames");
 }
 
-/// A first view is sought where roads are, if there are some and they are read.
+/// The first view is searched where roads are, if there are some and they are read.
 #[test]
 fn roads_that_are_not_read_are_not_sought() {
     let folder = tempfile::tempdir().unwrap();
@@ -174,7 +175,8 @@ fn roads_that_are_not_read_are_not_sought() {
     assert!(!may_have_roads(&manifest, TileDecoder::default().sections()));
 }
 
-/// The streamer asks only which tiles there are, so it can be driven by tiles that nothing waits for.
+/// The streamer only needs to know which tiles exist, so it works with tiles that nothing waits
+/// for.
 #[test]
 fn a_streamer_chooses_the_same_from_tiles_that_come_later() {
     let folder = tempfile::tempdir().unwrap();
@@ -195,7 +197,7 @@ fn a_streamer_chooses_the_same_from_tiles_that_come_later() {
     let (mut frames, mut waits) = (0, 0);
     let found = settled(&tiles, &camera, |ids| {
         under_way.extend(ids.iter().map(|id| Box::pin(tiles.tile(*id))));
-        // The server answers in every third frame only.
+        // The server responds only in every third frame.
         frames += 1;
         line.set(if frames % 3 == 0 { Line::Open } else { Line::Waiting });
         let mut arrived = Vec::new();

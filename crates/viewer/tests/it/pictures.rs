@@ -1,4 +1,5 @@
-//! Operations on whole pictures: averaged samples, differences, wireframes, and the times of passes.
+//! Operations on whole pictures: averaged samples, differences, wireframes, and the times of
+//! passes.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "this is test code, helpers included")]
 
 use std::time::{Duration, Instant};
@@ -24,7 +25,7 @@ fn center() -> DVec2 {
     DVec2::from_array(frame().tile_bounds(TileId::ROOT).center())
 }
 
-/// Hills with one road of class 2 from this point to that, relative to the middle.
+/// Hills with one road of class 2 between two points, relative to the middle.
 fn geometry(from: [f64; 2], to: [f64; 2]) -> TileGeometry {
     let ground =
         terrain(TileId::ROOT, 16, |x, y| 300.0 + 50.0 * (x / 200.0).sin() * (y / 150.0).cos());
@@ -56,7 +57,7 @@ fn view<'a>(camera: &'a Camera, style: &'a Style) -> FrameView<'a> {
     FrameView {
         camera,
         style,
-        roads: RoadOptions::of(RoadMethod::Geometry),
+        roads: RoadOptions::for_method(RoadMethod::Geometry),
         exaggeration: 1.0,
         point_scale: 1.0,
         height_range_m: [200.0, 400.0],
@@ -97,7 +98,7 @@ fn average(samples: &[u8], [width, height]: [usize; 2], per_side: usize) -> Vec<
 fn a_picture_of_several_samples_is_the_mean_of_a_larger_one() {
     let Some(gpu) = gpu() else { return };
     let tile = geometry([-500.0, -300.0], [600.0, 400.0]);
-    // The lines on the plane of voids keep their distance in pixels; on black they are not seen.
+    // The lines on the plane of voids keep their distance in pixels; on black they are not visible.
     let style = Style { outline_px: 0, void: [0.0; 3], ..plain_style(30.0) };
     let camera = camera();
     for samples_per_side in 1..=4 {
@@ -170,7 +171,7 @@ fn a_difference_needs_pictures_of_one_size() {
     let Some(gpu) = gpu() else { return };
     let targets = Targets::new(&gpu, [40, 30], 2).unwrap();
     let renderer = Renderer::new(&gpu);
-    // As many samples, but not of as many pixels.
+    // The number of samples is equal, but the number of pixels is not.
     for (size_px, samples) in [([41, 30], 2), ([80, 60], 1)] {
         let into = Picture::new(&gpu, size_px, samples).unwrap();
         let refused = renderer.draw_difference(&gpu, &targets, &targets, &into);
@@ -192,11 +193,11 @@ fn a_wireframe_darkens_the_ground_and_leaves_all_else() {
     let [bare, wired] = [bare, wired].map(|targets| targets.read_ground(&gpu).unwrap());
     let pairs = || bare.chunks_exact(4).zip(wired.chunks_exact(4));
     assert!(pairs().all(|(a, b)| a[3] == b[3]), "ground stays ground");
-    // Beside the ground a line may reach into the sky, which the picture does not take from here.
+    // Outside the ground a line may extend into the sky, which this picture does not contain.
     let ground = || pairs().filter(|(a, _)| a[3] == 255);
     let darker = ground().filter(|(a, b)| b[0] < a[0]).count();
     let other = ground().filter(|(a, b)| a != b && b[0] >= a[0]).count();
-    // Cells of 160 m, three edges each: where one looks from, half of the pixels are not on any.
+    // Cells of 160 m with three edges each: half of the pixels of this view are not on any edge.
     assert!(darker > 3000 && darker < 20_000, "{darker} pixels of edges");
     assert_eq!(other, 0);
 }
@@ -215,7 +216,7 @@ fn times_of_frames_come_without_waiting() {
     let (camera, style) = (camera(), plain_style(40.0));
     let renderer = Renderer::new(&gpu);
     assert_eq!(timer.poll(&gpu).unwrap(), None, "nothing was drawn");
-    // More frames at once than the timer has room for: some are not timed, and none fails.
+    // More frames at once than the timer can record: some are not timed, and none fails.
     for _ in 0..12 {
         renderer.draw_timed(&gpu, &view(&camera, &style), &tiles, &targets, Some(&mut timer));
     }
@@ -228,8 +229,8 @@ fn times_of_frames_come_without_waiting() {
     assert!(times.terrain_ms > 0.0 && times.composite_ms > 0.0, "{times:?}");
     gpu.finish().unwrap();
     timer.poll(&gpu).unwrap();
-    assert_eq!(timer.poll(&gpu).unwrap(), None, "a frame is told once");
-    // All room is free again.
+    assert_eq!(timer.poll(&gpu).unwrap(), None, "a frame is reported once");
+    // All buffers are free again.
     renderer.draw_timed(&gpu, &view(&camera, &style), &tiles, &targets, Some(&mut timer));
     assert!(timer.read(&gpu).is_ok());
 }
@@ -241,7 +242,7 @@ fn classes_left_out_are_not_drawn() {
     let (camera, style) = (camera(), plain_style(40.0));
     for method in [RoadMethod::Geometry, RoadMethod::ShadowVolumes] {
         let labels = |left_out: u8| {
-            let all = RoadOptions::of(method);
+            let all = RoadOptions::for_method(method);
             let roads = RoadOptions { classes: all.classes.without(class(left_out)), ..all };
             let view = FrameView { roads, ..view(&camera, &style) };
             draw(&gpu, &tile, &view, 1).read_labels(&gpu).unwrap()
@@ -262,7 +263,7 @@ fn opengl_draws_the_same_picture() {
     let style = Style { outline_px: 1, ..plain_style(40.0) };
     let camera = camera();
     for method in [RoadMethod::Geometry, RoadMethod::ShadowVolumes] {
-        let view = FrameView { roads: RoadOptions::of(method), ..view(&camera, &style) };
+        let view = FrameView { roads: RoadOptions::for_method(method), ..view(&camera, &style) };
         let [a, b] =
             [&gpu, &opengl].map(|gpu| draw(gpu, &tile, &view, 2).picture.read(gpu).unwrap());
         let differing = a.iter().zip(&b).filter(|(a, b)| a.abs_diff(**b) > 2).count();
@@ -283,7 +284,7 @@ fn a_mistake_is_told_and_does_not_end_the_process() {
         mapped_at_creation: false,
     });
     assert!(gpu.take_fault().is_some());
-    assert_eq!(gpu.take_fault(), None, "told once");
+    assert_eq!(gpu.take_fault(), None, "reported once");
     assert!(!gpu.is_lost());
     gpu.device.destroy();
     let _ = gpu.device.poll(wgpu::PollType::wait_indefinitely());

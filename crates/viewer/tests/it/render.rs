@@ -1,4 +1,4 @@
-//! A package on disk to a picture: the whole way of `corniche render`.
+//! Renders a package on disk to a picture, like `corniche render`.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "this is test code, helpers included")]
 
 use std::{cell::Cell, path::Path};
@@ -9,7 +9,7 @@ use crate::support::{
 };
 use corniche_styles::Style;
 use corniche_viewer::{
-    CameraRequest, RenderError, RenderRequest, Rendered, RoadMethod, RoadOptions,
+    CameraRequest, DrawError, PictureOptions, RenderRequest, Rendered, RoadMethod, RoadOptions,
     camera::Orientation,
     tiles::{PackageSource, TileDecoder},
 };
@@ -18,18 +18,27 @@ use image::RgbaImage;
 fn request(package: &Path) -> RenderRequest {
     RenderRequest {
         name: package.display().to_string(),
-        size_px: [480, 320],
-        roads: RoadOptions::of(RoadMethod::Geometry),
+        options: PictureOptions {
+            size_px: [480, 320],
+            roads: RoadOptions::for_method(RoadMethod::Geometry),
+            screen_space_error_px: 2.0,
+            cell_px: f64::INFINITY,
+            exaggeration: 1.0,
+            supersampling: 2,
+            style: Style::road_atlas(),
+        },
         camera: CameraRequest::Overview,
-        screen_space_error_px: 2.0,
-        cell_px: f64::INFINITY,
-        exaggeration: 1.0,
-        supersampling: 2,
         legend: None,
         title: None,
         is_wireframe: false,
-        style: Style::road_atlas(),
     }
+}
+
+/// The request with other options.
+fn with(request: &RenderRequest, change: impl FnOnce(&mut PictureOptions)) -> RenderRequest {
+    let mut changed = request.clone();
+    change(&mut changed.options);
+    changed
 }
 
 fn look_at(lon_deg: f64, lat_deg: f64) -> CameraRequest {
@@ -37,17 +46,17 @@ fn look_at(lon_deg: f64, lat_deg: f64) -> CameraRequest {
     CameraRequest::LookAt { lon_deg, lat_deg, height_m: None, distance_m: 12_000.0, orientation }
 }
 
-fn render(package: &Path, request: &RenderRequest) -> Result<Rendered, RenderError> {
+fn render(package: &Path, request: &RenderRequest) -> Result<Rendered, DrawError> {
     corniche_viewer::render(request, &opened(package, request), &|| false)
 }
 
 /// The package, opened for the road method of the request.
 fn opened(package: &Path, request: &RenderRequest) -> PackageSource {
-    let decoder = TileDecoder::default().for_method(request.roads.method);
+    let decoder = TileDecoder::default().for_method(request.options.roads.method);
     PackageSource::open(package).unwrap().with_decoder(decoder)
 }
 
-/// Pixels that look like the motorway of the style.
+/// Counts pixels with the colour of the style's motorway.
 fn red_pixels(picture: &RgbaImage) -> usize {
     picture.pixels().filter(|p| i32::from(p.0[0]) - i32::from(p.0[1]) > 90).count()
 }
@@ -72,7 +81,7 @@ fn a_package_becomes_a_picture_with_roads_and_credits() {
     assert_eq!(all.report.levels.iter().map(|(_, tiles)| tiles).sum::<u64>(), all.report.tiles);
     assert!(!all.report.adapter.is_empty());
     assert!(red_pixels(&all.picture) > 30, "{}", red_pixels(&all.picture));
-    // The box of the credits is light and in the corner.
+    // The box of the attribution is light and in the corner.
     assert!(all.picture.get_pixel(479, 319).0[..3].iter().all(|channel| *channel > 200));
 
     let again = render(&package, &request(&package)).unwrap();
@@ -80,7 +89,9 @@ fn a_package_becomes_a_picture_with_roads_and_credits() {
 
     let bare = render(
         &package,
-        &RenderRequest { roads: RoadOptions::of(RoadMethod::None), ..request(&package) },
+        &with(&request(&package), |options| {
+            options.roads = RoadOptions::for_method(RoadMethod::None);
+        }),
     )
     .unwrap();
     keep("bare", &bare);
@@ -88,7 +99,8 @@ fn a_package_becomes_a_picture_with_roads_and_credits() {
     assert_eq!(red_pixels(&bare.picture), 0);
 }
 
-/// Edges darken or lighten some of the ground and leave most of it; what is drawn stays the same.
+/// Edges darken or lighten a part of the ground and leave most of it; the drawn features stay the
+/// same.
 #[test]
 fn a_wireframe_shows_the_edges_of_triangles() {
     if gpu().is_none() {
@@ -96,11 +108,9 @@ fn a_wireframe_shows_the_edges_of_triangles() {
     }
     let folder = tempfile::tempdir().unwrap();
     let package = package(folder.path());
-    let plain = RenderRequest {
-        roads: RoadOptions::of(RoadMethod::None),
-        camera: look_at(ORIGIN_DEG[0] + 0.01, ORIGIN_DEG[1] + 0.01),
-        ..request(&package)
-    };
+    let camera = look_at(ORIGIN_DEG[0] + 0.01, ORIGIN_DEG[1] + 0.01);
+    let plain = RenderRequest { camera, ..request(&package) };
+    let plain = with(&plain, |options| options.roads = RoadOptions::for_method(RoadMethod::None));
     let wired = RenderRequest { is_wireframe: true, ..plain.clone() };
     let [plain, wired] = [plain, wired].map(|request| render(&package, &request).unwrap());
     keep("wireframe", &wired);
@@ -118,7 +128,7 @@ fn looking_at_a_place_has_it_in_the_middle() {
     }
     let folder = tempfile::tempdir().unwrap();
     let package = package(folder.path());
-    // The motorway's bend lies 3000 m west and 700 m north of the centre.
+    // The motorway's bend is 3000 m west and 700 m north of the centre.
     let [lon_deg, lat_deg] = [
         ORIGIN_DEG[0] - 3000.0 / METRES_PER_DEGREE[0],
         ORIGIN_DEG[1] + 700.0 / METRES_PER_DEGREE[1],
@@ -132,7 +142,8 @@ fn looking_at_a_place_has_it_in_the_middle() {
     assert!(near.report.levels.iter().all(|(level, _)| *level < LEVELS));
 }
 
-/// After any number of questions the answer may be yes: at the first, between two tiles, after the last.
+/// The check may request a stop at any time: before the first tile, between two tiles, after the
+/// last.
 #[test]
 fn a_picture_can_be_stopped_at_any_tile() {
     if gpu().is_none() {
@@ -140,11 +151,9 @@ fn a_picture_can_be_stopped_at_any_tile() {
     }
     let folder = tempfile::tempdir().unwrap();
     let package = package(folder.path());
-    let near = RenderRequest {
-        camera: look_at(ORIGIN_DEG[0], ORIGIN_DEG[1]),
-        screen_space_error_px: 0.2,
-        ..request(&package)
-    };
+    let camera = look_at(ORIGIN_DEG[0], ORIGIN_DEG[1]);
+    let near = RenderRequest { camera, ..request(&package) };
+    let near = with(&near, |options| options.screen_space_error_px = 0.2);
     let asked = Cell::new(0);
     let ask = |stop_at: u32| {
         asked.set(0);
@@ -157,7 +166,7 @@ fn a_picture_can_be_stopped_at_any_tile() {
     let questions = asked.get();
     assert!(tiles > 2 && u64::from(questions) >= tiles, "{questions} for {tiles} tiles");
     for stop_at in [1, 2, questions] {
-        assert!(matches!(ask(stop_at), Err(RenderError::Stopped)), "{stop_at}");
+        assert!(matches!(ask(stop_at), Err(DrawError::Stopped)), "{stop_at}");
         assert_eq!(asked.get(), stop_at);
     }
 }
@@ -169,14 +178,14 @@ fn requests_that_make_no_sense_say_what_is_wrong() {
     assert!(missing.unwrap_err().to_string().contains("nothing.pmtiles"));
     let package = package(folder.path());
     let off = RenderRequest { camera: look_at(20.0, 10.0), ..request(&package) };
-    assert!(matches!(render(&package, &off), Err(RenderError::OffGround { .. })));
-    let coarse = RenderRequest { screen_space_error_px: 0.0, ..request(&package) };
-    assert!(matches!(render(&package, &coarse), Err(RenderError::Range { .. })));
-    assert!(matches!(coarse.check(), Err(RenderError::Range { .. })));
+    assert!(matches!(render(&package, &off), Err(DrawError::OffGround { .. })));
+    let coarse = with(&request(&package), |options| options.screen_space_error_px = 0.0);
+    assert!(matches!(render(&package, &coarse), Err(DrawError::Range { .. })));
+    assert!(matches!(coarse.check(), Err(DrawError::Range { .. })));
     if gpu().is_some() {
-        let huge = RenderRequest { size_px: [100_000, 100], ..request(&package) };
-        assert!(matches!(render(&package, &huge), Err(RenderError::Gpu(_))));
-        let empty = RenderRequest { size_px: [0, 100], ..request(&package) };
+        let huge = with(&request(&package), |options| options.size_px = [100_000, 100]);
+        assert!(matches!(render(&package, &huge), Err(DrawError::Gpu(_))));
+        let empty = with(&request(&package), |options| options.size_px = [0, 100]);
         assert!(render(&package, &empty).is_err());
     }
 }

@@ -1,4 +1,5 @@
-//! From heights and roads to a settled picture: triangulated, draped, selected, drawn; no package in between.
+//! From heights and roads to a finished picture: triangulated, draped, selected, drawn, without a
+//! package.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "this is test code, helpers included")]
 
 use crate::support::{
@@ -25,7 +26,7 @@ fn target(country: &Country) -> DVec3 {
     DVec3::new(x, y, height_m(x, y))
 }
 
-/// What was drawn, the screen-space error asked for, and how many tiles of each level it took.
+/// The drawing, the requested screen-space error, and the number of tiles per level.
 fn picture(
     country: &Country,
     camera: &Camera,
@@ -52,7 +53,7 @@ fn picture(
     let view = FrameView {
         camera,
         style,
-        roads: RoadOptions::of(RoadMethod::Geometry),
+        roads: RoadOptions::for_method(RoadMethod::Geometry),
         exaggeration: 1.0,
         point_scale: 1.0,
         height_range_m: [90.0, 1910.0],
@@ -68,7 +69,7 @@ fn picture(
 #[test]
 fn levels_meet_without_holes_and_within_the_error_asked_for() {
     let country = Country::new();
-    // Low over the ground and looking far: several levels at once.
+    // Low above the ground and with a far view: several levels at once.
     for (heading_deg, pitch_deg) in [(10.0, 55.0), (135.0, 60.0)] {
         let camera =
             Camera::look_at(target(&country), 6000.0, Orientation { heading_deg, pitch_deg }, SIZE);
@@ -87,16 +88,17 @@ fn levels_meet_without_holes_and_within_the_error_asked_for() {
         for (index, at) in drawing.pixels() {
             let depth_m = camera.near_m / f64::from(drawing.depth[index]);
             let ground = camera.eye_in_world + camera.ray_in_world(at) * depth_m;
-            // Skirts hang below the ground by design; everything else is within the error of its tile.
+            // Skirts are below the ground by design; all other samples are within the error of
+            // their tile.
             if drawing.ground[index * 4 + 3] == 255 {
                 let off_m = (ground.z - height_m(ground.x, ground.y)).abs();
                 let pixel_m = camera.pixel_at_unit_depth_m() * depth_m;
                 worst_px = worst_px.max(off_m / pixel_m);
-                // Where even the finest level is coarser than asked for, the finest level is drawn.
+                // If even the finest level is coarser than requested, the finest level is drawn.
                 worst_share = worst_share.max(off_m / finest_m.max(error_px * pixel_m));
             }
         }
-        // A half is 127 on some cards.
+        // A half is 127 on some GPUs.
         let is_skirt = |pixel: &&[u8]| (127..=128).contains(&pixel[3]);
         let skirts = drawing.ground.chunks_exact(4).filter(is_skirt).count();
         println!(
@@ -136,7 +138,7 @@ fn the_height_under_a_position_comes_from_the_finest_tile() {
     let found_m = store.ground_height_m(at.to_array()).unwrap().unwrap();
     let bound_m = MAX_ERROR_M + interpolation_error_m(CELL_M);
     assert!((found_m - height_m(at.x, at.y)).abs() <= bound_m);
-    // No tile above it is read.
+    // None of its ancestors is read.
     assert_eq!(store.len(), 1);
     assert_eq!(store.ground_height_m([0.0, 0.0]).unwrap(), None);
 }

@@ -1,4 +1,4 @@
-//! Scenes made of closed forms, and references that do not use the code under test.
+//! Scenes from closed forms, and references that do not use the code under test.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
@@ -15,12 +15,12 @@ pub(crate) mod scenes;
 use corniche_geom::{Cell, GridFrame, NodeIndex, TILE_CELLS, TileId};
 use corniche_roads::FunctionalRoadClass;
 use corniche_styles::{RoadBand, RoadBands, RoadStyle, Style, WidthScaling};
-use corniche_tileset::Terrain;
+use corniche_tileset::TileTerrain;
 use corniche_tin::{Tin, TinVertex};
 use corniche_viewer::{
     FrameView, RoadMethod, RoadOptions,
     camera::Camera,
-    for_tests::{GroundLine, Owner, class_of},
+    for_tests::{GroundLine, TileOwner, class_of},
     gpu::{DrawTile, Gpu, Renderer, Targets, TileBuffers},
     tiles::{TileGeometry, TileLines},
 };
@@ -28,10 +28,11 @@ use glam::{DVec2, DVec3};
 
 pub(crate) const CELL_M: f64 = 10.0;
 pub(crate) const QUANTUM_M: f64 = 1.0 / 64.0;
-/// How wide roads may be drawn to each side where a test does not say it.
+/// Maximum half width of drawn roads, unless a test sets another one.
 pub(crate) const WIDTH_MARGIN_M: f64 = 1000.0;
 
-/// A device, or `None` and a line on the terminal; with `CORNICHE_REQUIRE_GPU=1` no device is a failure.
+/// A device, or `None` and a message on the terminal; with `CORNICHE_REQUIRE_GPU=1` a missing
+/// device is a failure.
 pub(crate) fn gpu() -> Option<Gpu> {
     match Gpu::new() {
         Ok(gpu) => Some(gpu),
@@ -43,12 +44,12 @@ pub(crate) fn gpu() -> Option<Gpu> {
     }
 }
 
-/// The cells and the scale that all scenes of a test have.
+/// The cells and the scale of all scenes of a test.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct World {
-    /// How long cells are northwards over eastwards.
+    /// Length of cells northwards divided by eastwards.
     pub(crate) ratio: f64,
-    /// Working metres to a true metre, east and north.
+    /// Working metres per true metre, east and north.
     pub(crate) scale: [f64; 2],
 }
 
@@ -63,12 +64,13 @@ thread_local! {
         const { std::cell::Cell::new(World { ratio: 1.0, scale: [1.0; 2] }) };
 }
 
-/// The world of this test: square cells and true metres, unless it is `within` another.
+/// The world of this test: square cells and true metres, unless the test runs `within` another
+/// world.
 pub(crate) fn world() -> World {
     WORLD.get()
 }
 
-/// Calls `make`; all scenes made meanwhile lie in `world`.
+/// Calls `make` with `world` as the world of its scenes.
 pub(crate) fn within<T>(world: World, make: impl FnOnce() -> T) -> T {
     let before = WORLD.replace(world);
     let made = make();
@@ -76,7 +78,7 @@ pub(crate) fn within<T>(world: World, make: impl FnOnce() -> T) -> T {
     made
 }
 
-/// Two levels of a grid far from the origin, as real ones are.
+/// Two levels of a grid far from the origin, like real grids.
 pub(crate) fn frame() -> GridFrame {
     let cell = world().cell(CELL_M);
     GridFrame::new([0.25, 0.75], cell, NodeIndex { i: 51_200, j: 512_000 }, 1).unwrap()
@@ -86,8 +88,9 @@ pub(crate) fn class(number: u8) -> FunctionalRoadClass {
     FunctionalRoadClass::new(number).unwrap()
 }
 
-/// A tile's ground from a height function of x and y in the working CRS, with a vertex every `step` nodes.
-pub(crate) fn terrain(id: TileId, step: u16, height_m: impl Fn(f64, f64) -> f64) -> Terrain {
+/// A tile's ground from a height function of x and y in the working CRS, with a vertex every `step`
+/// nodes.
+pub(crate) fn terrain(id: TileId, step: u16, height_m: impl Fn(f64, f64) -> f64) -> TileTerrain {
     let (frame, window) = (frame(), frame().tile_window(id));
     let count = TILE_CELLS as u16 / step + 1;
     let (mut vertices, mut normals) = (Vec::new(), Vec::new());
@@ -114,7 +117,7 @@ pub(crate) fn terrain(id: TileId, step: u16, height_m: impl Fn(f64, f64) -> f64)
     let heights = || vertices.iter().map(|vertex| f64::from(vertex.height_q) * QUANTUM_M);
     let range =
         [heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max)];
-    Terrain {
+    TileTerrain {
         normals,
         tin: Tin::new(vertices.clone(), &triangles).unwrap(),
         geometric_error_m: 1.0,
@@ -123,14 +126,14 @@ pub(crate) fn terrain(id: TileId, step: u16, height_m: impl Fn(f64, f64) -> f64)
     }
 }
 
-/// The normal of ground that rises by so many metres per metre, as packages have it.
+/// The normal of ground with these slopes in metres per metre, encoded as in packages.
 fn octahedron_normal(east: f64, north: f64) -> [i8; 2] {
     let length = east.abs() + north.abs() + 1.0;
     [-east, -north].map(|part| (part / length * 127.0).round() as i8)
 }
 
 /// Triangles of a tile's ground in world space, f64.
-pub(crate) fn triangles(id: TileId, terrain: &Terrain) -> Vec<[DVec3; 3]> {
+pub(crate) fn triangles(id: TileId, terrain: &TileTerrain) -> Vec<[DVec3; 3]> {
     let (frame, window) = (frame(), frame().tile_window(id));
     let place = |index: u32| {
         let vertex = terrain.tin.vertices()[index as usize];
@@ -140,7 +143,8 @@ pub(crate) fn triangles(id: TileId, terrain: &Terrain) -> Vec<[DVec3; 3]> {
     terrain.tin.triangles().iter().map(|corners| corners.map(place)).collect()
 }
 
-/// Lays the plan segment a–b on triangles: a vertex wherever it crosses an edge, heights from the triangles.
+/// Drapes the plan segment a–b on triangles: a vertex at each crossing with an edge, heights from
+/// the triangles.
 pub(crate) fn lay(a: DVec2, b: DVec2, ground: &[[DVec3; 3]]) -> Vec<[f64; 3]> {
     let mut at = vec![0.0, 1.0];
     for corners in ground {
@@ -171,7 +175,7 @@ pub(crate) fn height_at(at: DVec2, ground: &[[DVec3; 3]]) -> Option<f64> {
     })
 }
 
-/// A straight road as it was laid on the ground.
+/// A straight road that was draped on the ground.
 pub(crate) fn ground_line(number: u8, points_m: Vec<[f64; 3]>) -> GroundLine {
     let plan = |[x, y, _]: [f64; 3]| [x, y];
     let source = [plan(points_m[0]), plan(points_m[points_m.len() - 1])];
@@ -204,7 +208,7 @@ pub(crate) fn cast(eye: DVec3, ray: DVec3, ground: &[[DVec3; 3]]) -> Option<f64>
     nearest
 }
 
-/// Roads of one width for all classes, without any growth: `half_width_m` is all there is to know.
+/// Roads with one width for all classes, without growth: `half_width_m` defines everything.
 pub(crate) fn plain_style(width_m: f32) -> Style {
     let road = RoadStyle {
         dash: corniche_styles::Dash::SOLID,
@@ -228,7 +232,7 @@ pub(crate) fn plain_style(width_m: f32) -> Style {
     }
 }
 
-/// Bands of these shares of a road's width, in shades of their own.
+/// Bands with these shares of a road's width, each in a different shade.
 pub(crate) fn bands(shares: &[f32]) -> RoadBands {
     let shade = |k: usize| (k as f32 + 1.0) / (shares.len() as f32 + 1.0);
     let bands = shares.iter().enumerate().map(|(k, width_share)| RoadBand {
@@ -238,7 +242,7 @@ pub(crate) fn bands(shares: &[f32]) -> RoadBands {
     RoadBands::new(&bands.collect::<Vec<_>>()).unwrap()
 }
 
-/// What came back from the device.
+/// The layers that were read back from the device.
 pub(crate) struct Drawing {
     pub(crate) size_px: [u32; 2],
     pub(crate) picture: Vec<u8>,
@@ -247,7 +251,7 @@ pub(crate) struct Drawing {
     pub(crate) labels: Vec<u8>,
     /// The labels of decks; `None` if no decks were drawn.
     pub(crate) decks: Option<Vec<u8>>,
-    pub(crate) owners: Vec<Owner>,
+    pub(crate) owners: Vec<TileOwner>,
 }
 
 impl Drawing {
@@ -300,7 +304,7 @@ impl Drawing {
 }
 
 /// A tile to draw: id, ground, lines on it, depth of its skirt.
-pub(crate) type SceneTile = (TileId, Terrain, Vec<GroundLine>, f64);
+pub(crate) type SceneTile = (TileId, TileTerrain, Vec<GroundLine>, f64);
 
 pub(crate) fn draw(gpu: &Gpu, camera: &Camera, style: &Style, scene: &[SceneTile]) -> Drawing {
     draw_exaggerated(gpu, camera, style, scene, 1.0)
@@ -333,7 +337,7 @@ pub(crate) fn draw_exaggerated(
     let view = FrameView {
         camera,
         style,
-        roads: RoadOptions::of(RoadMethod::Geometry),
+        roads: RoadOptions::for_method(RoadMethod::Geometry),
         exaggeration,
         point_scale: 1.0,
         height_range_m: [0.0, 1000.0],
@@ -354,10 +358,10 @@ fn keep(drawing: &Drawing) {
     let picture = image::RgbaImage::from_raw(width, height, drawing.picture.clone()).unwrap();
     let next = |k: &u32| std::path::Path::new(&folder).join(format!("{name}-{k}.png"));
     let free = (0..1000).map(|k| next(&k)).find(|path| !path.exists());
-    picture.save(free.expect("a free name")).expect("a folder to write to");
+    picture.save(free.expect("a free name")).expect("a writable folder");
 }
 
-/// Distance in plan from a point to the nearest of some lines.
+/// Distance in plan from a point to the nearest line.
 pub(crate) fn plan_distance_m(at: DVec2, lines: &[GroundLine]) -> f64 {
     let mut nearest = f64::INFINITY;
     for line in lines {

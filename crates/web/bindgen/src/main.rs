@@ -1,4 +1,4 @@
-//! `bindgen INPUT.wasm FOLDER`: what `wasm-bindgen --target web` does.
+//! `bindgen INPUT.wasm FOLDER`: does the same as `wasm-bindgen --target web`.
 
 use std::{env, error::Error};
 

@@ -1,4 +1,4 @@
-//! Pictures that a person saves, from being asked for to being written.
+//! Images that the user saves, from the request to the file.
 
 use std::{collections::VecDeque, path::PathBuf};
 
@@ -13,12 +13,12 @@ use crate::{
     files::FileWriter,
 };
 
-/// Pictures from being asked for to being saved.
+/// Images from the request to the file.
 pub(crate) struct Captures {
     pub(crate) files: FileWriter,
-    /// Pictures that are asked for and not yet begun.
+    /// Images that are requested and not started yet.
     pub(crate) wanted: Vec<Shot>,
-    /// Pictures whose pixels are on their way back from the graphics card.
+    /// Images whose pixels are being read back from the GPU.
     pub(crate) developing: VecDeque<(Shot, Snapshot)>,
 }
 
@@ -27,8 +27,8 @@ impl Captures {
         Self { files, wanted: Vec::new(), developing: VecDeque::new() }
     }
 
-    /// Begins the pictures that are asked for, and saves those whose pixels have come back, in the order in which they
-    /// were asked for. Adds to `lost` why pictures were not taken, also when it fails.
+    /// Starts the requested images, and saves those whose pixels have arrived, in the order of the
+    /// requests. Adds the reasons for images that were not taken to `lost`, even if it fails.
     ///
     /// # Errors
     /// When the device is lost.
@@ -40,7 +40,7 @@ impl Captures {
         credits: &[String],
         lost: &mut Vec<NotSaved>,
     ) -> Result<(), WindowError> {
-        // What is asked for in this frame is drawn in full in the next one.
+        // An image requested in this frame is drawn in full resolution in the next one.
         if canvas.is_full() {
             for shot in std::mem::take(&mut self.wanted) {
                 let snapshot = match shot {
@@ -57,10 +57,10 @@ impl Captures {
             match snapshot.pixels.has_arrived(canvas.gpu()) {
                 Ok(false) => break,
                 Ok(true) => {}
-                // The caller makes everything on the device again, and then `lose_device` is called.
+                // The caller recreates everything on the device, and then calls `lose_device`.
                 Err(error) if canvas.gpu().is_lost() => return Err(error.into()),
                 Err(error) => {
-                    // It is not known which of the pictures failed.
+                    // It is unknown which of the images failed.
                     self.developing.clear();
                     lost.push(error.into());
                     break;
@@ -76,22 +76,23 @@ impl Captures {
     }
 
     fn save(&mut self, shot: Shot, mut picture: RgbaImage, credits: &[String]) {
-        // A picture of the window shows the credits already.
+        // An image of the window shows the attribution already.
         if shot == Shot::Map {
             draw_attribution(&mut picture, credits);
         }
         self.files.save_picture(picture);
     }
 
-    /// The graphics device is lost, and with it the pictures that were being taken: `Some` if there were any.
+    /// Handles the loss of the graphics device and of the images being taken: `Some` if there were
+    /// any.
     pub(crate) fn lose_device(&mut self) -> Option<NotSaved> {
         let had_some = !self.developing.is_empty();
         self.developing.clear();
         had_some.then_some(NotSaved::DeviceLost)
     }
 
-    /// The window closes: waits for the pictures that are being taken and written. Returns what
-    /// became of them, for there is no panel any more to show it.
+    /// Closes the window: waits for images being taken and written. Returns the results, because no
+    /// panel can show them any more.
     pub(crate) fn end(
         &mut self,
         canvas: &Canvas,
@@ -100,7 +101,8 @@ impl Captures {
     ) -> Vec<Result<PathBuf, NotSaved>> {
         let mut saved = Vec::new();
         for shot in std::mem::take(&mut self.wanted) {
-            // The map is there. The panel is not: it is laid out in frames only, and there will be none.
+            // The map can still be read. The panel cannot: it is laid out in frames only, and there
+            // will be none.
             match canvas.snap_map(divider_share) {
                 Some(snapshot) if shot == Shot::Map && canvas.is_full() => {
                     self.developing.push_back((shot, snapshot));

@@ -1,4 +1,4 @@
-//! A lost device does not hide why other pictures were not taken.
+//! A lost device does not hide why other images were not taken.
 
 use std::{path::Path, sync::Arc};
 
@@ -12,18 +12,18 @@ fn a_lost_device_does_not_hide_why_other_pictures_were_not_taken() {
     let Some(mut canvas) = canvas() else { return };
     let mut scene = scene_of_size(Compare::Off, [64, 48]);
     canvas.draw(&scene).unwrap();
-    // Nothing is saved.
+    // The writer saves nothing.
     let folder = Path::new("no folder").to_path_buf();
     let mut captures = Captures::new(FileWriter::new(folder, Arc::new(|| ())));
     canvas.gpu().device.destroy();
-    // Its pixels cannot come.
+    // The pixels of this image cannot arrive.
     let snapshot = canvas.snap_map(0.5).unwrap();
-    // Without a picture of the map there is nothing to take.
+    // Without an image of the map there is nothing to take.
     scene.roads.clear();
     canvas.draw(&scene).unwrap();
     captures.wanted.push(Shot::Map);
     captures.developing.push_back((Shot::Map, snapshot));
-    // The device tells of its loss once it has been waited for.
+    // The device reports its loss once it has been waited for.
     let _ = canvas.gpu().finish();
     assert!(canvas.gpu().is_lost());
 

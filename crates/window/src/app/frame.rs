@@ -1,7 +1,7 @@
-//! What a frame does, up to its painting.
+//! The work of a frame, up to its painting.
 //!
-//! In this order: tiles that have arrived, time, choice of tiles, map, panel. A change made in the panel is seen in the next
-//! frame, which the panel asks for.
+//! The order is: arrived tiles, time, selection of tiles, map, panel. A change in the panel takes
+//! effect in the next frame, which the panel requests.
 
 use corniche_live::{MapSettings, Redraw, TraceLine};
 use corniche_styles::Rgb;
@@ -12,16 +12,17 @@ use super::App;
 use crate::{
     WindowError,
     canvas::Canvas,
-    panel::{self, Answer},
+    panel::{self, PanelActions},
     window_content::WindowContent,
 };
 
-/// Time between two questions whether the pixels of a picture have come back.
+/// The interval between checks whether the pixels of an image have arrived.
 const PICTURE_S: f64 = 0.02;
-/// The panel's toolkit asks for a repaint after a very long time when it means never; this is the longest that counts.
+/// The toolkit of the panel requests a repaint after a very long time when it means never; longer
+/// times than this count as never.
 const LONGEST_WISH_S: f64 = 3600.0;
 
-/// What a frame is given. Times are seconds of one clock.
+/// The input of a frame. Times are seconds of one clock.
 pub(crate) struct FrameInput {
     pub(crate) now_s: f64,
     pub(crate) size_px: [u32; 2],
@@ -29,23 +30,23 @@ pub(crate) struct FrameInput {
     pub(crate) ui: egui::RawInput,
 }
 
-/// What comes of a frame: what the window system has to do.
+/// The output of a frame: the work of the window system.
 pub(crate) struct FrameOutput {
     /// The window's contents, to be painted with [`Canvas::paint`].
     pub(crate) primitives: Vec<egui::ClippedPrimitive>,
     pub(crate) screen: ScreenDescriptor,
     /// The textures that [`Canvas::free_textures`] frees after painting.
     pub(crate) unused_textures: Vec<egui::TextureId>,
-    /// What the panel's toolkit wants of the window system, such as a shape of the cursor.
+    /// Requests of the toolkit to the window system, such as a shape of the cursor.
     pub(crate) platform: egui::PlatformOutput,
     pub(crate) redraw: Redraw,
 }
 
 impl App {
-    /// Does everything of a frame up to its painting.
+    /// Executes a frame up to its painting.
     ///
     /// # Errors
-    /// When the pictures cannot be drawn or the trace cannot be written.
+    /// When the images cannot be drawn or the trace cannot be written.
     pub(crate) fn frame(
         &mut self,
         canvas: &mut Canvas,
@@ -59,13 +60,16 @@ impl App {
             desk.notices.tell_saved(saved, now_s);
         }
         let step = desk.step(&mut canvas.map, size_px, pixels_per_point, now_s);
-        // A picture that is to be saved is drawn in full.
+        // An image to be saved is drawn in full resolution.
         let is_wanted = !self.captures.wanted.is_empty();
         let scene = desk.scene(&canvas.map, size_px, is_wanted, now_s);
         let is_new = canvas.draw(&scene)?;
         desk.session.look_at_ground(&step.camera, is_new);
         desk.take_times(&mut canvas.map)?;
-        let line = self.trace.as_ref().map(|_| TraceLine::of(&desk.session, self.frame, size_px));
+        let line = self
+            .trace
+            .as_ref()
+            .map(|_| TraceLine::from_session(&desk.session, self.frame, size_px));
 
         let before = self.desk.session.settings.clone();
         let mut output = self.show_panel(canvas, ui, raw, now_s);
@@ -78,7 +82,7 @@ impl App {
         let primitives = ui.tessellate(std::mem::take(&mut output.shapes), pixels_per_point);
         self.capture(canvas, &primitives, &screen)?;
         if let (Some(trace), Some(mut line)) = (&mut self.trace, line) {
-            // What the panel was asked for begins with this frame.
+            // The commands of the panel begin with this frame.
             line.is_moving = self.desk.session.camera.navigator.is_moving();
             trace.write(line).map_err(|source| WindowError::Trace { source })?;
         }
@@ -98,7 +102,7 @@ impl App {
         })
     }
 
-    /// When the next frame is due; `is_at_once` says that this one left something to do.
+    /// The time of the next frame; `is_at_once` means that this frame left something to do.
     fn next_redraw(
         &self,
         canvas: &Canvas,
@@ -116,7 +120,7 @@ impl App {
         self.desk.next_redraw(&canvas.map, [picture_s, wish_s], now_s)
     }
 
-    /// Lays out the window and does what was clicked in it.
+    /// Lays out the window and executes what the user clicked.
     fn show_panel(
         &mut self,
         canvas: &Canvas,
@@ -124,14 +128,14 @@ impl App {
         raw: egui::RawInput,
         now_s: f64,
     ) -> egui::FullOutput {
-        let mut answer = Answer::default();
+        let mut answer = PanelActions::default();
         let mut settings: MapSettings = self.desk.session.settings.clone();
         let roads = self.desk.session.style().roads.iter();
         let road_colors: Vec<Rgb> = roads.map(|road| road.bands.main_color()).collect();
         let content = self.content(canvas, ui, &road_colors, now_s);
         let output = ui.run_ui(raw, |ui| {
             let shown = panel::show(ui, &mut settings, &content, &canvas.pictures());
-            // The toolkit may lay out twice; a click is reported in one of the two.
+            // The toolkit may lay out twice; one of the two reports a click.
             answer.commands.extend(shown.commands);
             answer.occupied = shown.occupied;
         });
@@ -159,7 +163,7 @@ impl App {
             adapter: &canvas.gpu().adapter_name,
             is_software: canvas.gpu().is_software(),
             attribution: &manifest.attribution,
-            crs: WorkingCrs::of(manifest),
+            crs: WorkingCrs::from_manifest(manifest),
             cursor: session.probe.cursor().filter(|_| is_over_map),
             pose: session.pose(),
             metres_per_point: session.probe.middle_pixel_m.map(|pixel_m| pixel_m * points),
@@ -170,7 +174,7 @@ impl App {
             overlays: &self.desk.overlays,
             overlay_colors: session.overlay_colors(self.desk.overlays.len()),
             photo: manifest.settings.photo.map(|_| style.photo),
-            boundary_lines: BoundaryLines::of(manifest, style),
+            boundary_lines: BoundaryLines::from_manifest(manifest, style),
             road_colors,
             class_labels: &self.class_labels,
             tiles_drawn: tiles.drawn.len(),

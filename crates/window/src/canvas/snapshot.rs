@@ -1,17 +1,17 @@
-//! Pixels on their way back from the graphics card: of the map, or of the whole painted window.
+//! Pixels being read back from the GPU: of the map, or of the whole painted window.
 
 use corniche_live::PixelReading;
 use corniche_viewer::gpu::{Gpu, ReadBackError};
 use image::RgbaImage;
 
-/// A picture that is being taken.
+/// An image that is being taken.
 pub(crate) struct Snapshot {
     pub(crate) pixels: PixelReading,
     pub(crate) has_blue_first: bool,
 }
 
 impl Snapshot {
-    /// The picture; waits for what is not yet there.
+    /// The image; waits for pixels that have not arrived yet.
     ///
     /// # Errors
     /// When the device is lost or could not draw.

@@ -1,33 +1,33 @@
 //! The compass in a corner of the map, and the button below it that opens the panel.
 
-use corniche_live::{Command, formatting};
+use corniche_live::{MapCommand, formatting};
 use egui::{Align2, Color32, CornerRadius, FontId, Pos2, Rect, Stroke, Ui, Vec2, pos2, vec2};
 
-use super::palette::{Answer, CHALK, MARGIN, SLATE, framed};
+use super::palette::{CHALK, MARGIN, PanelActions, SLATE, framed};
 use crate::window_content::WindowContent;
 
 const RADIUS: f32 = 26.0;
-/// Side of the button that opens the panel, points.
+/// The side of the button that opens the panel, in points.
 const SIDE: f32 = 28.0;
 const RED: Color32 = Color32::from_rgb(206, 52, 44);
 
-/// The place of the compass in the free part of the map.
+/// The position of the compass in the free part of the map.
 pub(crate) fn compass_place(rect: Rect) -> Rect {
     let from_corner = MARGIN + RADIUS;
     let center = rect.right_top() + vec2(-from_corner, from_corner);
     Rect::from_center_size(center, Vec2::splat(2.0 * RADIUS))
 }
 
-/// Lays out the compass. Returns how far other things may reach to the right, and its lower edge.
+/// Lays out the compass. Returns the limit of other items on the right, and its lower edge.
 pub(crate) fn compass(
     ui: &mut Ui,
     area: Rect,
     content: &WindowContent<'_>,
-    answer: &mut Answer,
+    answer: &mut PanelActions,
 ) -> [f32; 2] {
     let (center, radius) = (area.center(), RADIUS);
     let hover = "Heading and pitch. Click: north up (N)";
-    let response = answer.clickable(ui, (area, "compass"), hover, Command::NorthUp);
+    let response = answer.clickable(ui, (area, "compass"), hover, MapCommand::NorthUp);
 
     let painter = ui.painter();
     let fill = if response.hovered() { SLATE.gamma_multiply(1.2) } else { SLATE };
@@ -67,15 +67,16 @@ pub(crate) fn compass(
     [area.left().min(plate.left()) - MARGIN, plate.bottom()]
 }
 
-/// Lays out the button that opens the panel, beneath `top` at the right edge, if there is room for it.
-pub(crate) fn panel_button(ui: &mut Ui, room: Rect, top: f32, answer: &mut Answer) {
+/// Lays out the button that opens the panel, below `top` at the right edge, if there is space for
+/// it.
+pub(crate) fn panel_button(ui: &mut Ui, room: Rect, top: f32, answer: &mut PanelActions) {
     let corner = pos2(room.right() - MARGIN - SIDE, top + MARGIN);
     let plate = Rect::from_min_size(corner, vec2(SIDE, SIDE));
     if !room.contains_rect(plate) {
         return;
     }
     let hover = "Show the panel (Tab)";
-    let response = answer.clickable(ui, (plate, "panel button"), hover, Command::TogglePanel);
+    let response = answer.clickable(ui, (plate, "panel button"), hover, MapCommand::TogglePanel);
     let fill = if response.hovered() { SLATE.gamma_multiply(1.2) } else { SLATE };
     let painter = ui.painter();
     framed(painter, plate, fill, CHALK.gamma_multiply(0.5));

@@ -1,27 +1,28 @@
-//! What can be dragged on the map: the line between the two pictures of a split screen, with their
+//! The draggable parts of the map: the divider between the two images of a split screen, with their
 //! names, and points of drawn lines.
 
 use corniche_live::{DrawingContent, MapSettings, range};
 use egui::{Align2, Color32, CornerRadius, FontId, Rect, Sense, Stroke, Ui, pos2, vec2};
 
-use super::palette::{Answer, CHALK, MARGIN, SLATE};
+use super::palette::{CHALK, MARGIN, PanelActions, SLATE};
 
-/// The divider of a split screen stays this far from the panel, points.
+/// The divider of a split screen keeps this distance from the panel, in points.
 const GRIP_ROOM: f32 = 24.0;
 /// Radius of the points of drawn lines, points of the screen.
 const RADIUS: f32 = 4.0;
 
-/// Lays out the line between two pictures, which can be dragged, and their names.
+/// Lays out the draggable divider between two images, and their names.
 pub(crate) fn divider(
     ui: &mut Ui,
     rect: Rect,
     compass: Rect,
     settings: &mut MapSettings,
-    answer: &mut Answer,
+    answer: &mut PanelActions,
 ) {
     let whole = ui.ctx().viewport_rect();
     let share_at = |x: f32| (x - whole.left()) / whole.width().max(1.0);
-    // A panel that opens over the line moves it aside, because it could not be grabbed under the panel.
+    // A panel that opens over the divider moves it aside, because the divider could not be dragged
+    // under the panel.
     let most = share_at(rect.right() - GRIP_ROOM).max(*range::DIVIDER_SHARE.start());
     settings.divider_share = settings.divider_share.min(most);
     let x = whole.left() + settings.divider_share * whole.width();
@@ -41,7 +42,7 @@ pub(crate) fn divider(
     };
     line(4.0, SLATE);
     line(1.5, CHALK);
-    // The names stand at the upper edge, or below the text under the compass where they would cover it.
+    // The names are at the upper edge, or below the text under the compass if they would cover it.
     let top = if x + 44.0 > compass.left() { compass.bottom() + 28.0 } else { rect.top() + MARGIN };
     for (words, align, dx) in [("GEO", Align2::RIGHT_TOP, -10.0), ("SV", Align2::LEFT_TOP, 10.0)] {
         let at = pos2(x + dx, top);
@@ -53,7 +54,7 @@ pub(crate) fn divider(
     }
 }
 
-/// Paints the points of the lines that a person draws.
+/// Paints the points of the lines that the user draws.
 pub(crate) fn handles(ui: &Ui, drawing: &DrawingContent) {
     let painter = ui.painter();
     for handle in &drawing.handles {

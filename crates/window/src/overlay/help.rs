@@ -1,15 +1,15 @@
 //! The page of keys and mouse.
 
-use corniche_live::{Command, KEY_HELP};
+use corniche_live::{KEY_HELP, MapCommand};
 use egui::{Grid, Rect, RichText, ScrollArea, Ui, UiBuilder, vec2};
 
-use super::palette::{Answer, CHALK, MARGIN, SLATE, framed};
+use super::palette::{CHALK, MARGIN, PanelActions, SLATE, framed};
 
-/// The page is no larger than this, points.
+/// The largest size of the page, in points.
 const MOST: [f32; 2] = [470.0, 630.0];
 
-/// Lays out the page of keys and mouse in the middle of the room; a small window scrolls it.
-pub(crate) fn help(ui: &mut Ui, room: Rect, answer: &mut Answer) {
+/// Lays out the page of keys and mouse in the middle of the free space; a small window scrolls it.
+pub(crate) fn help(ui: &mut Ui, room: Rect, answer: &mut PanelActions) {
     let room = room.shrink(MARGIN);
     let size = vec2(MOST[0].min(room.width()), MOST[1].min(room.height()));
     let plate = Rect::from_center_size(room.center(), size);
@@ -21,7 +21,7 @@ pub(crate) fn help(ui: &mut Ui, room: Rect, answer: &mut Answer) {
     page.horizontal(|ui| {
         ui.label(RichText::new("Mouse and keys").strong().color(CHALK));
         if ui.small_button("Close").clicked() {
-            answer.commands.push(Command::ToggleHelp);
+            answer.commands.push(MapCommand::ToggleHelp);
         }
     });
     ScrollArea::both().auto_shrink([false, false]).show(&mut page, |ui| {

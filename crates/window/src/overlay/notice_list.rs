@@ -1,20 +1,20 @@
-//! What is told in the upper left corner of the map: the legend of a difference, that there is no
-//! ground, and the newest notices.
+//! The texts in the upper left corner of the map: the legend of a difference, the hint that there
+//! is no ground, and the newest notices.
 
 use std::sync::Arc;
 
-use corniche_live::{Command, Notice, controls::Mode};
+use corniche_live::{MapCommand, Notice, controls::Mode};
 use corniche_viewer::gpu::{DIFFERENCE_COLORS, DifferenceColors};
 use egui::{Color32, CornerRadius, FontId, Galley, Rect, Sense, Stroke, Ui, Vec2, pos2, vec2};
 
-use super::palette::{AMBER, Answer, CHALK, LABEL_HEIGHT, MARGIN, SLATE, framed};
+use super::palette::{AMBER, CHALK, LABEL_HEIGHT, MARGIN, PanelActions, SLATE, color32, framed};
 use crate::window_content::WindowContent;
 
-/// What is said where the middle of the map has no ground.
-pub(crate) const WORDS: &str = "no data here; R returns to the first view";
+/// The hint that there is no ground in the middle of the map.
+pub(crate) const WORDS: &str = "no data here; press R for the first view";
 
-/// Says that there is no ground in the middle of the map, and how to come back. In flight one may well look at the sky.
-/// Returns the upper edge of what is left of the room.
+/// Paints the hint that there is no ground in the middle of the map, and how to return. In flight,
+/// a view of the sky is normal. Returns the upper edge of the remaining space.
 pub(crate) fn no_data(ui: &Ui, room: Rect, content: &WindowContent<'_>) -> f32 {
     let is_lost = content.metres_per_point.is_none() && content.tiles_drawn > 0;
     if !is_lost || content.mode == Mode::Fly {
@@ -30,7 +30,7 @@ pub(crate) fn no_data(ui: &Ui, room: Rect, content: &WindowContent<'_>) -> f32 {
     plate.bottom()
 }
 
-/// Paints what the colours of a difference mean. Returns the lower edge of the legend.
+/// Paints the meaning of the colours of a difference. Returns the lower edge of the legend.
 pub(crate) fn legend(ui: &Ui, room: Rect) -> f32 {
     let painter = ui.painter();
     let (mut left, mut top) = (room.left() + MARGIN, room.top() + MARGIN);
@@ -38,7 +38,6 @@ pub(crate) fn legend(ui: &Ui, room: Rect) -> f32 {
     for (words, color) in
         [("GEO only", first_only), ("SV only", second_only), ("another class", other_label)]
     {
-        let [red, green, blue] = color.map(|part| (part * 255.0).round() as u8);
         let galley = painter.layout_no_wrap(words.into(), FontId::proportional(12.0), CHALK);
         let size = galley.size() + vec2(28.0, 6.0);
         if left + size.x > room.right() && left > room.left() + MARGIN {
@@ -48,21 +47,27 @@ pub(crate) fn legend(ui: &Ui, room: Rect) -> f32 {
         painter.rect_filled(plate, CornerRadius::same(3), SLATE);
         let swatch =
             Rect::from_center_size(pos2(plate.left() + 12.0, plate.center().y), Vec2::splat(10.0));
-        painter.rect_filled(swatch, CornerRadius::ZERO, Color32::from_rgb(red, green, blue));
+        painter.rect_filled(swatch, CornerRadius::ZERO, color32(color));
         painter.galley(plate.min + vec2(22.0, 3.0), galley, CHALK);
         left = plate.right() + 4.0;
     }
     top + LABEL_HEIGHT - MARGIN
 }
 
-/// Lays out the notices: the newest of them, as many as there is room for.
-pub(crate) fn notices(ui: &mut Ui, room: Rect, content: &WindowContent<'_>, answer: &mut Answer) {
+/// Lays out the newest notices, as many as fit.
+pub(crate) fn notices(
+    ui: &mut Ui,
+    room: Rect,
+    content: &WindowContent<'_>,
+    answer: &mut PanelActions,
+) {
     let mut top = room.top() + MARGIN;
     let width = (room.width() - 2.0 * MARGIN).min(460.0);
     let mut left = room.height() - MARGIN;
     let mut shown: Vec<(usize, &Notice, Arc<Galley>)> = Vec::new();
     for (place, notice) in content.notices.iter().enumerate().rev() {
-        // In a text of several lines, marks point at letters of the line before: that needs letters of equal width.
+        // In a text of several lines, marks point at letters of the line before: this needs a
+        // monospaced font.
         let is_drawing = notice.words.contains('\n');
         let font = if is_drawing { FontId::monospace(11.0) } else { FontId::proportional(12.5) };
         let galley = ui.painter().layout(notice.words.clone(), font, CHALK, width - 34.0);
@@ -94,7 +99,7 @@ pub(crate) fn notices(ui: &mut Ui, room: Rect, content: &WindowContent<'_>, answ
             ui.painter().line_segment(ends, Stroke::new(1.5, ink));
         }
         if response.clicked() {
-            answer.commands.push(Command::Dismiss(place));
+            answer.commands.push(MapCommand::Dismiss(place));
         }
         answer.occupied.push(plate);
         top = plate.bottom() + 4.0;

@@ -1,4 +1,4 @@
-//! The lower edge of the map: its scale bar and the credits of the package.
+//! The lower edge of the map: its scale bar and the attribution of the package.
 
 use std::sync::Arc;
 
@@ -8,28 +8,30 @@ use egui::{CornerRadius, FontId, Galley, Rect, Stroke, Ui, pos2, vec2};
 use super::palette::{INK, LONGEST_BAR, MARGIN, PAPER};
 use crate::window_content::WindowContent;
 
-/// From this tilt on, the scale at the edges of the picture differs from that in the middle, and the bar says so.
+/// From this tilt on, the scale at the edges of the image differs from that in the middle, and the
+/// bar says so.
 const TILTED_DEG: f64 = 5.0;
 
 /// A length on the ground, and its length on the screen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct ScaleBar {
-    /// 1, 2 or 5 times a power of ten, metres.
+    /// The length, metres: 1, 2 or 5 times a power of ten.
     pub(crate) length_m: f64,
-    /// Its length on the screen, points.
+    /// The length on the screen, points.
     pub(crate) points: f32,
 }
 
 impl ScaleBar {
-    /// The longest bar of no more than `most` points; `None` where `metres_per_point` is no positive number.
+    /// The longest bar of no more than `most` points; `None` if `metres_per_point` is not a
+    /// positive number.
     pub(crate) fn new(metres_per_point: f64, most: f32) -> Option<Self> {
         let length_m = bar_length_m(metres_per_point * f64::from(most))?;
         Some(Self { length_m, points: (length_m / metres_per_point) as f32 })
     }
 }
 
-/// Paints the scale bar in the lower left corner, or above the credits where there is no room beside them. Returns the upper
-/// edge of bar and credits.
+/// Paints the scale bar in the lower left corner, or above the attribution if there is no space
+/// next to it. Returns the upper edge of bar and attribution.
 pub(crate) fn scale_bar(
     ui: &Ui,
     rect: Rect,
@@ -68,21 +70,21 @@ pub(crate) fn scale_bar(
     plate.top().min(credits_top)
 }
 
-/// The package's credits, broken into lines: in the room beside the scale bar, or in the whole width where that room is
-/// small.
+/// The package's attribution, broken into lines: in the space next to the scale bar, or in the
+/// whole width if that space is small.
 fn credits_galley(ui: &Ui, rect: Rect, content: &WindowContent<'_>) -> Arc<Galley> {
     let beside = rect.width() - LONGEST_BAR - 6.0 * MARGIN;
     let room = if beside < 0.5 * rect.width() { rect.width() - 12.0 } else { beside };
     ui.painter().layout(content.attribution.join("  ·  "), FontId::proportional(11.0), INK, room)
 }
 
-/// The place of the credits in the lower right corner; `None` without any.
+/// The position of the attribution in the lower right corner; `None` if there is none.
 pub(crate) fn credits_place(ui: &Ui, rect: Rect, content: &WindowContent<'_>) -> Option<Rect> {
     let size = credits_galley(ui, rect, content).size() + vec2(12.0, 6.0);
     (!content.attribution.is_empty()).then(|| Rect::from_min_max(rect.max - size, rect.max))
 }
 
-/// Paints the credits.
+/// Paints the attribution.
 pub(crate) fn credits(ui: &Ui, rect: Rect, content: &WindowContent<'_>) {
     let Some(plate) = credits_place(ui, rect, content) else { return };
     ui.painter().rect_filled(plate, CornerRadius::ZERO, PAPER);

@@ -1,13 +1,21 @@
-//! The panel's sections of buttons: what moves the camera, changes drawn lines, and saves pictures
-//! and flights.
+//! The panel's sections of buttons: they move the camera, change drawn lines, and save images and
+//! flights.
 
-use corniche_live::{Command, DrawingCommand, DrawingContent, MapSettings, Shot, controls::Mode};
+use corniche_live::{
+    DrawingCommand, DrawingContent, MapCommand, MapSettings, Shot, controls::Mode,
+};
 use egui::{Key, TextEdit, Ui};
 
 use crate::window_content::WindowContent;
 
-/// A button; what it asks for is added to `commands`. An empty `hover` is not shown.
-fn button(ui: &mut Ui, words: &str, hover: &str, command: Command, commands: &mut Vec<Command>) {
+/// A button; its command is added to `commands`. An empty `hover` is not shown.
+fn button(
+    ui: &mut Ui,
+    words: &str,
+    hover: &str,
+    command: MapCommand,
+    commands: &mut Vec<MapCommand>,
+) {
     let mut response = ui.button(words);
     if !hover.is_empty() {
         response = response.on_hover_text(hover);
@@ -22,13 +30,13 @@ pub(crate) fn camera(
     ui: &mut Ui,
     settings: &mut MapSettings,
     content: &WindowContent<'_>,
-    commands: &mut Vec<Command>,
+    commands: &mut Vec<MapCommand>,
 ) {
     ui.horizontal(|ui| {
         let fly = if content.mode == Mode::Fly { "Back to map (F)" } else { "Fly (F)" };
-        button(ui, "North up (N)", "", Command::NorthUp, commands);
-        button(ui, "Reset (R)", "", Command::Reset, commands);
-        button(ui, fly, "", Command::ToggleFly, commands);
+        button(ui, "North up (N)", "", MapCommand::NorthUp, commands);
+        button(ui, "Reset (R)", "", MapCommand::Reset, commands);
+        button(ui, fly, "", MapCommand::ToggleFly, commands);
     });
     ui.horizontal(|ui| {
         let field =
@@ -36,26 +44,26 @@ pub(crate) fn camera(
         let response = ui.add(field);
         let is_entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
         if is_entered {
-            commands.push(Command::GoTo);
+            commands.push(MapCommand::GoTo);
         }
         let hover = "Longitude and latitude in degrees (WGS84), such as 9.52, 47.14";
-        button(ui, "Go to", hover, Command::GoTo, commands);
+        button(ui, "Go to", hover, MapCommand::GoTo, commands);
     });
     ui.horizontal(|ui| {
-        let hover = "With parallel rays, and back";
-        button(ui, "From above (T)", hover, Command::ToggleAbove, commands);
-        let hover = "Puts a command that draws this view on the clipboard";
-        button(ui, "Copy this view (V)", hover, Command::CopyView, commands);
+        let hover = "Switch between parallel rays and perspective";
+        button(ui, "From above (T)", hover, MapCommand::ToggleAbove, commands);
+        let hover = "Copies a command that draws this view to the clipboard";
+        button(ui, "Copy this view (V)", hover, MapCommand::CopyView, commands);
     });
 }
 
-/// The section for lines that a person draws.
-pub(crate) fn lines(ui: &mut Ui, content: &WindowContent<'_>, commands: &mut Vec<Command>) {
+/// The section for lines that the user draws.
+pub(crate) fn lines(ui: &mut Ui, content: &WindowContent<'_>, commands: &mut Vec<MapCommand>) {
     let DrawingContent { is_on, lines, is_picked, can_step, is_changed, last, .. } =
         &content.drawing;
     let mut button = |ui: &mut Ui, is_enabled: bool, words: &str, command: DrawingCommand| {
         if ui.add_enabled(is_enabled, egui::Button::new(words)).clicked() {
-            commands.push(Command::Draw(command));
+            commands.push(MapCommand::Draw(command));
         }
     };
     ui.horizontal(|ui| {
@@ -85,19 +93,19 @@ pub(crate) fn lines(ui: &mut Ui, content: &WindowContent<'_>, commands: &mut Vec
     }
 }
 
-/// The section that saves pictures and records flights.
-pub(crate) fn record(ui: &mut Ui, content: &WindowContent<'_>, commands: &mut Vec<Command>) {
+/// The section that saves images and records flights.
+pub(crate) fn record(ui: &mut Ui, content: &WindowContent<'_>, commands: &mut Vec<MapCommand>) {
     ui.horizontal(|ui| {
-        button(ui, "Map (P)", "Saves a picture", Command::Take(Shot::Map), commands);
-        button(ui, "Window (Shift P)", "Saves a picture", Command::Take(Shot::Window), commands);
+        button(ui, "Map (P)", "Saves an image", MapCommand::Take(Shot::Map), commands);
+        button(ui, "Window (Shift P)", "Saves an image", MapCommand::Take(Shot::Window), commands);
     });
     ui.horizontal(|ui| match content.recording_s {
         None => {
             let hover = "For corniche fly --path (key C)";
-            button(ui, "Record the camera's way", hover, Command::StartRecording, commands);
+            button(ui, "Record flight", hover, MapCommand::StartRecording, commands);
         }
         Some(recording_s) => {
-            button(ui, "Stop and save", "", Command::StopRecording, commands);
+            button(ui, "Stop and save", "", MapCommand::StopRecording, commands);
             ui.label(format!("recording, {recording_s:.0} s"));
         }
     });

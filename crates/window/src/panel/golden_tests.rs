@@ -1,8 +1,8 @@
-//! The window as it was looked at and found right, against the window painted now: where panel, credits, scale, compass
-//! and notices lie, and that each can be read.
+//! Compares the window as painted now with images that were inspected and accepted: the positions
+//! of panel, attribution, scale, compass and notices, and that each can be read.
 //!
-//! They hold for software Vulkan (llvmpipe) alone. `CORNICHE_BLESS=1 cargo test -p corniche-window golden` accepts the
-//! pictures painted now. Look at them.
+//! The images apply to software Vulkan (llvmpipe) only. `CORNICHE_BLESS=1 cargo test -p
+//! corniche-window golden` accepts the images painted now. Inspect them.
 
 use corniche_testing::pictures::{Golden, is_blessing};
 use corniche_viewer::gpu::Gpu;
@@ -30,7 +30,7 @@ fn is_pinned(gpu: &Gpu) -> bool {
     is_pinned
 }
 
-/// The window over a map of sky and void.
+/// Paints the window over a map of sky and void.
 fn painted(canvas: &mut Canvas, size_px: [u32; 2], settings: &mut MapSettings) -> RgbaImage {
     canvas.draw(&scene_of_size(settings.compare, size_px)).unwrap();
     let pictures = canvas.pictures();
@@ -39,7 +39,7 @@ fn painted(canvas: &mut Canvas, size_px: [u32; 2], settings: &mut MapSettings) -
     set_up(&ctx);
     let size = size_px.map(|side| side as f32);
     let mut output = egui::FullOutput::default();
-    // The toolkit knows how large things are from the second time on.
+    // The toolkit knows the sizes of its items from the second pass on.
     for _ in 0..2 {
         let input = RawInput {
             screen_rect: Some(Rect::from_min_size(egui::Pos2::ZERO, size.into())),
@@ -70,7 +70,7 @@ fn the_window_looks_as_it_did() {
     }
 }
 
-/// The comparison sees what it should see.
+/// The comparison detects a real difference.
 #[test]
 fn a_window_without_its_panel_is_no_match() {
     if is_blessing() {

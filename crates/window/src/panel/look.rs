@@ -1,18 +1,17 @@
-//! The panel's sections for how the map looks: methods and classes of roads, style, heights,
-//! layers, and what few people need.
+//! The panel's sections for the look of the map: methods and classes of roads, style, heights,
+//! layers, and advanced settings.
 
 use std::ops::RangeInclusive;
 
 use corniche_live::{Compare, MapSettings, range};
 use corniche_roads::FunctionalRoadClass;
-use corniche_styles::Rgb;
-use corniche_viewer::{BoundaryLines, CapTest, Caps, Outline, Quads, RoadMethod, WidthGrowth};
+use corniche_viewer::{BoundaryLines, CapTest, Caps, Quads, RoadMethod, RoadOutline, WidthGrowth};
 use egui::{
-    Color32, ComboBox, Grid, Label, Rect, Response, RichText, Slider, SliderClamping, Ui,
-    emath::Numeric, pos2, vec2,
+    ComboBox, Grid, Label, Rect, Response, RichText, Slider, SliderClamping, Ui, emath::Numeric,
+    pos2, vec2,
 };
 
-use crate::window_content::WindowContent;
+use crate::{overlay::color32, window_content::WindowContent};
 
 /// The section for the method and the comparison of both methods.
 pub(crate) fn roads(ui: &mut Ui, settings: &mut MapSettings) {
@@ -30,15 +29,15 @@ pub(crate) fn roads(ui: &mut Ui, settings: &mut MapSettings) {
         ui.horizontal(|ui| {
             ui.label("Method");
             ui.selectable_value(&mut roads.method, RoadMethod::Geometry, "GEO")
-                .on_hover_text("Geometry lying on the ground");
+                .on_hover_text("Geometry on the triangles of the ground");
             ui.selectable_value(&mut roads.method, RoadMethod::ShadowVolumes, "SV")
-                .on_hover_text("Volumes cut with the ground");
+                .on_hover_text("Shadow volumes cut with the ground");
             ui.selectable_value(&mut roads.method, RoadMethod::None, "none");
         });
     });
 }
 
-/// The section for the classes that are shown, which is also the legend of the map: colours and names.
+/// The section for the shown classes, which is also the legend of the map: colours and names.
 pub(crate) fn classes(ui: &mut Ui, settings: &mut MapSettings, content: &WindowContent<'_>) {
     Grid::new("classes").num_columns(2).min_col_width(0.0).show(ui, |ui| {
         for (class, label) in FunctionalRoadClass::all().zip(content.class_labels) {
@@ -74,11 +73,10 @@ pub(crate) fn map(ui: &mut Ui, settings: &mut MapSettings, content: &WindowConte
     });
     if content.has_areas {
         ui.checkbox(&mut settings.areas, "Areas")
-            .on_hover_text("Water, forest … as the style draws them");
+            .on_hover_text("Water, forest and other areas, drawn as in the style");
     }
     if content.has_boundaries {
-        ui.checkbox(&mut settings.boundaries, "Boundaries")
-            .on_hover_text("As the style draws them");
+        ui.checkbox(&mut settings.boundaries, "Boundaries").on_hover_text("Drawn as in the style");
         if settings.boundaries {
             boundaries(ui, &content.boundary_lines);
         }
@@ -101,13 +99,13 @@ pub(crate) fn map(ui: &mut Ui, settings: &mut MapSettings, content: &WindowConte
     if let Some(of_style) = content.photo {
         let mut strength = settings.photo.unwrap_or(of_style);
         let slider = Slider::new(&mut strength, range::PHOTO).max_decimals(2).text("photo");
-        if ui.add(slider).on_hover_text("How strongly the photo is seen").changed() {
+        if ui.add(slider).on_hover_text("Opacity of the photo").changed() {
             settings.photo = Some(strength);
         }
     }
 }
 
-/// The legend of boundaries: how they are drawn, and what they are called.
+/// The legend of boundaries: their lines and names.
 fn boundaries(ui: &mut Ui, all: &[BoundaryLines]) {
     for BoundaryLines { label, style } in all {
         ui.horizontal(|ui| {
@@ -124,7 +122,8 @@ fn boundaries(ui: &mut Ui, all: &[BoundaryLines]) {
     }
 }
 
-/// The section for what few people need: how roads are drawn in detail, widths by class, how finely the ground is drawn.
+/// The section for advanced settings: details of roads, widths by class, the resolution of the
+/// ground.
 pub(crate) fn advanced(ui: &mut Ui, settings: &mut MapSettings, content: &WindowContent<'_>) {
     road_choices(ui, settings);
     slide(ui, &mut settings.screen_space_error_px, range::SCREEN_SPACE_ERROR_PX, |slider| {
@@ -132,7 +131,7 @@ pub(crate) fn advanced(ui: &mut Ui, settings: &mut MapSettings, content: &Window
     })
     .on_hover_text("A tile is refined while its error looks larger than this");
     ui.horizontal(|ui| {
-        ui.label("Samples").on_hover_text("Per pixel; they are averaged");
+        ui.label("Samples").on_hover_text("Per pixel, averaged");
         for samples in range::SAMPLES_PER_SIDE {
             let words = format!("{samples} × {samples}");
             ui.selectable_value(&mut settings.samples_per_side, samples, words);
@@ -140,7 +139,7 @@ pub(crate) fn advanced(ui: &mut Ui, settings: &mut MapSettings, content: &Window
     });
     ui.checkbox(&mut settings.is_wireframe, "Wireframe");
     ui.checkbox(&mut settings.is_frozen, "Freeze tiles")
-        .on_hover_text("Keep what is drawn now while the camera moves");
+        .on_hover_text("Keep the drawn tiles while the camera moves");
     ui.label("Widths of classes");
     widths(ui, settings, content);
 }
@@ -176,10 +175,10 @@ fn road_choices(ui: &mut Ui, settings: &mut MapSettings) {
             "Outline",
             &mut roads.outline,
             &[
-                (Outline::OfStyle, "of the style"),
-                (Outline::None, "none"),
-                (Outline::Kernel3, "3 × 3"),
-                (Outline::Kernel5, "5 × 5"),
+                (RoadOutline::OfStyle, "of the style"),
+                (RoadOutline::None, "none"),
+                (RoadOutline::Kernel3, "3 × 3"),
+                (RoadOutline::Kernel5, "5 × 5"),
             ],
         );
     });
@@ -213,8 +212,9 @@ fn widths(ui: &mut Ui, settings: &mut MapSettings, content: &WindowContent<'_>) 
     });
 }
 
-/// A logarithmic slider for a factor or a size. The command line may give a value that is out of the slider's range or has
-/// more digits than it shows; such a value stays as it is until the slider is moved.
+/// A logarithmic slider for a factor or a size. A value of the command line may be outside the
+/// slider's range or have more digits than it shows; such a value stays unchanged until the slider
+/// is moved.
 fn slide<T: Numeric>(
     ui: &mut Ui,
     value: &mut T,
@@ -228,10 +228,4 @@ fn slide<T: Numeric>(
         *value = moved;
     }
     response
-}
-
-/// A colour of a style, as the toolkit has colours.
-fn color32(color: Rgb) -> Color32 {
-    let [red, green, blue] = color.map(|part| (part * 255.0).round() as u8);
-    Color32::from_rgb(red, green, blue)
 }

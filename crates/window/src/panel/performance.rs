@@ -1,4 +1,4 @@
-//! The panel's section that shows what a frame costs.
+//! The panel's section for the times, counts and memory of a frame.
 
 use corniche_live::{FrameTimes, formatting};
 use corniche_viewer::gpu::PassTimes;
@@ -9,7 +9,7 @@ use crate::window_content::WindowContent;
 /// The upper end of the graph, unless a frame took longer.
 const GRAPH_MS: f64 = 33.3;
 
-/// The section that shows what a frame costs.
+/// Shows the times, counts and memory of a frame.
 pub(crate) fn show(ui: &mut Ui, content: &WindowContent<'_>) {
     let times = content.frame_times;
     let ms = |value: Option<f64>| value.map_or("–".to_owned(), |ms| format!("{ms:.1}"));
@@ -21,7 +21,7 @@ pub(crate) fn show(ui: &mut Ui, content: &WindowContent<'_>) {
     ));
     graph(ui, times);
     if content.passes.is_empty() {
-        ui.label("no pass timed yet");
+        ui.label("no pass was timed yet");
     } else {
         passes(ui, content);
     }
@@ -71,7 +71,7 @@ fn graph(ui: &mut Ui, times: &FrameTimes) {
     let size = vec2(ui.available_width(), 44.0);
     let (area, response) = ui.allocate_exact_size(size, Sense::hover());
     response.on_hover_text(
-        "Time of the last frames that followed one another; lines at 60 and 30 a second",
+        "Times of the last consecutive frames; the lines are 60 and 30 frames per second",
     );
     let painter = ui.painter();
     painter.rect_filled(area, 2, ui.visuals().extreme_bg_color);

@@ -1,4 +1,4 @@
-//! The line at the lower edge of the window, whose items give way when there is little room.
+//! The status line at the lower edge of the window. It omits items if there is little space.
 
 use corniche_live::{Compare, MapSettings, controls::Mode, formatting};
 use corniche_viewer::gpu::PassTimes;
@@ -6,22 +6,23 @@ use egui::{Color32, FontId, Label, RichText, Ui};
 
 use crate::window_content::WindowContent;
 
-/// Height of the line, points. It never changes, so that the map keeps its place.
+/// The height of the line, points. It never changes, so that the map does not move.
 pub(crate) const HEIGHT: f32 = 24.0;
-/// Size of its letters, points.
+/// The font size, points.
 const LETTERS: f32 = 12.0;
-/// Room between two items, points.
+/// The space between two items, points.
 const GAP: f32 = 14.0;
 
-/// A part of the line.
-struct Item {
+/// An item of the status line.
+struct StatusItem {
     text: String,
     color: Option<Color32>,
-    /// Where there is not room for all items, those with the highest rank are left out.
+    /// The rank: if there is not enough space for all items, those with the highest rank are
+    /// omitted.
     rank: u8,
 }
 
-impl Item {
+impl StatusItem {
     fn new(rank: u8, text: impl Into<String>) -> Self {
         Self { text: text.into(), color: None, rank }
     }
@@ -40,8 +41,9 @@ impl Item {
     }
 }
 
-/// The line at the lower edge of the window: positions on the left, what is going on at the right. It has one row; what finds
-/// no room is left out, the least important first. `is_narrow` says that an open panel found no room.
+/// Lays out the status line: positions on the left, activities on the right. It has one row; items
+/// that do not fit are omitted, the least important first. `is_narrow` means that an open panel did
+/// not fit.
 pub(crate) fn status_line(
     ui: &mut Ui,
     settings: &MapSettings,
@@ -49,7 +51,7 @@ pub(crate) fn status_line(
     is_narrow: bool,
 ) {
     let room = ui.available_width();
-    let mut items: Vec<Item> = happening(content, is_narrow);
+    let mut items: Vec<StatusItem> = happening(content, is_narrow);
     let count = items.len();
     items.extend(positions(settings, content));
     let mut places: Vec<usize> = (0..items.len()).collect();
@@ -79,50 +81,62 @@ pub(crate) fn status_line(
     });
 }
 
-/// What is going on, the most important first.
-fn happening(content: &WindowContent<'_>, is_narrow: bool) -> Vec<Item> {
+/// The current activities, the most important first.
+fn happening(content: &WindowContent<'_>, is_narrow: bool) -> Vec<StatusItem> {
     let mut items = Vec::new();
     if is_narrow {
-        items.push(Item::new(0, "a wider window shows the panel"));
+        items.push(StatusItem::new(0, "a wider window shows the panel"));
     }
     if let Some(recording_s) = content.recording_s {
         let color = Some(Color32::from_rgb(255, 140, 120));
-        items.push(Item { color, ..Item::new(0, format!("recording for {recording_s:.0} s")) });
+        items.push(StatusItem {
+            color,
+            ..StatusItem::new(0, format!("recording for {recording_s:.0} s"))
+        });
     }
     if content.mode == Mode::Fly {
         let color = Some(Color32::WHITE);
-        items.push(Item { color, ..Item::new(1, "fly mode: W A S D, Q E, Shift; F ends it") });
+        items.push(StatusItem {
+            color,
+            ..StatusItem::new(1, "fly mode: W A S D, Q E, Shift; F ends it")
+        });
     }
     if content.is_full {
-        items.push(Item::new(2, format!("{} tiles find no room", content.tiles_missing)));
+        items.push(StatusItem::new(
+            2,
+            format!("{} tiles exceed the GPU memory", content.tiles_missing),
+        ));
     } else if content.tiles_missing > 0 {
-        items.push(Item::new(2, format!("loading {} tiles", content.tiles_missing)));
+        items.push(StatusItem::new(2, format!("loading {} tiles", content.tiles_missing)));
     }
     items
 }
 
-/// The ground under the cursor, the camera, how roads are drawn and how long it takes.
-fn positions(settings: &MapSettings, content: &WindowContent<'_>) -> Vec<Item> {
+/// The ground under the cursor, the camera, the drawing method of roads and the time it takes.
+fn positions(settings: &MapSettings, content: &WindowContent<'_>) -> Vec<StatusItem> {
     let mut items = Vec::new();
     match &content.cursor {
         Some(point) => {
             let [x, y, height_m] = point.at_m;
-            items.push(Item::new(1, formatting::position(point.lon_lat_deg)));
-            items.push(Item::new(7, formatting::coordinates(content.crs, [x, y])));
-            items.push(Item::new(3, format!("ground {height_m:.1} m")));
+            items.push(StatusItem::new(1, formatting::position(point.lon_lat_deg)));
+            items.push(StatusItem::new(7, formatting::coordinates(content.crs, [x, y])));
+            items.push(StatusItem::new(3, format!("ground {height_m:.1} m")));
         }
-        None => items.push(Item::new(1, "no ground under the cursor")),
+        None => items.push(StatusItem::new(1, "no ground under the cursor")),
     }
     let orientation = content.pose.orientation;
-    items.push(Item::new(4, format!("eye {}", formatting::length(content.pose.eye_m[2]))));
-    items.push(Item::new(5, format!("heading {}", formatting::heading(orientation.heading_deg))));
-    items.push(Item::new(6, format!("pitch {:.0}°", orientation.pitch_deg)));
+    items.push(StatusItem::new(4, format!("eye {}", formatting::length(content.pose.eye_m[2]))));
+    items.push(StatusItem::new(
+        5,
+        format!("heading {}", formatting::heading(orientation.heading_deg)),
+    ));
+    items.push(StatusItem::new(6, format!("pitch {:.0}°", orientation.pitch_deg)));
     let roads = match settings.compare {
         Compare::Off => format!("roads {}", formatting::method(settings.roads.method)),
         Compare::Split | Compare::Difference => "roads GEO and SV".to_owned(),
     };
     let by = if content.is_software { ", drawn by the processor" } else { "" };
-    items.push(Item::new(3, format!("{roads}{by}")));
+    items.push(StatusItem::new(3, format!("{roads}{by}")));
     for (method, times) in content.passes {
         let PassTimes { terrain_ms, areas_ms, roads_ms, decks_ms, composite_ms } = *times;
         let areas =
@@ -130,7 +144,7 @@ fn positions(settings: &MapSettings, content: &WindowContent<'_>) -> Vec<Item> {
         let bridges =
             if decks_ms > 0.0 { format!(" bridges {decks_ms:.1},") } else { String::new() };
         let method = formatting::method(*method);
-        items.push(Item::new(
+        items.push(StatusItem::new(
             8,
             format!(
                 "{method}: terrain {terrain_ms:.1},{areas} roads {roads_ms:.1},{bridges} composite {composite_ms:.1} ms"

@@ -1,4 +1,4 @@
-//! The event loop and the window, as the window library makes them.
+//! The event loop and the window of the window library.
 
 use std::{
     panic::{AssertUnwindSafe, catch_unwind},
@@ -13,7 +13,7 @@ use winit::{
 
 use crate::WindowError;
 
-/// What another thread sends to the event loop when there is something new to show.
+/// The event that another thread sends to the event loop when there is something new to show.
 #[derive(Debug)]
 pub(crate) struct News;
 
@@ -30,10 +30,10 @@ pub(crate) fn new_event_loop() -> Result<EventLoop<News>, WindowError> {
         .map_err(|error| no_display(without_source_place(&error.to_string()).to_owned()))
 }
 
-/// A window on the package `name`; its inside has `size` pixels at first.
+/// Opens a window for the package `name`; its inside has `size` pixels at first.
 ///
 /// # Errors
-/// When the window system gives none.
+/// When the window system cannot create one.
 pub(crate) fn new_window(
     event_loop: &ActiveEventLoop,
     name: &str,
@@ -46,7 +46,8 @@ pub(crate) fn new_window(
     window.map(Arc::new).map_err(|source| WindowError::System { source: source.into() })
 }
 
-/// A message of the window library without its beginning, where that is a file and a line of the library's source.
+/// A message of the window library without its prefix, if that is a file and a line of the
+/// library's source.
 fn without_source_place(words: &str) -> &str {
     let told = words.strip_prefix("os error at ").and_then(|told| told.split_once(".rs:"));
     told.and_then(|(_, told)| told.split_once(": ")).map_or(words, |(_, told)| told)

@@ -1,4 +1,4 @@
-//! An error of the window system is told without places in source code.
+//! An error of the window system is reported without positions in source code.
 
 use super::*;
 

@@ -1,13 +1,12 @@
-//! What must be known of a package's first tiles before there is a frame. The thread waits for them.
+//! The first tiles of a package, which must be known before the first frame. The thread waits for
+//! them.
 
 use std::sync::Arc;
 
 use corniche_geom::TileId;
-use corniche_live::sighted_ground;
 use corniche_viewer::{
     SightedGround,
     gpu::tile_bytes,
-    lod::Request,
     tiles::{BlockingPackage, TileStore},
 };
 
@@ -21,11 +20,12 @@ pub(crate) struct OpenedPackage {
 }
 
 impl OpenedPackage {
-    /// Checks the request and loads the package's root. This needs no window, and no window must open where it fails.
+    /// Checks the request and loads the package's root tile. This needs no window, and no window
+    /// may open if it fails.
     ///
     /// # Errors
-    /// When the request makes no sense, or the package cannot be read, has no ground or does not fit the graphics memory
-    /// allowed.
+    /// When the request is invalid, or the package cannot be read, has no ground or exceeds the
+    /// graphics memory allowed.
     pub(crate) fn new(
         request: &WindowRequest,
         tiles: Arc<dyn BlockingPackage + Send + Sync>,
@@ -33,9 +33,9 @@ impl OpenedPackage {
         request.check()?;
         let no_ground = || WindowError::NoGround { name: request.name.clone() };
         let mut store = TileStore::new(tiles.as_ref());
-        let ground = sighted_ground(&mut store, tiles.manifest(), request.camera)?;
+        let ground = request.camera.sighted_ground(&mut store, tiles.manifest())?;
         let ground = ground.ok_or_else(no_ground)?;
-        store.load(&[Request { id: TileId::ROOT, coarseness: f64::INFINITY }])?;
+        store.load(TileId::ROOT)?;
         let root = store.get(TileId::ROOT).ok_or_else(no_ground)?;
         let heights_m = root.summary.ok_or_else(no_ground)?.height_range_m;
         let (wanted_bytes, budget_bytes) = (tile_bytes(root), request.budget.gpu_bytes);
@@ -45,8 +45,8 @@ impl OpenedPackage {
         Ok(Self { tiles, ground: SightedGround { heights_m, ..ground } })
     }
 
-    /// The ground by which the first camera is set up, with its height at the place that the camera
-    /// looks at.
+    /// The ground that sets up the first camera, with its height at the place that the camera looks
+    /// at.
     ///
     /// # Errors
     /// When the place is too far away from the package, or a tile there cannot be read.

@@ -1,8 +1,8 @@
 //! Events of the window system, translated into inputs and commands of the app.
 
 use corniche_live::{
-    Command, DrawingCommand,
-    controls::{Button, Input, Key, KeyState, Modifiers},
+    DrawingCommand, MapCommand,
+    controls::{Button, CameraKey, Input, Modifiers},
 };
 use glam::DVec2;
 use winit::{
@@ -17,25 +17,27 @@ const POINTS_PER_NOTCH: f64 = 50.0;
 
 /// Modifier keys that are held, and the position of the cursor.
 #[derive(Debug, Default)]
-pub(crate) struct Inputs {
+pub(crate) struct PointerState {
     modifiers: Modifiers,
     cursor_px: DVec2,
-    /// The last position of the cursor and its time, not yet handed to the app. Mice report many positions in a frame, and
-    /// each that is handed on costs a search of the ground.
+    /// The last position of the cursor and its time, not yet passed to the app. Mice report many
+    /// positions per frame, and each one passed on costs a search of the ground.
     moved: Option<(DVec2, f64)>,
 }
 
-/// Whether this event is the key that shows and hides the panel. The panel's toolkit must not see it, for it uses this key
-/// itself.
+/// Whether this event is the key that shows and hides the panel. The toolkit must not see the
+/// event, because it uses this key itself.
 pub(crate) fn is_panel_key(event: &WindowEvent) -> bool {
     matches!(event, WindowEvent::KeyboardInput { event, .. }
         if event.logical_key == LogicalKey::Named(NamedKey::Tab))
 }
 
-/// Ctrl Q ends the program, also where the window has no frame with a button for it.
+/// The state of Ctrl Q, which ends the program, even in a window without a frame and its close
+/// button.
 ///
-/// If the keys are still held from another window when this window gets the keyboard, they must not end this program: the
-/// window library then reports them as synthetic presses, and after that their repetitions as if they were new presses.
+/// If the keys are still held from another window when this window gets the keyboard, they must not
+/// end this program: the window library then reports them as synthetic presses, and afterwards
+/// reports their repetitions like new presses.
 #[derive(Debug, Default)]
 pub(crate) struct EndKey {
     is_control_down: bool,
@@ -67,16 +69,17 @@ fn is_q(logical: &LogicalKey) -> bool {
     matches!(logical, LogicalKey::Character(letter) if letter.eq_ignore_ascii_case("q"))
 }
 
-impl Inputs {
-    /// Hands the last position of the cursor to the app, if it moved. To be called before each frame and before any other
-    /// event is handed on.
+impl PointerState {
+    /// Passes the last position of the cursor to the app, if it moved. Call this before each frame
+    /// and before passing on any other event.
     pub(crate) fn hand_on_move(&mut self, app: &mut App) {
         if let Some((at_px, moved_s)) = self.moved.take() {
             app.desk.input(&Input::Move { at_px }, moved_s);
         }
     }
 
-    /// Hands an event to the app, or keeps it for [`Inputs::hand_on_move`]. Returns whether a frame is needed.
+    /// Passes an event to the app, or keeps it for [`PointerState::hand_on_move`]. Returns whether
+    /// a frame is needed.
     pub(crate) fn take(
         &mut self,
         event: &WindowEvent,
@@ -115,8 +118,9 @@ impl Inputs {
             }
             WindowEvent::KeyboardInput { event, is_synthetic, .. } => {
                 let is_down = event.state == ElementState::Pressed;
-                // What is typed into a text field is not meant for the map, but a release counts everywhere. A key that is
-                // held when the window gets the keyboard is reported twice, first as synthetic: that report is ignored.
+                // Text typed into a text field is not meant for the map, but a release counts
+                // everywhere. A key that is held when the window gets the keyboard is reported
+                // twice, first as synthetic: that report is ignored.
                 if is_down && (*is_synthetic || ui.text_edit_focused()) {
                     return false;
                 }
@@ -171,36 +175,33 @@ impl Inputs {
     }
 
     fn key(&self, event: &KeyEvent, app: &mut App, now_s: f64) -> bool {
-        let state = match event.state {
-            ElementState::Pressed => KeyState::Pressed,
-            ElementState::Released => KeyState::Released,
-        };
+        let is_down = event.state == ElementState::Pressed;
         let (sign, code) = names(&event.logical_key, event.physical_key);
-        // A release is always the camera's: the key may have been pressed before Control was.
-        if state == KeyState::Pressed
+        // A release always belongs to the camera: the key may have been pressed before Control was.
+        if is_down
             && let Some(command) =
                 DrawingCommand::of_key(&sign, self.modifiers, app.desk.drawing.is_on)
         {
             if !(event.repeat && command.is_once()) {
-                app.command(Command::Draw(command), now_s);
+                app.command(MapCommand::Draw(command), now_s);
             }
             return true;
         }
-        if let Some(key) = Key::of(&sign, &code) {
-            app.desk.input(&Input::Key { key, state, modifiers: self.modifiers }, now_s);
+        if let Some(key) = CameraKey::from_sign(&sign, &code) {
+            app.desk.input(&Input::Key { key, is_down, modifiers: self.modifiers }, now_s);
             return true;
         }
-        if state == KeyState::Released || event.repeat {
+        if !is_down || event.repeat {
             return false;
         }
-        let Some(command) = Command::of_key(&sign, self.modifiers) else { return false };
+        let Some(command) = MapCommand::of_key(&sign, self.modifiers) else { return false };
         app.command(command, now_s);
         true
     }
 }
 
-/// What is printed on a key, and where it is on the keyboard, by the names of the W3C: the window
-/// library has the same.
+/// The label of a key and its position on the keyboard, as W3C names, which the window library uses
+/// too.
 fn names(logical: &LogicalKey, physical: PhysicalKey) -> (String, String) {
     let sign = match logical {
         LogicalKey::Character(sign) => sign.to_string(),

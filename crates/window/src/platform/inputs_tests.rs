@@ -1,4 +1,4 @@
-//! Keys have the names of the W3C, and Ctrl Q ends the program where it was pressed.
+//! Keys have their W3C names, and Ctrl Q ends the program in whose window it was pressed.
 
 use winit::keyboard::KeyCode;
 

@@ -12,7 +12,7 @@ use winit::{
 use super::{
     event_loop::{News, new_window},
     first_tiles::OpenedPackage,
-    inputs::{self, EndKey, Inputs},
+    inputs::{self, EndKey, PointerState},
     screen::{Painted, Screen},
 };
 use crate::{
@@ -22,30 +22,31 @@ use crate::{
     files::FileWriter,
 };
 
-/// A device that is lost again this soon is taken to be lost for ever.
+/// A device that is lost again within this time counts as permanently lost.
 const SOON_S: f64 = 60.0;
 
-/// An open window. Fields are dropped in this order: what lies on the graphics card, then the surface, then the window.
+/// An open window. Fields are dropped in this order: the data on the GPU, then the surface, then
+/// the window.
 pub(crate) struct OpenWindow {
     app: App,
     canvas: Canvas,
     screen: Screen,
     ui: egui::Context,
     ui_state: egui_winit::State,
-    inputs: Inputs,
+    inputs: PointerState,
     pub(crate) end_key: EndKey,
     pub(crate) window: Arc<Window>,
-    /// Whether the program must end.
+    /// Returns whether the program must end.
     pub(crate) is_stopped: Box<dyn Fn() -> bool>,
     is_hidden: bool,
-    /// When everything on the graphics card was made again last.
+    /// The time when everything on the GPU was last recreated.
     rebuilt_s: Option<f64>,
-    /// When a frame is due without any event.
+    /// The time when a frame is due without any event.
     due_s: Option<f64>,
 }
 
 impl OpenWindow {
-    /// Opens the window. `news` is told of what other threads have ready.
+    /// Opens the window. Other threads send `news` when they have something ready.
     pub(crate) fn new(
         event_loop: &ActiveEventLoop,
         news: EventLoopProxy<News>,
@@ -57,7 +58,7 @@ impl OpenWindow {
         let (screen, gpu) = Screen::new(event_loop, &window)?;
         let canvas = Canvas::new(gpu, screen.configuration.format);
         let wake: Arc<dyn Fn() + Send + Sync> = Arc::new(move || {
-            // This fails once the event loop has ended, and then nothing needs to be told.
+            // This call fails once the event loop has ended, and then nothing needs to be reported.
             let _ = news.send_event(News);
         });
         let size_px = screen.size_px.map(|side| side.max(1));
@@ -82,7 +83,7 @@ impl OpenWindow {
             screen,
             ui,
             ui_state,
-            inputs: Inputs::default(),
+            inputs: PointerState::default(),
             end_key: EndKey::default(),
             window,
             is_stopped,
@@ -92,7 +93,7 @@ impl OpenWindow {
         })
     }
 
-    /// Does what is due at this time; returns when something is due next without any event.
+    /// Executes what is due at this time; returns when something is due next without any event.
     pub(crate) fn wake(&mut self, now_s: f64) -> Option<f64> {
         if self.app.desk.reload(now_s) || self.due_s.is_some_and(|due_s| due_s <= now_s) {
             self.due_s = None;
@@ -104,12 +105,12 @@ impl OpenWindow {
             .reduce(f64::min)
     }
 
-    /// The window closes: saves what is still to be saved.
+    /// Closes the window: saves pending files.
     pub(crate) fn end(mut self, now_s: f64) -> Vec<Result<PathBuf, NotSaved>> {
         self.app.end(&self.canvas, now_s)
     }
 
-    /// Takes an event that does not ask for a frame.
+    /// Handles an event that does not request a frame.
     pub(crate) fn take(&mut self, event: &WindowEvent, now_s: f64) {
         match event {
             WindowEvent::Resized(size) => {
@@ -131,7 +132,7 @@ impl OpenWindow {
         }
     }
 
-    /// Draws a frame, and first makes everything on the graphics card again if the device was lost.
+    /// Draws a frame, after recreating everything on the GPU if the device was lost.
     pub(crate) fn redraw(&mut self, now_s: f64) -> Result<(), WindowError> {
         if self.is_hidden || self.screen.size_px.contains(&0) {
             return Ok(());
@@ -140,7 +141,7 @@ impl OpenWindow {
             return self.rebuild(now_s);
         }
         match self.draw(now_s) {
-            // With the device gone, any error is a consequence of that.
+            // After the loss of the device, any error is a consequence of the loss.
             Err(_) if self.canvas.gpu().is_lost() => self.rebuild(now_s),
             drawn => drawn,
         }
@@ -166,7 +167,7 @@ impl OpenWindow {
         };
         self.canvas.free_textures(&frame.unused_textures);
         if let Some(what) = self.canvas.gpu().take_fault() {
-            let told = format!("the graphics device could not do its work: {what}");
+            let told = format!("the graphics device failed: {what}");
             self.app.desk.notices.warn(told);
         }
         self.due_s = None;
@@ -178,7 +179,7 @@ impl OpenWindow {
         Ok(())
     }
 
-    /// Makes everything on the graphics card again, unless that was done shortly before.
+    /// Recreates everything on the GPU, unless this was done shortly before.
     fn rebuild(&mut self, now_s: f64) -> Result<(), WindowError> {
         if is_soon_after(self.rebuilt_s, now_s) {
             return Err(WindowError::DeviceLost);
@@ -186,7 +187,7 @@ impl OpenWindow {
         self.rebuilt_s = Some(now_s);
         let gpu = self.screen.rebuild(&self.window)?;
         self.canvas = Canvas::new(gpu, self.screen.configuration.format);
-        // The panel's textures were on the card too; a new context uploads them again.
+        // The panel's textures were on the GPU too; a new context uploads them again.
         self.ui = new_ui(Some(&self.ui));
         self.ui_state = new_ui_state(&self.ui, &self.window, &self.canvas);
         self.app.begin_again();
@@ -199,7 +200,7 @@ fn is_soon_after(last_s: Option<f64>, now_s: f64) -> bool {
     last_s.is_some_and(|last_s| now_s - last_s < SOON_S)
 }
 
-/// A context of the panel's toolkit, with the memory of the one before, if there was one.
+/// A context of the panel's toolkit, with the memory of the previous one, if there was one.
 fn new_ui(before: Option<&egui::Context>) -> egui::Context {
     let ui = egui::Context::default();
     crate::panel::set_up(&ui);

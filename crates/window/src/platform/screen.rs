@@ -1,4 +1,4 @@
-//! The surface of the window, and what is done when it fails.
+//! The surface of the window, and the handling of its failures.
 
 use std::sync::Arc;
 
@@ -13,32 +13,36 @@ use winit::{event_loop::ActiveEventLoop, window::Window};
 
 use crate::{WindowError, canvas::Canvas};
 
-/// The surface and the size of what is painted on it.
+/// The surface and its painted size.
 pub(crate) struct Screen {
     surface: Surface<'static>,
     instance: Instance,
-    /// Colours are painted as sRGB already; the surface does not convert them.
+    /// The configuration of the surface. Colours are painted as sRGB already; the surface does not
+    /// convert them.
     pub(crate) configuration: SurfaceConfiguration,
-    /// Width and height of what is painted; 0 on some systems while the window is minimised. No side is larger than the device's largest
-    /// texture. A window across several screens may be larger; the system then enlarges the picture.
+    /// The painted width and height; 0 on some systems while the window is minimised. No side is
+    /// larger than the device's largest texture. A window across several screens may be larger; the
+    /// system then enlarges the image.
     pub(crate) size_px: [u32; 2],
-    /// Whether the surface can be used: asking an unconfigured one for a texture would end the program.
+    /// Whether the surface can be used: requesting a texture from an unconfigured surface would end
+    /// the program.
     is_configured: bool,
 }
 
-/// What came of painting a frame.
+/// The result of painting a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Painted {
-    /// It is shown.
+    /// The frame is shown.
     Shown,
-    /// Nothing was painted; it is worth trying again at once.
+    /// Nothing was painted; an immediate retry is worthwhile.
     Later,
-    /// Nothing is painted while the window is hidden; an event tells when that changes.
+    /// Nothing is painted while the window is hidden; an event reports when that changes.
     Hidden,
 }
 
 impl Screen {
-    /// The surface of a window and a device that draws on it. OpenGL is used only if there is nothing better.
+    /// Creates the surface of a window and a device that draws on it. OpenGL is used only if there
+    /// is nothing better.
     pub(crate) fn new(
         event_loop: &ActiveEventLoop,
         window: &Arc<Window>,
@@ -65,10 +69,11 @@ impl Screen {
         Ok((screen, gpu))
     }
 
-    /// The window has another size.
+    /// Handles a new size of the window.
     pub(crate) fn resize(&mut self, canvas: &Canvas, size_px: [u32; 2]) {
         self.size_px = drawable_px(canvas.gpu(), size_px);
-        // It is configured before the next frame, so that of many sizes in a row only the last one costs time.
+        // The surface is configured before the next frame, so that of many sizes in a row only the
+        // last one costs time.
         self.is_configured = false;
     }
 
@@ -83,7 +88,7 @@ impl Screen {
         let scopes = filters.map(|filter| gpu.device.push_error_scope(filter));
         self.surface.configure(&gpu.device, &self.configuration);
         let ended = scopes.into_iter().rev().map(|scope| pollster::block_on(scope.pop()));
-        // All scopes are ended, also if the first one caught an error.
+        // All scopes are ended, even if the first one caught an error.
         if let Some(source) = ended.collect::<Vec<_>>().into_iter().flatten().next() {
             return Err(WindowError::Surface { source: source.into() });
         }
@@ -91,7 +96,7 @@ impl Screen {
         Ok(())
     }
 
-    /// Paints what was laid out, if the surface gives something to paint into.
+    /// Paints the layout, if the surface provides a texture.
     pub(crate) fn paint(
         &mut self,
         canvas: &mut Canvas,
@@ -109,7 +114,8 @@ impl Screen {
         Ok(Painted::Shown)
     }
 
-    /// Gets a texture to paint into, or why there is none now. If the surface is outdated or lost, it is configured or made again, a few times at most.
+    /// Gets a texture to paint into, or the reason why there is none now. An outdated or lost
+    /// surface is configured or recreated, a few times at most.
     fn acquire(
         &mut self,
         canvas: &Canvas,
@@ -121,7 +127,8 @@ impl Screen {
                 self.configure(gpu)?;
             }
             if !self.is_configured {
-                // A side is 0 or the device is lost; then everything is made again before the next frame.
+                // A side is 0 or the device is lost; then everything is recreated before the next
+                // frame.
                 return Ok(Err(Painted::Later));
             }
             match self.surface.get_current_texture() {
@@ -148,7 +155,7 @@ impl Screen {
         Ok(Err(Painted::Later))
     }
 
-    /// Makes a new surface and a new device in place of the lost ones.
+    /// Creates a new surface and a new device in place of the lost ones.
     pub(crate) fn rebuild(&mut self, window: &Arc<Window>) -> Result<Gpu, WindowError> {
         self.is_configured = false;
         self.surface = new_surface(&self.instance, window)?;

@@ -1,4 +1,4 @@
-//! The window from its request to its end: what the event loop calls.
+//! The window from its request to its end: the handler of the event loop.
 
 use std::{
     panic::{AssertUnwindSafe, catch_unwind},
@@ -20,15 +20,15 @@ use super::{
     first_tiles::OpenedPackage,
     open_window::OpenWindow,
 };
-use crate::{Closed, End, NotSaved, WindowError, WindowRequest};
+use crate::{Closed, NotSaved, WindowEnd, WindowError, WindowRequest};
 
-/// How often the program is asked whether it must end.
+/// The interval of checks whether the program must end.
 const STOP_S: f64 = 0.2;
 
-/// Opens a window on `package` and returns when it is closed. A flight that is still being recorded is saved, whatever
-/// ended the window.
+/// Opens a window for `package` and returns when it is closed. A flight that is still being
+/// recorded is saved, whatever the reason for closing.
 ///
-/// Must be called from the program's first thread.
+/// Call this from the program's first thread.
 #[must_use]
 pub fn run(request: WindowRequest, package: Arc<dyn BlockingPackage + Send + Sync>) -> Closed {
     let mut last_files = Vec::new();
@@ -40,7 +40,7 @@ fn show(
     request: WindowRequest,
     package: Arc<dyn BlockingPackage + Send + Sync>,
     last_files: &mut Vec<Result<PathBuf, NotSaved>>,
-) -> Result<End, WindowError> {
+) -> Result<WindowEnd, WindowError> {
     let package = OpenedPackage::new(&request, package)?;
     let event_loop = new_event_loop()?;
     let mut shell = Shell {
@@ -56,20 +56,20 @@ fn show(
     last_files.append(&mut shell.last_files);
     match (shell.end, ran) {
         (Some(end), _) => end,
-        (None, Ok(())) => Ok(End::Closed),
+        (None, Ok(())) => Ok(WindowEnd::Closed),
         (None, Err(source)) => Err(WindowError::System { source: source.into() }),
     }
 }
 
-/// What the event loop calls.
+/// The handler of the event loop.
 struct Shell {
-    /// What to open; `None` once the window is open.
+    /// The request and the package; `None` once the window is open.
     waiting: Option<(WindowRequest, OpenedPackage)>,
     news: EventLoopProxy<News>,
     begun: Instant,
     open: Option<OpenWindow>,
-    /// How it ended; `None` until then.
-    end: Option<Result<End, WindowError>>,
+    /// The result; `None` until the window ends.
+    end: Option<Result<WindowEnd, WindowError>>,
     last_files: Vec<Result<PathBuf, NotSaved>>,
 }
 
@@ -79,12 +79,12 @@ impl Shell {
     }
 
     /// Ends the event loop. If this is called several times, the first `end` counts.
-    fn end(&mut self, event_loop: &ActiveEventLoop, end: Result<End, WindowError>) {
+    fn end(&mut self, event_loop: &ActiveEventLoop, end: Result<WindowEnd, WindowError>) {
         self.end.get_or_insert(end);
         event_loop.exit();
     }
 
-    /// Saves what is to be saved and drops the window. Does nothing when called again.
+    /// Saves pending files and drops the window. Further calls do nothing.
     fn close(&mut self) {
         let now_s = self.now_s();
         if let Some(open) = self.open.take() {
@@ -110,21 +110,21 @@ impl ApplicationHandler<News> for Shell {
 
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
         let now_s = self.now_s();
-        // After the end nothing is drawn: the window may be gone.
+        // Nothing is drawn after the end: the window may be gone.
         let Some(open) = self.open.as_mut().filter(|_| self.end.is_none()) else { return };
         let done = match event {
             // `Destroyed` is sent when another program closes the window.
             WindowEvent::CloseRequested | WindowEvent::Destroyed => {
-                return self.end(event_loop, Ok(End::Closed));
+                return self.end(event_loop, Ok(WindowEnd::Closed));
             }
             event if open.end_key.take(&event) => {
-                return self.end(event_loop, Ok(End::Closed));
+                return self.end(event_loop, Ok(WindowEnd::Closed));
             }
-            // The window library panics where a window is gone before it has said so. A flight that is being recorded must
-            // not be lost by that, nor by a defect of this program.
+            // The window library panics if a window disappears before its event. The recording of a
+            // flight must survive this, and also a bug of this program.
             WindowEvent::RedrawRequested => catch_unwind(AssertUnwindSafe(|| open.redraw(now_s)))
                 .unwrap_or_else(|_| {
-                    let source = "it cannot be drawn; see above".into();
+                    let source = "the map cannot be drawn; see above".into();
                     Err(WindowError::System { source })
                 }),
             event => {
@@ -141,7 +141,7 @@ impl ApplicationHandler<News> for Shell {
         let now_s = self.now_s();
         let Some(open) = &mut self.open else { return };
         if (open.is_stopped)() {
-            return self.end(event_loop, Ok(End::Stopped));
+            return self.end(event_loop, Ok(WindowEnd::Stopped));
         }
         let due_s = open.wake(now_s).map_or(now_s + STOP_S, |due_s| due_s.min(now_s + STOP_S));
         let rest = Duration::from_secs_f64((due_s - now_s).max(0.0));

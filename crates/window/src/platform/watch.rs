@@ -1,4 +1,4 @@
-//! A window on pictures that another thread makes: a flight as it is drawn.
+//! A window for images from another thread: a flight while it is being drawn.
 
 use std::{
     sync::{
@@ -26,29 +26,29 @@ use super::{
 };
 use crate::{WindowError, canvas::Canvas};
 
-/// Time between two questions whether there is a next picture.
+/// The interval of checks for the next image.
 const PICTURE_TIME: Duration = Duration::from_millis(10);
 
-/// How the window came to its end.
+/// The end of the window.
 #[derive(Debug)]
 pub enum Watched {
-    /// All pictures were shown.
+    /// All images were shown.
     ToTheEnd,
-    /// The person closed the window before that, by a button of its frame or with Ctrl Q.
+    /// The user closed the window before that, by a button of its frame or with Ctrl Q.
     InPart,
-    /// The window was lost before that, because its surface or its device failed. The pictures may be made with another
-    /// device.
+    /// The window was lost before that, because its surface or its device failed. The images may be
+    /// drawn with another device.
     Lost(WindowError),
 }
 
-/// Shows pictures of the package `name` as they come, in a window that is `size_px` large at first, until there are no
-/// more or it is closed.
+/// Shows images of the package `name` as they arrive, in a window that has `size_px` pixels at
+/// first, until there are no more or the window is closed.
 ///
-/// Must be called from the program's first thread; the pictures are sent from another one. Each picture is fitted into the
-/// window, pixel for pixel while the window has the size of the pictures.
+/// Call this from the program's first thread; another thread sends the images. Each image is fitted
+/// into the window, pixel by pixel while the window has the size of the images.
 ///
 /// # Errors
-/// When no window opens: there is no display, or nothing to draw with.
+/// When the window cannot be opened: there is no display, or no graphics device.
 pub fn watch(
     name: &str,
     size_px: [u32; 2],
@@ -77,11 +77,12 @@ struct Show {
     pictures: Receiver<RgbaImage>,
     open: Option<Open>,
     end_key: EndKey,
-    /// How it ended; `None` until then.
+    /// The result; `None` until the window ends.
     ended: Option<Result<Watched, WindowError>>,
 }
 
-/// Fields are dropped in this order: what lies on the graphics card, then the surface, then the window.
+/// An open window. Fields are dropped in this order: the data on the GPU, then the surface, then
+/// the window.
 struct Open {
     picture: Option<TextureHandle>,
     canvas: Canvas,
@@ -122,7 +123,7 @@ impl ApplicationHandler<News> for Show {
             WindowEvent::CloseRequested => self.end(event_loop, Ok(Watched::InPart)),
             event if self.end_key.take(&event) => self.end(event_loop, Ok(Watched::InPart)),
             WindowEvent::Destroyed => {
-                let source = "it was taken away".into();
+                let source = "it was removed".into();
                 self.end(event_loop, Ok(Watched::Lost(WindowError::System { source })));
             }
             WindowEvent::Resized(size) => {
@@ -174,7 +175,7 @@ impl Open {
         if size_px.contains(&0) {
             return Ok(());
         }
-        // One point is one pixel: there is no text here, and pictures keep their pixels.
+        // One point is one pixel: there is no text here, and images keep their pixels.
         let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(size_px[0] as f32, size_px[1] as f32));
         let input = egui::RawInput { screen_rect: Some(whole), ..Default::default() };
         let picture = self.picture.clone();
@@ -204,7 +205,7 @@ impl Open {
     }
 }
 
-/// The largest rectangle with the shape of a picture, in the middle of `room`.
+/// The largest rectangle with the aspect ratio of an image, in the middle of `room`.
 fn fitted([width, height]: [usize; 2], room: Rect) -> Rect {
     let size = egui::vec2(width as f32, height as f32);
     let scale = (room.width() / size.x).min(room.height() / size.y);

@@ -1,4 +1,4 @@
-//! Pictures keep their shape and touch two sides of the window.
+//! Images keep their aspect ratio and touch two sides of the window.
 
 use super::*;
 

@@ -1,7 +1,7 @@
-"""Builds of Corniche, spread over the workers of a Dask cluster.
+"""Distributes Corniche builds over the workers of a Dask cluster.
 
-:func:`build` makes the package of a plan. The command ``corniche-dask build`` plans first, and starts a cluster on this machine if asked to.
-Errors are those of :mod:`corniche.errors`, and those of clusters that are listed here.
+:func:`build` builds the package of a plan. The command ``corniche-dask build`` also creates the plan, and with ``--local`` starts a cluster on this
+machine. Errors are those of :mod:`corniche.errors` and the errors of clusters listed here.
 """
 
 from .build import build

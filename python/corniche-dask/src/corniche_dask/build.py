@@ -24,11 +24,12 @@ from .summary import Summary
 from .tasks import PartResult, PartTask, Setting, absolute, digest_of, is_object_storage, key_of, stores_of
 from .worker import PlanPlugin, is_there, list_parts, look_at_worker, make_part
 
-#: So often Dask tries a part that failed.
+#: How often Dask retries a part that failed.
 RETRIES = 3
-#: The step whose parts are asked for again when it begins: then the roads of each subtree are known.
+# : The step whose parts are listed again when it begins, because the roads of each subtree are
+# known only then.
 _REFINED = "tiles"
-#: How often it is looked whether a worker has come, in seconds.
+#: Seconds between two checks of whether a worker has joined.
 _LOOKS_EVERY = 0.2
 
 
@@ -49,25 +50,25 @@ def build(
     estimate: dict[str, Any] | None = None,
     progress: Progress | None = None,
 ) -> Summary:
-    """Makes the package of a plan on the workers of ``client``: the same bytes as ``corniche build``.
+    """Builds the package of a plan on the workers of ``client``: the same bytes as ``corniche build``.
 
-    All state is in the store: when this call ends early, for any reason, the same call goes on from there.
+    All state is in the store: if this call ends early for any reason, repeat it to resume.
 
     :param client: a client that is not asynchronous
-    :param plan: path of the plan that ``corniche plan -o`` wrote; this process reads it
-    :param store: a folder that all workers share, or ``s3://BUCKET/PREFIX``; of several, the first is written and all are read
-    :param output: the package, as the workers see it
-    :param overwrite: replace the package if it exists
-    :param defects: also list every defect and every road lost in this file
-    :param corniche: the program on every worker; ``None``: each looks at ``$CORNICHE`` and ``PATH``
-    :param slots: at least so many parts are handed out at once, and parts are sized for so many; ``None``: as many as the workers that are there make
-    :param least_work: make no part smaller than this without need, in estimated seconds on one core; ``None``: what ``corniche jobs`` chooses
-    :param threads: threads of each process; ``None``: those of the worker, divided by its slots
-    :param memory_bytes: the most memory of each process; ``None``: that of the worker, divided by its slots
-    :param tmp: where parts are made before they are uploaded, on every worker
-    :param estimate: what ``corniche plan --json`` told, for the summary
-    :param progress: what tells how far it is; ``None``: nothing is told
-    :raises CornicheError: with a text for the user; its ``exit_code`` is that of the command
+    :param plan: path of the plan that ``corniche plan -o`` wrote, on this machine
+    :param store: a folder that all workers share, or ``s3://BUCKET/PREFIX``; if there are several, parts are written to the first and read from all
+    :param output: path of the package, as the workers see it
+    :param overwrite: overwrite the package if it exists
+    :param defects: also list every defect of the extract and every lost road in this file
+    :param corniche: path of the program on every worker; ``None``: each uses ``$CORNICHE`` or ``PATH``
+    :param slots: the least number of parts at once, for which parts are sized; ``None``: what the current workers run at once
+    :param least_work: avoid parts smaller than this, in estimated seconds on one core; ``None``: the default of ``corniche jobs``
+    :param threads: threads of each process; ``None``: the worker's threads, divided by its slots
+    :param memory_bytes: memory limit of each process; ``None``: the worker's memory, divided by its slots
+    :param tmp: folder on every worker in which parts are created before they are uploaded
+    :param estimate: the estimate of ``corniche plan --json``, for the summary
+    :param progress: reports progress; ``None``: no progress is reported
+    :raises CornicheError: with a message for the user; its ``exit_code`` is the exit code of the command
     """
     if client.asynchronous:
         raise UsageError("build() needs a client that is not asynchronous")
@@ -164,7 +165,7 @@ class _Build:
         return jobs
 
     def _make_folders(self) -> None:
-        """Makes the folder that is written. Where this machine cannot, because only workers see it, they say if it is missing."""
+        """Creates the first store's folder. If only the workers see this folder, they report it if it is missing."""
         first = self.setting.stores[0]
         if not is_object_storage(first):
             try:
@@ -178,21 +179,21 @@ class _Build:
             if self.client.status not in ("running", "connecting"):
                 raise lost(self.client)
             if not is_told:
-                self.progress.say("waiting for a first worker")
+                self.progress.say("waiting for the first worker")
                 is_told = True
             time.sleep(_LOOKS_EVERY)
 
     def _look_at_workers(self) -> None:
-        """Before anything is made: whether all workers can make parts, and whether the package may be written."""
+        """Checks, before any part is built, that all workers can build parts and that the package may be written."""
         wrong: dict[str, Any] = self.client.run(look_at_worker, self.setting, on_error="return")
         lines = [f"  {worker}: {why}" for worker, why in sorted(wrong.items()) if why is not None]
         if lines:
-            raise ProgramError("\n".join(["not all workers can make parts of this plan:", *lines]))
+            raise ProgramError("\n".join(["not all workers can build parts of this plan:", *lines]))
         output = self.setting.output
         if self.setting.overwrite or is_object_storage(output):
             return
         if any(self.client.run(is_there, output, workers=[min(wrong)]).values()):
-            raise TargetExists(f"{output} exists; -O replaces it")
+            raise TargetExists(f"{output} exists; pass -O to overwrite it")
 
 
 def _read(plan: str | os.PathLike[str]) -> str:
@@ -203,7 +204,7 @@ def _read(plan: str | os.PathLike[str]) -> str:
 
 
 def _input_bytes(plan: str) -> dict[str, int]:
-    """Bytes of all inputs of each kind."""
+    """The bytes of the inputs, by kind."""
     kinds: dict[str, int] = {}
     for planned in json.loads(plan).get("inputs", []):
         kinds[str(planned["kind"])] = kinds.get(str(planned["kind"]), 0) + int(planned["bytes"])

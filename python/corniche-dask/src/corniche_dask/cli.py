@@ -32,12 +32,12 @@ from .tasks import absolute, is_object_storage
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Runs the command; returns its exit code, which means what that of ``corniche`` means."""
+    """Runs the command; returns an exit code with the same meaning as that of ``corniche``."""
     given, rest = _parser().parse_known_args(arguments)
     try:
         if given.command == "cost":
             if rest:
-                raise UsageError(f"{rest[0]}: corniche-dask cost has no such option")
+                raise UsageError(f"{rest[0]}: not an option of corniche-dask cost")
             print(cost.run(given.runs, given.target, given.storage, given.price))
             return 0
         return _build(given, rest)
@@ -45,13 +45,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"corniche-dask: {error}", file=sys.stderr)
         return error.exit_code
     except KeyboardInterrupt:
-        print("corniche-dask: interrupted; the same command goes on from what is in the store", file=sys.stderr)
+        print("corniche-dask: interrupted; progress is saved in the store, repeat the command to resume", file=sys.stderr)
         return INTERRUPTED
 
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
-        prog="corniche-dask", description="Builds of Corniche, spread over the workers of a Dask cluster.", allow_abbrev=False
+        prog="corniche-dask", description="Distributes Corniche builds over the workers of a Dask cluster.", allow_abbrev=False
     )
     commands = parser.add_subparsers(dest="command", required=True)
     _add_build(commands)
@@ -64,37 +64,37 @@ def _add_build(commands: Any) -> None:
         "build",
         allow_abbrev=False,
         help="build a tile package on the workers of a cluster",
-        description="Builds a tile package on the workers of a cluster: the same bytes as corniche build. The same command goes on after "
-        "anything was lost. Options that are not listed here go to corniche plan: --dem, --osm, --max-error and all others.",
+        description="Builds a tile package on the workers of a cluster: the same bytes as corniche build. After any failure, repeat the "
+        "command to resume. Options not listed here are passed to corniche plan: --dem, --osm, --max-error and all others.",
     )
     add = build_parser.add_argument
     cluster = build_parser.add_mutually_exclusive_group(required=True)
     cluster.add_argument("--scheduler", metavar="ADDRESS", help="the scheduler of a cluster, such as tcp://10.0.0.1:8786")
-    cluster.add_argument("--scheduler-file", metavar="JSON", help="the file in which a scheduler left its address")
-    cluster.add_argument("--local", metavar="N", type=_count, help="start N workers on this machine, which make one part at a time each")
-    add("--threads-per-worker", metavar="T", type=_count, help="with --local [default: the processors, divided by N]")
-    add("--memory-limit", metavar="BYTES", type=_bytes, help="with --local: memory of each worker [default: its share of the machine's]")
-    add("--plan", metavar="PLAN.json", help="build this plan, in place of options of corniche plan")
-    add("--store", metavar="STORE", nargs="+", required=True, help="a folder that all workers share, or s3://BUCKET/PREFIX; the first is written")
+    cluster.add_argument("--scheduler-file", metavar="JSON", help="the file in which a scheduler wrote its address")
+    cluster.add_argument("--local", metavar="N", type=_count, help="start N workers on this machine, each of which builds one part at a time")
+    add("--threads-per-worker", metavar="T", type=_count, help="with --local: threads of each worker [default: the processors, divided by N]")
+    add("--memory-limit", metavar="BYTES", type=_bytes, help="with --local: memory of each worker [default: 3/4 of the machine's, divided by N]")
+    add("--plan", metavar="PLAN.json", help="build this plan; replaces the options of corniche plan")
+    add("--store", metavar="STORE", nargs="+", required=True, help="a folder that all workers share, or s3://BUCKET/PREFIX; the first is written to")
     add("-o", "--output", metavar="PACKAGE", required=True, help="the package to write, as the workers see it")
-    add("-O", "--overwrite", action="store_true", help="replace the package if it exists")
-    add("--defects", metavar="CSV", help="also list every defect of the extract and every road lost")
+    add("-O", "--overwrite", action="store_true", help="overwrite the package if it exists")
+    add("--defects", metavar="CSV", help="also list every defect of the extract and every lost road in this file")
     add(
         "--slots",
         metavar="N",
         type=_count,
-        help="hand out at least N parts at once, for clusters that grow by demand [default: what workers make]",
+        help="submit at least N parts at once, for clusters that grow on demand [default: what the workers run at once]",
     )
-    add("--least-work", metavar="SECONDS", type=float, help="make no part smaller than this without need, in estimated seconds on one core")
-    add("--threads", metavar="N", type=_count, help="threads of each process [default: the worker's, divided by its slots]")
-    add("--memory", metavar="BYTES", type=_bytes, help="the most memory of each process [default: the worker's, divided by its slots]")
-    add("--tmp", metavar="FOLDER", help="where parts are made before they are uploaded to a store in object storage")
+    add("--least-work", metavar="SECONDS", type=float, help="avoid parts smaller than this, in estimated seconds on one core")
+    add("--threads", metavar="N", type=_count, help="threads of each process [default: the worker's threads, divided by its slots]")
+    add("--memory", metavar="BYTES", type=_bytes, help="memory limit of each process [default: the worker's memory, divided by its slots]")
+    add("--tmp", metavar="FOLDER", help="folder in which parts are created before they are uploaded to a store in object storage")
     add(
         "--corniche",
         metavar="PROGRAM",
-        help="the program corniche, on this machine and all workers [default: $CORNICHE, that of the package corniche, or the one on PATH]",
+        help="the program corniche, on this machine and all workers [default: $CORNICHE, the one in the Python package corniche, or the one on PATH]",
     )
-    add("--report", metavar="JSON", help="write what each part took, for corniche-dask cost; an existing file is replaced")
+    add("--report", metavar="JSON", help="write time, memory and bytes of each part, for corniche-dask cost; an existing file is overwritten")
     add("-q", "--quiet", action="store_true", help="print only errors and warnings")
 
 
@@ -146,39 +146,40 @@ def _build(given: argparse.Namespace, plan_options: list[str]) -> int:
         print(f"\n{summary.to_text()}\n\nwrote {summary.package} in {summary.seconds:.1f} s", file=sys.stderr)
     above = summary.above_memory()
     for text in above:
-        print(f"corniche-dask: error: {text}; the package is complete, but a machine may have no memory to spare", file=sys.stderr)
+        print(f"corniche-dask: error: {text}; the package is complete, but other machines may run out of memory", file=sys.stderr)
     return FAILED if above else 0
 
 
 def _check(given: argparse.Namespace, plan_options: list[str]) -> None:
     if given.plan and plan_options:
-        raise UsageError(f"{plan_options[0]} belongs to a plan that is to be made; with --plan it is made already")
+        raise UsageError(f"{plan_options[0]} is an option of corniche plan, but --plan gives a finished plan; omit one of the two")
     if not given.plan and not plan_options:
         raise UsageError("there is nothing to build: give options of corniche plan, such as --dem FILE, or --plan PLAN.json")
     if given.local is None and (given.threads_per_worker or given.memory_limit):
-        raise UsageError("--threads-per-worker and --memory-limit are for --local; other workers have what they were started with")
+        raise UsageError("--threads-per-worker and --memory-limit need --local; other workers keep the settings with which they were started")
     output = absolute(given.output)
-    # What this machine can see is told before anything is planned; the workers look again.
+    # If this machine sees the output, an existing one is reported before planning; the workers
+    # check again.
     if not is_object_storage(output) and not given.overwrite and os.path.lexists(output):
-        raise TargetExists(f"{given.output} exists; -O replaces it")
+        raise TargetExists(f"{given.output} exists; pass -O to overwrite it")
 
 
 def _end(_: int, __: FrameType | None) -> NoReturn:
-    """A signal to end is answered like Ctrl-C: parts that are being made are cancelled."""
+    """Treats SIGTERM like Ctrl-C: running parts are cancelled."""
     raise KeyboardInterrupt
 
 
 @contextmanager
 def _client(given: argparse.Namespace) -> Iterator[Client]:
     if given.local is None:
-        # A scheduler that is lost is told by this command, in one line instead of Dask's tracebacks.
+        # This command reports a lost scheduler in one line, instead of Dask's tracebacks.
         logging.getLogger("distributed").setLevel(logging.CRITICAL)
         if given.scheduler_file and not os.path.exists(given.scheduler_file):
             print(f"waiting for a scheduler to write {given.scheduler_file}", file=sys.stderr)
         try:
             client = Client(scheduler_file=given.scheduler_file) if given.scheduler_file else Client(given.scheduler)
         except (OSError, ValueError) as error:
-            raise SchedulerLost(f"no scheduler answers at {given.scheduler or given.scheduler_file}: {error}") from error
+            raise SchedulerLost(f"no scheduler responds at {given.scheduler or given.scheduler_file}: {error}") from error
         with client:
             yield client
         return

@@ -1,7 +1,7 @@
-"""Hands out parts to Dask and takes their results: as many at a time as there are slots, the next one when one is made.
+"""Submits parts to Dask and collects their results: as many at a time as there are slots, and the next part when one is finished.
 
-Parts that wait are kept here and not at the scheduler. So the largest go first, the scheduler's memory does not grow with the number of parts,
-and no part waits behind a long one at a busy worker while another worker has nothing to do.
+Waiting parts are kept here and not in the scheduler. Therefore the largest go first, the scheduler's memory does not grow with the number of parts,
+and no part waits behind a long one at a busy worker while another worker is idle.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ from .limits import slots_of
 
 Result = TypeVar("Result")
 
-#: Dask gives a task up when so many workers died with it (``allowed-failures``), though machines may just have been taken away. It is given
-#: out again so often.
+# : Dask gives up a task when some workers died while running it (``allowed-failures``), although
+# their machines may just have been reclaimed. : A part is submitted again this often.
 LOSSES = 20
-#: How often it is asked how many slots there are, in seconds.
+#: Seconds between two queries for the number of slots.
 SLOTS_EVERY = 5.0
 
 
 class Slots:
-    """How many parts the workers of a cluster make at once. It may change."""
+    """The number of parts that the workers of a cluster run at once, which may change."""
 
     def __init__(self, client: Client, at_least: int = 1) -> None:
         self._client = client
@@ -40,13 +40,13 @@ class Slots:
         self._are_declared = False
 
     def count(self) -> int:
-        """As it was at most some seconds ago; never less than asked for, so that a cluster that grows by demand sees the demand."""
+        """The number of slots some seconds ago; never less than requested, so that a cluster that grows on demand sees the demand."""
         self._look()
         return max(self._count, self._at_least)
 
     @property
     def resources(self) -> dict[str, float] | None:
-        """What a part takes of a worker's resources; ``None``: one of its threads."""
+        """The resources of a worker that a part takes; ``None``: one of its threads."""
         self._look()
         return {"slot": 1} if self._are_declared else None
 
@@ -54,13 +54,14 @@ class Slots:
         now = time.monotonic()
         if self._asked is None or now - self._asked > SLOTS_EVERY:
             self._count, are_declared = slots_of(workers_of(self._client))
-            # Once for all: workers that declare slots may be away for a while, and must not come back to more parts than they have slots.
+            # Never reset: workers that declare slots may leave for a while, and must not return to
+            # more parts than they have slots.
             self._are_declared |= are_declared
             self._asked = now
 
 
 def workers_of(client: Client) -> dict[str, Any]:
-    """What the scheduler tells of its workers, by their addresses."""
+    """The scheduler's information about its workers, by address."""
     try:
         return dict(client.scheduler_info(n_workers=-1)["workers"])
     except OSError as error:
@@ -68,21 +69,21 @@ def workers_of(client: Client) -> dict[str, Any]:
 
 
 def lost(client: Client) -> SchedulerLost:
-    """The error when the scheduler is gone."""
+    """The error for a lost scheduler."""
     address = client.scheduler.address if client.scheduler else "?"
-    return SchedulerLost(f"the scheduler at {address} is gone; what was made is in the store, and the same command goes on from there")
+    return SchedulerLost(f"the connection to the scheduler at {address} is lost; progress is saved in the store, repeat the command to resume")
 
 
 @dataclass
 class Drive(Generic[Result]):
-    """Makes all parts of a flow."""
+    """Runs all parts of a flow."""
 
     client: Client
     flow: Flow
-    #: Gives a part to the client.
+    #: Submits a part to the client.
     submit: Callable[[Job], Future[Any]]
     slots: Callable[[], int]
-    #: Takes a part's result, and ends all by raising.
+    #: Takes the result of a part; an exception from it ends the run.
     made: Callable[[Job, Result], None]
     #: Takes warnings.
     told: Callable[[str], None] = lambda _: None
@@ -90,8 +91,8 @@ class Drive(Generic[Result]):
     _jobs: dict[Future[Any], Job] = field(default_factory=dict)
 
     def run(self) -> None:
-        """Returns when all parts are made. When it raises, the parts that are being made are cancelled."""
-        # Loops are named for clients that are not the default one.
+        """Returns when all parts are finished. If it raises, running parts are cancelled."""
+        # The loop is given because the client may not be the default one.
         completed = as_completed(loop=self.client.loop, with_results=True, raise_errors=False)
         try:
             while not self.flow.is_over:
@@ -100,7 +101,7 @@ class Drive(Generic[Result]):
                     self._jobs[future] = job
                     completed.add(future)
                 if not self._jobs:
-                    raise CornicheError("no part can be made, and yet not all are")
+                    raise CornicheError("no part can be started, but not all are finished")
                 for future, result in completed.next_batch():
                     self._take(completed, future, result)
         except BaseException:
@@ -112,7 +113,7 @@ class Drive(Generic[Result]):
         if future.status == "finished":
             self.flow.made(job)
             self.made(job, result)
-            # The key is forgotten, so that a later build asks the store and not this result.
+            # Releases the key, so that a later build reads the store and not this result.
             future.release()
         elif future.status == "error":
             error = result[1] if isinstance(result, tuple) else result
@@ -120,7 +121,8 @@ class Drive(Generic[Result]):
                 raise error
             self._give_out_again(completed, future, job, error)
         elif future.status in ("lost", "pending") and self.client.status == "running":
-            # The worker with the result died at this moment. Dask makes the part again, which finds it in the store.
+            # The worker with the result died at this moment. Dask runs the part again, which finds
+            # its result in the store.
             self._jobs[future] = job
             completed.add(future)
         else:
@@ -129,8 +131,8 @@ class Drive(Generic[Result]):
     def _give_out_again(self, completed: as_completed, future: Future[Any], job: Job, error: KilledWorker) -> None:
         losses = self._losses[job.id] = self._losses.get(job.id, 0) + 1
         if losses > LOSSES:
-            raise PartsLost(f"part {job.id} was given up: workers died with it again and again, {error.last_worker} the last") from error
-        self.told(f"workers died with part {job.id}; it is given out again ({losses} of {LOSSES})")
+            raise PartsLost(f"giving up part {job.id}: workers died repeatedly while running it, most recently {error.last_worker}") from error
+        self.told(f"workers died while running part {job.id}; submitting it again ({losses} of {LOSSES})")
         future.retry()
         self._jobs[future] = job
         completed.add(future)
@@ -141,5 +143,5 @@ class Drive(Generic[Result]):
         if futures and self.client.status == "running":
             try:
                 self.client.cancel(futures)
-            except Exception as error:  # noqa: BLE001  the error that ended the run is the one to tell
-                self.told(f"parts that are being made could not be cancelled: {error!r}")
+            except Exception as error:  # noqa: BLE001  the error that ended the run is the one to report
+                self.told(f"running parts could not be cancelled: {error!r}")

@@ -1,4 +1,4 @@
-"""Why a build on a cluster ends early, besides the errors of ``corniche`` itself."""
+"""Errors of a build on a cluster, in addition to those of ``corniche`` itself."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from corniche.errors import UNUSABLE, CornicheError
 
 
 class PartRefused(CornicheError):
-    """A part ended with exit code 2 or 3. It would do so again, so it is not tried again."""
+    """A part ended with exit code 2 or 3. It is not retried, because it would fail again."""
 
     def __init__(self, message: str, exit_code: int = UNUSABLE) -> None:
         super().__init__(message, exit_code)
@@ -17,12 +17,12 @@ class PartRefused(CornicheError):
 
 
 class PartFailed(CornicheError):
-    """A part failed. Dask tries it again, on this or on another worker; what was done of it is kept in the store."""
+    """A part failed. Dask retries it on this or another worker; its progress is kept in the store."""
 
 
 class PartsLost(CornicheError):
-    """Workers died again and again while they made the same part."""
+    """Workers died repeatedly while they ran the same part."""
 
 
 class SchedulerLost(CornicheError):
-    """The connection to the scheduler broke. The same command goes on from what is in the store."""
+    """The connection to the scheduler is lost. Repeat the command to resume from the store."""

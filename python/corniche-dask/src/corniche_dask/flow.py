@@ -1,4 +1,4 @@
-"""Which part is handed out next. Knows nothing of Dask."""
+"""Decides which part is submitted next. Independent of Dask."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from corniche.errors import CornicheError
 
 from .jobs import Job, after_of_steps, order_of_steps
 
-#: Gives the parts of a step anew when it can begin; ``None``: they stay as they are.
+#: Lists the parts of a step again when the step can begin; ``None``: they stay unchanged.
 Refine = Callable[[str], Sequence[Job] | None]
 
 
 class Flow:
-    """The parts of a build: those that wait for other steps, those that can be made, those that are being made.
+    """The parts of a build: those that wait for other steps, those that are ready, and those that are running.
 
-    A step begins when all parts of the steps that it comes after are made. Of the parts that can be made, the one at the begin of the
-    longest chain of work is handed out first, so within a step the largest.
+    A step begins when all parts of the steps before it are finished. Of the ready parts, the one that begins the longest chain of work
+    is submitted first, so within a step the largest.
     """
 
     def __init__(self, jobs: Sequence[Job], refine: Refine | None = None) -> None:
@@ -28,7 +28,8 @@ class Flow:
         for job in jobs:
             self._waiting[job.step].append(job)
         self._total = {step: len(parts) for step, parts in self._waiting.items()}
-        self._work_left = sum(job.work for job in jobs)
+        #: Estimated seconds on one core of all unfinished parts.
+        self.work_left = sum(job.work for job in jobs)
         self._made = dict.fromkeys(self._waiting, 0)
         self._over: set[str] = set()
         self._ready: list[tuple[float, str, Job]] = []
@@ -37,21 +38,16 @@ class Flow:
 
     @property
     def is_over(self) -> bool:
-        """Whether all parts are made."""
+        """Whether all parts are finished."""
         return not self._waiting and not self._ready and not self._at_work
 
     @property
     def at_work(self) -> int:
-        """How many parts are being made."""
+        """The number of running parts."""
         return len(self._at_work)
 
-    @property
-    def work_left(self) -> float:
-        """Estimated seconds on one core of all parts that are not made yet."""
-        return self._work_left
-
     def steps(self) -> list[tuple[str, int, int]]:
-        """Each step with how many of its parts are made, and how many there are."""
+        """Each step with the number of its finished parts, and of all its parts."""
         return [(step, self._made[step], self._total[step]) for step in self._total]
 
     def rank(self, job: Job) -> float:
@@ -59,7 +55,7 @@ class Flow:
         return job.work + self._chain[job.step]
 
     def take(self) -> Job | None:
-        """A part to be made now; ``None`` if there is none until others are made."""
+        """Takes the next part to run; ``None`` if no part is ready until others are finished."""
         if not self._ready:
             return None
         _, _, job = heapq.heappop(self._ready)
@@ -67,11 +63,11 @@ class Flow:
         return job
 
     def made(self, job: Job) -> None:
-        """That part is made."""
+        """Records that a part is finished."""
         if self._at_work.pop(job.id, None) is None:
-            raise CornicheError(f"part {job.id} was made, but never handed out")
+            raise CornicheError(f"part {job.id} is finished, but was never submitted")
         self._made[job.step] += 1
-        self._work_left -= job.work
+        self.work_left -= job.work
         if self._made[job.step] == self._total[job.step]:
             self._over.add(job.step)
             self._begin_steps()
@@ -82,8 +78,8 @@ class Flow:
             refined = self._refine(step) if self._refine else None
             if refined is not None:
                 if not refined or any(job.step != step for job in refined):
-                    raise CornicheError(f"the parts of step {step} cannot be replaced by none, or by those of another step")
-                self._work_left += sum(job.work for job in refined) - sum(job.work for job in jobs)
+                    raise CornicheError(f"the new list of parts of step {step} is empty or has parts of another step")
+                self.work_left += sum(job.work for job in refined) - sum(job.work for job in jobs)
                 self._total[step] = len(refined)
                 jobs = list(refined)
             for job in jobs:
@@ -91,7 +87,7 @@ class Flow:
 
 
 def _chains(jobs: Sequence[Job]) -> dict[str, float]:
-    """For each step, the work of the longest chain of parts that come after it."""
+    """For each step, the work of the longest chain of parts after it."""
     after = after_of_steps(jobs)
     longest: dict[str, float] = {}
     for job in jobs:

@@ -14,39 +14,39 @@ MERGE = "merge"
 
 @dataclass(frozen=True)
 class Job:
-    """A part to be made."""
+    """A part of a build."""
 
-    #: Its name, of which there is one in a build.
+    #: The name of the part, unique within a build.
     id: str
-    #: Its step: the stage of the build.
+    #: The step: the stage of the build.
     step: str
-    #: The tile whose subtree it makes, ``Z/X/Y``; ``None``: the step has no subtrees.
+    #: The root tile of its subtree, ``Z/X/Y``; ``None``: the step has no subtrees.
     subtree: str | None
-    #: Its share of an extract, ``I/N``; ``None``: the step has no shares.
+    #: Its chunk of an extract, ``I/N``; ``None``: the step has no chunks.
     share: str | None
     #: Estimated seconds on one core.
     work: float
-    #: The steps all of whose parts must have been made before.
+    #: The steps all of whose parts must be finished before.
     after: tuple[str, ...]
     #: Arguments for ``corniche part PLAN.json``, or for ``corniche merge``.
     args: tuple[str, ...]
 
     @property
     def is_merge(self) -> bool:
-        """Whether this part is the package itself."""
+        """Whether this part writes the package."""
         return self.step == MERGE
 
     def title(self) -> str:
-        """For people: the step, and what of it."""
+        """A title for people: the step, and its subtree or chunk."""
         scope = [f"subtree {self.subtree}"] if self.subtree else []
-        scope += [f"share {self.share}"] if self.share else []
+        scope += [f"chunk {self.share}"] if self.share else []
         return ", ".join([f"step {self.step}", *scope])
 
 
 def parse_jobs(text: str) -> list[Job]:
     """The parts in the lines that ``corniche jobs`` printed.
 
-    Raises ``CornicheError`` if a line is none, or if the lines do not make one build that ends with a merge.
+    Raises ``CornicheError`` if a line is not a part, or if the parts do not form one build that ends with a merge.
     """
     jobs = [_parse(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
     ids = {job.id for job in jobs}
@@ -78,7 +78,7 @@ def _parse(number: int, line: str) -> Job:
 
 
 def after_of_steps(jobs: Iterable[Job]) -> dict[str, set[str]]:
-    """For each step, the steps that must be over before."""
+    """For each step, the steps that must be finished before."""
     after: dict[str, set[str]] = {}
     for job in jobs:
         after.setdefault(job.step, set()).update(job.after)
@@ -86,9 +86,9 @@ def after_of_steps(jobs: Iterable[Job]) -> dict[str, set[str]]:
 
 
 def order_of_steps(jobs: Sequence[Job]) -> list[str]:
-    """The steps in an order in which they can be made.
+    """The steps in an order in which they can run.
 
-    Raises ``CornicheError`` if there is none, or if a step comes after one that has no part.
+    Raises ``CornicheError`` if there is no such order, or if a step comes after one without parts.
     """
     after = after_of_steps(jobs)
     order: list[str] = []

@@ -1,4 +1,4 @@
-"""How many parts a worker makes at once, and what each of them may use."""
+"""The number of parts that a worker runs at once, and the resources that each may use."""
 
 from __future__ import annotations
 
@@ -8,19 +8,20 @@ from typing import Any
 
 from corniche.errors import UsageError
 
-#: The resource that a cluster declares to say how many parts a worker makes at once.
+#: The Dask resource that declares how many parts a worker runs at once.
 SLOT = "slot"
-#: What the Python process of a worker takes of the worker's memory, in bytes.
+#: The part of a worker's memory that its Python process takes, in bytes.
 WORKER_BYTES = 192 << 20
-#: The least that corniche works with, in bytes.
+#: The least memory that corniche works with, in bytes.
 LEAST_BYTES = 256 << 20
-#: What a process may use if its worker has no limit, in bytes: corniche's own greatest default.
+# : The memory of a process whose worker has no limit, in bytes: the largest default of corniche
+# itself.
 DEFAULT_BYTES = 4 << 30
 
 
 @dataclass(frozen=True)
 class Limits:
-    """What one process of corniche may use."""
+    """The resources that one process of corniche may use."""
 
     threads: int
     memory_bytes: int
@@ -34,7 +35,7 @@ def limits_of(
     asked_threads: int | None = None,
     asked_bytes: int | None = None,
 ) -> Limits:
-    """The share of one slot of a worker with so many threads, so much memory (``None``: no limit) and these resources."""
+    """The resources of one slot of a worker with the given threads, memory (``None``: no limit) and Dask resources."""
     slots = max(1, int(resources.get(SLOT, threads)))
     of_memory = DEFAULT_BYTES if memory_bytes is None else (memory_bytes - WORKER_BYTES) // slots
     limits = Limits(asked_threads or max(1, threads // slots), asked_bytes or of_memory)
@@ -48,7 +49,7 @@ def limits_of(
 
 
 def slots_of(workers: Mapping[str, Mapping[str, Any]]) -> tuple[int, bool]:
-    """How many parts all workers make at once, from what the scheduler tells of them, and whether they declare slots."""
+    """The number of parts that all workers run at once, from the scheduler's information, and whether they declare slots."""
     declared = [int((worker.get("resources") or {}).get(SLOT, 0)) for worker in workers.values()]
     if any(declared):
         return sum(declared), True
@@ -56,7 +57,7 @@ def slots_of(workers: Mapping[str, Mapping[str, Any]]) -> tuple[int, bool]:
 
 
 def parse_bytes(text: str) -> int:
-    """Bytes from text as ``corniche --memory`` takes it: 512M, 4G and 4GiB are powers of 1024, 8GB is one of 1000."""
+    """Parses bytes like ``corniche --memory``: 512M, 4G and 4GiB are powers of 1024, 8GB is one of 1000."""
     written = text.strip().upper()
     digits = written.rstrip("KMGTIB")
     unit = written[len(digits) :]
@@ -70,7 +71,7 @@ def parse_bytes(text: str) -> int:
             factor = {"B": 1000}[unit[1:]] ** powers[unit[0]]
         parsed = int(float(digits) * factor)
     except (KeyError, ValueError, OverflowError) as error:
-        raise UsageError(f"{text!r} is no size; write it as 512M, 4GiB or 8GB") from error
+        raise UsageError(f"{text!r} is not a size; write it as 512M, 4GiB or 8GB") from error
     if parsed <= 0:
-        raise UsageError(f"{text!r} is no size above 0")
+        raise UsageError(f"{text!r} is not a size above 0")
     return parsed

@@ -12,10 +12,11 @@ from distributed.system import MEMORY_LIMIT
 
 from .limits import SLOT
 
-#: The share of this machine's memory that its workers have together.
+#: The share of this machine's memory that all its workers use together.
 _MEMORY = 0.75
-#: Dask's processes look after themselves up to a hundred times a second, also while they only wait. Here they take their time from the parts: with two
-#: workers 10 % of a core as Dask comes, 1.3 % with these settings.
+# : Dask's processes run housekeeping up to a hundred times a second, also while they only wait, and
+# take this time from the parts: with two : workers 10 % of a core with Dask's defaults, 1.3 % with
+# these settings.
 _SELDOM = {
     "distributed.worker.profile.enabled": False,
     "distributed.worker.memory.monitor-interval": "1s",
@@ -29,22 +30,24 @@ _SELDOM = {
 
 
 def local_cluster(workers: int, threads: int | None, memory_bytes: int | None) -> LocalCluster:
-    """Starts workers that make one part at a time each.
+    """Starts workers that each run one part at a time.
 
-    :param threads: of each worker; ``None``: the processors, divided by the workers
-    :param memory_bytes: of each worker; ``None``: its share of three quarters of the machine's
+    :param threads: threads of each worker; ``None``: the processors, divided by the workers
+    :param memory_bytes: memory of each worker; ``None``: its share of three quarters of the machine's memory
     """
-    # Not only for this call: workers are given this process's configuration when they start, also those that replace a lost one.
+    # Set for the whole process: workers inherit its configuration when they start, including those
+    # that replace a lost one.
     dask.config.set(_SELDOM)
     return LocalCluster(
         n_workers=workers,
         threads_per_worker=threads or max(1, CPU_COUNT // workers),
-        # Dask's own choice gives each worker all memory if it has as many threads as there are processors.
+        # Dask's default gives each worker all memory if it has as many threads as there are
+        # processors.
         memory_limit=memory_bytes or int(MEMORY_LIMIT * _MEMORY) // workers,
         resources={SLOT: 1},
         processes=True,
         host="127.0.0.1",
         dashboard_address="127.0.0.1:8787" if importlib.util.find_spec("bokeh") else "127.0.0.1:0",
-        # What fails is told by the command.
+        # The command itself reports failures.
         silence_logs=logging.CRITICAL,
     )

@@ -1,4 +1,4 @@
-"""How far a build is: one line on a terminal that changes, else a line every ten seconds and at the end of each step."""
+"""The progress of a build: one changing line on a terminal, else a line every ten seconds and at the end of each step."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _ELSEWHERE = 10.0
 
 
 class Progress:
-    """Tells of a build from a thread of its own, so that a part that takes long is told of, too."""
+    """Reports the progress of a build from a separate thread, so that it also appears during long parts."""
 
     def __init__(self, quiet: bool = False, out: TextIO | None = None) -> None:
         self._out = out or sys.stderr
@@ -31,7 +31,7 @@ class Progress:
         self._thread: threading.Thread | None = None
 
     def begin(self, flow: Flow) -> None:
-        """The parts are known, and are made from now on."""
+        """Starts reporting, when the parts are known."""
         self._flow = flow
         self._begun = time.monotonic()
         self._work_at_begin = flow.work_left
@@ -40,7 +40,7 @@ class Progress:
             self._thread.start()
 
     def made(self, job: Job) -> None:
-        """A part is made."""
+        """Counts a finished part."""
         self._made += 1
         if self._flow is None or self._on_terminal or self._quiet:
             return
@@ -49,11 +49,11 @@ class Progress:
                 self._write(f"{step}: all {total} parts after {duration(time.monotonic() - self._begun)}\n")
 
     def say(self, text: str) -> None:
-        """A line that is shown with ``--quiet``, too."""
+        """Prints a line, also with ``--quiet``."""
         self._write(("\r\x1b[K" if self._on_terminal and not self._quiet else "") + f"corniche-dask: {text}\n")
 
     def end(self) -> None:
-        """Nothing more is to be told."""
+        """Stops reporting."""
         self._over.set()
         if self._thread is not None:
             self._thread.join()
@@ -68,7 +68,7 @@ class Progress:
                 self._write(f"\r{line}\x1b[K" if self._on_terminal else f"{line}\n")
 
     def line(self, flow: Flow, seconds: float) -> str:
-        """How far the steps are that have begun and are not over."""
+        """The progress of the first unfinished steps, as one line."""
         steps = [f"{step} {made} of {total}" for step, made, total in flow.steps() if made < total][:4]
         rate = f"{self._made / seconds * 60:.3g} parts/min" if seconds > 0 else ""
         done = self._work_at_begin - flow.work_left
@@ -85,7 +85,7 @@ class Progress:
 
 
 def duration(seconds: float) -> str:
-    """A time for people."""
+    """A duration as text for people."""
     if seconds < 120:
         return f"{seconds:.0f} s"
     if seconds < 7200:

@@ -1,4 +1,4 @@
-"""What a build took: for people as a table, for programs as JSON (the cost model reads it)."""
+"""The time, memory and bytes of a build: as a table for people, as JSON for programs (the cost model reads it)."""
 
 from __future__ import annotations
 
@@ -14,29 +14,29 @@ VERSION = 1
 
 @dataclass
 class Summary:
-    """What became of a build."""
+    """The result of a build."""
 
-    #: Where the package is.
+    #: The path of the package.
     package: str
-    #: Wall time in seconds, and how many parts could be made at once at the begin.
+    #: Wall time in seconds, and the number of parts that could run at once at the beginning.
     seconds: float = 0.0
     slots: int = 0
     parts: list[PartResult] = field(default_factory=list)
-    #: What ``corniche plan`` estimated, if it was asked.
+    #: The estimate of ``corniche plan``, if it was run.
     estimate: dict[str, Any] | None = None
     #: Bytes of the inputs by kind, from the plan.
     input_bytes: dict[str, int] = field(default_factory=dict)
 
     def above_memory(self) -> list[str]:
-        """Parts that used more memory than they were allowed: which, how much, of what."""
+        """A text for each part that used more memory than allowed."""
         return [part.memory_text() for part in self.parts if part.is_above_memory()]
 
     def to_json(self) -> dict[str, Any]:
-        """All of it."""
+        """The whole summary as JSON."""
         return {"version": VERSION, **asdict(self)}
 
     def to_text(self) -> str:
-        """A row for each step."""
+        """A table with a row for each step."""
         steps: dict[str, list[PartResult]] = {}
         for part in self.parts:
             steps.setdefault(part.step, []).append(part)
@@ -72,7 +72,7 @@ def _seconds(value: float | None) -> str:
 
 
 def bytes_text(value: float | None) -> str:
-    """Bytes for people, in powers of 1000; nothing if it is not known."""
+    """Bytes as text for people, in powers of 1000; empty if unknown."""
     if value is None:
         return ""
     for unit in ["B", "kB", "MB", "GB", "TB"]:
@@ -83,7 +83,7 @@ def bytes_text(value: float | None) -> str:
 
 
 def table(rows: Sequence[Sequence[str]]) -> str:
-    """Rows with a heading, the first column to the left and the others to the right."""
+    """Aligns rows, of which the first is the heading: the first column to the left, the others to the right."""
     widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
     lines = []
     for row in rows:

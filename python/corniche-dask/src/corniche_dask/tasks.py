@@ -1,4 +1,4 @@
-"""What goes between client and workers: small values only. All state is in the store."""
+"""The messages between client and workers: only small values. All state is in the store."""
 
 from __future__ import annotations
 
@@ -13,31 +13,32 @@ from .jobs import Job
 
 @dataclass(frozen=True)
 class Setting:
-    """What all parts of one build have in common."""
+    """The settings that all parts of one build share."""
 
     #: SHA-256 of the plan's text; a worker finds the plan's file by it.
     plan_digest: str
-    #: Program and version that made the plan.
+    #: The program and version that created the plan.
     generator: str
-    #: The program's path on every worker; ``None``: each machine looks for it.
+    #: The program's path on every worker; ``None``: each machine searches for it.
     program: str | None
-    #: The first is written, all are read. Here, and below, paths are absolute, as they are in the plan.
+    # : Parts are written to the first store and read from all. Here and below, paths are absolute,
+    # as in the plan.
     stores: tuple[str, ...]
-    #: Where parts are made before they are uploaded.
+    #: The folder in which parts are created before they are uploaded.
     tmp: str | None
-    #: Threads and bytes of each process; ``None``: the worker's, divided by its slots.
+    #: Threads and memory of each process; ``None``: the worker's, divided by its slots.
     threads: int | None
     memory_bytes: int | None
-    #: The package.
+    #: The path of the package.
     output: str
     overwrite: bool
-    #: The list of defects.
+    #: The path of the list of defects.
     defects: str | None
 
 
 @dataclass(frozen=True)
 class PartTask:
-    """A part that a worker is to make."""
+    """A part for a worker to run."""
 
     key: str
     job: Job
@@ -46,22 +47,22 @@ class PartTask:
 
 @dataclass(frozen=True, kw_only=True)
 class PartResult:
-    """What became of a part: a digest of it, and what it took."""
+    """The result of a part: its digest, and the resources that it took."""
 
     id: str
     step: str
-    #: What ``corniche jobs`` estimated, in seconds on one core.
+    #: The estimate of ``corniche jobs``, in seconds on one core.
     work: float
-    #: 0; or 2 or 3, with an error: it is of no use to try again.
+    #: 0, or 2 or 3 with an error that another attempt would not change.
     exit_code: int = 0
     error: str | None = None
-    #: Whether it was made now; otherwise it was in the store already, or holds no data.
+    #: Whether this run built the part; otherwise it was in the store already, or has no data.
     was_made: bool = False
     #: The sealed part's file name, or the package's path.
     name: str | None = None
-    #: The first 16 bytes of a SHA-256 over the part's content, as the file name has it.
+    #: The first 16 bytes of the SHA-256 of the part's content, as in the file name.
     digest: str | None = None
-    #: Bytes of the file, where the worker can look.
+    #: Size of the file in bytes, if the worker sees the file.
     file_bytes: int | None
     worker: str
     seconds: float
@@ -73,11 +74,11 @@ class PartResult:
     threads: int
 
     def is_above_memory(self) -> bool:
-        """Whether the process used more memory than it was allowed."""
+        """Whether the process used more memory than allowed."""
         return self.peak_bytes is not None and self.peak_bytes > self.memory_bytes
 
     def memory_text(self) -> str:
-        """For people: which part used how much of what."""
+        """A text for people: which part used how much memory, and its limit."""
         mebi = 1 << 20
         return f"part {self.id} used {(self.peak_bytes or 0) / mebi:.0f} MiB of {self.memory_bytes / mebi:.0f} MiB on {self.worker}"
 
@@ -88,26 +89,26 @@ def digest_of(text: str) -> str:
 
 
 def key_of(setting: Setting, job: Job) -> str:
-    """A key that is equal for equal work: step and content. Dask's dashboard shows what is before the last hyphen."""
+    """A key that is equal for equal work: step and hash. Dask's dashboard shows the text before the last hyphen."""
     content: list[object] = [setting.plan_digest, setting.stores, job.step, job.subtree, job.share, job.args]
     if job.is_merge:
         content += [setting.output, setting.overwrite, setting.defects]
-    # 32 digits without any figure would be shown as a word of the name.
+    # The 0 ensures a digit: the dashboard would show 32 letters as part of the name.
     return f"{job.step}-0{digest_of(json.dumps(content))[:32]}"
 
 
 def is_object_storage(place: str) -> bool:
-    """Whether a place is no path, but the address of something elsewhere, such as ``s3://BUCKET/PREFIX``."""
+    """Whether a place is not a path but an address, such as ``s3://BUCKET/PREFIX``."""
     return "://" in place
 
 
 def absolute(place: str) -> str:
-    """A path that means the same in every folder."""
+    """The absolute path; addresses stay unchanged."""
     return place if is_object_storage(place) else os.path.abspath(place)
 
 
 def part_of_name(printed: str) -> tuple[str | None, str | None]:
-    """File name and digest from the path that ``corniche part`` printed: ``…/parts/NAME.DIGEST.part``."""
+    """The file name and the digest in the path that ``corniche part`` printed: ``…/parts/NAME.DIGEST.part``."""
     name = printed.strip().rsplit("/", 1)[-1]
     pieces = name.split(".")
     return (name or None, pieces[-2] if len(pieces) >= 3 else None)

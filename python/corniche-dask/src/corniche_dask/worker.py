@@ -1,4 +1,4 @@
-"""What runs in the processes of workers."""
+"""The code that runs in the processes of workers."""
 
 from __future__ import annotations
 
@@ -28,22 +28,22 @@ from .limits import Limits, limits_of
 from .program import environment_of_child
 from .tasks import PartResult, PartTask, Setting, is_object_storage, part_of_name
 
-#: The processes that a worker waits for, by the worker's address.
+#: The child processes of each worker, by the worker's address.
 _children: defaultdict[str, set[Child]] = defaultdict(set)
 _lock = threading.Lock()
-#: Seconds in which children are given time to end by themselves when their worker closes; then they are killed.
+#: Seconds that children may take to end when their worker closes, before they are killed.
 _CLOSES_WITHIN = 3.0
-#: What a merge says while another process writes the same package.
+#: Part of the message of a merge while another process writes the same package.
 _BEING_BUILT = "is being built by another process"
-#: Seconds until it is tried again.
+#: Seconds until the merge is tried again.
 _TRIES_EVERY = 2.0
 _NEVER_BEGUN = Ended(UNUSABLE, stdout="", log=[], seconds=0.0, usage=Usage(), was_stopped=False)
 
 
 class PlanPlugin(WorkerPlugin):
-    """Gives a plan to every worker, also to those that come later, and ends the processes of a worker that closes.
+    """Distributes a plan to every worker, including those that join later, and ends the processes of a worker that closes.
 
-    It stays at the scheduler when a build is over: another client may be making the same plan.
+    The plugin stays registered after a build: another client may be building the same plan.
     """
 
     idempotent = True
@@ -54,14 +54,14 @@ class PlanPlugin(WorkerPlugin):
         self.name = f"corniche-plan-{digest}"
 
     def setup(self, worker: Worker) -> None:
-        """Writes the plan into the worker's own folder, which Dask removes with the worker."""
+        """Writes the plan to the worker's local folder, which Dask removes with the worker."""
         path = _plan_file(worker, self._digest)
         part = path.with_suffix(f".{os.getpid()}.new")
         part.write_text(self._plan, encoding="utf-8")
         part.replace(path)
 
     async def teardown(self, worker: Worker) -> None:
-        """Ends the worker's processes. If the worker is killed before, their pipes close all the same."""
+        """Ends the worker's child processes. If the worker is killed before, their pipes close anyway."""
         for child in _children_of(worker.address):
             child.stop()
         begun = time.monotonic()
@@ -82,16 +82,16 @@ def _plan_file(worker: Worker, digest: str) -> Path:
 
 @lru_cache(maxsize=16)
 def _program(asked: str | None, generator: str) -> str:
-    """The program, of the version that made the plan."""
+    """The path of the program, checked to have the version that created the plan."""
     program = find_program(asked)
     version = version_of(program)
     if version != generator:
-        raise ProgramError(f"{program} is {version}, but the plan was made by {generator}")
+        raise ProgramError(f"{program} is {version}, but the plan was created by {generator}")
     return program
 
 
 def look_at_worker(setting: Setting, dask_worker: Worker) -> str | None:
-    """What keeps this worker from making parts; ``None``: nothing."""
+    """The reason why this worker cannot build parts; ``None`` if it can."""
     try:
         _program(setting.program, setting.generator)
         _limits(dask_worker, setting)
@@ -105,12 +105,12 @@ def look_at_worker(setting: Setting, dask_worker: Worker) -> str | None:
 
 
 def is_there(output: str) -> bool:
-    """Whether something is at a path, as this machine sees it."""
+    """Whether a path exists, as this machine sees it."""
     return os.path.lexists(output)
 
 
 def list_parts(setting: Setting, slots: int, least_work: float | None, with_store: bool) -> str:
-    """What ``corniche jobs`` prints; with what is in the stores, if asked for."""
+    """The output of ``corniche jobs``, which with ``with_store`` also reads the stores."""
     worker = get_worker()
     command = [_program(setting.program, setting.generator), "jobs", str(_plan(worker, setting)), "--slots", str(slots)]
     if least_work is not None:
@@ -131,9 +131,9 @@ def list_parts(setting: Setting, slots: int, least_work: float | None, with_stor
 
 
 def make_part(task: PartTask) -> PartResult:
-    """Makes a part and returns a digest of it.
+    """Builds a part and returns its result.
 
-    Raises ``PartFailed`` if it is worth to try again. What would fail again the same way is returned.
+    Raises ``PartFailed`` if another attempt may help. An error that would occur again is returned in the result.
     """
     worker = get_worker()
     setting, job = task.setting, task.job
@@ -141,30 +141,27 @@ def make_part(task: PartTask) -> PartResult:
         program = _program(setting.program, setting.generator)
         limits = _limits(worker, setting)
     except CornicheError as error:
-        message = f"part {job.id} cannot be made on {worker.address}: {error}"
+        message = f"part {job.id} cannot be built on {worker.address}: {error}"
         return _result(task, worker, Limits(0, 0), _NEVER_BEGUN, exit_code=UNUSABLE, error=message)
-    plan = str(_plan(worker, setting))
+    command = [program, "merge" if job.is_merge else "part", str(_plan(worker, setting)), *job.args, *_common(setting, limits)]
     if not job.is_merge:
-        command = [program, "part", plan, *job.args, *_common(setting, limits)]
-        ended = _run(command, task, worker)
-        return _judged(task, worker, limits, ended)
-    merge = [program, "merge", plan, *job.args, *_common(setting, limits)]
+        return _judged(task, worker, limits, _run(command, task, worker))
     overwrite = ["-O"] if setting.overwrite else []
     defects = ["--defects", setting.defects] if setting.defects else []
-    ended = _run([*merge, *overwrite, *defects, "-o", setting.output], task, worker)
-    while ended.exit_code == FAILED and any(_BEING_BUILT in line for line in ended.log):
-        # The same merge of a worker that was only thought to be dead. Its package will be looked at.
+    merge = [*command, *overwrite, *defects, "-o", setting.output]
+    while (ended := _run(merge, task, worker)).exit_code == FAILED and any(_BEING_BUILT in line for line in ended.log):
+        # A worker that was wrongly thought to be dead runs the same merge. Its package is compared
+        # below.
         time.sleep(_TRIES_EVERY)
-        ended = _run([*merge, *overwrite, *defects, "-o", setting.output], task, worker)
-    if ended.exit_code == EXISTS and not setting.overwrite and _is_same_package(merge, task, worker):
+    if ended.exit_code == EXISTS and not setting.overwrite and _is_same_package(command, task, worker):
         return _result(task, worker, limits, ended, name=setting.output, was_made=False)
     return _judged(task, worker, limits, ended)
 
 
 def _is_same_package(merge: Sequence[str], task: PartTask, worker: Worker) -> bool:
-    """Whether the package that is there is the one that this merge makes.
+    """Whether the existing package is the one that this merge would write.
 
-    Dask may run a task twice, for example when a worker dies after its end. The first run's package is then no reason to fail.
+    Dask may run a task twice, for example when a worker dies after the task ended. The package of the first run is then no error.
     """
     output = task.setting.output
     if is_object_storage(output) or not os.path.isfile(output):
@@ -183,12 +180,12 @@ def _common(setting: Setting, limits: Limits) -> list[str]:
 
 
 def _run(command: Sequence[str], task: PartTask, worker: Worker) -> Ended:
-    """Runs a process to its end, or to the moment when Dask does not want the task any more."""
+    """Runs a process to its end, or until Dask no longer wants the task."""
     child = Child(command, environment_of_child())
     with _registered(worker.address, child):
         ended = child.wait(lambda: _is_wanted(worker, task.key))
     if ended.was_stopped and ended.exit_code != 0:
-        # If somebody wants it all the same, it is given out again; that is no failure.
+        # If the task is still wanted after all, Dask submits it again; this is not a failure.
         raise Reschedule()
     return ended
 
@@ -205,7 +202,7 @@ def _registered(worker: str, child: Child) -> Iterator[None]:
 
 
 def _is_wanted(worker: Worker, key: str) -> bool:
-    """Whether the task was neither cancelled nor released since it began. A task in a thread is not told."""
+    """Whether the task was neither cancelled nor released since it began. Dask does not notify a task in a thread."""
     state = worker.state.tasks.get(key)
     return state is not None and state.state != "cancelled"
 
@@ -218,7 +215,8 @@ def _judged(task: PartTask, worker: Worker, limits: Limits, ended: Ended) -> Par
         name, digest = part_of_name(ended.stdout)
         return _result(task, worker, limits, ended, name=name, digest=digest, was_made=name is not None)
     if ended.exit_code == INTERRUPTED:
-        # Somebody sent a signal to all processes of the machine, which may be about to be taken away. The part goes on elsewhere.
+        # All processes of the machine got a signal, so it may be about to be reclaimed. Another
+        # worker resumes the part.
         time.sleep(_TRIES_EVERY)
         raise Reschedule()
     how = f"exit code {ended.exit_code}" if ended.exit_code > 0 else f"ended by signal {-ended.exit_code}"
@@ -228,7 +226,8 @@ def _judged(task: PartTask, worker: Worker, limits: Limits, ended: Ended) -> Par
     message = f"part {job.id} ({job.title()}) failed on {worker.address}: {how}; the last lines of its log:\n{log}"
     if ended.exit_code in (UNUSABLE, EXISTS):
         return _result(task, worker, limits, ended, exit_code=ended.exit_code, error=message)
-    # Network file systems, for example, show late what another machine wrote.
+    # The cause may be temporary: network file systems, for example, show files of other machines
+    # with a delay.
     time.sleep(_TRIES_EVERY)
     raise PartFailed(message)
 
@@ -250,7 +249,7 @@ def _result(task: PartTask, worker: Worker, limits: Limits, ended: Ended, name: 
 
 
 def _size(path: str) -> int | None:
-    """Bytes of a file, if it is one that this machine can look at."""
+    """The size of a file in bytes; ``None`` if this machine does not see the file."""
     try:
         return os.stat(path).st_size
     except OSError:

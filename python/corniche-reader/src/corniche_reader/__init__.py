@@ -1,4 +1,4 @@
-"""Reads packages of Corniche: tiles of TIN terrain with roads draped on it. Written from `crates/tileset/FORMAT.md`."""
+"""Reads Corniche packages: tiles of TIN terrain with draped roads. Written from `crates/tileset/FORMAT.md` alone."""
 
 from .attributes import Attributes
 from .errors import ContainerError, PayloadError, ReadError, UnknownTile

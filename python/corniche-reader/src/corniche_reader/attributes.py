@@ -1,4 +1,4 @@
-"""Road attributes and road tags (section 9 of the format), under the names that `corniche export roads` has for them."""
+"""Road attributes and road tags (section 9 of the format), under the names that `corniche export roads` uses."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .errors import PayloadError
 
 FORMS = ("ordinary", "dual_carriageway", "link", "roundabout")
 STRUCTURES = ("ground", "bridge", "tunnel")
-#: As OSM tags a way: open in both directions, along the line alone, against it alone.
+#: OSM's `oneway`: open in both directions, only along the line, only against it.
 ONEWAYS = ("no", "yes", "-1")
 #: The columns of the section of tags.
 TAGS = ("highway", "maxspeed", "sac_scale", "tracktype", "lanes", "width")
@@ -20,10 +20,10 @@ TAGS = ("highway", "maxspeed", "sac_scale", "tracktype", "lanes", "width")
 
 @dataclass(frozen=True)
 class Attributes:
-    """What is known of a way. Names and values are those of exports; an absent tag is None."""
+    """The attributes of a way. Names and values are those of exports; an absent tag is None."""
 
     way_id: int
-    #: OSM's `highway`; None in packages of the first programs, which do not have it.
+    #: OSM's `highway`; None in packages of the first programs, which did not store it.
     highway: str | None
     form: str
     name: str | None
@@ -33,20 +33,20 @@ class Attributes:
     layer: int
     oneway: str
     surface: str | None
-    #: In both directions together.
+    #: The number of lanes in both directions together.
     lanes: int | None
-    #: Metres.
+    #: Width in metres.
     width: float | None
-    #: A number is km/h, `30 mph` miles an hour; else as tagged.
+    #: A number is in km/h, `30 mph` in miles per hour; other values are as tagged.
     maxspeed: str | None
     sac_scale: str | None
     tracktype: str | None
 
 
 def read_attributes(data: bytes, what: str, tags: bytes | None, tags_what: str) -> list[Attributes]:
-    """Decodes the section of attributes, a record of bincode, and the one of tags."""
+    """Decodes the section of attributes, a bincode record, and the section of tags."""
     cursor = Cursor(data, what)
-    texts = [cursor.take(_word(cursor, 8)) for _ in range(_length(cursor))]
+    texts = [cursor.take(cursor.word(8)) for _ in range(_length(cursor))]
     steps, forms, structures, layers, oneways, *names = (_words(cursor, width) for width in (8, 1, 1, 1, 1, 4, 4, 4))
     cursor.end()
     found, way = [], 0
@@ -77,11 +77,11 @@ def read_attributes(data: bytes, what: str, tags: bytes | None, tags_what: str) 
 
 
 def _read_tags(data: bytes, ways: int, what: str) -> list[dict[str, Any]]:
-    """What the section of tags says of each of so many ways."""
+    """Decodes the section of tags: the tags of each of `ways` ways."""
     cursor = Cursor(data, what)
     count = cursor.varint()
     if count > len(data):
-        raise PayloadError(f"{what}: more texts than bytes")
+        raise PayloadError(f"{what}: more texts than the section has bytes")
     contents = [cursor.take(cursor.varint()) for _ in range(count)]
     if not all(contents) or any(one >= other for one, other in zip(contents, contents[1:], strict=False)):
         raise PayloadError(f"{what}: texts are empty or not sorted")
@@ -99,16 +99,12 @@ def _read_tags(data: bytes, ways: int, what: str) -> list[dict[str, Any]]:
     return [dict(zip(TAGS, of_way, strict=True)) for of_way in zip(*named, *numbers, strict=True)]
 
 
-def _word(cursor: Cursor, width: int) -> int:
-    return int.from_bytes(cursor.take(width), "little")
-
-
 def _words(cursor: Cursor, width: int) -> list[int]:
     return np.frombuffer(cursor.take(width * _length(cursor)), dtype=f"<u{width}").tolist()
 
 
 def _length(cursor: Cursor) -> int:
-    length = _word(cursor, 8)
+    length = cursor.word(8)
     if length > len(cursor.data):
         raise PayloadError(f"{cursor.what}: a list is longer than the section")
     return length

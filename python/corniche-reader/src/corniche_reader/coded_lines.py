@@ -1,4 +1,4 @@
-"""Lines of a class as range-coded bits (coded road sections of the format)."""
+"""Decodes lines of a class from range-coded bits (coded road sections of the format)."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from .errors import PayloadError
 from .grid import Grid
 from .mesh import Point
 
-#: A surprise: how many vertices before it are as guessed, and what it is.
+#: A surprise: the number of vertices before it that are as guessed, and its fields.
 Surprise = tuple[int, tuple[int, ...]]
-#: Points, and vertices that are not as guessed, of a class; lines.
+#: Limits for a class: points, vertices that are not as guessed, lines.
 MOST, MOST_LINES = 1 << 22, 1 << 20
 
 
 @dataclass
 class Line:
-    """Head and points of a line."""
+    """The head and the points of a line."""
 
     way_id: int
     part: int
@@ -30,7 +30,7 @@ class Line:
 def coded_lines(data: bytes, count: int, step_m: tuple[float, float], grid: Grid, what: str) -> list[tuple[Line, list[Surprise]]]:
     """All lines of a class of GEO roads, with their surprises."""
     if (count == 0) != (len(data) == 0) or count > MOST_LINES:
-        raise PayloadError(f"{what}: the table of classes is wrong")
+        raise PayloadError(f"{what}: the table of classes is invalid")
     if count == 0:
         return []
     bits = Bits(data, what)
@@ -40,7 +40,7 @@ def coded_lines(data: bytes, count: int, step_m: tuple[float, float], grid: Grid
 
 
 class _Class:
-    """The models of a class, and what is known of it so far."""
+    """The models of a class, and the state of its decoder."""
 
     def __init__(self, bits: Bits, step_m: tuple[float, float], grid: Grid) -> None:
         self.bits, self.step_m, self.grid = bits, step_m, grid
@@ -59,7 +59,7 @@ class _Class:
         self.surprises = 0
 
     def lines(self, count: int) -> Iterator[tuple[Line, list[Surprise]]]:
-        """Reads so many lines."""
+        """Decodes `count` lines."""
         way, left = 0, MOST
         last: tuple[int, int] | None = None
         for _ in range(count):
@@ -74,7 +74,7 @@ class _Class:
             last = way, part
             points = list(self._points(size))
             if any(a == b for a, b in pairwise(points)):
-                raise PayloadError(f"{self.bits.what}: a segment without length")
+                raise PayloadError(f"{self.bits.what}: a segment of length 0")
             yield Line(way, part, flags, points), self._surprises(flags)
 
     def _points(self, size: int) -> Iterator[Point]:
@@ -86,13 +86,13 @@ class _Class:
             if was:
                 back = self.back.unsigned()
                 if back >= len(self.new):
-                    raise PayloadError(f"{self.bits.what}: a point that was not there before")
+                    raise PayloadError(f"{self.bits.what}: a reference to a point that does not exist")
                 self.at, point = self.new[-1 - back]
             else:
                 step = tuple(kind.read() for kind in self.starts) if i == 0 else self._step(before)
                 self.at = last[0] + step[0], last[1] + step[1]
                 if max(map(abs, self.at)) > 1 << 33:
-                    raise PayloadError(f"{self.bits.what}: a point far away")
+                    raise PayloadError(f"{self.bits.what}: a point is too far away")
                 u, v = self.grid.snap(self.at[0] * self.step_m[0], self.at[1] * self.step_m[1])
                 if self.bits.bit(self.off):
                     u, v = u + self.beside[0].read(), v + self.beside[1].read()

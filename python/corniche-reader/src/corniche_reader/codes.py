@@ -14,7 +14,7 @@ LEAST, LARGEST = 48, 65_488
 
 
 def models(count: int) -> list[Model]:
-    """So many new models."""
+    """Returns `count` new models."""
     return [[1 << 15, 1 << 15] for _ in range(count)]
 
 
@@ -27,7 +27,7 @@ def half_octave(x: int) -> int:
 
 
 def round_half_away(x: float) -> int:
-    """The nearest whole number; of two, the one farther from 0."""
+    """The nearest whole number; a half is rounded away from 0."""
     whole = math.floor(abs(x))
     return int(math.copysign(whole + (abs(x) - whole >= 0.5), x))
 
@@ -37,11 +37,23 @@ def unzigzag(n: int) -> int:
     return (n >> 1) ^ -(n & 1)
 
 
-class Cursor:
-    """Reads bytes in order; never beyond the end."""
+class _Whole:
+    """Bytes that must be read in order and to the end."""
+
+    def __init__(self, data: bytes, what: str, at: int) -> None:
+        self.data, self.what, self.at = data, what, at
+
+    def end(self) -> None:
+        """Rejects bytes that were not read."""
+        if self.at != len(self.data):
+            raise PayloadError(f"{self.what} has {len(self.data) - self.at} bytes too many")
+
+
+class Cursor(_Whole):
+    """Reads bytes in order, never beyond the end."""
 
     def __init__(self, data: bytes, what: str) -> None:
-        self.data, self.what, self.at = data, what, 0
+        super().__init__(data, what, 0)
 
     def take(self, count: int) -> bytes:
         """The next bytes."""
@@ -55,8 +67,12 @@ class Cursor:
         """The next byte."""
         return self.take(1)[0]
 
+    def word(self, width: int) -> int:
+        """A little-endian number of `width` bytes."""
+        return int.from_bytes(self.take(width), "little")
+
     def varint(self) -> int:
-        """A number in base 128."""
+        """A varint (base 128)."""
         value = 0
         for shift in range(0, 70, 7):
             byte = self.byte()
@@ -68,7 +84,7 @@ class Cursor:
         raise PayloadError(f"{self.what}: a number has more than 64 bits")
 
     def planes(self, count: int) -> list[int]:
-        """Numbers as planes of bytes, the lowest first."""
+        """Numbers stored as planes of bytes, the lowest byte first."""
         width = self.byte()
         if width > 8:
             raise PayloadError(f"{self.what}: planes of {width} bytes")
@@ -77,19 +93,14 @@ class Cursor:
             values |= np.frombuffer(self.take(count), np.uint8).astype(np.uint64) << np.uint64(8 * plane)
         return values.tolist()
 
-    def end(self) -> None:
-        """Refuses bytes that are left."""
-        if self.at != len(self.data):
-            raise PayloadError(f"{self.what} has {len(self.data) - self.at} bytes too many")
 
-
-class Bits:
+class Bits(_Whole):
     """A string of range-coded bits."""
 
     def __init__(self, data: bytes, what: str) -> None:
         if len(data) < 4:
             raise PayloadError(f"{what}: its bits end too early")
-        self.data, self.what, self.at = data, what, 4
+        super().__init__(data, what, 4)
         self.range, self.code = 0xFFFF_FFFF, int.from_bytes(data[:4], "big")
 
     def _next(self, bound: int) -> int:
@@ -126,14 +137,9 @@ class Bits:
         learn(other, bit)
         return bit
 
-    def end(self) -> None:
-        """Refuses bytes that are left."""
-        if self.at != len(self.data):
-            raise PayloadError(f"{self.what} has {len(self.data) - self.at} bytes too many")
-
 
 def learn(model: Model, bit: int) -> None:
-    """Changes a model by the bit that was read."""
+    """Updates a model with the bit that was read."""
     fast, slow = model
     if bit:
         model[0] = fast - (fast >> 4)
@@ -144,7 +150,7 @@ def learn(model: Model, bit: int) -> None:
 
 
 class Numbers:
-    """A kind of numbers, with its models."""
+    """The models for one kind of numbers."""
 
     def __init__(self, bits: Bits, first: int, second: int) -> None:
         self.bits = bits
@@ -158,7 +164,7 @@ class Numbers:
         return -m if m and self.bits.even() else m
 
     def unsigned(self, first: int = 0, second: int = 0) -> int:
-        """The next number of a kind without signs."""
+        """The next unsigned number."""
         bits = self.bits
         x, y = self.x[min(first, len(self.x) - 1)], self.y[min(second, len(self.y) - 1)]
         length = 0

@@ -10,20 +10,21 @@ from typing import Any, BinaryIO
 
 from .codes import Cursor
 from .errors import ContainerError, PayloadError
+from .grid import TileName
 
 MIB = 1 << 20
 
 
 @dataclass(frozen=True)
 class Place:
-    """Where a payload lies in the file."""
+    """The location of a payload in the file."""
 
     offset: int
     length: int
 
 
 def tile_number(z: int, x: int, y: int) -> int:
-    """A tile's id in PMTiles: level by level, along a Hilbert curve."""
+    """The PMTiles id of a tile: level by level, along a Hilbert curve."""
     number, side = 0, 1 << z - 1 if z else 0
     tx, ty = x, y
     while side:
@@ -37,7 +38,7 @@ def tile_number(z: int, x: int, y: int) -> int:
     return ((1 << 2 * z) - 1) // 3 + number
 
 
-def tile_of(number: int) -> tuple[int, int, int]:
+def tile_of(number: int) -> TileName:
     """The tile z, x, y with this id."""
     z = 0
     while ((1 << 2 * (z + 1)) - 1) // 3 <= number:
@@ -59,7 +60,7 @@ def tile_of(number: int) -> tuple[int, int, int]:
 
 
 def read_at(file: BinaryIO, offset: int, length: int, what: str) -> bytes:
-    """Bytes of the file, all of them."""
+    """Reads exactly `length` bytes of the file."""
     try:
         file.seek(offset)
         data = file.read(length)
@@ -71,24 +72,24 @@ def read_at(file: BinaryIO, offset: int, length: int, what: str) -> bytes:
 
 
 def unzip(data: bytes, limit: int, what: str) -> bytes:
-    """Content of a gzip member, whose CRC-32 is checked."""
+    """The content of a gzip member, whose CRC-32 is checked."""
     try:
         stream = zlib.decompressobj(31)
         content = stream.decompress(data, limit)
     except (zlib.error, gzip.BadGzipFile) as cause:
-        raise ContainerError(f"{what} is damaged: {cause}") from cause
+        raise ContainerError(f"{what} is corrupt: {cause}") from cause
     if not stream.eof or stream.unused_data:
-        raise ContainerError(f"{what} is damaged: no single gzip member of at most {limit} bytes")
+        raise ContainerError(f"{what} is corrupt: not a single gzip member of at most {limit} bytes")
     return content
 
 
-def parts(file: BinaryIO) -> tuple[dict[str, Any], dict[tuple[int, int, int], Place]]:
-    """Metadata and places of all tiles."""
+def parts(file: BinaryIO) -> tuple[dict[str, Any], dict[TileName, Place]]:
+    """The metadata, and the locations of all tiles."""
     header = read_at(file, 0, 127, "the header")
     if header[:7] != b"PMTiles" or header[7] != 3:
-        raise ContainerError("this is no PMTiles archive of version 3")
+        raise ContainerError("this is not a PMTiles archive of version 3")
     if (header[97], header[98], header[99]) != (2, 1, 0):
-        raise ContainerError("the header names compressions or a tile type that are not those of a Corniche package")
+        raise ContainerError("the compressions or the tile type in the header are not those of a Corniche package")
     words = [int.from_bytes(header[at : at + 8], "little") for at in range(8, 80, 8)]
     root, metadata, leaves, tiles, addressed = words[0:2], words[2:4], words[4:6], words[6:8], words[8]
     end = file.seek(0, 2)
@@ -110,12 +111,12 @@ def parts(file: BinaryIO) -> tuple[dict[str, Any], dict[tuple[int, int, int], Pl
             raise ContainerError(f"tile {tile_of(number)} overlaps another")
         at = place.offset + place.length
     if addressed and addressed != len(found):
-        raise ContainerError(f"the header names {addressed} tiles, the directories {len(found)}")
+        raise ContainerError(f"the header states {addressed} tiles, the directories have {len(found)}")
     text = unzip(read_at(file, metadata[0], metadata[1], "the metadata"), 16 * MIB, "the metadata")
     try:
         content = json.loads(text)
     except (ValueError, RecursionError) as cause:
-        raise ContainerError(f"the metadata are no JSON, or nested too deep: {cause}") from cause
+        raise ContainerError(f"the metadata are not JSON, or nested too deep: {cause}") from cause
     return content, {tile_of(n): Place(tiles[0] + p.offset, p.length) for n, p in found.items()}
 
 
@@ -128,7 +129,7 @@ def _directory(
     first: int | None,
     found: dict[int, Place],
 ) -> None:
-    """Reads a directory and those beneath it. `ends` are the region of the leaves and the length of that of the tiles."""
+    """Reads a directory and its leaf directories. `ends` are the region of the leaves and the length of the region of the tiles."""
     what = f"the directory at byte {offset}"
     if length > 4 * MIB or depth > 4:
         raise ContainerError(f"{what} is too large, or nested too deep")
@@ -144,7 +145,7 @@ def _directory(
     number, after = 0, 0
     for i, (step, run, size, place) in enumerate(zip(*columns, strict=True)):
         if (i and not step) or run > 1 or not size or (not place and not i):
-            raise ContainerError(f"{what} has an entry that no package has")
+            raise ContainerError(f"{what} has an invalid entry")
         number += step
         start = place - 1 if place else after
         after = start + size
@@ -153,7 +154,7 @@ def _directory(
         if run:
             if number in found or number >= ((1 << 64) - 1) // 3:
                 raise ContainerError(f"{what} names a tile twice, or a level that is too deep")
-            # At once: a few bytes may list millions of tiles that are not there.
+            # Checked immediately: a few bytes may list millions of tiles that do not exist.
             if after > ends[1]:
                 raise ContainerError(f"tile {tile_of(number)} lies outside the tiles")
             found[number] = Place(start, size)

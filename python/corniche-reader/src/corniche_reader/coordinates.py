@@ -1,4 +1,4 @@
-"""Degrees of WGS84 and working metres (`coordinates` of the manifest, section 2 of the format)."""
+"""Conversion between WGS84 degrees and working metres (`coordinates` of the manifest, section 2 of the format)."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from .errors import ContainerError
 from .grid import FARTHEST_M
 
 Array = NDArray[np.float64]
-#: A place is found when it moves by less than this.
+#: The iteration has converged when a step is smaller than this.
 CLOSE_M = 1e-6
-#: Longitudes run on for so many degrees at most: 65 turns (section 11 of the format).
+#: The largest continuous longitude in degrees: 65 turns (section 11 of the format).
 MOST_DEGREES = 65 * 360
 
 
@@ -28,23 +28,23 @@ class Coordinates:
             size = int(table["size"])
             self._samples = np.array(table["samples_deg"], np.float64)
         except (KeyError, TypeError, ValueError, OverflowError) as cause:
-            raise ContainerError(f"the manifest's table of coordinates lacks something: {cause}") from cause
-        # No comparison is true for what is no number.
+            raise ContainerError(f"the manifest's table of coordinates is incomplete: {cause}") from cause
+        # Comparisons with NaN are false.
         is_near = (np.abs(self._low) <= FARTHEST_M).all() and (self._span <= 2 * FARTHEST_M).all() and (np.abs(self._samples) <= MOST_DEGREES).all()
         if not (4 <= size <= 129 and self._samples.shape == (size * size, 2) and is_near and (self._span > 0).all()):
-            raise ContainerError("the manifest's table of coordinates is damaged")
+            raise ContainerError("the manifest's table of coordinates is corrupt")
         self._samples = self._samples.reshape(size, size, 2)
         self._last = size - 1
 
     def degrees(self, positions: ArrayLike) -> Array:
-        """[longitude, latitude] of each [x, y, …] in working metres; longitudes within ±180."""
+        """The [longitude, latitude] of each [x, y, …] in working metres; longitudes are within ±180."""
         places = np.asarray(positions, np.float64)
         found = self._interpolated(places.reshape(-1, places.shape[-1])[:, :2])
         found[:, 0] -= 360 * np.round(found[:, 0] / 360)
         return found.reshape(*places.shape[:-1], 2)
 
     def working(self, lon: float, lat: float) -> tuple[float, float] | None:
-        """[x, y] in working metres of a place in degrees; None far outside the data."""
+        """The [x, y] in working metres of a position in degrees; None far outside the data."""
         at = self._low + self._span / 2
         center = self._interpolated(at[None])[0]
         target = np.array([lon - 360 * round((lon - center[0]) / 360), lat])
@@ -65,7 +65,7 @@ class Coordinates:
         return None
 
     def _interpolated(self, places: Array) -> Array:
-        """Lagrange's cubic through the four samples around each place, along both axes; at the rim through the outermost four."""
+        """Lagrange's cubic through the four samples around each position, along both axes; at the edge through the outermost four."""
         t = (places - self._low) / self._span * self._last
         first = np.clip(np.floor(t) - 1, 0, self._last - 3).astype(np.int64)
         s = t - first

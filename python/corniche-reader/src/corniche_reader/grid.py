@@ -9,30 +9,32 @@ from typing import Any
 from .codes import round_half_away
 from .errors import ContainerError, PayloadError
 
-
-#: No position in working metres is farther from zero (section 11 of the format).
+#: A tile: z, x, y.
+TileName = tuple[int, int, int]
+#: The largest coordinate of a position in working metres (section 11 of the format).
 FARTHEST_M = 2**51 / 1000
-#: Lattice points are within so many steps of node (0, 0), and indices of nodes below the other.
+# : The largest distance of a lattice point from node (0, 0), in steps, and the limit of node
+# indices.
 MOST_STEPS, MOST_NODES = 1 << 50, 1 << 32
-#: Levels that a package can have at most below its root.
+#: The largest number of levels below the root.
 MOST_LEVELS = 22
 
 
 @dataclass(frozen=True)
 class Grid:
-    """Where nodes and lattice points lie, and how high a height step is."""
+    """The positions of nodes and lattice points, and the height of a height step."""
 
     origin_m: tuple[float, float]
     cell_m: tuple[float, float]
     root_corner: tuple[int, int]
     max_level: int
-    #: Lattice steps to a cell, east and north.
+    #: Lattice steps per cell, east and north.
     steps: tuple[int, int]
     quantum_m: float
 
     @classmethod
     def of(cls, manifest: dict[str, Any]) -> Grid:
-        """Reads it from the manifest."""
+        """Reads the grid from the manifest."""
         try:
             frame = manifest["frame"]
             origin, cell, corner = frame["origin_m"], frame["cell_m"], frame["root_corner"]
@@ -41,13 +43,13 @@ class Grid:
             level = int(frame["max_level"])
         except (KeyError, TypeError, ValueError, IndexError, OverflowError) as cause:
             raise ContainerError(f"the manifest lacks a number that a reader needs: {cause}") from cause
-        # No comparison is true for what is no number.
+        # Comparisons with NaN are false.
         if not (0.001 <= north <= 1e6 and 0.001 <= east <= 1e6 and 0 <= level <= MOST_LEVELS):
             raise ContainerError("the manifest's cells or levels are beyond their limits")
         if not all(abs(metres) <= FARTHEST_M for metres in place[0]):
-            raise ContainerError("the manifest's grid has its origin beyond all places")
+            raise ContainerError("the origin of the manifest's grid is beyond its limits")
         if not (2.0**-64 <= quantum <= 2.0**27 and math.frexp(quantum)[0] == 0.5):
-            raise ContainerError("the manifest's height quantum is no power of two from 2^-64 to 2^27")
+            raise ContainerError("the manifest's height quantum is not a power of two from 2^-64 to 2^27")
         b = 0
         while north / 2**b > 0.001:
             b += 1
@@ -60,11 +62,11 @@ class Grid:
         return cls(place[0], (east, north), place[1], level, (int(a), 2**b), quantum)
 
     def level_cell_m(self, level: int) -> tuple[float, float]:
-        """Sides of a cell of this level."""
+        """The sides of a cell of this level, in metres."""
         s = 1 << self.max_level - level
         return self.cell_m[0] * s, self.cell_m[1] * s
 
-    def lattice_of_node(self, tile: tuple[int, int, int], column: int, row: int) -> tuple[int, int]:
+    def lattice_of_node(self, tile: TileName, column: int, row: int) -> tuple[int, int]:
         """The lattice point of a tile's node."""
         z, x, y = tile
         s = 1 << self.max_level - z
@@ -74,16 +76,16 @@ class Grid:
         )
 
     def snap(self, x: float, y: float) -> tuple[int, int]:
-        """The lattice point nearest to a place in working metres."""
+        """The lattice point nearest to a position in working metres."""
         u = (x - self.origin_m[0]) / self.cell_m[0] * self.steps[0]
         v = (y - self.origin_m[1]) / self.cell_m[1] * self.steps[1]
-        # No comparison is true for what is no number.
+        # Comparisons with NaN are false.
         if not (abs(u) < MOST_STEPS and abs(v) < MOST_STEPS):
             raise PayloadError("a point of a road lies beyond the lattice")
         return round_half_away(u), round_half_away(v)
 
     def working(self, u: float, v: float) -> tuple[float, float]:
-        """Working metres of a place on the lattice."""
+        """The working metres of a position on the lattice."""
         return (
             self.origin_m[0] + self.cell_m[0] * (u / float(self.steps[0])),
             self.origin_m[1] + self.cell_m[1] * (v / float(self.steps[1])),

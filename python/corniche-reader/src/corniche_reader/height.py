@@ -1,4 +1,4 @@
-"""The height of the ground at a place: the triangle there, as the source points of roads have their heights (section 7 of the format)."""
+"""The height of the ground at a position, interpolated in its triangle like the source points of roads (section 7 of the format)."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .grid import Grid
+from .grid import Grid, TileName
 from .mesh import Mesh, Point
 from .terrain import Terrain
 
@@ -19,8 +19,8 @@ class Ground:
     heights_m: list[float]
 
     @classmethod
-    def of(cls, terrain: Terrain, grid: Grid, tile: tuple[int, int, int]) -> Ground:
-        """Places them on the lattice."""
+    def of(cls, terrain: Terrain, grid: Grid, tile: TileName) -> Ground:
+        """Places the triangles of a tile on the lattice."""
         lattice = [grid.lattice_of_node(tile, int(c), int(r)) for c, r in terrain.vertices.tolist()]
         return cls(Mesh(lattice, terrain.triangles.tolist()), (terrain.heights_q.astype(np.float64) * grid.quantum_m).tolist())
 
@@ -40,8 +40,8 @@ class Ground:
         return h[a] + (((((du * cv) - (dv * cu)) / total) * (h[b] - h[a])) + ((((bu * dv) - (bv * du)) / total) * (h[c] - h[a])))
 
 
-def tiles_at(grid: Grid, level: int, point: Point) -> list[tuple[int, int, int]]:
-    """The tiles of a level that hold a lattice point: several on their borders."""
+def tiles_at(grid: Grid, level: int, point: Point) -> list[TileName]:
+    """The tiles of a level that contain a lattice point: several on their borders."""
     (left, top), side = grid.lattice_of_node((0, 0, 0), 0, 0), 256 << grid.max_level - level
     columns = _tiles_along(point[0] - left, side * grid.steps[0], 1 << level)
     rows = _tiles_along(top - point[1], side * grid.steps[1], 1 << level)
@@ -49,6 +49,6 @@ def tiles_at(grid: Grid, level: int, point: Point) -> list[tuple[int, int, int]]
 
 
 def _tiles_along(steps: int, side: int, count: int) -> list[int]:
-    """Along one axis: the tile from which so many steps lead into, and the one before it if they lead to its border."""
+    """Along one axis: the number of the tile at `steps` from the origin, and of the one before it if this is their border."""
     tile, rest = divmod(steps, side)
     return [at for at in ([tile] if rest else [tile, tile - 1]) if 0 <= at < count]

@@ -1,4 +1,4 @@
-"""A TIN on the lattice: which triangle holds a point, which lies beyond an edge. All in whole numbers."""
+"""A TIN on the lattice: which triangle contains a point, and which lies beyond an edge. All arithmetic is in integers."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def orient(a: Point, b: Point, c: Point) -> int:
 
 
 class Mesh:
-    """Triangles with their neighbours."""
+    """A triangle mesh with adjacency."""
 
     def __init__(self, points: list[Point], triangles: list[list[int]]) -> None:
         self.points, self.triangles = points, triangles
@@ -39,7 +39,7 @@ class Mesh:
         return (point[0] - self._origin[0]) // self._side, (point[1] - self._origin[1]) // self._side
 
     def locate(self, point: Point) -> int | None:
-        """The smallest number of a triangle that holds the point, borders included."""
+        """The smallest number of a triangle that contains the point, borders included; None without one."""
         for t in self._buckets.get(self._bucket(point), ()):
             a, b, c = (self.points[v] for v in self.triangles[t])
             if orient(a, b, point) >= 0 and orient(b, c, point) >= 0 and orient(c, a, point) >= 0:

@@ -1,4 +1,4 @@
-"""A package: its manifest, and its tiles by z, x and y."""
+"""A Corniche package: its manifest, and its tiles by z, x and y."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .attributes import Attributes, read_attributes
 from .container import Place, parts, read_at
 from .coordinates import Coordinates
 from .errors import ContainerError, PayloadError, UnknownTile
-from .grid import Grid
+from .grid import Grid, TileName
 from .height import Ground, tiles_at
 from .payload import sections
 from .roads import Road, read_roads
@@ -22,13 +22,13 @@ from .spans import Span, read_spans
 from .terrain import Terrain, read_terrain
 
 
-#: Tiles whose triangles are kept for the next height.
+#: The number of tiles whose triangles stay in memory for the next height query.
 KEPT_TILES = 32
 
 
 @dataclass(frozen=True)
 class Tile:
-    """What a tile holds. Sections of kinds that this reader does not decode are in `sections`, decompressed."""
+    """The content of a tile. Sections of kinds that this reader does not decode are in `sections`, decompressed."""
 
     z: int
     x: int
@@ -37,15 +37,16 @@ class Tile:
     terrain: Terrain | None
     roads: list[Road]
     attributes: list[Attributes]
-    #: Runs of bridges and tunnels that are off the ground, to be taken in place of what lies on it of the roads of the same ways.
+    # : Runs of bridges and tunnels off the ground, which replace the stretches of the same ways'
+    # roads on the ground.
     spans: list[Span]
     sections: dict[int, bytes]
 
     def fields(self, road: Road) -> dict[str, Any]:
-        """What `corniche export roads --pieces` says of a part of a way, under the same names, but for what is measured along it."""
+        """The fields of a part of a way in `corniche export roads --pieces`, under the same names, except those measured along the line."""
         of_way = next((way for way in self.attributes if way.way_id == road.way_id), None)
         if of_way is None:
-            raise PayloadError(f"tile {self.z}/{self.x}/{self.y} knows nothing of way {road.way_id}, which it holds")
+            raise PayloadError(f"tile {self.z}/{self.x}/{self.y} has way {road.way_id}, but not its attributes")
         fields = asdict(of_way)
         way_id = fields.pop("way_id")
         return {"way_id": way_id, "class": road.road_class, **fields, "tile": f"{self.z}/{self.x}/{self.y}", "part": road.part}
@@ -57,24 +58,24 @@ class Package:
     def __init__(self, file: BinaryIO) -> None:
         self._file = file
         self.metadata: dict[str, Any]
-        self._places: dict[tuple[int, int, int], Place]
+        self._places: dict[TileName, Place]
         self.metadata, self._places = parts(file)
         manifest = self.metadata.get("corniche") if isinstance(self.metadata, dict) else None
         if not isinstance(manifest, dict):
-            raise ContainerError("the PMTiles archive has no manifest of Corniche")
+            raise ContainerError("the PMTiles archive has no Corniche manifest")
         if manifest.get("format_version") != 1:
             raise ContainerError(f"the package has version {manifest.get('format_version')} of the format; this reader knows version 1")
         self.manifest: dict[str, Any] = manifest
         self.grid = Grid.of(manifest)
         self._coordinates = Coordinates(manifest)
-        self._grounds: OrderedDict[tuple[int, int, int], Ground | None] = OrderedDict()
+        self._grounds: OrderedDict[TileName, Ground | None] = OrderedDict()
         for z, x, y in self._places:
             if z > self.grid.max_level:
                 raise ContainerError(f"tile {z}/{x}/{y} lies below the finest level")
 
     @classmethod
     def open(cls, path: str | Path) -> Package:
-        """Opens a file."""
+        """Opens a package file."""
         try:
             file = open(path, "rb")
         except OSError as cause:
@@ -95,8 +96,8 @@ class Package:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def tiles(self) -> list[tuple[int, int, int]]:
-        """All tiles (z, x, y), in the order of the file."""
+    def tiles(self) -> list[TileName]:
+        """All tiles (z, x, y), in file order."""
         return list(self._places)
 
     def tile(self, z: int, x: int, y: int) -> Tile:
@@ -111,9 +112,9 @@ class Package:
         return Tile(z, x, y, terrain, roads, attributes, spans, found)
 
     def _on_ground(
-        self, name: tuple[int, int, int], found: dict[int, bytes], terrain: Terrain | None, what: str
+        self, name: TileName, found: dict[int, bytes], terrain: Terrain | None, what: str
     ) -> tuple[list[Road], list[Span]]:
-        """What lies on the triangles, or ends there."""
+        """Decodes the sections that refer to the triangles: GEO roads and spans."""
         kinds = {2, 10, 13} & found.keys()
         if not kinds:
             return [], []
@@ -123,21 +124,21 @@ class Package:
         roads = [road for kind in sorted(kinds - {13}) for road in read_roads(found[kind], kind == 10, ground, self.grid, name)]
         return roads, read_spans(found[13], ground, self.grid, name) if 13 in kinds else []
 
-    def _sections(self, name: tuple[int, int, int]) -> dict[int, bytes]:
+    def _sections(self, name: TileName) -> dict[int, bytes]:
         place, what = self._places.get(name), "tile {}/{}/{}".format(*name)
         if place is None:
             raise UnknownTile(f"the package has no {what}")
         return sections(read_at(self._file, place.offset, place.length, what), name)
 
-    def _terrain(self, name: tuple[int, int, int], found: dict[int, bytes]) -> Terrain | None:
+    def _terrain(self, name: TileName, found: dict[int, bytes]) -> Terrain | None:
         return read_terrain(found[1], self.grid, name) if 1 in found else None
 
     def degrees(self, positions: ArrayLike) -> NDArray[np.float64]:
-        """[longitude, latitude] in WGS84 of each [x, y, …], such as the vertices of a road or the positions of the ground; to the centimetre."""
+        """The WGS84 [longitude, latitude] of each [x, y, …], such as the vertices of a road or the positions of the ground, to a centimetre."""
         return self._coordinates.degrees(positions)
 
     def height_at(self, lon: float, lat: float, level: int | None = None) -> float | None:
-        """The height of the ground at a place in degrees of WGS84, in metres, on the finest level or another one; None where there is no ground."""
+        """The height of the ground in metres at a WGS84 position in degrees, on the finest or the given level; None where there is no ground."""
         level = self.grid.max_level if level is None else level
         if not 0 <= level <= self.grid.max_level:
             raise UnknownTile(f"the package has no level {level}; its finest is {self.grid.max_level}")
@@ -148,7 +149,7 @@ class Package:
         heights = (self._height_in(name, point) for name in tiles_at(self.grid, level, point))
         return next((height for height in heights if height is not None), None)
 
-    def _height_in(self, name: tuple[int, int, int], point: tuple[int, int]) -> float | None:
+    def _height_in(self, name: TileName, point: tuple[int, int]) -> float | None:
         if name not in self._grounds:
             terrain = self._terrain(name, self._sections(name)) if name in self._places else None
             self._grounds[name] = None if terrain is None else Ground.of(terrain, self.grid, name)

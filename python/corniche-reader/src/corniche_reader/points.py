@@ -1,4 +1,4 @@
-"""Points of lines, each as the difference to the one before (item 4 of section 6 of the format)."""
+"""Points of lines, stored as differences to the previous point (item 4 of section 6 of the format)."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from .codes import Cursor, unzigzag
 from .errors import PayloadError
 from .mesh import Point
 
-#: All lines of a section together have no more points (section 11 of the format).
+#: The largest number of points of all lines of a section (section 11 of the format).
 MOST_POINTS = 1 << 22
 
 
 def lattice_points(cursor: Cursor, sizes: list[int], corner: Point) -> list[list[Point]]:
-    """The points of lines that have so many each; the first of all is relative to the tile's corner."""
+    """The points of lines with the given numbers of points; the very first point is relative to the tile's corner."""
     total = sum(sizes)
     if total > MOST_POINTS:
         raise PayloadError(f"{cursor.what}: too many points")

@@ -1,4 +1,4 @@
-"""The GEO roads section (sections 6 and 7 of the format): classes, heads, points, and vertices that are guessed or surprises."""
+"""The section of GEO roads (sections 6 and 7 of the format): classes, heads, points, and vertices that are guessed or surprises."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .codes import Cursor, unzigzag
-from .coded_lines import Line, coded_lines
+from .coded_lines import Line, Surprise, coded_lines
 from .errors import PayloadError
-from .grid import Grid
+from .grid import Grid, TileName
 from .height import Ground
 from .mesh import Point, orient
 from .points import lattice_points
 
-#: What a vertex of a line is.
+#: The kinds of vertices of a line.
 SOURCE, CROSSING, TIN_VERTEX = 1, 2, 3
 END = (0,)
 
@@ -32,18 +32,18 @@ class Road:
     part: int
     #: [x, y, z] of each vertex: working metres, and the height in metres.
     vertices: NDArray[np.float64]
-    #: What each vertex is: SOURCE, CROSSING or TIN_VERTEX.
+    #: The kind of each vertex: SOURCE, CROSSING or TIN_VERTEX.
     kinds: NDArray[np.int8]
 
 
-def read_roads(data: bytes, is_coded: bool, ground: Ground, grid: Grid, tile: tuple[int, int, int]) -> list[Road]:
-    """Decodes the section; `is_coded` tells whether it is one of range-coded bits."""
+def read_roads(data: bytes, is_coded: bool, ground: Ground, grid: Grid, tile: TileName) -> list[Road]:
+    """Decodes the section; `is_coded` tells whether the section consists of range-coded bits."""
     what = "GEO roads of tile {}/{}/{}".format(*tile)
     whole = Cursor(data, what)
     step_m = struct.unpack("<2d", whole.take(16)) if is_coded else (0.0, 0.0)
     if is_coded and not all(0 < step < math.inf for step in step_m):
-        raise PayloadError(f"{what}: the steps of the grid are beyond their limits")
-    counts = [(int.from_bytes(whole.take(4), "little"), int.from_bytes(whole.take(4), "little")) for _ in range(9)]
+        raise PayloadError(f"{what}: the lattice steps of the grid are beyond their limits")
+    counts = [(whole.word(4), whole.word(4)) for _ in range(9)]
     follower = _Follower(ground, what)
     roads = []
     for number, (lines, size) in enumerate(counts):
@@ -69,7 +69,7 @@ def read_roads(data: bytes, is_coded: bool, ground: Ground, grid: Grid, tile: tu
 
 def _lines(cursor: Cursor, count: int, corner: Point) -> list[Line]:
     if count > len(cursor.data):
-        raise PayloadError(f"{cursor.what}: more lines than bytes")
+        raise PayloadError(f"{cursor.what}: more lines than the section has bytes")
     way, lines = 0, []
     for _ in range(count):
         way += unzigzag(cursor.varint())
@@ -88,8 +88,7 @@ def _lines(cursor: Cursor, count: int, corner: Point) -> list[Line]:
     return lines
 
 
-def _surprises(cursor: Cursor) -> list[tuple[int, tuple[int, ...]]]:
-    """For each surprise: how many vertices before it are as guessed, and what it is."""
+def _surprises(cursor: Cursor) -> list[Surprise]:
     found = []
     for _ in range(cursor.varint()):
         gap, kind = cursor.varint(), cursor.byte()
@@ -100,17 +99,17 @@ def _surprises(cursor: Cursor) -> list[tuple[int, tuple[int, ...]]]:
 
 
 class _Follower:
-    """Follows lines over the TIN, and computes the places of their vertices in f64 as the format says."""
+    """Follows lines over the TIN, and computes the positions of their vertices in f64 as the format specifies."""
 
     def __init__(self, ground: Ground, what: str) -> None:
         self.ground, self.mesh, self.heights, self.what = ground, ground.mesh, ground.heights_m, what
 
-    def follow(self, line: Line, surprises: list[tuple[int, tuple[int, ...]]]) -> list[tuple[int, tuple[float, float, float]]]:
-        """Kind and place [u, v, z] of each vertex."""
+    def follow(self, line: Line, surprises: list[Surprise]) -> list[tuple[int, tuple[float, float, float]]]:
+        """The kind and the position [u, v, z] of each vertex."""
         points, used = line.points, line.flags & 1
         last = len(points) - (line.flags >> 1 & 1)
         found: list[tuple[int, tuple[float, float, float]]] = []
-        rest: Iterator[tuple[int, tuple[int, ...]]] = iter(surprises)
+        rest: Iterator[Surprise] = iter(surprises)
         gap, surprise = next(rest, (-1, END))
         here: tuple[int, ...] | None = None
         while True:
@@ -123,7 +122,7 @@ class _Follower:
             if vertex[0] == 0:
                 break
             if any(n >= self._count(vertex[0]) for n in vertex[1:]) or len(found) > 1 << 22:
-                raise PayloadError(f"{self.what}: way {line.way_id} names a part of the TIN that does not exist")
+                raise PayloadError(f"{self.what}: way {line.way_id} refers to a vertex, edge or triangle that the TIN does not have")
             if vertex[0] == SOURCE:
                 if used >= last:
                     raise PayloadError(f"{self.what}: way {line.way_id} has more vertices than points")

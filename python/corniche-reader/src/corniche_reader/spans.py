@@ -1,4 +1,4 @@
-"""The spans section (kind 13 of the format): runs of bridges and tunnels that are off the ground."""
+"""The section of spans (kind 13 of the format): runs of bridges and tunnels off the ground."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from .codes import Cursor, unzigzag
 from .errors import PayloadError
-from .grid import Grid
+from .grid import Grid, TileName
 from .height import Ground
 from .points import lattice_points
 
-#: Section 11 of the format.
+#: A limit of section 11 of the format.
 MOST_RUNS, FARTHEST_STEPS, MOST_HEIGHT = 1 << 20, 1 << 55, 1 << 31
 
 
@@ -27,12 +27,12 @@ class Span:
     structure: str
     #: [x, y, z] of each vertex: working metres, and the height in metres, which is an estimate.
     vertices: NDArray[np.float64]
-    #: Whether the first vertex, and the last, lies on the ground.
+    #: Whether the first and the last vertex lie on the ground.
     on_ground: tuple[bool, bool]
 
 
-def read_spans(data: bytes, ground: Ground, grid: Grid, tile: tuple[int, int, int]) -> list[Span]:
-    """Decodes the section of a tile with this ground."""
+def read_spans(data: bytes, ground: Ground, grid: Grid, tile: TileName) -> list[Span]:
+    """Decodes the section of spans of a tile with the given ground."""
     what = "spans of tile {}/{}/{}".format(*tile)
     cursor = Cursor(data, what)
     count = cursor.varint()
@@ -51,20 +51,20 @@ def read_spans(data: bytes, ground: Ground, grid: Grid, tile: tuple[int, int, in
     for code, way_step, points, (first, last) in zip(codes, ways, lines, ends, strict=True):
         way = (way + unzigzag(way_step) + (1 << 63)) % (1 << 64) - (1 << 63)
         if code >> 3 > 8 or (spans and (spans[-1].road_class, spans[-1].way_id) > (code >> 3, way)):
-            raise PayloadError(f"{what}: there is no such class, or runs are not sorted")
+            raise PayloadError(f"{what}: a class does not exist, or runs are not sorted")
         vertices = np.empty((len(points), 3))
         for i, point in enumerate(points):
             if i and point == points[i - 1] or max(abs(point[0] - corner[0]), abs(point[1] - corner[1])) > FARTHEST_STEPS:
-                raise PayloadError(f"{what}: a run has a point twice, or one far away")
+                raise PayloadError(f"{what}: a run repeats a point, or has one that is too far away")
             if i == 0 and first or i == len(points) - 1 and last:
                 triangle = next(named)
                 if triangle >= len(ground.mesh.triangles):
-                    raise PayloadError(f"{what}: there is no triangle {triangle}")
+                    raise PayloadError(f"{what}: triangle {triangle} does not exist")
                 vertices[i, 2] = ground.height_in(triangle, point)
             else:
                 height += unzigzag(next(steps))
                 if not -MOST_HEIGHT <= height < MOST_HEIGHT:
-                    raise PayloadError(f"{what}: a height beyond 32 bits")
+                    raise PayloadError(f"{what}: a height is beyond 32 bits")
                 vertices[i, 2] = float(height) * grid.quantum_m
             vertices[i, :2] = grid.working(*point)
         spans.append(Span(way, code >> 3, "tunnel" if code & 4 else "bridge", vertices, (first, last)))

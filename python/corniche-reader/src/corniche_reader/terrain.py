@@ -1,4 +1,4 @@
-"""The terrain section (section 5 of the format): heights and normals, and all of it put together."""
+"""The section of terrain (section 5 of the format): decodes heights and normals, and assembles the TIN."""
 
 from __future__ import annotations
 
@@ -12,10 +12,8 @@ from numpy.typing import NDArray
 
 from .codes import Bits, Cursor, Numbers, half_octave, round_half_away
 from .errors import PayloadError
-from .grid import Grid
+from .grid import Grid, TileName
 from .walk import Walk, positions, walk
-
-Gate = tuple[int, int, int]
 
 
 @dataclass(frozen=True)
@@ -23,44 +21,45 @@ class Terrain:
     """The ground of a tile."""
 
     geometric_error_m: float
-    #: Lowest and highest full-resolution node beneath.
+    #: The lowest and the highest full-resolution node within the tile.
     height_range_m: tuple[float, float]
     uncovered_nodes: int
-    #: [column, row] of each vertex.
+    #: The [column, row] of each vertex.
     vertices: NDArray[np.int64]
-    #: Heights in steps of the package's quantum.
+    #: Heights in steps of the package's height quantum.
     heights_q: NDArray[np.int64]
     #: [x, y, z] of each vertex: working metres, and the height in metres.
     positions: NDArray[np.float64]
-    #: Three vertex numbers of each triangle, counter-clockwise, the smallest first; triangles are sorted.
+    # : The three vertex numbers of each triangle, counter-clockwise, the smallest first; triangles
+    # are sorted.
     triangles: NDArray[np.int64]
-    #: Octahedron-coded normals: two steps of −128 … 127.
+    #: Octahedron-coded normals: two values from −128 to 127.
     normal_codes: NDArray[np.int8]
 
     @property
     def heights_m(self) -> NDArray[np.float64]:
-        """Heights of the vertices in metres."""
+        """The heights of the vertices in metres."""
         heights: NDArray[np.float64] = self.positions[:, 2]
         return heights
 
     @property
     def normals(self) -> NDArray[np.float64]:
-        """Unit normals [x, y, z]."""
+        """The unit normals [x, y, z] of the vertices."""
         xy = self.normal_codes.astype(np.float64) / 127.0
         xyz = np.column_stack([xy, 1.0 - np.abs(xy).sum(axis=1)])
         unit: NDArray[np.float64] = xyz / np.linalg.norm(xyz, axis=1, keepdims=True)
         return unit
 
 
-def read_terrain(data: bytes, grid: Grid, tile: tuple[int, int, int]) -> Terrain:
-    """Decodes the section."""
+def read_terrain(data: bytes, grid: Grid, tile: TileName) -> Terrain:
+    """Decodes the section of terrain."""
     what = "terrain of tile {}/{}/{}".format(*tile)
     cursor = Cursor(data, what)
     error_m, low_m, high_m = struct.unpack("<3d", cursor.take(24))
     uncovered, count = cursor.varint(), cursor.varint()
     height_shift, normal_shift = cursor.byte(), cursor.byte()
     if not all(map(math.isfinite, (error_m, low_m, high_m))) or height_shift > 31 or normal_shift > 7 or count > 2 * 256**2:
-        raise PayloadError(f"{what}: numbers in front of the bits are beyond their limits")
+        raise PayloadError(f"{what}: numbers before the bits are beyond their limits")
     bits = Bits(data[cursor.at :], what)
     vertices = positions(bits)
     found = walk(bits, vertices, count)

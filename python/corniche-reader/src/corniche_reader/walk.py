@@ -1,4 +1,4 @@
-"""Vertices and triangles of a tile's TIN: the bits of positions and the walk (section 5 of the format)."""
+"""Decodes the vertices and triangles of a tile's TIN: the bits of positions and the walk (section 5 of the format)."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ CLASSES = [1, 2, 3, 4, 5, 6, 7, 8, 10, 13, 17, 23, 31]
 
 
 def positions(bits: Bits) -> NDArray[np.int64]:
-    """Columns and rows of the vertices, by number."""
+    """The columns and rows of the vertices, by number."""
     u = [models(64) for _ in range(4)]
     w = [[models(14) for _ in range(14)] for _ in range(4)]
     of = [bisect_right(CLASSES, n) for n in range(61)]
@@ -45,7 +45,7 @@ def positions(bits: Bits) -> NDArray[np.int64]:
 
 
 def _before(nodes: NDArray[np.int64], row: int, rows: int, reach: int) -> list[int]:
-    """For each column, the vertices in so many rows above and so many columns to both sides."""
+    """For each column, the number of vertices in the `reach` rows above and `reach` columns to both sides."""
     sums = np.concatenate([[0], np.cumsum(nodes[row + 5 - rows : row + 5].sum(axis=0))])
     first = np.arange(SIDE) + 5 - reach
     return list((sums[first + 2 * reach + 1] - sums[first]).tolist())
@@ -53,14 +53,14 @@ def _before(nodes: NDArray[np.int64], row: int, rows: int, reach: int) -> list[i
 
 @dataclass
 class Walk:
-    """The triangles in the order of their discovery, and how each vertex was reached."""
+    """The triangles in the order of discovery, and how each vertex was reached."""
 
     triangles: list[tuple[int, int, int]] = field(default_factory=list)
     reached: list[tuple[int, tuple[int, int, int] | None]] = field(default_factory=list)
 
 
 class Guesses:
-    """Finds the candidates that see a gate under the largest angles."""
+    """Finds the vertices that see a gate (an edge) under the largest angles."""
 
     def __init__(self, vertices: NDArray[np.int64], edges: set[tuple[int, int]]) -> None:
         self.edges = edges
@@ -70,7 +70,7 @@ class Guesses:
         self.points = vertices.tolist()
 
     def find(self, a: int, b: int, count: int) -> list[tuple[float, int]]:
-        """Up to `count` guesses, and one more if it was seen: (dot / cross, vertex).
+        """Up to `count` guesses, and one more if it was found: (dot / cross, vertex).
 
         Fractions are compared as f64: dot and cross are below 2^18, so different fractions differ by more than 2^-37 of their size.
         """
@@ -87,7 +87,8 @@ class Guesses:
             if len(found) < count:
                 reach, centre_c, centre_r = 2 * reach + 4, mid_c, mid_r
                 continue
-            # All vertices that see the gate under a larger angle lie in the circle through a, b and the last guess, left of the gate.
+            # All vertices that see the gate under a larger angle lie in the circle through a, b and
+            # the last guess, left of the gate.
             ratio = found[count - 1][0]
             if ratio <= 0:
                 cap_c, cap_r, radius = mid_c, mid_r, length / 2
@@ -130,7 +131,7 @@ class Guesses:
 
 
 def walk(bits: Bits, vertices: NDArray[np.int64], count: int) -> Walk:
-    """Finds the triangles."""
+    """Decodes the triangles."""
     return _Walker(bits, vertices).run(count)
 
 
@@ -173,7 +174,7 @@ class _Walker:
     def _name(self) -> int:
         number = self.named.read()
         if number < 0:
-            raise PayloadError(f"{self.bits.what}: a named number is negative")
+            raise PayloadError(f"{self.bits.what}: a vertex number is negative")
         return number
 
     def _reach(self, vertex: int, gate: tuple[int, int, int] | None) -> None:
@@ -185,7 +186,7 @@ class _Walker:
         if max(a, b, c) >= self.total:
             raise PayloadError(f"{self.bits.what}: a triangle has a vertex that does not exist")
         if len({a, b, c}) < 3 or self._cross(a, b, c) <= 0 or self.edges & {(a, b), (b, c), (c, a)}:
-            raise PayloadError(f"{self.bits.what}: a triangle is flat, clockwise or lies on another")
+            raise PayloadError(f"{self.bits.what}: a triangle is degenerate, clockwise or overlaps another")
         self.edges |= {(a, b), (b, c), (c, a)}
         self.out.triangles.append((a, b, c))
         for vertex in (a, b, c):
@@ -214,7 +215,7 @@ class _Walker:
             return self._name()
         found = self.guesses.find(a, b, symbol)
         if len(found) < symbol:
-            raise PayloadError(f"{self.bits.what}: there is no guess {symbol} at a gate")
+            raise PayloadError(f"{self.bits.what}: guess {symbol} at a gate does not exist")
         return found[symbol - 1][1]
 
     def _symbol(self, a: int, b: int, c: int, d: int, tied: int) -> int:

@@ -1,4 +1,4 @@
-"""Terrain tiles with roads laid exactly on them: the program ``corniche`` from Python.
+"""Terrain tiles with roads exactly on them: the program ``corniche`` from Python.
 
 :func:`build`, :func:`plan`, :func:`verify`, :func:`info` and :func:`export` run the program and return its documents; :func:`run` runs any other
 command, and :func:`serve` shows packages in a browser or a notebook.

@@ -1,4 +1,4 @@
-"""Bars of tqdm that tell how far a command is, in a notebook or on a terminal."""
+"""Progress bars of tqdm for a command, in a notebook or on a terminal."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Bars:
         self._bar: Any = None
 
     def __call__(self, stage: Stage) -> None:
-        """What the program told last."""
+        """Shows the latest progress of the program."""
         if stage.state == "begin" or self._bar is None:
             self.close()
             is_bytes = stage.unit == "bytes"
@@ -32,7 +32,7 @@ class Bars:
             self.close()
 
     def close(self) -> None:
-        """Nothing more is to be told."""
+        """Closes the bar of the current stage."""
         if self._bar is not None:
             self._bar.close()
             self._bar = None
@@ -40,8 +40,8 @@ class Bars:
 
 def _tqdm() -> Any:
     if importlib.util.find_spec("tqdm") is None:
-        raise UsageError("progress=True shows bars of tqdm, which is not installed: pip install tqdm, or give a function")
-    # Without its widgets a notebook would get a warning in place of a bar.
+        raise UsageError("progress=True shows bars of tqdm, which is not installed: pip install tqdm, or pass a function")
+    # Without ipywidgets a notebook would show a warning instead of a bar.
     if importlib.util.find_spec("ipywidgets") is None:
         from tqdm import tqdm
     else:

@@ -1,8 +1,8 @@
-"""A process of ``corniche`` that dies with the process that started it.
+"""A process of ``corniche`` that ends with the process that started it.
 
-Its standard input is a pipe of which this process holds the other end. The kernel closes that end when this process ends, however it ends,
-and then ``--die-with-parent`` ends the child. The second net is a process group of the child's own, which :meth:`Child.kill` kills.
-A signal at the parent's death is no help: it comes when the *thread* ends that started the child, and a pool ends its threads.
+Its standard input is a pipe whose other end this process holds. When this process ends in any way, the kernel closes that end, and
+``--die-with-parent`` ends the child. As a second safeguard the child has its own process group, which :meth:`Child.kill` kills.
+A signal at the parent's death does not work here: the kernel sends it when the *thread* that started the child ends, and a pool ends its threads.
 """
 
 from __future__ import annotations
@@ -20,25 +20,27 @@ from typing import Any
 
 from .records import costs_of, error_of, record_of, warning_of
 
-#: How often it is looked at memory, and whether the part is still wanted, in seconds.
+#: Seconds between two checks of the child's memory and of whether its result is still wanted.
 LOOK_EVERY = 0.5
-#: What a child may take to end after its pipe was closed, in seconds. By itself it ends within ten and a half.
+# : Seconds that a child may take to end after its pipe was closed. Normally it ends within 10.5
+# seconds.
 ENDS_WITHIN = 15.0
-#: Lines of the log that an error shows.
+#: Lines at the end of the log that an error shows.
 LAST_LINES = 20
-#: Bytes at the end of the log that are looked at.
+#: Bytes at the end of the log that are searched for these lines.
 LOG_BYTES = 64 * 1024
 
 
 @dataclass(frozen=True)
 class Usage:
-    """What a child used, as far as the system tells."""
+    """The resources that a child used, as far as the system reports them."""
 
     cpu_seconds: float | None = None
-    #: Bytes that it asked the system to read and to write, from disk or from the cache, without network connections.
+    # : Bytes that the child read and wrote by system calls, from disk or cache, without network
+    # connections.
     read_bytes: int | None = None
     written_bytes: int | None = None
-    #: The most resident memory.
+    #: The peak resident memory.
     peak_bytes: int | None = None
 
 
@@ -53,12 +55,12 @@ class Ended:
     log: list[str]
     seconds: float
     usage: Usage
-    #: It was told to end, because nobody wanted its result any more.
+    #: Whether the child was stopped, because nobody wanted its result any more.
     was_stopped: bool
 
 
 class Child:
-    """A running process. Several threads may use it."""
+    """A running process. Several threads may use the same object."""
 
     def __init__(self, command: Sequence[str], environment: Mapping[str, str]) -> None:
         self._begun = time.monotonic()
@@ -66,9 +68,9 @@ class Child:
         self._stopped_at: float | None = None
         self._peak_bytes: int | None = None
         self._lock = threading.Lock()
-        #: How much of its standard error was heard.
+        #: Bytes of the child's standard error that were read so far.
         self._heard_bytes = 0
-        # Without a name: gone when the last process that has them open is.
+        # Files without a name: they are deleted when the last process that has them open ends.
         self._stdout = tempfile.TemporaryFile()
         self._stderr = tempfile.TemporaryFile()
         try:
@@ -87,11 +89,11 @@ class Child:
 
     @property
     def pid(self) -> int:
-        """Its process id, which is also that of its group."""
+        """The process id, which is also the id of the process group."""
         return self._process.pid
 
     def stop(self) -> None:
-        """Closes its pipe, so that it ends and keeps what was done."""
+        """Closes the child's pipe, so that the child ends and keeps its progress."""
         with self._lock:
             if self._stopped_at is None:
                 self._stopped_at = time.monotonic()
@@ -99,9 +101,9 @@ class Child:
                     self._process.stdin.close()
 
     def kill(self) -> None:
-        """Ends its whole group at once."""
+        """Kills the child's whole process group."""
         with self._lock:
-            # A process that was waited for may have given its number to another one.
+            # After a process was waited for, the system may reuse its id.
             if self._process.returncode is None:
                 try:
                     os.killpg(self._process.pid, signal.SIGKILL)
@@ -109,9 +111,9 @@ class Child:
                     pass
 
     def wait(self, is_wanted: Callable[[], bool] = lambda: True, heard: Callable[[str], None] | None = None) -> Ended:
-        """Waits for its end. When ``is_wanted`` says no, it is stopped, and killed if that does not help.
+        """Waits for the child's end. When ``is_wanted`` returns false, the child is stopped, and killed if it does not end.
 
-        ``heard`` is given each line of its standard error, soon after it was written.
+        ``heard`` is called with each line of its standard error, soon after it was written.
         """
         try:
             while not self._is_over(LOOK_EVERY):
@@ -125,7 +127,8 @@ class Child:
             self._hear(heard, is_over=True)
             return self._ended()
         except BaseException:
-            # Ctrl-C, for example. Asked to end, it leaves no part of a target, and a build its work, to go on from.
+            # For example Ctrl-C. A child that is stopped leaves no incomplete target; a build keeps
+            # its progress for --resume.
             self.stop()
             if not self._is_over(ENDS_WITHIN):
                 self.kill()
@@ -135,10 +138,10 @@ class Child:
             self._close()
 
     def first_line(self) -> str | None:
-        """Waits for the first line that it prints on standard output; ``None``: it ended before."""
+        """Waits for the first line that the child prints on standard output; ``None`` if it ends before."""
         is_over = False
         while True:
-            # Not by the file's own position, which the child has, too.
+            # pread does not move the file's position, which the child shares.
             line, end, _ = os.pread(self._stdout.fileno(), LOG_BYTES, 0).partition(b"\n")
             if end:
                 return line.decode(errors="replace")
@@ -147,10 +150,10 @@ class Child:
             is_over = self._is_over(0.02)
 
     def _hear(self, heard: Callable[[str], None] | None, is_over: bool = False) -> None:
-        """Passes on the lines that are new; what comes behind the last line only when it is over."""
+        """Passes on new lines. An incomplete last line is passed on only when the process has ended."""
         while heard is not None and (new := os.pread(self._stderr.fileno(), LOG_BYTES, self._heard_bytes)):
             end = new.rfind(b"\n") + 1
-            # A line longer than all that is read at once is passed on in pieces.
+            # A line longer than the buffer is passed on in pieces.
             if end == 0 and (is_over or len(new) == LOG_BYTES):
                 end = len(new)
             if end == 0:
@@ -160,14 +163,15 @@ class Child:
                 heard(line)
 
     def _is_over(self, seconds: float) -> bool:
-        """Waits for so long, or to its end."""
+        """Waits for some seconds or for the child's end; returns whether it has ended."""
         if self._pidfd is None:
             try:
                 self._process.wait(seconds)
             except subprocess.TimeoutExpired:
                 pass
         else:
-            # The process becomes readable when it ends. Popen.wait with a time limit would look twenty times a second.
+            # The pidfd becomes readable when the process ends. Popen.wait with a time limit would
+            # poll twenty times a second.
             waiting = select.poll()
             waiting.register(self._pidfd, select.POLLIN)
             waiting.poll(seconds * 1000)
@@ -206,7 +210,7 @@ class Child:
 
 
 def _pidfd(pid: int) -> int | None:
-    """Something that can be waited for; ``None`` where the system has no such thing."""
+    """A pidfd, which can be polled; ``None`` where the system has no pidfds."""
     try:
         return os.pidfd_open(pid)
     except (AttributeError, OSError):
@@ -220,7 +224,7 @@ def _end_of(file: Any) -> str:
 
 
 def read_log(text: str) -> tuple[dict[str, Any], list[str]]:
-    """What ``--json-progress`` told at the end of all stages, and the last lines that are for people."""
+    """The totals that ``--json-progress`` prints after all stages, and the last lines of the log for people."""
     told: dict[str, Any] = {}
     log: list[str] = []
     for line in text.splitlines():
@@ -237,7 +241,7 @@ def read_log(text: str) -> tuple[dict[str, Any], list[str]]:
 
 
 def peak_memory(pid: int) -> int | None:
-    """The most resident memory of a process so far, in bytes; ``None`` where the system does not tell, or it is over."""
+    """The peak resident memory of a process so far, in bytes; ``None`` if the system does not report it, or the process has ended."""
     try:
         with open(f"/proc/{pid}/status", encoding="ascii", errors="replace") as status:
             for line in status:

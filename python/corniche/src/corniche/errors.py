@@ -1,12 +1,12 @@
-"""Why a run ends early. Each error has the exit code that ``corniche`` ends with."""
+"""The errors with which a run can end. Each has the exit code of ``corniche``."""
 
 from __future__ import annotations
 
 from typing import Any
 
-#: Processing failed; of ``verify``, a promise is broken.
+#: Processing failed; for ``verify``: a check is broken.
 FAILED = 1
-#: Wrong usage or unusable input: trying again gives the same.
+#: Wrong usage or unusable input: another attempt fails in the same way.
 UNUSABLE = 2
 #: The target exists.
 EXISTS = 3
@@ -15,31 +15,31 @@ INTERRUPTED = 4
 
 
 class CornicheError(Exception):
-    """The base of all errors of this package. Its text is for the user."""
+    """The base of all errors of this package. The message is meant for the user."""
 
     exit_code = FAILED
 
 
 class UsageError(CornicheError):
-    """What was asked for cannot be done: an option is wrong, or an input cannot be used."""
+    """An option is invalid, or an input cannot be used."""
 
     exit_code = UNUSABLE
 
 
 class ProgramError(CornicheError):
-    """The program ``corniche`` is not there, or is of another version than wanted."""
+    """The program ``corniche`` is missing, or has the wrong version."""
 
     exit_code = UNUSABLE
 
 
 class TargetExists(CornicheError):
-    """The file to write is there already, and it was not asked to replace it."""
+    """The output exists already, and ``overwrite`` was not given."""
 
     exit_code = EXISTS
 
 
 class UnfinishedBuild(CornicheError):
-    """An earlier build was stopped and left its work beside the target: ``resume=True`` goes on from there, ``overwrite=True`` starts again."""
+    """An earlier build was stopped and left its progress next to the target: ``resume=True`` resumes it, ``overwrite=True`` starts again."""
 
 
 class Interrupted(CornicheError):
@@ -49,7 +49,7 @@ class Interrupted(CornicheError):
 
 
 class PromiseBroken(CornicheError):
-    """``verify`` found a promise that a package breaks; :attr:`document` is all that it found."""
+    """``verify`` found a broken check; :attr:`document` has the results of all checks."""
 
     def __init__(self, message: str, document: dict[str, Any]) -> None:
         super().__init__(message)
@@ -57,4 +57,4 @@ class PromiseBroken(CornicheError):
 
 
 class CornicheWarning(UserWarning):
-    """What the program warns of."""
+    """A warning of the program."""

@@ -1,4 +1,4 @@
-"""Options of the program as arguments of Python's functions."""
+"""Options of the program as keyword arguments in Python."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ ONE_VALUE = frozenset({"at", "bounds", "cell", "classes", "height_range", "look_
 
 
 def words_of(options: Mapping[str, object]) -> list[str]:
-    """The words of a command line: ``{"max_error": 2.5}`` is ``--max-error=2.5``.
+    """The arguments of a command line: ``{"max_error": 2.5}`` becomes ``--max-error=2.5``.
 
-    ``True`` is an option without a value; ``None`` and ``False`` leave it out. A tuple is one value with commas: ``cell=(10, 12)``. Any other
-    iterable, such as a list, a generator or an array, gives the option once for each item, and those of :data:`ONE_VALUE` one value with commas.
+    ``True`` gives an option without a value; ``None`` and ``False`` omit the option. A tuple is one value with commas: ``cell=(10, 12)``. Any other
+    iterable, such as a list, a generator or an array, repeats the option for each item; for options in :data:`ONE_VALUE` it is one value with commas.
 
-    :raises UsageError: for what is no value, such as a dictionary
+    :raises UsageError: for a type that cannot be a value, such as a dictionary
     """
     words = []
     for name, value in options.items():
@@ -28,19 +28,19 @@ def words_of(options: Mapping[str, object]) -> list[str]:
             if isinstance(one, bool):
                 words += [option] if one else []
             elif one is not None:
-                # With the sign, a value that begins with a hyphen is no option.
+                # With "=", a value that begins with a hyphen is not read as an option.
                 words.append(f"{option}={_text(name, one)}")
     return words
 
 
 def word_of_path(path: str | os.PathLike[str]) -> str:
-    """A path among the words of a command line, where one that begins with a hyphen would be an option."""
+    """A path as an argument of a command line, where a leading hyphen would make it an option."""
     word = os.fspath(path)
     return f"./{word}" if word.startswith("-") else word
 
 
 def _values(name: str, value: object) -> list[object]:
-    """One for each time that the option is given."""
+    """The values of an option: one for each time that the option is repeated."""
     if isinstance(value, tuple) or not _is_iterable(value):
         return [_plain(value)]
     assert isinstance(value, Iterable)
@@ -49,14 +49,14 @@ def _values(name: str, value: object) -> list[object]:
 
 
 def _is_iterable(value: object) -> bool:
-    # Sets are left out: they have no order, and that of files matters.
+    # Sets are not accepted: they have no order, and the order of files matters.
     is_other = isinstance(value, str | bytes | os.PathLike | Mapping | Set)
-    # An array without dimensions is a number, and says that it can be iterated over.
+    # An array without dimensions is a number, although it claims to be iterable.
     return isinstance(value, Iterable) and not is_other and getattr(value, "ndim", 1) > 0
 
 
 def _plain(value: object) -> object:
-    """Python's own truth value for numpy's."""
+    """Converts a truth value of numpy to one of Python."""
     is_truth = getattr(getattr(value, "dtype", None), "kind", None) == "b" and getattr(value, "ndim", None) == 0
     return bool(value) if is_truth else value
 
@@ -72,6 +72,6 @@ def _text_of_one(name: str, value: object, one: object) -> str:
         return str(os.fspath(one))
     is_number = isinstance(one, Real | Decimal) or getattr(one, "ndim", None) == 0
     if isinstance(one, bool) or not (isinstance(one, str) or is_number):
-        raise UsageError(f"{name}={value!r} is no value of an option; give a text, a path, a number, or a list or tuple of these")
-    # The text of a fraction, 5/2, is no number.
+        raise UsageError(f"{name}={value!r} cannot be the value of an option; give a text, a path, a number, or a list or tuple of these")
+    # The text of a fraction, such as 5/2, is not a number for the program.
     return str(float(one)) if isinstance(one, Rational) and not isinstance(one, Integral) else str(one)

@@ -1,4 +1,4 @@
-"""What the program tells on standard error: a record a line with ``--json-progress`` or ``--log-format json``, else text."""
+"""The lines of the program on standard error: one record per line with ``--json-progress`` or ``--log-format json``, else text."""
 
 from __future__ import annotations
 
@@ -9,21 +9,21 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Stage:
-    """How far a stage of the work is. What is not known is ``None``."""
+    """The progress of a stage of the work. Unknown values are ``None``."""
 
-    #: Its name, which does not change, and its name for people.
+    #: The stage's id, which does not change between versions, and its title for people.
     stage: str
     title: str
     #: ``begin``, ``running`` or ``end``.
     state: str
-    #: What is counted: ``bytes``, ``tiles`` and so on.
+    #: The unit of the counts: ``bytes``, ``tiles`` and so on.
     unit: str
-    #: Done in all; of that, by an earlier run; to be done in all.
+    #: The amount done so far; the part of it that an earlier run did; the amount in total.
     done: int
     already: int
     total: int | None
     per_second: float | None
-    #: Since the stage began, and until it ends.
+    #: Seconds since the stage began, and estimated seconds until it ends.
     seconds: float
     seconds_left: float | None
 
@@ -32,7 +32,7 @@ _FIELDS = [field.name for field in fields(Stage)]
 
 
 def record_of(line: str) -> dict[str, Any] | None:
-    """The record of a line; ``None``: it is text."""
+    """The record in a line; ``None`` if the line is text."""
     try:
         value = json.loads(line)
     except ValueError:
@@ -41,7 +41,7 @@ def record_of(line: str) -> dict[str, Any] | None:
 
 
 def stage_of(record: dict[str, Any]) -> Stage | None:
-    """How far a stage is, if the record tells of one. Later versions may tell more of it."""
+    """The progress of a stage, if the record has one. Later versions may add fields."""
     if "stage" not in record or "state" not in record:
         return None
     told: dict[str, Any] = {name: record.get(name) for name in _FIELDS}
@@ -49,14 +49,14 @@ def stage_of(record: dict[str, Any]) -> Stage | None:
 
 
 def warning_of(record: dict[str, Any]) -> str | None:
-    """What is warned of, if the record is a warning."""
+    """The message, if the record is a warning."""
     if record.get("level") == "WARN":
         return str(record.get("message"))
     return str(record["warning"]) if "warning" in record else None
 
 
 def error_of(record: dict[str, Any]) -> str | None:
-    """Why the run failed, if the record tells."""
+    """The reason why the run failed, if the record has one."""
     if record.get("level") == "ERROR":
         return str(record.get("message"))
     end = record.get("end")
@@ -64,5 +64,5 @@ def error_of(record: dict[str, Any]) -> str | None:
 
 
 def costs_of(record: dict[str, Any]) -> dict[str, Any] | None:
-    """What the whole run took, if the record tells."""
+    """The resources that the whole run took, if the record has them."""
     return record["all"] if isinstance(record.get("all"), dict) else None

@@ -15,16 +15,17 @@ from .bars import Bars
 from .child import Child, Ended
 from .errors import CornicheError, CornicheWarning, UsageError
 from .options import word_of_path, words_of
-from .program import find_program
+from .program import Place, find_program
 from .records import Stage, error_of, record_of, stage_of, warning_of
 
-#: Who is told how far a command is: a function, or ``True`` for bars.
+#: How progress is reported: a function that is called with it, or ``True`` for bars.
 Progress = Callable[[Stage], object] | bool | None
 
-#: Commands that tell how far they are. A test compares them with the program.
+#: Commands that report progress. A test compares them with the program.
 TELL_PROGRESS = frozenset({"build", "part", "merge", "verify", "match", "export"})
 
-#: Options by which this package hears the program, and those that contradict ``--json-progress``.
+# : Options that this package sets to read the program's messages, and options that contradict
+# ``--json-progress``.
 _VOICE = frozenset({"die_with_parent", "json_progress", "log_format"})
 _OTHER_VOICE = frozenset({"quiet", "verbose"})
 
@@ -33,18 +34,18 @@ _ERRORS = {errors.UNUSABLE: errors.UsageError, errors.INTERRUPTED: errors.Interr
 
 @dataclass(frozen=True)
 class Ran:
-    """What came of a command."""
+    """The result of a command."""
 
     exit_code: int
-    #: What it was asked to print.
+    #: The standard output of the command.
     stdout: str
-    #: Why it failed, in words; ``None`` after success, and where a command says so in what it printed.
+    #: The reason why the command failed; ``None`` after success.
     error: CornicheError | None
 
     def printed(self) -> str:
-        """What it printed.
+        """The standard output.
 
-        :raises CornicheError: if it failed
+        :raises CornicheError: if the command failed
         """
         if self.error is not None:
             raise self.error
@@ -52,31 +53,31 @@ class Ran:
 
 
 def run(
-    *words: str | os.PathLike[str],
+    *words: Place,
     progress: Progress = None,
-    corniche: str | os.PathLike[str] | None = None,
+    corniche: Place | None = None,
     **options: Any,
 ) -> str:
     """Runs any command of the program and returns what it prints.
 
     ``run("render", "my.pmtiles", output="my.png", size="800x600")`` is ``corniche render my.pmtiles --output=my.png --size=800x600``.
 
-    :param words: the command, and its arguments as one would write them in a shell; a ``Path`` is never taken for an option
-    :param progress: is called with a :class:`Stage` about twice a second; ``True``: bars of tqdm
-    :param corniche: the program; ``None``: ``$CORNICHE``, the one of this package, or the one on ``PATH``
+    :param words: the command, and its arguments as in a shell; a ``Path`` is never treated as an option
+    :param progress: a function that is called with a :class:`Stage` about twice a second; ``True`` shows bars of tqdm
+    :param corniche: the path of the program; ``None``: ``$CORNICHE``, the program in this package, or the one on ``PATH``
     :param options: options of the command: ``max_error=2.5``, ``overwrite=True``, ``dem=["a.tif", "b.tif"]``, ``bounds=(9.5, 46.8, 9.6, 46.9)``
-    :raises CornicheError: with the program's own words
+    :raises CornicheError: with the message of the program
     """
     return ran(words, options, progress, corniche).printed()
 
 
 def ran(
-    words: tuple[str | os.PathLike[str], ...],
+    words: tuple[Place, ...],
     options: Mapping[str, object],
     progress: Progress = None,
-    corniche: str | os.PathLike[str] | None = None,
+    corniche: Place | None = None,
 ) -> Ran:
-    """The same, without an exception where the program fails."""
+    """Like :func:`run`, but does not raise if the program fails."""
     command = [word if isinstance(word, str) else word_of_path(word) for word in words]
     teller = Bars() if progress is True else progress or None
     child = start(command, options, corniche)
@@ -90,30 +91,30 @@ def ran(
     return Ran(ended.exit_code, ended.stdout, listener.error_of(command, ended))
 
 
-def start(command: list[str], options: Mapping[str, object], corniche: str | os.PathLike[str] | None) -> Child:
-    """Starts a command so that it tells records, and ends when this process does."""
+def start(command: list[str], options: Mapping[str, object], corniche: Place | None) -> Child:
+    """Starts a command that writes records to standard error, and ends when this process ends."""
     tells_progress = bool(command) and command[0] in TELL_PROGRESS
     refuse(options, _VOICE | _OTHER_VOICE if tells_progress else _VOICE)
     voice = ["--json-progress" if tells_progress else "--log-format=json", "--die-with-parent"]
-    # It takes no options, and is over at once.
+    # ``help`` takes no options, and ends at once.
     if command[:1] == ["help"]:
         voice = []
     return Child([find_program(corniche), *command, *voice, *words_of(options)], os.environ)
 
 
 def refuse(options: Mapping[str, object], reserved: Iterable[str]) -> None:
-    """Refuses options that this package gives itself.
+    """Rejects options that this package sets itself.
 
-    :raises UsageError: and names the option
+    :raises UsageError: with the name of the option
     """
     for name in sorted(reserved):
         is_off = options.get(name) is None or (options[name] is False and name != "json")
         if not is_off:
-            raise UsageError(f"{name}={options[name]!r} is not for Python: these functions set it themselves; leave it out")
+            raise UsageError(f"{name}={options[name]!r} is not available in Python: these functions set it themselves; omit it")
 
 
 class Listener:
-    """Hears what a command tells while it runs."""
+    """Reads the records of a running command."""
 
     def __init__(self, progress: Callable[[Stage], object] | None = None) -> None:
         self._progress = progress
@@ -121,7 +122,7 @@ class Listener:
         self._error: str | None = None
 
     def hear(self, line: str) -> None:
-        """A line of standard error."""
+        """Takes a line of standard error."""
         record = record_of(line)
         if record is None:
             return
@@ -134,7 +135,7 @@ class Listener:
             self._error = error_of(record) or self._error
 
     def warn(self) -> None:
-        """Warns of what the program warned of, at the line that called this package."""
+        """Passes on the program's warnings, attributed to the line that called this package."""
         level, frame = 1, sys._getframe()
         while frame.f_back is not None and frame.f_globals.get("__package__") == __package__:
             level, frame = level + 1, frame.f_back
@@ -142,7 +143,7 @@ class Listener:
             warnings.warn(text, CornicheWarning, stacklevel=level)
 
     def error_of(self, command: list[str], ended: Ended) -> CornicheError | None:
-        """Why it failed."""
+        """The error of a command that failed; ``None`` if it succeeded."""
         code = ended.exit_code
         if code == 0:
             return None
@@ -155,6 +156,6 @@ class Listener:
             return errors.TargetExists(f"{text} (here: overwrite=True)")
         # The program has no exit code of its own for this.
         if "-O to start again" in text:
-            ways = "resume=True or overwrite=True" if "give --resume" in text else "overwrite=True"
+            ways = "resume=True or overwrite=True" if "pass --resume" in text else "overwrite=True"
             return errors.UnfinishedBuild(f"{text} (here: {ways})")
         return _ERRORS.get(code, CornicheError)(text)

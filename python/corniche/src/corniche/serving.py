@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import atexit
-import os
 from types import TracebackType
 from typing import Any
 
 from .child import Child
 from .errors import CornicheError
 from .options import word_of_path
+from .program import Place
 from .running import Listener, start
 
-#: Those that run. What a notebook shows must stay when nothing names its server any more.
+# : All running servers. A map in a notebook must stay visible even if no variable refers to its
+# server any more.
 _running: set[Serving] = set()
 
 
 class Serving:
-    """A web server with a page that shows packages. It ends with :meth:`close`, with a ``with`` block, or with this process."""
+    """A web server with a page that shows packages. It ends with :meth:`close`, at the end of a ``with`` block, or with this process."""
 
     def __init__(self, child: Child, url: str) -> None:
         self._child = child
@@ -42,19 +43,19 @@ class Serving:
         return f"<corniche serve at {self.url}>"
 
     def _repr_html_(self) -> str:
-        """The map itself, in a notebook."""
+        """The map, as a notebook shows it."""
         return (
             f'<iframe src="{self.url}" width="100%" height="480" style="border: 0" allowfullscreen></iframe>'
             f'<p><a href="{self.url}" target="_blank">{self.url}</a></p>'
         )
 
 
-def serve(*packages: str | os.PathLike[str], port: int = 0, corniche: str | os.PathLike[str] | None = None, **options: Any) -> Serving:
-    """Shows packages in a browser of this computer. As the last line of a cell of a notebook it shows the map there.
+def serve(*packages: Place, port: int = 0, corniche: Place | None = None, **options: Any) -> Serving:
+    """Serves packages to a browser on this computer. As the last line of a notebook cell it shows the map in the notebook.
 
-    :param port: 0 takes one that is free
+    :param port: the port of the server; 0 chooses a free one
     :param options: the options of ``corniche serve``: ``open=True`` opens a browser
-    :raises CornicheError: with the program's own words
+    :raises CornicheError: with the message of the program
     """
     command = ["serve", *(word_of_path(package) for package in packages)]
     child = start(command, {"port": port, **options}, corniche)

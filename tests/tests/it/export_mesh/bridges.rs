@@ -1,4 +1,5 @@
-//! `export mesh --roads surfaces` of a package with spans: bridges are closed slabs at their heights, over plain ground.
+//! `export mesh --roads surfaces` of a package with spans: bridges are closed slabs at their
+//! heights, over plain ground.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -13,7 +14,7 @@ use super::{
     readers::{Model, read_glb, read_obj, read_ply},
 };
 
-/// The colour of slabs, but for the road on top.
+/// The colour of slabs, except for the road on top.
 const CONCRETE: [u8; 3] = [158, 156, 150];
 /// The class of ground.
 const GROUND: u8 = 255;
@@ -27,7 +28,7 @@ fn place(at: [f64; 3]) -> Place {
     at.map(|part| (part + 0.0).to_bits())
 }
 
-/// The edges of some triangles that lack another triangle, by places.
+/// The edges of some triangles without a neighbour, as positions.
 fn open(model: &Model, triangles: &[usize]) -> BTreeSet<[Place; 2]> {
     let mut sums: BTreeMap<[Place; 2], i32> = BTreeMap::new();
     for triangle in triangles {
@@ -41,7 +42,8 @@ fn open(model: &Model, triangles: &[usize]) -> BTreeSet<[Place; 2]> {
     sums.into_iter().filter(|(_, sum)| *sum != 0).map(|(edge, _)| edge).collect()
 }
 
-/// The sides and undersides of slabs, and the roads on top of them: those that have all corners in common with sides, but not with the ground.
+/// The sides and undersides of slabs, and the roads on top of them: triangles whose corners are all
+/// shared with sides, but not with the ground.
 fn slabs(model: &Model) -> [Vec<usize>; 2] {
     let numbers = || 0..model.triangles.len();
     let sides: Vec<usize> = numbers().filter(|k| model.colors[*k] == CONCRETE).collect();
@@ -63,7 +65,7 @@ fn slabs(model: &Model) -> [Vec<usize>; 2] {
     [sides, tops]
 }
 
-/// The places of the runs of the bridge on the finest level, in local metres.
+/// The positions of the bridge's runs on the finest level, in local metres.
 fn runs(package: &Path) -> Vec<Vec<[f64; 3]>> {
     let finest = manifest(package)["frame"]["max_level"].as_u64().unwrap() as u8;
     let (origin, scale) = (origin(package, &[]), &manifest(package)["scale"]["center"]);
@@ -84,7 +86,7 @@ fn runs(package: &Path) -> Vec<Vec<[f64; 3]>> {
     found
 }
 
-/// What lies over a place: height and class of each triangle in plan.
+/// The triangles over a position: height and class of each, in plan.
 fn over(model: &Model, triangles: impl Iterator<Item = usize>, [x, y]: [f64; 2]) -> Vec<(f64, u8)> {
     let held = triangles.filter_map(|number| {
         let [a, b, c] = model.triangles[number].map(|corner| model.corners[corner]);
@@ -109,7 +111,8 @@ fn bridges_are_closed_slabs_over_plain_ground() {
     let [sides, tops] = slabs(&ply);
     assert!(sides.len() > 50 && tops.len() > 10, "{} {}", sides.len(), tops.len());
     assert_eq!(open(&ply, &[sides.clone(), tops.clone()].concat()).len(), 0, "slabs are closed");
-    // Where the deck is well above the ground, the road is up there, the underside below it, and beneath is plain ground.
+    // Where the deck is well above the ground, the road is on the deck, the underside below it, and
+    // the ground beneath is plain.
     let is_slab: BTreeSet<usize> = sides.iter().chain(&tops).copied().collect();
     let mut looked_at = 0;
     for run in runs(&spans) {
@@ -131,7 +134,8 @@ fn bridges_are_closed_slabs_over_plain_ground() {
         }
     }
     assert!(looked_at > 0, "no bridge is high");
-    // All formats have them; without spans, and with roads as lines, there are none, and lines are the same.
+    // All formats have slabs; without spans, and with roads as lines, there are none, and lines are
+    // the same.
     for (name, read) in [("spans.glb", read_glb as fn(&Path) -> Model), ("spans.obj", read_obj)] {
         let model = read(&export(&spans, name, &surfaces));
         assert_eq!(model.triangles.len(), ply.triangles.len(), "{name}");

@@ -1,4 +1,4 @@
-//! Photos in models lie on the ground as they do in the package.
+//! Photos in models are at the same positions on the ground as in the package.
 
 use std::fs;
 
@@ -19,7 +19,8 @@ use super::{
     readers::{Pictured, read_glb, read_pictures},
 };
 
-/// The ground has the colour that the photo has at its longitude and latitude, also between roads as surfaces.
+/// The ground has the colour that the photo has at its longitude and latitude, also between roads
+/// as surfaces.
 #[test]
 fn photos_lie_where_they_should() {
     let folder = tempfile::tempdir().unwrap();
@@ -61,7 +62,7 @@ fn photos_lie_where_they_should() {
                 (lon - bounds[0]) / (bounds[2] - bounds[0]),
                 (lat - bounds[1]) / (bounds[3] - bounds[1]),
             );
-            // Well inside of the photo.
+            // Well inside the photo.
             if !(0.23..0.67).contains(&u) || !(0.27..0.76).contains(&v) {
                 continue;
             }

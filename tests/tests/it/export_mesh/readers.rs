@@ -1,4 +1,4 @@
-//! Readers of our own for the three formats.
+//! Independent readers of the three formats.
 
 use std::{collections::BTreeMap, fs, path::Path};
 
@@ -7,18 +7,18 @@ use serde_json::Value;
 /// A model as a reader sees it, z upwards.
 #[derive(Default)]
 pub(crate) struct Model {
-    /// Of the ground.
+    /// Corners of the ground.
     pub(crate) corners: Vec<[f64; 3]>,
     pub(crate) triangles: Vec<[usize; 3]>,
-    /// Of each triangle, the class of its road; 255 is ground.
+    /// The road class of each triangle; 255 is ground.
     pub(crate) classes: Vec<u8>,
-    /// Of each triangle, where the format tells it.
+    /// The colour of each triangle, if the format stores it.
     pub(crate) colors: Vec<[u8; 3]>,
-    /// Ends of each piece of a road, with its class.
+    /// The ends of each piece of a road, with its class.
     pub(crate) edges: Vec<([[f64; 3]; 2], u8)>,
 }
 
-/// A reader of our own for the PLY that is written: header by header line.
+/// An independent reader of the written PLY: header by header line.
 pub(crate) fn read_ply(path: &Path) -> Model {
     let bytes = fs::read(path).unwrap();
     let end = b"end_header\n";
@@ -49,7 +49,7 @@ pub(crate) fn read_ply(path: &Path) -> Model {
         u32::from_le_bytes(own[4 * at..4 * at + 4].try_into().unwrap()) as usize
     };
     let mut model = Model::default();
-    // Vertices of roads come between those of the ground.
+    // Vertices of roads are between those of the ground.
     let mut ground = BTreeMap::new();
     for (index, (at, class)) in vertices.iter().enumerate() {
         if *class == 255 {
@@ -162,7 +162,7 @@ impl Glb {
         flat.as_chunks::<3>().0.iter().map(place).collect()
     }
 
-    /// Each primitive, with its node.
+    /// All primitives, with their nodes.
     fn primitives(&self) -> impl Iterator<Item = (&Value, &Value)> {
         self.list("nodes").iter().flat_map(|node| {
             let mesh = &self.list("meshes")[node["mesh"].as_u64().unwrap() as usize];
@@ -197,15 +197,15 @@ pub(crate) fn read_glb(path: &Path) -> Model {
     model
 }
 
-/// Ground under a picture.
+/// Terrain with an image.
 pub(crate) struct Pictured {
     pub(crate) corners: Vec<[f64; 3]>,
-    /// Where on the picture each corner is.
+    /// Image coordinates of each corner.
     pub(crate) places: Vec<[f32; 2]>,
     pub(crate) jpeg: Vec<u8>,
 }
 
-/// Ground with a normal map; directions along glTF's axes.
+/// Terrain with a normal map; directions along glTF's axes.
 pub(crate) struct Relief {
     pub(crate) places: Vec<[f32; 2]>,
     pub(crate) normals: Vec<[f32; 3]>,
@@ -219,7 +219,8 @@ impl Glb {
         flat.as_chunks::<N>().0.iter().map(|item| item.map(f32::from_le_bytes)).collect()
     }
 
-    /// The bytes of a texture's image of a kind, and where on it the corners of a primitive are.
+    /// The bytes of a texture's image of a kind, and the image coordinates of a primitive's
+    /// corners.
     fn texture(&self, texture: &Value, primitive: &Value, kind: &str) -> (Vec<u8>, Vec<[f32; 2]>) {
         let number = |value: &Value| value.as_u64().unwrap() as usize;
         let source = number(&self.list("textures")[number(&texture["index"])]["source"]);

@@ -1,4 +1,4 @@
-//! Reliefs as normal maps of the ground.
+//! Reliefs as normal maps of the terrain.
 
 use std::fs;
 
@@ -17,8 +17,8 @@ use super::{
 /// Nodes of a tile, and texels, on a side.
 const SIDE: usize = 257;
 
-/// Vertices have the normals of the elevation model, so there the map says next to nothing; between them it says what triangles leave out. Tangents are
-/// as they should be, with photos beside the map and without.
+/// Vertices have the normals of the elevation model, so the map adds almost nothing there; between
+/// them it adds the detail that triangles lack. Tangents are correct, with and without photos.
 #[test]
 fn reliefs_are_seen_from_the_vertices() {
     let folder = tempfile::tempdir().unwrap();
@@ -44,7 +44,7 @@ fn reliefs_are_seen_from_the_vertices() {
             everywhere.extend((0..SIDE * SIDE).map(tilt));
             for ((place, normal), tangent) in places.iter().zip(&normals).zip(&tangents) {
                 let [column, row] = place.map(|share| share * SIDE as f32 - 0.5);
-                // Vertices are nodes, and nodes lie in the middle of texels.
+                // Vertices are nodes, and nodes are at the centre of texels.
                 assert!([column, row].iter().all(|k| (k - k.round()).abs() < 1e-3), "{place:?}");
                 at_vertices.push(tilt(row.round() as usize * SIDE + column.round() as usize));
                 let [x, y, z, side] = *tangent;
@@ -63,7 +63,7 @@ fn reliefs_are_seen_from_the_vertices() {
     assert!(read_reliefs(&plain).is_empty());
 }
 
-/// Only GLB has normal maps: whoever asks for them in another format is told so.
+/// Only GLB has normal maps: a request in another format is an error.
 #[test]
 fn a_relief_in_a_format_without_normal_maps_is_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -75,7 +75,7 @@ fn a_relief_in_a_format_without_normal_maps_is_refused() {
         let ran = corniche(words);
         assert_eq!(ran.code, 2, "{}", ran.err);
         assert!(
-            ran.err.contains(&format!("a model in .{ending} has no normal maps")),
+            ran.err.contains(&format!(".{ending} does not support normal maps")),
             "{}",
             ran.err
         );

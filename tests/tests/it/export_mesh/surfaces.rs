@@ -1,4 +1,5 @@
-//! Roads as surfaces: the ground is the package's, divided; it has no gap; roads are where the package has them.
+//! Roads as surfaces: the ground is the package's, divided; it has no gaps; roads are where the
+//! package has them.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -15,7 +16,7 @@ use super::{
 };
 
 const GROUND: u8 = 255;
-/// Squares along each side of an index.
+/// Number of squares along each side of an index.
 const SQUARES: usize = 200;
 
 /// Triangles by the squares of a grid.
@@ -62,7 +63,8 @@ impl<'a> Index<'a> {
         self.model.triangles[triangle].map(|corner| self.model.corners[corner])
     }
 
-    /// Triangles that hold a place or come within a millimetre of it, with the height of their planes there.
+    /// Triangles that contain a position or come within a millimetre of it, with the height of
+    /// their planes there.
     fn at(&self, [x, y]: [f64; 2]) -> Vec<(usize, f64)> {
         let square = self.square(1, y) * SQUARES + self.square(0, x);
         let near = self.squares[square].iter().copied();
@@ -87,7 +89,7 @@ fn double_area([a, b, c]: [[f64; 3]; 3]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// In plan, square metres; no triangle may be turned over.
+/// The area in plan, square metres; no triangle may be turned over.
 fn area_m2(model: &Model) -> f64 {
     let areas = model.triangles.iter().map(|triangle| {
         let double = double_area(triangle.map(|corner| model.corners[corner]));
@@ -97,7 +99,7 @@ fn area_m2(model: &Model) -> f64 {
     areas.sum()
 }
 
-/// Sides without a triangle beyond them, as places.
+/// Sides without a neighbouring triangle, as positions.
 fn rim(model: &Model) -> Vec<[[f64; 3]; 2]> {
     let sides = open_sides(model.triangles.iter().copied());
     sides.into_iter().map(|side| side.map(|corner| model.corners[corner])).collect()
@@ -107,7 +109,7 @@ fn length_m(sides: &[[[f64; 3]; 2]]) -> f64 {
     sides.iter().map(|[from, to]| (to[0] - from[0]).hypot(to[1] - from[1])).sum()
 }
 
-/// Ends of road pieces that are no tunnels, in local metres, with their class.
+/// Ends of road pieces that are not tunnels, in local metres, with their class.
 fn pieces_on_ground(package: &Path, level: u8, all: &Model) -> Vec<([[f64; 3]; 2], u8)> {
     let mut is_kept = Vec::new();
     for id in tiles(package, level) {
@@ -151,7 +153,8 @@ fn checked(package: &Path, level: u8) -> Model {
     let model = read_ply(&export(package, "surfaces.ply", &options));
     let own = expected(package, level, origin(package, &["--level", &z]));
     assert!(model.triangles.len() > own.triangles.len(), "nothing is cut");
-    // Every side is there twice, or lies on the rim of the package's ground: there is no gap and no overlap.
+    // Every side exists twice, or is on the border of the package's ground: there are no gaps and
+    // no overlaps.
     let (rim, own_rim) = (rim(&model), {
         let places = own.triangles.iter().map(|triangle| triangle.map(|at| mm(own.corners[at])));
         let open = open_sides(places);
@@ -173,7 +176,7 @@ fn checked(package: &Path, level: u8) -> Model {
     }
     let (area, own_area) = (area_m2(&model), area_m2(&own));
     assert!((area - own_area).abs() < 1e-7 * own_area, "level {level}: {area} m², not {own_area}");
-    // All corners of the package are there, so the size is the same; new ones lie on its triangles.
+    // All corners of the package exist, so the extent is the same; new ones are on its triangles.
     let places: BTreeSet<[i64; 3]> = model.corners.iter().map(|at| mm(*at)).collect();
     assert!(own.corners.iter().all(|at| places.contains(&mm(*at))), "level {level}");
     let index = Index::new(&own);
@@ -184,7 +187,8 @@ fn checked(package: &Path, level: u8) -> Model {
         // A crossing is moved by less than a lattice step, half a millimetre.
         assert!(off_m < 2e-3, "level {level}: {at:?} is {off_m} m beside the ground");
     }
-    // Where the package has a road there is one, of its class or of a more important one; elsewhere there is none.
+    // Where the package has a road, the model has one, of its class or of a more important one;
+    // elsewhere it has none.
     let pieces = pieces_on_ground(package, level, &own);
     let index = Index::new(&model);
     for ([from, to], class) in &pieces {
@@ -211,7 +215,7 @@ fn checked(package: &Path, level: u8) -> Model {
     model
 }
 
-/// Roads of the usual style are narrower than twice this, mitres included.
+/// Roads of the default style are narrower than twice this, including mitres.
 const WIDEST_HALF_M: f64 = 40.0;
 
 fn distance_m(at: [f64; 2], from: [f64; 3], to: [f64; 3]) -> f64 {
@@ -326,7 +330,8 @@ fn surfaces_of_a_real_town_have_no_gap() {
     assert!(model.classes.iter().filter(|class| **class != GROUND).count() > 10_000);
 }
 
-/// The file of materials is as safe as the model: nothing is replaced that was not meant, and nothing is left over.
+/// The material file is as safe as the model: nothing is overwritten by mistake, and nothing is
+/// left over.
 #[test]
 fn materials_are_not_written_over_another_file() {
     let folder = tempfile::tempdir().unwrap();
@@ -341,10 +346,10 @@ fn materials_are_not_written_over_another_file() {
     };
     let ran = run("m.obj", &[]);
     assert_eq!(ran.code, 3, "{}", ran.err);
-    assert!(ran.err.contains("m.mtl exists already"), "{}", ran.err);
+    assert!(ran.err.contains("m.mtl\" already exists"), "{}", ran.err);
     assert_eq!(fs::read(at("m.mtl")).unwrap(), b"mine");
     assert_eq!(names(folder.path()), ["m.mtl", "pass.pmtiles"]);
-    // Without ground there is no model, so no materials.
+    // Without ground there is neither a model nor a material file.
     assert_eq!(run("n.obj", &["--bounds", "1,1,2,2"]).code, 2);
     assert_eq!(names(folder.path()), ["m.mtl", "pass.pmtiles"]);
     assert_eq!(run("m.mtl", &["-O", "--format", "obj"]).code, 2, "both would be one file");

@@ -1,4 +1,4 @@
-//! What must hold of terrain tiles.
+//! Invariants of terrain tiles.
 
 use std::{
     collections::{BTreeSet, HashMap},
@@ -59,8 +59,8 @@ fn roots(terrain: &Terrain) -> u32 {
     if terrain.layer["projection"] == "EPSG:4326" { 2 } else { 1 }
 }
 
-/// Triangles cover the square once, counter-clockwise; each edge is there twice or on the border; corners are there; the lists of border vertices are
-/// complete.
+/// Triangles cover the square once, counter-clockwise; each edge exists twice or is on the border;
+/// corners exist; the lists of border vertices are complete.
 pub(crate) fn check_mesh(tile: &Tile) -> Check {
     let mut balance: HashMap<[usize; 2], i32> = HashMap::new();
     let mut twice_area = 0;
@@ -100,7 +100,8 @@ fn distance_m(one: [f64; 3], other: [f64; 3]) -> f64 {
     (0..3).map(|axis| (one[axis] - other[axis]).powi(2)).sum::<f64>().sqrt()
 }
 
-/// The sphere holds all vertices; the middle is near; the point at the horizon is seen whenever a vertex is.
+/// The sphere contains all vertices; the centre is close; the horizon point is visible whenever a
+/// vertex is.
 pub(crate) fn check_header(tile: &Tile) -> Check {
     let (middle, radius_m) = tile.sphere_m;
     for vertex in 0..tile.uv.len() {
@@ -111,10 +112,12 @@ pub(crate) fn check_header(tile: &Tile) -> Check {
     if tile.horizon[0].is_nan() {
         return Ok(());
     }
-    // Eyes all around, in radii of the ellipsoid: what hides the point must hide all vertices.
+    // Eyes all around, in radii of the ellipsoid: if the point is hidden, all vertices must be
+    // hidden.
     let radii = [6_378_137.0, 6_378_137.0, 6_356_752.314_245_179];
     let hides = |eye: [f64; 3], at: [f64; 3]| {
-        // Cozzi & Ring 2011, 3D Engine Design for Virtual Globes, section 12.5: behind the horizon plane and inside the horizon cone.
+        // Cozzi & Ring 2011, 3D Engine Design for Virtual Globes, section 12.5: behind the horizon
+        // plane and inside the horizon cone.
         let to: [f64; 3] = std::array::from_fn(|k| at[k] - eye[k]);
         let over = eye.iter().map(|axis| axis * axis).sum::<f64>() - 1.0;
         let along: f64 = -(0..3).map(|k| to[k] * eye[k]).sum::<f64>();
@@ -135,7 +138,7 @@ pub(crate) fn check_header(tile: &Tile) -> Check {
                 let place = tile.place(vertex);
                 // Below the ellipsoid the test has no meaning.
                 let at = geocentric([place[0], place[1], place[2].max(0.0)]);
-                // A hair above the ground, for rounding.
+                // Slightly above the ground, for rounding.
                 let at: [f64; 3] = std::array::from_fn(|k| at[k] / radii[k] * (1.0 - 1e-9));
                 ensure(hides(eye, at), || format!("vertex {vertex} is seen from {eye:?}"))?;
             }
@@ -145,7 +148,8 @@ pub(crate) fn check_header(tile: &Tile) -> Check {
     ensure(!is_small || hidden > 0, || "nothing ever hides it".to_owned())
 }
 
-/// Normals of vertices point upwards. Whether they are those of the ground is told by [`normals_against_the_vertical`].
+/// Normals of vertices point upwards. [`normals_against_the_vertical`] checks whether they match
+/// the ground.
 pub(crate) fn check_normals(tile: &Tile) -> Check {
     ensure(tile.normals.len() == tile.uv.len(), || "normals are missing".to_owned())?;
     for (vertex, normal) in tile.normals.iter().enumerate() {
@@ -156,8 +160,9 @@ pub(crate) fn check_normals(tile: &Tile) -> Check {
     Ok(())
 }
 
-/// How much less normals differ from those of the triangles around, weighted by area, than the vertical does, over the finest level: 0 where they are the
-/// same, 1 where they tell no more than the vertical.
+/// The ratio of two differences from the normals of adjacent triangles, weighted by area, over the
+/// finest level: that of the normals, and that of the vertical. 0 means equal normals, 1 that they
+/// are no better than the vertical.
 pub(crate) fn normals_against_the_vertical(terrain: &Terrain) -> f64 {
     let dot = |one: [f64; 3], other: [f64; 3]| (0..3).map(|k| one[k] * other[k]).sum::<f64>();
     let [mut of_normals, mut of_vertical] = [0.0; 2];
@@ -181,11 +186,12 @@ pub(crate) fn normals_against_the_vertical(terrain: &Terrain) -> f64 {
     of_normals / of_vertical
 }
 
-/// On both sides of a border there are the same vertices, and their heights differ by no more than rounding.
+/// Both sides of a border have the same vertices, and their heights differ by rounding only.
 pub(crate) fn check_borders(terrain: &Terrain) -> Check {
     let mut borders = 0;
     for ([level, x, y], tile) in &terrain.tiles {
-        // East and north neighbours, their facing side, and the axis along the border. In the east of the last column is the first.
+        // East and north neighbours, their facing side, and the axis along the border. The eastern
+        // neighbour of the last column is the first.
         let columns = roots(terrain) << level;
         for (beside, own, facing, axis) in
             [([*level, (x + 1) % columns, *y], 2, 0, 1), ([*level, *x, y + 1], 3, 1, 0)]
@@ -218,26 +224,28 @@ pub(crate) fn check_borders(terrain: &Terrain) -> Check {
     ensure(borders > 5, || format!("only {borders} borders"))
 }
 
-/// How far the tiles of a level are from the package's finest ground.
+/// The difference between the tiles of a level and the package's finest ground.
 #[derive(Debug, Default)]
 pub(crate) struct Deviation {
     /// Vertices with ground.
     pub(crate) vertices: u64,
-    /// Beyond the rounding of heights.
+    /// The largest difference at a vertex, without the rounding of heights.
     pub(crate) vertex_m: f64,
-    /// Places inside triangles with ground, vertices not counted.
+    /// Points inside triangles with ground, without vertices.
     pub(crate) places: u64,
     pub(crate) place_m: f64,
-    /// Where that is, in working metres.
+    /// The position of the largest difference, in working metres.
     pub(crate) place: [f64; 3],
-    /// At places on the borders of tiles.
+    /// The largest difference on the borders of tiles.
     pub(crate) border_m: f64,
 }
 
 impl Deviation {
-    /// Vertices are the ground's own places; between them nothing is further away than a viewer assumes, nor, inside of tiles, much further than
-    /// told: told is the largest at places that follow the ground to a tenth of what a viewer assumes, as far as their own deviations say, so a place
-    /// between them may be a fifth of it further. (The largest that was seen is 0.16, on Portland with a bound of 0.45 m.)
+    /// Vertices are the ground's own places; between them nothing is further away than a viewer
+    /// assumes, nor, inside of tiles, much further than told: told is the largest at places that
+    /// follow the ground to a tenth of what a viewer assumes, as far as their own deviations say,
+    /// so a place between them may be a fifth of it further. (The largest that was seen is 0.16, on
+    /// Portland with a bound of 0.45 m.)
     pub(crate) fn check(&self, told: &Value) -> Check {
         let number = |name: &str| told[name].as_f64().unwrap();
         let assumed_m = number("assumed_error_m");
@@ -269,7 +277,8 @@ impl Finest {
         Self { tiles, cell_m }
     }
 
-    /// Whether there is ground a cell away on all sides: nearer to where it ends, no tile is promised to be near it.
+    /// Whether there is ground within a cell on all sides: closer to the edge of the ground, tiles
+    /// make no promise.
     fn is_far_from_its_end(&self, [x, y]: [f64; 2]) -> bool {
         let [east, north] = self.cell_m;
         (-1..=1).all(|i: i32| {
@@ -295,7 +304,7 @@ fn wgs84_bounds(package: &Path) -> [f64; 4] {
         .map(|side| manifest["wgs84_bounds"][side].as_f64().unwrap())
 }
 
-/// Compares vertices, and random places inside triangles and on borders, with the ground.
+/// Compares vertices, and random points inside triangles and on borders, with the ground.
 pub(crate) fn check_heights(terrain: &Terrain, package: &Path, region: &Region) -> Vec<Deviation> {
     const INSIDE: usize = 1500;
     const ON_BORDERS: usize = 400;

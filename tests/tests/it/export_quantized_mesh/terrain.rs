@@ -1,4 +1,5 @@
-//! A reader of terrain tiles, written from the description of the format: <https://github.com/CesiumGS/quantized-mesh>.
+//! A reader of terrain tiles, written from the description of the format:
+//! <https://github.com/CesiumGS/quantized-mesh>.
 
 use std::{collections::BTreeMap, f64::consts::PI, fs, io::Read as _, path::Path};
 
@@ -13,20 +14,20 @@ pub(crate) type Name = [u32; 3];
 
 #[derive(Clone)]
 pub(crate) struct Tile {
-    /// What the header says: middle, lowest and highest height, sphere, horizon.
+    /// The fields of the header: centre, lowest and highest height, sphere, horizon.
     pub(crate) center_m: [f64; 3],
     pub(crate) range_m: [f64; 2],
     pub(crate) sphere_m: ([f64; 3], f64),
     pub(crate) horizon: [f64; 3],
     pub(crate) uv: Vec<[u16; 2]>,
-    /// In steps of the range.
+    /// Heights in steps of the range.
     pub(crate) steps: Vec<u16>,
     pub(crate) triangles: Vec<[usize; 3]>,
     /// Vertices on the west, south, east and north border.
     pub(crate) edges: [Vec<usize>; 4],
     pub(crate) normals: Vec<[f64; 3]>,
     pub(crate) metadata: Option<Value>,
-    /// West, south, east, north, degrees.
+    /// Bounds: west, south, east, north, degrees.
     pub(crate) bounds_deg: [f64; 4],
 }
 
@@ -63,7 +64,7 @@ impl Bytes<'_> {
         u16::from_le_bytes(self.take())
     }
 
-    /// Values of which the differences are stored, zigzag.
+    /// Reads values that are stored as zigzag-coded differences.
     fn differences(&mut self, count: usize) -> Vec<u16> {
         let mut value = 0_i32;
         let mut next = || {
@@ -147,7 +148,7 @@ impl Tile {
         [west + (east - west) * u, south + (north - south) * v, height]
     }
 
-    /// From the earth's centre.
+    /// The geocentric position.
     pub(crate) fn at_m(&self, vertex: usize) -> [f64; 3] {
         geocentric(self.place(vertex))
     }
@@ -159,13 +160,13 @@ impl Tile {
         std::array::from_fn(|k| high[k] - low[k])
     }
 
-    /// What a step of heights is.
+    /// The step of heights, metres.
     pub(crate) fn step_m(&self) -> f64 {
         (self.range_m[1] - self.range_m[0]) / f64::from(LAST)
     }
 }
 
-/// A direction on an octahedron, 8 bits an axis.
+/// A direction from its octahedron code, 8 bits per axis.
 fn normal(coded: [u8; 2]) -> [f64; 3] {
     let [p, q] = coded.map(|axis| f64::from(axis) / 255.0 * 2.0 - 1.0);
     let z = 1.0 - p.abs() - q.abs();
@@ -175,7 +176,7 @@ fn normal(coded: [u8; 2]) -> [f64; 3] {
     [x, y, z].map(|axis| axis / length)
 }
 
-/// WGS84, by its defining constants.
+/// Geocentric coordinates on WGS84, from its defining constants.
 pub(crate) fn geocentric([lon, lat, height]: [f64; 3]) -> [f64; 3] {
     let (a, f) = (6_378_137.0, 1.0 / 298.257_223_563);
     let e2 = f * (2.0 - f);
@@ -210,7 +211,7 @@ pub(crate) fn bounds_deg([level, x, y]: Name, projection: &str) -> [f64; 4] {
     }
 }
 
-/// The numbers of the files and folders in a folder, without what follows a dot.
+/// The numbers in the names of the files and folders in a folder, without their extensions.
 fn numbers(folder: &Path) -> Vec<(u32, std::path::PathBuf)> {
     let entries = fs::read_dir(folder).unwrap().flatten().map(|entry| entry.path());
     let number = |path: &Path| path.file_stem()?.to_str()?.parse().ok();

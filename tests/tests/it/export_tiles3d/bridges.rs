@@ -1,4 +1,5 @@
-//! `export 3dtiles` of a package with spans: bridges are closed slabs with the rows of their ways, and nothing else changes.
+//! `export 3dtiles` of a package with spans: bridges are closed slabs with the rows of their ways,
+//! and nothing else changes.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -17,7 +18,8 @@ const SLAB: &str = "bridge_slab";
 
 type Place = [u64; 3];
 
-/// Directed edges of triangles by places, less those in the other direction; none is left of a closed surface.
+/// Directed edges of triangles as positions, without those that also exist in the other direction;
+/// a closed surface has none.
 fn open<'a>(
     parts: impl Iterator<Item = (&'a NamedTriangles, [usize; 3])>,
 ) -> BTreeMap<[Place; 2], i32> {

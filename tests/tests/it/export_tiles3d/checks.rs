@@ -1,4 +1,4 @@
-//! What must hold of tiles.
+//! Invariants of exported 3D tiles.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -7,13 +7,13 @@ use e2e::ground::{FromEarth, Region};
 
 use super::tiles::{NamedTriangles, Tile, Tiles};
 
-/// How far the ground of tiles is from the package's.
+/// The difference between the ground of tiles and the package's.
 #[derive(Debug, Default)]
 pub(crate) struct Findings {
     pub(crate) points: usize,
-    /// Largest difference beyond what chords on wide tiles are allowed.
+    /// Largest difference beyond the tolerance for chords on wide tiles.
     pub(crate) largest_m: f64,
-    /// The same, chords included.
+    /// Largest difference, including chords.
     pub(crate) with_chords_m: f64,
     /// Points where the package has no ground.
     pub(crate) off_ground: usize,
@@ -23,7 +23,8 @@ fn ground(tile: &Tile) -> impl Iterator<Item = &NamedTriangles> {
     tile.parts.iter().filter(|part| part.name != "skirt")
 }
 
-/// Carries every vertex, and so many random points inside triangles of each tile, back to the package's CRS, and compares their heights.
+/// Transforms every vertex, and random points inside triangles of each tile, back to the package's
+/// CRS, and compares their heights.
 pub(crate) fn check_heights(tiles: &Tiles, region: &Region, inside: usize) -> Findings {
     let from_earth = FromEarth::to(region);
     let mut numbers = Random::new(1);
@@ -66,7 +67,7 @@ fn place(at: [f64; 3]) -> PositionBits {
     at.map(|axis| (axis + 0.0).to_bits())
 }
 
-/// The edges of a tile's ground that only one triangle has, by their places.
+/// The edges of a tile's ground that belong to one triangle only, as positions.
 fn open_edges(tile: &Tile) -> Result<HashSet<[PositionBits; 2]>, String> {
     let mut balance: HashMap<[PositionBits; 2], i32> = HashMap::new();
     for part in ground(tile) {
@@ -85,12 +86,12 @@ fn open_edges(tile: &Tile) -> Result<HashSet<[PositionBits; 2]>, String> {
     Ok(balance.into_iter().filter(|(_, sum)| *sum != 0).map(|(edge, _)| edge).collect())
 }
 
-/// Every edge has triangles on both sides, or lies where the package's ground ends.
+/// Every edge has triangles on both sides, or is at the edge of the package's ground.
 pub(crate) fn check_watertight(tiles: &Tiles, region: &Region) -> Result<(), String> {
     let from_earth = FromEarth::to(region);
     for tile in &tiles.tiles {
         let open = open_edges(tile)?;
-        // Length of the package's own boundary and of what is open here, in plan.
+        // Length of the package's own border and of the open edges of the tiles, in plan.
         let mut edges: HashMap<[usize; 2], i32> = HashMap::new();
         for corners in &tile.ground.triangles {
             for k in 0..3 {
@@ -132,7 +133,8 @@ pub(crate) fn check_borders(tiles: &Tiles, region: &Region) -> Result<(), String
     let from_earth = FromEarth::to(region);
     let grounds: BTreeMap<&str, &Tile> =
         tiles.tiles.iter().map(|tile| (tile.name.as_str(), tile)).collect();
-    // The places of a tile's open edges that lie on a line of the CRS where its neighbour has ground, too.
+    // The positions of a tile's open edges on a line of the CRS where its neighbour has ground,
+    // too.
     let on_line = |edges: &HashSet<[PositionBits; 2]>, beside: &Tile, axis: usize, line: f64| {
         let places: Vec<PositionBits> = edges.iter().flatten().copied().collect();
         let on_earth: Vec<_> =
@@ -167,13 +169,14 @@ pub(crate) fn check_borders(tiles: &Tiles, region: &Region) -> Result<(), String
     if shared > 100 { Ok(()) } else { Err(format!("only {shared} points are shared")) }
 }
 
-/// Well inside of a road is road, of that way or one above it, and away from all roads is ground.
+/// Points well inside a road are on a road, of that way or of a more important one, and points away
+/// from all roads are ground.
 pub(crate) fn check_roads(tiles: &Tiles, region: &Region) -> Result<(), String> {
     let from_earth = FromEarth::to(region);
     let mut seen = [0_usize; 2];
     let finest = tiles.levels().max().unwrap().to_string();
     for tile in &tiles.tiles {
-        // Coarser levels leave out what is too thin to be seen.
+        // Coarser levels omit roads that are too thin to be visible.
         let boxes: Vec<[[f64; 2]; 2]> =
             tile.ground.roads.iter().map(|(_, _, line)| around(line)).collect();
         let has_all = tile.name.split('/').next() == Some(finest.as_str());
@@ -197,11 +200,12 @@ pub(crate) fn check_roads(tiles: &Tiles, region: &Region) -> Result<(), String> 
                     nearest.unwrap_or(((f64::INFINITY, false), 9));
                 let way = part.triangles[number].iter().find_map(|k| part.ways.get(*k));
                 match way {
-                    // Half of the widest road is 12 m, and a mitre reaches twice as far.
+                    // Half of the widest road is 12 m, and a mitre extends twice as far.
                     Some(_) if nearest_m > 26.0 && is_inside(tile, [x, y], 30.0) => {
                         return Err(format!("{}: a road {nearest_m} m from any", tile.name));
                     }
-                    // The narrowest road is a path of 1.5 m or more. Ends and sharp bends are cut straight.
+                    // The narrowest road is a path of 1.5 m or more. Ends and sharp bends are cut
+                    // off square.
                     None if nearest_m < 0.5 && is_beside && has_all => {
                         return Err(format!(
                             "{}: no road at {x} {y}, {nearest_m} m from the middle of one of class {class}",
@@ -217,7 +221,7 @@ pub(crate) fn check_roads(tiles: &Tiles, region: &Region) -> Result<(), String> 
     if seen.iter().all(|count| *count > 1000) { Ok(()) } else { Err(format!("only {seen:?}")) }
 }
 
-/// What lies 30 m around a line.
+/// The rectangle around a line with a margin of 30 m.
 fn around(line: &[[f64; 2]]) -> [[f64; 2]; 2] {
     let all = |pick: fn(f64, f64) -> f64, axis: usize| {
         line.iter().map(|at| at[axis]).reduce(pick).unwrap()
@@ -233,7 +237,8 @@ fn is_inside(tile: &Tile, [x, y]: [f64; 2], margin: f64) -> bool {
     x > west + margin && x < east - margin && y > south + margin && y < north - margin
 }
 
-/// The distance to a line, and whether its nearest point lies within a segment, rather than at a bend or an end.
+/// The distance to a line, and whether its nearest point is within a segment, rather than at a bend
+/// or an end.
 fn distance(line: &[[f64; 2]], [x, y]: [f64; 2]) -> (f64, bool) {
     let of_segment = |pair: &[[f64; 2]]| {
         let ([ax, ay], [bx, by]) = (pair[0], pair[1]);

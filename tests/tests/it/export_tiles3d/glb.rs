@@ -1,21 +1,21 @@
-//! A reader of our own for the binary glTF of tiles, from the specification.
+//! An independent reader for the binary glTF of tiles, written from the specification.
 
 use std::{fs, path::Path};
 
 use serde_json::Value;
 
-/// A list of triangles or lines, in the earth's coordinates (EPSG:4978).
+/// A list of triangles or lines, in geocentric coordinates (EPSG:4978).
 pub(crate) struct Primitive {
     pub(crate) name: String,
-    /// In the root frame: exact sums of the node's translation and the stored positions.
+    /// Positions in the root frame: exact sums of the node's translation and the stored positions.
     pub(crate) at_m: Vec<[f64; 3]>,
     pub(crate) indices: Vec<u32>,
-    /// Rows of the table of roads; empty for the ground.
+    /// Rows of the road table; empty for the ground.
     pub(crate) features: Vec<u32>,
     pub(crate) normals: Vec<[f32; 3]>,
-    /// Where on the picture; empty without one.
+    /// Image coordinates; empty without an image.
     pub(crate) picture_places: Vec<[f32; 2]>,
-    /// Where on the normal map, and the tangents with their sides; empty without one.
+    /// Coordinates on the normal map, and the tangents with their handedness; empty without one.
     pub(crate) relief_places: Vec<[f32; 2]>,
     pub(crate) tangents: Vec<[f32; 4]>,
 }
@@ -129,7 +129,7 @@ impl Glb {
         }
     }
 
-    /// The picture of the ground, a JPEG.
+    /// The image of the ground, a JPEG.
     pub(crate) fn picture(&self) -> Option<&[u8]> {
         self.image_of("image/jpeg")
     }
@@ -145,7 +145,7 @@ impl Glb {
         Some(self.view(&image["bufferView"]))
     }
 
-    /// A column of the table of roads: texts.
+    /// A text column of the road table.
     pub(crate) fn texts(&self, column: &str) -> Vec<String> {
         let table = &self.document["extensions"]["EXT_structural_metadata"]["propertyTables"][0];
         let column = &table["properties"][column];
@@ -156,7 +156,7 @@ impl Glb {
             .collect()
     }
 
-    /// The ways of the table of roads; empty without one.
+    /// The ways of the road table; empty without one.
     pub(crate) fn ways(&self) -> Vec<i64> {
         let Some(tables) = self.document.get("extensions") else { return Vec::new() };
         let table = &tables["EXT_structural_metadata"]["propertyTables"][0];

@@ -1,4 +1,4 @@
-//! Normal maps from the package's relief, shaded as other programs do it.
+//! Normal maps from the package's relief, shaded as by other programs.
 
 use std::{collections::BTreeMap, fs, path::Path};
 
@@ -13,10 +13,10 @@ use super::{
     tiles::{Tiles, files_of, has_ending},
 };
 
-/// Only some texels are compared: every so many columns and rows.
+/// Only some texels are compared: one of this many columns and rows.
 const EVERY: usize = 9;
 
-/// A normal map as its bytes say.
+/// A decoded normal map.
 struct Map {
     side: usize,
     texels: Vec<[u8; 3]>,
@@ -40,7 +40,7 @@ impl Map {
     }
 }
 
-/// What the elevation model says: the slopes at its samples.
+/// The slopes of the elevation model at its samples.
 struct Slopes {
     heights: Buffer<f32>,
     size: (usize, usize),
@@ -56,7 +56,8 @@ impl Slopes {
         Self { heights, size: dem.raster_size(), at: [west, dx, north, dy] }
     }
 
-    /// Rise in metres per metre of the sample at a place; `None` beside samples, on the border, and next to voids.
+    /// The rise in metres per metre of the sample at a position; `None` between samples, on the
+    /// border, and next to voids.
     fn at(&self, [x, y]: [f64; 2]) -> Option<[f64; 2]> {
         let [west, dx, north, dy] = self.at;
         let place = [(x - west) / dx - 0.5, (y - north) / dy - 0.5];
@@ -92,22 +93,24 @@ fn degrees_between(one: [f64; 3], other: [f64; 3]) -> f64 {
     dot.clamp(-1.0, 1.0).acos().to_degrees()
 }
 
-/// A direction of glTF in the root frame.
+/// Converts a direction of glTF to the root frame.
 fn z_up([x, y, z]: [f32; 3]) -> [f64; 3] {
     [x, -z, y].map(f64::from)
 }
 
-/// What is compared at a texel.
+/// The values that are compared at a texel.
 struct Sample {
-    /// In the root frame.
+    /// The position in the root frame.
     at_m: [f64; 3],
-    /// Normals that a program shades with: by the vertices, with the map, and with its second axis turned.
+    /// Normals that a program shades with: by the vertices, with the map, and with its second axis
+    /// reversed.
     by_vertices: [f64; 3],
     by_map: [f64; 3],
     turned: [f64; 3],
 }
 
-/// Mixes normals and tangents across triangles as programs do, at texels whose middle lies in one.
+/// Interpolates normals and tangents across triangles as programs do, at texels whose centre is in
+/// a triangle.
 fn samples(primitive: &Primitive, map: &Map) -> Vec<Sample> {
     let mut found = Vec::new();
     let side = map.side as f64;
@@ -172,14 +175,15 @@ fn expected(samples: &[Sample], tiles: &Tiles, region: &Region) -> Vec<Option<[f
         .iter()
         .map(|[at, moved @ ..]| {
             let [east, north] = slopes.at([at[0], at[1]])?;
-            // Height above the plane that touches the ground grows fastest along its normal.
+            // The height above the tangent plane grows fastest along its normal.
             let above = |point: &[f64; 3]| point[2] - east * point[0] - north * point[1];
             Some(unit([0, 1, 2].map(|axis: usize| above(&moved[axis]) - above(at))))
         })
         .collect()
 }
 
-/// Shaded with its map the ground has the slopes of the elevation model, which its vertices do not have; and both sides of a border have the same.
+/// Shaded with its map, the ground has the slopes of the elevation model, which its vertices do not
+/// have; and both sides of a border are equal.
 #[test]
 fn relief_is_that_of_the_elevation_model() {
     let folder = TempDir::new().unwrap();
@@ -232,7 +236,7 @@ fn relief_is_that_of_the_elevation_model() {
     for texels in shared {
         assert!(texels.iter().all(|texel| *texel == texels[0]), "{texels:?}");
     }
-    // The same ground without.
+    // The same ground without a map.
     let none = export(&package, "none", &["--roads", "none", "--relief", "none"]);
     for (_, path) in files_of(&none).into_iter().filter(|(name, _)| has_ending(name, "glb")) {
         let glb = Glb::read(&path);

@@ -17,7 +17,7 @@ use super::glb::Glb;
 #[derive(Clone)]
 pub(crate) struct NamedTriangles {
     pub(crate) name: String,
-    /// In the root frame, metres.
+    /// Positions in the root frame, metres.
     pub(crate) at_m: Vec<[f64; 3]>,
     pub(crate) triangles: Vec<[usize; 3]>,
     /// Ways of the vertices; empty for the ground.
@@ -37,11 +37,11 @@ pub(crate) struct Tile {
 #[derive(Clone)]
 pub(crate) struct Tiles {
     pub(crate) tiles: Vec<Tile>,
-    /// By columns.
+    /// The matrix, by columns.
     pub(crate) to_earth: [f64; 16],
 }
 
-/// All files below a folder by their names from there.
+/// All files in a folder and its subfolders, by their relative names.
 pub(crate) fn files_of(folder: &Path) -> BTreeMap<String, PathBuf> {
     let mut found = BTreeMap::new();
     let mut open = vec![folder.to_path_buf()];
@@ -59,7 +59,7 @@ pub(crate) fn files_of(folder: &Path) -> BTreeMap<String, PathBuf> {
     found
 }
 
-/// Whether a file's name ends so.
+/// Whether a file's name has this extension.
 pub(crate) fn has_ending(name: &str, ending: &str) -> bool {
     Path::new(name).extension().is_some_and(|own| own == ending)
 }
@@ -74,7 +74,7 @@ impl Tiles {
             root["transform"].as_array().unwrap().iter().map(|n| n.as_f64().unwrap()).collect();
         let mut tiles = Self { tiles: Vec::new(), to_earth: to_earth.try_into().unwrap() };
         tiles.add(root, folder, package, None);
-        // Every tile that is there is named.
+        // Every tile file is listed.
         let stored = files_of(folder).into_keys().filter(|name| has_ending(name, "glb")).count();
         assert_eq!(stored, tiles.tiles.len());
         tiles
@@ -115,7 +115,7 @@ impl Tiles {
         for primitive in &glb.primitives {
             assert!(primitive.normals.iter().all(|normal| {
                 let length: f32 = normal.iter().map(|axis| axis * axis).sum();
-                // Upwards, but for sides of bridges, and of length one.
+                // Normals point upwards, except on the sides of bridges, and have length one.
                 (length - 1.0).abs() < 1e-5 && (normal[1] > 0.0 || primitive.name == "bridge_slab")
             }));
         }
@@ -167,7 +167,8 @@ impl Tiles {
         }
     }
 
-    /// Puts each tile on the earth by one matrix, as if a square of the CRS were one of the earth.
+    /// Places each tile on the earth with one matrix, as if a square of the CRS were a square of
+    /// the earth.
     pub(crate) fn by_one_matrix_a_tile(&mut self, region: &Region) {
         let from_earth = FromEarth::to(region);
         let tiles = std::mem::take(&mut self.tiles);
@@ -233,7 +234,8 @@ impl Tiles {
         longest
     }
 
-    /// Boxes hold the vertices of their tiles and of all below; errors never grow downwards.
+    /// Boxes contain the vertices of their tiles and of all descendants; errors never grow
+    /// downwards.
     pub(crate) fn check_tree(&self) -> Result<(), String> {
         let by_name: BTreeMap<&str, &Tile> =
             self.tiles.iter().map(|tile| (tile.name.as_str(), tile)).collect();
@@ -253,7 +255,7 @@ impl Tiles {
         Ok(())
     }
 
-    /// No node of the elevation model is further from a tile's ground than its error says.
+    /// No node of the elevation model is farther from a tile's ground than its error.
     pub(crate) fn check_against_dem(&self, region: &Region) -> Result<(), String> {
         let from_earth = FromEarth::to(region);
         let dem = Dataset::open(&region.dem).unwrap();
@@ -273,7 +275,7 @@ impl Tiles {
                 for corners in &part.triangles {
                     let corners = corners.map(|k| in_crs[k]);
                     let plan = corners.map(|[x, y, _]| [x, y]);
-                    // Samples lie in the middle of the file's cells.
+                    // Samples are at the centre of the file's cells.
                     let at = plan.map(|[x, y]| [(x - west) / dx - 0.5, (y - north) / dy - 0.5]);
                     let range = |axis: usize, limit: usize| {
                         let low = at.iter().map(|p| p[axis]).fold(f64::INFINITY, f64::min);

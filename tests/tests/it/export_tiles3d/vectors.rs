@@ -12,10 +12,10 @@ use tempfile::TempDir;
 
 use super::{built, export, glb::Glb, pass, tiles::Tiles};
 
-/// The largest number of an index: it ends a strip.
+/// The largest value of an index, which ends a strip.
 const RESTART: [u32; 2] = [0xFFFF, 0xFFFF_FFFF];
 
-/// Boxes and errors by the names of tiles, and what they have as contents.
+/// Boxes, errors and contents of tiles, by their names.
 fn tree(folder: &Path) -> (Value, BTreeMap<String, (Value, Option<Value>)>) {
     let document: Value =
         serde_json::from_slice(&fs::read(folder.join("tileset.json")).unwrap()).unwrap();
@@ -34,14 +34,14 @@ fn tree(folder: &Path) -> (Value, BTreeMap<String, (Value, Option<Value>)>) {
     (document, found)
 }
 
-/// A straight piece between two places, by their bits, and its way.
+/// A straight segment between two positions, by their bits, and its way.
 type Segment = (i64, [[u64; 3]; 2]);
 
 fn segment(way: i64, ends: [[f64; 3]; 2]) -> Segment {
     (way, ends.map(|at| at.map(f64::to_bits)))
 }
 
-/// The strips of a tile; each is one way's.
+/// The strips of a tile; each belongs to one way.
 fn strips(glb: &Glb) -> Vec<(i64, Vec<[f64; 3]>)> {
     let ways = glb.ways();
     let mut found = Vec::new();
@@ -59,8 +59,9 @@ fn strips(glb: &Glb) -> Vec<(i64, Vec<[f64; 3]>)> {
     found
 }
 
-/// Boxes and errors of both tilesets are the same, so that a client shows the same level; the ground is that of an export without roads; each line of
-/// `--roads line` is there, to the bit, and lies as far above the package's ground.
+/// Boxes and errors of both tilesets are the same, so that a client shows the same level; the
+/// ground is that of an export without roads; each line of `--roads line` exists, to the bit, at
+/// the same height above the package's ground.
 #[test]
 fn vectors_are_the_lines_in_a_tileset_of_their_own() {
     let folder = TempDir::new().unwrap();
@@ -120,7 +121,8 @@ fn vectors_are_the_lines_in_a_tileset_of_their_own() {
     assert_eq!(style["color"]["conditions"].as_array().unwrap().len(), 9);
 }
 
-/// All points of a tile are as far above its ground, within the centimetre that is promised; returns how many were looked at.
+/// Checks that all points of a tile are at the same height above its ground, within the promised
+/// centimetre; returns the number of points.
 fn check_lift(
     strips: &[(i64, Vec<[f64; 3]>)],
     frame: &Tiles,

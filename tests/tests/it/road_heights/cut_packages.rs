@@ -1,4 +1,5 @@
-//! Packages that bounds or a polygon cut export, inside, what the whole package does: heights, decks and grades.
+//! Packages that are clipped to bounds or a polygon export, inside, the same heights, decks and
+//! grades as the whole package.
 
 use std::{collections::BTreeMap, fs, path::Path};
 
@@ -6,7 +7,8 @@ use e2e::{cases, real_data, text};
 
 use super::{Line, Row, export, features, pass_inputs, succeed};
 
-/// What is cut is measured from its cut on: sums of lengths are rounded, and decks are looked up by them, metres.
+/// Tolerance, metres: clipped roads are measured from their clip, sums of lengths are rounded, and
+/// decks are looked up by them.
 const MOST_M: f64 = 1e-3;
 
 /// Elevation files, an extract, and the rectangle with bridges and tunnels, degrees.
@@ -16,7 +18,7 @@ struct Region {
     box_deg: [f64; 4],
 }
 
-/// What roads and edges are known by.
+/// The key columns of roads and edges.
 const WAY: &[&str] = &["way_id"];
 const EDGE: &[&str] = &["from_node", "to_node", "ways"];
 
@@ -42,16 +44,16 @@ fn heights(roads: &Roads) -> BTreeMap<(&str, [i64; 2]), f64> {
     all
 }
 
-/// How many vertices are compared, and the largest difference, metres.
+/// The number of compared vertices, and the largest difference, metres.
 fn compare(whole: &Roads, part: &Roads) -> (usize, f64) {
     let [whole_m, part_m] = [whole, part].map(heights);
     let pairs: Vec<f64> = part_m
         .iter()
         .filter_map(|(place, own_m)| Some((own_m - whole_m.get(place)?).abs()))
         .collect();
-    // Only where lines are cut there are other vertices.
+    // Only clipped lines have other vertices.
     assert!(pairs.len() * 10 > part_m.len() * 9, "{} of {}", pairs.len(), part_m.len());
-    // Ways of which all is there have the same measures.
+    // Ways that are completely inside have the same measures.
     for (way_id, (row, lines)) in part {
         let (of_whole, expected) = &whole[way_id];
         let is_same = |own: &Line, other: &Line| {
@@ -66,7 +68,7 @@ fn compare(whole: &Roads, part: &Roads) -> (usize, f64) {
             continue;
         }
         for (name, value) in row {
-            // Triangles of other tiles are others.
+            // The triangles of other tiles differ.
             if name == "ground_tolerance_m" {
                 continue;
             }
@@ -99,7 +101,7 @@ fn cut_packages_export_the_whole(name: &str, region: &Region) {
     let count = cases(1, 2, 10);
     let (mut vertices, mut most_m) = (0, 0.0_f64);
     for number in 0..count {
-        // Strips across the region, by turns along both axes.
+        // Strips across the region, alternating along both axes.
         let share = (f64::from(number) + 0.5) / f64::from(count);
         let (lon, lat) = (west + share * (east - west), south + share * (north - south));
         let [w, h] = [0.3 * (east - west), 0.3 * (north - south)];

@@ -1,11 +1,12 @@
-//! What is told as "at most" is at most: random places on lines that were written, against the elevation files as GDAL reads them; and measures of
-//! spans that the ground stops are those of their lines.
+//! Values reported as "at most" are upper bounds: random points on written lines are compared with
+//! the elevation files as GDAL reads them; and measures of spans that the ground obstructs are
+//! those of their lines.
 
 use std::{fs, path::Path, process::Command};
 
 use corniche_testing::{
     Raster,
-    pbf::{self, Way},
+    pbf::{self, PbfWay},
 };
 use e2e::{build_from, real_data, skip, some_of, text, write_ascii_grid};
 use gdal::spatial_ref::{AxisMappingStrategy, CoordTransform, SpatialRef};
@@ -13,7 +14,7 @@ use tempfile::TempDir;
 
 use super::{Bilinear, Line, Row, export, features, number, pass_inputs, profile, succeed};
 
-/// Places that are compared in the quick tests.
+/// Points that are compared in the quick tests.
 const PLACES: usize = 20_000;
 
 /// From one CRS to another by PROJ, x first.
@@ -26,7 +27,8 @@ fn transform(from: u32, to: u32) -> CoordTransform {
     CoordTransform::new(&of(from), &of(to)).unwrap()
 }
 
-/// Some random places on lines, spread over their length, are within `field` of an elevation file. Returns how many were compared, and the largest distance.
+/// Random points on lines, distributed over their length, are within `field` of an elevation file.
+/// Returns the number of compared points, and the largest distance.
 fn are_within(
     features: &[(Row, Vec<Line>)],
     (dem, to_dem): (&Bilinear, Option<&CoordTransform>),
@@ -65,7 +67,8 @@ fn are_within(
     (compared, farthest_m)
 }
 
-/// Exports roads of a package with heights of its triangles and of its elevation file, and compares both with that file. Returns the largest distances.
+/// Exports roads of a package with heights of its triangles and of its elevation file, and compares
+/// both with that file. Returns the largest distances.
 fn compare(
     folder: &Path,
     [dem, osm]: [&Path; 2],
@@ -82,7 +85,7 @@ fn compare(
     let is_told = |(row, _): &(Row, Vec<Line>)| {
         row["height_source"] != "dem" || !row["height_tolerance_m"].is_empty()
     };
-    // Where voids were filled no distance is known.
+    // Where voids were filled, the distance is unknown.
     let untold = of_dem.iter().filter(|of| !is_told(of)).count();
     assert!(untold * 100 <= of_dem.len(), "{options:?}: {untold} of {}", of_dem.len());
     let (compared, dem_m) = are_within(&of_dem, (&read, to_dem), ("height_tolerance_m", places));
@@ -91,7 +94,7 @@ fn compare(
     succeed(export(&package, "roads", &on_ground, &["-O"]));
     let mut of_ground = features(&on_ground);
     let (_, ground_m) = are_within(&of_ground, (&read, to_dem), ("height_tolerance_m", places));
-    // The same lines, as they were measured beside the elevation file.
+    // The same lines, compared with the elevation file.
     for ((row, _), (on_dem, _)) in of_ground.iter_mut().zip(&of_dem) {
         assert_eq!(row["way_id"], on_dem["way_id"]);
         row.insert("ground_tolerance_m".to_owned(), on_dem["ground_tolerance_m"].clone());
@@ -109,7 +112,8 @@ fn lines_are_within_their_field_whatever_the_nodes_are() {
     let cases: [(&[&str], Option<CoordTransform>, [f64; 2]); 5] = [
         (&[], None, [0.0, 1.0]),
         (&["--max-error", "8"], None, [0.0, 3.0]),
-        // Nodes that are not the samples: lines are metres beside the file's surface, and the field tells it.
+        // Nodes that are not samples: lines differ from the file's surface by metres, and the field
+        // reports it.
         (&["--cell-every", "3"], None, [1.0, 1.0]),
         (&["--crs", "EPSG:32633"], crs(32633), [0.5, 0.0]),
         (&["--cell", "33"], None, [1.0, 0.0]),
@@ -122,7 +126,8 @@ fn lines_are_within_their_field_whatever_the_nodes_are() {
     }
 }
 
-/// A hundred thousand places in each region, on lines of the package's triangles and of the elevation file, whatever the nodes are.
+/// A hundred thousand points in each region, on lines of the package's triangles and of the
+/// elevation file, for all kinds of nodes.
 #[test]
 #[ignore = "slow: six regions, three packages of each, some minutes"]
 fn lines_of_real_regions_are_within_their_field() {
@@ -174,7 +179,7 @@ fn lines_of_real_regions_are_within_their_field() {
     }
 }
 
-/// Samples on a turned grid, of which nodes are none.
+/// Samples on a rotated grid, none of which are nodes.
 #[test]
 fn lines_over_a_turned_file_are_within_their_field() {
     let folder = TempDir::new().unwrap();
@@ -208,7 +213,7 @@ fn lines_of_thinned_samples_are_told_as_far_from_the_file() {
     assert!(dem_m > 4.5 && ground_m > 4.5, "{dem_m} {ground_m}");
 }
 
-/// Ways through places of UTM 32, whose nodes are numbered from 1.
+/// Ways through points of UTM 32, whose nodes are numbered from 1.
 fn write_way(
     osm: &Path,
     to_degrees: &CoordTransform,
@@ -224,20 +229,20 @@ fn write_way(
             (id, [at[0][0], at[1][0]])
         })
         .collect();
-    let ways: Vec<Way<'_>> = (1..)
+    let ways: Vec<PbfWay<'_>> = (1..)
         .zip(ways)
         .map(|(id, (node_ids, structure))| {
             let mut tags = vec![("highway", "primary")];
             if !structure.is_empty() {
                 tags.push((*structure, "yes"));
             }
-            Way { id, tags, node_ids: node_ids.to_vec() }
+            PbfWay { id, tags, node_ids: node_ids.to_vec() }
         })
         .collect();
     fs::write(osm, pbf::network(&[], &nodes, &ways)).unwrap();
 }
 
-/// The ascent of way 2 by all that tells it: roads, edges, and the profile.
+/// The ascent of way 2 in all outputs: roads, edges, and the profile.
 fn are_ascents(folder: &Path, [dem, osm]: [&Path; 2], options: &[&str], ascent_m: f64) {
     let package = folder.join("span.pmtiles");
     build_from([dem, osm], &package, &[&["-q", "-O"], options].concat());
@@ -270,7 +275,8 @@ fn are_ascents(folder: &Path, [dem, osm]: [&Path; 2], options: &[&str], ascent_m
     assert!((both_m - of_roads).abs() < 0.1, "{both_m} {of_roads}");
 }
 
-/// The cases of public bug reports: a tunnel under a strait whose floor is in its way, and a bridge over a hump.
+/// The cases of public bug reports: a tunnel under a strait whose floor is in its way, and a bridge
+/// over a hump.
 #[test]
 fn spans_that_the_ground_stops_are_measured_as_they_are_written() {
     for (dem, osm, ascent_m) in [("strait.tif", "tunnel", 66.08), ("hump.tif", "bridge", 39.97)] {
@@ -285,13 +291,13 @@ fn spans_that_the_ground_stops_are_measured_as_they_are_written() {
     }
 }
 
-/// Where ridges stand along a road, and how high they are, metres.
+/// Positions of ridges along a road, and their heights, metres.
 type Ridges<'a> = &'a [(f64, f64)];
 
-/// Ridges of which the tops are known stand in the way of bridges, and trenches in that of a tunnel.
+/// Ridges with known tops are in the way of bridges, and trenches in that of a tunnel.
 #[test]
 fn ridges_and_trenches_count_by_their_tops_and_floors() {
-    // Where ridges stand, metres along the road, and how high: negative ones are trenches.
+    // Positions of ridges, metres along the road, and their heights: negative ones are trenches.
     let cases: [(Ridges<'_>, &str, f64); 3] = [
         (&[(1000.0, 24.0)], "bridge", 24.0),
         (&[(900.0, 10.0), (1400.0, 31.0)], "bridge", 41.0),

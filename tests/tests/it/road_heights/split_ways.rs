@@ -1,4 +1,4 @@
-//! Junctions have the same heights however ways are split, turned and numbered.
+//! Junctions have the same heights however ways are split, reversed and numbered.
 
 use std::{
     collections::BTreeMap,
@@ -9,7 +9,7 @@ use std::{
 
 use corniche_testing::{
     Random,
-    pbf::{self, Way},
+    pbf::{self, PbfWay},
     skip,
 };
 use e2e::{build_from, real_data, text, write_ascii_grid};
@@ -29,7 +29,7 @@ fn osmium(words: &[&str]) -> Option<()> {
 }
 
 impl Opl {
-    /// `None` where there is no osmium.
+    /// Returns `None` if osmium is not installed.
     fn read(osm: &Path, folder: &Path) -> Option<Self> {
         let opl = folder.join("all.opl");
         if osmium(&["cat", "-O", text(osm), "-o", text(&opl)]).is_none() {
@@ -45,7 +45,7 @@ impl Opl {
         })
     }
 
-    /// A third of all ways split and a third turned; numbered anew if that is wanted.
+    /// Splits a third of all ways and reverses a third; renumbers them if requested.
     fn changed(&self, seed: u64, is_numbered: bool) -> Self {
         let mut random = Random::new(seed);
         let mut pick = |below: usize| (random.share() * below as f64) as usize;
@@ -123,7 +123,7 @@ fn junctions((dem, crs): (&Path, &[&str]), osm: &Path, folder: &Path) -> BTreeMa
             own.extend(known.into_iter().flatten().map(|height_m| (height_m * 1e6).round() as i64));
         }
     }
-    // A ring that no other road meets has no junction: it begins where one of its ways does.
+    // A ring that no other road meets has no junction: it begins at the start of one of its ways.
     for node in rings.iter().filter_map(|node| node.parse().ok()) {
         if heights.get(&node).is_some_and(|own: &Vec<i64>| own.len() <= 4) {
             heights.remove(&node);
@@ -135,7 +135,7 @@ fn junctions((dem, crs): (&Path, &[&str]), osm: &Path, folder: &Path) -> BTreeMa
     heights
 }
 
-/// Splits, turns and numbers the ways of an extract: no junction moves.
+/// Splits, reverses and renumbers the ways of an extract: no junction moves.
 fn stays(dem: &str, osm: &str, least: usize) {
     if let (Some(dem), Some(osm)) = (real_data(dem), real_data(osm)) {
         stay([&dem, &osm], least);
@@ -156,8 +156,8 @@ fn stay([dem, osm]: [&Path; 2], least: usize) {
     }
 }
 
-/// Two chains join the same two nodes less than ten metres apart, and leave both in the same direction: a way of one that is split at its fifth point, or
-/// has another number, moves no junction.
+/// Two chains join the same two nodes less than ten metres apart, and leave both in the same
+/// direction: splitting a way at its fifth point, or renumbering it, moves no junction.
 #[test]
 fn junctions_of_a_real_city_do_not_move() {
     const WAY: &str = "w42432151";
@@ -187,7 +187,8 @@ fn junctions_of_a_real_city_do_not_move() {
     }
 }
 
-/// Three roads between two nodes eight metres apart, all in the direction of the road that comes in: which of them goes on is not told by their numbers.
+/// Three roads between two nodes eight metres apart, all in the direction of the incoming road:
+/// their numbers do not decide which of them continues it.
 #[test]
 fn ties_are_not_broken_by_the_order_of_ways() {
     let folder = tempfile::tempdir().unwrap();
@@ -209,7 +210,7 @@ fn ties_are_not_broken_by_the_order_of_ways() {
     ];
     let shapes: [&[i64]; 6] = [&[1, 2], &[2, 3], &[2, 8, 3], &[3, 9, 2], &[3, 4], &[3, 5]];
     let extract = |ids: [i64; 6], turned: usize| {
-        let mut ways: Vec<Way<'_>> = ids
+        let mut ways: Vec<PbfWay<'_>> = ids
             .into_iter()
             .zip(shapes)
             .enumerate()
@@ -218,7 +219,7 @@ fn ties_are_not_broken_by_the_order_of_ways() {
                 if turned >> k & 1 == 1 {
                     node_ids.reverse();
                 }
-                Way { id, tags: vec![("highway", "residential")], node_ids }
+                PbfWay { id, tags: vec![("highway", "residential")], node_ids }
             })
             .collect();
         ways.sort_by_key(|way| way.id);

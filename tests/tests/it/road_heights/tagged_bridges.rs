@@ -1,4 +1,5 @@
-//! Bridges and tunnels that are mapped in the ways of public bug reports: their heights, on the elevation files and in packages.
+//! Bridges and tunnels as mapped in the ways of public bug reports: their heights, on the elevation
+//! files and in packages.
 
 #![allow(clippy::float_cmp, reason = "a flag is 0 or 1")]
 
@@ -8,16 +9,16 @@ use e2e::{build_from, corniche, json, manifest, real_data, text};
 
 use super::{Line, Row, features, number, succeed};
 
-/// What the program makes of a case.
+/// The results of a case.
 struct Made {
-    /// By way.
+    /// The roads, by way.
     roads: BTreeMap<i64, (Row, Vec<Line>)>,
     edges: Vec<Row>,
-    /// What exports say of bridges and tunnels.
+    /// The messages of exports about bridges and tunnels.
     said: String,
     /// The list of defects of the build.
     defects: String,
-    /// Reasons to look at a bridge or a tunnel, by the manifest.
+    /// Reasons to inspect a bridge or a tunnel, from the manifest.
     reasons: Vec<String>,
     crossings: u64,
 }
@@ -62,7 +63,7 @@ impl Made {
         self.roads[&way_id].1.iter().flatten().map(|at| at[2])
     }
 
-    /// All heights of a way are near one.
+    /// All heights of a way are close to one value.
     fn is_level(&self, way_id: i64, height_m: f64, within_m: f64) {
         for found in self.heights_m(way_id) {
             assert!((found - height_m).abs() <= within_m, "way {way_id}: {found}");
@@ -74,7 +75,8 @@ impl Made {
     }
 }
 
-/// A viaduct 60 m above a street keeps its height, whether the street shares a node with it or not; the street keeps its own.
+/// A viaduct 60 m above a street keeps its height, whether the street shares a node with it or not;
+/// the street keeps its own.
 #[test]
 fn a_street_below_does_not_pull_a_viaduct_down() {
     for name in ["apart", "joined"] {
@@ -107,7 +109,7 @@ fn a_street_below_does_not_pull_a_viaduct_down() {
     }
 }
 
-/// A node of each at one place, a stretch of 100 m that both share, and neither: the same crossing.
+/// A shared node at one point, a shared stretch of 100 m, and neither: the same crossing.
 #[test]
 fn places_in_common_are_crossings() {
     for name in ["no-nodes", "same-place", "stretch"] {
@@ -146,7 +148,8 @@ fn a_bridge_keeps_room_over_a_tunnel() {
     assert_eq!(made.number(5, "grade_over_limit"), 0.0);
 }
 
-/// The roundabout's approaches from both sides of the cutting carry it; the road that leaves it in the cutting is told.
+/// The roundabout's approaches from both sides of the cutting carry it; the road that leaves it in
+/// the cutting is reported.
 #[test]
 fn a_roundabout_on_a_bridge_is_carried_by_its_approaches() {
     let Some(made) = made("ring-on-bridge/dem.tif", "ring-on-bridge/roads.osm.pbf") else { return };

@@ -1,4 +1,5 @@
-//! Ways that come back over their own nodes are measured as they run: turned in the extract, they are the same the other way around.
+//! Ways that return over their own nodes are measured along their course: reversed in the extract,
+//! they have the same values in reverse.
 
 use std::{collections::BTreeMap, path::Path};
 
@@ -6,10 +7,10 @@ use e2e::text;
 
 use super::{Line, PlainWay, Row, export, features, number, package_with, profile, succeed};
 
-/// Places of the nodes of each shape, in degrees from its first one.
+/// Positions of the nodes of each shape, in degrees from its first one.
 const PLACES: [[f64; 2]; 5] =
     [[0.0, 0.0], [0.006, 0.001], [0.013, -0.001], [0.016, 0.0015], [0.022, 0.0]];
-/// Ways that come back: nodes by their number among the places, from 1.
+/// Ways that return: nodes by their number among the positions, from 1.
 const SHAPES: [&[i64]; 8] = [
     &[1, 2, 1],
     &[1, 2, 3, 2, 1],
@@ -23,7 +24,8 @@ const SHAPES: [&[i64]; 8] = [
     &[1, 2, 3, 4, 2, 1, 5],
 ];
 
-/// A package of all shapes on the ground, and of all as bridges east of them, each on its own nodes; where they are turned all run the other way.
+/// A package of all shapes on the ground, and of all as bridges east of them, each on its own
+/// nodes; if they are reversed, all run the other way.
 fn package_of_shapes(folder: &Path, name: &str, is_turned: bool) -> [String; 3] {
     let mut nodes = Vec::new();
     let mut ways: Vec<(Vec<i64>, &str)> = Vec::new();
@@ -45,7 +47,7 @@ fn package_of_shapes(folder: &Path, name: &str, is_turned: bool) -> [String; 3] 
     package_with(folder, name, (&nodes, &ways)).map(|path| text(&path).to_owned())
 }
 
-/// Fields by name, of which two change places where a road is turned.
+/// Names of fields, of which two are swapped when a road is reversed.
 fn turned(name: &str) -> &str {
     match name {
         "ascent_m" => "descent_m",
@@ -58,7 +60,7 @@ fn turned(name: &str) -> &str {
 
 fn are_alike(found: &Row, expected: &Row, of: impl Fn(&str) -> &str) {
     for name in found.keys() {
-        // Vertices of decks that lie on a straight line are left out: the last bits say which these are.
+        // Vertices of decks on a straight line are omitted: the last bits decide which these are.
         if name == "vertices_out" && found["height_source"] == "deck" {
             continue;
         }
@@ -96,7 +98,7 @@ fn turned_ways_have_the_same_fields_the_other_way_around() {
         assert_eq!(there.len(), back.len());
         for ((found, lines), (expected, expected_lines)) in there.iter().zip(back) {
             are_alike(found, expected, turned);
-            // Heights come in the same order, the other way around.
+            // Heights are in reverse order.
             let heights = |line: &Line| -> Vec<f64> { line.iter().map(|at| at[2]).collect() };
             if let ([line], [other]) = (&lines[..], &expected_lines[..])
                 && found["height_source"] != "deck"
@@ -110,7 +112,7 @@ fn turned_ways_have_the_same_fields_the_other_way_around() {
     }
 }
 
-/// Loops run the same way around, and other edges from the same node.
+/// Loops run the same way around, and other edges start at the same node.
 #[test]
 fn edges_of_turned_ways_are_the_same() {
     let folder = tempfile::tempdir().unwrap();
@@ -134,7 +136,8 @@ fn edges_of_turned_ways_are_the_same() {
     }
 }
 
-/// A profile along a way there and back, or twice around, has the smooth line and the deck of its chains each time.
+/// A profile along a way there and back, or twice around, has the smoothed line and the deck of its
+/// chains each time.
 #[test]
 fn profiles_there_and_back_are_mirrored() {
     let folder = tempfile::tempdir().unwrap();
@@ -176,6 +179,6 @@ fn profiles_there_and_back_are_mirrored() {
             }
         }
     }
-    // Bridges to and fro without an end of their own are carried by nothing, and stay on the ground.
+    // Bridges to and fro without an end of their own have no support, and stay on the ground.
     assert_eq!(counts, BTreeMap::from([("dem", 8), ("deck", 4), ("ground_under_bridge", 4)]));
 }

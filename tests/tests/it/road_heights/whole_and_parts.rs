@@ -1,4 +1,5 @@
-//! Roads, edges and profiles of packages that were built in parts, or of a part of the data, are those of the whole.
+//! Roads, edges and profiles of packages that were built in parts, or of a region of the data,
+//! equal those of the whole.
 
 use std::{collections::BTreeMap, fs, path::Path};
 
@@ -10,7 +11,7 @@ use super::{Line, Row, export, features, number, pass_inputs, profile, succeed};
 fn a_package_built_in_parts_exports_the_bytes_of_the_whole() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
-    // A file holds the name of its package.
+    // A file contains the name of its package.
     let [whole, merged] = ["whole", "parts"].map(|name| at(name).join("pass.pmtiles"));
     for package in [&whole, &merged] {
         fs::create_dir(package.parent().unwrap()).unwrap();
@@ -37,7 +38,8 @@ fn a_package_built_in_parts_exports_the_bytes_of_the_whole() {
     assert!(one.len() > 100 && one == other);
 }
 
-/// What is left of roads has the grades that it has within the whole; pieces and classes change nothing.
+/// The remaining parts of roads have the same grades as in the whole; pieces and classes have no
+/// effect.
 #[test]
 fn parts_of_roads_have_the_grades_of_the_whole() {
     let folder = tempfile::tempdir().unwrap();
@@ -69,7 +71,7 @@ fn parts_of_roads_have_the_grades_of_the_whole() {
             own[1] += number(&row, "descent_m");
         }
     }
-    // What bounds leave on both of their sides is the whole.
+    // The parts on both sides of the bounds add up to the whole.
     let mut halves: BTreeMap<String, [f64; 2]> = BTreeMap::new();
     for (name, bounds) in [("west.gpkg", "9.0,46,9.53,47.5"), ("east.gpkg", "9.53,46,10,47.5")] {
         for (row, _) in run(name, &["--bounds", bounds]) {
@@ -93,10 +95,12 @@ fn parts_of_roads_have_the_grades_of_the_whole() {
     }
 }
 
-/// How far from the rectangle of a package's data a road is the same as in a package of more: what the smooth line is made from.
+/// The distance from the rectangle of a package's data at which a road equals that in a larger
+/// package: the range of the smoothing.
 const AWAY_M: f64 = 1500.0;
 
-/// Bounds of a build leave out tiles and cut chains: roads far from them have the same lines, heights and grades.
+/// Bounds of a build skip tiles and clip chains: roads far from them have the same lines, heights
+/// and grades.
 #[test]
 fn a_package_of_a_part_of_the_data_has_the_roads_of_the_whole() {
     let folder = tempfile::tempdir().unwrap();

@@ -9,16 +9,16 @@ use std::{
 #[derive(Debug, Clone)]
 pub(crate) struct Request {
     pub(crate) method: String,
-    /// The bucket, and behind a slash the key.
+    /// The bucket, a slash and the key.
     pub(crate) path: String,
     pub(crate) query: BTreeMap<String, String>,
-    /// Names in small letters.
+    /// Headers with names in lower case.
     pub(crate) headers: BTreeMap<String, String>,
     pub(crate) body: Vec<u8>,
 }
 
 impl Request {
-    /// `None` at the end of the connection.
+    /// Reads a request; `None` at the end of the connection.
     pub(crate) fn read(stream: &mut BufReader<TcpStream>) -> io::Result<Option<Self>> {
         let mut first = String::new();
         if stream.read_line(&mut first)? == 0 {
@@ -46,7 +46,7 @@ impl Request {
         Ok(Some(Self { method, path, query: query.collect(), headers, body }))
     }
 
-    /// Method, path and the names in the query: what a test counts.
+    /// Method, path and the names in the query, as tests count them.
     pub(crate) fn short(&self) -> String {
         let names: Vec<&str> = self.query.keys().map(String::as_str).collect();
         let query = if names.is_empty() { String::new() } else { format!("?{}", names.join("&")) };
@@ -84,7 +84,7 @@ impl Answer {
         self
     }
 
-    /// An error as S3 writes it.
+    /// Creates an error in S3's format.
     pub(crate) fn error(status: u16, code: &str, message: &str) -> Self {
         let body = format!(
             "<?xml version=\"1.0\"?><Error><Code>{code}</Code><Message>{message}</Message></Error>"
@@ -92,7 +92,7 @@ impl Answer {
         Self::new(status, body)
     }
 
-    /// Sends it, at most so many bytes of its body.
+    /// Sends the answer, with at most this many bytes of its body.
     pub(crate) fn send(&self, stream: &mut TcpStream, method: &str, most: usize) -> io::Result<()> {
         write!(stream, "HTTP/1.1 {} Answer\r\n", self.status)?;
         for (name, value) in &self.headers {

@@ -10,32 +10,33 @@ use std::{
 
 use super::request::{Answer, Request};
 
-/// What goes wrong with a request.
+/// The fault of a request.
 #[derive(Debug, Clone)]
 pub(crate) enum Fault {
-    /// It is not done, and the answer is an error: status, code, message.
+    /// The request is not executed, and the answer is an error: status, code, message.
     Error(u16, &'static str, &'static str),
-    /// It is not done, and the connection is cut.
+    /// The request is not executed, and the connection is closed.
     Cut,
-    /// It is done, and the connection is cut before the answer.
+    /// The request is executed, and the connection is closed before the answer.
     Lost,
-    /// The answer is cut after so many bytes of its body.
+    /// The connection is closed after this many bytes of the answer's body.
     CutBody(usize),
-    /// The answer says that it has fewer bytes than were asked for.
+    /// The answer claims to have fewer bytes than requested.
     Short,
-    /// Headers of the request with this beginning are ignored.
+    /// Headers of the request with this prefix are ignored.
     Ignore(&'static str),
-    /// The answer leads elsewhere.
+    /// The answer is a redirection.
     Redirect,
-    /// It is said to be done, and what was stored has this many bytes of it left; `None`: it is not there.
+    /// The answer confirms the upload, but only this many bytes are stored; `None` for no object at
+    /// all.
     Forgotten(Option<usize>),
     /// The answer has this body.
     Says(String),
-    /// The answer has so many bytes, which it claims to have or not.
+    /// The answer has this many zero bytes, with or without a `Content-Length`.
     Zeros { bytes: u64, is_claimed: bool },
 }
 
-/// Which fault a request has, if any.
+/// Returns the fault of a request, if any.
 pub(crate) type Faults = Box<dyn FnMut(&Request) -> Option<Fault> + Send>;
 
 #[derive(Clone)]
@@ -48,7 +49,7 @@ pub(crate) struct Server {
 pub(crate) struct State {
     pub(crate) objects: BTreeMap<String, Object>,
     pub(crate) uploads: BTreeMap<String, Upload>,
-    /// Requests in short.
+    /// The requests in short form.
     pub(crate) log: Vec<String>,
     faults: Option<Faults>,
     number: u64,
@@ -69,7 +70,7 @@ pub(crate) struct Upload {
 }
 
 impl Server {
-    /// With an empty bucket `maps`.
+    /// Starts a server with an empty bucket `maps`.
     pub(crate) fn start() -> Self {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let url = format!("http://{}", listener.local_addr().unwrap());
@@ -172,7 +173,7 @@ impl Server {
     }
 }
 
-/// Sends an answer of zeros and ends the connection, also where the client takes no more of it.
+/// Sends an answer of zeros and closes the connection, even if the client reads no more of it.
 fn zeros(mut stream: &TcpStream, bytes: u64, is_claimed: bool) -> io::Result<()> {
     let length = if is_claimed { format!("Content-Length: {bytes}\r\n") } else { String::new() };
     let head = format!(
@@ -302,7 +303,7 @@ impl State {
     }
 }
 
-/// The fault for the first `count` requests that `concerned` says yes to.
+/// The fault for the first `count` requests that `concerned` accepts.
 pub(crate) fn first(
     count: usize,
     fault: Fault,

@@ -1,6 +1,7 @@
-//! Random small extracts: with places in nodes or in ways, missing nodes, duplicates and several versions.
+//! Generates random small extracts: with positions in nodes or in ways, missing nodes, duplicates
+//! and several versions.
 
-use corniche_testing::pbf::{Block, deltas, field, number, packed_blob, plain_header, raw};
+use corniche_testing::pbf::{BlockBuilder, deltas, field, number, packed_blob, plain_header, raw};
 use proptest::prelude::*;
 
 /// A way of a random extract.
@@ -10,12 +11,13 @@ struct MadeWay {
     tags: Vec<(&'static str, &'static str)>,
     node_ids: Vec<i64>,
     version: i64,
-    /// Latitude and longitude of each node, in ways that say so.
+    /// Latitude and longitude of each node, if the ways contain them.
     places: Option<Vec<(i64, i64)>>,
 }
 
 impl MadeExtract {
-    /// Ways without nodes, in this order: id, `highway` value and version of each.
+    /// Creates an extract of ways without nodes, in this order: id, `highway` value and version of
+    /// each.
     pub(crate) fn of_bare_ways(ways: &[(i64, &'static str, i64)], per_block: usize) -> Self {
         let bare = |&(id, highway, version): &(i64, &'static str, i64)| {
             let tags = vec![("highway", highway)];
@@ -57,7 +59,7 @@ fn made_way() -> impl Strategy<Value = MadeWay> {
         })
 }
 
-/// The order of a made file.
+/// The order of a generated file.
 #[derive(Debug, Clone, Copy)]
 enum Order {
     Sorted,
@@ -75,7 +77,8 @@ pub(crate) struct MadeExtract {
     has_places: bool,
 }
 
-/// Sorted or not, with places in nodes, in ways or in both, with nodes and ways that are there twice.
+/// Generates extracts that are sorted or not, with positions in nodes, in ways or in both, and with
+/// nodes and ways that occur twice.
 pub(crate) fn made_extract() -> impl Strategy<Value = MadeExtract> {
     (
         prop::collection::vec(made_way(), 0..30),
@@ -94,7 +97,7 @@ pub(crate) fn made_extract() -> impl Strategy<Value = MadeExtract> {
 }
 
 impl MadeExtract {
-    /// The file.
+    /// Returns the bytes of the file.
     pub(crate) fn bytes(&self) -> Vec<u8> {
         let Self { ways, nodes, per_block, order, has_places } = self;
         made_file(ways.clone(), nodes.clone(), *per_block, *order, *has_places)
@@ -114,14 +117,14 @@ fn made_file(
     }
     let mut blobs = Vec::new();
     for some in nodes.chunks(per_block) {
-        let mut block = Block::new();
+        let mut block = BlockBuilder::new();
         let (dense, plain) = some.split_at(some.len() / 2);
         block.dense(dense);
         block.plain(plain);
         blobs.push(packed_blob(b"OSMData", &block.bytes()));
     }
     for some in ways.chunks(per_block) {
-        let mut block = Block::new();
+        let mut block = BlockBuilder::new();
         for way in some {
             let mut message = block.way_message(way.id, &way.tags, &way.node_ids);
             if way.version > 0 {

@@ -1,4 +1,5 @@
-//! What the tests of this crate share: the default table, a plain projection, a reader that gathers everything.
+//! Helpers of this crate's tests: the default table, a plain projection, a reader that gathers
+//! everything.
 
 #![allow(dead_code, reason = "each test binary uses its own part")]
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
@@ -18,23 +19,23 @@ use std::{
 
 use corniche_geom::LatticePoint;
 use corniche_osm::{
-    Defect, ExtractSummary, Kept, KeptKinds, LayerSink, ReadOsmError, ReadRequest, ToLattice,
-    read_kept_roads,
+    ExtractDefect, ExtractSummary, KeptKinds, LayerSink, ReadOsmError, ReadRequest, ShareStore,
+    ToLattice, read_kept_roads,
 };
 use corniche_presets::parse_frc_table;
 use corniche_roads::{FrcTable, Road};
-use corniche_store::{MemoryStore, Scratch};
+use corniche_store::{MemoryStore, ScratchSpace};
 use corniche_testing::MemoryScratch;
 use rayon::ThreadPool;
 use roads::{check_summary, is_loss_of_way, read_roads, read_roads_from};
 
-/// The preset `config/frc/default.toml`.
+/// Returns the preset `config/frc/default.toml`.
 pub(crate) fn default_table() -> FrcTable {
     parse_frc_table(corniche_presets::frc_preset("default").unwrap()).unwrap()
 }
 
-/// A store for what shares keep.
-pub(crate) fn kept(store: &MemoryStore) -> Kept<'_> {
+/// Returns a store for the results of shares.
+pub(crate) fn kept(store: &MemoryStore) -> ShareStore<'_> {
     let kinds = KeptKinds {
         ways: 10,
         located: 11,
@@ -43,10 +44,11 @@ pub(crate) fn kept(store: &MemoryStore) -> Kept<'_> {
         places: 14,
         nodes_records: 15,
     };
-    Kept { store, kinds }
+    ShareStore { store, kinds }
 }
 
-/// A lattice of 1e-7 degrees, so that every point shows the coordinates of its node.
+/// Converts positions to a lattice of 1e-7 degrees, so that every point shows the coordinates of
+/// its node.
 pub(crate) fn to_lattice(positions_deg: &[[f64; 2]]) -> Vec<Option<LatticePoint>> {
     let round = |deg: f64| (deg * 1e7).round() as i64;
     positions_deg
@@ -59,12 +61,12 @@ pub(crate) fn to_lattice(positions_deg: &[[f64; 2]]) -> Vec<Option<LatticePoint>
 #[derive(Debug, PartialEq)]
 pub(crate) struct Extract {
     pub(crate) roads: Vec<Road>,
-    pub(crate) defects: Vec<Defect>,
+    pub(crate) defects: Vec<ExtractDefect>,
     pub(crate) summary: ExtractSummary,
 }
 
 impl Extract {
-    /// How often each reason occurs.
+    /// Returns how often each reason occurs.
     pub(crate) fn reasons(&self) -> BTreeMap<&'static str, usize> {
         let mut reasons = BTreeMap::new();
         for defect in &self.defects {
@@ -82,9 +84,9 @@ impl Extract {
             assert!(road.fixed.is_sorted_by(|a, b| a < b), "way {}", road.way_id);
             assert_eq!((road.fixed.first(), road.fixed.last()), (Some(&0), Some(&last)));
         }
-        // Every way that was lost stands in exactly one defect that says so, and no way is both lost and a road, unless its
-        // id is used twice.
-        let lost = |defect: &&Defect| is_loss_of_way(defect);
+        // Every lost way has exactly one defect that says so, and no way is both lost and a road,
+        // unless its id is used twice.
+        let lost = |defect: &&ExtractDefect| is_loss_of_way(defect);
         let left_out = self.summary.left_out;
         let expected =
             left_out.unknown + left_out.area + left_out.duplicate + left_out.without_line;
@@ -94,7 +96,9 @@ impl Extract {
         for defect in self.defects.iter().filter(lost) {
             if matches!(
                 defect,
-                Defect::TooFewNodes { .. } | Defect::NoLine { .. } | Defect::ToAndFro { .. }
+                ExtractDefect::TooFewNodes { .. }
+                    | ExtractDefect::NoLine { .. }
+                    | ExtractDefect::ToAndFro { .. }
             ) {
                 assert!(!ids.contains(&defect.object().1), "{defect:?}");
             }
@@ -117,12 +121,12 @@ fn read_in(path: &Path, pool: &ThreadPool, place: &ToLattice<'_>) -> Result<Extr
     gather(|sink, on_defect| read_roads(&request, sink, on_defect, &|| false))
 }
 
-/// With memory for everything.
+/// Returns a request with memory for everything.
 pub(crate) fn request<'a>(
     path: &'a Path,
     pool: &'a ThreadPool,
     place: &'a ToLattice<'a>,
-    scratch: &'a dyn Scratch,
+    scratch: &'a dyn ScratchSpace,
 ) -> ReadRequest<'a> {
     let (table, memory_bytes) = (&*TABLE, 1 << 30);
     ReadRequest {
@@ -155,7 +159,7 @@ pub(crate) fn read_bytes(bytes: &[u8]) -> Result<Extract, ReadOsmError> {
     read_bytes_in(&POOL, bytes)
 }
 
-/// The same with other threads.
+/// Reads from memory with other threads.
 pub(crate) fn read_bytes_in(pool: &ThreadPool, bytes: &[u8]) -> Result<Extract, ReadOsmError> {
     let scratch = MemoryScratch::default();
     let request = request(Path::new("made.osm.pbf"), pool, &to_lattice, &scratch);
@@ -164,10 +168,10 @@ pub(crate) fn read_bytes_in(pool: &ThreadPool, bytes: &[u8]) -> Result<Extract, 
     })
 }
 
-/// The same with this much memory for ways and nodes.
+/// Reads from memory with a memory limit for ways and nodes.
 pub(crate) fn read_bytes_within(
     memory_bytes: u64,
-    scratch: &dyn Scratch,
+    scratch: &dyn ScratchSpace,
     bytes: &[u8],
 ) -> Result<Extract, ReadOsmError> {
     let path = Path::new("made.osm.pbf");
@@ -180,7 +184,7 @@ pub(crate) fn read_bytes_within(
 pub(crate) fn gather(
     read: impl FnOnce(
         &mut dyn FnMut(Road),
-        &mut dyn FnMut(Defect),
+        &mut dyn FnMut(ExtractDefect),
     ) -> Result<ExtractSummary, ReadOsmError>,
 ) -> Result<Extract, ReadOsmError> {
     let (mut roads, mut defects) = (Vec::new(), Vec::new());
@@ -190,7 +194,7 @@ pub(crate) fn gather(
     Ok(extract)
 }
 
-/// A layer's objects and their counts, as they are handed out.
+/// A layer's objects and their counts, as they are delivered.
 pub(crate) struct Gathered<T, S> {
     pub(crate) objects: Vec<T>,
     pub(crate) summary: Option<S>,
@@ -212,7 +216,7 @@ impl<T, S> LayerSink<T, S> for Gathered<T, S> {
     }
 }
 
-/// Gathers roads from shares that were kept.
+/// Gathers roads from the stored results of shares.
 pub(crate) fn gather_kept(
     request: &ReadRequest<'_>,
     of: u16,
@@ -228,7 +232,7 @@ pub(crate) fn gather_kept(
     Ok(extract)
 }
 
-/// A file that counts how often a blob of it is read.
+/// A file that counts how often its blobs are read.
 pub(crate) struct CountedBlobs<'a> {
     source: Cursor<&'a [u8]>,
     blobs: &'a Cell<u64>,
@@ -248,7 +252,8 @@ impl Read for CountedBlobs<'_> {
 
 impl Seek for CountedBlobs<'_> {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        // A blob is read from its place; the listing of blobs only goes on from where it is, after the start.
+        // To read a blob, the reader seeks to it from the start; the listing of blobs only
+        // continues from the current position.
         if matches!(to, SeekFrom::Start(offset) if offset > 0) {
             self.blobs.set(self.blobs.get() + 1);
         }
@@ -260,7 +265,7 @@ pub(crate) fn fixture(name: &str) -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures")).join(name)
 }
 
-/// The bytes as a file, which is deleted together with the folder.
+/// Writes the bytes to a file, which is deleted together with the folder.
 pub(crate) fn written(name: &str, bytes: &[u8]) -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(name);

@@ -1,18 +1,19 @@
-//! The areas, or the lines, of an extract, read without other layers, and what holds of their counts.
+//! Reads the areas or the boundaries of an extract without other layers, and checks their counts.
 
-use corniche_areas::{Area, AreaTable, ClassedLayer};
+use corniche_areas::{Area, AreaTable};
 use corniche_osm::{
-    AreaSummary, ClassedLine, Defect, Layers, LineSummary, ReadOsmError, ReadRequest, read_extract,
+    AreaSummary, ClassedLine, ExtractDefect, Layers, LineSummary, ReadOsmError, ReadRequest,
+    read_extract,
 };
 
 use super::roads::Only;
 
-/// Reads the areas of an extract and hands them to `sink`. Each object counts once.
+/// Reads the areas of an extract and passes them to `sink`. Each object counts once.
 pub(crate) fn read_areas(
     request: &ReadRequest<'_>,
     table: &AreaTable,
     sink: &mut dyn FnMut(Area),
-    on_defect: &mut dyn FnMut(Defect),
+    on_defect: &mut dyn FnMut(ExtractDefect),
 ) -> Result<AreaSummary, ReadOsmError> {
     let mut areas = Only::<_, AreaSummary>::new(sink);
     let layers = Layers { areas: Some((table, &mut areas)), ..Layers::default() };
@@ -23,15 +24,14 @@ pub(crate) fn read_areas(
     Ok(summary)
 }
 
-/// Reads the lines of a layer and hands them to `sink`.
-pub(crate) fn read_lines(
+/// Reads the boundaries and passes them to `sink`.
+pub(crate) fn read_boundaries(
     request: &ReadRequest<'_>,
-    layer: ClassedLayer,
     sink: &mut dyn FnMut(ClassedLine),
-    on_defect: &mut dyn FnMut(Defect),
+    on_defect: &mut dyn FnMut(ExtractDefect),
 ) -> Result<LineSummary, ReadOsmError> {
     let mut lines = Only::<_, LineSummary>::new(sink);
-    let layers = Layers { lines: vec![(layer, &mut lines)], ..Layers::default() };
+    let layers = Layers { boundaries: Some(&mut lines), ..Layers::default() };
     read_extract(request, layers, on_defect, &|| false)?;
     check_lines(&lines.summary);
     Ok(lines.summary)

@@ -1,16 +1,16 @@
-//! The roads of an extract, read without other layers, and what holds of their counts.
+//! Reads the roads of an extract without other layers, and checks their counts.
 
 #![allow(dead_code, reason = "each of its users takes its own part")]
 
 use std::io::{Read, Seek};
 
 use corniche_osm::{
-    Defect, ExtractSummary, LayerSink, Layers, LeftOut, LeftOutReason, ReadOsmError, ReadRequest,
-    read_extract, read_extract_from,
+    ExtractDefect, ExtractSummary, LayerSink, Layers, LeftOut, LeftOutReason, ReadOsmError,
+    ReadRequest, read_extract, read_extract_from,
 };
 use corniche_roads::Road;
 
-/// Hands a layer of which all objects go to one function.
+/// Passes all objects of a layer to one function.
 pub(crate) struct Only<'a, T, S> {
     sink: &'a mut dyn FnMut(T),
     pub(crate) summary: S,
@@ -32,11 +32,11 @@ impl<T, S> LayerSink<T, S> for Only<'_, T, S> {
     }
 }
 
-/// Reads the roads of an extract and hands them to `sink`.
+/// Reads the roads of an extract and passes them to `sink`.
 pub(crate) fn read_roads(
     request: &ReadRequest<'_>,
     sink: &mut dyn FnMut(Road),
-    on_defect: &mut dyn FnMut(Defect),
+    on_defect: &mut dyn FnMut(ExtractDefect),
     should_stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<ExtractSummary, ReadOsmError> {
     let mut roads = Only::new(sink);
@@ -45,12 +45,12 @@ pub(crate) fn read_roads(
     Ok(roads.summary)
 }
 
-/// The same from any source of bytes.
+/// Reads the roads from any source of bytes.
 pub(crate) fn read_roads_from<R: Read + Seek>(
     source: R,
     request: &ReadRequest<'_>,
     sink: &mut dyn FnMut(Road),
-    on_defect: &mut dyn FnMut(Defect),
+    on_defect: &mut dyn FnMut(ExtractDefect),
     should_stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<ExtractSummary, ReadOsmError> {
     let mut roads = Only::new(sink);
@@ -59,22 +59,23 @@ pub(crate) fn read_roads_from<R: Read + Seek>(
     Ok(roads.summary)
 }
 
-/// Whether the whole way is left out for it, rather than a part of it, or nothing.
+/// Whether the whole way is skipped because of the defect, rather than a part of it or nothing.
 ///
-/// Each way that [`LeftOut`] counts as unknown, area, duplicate or without line has exactly one such defect.
-pub(crate) fn is_loss_of_way(defect: &Defect) -> bool {
+/// Each way that [`LeftOut`] counts as unknown, area, duplicate or without line has exactly one
+/// such defect.
+pub(crate) fn is_loss_of_way(defect: &ExtractDefect) -> bool {
     matches!(
         defect,
-        Defect::UnknownHighway { .. }
-            | Defect::Area { .. }
-            | Defect::DuplicateWay { .. }
-            | Defect::TooFewNodes { .. }
-            | Defect::NoLine { .. }
-            | Defect::ToAndFro { .. }
+        ExtractDefect::UnknownHighway { .. }
+            | ExtractDefect::Area { .. }
+            | ExtractDefect::DuplicateWay { .. }
+            | ExtractDefect::TooFewNodes { .. }
+            | ExtractDefect::NoLine { .. }
+            | ExtractDefect::ToAndFro { .. }
     )
 }
 
-/// Asserts what holds of every summary of roads.
+/// Asserts the properties of every summary of roads.
 pub(crate) fn check_summary(summary: &ExtractSummary) {
     let known: u64 = summary.highways.values().map(|highway| highway.ways).sum();
     let LeftOut { listed, class_off, unknown, area, .. } = summary.left_out;

@@ -1,4 +1,4 @@
-//! What the ground of each tile costs, by how many of its nodes lie in the rectangles of files.
+//! The cost of each tile's ground, derived from the number of its nodes in the rectangles of files.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,14 +11,15 @@ use super::list::micros;
 use crate::BuildError;
 
 /// Costs of tiles on all levels, microseconds of one core.
-pub(crate) struct Grounds {
-    /// What the step *heights* costs; `None` where the terrain comes from a package and there are no photos.
+pub(crate) struct LevelTileCosts {
+    /// Cost of the step *heights*; `None` if the terrain comes from a package and there are no
+    /// photos.
     pub(crate) heights: Option<Vec<(TileId, u64)>>,
-    /// What the step *tiles* costs without roads.
+    /// Cost of the step *tiles* without roads.
     pub(crate) tiles: Vec<(TileId, u64)>,
 }
 
-impl Grounds {
+impl LevelTileCosts {
     /// The costs of ground from elevation files, by the nodes of each finest tile.
     pub(crate) fn measured(opened: &Opened, nodes: &[(TileId, u64)]) -> Self {
         let triangles_per_node = rates::triangles_per_node(opened.tolerance_cells());
@@ -29,7 +30,8 @@ impl Grounds {
                 (id, micros(rates::VOID_TILE_SECONDS + nodes as f64 * seconds_per_node))
             })
         };
-        // A coarse tile has as many nodes as a finest one; where only a part of it has data, it has less.
+        // A coarse tile has as many nodes as a finest one; if only a part of it has data, it has
+        // fewer.
         let tile_nodes = (TILE_CELLS * TILE_CELLS) as f64;
         let coarse = |seconds_per_node: f64| {
             let beneath = nodes_above(nodes);
@@ -46,7 +48,8 @@ impl Grounds {
         }
     }
 
-    /// The costs of ground from a package: the same for each tile with ground, because only its levels say how much they hold.
+    /// The costs of ground from a package: the same for each tile with ground, because the package
+    /// records sizes only by level.
     pub(crate) fn recorded(opened: &Opened, terrain: &RecordedTerrain) -> Result<Self, BuildError> {
         let levels = &terrain.manifest().levels;
         let with_ground: BTreeSet<TileId> = terrain.package().tile_ids()?.into_iter().collect();
@@ -56,7 +59,7 @@ impl Grounds {
             Some(micros(triangles * rates::SECONDS_PER_RECORDED_TRIANGLE))
         };
         let void_us = micros(rates::VOID_TILE_SECONDS);
-        let all = DataTiles::of(&opened.grid).within(TileId::ROOT);
+        let all = DataTiles::from_plan(&opened.grid).within(TileId::ROOT);
         let all = all.into_iter().map(|id| (id, void_us));
         let grounds = with_ground.iter().map(|id| (*id, ground_us(id).unwrap_or_default()));
         let heights = opened.photo.files().is_some().then(|| photos(opened).collect());
@@ -64,7 +67,7 @@ impl Grounds {
     }
 }
 
-/// What the photos of finest tiles cost; those of the levels above are little beside them.
+/// The cost of the photos of finest tiles; photos of the levels above cost little in comparison.
 fn photos(opened: &Opened) -> impl Iterator<Item = (TileId, u64)> {
     opened.photo.files().into_iter().flat_map(move |photos| {
         let seconds = rates::photo_texels(photos.levels()) * rates::SECONDS_PER_PHOTO_TEXEL;
@@ -72,12 +75,12 @@ fn photos(opened: &Opened) -> impl Iterator<Item = (TileId, u64)> {
             let is_covered = photos.grid.touches(&opened.grid.frame.tile_bounds(id));
             rates::VOID_TILE_SECONDS + if is_covered { seconds } else { 0.0 }
         };
-        let finest = DataTiles::of(&opened.grid).in_order_within(TileId::ROOT);
+        let finest = DataTiles::from_plan(&opened.grid).in_order_within(TileId::ROOT);
         finest.into_iter().map(move |id| (id, micros(seconds_of(id))))
     })
 }
 
-/// The nodes of its own level that lie in the data, for each tile above some finest ones.
+/// For each tile above some finest tiles, the number of nodes of its own level inside the data.
 fn nodes_above(finest: &[(TileId, u64)]) -> BTreeMap<TileId, f64> {
     let mut all = BTreeMap::new();
     let mut level: BTreeMap<TileId, f64> =
@@ -97,11 +100,12 @@ fn nodes_above(finest: &[(TileId, u64)]) -> BTreeMap<TileId, f64> {
     }
 }
 
-/// Nodes of a tile that belong to it.
+/// The number of nodes that belong to a tile.
 const TILE_NODES: u64 = (TILE_CELLS * TILE_CELLS) as u64;
 
-/// All tiles of `data`, row by row, each with the number of its nodes in the rectangles, which are given by their south-western and
-/// north-eastern node. Where rectangles overlap, nodes count twice, but no tile has more than all its nodes.
+/// Returns all tiles of `data`, row by row, each with the number of its nodes in the rectangles,
+/// which are given by their south-western and north-eastern node. Nodes in overlapping rectangles
+/// count twice, but a tile never has more than all its nodes.
 pub(crate) fn nodes_by_tile(
     frame: &GridFrame,
     data: &DataTiles,
@@ -129,11 +133,12 @@ pub(crate) fn nodes_by_tile(
     counted
 }
 
-/// How many of the nodes from `low` to `high` along an axis belong to each tile from `first` to `last`, where it is any.
+/// The number of nodes from `low` to `high` along an axis that belong to each tile from `first` to
+/// `last`; tiles without nodes are skipped.
 fn overlaps([low, high]: [i64; 2], [first, last]: [u32; 2]) -> Vec<(u32, u64)> {
     let tile_of = |node: i64| node.div_euclid(TILE_CELLS);
     let from = tile_of(low).max(i64::from(first));
-    // The last tile has the nodes on the border behind it, too.
+    // The last tile also has the nodes on its far border.
     let to = tile_of(high).min(i64::from(last));
     (from..=to)
         .map(|tile| {

@@ -6,7 +6,7 @@ fn node(i: i64, j: i64) -> NodeIndex {
     NodeIndex { i, j }
 }
 
-fn of(counts: &[(TileId, u64)], x: u32, y: u32) -> u64 {
+fn count_at(counts: &[(TileId, u64)], x: u32, y: u32) -> u64 {
     counts.iter().find(|(id, _)| (id.x(), id.y()) == (x, y)).unwrap().1
 }
 
@@ -19,7 +19,7 @@ fn every_node_counts_for_one_tile() {
     assert_eq!(counts.iter().map(|(_, nodes)| nodes).sum::<u64>(), 1001 * 801);
     let tiles = data.within(TileId::ROOT);
     assert_eq!(counts.iter().map(|&(id, _)| id).collect::<Vec<_>>(), tiles);
-    // Node by node, by the rule that says whose tile a node on a border is.
+    // Counted node by node, by the rule that assigns nodes on a border to a tile.
     for (id, nodes) in &counts {
         let corner = frame.tile_corner(*id);
         let own = |i: i64, j: i64| {
@@ -39,10 +39,10 @@ fn tiles_between_files_have_no_node_and_those_of_two_files_no_more_than_all() {
     let north_west = [node(0, 256 * 3 + 1), node(255, 256 * 4)];
     let south_east = [node(256 * 4 - 10, 1), node(256 * 4 - 1, 20)];
     let counts = nodes_by_tile(&frame, &data, &[north_west, north_west, south_east]);
-    assert_eq!(of(&counts, 0, 0), 65_536);
-    assert_eq!(of(&counts, 3, 3), 200);
+    assert_eq!(count_at(&counts, 0, 0), 65_536);
+    assert_eq!(count_at(&counts, 3, 3), 200);
     assert_eq!(counts.iter().filter(|(_, nodes)| *nodes > 0).count(), 2);
-    // Beside the data there is nothing to count.
+    // Outside the data there is nothing to count.
     let beside = [node(-5000, -5000), node(-4000, -4000)];
     assert!(nodes_by_tile(&frame, &data, &[beside]).iter().all(|(_, nodes)| *nodes == 0));
 }

@@ -1,4 +1,4 @@
-//! Every tile is in one job, large jobs come first, and each says what it waits for.
+//! Every tile is in one job, large jobs come first, and each job lists what it depends on.
 
 use std::collections::BTreeSet;
 
@@ -11,8 +11,8 @@ fn tile(z: u8, x: u32, y: u32) -> TileId {
     TileId::new(z, x, y).unwrap()
 }
 
-/// A square of finest tiles, those in its west ten times as costly.
-fn costs() -> Costs {
+/// A square of finest tiles; those in the west are ten times as costly.
+fn costs() -> BuildCosts {
     let square = || (0..16).flat_map(|x| (0..16).map(move |y| (x, y)));
     let cost = |x: u32| if x < 8 { 1_000_000 } else { 100_000 };
     let finest = square().map(|(x, y)| (tile(4, x, y), cost(x)));
@@ -21,7 +21,7 @@ fn costs() -> Costs {
         (0..side).flat_map(move |x| (0..side).map(move |y| (tile(z, x, y), 1_000)))
     });
     let tiles = TileCosts::new(4, finest.chain(coarse));
-    Costs {
+    BuildCosts {
         hashes_us: 5_000_000,
         extract: Some(ExtractCosts {
             shares: 1,
@@ -36,7 +36,7 @@ fn costs() -> Costs {
     }
 }
 
-fn of<'a>(jobs: &'a [Job], step: &'a str) -> impl Iterator<Item = &'a Job> {
+fn jobs_of_step<'a>(jobs: &'a [Job], step: &'a str) -> impl Iterator<Item = &'a Job> {
     jobs.iter().filter(move |job| job.step == step)
 }
 
@@ -46,12 +46,15 @@ fn jobs_come_from_several_levels_the_largest_first() {
     let jobs = list(&costs, 2, 0);
     for step in ["heights", "tiles"] {
         let levels: BTreeSet<&str> =
-            of(&jobs, step).map(|job| &job.subtree.as_ref().unwrap()[..1]).collect();
+            jobs_of_step(&jobs, step).map(|job| &job.subtree.as_ref().unwrap()[..1]).collect();
         assert!(levels.len() > 1, "{levels:?}");
-        assert!(of(&jobs, step).map(|job| job.work).is_sorted_by(|a, b| a >= b), "{step}");
-        // Sixteen fair shares of the whole, and the start of a process.
+        assert!(
+            jobs_of_step(&jobs, step).map(|job| job.work).is_sorted_by(|a, b| a >= b),
+            "{step}"
+        );
+        // A sixteenth of the total, and the start of a process.
         let most = costs.tiles.total_us() as f64 / 1e6 / 16.0 + 0.1 + 0.001;
-        assert!(of(&jobs, step).all(|job| job.work <= most), "{step}");
+        assert!(jobs_of_step(&jobs, step).all(|job| job.work <= most), "{step}");
     }
     let ids: BTreeSet<&str> = jobs.iter().map(|job| job.id.as_str()).collect();
     assert_eq!(ids.len(), jobs.len(), "each has a name of its own");
@@ -77,35 +80,37 @@ fn a_job_says_what_it_waits_for_and_how_it_is_made() {
 
 #[test]
 fn a_step_without_jobs_is_waited_for_by_nobody() {
-    let jobs = list(&Costs { extract: None, heights: None, ..costs() }, 4, 0);
+    let jobs = list(&BuildCosts { extract: None, heights: None, ..costs() }, 4, 0);
     let steps: BTreeSet<&str> = jobs.iter().map(|job| job.step).collect();
     assert_eq!(steps, BTreeSet::from(["hashes", "merge", "tiles", "top"]));
     assert!(jobs.iter().flat_map(|job| &job.after).all(|step| steps.contains(step)));
-    assert_eq!(of(&jobs, "top").next().unwrap().after, [""; 0]);
-    assert_eq!(of(&jobs, "tiles").next().unwrap().after, ["top"]);
+    assert_eq!(jobs_of_step(&jobs, "top").next().unwrap().after, [""; 0]);
+    assert_eq!(jobs_of_step(&jobs, "tiles").next().unwrap().after, ["top"]);
 }
 
 #[test]
 fn a_large_extract_is_read_in_shares() {
     let costs = costs();
     let extract = costs.extract.map(|extract| ExtractCosts { shares: 3, ..extract });
-    let jobs = list(&Costs { extract, ..costs }, 1, u64::MAX);
+    let jobs = list(&BuildCosts { extract, ..costs }, 1, u64::MAX);
     let lines: Vec<String> = jobs.iter().map(|job| serde_json::to_string(job).unwrap()).collect();
     assert!(lines.contains(
         &r#"{"id":"nodes-2-3","step":"nodes","subtree":null,"share":"2/3","work":0.767,"after":["ways"],"args":["--step","nodes","--share","2/3"]}"#
             .to_owned()
     ), "{lines:?}");
     for step in ["ways", "nodes"] {
-        let shares: Vec<&str> = of(&jobs, step).map(|job| job.share.as_deref().unwrap()).collect();
+        let shares: Vec<&str> =
+            jobs_of_step(&jobs, step).map(|job| job.share.as_deref().unwrap()).collect();
         assert_eq!(shares, ["1/3", "2/3", "3/3"]);
     }
-    let roads = of(&jobs, "roads").next().unwrap();
+    let roads = jobs_of_step(&jobs, "roads").next().unwrap();
     assert_eq!((roads.work, roads.after.as_slice()), (2.1, ["ways", "nodes"].as_slice()));
-    assert_eq!(of(&jobs, "tiles").next().unwrap().after, ["roads", "top"]);
+    assert_eq!(jobs_of_step(&jobs, "tiles").next().unwrap().after, ["roads", "top"]);
 }
 
 proptest! {
-    /// However many slots, each finest tile is in one job of each step with subtrees, and no job is larger than it should be.
+    /// For any number of slots, each finest tile is in one job of each step with subtrees, and no
+    /// job is too large.
     #[test]
     fn every_tile_is_in_one_job(slots in 1_u32..200, least_us in 0_u64..20_000_000) {
         let costs = costs();
@@ -113,12 +118,12 @@ proptest! {
         let fair_us = costs.tiles.total_us() / u64::from(8 * slots);
         for step in ["heights", "tiles"] {
             let ids: Vec<TileId> =
-                of(&jobs, step).map(|job| job.subtree.as_ref().unwrap().parse().unwrap()).collect();
+                jobs_of_step(&jobs, step).map(|job| job.subtree.as_ref().unwrap().parse().unwrap()).collect();
             for finest in (0..16).flat_map(|x| (0..16).map(move |y| tile(4, x, y))) {
                 let holding = ids.iter().filter(|id| finest.ancestor(id.z()) == **id);
                 prop_assert_eq!(holding.count(), 1);
             }
-            for (job, id) in of(&jobs, step).zip(&ids) {
+            for (job, id) in jobs_of_step(&jobs, step).zip(&ids) {
                 let most_us = fair_us.max(least_us) + costs.start_us + 1000;
                 prop_assert!(job.work * 1e6 <= most_us as f64 || id.z() == 4, "{:?}", job);
             }

@@ -1,27 +1,28 @@
-//! What the tiles of a build cost, alone and as subtrees.
+//! The costs of a build's tiles, individually and by subtree.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use corniche_geom::TileId;
 
-/// Costs of tiles on all levels, in whole microseconds of one core: sums do not depend on their order.
+/// Costs of tiles on all levels, in whole microseconds of one core, so that sums do not depend on
+/// their order.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct TileCosts {
     max_level: u8,
-    /// Costs of all tiles that have one, and of those above them.
+    /// Costs of all tiles that have one, and of the tiles above them.
     by_tile: BTreeMap<TileId, Cost>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct Cost {
     own_us: u64,
-    /// With all tiles beneath.
+    /// Cost including all tiles beneath.
     subtree_us: u64,
-    /// Whether a finest tile is it or lies beneath.
+    /// Whether it is a finest tile or there is one beneath it.
     has_finest: bool,
 }
 
-/// A subtree and what it costs.
+/// A subtree and its cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Subtree {
     pub(crate) id: TileId,
@@ -29,7 +30,8 @@ pub(crate) struct Subtree {
 }
 
 impl TileCosts {
-    /// Takes the costs of tiles in any order; those of the same tile are added up. No tile is below `max_level`.
+    /// Collects the costs of tiles in any order; costs of the same tile are added. No tile is below
+    /// `max_level`.
     pub(crate) fn new(max_level: u8, costs: impl IntoIterator<Item = (TileId, u64)>) -> Self {
         let mut by_tile: BTreeMap<TileId, Cost> = BTreeMap::new();
         for (id, cost_us) in costs {
@@ -49,7 +51,7 @@ impl TileCosts {
         Self { max_level, by_tile }
     }
 
-    fn of(&self, id: TileId) -> Cost {
+    fn cost_at(&self, id: TileId) -> Cost {
         self.by_tile.get(&id).copied().unwrap_or_default()
     }
 
@@ -58,17 +60,18 @@ impl TileCosts {
         self.subtree_us(TileId::ROOT)
     }
 
-    /// The cost of all tiles beneath and at one.
+    /// The cost of a tile and all tiles beneath it.
     pub(crate) fn subtree_us(&self, id: TileId) -> u64 {
-        self.of(id).subtree_us
+        self.cost_at(id).subtree_us
     }
 
-    /// Subtrees that hold every finest tile once, none of them more than `most_us` unless it is a finest tile: the largest such.
+    /// Returns subtrees that contain every finest tile once. They are the largest ones whose cost
+    /// does not exceed `most_us`; only a single finest tile may cost more.
     pub(crate) fn split(&self, most_us: u64) -> Vec<Subtree> {
         let mut found = Vec::new();
         let mut waiting = vec![TileId::ROOT];
         while let Some(id) = waiting.pop() {
-            let Cost { subtree_us: cost_us, has_finest, .. } = self.of(id);
+            let Cost { subtree_us: cost_us, has_finest, .. } = self.cost_at(id);
             if !has_finest {
                 continue;
             }
@@ -84,7 +87,7 @@ impl TileCosts {
     /// The cost of all tiles above some subtrees.
     pub(crate) fn above_us(&self, subtrees: &[Subtree]) -> u64 {
         let above = tiles_above(subtrees).into_iter();
-        above.map(|id| self.of(id).own_us).fold(0, u64::saturating_add)
+        above.map(|id| self.cost_at(id).own_us).fold(0, u64::saturating_add)
     }
 }
 

@@ -1,4 +1,4 @@
-//! The cost of a subtree is the sum of its tiles', and subtrees hold every tile once.
+//! The cost of a subtree is the sum of its tiles' costs, and subtrees contain every tile once.
 
 use proptest::prelude::*;
 
@@ -14,7 +14,7 @@ fn tile(z: u8, x: u32, y: u32) -> TileId {
 fn some_costs() -> impl Strategy<Value = Vec<(TileId, u64)>> {
     let finest = (0_u32..32, 0_u32..32).prop_map(|(x, y)| tile(LEVEL, x, y));
     proptest::collection::vec((finest, 0_u8..=LEVEL, 0_u64..1_000_000), 1..200).prop_map(|costs| {
-        // A coarse tile has finest ones beneath it.
+        // A coarse tile has finest tiles beneath it.
         let both =
             |(id, level, cost): (TileId, u8, u64)| [(id, cost), (id.ancestor(level), cost / 7)];
         costs.into_iter().flat_map(both).collect()
@@ -22,7 +22,7 @@ fn some_costs() -> impl Strategy<Value = Vec<(TileId, u64)>> {
 }
 
 proptest! {
-    /// What a subtree costs is what its tiles cost, added up one by one.
+    /// The cost of a subtree is the sum of its tiles' costs, added one by one.
     #[test]
     fn a_subtree_costs_what_its_tiles_cost(costs in some_costs()) {
         let all = TileCosts::new(LEVEL, costs.iter().copied());
@@ -36,7 +36,8 @@ proptest! {
         prop_assert_eq!(all.total_us(), costs.iter().map(|&(_, cost)| cost).sum::<u64>());
     }
 
-    /// Each finest tile is in one subtree, none is too large without need, and none could be joined with its siblings.
+    /// Each finest tile is in one subtree, no subtree is too large unless it is a single tile, and
+    /// none could be merged with its siblings.
     #[test]
     fn subtrees_hold_every_tile_once_and_are_as_large_as_they_may(
         costs in some_costs(), most_us in 0_u64..10_000_000
@@ -59,7 +60,7 @@ proptest! {
                 prop_assert!(all.subtree_us(subtree.id.ancestor(level)) > most_us);
             }
         }
-        // Nothing is lost: what is not in the subtrees lies above them.
+        // Nothing is lost: tiles outside the subtrees are above them.
         let beneath: u64 = subtrees.iter().map(|subtree| subtree.cost_us).sum();
         prop_assert_eq!(beneath + all.above_us(&subtrees), all.total_us());
     }

@@ -1,4 +1,5 @@
-//! What tiles of a package promise each other: borders to the last bit, errors and heights that nest.
+//! Agreement between the tiles of a package: borders are equal to the last bit, and errors and
+//! heights are nested.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,7 +8,7 @@ use corniche_tin::{Tin, TinVertex};
 
 use super::Built;
 
-/// Everything in which tiles disagree.
+/// Lists all disagreements between tiles.
 pub(crate) fn faults(built: &Built) -> Vec<String> {
     let mut faults = shared_vertices(built);
     faults.extend(shared_borders(built));
@@ -15,7 +16,8 @@ pub(crate) fn faults(built: &Built) -> Vec<String> {
     faults
 }
 
-/// A node that is a vertex of several tiles of one level has one height and one normal, in all four at a corner.
+/// A node that is a vertex of several tiles of one level has one height and one normal, also in all
+/// four tiles at a corner.
 pub(crate) fn shared_vertices(built: &Built) -> Vec<String> {
     let mut seen: BTreeMap<(u8, NodeIndex), (i32, [i8; 2], TileId)> = BTreeMap::new();
     let mut faults = Vec::new();
@@ -36,7 +38,8 @@ pub(crate) fn shared_vertices(built: &Built) -> Vec<String> {
 /// A stretch of border from one vertex to the next: position and height of both.
 type Stretch = [(u16, i32); 2];
 
-/// The stretches on which triangles of a tile end at one side of it: columns (or rows, when `rows`) equal to `at`.
+/// The stretches on which triangles of a tile end at one of its sides: columns (or rows, if `rows`)
+/// equal to `at`.
 fn border(tin: &Tin, at: u16, rows: bool) -> BTreeSet<Stretch> {
     let place = |vertex: TinVertex| {
         if rows { (vertex.row, vertex.column) } else { (vertex.column, vertex.row) }
@@ -84,7 +87,8 @@ pub(crate) fn shared_borders(built: &Built) -> Vec<String> {
     faults
 }
 
-/// No tile beneath another has a larger error or reaches beyond its heights; no vertex lies beyond the tile's own.
+/// No tile beneath another has a larger error or heights outside the other's range; no vertex is
+/// outside its own tile's range.
 pub(crate) fn nesting(built: &Built) -> Vec<String> {
     let mut faults = Vec::new();
     for (id, ground) in built.grounds() {
@@ -98,7 +102,7 @@ pub(crate) fn nesting(built: &Built) -> Vec<String> {
                 faults.push(format!("{id} exceeds {above}"));
             }
         }
-        // A height is stored to half a step.
+        // A height is stored to the nearest half step.
         let slack_m = built.quantum_m() / 2.0;
         let beyond = ground.tin.vertices().iter().any(|vertex| {
             let height_m = f64::from(vertex.height_q) * built.quantum_m();

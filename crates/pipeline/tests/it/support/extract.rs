@@ -2,7 +2,7 @@
 
 use std::{fs, path::Path};
 
-use corniche_testing::pbf::{Line, extract};
+use corniche_testing::pbf::{WayToWrite, extract};
 use gdal::spatial_ref::{AxisMappingStrategy, CoordTransform, SpatialRef};
 
 use super::{EPSG, Raster};
@@ -20,12 +20,13 @@ pub(crate) fn write(path: &Path, raster: &Raster, roads: &[StraightRoad]) {
     write_lines(path, &roads.iter().map(line).collect::<Vec<_>>());
 }
 
-/// Writes roads, given by longitude and latitude, as an extract; the first has way id 1. Coordinates are rounded to 1e-7
-/// degrees.
+/// Writes roads, given by longitude and latitude, as an extract; the first has way id 1.
+/// Coordinates are rounded to 1e-7 degrees.
 pub(crate) fn write_lines(path: &Path, lines_deg: &[Vec<[f64; 2]>]) {
     let tags = vec![("highway", "primary")];
-    let line = |points_deg: &Vec<_>| Line { tags: tags.clone(), points_deg: points_deg.clone() };
-    let lines: Vec<Line<'_>> = lines_deg.iter().map(line).collect();
+    let line =
+        |points_deg: &Vec<_>| WayToWrite { tags: tags.clone(), points_deg: points_deg.clone() };
+    let lines: Vec<WayToWrite<'_>> = lines_deg.iter().map(line).collect();
     fs::write(path, extract(&["highway", "primary"], &lines)).unwrap();
 }
 

@@ -1,4 +1,4 @@
-//! A sound package taken apart, to be put together again with one thing changed.
+//! A valid package, taken apart so that it can be reassembled with one change.
 
 use std::{
     fs,
@@ -9,8 +9,8 @@ use std::{
 use corniche_geom::{GridFrame, TileId};
 use corniche_pipeline::build;
 use corniche_tileset::{
-    EncodeError, FilePackage, Manifest, PayloadContext, Sections, Terrain, TilePayload, Writer,
-    encode, payload_sizes,
+    EncodeError, FilePackage, Manifest, PackageWriter, PayloadContext, Sections, TilePayload,
+    TileTerrain, encode, payload_sizes,
 };
 use corniche_tin::{Placement, Surface, Tin};
 use corniche_verify::{CheckId, VerifyError, VerifyOsm, VerifyReport, VerifySettings, verify};
@@ -19,7 +19,7 @@ use sha2::{Digest as _, Sha256};
 
 use super::Options;
 
-/// Coarse, so that the sample is built and verified in seconds.
+/// A coarse tolerance, so that the sample is built and verified in seconds.
 pub(crate) const MAX_ERROR_M: f64 = 10.0;
 /// The last row and column of a tile's nodes.
 pub(crate) const LAST_NODE: u16 = 256;
@@ -34,14 +34,14 @@ pub(crate) struct Sound {
     pub(crate) parts: Parts,
 }
 
-/// A package taken apart; its tiles in the order of the file.
+/// A package that is taken apart; its tiles are in the order of the file.
 #[derive(Clone)]
 pub(crate) struct Parts {
     pub(crate) manifest: Manifest,
     pub(crate) tiles: Vec<TilePayload>,
 }
 
-/// What the package is verified against.
+/// The inputs against which the package is verified.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Against {
     Itself,
@@ -85,11 +85,11 @@ pub(crate) fn rehash(manifest: &mut Manifest) {
 }
 
 pub(crate) fn encode_in(manifest: &Manifest, tile: &TilePayload) -> Result<Vec<u8>, EncodeError> {
-    let context = PayloadContext::of(manifest);
+    let context = PayloadContext::from_manifest(manifest);
     encode(tile, &context).map(|encoded| encoded.bytes)
 }
 
-/// Fails when a writer refuses the manifest or the tiles.
+/// Fails if a writer rejects the manifest or the tiles.
 pub(crate) fn write(
     path: &Path,
     manifest: &Manifest,
@@ -97,7 +97,7 @@ pub(crate) fn write(
 ) -> Result<(), String> {
     let file = std::fs::File::create(path).map_err(|error| error.to_string())?;
     let mut writer =
-        Writer::of_file(file, manifest, tiles.len()).map_err(|error| error.to_string())?;
+        PackageWriter::of_file(file, manifest, tiles.len()).map_err(|error| error.to_string())?;
     for (id, bytes) in tiles {
         writer.add(*id, bytes).map_err(|error| error.to_string())?;
     }
@@ -129,14 +129,14 @@ pub(crate) fn verify_against(path: &Path, against: Against) -> Result<VerifyRepo
     )
 }
 
-/// Asserts that exactly these checks are broken, in any order, and returns the report.
+/// Asserts that exactly these checks fail, in any order, and returns the report.
 pub(crate) fn assert_broken(report: VerifyReport, expected: &[CheckId]) -> VerifyReport {
     let broken: Vec<_> = report.checks.iter().filter(|check| !check.holds()).collect();
     let mut sorted = expected.to_vec();
     sorted.sort_unstable();
     assert!(
         broken.iter().map(|check| check.id).eq(sorted),
-        "expected {expected:?} to be broken, but it is {broken:#?}"
+        "expected {expected:?} to fail, but these fail: {broken:#?}"
     );
     assert_eq!(report.holds(), expected.is_empty());
     report
@@ -151,8 +151,9 @@ impl Parts {
         &self.manifest.frame
     }
 
-    /// All tiles as bytes. Those that are as in the sound package are not encoded again, whatever the manifest says:
-    /// positions and heights in them are whole steps from the tile's corner.
+    /// All tiles as bytes. Tiles that equal those of the valid package are not encoded again,
+    /// whatever the manifest says: positions and heights in them are whole steps from the tile's
+    /// corner.
     pub(crate) fn encoded(&self) -> Result<Vec<(TileId, Vec<u8>)>, EncodeError> {
         let encoded = |tile: &TilePayload| {
             let at = SOUND.parts.index_of(tile.id).filter(|&at| SOUND.parts.tiles[at] == *tile);
@@ -164,8 +165,8 @@ impl Parts {
         self.tiles.iter().map(encoded).collect()
     }
 
-    /// Writes the package that these parts make. Sums of stored bytes follow the tiles, as checksums do: what takes
-    /// more or fewer bytes is then found by its content, not by its size.
+    /// Writes the package from these parts. Sums of stored bytes and checksums are updated, so that
+    /// a change in size is detected by the content, not by the size.
     pub(crate) fn write(&self, path: &Path) -> Result<(), String> {
         let encoded = self.encoded().map_err(|error| error.to_string())?;
         let mut manifest = self.manifest.clone();
@@ -177,7 +178,7 @@ impl Parts {
         write(path, &manifest, &encoded)
     }
 
-    /// Verifies the package that these parts make, and asserts that exactly these checks are broken.
+    /// Verifies the package from these parts, and asserts that exactly these checks fail.
     pub(crate) fn assert_breaks(&self, against: Against, expected: &[CheckId]) -> VerifyReport {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let path = folder.path().join("changed.pmtiles");
@@ -189,11 +190,11 @@ impl Parts {
         self.tiles.iter().position(|tile| tile.id == id)
     }
 
-    pub(crate) fn terrain(&self, id: TileId) -> Option<&Terrain> {
+    pub(crate) fn terrain(&self, id: TileId) -> Option<&TileTerrain> {
         self.tiles[self.index_of(id)?].terrain.as_ref()
     }
 
-    pub(crate) fn terrain_mut(&mut self, id: TileId) -> &mut Terrain {
+    pub(crate) fn terrain_mut(&mut self, id: TileId) -> &mut TileTerrain {
         let index = self.index_of(id).expect("a tile of the package");
         self.tiles[index].terrain.as_mut().expect("a tile with ground")
     }
@@ -213,7 +214,7 @@ impl Parts {
             .1
     }
 
-    /// The first finest tile that no road meets.
+    /// The first finest tile that no road touches.
     pub(crate) fn finest_without_roads(&self) -> TileId {
         self.tiles_above(0)
             .find(|tile| tile.roads_geo.is_empty() && tile.roads_sv.is_empty())
@@ -229,7 +230,7 @@ impl Parts {
         *tin = Tin::from_canonical(vertices, tin.triangles().to_vec()).expect("the same triangles");
     }
 
-    /// The tile's ground as lines are laid on it.
+    /// The tile's ground as a surface for draping.
     pub(crate) fn surface(&self, id: TileId) -> Surface {
         let frame = self.frame();
         let placement = Placement {
@@ -241,7 +242,7 @@ impl Parts {
     }
 }
 
-/// Adds or takes away what a tile counts for in the manifest's sums of stored bytes.
+/// Adds or removes a tile in the manifest's sums of stored bytes.
 fn add_sizes(manifest: &mut Manifest, id: TileId, bytes: &[u8], sign: i64) {
     let sizes = payload_sizes(bytes, id).expect("a whole tile");
     let add = |sum: &mut u64, bytes: u64| *sum = sum.wrapping_add_signed(sign * bytes as i64);
@@ -264,7 +265,8 @@ fn add_sizes(manifest: &mut Manifest, id: TileId, bytes: &[u8], sign: i64) {
     }
 }
 
-/// The share of a section that falls to a class: the difference of what falls to it and all before it, and those.
+/// A class's share of a section: the difference between the shares of all classes up to and
+/// including it and of those before it.
 fn share(stored: u64, classes: &[u64; 9], class: usize) -> u64 {
     let all: u64 = classes.iter().sum();
     let up_to = |end: usize| match all {

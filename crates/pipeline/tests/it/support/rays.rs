@@ -1,4 +1,5 @@
-//! Rays cast at triangles in f64: by brute force, but for squares of plan that a ray does not come near.
+//! Casts rays at triangles in f64, by brute force except for squares in plan that a ray does not
+//! pass.
 
 use std::collections::HashMap;
 
@@ -7,7 +8,8 @@ pub(crate) type Point = [f64; 3];
 
 /// Side of a square, cells.
 const SIDE: f64 = 32.0;
-/// A ray this close to a triangle, as a share of its size, hits it: edges that two triangles share do not leak.
+/// A ray that passes a triangle at this distance, as a fraction of its size, hits it: edges shared
+/// by two triangles have no gaps.
 const SLACK: f64 = 1e-9;
 
 /// Triangles in squares of plan.
@@ -26,9 +28,10 @@ impl Scene {
         self.triangles.push(triangle);
     }
 
-    /// Whether anything lies on the way from one point to another.
+    /// Whether there is anything on the way from one point to another.
     pub(crate) fn hits(&self, from: Point, to: Point) -> bool {
-        // Piece by piece, so that a long way across the corner of many squares does not look into all of them.
+        // The way is tested piece by piece, so that a long way across the corner of many squares
+        // does not test all of them.
         let pieces = ((to[0] - from[0]).hypot(to[1] - from[1]) / SIDE).ceil().max(1.0);
         let at = |piece: f64| [0, 1, 2].map(|k| from[k] + (to[k] - from[k]) * piece / pieces);
         (0..pieces as u32).any(|piece| {
@@ -41,14 +44,14 @@ impl Scene {
     }
 }
 
-/// The squares that the bounding box of some points meets.
+/// The squares that the bounding box of some points touches.
 fn squares(points: &[Point]) -> impl Iterator<Item = [i64; 2]> + use<> {
     let range = |axis: usize| {
         let at = points.iter().map(|point| point[axis] / SIDE);
         let [low, high] = at.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| {
             [low.min(at), high.max(at)]
         });
-        // A point on the border of a square lies in both.
+        // A point on the border of a square is in both squares.
         (low - SLACK).floor() as i64..=(high + SLACK).floor() as i64
     };
     let (columns, rows) = (range(0), range(1));

@@ -1,4 +1,4 @@
-//! Which check finds that a field was changed.
+//! Which check detects the change of a field.
 
 use std::path::Path;
 
@@ -6,23 +6,23 @@ use corniche_verify::{CheckId, Needs, VerifyError};
 
 use super::parts::{Against, verify_against};
 
-/// What `verify` must say of a package with one field changed.
+/// The expected result of `verify` for a package with one changed field.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Seen {
-    /// The check with this id is broken.
+pub(crate) enum SeenBy {
+    /// The check with this id fails.
     By(CheckId),
-    /// The package cannot be written or opened: writers or readers refuse the value.
+    /// The package cannot be written or opened: writers or readers reject the value.
     Refused,
-    /// The error says that these are not the files that the package was made from.
+    /// The error says that the files are not those from which the package was built.
     OtherInput(Against),
-    /// No check can see it, for this reason; so it stands in docs/promises.md.
+    /// No check can detect it, for this reason; docs/promises.md lists it.
     Unseen(&'static str),
 }
 
-use Seen::{By, OtherInput, Refused, Unseen};
+use SeenBy::{By, OtherInput, Refused, Unseen};
 
 /// A row of the table that the tests print.
-pub(crate) fn row(name: &str, seen: Seen) -> String {
+pub(crate) fn row(name: &str, seen: SeenBy) -> String {
     let by = match seen {
         By(check) => format!("{} ({})", check.id(), check.needs().text()),
         Refused => "refused".to_owned(),
@@ -33,8 +33,8 @@ pub(crate) fn row(name: &str, seen: Seen) -> String {
     format!("| {name} | {by} |")
 }
 
-/// Verifies the package at `path`; gives the answer as an error if it is not the expected one.
-pub(crate) fn check(path: &Path, seen: Seen) -> Result<(), String> {
+/// Verifies the package at `path`; returns the result as an error if it is not the expected one.
+pub(crate) fn check(path: &Path, seen: SeenBy) -> Result<(), String> {
     let broken = |against| match verify_against(path, against) {
         Ok(report) => Ok(report
             .checks
@@ -62,7 +62,7 @@ pub(crate) fn check(path: &Path, seen: Seen) -> Result<(), String> {
                 | VerifyError::OtherTable { .. }
                 | VerifyError::OtherTableOfThatName { .. },
             ) => return Ok(()),
-            // The options that are recorded do not go with these files.
+            // The recorded options do not match these files.
             Err(VerifyError::Dem(_)) if against == Against::Dem => return Ok(()),
             found => format!("{found:?}"),
         },

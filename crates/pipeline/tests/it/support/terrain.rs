@@ -1,11 +1,11 @@
-//! Made-up terrains, as heights by column and row.
+//! Synthetic terrains, as heights by column and row.
 
 use corniche_testing::Random;
 
-/// A terrain by name.
+/// A terrain with its name.
 pub(crate) type Terrain = (&'static str, fn(i64, i64) -> f32);
 
-/// From flat to very rough; each is difficult in another way.
+/// Terrains from flat to very rough; each is difficult in another way.
 pub(crate) const TERRAINS: [Terrain; 6] = [
     ("constant", |_, _| 812.3),
     ("ramp", |c, r| 3.0 * c as f32 - 0.5 * r as f32),
@@ -20,12 +20,12 @@ pub(crate) fn waves(column: i64, row: i64) -> f32 {
     (column as f32 * 0.16).sin() * (row as f32 * 0.13).cos()
 }
 
-/// −1 to 1 for each node, unlike its neighbours.
+/// A value from −1 to 1 for each node, unlike its neighbours.
 pub(crate) fn noise(column: i64, row: i64) -> f32 {
     (bits(column, row, 0) >> 40) as f32 / (1 << 23) as f32 - 1.0
 }
 
-/// Bits that look random, for each node and seed.
+/// Pseudo-random bits for each node and seed.
 pub(crate) fn bits(column: i64, row: i64, seed: u64) -> u64 {
     Random::new((column as u64) << 32 ^ (row as u64 & 0xffff_ffff) ^ seed << 57).bits()
 }

@@ -1,4 +1,4 @@
-//! What a package must hold, counted by nodes and cells of the raster that was written.
+//! The expected content of a package, counted by nodes and cells of the raster that was written.
 
 use corniche_geom::{HeightGrid, NodeIndex, TileId};
 use corniche_testing::{check_covers_ground, check_tin};
@@ -9,7 +9,8 @@ use super::{
     support::{Built, Raster, TILE},
 };
 
-/// What was written, and the voids filled by the rule: data within `reach` in each of the eight directions.
+/// The raster that was written, with voids filled by the rule: data within `reach` in each of the
+/// eight directions.
 pub(crate) fn filled(raster: &Raster, reach: i64) -> Raster {
     let at = |column: i64, row: i64| {
         raster.height_m(NodeIndex { i: raster.west + column, j: raster.north - row })
@@ -56,8 +57,8 @@ pub(crate) fn check_ground(name: &str, built: &Built, truth: &Raster, source: &R
     }
 }
 
-/// Checks a tile, there or not; gives its nodes with data that no cell of its level covers, those on the east and
-/// south border left to the next tile.
+/// Checks a tile, which may be missing; returns its nodes with data that no cell of its level
+/// covers. Nodes on the east and south border belong to the next tile.
 fn check_tile(name: &str, built: &Built, truth: &Raster, id: TileId) -> u64 {
     let frame = built.frame();
     let (corner, stride) = (frame.tile_corner(id), frame.stride(id.z()));
@@ -73,13 +74,14 @@ fn check_tile(name: &str, built: &Built, truth: &Raster, id: TileId) -> u64 {
     let ground = built.ground(id);
     let tin = ground.map_or(&none, |ground| &ground.tin);
     check_tin(tin);
-    // No wall and no hole: in plan the TIN is the ground cells of its level, to the last edge.
+    // No wall and no hole: in plan the TIN consists of the ground cells of its level, to the last
+    // edge.
     check_covers_ground(tin, &level_heights);
     assert_eq!(ground.is_none(), tin.is_empty(), "{name}: {id}");
-    // No spike: a vertex is as high as the raster there.
+    // No spike: a vertex has the height of the raster.
     let quantum_m = built.quantum_m();
     for (vertex, node) in tin.vertices().iter().zip(built.nodes(id, tin)) {
-        let height_m = f64::from(truth.height_m(node).expect("a vertex lies where data are"));
+        let height_m = f64::from(truth.height_m(node).expect("there are data at a vertex"));
         let off_m = (f64::from(vertex.height_q) * quantum_m - height_m).abs();
         assert!(off_m <= quantum_m / 2.0, "{name}: {id} {vertex:?} is {off_m} m off");
     }
@@ -87,7 +89,7 @@ fn check_tile(name: &str, built: &Built, truth: &Raster, id: TileId) -> u64 {
     uncovered_nodes(name, truth, &level_heights, corner, stride)
 }
 
-/// The stored error is not below the true one, node by node and triangle by triangle.
+/// The stored error is not below the true error, node by node and triangle by triangle.
 fn check_error(name: &str, built: &Built, truth: &Raster, id: TileId) {
     let Some(ground) = built.ground(id) else { return };
     let nodes = built.nodes(id, &ground.tin);
@@ -118,7 +120,8 @@ fn check_error(name: &str, built: &Built, truth: &Raster, id: TileId) {
     }
 }
 
-/// Counts nodes with data outside all ground cells of a tile, each within one cell of the level from a void.
+/// Counts nodes with data outside all ground cells of a tile; each must be within one cell of the
+/// level from a void.
 fn uncovered_nodes(
     name: &str,
     truth: &Raster,
@@ -127,7 +130,7 @@ fn uncovered_nodes(
     stride: i64,
 ) -> u64 {
     let mut uncovered = 0;
-    // Beyond the raster there is nothing to count.
+    // Outside the raster there is nothing to count.
     let columns = (truth.west - corner.i).max(0)
         ..(truth.west + truth.columns as i64 - corner.i).min(TILE * stride);
     let rows = (corner.j - truth.north).max(0)
@@ -138,8 +141,8 @@ fn uncovered_nodes(
             if truth.height_m(at(column, row)).is_none() {
                 continue;
             }
-            // Cells of the level that hold the node, edges included: one, two or four; in the halo too, where
-            // the cells of the tiles west and north lie.
+            // Cells of the level that contain the node, edges included: one, two or four; also in
+            // the halo, which contains the cells of the tiles west and north.
             let cells = |at: i64| {
                 let on_edge = i64::from(at % stride == 0);
                 at / stride + 1 - on_edge..=at / stride + 1

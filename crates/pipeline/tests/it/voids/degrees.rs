@@ -1,11 +1,12 @@
-//! Data in degrees in a projected grid: they end between nodes.
+//! Data in degrees in a projected grid: the data end between nodes.
 
 use corniche_testing::check_tin;
 use corniche_tin::Tin;
 
 use super::support::{Options, build_files, extract, write_degrees};
 
-/// A square of degrees in a projected grid: its edges run across cells, and nodes lie between samples.
+/// A square of degrees in a projected grid: its edges run across cells, and nodes are between
+/// samples.
 #[test]
 fn a_square_of_degrees_ends_where_its_samples_end() {
     const SAMPLES: usize = 360;
@@ -30,19 +31,21 @@ fn a_square_of_degrees_ends_where_its_samples_end() {
         for (vertex, at) in ground.tin.vertices().iter().zip(degrees) {
             let from_edge = [at[0] - west_deg, north_deg - at[1]].map(|deg| deg / STEP_DEG);
             let last = (SAMPLES - 1) as f64;
-            // No ground beyond the outermost samples; a thousandth of a sample for the way back from the grid.
+            // There is no ground beyond the outermost samples; a thousandth of a sample allows for
+            // the projection back from the grid.
             assert!(
                 from_edge.iter().all(|at| (-1e-3..=last + 1e-3).contains(at)),
                 "{id} {from_edge:?}"
             );
-            // Within what the four samples around it say: a wave of this length bends by less than 1 m between two.
+            // The height is within the range of the four surrounding samples: a wave of this length
+            // bends by less than 1 m between two.
             let off_m = (f64::from(vertex.height_q) * built.quantum_m() - height_m(at)).abs();
             assert!(off_m < 1.0, "{id}: a vertex {off_m} m off at {at:?}");
             vertices += 1;
         }
     }
     assert!(vertices > 1000);
-    // The whole square is ground, but for cells that its edge cuts: one cell around it.
+    // The whole square is ground, except for cells that its edge cuts: one cell all around.
     let finest = built.grounds().filter(|(id, _)| id.z() == frame.max_level());
     let doubled: i64 = finest.map(|(_, ground)| doubled_area(&ground.tin)).sum();
     let ground_m2 = doubled as f64 / 2.0 * frame.cell().east_m * frame.cell().north_m;

@@ -1,4 +1,4 @@
-//! Roads over voids and beyond the data.
+//! Roads over voids and outside the data.
 
 use corniche_geom::NodeIndex;
 use corniche_tin::{Placement, Surface};
@@ -22,8 +22,9 @@ fn has_ground(truth: &Raster, column: i64, row: i64) -> bool {
         .all(|&(c, r)| truth.height_m(node(column + c, row + r)).is_some())
 }
 
-/// Roads along the middle of rows and columns of cells: what is kept of them is, exactly, what lies on cells with
-/// ground; the rest is counted as lost; and no vertex and no middle of an edge is in the air, on any level.
+/// Roads along the middle of rows and columns of cells: exactly their length on cells with ground
+/// is kept; the rest is counted as lost; and no vertex and no middle of an edge is in the air, on
+/// any level.
 #[test]
 fn roads_end_where_the_ground_ends() {
     let is_void = |c: i64, r: i64| {
@@ -41,7 +42,7 @@ fn roads_end_where_the_ground_ends() {
         roads.push(StraightRoad { from: [across, 590.75], to: [across, 8.5] });
     }
     let along = roads.len();
-    // Slanting ones, one that begins and ends in a void, and one wholly in it.
+    // Slanting roads: one that starts and ends in a void, and one wholly in it.
     roads.push(StraightRoad { from: [10.0, 10.0], to: [590.0, 590.0] });
     roads.push(StraightRoad { from: [20.0, 580.0], to: [570.0, 33.0] });
     roads.push(StraightRoad { from: [300.5, 300.5], to: [590.0, 580.0] });
@@ -55,7 +56,7 @@ fn roads_end_where_the_ground_ends() {
     let built = build_files(&dem, Some(&osm), options).unwrap();
     check_ground("with roads", &built, &truth, &raster);
 
-    // Coordinates of an extract are whole 1e-7 degrees: a centimetre at each end.
+    // Coordinates of an extract are multiples of 1e-7 degrees: a centimetre at each end.
     let slack_m = 0.05;
     for (way, road) in (1_i64..).zip(&roads[..along]) {
         let kept_m = kept_length_m(&built, way);
@@ -91,7 +92,7 @@ fn ground_beneath(truth: &Raster, road: &StraightRoad) -> f64 {
         .sum()
 }
 
-/// Plan length of a way's GEO lines at the finest level.
+/// Plan length of a way's GEO lines on the finest level.
 fn kept_length_m(built: &Built, way_id: i64) -> f64 {
     let frame = built.frame();
     let mut steps = 0.0;
@@ -107,8 +108,8 @@ fn kept_length_m(built: &Built, way_id: i64) -> f64 {
     steps * frame.lattice_step_m()
 }
 
-/// Every vertex, and the middle of every edge, of every GEO line lies on a cell of its level that has ground; gives
-/// how many were checked.
+/// Asserts that every vertex, and the middle of every edge, of every GEO line is on a cell of its
+/// level that has ground; returns how many were checked.
 fn check_roads_on_ground(built: &Built, truth: &Raster) -> usize {
     let frame = built.frame();
     let mut looked_at = 0;
@@ -122,7 +123,7 @@ fn check_roads_on_ground(built: &Built, truth: &Raster) -> usize {
                 (at[0] - placement.corner.u as f64) / east,
                 (placement.corner.v as f64 - at[1]) / north,
             ];
-            // On an edge either cell will do.
+            // On an edge, either cell suffices.
             let cells = |at: f64| [(at - 1e-6).floor() as i64, (at + 1e-6).floor() as i64];
             cells(place[1]).iter().any(|&row| {
                 cells(place[0]).iter().any(|&column| {

@@ -1,12 +1,12 @@
 //! Points of rings as range-coded bits.
 //!
-//! Areas lie side by side: a point that two of them share is often followed by the next one that they share, forwards or backwards along
-//! the ring that had it first.
+//! Areas are adjacent: a point that two of them share is often followed by the next point that they
+//! share, forwards or backwards along the ring that had it first.
 //!
 //! ```text
 //!   ───●───●───●───       ring 1, coded before: its points i, i + 1, i + 2
 //!      i  i+1 i+2
-//!      ●───●───●          ring 2: i + 2 by its number, then "the one before", then "goes on"
+//!      ●───●───●          ring 2: i + 2 by its number, then "neighbour back", then "next"
 //! ```
 
 use std::collections::HashMap;
@@ -19,14 +19,15 @@ use crate::payload::magnitudes::Magnitudes;
 use crate::payload::range_coder::{Bits, Model};
 use crate::payload::turned_steps::StepCoder;
 
-/// How a point follows the one before it in its ring.
+/// How a point was found relative to the point before it in its ring.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Followed {
-    /// The point before is new, or this is the first of a ring.
+    /// The point before is new, or this point is the first of a ring.
     None,
-    /// The point before was there already, with this number.
+    /// The point before occurred earlier and has this number.
     From(usize),
-    /// The point before that one was there already, too, beside it in the same ring: the way leads on or back.
+    /// The point before was found as a neighbour of its predecessor in an earlier ring: continue in
+    /// the same direction.
     Along(usize, Way),
 }
 
@@ -37,7 +38,7 @@ enum Way {
     Back,
 }
 
-/// What a coder knows of a section's rings.
+/// The state of a coder: what it knows of the rings of a section.
 pub(crate) struct RingCoder {
     bounds: LatticeBounds,
     /// The spacing of the coarse lattice.
@@ -54,9 +55,9 @@ pub(crate) struct RingCoder {
     points: Vec<LatticePoint>,
     /// The number of each point's ring.
     ring_of: Vec<u32>,
-    /// The points of each ring that is whole.
+    /// The points of each complete ring.
     rings: Vec<Range<usize>>,
-    /// Where a point was first; in a writer.
+    /// The number of each point at its first occurrence; only used by a writer.
     first_at: HashMap<LatticePoint, usize>,
     /// The last point, in steps of the coarse lattice.
     at: [i64; 2],
@@ -90,7 +91,7 @@ impl RingCoder {
         }
     }
 
-    /// Says that the points since the last call are a ring.
+    /// Ends a ring: it consists of the points since the last call.
     pub(crate) fn end_ring(&mut self) {
         let from = self.rings.last().map_or(0, |ring| ring.end);
         self.rings.push(from..self.points.len());
@@ -98,7 +99,7 @@ impl RingCoder {
         self.followed = Followed::None;
     }
 
-    /// Codes the next point of a ring. A reader has no `asked`.
+    /// Codes the next point of a ring. A reader passes no `asked`.
     pub(crate) fn code_point<B: Bits>(
         &mut self,
         bits: &mut B,
@@ -124,7 +125,7 @@ impl RingCoder {
         Ok(point)
     }
 
-    /// A point beside the one before in an earlier ring, if it is one.
+    /// Codes a point as a neighbour of the point before it in an earlier ring, if it is one.
     fn code_beside<B: Bits>(
         &mut self,
         bits: &mut B,
@@ -152,7 +153,8 @@ impl RingCoder {
         None
     }
 
-    /// The number of the point beside another one in its ring; none in a ring that is not whole.
+    /// Returns the number of the neighbour of a point in its ring; `None` in a ring that is not
+    /// complete.
     fn neighbour(&self, number: usize, way: Way) -> Option<usize> {
         let ring = self.rings.get(self.ring_of[number] as usize)?;
         Some(match way {
@@ -169,7 +171,7 @@ impl RingCoder {
         is_first: bool,
         asked: Option<LatticePoint>,
     ) -> Result<LatticePoint, Damage> {
-        const UNKNOWN: Damage = Damage::Invalid("a point that was not there before");
+        const UNKNOWN: Damage = Damage::Invalid("a reference to a point that does not exist");
         let asked_known = asked.and_then(|point| self.first_at.get(&point).copied());
         let context = match self.followed {
             Followed::None => 0,

@@ -1,4 +1,4 @@
-//! The areas section is decoded, and damage is found before memory is taken for it.
+//! Decodes the areas section. Damage is detected before memory is allocated for it.
 
 use corniche_areas::{AreaClass, AreaObject};
 use corniche_geom::{LatticeBounds, LatticePoint};
@@ -9,9 +9,9 @@ use super::record::{AreaRecord, AreaRings};
 use crate::limits::{MAX_AREA_RINGS, MAX_AREAS, MAX_POINTS};
 use crate::payload::damage::Damage;
 use crate::payload::number_codes::{Cursor, Planes};
-use crate::payload::range_coder::Reader;
+use crate::payload::range_coder::BitReader;
 
-/// The columns of numbers that a section is made of, and its points.
+/// The columns of numbers of a section, and its points.
 struct Columns<'a> {
     step: i64,
     count: usize,
@@ -25,28 +25,21 @@ struct Columns<'a> {
     places: PlacesOfSection<'a>,
 }
 
-/// The points of a section.
+/// The encoded points of a section.
 enum PlacesOfSection<'a> {
-    /// East and north: steps on the coarse lattice, and what is left beside it.
+    /// East and north: steps on the coarse lattice, and the remainders.
     Planes { steps: [Planes<'a>; 2], beside: [Planes<'a>; 2] },
     /// Range-coded bits.
     Coded(&'a [u8]),
 }
 
 impl<'a> Columns<'a> {
-    /// Takes a section apart.
+    /// Splits a section into its columns.
     fn read(bytes: &'a [u8], is_coded: bool) -> Result<Self, Damage> {
         let cursor = &mut Cursor::new(bytes);
-        let step =
-            i64::try_from(cursor.varint()?).ok().filter(|step| (1..=MOST_STEP).contains(step));
-        let step = step.ok_or(Damage::Invalid("the spacing of the areas' lattice"))?;
+        let step = cursor.spacing("the spacing of the areas' lattice")?;
         let count = cursor.bounded(MAX_AREAS, "number of areas")?;
-        let [classes, objects, name_bytes, polygons] = [
-            cursor.planes(count)?,
-            cursor.planes(count)?,
-            cursor.planes(count)?,
-            cursor.planes(count)?,
-        ];
+        let [classes, objects, name_bytes, polygons] = cursor.columns(count)?;
         let length = name_bytes.total(0, cursor.left(), "bytes of all names")?;
         let names = cursor.take(length)?;
         let polygons_count = polygons.total(1, MAX_AREA_RINGS, "number of polygons")?;
@@ -57,8 +50,7 @@ impl<'a> Columns<'a> {
         let places = if is_coded {
             PlacesOfSection::Coded(cursor.take(cursor.left())?)
         } else {
-            let steps = [cursor.planes(points_count)?, cursor.planes(points_count)?];
-            let beside = [cursor.planes(points_count)?, cursor.planes(points_count)?];
+            let [steps, beside] = [cursor.columns(points_count)?, cursor.columns(points_count)?];
             PlacesOfSection::Planes { steps, beside }
         };
         cursor.finish()?;
@@ -78,7 +70,8 @@ impl<'a> Columns<'a> {
     }
 }
 
-/// Reads the section's bytes; `is_coded`: its points are range-coded bits. All points lie in `bounds`.
+/// Decodes the section's bytes; if `is_coded`, its points are range-coded bits. All points are in
+/// `bounds`.
 pub(crate) fn decode(
     bytes: &[u8],
     is_coded: bool,
@@ -88,7 +81,7 @@ pub(crate) fn decode(
     let step = columns.step;
     match columns.places {
         PlacesOfSection::Coded(bits) => {
-            let mut bits = Reader::new(bits);
+            let mut bits = BitReader::new(bits);
             let mut coder = RingCoder::new(bounds, step);
             let areas = columns.areas(|count| {
                 let mut ring = Vec::new();
@@ -122,7 +115,8 @@ pub(crate) fn decode(
 }
 
 impl Columns<'_> {
-    /// The areas, whose rings `ring` reads one after another, each with so many points.
+    /// Assembles the areas from their rings, which `ring` reads one after another, each with a
+    /// given number of points.
     fn areas(
         &self,
         mut ring: impl FnMut(u64) -> Result<Vec<LatticePoint>, Damage>,
@@ -138,7 +132,7 @@ impl Columns<'_> {
             let class_of = number.ok_or(Damage::Invalid("a class of areas"))?;
             id = id.wrapping_add(zigzag(object));
             let name = str::from_utf8(names.take(name_bytes as usize)?)
-                .map_err(|_| Damage::Invalid("a name that is no UTF-8"))?;
+                .map_err(|_| Damage::Invalid("a name that is not UTF-8"))?;
             let mut parts = Vec::new();
             for _ in 0..=polygons {
                 let mut of_part = Vec::new();
@@ -158,10 +152,7 @@ impl Columns<'_> {
     }
 }
 
-/// No coarse lattice is wider than a tile of 2^40 steps.
-const MOST_STEP: i64 = 1 << 40;
-
-/// Coordinates along an axis.
+/// Decodes coordinates along an axis.
 struct Places<S, B> {
     steps: S,
     beside: B,

@@ -1,4 +1,4 @@
-//! The areas of a tile are encoded as a section.
+//! Encodes the areas of a tile as a section.
 
 use corniche_areas::AreaObject;
 use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, TileId};
@@ -11,11 +11,12 @@ use crate::limits::{MAX_AREA_RINGS, MAX_AREAS, MAX_POINTS, MAX_TEXT_BYTES};
 use crate::payload::builder::Section;
 use crate::payload::damage::{DecodeError, EncodeError};
 use crate::payload::number_codes::put_planes;
-use crate::payload::range_coder::Writer;
-use crate::payload::section_kind::{AREAS, Kind};
+use crate::payload::range_coder::BitWriter;
+use crate::payload::section_kind::{AREAS, SectionKind};
 
 impl Section {
-    /// The areas of a tile with these bytes, which [`Section::into_bytes`] gave.
+    /// Returns the areas section of a tile with these bytes, which came from
+    /// [`Section::into_bytes`].
     #[must_use]
     pub fn of_areas(mut bytes: Vec<u8>) -> Self {
         let is_coded = bytes.first() == Some(&1);
@@ -23,24 +24,26 @@ impl Section {
         Self { kind: if is_coded { AREAS.coded } else { AREAS.planes }, bytes }
     }
 
-    /// The areas that it holds.
+    /// Returns the areas in this section.
     ///
     /// # Errors
     /// When the bytes are damaged.
     pub fn areas(&self, tile: TileId, frame: &GridFrame) -> Result<Vec<AreaRecord>, DecodeError> {
-        let failed = |damage| DecodeError { tile, part: Kind::Areas.name(), damage };
         let bounds = frame.tile_lattice_bounds(tile);
-        decode::decode(&self.bytes, self.kind == AREAS.coded, bounds).map_err(failed)
+        let areas = decode::decode(&self.bytes, self.kind == AREAS.coded, bounds);
+        areas.map_err(SectionKind::Areas.damaged(tile))
     }
 }
 
-/// Encodes the areas of a tile; `None` if there are none. Equal areas make equal bytes.
+/// Encodes the areas of a tile; `None` if there are none. Equal areas result in equal bytes.
 ///
-/// `step` is the spacing of the coarse lattice on which points of the tile's level lie, in steps of the package's; points on the tile's
-/// border may lie beside it. It decides only how short the bytes are.
+/// `step` is the spacing of the coarse lattice for the points of the tile's level, in steps of the
+/// package's lattice; points on the tile's border may be off the coarse lattice. `step` only
+/// affects the number of bytes.
 ///
 /// # Errors
-/// When a point lies outside the tile, a polygon has no rings or a ring too few points, or there is more than a reader accepts.
+/// When a point is outside the tile, a polygon has no rings, a ring has too few points, or there
+/// are more of them than readers accept.
 pub fn encode_areas(
     tile: TileId,
     frame: &GridFrame,
@@ -51,18 +54,17 @@ pub fn encode_areas(
         return Ok(None);
     }
     let bounds = frame.tile_lattice_bounds(tile);
-    let refused = |what| EncodeError::Unencodable { tile, section: Kind::Areas.name(), what };
-    check(areas, &bounds, step).map_err(refused)?;
+    check(areas, &bounds, step).map_err(SectionKind::Areas.refused(tile))?;
     Ok(Some(section(areas, bounds, step, coded_places(areas, bounds, step))))
 }
 
-/// The areas with their points in planes, as kind 8 has them.
+/// Encodes areas with their points in planes, as section kind 8 has them.
 #[cfg(test)]
 pub(crate) fn in_planes(areas: &[AreaRecord], bounds: LatticeBounds, step: i64) -> Section {
     section(areas, bounds, step, None)
 }
 
-/// `coded`: all points, else they are written in planes.
+/// Encodes a section with `coded` points, or with points in planes if there are none.
 fn section(
     areas: &[AreaRecord],
     bounds: LatticeBounds,
@@ -93,10 +95,10 @@ fn section(
     Section { kind, bytes }
 }
 
-/// All points as range-coded bits; `None` where one has no code: a step of 2^32 or more.
+/// Encodes all points as range-coded bits; `None` if a point has no code (a step of 2^32 or more).
 fn coded_places(areas: &[AreaRecord], bounds: LatticeBounds, step: i64) -> Option<Vec<u8>> {
     let mut coder = RingCoder::new(bounds, step);
-    let mut bits = Writer::new(Vec::new());
+    let mut bits = BitWriter::new(Vec::new());
     for ring in areas.iter().flat_map(AreaRecord::rings) {
         for &point in ring {
             if coder.code_point(&mut bits, Some(point)) != Ok(point) {
@@ -112,7 +114,7 @@ fn check(areas: &[AreaRecord], bounds: &LatticeBounds, step: i64) -> Result<(), 
     let rings = || areas.iter().flat_map(AreaRecord::rings);
     let polygons = areas.iter().flat_map(|area| &area.polygons);
     if step < 1 {
-        return Err("a lattice without spacing");
+        return Err("a lattice with a spacing of 0");
     }
     if areas.iter().any(|area| area.polygons.is_empty())
         || polygons.clone().any(|part| part.rings.is_empty())
@@ -120,7 +122,7 @@ fn check(areas: &[AreaRecord], bounds: &LatticeBounds, step: i64) -> Result<(), 
         return Err("an area without rings");
     }
     if rings().any(|ring| ring.len() < 3) {
-        return Err("a ring of less than three points");
+        return Err("a ring of fewer than three points");
     }
     if rings().flatten().any(|&point| !bounds.contains(point)) {
         return Err("a point outside the tile");
@@ -140,14 +142,15 @@ fn check(areas: &[AreaRecord], bounds: &LatticeBounds, step: i64) -> Result<(), 
 #[derive(Default)]
 struct Columns {
     classes: Vec<u64>,
-    /// Twice the id in zigzag code, plus 1 for relations; after the first the difference to the one before.
+    /// Twice the zigzag code of the id, plus 1 for relations; after the first object, of the
+    /// difference to the id before.
     objects: Vec<u64>,
     name_bytes: Vec<u64>,
     names: Vec<u8>,
     polygons: Vec<u64>,
-    /// The number of rings of each polygon, without the outer one.
+    /// The number of rings of each polygon, without the outer ring.
     rings: Vec<u64>,
-    /// The number of points of each ring, less three.
+    /// The number of points of each ring, minus three.
     points: Vec<u64>,
     all_points: Vec<LatticePoint>,
     last_id: i64,
@@ -174,8 +177,9 @@ impl Columns {
         }
     }
 
-    /// East and north in steps of the coarse lattice, each as difference from the point before, the first from the tile's south-western
-    /// corner; then what is left of each, which is 0 but on borders.
+    /// East and north in steps of the coarse lattice, each as the difference from the point before,
+    /// the first from the tile's south-western corner; then the remainder of each, which is 0
+    /// except on borders.
     fn places(&self, bounds: &LatticeBounds, step: i64) -> [Vec<u64>; 4] {
         let mut columns = [const { Vec::new() }; 4];
         let mut last = [bounds.min.u, bounds.min.v].map(|part| part.div_euclid(step));

@@ -1,53 +1,47 @@
-//! The lines of a layer are encoded as a section of their tile.
+//! Encodes boundaries as a section of their tile.
 
-use corniche_areas::{ClassedLayer, line_text};
 use corniche_geom::TileId;
 use corniche_varints::{push_varint, to_zigzag};
 
-use super::{FARTHEST, LineRecord, MOST_STEP, decode};
+use super::{FARTHEST, LineRecord, decode};
 use crate::limits::{MAX_CLASSED_LINES, MAX_POINTS};
 use crate::payload::builder::Section;
 use crate::payload::damage::{DecodeError, EncodeError};
-use crate::payload::number_codes::put_planes;
-use crate::payload::section_kind::Kind;
+use crate::payload::number_codes::{MOST_SPACING, put_planes};
+use crate::payload::section_kind::SectionKind;
 
 impl Section {
-    /// The lines of a layer with these bytes, which [`Section::into_bytes`] gave.
+    /// Returns the boundaries section with these bytes, which came from [`Section::into_bytes`].
     #[must_use]
-    pub fn of_lines(layer: ClassedLayer, bytes: Vec<u8>) -> Self {
-        Self { kind: Kind::of_lines(layer), bytes }
+    pub fn of_boundaries(bytes: Vec<u8>) -> Self {
+        Self { kind: SectionKind::Boundaries, bytes }
     }
 
-    /// The lines of a layer that it holds.
+    /// Returns the boundaries in this section.
     ///
     /// # Errors
     /// When the bytes are damaged.
-    pub fn lines(&self, layer: ClassedLayer, tile: TileId) -> Result<Vec<LineRecord>, DecodeError> {
-        let part = self.kind.name();
-        decode(&self.bytes, layer).map_err(|damage| DecodeError { tile, part, damage })
+    pub fn boundaries(&self, tile: TileId) -> Result<Vec<LineRecord>, DecodeError> {
+        decode(&self.bytes).map_err(self.kind.damaged(tile))
     }
 }
 
-/// Encodes the lines of a layer of a tile; `None` if there are none. Equal lines make equal bytes.
+/// Encodes the boundaries of a tile; `None` if there are none. Equal lines result in equal bytes.
 ///
-/// All coordinates are multiples of `step`, steps of the package's lattice.
+/// All coordinates are multiples of `step`, in steps of the package's lattice.
 ///
 /// # Errors
-/// When a point is no multiple, a line has too few points or one twice in a row, or there is more than a reader accepts.
-pub fn encode_lines(
+/// When a coordinate is not a multiple of `step`, a line has too few points or two equal points in
+/// succession, or there are more lines than readers accept.
+pub fn encode_boundaries(
     tile: TileId,
-    layer: ClassedLayer,
     step: i64,
     lines: &[LineRecord],
 ) -> Result<Option<Section>, EncodeError> {
     if lines.is_empty() {
         return Ok(None);
     }
-    check(layer, lines, step).map_err(|what| EncodeError::Unencodable {
-        tile,
-        section: Kind::of_lines(layer).name(),
-        what,
-    })?;
+    check(lines, step).map_err(SectionKind::Boundaries.refused(tile))?;
     let (mut last_id, mut last) = (0_i64, [0_i64; 2]);
     let mut columns = [const { Vec::new() }; 5];
     for line in lines {
@@ -69,26 +63,26 @@ pub fn encode_lines(
     for column in &columns {
         put_planes(&mut bytes, column);
     }
-    Ok(Some(Section::of_lines(layer, bytes)))
+    Ok(Some(Section::of_boundaries(bytes)))
 }
 
-fn check(layer: ClassedLayer, lines: &[LineRecord], step: i64) -> Result<(), &'static str> {
+fn check(lines: &[LineRecord], step: i64) -> Result<(), &'static str> {
     let points = || lines.iter().flat_map(|line| &line.points);
-    if !(1..=MOST_STEP).contains(&step) {
-        return Err("a lattice without spacing");
+    if !(1..=MOST_SPACING).contains(&step) {
+        return Err("a lattice with a spacing of 0");
     }
     if lines.iter().any(|line| line.points.len() < 2) {
-        return Err(line_text!(layer, "a " one " of less than two points"));
+        return Err("a boundary of fewer than two points");
     }
     if lines.iter().any(|line| line.points.array_windows().any(|[a, b]| a == b)) {
-        return Err(line_text!(layer, "a " one " with a point twice"));
+        return Err("a boundary with two equal points in succession");
     }
     let is_place = |part: i64| part % step == 0 && (-FARTHEST..=FARTHEST).contains(&part);
     if points().any(|point| !is_place(point.u) || !is_place(point.v)) {
-        return Err("a point beside the lattice");
+        return Err("a point that is not on the lattice");
     }
     if lines.len() > MAX_CLASSED_LINES || points().count() > MAX_POINTS {
-        return Err(line_text!(layer, "more " many " than readers accept"));
+        return Err("more boundaries than readers accept");
     }
     Ok(())
 }

@@ -6,7 +6,8 @@ use corniche_varints::push_varint;
 use crate::payload::damage::Damage;
 use crate::payload::number_codes::Cursor;
 
-/// Writes the lengths of the runs of texels with and without a photo, in turn, the first with (which may be empty).
+/// Writes the lengths of the runs of texels with and without a photo, in turn; the first run is
+/// with a photo and may be empty.
 #[cfg(feature = "write")]
 pub(crate) fn encode(has_photo: impl Iterator<Item = bool>, out: &mut Vec<u8>) {
     let (mut is_run_of, mut length) = (true, 0_u64);
@@ -20,7 +21,8 @@ pub(crate) fn encode(has_photo: impl Iterator<Item = bool>, out: &mut Vec<u8>) {
     push_varint(out, length);
 }
 
-/// Reads runs that come to `count` texels, and hands on each with its first texel and its length.
+/// Reads runs that cover `count` texels in total, and passes on the first texel and the length of
+/// each run with a photo.
 pub(crate) fn decode(
     cursor: &mut Cursor<'_>,
     count: usize,
@@ -29,7 +31,7 @@ pub(crate) fn decode(
     let (mut has_photo, mut at) = (true, 0);
     while at < count {
         let length = cursor.bounded(count - at, "a run of texels beyond the last")?;
-        // Only the first run may be empty, so that there are no more runs than texels.
+        // Only the first run may be empty, so that there are at most as many runs as texels.
         if length == 0 && !(has_photo && at == 0) {
             return Err(Damage::Invalid("an empty run of texels"));
         }

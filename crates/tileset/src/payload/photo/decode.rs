@@ -1,4 +1,4 @@
-//! The photo section is decoded: a JPEG, and a mask of the texels without a photo.
+//! Decodes the photo section: a JPEG, and a mask of the texels without a photo.
 
 use zune_core::bytestream::ZCursor;
 use zune_core::colorspace::ColorSpace;
@@ -13,13 +13,13 @@ use crate::limits::MAX_PHOTO_LEVELS;
 use crate::payload::damage::Damage;
 use crate::payload::number_codes::Cursor;
 
-/// How the colours are coded: JPEG.
+/// The code for colours as JPEG.
 pub(crate) const JPEG: u8 = 1;
 
-/// JPEG's last marker.
+/// The last marker of a JPEG.
 const END_OF_IMAGE: [u8; 2] = [0xff, 0xd9];
 
-/// The photo of a section's bytes.
+/// Decodes the photo from a section's bytes.
 pub(crate) fn decode(bytes: &[u8]) -> Result<Photo, Damage> {
     let mut cursor = Cursor::new(bytes);
     if cursor.byte()? != JPEG {
@@ -47,10 +47,10 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Photo, Damage> {
     Ok(Photo { levels, rgba })
 }
 
-/// Decodes a JPEG of three colours and known size.
+/// Decodes a JPEG of three colours and of known size.
 fn colours(jpeg: &[u8], side: usize) -> Result<Vec<u8>, Damage> {
-    const NOT_FITTING: Damage = Damage::Invalid("a picture of another size or kind");
-    // A picture may have a scan for each colour, and the decoder does not miss one that was cut off.
+    const NOT_FITTING: Damage = Damage::Invalid("an image of another size or kind");
+    // A JPEG may have a scan for each colour, and the decoder does not notice a truncated scan.
     if !jpeg.ends_with(&END_OF_IMAGE) {
         return Err(Damage::TooShort);
     }

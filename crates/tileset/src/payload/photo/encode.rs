@@ -1,4 +1,4 @@
-//! The photo of a tile is encoded as a section: a JPEG, and a mask of the texels without a photo.
+//! Encodes the photo of a tile as a section: a JPEG, and a mask of the texels without a photo.
 
 use corniche_geom::TileId;
 use jpeg_encoder::{ColorType, Encoder, SamplingFactor};
@@ -12,41 +12,41 @@ use crate::limits::MAX_PHOTO_LEVELS;
 use crate::payload::builder::Section;
 use crate::payload::damage::{DecodeError, EncodeError};
 use crate::payload::envelope;
-use crate::payload::section_kind::Kind;
+use crate::payload::section_kind::SectionKind;
 
-/// Texels along a side of JPEG's blocks.
+/// The side of JPEG's blocks in texels.
 const BLOCK: usize = 8;
 
 impl Section {
-    /// The photo of a tile with these bytes, which [`Section::bytes`] gave.
+    /// Returns the photo section of a tile with these bytes, which came from [`Section::bytes`].
     #[must_use]
     pub fn of_photo(bytes: Vec<u8>) -> Self {
-        Self { kind: Kind::Photo, bytes }
+        Self { kind: SectionKind::Photo, bytes }
     }
 
-    /// What readers will see of the photo that it holds.
+    /// Returns the photo in this section as readers will see it.
     ///
     /// # Errors
     /// When the bytes are damaged.
     pub fn photo(&self, tile: TileId) -> Result<Photo, DecodeError> {
-        let part = Kind::Photo.name();
-        decode::decode(&self.bytes).map_err(|damage| DecodeError { tile, part, damage })
+        decode::decode(&self.bytes).map_err(SectionKind::Photo.damaged(tile))
     }
 }
 
-/// Encodes the photo of a tile; `None` if no texel has a photo. Equal photos make equal bytes on every processor: all arithmetic is in whole
-/// numbers. `quality` is JPEG's, from 1 to 100.
+/// Encodes the photo of a tile; `None` if no texel has a photo. Equal photos result in equal bytes
+/// on every processor, because all arithmetic is on integers. `quality` is JPEG's, from 1 to 100.
 ///
-/// Each colour is stored at full resolution: of photos from above, halved colours save few bytes at the same error.
+/// Each colour is stored at full resolution: for aerial photos, half the resolution would save few
+/// bytes at the same error.
 ///
 /// # Errors
-/// When levels and the number of texels do not fit, or the quality is out of its range.
+/// When the number of texels does not match the levels, or the quality is out of its range.
 pub fn encode_photo(
     tile: TileId,
     photo: &Photo,
     quality: u8,
 ) -> Result<Option<Section>, EncodeError> {
-    let refused = |what| EncodeError::Unencodable { tile, section: Kind::Photo.name(), what };
+    let refused = SectionKind::Photo.refused(tile);
     if photo.levels > MAX_PHOTO_LEVELS || photo.rgba.len() != photo.side() * photo.side() * 4 {
         return Err(refused("a photo of another size"));
     }
@@ -62,20 +62,21 @@ pub fn encode_photo(
     let side = photo.side();
     let mut encoder = Encoder::new(&mut bytes, quality);
     encoder.set_sampling_factor(SamplingFactor::F_1_1);
-    // Tables of the picture's own; the pixels stay the same.
+    // The image gets its own Huffman tables; the pixels stay the same.
     encoder.set_optimized_huffman_tables(true);
-    // A side is at most 4112.
+    // A side has at most 4112 texels.
     let encoded = encoder.encode(&filled(photo), side as u16, side as u16, ColorType::Rgb);
     encoded.map_err(|error| EncodeError::Compress {
         tile,
-        section: Kind::Photo.name(),
+        section: SectionKind::Photo.name(),
         reason: error.to_string(),
     })?;
     Ok(Some(Section::of_photo(bytes)))
 }
 
-/// The colours of all texels. Those without a photo get the mean of the block of JPEG that they are in, or of the whole photo where
-/// their block has none: an edge inside a block would cost bytes, and would ring on the side that is seen.
+/// Returns the colours of all texels. Texels without a photo get the mean of their JPEG block, or
+/// the mean of the whole photo if their block has no photo: an edge inside a block would cost
+/// bytes, and would cause ringing on the visible side.
 fn filled(photo: &Photo) -> Vec<u8> {
     let side = photo.side();
     let mut rgb: Vec<u8> =
@@ -101,7 +102,7 @@ fn filled(photo: &Photo) -> Vec<u8> {
     rgb
 }
 
-/// The mean colour of the texels that have a photo, if any has.
+/// Returns the mean colour of the texels that have a photo, if there are any.
 fn mean<'a>(texels: impl Iterator<Item = &'a [u8]>) -> Option<[u8; 3]> {
     let (mut sums, mut count) = ([0_u64; 3], 0);
     for texel in texels.filter(|texel| texel[3] != 0) {
@@ -113,13 +114,13 @@ fn mean<'a>(texels: impl Iterator<Item = &'a [u8]>) -> Option<[u8; 3]> {
     (count > 0).then(|| sums.map(|sum| ((sum + count / 2) / count) as u8))
 }
 
-/// The photo of a payload as it is stored there; `None` if it has none.
+/// Returns the photo of a payload as it is stored there; `None` if it has none.
 ///
 /// # Errors
 /// When the bytes are not a payload of the tile, or the section is damaged.
 pub fn photo_section(payload: &[u8], tile: TileId) -> Result<Option<Section>, DecodeError> {
-    let failed = |part| move |damage| DecodeError { tile, part, damage };
-    let sections = envelope::open(payload, tile).map_err(failed("header"))?;
-    let bytes = envelope::section(&sections, Kind::Photo).map_err(failed(Kind::Photo.name()))?;
+    let sections = envelope::open(payload, tile).map_err(|damage| damage.in_header(tile))?;
+    let bytes = envelope::section(&sections, SectionKind::Photo)
+        .map_err(SectionKind::Photo.damaged(tile))?;
     Ok(bytes.map(Section::of_photo))
 }

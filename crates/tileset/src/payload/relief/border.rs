@@ -3,19 +3,21 @@
 #[cfg(feature = "write")]
 use corniche_geom::{Cell, HeightGrid};
 
-use super::coefficients::Numbers;
+use super::coefficients::NumberModel;
 use super::wavelet::SIDE;
 use crate::payload::damage::Damage;
 use crate::payload::range_coder::Bits;
 
-/// Nodes on the border of a tile.
+/// Number of nodes on the border of a tile.
 pub(crate) const BORDER_NODES: usize = 4 * (SIDE - 1);
-/// Steps of a slope of 1. A step is 0.7 grey levels of 255 on level ground, lit from 45°, so rounding is not seen.
+/// Number of steps of a slope of 1. A step is 0.7 grey levels of 255 on level ground that is lit
+/// from 45°, so rounding is not visible.
 pub(crate) const STEPS_PER_ONE: f64 = 256.0;
-/// Slopes have fewer steps than this; larger ones are cut.
+/// Slopes have fewer steps than this; larger ones are clamped.
 const MOST_STEPS: i64 = 1 << 20;
 
-/// The place of a node in the list: the north row, then the western and the eastern node of each row, then the south row.
+/// The index of a node in the list of border nodes: the north row, then the western and the eastern
+/// node of each row, then the south row. `None` for other nodes.
 pub(crate) fn index(column: usize, row: usize) -> Option<usize> {
     let last = SIDE - 1;
     match (column, row) {
@@ -28,7 +30,7 @@ pub(crate) fn index(column: usize, row: usize) -> Option<usize> {
     }
 }
 
-/// The nodes in the order of [`index`].
+/// Iterates over the nodes in the order of [`index`].
 fn nodes() -> impl Iterator<Item = [usize; 2]> {
     let last = SIDE - 1;
     let north = (0..SIDE).map(|column| [column, 0]);
@@ -37,7 +39,7 @@ fn nodes() -> impl Iterator<Item = [usize; 2]> {
     north.chain(sides).chain(south)
 }
 
-/// The slopes of the raster, in whole steps.
+/// Returns the slopes of the raster in whole steps.
 #[cfg(feature = "write")]
 pub(crate) fn of_raster(with_halo: &HeightGrid, cell: Cell) -> Vec<Option<[i32; 2]>> {
     let most = (MOST_STEPS - 1) as f64;
@@ -60,7 +62,7 @@ pub(crate) fn code<B: Bits>(
     mask: &[bool],
     factors: [i64; 2],
 ) -> Result<(), Damage> {
-    let mut numbers = [const { Numbers::new() }; 2];
+    let mut numbers = [const { NumberModel::new() }; 2];
     let mut around = [[0; 2]; 2];
     for ([column, row], slopes) in nodes().zip(border) {
         let there = mask[row * SIDE + column];
@@ -87,7 +89,8 @@ pub(crate) fn code<B: Bits>(
     Ok(())
 }
 
-/// What the decoded heights let expect of a slope, in steps; `axis` is 0 east, 1 north.
+/// Returns the slope expected from the decoded heights, in steps; `axis` is 0 for east, 1 for
+/// north.
 fn expected(
     [column, row]: [usize; 2],
     axis: usize,
@@ -99,7 +102,7 @@ fn expected(
         let inside = column < SIDE && row < SIDE && mask[row * SIDE + column];
         inside.then(|| units[row * SIDE + column])
     };
-    // A column or row before the first has wrapped around and is beyond the last.
+    // A column or row before the first has wrapped around, so it is beyond the last.
     let (low, high) = match axis {
         0 => (at(column.wrapping_sub(1), row), at(column + 1, row)),
         _ => (at(column, row + 1), at(column, row.wrapping_sub(1))),

@@ -1,30 +1,32 @@
-//! How whole numbers in a rectangle, and the mask of nodes, become bits.
+//! Codes the whole numbers of a rectangle, and the mask of nodes, as bits.
 
 use super::wavelet::{Band, SIDE};
 use crate::payload::range_coder::{Bits, Model};
 
-/// Numbers up to this have a bit of their own for each step; larger ones an exponent and its bits.
+/// Numbers up to this have one bit for each step; larger numbers have an exponent and the digits
+/// that it announces.
 const STEPS: usize = 14;
-/// Exponents of what is beyond [`STEPS`]: magnitudes stay below 2^41.
+/// Number of exponents of the part of a number beyond [`STEPS`]: magnitudes stay below 2^41.
 const EXPONENTS: usize = 41;
-/// What is around a number, in so many classes.
+/// Number of classes of the sum of magnitudes around a number.
 const CLASSES: usize = 15;
-/// From these sums of magnitudes on the next class begins.
+/// The sums of magnitudes at which the next class begins.
 const CLASS_STARTS: [i64; CLASSES - 1] = [1, 2, 3, 4, 6, 8, 11, 15, 20, 28, 40, 60, 100, 200];
 
-/// What a coder knows of the numbers of one kind.
+/// The state of a coder of numbers of one kind.
 #[derive(Debug, Clone)]
-pub(crate) struct Numbers {
+pub(crate) struct NumberModel {
     steps: [[Model; STEPS]; CLASSES],
     exponents: [Model; EXPONENTS],
 }
 
-impl Numbers {
+impl NumberModel {
     pub(crate) const fn new() -> Self {
         Self { steps: [[Model::NEW; STEPS]; CLASSES], exponents: [Model::NEW; EXPONENTS] }
     }
 
-    /// Codes a number; `around` is a weighted sum of the magnitudes of those near it. Magnitudes stay below 2^41.
+    /// Codes a number; `around` is a weighted sum of the magnitudes of the numbers near it.
+    /// Magnitudes stay below 2^41.
     pub(crate) fn code<B: Bits>(&mut self, bits: &mut B, around: i64, number: i64) -> i64 {
         let class = CLASS_STARTS.iter().take_while(|&&start| around >= start).count();
         let asked = number.unsigned_abs();
@@ -45,7 +47,7 @@ impl Numbers {
         }
     }
 
-    /// Elias's gamma code of `rest` + 1, whose exponent adapts.
+    /// Codes `rest` + 1 in Elias's gamma code with an adaptive exponent.
     fn code_rest<B: Bits>(&mut self, bits: &mut B, rest: u64) -> u64 {
         let wanted = (rest + 1).ilog2() as usize;
         let mut exponent = 0;
@@ -62,9 +64,9 @@ impl Numbers {
     }
 }
 
-/// The magnitude of a number of a band; 0 outside.
+/// The magnitude of a number of a band; 0 outside the band.
 fn magnitude(square: &[i64], band: Band, column: usize, row: usize) -> i64 {
-    // A column or row before the first has wrapped around and is beyond the last.
+    // A column or row before the first has wrapped around, so it is beyond the last.
     if column < band.columns && row < band.rows {
         square[(band.top + row) * SIDE + band.left + column].abs()
     } else {
@@ -72,10 +74,11 @@ fn magnitude(square: &[i64], band: Band, column: usize, row: usize) -> i64 {
     }
 }
 
-/// Codes the numbers of a band, row by row. `parent` is the band of the same direction in the next coarser division.
+/// Codes the numbers of a band, row by row. `parent` is the band of the same direction in the next
+/// coarser division.
 pub(crate) fn code_band<B: Bits>(
     bits: &mut B,
-    numbers: &mut Numbers,
+    numbers: &mut NumberModel,
     square: &mut [i64],
     band: Band,
     parent: Option<Band>,
@@ -97,12 +100,12 @@ pub(crate) fn code_band<B: Bits>(
     }
 }
 
-/// Codes the smooth band: each number as its difference from what its neighbours let expect, the median of west, north
-/// and west + north − north-west.
+/// Codes the smooth band: each number as its difference from the prediction of its neighbours,
+/// which is the median of west, north, and west + north − north-west.
 ///
 /// Source: Weinberger, Seroussi & Sapiro 2000, *The LOCO-I lossless image compression algorithm*.
 pub(crate) fn code_smooth<B: Bits>(bits: &mut B, square: &mut [i64], band: Band) {
-    let mut numbers = Numbers::new();
+    let mut numbers = NumberModel::new();
     let mut before = 0;
     for row in 0..band.rows {
         for column in 0..band.columns {
@@ -125,7 +128,8 @@ pub(crate) fn code_smooth<B: Bits>(bits: &mut B, square: &mut [i64], band: Band)
     }
 }
 
-/// Codes for each node a yes or no (whether it has a height, whether it is water), by what is known of the four nodes before it.
+/// Codes one bit for each node (whether it has a height, or whether it is water), in the context of
+/// the four nodes before it.
 pub(crate) fn code_mask<B: Bits>(bits: &mut B, mask: &mut [bool]) {
     let mut models = [Model::default(); 16];
     for row in 0..SIDE {

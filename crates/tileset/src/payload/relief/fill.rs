@@ -1,14 +1,14 @@
-//! Heights to whole units, with values that compress well where there is no height.
+//! Converts heights to whole units, with values that compress well for nodes without a height.
 
 use corniche_geom::HeightGrid;
 
 use super::wavelet::SIDE;
 
-/// No height may have as many units.
+/// Heights have fewer units than this.
 const MOST_UNITS: f64 = (1_u64 << 38) as f64;
 
-/// The tile's own nodes: which have a height, and all in whole units. Nodes without a height get the mean of the heights near
-/// them.
+/// Returns which of the tile's own nodes have a height, and the heights of all of them in whole
+/// units. Nodes without a height get the mean of the heights near them.
 pub(crate) fn whole_units(
     with_halo: &HeightGrid,
     unit_m: f64,
@@ -18,7 +18,7 @@ pub(crate) fn whole_units(
     for row in 1..=SIDE {
         for column in 1..=SIDE {
             let height_m = with_halo.height(column, row);
-            // A power of two, so the division is exact.
+            // The unit is a power of two, so the division is exact.
             let height = height_m.map_or(0.0, |height_m| (f64::from(height_m) / unit_m).round());
             if height.abs() >= MOST_UNITS {
                 return Err("heights of 2^38 units or more");
@@ -36,7 +36,8 @@ pub(crate) fn whole_units(
     Ok((mask, units))
 }
 
-/// Heights of a coarser and coarser raster: each node the mean of the four below it that have a height.
+/// Fills gaps from coarser and coarser rasters, in which each node is the mean of the four nodes
+/// below it that have a height.
 fn fill(units: &mut [i64], mask: &[bool]) {
     let own = units.iter().zip(mask).map(|(&height, &there)| there.then_some(height)).collect();
     let mut rasters: Vec<(usize, Vec<Option<i64>>)> = vec![(SIDE, own)];

@@ -7,40 +7,42 @@ use corniche_varints::{push_varint, to_zigzag};
 use crate::payload::damage::Damage;
 use crate::payload::number_codes::Cursor;
 
-/// Steps of the bands: the smooth band's, then three for each division, the coarsest first.
+/// Number of quantisation steps: one for the smooth band, then three for each division, the
+/// coarsest first.
 pub(crate) const BANDS: usize = 1 + 3 * super::wavelet::LEVELS;
-/// Steps are at most this many units.
+/// The largest quantisation step, in units.
 pub(crate) const MOST_STEP: u64 = 1 << 16;
-/// Slope factors are at most this.
+/// The largest slope factor.
 pub(crate) const MOST_FACTOR: u64 = 1 << 16;
-/// Units are powers of two with exponents up to this, both ways.
+/// The largest absolute exponent of a unit; units are powers of two.
 pub(crate) const MOST_EXPONENT: i32 = 64;
-/// No height has as many units, decoded ones included.
+/// Heights, including decoded ones, have fewer units than this.
 pub(crate) const MOST_UNITS: u64 = 1 << 40;
 
-/// What the decoder must know before the first bit.
+/// The fields that the decoder needs before the first bit.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Head {
+pub(crate) struct ReliefHead {
     /// Whether a mask follows: some nodes have no height.
     pub(crate) has_voids: bool,
     /// Whether a second mask follows: some nodes are water.
     pub(crate) has_water: bool,
-    /// A unit is 2 to this power, metres.
+    /// A unit is 2 to this power, in metres.
     pub(crate) exponent: i32,
-    /// 256ths of slope, east and north, for each unit that the nodes on both sides differ by; in 65 536ths.
+    /// Slope factors east and north: 256ths of slope per unit of the difference between the nodes
+    /// on both sides; in 65 536ths.
     pub(crate) slope_factors: [i64; 2],
-    /// Quantisation steps, units.
+    /// Quantisation steps in units.
     pub(crate) steps: [i64; BANDS],
-    /// Largest error of a height, units.
+    /// Largest error of a height in units.
     pub(crate) greatest_error: u64,
 }
 
-/// A unit in metres.
+/// The length of a unit in metres.
 pub(crate) fn unit_m(exponent: i32) -> f64 {
     2_f64.powi(exponent)
 }
 
-impl Head {
+impl ReliefHead {
     #[cfg(feature = "write")]
     pub(crate) fn to_bytes(&self) -> Vec<u8> {
         let mut out = vec![u8::from(self.has_voids) | u8::from(self.has_water) << 1];

@@ -1,10 +1,11 @@
-//! Coefficients to whole steps and back.
+//! Converts coefficients to whole steps and back.
 
 use super::head::{BANDS, MOST_UNITS};
 use super::wavelet::{self, Band, LEVELS, SIDE, SMOOTH, rough_bands};
 use crate::payload::damage::Damage;
 
-/// Each band with its place in the list of steps: the smooth one, then the coarsest rough ones.
+/// Each band with its index in the list of steps: the smooth band, then the rough bands, the
+/// coarsest first.
 fn bands() -> impl Iterator<Item = (usize, Band)> {
     let rough = (0..LEVELS).rev().flat_map(rough_bands);
     std::iter::once(SMOOTH).chain(rough).enumerate()
@@ -17,8 +18,9 @@ fn each(square: &mut [i64], band: Band, mut change: impl FnMut(&mut i64)) {
     }
 }
 
-/// Coefficients to whole steps. Those of the finest division become 0 below 0.7 of a step, those of the next below 0.6: most of them
-/// are noise that shading does not miss.
+/// Converts coefficients to whole steps. In the finest division coefficients below 0.7 of a step
+/// become 0, in the next those below 0.6: most of them are noise whose absence is not visible in
+/// shading.
 #[cfg(feature = "write")]
 pub(crate) fn quantise(square: &mut [i64], steps: &[i64; BANDS]) {
     for (number, band) in bands() {
@@ -32,9 +34,9 @@ pub(crate) fn quantise(square: &mut [i64], steps: &[i64; BANDS]) {
     }
 }
 
-/// Whole steps to coefficients, and these to heights in units.
+/// Converts whole steps to coefficients, and coefficients to heights in units.
 pub(crate) fn reconstruct(square: &mut [i64], steps: &[i64; BANDS]) -> Result<(), Damage> {
-    /// Five inverse divisions make values at most 2^13 times as large.
+    /// Five inverse divisions multiply values by at most 2^13.
     const MOST: u64 = MOST_UNITS << 5;
     let mut is_small = true;
     for (number, band) in bands() {

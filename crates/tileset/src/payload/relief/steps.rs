@@ -1,21 +1,26 @@
-//! How finely each band is quantised, from what it does to slopes.
+//! Computes how finely each band is quantised, from its effect on slopes.
 
 use corniche_geom::Cell;
 
 use super::head::{BANDS, MOST_EXPONENT, MOST_FACTOR, MOST_STEP};
 
-/// The quantisation steps as slopes: the change of one coefficient by a step changes slopes by this, as the root of the sum of squares
-/// over all nodes. The smooth band, then the divisions from the coarsest to the finest.
+/// The quantisation steps as slopes: a change of one coefficient by a step changes slopes by this
+/// value, as the root of the sum of squares over all nodes. The smooth band comes first, then the
+/// divisions from the coarsest to the finest.
 ///
-/// The same for all bands would need the fewest bytes for an error. But errors of coarse bands are waves of many cells, and on
-/// smooth ground the eye sees these before it sees noise; and coarse bands have few numbers. So coarse steps are a tenth of the finest:
-/// 5 % more bytes, and half of the error on smooth ground. With these steps shading is wrong by 2.4 to 3.6 grey levels of 255.
+/// Equal values for all bands would need the fewest bytes for an error. But errors of coarse bands
+/// are waves of many cells, and on smooth ground these are more visible than noise; and coarse
+/// bands have few numbers. So the steps of coarse bands are a tenth of the finest: 5 % more bytes,
+/// and half of the error on smooth ground. With these steps the error of shading is 2.4 to 3.6 grey
+/// levels of 255.
 const SLOPE_STEPS: [f64; 1 + super::wavelet::LEVELS] = [0.009, 0.009, 0.011, 0.027, 0.065, 0.1];
 
-/// What a coefficient of 1 changes slopes east and slopes north by, as sums of squares over all nodes, for nodes 1 apart. The
-/// smooth band, then the rough bands of the coarsest division and so on, as the head lists steps: rough from west to east, from
-/// north to south, in both. Computed by transforming back one coefficient in the middle of each band; test
-/// `weights_are_those_of_the_transform`.
+/// The effect of a coefficient of 1 on slopes east and slopes north, as sums of squares over all
+/// nodes, for a node spacing of 1. The smooth band comes first, then the rough bands of the
+/// coarsest division and so on, in the order of the steps in the head: rough from west to east,
+/// from north to south, in both directions. The values were computed by transforming back one
+/// coefficient in the middle of each band; the test `weights_are_those_of_the_transform` checks
+/// them.
 pub(crate) const WEIGHTS: [[f64; 2]; BANDS] = [
     [1.303, 1.303],
     [2.615, 0.3675],
@@ -35,11 +40,11 @@ pub(crate) const WEIGHTS: [[f64; 2]; BANDS] = [
     [0.3032, 0.3032],
 ];
 
-/// The exponent of the unit: the largest power of two that is no larger than a 512th of the cell, but at least a 64th of the height
-/// step, so that all heights of a package have few enough units.
+/// The exponent of the unit: the largest power of two that is at most a 512th of the cell, but at
+/// least a 64th of the height step, so that all heights of a package have few enough units.
 pub(crate) fn unit_exponent(cell: Cell, quantum_m: f64) -> i32 {
     let below = |length_m: f64| {
-        // The exponent of a normal number; others do not occur as cells or steps.
+        // This is the exponent of a normal number; other numbers do not occur as cells or steps.
         ((length_m.to_bits() >> 52) & 0x7ff) as i32 - 1023
     };
     let fine = below(cell.shorter_m()) - 9;

@@ -1,14 +1,15 @@
-//! Which nodes are level water.
+//! Detects nodes of level water.
 
 use corniche_geom::HeightGrid;
 
 use super::wavelet::SIDE;
 
-/// Fewer neighbours than this say nothing.
+/// The smallest number of neighbours that is conclusive.
 const LEAST_NEIGHBOURS: usize = 3;
 
-/// Tells for each of the tile's own nodes whether it is water: it lies at or below 0, and its neighbours, eight or those that have a
-/// height, have exactly the same height. All tiles that have a node see the same neighbours.
+/// Returns for each of the tile's own nodes whether it is water: it is at or below 0 m, and its
+/// neighbours (all eight, or those that have a height) have exactly the same height. All tiles that
+/// have a node see the same neighbours.
 pub(crate) fn of_raster(with_halo: &HeightGrid) -> Vec<bool> {
     let mut water = Vec::with_capacity(SIDE * SIDE);
     for row in 1..=SIDE {
@@ -20,7 +21,7 @@ pub(crate) fn of_raster(with_halo: &HeightGrid) -> Vec<bool> {
     water
 }
 
-#[expect(clippy::float_cmp, reason = "equal heights are meant")]
+#[expect(clippy::float_cmp, reason = "heights must be exactly equal")]
 fn is_level(with_halo: &HeightGrid, [column, row]: [usize; 2], own_m: f32) -> bool {
     let mut neighbours = 0;
     for (east, south) in [(0, 0), (1, 0), (2, 0), (0, 1), (2, 1), (0, 2), (1, 2), (2, 2)] {

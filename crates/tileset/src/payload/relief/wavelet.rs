@@ -1,16 +1,17 @@
 //! The transform: the reversible 5/3 wavelet in whole numbers, over a square of nodes.
 //!
-//! Source: Le Gall & Tabatabai 1988, *Sub-band coding of digital images using symmetric short kernel filters*, in the lifting
-//! form of JPEG 2000 (ISO/IEC 15444-1, annex F).
+//! Source: Le Gall & Tabatabai 1988, *Sub-band coding of digital images using symmetric short
+//! kernel filters*, in the lifting form of JPEG 2000 (ISO/IEC 15444-1, annex F).
 
 use corniche_geom::TILE_NODES;
 
-/// Nodes on a side of the square.
+/// Number of nodes on a side of the square.
 pub(crate) const SIDE: usize = TILE_NODES;
-/// How often the smooth part is divided again.
+/// Number of divisions: the smooth part is divided again and again.
 pub(crate) const LEVELS: usize = 5;
 
-/// Sides of the smooth part: of all nodes, and after 1, 2 … divisions. An odd side of 2n + 1 has n + 1 smooth and n rough values.
+/// Sides of the smooth part: of the whole square, and after 1, 2 … divisions. An odd side of 2n + 1
+/// has n + 1 smooth and n rough values.
 pub(crate) const SIDES: [usize; LEVELS + 1] = {
     let mut sides = [SIDE; LEVELS + 1];
     let mut k = 1;
@@ -30,11 +31,12 @@ pub(crate) struct Band {
     pub(crate) rows: usize,
 }
 
-/// The smooth part that is left at the end.
+/// The smooth part that remains after all divisions.
 pub(crate) const SMOOTH: Band =
     Band { left: 0, top: 0, columns: SIDES[LEVELS], rows: SIDES[LEVELS] };
 
-/// The three rough bands of a division, `level` from 0 for the finest: rough from west to east, from north to south, in both.
+/// The three rough bands of a division, with `level` 0 for the finest: rough from west to east,
+/// from north to south, in both directions.
 pub(crate) fn rough_bands(level: usize) -> [Band; 3] {
     let (all, half) = (SIDES[level], SIDES[level + 1]);
     let rest = all - half;
@@ -72,7 +74,8 @@ pub(crate) fn inverse(square: &mut [i64]) {
     }
 }
 
-/// Changes one line of the square: it begins at `at` times `start_step`, and its values are `step` apart.
+/// Changes one line after another of the square: each line begins at `at` times `start_step`, and
+/// its values are `step` apart.
 fn each_line(
     square: &mut [i64],
     side: usize,
@@ -91,7 +94,7 @@ fn each_line(
     }
 }
 
-/// A line of 2n + 1 values to n + 1 smooth ones, then n rough ones.
+/// Converts a line of 2n + 1 values to n + 1 smooth values, then n rough values.
 ///
 /// ```text
 ///   x0   x1   x2   x3   x4
@@ -135,7 +138,8 @@ fn join(values: &mut [i64], line: &mut [i64; SIDE]) {
     values.copy_from_slice(values_out);
 }
 
-/// The sum of the rough values on both sides of smooth value `k`; at an end the only one counts twice.
+/// The sum of the rough values on both sides of smooth value `k`; at an end the only one counts
+/// twice.
 fn beside(values: &[i64], k: usize) -> i64 {
     let last = values.len() / 2;
     let before = values[if k == 0 { 1 } else { 2 * k - 1 }];

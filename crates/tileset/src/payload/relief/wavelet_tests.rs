@@ -1,4 +1,4 @@
-//! The inverse wavelet gives back every value.
+//! The inverse wavelet restores every value.
 
 use corniche_testing::Random;
 
@@ -17,7 +17,7 @@ fn the_inverse_gives_back_every_value() {
     }
 }
 
-/// A plane has no rough part, but for the rounding; away from the mirror at the border.
+/// A plane has no rough part, apart from the rounding and the mirror at the border.
 #[test]
 fn a_plane_is_smooth() {
     let mut square: Vec<i64> =
@@ -35,7 +35,7 @@ fn a_plane_is_smooth() {
     }
 }
 
-/// The bands tile the square.
+/// The bands cover the square without overlaps.
 #[test]
 fn bands_cover_each_value_once() {
     let mut seen = vec![0; SIDE * SIDE];

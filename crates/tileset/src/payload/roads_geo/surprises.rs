@@ -1,10 +1,11 @@
-//! Vertices of lines that are not as guessed, in both forms of the section.
+//! Surprises, which are vertices of lines that differ from their guesses, in both forms of the
+//! section.
 
 use crate::limits::MAX_LINE_VERTICES;
 use crate::payload::damage::Damage;
 use crate::payload::magnitudes::Magnitudes;
 use crate::payload::number_codes::Cursor;
-use crate::payload::range_coder::{Bits, Model, Reader};
+use crate::payload::range_coder::{BitReader, Bits, Model};
 
 /// Kinds of surprises.
 pub(crate) const END: u8 = 0;
@@ -13,15 +14,16 @@ pub(crate) const CROSSING: u8 = 2;
 pub(crate) const VERTEX: u8 = 3;
 
 const COUNT: Damage = Damage::Invalid("number of surprises");
-const GAP: Damage = Damage::Invalid("place of a surprise");
+const GAP: Damage = Damage::Invalid("position of a surprise");
 
-/// The surprises of a line, as they are read: their number; then for each a gap, a kind and indices.
+/// The surprises of a line while they are read: their number; then for each surprise a gap, a kind
+/// and indices.
 pub(crate) trait Surprises {
     fn count(&mut self) -> Result<usize, Damage>;
-    /// How many vertices are as guessed before the next surprise.
+    /// Reads the number of vertices that are as guessed before the next surprise.
     fn gap(&mut self) -> Result<usize, Damage>;
     fn kind(&mut self) -> Result<u8, Damage>;
-    /// A number up to `last`; `what` names it in errors.
+    /// Reads a number of at most `last`; `what` names it in errors.
     fn index(&mut self, last: usize, what: &'static str) -> Result<u32, Damage>;
 }
 
@@ -31,7 +33,7 @@ impl Surprises for Cursor<'_> {
     }
 
     fn gap(&mut self) -> Result<usize, Damage> {
-        self.bounded(MAX_LINE_VERTICES, "place of a surprise")
+        self.bounded(MAX_LINE_VERTICES, "position of a surprise")
     }
 
     fn kind(&mut self) -> Result<u8, Damage> {
@@ -43,9 +45,9 @@ impl Surprises for Cursor<'_> {
     }
 }
 
-/// What a coder knows of a class's surprises.
+/// The state of a coder of the surprises of a class.
 pub(crate) struct SurpriseCoder {
-    /// The counts, by the flags of the line: a line with a lead-in always has one.
+    /// The numbers of surprises, by the flags of the line: a line with a lead-in always has one.
     counts: Magnitudes<4, 1>,
     gaps: Magnitudes<1, 1>,
     kinds: [Model; 4],
@@ -80,20 +82,20 @@ impl SurpriseCoder {
         self.indices.code_magnitude(bits, [0; 2], index)
     }
 
-    /// The surprises of the next line, whose flags these are.
+    /// Begins to read the surprises of the next line, which has these flags.
     pub(crate) fn reading<'c, 'b>(
         &'c mut self,
-        bits: &'c mut Reader<'b>,
+        bits: &'c mut BitReader<'b>,
         flags: u8,
     ) -> CodedSurprises<'c, 'b> {
         CodedSurprises { coder: self, bits, flags }
     }
 }
 
-/// Surprises of a line in range-coded bits.
+/// The surprises of a line in range-coded bits.
 pub(crate) struct CodedSurprises<'c, 'b> {
     coder: &'c mut SurpriseCoder,
-    bits: &'c mut Reader<'b>,
+    bits: &'c mut BitReader<'b>,
     flags: u8,
 }
 
@@ -135,17 +137,17 @@ mod write {
 
     use super::{CROSSING, END, SOURCE, SurpriseCoder, VERTEX};
 
-    use crate::payload::range_coder::Writer;
+    use crate::payload::range_coder::BitWriter;
 
-    /// A vertex that is not as guessed, or the end of the line.
+    /// A vertex that differs from its guess, or the end of the line.
     pub(crate) struct Surprise {
-        /// How many vertices before it are as guessed, since the surprise before.
+        /// The number of vertices between the previous surprise and this one, which are as guessed.
         pub(crate) as_guessed: u64,
         pub(crate) vertex: Option<DrapedVertex>,
     }
 
     impl Surprise {
-        /// Its kind and indices.
+        /// The kind and the indices of the surprise.
         fn parts(&self) -> (u8, Vec<u64>) {
             match self.vertex {
                 None => (END, vec![]),
@@ -173,7 +175,7 @@ mod write {
 
     impl SurpriseCoder {
         /// Writes the surprises of a line with these flags.
-        pub(crate) fn write(&mut self, bits: &mut Writer, flags: u8, surprises: &[Surprise]) {
+        pub(crate) fn write(&mut self, bits: &mut BitWriter, flags: u8, surprises: &[Surprise]) {
             self.code_count(bits, flags, surprises.len() as u64);
             for surprise in surprises {
                 let (kind, indices) = surprise.parts();

@@ -1,14 +1,14 @@
-//! How high the ground is along segments, as range-coded bits.
+//! Codes the height ranges of the ground along segments as range-coded bits.
 
 use crate::payload::magnitudes::{Magnitudes, half_octave};
 use crate::payload::range_coder::Bits;
 
-/// Half-octaves of the number of the same kind at the segment before.
+/// Number of half-octaves of the number of the same kind at the segment before.
 const BEFORE: usize = 48;
-/// Binary digits of a segment's length.
+/// Number of possible counts of binary digits of a segment's length.
 const LENGTHS: usize = 33;
 
-/// What a coder knows of the ground ranges of a class.
+/// The state of a coder of the ground ranges of a class.
 pub(crate) struct RangeCoder {
     lows: Magnitudes<BEFORE, LENGTHS>,
     spans: Magnitudes<BEFORE, LENGTHS>,
@@ -22,8 +22,9 @@ impl RangeCoder {
         Self { lows: Magnitudes::new(), spans: Magnitudes::new(), low_q: 0, low_step: 0, span: 0 }
     }
 
-    /// Codes the lowest ground of the next segment and how much higher its highest is, in height steps; `length` is the number of binary
-    /// digits of the segment's length. A reader's numbers do not matter; a writer's that have no code come back otherwise.
+    /// Codes the lowest ground of the next segment, and the highest minus the lowest, in height
+    /// steps; `length` is the number of binary digits of the segment's length. A reader's numbers
+    /// are ignored; if a writer's numbers have no code, the returned numbers differ from them.
     pub(crate) fn code<B: Bits>(
         &mut self,
         bits: &mut B,

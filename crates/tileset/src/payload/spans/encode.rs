@@ -1,4 +1,4 @@
-//! The spans of a tile are encoded as a section.
+//! Encodes the spans of a tile as a section.
 
 use corniche_geom::{GridFrame, LatticePoint, TileId};
 use corniche_roads::Structure;
@@ -13,37 +13,40 @@ use crate::payload::builder::Section;
 use crate::payload::damage::{DecodeError, EncodeError};
 use crate::payload::number_codes::put_planes;
 use crate::payload::points::put_points;
-use crate::payload::section_kind::Kind;
+use crate::payload::section_kind::SectionKind;
 
 impl Section {
-    /// The bridges and tunnels of a tile with these bytes, which [`Section::into_bytes`] gave.
+    /// Returns the spans section of a tile with these bytes, which came from
+    /// [`Section::into_bytes`].
     #[must_use]
     pub fn of_spans(bytes: Vec<u8>) -> Self {
-        Self { kind: Kind::Spans, bytes }
+        Self { kind: SectionKind::Spans, bytes }
     }
 
-    /// The runs of bridges and tunnels that it holds. That their triangles exist is not checked: a section does not know the tile's ground.
+    /// Returns the runs of bridges and tunnels in this section. Whether their triangles exist is
+    /// not checked, because a section does not know the tile's ground.
     ///
     /// # Errors
     /// When the bytes are damaged.
     pub fn spans(&self, tile: TileId, frame: &GridFrame) -> Result<Vec<SpanRun>, DecodeError> {
-        let failed = |damage| DecodeError { tile, part: Kind::Spans.name(), damage };
-        decode(&self.bytes, corner(tile, frame), MAX_TRIANGLES).map_err(failed)
+        let corner = corner(tile, frame);
+        decode(&self.bytes, corner, MAX_TRIANGLES).map_err(SectionKind::Spans.damaged(tile))
     }
 }
 
-/// What points are relative to.
+/// The corner of the tile, to which points are relative.
 fn corner(tile: TileId, frame: &GridFrame) -> LatticePoint {
     frame.lattice_of_node(frame.tile_corner(tile))
 }
 
-/// Encodes the spans of a tile; `None` if there are none. Equal runs make equal bytes.
+/// Encodes the spans of a tile; `None` if there are none. Equal runs result in equal bytes.
 ///
-/// Runs are in order of class, then way id, then as they lie along their way.
+/// Runs are sorted by class, then way id, then by their order along the way.
 ///
 /// # Errors
-/// When runs are not in order, a run is on the ground, has too few points, one twice in a row or one on the ground between its ends, a point is
-/// far from the tile or higher than ground can be, or there is more than a reader accepts.
+/// When runs are not sorted, a run is neither a bridge nor a tunnel, has too few points, two equal
+/// points in succession or a point on the ground between its ends, a point is far from the tile or
+/// higher than ground can be, or there are more runs than readers accept.
 pub fn encode_spans(
     tile: TileId,
     frame: &GridFrame,
@@ -52,7 +55,7 @@ pub fn encode_spans(
     if runs.is_empty() {
         return Ok(None);
     }
-    let refused = |what| EncodeError::Unencodable { tile, section: Kind::Spans.name(), what };
+    let refused = SectionKind::Spans.refused(tile);
     check(runs).map_err(refused)?;
     let bytes = section_bytes(runs, corner(tile, frame)).map_err(refused)?;
     Ok(Some(Section::of_spans(bytes)))
@@ -87,7 +90,7 @@ fn section_bytes(runs: &[SpanRun], corner: LatticePoint) -> Result<Vec<u8>, &'st
     Ok(bytes)
 }
 
-/// A run's first number.
+/// Returns a run's first number.
 fn code(run: &SpanRun) -> u64 {
     let flag = |is_set, bit| if is_set { bit } else { 0 };
     u64::from(run.class.number()) << CLASS_BIT
@@ -103,13 +106,13 @@ fn is_on_ground(point: &SpanPoint) -> bool {
 fn check(runs: &[SpanRun]) -> Result<(), &'static str> {
     let points = || runs.iter().flat_map(|run| &run.points);
     if runs.iter().any(|run| run.structure == Structure::Ground) {
-        return Err("a run on the ground");
+        return Err("a run that is neither a bridge nor a tunnel");
     }
     if runs.iter().any(|run| run.points.len() < 2) {
-        return Err("a run of less than two points");
+        return Err("a run of fewer than two points");
     }
     if runs.iter().any(|run| run.points.array_windows().any(|[a, b]| a.at == b.at)) {
-        return Err("a run with a point twice");
+        return Err("a run with two equal points in succession");
     }
     let inner = |run: &SpanRun| run.points[1..run.points.len() - 1].iter().any(is_on_ground);
     if runs.iter().any(inner) {
@@ -123,7 +126,7 @@ fn check(runs: &[SpanRun]) -> Result<(), &'static str> {
         SpanHeight::Ground { triangle } => (triangle as usize) < MAX_TRIANGLES,
     };
     if !points().all(is_known) {
-        return Err("a height that no ground has");
+        return Err("an impossible height");
     }
     if runs.len() > MAX_LINES || points().count() > MAX_SPAN_POINTS {
         return Err("more spans than readers accept");

@@ -1,24 +1,26 @@
-//! A run of a bridge or tunnel as a tile holds it, and how high its points are.
+//! A run of a bridge or tunnel in a tile, and the heights of its points.
 
 use corniche_geom::LatticePoint;
 use corniche_roads::{FunctionalRoadClass, Structure};
 use corniche_tin::Surface;
 
-/// A stretch of a way of a bridge that is above the ground of its tile, or of a tunnel that is below. Its heights are estimates.
+/// A stretch of a way of a bridge that is above the ground of its tile, or of a tunnel that is
+/// below the ground. Its heights are estimates.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SpanRun {
     /// OSM's id of the way.
     pub way_id: i64,
     /// Functional road class.
     pub class: FunctionalRoadClass,
-    /// A bridge or a tunnel, never the ground.
+    /// The structure: a bridge or a tunnel, never the ground.
     pub structure: Structure,
-    /// At least two points; neighbours are different in plan. Only the first and the last may be on the ground.
+    /// At least two points; neighbouring points differ in plan. Only the first and the last may be
+    /// on the ground.
     pub points: Vec<SpanPoint>,
 }
 
 impl SpanRun {
-    /// The runs of a tile are in this order, and those of a way in the order in which they lie along it.
+    /// The sort key of the runs of a tile; runs of one way are in their order along the way.
     pub(crate) fn key(&self) -> (FunctionalRoadClass, i64) {
         (self.class, self.way_id)
     }
@@ -27,14 +29,15 @@ impl SpanRun {
 /// A point of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SpanPoint {
-    /// Where it is in plan.
+    /// The position in plan.
     pub at: LatticePoint,
-    /// How high it is.
+    /// The height.
     pub height: SpanHeight,
 }
 
 impl SpanPoint {
-    /// Its height in metres, for a tile with this ground and a package with this height quantum; `None` if there is no such triangle.
+    /// The height in metres, for a tile with this ground and a package with this height quantum;
+    /// `None` if the triangle does not exist.
     ///
     /// On the ground it is the height that a source point of a GEO road has there, to the last bit.
     #[must_use]
@@ -49,14 +52,15 @@ impl SpanPoint {
     }
 }
 
-/// How high a point of a run is.
+/// The height of a point of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SpanHeight {
-    /// So many steps of the package's height quantum; within 32 bits, as heights of the ground are.
+    /// The height in steps of the package's height quantum; within 32 bits, like heights of the
+    /// ground.
     Steps(i64),
     /// On the ground.
     Ground {
-        /// The triangle of the tile's TIN in whose plane the point lies.
+        /// The triangle of the tile's TIN whose plane contains the point.
         triangle: u32,
     },
 }

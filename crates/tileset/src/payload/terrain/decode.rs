@@ -1,42 +1,42 @@
-//! The terrain section is decoded: triangles are found again by the walk that encoding made.
+//! Decodes the terrain section: finds the triangles by the same walk as the encoder.
 
 use corniche_tin::{Tin, TinVertex};
 
 use crate::limits::{MAX_VERTICES, max_walk_steps};
-use crate::payload::connectivity::{Answer, Edges, Guesses, Guide, NAMED, NONE, walk};
-use crate::payload::corner_guess::Nodes;
+use crate::payload::connectivity::{Edges, GateAnswer, Guesses, Guide, NAMED, NONE, walk};
+use crate::payload::corner_guess::GridVertices;
 use crate::payload::damage::Damage;
 use crate::payload::envelope::{self, StoredSection};
 use crate::payload::number_codes::Cursor;
-use crate::payload::range_coder::Reader;
-use crate::payload::section_kind::Kind;
+use crate::payload::range_coder::BitReader;
+use crate::payload::section_kind::SectionKind;
 use crate::payload::terrain::heights::code_heights;
 use crate::payload::terrain::normals::{code_normals, guess_normals};
 use crate::payload::terrain::positions::code_positions;
-use crate::payload::terrain::record::{Record, Scale};
+use crate::payload::terrain::record::{Scale, TerrainSectionHead};
 use crate::payload::terrain::symbols::Symbols;
-use crate::payload::tile_payload::Terrain;
-use crate::payload::work_limit::Work;
+use crate::payload::tile_payload::TileTerrain;
+use crate::payload::work_limit::StepBudget;
 
-/// The fixed part of the terrain section among these; `None` without ground.
+/// Reads the fixed part of the terrain section among these sections; `None` without ground.
 pub(crate) fn record_in(
     sections: &[StoredSection<'_>],
     scale: Scale,
-) -> Result<Option<Record>, Damage> {
-    let section = envelope::section(sections, Kind::Terrain)?;
-    section.map(|section| Record::read(&mut Cursor::new(&section), scale)).transpose()
+) -> Result<Option<TerrainSectionHead>, Damage> {
+    let section = envelope::section(sections, SectionKind::Terrain)?;
+    section.map(|section| TerrainSectionHead::read(&mut Cursor::new(&section), scale)).transpose()
 }
 
-pub(crate) fn decode(bytes: &[u8], scale: Scale) -> Result<Terrain, Damage> {
+pub(crate) fn decode(bytes: &[u8], scale: Scale) -> Result<TileTerrain, Damage> {
     let mut cursor = Cursor::new(bytes);
-    let record = Record::read(&mut cursor, scale)?;
-    let mut bits = Reader::new(cursor.take(cursor.left())?);
+    let record = TerrainSectionHead::read(&mut cursor, scale)?;
+    let mut bits = BitReader::new(cursor.take(cursor.left())?);
     let at = code_positions(&mut bits, || false);
-    let work = Work::new(max_walk_steps(at.len(), record.triangles));
-    let nodes = Nodes::new(at.iter().copied(), &work);
+    let work = StepBudget::new(max_walk_steps(at.len(), record.triangles));
+    let nodes = GridVertices::new(at.iter().copied(), &work);
     let mut player = Player { symbols: Symbols::new(at.len()), bits: &mut bits, last: 0 };
     let (triangles, order) = walk(&nodes, record.triangles, &mut player)?;
-    // In units of 2^height_shift steps.
+    // The heights are in units of 2^height_shift steps.
     let mut heights = vec![0_i32; at.len()];
     code_heights(&mut bits, &at, &order, &mut heights)?;
     let vertices: Vec<TinVertex> = at
@@ -52,7 +52,7 @@ pub(crate) fn decode(bytes: &[u8], scale: Scale) -> Result<Terrain, Damage> {
     let mut normals = vec![[0_i8; 2]; at.len()];
     code_normals(&mut bits, &order, &guesses, record.normal_shift, &mut normals);
     bits.finish()?;
-    Ok(Terrain {
+    Ok(TileTerrain {
         tin: Tin::new(vertices, &triangles)?,
         normals,
         geometric_error_m: record.geometric_error_m,
@@ -64,8 +64,8 @@ pub(crate) fn decode(bytes: &[u8], scale: Scale) -> Result<Terrain, Damage> {
 /// Finds triangles by reading symbols.
 struct Player<'a, 'b> {
     symbols: Symbols,
-    bits: &'a mut Reader<'b>,
-    /// First vertex of the last start.
+    bits: &'a mut BitReader<'b>,
+    /// The first vertex of the previous start.
     last: u32,
 }
 
@@ -86,19 +86,20 @@ impl Guide for Player<'_, '_> {
             return Err(Damage::Invalid("a triangle's vertex"));
         }
         self.last = a;
-        // Each corner is above the first, which is the smallest; the sum of two bounded numbers is in range.
+        // Each corner is above the first, which is the smallest; the sum of two limited numbers is
+        // in range.
         Ok([a, a + 1 + self.vertex()?, a + 1 + self.vertex()?])
     }
 
-    fn corner(&mut self, guesses: &Guesses<'_, '_>) -> Result<Answer, Damage> {
-        let Some(first) = guesses.first() else { return Ok(Answer::Nothing) };
+    fn corner(&mut self, guesses: &Guesses<'_, '_>) -> Result<GateAnswer, Damage> {
+        let Some(first) = guesses.first() else { return Ok(GateAnswer::Nothing) };
         if self.bits.is_past_end() {
             return Err(Damage::Invalid("the length of the coded bits"));
         }
         match self.symbols.code(self.bits, guesses, first, NONE) {
-            NONE => Ok(Answer::Nothing),
-            1 => Ok(Answer::Guessed(first.vertex)),
-            NAMED => self.vertex().map(Answer::Named),
+            NONE => Ok(GateAnswer::Nothing),
+            1 => Ok(GateAnswer::Guessed(first.vertex)),
+            NAMED => self.vertex().map(GateAnswer::Named),
             rank => {
                 let mut no = vec![first.vertex];
                 loop {
@@ -107,7 +108,7 @@ impl Guide for Player<'_, '_> {
                         .ok_or(Damage::Invalid("a guess that does not exist"))?;
                     no.push(next.vertex);
                     if no.len() == usize::from(rank) {
-                        return Ok(Answer::Guessed(next.vertex));
+                        return Ok(GateAnswer::Guessed(next.vertex));
                     }
                 }
             }

@@ -1,28 +1,28 @@
-//! The TIN of a tile is encoded as a section: positions, triangles, heights and normals.
+//! Encodes the TIN of a tile as a section: positions, triangles, heights and normals.
 
 use corniche_geom::TILE_NODES;
 use corniche_tin::TinVertex;
 
 use crate::limits::{MAX_TRIANGLES, MAX_VERTICES, max_walk_steps};
-use crate::payload::connectivity::{Answer, Edges, GUESSES, Guesses, Guide, NAMED, NONE, walk};
-use crate::payload::corner_guess::{Corner, Nodes};
+use crate::payload::connectivity::{Edges, GUESSES, GateAnswer, Guesses, Guide, NAMED, NONE, walk};
+use crate::payload::corner_guess::{GateCorner, GridVertices};
 use crate::payload::damage::Damage;
-use crate::payload::range_coder::Writer;
+use crate::payload::range_coder::BitWriter;
 use crate::payload::terrain::heights::code_heights;
 use crate::payload::terrain::normals::{code_normals, guess_normals};
 use crate::payload::terrain::positions::code_positions;
 use crate::payload::terrain::record::{
-    MAX_HEIGHT_SHIFT, MAX_NORMAL_SHIFT, Record, Scale, check_measures,
+    MAX_HEIGHT_SHIFT, MAX_NORMAL_SHIFT, Scale, TerrainSectionHead, check_measures,
 };
 use crate::payload::terrain::symbols::Symbols;
-use crate::payload::tile_payload::Terrain;
-use crate::payload::work_limit::Work;
+use crate::payload::tile_payload::TileTerrain;
+use crate::payload::work_limit::StepBudget;
 
-/// The section's bytes, or what of the ground cannot be encoded.
-pub(crate) fn encode(terrain: &Terrain, scale: Scale) -> Result<Vec<u8>, &'static str> {
+/// Encodes the section; an error describes what cannot be encoded.
+pub(crate) fn encode(terrain: &TileTerrain, scale: Scale) -> Result<Vec<u8>, &'static str> {
     let vertices = terrain.tin.vertices();
     if vertices.len() != terrain.normals.len() {
-        return Err("normals that are not one for each vertex");
+        return Err("a number of normals that is not the number of vertices");
     }
     if vertices.iter().any(|v| usize::from(v.row.max(v.column)) >= TILE_NODES) {
         return Err("vertices outside the tile's grid");
@@ -38,7 +38,7 @@ pub(crate) fn encode(terrain: &Terrain, scale: Scale) -> Result<Vec<u8>, &'stati
         return Err("more triangles than a tile has cells for");
     }
     let (height_shift, normal_shift) = common_factors(vertices, &terrain.normals);
-    let record = Record {
+    let record = TerrainSectionHead {
         geometric_error_m: terrain.geometric_error_m,
         height_range_m: terrain.height_range_m,
         uncovered_nodes: terrain.uncovered_nodes,
@@ -46,7 +46,7 @@ pub(crate) fn encode(terrain: &Terrain, scale: Scale) -> Result<Vec<u8>, &'stati
         height_shift,
         normal_shift,
     };
-    let mut bits = Writer::new(record.to_bytes());
+    let mut bits = BitWriter::new(record.to_bytes());
 
     let mut nodes_of_vertices =
         vertices.iter().map(|v| usize::from(v.row) * TILE_NODES + usize::from(v.column)).peekable();
@@ -58,13 +58,13 @@ pub(crate) fn encode(terrain: &Terrain, scale: Scale) -> Result<Vec<u8>, &'stati
         return Err("vertices that are not sorted");
     }
 
-    // The same limit as a reader's: the writer takes at least as many steps as a reader.
-    let work = Work::new(max_walk_steps(vertices.len(), triangles.len()));
-    let nodes = Nodes::new(at.iter().copied(), &work);
-    let mut recorder = Recorder::new(vertices.len(), triangles, &mut bits);
+    // The limit is that of a reader: the writer takes at least as many steps as a reader.
+    let work = StepBudget::new(max_walk_steps(vertices.len(), triangles.len()));
+    let nodes = GridVertices::new(at.iter().copied(), &work);
+    let mut recorder = TerrainRecorder::new(vertices.len(), triangles, &mut bits);
     let (found, order) =
         walk(&nodes, triangles.len(), &mut recorder).map_err(|damage| match damage {
-            Damage::TooMuchWork { .. } => "triangles that take readers too many steps to find",
+            Damage::TooMuchWork { .. } => "triangles whose decoding takes too many steps",
             _ => "an edge with several triangles on one side",
         })?;
 
@@ -76,7 +76,7 @@ pub(crate) fn encode(terrain: &Terrain, scale: Scale) -> Result<Vec<u8>, &'stati
     Ok(bits.finish())
 }
 
-/// The powers of two that all heights, and all normals, are multiples of.
+/// Returns the exponents of the largest powers of two that divide all heights, and all normals.
 fn common_factors(vertices: &[TinVertex], normals: &[[i8; 2]]) -> (u8, u8) {
     let heights = vertices.iter().fold(0, |all, vertex| all | vertex.height_q);
     let steps = normals.iter().flatten().fold(0, |all, &step| all | step);
@@ -91,9 +91,9 @@ fn common_factors(vertices: &[TinVertex], normals: &[[i8; 2]]) -> (u8, u8) {
 
 /// The corners of the triangles to the left of edges, by the edge's origin.
 struct Corners {
-    /// Where the edges of each origin begin, and where the last ones end.
+    /// The start of the edges of each origin, and the end of the last list.
     starts: Vec<u32>,
-    /// Target, corner.
+    /// The target and the corner of each edge.
     edges: Vec<[u32; 2]>,
 }
 
@@ -101,9 +101,10 @@ struct Corners {
 const LONG_LIST: usize = 32;
 
 impl Corners {
-    /// The triangles name no vertex beyond.
+    /// Creates the lists; the triangles refer to vertices below `vertices`.
     fn new(vertices: usize, triangles: &[[u32; 3]]) -> Self {
-        // Counted two places ahead, so that filling moves each start to its place.
+        // The counts are stored two entries ahead, so that filling moves each start to its
+        // position.
         let mut starts = vec![0_u32; vertices + 2];
         for &vertex in triangles.iter().flatten() {
             starts[vertex as usize + 2] += 1;
@@ -130,8 +131,8 @@ impl Corners {
         Self { starts, edges }
     }
 
-    /// The corner to the left of a ► b.
-    fn of(&self, a: u32, b: u32) -> Option<u32> {
+    /// Returns the corner to the left of a ► b.
+    fn corner_between(&self, a: u32, b: u32) -> Option<u32> {
         let a = a as usize;
         let edges = &self.edges[self.starts[a] as usize..self.starts[a + 1] as usize];
         let found = if edges.len() > LONG_LIST {
@@ -145,31 +146,32 @@ impl Corners {
 
 /// Finds triangles by looking them up, and writes the symbols.
 ///
-/// Where two triangles lie on the same side of an edge, it finds only one of them, and the walk fails.
-pub(crate) struct Recorder<'a> {
+/// If two triangles are on the same side of an edge, it finds only one of them, and the walk fails.
+pub(crate) struct TerrainRecorder<'a> {
     triangles: &'a [[u32; 3]],
-    /// Triangles before this one have been found.
+    /// The triangles before this index have been found.
     next: usize,
     corners: Corners,
     symbols: Symbols,
-    bits: &'a mut Writer,
+    bits: &'a mut BitWriter,
     last: u32,
 }
 
-impl<'a> Recorder<'a> {
-    pub(crate) fn new(vertices: usize, triangles: &'a [[u32; 3]], bits: &'a mut Writer) -> Self {
+impl<'a> TerrainRecorder<'a> {
+    pub(crate) fn new(vertices: usize, triangles: &'a [[u32; 3]], bits: &'a mut BitWriter) -> Self {
         let corners = Corners::new(vertices, triangles);
         Self { triangles, next: 0, corners, symbols: Symbols::new(vertices), bits, last: 0 }
     }
 }
 
-impl Guide for Recorder<'_> {
+impl Guide for TerrainRecorder<'_> {
     fn start(&mut self, found: &Edges<'_>) -> Result<[u32; 3], Damage> {
         let rest = &self.triangles[self.next..];
         let skip = rest.iter().position(|&[a, b, _]| !found.has(a, b));
         self.next += skip.ok_or(Damage::Invalid("number of triangles"))?;
         let [a, b, c] = self.triangles[self.next];
-        // Canonical order: each triangle starts with its smallest vertex, and they are sorted.
+        // Triangles are in canonical order: each starts with its smallest vertex, and they are
+        // sorted.
         for gap in [a - self.last, b - a - 1, c - a - 1] {
             self.symbols.number(self.bits, gap)?;
         }
@@ -177,13 +179,13 @@ impl Guide for Recorder<'_> {
         Ok([a, b, c])
     }
 
-    fn corner(&mut self, guesses: &Guesses<'_, '_>) -> Result<Answer, Damage> {
+    fn corner(&mut self, guesses: &Guesses<'_, '_>) -> Result<GateAnswer, Damage> {
         let [a, b, _] = guesses.gate;
-        let corner = self.corners.of(a, b);
+        let corner = self.corners.corner_between(a, b);
         let Some(first) = guesses.first() else {
-            // Without a candidate there is no triangle, or it is not counter-clockwise.
+            // Without a candidate, there is no triangle here, or it is not counter-clockwise.
             return if corner.is_none() {
-                Ok(Answer::Nothing)
+                Ok(GateAnswer::Nothing)
             } else {
                 Err(Damage::Invalid("a triangle's vertex"))
             };
@@ -191,18 +193,18 @@ impl Guide for Recorder<'_> {
         let symbol = corner.map_or(NONE, |actual| rank(actual, first, guesses));
         self.symbols.code(self.bits, guesses, first, symbol);
         match (corner, symbol) {
-            (None, _) => Ok(Answer::Nothing),
+            (None, _) => Ok(GateAnswer::Nothing),
             (Some(actual), NAMED) => {
                 self.symbols.number(self.bits, actual)?;
-                Ok(Answer::Named(actual))
+                Ok(GateAnswer::Named(actual))
             }
-            (Some(actual), _) => Ok(Answer::Guessed(actual)),
+            (Some(actual), _) => Ok(GateAnswer::Guessed(actual)),
         }
     }
 }
 
-/// Which guess the vertex is; [`NAMED`] if it is none of those with a symbol.
-fn rank(actual: u32, first: Corner, guesses: &Guesses<'_, '_>) -> u8 {
+/// The rank of the guess that is the vertex; [`NAMED`] if no guess with a symbol is the vertex.
+fn rank(actual: u32, first: GateCorner, guesses: &Guesses<'_, '_>) -> u8 {
     if first.vertex == actual {
         return 1;
     }

@@ -1,15 +1,17 @@
-//! Heights, each as its difference from what the vertices before it let expect.
+//! Codes heights, each as its difference from a prediction by the vertices before it.
 
 use crate::payload::connectivity::Reached;
 use crate::payload::damage::Damage;
 use crate::payload::magnitudes::{Magnitudes, half_octave};
 use crate::payload::range_coder::Bits;
 
-/// Contexts: half-octaves of the differences at the gate; height differences on it, and its length.
+/// Numbers of contexts: half-octaves of the differences at the gate; height differences at the gate
+/// combined with its length.
 const BY_RESIDUALS: usize = 40;
 const BY_GATE: usize = 64;
 
-/// Codes the heights of all vertices, in the order of the walk. A writer hands in the heights, a reader zeros.
+/// Codes the heights of all vertices, in the order of the walk. A writer passes the heights, a
+/// reader zeros.
 pub(crate) fn code_heights<B: Bits>(
     bits: &mut B,
     at: &[[u16; 2]],
@@ -32,10 +34,10 @@ pub(crate) fn code_heights<B: Bits>(
     Ok(())
 }
 
-/// The height to expect at a vertex, and the contexts of the difference.
+/// Predicts the height at a vertex, and returns the contexts of the difference.
 ///
-/// Halfway between the middle of the gate and the parallelogram over the triangle below it, which alone overshoots
-/// on rough ground.
+/// The prediction is halfway between the middle of the gate and the parallelogram over the triangle
+/// below it, which alone overshoots on rough ground.
 fn expect(
     reached: &Reached,
     at: &[[u16; 2]],

@@ -1,4 +1,4 @@
-//! Normals, each as its difference from that of the triangles around its vertex.
+//! Codes normals, each as its difference from the normal of the triangles around its vertex.
 
 use corniche_tin::TinVertex;
 
@@ -7,13 +7,14 @@ use crate::payload::magnitudes::{Magnitudes, half_octave};
 use crate::payload::range_coder::Bits;
 use crate::payload::terrain::record::Scale;
 
-/// Contexts: half-octaves of the differences at the gate; how much the guesses differ from those at the gate, and the
-/// difference east of the same vertex.
+/// Numbers of contexts: half-octaves of the differences at the gate; the difference of the guesses
+/// from those at the gate, combined with the difference east of the same vertex.
 const BY_RESIDUALS: usize = 24;
 const BY_GUESSES: usize = 48;
 
-/// Codes the normals of all vertices, in units of 2^`shift`, in the order of the walk. A writer hands in the normals, a reader
-/// zeros. `guesses` are those of [`guess_normals`] with the same shift.
+/// Codes the normals of all vertices, in units of 2^`shift`, in the order of the walk. A writer
+/// passes the normals, a reader zeros. `guesses` are those of [`guess_normals`] with the same
+/// shift.
 pub(crate) fn code_normals<B: Bits>(
     bits: &mut B,
     order: &[Reached],
@@ -38,7 +39,8 @@ pub(crate) fn code_normals<B: Bits>(
             let wanted = i64::from(normals[vertex][axis] >> shift) - i64::from(guess[axis]);
             let residual =
                 numbers[axis].code(bits, [half_octave(around), bend + 8 * first], wanted);
-            // A writer's normals fit; a sum out of range, as only damaged bytes have it, wraps.
+            // A writer's normals fit; a sum out of range, which only occurs in damaged bytes,
+            // wraps.
             normals[vertex][axis] = ((i64::from(guess[axis]) + residual) << shift) as i8;
             size += residual.unsigned_abs().min(255) as u16;
             first = half_octave(residual.unsigned_abs()).div_ceil(2).min(5);
@@ -47,10 +49,11 @@ pub(crate) fn code_normals<B: Bits>(
     }
 }
 
-/// The normals to expect: of the triangles around each vertex, weighted by their areas, octahedron-coded, in units of 2^`shift`.
+/// Predicts the normals from the triangles around each vertex, weighted by their areas,
+/// octahedron-coded, in units of 2^`shift`.
 ///
-/// An upward normal (x, y, z) is (x, y) / (|x| + |y| + z) on the octahedron: no root, so every machine
-/// computes the same bits.
+/// An upward normal (x, y, z) is (x, y) / (|x| + |y| + z) on the octahedron, which needs no square
+/// root, so every machine computes the same bits.
 pub(crate) fn guess_normals(
     vertices: &[TinVertex],
     triangles: &[[u32; 3]],
@@ -79,7 +82,7 @@ pub(crate) fn guess_normals(
         .map(|&[x, y, z]| {
             let (x, y, z) = (x as f64 * steepness[0], y as f64 * steepness[1], z as f64);
             let length = x.abs() + y.abs() + z;
-            // `as` turns the not-a-number of a vertex without triangles into 0.
+            // `as` converts the NaN of a vertex without triangles to 0.
             [x, y].map(|value| (value / length * steps).round() as i8)
         })
         .collect()

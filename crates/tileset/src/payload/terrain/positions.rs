@@ -1,23 +1,25 @@
-//! Which nodes of the grid are vertices: one bit a node, in the context of the nodes before it.
+//! Codes which nodes of the grid are vertices: one bit per node, in the context of the nodes before
+//! it.
 
 use corniche_geom::TILE_NODES;
 
 use crate::payload::range_coder::{Bits, Model};
 
-/// Columns before the first and behind the last that contexts may look at.
+/// The number of columns before the first and after the last that contexts may read.
 const MARGIN: usize = 8;
-/// Rows before the present one that contexts look at.
+/// The number of rows above the current one that contexts read.
 const ROWS: usize = 5;
 const WIDTH: usize = TILE_NODES + 2 * MARGIN;
 
-/// Classes of the number of vertices in a window, by their first number.
+/// The classes of the number of vertices in a window, by the smallest number of each class.
 const COUNT_STARTS: [u8; 13] = [1, 2, 3, 4, 5, 6, 7, 8, 10, 13, 17, 23, 31];
 const COUNT_CLASSES: usize = 16;
 const NEIGHBOURS: usize = 64;
 
-/// Codes for each node, by row, then column, whether it is a vertex; gives the vertices' columns and rows in this order.
+/// Codes for each node, by row, then column, whether it is a vertex; returns the vertices' columns
+/// and rows in this order.
 ///
-/// `is_vertex` is asked for each node in the same order; a reader's answer does not matter.
+/// `is_vertex` is called for each node in the same order; a reader's result is ignored.
 ///
 /// ```text
 ///      · · · · · · · · · · ·       the window of the 5 rows above, 5 columns to each side, and 5 nodes to the west;
@@ -42,8 +44,8 @@ pub(crate) fn code_positions<B: Bits>(
         for column in 0..TILE_NODES {
             let north = north.at(column);
             let border = row_border | usize::from(column == 0 || column == TILE_NODES - 1) << 1;
-            let bit = bits.mixed(models.of(border, &north, west), u32::from(is_vertex()));
-            // What comes next follows from a branch, not from the bit as a number: see the reader.
+            let bit = bits.mixed(models.models_at(border, &north, west), u32::from(is_vertex()));
+            // The following bits depend on a branch, not on the bit as a number: see the reader.
             west <<= 1;
             if bit == 1 {
                 west |= 1;
@@ -56,7 +58,7 @@ pub(crate) fn code_positions<B: Bits>(
     at
 }
 
-/// What is known of nodes, by the class of border they lie on.
+/// The models of nodes, by the class of border on which they are.
 struct Models {
     by_neighbours: [[Model; NEIGHBOURS]; BORDERS],
     by_counts: [[[Model; COUNT_CLASSES]; COUNT_CLASSES]; BORDERS],
@@ -64,10 +66,11 @@ struct Models {
     classes: [u8; 64],
 }
 
-/// In no first or last row or column; in such a row; in such a column; in both.
+/// The number of classes of borders: not in the first or last row or column; in such a row; in such
+/// a column; in both.
 const BORDERS: usize = 4;
 
-/// How many of the last five nodes, as bits, are vertices.
+/// The number of vertices among the last five nodes, which are the bits of the index.
 const ONES: [u8; 32] = {
     let mut ones = [0; 32];
     let mut five = 1;
@@ -90,9 +93,10 @@ impl Models {
         }
     }
 
-    /// The models of a node; `west` are the nodes to the west, as bits, the nearest in the lowest.
+    /// The models of a node; `west` are the nodes to the west, as bits, the nearest in the lowest
+    /// bit.
     #[inline]
-    fn of(&mut self, border: usize, north: &North, west: usize) -> [&mut Model; 2] {
+    fn models_at(&mut self, border: usize, north: &North, west: usize) -> [&mut Model; 2] {
         let neighbours = usize::from(north.neighbours) | (west & 3) << 4;
         let [wide, near] = [north.wide + ONES[west & 31], north.near + ONES[west & 7]]
             .map(|count| usize::from(self.classes[usize::from(count) % 64]) % COUNT_CLASSES);
@@ -103,14 +107,16 @@ impl Models {
     }
 }
 
-/// What the rows above say about a node: four neighbours as bits, and how many vertices both windows have.
+/// The contexts of a node from the rows above: four neighbours as bits, and the numbers of vertices
+/// in both windows.
 struct North {
     neighbours: u8,
     wide: u8,
     near: u8,
 }
 
-/// What the rows above say about each node of a row. Three lists, which are made in vectors.
+/// The contexts of each node of a row from the rows above, as three lists, so that they are
+/// computed in vectors.
 struct NorthOfRow {
     neighbours: [u8; TILE_NODES],
     wide: [u8; TILE_NODES],
@@ -128,9 +134,9 @@ impl NorthOfRow {
     }
 }
 
-/// The rows above the present one.
+/// The rows above the current one.
 struct Above {
-    /// The present row and those above it, each in place of the one that lies [`KEPT`] above it.
+    /// The current row and the rows above it; each replaces the row that is [`KEPT`] above it.
     rows: [[u8; WIDTH]; KEPT],
     present: usize,
     /// The sums by column of the five rows above, and of the nearest two.
@@ -138,7 +144,7 @@ struct Above {
     near_sums: [u8; WIDTH],
 }
 
-/// Rows that are kept.
+/// The number of rows that are kept.
 const KEPT: usize = ROWS + 1;
 
 impl Above {
@@ -150,7 +156,7 @@ impl Above {
         &self.rows[(self.present + KEPT - above) % KEPT]
     }
 
-    /// What the rows above say about each node of the present one.
+    /// Returns the contexts of each node of the current row from the rows above.
     fn contexts(&self) -> NorthOfRow {
         let (first, second) = (self.row(1), self.row(2));
         let (mut neighbours, mut wide, mut near) =
@@ -173,7 +179,7 @@ impl Above {
         NorthOfRow { neighbours, wide, near }
     }
 
-    /// The present row, with no vertex yet.
+    /// Begins a row without vertices.
     fn begin_row(&mut self) -> &mut [u8; WIDTH] {
         let row = &mut self.rows[self.present];
         row.fill(0);

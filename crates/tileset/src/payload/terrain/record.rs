@@ -1,4 +1,4 @@
-//! The fixed part of the terrain section, and what its numbers may be.
+//! The fixed part of the terrain section, and the limits of its numbers.
 
 use corniche_geom::Cell;
 #[cfg(feature = "write")]
@@ -10,23 +10,24 @@ use crate::payload::number_codes::Cursor;
 use corniche_settings::MAX_MEASURE_M;
 
 /// The fixed part of the section.
-pub(crate) struct Record {
+pub(crate) struct TerrainSectionHead {
     pub(crate) geometric_error_m: f64,
     pub(crate) height_range_m: [f64; 2],
     pub(crate) uncovered_nodes: u64,
     pub(crate) triangles: usize,
-    /// All heights are multiples of 2^this steps: a DEM in whole metres has no finer ones.
+    /// All heights are multiples of 2^`height_shift` steps: a DEM in whole metres has no finer
+    /// heights.
     pub(crate) height_shift: u8,
-    /// All normals are multiples of 2^this steps.
+    /// All normals are multiples of 2^`normal_shift` steps.
     pub(crate) normal_shift: u8,
 }
 
-/// No height has a larger common factor than 2^this.
+/// The largest exponent of the common factor of heights.
 pub(crate) const MAX_HEIGHT_SHIFT: u8 = 31;
-/// No normal has a larger common factor than 2^this.
+/// The largest exponent of the common factor of normals.
 pub(crate) const MAX_NORMAL_SHIFT: u8 = 7;
 
-impl Record {
+impl TerrainSectionHead {
     #[cfg(feature = "write")]
     pub(crate) fn to_bytes(&self) -> Vec<u8> {
         let mut out = Vec::new();
@@ -70,18 +71,19 @@ impl Record {
     }
 }
 
-/// What turns slopes of the TIN, in height steps per node, into metres per metre.
+/// The factors that turn slopes of the TIN, in height steps per node, into metres per metre.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Scale {
     pub(crate) quantum_m: f64,
-    /// The level's.
+    /// The cell of the level.
     pub(crate) cell: Cell,
-    /// No more full-resolution nodes than this lie beneath the tile, border nodes of its finest tiles counted for each.
+    /// The largest number of full-resolution nodes beneath the tile; border nodes of its finest
+    /// tiles count for each of these tiles.
     pub(crate) nodes_beneath: u64,
 }
 
-/// Checks what a tile states about itself: the numbers must be finite, so that later code need not check, and
-/// possible.
+/// Checks the numbers that a tile states about itself: they must be finite, so that later code need
+/// not check, and possible.
 pub(crate) fn check_measures(
     geometric_error_m: f64,
     height_range_m: [f64; 2],

@@ -1,34 +1,36 @@
-//! What the walk says at a gate, as bits in contexts under which "guess 1" is nearly free.
+//! Codes the symbols of the walk as bits, in contexts in which "guess 1" takes almost no space.
 
 use crate::payload::connectivity::{GUESSES, Guesses, NAMED, NONE};
-use crate::payload::corner_guess::{Corner, Nodes};
+use crate::payload::corner_guess::{GateCorner, GridVertices};
 use crate::payload::damage::Damage;
 use crate::payload::magnitudes::{Magnitudes, half_octave};
 use crate::payload::range_coder::{Bits, Model};
 
-/// How the quadrangle of a gate, its corner and guess 1 looks; see [`shape`].
+/// The number of shapes of the quadrangle of a gate, its corner and guess 1; see [`shape`].
 const SHAPES: usize = 5;
-/// Half-octaves of a gate's length.
+/// The number of half-octaves of a gate's length.
 const LENGTHS: usize = 6;
-/// What the walk met at the gate's two ends before; see [`Symbols::code`].
+/// The number of histories at the gate's two ends; see [`Symbols::code`].
 const HISTORIES: usize = 16;
 
-/// What a coder knows of the symbols, and of the vertices that are named.
+/// The state of a coder of the symbols, and of named vertices.
 pub(crate) struct Symbols {
     is_first: [[[Model; LENGTHS]; 2]; SHAPES],
     is_first_here: [[[Model; HISTORIES]; 2]; SHAPES],
     is_none: [[Model; HISTORIES]; SHAPES],
     is_next: [[Model; GUESSES as usize]; 2],
-    /// What was met at each vertex: 1, there was a gate without triangle; 2, there was another guess than the first.
+    /// The events at each vertex: 1, there was a gate without a triangle; 2, there was a guess
+    /// other than the first.
     met: Vec<u8>,
     numbers: Magnitudes<1, 1>,
 }
 
-/// Gate, corner behind it, and guess 1: 0 or 1 where a circle through three of them leaves the fourth outside (1, by little),
-/// 2 where all lie on one circle, 3 or 4 where the fourth lies inside, so that the gate is no edge of a Delaunay triangulation.
-fn shape(nodes: &Nodes<'_>, gate: [u32; 3], first: Corner) -> usize {
+/// Returns the shape of the gate, the corner behind it, and guess 1: 0 or 1 if a circle through
+/// three of them leaves the fourth outside (1: by little), 2 if all are on one circle, 3 or 4 if
+/// the fourth is inside, so that the gate is not an edge of a Delaunay triangulation.
+fn shape(nodes: &GridVertices<'_>, gate: [u32; 3], first: GateCorner) -> usize {
     let [dot, cross] = nodes.behind(gate);
-    // The sum of both cotangents, times both crosses.
+    // The sum of both cotangents, multiplied by both cross products.
     let sum = dot * first.cross + first.dot * cross;
     let unit = cross * first.cross;
     match sum {
@@ -57,7 +59,7 @@ impl Symbols {
         &mut self,
         bits: &mut B,
         &Guesses { gate, nodes, .. }: &Guesses<'_, '_>,
-        first: Corner,
+        first: GateCorner,
         symbol: u8,
     ) -> u8 {
         let [a, b, _] = gate;
@@ -90,7 +92,7 @@ impl Symbols {
         rank
     }
 
-    /// Codes a number of the kind that names vertices; what no vertex can have is refused.
+    /// Codes a number of the kind that names vertices; fails for numbers that no vertex can have.
     pub(crate) fn number<B: Bits>(&mut self, bits: &mut B, number: u32) -> Result<u32, Damage> {
         let number = self.numbers.code(bits, [0, 0], i64::from(number));
         u32::try_from(number).map_err(|_| Damage::Invalid("a named vertex"))

@@ -1,47 +1,49 @@
-//! Areas as stencil shadow volumes: which ground is inside is counted in the stencil, then the box around the volumes is coloured where
-//! the count is not 0.
+//! Areas as stencil shadow volumes: the stencil counts which ground is inside, then the box around
+//! the volumes is coloured where the count is not 0.
 //!
 //! ```text
 //!  bit of the stencil   7         6 … 0
 //!                       painted   how many volumes of the class that is being drawn the ground is in, modulo 128
 //! ```
 //!
-//! Classes are drawn one after another, the topmost first. What one has painted no other paints, so colours of classes are not mixed.
-//! All tiles use one stencil: a volume counts on its own tile's ground alone.
+//! Classes are drawn one after another, the topmost first. No class paints over another, so colours
+//! of classes are not mixed. All tiles use one stencil: a volume counts only on the ground of its
+//! own tile.
 
 use corniche_areas::AreaClass;
 use corniche_styles::AreaStyle;
 use wgpu::{
-    BindGroupLayout, BlendComponent, BlendFactor, BlendOperation, BlendState, BufferUsages,
-    ColorWrites, CompareFunction, DepthStencilState, Device, Face, FrontFace, PrimitiveTopology,
-    RenderPass, RenderPipeline, StencilFaceState, StencilOperation, StencilState,
+    BindGroupLayout, BlendState, ColorWrites, CompareFunction, DepthStencilState, Device, Face,
+    FrontFace, PrimitiveTopology, RenderPass, RenderPipeline, StencilFaceState, StencilOperation,
+    StencilState,
 };
 
 use super::super::{
-    Gpu,
     area_buffers::{AreaBuffers, BOXES, CORNERS, WALLS},
-    bindings::{group, layout, uniform},
+    bindings::{block, layout, uniform},
     formats::{COLOR, STENCIL},
     pipeline::{PipelineRecipe, Shader, shader},
-    shared_bindings::{SharedBindings, SharedLayouts},
+    shared_bindings::{DrawnFrame, SharedBindings, SharedLayouts},
     uniforms::color,
 };
 use crate::frame_view::FrameView;
 
-pub(crate) const SHADER: Shader = shader!("areas": "common", "tile", "drawn_ground", "areas");
+pub(crate) const SHADER: Shader =
+    shader!("areas": "common", "tile", "drawn_ground", "boxes", "areas");
 
-/// The bit that says that a sample is painted.
+/// The bit that marks a painted sample.
 const PAINTED: u32 = 0x80;
-/// The bits that count.
+/// The bits of the count.
 const COUNT: u32 = 0x7F;
 
-/// How the volumes of a tile are counted.
+/// How the volumes of a tile are counted (z-pass or z-fail).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Counting {
-    /// The faces in front of the ground: walls and upper caps. Only where the near plane cuts off none of them. Lower caps are beneath
-    /// all ground, and so behind what is seen of it.
+    /// Counts the faces in front of the ground: walls and upper caps. Only if the near plane cuts
+    /// off none of them. Lower caps are below all ground, and so behind the visible ground.
     InFront,
-    /// The faces behind the ground, all of them. Right wherever the eye is, and a third more to draw.
+    /// Counts all faces behind the ground. Correct for any position of the eye, but draws a third
+    /// more.
     Behind,
 }
 
@@ -68,24 +70,16 @@ impl StencilAreas {
         let layout = layout(device, "area colors", &[uniform(0, None)]);
         let groups =
             [Some(&layouts.frame), Some(&layouts.tile), Some(&layouts.ground), Some(&layout)];
-        let over = BlendComponent {
-            src_factor: BlendFactor::SrcAlpha,
-            dst_factor: BlendFactor::OneMinusSrcAlpha,
-            operation: BlendOperation::Add,
-        };
         let boxes = PipelineRecipe {
-            shader: SHADER,
             entries: ["box_vertex", "box_fragment"],
-            groups: &groups,
             buffer: Some(BOXES),
             topology: PrimitiveTopology::TriangleStrip,
-            front_face: FrontFace::Ccw,
             cull: Some(Face::Front),
             depth: Some(stencil_of_boxes()),
-            // Alpha still says that there is ground.
+            // Alpha still marks the ground.
             targets: &[(COLOR, ColorWrites::COLOR)],
-            blend: Some(BlendState { color: over, alpha: over }),
-            constants: &[],
+            blend: Some(BlendState::ALPHA_BLENDING),
+            ..PipelineRecipe::new(SHADER, &groups, &[])
         };
         let boxes = boxes.build(device);
         let [in_front, behind] = [Counting::InFront, Counting::Behind]
@@ -93,20 +87,18 @@ impl StencilAreas {
         Self { layout, in_front, behind, boxes }
     }
 
-    /// Draws the areas of some tiles over their ground: into its colours and the stencil, which is all 0 before.
+    /// Draws the areas of some tiles over their ground: into its colours and the stencil, which
+    /// must be 0 everywhere.
     pub(crate) fn draw(
         &self,
-        gpu: &Gpu,
+        DrawnFrame { gpu, shared, view, .. }: DrawnFrame<'_>,
         pass: &mut RenderPass<'_>,
-        shared: &SharedBindings,
         tiles: &[AreaTile<'_>],
-        view: &FrameView<'_>,
     ) {
-        let rows = rows(view);
-        let colors = gpu.buffer("area colors", bytemuck::cast_slice(&rows), BufferUsages::UNIFORM);
+        let colors = block(gpu, "area colors", &self.layout, &rows(view));
         shared.set_frame(pass);
         pass.set_bind_group(2, &shared.ground, &[]);
-        pass.set_bind_group(3, &group(gpu, &self.layout, &[colors.as_entire_binding()]), &[]);
+        pass.set_bind_group(3, &colors, &[]);
         for class in AreaStyle::TOP_FIRST {
             if view.style.area(class).is_drawn() {
                 self.draw_class(pass, shared, tiles, class);
@@ -154,19 +146,15 @@ impl StencilAreas {
 impl Counters {
     fn new(device: &Device, groups: &[Option<&BindGroupLayout>], counting: Counting) -> Self {
         let is_fail = ("IS_FAIL", f64::from(u8::from(counting == Counting::Behind)));
+        let constants = [is_fail];
         let (tops, bottoms) = ([is_fail, ("IS_TOP", 1.0)], [is_fail, ("IS_TOP", 0.0)]);
         let walls = PipelineRecipe {
-            shader: SHADER,
             entries: ["wall_vertex", "wall_fragment"],
-            groups,
             buffer: Some(WALLS),
             topology: PrimitiveTopology::TriangleStrip,
-            front_face: FrontFace::Ccw,
-            cull: None,
             depth: Some(stencil_of_faces(counting)),
             targets: &[(COLOR, ColorWrites::empty())],
-            blend: None,
-            constants: &[is_fail],
+            ..PipelineRecipe::new(SHADER, groups, &constants)
         };
         let caps = |constants, front_face| PipelineRecipe {
             entries: ["cap_vertex", "cap_fragment"],
@@ -177,7 +165,8 @@ impl Counters {
             ..walls.clone()
         };
         Self {
-            // Triangles are counter-clockwise from above, so lower caps are so from inside.
+            // Triangles are counter-clockwise from above, so lower caps are counter-clockwise from
+            // inside.
             tops: caps(&tops, FrontFace::Ccw).build(device),
             bottoms: caps(&bottoms, FrontFace::Cw).build(device),
             walls: walls.build(device),
@@ -185,10 +174,11 @@ impl Counters {
     }
 }
 
-/// Counts faces: in front of the ground those that the eye sees from outside add one, behind it they take one away.
+/// Counts faces: in front of the ground, faces that the eye sees from outside add one; behind it
+/// they subtract one.
 fn stencil_of_faces(counting: Counting) -> DepthStencilState {
     let face = |pass_op| StencilFaceState {
-        // Only where no class above has painted.
+        // Only where no higher class has painted.
         compare: CompareFunction::Equal,
         pass_op,
         fail_op: StencilOperation::Keep,
@@ -200,10 +190,11 @@ fn stencil_of_faces(counting: Counting) -> DepthStencilState {
         Counting::InFront => (more, less),
         Counting::Behind => (less, more),
     };
-    stencil(StencilState { front, back, read_mask: PAINTED, write_mask: COUNT })
+    let state = StencilState { front, back, read_mask: PAINTED, write_mask: COUNT };
+    DepthStencilState::stencil(STENCIL, state)
 }
 
-/// Lets through what has a count, and marks it as painted.
+/// Passes samples with a count, and marks them as painted.
 fn stencil_of_boxes() -> DepthStencilState {
     let face = StencilFaceState {
         compare: CompareFunction::NotEqual,
@@ -211,20 +202,12 @@ fn stencil_of_boxes() -> DepthStencilState {
         fail_op: StencilOperation::Keep,
         depth_fail_op: StencilOperation::Keep,
     };
-    stencil(StencilState { front: face, back: face, read_mask: COUNT, write_mask: PAINTED | COUNT })
+    let write_mask = PAINTED | COUNT;
+    let state = StencilState { front: face, back: face, read_mask: COUNT, write_mask };
+    DepthStencilState::stencil(STENCIL, state)
 }
 
-fn stencil(stencil: StencilState) -> DepthStencilState {
-    DepthStencilState {
-        format: STENCIL,
-        depth_write_enabled: None,
-        depth_compare: None,
-        stencil,
-        bias: wgpu::DepthBiasState::default(),
-    }
-}
-
-/// A slope that no ground has, where all ground is painted; tangent of the angle.
+/// A slope steeper than any ground, for classes that paint all ground; tangent of the angle.
 const ANY_SLOPE: f64 = 1e9;
 
 /// The block `looks` of `shaders/areas.wgsl`.

@@ -1,4 +1,4 @@
-//! The samples of a picture, averaged to its pixels.
+//! Averages the samples of a picture to its pixels.
 
 use std::sync::OnceLock;
 
@@ -17,7 +17,7 @@ pub(crate) const SHADER: Shader = shader!("average": "screen", "average");
 /// Averages the samples of each pixel.
 pub(crate) struct Average {
     layout: BindGroupLayout,
-    /// The pipelines for 2, 3 and 4 samples on each side of a pixel, made when first used.
+    /// The pipelines for 2, 3 and 4 samples on each side of a pixel, created at first use.
     pipelines: [OnceLock<RenderPipeline>; MAX_SAMPLES_PER_SIDE as usize - 1],
 }
 
@@ -27,7 +27,7 @@ impl Average {
         Self { layout, pipelines: Default::default() }
     }
 
-    /// Draws the pixels of a picture. With one sample a pixel they are drawn already.
+    /// Draws the pixels of a picture. With one sample per pixel they are drawn already.
     pub(crate) fn draw(&self, gpu: &Gpu, encoder: &mut CommandEncoder, picture: &Picture) {
         let Some(samples) = picture.samples() else { return };
         let bound = textures(gpu, &self.layout, &[samples]);
@@ -35,7 +35,7 @@ impl Average {
         let pipeline = self.pipelines[per_side as usize - 2].get_or_init(|| {
             let constants = [("PER_SIDE", f64::from(per_side))];
             let groups = [Some(&self.layout)];
-            PipelineRecipe::full_screen(SHADER, &groups, &constants).build(&gpu.device)
+            PipelineRecipe::new(SHADER, &groups, &constants).build(&gpu.device)
         });
         full_screen(encoder, "average", picture.view(), pipeline, &[&bound]);
     }

@@ -1,4 +1,5 @@
-//! Decks of bridges: which of them is nearest at each pixel, what is seen of it, and its colours over the picture.
+//! Decks of bridges: the nearest deck at each pixel, its visible part, and its colours over the
+//! picture.
 
 use std::ops::Range;
 
@@ -9,25 +10,23 @@ use wgpu::{
 
 use super::{
     super::{
-        Gpu,
         bindings::{UNFILTERED, layout, texture, textures},
         passes::begin,
         pipeline::{Shader, depth_test, shader},
-        road_instances::{RoadBuffers, RoadInstance, RoadPipeline, own_width_value},
-        shared_bindings::{SharedBindings, SharedLayouts},
-        targets::{DeckTargets, Targets},
+        road_instances::{RoadInstance, RoadPipeline, RoadsOfTile, kind_bits, own_width_value},
+        shared_bindings::{DrawnFrame, SharedLayouts},
     },
     composite::rows,
     label_colors::LabelColors,
     level_connectors::LevelConnectors,
 };
-use crate::{frame_view::FrameView, options::ClassSet, tiles::DeckPiece};
+use crate::tiles::DeckPiece;
 
 pub(crate) const COLORS: Shader = shader!("deck colors": "common", "screen", "labelled", "road_colors", "deck_labels", "deck_colors");
 
 /// Draws decks.
-pub(crate) struct Decks {
-    /// What is bound at group 2: the depths of the ground and of decks, and the labels of roads on the ground.
+pub(crate) struct DeckDrawable {
+    /// Bind group 2: the depths of the ground and of decks, and the labels of roads on the ground.
     seen: BindGroupLayout,
     depths: RoadPipeline,
     roads: RoadPipeline,
@@ -35,7 +34,7 @@ pub(crate) struct Decks {
     colors: LabelColors,
 }
 
-impl Decks {
+impl DeckDrawable {
     pub(crate) fn new(device: &Device, layouts: &SharedLayouts) -> Self {
         let seen = layout(device, "decks", &[0, 1, 2].map(|binding| texture(binding, UNFILTERED)));
         let pipeline = |fragment, depth| {
@@ -50,16 +49,16 @@ impl Decks {
         Self { seen, depths, roads, sides, colors }
     }
 
-    /// Draws depths and labels of the decks of some tiles, each given with its index in the list of tiles of the frame and the classes to draw,
-    /// and of their connectors.
+    /// Draws depths and labels of the decks of some tiles and of their connectors. Each tile is
+    /// given with its index in the list of tiles of the frame and the classes to draw.
     pub(crate) fn draw(
         &self,
-        gpu: &Gpu,
+        DrawnFrame { gpu, shared, targets, .. }: DrawnFrame<'_>,
         encoder: &mut CommandEncoder,
-        shared: &SharedBindings,
-        (tiles, connectors): (&[(usize, &RoadBuffers, ClassSet)], &LevelConnectors),
-        (targets, decks): (&Targets, &DeckTargets),
+        tiles: &[RoadsOfTile<'_>],
+        connectors: &LevelConnectors,
     ) {
+        let decks = targets.decks(gpu);
         let roads = &targets.roads.labels.view;
         let bound = |second| textures(gpu, &self.seen, &[&targets.depth.view, second, roads]);
         {
@@ -79,24 +78,19 @@ impl Decks {
     }
 
     /// Draws the colours of decks over the samples of the picture.
-    pub(crate) fn draw_colors(
-        &self,
-        gpu: &Gpu,
-        pass: &mut RenderPass<'_>,
-        shared: &SharedBindings,
-        view: &FrameView<'_>,
-        (targets, decks): (&Targets, &DeckTargets),
-    ) {
-        let labels = (targets, &decks.labels);
+    pub(crate) fn draw_colors(&self, frame: DrawnFrame<'_>, pass: &mut RenderPass<'_>) {
+        let DrawnFrame { gpu, view, targets, .. } = frame;
+        let decks = targets.decks(gpu);
         let more = [&decks.depth, &targets.roads.labels];
-        self.colors.bind(gpu, pass, shared, &rows(view), labels, &more);
+        self.colors.bind(frame, pass, &rows(view), &decks.labels, &more);
         self.colors.draw(pass, targets);
     }
 }
 
 impl RoadInstance for DeckPiece {
-    /// Two places of three f32, two mitres of two, thickness, width factor as f32, class, look and landings as u32, own width, two numbers for dashes,
-    /// lengths of the network's part and of the deck as f32.
+    /// Two positions of three f32, two mitres of two, thickness, width factor as f32, class, look
+    /// and landings as u32, own width, two numbers for dashes, lengths of the network's part and of
+    /// the deck as f32.
     type Words = [u32; 18];
 
     const SHADER: Shader = shader!("decks": "common", "tile", "drawn_decks", "deck_labels", "coverage", "boxes", "decks");
@@ -104,9 +98,9 @@ impl RoadInstance for DeckPiece {
         0 => Float32x3, 1 => Float32x3, 2 => Float32x4, 3 => Float32x2, 4 => Uint32, 5 => Float32,
         6 => Float32x2, 7 => Float32x2
     ];
-    /// The corners of the strip of triangles around a box, as `shaders/boxes.wgsl` counts them.
+    /// The corners of the triangle strip around a box, in the order of `shaders/boxes.wgsl`.
     const CORNERS: Range<u32> = 0..14;
-    /// One fragment for each pixel and box.
+    /// One fragment per pixel and box.
     const CULL: Option<Face> = Some(Face::Front);
 
     fn words(&self) -> Self::Words {
@@ -114,10 +108,8 @@ impl RoadInstance for DeckPiece {
             [self.start_in_tile, self.end_in_tile].map(|at| at.map(f32::to_bits));
         let [[g, h], [i, j]] = self.mitres.map(|mitre| mitre.map(f32::to_bits));
         let [slab, width] = [self.slab_m, self.width_factor].map(f32::to_bits);
-        let [start, end] = self.lands.map(u32::from);
         let is_ribbon = u32::from(self.slab_m <= 0.0);
-        let flags = (self.kind.look as u32) << 4 | start << 7 | end << 8 | is_ribbon << 9;
-        let class = u32::from(self.kind.class.number()) | flags;
+        let class = kind_bits(self.kind, self.lands) | is_ribbon << 9;
         let own_width = own_width_value(self.kind.own_width).to_bits();
         let [dash_start, dash_rate] = self.dash.0.map(f32::to_bits);
         let [part, deck] = [self.part_m, self.deck_m].map(f32::to_bits);

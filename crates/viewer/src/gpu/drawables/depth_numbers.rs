@@ -1,4 +1,5 @@
-//! Depths as numbers of an ordinary texture: only a whole depth texture can be copied, and the largest have more bytes than a buffer may have.
+//! Depths as numbers in an ordinary texture: a depth texture can only be copied as a whole, and the
+//! largest ones exceed the maximum size of a buffer.
 
 use wgpu::ColorWrites;
 
@@ -13,7 +14,7 @@ use super::super::{
 
 pub(crate) const SHADER: Shader = shader!("depth numbers": "screen", "depth_numbers");
 
-/// The values of a depth texture, in a texture that can be copied in parts.
+/// Returns the values of a depth texture, in a texture that can be copied in parts.
 pub(crate) fn depth_numbers(gpu: &Gpu, depth: &TargetTexture) -> TargetTexture {
     let size_px = [depth.texture.width(), depth.texture.height()];
     let numbers = TargetTexture::new(gpu, "depth numbers", NUMBER, size_px);
@@ -21,7 +22,7 @@ pub(crate) fn depth_numbers(gpu: &Gpu, depth: &TargetTexture) -> TargetTexture {
     let bound = textures(gpu, &layout, &[&depth.view]);
     let pipeline = PipelineRecipe {
         targets: &[(NUMBER, ColorWrites::ALL)],
-        ..PipelineRecipe::full_screen(SHADER, &[Some(&layout)], &[])
+        ..PipelineRecipe::new(SHADER, &[Some(&layout)], &[])
     }
     .build(&gpu.device);
     gpu.submit("depth numbers", |encoder| {

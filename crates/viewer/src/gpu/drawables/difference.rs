@@ -1,4 +1,4 @@
-//! Where the roads of two drawings differ.
+//! Shows where the roads of two drawings differ.
 
 use wgpu::{BindGroupLayout, CommandEncoder, Device, RenderPipeline};
 
@@ -17,17 +17,18 @@ pub(crate) const SHADER: Shader = shader!("difference": "screen", "difference");
 /// The colours that [`Renderer::draw_difference`](super::super::Renderer::draw_difference) paints.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DifferenceColors {
-    /// Road in the first only.
+    /// Colour of road in the first drawing only.
     pub first_only: Rgb,
-    /// Road in the second only.
+    /// Colour of road in the second drawing only.
     pub second_only: Rgb,
-    /// Road in both, but of another class, or a centre line in one of them.
+    /// Colour of road in both, but of another class, or with a centre line in one of them.
     pub other_label: Rgb,
 }
 
-/// Vermilion, blue and reddish purple, which people with any kind of colour vision can tell apart.
+/// Vermilion, blue and reddish purple, which people with any kind of colour vision can distinguish.
 ///
-/// Source: Okabe & Ito 2008, *Color Universal Design*. `shaders/difference.wgsl` has the same numbers.
+/// Source: Okabe & Ito 2008, *Color Universal Design*. `shaders/difference.wgsl` has the same
+/// numbers.
 pub const DIFFERENCE_COLORS: DifferenceColors = DifferenceColors {
     first_only: [213.0 / 255.0, 94.0 / 255.0, 0.0],
     second_only: [0.0, 114.0 / 255.0, 178.0 / 255.0],
@@ -35,20 +36,21 @@ pub const DIFFERENCE_COLORS: DifferenceColors = DifferenceColors {
 };
 
 /// Draws where two drawings differ.
-pub(crate) struct Difference {
+pub(crate) struct DifferenceDrawable {
     layout: BindGroupLayout,
     pipeline: RenderPipeline,
 }
 
-impl Difference {
+impl DifferenceDrawable {
     pub(crate) fn new(device: &Device) -> Self {
         let entries = [0, 1, 2].map(|binding| texture(binding, UNFILTERED));
         let layout = layout(device, "difference", &entries);
-        let pipeline = PipelineRecipe::full_screen(SHADER, &[Some(&layout)], &[]).build(device);
+        let pipeline = PipelineRecipe::new(SHADER, &[Some(&layout)], &[]).build(device);
         Self { layout, pipeline }
     }
 
-    /// Draws the samples of `into`, over those of the first drawing's picture. All three have as many samples.
+    /// Draws the samples of `into`, over the picture of the first drawing. All three have the same
+    /// number of samples.
     pub(crate) fn draw(
         &self,
         gpu: &Gpu,

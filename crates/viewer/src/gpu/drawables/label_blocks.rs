@@ -1,24 +1,23 @@
-//! Finds the blocks of samples with labels in them or near them. What turns labels into colours draws these blocks alone: most of a
-//! picture has none.
+//! Finds the blocks of samples with labels in or near them. Only these blocks are drawn when labels
+//! become colours: most of a picture has no labels.
 
 use wgpu::{BindGroupLayout, ColorWrites, CommandEncoder, Device, RenderPipeline};
 
 use super::super::{
-    Gpu,
     bindings::{UNFILTERED, layout, texture, textures},
     formats::LABEL,
     passes::full_screen,
     pipeline::{PipelineRecipe, Shader, shader},
-    shared_bindings::{SharedBindings, SharedLayouts},
+    shared_bindings::{DrawnFrame, SharedLayouts},
     targets::{BLOCK_SIDE, LabelTargets},
 };
 
 pub(crate) const SHADER: Shader = shader!("blocks": "common", "screen", "blocks");
 
-/// Corners of the two triangles of a block, as `shaders/labelled.wgsl` counts them.
+/// Corners of the two triangles of a block, in the order of `shaders/labelled.wgsl`.
 pub(crate) const BLOCK_CORNERS: u32 = 6;
 
-/// What shaders are told of blocks.
+/// Constants for shaders that use blocks.
 pub(crate) const BLOCK: [(&str, f64); 1] = [("BLOCK", BLOCK_SIDE as f64)];
 
 pub(crate) struct LabelBlocks {
@@ -32,18 +31,18 @@ impl LabelBlocks {
         let groups = [Some(&layouts.frame), Some(&layout)];
         let recipe = PipelineRecipe {
             targets: &[(LABEL, ColorWrites::ALL)],
-            ..PipelineRecipe::full_screen(SHADER, &groups, &BLOCK)
+            ..PipelineRecipe::new(SHADER, &groups, &BLOCK)
         };
         let pipeline = recipe.build(device);
         Self { layout, pipeline }
     }
 
-    /// Finds the blocks of some labels. It begins and ends a pass of its own, because nothing else draws into their texture.
+    /// Finds the blocks of some labels. It uses a pass of its own, because nothing else draws into
+    /// their texture.
     pub(crate) fn find(
         &self,
-        gpu: &Gpu,
+        DrawnFrame { gpu, shared, .. }: DrawnFrame<'_>,
         encoder: &mut CommandEncoder,
-        shared: &SharedBindings,
         targets: &LabelTargets,
     ) {
         let bound = textures(gpu, &self.layout, &[&targets.labels.view]);

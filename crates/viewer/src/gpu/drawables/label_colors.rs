@@ -1,4 +1,4 @@
-//! Turns labels into colours, block by block, where there are some.
+//! Turns labels into colours, for the blocks that have labels.
 
 use wgpu::{
     BindGroupLayout, BindGroupLayoutEntry, BindingResource, BlendState, BufferUsages, Device,
@@ -7,10 +7,9 @@ use wgpu::{
 
 use super::{
     super::{
-        Gpu,
         bindings::{UNFILTERED, group, layout, texture, uniform},
         pipeline::{PipelineRecipe, Shader},
-        shared_bindings::{SharedBindings, SharedLayouts},
+        shared_bindings::{DrawnFrame, SharedLayouts},
         target_texture::TargetTexture,
         targets::{LabelTargets, Targets},
     },
@@ -24,7 +23,8 @@ pub(crate) struct LabelColors {
 }
 
 impl LabelColors {
-    /// `more` is how many textures the shader reads beside what `shaders/labelled.wgsl` and the colours are.
+    /// Creates the pipeline. `more` is the number of additional textures that the shader reads,
+    /// besides the textures of `shaders/labelled.wgsl` and the colours.
     pub(crate) fn new(
         device: &Device,
         layouts: &SharedLayouts,
@@ -42,20 +42,20 @@ impl LabelColors {
         let recipe = PipelineRecipe {
             entries: ["block_vertex", fragment],
             blend,
-            ..PipelineRecipe::full_screen(shader, &groups, &BLOCK)
+            ..PipelineRecipe::new(shader, &groups, &BLOCK)
         };
         let pipeline = recipe.build(device);
         Self { layout, pipeline }
     }
 
-    /// Binds the colours `rows`, the depth of the ground, and labels, after their blocks were found.
+    /// Binds the colours `rows`, the depth of the ground, and labels. Their blocks must have been
+    /// found.
     pub(crate) fn bind(
         &self,
-        gpu: &Gpu,
+        DrawnFrame { gpu, shared, targets, .. }: DrawnFrame<'_>,
         pass: &mut RenderPass<'_>,
-        shared: &SharedBindings,
         rows: &[[f32; 4]],
-        (targets, LabelTargets { labels, blocks }): (&Targets, &LabelTargets),
+        LabelTargets { labels, blocks }: &LabelTargets,
         more: &[&TargetTexture],
     ) {
         let colors = gpu.buffer("colors", bytemuck::cast_slice(rows), BufferUsages::UNIFORM);
@@ -69,7 +69,7 @@ impl LabelColors {
         pass.set_bind_group(1, &group(gpu, &self.layout, &resources), &[]);
     }
 
-    /// Draws with what is bound.
+    /// Draws with the bound resources.
     pub(crate) fn draw(&self, pass: &mut RenderPass<'_>, targets: &Targets) {
         pass.set_pipeline(&self.pipeline);
         pass.draw(0..BLOCK_CORNERS * targets.block_count(), 0..1);

@@ -1,4 +1,5 @@
-//! Pieces of road over the steps between tiles of different levels: on the ground, where both methods draw them as shadow volumes, and of decks.
+//! Pieces of road over the steps between tiles of different levels: on the ground, where both
+//! methods draw them as shadow volumes, and on decks.
 
 use std::ops::Range;
 
@@ -17,7 +18,10 @@ use super::{
 use crate::{
     options::ClassSet,
     scene::{BorderTile, LevelConnector, level_connectors},
-    tiles::{DashPlace, DeckPiece, NearHeights, OPEN_M, RoadVolume, dash_of_segment_m},
+    tiles::{
+        DashPlace, DeckPiece, NearHeights, OPEN_M, RoadVolume, dash_of_segment_m, relative,
+        relative_in_plan,
+    },
 };
 
 /// The connectors of a frame, in order of the finer tile.
@@ -27,8 +31,9 @@ pub(crate) struct LevelConnectors {
 }
 
 impl LevelConnectors {
-    /// Finds the connectors between roads on the ground of `tiles` and uploads their volumes, each relative to the reference point of its finer
-    /// tile. `shown` says which classes are shown on each of them.
+    /// Finds the connectors between roads on the ground of `tiles` and uploads their volumes, each
+    /// relative to the reference point of its finer tile. `shown` has the classes that are shown on
+    /// each tile.
     pub(crate) fn on_ground(gpu: &Gpu, tiles: &[BorderTile<'_>], shown: &[ClassSet]) -> Self {
         Self::new(gpu, tiles, shown, |connector| {
             let volume = volume(connector, tiles[connector.fine].reference_m);
@@ -36,7 +41,7 @@ impl LevelConnectors {
         })
     }
 
-    /// The same between decks.
+    /// Does the same as [`LevelConnectors::on_ground`] for decks.
     pub(crate) fn of_decks(gpu: &Gpu, tiles: &[BorderTile<'_>], shown: &[ClassSet]) -> Self {
         Self::new(gpu, tiles, shown, |connector| {
             piece(connector, tiles[connector.fine].reference_m).words()
@@ -59,12 +64,12 @@ impl LevelConnectors {
         Self { list, instances }
     }
 
-    /// Whether there are none.
+    /// Whether there are no connectors.
     pub(crate) fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
 
-    /// Draws the connectors with the pipeline that draws such instances.
+    /// Draws the connectors with the pipeline for their instances.
     pub(crate) fn draw(
         &self,
         pass: &mut RenderPass<'_>,
@@ -88,10 +93,9 @@ impl LevelConnectors {
     }
 }
 
-/// The volume of a connector; the reference point is that of its finer tile.
+/// The volume of a connector, relative to the reference point of its finer tile.
 fn volume(connector: &LevelConnector, reference_m: [f64; 3]) -> RoadVolume {
-    let place = |at: [f64; 2]| [0, 1].map(|k| (at[k] - reference_m[k]) as f32);
-    let [start, end] = connector.ends_m.map(place);
+    let [start, end] = connector.ends_m.map(|at| relative_in_plan(at, reference_m));
     let height_range_in_tile =
         connector.height_range_m.map(|height_m| (height_m - reference_m[2]) as f32);
     RoadVolume {
@@ -101,19 +105,18 @@ fn volume(connector: &LevelConnector, reference_m: [f64; 3]) -> RoadVolume {
         near: NearHeights { range_in_tile: height_range_in_tile, rise: 0.0 },
         width_factor: connector.width_factor,
         kind: connector.kind,
-        // It goes on in two tiles.
+        // The road continues in two tiles.
         part_m: OPEN_M,
         dash: DashPlace::flat(dash_of_segment_m(connector.ends_m)),
         flat_ends: [false; 2],
     }
 }
 
-/// The piece of a deck that a connector is: from the end in the finer tile to that in the coarser one, and so thick that it closes the step.
+/// The deck piece of a connector: from the end in the finer tile to the end in the coarser one,
+/// thick enough to close the step.
 fn piece(connector: &LevelConnector, reference_m: [f64; 3]) -> DeckPiece {
     let [first_m, second_m] = connector.heights_m;
-    let place = |[x, y]: [f64; 2], height_m: f64| {
-        [x - reference_m[0], y - reference_m[1], height_m - reference_m[2]].map(|part| part as f32)
-    };
+    let place = |[x, y]: [f64; 2], height_m: f64| relative([x, y, height_m], reference_m);
     DeckPiece {
         start_in_tile: place(connector.ends_m[0], first_m),
         end_in_tile: place(connector.ends_m[1], second_m),

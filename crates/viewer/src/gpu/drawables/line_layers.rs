@@ -1,4 +1,4 @@
-//! Lines beside the roads: the labels of one layer into colours over the picture.
+//! Lines that are not roads: draws the labels of one layer as colours over the picture.
 
 use wgpu::{BlendState, Device};
 
@@ -14,8 +14,9 @@ use crate::{frame_view::FrameView, tiles::LineLayer};
 
 pub(crate) const SHADER: Shader = shader!("lines": "common", "screen", "labelled", "lines");
 
-/// Draws a layer over the samples of the picture, after the labels of roads, which it reads, too. What is bound for the frame is that of the layer: its
-/// styles have the places of roads.
+/// Creates the pipeline that draws a layer over the samples of the picture. It runs after the
+/// labels of roads, which it also reads. The frame's uniforms must be those of the layer, in which
+/// the styles of lines replace the styles of roads.
 pub(crate) fn line_colors(device: &Device, layouts: &SharedLayouts) -> LabelColors {
     let blend = Some(BlendState::ALPHA_BLENDING);
     LabelColors::new(device, layouts, (SHADER, "line_fragment"), blend, 1)

@@ -1,4 +1,4 @@
-//! Every shader is valid without a graphics card, and its uniform blocks fit those of the code.
+//! Every shader is valid, checked without a GPU, and its uniform blocks match those of the code.
 
 use std::{collections::BTreeSet, fs, path::PathBuf};
 
@@ -7,14 +7,14 @@ use wgpu::naga::{Module, TypeInner, front::wgsl, valid};
 use super::{composite, terrain};
 use crate::{gpu::road_instances::RoadInstance as _, tiles::RoadVolume};
 
-/// A `shader!` that was found in the source code of a drawable.
+/// A `shader!` in the source code of a drawable.
 struct FoundShader {
     name: String,
     /// Names of the files that it joins.
     files: Vec<String>,
 }
 
-/// Every `shader!` in the files of `drawables/`. None has to be listed by hand.
+/// Finds every `shader!` in the files of `drawables/`, so that none has to be listed by hand.
 fn found_shaders() -> Vec<FoundShader> {
     let mut found = Vec::new();
     for file in fs::read_dir(source_folder("gpu/drawables")).unwrap() {
@@ -84,7 +84,7 @@ fn uniform_blocks_are_as_long_as_shaders_declare_them() {
     let view = crate::FrameView {
         camera: &camera,
         style: &style,
-        roads: crate::RoadOptions::of(crate::RoadMethod::None),
+        roads: crate::RoadOptions::for_method(crate::RoadMethod::None),
         exaggeration: 1.0,
         point_scale: 1.0,
         height_range_m: [0.0, 1.0],

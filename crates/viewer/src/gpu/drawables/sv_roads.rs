@@ -1,4 +1,5 @@
-//! Roads as shadow volumes (SV): a box for each segment of a road in plan, which cuts the road out of the ground.
+//! Roads as shadow volumes (SV): a box for each segment of a road in plan, intersected with the
+//! ground.
 
 use std::ops::Range;
 
@@ -6,7 +7,7 @@ use wgpu::{Face, VertexAttribute, vertex_attr_array};
 
 use super::super::{
     pipeline::{Shader, shader},
-    road_instances::{RoadInstance, own_width_value},
+    road_instances::{RoadInstance, kind_bits, own_width_value},
 };
 use crate::tiles::RoadVolume;
 
@@ -19,9 +20,9 @@ impl RoadInstance for RoadVolume {
         0 => Float32x2, 1 => Float32x2, 2 => Float32x2, 3 => Float32x2, 4 => Float32x2, 5 => Uint32,
         6 => Float32, 7 => Float32x2, 8 => Float32
     ];
-    /// The corners of the strip of triangles around a box, as `shaders/volumes.wgsl` counts them.
+    /// The corners of the triangle strip around a box, in the order of `shaders/volumes.wgsl`.
     const CORNERS: Range<u32> = 0..14;
-    /// Only the far faces are drawn: one fragment per pixel and box, also with the eye inside the box.
+    /// Draws only the far faces: one fragment per pixel and box, also with the eye inside the box.
     const CULL: Option<Face> = Some(Face::Front);
 
     fn words(&self) -> Instance {
@@ -29,11 +30,13 @@ impl RoadInstance for RoadVolume {
     }
 }
 
-/// An instance: two plan positions and two height ranges as two f32 each, rise and width factor as f32, class, look, flat ends and other tile as u32,
-/// own width, two numbers for dashes and length of the network's part as f32.
+/// An instance: two plan positions and two height ranges as two f32 each, rise and width factor as
+/// f32, class, look, flat ends and other tile as u32, own width, two numbers for dashes and length
+/// of the network's part as f32.
 pub(crate) type Instance = [u32; 15];
 
-/// The instance of a volume. `other` is the number of the other tile that it belongs to if it connects two levels, else 0.
+/// Returns the instance of a volume. If the volume connects two levels, `other` is the number of
+/// the other tile, otherwise 0.
 pub(crate) fn instance(volume: &RoadVolume, other: u32) -> Instance {
     let numbers = |pair: [f32; 2]| pair.map(f32::to_bits);
     let [[a, b], [c, d], [low, high], [near_low, near_high]] = [
@@ -44,9 +47,7 @@ pub(crate) fn instance(volume: &RoadVolume, other: u32) -> Instance {
     ]
     .map(numbers);
     let [rise, width] = numbers([volume.near.rise, volume.width_factor]);
-    let [start, end] = volume.flat_ends.map(u32::from);
-    let flags = (volume.kind.look as u32) << 4 | start << 7 | end << 8;
-    let class = u32::from(volume.kind.class.number()) | flags | other << 9;
+    let class = kind_bits(volume.kind, volume.flat_ends) | other << 9;
     let [dash_start, dash_rate] = numbers(volume.dash.0);
     let [own_width, part] = numbers([own_width_value(volume.kind.own_width), volume.part_m]);
     [

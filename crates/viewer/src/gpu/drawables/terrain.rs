@@ -1,18 +1,18 @@
-//! The ground of tiles: its triangles, its skirts, the walls where it ends and, if asked for, the edges of its triangles.
+//! The ground of tiles: its triangles, its skirts, the walls at its edges and, optionally, a
+//! wireframe.
 
 use glam::DVec3;
 use wgpu::{
-    BindGroupLayout, BufferUsages, ColorWrites, CompareFunction, Device, FrontFace,
-    PrimitiveTopology, RenderPass, RenderPipeline,
+    BindGroupLayout, ColorWrites, CompareFunction, Device, PrimitiveTopology, RenderPass,
+    RenderPipeline,
 };
 
 use super::super::{
-    Gpu,
-    bindings::{group, layout, uniform},
+    bindings::{block, layout, uniform},
     formats::{COLOR, OWNER},
     ground_buffers::{GROUND_VERTICES, GroundBuffers},
-    pipeline::{ENTRIES, PipelineRecipe, Shader, depth_test, shader},
-    shared_bindings::{SharedBindings, SharedLayouts},
+    pipeline::{PipelineRecipe, Shader, depth_test, shader},
+    shared_bindings::{DrawnFrame, SharedLayouts},
     tile_textures::{self, TileTextures},
     uniforms::{color, row},
 };
@@ -26,8 +26,16 @@ pub(crate) const SHADER: Shader =
 /// The angle by which the direction of the second light is turned, clockwise.
 const SECOND_LIGHT_DEG: f64 = -60.0;
 
+/// The ground of a tile to draw.
+pub(crate) struct GroundOfTile<'a> {
+    /// The index of the tile in the list of tiles of the frame.
+    pub(crate) tile: usize,
+    pub(crate) ground: &'a GroundBuffers,
+    pub(crate) textures: &'a TileTextures,
+}
+
 /// Draws the ground of tiles.
-pub(crate) struct Terrain {
+pub(crate) struct TerrainDrawable {
     layout: BindGroupLayout,
     surface: RenderPipeline,
     skirts: RenderPipeline,
@@ -35,30 +43,24 @@ pub(crate) struct Terrain {
     wires: RenderPipeline,
 }
 
-impl Terrain {
+impl TerrainDrawable {
     pub(crate) fn new(device: &Device, layouts: &SharedLayouts) -> Self {
         let layout = layout(device, "ground colors", &[uniform(0, None)]);
         let textures = tile_textures::layout_of(device);
         let groups = [Some(&layouts.frame), Some(&layouts.tile), Some(&layout), Some(&textures)];
         let ground = |constants| PipelineRecipe {
-            shader: SHADER,
-            entries: ENTRIES,
-            groups: &groups,
             buffer: Some(GROUND_VERTICES),
-            topology: PrimitiveTopology::TriangleList,
-            front_face: FrontFace::Ccw,
-            // From below the ground its underside is seen.
+            // From below the ground its underside is visible.
             cull: None,
             depth: Some(depth_test(CompareFunction::Greater, true)),
             targets: &[(COLOR, ColorWrites::ALL), (OWNER, ColorWrites::ALL)],
-            blend: None,
-            constants,
+            ..PipelineRecipe::new(SHADER, &groups, constants)
         };
         let wires = PipelineRecipe {
             entries: ["vertex", "wire_fragment"],
             topology: PrimitiveTopology::LineList,
             depth: Some(depth_test(CompareFunction::GreaterEqual, false)),
-            // Alpha and owner still say that there is ground.
+            // Alpha and owner still mark the ground.
             targets: &[(COLOR, ColorWrites::COLOR), (OWNER, ColorWrites::empty())],
             ..ground(&[("PULL_PX", 2.0)])
         };
@@ -72,25 +74,21 @@ impl Terrain {
         Self { layout, surface, skirts, walls, wires }
     }
 
-    /// Draws the ground of some tiles, each given with its index in the list of tiles of the frame, into the targets of the
-    /// ground.
+    /// Draws the ground of some tiles into the targets of the ground. Each tile is given with its
+    /// index in the list of tiles of the frame.
     pub(crate) fn draw(
         &self,
-        gpu: &Gpu,
+        DrawnFrame { gpu, shared, view, .. }: DrawnFrame<'_>,
         pass: &mut RenderPass<'_>,
-        shared: &SharedBindings,
-        tiles: &[(usize, &GroundBuffers, &TileTextures)],
-        view: &FrameView<'_>,
+        tiles: &[GroundOfTile<'_>],
     ) {
-        let rows = rows(view);
-        let colors =
-            gpu.buffer("ground colors", bytemuck::cast_slice(&rows), BufferUsages::UNIFORM);
+        let colors = block(gpu, "ground colors", &self.layout, &rows(view));
         shared.set_frame(pass);
-        pass.set_bind_group(2, &group(gpu, &self.layout, &[colors.as_entire_binding()]), &[]);
+        pass.set_bind_group(2, &colors, &[]);
         let mut draw = |pipeline: &RenderPipeline, draw: &dyn Fn(&GroundBuffers, &mut _)| {
             pass.set_pipeline(pipeline);
-            for (index, ground, textures) in tiles {
-                shared.set_tile(pass, *index);
+            for GroundOfTile { tile, ground, textures } in tiles {
+                shared.set_tile(pass, *tile);
                 textures.set(pass);
                 draw(ground, pass);
             }

@@ -1,7 +1,10 @@
-//! What a finished drawing shows, sample by sample: classes of roads, boundaries and areas, and heights.
+//! Finds what a finished drawing shows, sample by sample: classes of roads, boundaries and areas,
+//! and heights.
 //!
-//! Labels of roads are still there after a picture is drawn. Those of boundaries are drawn again, because all layers of lines take turns in one target; and
-//! areas leave a mixture of colours on the ground, so they are drawn once more into a texture of their own, in a style whose colours are numbers of classes.
+//! Labels of roads still exist after a picture is drawn. Labels of boundaries are drawn again,
+//! because all layers of lines share one target. Areas are mixed with the colours of the ground, so
+//! they are drawn again into a texture of their own, in a style whose colours are numbers of
+//! classes.
 
 use corniche_areas::AreaClass;
 use corniche_styles::{AreaStyle, Style};
@@ -10,13 +13,14 @@ use super::{
     super::{
         Gpu, ReadBackError,
         formats::COLOR,
-        inspection::{Owner, owners},
-        seen::{Seen, SeenSamples, heights_m},
+        inspection::{TileOwner, owners},
+        seen::{SeenSamples, ShownTiles, heights_m},
+        shared_bindings::{DrawnFrame, SharedBindings},
         target_texture::TargetTexture,
         targets::Targets,
         tile_buffers::DrawTile,
     },
-    DrawnRoads, FramePasses, Renderer, areas_of,
+    DrawnRoads, Renderer, areas_of,
 };
 use crate::{frame_view::FrameView, layer_view::view_of_lines, tiles::LineLayer};
 
@@ -24,7 +28,8 @@ use crate::{frame_view::FrameView, layer_view::view_of_lines, tiles::LineLayer};
 const COLOR_BYTES: usize = 4;
 
 impl Renderer {
-    /// What a drawing shows that [`Renderer::draw`] has just made of the same view and tiles.
+    /// Returns what the last drawing shows. [`Renderer::draw`] must have just drawn the same view
+    /// and tiles.
     ///
     /// # Errors
     /// When the device is lost or could not draw.
@@ -34,9 +39,11 @@ impl Renderer {
         view: &FrameView<'_>,
         tiles: &[DrawTile<'_>],
         targets: &Targets,
-    ) -> Result<Seen, ReadBackError> {
-        let boundaries = self.boundary_labels(gpu, view, tiles, targets)?;
-        let areas = self.area_classes(gpu, view, tiles, targets)?;
+    ) -> Result<ShownTiles, ReadBackError> {
+        let frame =
+            DrawnFrame { gpu, shared: &self.shared(gpu, view, tiles, targets), view, targets };
+        let boundaries = self.boundary_labels(frame, tiles)?;
+        let areas = self.area_classes(frame, tiles)?;
         let samples_per_side = targets.picture.samples_per_side;
         let seen = SeenSamples {
             per_side: samples_per_side,
@@ -49,7 +56,7 @@ impl Renderer {
         .seen();
         drop(boundaries);
         let is_ground: Vec<bool> = owners(&targets.owners.read(gpu)?)
-            .map(|owner| matches!(owner, Owner::Ground(_)))
+            .map(|owner| matches!(owner, TileOwner::Ground(_)))
             .collect();
         let depth = targets.read_depth(gpu)?;
         let depths =
@@ -60,65 +67,64 @@ impl Renderer {
         Ok(seen.with_heights(heights_m, areas.as_deref()))
     }
 
-    /// The labels of boundaries; `None` if no tile has any that are drawn.
+    /// Draws the labels of boundaries; `None` if no tile has any that are drawn.
     fn boundary_labels(
         &self,
-        gpu: &Gpu,
-        view: &FrameView<'_>,
+        frame: DrawnFrame<'_>,
         tiles: &[DrawTile<'_>],
-        targets: &Targets,
     ) -> Result<Option<Vec<u8>>, ReadBackError> {
         let layer = LineLayer::Boundaries;
-        let style = layer.style_of(view.style);
-        let view = &view_of_lines(view, &style);
-        let lines = DrawnRoads::of_layer(gpu, tiles, view, layer);
+        let style = layer.style_of(frame.view.style);
+        let frame = DrawnFrame { view: &view_of_lines(frame.view, &style), ..frame };
+        let lines = DrawnRoads::of_layer(frame, tiles, layer);
         if lines.is_empty() {
             return Ok(None);
         }
-        let shared = &self.shared(gpu, view, tiles, targets);
-        let passes = FramePasses { renderer: self, gpu, shared, view, targets };
-        let labels = targets.lines(gpu);
-        gpu.submit("boundary labels", |encoder| passes.labels(encoder, &lines, labels));
-        labels.labels.read(gpu).map(Some)
+        let frame =
+            DrawnFrame { shared: &SharedBindings::with_view(frame, &self.layouts), ..frame };
+        let labels = frame.targets.lines(frame.gpu);
+        frame.gpu.submit("boundary labels", |encoder| {
+            self.pass_labels(frame, encoder, &lines, labels);
+        });
+        labels.labels.read(frame.gpu).map(Some)
     }
 
-    /// The number of the class of the area at each sample plus 1, 0 where there is none; `None` if no tile has areas that are drawn.
+    /// Returns the number of the area class at each sample plus 1, 0 without an area; `None` if no
+    /// tile has areas that are drawn.
     fn area_classes(
         &self,
-        gpu: &Gpu,
-        view: &FrameView<'_>,
+        frame: DrawnFrame<'_>,
         tiles: &[DrawTile<'_>],
-        targets: &Targets,
     ) -> Result<Option<Vec<u8>>, ReadBackError> {
+        let DrawnFrame { gpu, view, targets, .. } = frame;
         let style = with_numbers_as_colors(view.style);
         let view = &FrameView { style: &style, ..*view };
         let areas = areas_of(tiles, view, |tile| &tile.areas);
         if areas.is_empty() {
             return Ok(None);
         }
-        let shared = &self.shared(gpu, view, tiles, targets);
-        let passes = FramePasses { renderer: self, gpu, shared, view, targets };
-        // A new texture is all 0.
+        let frame = DrawnFrame { view, ..frame };
+        // A new texture contains zeros.
         let sampled_px = targets.picture.sampled_px();
         let classes = TargetTexture::new(gpu, "area classes", COLOR, sampled_px);
-        gpu.submit("area classes", |encoder| passes.areas(encoder, &areas, &classes));
+        gpu.submit("area classes", |encoder| self.pass_areas(frame, encoder, &areas, &classes));
         let texels = classes.read(gpu)?;
         let numbers = texels.chunks_exact(COLOR_BYTES).map(|texel| texel[0] / CLASS_STEP);
         Ok(Some(numbers.collect()))
     }
 }
 
-/// Numbers of classes are so far apart in the red of a texel.
+/// Step between numbers of classes in the red channel.
 const CLASS_STEP: u8 = u8::MAX / (AreaClass::COUNT as u8 + 1);
 
-/// A style in which the colour of each class of areas that is drawn is its number plus 1, and hides what is beneath it.
+/// A style in which the colour of each drawn area class is its number plus 1, fully opaque.
 fn with_numbers_as_colors(style: &Style) -> Style {
     let mut style = style.clone();
     for (area, number) in style.areas.iter_mut().zip(1_u8..) {
         let opacity = if area.is_drawn() { 1.0 } else { 0.0 };
-        // Half a step more, so that rounding does no harm.
+        // Half a step is added, so that rounding has no effect.
         let red = f32::from(number * CLASS_STEP + CLASS_STEP / 2) / 255.0;
-        // Half a number would be another one: cliffs count as what lies on them.
+        // A faded colour would be another number: so steep ground counts as the area on it.
         *area = AreaStyle { color: [red, 0.0, 0.0], opacity, steepest_deg: None };
     }
     style

@@ -1,17 +1,17 @@
-//! Areas are continued into a strip around their tile, so that no gap shows between tiles.
+//! Extends areas into a strip around their tile, so that no gap shows between tiles.
 
 use corniche_geom::{LatticeBounds, LatticePoint};
 
-/// The strip around a tile into which its areas are continued.
+/// The strip around a tile into which its areas are extended.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Strip {
-    /// The tile.
+    /// Bounds of the tile.
     pub(crate) tile: LatticeBounds,
-    /// Its width east and north, lattice steps.
+    /// Width of the strip east and north, lattice steps.
     pub(crate) wide: [i64; 2],
 }
 
-/// A ring with the parts of it that lie along the border of the tile moved outwards.
+/// Moves the parts of a ring that are on the border of the tile outwards.
 ///
 /// ```text
 ///        inside the tile  │  strip
@@ -22,8 +22,9 @@ pub(crate) struct Strip {
 ///                         │
 /// ```
 ///
-/// Ground on the border, and the skirt that hangs from it, is then well inside, however its position is rounded. A volume paints its
-/// own tile's ground alone, so what lies in the strip is never seen.
+/// Ground on the border, and the skirt that hangs from it, is then well inside, however its
+/// position is rounded. A volume paints only the ground of its own tile, so the strip itself is
+/// never visible.
 pub(crate) fn with_strips(ring: &[LatticePoint], strip: Strip) -> Vec<LatticePoint> {
     let mut moved = Vec::with_capacity(ring.len() + 4);
     for (index, &point) in ring.iter().enumerate() {
@@ -42,7 +43,7 @@ pub(crate) fn with_strips(ring: &[LatticePoint], strip: Strip) -> Vec<LatticePoi
 }
 
 impl Strip {
-    /// How far a segment is moved that lies along the border; `None` for all others.
+    /// Offset of a segment on the border; `None` for all other segments.
     fn outwards(self, from: LatticePoint, to: LatticePoint) -> Option<[i64; 2]> {
         let LatticeBounds { min, max } = self.tile;
         let [east, north] = self.wide;

@@ -1,22 +1,24 @@
-//! The inside of rings becomes triangles in plan.
+//! Triangulates the inside of rings in plan.
 
 use corniche_geom::LatticePoint;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
-/// What is inside some rings, as triangles.
+/// The inside of some rings, as triangles.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct PlanMesh {
     /// All points of the rings, each once.
     pub(crate) points: Vec<LatticePoint>,
-    /// Indices of `points`, counter-clockwise. Every point of the rings is a corner of each triangle that touches it.
+    /// Indices of `points`, counter-clockwise. Every point of the rings is a corner of each
+    /// triangle that touches it.
     pub(crate) triangles: Vec<[u32; 3]>,
-    /// The edges of triangles with nothing inside beyond them. The inside is on the left.
+    /// The edges of triangles without inside beyond them. The inside is on the left.
     pub(crate) edges: Vec<[u32; 2]>,
 }
 
 impl PlanMesh {
-    /// What is inside `rings` by the even-odd rule: a constrained Delaunay triangulation, which has no other points than those of the
-    /// rings. Coordinates relative to `origin` must be below 2^53. `None` if rings cross.
+    /// Triangulates the inside of `rings` by the even-odd rule: a constrained Delaunay
+    /// triangulation, without additional points. Coordinates relative to `origin` must be below
+    /// 2^53. `None` if rings cross.
     pub(crate) fn inside(rings: &[Vec<LatticePoint>], origin: LatticePoint) -> Option<Self> {
         let mut points: Vec<LatticePoint> = rings.iter().flatten().copied().collect();
         points.sort_unstable();
@@ -25,13 +27,13 @@ impl PlanMesh {
             .iter()
             .map(|point| Point2::new((point.u - origin.u) as f64, (point.v - origin.v) as f64));
         let mut has_crossing = false;
-        // Numbers of points are below 2^32: decoders bound them.
+        // Decoders limit the number of points to less than 2^32.
         let triangulation = ConstrainedDelaunayTriangulation::<Point2<f64>>::try_bulk_load_cdt(
             vertices.collect(),
             odd_segments(rings, &points),
             |_| has_crossing = true,
         );
-        // Whole numbers below 2^53 are no coordinates that could be refused.
+        // Whole numbers below 2^53 are always valid coordinates.
         let triangulation = triangulation.ok().filter(|_| !has_crossing)?;
         let is_inside = faces_inside(&triangulation);
         let mut mesh = Self { points, ..Self::default() };
@@ -48,8 +50,8 @@ impl PlanMesh {
     }
 }
 
-/// The segments of rings by their ends' places in `points`, without those that occur an even number of times: with these the same side is
-/// on both sides.
+/// The segments of rings by the indices of their ends in `points`, without segments that occur an
+/// even number of times: these have the same side on both sides.
 fn odd_segments(rings: &[Vec<LatticePoint>], points: &[LatticePoint]) -> Vec<[usize; 2]> {
     // Every point of a ring is among the points.
     let index_of = |point: &LatticePoint| points.partition_point(|other| other < point);
@@ -65,7 +67,8 @@ fn odd_segments(rings: &[Vec<LatticePoint>], points: &[LatticePoint]) -> Vec<[us
     runs.filter(|run| run.len() % 2 == 1).map(|run| run[0]).collect()
 }
 
-/// Tells for each face whether it is inside: whoever comes from outside has crossed an odd number of constraints.
+/// For each face, whether it is inside: a path from outside has crossed an odd number of
+/// constraints.
 fn faces_inside(triangulation: &ConstrainedDelaunayTriangulation<Point2<f64>>) -> Vec<bool> {
     let mut is_inside: Vec<Option<bool>> = vec![None; triangulation.num_all_faces()];
     let outer = triangulation.outer_face().fix().index();

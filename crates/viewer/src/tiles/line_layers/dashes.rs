@@ -1,8 +1,8 @@
-//! Where the dashes of a line are, if they lie on the ground: their lengths are true along it, not in plan.
+//! Dash positions of a line on the ground: dash lengths are true along the ground, not in plan.
 
 use super::super::{DashPlace, distance};
 
-/// How long the ground under each segment of a line is.
+/// Lengths of the ground under each segment of a line.
 ///
 /// ```text
 ///            ╱╲        ground: g metres              Between two points of the line, dashes are stretched evenly, by g / p.
@@ -12,18 +12,19 @@ use super::super::{DashPlace, distance};
 pub(crate) struct GroundLengths {
     /// Points in plan, working metres.
     points_m: Vec<[f64; 2]>,
-    /// How much of each segment lies on ground of the tile, in plan and along the ground.
+    /// For each segment, how much of it is on ground of the tile, in plan and along the ground.
     lengths_m: Vec<[f64; 2]>,
 }
 
 impl GroundLengths {
-    /// Nothing is known yet of a line with these points.
+    /// No lengths yet, for a line with these points.
     pub(crate) fn new(points_m: Vec<[f64; 2]>) -> Self {
         let lengths_m = vec![[0.0; 2]; points_m.len().saturating_sub(1)];
         Self { points_m, lengths_m }
     }
 
-    /// A piece of a segment lies on the ground between these points. `vertical_scale` is the world height of a metre of true height.
+    /// Adds a piece of a segment that is on the ground between these points. `vertical_scale` is
+    /// the world height of a metre of true height.
     pub(crate) fn add(&mut self, segment: usize, ends_m: [[f64; 3]; 2], vertical_scale: f64) {
         let [from, to] = ends_m;
         let plan_m = libm::hypot(to[0] - from[0], to[1] - from[1]);
@@ -33,12 +34,12 @@ impl GroundLengths {
         }
     }
 
-    /// Where the dashes of each segment are.
+    /// The dash positions of each segment.
     pub(crate) fn places(self) -> DashPlaces {
         let mut along_m = 0.0;
         let segments = self.points_m.array_windows::<2>().zip(&self.lengths_m);
         let of_segments = segments.map(|([from, to], [plan_m, ground_m])| {
-            // What lies on no ground of the tile is not drawn there.
+            // A part that is not on ground of the tile is not drawn there.
             let rate = if *plan_m > 0.0 { ground_m / plan_m } else { 1.0 };
             let start_m = along_m;
             along_m += rate * distance(*from, *to);
@@ -48,7 +49,8 @@ impl GroundLengths {
     }
 }
 
-/// The start of each segment of a line, how far along the line that is, and metres along the line for each metre in plan.
+/// For each segment of a line: its start, the distance of the start along the line, and metres
+/// along the line per metre in plan.
 pub(crate) struct DashPlaces(Vec<([f64; 2], f64, f64)>);
 
 impl DashPlaces {

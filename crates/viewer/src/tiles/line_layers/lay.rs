@@ -1,7 +1,7 @@
-//! Lines of people's files are laid on the ground of a tile.
+//! Drapes lines from users' files on the ground of a tile.
 
 use corniche_drape::{ClippedPart, OwnedBorders};
-use corniche_geom::{GridFrame, LatticePoint, Polyline, TileId, TooMuchWork, Work};
+use corniche_geom::{GridFrame, LatticePoint, Polyline, StepBudget, TileId, TooMuchWork};
 use corniche_roads::FunctionalRoadClass;
 use corniche_tin::Surface;
 
@@ -10,36 +10,37 @@ use super::{
     dashes::{DashPlaces, GroundLengths},
 };
 use crate::tiles::{
-    DashPlace, GroundLine, InNet, OffGround, PlanScale, RoadKind, RoadSegments, RoadVolumes,
-    TileLines, relief::Relief, roads::PlanLine, shares_in,
+    DashPlace, GroundLine, PlanScale, RoadKind, TileLines, relief::RoadRelief, roads::PlanLine,
+    shares_in,
 };
 
-/// Segments longer than so many cells of the level are divided, so that dashes follow the ground.
+/// Segments longer than this many cells of the level are divided, so that dashes follow the ground.
 const LONGEST_CELLS: f64 = 8.0;
 
-/// The ground of a tile on which lines are laid.
+/// The ground of a tile on which lines are draped.
 pub struct TileSurface {
     pub(crate) id: TileId,
     pub(crate) surface: Surface,
     pub(crate) frame: GridFrame,
     /// The tile's reference point.
     pub(crate) reference_m: [f64; 3],
-    /// Lines are not drawn beyond this half width, working metres.
+    /// Maximum half width of drawn lines, working metres.
     pub(crate) width_margin_m: f64,
     pub(crate) scale: PlanScale,
     /// World height of a metre of true height without exaggeration.
     pub(crate) vertical_scale: f64,
-    /// Steps that laying lines may take.
+    /// Maximum number of steps for draping lines.
     pub(crate) most_steps: u64,
 }
 
 impl TileSurface {
-    /// Lays lines on the ground. Lines that are not near it give nothing.
+    /// Drapes lines on the ground. Lines that are not near the ground are omitted.
     ///
     /// # Errors
-    /// When that takes too much work: it follows from the triangles that lines cross.
+    /// When draping takes too much work, which depends on the number of triangles that the lines
+    /// cross.
     pub fn lay(&self, lines: &[LayerLine], methods: LineMethods) -> Result<TileLayer, TooMuchWork> {
-        let work = &Work::new(self.most_steps);
+        let work = &StepBudget::new(self.most_steps);
         let mut ground = Vec::new();
         let mut plan = Vec::new();
         for line in lines {
@@ -53,32 +54,23 @@ impl TileSurface {
                 ground.extend(laid.lines);
             }
         }
-        let bounds = self.frame.tile_bounds(self.id);
+        let Self { width_margin_m, scale, .. } = *self;
+        let lines = TileLines { ground, plan, width_margin_m, scale, ..TileLines::default() };
         let relief =
-            Relief::new(self.id, Some(&self.surface), &self.frame, self.width_margin_m, work);
-        let wide = relief.wide(&ground);
-        let none = TileLines::default();
-        let decks = OffGround::new(&none, bounds, work);
-        let (on_ground, _) = InNet::all_of(&ground, &decks, 0.0);
-        let (in_plan, _) = InNet::all_of(&plan, &decks, self.width_margin_m);
-        let segments =
-            RoadSegments::of_lines(&on_ground, &decks, self.reference_m, &self.scale, |piece| {
-                relief.bed(piece, wide.as_ref())
-            });
-        let volumes = RoadVolumes::new(&in_plan, &decks, self.reference_m, &self.scale, |ends_m| {
-            relief.near(ends_m)
-        });
+            RoadRelief::new(self.id, Some(&self.surface), &self.frame, width_margin_m, work);
+        let in_tile = (self.frame.tile_bounds(self.id), self.reference_m);
+        let (layer, _) = TileLayer::of_lines(&lines, &relief, in_tile, work);
         work.check()?;
-        Ok(TileLayer { segments, volumes })
+        Ok(layer)
     }
 }
 
-/// The points of a line, with points between those that are far from each other, on the lattice, as far as they lie near the tile. Each lies
-/// within half a step of it beside the line.
+/// The points of a line near the tile, with additional lattice points in long segments. Each
+/// additional point is within half a step of the line.
 fn divided(
     points: &[LatticePoint],
     on: &TileSurface,
-    work: &Work,
+    work: &StepBudget,
 ) -> Result<Vec<LatticePoint>, TooMuchWork> {
     let [east, north] = on.frame.node_steps(on.id.z());
     let longest = LONGEST_CELLS * east.min(north) as f64;
@@ -90,7 +82,7 @@ fn divided(
     for [from, to] in points.array_windows::<2>() {
         let (du, dv) = ((to.u - from.u) as f64, (to.v - from.v) as f64);
         let parts = (libm::hypot(du, dv) / longest).ceil().max(1.0);
-        // A segment may go all around the earth: only what is near is divided.
+        // A segment may go all around the earth: only the part near the tile is divided.
         let [first, last] = shares_in(from.in_steps(), [du, dv], around);
         let numbers = (first * parts).floor().max(1.0) as u64..=(last * parts).ceil() as u64;
         work.add(((last - first) * parts).max(0.0) as usize);
@@ -108,8 +100,8 @@ fn divided(
     Ok(divided)
 }
 
-/// What lies on the ground, and where its dashes are.
-struct Laid {
+/// A layer of lines on the ground, and their dash positions.
+struct LaidLineLayer {
     lines: Vec<GroundLine>,
     places: DashPlaces,
 }
@@ -119,13 +111,13 @@ fn on_ground(
     id: i64,
     class: FunctionalRoadClass,
     on: &TileSurface,
-    work: &Work,
-) -> Result<Laid, TooMuchWork> {
+    work: &StepBudget,
+) -> Result<LaidLineLayer, TooMuchWork> {
     let frame = on.frame;
     let tile = frame.tile_lattice_bounds(on.id);
     let points_m = path.points().iter().map(|&point| frame.position_m(point)).collect();
     let mut lengths = GroundLengths::new(points_m);
-    // With each line the segments of `path` that its source segments are parts of.
+    // Each line with the segments of `path` that contain its source segments.
     let mut found: Vec<(GroundLine, Vec<usize>)> = Vec::new();
     for part in corniche_drape::clip_parts(path, &tile, OwnedBorders::ALL) {
         for draped in corniche_drape::drape_within(&part.line, &on.surface, work)?.lines {
@@ -167,10 +159,11 @@ fn on_ground(
         GroundLine { dashes: Some(dashes), ..line }
     };
     let lines = found.into_iter().map(with_dashes).collect();
-    Ok(Laid { lines, places })
+    Ok(LaidLineLayer { lines, places })
 }
 
-/// The number of the path's segment that each piece of a draped line is a piece of. `sources` are segments of `part`, in order.
+/// For each piece of a draped line, the index of its segment in the path. `sources` are segments of
+/// `part`, in order.
 fn segments_of(sources: &[[LatticePoint; 2]], part: &ClippedPart) -> Vec<usize> {
     let points = part.line.points();
     let mut at = 0;
@@ -188,7 +181,7 @@ fn in_plan(
     id: i64,
     class: FunctionalRoadClass,
     places: &DashPlaces,
-    (on, work): (&TileSurface, &Work),
+    (on, work): (&TileSurface, &StepBudget),
 ) -> Result<Vec<PlanLine>, TooMuchWork> {
     let frame = on.frame;
     let margin = (on.width_margin_m / frame.lattice_step_m()).floor() as i64;

@@ -1,4 +1,4 @@
-//! Lines of files lie on the ground, and dashes are as long on slopes as on level ground.
+//! Lines from files are on the ground, and dashes are as long on slopes as on level ground.
 
 use corniche_geom::NodeIndex;
 use corniche_tin::{Placement, Tin, TinVertex};
@@ -6,9 +6,9 @@ use corniche_tin::{Placement, Tin, TinVertex};
 use super::*;
 
 const CELL_M: f64 = 10.0;
-/// As many steps as some hundred diagonals take, so that the test is quick.
+/// The number of steps for some hundred diagonals, so that the test is quick.
 const FEW_STEPS: u64 = 1 << 22;
-/// The ground rises by so many metres for each metre to the east.
+/// Rise of the ground in metres per metre to the east.
 const RISE: f64 = 0.75;
 
 fn frame() -> GridFrame {
@@ -56,7 +56,7 @@ fn starts_and_rates(layer: &TileLayer) -> Vec<([f32; 2], [f32; 2])> {
     layer.segments.all().iter().map(|of| (of.start_in_tile, of.dash.0)).collect()
 }
 
-/// 150 m east on a slope of 3 : 4 are 187.5 m of ground; north along the slope a metre is a metre.
+/// On a slope of 3 : 4, 150 m east are 187.5 m of ground; north along the slope a metre is a metre.
 #[test]
 fn dashes_are_as_long_on_a_slope_as_on_level_ground() {
     let layer = laid(&[[100.0, 900.0], [250.0, 900.0], [250.0, 800.0]]);
@@ -80,7 +80,7 @@ fn both_methods_have_dashes_at_the_same_places() {
     for (start, dash) in &geo {
         let same =
             |(at, _): &&([f32; 2], [f32; 2])| (at[0] - start[0]).hypot(at[1] - start[1]) < 0.02;
-        // Where the border cuts a segment, only the drawing on the ground is cut.
+        // If the border cuts a segment, only the line on the ground is cut.
         let Some((_, other)) = sv.iter().find(same) else { continue };
         assert!((dash[1] - other[1]).abs() < 1e-4 && (dash[0] - other[0]).abs() < 0.05);
         compared += 1;
@@ -115,7 +115,7 @@ fn long_segments_are_divided_and_stay_straight() {
     assert!(layer.volumes.all().iter().all(|of| (of.start_in_tile[1] + 900.0).abs() < 0.02));
 }
 
-/// Of a segment through the tile that begins and ends far away, only what is near is divided.
+/// A segment that crosses the tile, and begins and ends far away, is divided only near the tile.
 #[test]
 fn a_segment_all_around_the_earth_is_divided_near_the_tile_alone() {
     let far_m = 2e7;
@@ -127,7 +127,8 @@ fn a_segment_all_around_the_earth_is_divided_near_the_tile_alone() {
     assert!(layer.volumes.all().iter().all(|of| (of.start_in_tile[1] + 900.0).abs() < 0.02));
 }
 
-/// Twenty thousand lines of two points that cross five hundred triangles each: a small file, and ten million vertices.
+/// Twenty thousand lines of two points that cross five hundred triangles each: a small file with
+/// ten million vertices.
 #[test]
 fn lines_that_cross_too_many_triangles_are_refused() {
     let tin = corniche_testing::package::full_tin();
@@ -137,7 +138,7 @@ fn lines_that_cross_too_many_triangles_are_refused() {
     assert!(laid_on(&surface, &[diagonal; 4]).is_ok());
     let error = laid_on(&surface, &vec![diagonal; 20_000]).unwrap_err();
     assert_eq!(error, TooMuchWork { limit: FEW_STEPS });
-    // One line of many long segments is no other case.
+    // One line of many long segments is the same case.
     let back: Vec<[f64; 2]> = (0..20_000).map(|k| diagonal[k % 2]).collect();
     assert!(laid_on(&surface, &[&back]).is_err());
 }

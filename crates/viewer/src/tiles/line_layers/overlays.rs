@@ -1,4 +1,4 @@
-//! Lines of people's own files, as the tiles of each level need them.
+//! Lines from users' files, prepared for the tiles of each level.
 
 use std::sync::OnceLock;
 
@@ -7,22 +7,23 @@ use corniche_roads::{FunctionalRoadClass, simplify};
 
 use super::LayerLine;
 
-/// On levels above the finest, lines are simplified by so many of the level's cells, as roads are.
+/// Simplification tolerance on levels above the finest, in cells of the level, as for roads.
 const TOLERANCE_CELLS: f64 = 0.25;
-/// Segments in a run whose rectangle is known.
+/// Number of segments per run; each run has a bounding box.
 const RUN: usize = 64;
 
-/// Lines of people's own files, prepared for each level of a package once a tile of it is asked for.
+/// Lines from users' files, prepared for each level of a package when a tile of the level is first
+/// requested.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Overlays {
-    /// The lines of the files, without points that lie on the ones before.
+    /// The lines of the files, without repeated points.
     lines: Vec<SourceLine>,
     levels: Vec<Level>,
-    /// The files that they come from, by the styles of the lines.
+    /// The names of the files, by the styles of the lines.
     names: Vec<String>,
 }
 
-/// A line of a file, whole.
+/// A complete line of a file.
 #[derive(Debug, Clone, PartialEq)]
 struct SourceLine {
     id: i64,
@@ -32,7 +33,7 @@ struct SourceLine {
 
 #[derive(Debug, Clone, PartialEq)]
 struct Level {
-    /// Lines are simplified by so many steps of the lattice.
+    /// Simplification tolerance, in steps of the lattice.
     tolerance: f64,
     lines: OnceLock<Vec<LevelLine>>,
 }
@@ -40,12 +41,12 @@ struct Level {
 #[derive(Debug, Clone, PartialEq)]
 struct LevelLine {
     line: LayerLine,
-    /// The rectangle around each [`RUN`] of segments.
+    /// The bounding box of each [`RUN`] of segments.
     runs: Vec<LatticeBounds>,
 }
 
 impl Overlays {
-    /// Takes lines. Those that are not two different points long are left out.
+    /// Creates overlays. Lines with fewer than two different points are skipped.
     #[must_use]
     pub fn new(lines: &[LayerLine], frame: &GridFrame) -> Self {
         let levels = (0..=frame.max_level()).map(|level| {
@@ -56,30 +57,30 @@ impl Overlays {
             };
             Level { tolerance: tolerance_m / frame.lattice_step_m(), lines: OnceLock::new() }
         });
-        let lines = lines.iter().filter_map(SourceLine::of).collect();
+        let lines = lines.iter().filter_map(SourceLine::from_layer_line).collect();
         Self { lines, levels: levels.collect(), names: Vec::new() }
     }
 
-    /// The same lines, with the names of the files that they come from: one for each style.
+    /// Sets the names of the files from which the lines come: one for each style.
     #[must_use]
     pub fn of_files(self, names: Vec<String>) -> Self {
         Self { names, ..self }
     }
 
-    /// The names of the files that some lines come from.
+    /// The names of the files from which some lines come.
     pub(crate) fn names_of(&self, lines: &[LayerLine]) -> String {
         let has_some = |style: usize| lines.iter().any(|line| usize::from(line.style) == style);
         let named = self.names.iter().enumerate().filter(|(style, _)| has_some(*style));
         named.map(|(_, name)| name.as_str()).collect::<Vec<_>>().join(", ")
     }
 
-    /// Whether there are none.
+    /// Whether there are no lines.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.lines.is_empty()
     }
 
-    /// The parts of lines in a tile and so many steps of the lattice around it.
+    /// The parts of lines within a tile and `margin` steps of the lattice around it.
     #[must_use]
     pub fn near(&self, id: TileId, frame: &GridFrame, margin: i64) -> Vec<LayerLine> {
         let around = frame.tile_lattice_bounds(id).expanded(margin.saturating_add(1));
@@ -88,7 +89,7 @@ impl Overlays {
         lines.iter().flat_map(|line| line.near(&around)).collect()
     }
 
-    /// The lines of a level, simplified when they are asked for first.
+    /// The lines of a level, simplified at the first request.
     fn of_level<'a>(&self, Level { tolerance, lines }: &'a Level) -> &'a [LevelLine] {
         let simplified = || self.lines.iter().map(|line| LevelLine::new(line, *tolerance));
         lines.get_or_init(|| simplified().collect())
@@ -96,8 +97,8 @@ impl Overlays {
 }
 
 impl SourceLine {
-    /// `None` if it is not two different points long, or its style is none of those that classes of roads have.
-    fn of(line: &LayerLine) -> Option<Self> {
+    /// `None` if the line has fewer than two different points, or its style is out of range.
+    fn from_layer_line(line: &LayerLine) -> Option<Self> {
         let mut points = line.points.clone();
         points.dedup();
         let (path, class) = (Polyline::new(points).ok()?, FunctionalRoadClass::new(line.style)?);
@@ -109,16 +110,16 @@ impl LevelLine {
     fn new(&SourceLine { id, style, ref path }: &SourceLine, tolerance: f64) -> Self {
         let points = simplify(path, &[], tolerance).into_points();
         let runs = (0..points.len() - 1).step_by(RUN).filter_map(|first| {
-            LatticeBounds::of(&points[first..points.len().min(first + RUN + 1)])
+            LatticeBounds::around(&points[first..points.len().min(first + RUN + 1)])
         });
         Self { runs: runs.collect(), line: LayerLine { id, style, points } }
     }
 
-    /// The parts that have a segment whose rectangle touches these bounds.
+    /// The parts with a segment whose bounding box touches these bounds.
     fn near(&self, around: &LatticeBounds) -> Vec<LayerLine> {
         let points = &self.line.points;
         let is_near = |segment: &usize| {
-            LatticeBounds::of(&points[*segment..*segment + 2])
+            LatticeBounds::around(&points[*segment..*segment + 2])
                 .is_some_and(|bounds| bounds.intersects(around))
         };
         let runs = self.runs.iter().enumerate().filter(|(_, bounds)| bounds.intersects(around));

@@ -1,4 +1,4 @@
-//! A tile gets all segments of overlays that are near it.
+//! A tile gets all overlay segments near it.
 
 use corniche_geom::NodeIndex;
 use proptest::prelude::*;
@@ -13,7 +13,7 @@ fn line(points: Vec<LatticePoint>) -> LayerLine {
     LayerLine { id: 1, style: 0, points }
 }
 
-/// Points of the root tile, as shares of its sides, on the lattice.
+/// Converts shares of the root tile's sides to points on the lattice.
 fn points(shares: &[(f64, f64)]) -> Vec<LatticePoint> {
     let bounds = frame().tile_lattice_bounds(TileId::ROOT);
     let at = |low: i64, high: i64, share: f64| low + ((high - low) as f64 * share) as i64;
@@ -26,7 +26,8 @@ fn points(shares: &[(f64, f64)]) -> Vec<LatticePoint> {
 }
 
 proptest! {
-    /// On the finest level nothing is simplified: every segment whose rectangle touches the tile is there, and nothing else.
+    /// On the finest level nothing is simplified: the tile gets every segment whose bounding box
+    /// touches it, and nothing else.
     #[test]
     fn a_tile_gets_all_segments_near_it(shares in prop::collection::vec((-0.5..1.5_f64, -0.5..1.5_f64), 2..300), x in 0_u32..4, y in 0_u32..4) {
         let frame = frame();
@@ -43,7 +44,7 @@ proptest! {
         let around = frame.tile_lattice_bounds(id).expanded(4);
         let expected: Vec<[LatticePoint; 2]> = points
             .array_windows()
-            .filter(|pair: &&[_; 2]| LatticeBounds::of(&pair[..]).unwrap().intersects(&around))
+            .filter(|pair: &&[_; 2]| LatticeBounds::around(&pair[..]).unwrap().intersects(&around))
             .copied()
             .collect();
         prop_assert_eq!(found, expected);

@@ -1,4 +1,4 @@
-//! Roads on the ground without what of them is on decks of bridges.
+//! Removes the parts of roads that are on decks of bridges from the roads on the ground.
 //!
 //! ```text
 //!   the way, as both methods have it:   ●────●──────────●───────●      on the ground along its whole length
@@ -11,7 +11,7 @@ use std::{
     collections::{BTreeMap, BTreeSet},
 };
 
-use corniche_geom::{Bounds, Work, along};
+use corniche_geom::{Bounds, StepBudget, along};
 
 use super::{
     super::{distance, shares_in},
@@ -19,17 +19,17 @@ use super::{
     flat_ends::LineEnds,
 };
 
-/// A point of a run lies this near to its way: a few steps of the lattice.
+/// Maximum distance of a point of a run from its way: a few steps of the lattice.
 const NEAR_M: f64 = 0.005;
 
-/// A place on a line: a segment, and which part of it comes before.
+/// A position on a line: a segment, and the share of it before the position.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 struct LinePlace {
     segment: usize,
     share: f64,
 }
 
-/// What is taken out of a line: from one place to another, and where these are.
+/// A part to remove from a line: its start and end on the line, and their positions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Stretch {
     from: (LinePlace, [f64; 2]),
@@ -53,21 +53,21 @@ impl Run {
     }
 }
 
-/// What of the roads of a tile is off the ground.
-pub(crate) struct OffGround<'a> {
+/// The parts of a tile's roads that are off the ground.
+pub(crate) struct OffGroundRoads<'a> {
     by_way: BTreeMap<i64, Vec<Run>>,
     lines: &'a [DeckLine],
-    /// Where tunnels come out of the ground.
+    /// Points where tunnels emerge from the ground.
     portals: BTreeSet<[u64; 2]>,
     /// The ways of bridges, in order of their ids.
     bridges: &'a [i64],
     pub(crate) tile: Bounds,
-    work: &'a Work,
+    work: &'a StepBudget,
 }
 
-impl<'a> OffGround<'a> {
-    /// What of these lines of the tile with these bounds is off the ground.
-    pub(crate) fn new(lines: &'a TileLines, tile: Bounds, work: &'a Work) -> Self {
+impl<'a> OffGroundRoads<'a> {
+    /// Finds the parts of these lines, in the tile with these bounds, that are off the ground.
+    pub(crate) fn new(lines: &'a TileLines, tile: Bounds, work: &'a StepBudget) -> Self {
         let TileLines { decks, portals, bridges, .. } = lines;
         let mut by_way: BTreeMap<i64, Vec<Run>> = BTreeMap::new();
         for deck in decks {
@@ -78,18 +78,19 @@ impl<'a> OffGround<'a> {
         Self { by_way, lines: decks, portals, bridges, tile, work }
     }
 
-    /// Where they begin and end.
+    /// The ends of the parts.
     pub(crate) fn ends(&self) -> impl Iterator<Item = LineEnds> {
         self.lines.iter().filter_map(DeckLine::ends)
     }
 
-    /// Whether a line has a portal at its ends. Only bores have.
+    /// Whether a line has a portal at its ends. Only bores have portals.
     pub(crate) fn portals(&self, ends: &LineEnds) -> [bool; 2] {
         [ends.first, ends.last]
             .map(|end| end.is_some_and(|[_, at]| self.portals.contains(&at.map(f64::to_bits))))
     }
 
-    /// What of a line on the ground is on no deck: the line itself where none is of its way.
+    /// The parts of a line on the ground that are not on a deck: the line itself if no deck belongs
+    /// to its way.
     pub(crate) fn without_ground<'l>(&self, line: &'l GroundLine) -> Vec<Cow<'l, GroundLine>> {
         if !self.by_way.contains_key(&line.way_id) {
             return vec![Cow::Borrowed(line)];
@@ -103,8 +104,8 @@ impl<'a> OffGround<'a> {
         kept.iter().filter_map(|kept| kept.of_ground(line, &plan)).map(Cow::Owned).collect()
     }
 
-    /// What of a line in plan is on no deck. Of a bridge nothing is left outside the tile: where it is on the ground there, only the tile that it is
-    /// in knows.
+    /// The parts of a line in plan that are not on a deck. Outside the tile, all of a bridge is
+    /// removed: only the tile that contains such a part knows whether it is on the ground.
     pub(crate) fn without_plan<'l>(&self, line: &'l PlanLine) -> Vec<Cow<'l, PlanLine>> {
         let mut stretches = self.stretches(line.way_id, &line.points_m);
         if self.bridges.binary_search(&line.way_id).is_ok() {
@@ -117,7 +118,7 @@ impl<'a> OffGround<'a> {
         kept.iter().filter_map(|kept| kept.of_plan(line)).map(Cow::Owned).collect()
     }
 
-    /// The same stretches with those that are outside the tile, in their order, apart from one another.
+    /// Adds the stretches outside the tile, then sorts and merges all stretches.
     fn with_outside(&self, stretches: &[Stretch], points_m: &[[f64; 2]]) -> Vec<Stretch> {
         let Bounds { min_x, min_y, max_x, max_y } = self.tile;
         let around = [[min_x, max_x], [min_y, max_y]];
@@ -143,7 +144,7 @@ impl<'a> OffGround<'a> {
         });
         let mut apart: Vec<Stretch> = Vec::new();
         for next in all {
-            // The end of a segment is the beginning of the next one.
+            // The end of a segment is the start of the next one.
             let goes_on = |last: &Stretch| {
                 let (reached, begins) = (last.to.0, next.from.0);
                 begins <= reached
@@ -160,7 +161,7 @@ impl<'a> OffGround<'a> {
         apart
     }
 
-    /// The stretches of a line that are on decks, in their order along it, apart from one another.
+    /// The stretches of a line that are on decks, sorted along the line and merged.
     fn stretches(&self, way_id: i64, points_m: &[[f64; 2]]) -> Vec<Stretch> {
         let mut found: Vec<Stretch> = Vec::new();
         let mut begin = LinePlace { segment: 0, share: 0.0 };
@@ -176,10 +177,10 @@ impl<'a> OffGround<'a> {
         found
     }
 
-    /// Where a line goes along a run from its first to its last point.
+    /// The stretch in which a line follows a run from its first to its last point.
     fn stretch(&self, points_m: &[[f64; 2]], run: &Run, begin: LinePlace) -> Option<Stretch> {
         let Run { ends_m: [first, last], length_m, points } = *run;
-        // Both are rounded to the lattice at each of their points.
+        // Both lines are rounded to the lattice at each of their points.
         let slack_m = NEAR_M * (2.0 + points as f64);
         let mut from_segment = begin.segment;
         while let Some(from) = self.next_at(points_m, first, from_segment, f64::INFINITY) {
@@ -208,8 +209,8 @@ impl<'a> OffGround<'a> {
         None
     }
 
-    /// The first segment from this number on that comes through a point, no farther than `most_m` along the line; `None` if none does, or it is
-    /// too much work to look.
+    /// The first segment from this index on that passes through a point, at most `most_m` along the
+    /// line; `None` if there is none, or the search takes too much work.
     fn next_at(
         &self,
         points_m: &[[f64; 2]],
@@ -236,28 +237,29 @@ impl<'a> OffGround<'a> {
     }
 }
 
-/// A part of a line that stays: from its beginning or from the end of a stretch, to its end or to the next stretch.
+/// A part of a line that is kept: from its start or the end of a stretch, to its end or the next
+/// stretch.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Kept {
+struct KeptRange {
     from: Option<(LinePlace, [f64; 2])>,
     to: Option<(LinePlace, [f64; 2])>,
 }
 
-/// What is left of a line without these stretches.
-fn kept(stretches: &[Stretch], points_m: &[[f64; 2]]) -> Vec<Kept> {
+/// The parts of a line outside of these stretches.
+fn kept(stretches: &[Stretch], points_m: &[[f64; 2]]) -> Vec<KeptRange> {
     let mut kept = Vec::new();
     let mut from = None;
     for stretch in stretches {
-        kept.push(Kept { from, to: Some(stretch.from) });
+        kept.push(KeptRange { from, to: Some(stretch.from) });
         from = Some(stretch.to);
     }
-    kept.push(Kept { from, to: None });
+    kept.push(KeptRange { from, to: None });
     kept.retain(|part| part.length_m(points_m) > NEAR_M);
     kept
 }
 
-impl Kept {
-    /// The segments that it has some of.
+impl KeptRange {
+    /// The range of segments that the part touches.
     fn segments(&self, points_m: &[[f64; 2]]) -> std::ops::RangeInclusive<usize> {
         let last = points_m.len().saturating_sub(2);
         self.from.map_or(0, |(at, _)| at.segment)..=self.to.map_or(last, |(at, _)| at.segment)
@@ -267,7 +269,7 @@ impl Kept {
         self.pieces(points_m).map(|(_, ends)| distance(ends[0], ends[1])).sum()
     }
 
-    /// Its pieces, each of one segment: the number of the segment, and both ends.
+    /// The pieces of the part, each within one segment: the index of the segment, and both ends.
     fn pieces(
         &self,
         points_m: &[[f64; 2]],
@@ -289,7 +291,8 @@ impl Kept {
         all.into_iter()
     }
 
-    /// The points and segments of this part of a line in plan, without what is left of a segment that is cut off by less than a step.
+    /// The points and segments of this part of a line in plan, without segments that are cut to
+    /// less than a step.
     fn walked(&self, points_m: &[[f64; 2]]) -> impl Iterator<Item = (usize, [[f64; 2]; 2])> {
         let cut = *self;
         self.pieces(points_m).filter(move |(number, ends)| {
@@ -297,7 +300,7 @@ impl Kept {
         })
     }
 
-    /// This part of a line on the ground, whose points in plan are given.
+    /// This part of a line on the ground; `plan` are the points of the line in plan.
     fn of_ground(&self, line: &GroundLine, plan: &[[f64; 2]]) -> Option<GroundLine> {
         let mut points_m: Vec<[f64; 3]> = Vec::new();
         let mut sources_m = Vec::new();
@@ -313,7 +316,7 @@ impl Kept {
             points_m.push(raised(ends[1]));
             sources_m.push(*line.sources_m.get(number)?);
         }
-        // A segment that is cut ends where the deck begins.
+        // A cut segment ends where the deck begins.
         let trim = |sources: &mut [[[f64; 2]; 2]], end: usize, at: [f64; 2]| {
             let whole = sources.first().copied();
             for source in sources.iter_mut().take_while(|source| Some(**source) == whole) {
@@ -367,7 +370,7 @@ fn segment(points_m: &[[f64; 2]], number: usize) -> [[f64; 2]; 2] {
     [points_m[number], points_m[number + 1]]
 }
 
-/// Which part of a segment comes before the point of it that is nearest to another.
+/// The share of a segment before its point that is nearest to another point.
 fn share_of([x, y]: [f64; 2], [a, b]: [[f64; 2]; 2]) -> f64 {
     let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
     let squared = dx * dx + dy * dy;

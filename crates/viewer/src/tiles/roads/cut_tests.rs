@@ -1,4 +1,4 @@
-//! What is on decks is taken out of lines, and nothing else.
+//! Parts on decks are removed from lines, and nothing else.
 
 use corniche_roads::FunctionalRoadClass;
 use proptest::prelude::*;
@@ -21,8 +21,8 @@ fn deck(way_id: i64, points: &[[f64; 2]]) -> DeckLine {
     }
 }
 
-/// A tile with these decks; ways 1 are those of a bridge.
-fn of(decks: Vec<DeckLine>) -> TileLines {
+/// Returns a tile with these decks; ways with id 1 belong to a bridge.
+fn tile_lines_with(decks: Vec<DeckLine>) -> TileLines {
     TileLines { decks, bridges: vec![1], ..TileLines::default() }
 }
 
@@ -40,19 +40,20 @@ fn in_plan(points: &[[f64; 2]]) -> PlanLine {
     }
 }
 
-/// The points of what is left of a line, by both methods.
+/// Returns the remaining points of a line, by both methods.
 fn left(line: &[[f64; 2]], decks: &[DeckLine]) -> Vec<Vec<[f64; 2]>> {
-    let of_decks = of(decks.to_vec());
-    let work = Work::unlimited();
-    let cut = OffGround::new(&of_decks, TILE, &work);
+    let of_decks = tile_lines_with(decks.to_vec());
+    let work = StepBudget::unlimited();
+    let cut = OffGroundRoads::new(&of_decks, TILE, &work);
     let ground: Vec<Vec<[f64; 2]>> = cut
         .without_ground(&on_ground(line))
         .iter()
         .map(|line| {
             assert_eq!(line.sources_m.len() + 1, line.points_m.len());
             for ([x, _, z], _) in line.points_m.iter().zip(0..) {
-                // An end of a deck is sought so near to its line, and may be found at a vertex.
-                assert!((x - z).abs() <= NEAR_M, "heights are those of the line");
+                // An end of a deck is searched within this distance of its line, and may be found
+                // at a vertex.
+                assert!((x - z).abs() <= NEAR_M, "the heights are those of the line");
             }
             line.points_m.iter().map(|[x, y, _]| [*x, *y]).collect()
         })
@@ -79,12 +80,12 @@ fn a_deck_is_taken_out_of_its_way() {
 #[test]
 fn what_is_not_on_the_way_takes_nothing() {
     assert_eq!(left(&LINE, &[deck(1, &[[30.0, 11.0], [40.0, 11.0]])]), [LINE.to_vec()]);
-    // Its ends lie on the way, but the way is longer between them.
+    // Its ends are on the way, but the way between them is longer.
     assert_eq!(left(&LINE, &[deck(1, &[[30.0, 10.0], [45.0, 50.0]])]), [LINE.to_vec()]);
     assert_eq!(left(&LINE, &[deck(1, &[[30.0, 10.0]])]), [LINE.to_vec()]);
 }
 
-/// A way that comes through a point twice is cut where the deck goes along it.
+/// A way that passes through a point twice is cut where the deck runs along it.
 #[test]
 fn a_loop_is_cut_at_the_right_time() {
     let around =
@@ -99,12 +100,13 @@ fn a_loop_is_cut_at_the_right_time() {
     );
 }
 
-/// A segment of which a part is left is a segment that ends there: no quad and no box paints what is on the deck.
+/// If a part of a segment remains, the segment ends there: no quad and no box paints the part on
+/// the deck.
 #[test]
 fn segments_end_where_the_deck_begins() {
-    let work = Work::unlimited();
-    let decks = of(vec![deck(1, &[[20.0, 10.0], [30.0, 10.0]])]);
-    let cut = OffGround::new(&decks, TILE, &work);
+    let work = StepBudget::unlimited();
+    let decks = tile_lines_with(vec![deck(1, &[[20.0, 10.0], [30.0, 10.0]])]);
+    let cut = OffGroundRoads::new(&decks, TILE, &work);
     // Three pieces of one segment.
     let source = [[10.0, 10.0], [40.0, 10.0]];
     let line = on_ground(&[[10.0, 10.0], [15.0, 10.0], [25.0, 10.0], [40.0, 10.0]]);
@@ -115,59 +117,61 @@ fn segments_end_where_the_deck_begins() {
     assert_eq!(sources, [vec![first; 2], vec![second]]);
 }
 
-/// Volumes reach beyond the tile. There the deck goes on, as far as this tile knows nothing of it.
+/// Volumes extend beyond the tile. There the deck is assumed to continue, because this tile knows
+/// nothing about it.
 #[test]
 fn nothing_is_left_beyond_the_border_where_a_deck_leaves_the_tile() {
-    let work = Work::unlimited();
-    let decks = of(vec![deck(1, &[[80.0, 50.0], [100.0, 50.0]])]);
-    let cut = OffGround::new(&decks, TILE, &work);
+    let work = StepBudget::unlimited();
+    let decks = tile_lines_with(vec![deck(1, &[[80.0, 50.0], [100.0, 50.0]])]);
+    let cut = OffGroundRoads::new(&decks, TILE, &work);
     let line = in_plan(&[[70.0, 50.0], [105.0, 50.0], [108.0, 55.0]]);
     let left = cut.without_plan(&line);
     assert_eq!(left.len(), 1);
     assert_eq!(left[0].points_m, [[70.0, 50.0], [80.0, 50.0]]);
     let back = in_plan(&[[108.0, 55.0], [105.0, 50.0], [70.0, 50.0]]);
-    let decks = of(vec![deck(1, &[[100.0, 50.0], [80.0, 50.0]])]);
-    let cut = OffGround::new(&decks, TILE, &work);
+    let decks = tile_lines_with(vec![deck(1, &[[100.0, 50.0], [80.0, 50.0]])]);
+    let cut = OffGroundRoads::new(&decks, TILE, &work);
     assert_eq!(cut.without_plan(&back)[0].points_m, [[80.0, 50.0], [70.0, 50.0]]);
 }
 
-/// It leaves the tile and comes back with two points outside, and goes on beside the border.
+/// The bridge leaves the tile and comes back with two points outside, and continues next to the
+/// border.
 #[test]
 fn of_a_bridge_nothing_is_left_outside_the_tile() {
-    let work = Work::unlimited();
+    let work = StepBudget::unlimited();
     let line = in_plan(&[[90.0, 20.0], [104.0, 20.0], [104.0, 40.0], [90.0, 40.0], [90.0, 101.0]]);
     let points = |lines: &TileLines| -> Vec<Vec<[f64; 2]>> {
-        let cut = OffGround::new(lines, TILE, &work);
+        let cut = OffGroundRoads::new(lines, TILE, &work);
         cut.without_plan(&line).iter().map(|line| line.points_m.clone()).collect()
     };
     let [first, second] =
         [vec![[90.0, 20.0], [100.0, 20.0]], vec![[100.0, 40.0], [90.0, 40.0], [90.0, 100.0]]];
-    assert_eq!(points(&of(Vec::new())), [first.clone(), second.clone()]);
+    assert_eq!(points(&tile_lines_with(Vec::new())), [first.clone(), second.clone()]);
     let runs =
         vec![deck(1, &[[95.0, 20.0], [100.0, 20.0]]), deck(1, &[[100.0, 40.0], [95.0, 40.0]])];
-    let parts = points(&of(runs));
+    let parts = points(&tile_lines_with(runs));
     assert_eq!(
         parts,
         [vec![[90.0, 20.0], [95.0, 20.0]], vec![[95.0, 40.0], [90.0, 40.0], [90.0, 100.0]]]
     );
     assert_eq!(points(&TileLines::default()), std::slice::from_ref(&line.points_m), "a road");
     let beside = in_plan(&[[103.0, 10.0], [103.0, 90.0]]);
-    let lines = of(Vec::new());
-    assert!(OffGround::new(&lines, TILE, &work).without_plan(&beside).is_empty());
+    let lines = tile_lines_with(Vec::new());
+    assert!(OffGroundRoads::new(&lines, TILE, &work).without_plan(&beside).is_empty());
 }
 
 #[test]
 fn too_much_work_is_told() {
-    let work = Work::new(1000);
+    let work = StepBudget::new(1000);
     let line: Vec<[f64; 2]> = (0..600).map(|k| [f64::from(k % 2), 0.0]).collect();
-    let decks = of((0..600).map(|_| deck(1, &[[0.5, 0.0], [7.0, 0.0]])).collect());
-    let cut = OffGround::new(&decks, TILE, &work);
+    let decks = tile_lines_with((0..600).map(|_| deck(1, &[[0.5, 0.0], [7.0, 0.0]])).collect());
+    let cut = OffGroundRoads::new(&decks, TILE, &work);
     let _ = cut.without_plan(&in_plan(&line));
     assert!(work.check().is_err());
 }
 
 proptest! {
-    /// What is cut out and what is left are as long as the line together.
+    /// The removed and the remaining parts together are as long as the line.
     #[test]
     fn nothing_is_lost(
         xs in prop::collection::vec(1.0_f64..99.0, 2..12),

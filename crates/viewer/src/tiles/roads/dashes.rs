@@ -1,38 +1,40 @@
-//! Where the dashes of tunnels and lines are.
+//! Dash positions of tunnels and lines.
 
 use corniche_geom::Bounds;
 
 use super::super::distance;
 
-/// Lengths are counted in whole lengths of this many metres, so that f32 is precise enough between them. A power of two, as the
-/// dashes are.
+/// Lengths are counted modulo this many metres, so that f32 is precise enough. It is a power of
+/// two, like the length of dashes.
 const WRAP_M: f64 = 65_536.0;
 
-/// Where dashes are on a segment, as shaders take it: how far along the line the segment's start is, working metres, and how many such metres make a
-/// metre of the segment in plan, more than 1 uphill, if dashes lie on the ground.
+/// Dash positions on a segment, for shaders: the distance of the segment's start along the line,
+/// working metres, and the number of such metres per metre of the segment in plan, more than 1
+/// uphill, if dashes are on the ground.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DashPlace(pub(crate) [f32; 2]);
 
 impl DashPlace {
-    /// The dashes of a segment that starts this far along its line, with so many metres along the line for each metre in plan.
+    /// The dashes of a segment that starts `start_m` along its line; `rate` is metres along the
+    /// line per metre in plan.
     pub(crate) fn new(start_m: f64, rate: f64) -> Self {
         Self([start_m.rem_euclid(WRAP_M) as f32, rate as f32])
     }
 
-    /// The same, with dashes as long as they are in plan.
+    /// Does the same as [`DashPlace::new`] for dashes that are measured in plan.
     pub(crate) fn flat(start_m: f64) -> Self {
         Self::new(start_m, 1.0)
     }
 
-    /// The place that is so far along the line from this one, in plan.
+    /// The place that is `by_m` along the line from this one, in plan.
     pub(crate) fn moved(self, by_m: f64) -> Self {
         let [start_m, rate] = self.0.map(f64::from);
         Self::new(start_m + rate * by_m, rate)
     }
 }
 
-/// Where the dashes of each segment of a line are: how far along the road its start is. Dashes are counted from there, so they go on
-/// at the bends of the road.
+/// The dash position of each segment of a line: the distance of its start along the road. Dashes
+/// are counted from there, so they continue at the bends of the road.
 ///
 /// ```text
 ///               tile            GEO lines begin and end at the border, SV lines at the margin beyond it.
@@ -43,14 +45,13 @@ impl DashPlace {
 ///              c
 /// ```
 ///
-/// A tile does not know the length of a way before it, so at the border between two tiles dashes begin anew.
+/// A tile does not know the length of a way before it, so at the border between two tiles dashes
+/// start again.
 pub(crate) fn dash_starts(vertices_m: &[[f64; 2]], tile: Bounds) -> Vec<DashPlace> {
     let slack_m = 1e-9 * tile.width();
-    let is_inside = |[x, y]: [f64; 2]| {
-        (tile.min_x - slack_m..=tile.max_x + slack_m).contains(&x)
-            && (tile.min_y - slack_m..=tile.max_y + slack_m).contains(&y)
-    };
-    // The length up to the vertex reached, if it is inside.
+    let around = tile.expanded([slack_m; 2]);
+    let is_inside = |at: [f64; 2]| around.contains(at);
+    // The length up to the current vertex, if the vertex is inside.
     let mut reached_m = vertices_m.first().filter(|first| is_inside(**first)).map(|_| 0.0);
     let segments = vertices_m.windows(2).map(|pair| {
         let length_m = distance(pair[0], pair[1]);
@@ -66,7 +67,7 @@ pub(crate) fn dash_starts(vertices_m: &[[f64; 2]], tile: Bounds) -> Vec<DashPlac
     segments.collect()
 }
 
-/// How far the start of a segment alone is along its direction, counted from the CRS's zero.
+/// The distance of a single segment's start along its direction, counted from the zero of the CRS.
 pub(crate) fn dash_of_segment_m([start, end]: [[f64; 2]; 2]) -> f64 {
     let [dx, dy] = [end[0] - start[0], end[1] - start[1]];
     let length_m = libm::hypot(dx, dy);

@@ -1,4 +1,4 @@
-//! Dashes go on at bends and tile borders, in both methods alike.
+//! Dashes continue at bends and tile borders, identically in both methods.
 
 use super::*;
 
@@ -22,7 +22,8 @@ fn dashes_go_on_at_bends() {
     check(&[[10.0, 10.0], [40.0, 50.0], [40.0, 60.0], [30.0, 60.0]], &[0.0, 50.0, 60.0]);
 }
 
-/// A line that is cut on the border, as GEO has it with the whole first segment, and one cut at a margin, as SV has it.
+/// A line that is cut at the border, as in GEO with the whole first segment, and a line that is cut
+/// at a margin, as in SV.
 #[test]
 fn both_methods_count_from_the_first_vertex_inside() {
     let inside = [[20.0, 50.0], [20.0, 80.0], [60.0, 80.0]];
@@ -42,7 +43,7 @@ fn a_line_that_comes_back_is_counted_anew() {
     );
 }
 
-/// A straight line without a vertex inside has its dashes at the same places wherever it is cut.
+/// A straight line without a vertex inside has its dashes at the same positions wherever it is cut.
 #[test]
 fn a_segment_alone_is_counted_from_a_fixed_place() {
     let [start, cut, end] =

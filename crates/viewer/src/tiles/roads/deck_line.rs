@@ -12,16 +12,16 @@ use super::{RoadKind, flat_ends::LineEnds};
 pub struct DeckLine {
     /// OSM's id of the way.
     pub way_id: i64,
-    /// What it is.
+    /// Kind of the road.
     pub kind: RoadKind,
     /// x, y in the working CRS and true height of the road at each point.
     pub points_m: Vec<[f64; 3]>,
-    /// Whether its first and its last point are on the ground.
+    /// Whether the first and the last point are on the ground.
     pub on_ground: [bool; 2],
 }
 
 impl DeckLine {
-    /// Its first and its last segment, each towards the line's end.
+    /// The first and the last segment, each towards the line's end.
     pub(crate) fn ends(&self) -> Option<LineEnds> {
         let plan = |at: &[f64; 3]| [at[0], at[1]];
         let [first, second] = [self.points_m.first()?, self.points_m.get(1)?].map(plan);
@@ -42,7 +42,7 @@ pub(crate) fn deck_lines(
     let deck = |run: &SpanRun| {
         let points_m = run.points.iter().filter_map(|point| {
             let [x, y] = frame.position_m(point.at);
-            // The reader has looked that there is such a triangle.
+            // The reader has checked that this triangle exists.
             Some([x, y, point.height_m(surface, quantum_m)?])
         });
         let kind = RoadKind::tagged(payload, run.way_id, run.class);

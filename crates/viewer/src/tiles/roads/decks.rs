@@ -1,56 +1,60 @@
-//! Decks of bridges as the straight pieces that are drawn.
+//! Decks of bridges as straight pieces for drawing.
 
 use std::collections::BTreeMap;
 
-use corniche_geom::{Bounds, Work};
+use corniche_geom::{Bounds, StepBudget};
 use corniche_roads::slab_thickness_m;
 
 use super::{
     super::{PlanScale, distance, ground_mesh::relative},
     DeckLine, RoadEnd, RoadKind, RoadList,
     dashes::{DashPlace, dash_starts},
-    ends::Side,
+    ends::TileSide,
     flat_ends::{LineEnds, direction},
     list::Classed,
     parts::OPEN_M,
 };
 
-/// A deck is drawn in pieces of at most this length, working metres, because its width is straight between the ends of a piece.
+/// A deck is drawn in pieces of at most this length, working metres, because its width is straight
+/// between the ends of a piece.
 const LONGEST_M: f64 = 200.0;
-/// So many pieces at most are made of a segment as long as the tile.
+/// Maximum number of pieces of a segment that is as long as the tile.
 const MOST_PIECES: f64 = 64.0;
-/// What a piece costs beside a step of laying a road: a tile has at most some 95 000. Real tiles have fewer: 9 142 points in one of Porto with cells of
-/// 111 m, at most 14 057 in one of 28 km of Milan.
+/// Work per piece, in steps of laying a road: it limits a tile to some 95 000 pieces. Real tiles
+/// have fewer: 9 142 points in a tile of Porto with cells of 111 m, at most 14 057 in a tile of 28
+/// km of Milan.
 const STEPS_OF_PIECE: usize = 704;
-/// What a deck costs beside that for each side of the tile that it is long: what is drawn is wider than a pixel. Milan has decks of two sides, and a
-/// tile may have a thousand.
+/// Additional work per deck for each side of the tile that the deck is long: the drawn deck is
+/// wider than a pixel. Milan has decks of two sides; a tile may have a thousand.
 const STEPS_OF_SIDE: f64 = 65536.0;
-/// Where a line turns by more, it has no mitre.
+/// A line that turns by more has no mitre.
 const LEAST_COSINE: f64 = -0.5;
 
 /// A straight piece of a deck: a slab, with the road on it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DeckPiece {
-    /// Metres from the tile's reference point: east, north, and up to the road, true.
+    /// Start of the road, metres from the tile's reference point: east, north, and up (true
+    /// height).
     pub start_in_tile: [f32; 3],
-    /// The other end.
+    /// End of the road, likewise.
     pub end_in_tile: [f32; 3],
-    /// Where it ends in plan, at its start and at its end: it has nothing in the direction of this vector from there, of length 1. Of length 0
-    /// where it has a round cap.
+    /// Mitres in plan, at the start and at the end: the piece is cut off there, perpendicular to
+    /// this unit vector. A zero vector means a round cap.
     pub mitres: [[f32; 2]; 2],
-    /// Whether the deck comes down to the ground at its start and at its end, and one road goes on there.
+    /// Whether the deck comes down to the ground at its start and at its end, where one road
+    /// continues.
     pub lands: [bool; 2],
-    /// How long its deck is, working metres.
+    /// Length of the deck, working metres.
     pub(crate) deck_m: f32,
-    /// How thick it is, true metres; 0 for a ribbon, which is no bridge: ground hides it.
+    /// Thickness of the deck, true metres; 0 for a ribbon, which is not a bridge: ground hides it.
     pub slab_m: f32,
-    /// Working metres across it for each true metre across it.
+    /// Working metres across the deck per true metre across it.
     pub width_factor: f32,
-    /// What its road is.
+    /// Kind of the road.
     pub kind: RoadKind,
-    /// How long the part of the network is that it belongs to, working metres.
+    /// Length of the part of the network to which the road belongs, working metres.
     pub(crate) part_m: f32,
-    /// Where dashes are, for its start.
+    /// Dash position of its start.
     pub(crate) dash: DashPlace,
 }
 
@@ -63,20 +67,21 @@ impl Classed for DeckPiece {
 /// All pieces of decks of a tile.
 pub type DeckPieces = RoadList<DeckPiece>;
 
-/// What decks need to know of the roads on the ground of their tile.
+/// Properties of the roads on the ground of a tile that decks need.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct GroundNet {
-    /// Where they end.
+    /// Ends of the roads.
     pub(crate) ends: Vec<LineEnds>,
-    /// How long the part of the network is to which a way belongs.
+    /// Length of the part of the network to which a way belongs.
     pub(crate) parts_m: BTreeMap<i64, f32>,
 }
 
-/// How the decks of a tile go on: by point, the directions beyond all ends of lines there.
+/// The continuations of a tile's decks: for each point, the directions beyond all line ends there.
 struct Joints(BTreeMap<[u64; 2], Vec<[f64; 2]>>);
 
 impl Joints {
-    /// A third end at a point is enough to know that there is no mitre.
+    /// Collects the ends at each point. Three ends at a point are enough to know that there is no
+    /// mitre.
     fn new<'a>(ends: impl Iterator<Item = &'a LineEnds>) -> Self {
         let mut at_point: BTreeMap<[u64; 2], Vec<[f64; 2]>> = BTreeMap::new();
         for (at, outward) in ends.flat_map(LineEnds::outward) {
@@ -88,7 +93,8 @@ impl Joints {
         Self(at_point)
     }
 
-    /// The mitre of an end, which is one of those in the list: half-way to the only line that goes on there.
+    /// The mitre of an end, which must be in the list: half-way to the only line that continues
+    /// there.
     fn mitre(&self, at: [f64; 2], outward: [f64; 2]) -> Option<[f64; 2]> {
         let [first, second] = self.0.get(&at.map(f64::to_bits))?.as_slice() else { return None };
         let is_own = first.map(f64::to_bits) == outward.map(f64::to_bits);
@@ -97,7 +103,8 @@ impl Joints {
     }
 }
 
-/// The mitre between a direction and the one in which a line goes on; `None` where it turns back.
+/// The mitre between a direction and the direction in which a line continues; `None` if it turns
+/// back.
 fn mitre(from: [f64; 2], to: [f64; 2]) -> Option<[f64; 2]> {
     let cosine = from[0] * to[0] + from[1] * to[1];
     let sum = [from[0] + to[0], from[1] + to[1]];
@@ -105,7 +112,7 @@ fn mitre(from: [f64; 2], to: [f64; 2]) -> Option<[f64; 2]> {
     (cosine > LEAST_COSINE).then(|| sum.map(|part| part / length))
 }
 
-/// A line in plan without points that lie on the ones before, with heights.
+/// A line in plan with heights, without repeated points.
 fn distinct(points_m: &[[f64; 3]]) -> Vec<[f64; 3]> {
     let mut points_m = points_m.to_vec();
     points_m.dedup_by_key(|[x, y, _]| [x.to_bits(), y.to_bits()]);
@@ -113,19 +120,20 @@ fn distinct(points_m: &[[f64; 3]]) -> Vec<[f64; 3]> {
 }
 
 impl RoadList<DeckPiece> {
-    /// The same pieces as ribbons, which end where their tile does.
+    /// The same pieces as ribbons, which end at the border of their tile.
     pub(crate) fn as_ribbons(&self) -> Self {
         let ribbon = |piece: &DeckPiece| DeckPiece { slab_m: 0.0, ..*piece };
         Self::sorted(self.all().iter().map(ribbon).collect(), Vec::new())
     }
 
-    /// Cuts decks in the tile with these bounds into pieces; none when that is too much work, which the caller looks at in the end.
+    /// Cuts decks in the tile with these bounds into pieces; returns none if that is too much work,
+    /// which the caller must check at the end.
     pub(crate) fn of_decks(
         decks: &[DeckLine],
         ground: &GroundNet,
         (tile, reference_m): (Bounds, [f64; 3]),
         scale: &PlanScale,
-        work: &Work,
+        work: &StepBudget,
     ) -> Self {
         let side_m = tile.width().max(tile.height());
         let longest_m = LONGEST_M.max(side_m / MOST_PIECES);
@@ -139,13 +147,13 @@ impl RoadList<DeckPiece> {
                 plan.windows(2).filter_map(|pair| direction([pair[0], pair[1]])).collect();
             let dashes = dash_starts(&plan, tile);
             let goes_on = [plan.first(), plan.last()]
-                .map(|end| end.is_some_and(|at| Side::of(*at, tile).is_some()));
+                .map(|end| end.is_some_and(|at| TileSide::from_position(*at, tile).is_some()));
             let lands = [0, 1].map(|end| deck.on_ground[end] && !goes_on[end]);
-            // How long it is beyond the tile is not known.
+            // Its length beyond the tile is unknown.
             let length_m = plan.windows(2).map(|pair| distance(pair[0], pair[1])).sum::<f64>();
             let deck_m = if goes_on == [false; 2] { length_m as f32 } else { OPEN_M };
-            let at_end = |at: [f64; 2], outward: [f64; 2]| match Side::of(at, tile) {
-                // It goes on in the next tile.
+            let at_end = |at: [f64; 2], outward: [f64; 2]| match TileSide::from_position(at, tile) {
+                // It continues in the next tile.
                 Some(_) => Some(outward),
                 None => joints.mitre(at, outward),
             };
@@ -204,7 +212,7 @@ impl RoadList<DeckPiece> {
     }
 }
 
-/// Where decks end on the tile's border.
+/// Points where decks end on the tile's border.
 fn deck_ends(decks: &[DeckLine], tile: Bounds, scale: &PlanScale) -> Vec<RoadEnd> {
     let mut ends = Vec::new();
     for deck in decks {
@@ -213,7 +221,7 @@ fn deck_ends(decks: &[DeckLine], tile: Bounds, scale: &PlanScale) -> Vec<RoadEnd
         let plan = |number: usize| [points_m[number][0], points_m[number][1]];
         for (point, source_m) in [(0, [plan(0), plan(1)]), (last + 1, [plan(last), plan(last + 1)])]
         {
-            if let Some(side) = Side::of(plan(point), tile) {
+            if let Some(side) = TileSide::from_position(plan(point), tile) {
                 ends.push(RoadEnd {
                     way_id: deck.way_id,
                     kind: deck.kind,

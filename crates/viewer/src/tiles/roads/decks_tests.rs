@@ -1,4 +1,4 @@
-//! Decks are cut into pieces that fit each other.
+//! Decks are cut into pieces that fit together.
 
 #![expect(clippy::float_cmp, reason = "these numbers are exact")]
 
@@ -23,7 +23,7 @@ fn pieces(decks: &[DeckLine], ground: &GroundNet) -> DeckPieces {
         ground,
         (TILE, [500.0, 500.0, 10.0]),
         &PlanScale::default(),
-        &Work::unlimited(),
+        &StepBudget::unlimited(),
     )
 }
 
@@ -65,9 +65,9 @@ fn decks_end_flat_at_the_border_and_where_a_road_goes_on() {
     assert_eq!(all.all()[0].mitres, [[-1.0, 0.0], [1.0, 0.0]]);
     assert_eq!(all.all()[0].part_m, 77.0);
     assert_eq!(all.ends().len(), 1);
-    assert_eq!((all.ends()[0].side, all.ends()[0].height_range_m), (Side::West, [20.0; 2]));
+    assert_eq!((all.ends()[0].side, all.ends()[0].height_range_m), (TileSide::West, [20.0; 2]));
     let fork = pieces(&[deck(1, 3, &points)], &net(vec![road, road]));
-    assert_eq!(fork.all()[0].mitres[1], [0.0; 2], "two roads go on");
+    assert_eq!(fork.all()[0].mitres[1], [0.0; 2], "two roads continue");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Where roads meet the border of their tile.
+//! Points where roads meet the border of their tile.
 
 use corniche_geom::Bounds;
 use serde::{Deserialize, Serialize};
@@ -7,34 +7,34 @@ use super::{super::PlanScale, GroundLine, PlanLine, RoadKind};
 
 /// A side of a tile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) enum Side {
+pub(crate) enum TileSide {
     West,
     East,
     North,
     South,
 }
 
-/// Where a road meets the border of its tile.
+/// A point where a road meets the border of its tile.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct RoadEnd {
     /// OSM's id of the way.
     pub(crate) way_id: i64,
-    /// What the road is.
+    /// Kind of the road.
     pub(crate) kind: RoadKind,
     /// The side of the tile.
-    pub(crate) side: Side,
+    pub(crate) side: TileSide,
     /// The position, in the working CRS.
     pub(crate) at_m: [f64; 2],
-    /// Lowest and highest true height that the ground may have there.
+    /// Lowest and highest true height of the ground at this point.
     pub(crate) height_range_m: [f64; 2],
-    /// Working metres across the road for each true metre across it.
+    /// Working metres across the road per true metre across it.
     pub(crate) width_factor: f32,
 }
 
-impl Side {
-    /// The side of `tile` that a point lies on, if any.
-    pub(crate) fn of([x, y]: [f64; 2], tile: Bounds) -> Option<Self> {
-        // Roads are clipped exactly on the border, but positions are rounded sums.
+impl TileSide {
+    /// The side of `tile` on which a point is, if any.
+    pub(crate) fn from_position([x, y]: [f64; 2], tile: Bounds) -> Option<Self> {
+        // Roads are clipped exactly at the border, but positions are rounded sums.
         let slack_m = 1e-9 * tile.width();
         let on = |a: f64, b: f64| (a - b).abs() <= slack_m;
         [
@@ -47,7 +47,7 @@ impl Side {
         .find_map(|(side, is_on)| is_on.then_some(side))
     }
 
-    /// How many columns to the east and rows to the south the tile beyond this side is.
+    /// The offset of the tile beyond this side: columns to the east and rows to the south.
     pub(crate) fn offset(self) -> (i32, i32) {
         match self {
             Self::West => (-1, 0),
@@ -57,7 +57,7 @@ impl Side {
         }
     }
 
-    /// The side of the tile beyond that faces this one.
+    /// The side of the neighbouring tile that faces this side.
     pub(crate) fn opposite(self) -> Self {
         match self {
             Self::West => Self::East,
@@ -68,7 +68,7 @@ impl Side {
     }
 }
 
-/// Where lines on the ground end on the tile's border.
+/// Points where lines on the ground end on the tile's border.
 pub(crate) fn ground_ends<'a>(
     lines: impl Iterator<Item = &'a GroundLine>,
     tile: Bounds,
@@ -82,7 +82,7 @@ pub(crate) fn ground_ends<'a>(
         ];
         for (point, source_m) in points.into_iter().flatten() {
             let [x, y, height_m] = *point;
-            if let Some(side) = Side::of([x, y], tile) {
+            if let Some(side) = TileSide::from_position([x, y], tile) {
                 ends.push(RoadEnd {
                     way_id: line.way_id,
                     kind: line.kind,
@@ -97,7 +97,7 @@ pub(crate) fn ground_ends<'a>(
     ends
 }
 
-/// Where lines in plan cross the tile's border.
+/// Points where lines in plan cross the tile's border.
 pub(crate) fn plan_ends<'a>(
     lines: impl Iterator<Item = &'a PlanLine>,
     tile: Bounds,
@@ -121,16 +121,16 @@ pub(crate) fn plan_ends<'a>(
     ends
 }
 
-/// Where a segment crosses a border of the tile.
-fn crossings([p, q]: [[f64; 2]; 2], tile: Bounds) -> impl Iterator<Item = (Side, [f64; 2])> {
+/// Points where a segment crosses a border of the tile.
+fn crossings([p, q]: [[f64; 2]; 2], tile: Bounds) -> impl Iterator<Item = (TileSide, [f64; 2])> {
     let sides = [
-        (Side::West, 0, tile.min_x),
-        (Side::East, 0, tile.max_x),
-        (Side::South, 1, tile.min_y),
-        (Side::North, 1, tile.max_y),
+        (TileSide::West, 0, tile.min_x),
+        (TileSide::East, 0, tile.max_x),
+        (TileSide::South, 1, tile.min_y),
+        (TileSide::North, 1, tile.max_y),
     ];
     sides.into_iter().filter_map(move |(side, axis, border)| {
-        // A point on the border counts as beyond it, so that a line through one crosses once.
+        // A point on the border counts as outside, so that a line through the point crosses once.
         ((p[axis] < border) != (q[axis] < border)).then_some(())?;
         let share = (border - p[axis]) / (q[axis] - p[axis]);
         let along = p[1 - axis] + share * (q[1 - axis] - p[1 - axis]);

@@ -1,4 +1,4 @@
-//! Which ends of roads have no round cap, because the road goes on as another one.
+//! Ends of roads without a round cap, because the road continues as another one.
 
 use std::collections::BTreeMap;
 
@@ -7,18 +7,19 @@ use corniche_roads::FunctionalRoadClass;
 
 use super::{RoadKind, RoadLook};
 
-/// A road goes on in a line that turns no more than 30° from it.
+/// A road continues in a line that turns by at most 30°.
 const LEAST_COSINE: f64 = 0.866;
 
-/// The first and the last segment of a line, each towards the line's end; `None` where the line was cut.
+/// The first and the last segment of a line, each towards the line's end; `None` where the line was
+/// cut.
 ///
 /// ```text
 ///      first[1] ◄── first[0] ─── … ─── last[0] ──► last[1]
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LineEnds {
-    /// What is larger is drawn above: as the labels are (`gpu/labels.rs`); and what is narrower below the rest of
-    /// its class.
+    /// Drawing order: larger values are drawn above, in the order of the labels (`gpu/labels.rs`);
+    /// within a class, narrower roads are below.
     height: [u8; 3],
     pub(crate) first: Option<[[f64; 2]; 2]>,
     pub(crate) last: Option<[[f64; 2]; 2]>,
@@ -44,19 +45,20 @@ impl LineEnds {
         Self { height: [layer, rank, narrow], first, last }
     }
 
-    /// The ends of a deck. No road on the ground has a cap beneath it, so it counts as below all of them.
+    /// The ends of a deck. No road on the ground has a cap below it, so it counts as below all
+    /// roads.
     pub(crate) fn of_deck([first, last]: [[[f64; 2]; 2]; 2]) -> Self {
         Self { height: [0; 3], first: Some(first), last: Some(last) }
     }
 
-    /// The points where it ends and the directions beyond them.
+    /// The end points and the directions beyond them.
     pub(crate) fn outward(&self) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
         let ends = [self.first, self.last].into_iter().flatten();
         ends.filter_map(|[from, to]| Some((to, direction([from, to])?)))
     }
 }
 
-/// Tells for each line whether it is flat at its first and at its last point.
+/// For each line: whether it is flat at its first and at its last point.
 ///
 /// ```text
 ///       round                    flat
@@ -65,8 +67,9 @@ impl LineEnds {
 ///   ━━━━━━━━━━━╯             ━━━━━━━━━━━┛            important one stays: it fills the gap that a bend leaves.
 /// ```
 ///
-/// An end is flat if a line that is drawn below it begins there and goes on in nearly the same direction, and nothing else ends
-/// there that is drawn as high. Only ends inside the tile count: there, both methods know all lines.
+/// An end is flat if a line that is drawn below it begins there and continues in nearly the same
+/// direction, and no other line that is drawn as high ends there. Only ends inside the tile count:
+/// there, both methods know all lines.
 pub(crate) fn flat_ends(lines: &[LineEnds], tile: Bounds) -> Vec<[bool; 2]> {
     let mut at_point: BTreeMap<[u64; 2], Vec<End>> = BTreeMap::new();
     let ends = lines.iter().enumerate().flat_map(|(number, line)| {
@@ -86,7 +89,7 @@ pub(crate) fn flat_ends(lines: &[LineEnds], tile: Bounds) -> Vec<[bool; 2]> {
     }
     let mut flat = vec![[false; 2]; lines.len()];
     for ends in at_point.values() {
-        // Of many ends at one point at most one is above all others: only that one is compared with each.
+        // At most one end at a point is above all others: only this end is compared with each.
         let Some(end) = ends.iter().max_by_key(|end| end.height) else { continue };
         let others =
             || ends.iter().filter(|other| (other.number, other.which) != (end.number, end.which));
@@ -98,7 +101,7 @@ pub(crate) fn flat_ends(lines: &[LineEnds], tile: Bounds) -> Vec<[bool; 2]> {
 
 /// The end of a line at a point.
 struct End {
-    /// The number of the line, and which of its ends it is.
+    /// The index of the line, and which of its ends it is.
     number: usize,
     which: usize,
     height: [u8; 3],
@@ -113,7 +116,7 @@ impl End {
     }
 }
 
-/// The direction of a segment, of length 1; `None` if it has no length.
+/// The unit vector along a segment; `None` if it has no length.
 pub(crate) fn direction([[x, y], [to_x, to_y]]: [[f64; 2]; 2]) -> Option<[f64; 2]> {
     let (dx, dy) = (to_x - x, to_y - y);
     let length_m = libm::hypot(dx, dy);

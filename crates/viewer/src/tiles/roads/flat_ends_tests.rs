@@ -1,10 +1,10 @@
-//! Of two roads in line the more important one ends flat, and all other ends are round.
+//! Where two roads continue each other, the more important one ends flat; all other ends are round.
 
 use super::*;
 
 const TILE: Bounds = Bounds { min_x: 0.0, min_y: 0.0, max_x: 100.0, max_y: 100.0 };
 
-/// A line by class, look and its points, whole.
+/// Returns a complete line by class, look and points.
 fn line((class, look, points_m): &(u8, RoadLook, Vec<[f64; 2]>)) -> LineEnds {
     let end = |a: Option<&[f64; 2]>, b: Option<&[f64; 2]>| Some([*a?, *b?]);
     let first = end(points_m.get(1), points_m.first());
@@ -49,7 +49,7 @@ fn ends_stay_round_where_the_road_turns_forks_or_leaves_the_tile() {
     check(&[(2, PLAIN, vec![a, b]), (3, PLAIN, vec![b, b])], &[neither, neither]);
 }
 
-/// Of a hundred thousand ends at one point, each is compared with the most important one alone.
+/// Each of a hundred thousand ends at one point is compared only with the most important one.
 #[test]
 fn many_ends_at_one_point_take_no_longer_than_elsewhere() {
     let middle = [50.0, 50.0];

@@ -9,24 +9,25 @@ use corniche_tin::Surface;
 use super::{super::PlanScale, DashPlace, DeckLine, RoadKind, deck_line::deck_lines};
 use crate::options::Mapping;
 
-/// A road on the ground (GEO): its centre-line as it lies on the tile's TIN.
+/// A road on the ground (GEO): its centre-line, draped on the tile's TIN.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GroundLine {
     /// OSM's id of the way.
     pub way_id: i64,
-    /// What it is.
+    /// Kind of the road.
     pub kind: RoadKind,
     /// x, y in the working CRS and true height of each vertex.
     pub points_m: Vec<[f64; 3]>,
-    /// Both ends in plan of the segment of the source line that each piece between two vertices is a piece of.
+    /// For each piece between two vertices, both ends in plan of its segment in the source line.
     /// Between two pieces of one segment the road is straight.
     pub sources_m: Vec<[[f64; 2]; 2]>,
-    /// Where dashes are, for the start of each segment of the source line that has pieces; `None`: as for roads.
+    /// Dash positions of the start of each segment of the source line that has pieces; `None`: as
+    /// for roads.
     pub dashes: Option<Vec<DashPlace>>,
 }
 
 impl GroundLine {
-    /// A line of which every vertex is a point of the source line, without a width of its own.
+    /// A line whose vertices are the points of the source line, without a width of its own.
     #[must_use]
     pub fn of_source(way_id: i64, class: FunctionalRoadClass, points_m: Vec<[f64; 3]>) -> Self {
         let plan = |[x, y, _]: [f64; 3]| [x, y];
@@ -40,13 +41,14 @@ impl GroundLine {
 pub struct PlanLine {
     /// OSM's id of the way.
     pub way_id: i64,
-    /// What it is.
+    /// Kind of the road.
     pub kind: RoadKind,
     /// x, y in the working CRS.
     pub points_m: Vec<[f64; 2]>,
-    /// The lowest and highest true height of the tile's ground within the width margin of each segment.
+    /// The lowest and highest true height of the tile's ground within the width margin of each
+    /// segment.
     pub ground_range_m: Vec<[f64; 2]>,
-    /// Where dashes are, for the start of each segment; `None`: as for roads.
+    /// Dash positions of the start of each segment; `None`: as for roads.
     pub dashes: Option<Vec<DashPlace>>,
 }
 
@@ -59,15 +61,17 @@ pub struct TileLines {
     pub plan: Vec<PlanLine>,
     /// Bridges above the ground; empty if the package has none, or that section was not read.
     pub decks: Vec<DeckLine>,
-    /// Where tunnels come out of the ground, in plan.
+    /// Points where tunnels emerge from the ground, in plan.
     pub portals: Vec<[f64; 2]>,
-    /// The ways of bridges, in order of their ids; empty if the package does not tell where they are above the ground.
+    /// The ways of bridges, in order of their ids; empty if the package does not store where
+    /// bridges are above the ground.
     pub bridges: Vec<i64>,
-    /// How far the plan lines reach beyond the tile; roads are not drawn beyond this half width.
+    /// How far the plan lines extend beyond the tile; this is the maximum half width of drawn
+    /// roads.
     pub width_margin_m: f64,
-    /// How many working metres there are to a true metre; 1 by default.
+    /// Working metres per true metre; 1 by default.
     pub scale: PlanScale,
-    /// Whether the roads on the ground are drawn on it.
+    /// Whether the roads on the ground are draped on it.
     pub mapping: Mapping,
 }
 
@@ -77,9 +81,9 @@ pub struct TileLines {
 pub struct BadRoad {
     /// OSM's id of the way.
     pub way_id: i64,
-    /// Which part of the way.
+    /// Part of the way.
     pub part: u32,
-    /// What is wrong.
+    /// Description of the fault.
     pub source: BadLine,
 }
 
@@ -89,14 +93,14 @@ pub enum BadRoads {
     /// A road does not fit the ground.
     #[error(transparent)]
     Road(#[from] BadRoad),
-    /// Segments lie beside more triangles than any writer can have meant.
-    #[error("its roads cannot be placed on its ground")]
+    /// The segments are near more triangles than any writer can have intended.
+    #[error("the roads of the tile cannot be placed on its ground")]
     TooMuch(#[from] TooMuchWork),
 }
 
 impl TileLines {
-    /// The roads of a payload with these spans, as far as their sections were read, placed on its `surface`. `width_margin_m` is that of the
-    /// tile's level.
+    /// The roads of a payload with these spans (bridges and tunnels), as far as their sections were
+    /// read, placed on its `surface`. `width_margin_m` belongs to the tile's level.
     pub(crate) fn of_payload(
         payload: &TilePayload,
         spans: Option<&[SpanRun]>,
@@ -106,9 +110,8 @@ impl TileLines {
     ) -> Result<Self, BadRoad> {
         let ground =
             surface.map_or(Ok(Vec::new()), |surface| ground_lines(payload, surface, frame))?;
-        let scale = PlanScale::default();
         let plan = plan_lines(payload, frame);
-        let lines = Self { ground, plan, width_margin_m, scale, ..Self::default() };
+        let lines = Self { ground, plan, width_margin_m, ..Self::default() };
         let Some(spans) = spans else { return Ok(lines) };
         let decks = surface.map_or_else(Vec::new, |surface| {
             deck_lines(spans, payload, surface, (frame, quantum_m))
@@ -120,7 +123,7 @@ impl TileLines {
         Ok(lines.with_bores())
     }
 
-    /// The same with bores for tunnels.
+    /// Replaces the looks of tunnels by those of bores.
     fn with_bores(mut self) -> Self {
         let ground = self.ground.iter_mut().map(|line| &mut line.kind);
         for kind in ground.chain(self.plan.iter_mut().map(|line| &mut line.kind)) {
@@ -130,16 +133,16 @@ impl TileLines {
     }
 }
 
-/// Shorter tunnels are underpasses, and have no portals, working metres.
+/// Tunnels shorter than this, in working metres, are underpasses and have no portals.
 const SHORTEST_TUNNEL_M: f64 = 80.0;
 
-/// Where tunnels come out of the ground.
+/// Points where tunnels emerge from the ground.
 fn portals(spans: &[SpanRun], frame: &GridFrame) -> Vec<[f64; 2]> {
     let is_on_ground = |point: &SpanPoint| matches!(point.height, SpanHeight::Ground { .. });
     let is_long = |run: &&SpanRun| {
         let steps = run.points.windows(2).map(|pair| pair[0].at.distance_steps(pair[1].at));
         let length_m = steps.sum::<f64>() * frame.lattice_step_m();
-        // Another tile may have more of it.
+        // Another tile may have the rest of the tunnel.
         let is_whole =
             [run.points.first(), run.points.last()].into_iter().flatten().all(is_on_ground);
         !is_whole || length_m >= SHORTEST_TUNNEL_M

@@ -10,18 +10,18 @@ use super::{
     RoadEnd, RoadKind,
 };
 
-/// What is a piece of a road, or of a line that is drawn as one.
+/// A piece of a road, or of a line that is drawn as a road.
 pub(crate) trait Classed {
     fn kind(&self) -> RoadKind;
 }
 
-/// All pieces of the roads of a tile, as one method draws them, in order of class.
+/// All pieces of the roads of a tile for one method, in order of class.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "T: Recorded")]
 pub struct RoadList<T> {
     #[serde(with = "records")]
     pieces: Vec<T>,
-    ranges: [Range<u32>; FunctionalRoadClass::COUNT],
+    pub(crate) ranges: [Range<u32>; FunctionalRoadClass::COUNT],
     ends: Vec<RoadEnd>,
 }
 
@@ -42,7 +42,7 @@ impl<T> RoadList<T> {
         Self { pieces, ranges, ends }
     }
 
-    /// The pieces and ends of several lists of one tile.
+    /// Merges the pieces and ends of several lists of one tile.
     pub(crate) fn joined<'a>(lists: impl Iterator<Item = &'a Self> + Clone) -> Self
     where
         T: Classed + Clone + 'a,
@@ -58,12 +58,12 @@ impl<T> RoadList<T> {
         &self.pieces
     }
 
-    /// Which pieces belong to a class.
+    /// The range of the pieces of a class.
     pub(crate) fn range_of(&self, class: FunctionalRoadClass) -> Range<u32> {
         self.ranges[usize::from(class.number())].clone()
     }
 
-    /// What the roads of a class are.
+    /// The kinds of the roads of a class.
     pub(crate) fn kinds_of(&self, class: FunctionalRoadClass) -> impl Iterator<Item = RoadKind>
     where
         T: Classed,
@@ -72,7 +72,7 @@ impl<T> RoadList<T> {
         self.pieces[range.start as usize..range.end as usize].iter().map(T::kind)
     }
 
-    /// Where the roads meet the tile's border.
+    /// Points where the roads meet the tile's border.
     pub(crate) fn ends(&self) -> &[RoadEnd] {
         &self.ends
     }
@@ -80,7 +80,6 @@ impl<T> RoadList<T> {
 
 impl<T> Default for RoadList<T> {
     fn default() -> Self {
-        let ranges = [const { 0..0 }; FunctionalRoadClass::COUNT];
-        Self { pieces: Vec::new(), ranges, ends: Vec::new() }
+        Self { pieces: Vec::new(), ranges: Default::default(), ends: Vec::new() }
     }
 }

@@ -1,4 +1,4 @@
-//! Tunnels, slip roads and service roads are told by their attributes.
+//! Tunnels, slip roads and service roads are recognized by their attributes.
 
 use super::*;
 
@@ -16,7 +16,11 @@ fn tunnels_count_before_slip_roads() {
         (Form::default(), Structure::Tunnel, RoadLook::Tunnel),
         (Form::Link, Structure::Tunnel, RoadLook::Tunnel),
     ] {
-        assert_eq!(RoadLook::of(&attributes(form, structure)), look, "{form:?} {structure:?}");
+        assert_eq!(
+            RoadLook::from_attributes(&attributes(form, structure)),
+            look,
+            "{form:?} {structure:?}"
+        );
     }
 }
 
@@ -46,9 +50,13 @@ fn service_roads_are_known_by_their_highway_value() {
         ("service", Structure::Tunnel, RoadLook::Tunnel),
         ("services", Structure::Ground, RoadLook::Plain),
         ("track", Structure::Ground, RoadLook::Plain),
-        // Packages of the first programs do not have the value.
+        // Packages of the first versions do not have the value.
         ("", Structure::Ground, RoadLook::Plain),
     ] {
-        assert_eq!(RoadLook::of(&tagged(highway, structure)), look, "{highway} {structure:?}");
+        assert_eq!(
+            RoadLook::from_attributes(&tagged(highway, structure)),
+            look,
+            "{highway} {structure:?}"
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! How long the part of the road network is that a road belongs to, so that short parts that stand alone can be left out.
+//! The length of the part of the road network to which a road belongs, so that short parts without
+//! connections can be hidden.
 
 use std::{borrow::Cow, collections::BTreeMap};
 
@@ -9,11 +10,11 @@ use super::{
     NearHeights, RoadKind, RoadLook,
 };
 
-/// The length of a part of which not all is known, working metres; larger than any other.
+/// The length of a part that is not completely known, working metres; larger than any other.
 pub(crate) const OPEN_M: f32 = 1e15;
 
-/// Squares that the lines of a tile may come through, all together: ten times as many as the fullest tile of a large city has. Where there
-/// are more, nothing is known of any part.
+/// Maximum number of squares that the lines of a tile may pass through in total: ten times as many
+/// as in the fullest tile of a large city. If there are more, all parts count as open.
 const MOST_SQUARES: usize = 1 << 22;
 
 /// A line of the road network.
@@ -24,26 +25,30 @@ pub(crate) struct NetLine {
     pub(crate) vertices_m: Vec<[f64; 2]>,
 }
 
-/// What is drawn of a line on the ground, and how long the part of the network is to which the line belongs, working metres.
+/// The drawn part of a line on the ground, and the length of the part of the network to which the
+/// line belongs, working metres.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct InNet<'a, L: Clone> {
     pub(crate) line: Cow<'a, L>,
     pub(crate) part_m: f32,
 }
 
-/// What a tile knows of the network: its own rectangle and that of its lines, and how near lines are that belong together.
+/// The known part of the network: the rectangle of the tile, the extent of its lines, and the
+/// distance within which lines are connected.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct KnownNet {
     pub(crate) tile: Bounds,
     /// How far beyond the tile lines are known.
     pub(crate) margin_m: f64,
-    /// Lines that come this near belong together. On coarse levels each line is simplified by itself, so that roads which meet
-    /// need not have a common point; a cell is more than that moves them.
+    /// Lines this close to each other are connected. On coarse levels each line is simplified by
+    /// itself, so that roads that meet need not have a common point; simplification moves a line by
+    /// less than a cell.
     pub(crate) near_m: f64,
 }
 
-/// The length of the part of the network to which each line belongs among lines of its class and more important
-/// ones, working metres. [`OPEN_M`] if that part may go on where this tile knows no lines.
+/// For each line, the length of the part of the network to which it belongs among lines of its
+/// class and more important ones, working metres. [`OPEN_M`] if that part may continue where this
+/// tile knows no lines.
 ///
 /// ```text
 ///    ┌──────────────────────┐    a is drawn long before b. While b is not shown, a stands alone, and its part of the
@@ -52,8 +57,8 @@ pub(crate) struct KnownNet {
 ///    └──────────────────────┘
 /// ```
 ///
-/// A part is open if it meets the tile's border, in both methods. So all tiles that have some of a part decide alike, but a short part
-/// across a border counts as open.
+/// A part is open if it meets the tile's border, in both methods. So all tiles that contain a part
+/// decide alike, but a short part across a border counts as open.
 pub(crate) fn part_lengths_m(lines: &[NetLine], known: KnownNet) -> Vec<f32> {
     let mut order: Vec<usize> = (0..lines.len()).collect();
     order.sort_by_key(|number| (rank(&lines[*number]), *number));
@@ -77,20 +82,20 @@ pub(crate) fn part_lengths_m(lines: &[NetLine], known: KnownNet) -> Vec<f32> {
     lengths_m
 }
 
-/// Lines of a lower rank are shown from farther away.
+/// The rank of a line: lines of a lower rank are shown from farther away.
 fn rank(line: &NetLine) -> (u8, bool) {
     (line.kind.class.number(), line.kind.look == RoadLook::Service)
 }
 
 impl KnownNet {
-    /// What is known from the lines inside a tile: no neighbour's.
+    /// The known network of the lines inside a tile, without its neighbours.
     pub(crate) fn within(tile: Bounds) -> Self {
         let near_m = NearHeights::reach_m([tile.width(), tile.height()]);
         Self { tile, margin_m: 0.0, near_m }
     }
 
-    /// Whether all of a line is known, and its neighbourhood: it lies inside the tile, or between the tile and the end of its
-    /// margin.
+    /// Whether a line and its neighbourhood are completely known: it is inside the tile, or between
+    /// the tile and the end of its margin.
     fn holds(&self, vertices_m: &[[f64; 2]]) -> bool {
         let Self { tile, margin_m, near_m } = *self;
         let inside = |grown_m: f64| {
@@ -109,14 +114,16 @@ impl KnownNet {
             || beyond_one_side && vertices_m.iter().all(inside(margin_m - near_m))
     }
 
-    /// Visits the squares of points along a line, no farther from each other than a square is wide, until `visit` says false. Where two
-    /// lines cross, they have points in the same square or in squares side by side.
+    /// Visits the squares of points along a line, at most the width of a square apart, until
+    /// `visit` returns false. Where two lines cross, they have points in the same square or in
+    /// adjacent squares.
     ///
-    /// Only squares near the tile are visited, wherever a line goes: what lines meet beyond them is open anyway, because there not all
-    /// is known.
+    /// Only squares near the tile are visited, wherever a line goes: lines that meet beyond them
+    /// are open anyway, because not everything is known there.
     fn squares(&self, vertices_m: &[[f64; 2]], mut visit: impl FnMut([i64; 2]) -> bool) {
         let Self { tile, margin_m, near_m } = *self;
-        // A line all of which is known ends one square before the margin does; what belongs to it has points up to two squares farther.
+        // A completely known line ends one square before the margin; connected lines have points up
+        // to two squares farther.
         let grown_m = margin_m.max(0.0) + 3.0 * near_m;
         let around = [
             [tile.min_x - grown_m, tile.max_x + grown_m],
@@ -149,14 +156,14 @@ impl KnownNet {
 
 /// Parts of the network.
 struct Net {
-    /// Which lines belong together.
+    /// Which lines are connected.
     parts: DisjointSets,
-    /// The length of all lines of a part; known at the first of them.
+    /// The total length of the lines of a part; stored at the first of them.
     lengths_m: Vec<f64>,
-    /// A line that comes through a square.
+    /// For each square, a line that passes through it.
     at: BTreeMap<[i64; 2], usize>,
     known: KnownNet,
-    /// Squares that may still be visited.
+    /// Remaining number of squares that may be visited.
     left: usize,
 }
 
@@ -171,7 +178,7 @@ impl Net {
         let known = self.known;
         known.squares(vertices_m, |square| {
             self.left = self.left.saturating_sub(1);
-            // What is beside a square where this line was before it has met already.
+            // In a square that this line visited before, its neighbours were connected already.
             if self.at.get(&square) != Some(&number) {
                 let around = [-1, 0, 1].into_iter().flat_map(|dx| [-1, 0, 1].map(|dy| [dx, dy]));
                 for [dx, dy] in around {

@@ -7,7 +7,7 @@ use super::*;
 const TILE: Bounds = Bounds { min_x: 0.0, min_y: 0.0, max_x: 1000.0, max_y: 1000.0 };
 const KNOWN: KnownNet = KnownNet { tile: TILE, margin_m: 100.0, near_m: 4.0 };
 
-/// The lengths of the parts of lines by class and points; `None` where a part is open.
+/// Returns the lengths of the parts of lines by class and points; `None` if a part is open.
 fn lengths(lines: &[(u8, &[[f64; 2]])]) -> Vec<Option<f32>> {
     let lines: Vec<NetLine> = lines
         .iter()
@@ -38,14 +38,14 @@ fn lines_that_cross_or_nearly_meet_belong_together() {
     let along: &[_] = &[[100.0, 501.0], [503.0, 504.0]];
     let sum = Some(400.0 + 403.0_f32.hypot(3.0));
     assert_eq!(lengths(&[(2, across), (2, along)]), [sum; 2]);
-    // The end of a simplified line lies beside the other.
+    // The end of a simplified line is next to the other line.
     let end: &[_] = &[[303.0, 400.0], [400.0, 400.0]];
     assert_eq!(lengths(&[(2, across), (2, end)]), [Some(497.0); 2]);
     let apart: &[_] = &[[309.0, 400.0], [400.0, 400.0]];
     assert_eq!(lengths(&[(2, across), (2, apart)]), [Some(400.0), Some(91.0)]);
 }
 
-/// Lines at many angles and places that cross are found to.
+/// Crossing lines at many angles and positions are found to cross.
 #[test]
 fn no_crossing_is_missed() {
     for k in 0..500 {
@@ -74,7 +74,7 @@ fn parts_that_meet_the_border_are_open() {
     ] {
         assert_eq!(lengths(&[(3, &border)]), [None], "{border:?}");
     }
-    // Between the tile and the end of its margin all is known.
+    // Everything is known between the tile and the end of its margin.
     assert_eq!(lengths(&[(3, &[[-20.0, 500.0], [-80.0, 500.0]])]), [Some(60.0)]);
     assert_eq!(lengths(&[(3, &[[1020.0, 500.0], [1020.0, 1050.0]])]), [Some(550.0)]);
 }
@@ -90,7 +90,8 @@ fn service_roads_come_after_the_rest_of_their_class() {
     assert_eq!(part_lengths_m(&lines, KNOWN), [150.0, 50.0]);
 }
 
-/// A line may lead all around the earth and much farther: only what is near the tile is walked, and it meets what it meets there.
+/// A line may run all around the earth and much farther: only its part near the tile is visited,
+/// and connects to the lines there.
 #[test]
 fn a_line_from_beyond_the_stars_is_walked_near_the_tile_alone() {
     let far: &[_] = &[[-1e15, 500.0], [1e15, 500.0]];
@@ -106,7 +107,8 @@ fn a_line_from_beyond_the_stars_is_walked_near_the_tile_alone() {
     assert_eq!(lengths(&[(2, far), (2, meets), (2, apart)]), [None, None, Some(50.0)]);
 }
 
-/// Lines that come through more squares than all roads of a city count as open, and are not walked to their ends.
+/// Lines that pass through more squares than all roads of a city count as open, and are not visited
+/// to their ends.
 #[test]
 fn too_many_lines_are_not_walked() {
     let back: Vec<[f64; 2]> =

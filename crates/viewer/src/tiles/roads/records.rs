@@ -1,4 +1,4 @@
-//! Pieces of roads as words, in which a page takes them from its workers.
+//! Encodes pieces of roads as words, in which a web page receives them from its workers.
 
 use std::num::{NonZeroU8, NonZeroU32};
 
@@ -10,7 +10,7 @@ use super::{
 };
 
 impl RoadKind {
-    /// Two words, class and own width, and eight bits for the look.
+    /// Passes two words, class and own width, and eight bits for the look.
     fn pass(&mut self, through: &mut Passage<'_>) -> Option<()> {
         let (measure, value) = match self.own_width {
             OwnWidth::Unknown => (0, 0),

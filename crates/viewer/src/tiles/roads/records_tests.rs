@@ -1,4 +1,4 @@
-//! Segments and volumes of roads, and pieces of decks, come from a worker as they were sent.
+//! Segments and volumes of roads, and pieces of decks, from a worker equal those that were sent.
 
 use proptest::prelude::*;
 
@@ -89,8 +89,8 @@ prop_compose! {
 
 fn sent<T: Recorded>(list: &RoadList<T>) -> RoadList<T> {
     let config = bincode::config::legacy();
-    let bytes = bincode::serde::encode_to_vec(list, config).expect("there is memory");
-    bincode::serde::decode_from_slice(&bytes, config).expect("they are whole").0
+    let bytes = bincode::serde::encode_to_vec(list, config).expect("memory is sufficient");
+    bincode::serde::decode_from_slice(&bytes, config).expect("the bytes are complete").0
 }
 
 proptest! {
@@ -119,7 +119,7 @@ proptest! {
 fn words_of_no_road_are_refused() {
     let words = [0_u32; 24];
     assert!(RoadSegment::of_words(words).is_some());
-    // A class, a kind of width, a width of nothing, a look.
+    // An invalid class, an invalid kind of width, a width of 0, an invalid look.
     for (at, word) in [(21, 9), (21, 3 << 8), (21, 1 << 8), (23, 8)] {
         let mut others = words;
         others[at] = word;

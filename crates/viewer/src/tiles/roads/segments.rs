@@ -3,12 +3,15 @@
 use std::borrow::Cow;
 
 use super::{
-    super::{PlanScale, distance, ground_mesh::relative},
+    super::{
+        PlanScale, distance,
+        ground_mesh::{relative, relative_in_plan},
+    },
     Bed, GroundLine, RoadKind, RoadList,
-    cut::OffGround,
+    cut::OffGroundRoads,
     dashes::{DashPlace, dash_starts},
     ends::ground_ends,
-    flat_ends::LineEnds,
+    flat_ends::{LineEnds, direction},
     list::Classed,
     parts::{InNet, NetLine},
     road_line::RoadLine,
@@ -17,28 +20,29 @@ use super::{
 /// A straight piece of a road's centre-line on the ground.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RoadSegment {
-    /// The segment of the source line that it is a piece of: its start, metres east and north of the tile's reference
-    /// point.
+    /// Start of the segment of the source line that contains the piece, metres east and north of
+    /// the tile's reference point.
     pub start_in_tile: [f32; 2],
-    /// Its end.
+    /// End of the segment of the source line.
     pub end_in_tile: [f32; 2],
-    /// Which part of that segment it is: 0 is the start, 1 the end.
+    /// Range of the piece within the segment: 0 is the start, 1 the end.
     pub shares: [f32; 2],
     /// True height of the piece's start above the reference point.
     pub height_in_tile: f32,
-    /// Whether it has a cap at its start and at its end: where the road does not go straight on.
+    /// Whether the piece has a cap at its start and at its end: where the road does not continue
+    /// straight.
     pub(crate) has_caps: [bool; 2],
-    /// Working metres across the segment for each true metre across it.
+    /// Working metres across the segment per true metre across it.
     pub width_factor: f32,
-    /// The ground beside it.
+    /// The ground next to the piece.
     pub bed: Bed,
-    /// What its road is.
+    /// Kind of the road.
     pub kind: RoadKind,
-    /// How long the part of the network is that it belongs to, working metres.
+    /// Length of the part of the network to which the road belongs, working metres.
     pub(crate) part_m: f32,
-    /// Where dashes are, for the start of its source segment.
+    /// Dash position of the start of its source segment.
     pub(crate) dash: DashPlace,
-    /// Whether its source segment ends flat at its start and at its end, also where roads have caps.
+    /// Whether its source segment ends flat at its start and at its end, even if roads have caps.
     pub(crate) flat_ends: [bool; 2],
 }
 
@@ -53,17 +57,17 @@ pub type RoadSegments = RoadList<RoadSegment>;
 
 /// A piece of a line on the ground, before it is placed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Piece {
-    /// x, y in the working CRS and true heights of its ends.
+pub(crate) struct LinePiece {
+    /// x, y in the working CRS and true heights of the ends.
     pub(crate) ends_m: [[f64; 3]; 2],
-    /// The ends of its source segment in plan.
+    /// The ends of the source segment in plan.
     pub(crate) source_m: [[f64; 2]; 2],
     pub(crate) has_caps: [bool; 2],
-    /// How many source segments of its line come before its own.
+    /// The index of the source segment in its line.
     source_number: usize,
 }
 
-impl Piece {
+impl LinePiece {
     fn all_of(line: &GroundLine) -> impl Iterator<Item = Self> {
         let sources_m = &line.sources_m;
         let mut source_number = 0;
@@ -80,21 +84,18 @@ impl Piece {
         })
     }
 
-    /// Its direction in plan, of length 1.
+    /// The unit vector along the piece in plan.
     pub(crate) fn direction(&self) -> [f64; 2] {
-        let [p, q] = self.source_m;
-        let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
-        let length_m = libm::hypot(dx, dy);
-        if length_m > 0.0 { [dx / length_m, dy / length_m] } else { [1.0, 0.0] }
+        direction(self.source_m).unwrap_or([1.0, 0.0])
     }
 
-    /// How long it is in plan.
+    /// Length of the piece in plan.
     pub(crate) fn length_m(&self) -> f64 {
         let [from, to] = self.ends_m.map(|[x, y, _]| [x, y]);
         distance(from, to)
     }
 
-    /// How far along its source segment a position lies: 0 at its start, 1 at its end.
+    /// The position along the source segment: 0 at its start, 1 at its end.
     fn share(&self, [x, y, _]: [f64; 3]) -> f32 {
         let [p, q] = self.source_m;
         let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
@@ -103,7 +104,8 @@ impl Piece {
     }
 }
 
-/// The vertices of the source line, from the start of the first segment that has a piece to the end of the last one.
+/// The vertices of the source line, from the start of the first segment that has a piece to the end
+/// of the last one.
 fn source_vertices(line: &GroundLine) -> Vec<[f64; 2]> {
     let mut sources_m = line.sources_m.clone();
     sources_m.dedup();
@@ -124,9 +126,9 @@ impl RoadLine for GroundLine {
         NetLine { kind: self.kind, vertices_m: source_vertices(self) }
     }
 
-    /// Where it was not cut at the border or beside a void.
+    /// The ends of the line, unless it was cut at the border or at a void.
     fn ends(&self) -> LineEnds {
-        // Positions of the same point by two formulas.
+        // Both are positions of the same point, computed by two formulas.
         let is_at = |[x, y, _]: [f64; 3], to: [f64; 2]| distance([x, y], to) < 1e-6;
         let first = self.sources_m.first().zip(self.points_m.first());
         let last = self.sources_m.last().zip(self.points_m.last());
@@ -135,25 +137,22 @@ impl RoadLine for GroundLine {
         LineEnds::of_road(self.kind, [first, last])
     }
 
-    fn off_decks(&self, decks: &OffGround<'_>) -> Vec<Cow<'_, Self>> {
+    fn off_decks(&self, decks: &OffGroundRoads<'_>) -> Vec<Cow<'_, Self>> {
         decks.without_ground(self)
     }
 }
 
 impl RoadList<RoadSegment> {
-    /// Cuts lines of a tile into segments. `bed` gives the ground beside a piece.
+    /// Cuts lines of a tile into segments. `bed` returns the ground next to a piece.
     #[must_use]
     pub(crate) fn of_lines(
         lines: &[InNet<'_, GroundLine>],
-        decks: &OffGround<'_>,
+        decks: &OffGroundRoads<'_>,
         reference_m: [f64; 3],
         scale: &PlanScale,
-        bed: impl Fn(&Piece) -> Bed,
+        bed: impl Fn(&LinePiece) -> Bed,
     ) -> Self {
-        let place = |[x, y]: [f64; 2]| {
-            let [x, y, _] = relative([x, y, 0.0], reference_m);
-            [x, y]
-        };
+        let place = |at: [f64; 2]| relative_in_plan(at, reference_m);
         let (place, bed) = (&place, &bed);
         let tile = decks.tile;
         let flat = InNet::with_flat_ends(lines, decks).into_iter();
@@ -164,7 +163,7 @@ impl RoadList<RoadSegment> {
                 Some(given) => given.clone(),
                 None => dash_starts(&sources, tile),
             };
-            Piece::all_of(line).map(move |piece| {
+            LinePiece::all_of(line).map(move |piece| {
                 let [start_in_tile, end_in_tile] = piece.source_m.map(place);
                 RoadSegment {
                     start_in_tile,

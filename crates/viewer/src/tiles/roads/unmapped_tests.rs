@@ -1,4 +1,4 @@
-//! Roads that are laid on nothing are straight between the points of their source.
+//! Undraped roads are straight between the points of their source.
 
 use corniche_roads::FunctionalRoadClass;
 use proptest::prelude::*;
@@ -9,7 +9,8 @@ fn class() -> FunctionalRoadClass {
     FunctionalRoadClass::new(3).unwrap()
 }
 
-/// A road with these points, each with a height, and between two of them places at which it crosses edges, with heights of its ground.
+/// Returns a road with these points and their heights, and with crossings of triangle edges between
+/// two points, which have the heights of the ground.
 fn laid(points_m: &[[f64; 3]], crossings: &[Vec<(f64, f64)>]) -> GroundLine {
     let mut line = GroundLine::of_source(7, class(), Vec::new());
     for (pair, crossings) in points_m.windows(2).zip(crossings) {
@@ -36,7 +37,7 @@ fn a_road_over_a_hill_is_one_straight_line() {
     assert_eq!((line.way_id, line.kind.class, line.on_ground), (7, class(), [false; 2]));
 }
 
-/// A road that turns back goes the same way in plan twice.
+/// A road that turns back runs along the same positions in plan twice.
 #[test]
 fn a_road_that_turns_back_keeps_the_point_where_it_does() {
     let points = [[0.0, 0.0, 10.0], [50.0, 0.0, 20.0], [0.0, 0.0, 10.0], [50.0, 0.0, 20.0]];
@@ -51,7 +52,7 @@ fn a_line_without_points_stays_one() {
 }
 
 proptest! {
-    /// Whatever ground there is between the points of a road, the points alone are left, as they were.
+    /// With any ground between the points of a road, only the original points remain.
     #[test]
     fn the_points_of_the_source_are_left(
         points in prop::collection::vec(prop::array::uniform2(-500.0_f64..500.0), 2..9),

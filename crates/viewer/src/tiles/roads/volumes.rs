@@ -3,9 +3,9 @@
 use std::borrow::Cow;
 
 use super::{
-    super::{PlanScale, ground_mesh::relative},
+    super::{PlanScale, ground_mesh::relative_in_plan},
     NearHeights, PlanLine, RoadKind, RoadList,
-    cut::OffGround,
+    cut::OffGroundRoads,
     dashes::{DashPlace, dash_starts},
     ends::plan_ends,
     flat_ends::LineEnds,
@@ -14,26 +14,27 @@ use super::{
     road_line::RoadLine,
 };
 
-/// A straight piece of a road in plan with the heights that its volume spans.
+/// A straight piece of a road in plan with the height range of its volume.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RoadVolume {
-    /// Metres from the tile's reference point, east and north.
+    /// Start of the piece, metres from the tile's reference point, east and north.
     pub start_in_tile: [f32; 2],
-    /// The other end.
+    /// End of the piece, likewise.
     pub end_in_tile: [f32; 2],
-    /// Lowest and highest ground within the width margin, true metres above the reference point, rounded outwards.
+    /// Lowest and highest ground within the width margin, true metres above the reference point,
+    /// rounded outwards.
     pub(crate) height_range_in_tile: [f32; 2],
-    /// Closer bounds for roads that are not wide.
+    /// Tighter bounds for roads that are not wide.
     pub(crate) near: NearHeights,
-    /// Working metres across it for each true metre across it.
+    /// Working metres across the piece per true metre across it.
     pub width_factor: f32,
-    /// What its road is.
+    /// Kind of the road.
     pub kind: RoadKind,
-    /// How long the part of the network is that it belongs to, working metres.
+    /// Length of the part of the network to which the road belongs, working metres.
     pub(crate) part_m: f32,
-    /// Where dashes are, for its start.
+    /// Dash position of its start.
     pub(crate) dash: DashPlace,
-    /// Whether it ends flat at its start and at its end, also where roads have caps.
+    /// Whether the piece ends flat at its start and at its end, even if roads have caps.
     pub(crate) flat_ends: [bool; 2],
 }
 
@@ -59,7 +60,7 @@ impl RoadLine for PlanLine {
         NetLine { kind: self.kind, vertices_m: self.points_m.clone() }
     }
 
-    /// Where it was cut, at the margin, that is outside the tile.
+    /// The ends of the line. It was cut at the margin, that is, outside the tile.
     fn ends(&self) -> LineEnds {
         let pair =
             |ends: Option<&[[f64; 2]]>| ends.and_then(|ends| Some([*ends.first()?, *ends.get(1)?]));
@@ -68,7 +69,7 @@ impl RoadLine for PlanLine {
         LineEnds::of_road(self.kind, [first, last])
     }
 
-    fn off_decks(&self, decks: &OffGround<'_>) -> Vec<Cow<'_, Self>> {
+    fn off_decks(&self, decks: &OffGroundRoads<'_>) -> Vec<Cow<'_, Self>> {
         decks.without_plan(self)
     }
 }
@@ -76,11 +77,12 @@ impl RoadLine for PlanLine {
 impl RoadList<RoadVolume> {
     /// Cuts lines of a tile and of a margin around it into volumes.
     ///
-    /// `near` gives, for the ends of a segment in the working CRS, the range of true heights of the ground beneath it and
-    /// how many metres that range grows per metre away from it; `None` if no ground is within [`NearHeights::reach_m`].
+    /// For the ends of a segment in the working CRS, `near` returns the range of true heights of
+    /// the ground below it and how many metres that range grows per metre away from it; `None` if
+    /// no ground is within [`NearHeights::reach_m`].
     pub(crate) fn new(
         lines: &[InNet<'_, PlanLine>],
-        decks: &OffGround<'_>,
+        decks: &OffGroundRoads<'_>,
         reference_m: [f64; 3],
         scale: &PlanScale,
         near: impl Fn([[f64; 2]; 2]) -> Option<([f64; 2], f64)>,
@@ -89,10 +91,7 @@ impl RoadList<RoadVolume> {
             let [low, high] = [low_m, high_m].map(|height_m| (height_m - reference_m[2]) as f32);
             [low.next_down(), high.next_up()]
         };
-        let place = |[x, y]: [f64; 2]| {
-            let [x, y, _] = relative([x, y, 0.0], reference_m);
-            [x, y]
-        };
+        let place = |at: [f64; 2]| relative_in_plan(at, reference_m);
         let tile = decks.tile;
         let (place, near) = (&place, &near);
         let flat = InNet::with_flat_ends(lines, decks).into_iter();

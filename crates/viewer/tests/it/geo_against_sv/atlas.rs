@@ -1,4 +1,4 @@
-//! A package whose tiles stay loaded while it is looked at from many sides.
+//! A package whose tiles stay loaded while many views of it are drawn.
 
 use std::{collections::BTreeMap, path::Path};
 
@@ -9,7 +9,7 @@ use corniche_viewer::{
     RoadMethod, RoadOptions,
     camera::Camera,
     eye_height::clearance_m,
-    for_tests::{Owner, is_tunnel, settle},
+    for_tests::{TileOwner, is_tunnel, settle},
     gpu::{DrawTile, Gpu, Renderer, Targets, TileBuffers},
     lod::Quality,
     tiles::{LoadTileError, PackageSource, TileStore},
@@ -23,21 +23,21 @@ use super::{
         scene::{Scene, Tile},
         scenes::by_own_widths,
     },
-    views::{RoadPlace, Seen, View},
+    views::{PixelAgreement, RoadPlace, View},
 };
 
 const SIZE: [u32; 2] = [640, 480];
 const BAND_PX: f64 = 0.05;
 const QUALITY: Quality = Quality::by_error(2.0, 1.0);
 
-/// A package and the GPU buffers of the tiles that were used so far.
+/// A package and the GPU buffers of the tiles used so far.
 pub(crate) struct Atlas<'a> {
     gpu: &'a Gpu,
     renderer: Renderer,
     package: FilePackage,
     store: TileStore<'a>,
     buffers: BTreeMap<TileId, TileBuffers>,
-    /// For the reference.
+    /// The tiles for the reference.
     tiles: BTreeMap<TileId, Tile>,
 }
 
@@ -78,7 +78,7 @@ impl<'a> Atlas<'a> {
         places
     }
 
-    /// `None` where there is no ground or the eye would be in it.
+    /// The camera of a view; `None` if there is no ground or the eye would be below it.
     pub(crate) fn camera(&mut self, view: &View) -> Option<Camera> {
         let store = &mut self.store;
         let [x, y] = view.place.at_m;
@@ -89,13 +89,13 @@ impl<'a> Atlas<'a> {
         ground_m.is_none_or(|ground_m| eye.z >= ground_m + clearance_m(1.0)).then_some(camera)
     }
 
-    /// GEO against SV.
-    pub(crate) fn compare(&mut self, camera: &Camera) -> Seen {
-        self.compare_with(camera, RoadOptions::of(RoadMethod::Geometry))
+    /// Compares GEO with SV.
+    pub(crate) fn compare(&mut self, camera: &Camera) -> PixelAgreement {
+        self.compare_with(camera, RoadOptions::for_method(RoadMethod::Geometry))
     }
 
-    /// A drawing with these options against SV with round caps.
-    pub(crate) fn compare_with(&mut self, camera: &Camera, options: RoadOptions) -> Seen {
+    /// Compares a drawing with these options with SV with round caps.
+    pub(crate) fn compare_with(&mut self, camera: &Camera, options: RoadOptions) -> PixelAgreement {
         let drawn =
             settle(&mut self.store, camera, QUALITY, || Ok::<_, LoadTileError>(())).unwrap();
         for drawn in &drawn {
@@ -116,16 +116,16 @@ impl<'a> Atlas<'a> {
             self.renderer.draw(self.gpu, &view, &tiles, &targets);
             Drawing::read(self.gpu, &targets)
         };
-        let volumes = RoadOptions::of(RoadMethod::ShadowVolumes);
+        let volumes = RoadOptions::for_method(RoadMethod::ShadowVolumes);
         let (ours, theirs) = (draw(options), draw(volumes));
         let differing: Vec<usize> = (0..theirs.labels.len())
             .filter(|index| road_of(ours.labels[*index]) != road_of(theirs.labels[*index]))
             .collect();
         let of_roads = theirs.labels.iter().filter(|label| **label != 0).count();
 
-        // Tiles for the reference are dear: only those in which anything differs.
+        // Tiles for the reference are expensive: only those with differences are loaded.
         for index in &differing {
-            let Owner::Ground(tile) = theirs.owners[*index] else { continue };
+            let TileOwner::Ground(tile) = theirs.owners[*index] else { continue };
             let id = drawn[tile].id;
             if !self.tiles.contains_key(&id) {
                 self.tiles.insert(id, self.tile(id));
@@ -141,12 +141,12 @@ impl<'a> Atlas<'a> {
         let differing: Vec<usize> = differing
             .into_iter()
             .filter(|index| {
-                let Owner::Ground(tile) = theirs.owners[*index] else { return true };
+                let TileOwner::Ground(tile) = theirs.owners[*index] else { return true };
                 oracle.verdict(*index, &self.tiles[&drawn[tile].id]) != Verdict::InBand
             })
             .collect();
         let missing = differing.iter().filter(|index| ours.labels[**index] == 0).count();
-        Seen { of_roads, differing: differing.len(), missing }
+        PixelAgreement { of_roads, differing: differing.len(), missing }
     }
 
     fn tile(&self, id: TileId) -> Tile {
@@ -154,8 +154,8 @@ impl<'a> Atlas<'a> {
     }
 }
 
-/// What a label says of the road. Where the dashes of a tunnel begin and end is a matter of rounding to f32, about which the
-/// reference knows nothing.
+/// The road of a label. The exact ends of a tunnel's dashes depend on rounding to f32, which the
+/// reference does not model.
 fn road_of(label: u8) -> u8 {
     if is_tunnel(label) { label | 1 } else { label }
 }

@@ -12,7 +12,7 @@ pub(crate) struct RoadPlace {
     pub(crate) lon_lat_deg: [f64; 2],
 }
 
-/// Where to look from.
+/// A view of a package.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct View {
     pub(crate) place: RoadPlace,
@@ -21,7 +21,7 @@ pub(crate) struct View {
 }
 
 impl fmt::Display for View {
-    /// As the options of `corniche render`.
+    /// Formats the view as options of `corniche render`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let ([lon_deg, lat_deg], Orientation { heading_deg, pitch_deg }) =
             (self.place.lon_lat_deg, self.orientation);
@@ -33,24 +33,24 @@ impl fmt::Display for View {
     }
 }
 
-/// What two drawings of a view have in common.
+/// The agreement of two drawings of a view.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Seen {
+pub(crate) struct PixelAgreement {
     /// Pixels of roads in SV.
     pub(crate) of_roads: usize,
     /// Pixels whose labels differ, outside the band.
     pub(crate) differing: usize,
-    /// Of these, without any road in the drawing that is compared.
+    /// The differing pixels without any road in the drawing that is compared.
     pub(crate) missing: usize,
 }
 
-impl Seen {
+impl PixelAgreement {
     pub(crate) fn share(&self) -> f64 {
         self.differing as f64 / self.of_roads.max(1) as f64
     }
 }
 
-/// Views without end, the same ones for the same places and seed.
+/// An endless sequence of views, the same for the same places and seed.
 pub(crate) struct Views {
     places: Vec<RoadPlace>,
     random: Random,

@@ -11,14 +11,15 @@ use super::{
 #[test]
 fn nothing_of_a_road_shows_from_behind_a_ridge() {
     let Some(gpu) = gpu() else { return };
-    // A ridge from west to east, 400 m high and 800 m to each side, with a road on its northern slope.
+    // A ridge from west to east, 400 m high and 800 m wide on each side, with a road on its
+    // northern slope.
     let ridge = |_: f64, y: f64| (400.0 - (y - center().y).abs() * 0.5).max(0.0);
     let tile = scene(8, ridge, &[(0, [-1500.0, 500.0], [1500.0, 500.0])]);
     let mesh = triangles(TileId::ROOT, &tile.1);
     for pitch_deg in [78.0, 84.0] {
         let from_south = camera(200.0, 3000.0, 0.0, pitch_deg);
         let drawing = draw(&gpu, &from_south, &plain_style(30.0), std::slice::from_ref(&tile));
-        // The reference: which pixels see ground of the road at all, by rays at the triangles.
+        // The reference: the pixels that show ground of the road, by rays through the triangles.
         let visible = drawing
             .pixels()
             .filter(|(_, at)| at.y % 2.0 < 1.0 && at.x % 8.0 < 1.0)
@@ -34,7 +35,7 @@ fn nothing_of_a_road_shows_from_behind_a_ridge() {
         let from_north = camera(200.0, 3000.0, 180.0, pitch_deg);
         let drawing = draw(&gpu, &from_north, &plain_style(30.0), std::slice::from_ref(&tile));
         let seen = drawing.pixels_of(0).len();
-        assert!(seen > 500, "{seen} pixels: and is there, seen from the other side");
+        assert!(seen > 500, "{seen} pixels of the road from the other side");
     }
 }
 
@@ -48,7 +49,8 @@ fn a_road_over_a_ridge_ends_at_its_crest() {
     let drawing = draw(&gpu, &camera, &plain_style(40.0), std::slice::from_ref(&tile));
     let mut outside = 0;
     for at in drawing.pixels_of(0) {
-        // At the silhouette one pixel is allowed, because the ray of the pixel's centre may pass over the crest.
+        // At the silhouette one pixel is allowed, because the ray through the pixel's centre may
+        // pass over the crest.
         let on_road = [0.0, 0.5, 1.0].iter().any(|down_px| {
             let ray = camera.ray_in_world(at + DVec2::new(0.0, *down_px));
             cast(camera.eye_in_world, ray, &mesh).is_some_and(|depth_m| {
@@ -81,9 +83,9 @@ fn roads_on_rough_ground_are_neither_buried_nor_floating() {
         );
         assert!(found.covered > 1000);
         assert_eq!(found.extra, 0, "only ground within half the width is painted");
-        // The centre-line itself must be drawn wherever it is in view: that is what GEO promises.
+        // GEO guarantees that the centre-line is drawn wherever it is in view.
         assert_eq!(hidden_centerline_points(&drawing, &camera, &tile), 0);
-        // Flat quads on cross slopes: a measurement, with a bound that notices a change for the worse.
+        // Flat quads on cross slopes: a measurement, with a bound that detects a regression.
         assert!((found.missing as f64) < 0.1 * found.covered as f64);
     }
 }

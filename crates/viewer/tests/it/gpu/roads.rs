@@ -1,4 +1,4 @@
-//! Roads on flat and evenly sloping ground: place, width, order and centre lines.
+//! Roads on flat and evenly sloping ground: position, width, order and centre lines.
 
 use corniche_geom::TileId;
 use corniche_viewer::camera::{Camera, Orientation};
@@ -81,7 +81,7 @@ fn a_thin_road_at_a_grazing_angle_does_not_break_into_dashes() {
     let camera = camera(20.0, 2500.0, 0.0, 80.0);
     let drawing = draw(&gpu, &camera, &style, std::slice::from_ref(&tile));
     assert_eq!(hidden_centerline_points(&drawing, &camera, &tile), 0);
-    // Level seen, two pixels wide: 1 to 3 in each column.
+    // A level view and two pixels width: 1 to 3 pixels in each column.
     let per_column = drawing.pixels_of(7).len() as f64 / f64::from(SIZE[0]);
     assert!((1.5..2.5).contains(&per_column), "{per_column} pixels a column");
 }
@@ -106,7 +106,7 @@ fn on_flat_ground_every_pixel_outside_the_band_agrees_with_the_reference() {
     }
 }
 
-/// The comparison above finds roads that are wrong.
+/// The comparison above detects wrong roads.
 #[test]
 fn the_reference_notices_wrong_roads() {
     let Some(gpu) = gpu() else { return };
@@ -129,7 +129,7 @@ fn the_reference_notices_wrong_roads() {
 fn on_a_tilted_plane_along_its_slope_every_pixel_agrees_with_the_reference() {
     let Some(gpu) = gpu() else { return };
     let up_hill = |_: f64, y: f64| (y - 5_117_440.0) * 0.5;
-    // Up the slope the quad lies in the ground; caps and sides are exact.
+    // Uphill, the quad is in the ground; caps and sides are exact.
     let tile = scene(64, up_hill, &[(3, [0.0, -300.0], [0.0, 280.0])]);
     let height_m = up_hill(0.0, center().y);
     let camera = camera(height_m, 1500.0, 30.0, 40.0);
@@ -142,7 +142,8 @@ fn on_a_tilted_plane_along_its_slope_every_pixel_agrees_with_the_reference() {
 #[test]
 fn more_important_roads_lie_above_across_tiles() {
     let Some(gpu) = gpu() else { return };
-    // Two tiles of the finer level side by side; their roads meet on the border, wide enough to overlap.
+    // Two tiles of the finer level side by side; their roads meet on the border, wide enough to
+    // overlap.
     let [west, east] = [TileId::new(1, 0, 0).unwrap(), TileId::new(1, 1, 0).unwrap()];
     let border = frame().tile_bounds(west);
     let middle = DVec2::new(border.max_x, f64::midpoint(border.min_y, border.max_y));

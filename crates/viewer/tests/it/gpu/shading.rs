@@ -1,4 +1,5 @@
-//! Shading from reliefs: whatever the triangles, without a step between tiles, the same on every level.
+//! Shading from reliefs: independent of the triangles, without steps between tiles, and the same on
+//! every level.
 
 use corniche_geom::{HeightGrid, TileId};
 use corniche_styles::Style;
@@ -20,7 +21,8 @@ fn hills(x: f64, y: f64) -> f64 {
     400.0 + 100.0 * (x / 520.0).sin() * (y / 610.0).cos()
 }
 
-/// A tile with a vertex every `step` nodes. Its relief has `beyond` in place of the heights beyond the tile's border.
+/// A tile with a vertex every `step` nodes. Beyond the tile's border, its relief has the heights
+/// `beyond`.
 fn tile(
     id: TileId,
     step: u16,
@@ -60,30 +62,30 @@ fn without_relief(tiles: Vec<TilePayload>) -> Vec<TilePayload> {
 #[derive(Clone, Copy)]
 struct Look {
     exaggeration: f64,
-    /// As in styles.
+    /// Same as in styles.
     gentle: f32,
-    /// How large a cell may look, pixels.
+    /// Maximum size of a cell on the picture, pixels.
     cell_px: f64,
-    /// From the eye to the middle of the ground.
+    /// Distance from the eye to the middle of the ground.
     distance_m: f64,
 }
 
-/// Shaded as it is: gentle slopes not made steeper, levels not blended.
+/// Shading without changes: gentle slopes are not made steeper, levels are not blended.
 const PLAIN: Look =
     Look { exaggeration: 1.0, gentle: 1.0, cell_px: UNBLENDED_PX, distance_m: 5000.0 };
 
-/// Cells that look so small there are none, so each tile is shaded by its own slopes.
+/// With this cell size there is no blending, so each tile is shaded by its own slopes.
 const UNBLENDED_PX: f64 = 1e-9;
 
-/// From where the cells of the root look smaller than two pixels.
+/// The distance from which on the cells of the root look smaller than two pixels.
 const ROOT_CHOSEN_M: f64 = 6500.0;
 
-/// Draws tiles straight from above. All ground has one tint, so colours tell of slopes alone.
+/// Draws tiles straight from above. All ground has one tint, so colours depend only on slopes.
 fn draw(gpu: &Gpu, payloads: &[TilePayload], look: Look) -> Drawing {
     draw_beneath(gpu, None, payloads, look)
 }
 
-/// As [`draw`], of the children of a tile.
+/// Same as [`draw`], for the children of a tile.
 fn draw_beneath(
     gpu: &Gpu,
     parent: Option<&TilePayload>,
@@ -112,7 +114,7 @@ fn draw_beneath(
     let view = FrameView {
         camera: &camera,
         style: &style,
-        roads: RoadOptions::of(RoadMethod::None),
+        roads: RoadOptions::for_method(RoadMethod::None),
         exaggeration: look.exaggeration,
         point_scale: 1.0,
         height_range_m: [0.0, 1000.0],
@@ -125,13 +127,14 @@ fn draw_beneath(
     Drawing::read(gpu, &targets)
 }
 
-/// The green of each pixel of the ground, 0 to 255; `None` beside it.
+/// The green channel of each pixel of the ground, 0 to 255; `None` outside the ground.
 fn greys(drawing: &Drawing) -> Vec<Option<i32>> {
     let texels = drawing.ground.as_chunks::<4>().0;
     texels.iter().map(|[_, green, _, alpha]| (*alpha == 255).then_some(i32::from(*green))).collect()
 }
 
-/// Differences of two drawings at the pixels that both have, in a square of so many pixels around the middle, the smallest first.
+/// Differences of two drawings at their common pixels, in a square of this many pixels around the
+/// middle, the smallest first.
 fn differences(one: &Drawing, other: &Drawing, side_px: f64) -> Vec<i32> {
     let middle = one.size_px.map(|side| f64::from(side) / 2.0);
     let inside = one
@@ -145,7 +148,8 @@ fn differences(one: &Drawing, other: &Drawing, side_px: f64) -> Vec<i32> {
     both
 }
 
-/// By how much neighbouring pixels of two tiles differ more than the pixels beside them, at most, in grey levels.
+/// Maximum amount, in grey levels, by which neighbouring pixels of two tiles differ more than the
+/// pixels next to them.
 fn largest_step(drawing: &Drawing) -> i32 {
     let greys = greys(drawing);
     let width = drawing.size_px[0] as usize;
@@ -162,7 +166,7 @@ fn largest_step(drawing: &Drawing) -> i32 {
             largest = largest.max((c - b).abs() - (b - a).abs().max((d - c).abs()));
         }
     }
-    assert!(crossings > 800, "{crossings} pixels beside a border");
+    assert!(crossings > 800, "{crossings} pixels at a border");
     largest
 }
 
@@ -172,7 +176,8 @@ fn shading_does_not_depend_on_the_triangles() {
     let steep = |x: f64, y: f64| 400.0 + 30.0 * (x / 90.0).sin() * (y / 110.0).cos();
     let [fine, coarse] = [2, 64].map(|step| finest(step, &steep));
     let difference = |one: &[TilePayload], other: &[TilePayload]| {
-        // Near the middle, where the eye sees the same plan position of ground that is some metres higher.
+        // Near the middle, the eye sees the same plan position even if the ground is some metres
+        // higher.
         *differences(&draw(&gpu, one, PLAIN), &draw(&gpu, other, PLAIN), 60.0).last().unwrap()
     };
     let with = difference(&fine, &coarse);
@@ -190,15 +195,15 @@ fn there_is_no_step_between_tiles() {
     let Some(gpu) = gpu() else { return };
     let step = largest_step(&draw(&gpu, &finest(32, &hills), PLAIN));
     assert!(step <= 1, "{step} grey levels");
-    // Each tile for itself: what lies beyond its border is another height.
+    // Each tile alone: the heights beyond its border are different.
     let children = TileId::ROOT.children();
     let alone: Vec<TilePayload> = children.map(|id| tile(id, 32, &hills, Some(390.0))).collect();
     let step = largest_step(&draw(&gpu, &alone, PLAIN));
     assert!(step > 4, "the measure sees a step of {step} grey levels only");
 }
 
-/// Differences between the root and its children, drawn from where the root may be drawn: where two levels meet, this is the step.
-/// The smallest first.
+/// Differences between the root and its children at the distance from which on the root may be
+/// drawn: this is the step where two levels meet. The smallest first.
 fn level_steps(gpu: &Gpu, height_m: &dyn Fn(f64, f64) -> f64, cell_px: f64) -> Vec<i32> {
     let look = Look { gentle: Style::road_atlas().light.gentle, cell_px, ..PLAIN };
     let look = Look { distance_m: ROOT_CHOSEN_M, ..look };
@@ -207,8 +212,9 @@ fn level_steps(gpu: &Gpu, height_m: &dyn Fn(f64, f64) -> f64, cell_px: f64) -> V
     differences(&draw(gpu, &[root], look), &children, 300.0)
 }
 
-/// Where two levels meet, shading goes on without a step: where the parent may be drawn, a tile looks as its parent does. With the usual
-/// style, which shades gentle slopes as if they were steeper. Without blending the same ground has steps.
+/// Where two levels meet, shading continues without a step: at the distance where the parent may be
+/// drawn, a tile looks like its parent. The style is the default, which shades gentle slopes as if
+/// they were steeper. Without blending the same ground has steps.
 #[test]
 fn levels_meet_within_a_grey_level() {
     let Some(gpu) = gpu() else { return };
@@ -230,7 +236,7 @@ fn levels_meet_within_a_grey_level() {
     }
 }
 
-/// Beneath a tile without a relief, and where the eye is near, a tile is shaded by its own slopes alone.
+/// Below a tile without a relief, and near the eye, a tile is shaded only by its own slopes.
 #[test]
 fn near_the_eye_tiles_have_their_own_slopes() {
     let Some(gpu) = gpu() else { return };
@@ -247,8 +253,9 @@ fn near_the_eye_tiles_have_their_own_slopes() {
     assert!(draw_beneath(&gpu, Some(&bare), &children, far).ground == own(far));
 }
 
-/// Two levels alone differ by no more than a grey level on smooth ground, but for one pixel in two hundred, where it is three: light on slopes that face it tells them apart
-/// by more than a clamped cosine would.
+/// Without blending, two levels differ by at most a grey level on smooth ground, except for one
+/// pixel in two hundred, with three: the light on slopes that face it differs more than a clamped
+/// cosine would.
 #[test]
 fn levels_by_themselves_differ_by_a_grey_level_on_smooth_ground() {
     let Some(gpu) = gpu() else { return };
@@ -258,7 +265,7 @@ fn levels_by_themselves_differ_by_a_grey_level_on_smooth_ground() {
     let most_of = all[all.len() * 199 / 200];
     println!("levels differ by {most_of} and {} grey levels at most", all[all.len() - 1]);
     assert!(most_of <= 1 && all[all.len() - 1] <= 3, "{most_of}, {}", all[all.len() - 1]);
-    // Without reliefs they differ by what their triangles leave out.
+    // Without reliefs they differ by the detail that their triangles omit.
     let [root, finest] = [vec![tile(TileId::ROOT, 32, &hills, None)], finest(128, &hills)];
     let bare = [root, finest].map(without_relief);
     let all = differences(&draw(&gpu, &bare[0], PLAIN), &draw(&gpu, &bare[1], PLAIN), 440.0);
@@ -270,7 +277,8 @@ fn stretched_ground_is_shaded_as_ground_of_that_height() {
     let Some(gpu) = gpu() else { return };
     let stretched = draw(&gpu, &finest(32, &hills), Look { exaggeration: 2.0, ..PLAIN });
     let high = draw(&gpu, &finest(32, &|x, y| 2.0 * hills(x, y)), PLAIN);
-    // The eye is at another height over the second, so only what both show near the middle is compared.
+    // The eye is at another height over the second ground, so only common pixels near the middle
+    // are compared.
     let (one, other) = (greys(&stretched), greys(&high));
     let [width, height] = stretched.size_px.map(|side| side as usize);
     for row in height / 2 - 2..height / 2 + 2 {

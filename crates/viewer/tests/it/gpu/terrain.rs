@@ -1,4 +1,4 @@
-//! The ground: directions, the same bytes each time, depth against rays, skirts.
+//! The ground: directions, reproducible bytes, depth against rays, skirts.
 
 use corniche_geom::TileId;
 use corniche_viewer::camera::{Camera, Orientation};
@@ -100,7 +100,8 @@ fn terrain_is_where_rays_meet_its_triangles() {
 #[test]
 fn skirts_close_the_crack_between_levels() {
     let Some(gpu) = gpu() else { return };
-    // One coarse tile's western half is replaced by two fine ones of a ground that differs by up to 20 m.
+    // The western half of one coarse tile is replaced by two fine tiles of a ground that differs by
+    // up to 20 m.
     let rough = |x: f64, y: f64| 300.0 + 20.0 * (x / 90.0).sin() * (y / 70.0).cos();
     let fine = |id| (id, terrain(id, 4, rough), Vec::new(), 40.0);
     let coarse = |id, skirt_m| (id, terrain(id, 128, rough), Vec::new(), skirt_m);
@@ -122,7 +123,7 @@ fn skirts_close_the_crack_between_levels() {
             *depth = skirt_m;
         }
         let drawing = draw(&gpu, &camera, &plain_style(10.0), &scene);
-        // A half is 127 on some cards.
+        // A half is 127 on some GPUs.
         let is_skirt = |pixel: &&[u8]| (127..=128).contains(&pixel[3]);
         let skirts = drawing.ground.chunks_exact(4).filter(is_skirt).count();
         // Below the middle of the picture there is ground everywhere.
@@ -131,5 +132,5 @@ fn skirts_close_the_crack_between_levels() {
     };
     assert_eq!(holes(40.0).0, 0);
     assert!(holes(40.0).1 > 50, "skirts are marked");
-    assert!(holes(0.0).1 == 0, "without depth they are not there");
+    assert!(holes(0.0).1 == 0, "skirts without depth are not visible");
 }

@@ -1,4 +1,5 @@
-//! Gates and figures: volumes agree with both references; how far geometry does is measured.
+//! Gates and figures: shadow volumes agree with both references; the disagreement of geometry is
+//! measured.
 
 use corniche_geom::TileId;
 use corniche_styles::{Style, WidthScaling};
@@ -58,24 +59,29 @@ fn print_row(
     );
 }
 
-/// Draws a scene from its cameras in both methods, prints the figures and holds both to their gates.
+/// Draws a scene from its cameras with both methods, prints the figures and checks both against
+/// their gates.
 pub(crate) fn check(named: &Named) {
     let Some(gpu) = gpu() else { return };
     let Named { name, scene, cameras } = named;
     let is_plain = scene.style.roads.iter().all(|road| road.min_width_px == 0.0);
     let has_bands = scene.style.roads.iter().any(|road| road.bands.all().len() > 1);
     for method in METHODS {
-        let options = RoadOptions::of(method);
+        let options = RoadOptions::for_method(method);
         for camera in cameras {
             let drawing = scene.draw(&gpu, camera, options);
             let found =
                 DepthOracle { scene, camera, options, drawing: &drawing, band_px: 0.05 }.compare();
-            // The second reference knows neither least widths nor bands.
+            // The second reference supports neither minimum widths nor bands.
             let rays = (is_plain && !has_bands)
                 .then(|| ground_rays::compare(scene, camera, options, &drawing));
             let lines = measures::center_lines(scene, camera, &drawing);
             print_row(name, method, &found, rays, lines);
-            assert!(found.compared > 100, "{name}: {} pixels are no test", found.compared);
+            assert!(
+                found.compared > 100,
+                "{name}: {} pixels are too few for a test",
+                found.compared
+            );
             if method == RoadMethod::Geometry {
                 let most = 0.003 * found.compared as f64;
                 assert!(
@@ -91,14 +97,15 @@ pub(crate) fn check(named: &Named) {
                     wrong as f64 <= 1e-4 * compared as f64,
                     "{name}: {wrong} of {compared} by rays"
                 );
-                // Two pixels are allowed for lines of a hundred pixels, because a road may be narrower than a pixel's diagonal.
+                // Two pixels are allowed for lines of a hundred pixels, because a road may be
+                // narrower than a pixel's diagonal.
                 assert!(lines.missing_px <= 0.001 * lines.seen_px + 2.0, "{name}: {lines:?}");
             }
         }
     }
 }
 
-/// One test for a few scenes each, so that none takes long.
+/// Each test checks a few scenes, so that none takes long.
 fn check_named(names: &[&str]) {
     let all = scenes::all();
     for name in names {
@@ -106,9 +113,9 @@ fn check_named(names: &[&str]) {
     }
 }
 
-/// Cells of a geographic DEM at 48° N, say.
+/// Cells like those of a geographic DEM at 48° N.
 const OBLONG: World = World { ratio: 1.5, scale: [1.0; 2] };
-/// The same where working metres are not true ones, and more so along one axis.
+/// The same cells where working metres are not true metres, especially along one axis.
 const DISTORTED: World = World { ratio: 1.5, scale: [1.3, 0.8] };
 
 #[test]
@@ -120,7 +127,7 @@ fn both_methods_agree_with_the_references_on_oblong_cells() {
 
 #[test]
 fn both_methods_agree_with_the_references_where_widths_depend_on_the_direction() {
-    // As wide as its margin would be wider than that here.
+    // The road "as wide as its margin" would be wider than its margin here.
     for named in some_of(within(DISTORTED, scenes::all), [8, 4, 1]) {
         if named.name != "as wide as its margin" {
             check(&named);
@@ -159,7 +166,8 @@ fn both_methods_agree_with_both_references_where_roads_end_flat() {
     check_named(&["roads that go on as others"]);
 }
 
-/// Beyond the end of the more important of two roads in line, within the radius of its cap, there is the other road.
+/// Beyond the end of the more important of two consecutive roads, within the radius of its cap, the
+/// other road is drawn.
 #[test]
 fn no_cap_lies_on_a_road_that_goes_on() {
     let Some(gpu) = gpu() else { return };
@@ -168,7 +176,7 @@ fn no_cap_lies_on_a_road_that_goes_on() {
         let roads = [(1, vec![[-300.0, 0.0], [0.0, 0.0]]), (4, vec![[0.0, 0.0], other])];
         let scene = one_tile(256, |_, _| 0.0, &roads, style(60.0));
         METHODS.map(|method| {
-            let drawing = scene.draw(&gpu, &camera, RoadOptions::of(method));
+            let drawing = scene.draw(&gpu, &camera, RoadOptions::for_method(method));
             let at = scenes::center() + DVec2::new(15.0, 0.0);
             let (at, _) = camera.project(at.extend(0.0)).unwrap();
             class_of(drawing.labels[at.y as usize * scenes::SIZE[0] as usize + at.x as usize])
@@ -193,7 +201,7 @@ fn volumes_agree_with_both_references_at_bends_edges_and_vertices() {
     check_named(&["hairpin and points", "along an edge, through vertices"]);
 }
 
-/// A scene of the country's tiles as they are selected for a camera.
+/// Returns a scene of the country's tiles that are selected for a camera.
 pub(crate) fn country_scene(
     country: &Country,
     camera: &Camera,
@@ -244,7 +252,7 @@ fn volumes_agree_with_the_reference_where_levels_meet() {
     }
 }
 
-/// Volumes with these options on hills with a junction; the share of pixels that are wrong.
+/// The share of wrong pixels of shadow volumes with these options, on hills with a junction.
 fn wrong_share(options: RoadOptions, style: Style) -> Option<f64> {
     let gpu = gpu()?;
     let scene = one_tile(16, scenes::hills, &scenes::junction(), style);
@@ -262,7 +270,7 @@ fn wrong_share(options: RoadOptions, style: Style) -> Option<f64> {
 fn volumes_agree_with_the_reference_whatever_the_options() {
     let scaling = WidthScaling { threshold_m: 600.0, exponent: 0.6, constant: 1.7 };
     let style = Style { width_scaling: scaling, ..style(24.0) };
-    let of_volumes = RoadOptions::of(RoadMethod::ShadowVolumes);
+    let of_volumes = RoadOptions::for_method(RoadMethod::ShadowVolumes);
     for width_growth in [WidthGrowth::None, WidthGrowth::Constant, WidthGrowth::ByDistance] {
         for caps in [Caps::Round, Caps::None] {
             let options = RoadOptions { width_growth, caps, ..of_volumes };
@@ -276,10 +284,10 @@ fn volumes_agree_with_the_reference_whatever_the_options() {
 fn volumes_wider_than_their_margin_are_cut_to_it_and_counted() {
     let Some(gpu) = gpu() else { return };
     let roads = [(3, vec![[-700.0, -310.0], [650.0, 420.0]])];
-    // Half as wide again as the margin of 80 m.
+    // One and a half times as wide as the margin of 80 m allows.
     let scene = four_tiles([64; 4], |_, _| 300.0, &roads, style(240.0));
     let camera = scenes::camera(300.0, 4000.0, 15.0, 30.0);
-    let options = RoadOptions::of(RoadMethod::ShadowVolumes);
+    let options = RoadOptions::for_method(RoadMethod::ShadowVolumes);
     let drawing = scene.draw(&gpu, &camera, options);
     let oracle =
         DepthOracle { scene: &scene, camera: &camera, options, drawing: &drawing, band_px: 0.05 };
@@ -287,7 +295,7 @@ fn volumes_wider_than_their_margin_are_cut_to_it_and_counted() {
     assert!(found.compared > 1000);
     assert_eq!(found.wrong, 0);
     let clamped = |style: &Style, method| {
-        let view = Scene::view(&camera, style, RoadOptions::of(method));
+        let view = Scene::view(&camera, style, RoadOptions::for_method(method));
         scene.tiles.iter().filter(|tile| may_be_clamped(&tile.geometry, &view)).count()
     };
     assert_eq!(clamped(&style(240.0), RoadMethod::ShadowVolumes), 4, "the road is near all");
@@ -302,7 +310,7 @@ fn the_papers_test_agrees_with_the_reference_near_the_eye() {
         let options = RoadOptions {
             cap_test: CapTest::PaperQuadratic,
             caps,
-            ..RoadOptions::of(RoadMethod::ShadowVolumes)
+            ..RoadOptions::for_method(RoadMethod::ShadowVolumes)
         };
         let Some(wrong) = wrong_share(options, style(40.0)) else { return };
         assert!(wrong < 0.005, "{wrong}");

@@ -1,5 +1,5 @@
-//! Areas against two references: by the place that the card's own depth gives, and by rays at the triangles that were drawn. Both ask
-//! whole outlines, which know nothing of tiles, volumes and stencils.
+//! Areas against two references: by the position that the GPU's own depth gives, and by rays at the
+//! drawn triangles. Both use whole outlines, without tiles, volumes and stencils.
 
 use corniche_areas::AreaClass;
 use corniche_geom::{GridFrame, TileId};
@@ -7,7 +7,7 @@ use corniche_testing::some_of;
 use corniche_viewer::{
     RoadMethod, RoadOptions,
     camera::{Camera, Orientation},
-    for_tests::Owner,
+    for_tests::TileOwner,
     gpu::{TileBuffers, tile_bytes},
 };
 use glam::{DVec2, DVec3};
@@ -24,10 +24,11 @@ use super::{
     },
 };
 
-/// The pictures of these tests are small: every sample is compared with every outline near it.
+/// The pictures of these tests are small, because every sample is compared with every outline near
+/// it.
 const SIZE: [u32; 2] = [280, 210];
 
-/// The topmost first, written down once more.
+/// The topmost class first, repeated independently.
 const TOP_FIRST: [AreaClass; 8] = [
     AreaClass::Sea,
     AreaClass::Water,
@@ -39,22 +40,23 @@ const TOP_FIRST: [AreaClass; 8] = [
     AreaClass::Settlement,
 ];
 
-/// Samples that were compared, and what came of it.
+/// The number of compared samples and the results.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct Found {
-    /// By the card's depth, without those so near to an outline that rounding decides.
+    /// Samples compared by the GPU's depth, without those so close to an outline that rounding
+    /// decides.
     by_depth: usize,
-    /// Of these, with another class.
+    /// Samples of these with another class.
     wrong_by_depth: usize,
-    /// By rays, where nine of them through the pixel say the same.
+    /// Samples compared by rays, if all nine rays through the pixel give the same class.
     by_rays: usize,
-    /// Of these, with another class.
+    /// Samples of these with another class.
     wrong_by_rays: usize,
-    /// With some class.
+    /// Samples with any class.
     painted: usize,
 }
 
-/// Outlines with the boxes around them.
+/// Outlines with their bounding boxes.
 struct Outlines<'a>(Vec<(&'a PlanArea, [DVec2; 2])>);
 
 impl<'a> Outlines<'a> {
@@ -67,7 +69,7 @@ impl<'a> Outlines<'a> {
         Self(areas.iter().map(around).collect())
     }
 
-    /// The areas whose box, with so much around it, holds a place.
+    /// The areas whose bounding box, enlarged by `by_m`, contains a position.
     fn around(&self, at: DVec2, by_m: f64) -> impl Iterator<Item = &PlanArea> {
         let holds = move |[low, high]: [DVec2; 2]| {
             at.cmpge(low - by_m).all() && at.cmple(high + by_m).all()
@@ -75,7 +77,7 @@ impl<'a> Outlines<'a> {
         self.0.iter().filter(move |(_, around)| holds(*around)).map(|(area, _)| *area)
     }
 
-    /// The class that is seen at a place.
+    /// The visible class at a position.
     fn topmost(&self, at: DVec2) -> Option<AreaClass> {
         let classes: Vec<_> = self
             .around(at, 0.0)
@@ -85,7 +87,7 @@ impl<'a> Outlines<'a> {
         TOP_FIRST.into_iter().find(|class| classes.contains(class))
     }
 
-    /// Whether some outline is so near to a place.
+    /// Whether an outline is within this distance of a position.
     fn is_near(&self, at: DVec2, by_m: f64) -> bool {
         self.around(at, by_m).flat_map(segments).any(|[a, b]| {
             let along = ((at - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
@@ -94,7 +96,8 @@ impl<'a> Outlines<'a> {
     }
 }
 
-/// Whether a place is inside, by the even-odd rule: how often a line to the east meets the outline.
+/// Whether a position is inside by the even-odd rule: counts the intersections of a line to the
+/// east with the outline.
 fn is_inside(area: &PlanArea, at: DVec2) -> bool {
     let meets = |[a, b]: [DVec2; 2]| {
         (a.y > at.y) != (b.y > at.y) && at.x < a.x + (b.x - a.x) * (at.y - a.y) / (b.y - a.y)
@@ -114,7 +117,7 @@ fn compare(scene: &Scene, areas: &[PlanArea], camera: &Camera, drawing: &Drawing
     let mut found = Found::default();
     for (index, pixel) in drawing.pixels() {
         let drawn = drawn_at(drawing, index);
-        if matches!(drawing.owners[index], Owner::Nobody | Owner::Wall(_)) {
+        if matches!(drawing.owners[index], TileOwner::Nobody | TileOwner::Wall(_)) {
             assert_eq!(drawn, None, "painted without ground at {pixel}");
             continue;
         }
@@ -122,8 +125,8 @@ fn compare(scene: &Scene, areas: &[PlanArea], camera: &Camera, drawing: &Drawing
         let depth_m = camera.depth_m(f64::from(drawing.depth[index]));
         let ground = camera.ray_start_in_world(pixel) + camera.ray_in_world(pixel) * depth_m;
         let far_m = ground.distance(camera.eye_in_world);
-        // The depth is an f32, and so are places relative to the eye. At a pixel's width of a thousandth of the distance, this is a
-        // hundredth of a pixel.
+        // The depth is an f32, and so are positions relative to the eye. At a pixel's width of a
+        // thousandth of the distance, this is a hundredth of a pixel.
         let band_m = 1e-5 * far_m + 0.005;
         let at = ground.truncate();
         if !outlines.is_near(at, band_m) {
@@ -138,7 +141,7 @@ fn compare(scene: &Scene, areas: &[PlanArea], camera: &Camera, drawing: &Drawing
     let caster = Caster::new(scene, camera);
     let seen = |at: DVec2| caster.hit(at).map(|hit| outlines.topmost(hit.at.truncate()));
     for (index, pixel) in some_of(drawing.pixels(), [5, 5, 1]) {
-        if !matches!(drawing.owners[index], Owner::Ground(_)) {
+        if !matches!(drawing.owners[index], TileOwner::Ground(_)) {
             continue;
         }
         let expected = seen(pixel);
@@ -157,10 +160,11 @@ fn drawn_at(drawing: &Drawing, index: usize) -> Option<AreaClass> {
 }
 
 fn draw(scene: &Scene, camera: &Camera) -> Option<Drawing> {
-    Some(scene.draw(&gpu()?, camera, RoadOptions::of(RoadMethod::None)))
+    Some(scene.draw(&gpu()?, camera, RoadOptions::for_method(RoadMethod::None)))
 }
 
-/// Draws a scene from a camera; both references agree with what is drawn, and enough of it is painted.
+/// Draws a scene from a camera, and checks that both references agree with the drawing and that
+/// enough of it is painted.
 fn check(name: &str, scene: &Scene, areas: &[PlanArea], camera: &Camera, least_painted: usize) {
     let Some(drawing) = draw(scene, camera) else { return };
     let found = compare(scene, areas, camera, &drawing);
@@ -179,7 +183,7 @@ fn circle([x, y]: [f64; 2], radius: f64, points: u32) -> Vec<[f64; 2]> {
     (0..points).map(|k| [x + radius * angle(k).cos(), y + radius * angle(k).sin()]).collect()
 }
 
-/// From above, with parallel rays, also turned.
+/// Views from above with parallel rays, with several headings.
 #[test]
 fn areas_agree_with_both_references_in_a_view_from_above() {
     for heading_deg in [0.0, 33.0] {
@@ -198,8 +202,9 @@ fn star([x, y]: [f64; 2], radius: f64) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// Around the middle of the root tile: a lake with an island on which there is a pond; a star of forest that reaches into the lake; two
-/// forests, and a meadow beside them, with common sides; a park with a pond in a settlement, and a round one across its edge; rock.
+/// Around the middle of the root tile: a lake with an island that has a pond; a star of forest that
+/// extends into the lake; two forests and an adjacent meadow, with common sides; a park with a pond
+/// in a settlement, and a round park across its edge; rock.
 fn areas() -> Vec<PlanArea> {
     let area = |class, rings: &[Vec<[f64; 2]>]| PlanArea::new(class, center(), rings);
     vec![
@@ -227,7 +232,7 @@ fn on_hills() -> Scene {
     with_areas(&one_tile(8, hills, &[], style(1.0)), &support::frame(), &areas())
 }
 
-/// A camera whose eye is at a place.
+/// A camera whose eye is at a position.
 fn eye_at(
     [x, y]: [f64; 2],
     height_m: f64,
@@ -270,7 +275,7 @@ fn areas_agree_with_both_references_at_a_grazing_angle_and_behind_ridges() {
         ([900.0, 1300.0], 215.0, 84.0),
         ([0.0, -2200.0], 0.0, 88.0),
     ] {
-        // Just above the hills' tops, 460 m: most areas are behind ridges in part.
+        // Just above the hilltops, 460 m: most areas are partly behind ridges.
         let camera = eye_at(place, 475.0, 1500.0, [heading_deg, pitch_deg]);
         check(&format!("grazing from {place:?}"), &scene, &areas, &camera, 300);
     }
@@ -306,13 +311,14 @@ fn areas_agree_with_both_references_on_the_plane_of_a_wall_and_of_a_cap() {
         ("on an edge", [180.0, -70.0], 45.0),
     ];
     for (name, place, heading_deg) in some_of(places, [4, 2, 1]) {
-        // Near the ground most is behind hills.
+        // Near the ground most areas are behind hills.
         for (height_m, least) in [(above(place, 5.0), 0), (480.0, 200)] {
             let camera = eye_at(place, height_m, 300.0, [heading_deg, 80.0]);
             check(&format!("{name}, {height_m:.0} m"), &scene, &areas, &camera, least);
         }
     }
-    // As high as the tops of volumes, which are 1/8 of a cell of 20 m above the highest ground near them, as f32.
+    // As high as the tops of volumes, which are 1/8 of a cell of 20 m above the highest ground near
+    // them, in f32.
     for volumes in &scene.tiles[0].geometry.areas.classes {
         let reference_m = scene.tiles[0].geometry.reference_m[2];
         let top_m = reference_m + f64::from(volumes.box_in_tile[1][2]);
@@ -325,7 +331,8 @@ fn areas_agree_with_both_references_on_the_plane_of_a_wall_and_of_a_cap() {
 #[ignore = "slow: many pictures, each pixel by two references"]
 fn areas_agree_with_both_references_where_the_near_plane_cuts_volumes() {
     let (scene, areas) = (on_hills(), areas());
-    // The near plane is at a thousandth of the focus or so: far focus, far near plane.
+    // The near plane is at about a thousandth of the focus distance: with a far focus it is far
+    // away.
     let places = [([170.0, -200.0], 90.0), ([440.0, -100.0], 270.0), ([-620.0, 60.0], 90.0)];
     for (place, heading_deg) in some_of(places, [3, 3, 1]) {
         for focus_m in [3000.0, 9000.0] {
@@ -349,7 +356,8 @@ fn areas_agree_with_both_references_across_tiles() {
     }
 }
 
-/// Coarse tiles in the west, fine ones in the east, and a lake, a forest and a settlement over the border.
+/// Coarse tiles in the west, fine ones in the east, and a lake, a forest and a settlement across
+/// the border.
 fn stepped() -> (Scene, GridFrame, Vec<PlanArea>) {
     let country = Country::new();
     let tiles = [(2, 1, 1), (2, 1, 2), (4, 8, 7), (4, 8, 8)].map(|(z, x, y)| {
@@ -387,7 +395,7 @@ fn areas_agree_with_both_references_over_the_border_of_two_levels_and_on_its_ski
         skirts += drawing
             .pixels()
             .filter(|(index, _)| {
-                matches!(drawing.owners[*index], Owner::Skirt(_))
+                matches!(drawing.owners[*index], TileOwner::Skirt(_))
                     && drawn_at(&drawing, *index).is_some()
             })
             .count();
@@ -396,7 +404,7 @@ fn areas_agree_with_both_references_over_the_border_of_two_levels_and_on_its_ski
     assert!(skirts > 10, "no skirt is painted");
 }
 
-/// How many samples of a drawing of a scene that was changed are wrong.
+/// The number of wrong samples in a drawing of a scene that was changed.
 fn wrong(scene: &Scene, camera: &Camera) -> Option<usize> {
     let drawing = draw(scene, camera)?;
     Some(compare(scene, &areas(), camera, &drawing).wrong_by_depth)
@@ -421,7 +429,7 @@ fn check_fails(what: &str, camera: usize, change: impl Fn(&mut Scene)) {
 
 #[test]
 fn faces_counted_in_front_of_the_ground_with_the_eye_inside_fail() {
-    check_fails("the eye taken for outside", 1, |scene| {
+    check_fails("the eye treated as outside", 1, |scene| {
         // Far away from the eye.
         scene.tiles[0].geometry.areas.box_in_tile = Some([[-2e4; 3], [-1e4; 3]]);
     });
@@ -430,7 +438,7 @@ fn faces_counted_in_front_of_the_ground_with_the_eye_inside_fail() {
 #[test]
 fn volumes_without_caps_fail() {
     for camera in [0, 1] {
-        check_fails("caps left out", camera, |scene| {
+        check_fails("caps omitted", camera, |scene| {
             for volumes in &mut scene.tiles[0].geometry.areas.classes {
                 volumes.triangles = 0..0;
             }
@@ -449,7 +457,7 @@ fn walls_that_face_inwards_fail() {
 
 #[test]
 fn a_wall_left_out_fails() {
-    check_fails("a wall left out", 0, |scene| {
+    check_fails("a wall omitted", 0, |scene| {
         let areas = &mut scene.tiles[0].geometry.areas;
         let forest = areas.classes.iter().find(|volumes| volumes.class == AreaClass::Forest);
         let first = forest.unwrap().walls.start as usize;
@@ -477,7 +485,7 @@ fn outlines_shifted_by_three_tenths_of_a_pixel_fail() {
 
 /// The picture and the ground of a scene.
 fn bytes(scene: &Scene, camera: &Camera) -> Option<[Vec<u8>; 2]> {
-    let drawing = scene.draw(&gpu()?, camera, RoadOptions::of(RoadMethod::ShadowVolumes));
+    let drawing = scene.draw(&gpu()?, camera, RoadOptions::for_method(RoadMethod::ShadowVolumes));
     Some([drawing.picture, drawing.ground])
 }
 
@@ -509,8 +517,8 @@ fn areas_that_are_not_drawn_change_no_byte_and_all_bytes_are_counted() {
     assert_eq!(with_bytes - plain_bytes, walls * 24 + corners * 16 + triangles + boxes);
 }
 
-/// Water is painted where the triangle that a ray meets is gentle, and not where it is steep. Slopes between the two, and pixels with
-/// another triangle near them, are not asked.
+/// Water is painted where the triangle that a ray hits is gentle, and not where it is steep. Slopes
+/// between the two, and pixels with another triangle near them, are not checked.
 #[test]
 fn steep_ground_is_not_painted() {
     let mut scene = on_hills();
@@ -520,7 +528,7 @@ fn steep_ground_is_not_painted() {
     let outlines = Outlines::new(&areas);
     for camera in [two_cameras()[0], Camera::from_above(center(), 4.0, 0.0, [-3e3, 3e3], SIZE)] {
         let Some(gpu) = gpu() else { return };
-        let drawing = scene.draw(&gpu, &camera, RoadOptions::of(RoadMethod::None));
+        let drawing = scene.draw(&gpu, &camera, RoadOptions::for_method(RoadMethod::None));
         let caster = Caster::new(&scene, &camera);
         let (mut found, mut wrong) = ([0; 2], 0);
         for (index, pixel) in some_of(drawing.pixels(), [2, 2, 1]) {

@@ -1,4 +1,5 @@
-//! Classes by scale: which are drawn, how they fade, which are submitted; slip roads and tunnels.
+//! Classes by scale: which classes are drawn, how they fade, which are submitted; slip roads and
+//! tunnels.
 
 use corniche_styles::{RoadBands, RoadStyle, Style, WidthScaling};
 use corniche_viewer::{
@@ -19,12 +20,13 @@ use super::{
 };
 use crate::labels::{road_label, service_label, tunnel_label};
 
-/// How much ground a pixel covers at a distance.
+/// The ground that a pixel covers at a distance.
 fn pixel_m(camera: &Camera, distance_m: f64) -> f32 {
     (camera.pixel_at_unit_depth_m() * distance_m) as f32
 }
 
-/// A junction seen at a slant, of which classes 2, 4 and 6 end at three distances, and whose widths grow up to a few pixels.
+/// A junction seen at a slant. Classes 2, 4 and 6 end at three distances, and widths grow up to a
+/// few pixels.
 fn fading() -> (Scene, Camera) {
     let view = camera(400.0, 1300.0, 30.0, 62.0);
     let mut style = Style {
@@ -46,13 +48,13 @@ fn both_methods_agree_with_the_references_where_classes_end_and_widths_stop_grow
     check(&Named { name: "classes by scale", scene, cameras: vec![camera] });
 }
 
-/// The same gate trips when the picture follows another scale or another cap.
+/// The same gate fails if the picture uses another scale or another cap of widths.
 #[test]
 fn other_scales_and_caps_fail() {
     let Some(gpu) = gpu() else { return };
     let (scene, camera) = fading();
     for method in METHODS {
-        let options = RoadOptions::of(method);
+        let options = RoadOptions::for_method(method);
         let wrong_of = |change: &dyn Fn(&mut RoadStyle)| {
             let mut other = scene.clone();
             other.style.roads.iter_mut().for_each(change);
@@ -69,14 +71,14 @@ fn other_scales_and_caps_fail() {
     }
 }
 
-/// Share of a class's colour where a pixel shows `pixel_m` true metres: 1 up to its scale, 0 half a zoom step later, and between them linear in
-/// the zoom.
+/// Share of a class's colour where a pixel covers `pixel_m` true metres: 1 up to its scale, 0 half
+/// a zoom step later, and linear in the zoom between them.
 fn shown_share(max_pixel_m: f32, pixel_m: f64) -> f64 {
     (1.0 - 2.0 * (pixel_m / f64::from(max_pixel_m)).log2()).clamp(0.0, 1.0)
 }
 
-/// On flat ground seen from straight above, the colour of a road's middle is the ground's and the road's by the share that
-/// the style gives, opacity included.
+/// On flat ground seen from straight above, the colour in the middle of a road is a mix of the
+/// ground's and the road's colour, with the share from the style, opacity included.
 #[test]
 fn the_colour_of_a_fading_class_follows_its_closed_form() {
     let Some(gpu) = gpu() else { return };
@@ -93,9 +95,11 @@ fn the_colour_of_a_fading_class_follows_its_closed_form() {
             let distance_m = f64::from(scale_m) * zoom_steps.exp2() / unit;
             let view = camera(0.0, distance_m, 0.0, 0.0);
             let draw = |options| scene.draw(&gpu, &view, options).picture;
-            let [drawn, bare] =
-                [RoadOptions::of(method), RoadOptions::of(corniche_viewer::RoadMethod::None)]
-                    .map(draw);
+            let [drawn, bare] = [
+                RoadOptions::for_method(method),
+                RoadOptions::for_method(corniche_viewer::RoadMethod::None),
+            ]
+            .map(draw);
             let middle = (view.size_px[1] / 2 * view.size_px[0] + view.size_px[0] / 2) * 4;
             let [drawn, bare] = [drawn, bare].map(|rgba| f64::from(rgba[middle as usize + 1]));
             let share = 1.0 - drawn / bare;
@@ -105,7 +109,7 @@ fn the_colour_of_a_fading_class_follows_its_closed_form() {
     }
 }
 
-/// From near all segments are submitted; from where a class has faded away, none of it.
+/// From nearby all segments are submitted; where a class has faded out, none of it is submitted.
 #[test]
 fn what_has_faded_away_is_not_submitted() {
     let Some(gpu) = gpu() else { return };
@@ -118,11 +122,11 @@ fn what_has_faded_away_is_not_submitted() {
     for method in METHODS {
         let segments = |distance_m| {
             let camera = camera(0.0, distance_m, 0.0, 0.0);
-            let view = Scene::view(&camera, &scene.style, RoadOptions::of(method));
+            let view = Scene::view(&camera, &scene.style, RoadOptions::for_method(method));
             DrawTile { buffers: &buffers, skirt_depth_m: 0.0 }.road_segments(&view)
         };
         let gone_m = 2.0_f64.sqrt() / camera(0.0, 1.0, 0.0, 0.0).pixel_at_unit_depth_m();
-        // The tile's roads may paint this much nearer ground of its neighbours.
+        // The tile's roads may paint ground of its neighbours that is this much nearer.
         let margin_m = 2.0 * scene.tiles[0].geometry.width_margin_m;
         let all = segments(100.0);
         assert_eq!(segments(gone_m + margin_m - 1.0), all);
@@ -131,7 +135,7 @@ fn what_has_faded_away_is_not_submitted() {
     }
 }
 
-/// A scene of one straight road of class 1 with a centre line, on flat ground, that is this.
+/// A scene of one straight road of class 1 with a centre line and this look, on flat ground.
 fn one_road(look: RoadLook) -> Scene {
     let mut style = style(60.0);
     style.roads[1].bands = bands(&[1.0, 0.7, 0.4]);
@@ -142,7 +146,8 @@ fn one_road(look: RoadLook) -> Scene {
     Scene { tiles: scene.tiles.iter().map(|tile| tile.with_looks(of_way)).collect(), ..scene }
 }
 
-/// The labels of the column of pixels `right` of the middle, or of the row through the middle.
+/// The labels of a column of pixels at this offset to the right of the middle, or of the row
+/// through the middle.
 fn labels(drawing: &Drawing, column_of: Option<usize>) -> Vec<u8> {
     let [width, height] = drawing.size_px.map(|side| side as usize);
     match column_of {
@@ -151,8 +156,8 @@ fn labels(drawing: &Drawing, column_of: Option<usize>) -> Vec<u8> {
     }
 }
 
-/// Tunnels with bends, one over the other, and slip roads: both methods have the dashes where the reference says, and the length
-/// goes on at bends.
+/// Tunnels with bends, one above the other, and slip roads: both methods have the dashes where the
+/// reference expects them, and the length continues at bends.
 #[test]
 fn dashes_go_on_at_bends_in_both_methods() {
     let bent =
@@ -183,7 +188,8 @@ fn dashes_go_on_at_bends_in_both_methods() {
     });
 }
 
-/// Service roads are narrower than the rest of their class, of one colour, under all other roads, and come one zoom step later.
+/// Service roads are narrower than the rest of their class, have one colour, are below all other
+/// roads, and appear one zoom step later.
 #[test]
 fn service_roads_come_later_and_lie_under_all_other_roads() {
     let roads: Vec<Road> = vec![
@@ -198,7 +204,7 @@ fn service_roads_come_later_and_lie_under_all_other_roads() {
         road.min_width_px = 2.0;
     }
     style.roads[7].bands = bands(&[1.0, 0.6, 0.3]);
-    // In the picture are both the place where service roads end and the place where the others do.
+    // The picture contains both the end of service roads and the end of the other roads.
     style.roads[7].max_pixel_m = Some(pixel_m(&view, 1750.0));
     let looks = [RoadLook::Service, RoadLook::Plain, RoadLook::Plain, RoadLook::Plain];
     let scene = one_tile(16, hills, &roads, style);
@@ -208,7 +214,7 @@ fn service_roads_come_later_and_lie_under_all_other_roads() {
     check(&Named { name: "service roads", scene: scene.clone(), cameras: vec![view] });
     let Some(gpu) = gpu() else { return };
     for method in METHODS {
-        let drawing = scene.draw(&gpu, &view, RoadOptions::of(method));
+        let drawing = scene.draw(&gpu, &view, RoadOptions::for_method(method));
         let count =
             |label| drawing.pixels().filter(|(index, _)| drawing.labels[*index] == label).count();
         assert!(count(service_label(7)) > 300 && count(road_label(7, 2)) > 300);
@@ -221,8 +227,9 @@ fn slip_roads_are_narrower_and_lack_narrow_bands() {
     let view = camera(0.0, 500.0, 0.0, 0.0);
     let true_px = 60.0 / f64::from(pixel_m(&view, 500.0));
     for method in METHODS {
-        let column =
-            |look| labels(&one_road(look).draw(&gpu, &view, RoadOptions::of(method)), Some(100));
+        let column = |look| {
+            labels(&one_road(look).draw(&gpu, &view, RoadOptions::for_method(method)), Some(100))
+        };
         let count = |labels: &[u8], label: u8| {
             labels.iter().map(|found| usize::from(*found == label)).sum::<usize>()
         };
@@ -247,15 +254,15 @@ fn slip_roads_are_narrower_and_lack_narrow_bands() {
     }
 }
 
-/// Half of a tunnel's length is dashes, as long as the gaps; both methods have them at the same places, and even the least
-/// important road on the ground hides it.
+/// Half of a tunnel's length is dashes, as long as the gaps. Both methods have dashes at the same
+/// positions, and even the least important road on the ground hides a tunnel.
 #[test]
 fn tunnels_have_dashes_and_lie_under_every_road() {
     let Some(gpu) = gpu() else { return };
     let view = camera(0.0, 1000.0, 0.0, 0.0);
     let period_m = (12.0 * f64::from(pixel_m(&view, 1000.0))).log2().ceil().exp2();
     let rows = METHODS.map(|method| {
-        labels(&one_road(RoadLook::Tunnel).draw(&gpu, &view, RoadOptions::of(method)), None)
+        labels(&one_road(RoadLook::Tunnel).draw(&gpu, &view, RoadOptions::for_method(method)), None)
     });
     assert_eq!(rows[0], rows[1]);
     let row = &rows[0];
@@ -265,7 +272,7 @@ fn tunnels_have_dashes_and_lie_under_every_road() {
     assert!((crossing * f64::from(pixel_m(&view, 1000.0)) - 60.0).abs() < 3.0, "{crossing} px");
     let possible = [minor, tunnel_label(1, false), tunnel_label(1, true)];
     assert!(row.iter().all(|label| possible.contains(label)));
-    // Beside the crossing, where a dash begins and where it ends.
+    // Next to the crossing, where a dash begins and where it ends.
     let beside = &row[row.len() / 2 + 40..];
     let changes: Vec<usize> =
         (1..beside.len()).filter(|at| beside[*at] != beside[*at - 1]).collect();
@@ -274,7 +281,7 @@ fn tunnels_have_dashes_and_lie_under_every_road() {
     for pair in changes.windows(2) {
         assert!(((pair[1] - pair[0]) as f64 - half_px).abs() <= 1.0, "{changes:?}, {half_px}");
     }
-    // A dash begins at a whole number of periods from the road's beginning.
+    // A dash begins at a whole number of periods from the start of the road.
     let x_m = |pixel: usize| {
         let px = (row.len() / 2 + 40 + pixel) as f64 - row.len() as f64 / 2.0;
         900.0 + px * f64::from(pixel_m(&view, 1000.0))

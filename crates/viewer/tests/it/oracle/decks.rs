@@ -1,4 +1,5 @@
-//! Decks of bridges against a reference that follows the ray of each pixel in small steps, and drawings that are wrong on purpose.
+//! Decks of bridges against a reference that follows the ray of each pixel in small steps, and
+//! against drawings with deliberate errors.
 
 use corniche_geom::TileId;
 use corniche_roads::OwnWidth;
@@ -25,9 +26,9 @@ use crate::labels::road_label;
 
 pub(crate) const SIDE: u8 = 1;
 pub(crate) const UNDERSIDE: u8 = 2;
-/// Heights that differ by less count as the same, metres.
+/// Heights that differ by less than this count as equal, metres.
 const SAME_M: f64 = 0.25;
-/// A pixel is left out if what is seen changes within so many pixels.
+/// A pixel is skipped if the visible surface changes within this many pixels.
 const BAND_PX: f64 = 0.3;
 
 /// A bridge: class and points relative to the middle of the root, with heights.
@@ -58,19 +59,21 @@ fn scene(height_m: impl Fn(f64, f64) -> f64, decks: &[Deck], style: Style) -> Sc
     Scene { tiles: vec![bare.with_decks(decks)], style }
 }
 
-/// What the reference knows of a deck: its points, divided as the manual of the format of tiles says, and half its width at each.
+/// The reference's data of a deck: its points, divided as the manual of the tile format describes,
+/// and half its width at each point.
 pub(crate) struct Slab {
     class: u8,
     points: Vec<DVec3>,
     half_m: Vec<f64>,
     thick_m: f64,
-    /// How high ground over it may be that is painted as the road; `None`: twice half the width.
+    /// Maximum height above the deck of ground that is painted as the road; `None`: twice half the
+    /// width.
     most_above_m: Option<f64>,
 }
 
-/// The place of a deck that is nearest to another in plan.
+/// The point of a deck that is nearest to a position in plan.
 struct Nearest {
-    /// How far away it is, as a share of half the width there.
+    /// Distance to the position, as a share of half the width there.
     share: f64,
     half_m: f64,
     height_m: f64,
@@ -96,7 +99,7 @@ impl Slab {
         Self { class: *number, points: divided, half_m, thick_m, most_above_m: None }
     }
 
-    /// The same road as a thin ribbon, which ground hides.
+    /// Returns the same road as a thin ribbon, which ground hides.
     pub(crate) fn into_ribbon(self) -> Self {
         Self { thick_m: 0.05, most_above_m: Some(0.25), ..self }
     }
@@ -122,7 +125,7 @@ impl Slab {
         near.share <= 1.0 && (near.height_m - self.thick_m..=near.height_m).contains(&at.z)
     }
 
-    /// Where a ray first comes into it before a depth.
+    /// The point where a ray first enters the deck, before a depth.
     fn entry(&self, start: DVec3, way: DVec3, most: f64) -> Option<f64> {
         let mut first: Option<f64> = None;
         for k in 0..self.points.len() - 1 {
@@ -140,7 +143,7 @@ impl Slab {
             }
             let steps = 300;
             let depth = |k: i32| range[0] + (range[1] - range[0]) * f64::from(k) / f64::from(steps);
-            // What is thinner than a step is found where the ray comes to its other side.
+            // A part thinner than a step is found where the ray reaches its other side.
             let height_m = |depth: f64| {
                 let at = start + way * depth;
                 at.z - self.nearest(at.truncate()).height_m
@@ -200,10 +203,10 @@ pub(crate) struct Found {
 }
 
 impl DeckOracle<'_> {
-    /// What is seen at a place of the picture, over ground at a depth.
+    /// The visible label at a position of the picture, over ground at a depth.
     fn label(&self, at: DVec2, ground: Option<f64>) -> u8 {
         let (start, way) = (self.camera.ray_start_in_world(at), self.camera.ray_in_world(at));
-        // By depth: whether a road is seen, and its label.
+        // By depth: whether a road is visible, and its label.
         let mut seen: Vec<(f64, bool, u8)> = Vec::new();
         for slab in &self.slabs {
             let road = |share: f64| {
@@ -368,9 +371,10 @@ fn decks_agree_with_the_reference_in_both_methods() {
         let scene = scene(case.ground, &case.decks, case.style.clone());
         let mut compared = 0;
         for camera in some_of(case.cameras.clone(), [4, 2, 1]) {
-            let drawings = METHODS.map(|method| scene.draw(&gpu, &camera, RoadOptions::of(method)));
+            let drawings =
+                METHODS.map(|method| scene.draw(&gpu, &camera, RoadOptions::for_method(method)));
             assert_eq!(drawings[0].decks, drawings[1].decks, "{}: both methods", case.name);
-            let found = case.compare(&drawings[0], &camera, RoadOptions::of(METHODS[0]));
+            let found = case.compare(&drawings[0], &camera, RoadOptions::for_method(METHODS[0]));
             println!("{:34} {} {found:?}", case.name, name_of(METHODS[0]));
             assert_eq!(found.wrong, 0, "{}: {found:?}", case.name);
             compared += found.compared;
@@ -379,14 +383,14 @@ fn decks_agree_with_the_reference_in_both_methods() {
     }
 }
 
-/// Each wrong drawing has pixels that the reference refuses.
+/// Each wrong drawing has pixels that the reference rejects.
 #[test]
 fn decks_drawn_wrong_fail() {
     let Some(gpu) = gpu() else { return };
     let all = cases();
     let [straight, stacked] =
         ["straight", "stacked"].map(|name| all.iter().find(|case| case.name == name).unwrap());
-    let options = RoadOptions::of(METHODS[1]);
+    let options = RoadOptions::for_method(METHODS[1]);
     let refuse = |what: &str, case: &Case, decks: &[Deck], least: usize| {
         let camera = &case.cameras[0];
         let drawing = scene(case.ground, decks, case.style.clone()).draw(&gpu, camera, options);
@@ -416,8 +420,8 @@ fn decks_without_undersides_fail() {
     let Some(gpu) = gpu() else { return };
     let all = cases();
     let case = all.iter().find(|case| case.name == "over a valley, ends in the ground").unwrap();
-    let options = RoadOptions::of(METHODS[1]);
-    // From the bottom of the valley.
+    let options = RoadOptions::for_method(METHODS[1]);
+    // A view from the bottom of the valley.
     let camera = camera(99.0, 60.0, 30.0, 110.0);
     let scene = scene(case.ground, &case.decks, case.style.clone());
     let mut drawing = scene.draw(&gpu, &camera, options);
@@ -431,7 +435,8 @@ fn decks_without_undersides_fail() {
     assert!(case.compare(&drawing, &camera, options).wrong > 1000);
 }
 
-/// The bridge of a road takes its place: the road on the ground ends where the bridge begins, in both methods.
+/// A bridge replaces its road: the road on the ground ends where the bridge begins, in both
+/// methods.
 #[test]
 fn no_road_lies_under_its_own_bridge() {
     let Some(gpu) = gpu() else { return };
@@ -441,13 +446,13 @@ fn no_road_lies_under_its_own_bridge() {
     let scene = Scene { tiles: vec![whole.tiles[0].with_decks(vec![own])], ..whole.clone() };
     let view = camera(90.0, 1500.0, 0.0, 0.0);
     for method in METHODS {
-        let drawing = scene.draw(&gpu, &view, RoadOptions::of(method));
-        let before = whole.draw(&gpu, &view, RoadOptions::of(method));
+        let drawing = scene.draw(&gpu, &view, RoadOptions::for_method(method));
+        let before = whole.draw(&gpu, &view, RoadOptions::for_method(method));
         let labels = drawing.decks.as_ref().unwrap();
         let mut seen = [0; 2];
         for (index, _) in drawing.pixels() {
             let was = class_of(before.labels[index]);
-            // From above, the road and its bridge cover what the road alone did.
+            // From above, the road and its bridge cover the same pixels as the road alone.
             let is = class_of(drawing.labels[index])
                 .or(class_of(labels[index]).filter(|_| labels[index] > UNDERSIDE));
             if was != is {

@@ -1,4 +1,5 @@
-//! Views from above with parallel rays: both references agree with what is drawn, and a width is the same everywhere.
+//! Views from above with parallel rays: both references agree with the drawing, and a width is the
+//! same everywhere.
 
 use corniche_testing::some_of;
 use corniche_viewer::{RoadOptions, camera::Camera};
@@ -19,7 +20,8 @@ fn from_above(pixel_m: f64, heading_deg: f64) -> Camera {
     Camera::from_above(center(), pixel_m, heading_deg, HEIGHTS_M, scenes::SIZE)
 }
 
-/// Every scene of roads: bands, tunnels, slip roads, own widths, least widths, crests and cliffs, across tiles.
+/// Every scene of roads: bands, tunnels, slip roads, own widths, least widths, crests and cliffs,
+/// across tiles.
 #[test]
 #[ignore = "slow: many pictures, each pixel by two references"]
 fn both_methods_agree_with_the_references_in_views_from_above() {
@@ -32,7 +34,7 @@ fn both_methods_agree_with_the_references_in_views_from_above() {
 /// Pixels of the road in a strip across the picture: area over length.
 fn width_px(drawing: &Drawing, direction: DVec2, middle_px: DVec2) -> f64 {
     let half_px = 40.0;
-    // In the picture, y points down.
+    // On the picture, y points down.
     let along = DVec2::new(direction.x, -direction.y);
     let is_in = |at: &&DVec2| (**at - middle_px).dot(along).abs() <= half_px;
     drawing.pixels_of(3).iter().filter(is_in).count() as f64 / (2.0 * half_px)
@@ -50,7 +52,7 @@ fn a_road_of_known_width_is_as_wide_everywhere_in_a_view_from_above() {
     let camera = from_above(pixel_m, 0.0);
     let middle = DVec2::new(f64::from(scenes::SIZE[0]), f64::from(scenes::SIZE[1])) / 2.0;
     for method in METHODS {
-        let drawing = scene.draw(&gpu, &camera, RoadOptions::of(method));
+        let drawing = scene.draw(&gpu, &camera, RoadOptions::for_method(method));
         for along_px in [-120.0, 0.0, 120.0] {
             let at = middle + DVec2::new(direction.x, -direction.y) * along_px;
             let found_px = width_px(&drawing, direction, at);

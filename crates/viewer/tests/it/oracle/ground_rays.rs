@@ -1,7 +1,7 @@
-//! O2: the label of each pixel from rays at the triangles that were drawn.
+//! O2: the label of each pixel from rays at the drawn triangles.
 
 use corniche_testing::some_of;
-use corniche_viewer::{RoadOptions, camera::Camera, for_tests::Owner};
+use corniche_viewer::{RoadOptions, camera::Camera, for_tests::TileOwner};
 use glam::{DVec2, DVec3};
 
 use super::{
@@ -10,10 +10,10 @@ use super::{
 };
 use crate::labels::road_label;
 
-/// Side of a bin of the picture that lists the triangles it may show.
+/// Side of a bin of the picture that lists the triangles that may be visible there.
 const BIN_PX: usize = 16;
 
-/// Triangles by where they may be seen.
+/// Triangles by their possible positions on the picture.
 pub(crate) struct Caster<'a> {
     camera: &'a Camera,
     columns: usize,
@@ -21,7 +21,7 @@ pub(crate) struct Caster<'a> {
     bins: Vec<Vec<(usize, [DVec3; 3])>>,
 }
 
-/// What a ray meets.
+/// The hit of a ray.
 pub(crate) struct Hit {
     pub(crate) tile: usize,
     pub(crate) at: DVec3,
@@ -47,13 +47,13 @@ impl<'a> Caster<'a> {
         let corners = triangle.map(|corner| self.camera.project(corner).map(|(at, _)| at));
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for corner in corners {
-            // A corner behind the eye: it may be seen anywhere.
+            // A corner is behind the eye: the triangle may be visible anywhere.
             let [a, b] = corner.map_or([DVec2::NEG_INFINITY, DVec2::INFINITY], |at| [at, at]);
             (low, high) = (low.min(a), high.max(b));
         }
         let bin =
             |at: f64, count: usize| (at / BIN_PX as f64).floor().clamp(-1.0, count as f64) as isize;
-        // One pixel more on each side: rays go half a pixel beyond the outermost centres.
+        // One additional pixel on each side: rays extend half a pixel beyond the outermost centres.
         let columns = bin(low.x - 1.0, self.columns)..=bin(high.x + 1.0, self.columns);
         let rows = bin(low.y - 1.0, self.rows)..=bin(high.y + 1.0, self.rows);
         for row in rows.filter(|row| (0..self.rows as isize).contains(row)) {
@@ -65,7 +65,7 @@ impl<'a> Caster<'a> {
         }
     }
 
-    /// The nearest ground through a position in the picture.
+    /// The nearest ground at a position of the picture.
     pub(crate) fn hit(&self, at: DVec2) -> Option<Hit> {
         let bin =
             |at: f64, count: usize| ((at / BIN_PX as f64).floor().max(0.0) as usize).min(count - 1);
@@ -85,8 +85,9 @@ impl<'a> Caster<'a> {
     }
 }
 
-/// Compares many of the pixels whose nine rays, to centre, corners and sides, all say the same. Counts pixels that have or
-/// should have a road, and of these the ones with another label. Widths must have no least width in pixels.
+/// Compares many of the pixels whose nine rays, to centre, corners and sides, give the same label.
+/// Counts pixels that have or should have a road, and those of them with another label. Widths must
+/// have no minimum in pixels.
 pub(crate) fn compare(
     scene: &Scene,
     camera: &Camera,
@@ -119,7 +120,7 @@ pub(crate) fn compare(
         class.map_or(0, |class| road_label(class, 0))
     };
     for (index, at) in some_of(drawing.pixels(), [5, 5, 1]) {
-        if matches!(drawing.owners[index], Owner::Skirt(_)) {
+        if matches!(drawing.owners[index], TileOwner::Skirt(_)) {
             continue;
         }
         let expected = label(at);

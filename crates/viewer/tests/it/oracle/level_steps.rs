@@ -22,7 +22,7 @@ use super::{
     },
 };
 
-/// Between the ends of a way in two tiles of different levels: straight over the step.
+/// The lines between the ends of a way in two tiles of different levels: straight over the step.
 fn steps(scene: &Scene) -> Vec<Line> {
     let ends: Vec<(u8, i64, DVec3, u8)> = scene
         .tiles
@@ -49,7 +49,8 @@ fn steps(scene: &Scene) -> Vec<Line> {
     steps
 }
 
-/// Coarse tiles in the west, fine ones in the east: two levels apart, the ground steps up or down where they meet.
+/// Coarse tiles in the west, fine ones in the east, two levels apart: the ground steps up or down
+/// where they meet.
 fn stepped(country: &Country) -> Scene {
     let ids = [(2, 1, 1), (2, 1, 2), (4, 8, 7), (4, 8, 8)];
     let tiles = ids
@@ -84,10 +85,10 @@ fn connectors_close_the_step_between_levels_and_without_them_it_gapes() {
             let caster = Caster::new(&with, &camera);
             for (method, sums) in METHODS.into_iter().zip(&mut sums) {
                 for (scene, sum) in [&with, &without].into_iter().zip(sums) {
-                    let drawing = scene.draw(&gpu, &camera, RoadOptions::of(method));
+                    let drawing = scene.draw(&gpu, &camera, RoadOptions::for_method(method));
                     let found = measures::walk(&steps, &with, &caster, &camera, &drawing);
                     sum.seen_px += found.seen_px;
-                    // A step is a silhouette all along.
+                    // A step is a silhouette along its whole length.
                     sum.missing_px += found.missing_px + found.missing_at_jumps_px;
                 }
             }

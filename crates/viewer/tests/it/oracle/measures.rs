@@ -1,9 +1,9 @@
-//! Figures about a drawing: how much of the centre-lines is missing.
+//! Measures a drawing: how much of the centre-lines is missing.
 
 use corniche_roads::OwnWidth;
 use corniche_viewer::{
     RoadMethod, RoadOptions,
-    camera::{Camera, Projection},
+    camera::{Camera, CameraProjection},
     for_tests::GroundLine,
     tiles::RoadLook,
 };
@@ -21,22 +21,23 @@ use super::{
 /// Length of the steps along a centre-line.
 const STEP_PX: f64 = 0.25;
 
-/// Class, what the tags say of the width and of the kind of road, and points of a centre-line.
+/// A centre-line: class, own width, look and points.
 pub(crate) type Line = ((u8, OwnWidth, RoadLook), Vec<DVec3>);
 
 /// Lengths in the picture.
 #[derive(Debug, Clone, Copy, Default)]
 #[expect(clippy::struct_field_names, reason = "the unit is part of each name")]
 pub(crate) struct CenterLines {
-    /// Of centre-lines in view.
+    /// Length of centre-lines in view.
     pub(crate) seen_px: f64,
-    /// Of these, without any road at their pixel.
+    /// Length in view without any road at the pixel.
     pub(crate) missing_px: f64,
-    /// The same at silhouettes, where a pixel's centre may see other ground than its line.
+    /// Missing length at silhouettes, where a pixel's centre may show other ground than its line.
     pub(crate) missing_at_jumps_px: f64,
 }
 
-/// Walks all centre-lines of a scene, except those of short parts of the network, which are not drawn everywhere.
+/// Walks all centre-lines of a scene, except those of short parts of the network, which are not
+/// drawn everywhere.
 pub(crate) fn center_lines(scene: &Scene, camera: &Camera, drawing: &Drawing) -> CenterLines {
     let lines: Vec<Line> = scene
         .tiles
@@ -61,7 +62,7 @@ fn goes_on(tile: &Tile, line: &GroundLine) -> bool {
     here.all(|segment| segment.part_m[0].is_infinite())
 }
 
-/// Walks lines in quarter pixels; what is behind ground does not count.
+/// Walks lines in quarter pixels; points behind ground do not count.
 pub(crate) fn walk(
     lines: &[Line],
     scene: &Scene,
@@ -69,7 +70,7 @@ pub(crate) fn walk(
     camera: &Camera,
     drawing: &Drawing,
 ) -> CenterLines {
-    let options = RoadOptions::of(RoadMethod::ShadowVolumes);
+    let options = RoadOptions::for_method(RoadMethod::ShadowVolumes);
     let scale_m = |depth_m| camera.pixel_at_depth_m(depth_m) / camera.pixel_at_unit_depth_m();
     let half_px = |(class, own, kind): (u8, OwnWidth, RoadLook), depth_m: f64| {
         let look = Look { style: &scene.style, options, camera };
@@ -99,8 +100,8 @@ pub(crate) fn walk(
             }
             let depth_m = match camera.projection {
                 // Depths along a line are linear in their reciprocals.
-                Projection::Perspective => 1.0 / ((1.0 - share) / from_m + share / to_m),
-                Projection::FromAbove { .. } => (1.0 - share) * from_m + share * to_m,
+                CameraProjection::Perspective => 1.0 / ((1.0 - share) / from_m + share / to_m),
+                CameraProjection::FromAbove { .. } => (1.0 - share) * from_m + share * to_m,
             };
             let in_view = |at: DVec2| {
                 caster.hit(at).is_none_or(|hit| hit.depth_m >= depth_m * (1.0 - 1e-6) - 1e-3)
@@ -128,8 +129,8 @@ pub(crate) fn walk(
     sum
 }
 
-/// Whether there is a road at a point of a centre-line: at its pixel. Of a road thinner than a pixel is wide along
-/// its diagonal, one of the four pixels around the point must have it.
+/// Whether the pixel of a point on a centre-line shows a road. If the road is thinner than the
+/// diagonal of a pixel, one of the four pixels around the point must show it.
 fn has_road(drawing: &Drawing, at: DVec2, half_px: f64) -> bool {
     let [width, height] = drawing.size_px;
     let label = |at: DVec2| {

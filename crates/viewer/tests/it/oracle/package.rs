@@ -1,4 +1,4 @@
-//! The same figures on packages: `CORNICHE_TEST_PACKAGES`, a list of files as in `PATH`, names them.
+//! The same figures for packages: `CORNICHE_TEST_PACKAGES` lists files, separated as in `PATH`.
 
 use corniche_styles::Style;
 use corniche_testing::some_of;
@@ -23,7 +23,7 @@ use super::{
     },
 };
 
-/// The tiles of a package as they are selected for a camera.
+/// The tiles of a package that are selected for a camera.
 fn scene_of(
     package: &FilePackage,
     source: &PackageSource,
@@ -45,7 +45,7 @@ fn measure(gpu: &Gpu, name: &str, scene: &Scene, camera: &Camera) {
     levels.sort_unstable();
     levels.dedup();
     for method in [RoadMethod::Geometry, RoadMethod::ShadowVolumes] {
-        let options = RoadOptions::of(method);
+        let options = RoadOptions::for_method(method);
         let drawing = scene.draw(gpu, camera, options);
         let oracle = DepthOracle { scene, camera, options, drawing: &drawing, band_px: 0.05 };
         let found = oracle.compare();
@@ -61,7 +61,8 @@ fn measure(gpu: &Gpu, name: &str, scene: &Scene, camera: &Camera) {
             lines.seen_px,
         );
         if method == RoadMethod::ShadowVolumes {
-            // Connectors between simplified lines are drawn and not in the reference: few pixels, at borders alone.
+            // Connectors between simplified lines are drawn, but are not in the reference: few
+            // pixels, only at borders.
             assert!(found.wrong as f64 <= 2e-3 * found.compared as f64, "{name}: {}", found.wrong);
         }
     }
@@ -82,7 +83,7 @@ fn volumes_agree_with_the_reference_on_packages() {
         let all = WorldBox::new(manifest.data_bounds, manifest.vertical.range_m);
         let oblique = Orientation { heading_deg: 0.0, pitch_deg: 45.0 };
         let far = Camera::framing(all, oblique, SIZE);
-        // At each level alone, and mixed as a picture has them.
+        // Each level alone, and levels mixed as in a picture.
         for error_px in some_of([1.0, 2.0, 8.0, 32.0], [3, 3, 1]) {
             let scene = scene_of(&package, &source, &far, error_px);
             measure(&gpu, &format!("{name} far, {error_px} px"), &scene, &far);
@@ -110,14 +111,14 @@ fn tiles_of(package: &FilePackage, level: u8) -> Vec<Tile> {
     .collect()
 }
 
-/// Along the longest line of the tile with most roads: as a rule in a valley.
+/// A point on the longest line of the tile with most roads: usually in a valley.
 fn busy_place(tiles: &[Tile]) -> Option<DVec3> {
     let busiest = tiles.iter().max_by_key(|tile| tile.segments.len())?;
     let line = busiest.centers.iter().max_by_key(|line| line.points_m.len())?;
     Some(DVec3::from_array(line.points_m[line.points_m.len() / 2]))
 }
 
-/// Where the ground is so steep across a road that it is steeper at one segment in twenty.
+/// A point where the ground across a road is steeper than at 19 of 20 segments.
 fn steep_place(tiles: &[Tile]) -> Option<DVec3> {
     let mut places: Vec<(f32, DVec3)> = Vec::new();
     for tile in tiles {
@@ -135,7 +136,7 @@ fn steep_place(tiles: &[Tile]) -> Option<DVec3> {
     places.get(places.len() * 19 / 20).map(|(_, place)| *place)
 }
 
-/// A place among tiles of one level, looked at from where a cell is eight pixels wide.
+/// A place among tiles of one level, seen from a distance at which a cell is eight pixels wide.
 fn scene_at(tiles: &[Tile], cell_m: f64, target: DVec3) -> (Scene, Camera) {
     let orientation = Orientation { heading_deg: 30.0, pitch_deg: 45.0 };
     let unit = Camera::look_at(target, 1.0, orientation, SIZE);

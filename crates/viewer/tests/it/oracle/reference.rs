@@ -1,11 +1,11 @@
-//! O1: the label of each pixel from the card's own depth and owner, in f64.
+//! O1: the label of each pixel from the GPU's own depth and owner, in f64.
 
 use corniche_roads::OwnWidth;
 use corniche_styles::{OwnWidths, RoadStyle, Style};
 use corniche_viewer::{
     Caps, RoadOptions, WidthGrowth,
-    camera::{Camera, Projection},
-    for_tests::Owner,
+    camera::{Camera, CameraProjection},
+    for_tests::TileOwner,
     tiles::RoadLook,
 };
 use glam::{DMat2, DVec2, DVec3};
@@ -16,15 +16,15 @@ use super::support::{
 };
 use crate::labels::{road_label, service_label, tunnel_label};
 
-/// Ground may be painted so many least half widths away in plan, at most.
+/// Ground may be painted at most this many minimum half widths away in plan.
 const MAX_STRETCH: f64 = 8.0;
 
-/// What a reference says of a pixel.
+/// The result of a reference for a pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Verdict {
-    /// This label, and it stays so within the band.
+    /// This label; it does not change within the band.
     Label(u8),
-    /// Something within the band changes it.
+    /// The label changes within the band.
     InBand,
 }
 
@@ -68,13 +68,13 @@ impl Tri {
 /// A comparison and its result.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Comparison {
-    /// Pixels outside the band that should have or have a road.
+    /// Pixels outside the band that show or should show a road.
     pub(crate) compared: usize,
-    /// Of these, with another label.
+    /// Pixels of these with another label.
     pub(crate) wrong: usize,
     /// Pixels within the band.
     pub(crate) in_band: usize,
-    /// Pixels at silhouettes; compared like all others.
+    /// Pixels at silhouettes; they are compared like all others.
     pub(crate) at_jumps: usize,
     /// Pixels with ground.
     pub(crate) ground: usize,
@@ -96,9 +96,9 @@ impl DepthOracle<'_> {
         let pixels = PixelOracle { style: &scene.style, camera, options, drawing, band_px };
         let mut sum = Comparison::default();
         for (index, _) in self.drawing.pixels() {
-            let Owner::Ground(tile) = self.drawing.owners[index] else { continue };
+            let TileOwner::Ground(tile) = self.drawing.owners[index] else { continue };
             sum.ground += 1;
-            // Not left out: this reference sees the silhouette that the card sees.
+            // These pixels are compared, too: this reference has the same silhouette as the GPU.
             sum.at_jumps += usize::from(self.drawing.is_at_jump(index));
             match pixels.verdict(index, &self.scene.tiles[tile]) {
                 Verdict::InBand => sum.in_band += 1,
@@ -123,12 +123,12 @@ pub(crate) struct PixelOracle<'a> {
 }
 
 impl PixelOracle<'_> {
-    /// The label of a pixel that shows the ground of `tile`, by that tile's lines.
+    /// The label of a pixel that shows the ground of `tile`, from that tile's lines.
     pub(crate) fn verdict(&self, index: usize, tile: &Tile) -> Verdict {
         let (ground, _) = self.ground(index).expect("the owner says there is ground");
         let segments = tile.segments_near(ground.truncate());
         let distance_m = self.camera.seeing_distance_m(ground);
-        // What is on the ground hides what is beneath it, and service roads are hidden by all others.
+        // Roads on the ground hide roads below it, and service roads are hidden by all others.
         let layers: [fn(RoadLook) -> bool; 3] = [
             |look| matches!(look, RoadLook::Plain | RoadLook::Link | RoadLook::Carriageway),
             |look| look == RoadLook::Service,
@@ -145,7 +145,7 @@ impl PixelOracle<'_> {
                 if is_service { lateness(RoadLook::Service) * distance_m } else { distance_m };
             let shown = shows(self.style, self.camera, class, seen_from_m);
             let bands = self.style.roads[usize::from(class)].bands.all();
-            // The innermost band first, because it lies on the others.
+            // The innermost band first, because it is on top of the others.
             for (number, band) in bands.iter().enumerate().rev() {
                 let number = number as u8;
                 let share = f64::from(band.width_share);
@@ -199,8 +199,8 @@ impl PixelOracle<'_> {
         let (half_m, least_px) = half_width(look, (class, own, kind), factor, distance_m);
         let wide = Tri::at_most(plan_m, share * half_m, band_m);
         let slant = match self.camera.projection {
-            Projection::Perspective => from_eye.length() / from_eye.z.abs(),
-            Projection::FromAbove { .. } => 1.0,
+            CameraProjection::Perspective => from_eye.length() / from_eye.z.abs(),
+            CameraProjection::FromAbove { .. } => 1.0,
         };
         let stretch = (1.5 * slant).clamp(1.0, MAX_STRETCH);
         let near = Tri::at_most(plan_m, stretch * share * least_px * pixel_m, band_m);
@@ -214,14 +214,15 @@ impl PixelOracle<'_> {
                 share * least_px,
             ))
         };
-        // Without caps a road ends abruptly: a step along it may do what one across does.
+        // Without caps a road ends abruptly: a step along it may leave the road like a step across
+        // it.
         let end = near_end(ground.truncate(), ends, without_cap, band_m);
         let part = if (parts[1] - parts[0]).abs() < 1e-9 { Tri::Yes } else { Tri::Perhaps };
         wide.or(thin).and(end).and(Tri::at_most(plan_m, widest_m, band_m)).and(part)
     }
 
-    /// Whether a place on a tunnel is on a dash: dashes and gaps are as long as each other, both together a power of two of
-    /// metres, the smallest that is at least twelve pixels.
+    /// Whether a position on a tunnel is on a dash. Dashes and gaps are equally long; together they
+    /// are a power of two of metres, the smallest that is at least twelve pixels.
     fn is_dash(&self, index: usize, road: &PlanSegment) -> Tri {
         let (ground, depth_m) = self.ground(index).expect("the owner says there is ground");
         let unit_m = self.camera.pixel_at_unit_depth_m();
@@ -245,7 +246,7 @@ impl PixelOracle<'_> {
         }
     }
 
-    /// Whether a segment's image is at most `least_px` from a pixel's centre.
+    /// Whether the image of a segment is at most `least_px` from a pixel's centre.
     fn looks_near(
         &self,
         index: usize,
@@ -273,8 +274,8 @@ impl PixelOracle<'_> {
         verdict.expect("at least one step each way")
     }
 
-    /// How far in plan the ground moves with a step of a pixel, towards the segment; both ways where it is a
-    /// matter of rounding which is nearer.
+    /// The movement of the ground in plan per pixel, towards the segment; both directions if
+    /// rounding decides which one is closer.
     fn steps(
         &self,
         index: usize,
@@ -301,7 +302,8 @@ impl PixelOracle<'_> {
             (Some(ahead), Some(behind)) => {
                 let slack = 1e-4 * f64::from(depth);
                 let clearly = |a: f64, b: f64| Tri::at_most(b, 4.0 * a + slack, 0.01 * (b + slack));
-                // The other side's silhouette counts first, as its own does not follow from it.
+                // The silhouette of the other side counts first, because this side's does not
+                // follow from it.
                 match (clearly(ahead.1, behind.1), clearly(behind.1, ahead.1)) {
                     (Tri::No, _) => vec![step(ahead, 1.0)],
                     (Tri::Yes, Tri::No) => vec![step(behind, -1.0)],
@@ -320,7 +322,7 @@ impl PixelOracle<'_> {
         }
     }
 
-    /// The ground that a pixel's centre sees, and its depth.
+    /// The ground at a pixel's centre, and its depth.
     fn ground(&self, index: usize) -> Option<(DVec3, f64)> {
         let depth = self.drawing.depth[index];
         (depth > 0.0).then(|| {
@@ -333,12 +335,12 @@ impl PixelOracle<'_> {
     }
 }
 
-/// Which ends of a segment have no cap: flat ones, and all of roads without caps.
+/// The ends of a segment without a cap: flat ones, and all ends of roads without caps.
 pub(crate) fn without_caps(caps: Caps, flat: [bool; 2]) -> [bool; 2] {
     flat.map(|is_flat| is_flat || caps == Caps::None)
 }
 
-/// Whether a point is beside a segment, not beyond an end without a cap.
+/// Whether a point is next to a segment, not beyond an end without a cap.
 pub(crate) fn near_end(at: DVec2, [a, b]: [DVec2; 2], without_cap: [bool; 2], band_m: f64) -> Tri {
     let along_m = (at - a).dot((b - a).normalize_or_zero());
     let ends = [Tri::at_most(-along_m, 0.0, band_m), Tri::at_most(along_m, a.distance(b), band_m)];
@@ -346,7 +348,8 @@ pub(crate) fn near_end(at: DVec2, [a, b]: [DVec2; 2], without_cap: [bool; 2], ba
     ends[0].and(ends[1])
 }
 
-/// Slip roads, service roads, carriageways and tunnels of which portals are known are narrower than their class: on the ground, and in pixels.
+/// The width of slip roads, service roads, carriageways and tunnels with known portals relative to
+/// their class: on the ground, and in pixels.
 fn narrowing(road: &RoadStyle, look: RoadLook, is_tagged: bool) -> (f64, f64) {
     let carriageway = f64::from(road.carriageway_width_m) / f64::from(road.width_m);
     match look {
@@ -361,12 +364,14 @@ fn narrowing(road: &RoadStyle, look: RoadLook, is_tagged: bool) -> (f64, f64) {
     }
 }
 
-/// How many times nearer than the rest of its class a road must be to be shown: service roads come one zoom step later.
+/// How many times nearer than the rest of its class a road is first shown: service roads appear one
+/// zoom step later.
 pub(crate) fn lateness(look: RoadLook) -> f64 {
     if look == RoadLook::Service { 2.0 } else { 1.0 }
 }
 
-/// Whether a road has a band of this number and share: slip roads have no narrow ones, tunnels and service roads have one colour.
+/// Whether a road has a band with this number and share: slip roads have no narrow bands, tunnels
+/// and service roads have one colour.
 fn has_band(look: RoadLook, number: u8, share: f64) -> bool {
     match look {
         RoadLook::Plain | RoadLook::Carriageway => true,
@@ -375,15 +380,16 @@ fn has_band(look: RoadLook, number: u8, share: f64) -> bool {
     }
 }
 
-/// Whether a class is shown at all at a distance from the eye: half a zoom step beyond its scale it is gone.
+/// Whether a class is shown at a distance from the eye: half a zoom step beyond its scale it has
+/// disappeared.
 pub(crate) fn shows(style: &Style, camera: &Camera, class: u8, distance_m: f64) -> Tri {
     let Some(full) = style.roads[usize::from(class)].max_pixel_m else { return Tri::Yes };
     let zoom_steps = (distance_m * camera.pixel_at_unit_depth_m() / f64::from(full)).log2();
     Tri::at_most(zoom_steps, 0.5, 1e-5)
 }
 
-/// How much of its width a road in a part of the network of this length has at a distance from the eye: all of it up to where the part
-/// is `shortest_part_px` long, nothing half a zoom step farther away.
+/// The share of its width that a road in a network part of this length has at a distance from the
+/// eye: 1 up to where the part is `shortest_part_px` long, 0 half a zoom step farther away.
 pub(crate) fn part_share(
     Look { style, camera, .. }: Look<'_>,
     part_m: f64,
@@ -394,7 +400,7 @@ pub(crate) fn part_share(
     (1.0 - 2.0 * zoom_steps).clamp(0.0, 1.0)
 }
 
-/// What decides how wide roads are drawn.
+/// The parameters of the drawn width of roads.
 #[derive(Clone, Copy)]
 pub(crate) struct Look<'a> {
     pub(crate) style: &'a Style,
@@ -402,8 +408,8 @@ pub(crate) struct Look<'a> {
     pub(crate) camera: &'a Camera,
 }
 
-/// Half width of a road, by its class, what its tags say of its width, and what it is, in metres at a distance from the eye, and the least
-/// one in pixels. `factor` is working metres across the road for each true one.
+/// Half width of a road, by its class, own width and look, in metres at a distance from the eye,
+/// and its minimum in pixels. `factor` is working metres across the road per true metre.
 pub(crate) fn half_width(
     Look { style, options, camera }: Look<'_>,
     (class, own, kind): (u8, OwnWidth, RoadLook),
@@ -424,15 +430,15 @@ pub(crate) fn half_width(
     let near_m = width_m * f64::from(scaling.constant);
     let mut drawn_m = width_m * scaling.factor(distance_m);
     if let (Some(most_px), WidthGrowth::ByDistance) = (road.max_width_px, options.width_growth) {
-        // It grows up to so many pixels, and never shrinks for that.
+        // The width grows up to this many pixels, but is never reduced.
         let most_m = narrow_px * f64::from(most_px) * camera.pixel_at_unit_depth_m() * distance_m;
         drawn_m = drawn_m.min(most_m.max(near_m));
     }
     (drawn_m / 2.0, narrow_px * f64::from(road.min_width_px) / 2.0)
 }
 
-/// Distance from a point to a segment; infinite far beyond an end without a cap. How near such an end is asked for with a band of
-/// its own.
+/// Distance from a point to a segment; infinite far beyond an end without a cap. Positions near
+/// such an end are tested with a separate band.
 pub(crate) fn distance(at: DVec2, [a, b]: [DVec2; 2], without_cap: [bool; 2]) -> f64 {
     let d = b - a;
     if d == DVec2::ZERO {

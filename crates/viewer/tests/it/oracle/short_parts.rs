@@ -1,4 +1,5 @@
-//! Roads that stand alone: short parts of the network grow thin and go, in both methods alike.
+//! Roads without connections: short parts of the network become thin and disappear, identically in
+//! both methods.
 
 use corniche_styles::Style;
 use corniche_viewer::{RoadOptions, camera::Camera};
@@ -13,14 +14,14 @@ use super::{
     },
 };
 
-/// Roads in pieces of 100 to 500 m, alone, and beside a road that leaves the tile; seen at a slant.
+/// Roads in pieces of 100 to 500 m, alone and next to a road that leaves the tile, seen at a slant.
 fn short_parts() -> (Scene, Camera) {
     let mut roads: Vec<Road> = vec![
         (1, vec![[-2000.0, 620.0], [2000.0, 620.0]]),
-        // It ends on the road that leaves the tile; so does the next, through the one before it.
+        // It ends at the road that leaves the tile; so does the next one, via this one.
         (3, vec![[-300.0, 620.0], [-300.0, 500.0]]),
         (4, vec![[-300.0, 500.0], [-200.0, 450.0]]),
-        // Alone until the less important road beside it is drawn.
+        // Alone until the less important road next to it is drawn.
         (3, vec![[300.0, 560.0], [300.0, 430.0]]),
         (5, vec![[300.0, 560.0], [300.0, 620.0]]),
     ];
@@ -45,13 +46,13 @@ fn both_methods_agree_with_the_references_on_short_parts() {
     check(&Named { name: "short parts", scene, cameras: vec![camera] });
 }
 
-/// The same gate trips when all roads are drawn, or other lengths are.
+/// The same gate fails if all roads are drawn, or if other lengths are used.
 #[test]
 fn other_lengths_fail() {
     let Some(gpu) = gpu() else { return };
     let (scene, camera) = short_parts();
     for method in METHODS {
-        let options = RoadOptions::of(method);
+        let options = RoadOptions::for_method(method);
         let wrong_with = |shortest_part_px| {
             let style = Style { shortest_part_px, ..scene.style.clone() };
             let drawing = Scene { style, ..scene.clone() }.draw(&gpu, &camera, options);

@@ -1,5 +1,5 @@
-//! Roads that are laid on nothing (`render --unmapped`) against a reference: ribbons that are straight in space between the points of their source, and
-//! drawings that are wrong on purpose.
+//! Undraped roads (`render --unmapped`) against a reference: ribbons that are straight in space
+//! between the points of their source; and against drawings with deliberate errors.
 
 use corniche_viewer::{RoadMethod, RoadOptions, camera::Camera};
 use glam::DVec2;
@@ -15,10 +15,10 @@ use super::{
 };
 
 fn options() -> RoadOptions {
-    RoadOptions::of(RoadMethod::Geometry)
+    RoadOptions::for_method(RoadMethod::Geometry)
 }
 
-/// A road with a point on each side, and one that bends.
+/// A road with one point on each side, and one that bends.
 const ROADS: [&[[f64; 2]]; 2] =
     [&[[-420.0, 30.0], [400.0, 10.0]], &[[-300.0, -250.0], [0.0, -160.0], [310.0, -240.0]]];
 
@@ -42,7 +42,8 @@ fn scene(ground: Ground) -> Scene {
     scenes::one_tile(8, ground, &roads, style(14.0))
 }
 
-/// What such roads are: lines in space between their points, which have the height of the drawn ground.
+/// The expected ribbons: lines in space between the points of roads, which have the height of the
+/// drawn ground.
 fn straight(scene: &Scene) -> Vec<Deck> {
     let triangles = &scene.tiles[0].triangles;
     let height_m = |at: DVec2| {
@@ -93,7 +94,8 @@ fn roads_laid_on_nothing_are_straight_in_space() {
     }
 }
 
-/// The hill hides what goes through it, and over the valley the road is nearer to the eye than the ground.
+/// The hill hides the road inside it, and over the valley the road is nearer to the eye than the
+/// ground.
 #[test]
 fn the_ground_hides_a_road_that_is_laid_on_nothing() {
     let Some(gpu) = gpu() else { return };
@@ -114,7 +116,7 @@ fn the_ground_hides_a_road_that_is_laid_on_nothing() {
     assert!(through < 0.6 && over > 0.95, "{through} {over}");
 }
 
-/// A road that bends with the ground, or lies a metre beside, is another one.
+/// A road that bends with the ground, or is a metre higher, is detected.
 #[test]
 fn other_lines_are_refused() {
     let Some(gpu) = gpu() else { return };

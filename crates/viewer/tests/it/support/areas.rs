@@ -1,4 +1,5 @@
-//! Areas on scenes: what is drawn is divided by tile as a build does it, what the references ask are whole outlines in f64.
+//! Areas on scenes: drawn areas are divided by tile as in a build, while the references use whole
+//! outlines in f64.
 
 use corniche_areas::{AreaClass, AreaObject, Axis, OutlineWay, Polygon, assemble, divide};
 use corniche_geom::{GridFrame, LatticePoint, TileId};
@@ -16,14 +17,14 @@ pub(crate) struct PlanArea {
 }
 
 impl PlanArea {
-    /// Rings relative to a place.
+    /// Creates an area from rings relative to a point.
     pub(crate) fn new(class: AreaClass, around: DVec2, rings: &[Vec<[f64; 2]>]) -> Self {
         let place = |point: &[f64; 2]| around + DVec2::from_array(*point);
         let rings = rings.iter().map(|ring| ring.iter().map(place).collect()).collect();
         Self { class, rings }
     }
 
-    /// Its part in a tile.
+    /// The part of the area in a tile.
     fn record(&self, frame: &GridFrame, id: TileId) -> Option<AreaRecord> {
         let on_lattice = |ring: &Vec<DVec2>| -> Vec<LatticePoint> {
             ring.iter().chain(ring.first()).map(|at| frame.snap(at.to_array()).unwrap()).collect()
@@ -68,7 +69,7 @@ pub(crate) fn with_areas(scene: &Scene, frame: &GridFrame, areas: &[PlanArea]) -
     scene
 }
 
-/// A colour of each class that no ground has, because ground has no blue in it.
+/// A colour for each class that the ground never has, because the ground has no blue.
 fn flat_color(class: AreaClass) -> [u8; 3] {
     [20 * class.number(), 100, 255]
 }
@@ -91,7 +92,8 @@ pub(crate) fn flat_style(style: &Style) -> Style {
     style
 }
 
-/// The class that a sample of the ground shows; `None` where it shows ground. Any other colour fails.
+/// The class that a sample of the ground shows; `None` where it shows ground. Any other colour
+/// fails.
 pub(crate) fn class_of(ground: &[u8]) -> Option<AreaClass> {
     if ground[2] == 0 {
         return None;

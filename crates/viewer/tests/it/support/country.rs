@@ -1,5 +1,5 @@
-//! Mountains of three wavelengths with roads, triangulated and draped when a tile is asked for. Some roads have widths of their
-//! own, which most styles do not look at.
+//! Mountains of three wavelengths with roads, triangulated and draped when a tile is requested.
+//! Some roads have widths of their own, which most styles ignore.
 
 use std::{
     collections::BTreeSet,
@@ -9,7 +9,7 @@ use std::{
 use corniche_drape::{OwnedBorders, clip, clip_closed, drape, extrude};
 use corniche_geom::{GridFrame, HeightGrid, NodeIndex, Polyline, TILE_NODES, TileId};
 use corniche_roads::RoadAttributes;
-use corniche_tileset::{GeoRoad, RoadRecord, SvRoad, Terrain, TilePayload};
+use corniche_tileset::{GeoRoad, RoadRecord, SvRoad, TilePayload, TileTerrain};
 use corniche_tin::{Placement, Surface, TinSpec, normals, triangulate};
 use corniche_viewer::{
     Mapping,
@@ -24,7 +24,7 @@ pub(crate) const MAX_LEVEL: u8 = 4;
 pub(crate) const MAX_ERROR_M: f64 = 4.0;
 pub(crate) const QUANTUM_M: f64 = 1.0 / 16.0;
 
-/// Mountains of three wavelengths over 102 km, with roads; tiles are made when they are asked for.
+/// Mountains of three wavelengths over 102 km, with roads; tiles are created on request.
 pub(crate) struct Country {
     pub(crate) frame: GridFrame,
     pub(crate) roads: Vec<(u8, Polyline)>,
@@ -42,8 +42,9 @@ pub(crate) fn height_m(x: f64, y: f64) -> f64 {
         + WAVES.iter().map(|[height, kx, ky]| height * (x * kx).sin() * (y * ky).cos()).sum::<f64>()
 }
 
-/// Error of interpolating `height_m` linearly over right triangles with legs `cell_m`: by Taylor's theorem at
-/// most cell² / 8 · (`|f_xx| + 2 |f_xy| + |f_yy|`), and never more than twice the amplitude.
+/// Error of interpolating `height_m` linearly over right triangles with legs `cell_m`: by Taylor's
+/// theorem at most cell² / 8 · (`|f_xx| + 2 |f_xy| + |f_yy|`), and never more than twice the
+/// amplitude.
 pub(crate) fn interpolation_error_m(cell_m: f64) -> f64 {
     let error = |[height, kx, ky]: [f64; 3]| {
         (height * cell_m * cell_m / 8.0 * (kx + ky).powi(2)).min(2.0 * height)
@@ -51,13 +52,13 @@ pub(crate) fn interpolation_error_m(cell_m: f64) -> f64 {
     WAVES.map(error).iter().sum()
 }
 
-/// How far SV lines reach beyond their tile: eight cells of the level.
+/// How far SV lines extend beyond their tile: eight cells of the level.
 pub(crate) fn width_margin_m(frame: &GridFrame, level: u8) -> f64 {
     8.0 * frame.level_cell(level).shorter_m()
 }
 
 impl Country {
-    /// Of a tile's roads: its working metres are true ones.
+    /// The widths of a tile's roads; working metres are true metres.
     pub(crate) fn widths(&self, id: TileId) -> Widths {
         Widths { margin_m: width_margin_m(&self.frame, id.z()), scale: PlanScale::default() }
     }
@@ -128,7 +129,7 @@ impl Country {
                 }
             }
         }
-        let terrain = Terrain {
+        let terrain = TileTerrain {
             normals: normals(&heights, &tin, frame.level_cell(id.z()), 0),
             tin,
             geometric_error_m: max_error_m
@@ -143,7 +144,7 @@ impl Country {
     }
 }
 
-/// Of three ways one has a width, one has lanes, one has neither.
+/// Returns the record of a way. Of three ways, one has a width, one has lanes, one has neither.
 fn record(way_id: i64) -> RoadRecord {
     let (widths_mm, lanes) = ([2500, 14_000, 33_000, 80_000], [1, 2, 6, 30]);
     let turn = (way_id / 3) as usize % 4;

@@ -1,4 +1,5 @@
-//! How long the part of the road network is that a line of a tile belongs to: by distances between all pairs of lines.
+//! The length of the part of the road network to which a line of a tile belongs, by distances
+//! between all pairs of lines.
 
 use std::collections::BTreeSet;
 
@@ -6,8 +7,9 @@ use corniche_geom::Bounds;
 use corniche_viewer::{for_tests::PlanLine, tiles::RoadLook};
 use glam::DVec2;
 
-/// The least and the most that the length of each line's part may be, metres; infinite where it goes on beyond what the tile knows.
-/// They differ where lines are so far apart that it is a matter of rounding whether they belong together.
+/// The minimum and maximum length of each line's part, metres; infinite if the part continues
+/// beyond the area known to the tile. They differ if lines are so far apart that rounding decides
+/// whether they are connected.
 pub(crate) fn part_lengths_m(lines: &[PlanLine], tile: Bounds, margin_m: f64) -> Vec<[f64; 2]> {
     let cell_m = tile.width().min(tile.height()) / 256.0;
     let ranges: Vec<[DVec2; 2]> = lines.iter().map(range).collect();
@@ -17,7 +19,7 @@ pub(crate) fn part_lengths_m(lines: &[PlanLine], tile: Bounds, margin_m: f64) ->
         .collect();
     let known_m: Vec<f64> =
         lines.iter().map(|line| known_m(line, tile, margin_m, cell_m)).collect();
-    // Lines belong together where they cross, or come through squares side by side.
+    // Lines are connected if they cross or pass through adjacent squares.
     let [least, most] = [1e-6 * cell_m, 2.0 * 2.0_f64.sqrt() * cell_m].map(|most_m| {
         let mut beside = vec![Vec::new(); lines.len()];
         for &(a, b, _) in near.iter().filter(|(.., apart_m)| *apart_m <= most_m) {
@@ -34,8 +36,8 @@ fn pairs(lines: &[PlanLine]) -> impl Iterator<Item = (usize, usize)> {
     (0..count).flat_map(move |a| (a + 1..count).map(move |b| (a, b)))
 }
 
-/// For each line the length of its part, if these lines lie beside each line: for each rank anew, through all lines that are shown as
-/// early.
+/// For each line the length of its part, given the lines that are connected to each line. Computed
+/// separately for each rank, with all lines that are shown as early.
 fn lengths_m(lines: &[PlanLine], known_m: &[f64], beside: &[Vec<usize>]) -> Vec<f64> {
     let rank = |line: &PlanLine| (line.kind.class.number(), line.kind.look == RoadLook::Service);
     let ranks: BTreeSet<(u8, bool)> = lines.iter().map(rank).collect();
@@ -66,12 +68,12 @@ fn lengths_m(lines: &[PlanLine], known_m: &[f64], beside: &[Vec<usize>]) -> Vec<
     lengths_m
 }
 
-/// The length of a line; infinite if it is not known whole.
+/// The length of a line; infinite if it is not completely known.
 fn known_m(line: &PlanLine, tile: Bounds, margin_m: f64, cell_m: f64) -> f64 {
     let points: Vec<DVec2> = line.points_m.iter().map(|at| DVec2::from_array(*at)).collect();
     let middle = DVec2::from_array(tile.center());
     let half = DVec2::new(tile.width(), tile.height()) / 2.0;
-    // How far beyond the tile's sides a point is: negative inside.
+    // Distance of a point beyond the tile's sides: negative inside.
     let beyond: Vec<DVec2> = points.iter().map(|at| (*at - middle).abs() - half).collect();
     let inside = beyond.iter().all(|by| by.max_element() < 0.0);
     let whole = beyond.iter().all(|by| by.max_element() < margin_m - cell_m);

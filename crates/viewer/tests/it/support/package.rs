@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 use corniche_geom::{Bounds, CoordinateTable, Projection, TileId};
 use corniche_testing::{FlatProjection, package};
 use corniche_tileset::{
-    LevelRecord, Manifest, PayloadContext, SettingsRecord, VerticalRecord, Writer, encode,
+    LevelRecord, Manifest, PackageWriter, PayloadContext, SettingsRecord, VerticalRecord, encode,
     pmtiles_order,
 };
 
 use super::country::{Country, MAX_ERROR_M, QUANTUM_M, width_margin_m};
 
-/// Levels in the package; the country has finer ones that are not stored.
+/// Levels of the package; the country has finer ones that are not stored.
 pub(crate) const LEVELS: u8 = 3;
 
 /// Working metres per degree of longitude and latitude: the package's world is flat.
@@ -64,9 +64,12 @@ pub(crate) fn package(folder: &Path) -> PathBuf {
         .collect();
     ids.sort_by_key(|id| pmtiles_order(*id));
     let path = folder.join("country.pmtiles");
-    let mut writer =
-        Writer::of_file(std::fs::File::create(&path).unwrap(), &manifest(&country), usize::MAX)
-            .unwrap();
+    let mut writer = PackageWriter::of_file(
+        std::fs::File::create(&path).unwrap(),
+        &manifest(&country),
+        usize::MAX,
+    )
+    .unwrap();
     let context =
         PayloadContext { frame: country.frame, quantum_m: QUANTUM_M, metres_per_unit: [1.0; 2] };
     for id in ids {

@@ -1,11 +1,11 @@
-//! Scenes in f64, the common input of the renderer and of the references.
+//! Scenes in f64, the common input of the renderer and the references.
 
 use std::collections::HashMap;
 
 use corniche_geom::{Bounds, GridFrame, TileId};
 use corniche_roads::OwnWidth;
 use corniche_styles::Style;
-use corniche_tileset::{FilePackage, Sections, Terrain, TilePayload};
+use corniche_tileset::{FilePackage, Sections, TilePayload, TileTerrain};
 use corniche_tin::{Placement, Surface};
 use corniche_viewer::{
     FrameView, Mapping, RoadOptions,
@@ -24,16 +24,16 @@ use crate::support;
 pub(crate) struct PlanSegment {
     pub(crate) class: u8,
     pub(crate) ends: [DVec2; 2],
-    /// Working metres across it for each true metre.
+    /// Working metres across it per true metre.
     pub(crate) factor: f64,
-    /// What its tags say of its width.
+    /// Width from its tags.
     pub(crate) own: OwnWidth,
     pub(crate) look: RoadLook,
-    /// How far along its road its start is, for dashes.
+    /// Distance of its start along its road, for dashes.
     pub(crate) start_m: f64,
-    /// Whether it ends flat at its start and at its end, because another road goes on there.
+    /// Whether it ends flat at its start and at its end, because another road continues there.
     pub(crate) flat: [bool; 2],
-    /// The least and the most that the length of its part of the network may be, metres.
+    /// The minimum and maximum length of its part of the network, metres.
     pub(crate) part_m: [f64; 2],
 }
 
@@ -50,20 +50,20 @@ pub(crate) struct Tile {
     pub(crate) centers: Vec<GroundLine>,
     /// The SV lines within the width margin of each square of a grid as wide as the margin.
     near: HashMap<[i64; 2], Vec<PlanSegment>>,
-    terrain: Terrain,
+    terrain: TileTerrain,
     frame: GridFrame,
     quantum_m: f64,
     lines: TileLines,
 }
 
-/// How wide the roads of a tile may be, and how true widths become working metres.
+/// The maximum width of the roads of a tile, and the conversion of true widths to working metres.
 #[derive(Clone, Copy)]
 pub(crate) struct Widths {
     pub(crate) margin_m: f64,
     pub(crate) scale: PlanScale,
 }
 
-/// Tiles and how their roads look.
+/// Tiles and the style of their roads.
 #[derive(Clone)]
 pub(crate) struct Scene {
     pub(crate) tiles: Vec<Tile>,
@@ -71,10 +71,10 @@ pub(crate) struct Scene {
 }
 
 impl Tile {
-    /// A tile of the support's frame with roads given in plan by way, class and points.
+    /// A tile of the tests' frame with roads given in plan by way, class and points.
     pub(crate) fn new(
         id: TileId,
-        ground: &Terrain,
+        ground: &TileTerrain,
         roads: &[(i64, u8, Vec<DVec2>)],
         skirt_depth_m: f64,
     ) -> Self {
@@ -87,12 +87,12 @@ impl Tile {
         for (way_id, number, points) in roads {
             let class = support::class(*number);
             for pair in points.windows(2) {
-                // Where the road goes on, so does the line.
+                // Where the road continues, the line continues, too.
                 if let Some([a, b]) = clip([pair[0], pair[1]], grown(bounds, margin_m)) {
                     let before = lines.plan.last_mut().filter(|line| {
                         line.way_id == *way_id && line.points_m.last() == Some(&a.to_array())
                     });
-                    // As low and high as the tile: never too narrow.
+                    // The height range of the tile is never too narrow.
                     let range_m = ground.height_range_m;
                     match before {
                         Some(line) => {
@@ -127,12 +127,12 @@ impl Tile {
         Self::of_lines(id, ground, &frame, support::QUANTUM_M, lines, triangles, skirt_depth_m)
     }
 
-    /// The SV lines that may be within the width margin of a position, and others.
+    /// The SV lines that may be within the width margin of a position, and some others.
     pub(crate) fn segments_near(&self, at: DVec2) -> &[PlanSegment] {
         self.near.get(&square(at, self.geometry.width_margin_m)).map_or(&[], Vec::as_slice)
     }
 
-    /// A tile as a package on disk has it, with the widths of its roads as the card draws them.
+    /// A tile of a package on disk, with the widths that the GPU draws for its roads.
     pub(crate) fn of_package(package: &FilePackage, id: TileId, skirt_depth_m: f64) -> Self {
         let manifest = package.manifest();
         let payload = package.payload(id, Sections::ALL).unwrap().unwrap();
@@ -212,7 +212,7 @@ impl Tile {
         Self::of_lines(payload.id, ground, frame, quantum_m, lines, triangles, skirt_depth_m)
     }
 
-    /// The same tile with other ids of its ways; its GEO and SV lines alike.
+    /// Returns the tile with other ids for its ways, both in GEO and SV lines.
     pub(crate) fn with_ways_renumbered(&self, by: i64) -> Self {
         let mut lines = self.lines.clone();
         lines.ground.iter_mut().for_each(|line| line.way_id += by);
@@ -220,7 +220,7 @@ impl Tile {
         self.with_lines(lines)
     }
 
-    /// The same tile with widths of their own for its ways; its GEO and SV lines alike.
+    /// Returns the tile with own widths for its ways, both in GEO and SV lines.
     pub(crate) fn with_own_widths(&self, of_way: impl Fn(i64) -> OwnWidth) -> Self {
         let mut lines = self.lines.clone();
         lines.ground.iter_mut().for_each(|line| line.kind.own_width = of_way(line.way_id));
@@ -228,7 +228,7 @@ impl Tile {
         self.with_lines(lines)
     }
 
-    /// The same tile with its ways being what is said; its GEO and SV lines alike.
+    /// Returns the tile with these looks for its ways, both in GEO and SV lines.
     pub(crate) fn with_looks(&self, of_way: impl Fn(i64) -> RoadLook) -> Self {
         let mut lines = self.lines.clone();
         lines.ground.iter_mut().for_each(|line| line.kind.look = of_way(line.way_id));
@@ -236,12 +236,12 @@ impl Tile {
         self.with_lines(lines)
     }
 
-    /// The same tile with these bridges; its roads on the ground end where they begin.
+    /// Returns the tile with these bridges; its roads on the ground end where bridges begin.
     pub(crate) fn with_decks(&self, decks: Vec<DeckLine>) -> Self {
         self.with_lines(TileLines { decks, ..self.lines.clone() })
     }
 
-    /// The same tile with its roads laid on nothing.
+    /// Returns the tile with undraped roads.
     pub(crate) fn unmapped(&self) -> Self {
         self.with_lines(TileLines { mapping: Mapping::Unmapped, ..self.lines.clone() })
     }
@@ -254,7 +254,7 @@ impl Tile {
 
     pub(crate) fn of_lines(
         id: TileId,
-        ground: &Terrain,
+        ground: &TileTerrain,
         frame: &GridFrame,
         quantum_m: f64,
         lines: TileLines,
@@ -353,8 +353,9 @@ impl Scene {
     }
 }
 
-/// How far along a line a segment begins: from the first of the vertices before it that are in the tile without a break; for one
-/// that enters the tile, from its end; for one with neither end in it, from the zero of the CRS along it.
+/// The distance of a segment's start along its line: from the first of the preceding vertices that
+/// are in the tile without a break; for a segment that enters the tile, from its end; for a segment
+/// with neither end in the tile, from the zero of the CRS along it.
 fn start_m(points_m: &[[f64; 2]], segment: usize, tile: Bounds) -> f64 {
     let at = |k: usize| DVec2::from_array(points_m[k]);
     let [low, high] = [DVec2::new(tile.min_x, tile.min_y), DVec2::new(tile.max_x, tile.max_y)];
@@ -374,7 +375,7 @@ enum End {
     Last,
 }
 
-/// Where a line ends, and in which direction it would go on.
+/// The end of a line, and the direction in which it would continue.
 fn end_of(line: &PlanLine, end: End) -> (DVec2, DVec2) {
     let mut points: Vec<DVec2> = line.points_m.iter().copied().map(DVec2::from_array).collect();
     if end == End::First {
@@ -384,8 +385,8 @@ fn end_of(line: &PlanLine, end: End) -> (DVec2, DVec2) {
     (last, (last - before).normalize_or_zero())
 }
 
-/// Whether a line ends flat: another line that it is drawn above begins there and turns by 30° at most, and all that end there
-/// are drawn below it.
+/// Whether a line ends flat: another line that is drawn below it begins there and turns by at most
+/// 30°, and all lines that end there are drawn below it.
 fn is_flat(lines: &[PlanLine], line: &PlanLine, end: End, tile: Bounds) -> bool {
     let above = |line: &PlanLine| {
         let layer = ["Tunnel", "Service", "Ground"].len()
@@ -418,19 +419,19 @@ fn is_flat(lines: &[PlanLine], line: &PlanLine, end: End, tile: Bounds) -> bool 
         && others.iter().any(|(_, direction)| outward.dot(-*direction) >= 0.866)
 }
 
-/// What the tags of a way say of its width, by the payload's list.
+/// The own width of a way, from the payload's list.
 fn own_width(payload: &TilePayload, way_id: i64) -> OwnWidth {
     let found = payload.attributes.iter().find(|record| record.way_id == way_id);
     found.map_or(OwnWidth::Unknown, |record| record.attributes.own_width())
 }
 
-/// What the tags of a way say that it is, by the payload's list.
+/// The look of a way, from the payload's list.
 fn look(payload: &TilePayload, way_id: i64) -> RoadLook {
     let found = payload.attributes.iter().find(|record| record.way_id == way_id);
-    found.map_or(RoadLook::Plain, |record| RoadLook::of(&record.attributes))
+    found.map_or(RoadLook::Plain, |record| RoadLook::from_attributes(&record.attributes))
 }
 
-/// The square of a grid that holds a position.
+/// The square of a grid that contains a position.
 fn square(at: DVec2, side_m: f64) -> [i64; 2] {
     (at / side_m).floor().to_array().map(|k| k as i64)
 }
@@ -444,7 +445,8 @@ fn grown(bounds: Bounds, margin_m: f64) -> Bounds {
     }
 }
 
-/// What of a segment lies in a rectangle; `None` without any length there, unless the segment has none itself.
+/// The part of a segment in a rectangle; `None` if it has no length there, unless the segment
+/// itself has none.
 ///
 /// Source: Liang & Barsky 1984, *A New Concept and Method for Line Clipping*.
 fn clip([a, b]: [DVec2; 2], bounds: Bounds) -> Option<[DVec2; 2]> {

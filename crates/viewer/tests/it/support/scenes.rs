@@ -16,7 +16,7 @@ use super::{
 
 pub(crate) const SIZE: [u32; 2] = [480, 360];
 
-/// A scene, its name and where it is looked at from.
+/// A scene with its name and its cameras.
 pub(crate) struct Named {
     pub(crate) name: &'static str,
     pub(crate) scene: Scene,
@@ -69,7 +69,7 @@ pub(crate) fn tile(
     Tile::new(id, &ground, &roads, skirt_depth_m)
 }
 
-/// The four tiles of the finer level, some of them coarser than others.
+/// Returns the four tiles of the finer level, some of them coarser than others.
 pub(crate) fn four_tiles(
     steps: [u16; 4],
     height_m: impl Fn(f64, f64) -> f64,
@@ -88,7 +88,7 @@ pub(crate) fn hills(x: f64, y: f64) -> f64 {
     400.0 + 60.0 * (x / 170.0).sin() * (y / 210.0).cos()
 }
 
-/// A bend as of a pass road, with legs 60 m apart.
+/// A bend like on a pass road, with legs 60 m apart.
 pub(crate) fn hairpin() -> Vec<[f64; 2]> {
     let mut points = vec![[-400.0, -30.0]];
     points.extend((0..=12).map(|k| {
@@ -108,12 +108,12 @@ pub(crate) fn junction() -> Vec<Road> {
     ]
 }
 
-/// The same style, which looks at the widths and lanes that roads have themselves.
+/// Returns the style with own widths of roads by `width` and `lanes`.
 pub(crate) fn by_own_widths(style: &Style) -> Style {
     Style { own_widths: Some(OwnWidths { lane_m: Some(3.25) }), ..style.clone() }
 }
 
-/// The same scene with these widths for its ways 1, 2 …, in turn.
+/// Returns the scene with these widths for its ways 1, 2 …, in turn.
 pub(crate) fn with_own_widths(scene: &Scene, widths: &[OwnWidth]) -> Scene {
     let of_way = |way_id: i64| widths[(way_id - 1) as usize % widths.len()];
     Scene {
@@ -122,17 +122,17 @@ pub(crate) fn with_own_widths(scene: &Scene, widths: &[OwnWidth]) -> Scene {
     }
 }
 
-/// So many millimetres.
+/// A tagged width in millimetres.
 pub(crate) fn tagged(mm: u32) -> OwnWidth {
     NonZeroU32::new(mm).map_or(OwnWidth::Unknown, OwnWidth::Millimetres)
 }
 
-/// So many lanes.
+/// A number of lanes.
 pub(crate) fn lanes(count: u8) -> OwnWidth {
     NonZeroU8::new(count).map_or(OwnWidth::Unknown, OwnWidth::Lanes)
 }
 
-/// The road atlas, with roads that widen from nearer on.
+/// The road atlas, with roads that grow from a shorter distance on.
 fn far_atlas() -> Style {
     Style {
         width_scaling: WidthScaling { threshold_m: 800.0, exponent: 0.75, constant: 1.0 },
@@ -140,7 +140,7 @@ fn far_atlas() -> Style {
     }
 }
 
-/// Scenes with roads of their own width.
+/// Scenes with own widths of roads.
 fn of_own_widths() -> Vec<Named> {
     vec![
         Named {
@@ -162,9 +162,10 @@ fn of_own_widths() -> Vec<Named> {
     ]
 }
 
-/// Scenes of roads of many bands, and of roads that go on as other ones.
+/// Scenes with roads of many bands, and with roads that continue as other ones.
 fn of_bands_and_flat_ends() -> Vec<Named> {
-    // Least widths too, so that thin roads have bands by the second rule; classes that cross have different ones.
+    // Minimum widths, too, so that the second rule gives thin roads bands; crossing classes have
+    // different ones.
     let many_bands = {
         let mut style = far_atlas();
         style.roads[0].bands = bands(&[1.0, 0.85, 0.7, 0.5, 0.3, 0.1]);
@@ -202,7 +203,7 @@ fn of_bands_and_flat_ends() -> Vec<Named> {
     ]
 }
 
-/// All scenes but those with several levels.
+/// All scenes except those with several levels.
 pub(crate) fn all() -> Vec<Named> {
     let two_colours = {
         let mut style = style(26.0);

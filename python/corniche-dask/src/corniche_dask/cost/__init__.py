@@ -1,4 +1,4 @@
-"""What a build of another size would cost, from builds that were measured."""
+"""Estimates the cost of a build of another size, from measured builds."""
 
 from .command import add_command, run
 

@@ -14,11 +14,12 @@ from .runs import Run, Size, read_runs
 
 #: Numbers of workers in the tables.
 WORKERS = (1, 4, 16, 64, 256, 1024, 4096)
-#: With fewer, a build cannot be predicted from the others.
+#: With fewer sizes, a build cannot be predicted from the others.
 _FEWEST_SIZES = 3
-#: A model whose builds are off by more than this share is told to be of no use.
+#: A model is reported as unusable if a build is off by more than this share.
 _TRUSTED = 0.3
-#: Areas of countries divided by those of a cell; bytes of extracts are of the order of those that Geofabrik offers in 2025.
+# : Areas of countries divided by the area of a cell; extracts have about the size of those that
+# Geofabrik offers in 2025.
 TARGETS = ("Utah at 5 m,11.0e9,0.15e9", "Switzerland at 1 m,41.3e9,0.5e9")
 
 
@@ -27,22 +28,22 @@ def add_command(commands: Any) -> None:
     parser = commands.add_parser(
         "cost",
         allow_abbrev=False,
-        help="tell what larger builds would cost, from reports of measured ones",
+        help="estimate the cost of larger builds, from reports of measured ones",
         description="Fits the cost of each step to measured builds, checks it against each of them, and extrapolates. Prints Markdown.",
     )
-    parser.add_argument("runs", metavar="REPORT.json", nargs="+", help="what corniche-dask build --report wrote; at least three sizes")
+    parser.add_argument("runs", metavar="REPORT.json", nargs="+", help="reports of corniche-dask build --report; at least three sizes")
     parser.add_argument(
         "--target",
         metavar="NAME,NODES,EXTRACT[,DEM]",
         action="append",
-        help=f"a build to extrapolate to: nodes, bytes of the extract, bytes of the DEM [default: as many for a node as measured]; {TARGETS}",
+        help=f"a build to extrapolate to: nodes, bytes of the extract, bytes of the DEM [default: as many per node as measured]; {TARGETS}",
     )
-    parser.add_argument("--storage", metavar="BYTES", type=float, default=1e9, help="what the storage moves in a second, all together [default: 1e9]")
-    parser.add_argument("--price", metavar="P", type=float, help="price of a core for an hour, in any currency; adds a column")
+    parser.add_argument("--storage", metavar="BYTES", type=float, default=1e9, help="total throughput of the storage, in bytes/s [default: 1e9]")
+    parser.add_argument("--price", metavar="P", type=float, help="price of one core-hour, in any currency; adds a column")
 
 
 def run(reports: Sequence[str], targets: Sequence[str] | None, storage: float, price: float | None) -> str:
-    """The Markdown."""
+    """Returns the Markdown."""
     if storage <= 0:
         raise UsageError("--storage must be above 0")
     runs = read_runs(reports)
@@ -61,10 +62,10 @@ def _target(text: str, largest: Run) -> tuple[str, Size]:
     name, *numbers = text.split(",")
     try:
         nodes, extract, *dem = (float(number) for number in numbers)
+        if not nodes > 0 or extract < 0 or len(dem) > 1:
+            raise ValueError(numbers)
     except ValueError as error:
-        raise UsageError(f"--target {text!r}: it is NAME,NODES,EXTRACT[,DEM]") from error
-    if not nodes > 0 or extract < 0 or len(dem) > 1:
-        raise UsageError(f"--target {text!r}: it is NAME,NODES,EXTRACT[,DEM]")
+        raise UsageError(f"--target {text!r} is not valid; write NAME,NODES,EXTRACT[,DEM]") from error
     return name, Size(nodes, extract, dem[0] if dem else largest.size.dem_bytes / largest.size.nodes * nodes)
 
 
@@ -94,7 +95,7 @@ def _measured(runs: Sequence[Run]) -> str:
     return _markdown(heading, rows)
 
 
-#: What factors are shown for.
+#: The units for which factors are shown, and their scale.
 _UNITS = {"node": ("million nodes", 1e6), "extract byte": ("MB of extract", 1e6), "input byte": ("GB of input", 1e9), "part": ("part", 1.0)}
 
 
@@ -108,8 +109,8 @@ def _factors(model: Model) -> str:
             factors = [model.factors[measure][step][term] * scale for measure in MEASURES]
             if any(factors):
                 rows.append([f"{step}, for a {unit}", f"{factors[0]:.4g}", *(bytes_text(factor) for factor in factors[1:])])
-    rows.append(["package, for a million nodes", "", "", "", bytes_text(model.package[0] * 1e6)])
-    rows.append(["package, for a MB of extract", "", "", "", bytes_text(model.package[1] * 1e6)])
+    for what, factor in zip(("million nodes", "MB of extract"), model.package, strict=True):
+        rows.append([f"package, for a {what}", "", "", "", bytes_text(factor * 1e6)])
     return _markdown(["fitted", "seconds on a core", "read", "written", "stored"], rows)
 
 
@@ -132,8 +133,8 @@ def _checks(runs: Sequence[Run]) -> str:
     table = _markdown(heading, rows)
     if most > _TRUSTED:
         table += (
-            f"\n\n**Do not trust what follows**: a build is off by {100 * most:.0f} % from what the others predict. Measure larger builds, with the same "
-            "settings, on a quiet machine."
+            f"\n\n**Do not trust what follows**: a build differs by {100 * most:.0f} % from the prediction of the others. Measure larger "
+            "builds, with the same settings, on a quiet machine."
         )
     return table
 
@@ -169,7 +170,7 @@ def _forecasts(name: str, size: Size, model: Model, storage: float, price: float
 
 
 def _limits(size: Size, model: Model, storage: float) -> str:
-    """From how many workers on something else than their number decides."""
+    """The numbers of workers from which something else limits the speed."""
     shape = Shape(64, 64, 64)
     parallel = sum(model.of_step("seconds", step, size, shape) for step in ("heights", "tiles", "ways", "nodes"))
     alone = {step: model.of_step("seconds", step, size, shape) for step in ("roads", "top", "merge") if model.has(step)}

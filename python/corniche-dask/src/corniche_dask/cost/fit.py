@@ -1,4 +1,4 @@
-"""Least squares with coefficients that are not negative."""
+"""Least squares with non-negative coefficients."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def fit(rows: Sequence[Sequence[float]], values: Sequence[float], weights: Seque
     Karush, Kuhn and Tucker the optimum is among them. It is meant for a few columns.
     """
     columns = [[weight * cell for cell, weight in zip(column, weights, strict=True)] for column in zip(*rows, strict=True)]
-    # Columns differ by many powers of ten, so each is measured by its length.
+    # Columns differ by many powers of ten, so each is divided by its length.
     lengths = [math.hypot(*column) or 1.0 for column in columns]
     columns = [[cell / length for cell in column] for column, length in zip(columns, lengths, strict=True)]
     wanted = [weight * value for value, weight in zip(values, weights, strict=True)]
@@ -28,14 +28,14 @@ def fit(rows: Sequence[Sequence[float]], values: Sequence[float], weights: Seque
             left = wanted
             for column, coefficient in zip(chosen, solved, strict=True):
                 left = _without(left, columns[column], coefficient)
-            # A column that explains nothing stays out.
+            # A column that explains nothing is not used.
             if _dot(left, left) < best_error * (1 - 1e-9):
                 best, best_error = dict(zip(chosen, solved, strict=True)), _dot(left, left)
     return [best.get(column, 0.0) / length for column, length in enumerate(lengths)]
 
 
 def _solve(columns: Sequence[Sequence[float]], values: Sequence[float]) -> list[float] | None:
-    """Takes what is along the first column out of all else, and so on (Gram and Schmidt); ``None`` if columns of length 1 depend on each other."""
+    """Solves by Gram-Schmidt orthogonalization: removes the component along each column from the rest; ``None`` if columns are dependent."""
     if not columns:
         return []
     first, *others = columns

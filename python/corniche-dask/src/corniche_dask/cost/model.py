@@ -1,7 +1,7 @@
-"""The cost of each step as a sum of terms: so much for a node, for a byte of the extract, for a byte of input, for a part.
+"""The cost of each step as a sum of terms: per node, per byte of the extract, per byte of input, per part.
 
-The terms of a step are those that its work depends on; the factors come from all measured parts. A part's nodes are not known, but its share of
-the estimated work of its step is.
+A step has the terms that its work depends on; the factors are fitted to all measured parts. The number of nodes of a part is unknown, but its share
+of the estimated work of its step is known.
 """
 
 from __future__ import annotations
@@ -13,10 +13,12 @@ from dataclasses import dataclass
 from .fit import fit
 from .runs import Part, Run, Size
 
-#: What a term counts, for the part of a step that has a share of its work, in a build of a size that consists of so many parts.
+# : The units that terms count: nodes and bytes of the extract or of all inputs, in proportion to
+# the part's share of the work; parts.
 NODE, EXTRACT, INPUT, PART, PARTS = "node", "extract byte", "input byte", "part", "part of the build"
 
-#: The steps, in their order, with the terms of their cost. Top and merge read something of every part.
+# : The steps, in their order, with the terms of their cost. Top and merge read some bytes of every
+# part.
 STEPS: dict[str, tuple[str, ...]] = {
     "hashes": (INPUT, PART),
     "ways": (EXTRACT, PART),
@@ -27,10 +29,11 @@ STEPS: dict[str, tuple[str, ...]] = {
     "tiles": (NODE, EXTRACT, PART),
     "merge": (NODE, EXTRACT, PARTS),
 }
-#: Steps of one part: no number of workers makes them shorter.
+#: Steps that consist of one part: more workers do not shorten them.
 SERIAL = ("hashes", "roads", "top", "merge")
 
-#: What is told of a part, by name. Steps that only one process makes are counted by the clock, which includes waiting for the disk.
+# : The measures of a part, by name. Steps of one process are measured in wall time, which includes
+# waiting for the disk.
 MEASURES: dict[str, Callable[[Part], float]] = {
     "seconds": lambda part: max(part.cpu_seconds, part.seconds) if part.step in SERIAL else part.cpu_seconds,
     "read": lambda part: part.read_bytes,
@@ -41,7 +44,7 @@ MEASURES: dict[str, Callable[[Part], float]] = {
 
 @dataclass(frozen=True)
 class Shape:
-    """Into how many parts a build is divided."""
+    """The number of parts into which a build is divided."""
 
     heights: int
     tiles: int
@@ -49,16 +52,16 @@ class Shape:
 
     @property
     def parts(self) -> int:
-        """All of them that top and merge read."""
+        """The number of parts that top and merge read."""
         return self.heights + self.tiles
 
     def of_step(self, step: str) -> int:
-        """The parts of one step."""
+        """The number of parts of one step."""
         return {"heights": self.heights, "tiles": self.tiles, "ways": self.shares, "nodes": self.shares}.get(step, 1)
 
 
 def shape_of(run: Run) -> Shape:
-    """How a measured build was divided."""
+    """The shape of a measured build."""
     return Shape(len(run.of_step("heights")), len(run.of_step("tiles")), max(1, len(run.of_step("ways"))))
 
 
@@ -75,11 +78,11 @@ def _count(term: str, size: Size, share: float, shape: Shape) -> float:
 
 @dataclass(frozen=True)
 class Model:
-    """Factors of all terms of all steps, and bytes of the package."""
+    """The factors of all terms of all steps, and of the size of the package."""
 
     #: By measure, step and term.
     factors: dict[str, dict[str, dict[str, float]]]
-    #: Bytes of the package for a node and for a byte of the extract.
+    #: Bytes of the package per node and per byte of the extract.
     package: tuple[float, float]
 
     def has(self, step: str) -> bool:
@@ -87,7 +90,7 @@ class Model:
         return step in self.factors["seconds"]
 
     def of_step(self, measure: str, step: str, size: Size, shape: Shape) -> float:
-        """All parts of a step together."""
+        """The cost of all parts of a step together."""
         if not self.has(step):
             return 0.0
         parts = shape.of_step(step)
@@ -95,20 +98,21 @@ class Model:
         return sum(factor * _count(term, size, 1 / parts, shape) * parts for term, factor in terms)
 
     def total(self, measure: str, size: Size, shape: Shape) -> float:
-        """All steps together."""
+        """The cost of all steps together."""
         return sum(self.of_step(measure, step, size, shape) for step in STEPS)
 
     def package_bytes(self, size: Size) -> float:
-        """Bytes of the package."""
+        """The size of the package in bytes."""
         return self.package[0] * size.nodes + self.package[1] * size.extract_bytes
 
 
-#: So much more does the error of a step's total count than that of a part: shares of work are estimates, and their errors cancel in the total.
+# : The weight of the error of a step's total, where a part has weight 1: shares of work are
+# estimates, whose errors cancel in the total.
 _TOTAL = 30.0
 
 
 def fit_model(runs: Sequence[Run]) -> Model:
-    """The factors that fit all parts and all totals of these runs best. Errors count in proportion to what was measured, so small builds count, too."""
+    """Fits the factors to all parts and all totals of these runs. Errors count relative to the measured value, so small builds count, too."""
     factors: dict[str, dict[str, dict[str, float]]] = {}
     for measure, of_part in MEASURES.items():
         factors[measure] = {}
@@ -117,7 +121,7 @@ def fit_model(runs: Sequence[Run]) -> Model:
             values: list[float] = []
             weights: list[float] = []
             measured = [(run, part) for run in runs for part in run.of_step(step)]
-            # Below a hundredth of the largest, errors count the same.
+            # Below a hundredth of the largest value, errors count in absolute terms.
             floor = max((of_part(part) for _, part in measured), default=0.0) / 100 or 1.0
             for run in runs:
                 parts = run.of_step(step)
@@ -141,7 +145,7 @@ def fit_model(runs: Sequence[Run]) -> Model:
 
 @dataclass(frozen=True)
 class Check:
-    """A run, and what a model that has not seen it says of it."""
+    """A run, and the prediction of a model that was fitted without this run."""
 
     run: Run
     measured: float
@@ -149,7 +153,7 @@ class Check:
 
 
 def check(runs: Sequence[Run], measure: str) -> list[Check]:
-    """Each run against the model of the others."""
+    """Compares each run with the model of the others."""
     checks = []
     for run in runs:
         others = [other for other in runs if other is not run]
@@ -161,28 +165,30 @@ def check(runs: Sequence[Run], measure: str) -> list[Check]:
 
 @dataclass(frozen=True)
 class Forecast:
-    """A build on so many workers of one core each."""
+    """The forecast for a build on a number of workers of one core each."""
 
     workers: int
     shape: Shape
     core_seconds: float
     seconds: float
-    #: Seconds in which only one worker has something to do.
+    #: Seconds in which only one worker has work.
     serial_seconds: float
-    #: Bytes a second that the storage must give while tiles are made, without a limit of its own.
+    # : Bytes per second that the storage must deliver while tiles are built, if it is not the limit
+    # itself.
     bytes_per_second: float
-    #: What a larger number of workers would not make faster: "", "roads", "top and merge" or "storage".
+    # : The part of the build that more workers would not make faster: "", "roads", "top and merge"
+    # or "storage".
     limit: str
 
 
-#: Parts are not made longer than this, so that little is lost with a worker; in seconds.
+#: Seconds of the longest part, so that little is lost with a worker.
 LONGEST_PART = 1200.0
-#: Parts of a step for each worker, at least, so that the last ones end at about the same time.
+#: The least number of parts of a step per worker, so that the last ones end at about the same time.
 PARTS_PER_WORKER = 8
 
 
 def forecast(model: Model, size: Size, workers: int, storage: float) -> Forecast:
-    """How long a build takes; ``storage`` is what the storage moves in all, in bytes a second."""
+    """Forecasts the duration of a build; ``storage`` is the total throughput of the storage, in bytes per second."""
 
     def parts(step: str) -> int:
         work = model.of_step("seconds", step, size, Shape(1, 1, 1))
@@ -208,9 +214,10 @@ def forecast(model: Model, size: Size, workers: int, storage: float) -> Forecast
     last = max(seconds("merge"), moved("merge") / storage)
     total = first + tiles + last
     per_second = moved("tiles") / spread("tiles") if spread("tiles") > 0 else 0.0
-    # The largest time that more workers do not shorten, if it is the larger half of all.
+    # The limit is the largest time that more workers do not shorten, if it is more than half of the
+    # total.
     fixed = {
-        "storage": sum(time for time in (moved(*before) / storage, moved("tiles") / storage, moved("merge") / storage)),
+        "storage": moved(*before, "tiles", "merge") / storage,
         "roads": chain,
         "top and merge": seconds("top") + seconds("merge"),
     }

@@ -1,4 +1,4 @@
-"""Measured builds: what ``corniche-dask build --report`` wrote."""
+"""Measured builds, read from the reports of ``corniche-dask build --report``."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ..summary import VERSION
 
 @dataclass(frozen=True)
 class Size:
-    """What decides what a build costs."""
+    """The size of a build, on which its cost depends."""
 
     nodes: float
     extract_bytes: float
@@ -24,7 +24,7 @@ class Size:
 
 @dataclass(frozen=True)
 class Part:
-    """What one part took, and which share of the work of its step it had."""
+    """The resources that one part took, and its share of the work of its step."""
 
     step: str
     share: float
@@ -37,7 +37,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Run:
-    """A build that was measured from an empty store to its package."""
+    """A build, measured from an empty store to the package."""
 
     name: str
     size: Size
@@ -58,17 +58,17 @@ def _read(path: Path) -> Run:
     try:
         report = json.loads(path.read_text(encoding="utf-8"))
         if report["version"] != VERSION:
-            raise UsageError(f"{path}: reports of version {report['version']} cannot be read, only of {VERSION}")
+            raise UsageError(f"{path}: cannot read a report of version {report['version']}, only of version {VERSION}")
         return _run(path.stem, report)
     except UsageError:
         raise
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
-        raise UsageError(f"{path} is no report of corniche-dask build --report: {error!r}") from error
+        raise UsageError(f"{path} is not a report of corniche-dask build --report: {error!r}") from error
 
 
 def _run(name: str, report: dict[str, Any]) -> Run:
     if report["estimate"] is None:
-        raise UsageError(f"{name}: the report does not tell the number of nodes; make it with options of corniche plan, without --plan")
+        raise UsageError(f"{name}: the report lacks the number of nodes; create it with options of corniche plan, without --plan")
     inputs = report["input_bytes"]
     size = Size(
         nodes=float(report["estimate"]["nodes"]),
@@ -76,10 +76,10 @@ def _run(name: str, report: dict[str, Any]) -> Run:
         dem_bytes=float(sum(value for kind, value in inputs.items() if kind not in ("osm", "polygon"))),
     )
     parts = report["parts"]
-    # A build that is one subtree has nothing above it, so top may make nothing.
+    # If the build is one subtree, nothing is above it, and top may write nothing.
     reused = [part["id"] for part in parts if not part["was_made"] and part["step"] != "top"]
     if reused:
-        raise UsageError(f"{name}: part {reused[0]} was not made by this run; measure with a store that is empty at the begin")
+        raise UsageError(f"{name}: part {reused[0]} was not built by this run; measure with a store that is empty at the beginning")
     work: dict[str, float] = {}
     for part in parts:
         work[part["step"]] = work.get(part["step"], 0.0) + part["work"]
@@ -93,7 +93,7 @@ def _part(name: str, part: dict[str, Any], work: float) -> Part:
     if part["cpu_seconds"] is None:
         raise UsageError(f"{name}: part {part['id']} has no processor time; measure on Linux")
     if part["was_made"] and part["file_bytes"] is None:
-        raise UsageError(f"{name}: it is not known how large part {part['id']} is; measure with a store and a package in folders")
+        raise UsageError(f"{name}: the size of part {part['id']} is unknown; measure with a store and a package in folders")
     return Part(
         step=part["step"],
         share=part["work"] / work if work > 0 else 1.0,
