@@ -13,9 +13,6 @@ pub const FRC_TABLES: &[(&str, &str)] = &[
     ("here5", include_str!("frc/here5.toml")),
 ];
 
-/// Tables from tags to the classes of areas, the default one first.
-pub const AREA_TABLES: &[(&str, &str)] = &[("default", include_str!("areas/default.toml"))];
-
 /// Layers of the map: which objects of an extract they contain, in which classes.
 pub const LAYERS: &[(&str, &str)] = &[
     ("areas", include_str!("layers/areas.toml")),

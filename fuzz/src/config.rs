@@ -1,10 +1,10 @@
-//! TOML texts of any bytes are read or rejected: settings files, tables of roads and of areas,
+//! TOML texts of any bytes are read or rejected: settings files, tables of roads and of layers,
 //! styles.
 
-use corniche_presets::{Config, class_filter, parse_area_table, parse_frc_table};
+use corniche_presets::{Config, class_filter, parse_frc_table, parse_layer_table};
 use corniche_styles::parse_style;
 
-/// Reads or rejects these bytes as a settings file, and as a table of roads or of areas; whatever
+/// Reads or rejects these bytes as a settings file, and as a table of roads or of a layer; whatever
 /// is read is valid.
 ///
 /// # Panics
@@ -31,8 +31,12 @@ pub fn settings(data: &[u8]) {
         }
         Err(error) => assert!(!error.to_string().is_empty()),
     }
-    if let Err(error) = parse_area_table(text) {
-        assert!(!error.to_string().is_empty());
+    match parse_layer_table(text) {
+        Ok(table) => {
+            assert_eq!(table.classify(&[]), None, "an object without tags has no class");
+            assert!(!table.id().is_empty() && !table.classes().is_empty());
+        }
+        Err(error) => assert!(!error.to_string().is_empty()),
     }
 }
 

@@ -11,6 +11,7 @@
 
 mod config;
 mod drape;
+mod layers;
 mod osm;
 mod package;
 mod payload;
@@ -18,6 +19,7 @@ mod vectors;
 
 pub use config::{settings, styles};
 pub use drape::drape;
+pub use layers::{layer_coding, layers};
 pub use osm::osm;
 pub use package::{package, package_of};
 pub use payload::payload;

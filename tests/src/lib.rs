@@ -284,6 +284,32 @@ pub fn manifest(package: &Path) -> Value {
     json(&["info", text(package), "--json"])["manifest"].take()
 }
 
+/// The record of a layer in a manifest; null if the package does not have the layer.
+#[must_use]
+pub fn layer<'a>(manifest: &'a Value, id: &str) -> &'a Value {
+    named(&manifest["layers"], |layer| layer["table"]["id"] == id)
+}
+
+/// The objects of a layer in the document of a tile, in their order.
+#[must_use]
+pub fn objects<'a>(tile: &'a Value, layer: &str) -> &'a [Value] {
+    let of_layer = named(&tile["layers"], |of| of["layer"] == layer);
+    of_layer["objects"].as_array().map_or(&[], Vec::as_slice)
+}
+
+/// The number of objects of each class of a layer that were kept, in the order of the classes.
+#[must_use]
+pub fn kept(layer: &Value) -> Vec<(&str, u64)> {
+    let kept = layer["kept"].as_array().into_iter().flatten();
+    kept.filter_map(|of| Some((of["class"].as_str()?, of["objects"].as_u64()?))).collect()
+}
+
+/// The first entry of a list that meets a condition; null if there is none.
+fn named(list: &Value, is_it: impl Fn(&Value) -> bool) -> &Value {
+    let found = list.as_array().and_then(|list| list.iter().find(|of| is_it(of)));
+    found.unwrap_or(&Value::Null)
+}
+
 /// Writes an ESRI ASCII grid of `columns` × `rows` heights, row by row from the north. `place` has
 /// the header lines with its position.
 ///

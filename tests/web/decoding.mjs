@@ -45,7 +45,7 @@ for (const name of packages) {
   }
   const vertices = metadata.corniche.levels.reduce((sum, level) => sum + level.vertices, 0);
   for (const [look, sections] of Object.entries(LOOKS)) {
-    const decoder = JSON.stringify({ sections, photos: "LeftOut", areas: "LeftOut", boundaries: "LeftOut" });
+    const decoder = JSON.stringify({ sections, has_photos: false, layers: [], mapping: "OnTriangles" });
     let total = 0;
     let longest = 0;
     for (const [k, tile] of tiles.entries()) {

@@ -64,15 +64,15 @@ export function tests({ browser, server }) {
   });
 
   test("a link that is followed in the page shows what it says, and the address stays with the map", async () => {
-    const page = await opened(browser, server, `#${VIEW};roads=sv;areas=off`);
-    assert.deepEqual([(await settings(page)).roads, (await settings(page)).areas], ["sv", false]);
+    const page = await opened(browser, server, `#${VIEW};roads=sv;layers=none`);
+    assert.deepEqual([(await settings(page)).roads, (await settings(page)).layers], ["sv", []]);
     await page.evaluate((view) => {
       location.hash = `#${view};compare=split;divider=0.3`;
     }, VIEW.replace("4000", "3000"));
     await page.waitForFunction(() => document.querySelector("corniche-map").settings.compare === "split");
     await settled(page);
-    const { roads, areas, divider } = await settings(page);
-    assert.deepEqual([roads, areas, +divider.toFixed(3)], ["geo", true, 0.3]);
+    const { roads, layers, divider } = await settings(page);
+    assert.deepEqual([roads, layers, +divider.toFixed(3)], ["geo", null, 0.3]);
     assert.ok(Math.abs((await ask(page, (map) => map.camera)).distance - 3000) < 30);
     await page.keyboard.press("Tab");
     await ask(page, (map) => map.lookAt({ lon: 9.515, lat: 46.905 }, { jump: true }));
@@ -90,14 +90,14 @@ export function tests({ browser, server }) {
   test("bad parts of a link are left out and told in two lines; the others are shown", async () => {
     const size = { width: 360, height: 600 };
     for (const [part, shown] of [
-      ["roads=both;areas=off", "roads=both"],
-      ["neon=1;areas=off;exaggeration=-3", "neon=1 and 1 more"],
-      [`areas=off;map-style=https://elsewhere.example/a.toml`, "map-style=https://e…"],
-      [`areas=off;classes=77;widths=0:1e9;roads=${"x".repeat(3000)}`, "classes=77 and 2 more"],
-      [`%E0%A4%A=%;areas=off;${"<img src=x onerror=alert(1)>"}`, null],
+      ["roads=both;layers=none", "roads=both"],
+      ["neon=1;layers=none;exaggeration=-3", "neon=1 and 1 more"],
+      [`layers=none;map-style=https://elsewhere.example/a.toml`, "map-style=https://e…"],
+      [`layers=none;classes=77;widths=0:1e9;roads=${"x".repeat(3000)}`, "classes=77 and 2 more"],
+      [`%E0%A4%A=%;layers=none;${"<img src=x onerror=alert(1)>"}`, null],
     ]) {
       const page = await opened(browser, server, `#${VIEW};${part}`, {}, size);
-      assert.equal((await settings(page)).areas, false, part);
+      assert.deepEqual((await settings(page)).layers, [], part);
       const notice = page.locator("corniche-map .notice.warn span");
       assert.equal(await notice.count(), 1, part);
       const text = await notice.textContent();
@@ -163,14 +163,14 @@ export function tests({ browser, server }) {
     const early = await openPage(browser, server, "/blank.html", { width: 400, height: 300 });
     const roads = await early.evaluate(async () => {
       const map = document.createElement("corniche-map");
-      for (const [name, value] of Object.entries({ src: "/packages/pass.pmtiles", samples: "1", roads: "sv", areas: "off" })) map.setAttribute(name, value);
+      for (const [name, value] of Object.entries({ src: "/packages/pass.pmtiles", samples: "1", roads: "sv", layers: "none" })) map.setAttribute(name, value);
       document.querySelector("main").append(map);
       await new Promise((done) => setTimeout(done, 20));
       map.removeAttribute("roads");
       await new Promise((done) => map.addEventListener("ready", done, { once: true }));
-      return [map.settings.roads, map.settings.areas];
+      return [map.settings.roads, map.settings.layers];
     });
-    assert.deepEqual(roads, ["geo", false]);
+    assert.deepEqual(roads, ["geo", []]);
     checkFaults(early);
     await early.end();
   });

@@ -31,9 +31,9 @@ export function tests({ sources }) {
     assert.equal(hashWith("#9,47", "", place), `#${textOf(place)}`);
     assert.equal(hashWith("#contents", "", place), `#contents&${textOf(place)}`);
     // With manual changes.
-    const part = partInHash("#contents&9,47;roads=sv;areas=off", "");
-    assert.deepEqual([placeBefore(part), changesAfter(part)], [{ lon: 9, lat: 47 }, "roads=sv;areas=off"]);
-    assert.equal(hashWith("#contents&9,47;roads=sv", "", place, "areas=off"), `#contents&${textOf(place)};areas=off`);
+    const part = partInHash("#contents&9,47;roads=sv;layers=none", "");
+    assert.deepEqual([placeBefore(part), changesAfter(part)], [{ lon: 9, lat: 47 }, "roads=sv;layers=none"]);
+    assert.equal(hashWith("#contents&9,47;roads=sv", "", place, "layers=none"), `#contents&${textOf(place)};layers=none`);
     assert.equal(hashWith("#a=8,46;roads=sv&9,47", "a", place), `#9,47&a=${textOf(place)}`);
   });
 
@@ -42,8 +42,8 @@ export function tests({ sources }) {
     const { placeOf, textOf, partInHash, placeBefore, changesAfter, hashWith } = await load("hash.js");
     const { changesIn } = await load("hand_made.js");
     const [classes, widths] = [Array(9).fill(true), Array(9).fill(1)];
-    const usual = { roads: "geo", classes, widths, style: "road-atlas", photo: 0.5, areas: true, exaggeration: 1, divider: 0.5 };
-    const words = "# & = ; , a= 9.52 47.14 -180 1e9 % %25 %zz above NaN roads=sv + . map-style= exaggeration= photo= areas=off classes= widths= 0: none 0";
+    const usual = { roads: "geo", classes, widths, style: "road-atlas", photo: 0.5, layers: null, exaggeration: 1, divider: 0.5 };
+    const words = "# & = ; , a= 9.52 47.14 -180 1e9 % %25 %zz above NaN roads=sv + . map-style= exaggeration= photo= layers= classes= widths= 0: none 0";
     const pieces = [...words.split(" "), " ", "\u202e", "\ud800", "9".repeat(400)];
     let state = 38;
     const next = (most) => (state = (state * 48271) % 2147483647) % most;
@@ -114,7 +114,7 @@ export function tests({ sources }) {
       widths: Array(9).fill(1),
       style: "road-atlas",
       photo: 0.5,
-      areas: true,
+      layers: null,
       exaggeration: 1,
       divider: 0.5,
     };
@@ -125,21 +125,21 @@ export function tests({ sources }) {
       widths: [1, 1.5, 1, 1, 1, 1, 1, 1, 0.25],
       style: "styles/my style;2.toml",
       photo: null,
-      areas: false,
+      layers: ["areas", "walls"],
       exaggeration: 1.2999999523162842,
     };
     assert.equal(changesText(changed(usual, usual)), "", "nothing was changed");
     const text = changesText(changed(now, usual));
     assert.equal(
       text,
-      "roads=sv;map-style=styles/my%20style%3B2.toml;exaggeration=1.3;photo=style;areas=off;classes=0,2;widths=1:1.5,8:0.25",
+      "roads=sv;map-style=styles/my%20style%3B2.toml;exaggeration=1.3;photo=style;layers=areas,walls;classes=0,2;widths=1:1.5,8:0.25",
     );
     const { changes, unknown } = changesIn(text, usual);
     assert.deepEqual(unknown, []);
     assert.deepEqual({ ...usual, ...Object.assign({}, ...changes.map(([, change]) => change)) }, { ...now, exaggeration: 1.3 });
-    const none = { classes: Array(9).fill(false), widths: Array(9).fill(1) };
-    assert.equal(changesText(none), "classes=none;widths=none");
-    assert.deepEqual(Object.assign({}, ...changesIn("classes=none;widths=none", usual).changes.map(([, change]) => change)), none);
+    const none = { layers: [], classes: Array(9).fill(false), widths: Array(9).fill(1) };
+    assert.equal(changesText(none), "layers=none;classes=none;widths=none");
+    assert.deepEqual(Object.assign({}, ...changesIn("layers=none;classes=none;widths=none", usual).changes.map(([, change]) => change)), none);
     const bad = ["neon=1", "exaggeration=high", "classes=0,9", "classes=", "widths=1", "widths=1:x", "map-style=%E0", "constructor=1", "7"];
     assert.deepEqual(changesIn(bad.join(";"), usual), { changes: [], unknown: bad });
     assert.equal(shortList(["a=1", "b=2", "c=3"]), "a=1 and 2 more");
@@ -151,11 +151,12 @@ export function tests({ sources }) {
     const element = (attributes) => ({ getAttribute: (name) => attributes[name] ?? null });
     assert.deepEqual(
       settingsOf(
-        element({ roads: "sv", "map-style": "dark", exaggeration: "2", "error-px": "x", areas: "off", wireframe: "", photo: "off" }),
+        element({ roads: "sv", "map-style": "dark", exaggeration: "2", "error-px": "x", layers: "none", wireframe: "", photo: "off" }),
       ),
-      { roads: "sv", style: "dark", exaggeration: 2, areas: false, wireframe: true, photo: 0 },
+      { roads: "sv", style: "dark", exaggeration: 2, layers: [], wireframe: true, photo: 0 },
     );
     assert.equal(changeOf("samples", null), null);
+    assert.deepEqual(changeOf("layers", "areas, walls"), { layers: ["areas", "walls"] });
     assert.deepEqual([settingOf("error-px"), settingOf("label")], ["error_px", undefined]);
     assert.equal(changeOf("samples", " "), null);
     assert.deepEqual(changeOf("photo", "style"), { photo: null });

@@ -1,7 +1,6 @@
-//! The areas of a map: classes from tags, and polygons from the ways of their outlines.
+//! The areas of a map: polygons from the ways of their outlines.
 //!
 //! ```text
-//!  tags ──► AreaTable::classify ──► class, or none
 //!  ways ──► segments ──► planar graph ──► faces ──► polygons: an outer ring, holes
 //!           (doubled ones   (half-edges,    (inside by the
 //!            cancel out)     sorted by angle)  even-odd rule)
@@ -15,14 +14,11 @@
 //!
 //! This crate never reads terrain or files.
 
-mod area;
-mod area_class;
-mod area_table;
 mod assemble;
-mod boundary_class;
 mod coarsen;
 mod cut_out;
 mod divide;
+mod inside_point;
 mod intersection;
 mod outline;
 mod over_seam;
@@ -31,7 +27,6 @@ mod sea;
 
 mod coastlines;
 mod faces;
-mod named_classes;
 mod planar_graph;
 mod region_edge;
 mod segments;
@@ -40,15 +35,12 @@ mod stabbing;
 #[cfg(test)]
 mod chessboard_tests;
 
-pub use area::{Area, AreaObject};
-pub use area_class::AreaClass;
-pub use area_table::{AreaTable, AreaTableError};
 pub use assemble::{AssembledArea, assemble};
-pub use boundary_class::{BoundaryClass, BoundaryNames};
 pub use coarsen::{coarsen, surrounded};
 pub use coastlines::Coastline;
 pub use cut_out::{cut_out, divide_all};
 pub use divide::{Axis, divide};
+pub use inside_point::inside_point;
 pub use intersection::intersection;
 pub use outline::{OutlineError, OutlineWay};
 pub use over_seam::{split_polygon, unroll_rings};

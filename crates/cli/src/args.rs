@@ -32,9 +32,9 @@ pub(crate) use build::{BuildArgs, PlanArgs, WorkArgs};
 pub(crate) use camera::PrintScale;
 pub(crate) use drawing::{DETAILS, FlyArgs, RenderArgs};
 pub(crate) use export::{
-    Export, ExportAreasArgs, ExportBoundariesArgs, ExportEdgesArgs, ExportGeoTiffArgs,
-    ExportMeshArgs, ExportQuantizedMeshArgs, ExportRoadsArgs, ExportTiles3dArgs, InPlanArgs,
-    MODEL_FORMATS, VECTOR_FORMATS, VectorArgs,
+    Export, ExportEdgesArgs, ExportGeoTiffArgs, ExportLayerArgs, ExportMeshArgs,
+    ExportQuantizedMeshArgs, ExportRoadsArgs, ExportTiles3dArgs, MODEL_FORMATS, VECTOR_FORMATS,
+    VectorArgs,
 };
 pub(crate) use growth::GrowthArgs;
 pub(crate) use look::{LookArgs, OUTLINES, ROADS, Roads, WIDTH_GROWTHS};
@@ -49,7 +49,7 @@ pub(crate) use serve::ServeArgs;
 pub(crate) use shared::{
     DatumArg, ExtractArgs, FileArgs, FolderArgs, PackageArg, RecordedArgs, ThreadsArg,
 };
-pub(crate) use shell::{CompletionsArgs, ManArgs};
+pub(crate) use shell::{CompletionsArgs, LayersArgs, ManArgs};
 pub(crate) use values::{package_among, word_of};
 pub(crate) use view::ViewArgs;
 pub(crate) use voice::{LogFormat, Voice};
@@ -354,6 +354,9 @@ pub(crate) enum CliCommand {
     /// Export a package to other formats
     #[command(subcommand)]
     Export(Export),
+    /// List the built-in layers, print or check the table of a layer, or print the tables' JSON
+    /// schema
+    Layers(LayersArgs),
     /// Render a package to a PNG, without a window
     Render(RenderArgs),
     /// Fly over a package and measure the cost of each frame; needs no window

@@ -165,11 +165,6 @@ fn options_with_several_values_leave_positional_arguments_alone() {
         CliCommand::Export(what) => match what {
             Export::GeoTiff(args) => measured(&args.from, &[]),
             Export::Roads(args) => measured(&args.vector.from, &args.vector.extract.osm),
-            Export::Boundaries(args) => {
-                let (package, [osm]) =
-                    package_among(args.package.as_ref(), [&args.extract.osm], "").unwrap();
-                (path_of(package), osm)
-            }
             Export::Edges(args) => measured(&args.vector.from, &args.vector.extract.osm),
             what => panic!("{what:?} has no files to tell apart"),
         },
@@ -187,7 +182,6 @@ fn options_with_several_values_leave_positional_arguments_alone() {
     };
     // The words after the option, the expected positional argument, and the required options.
     let known = [
-        ("export boundaries --osm", "p.pmtiles", "-o b.csv"),
         ("export edges --dem", "p.pmtiles", "-o e.csv --osm rest"),
         ("export edges --osm", "p.pmtiles", "-o e.csv --dem rest"),
         ("export geotiff --dem", "p.pmtiles", "-o h.tif"),

@@ -4,10 +4,9 @@
 //! Programs rely on these types: fields may be added, but not changed. Positions, rectangles
 //! and ranges are lists of numbers; other groups of values are objects.
 
-pub(crate) mod areas;
 pub(crate) mod growth;
 pub(crate) mod info;
-pub(crate) mod lines;
+pub(crate) mod layers;
 pub(crate) mod plan;
 pub(crate) mod profile;
 pub(crate) mod progress;

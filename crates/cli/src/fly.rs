@@ -171,6 +171,7 @@ impl Plan<'_> {
                 exaggeration: drawing.ground.exaggeration,
                 supersampling: drawing.supersampling,
                 style: self.style.clone(),
+                layers: self.args.look.shown_layers(),
             },
             detail: lod,
             budget: drawing.gpu.budget(),
@@ -178,9 +179,14 @@ impl Plan<'_> {
             frames: frames(self.args, self.flight)?,
         };
         let picture = &options.picture;
-        let decoder = TileDecoder::default().for_look(picture.roads.method, &picture.style);
-        let decoder = decoder.with_overlays(Arc::clone(&self.overlays));
-        let package = packages::source(&self.args.from.package)?.with_decoder(decoder);
+        let package = packages::source(&self.args.from.package)?;
+        let looks = picture.looks(package.manifest());
+        let decoder = TileDecoder::default().for_look(
+            picture.roads.method,
+            &picture.style,
+            looks.drawn_layers(),
+        );
+        let package = package.with_decoder(decoder.with_overlays(Arc::clone(&self.overlays)));
         let is_stopped = || {
             let is_gone = watcher.is_some_and(|watcher| watcher.is_gone.load(Ordering::SeqCst));
             is_gone || interrupt::is_noted()

@@ -4,13 +4,13 @@ mod words;
 
 use std::{borrow::Cow, fmt::Write as _};
 
-use corniche_areas::{AreaClass, BoundaryClass};
 use corniche_geom::Cell;
+use corniche_layers::LayerGeometry;
 use corniche_osm::LineLoss;
 use corniche_roads::LossReason;
 use corniche_tileset::{
-    AreasRecord, DatumOperationRecord, LineLevelRecord, LinesRecord, Manifest, ManifestCounts,
-    SampleErrorRecord, ScaleRecord, SpansRecord,
+    DatumOperationRecord, LayerRecord, Manifest, ManifestCounts, SampleErrorRecord, ScaleRecord,
+    SectionLevelRecord, SpansRecord,
 };
 
 use self::words::words_of;
@@ -26,7 +26,7 @@ use crate::{
 
 /// Width of the label column in the first lines.
 const NAMES: usize = 13;
-/// What areas and boundaries count.
+/// What layers count.
 const ALL: &str = "numbers include objects outside the package's extent";
 
 pub(crate) fn run(args: &InfoArgs) -> Result<(), CommandFailure> {
@@ -117,11 +117,8 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64, digits: Digits) -
     if !manifest.photos.is_empty() {
         say(format!("Photos:\n{}", photos(manifest, digits).to_text()));
     }
-    if let Some(areas) = &manifest.areas {
-        say(area_texts(areas, digits));
-    }
-    if let Some(boundaries) = &manifest.boundaries {
-        say(boundary_texts(boundaries, digits));
+    for layer in &manifest.layers {
+        say(layer_text(layer, digits));
     }
     if let Some(spans) = &manifest.spans {
         say(span_texts(spans, digits));
@@ -145,50 +142,44 @@ pub(crate) fn datum_operation(found: &DatumOperationRecord) -> String {
     format!("{} to {} by {}, {accuracy}{guess}", in_line(from), in_line(to), in_line(operation))
 }
 
-/// The numbers of kept and lost areas, and their sizes on each level.
-fn area_texts(areas: &AreasRecord, digits: Digits) -> String {
-    let AreasRecord { counts, levels } = areas;
-    let mut classes = Table::new(["areas", "number", "km²"]);
+/// The numbers of kept and lost objects of a layer, and its sizes on each level.
+fn layer_text(layer: &LayerRecord, digits: Digits) -> String {
+    let LayerRecord { table, counts, levels } = layer;
+    let (objects, measure) = match table.geometry {
+        LayerGeometry::Line => ("ways", "km"),
+        LayerGeometry::Area => ("objects", "km²"),
+        LayerGeometry::Point => ("objects", ""),
+    };
+    let mut classes = Table::new(["class", objects, measure]);
     for kept in &counts.kept {
-        let name = AreaClass::from_number(kept.class).map_or("?", AreaClass::name);
-        let area_km2 = format!("{:.3}", kept.area_km2);
-        classes.row([name.to_owned(), digits.count(kept.areas), area_km2]);
+        let class = table.classes.get(usize::from(kept.class)).map_or("?", |class| &class.id);
+        let measure = match table.geometry {
+            LayerGeometry::Line => format!("{:.1}", kept.length_um as f64 / 1e9),
+            LayerGeometry::Area => format!("{:.3}", kept.area_km2),
+            LayerGeometry::Point => String::new(),
+        };
+        classes.row([class.to_owned(), digits.count(kept.objects), measure]);
     }
-    let kept: u64 = counts.kept.iter().map(|kept| kept.areas).sum();
-    let levels = levels.iter().map(|of| (of.level, [of.tiles, of.areas, of.points, of.bytes]));
+    let kept: u64 = counts.kept.iter().map(|kept| kept.objects).sum();
+    let unread = counts.unread_values.iter().map(|(key, values)| {
+        format!("  values of {} that could not be read: {}\n", in_line(key), digits.count(*values))
+    });
     format!(
-        "Areas: {} objects of the extract, {} of them converted ({ALL}):\n{}{}\n{}",
+        "Layer {}: {} {objects} of the extract, {} of them converted ({ALL}):\n{}{}{}\n{}",
+        table.id,
         digits.count(counts.objects),
         digits.count(kept),
         classes.to_text(),
-        lost_text("objects", &counts.lost, digits),
-        level_text("areas", levels, digits)
-    )
-}
-
-/// The numbers of kept and lost boundaries, and their sizes on each level.
-fn boundary_texts(lines: &LinesRecord, digits: Digits) -> String {
-    let LinesRecord { counts, levels } = lines;
-    let mut classes = Table::new(["boundaries", "ways", "km"]);
-    for kept in &counts.kept {
-        let name = BoundaryClass::from_number(kept.class).map_or("?", BoundaryClass::name);
-        let length_km = format!("{:.1}", kept.length_um as f64 / 1e9);
-        classes.row([name.to_owned(), digits.count(kept.ways), length_km]);
-    }
-    let levels = levels.iter().map(LineLevelRecord::figures);
-    format!(
-        "Boundaries: {} ways of the extract, each counted once ({ALL}):\n{}{}\n{}",
-        digits.count(counts.ways),
-        classes.to_text(),
-        lost_text("ways", &counts.lost, digits),
-        level_text("parts", levels, digits)
+        lost_text(objects, &counts.lost, digits),
+        unread.collect::<String>(),
+        level_text("parts", levels.iter().map(SectionLevelRecord::figures), digits)
     )
 }
 
 /// The numbers of bridges and tunnels, and their sizes on each level.
 fn span_texts(spans: &SpansRecord, digits: Digits) -> String {
     let SpansRecord { counts, levels, .. } = spans;
-    let levels = levels.iter().map(LineLevelRecord::figures);
+    let levels = levels.iter().map(SectionLevelRecord::figures);
     let kilometres = |length_um: u64| format!("{:.1} km", length_um as f64 / 1e9);
     let reasons = counts.reasons.iter();
     let reasons = reasons
@@ -424,14 +415,15 @@ pub(crate) fn reason_words(recorded: &str) -> Cow<'_, str> {
     }
 }
 
-/// Whether a reason means that ways are beyond the extract, where a boundary continues outside it.
+/// Whether a reason means that ways are beyond the extract, where a line of a relation continues
+/// outside it.
 fn is_beyond_extract(reason: &str) -> bool {
     LineLoss::MissingWay.reason() == reason
 }
 
-/// The number of boundary ways beyond the extract.
-pub(crate) fn beyond_extract(lines: &LinesRecord) -> u64 {
-    let lost = lines.counts.lost.iter().filter(|(reason, _)| is_beyond_extract(reason));
+/// The number of ways of a layer beyond the extract.
+pub(crate) fn beyond_extract(layer: &LayerRecord) -> u64 {
+    let lost = layer.counts.lost.iter().filter(|(reason, _)| is_beyond_extract(reason));
     lost.map(|(_, number)| number).sum()
 }
 

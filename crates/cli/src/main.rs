@@ -22,6 +22,7 @@ mod growth;
 mod info;
 mod interrupt;
 mod jobs;
+mod layers;
 mod man;
 mod matching;
 mod merge;
@@ -154,6 +155,7 @@ fn run(arguments: Arguments) -> Result<ExitCode, CommandFailure> {
         CliCommand::Match(args) => matching::run(&args),
         CliCommand::Tile(args) => tile::run(&args),
         CliCommand::Export(args) => export::run(&args),
+        CliCommand::Layers(args) => layers::run(&args),
         CliCommand::Render(args) => render::run(&args),
         CliCommand::Fly(args) => fly::run(&args),
         CliCommand::Serve(args) => serve::run(&args),

@@ -5,7 +5,7 @@ use std::{path::Path, sync::Arc};
 use corniche_overlay::{MOST_POINTS, OverlayError, VectorLines, place, read};
 use corniche_styles::LineStyle;
 use corniche_tileset::Manifest;
-use corniche_viewer::tiles::{LayerLine, Overlays};
+use corniche_viewer::tiles::{Overlays, StyledLine};
 
 use crate::{
     args::{LookArgs, OverlayArg},
@@ -39,7 +39,7 @@ pub(crate) fn load(look: &LookArgs, manifest: &Manifest) -> Result<Arc<Overlays>
         if !is_near {
             note(&file.path, "no point of its lines is in the package");
         }
-        lines.extend(placed.into_iter().map(|line| LayerLine {
+        lines.extend(placed.into_iter().map(|line| StyledLine {
             id: (first + line.line) as i64,
             style,
             points: line.points,

@@ -8,18 +8,20 @@ use std::{
     path::Path,
 };
 
-use corniche_areas::AreaTable;
 use corniche_presets::{
-    Config, area_preset, area_preset_names, class_labels as preset_labels, frc_preset,
-    frc_preset_names, parse_area_table, parse_frc_table,
+    Config, class_labels as preset_labels, frc_preset, frc_preset_names, parse_frc_table,
 };
 use corniche_roads::{FrcTable, FunctionalRoadClass};
 use corniche_tileset::Manifest;
+use strsim::levenshtein;
 
 use crate::failure::CommandFailure;
 
 /// The largest size of a settings file; real ones are far smaller.
 const MAX_FILE_BYTES: u64 = 2 << 20;
+
+/// A text is taken for a misspelt name if it differs from it by at most this many letters.
+const MOST_CHANGES: usize = 2;
 
 /// Loads an FRC table: a preset by name, or a file by path.
 pub(crate) fn frc_table(name_or_path: &str) -> Result<FrcTable, CommandFailure> {
@@ -32,8 +34,8 @@ pub(crate) fn frc_table(name_or_path: &str) -> Result<FrcTable, CommandFailure> 
     Ok(if is_known { table } else { table.with_recorded_labels() })
 }
 
-/// The text of a preset by name, or of a file by path. The error begins with `what`, and lists all
-/// presets.
+/// The text of a preset by name, or of a file by path. The error begins with `what`, lists all
+/// presets, and suggests one with a similar name.
 pub(crate) fn text_of(
     path: &str,
     preset: Option<&'static str>,
@@ -43,8 +45,11 @@ pub(crate) fn text_of(
         return Ok(text.into());
     }
     read_text(Path::new(path)).map(Cow::Owned).map_err(|error| {
-        let names = names.collect::<Vec<_>>().join(", ");
-        unusable!("{what} ({names}) nor a readable file: {error}")
+        let names: Vec<&str> = names.collect();
+        let near = names.iter().map(|name| (levenshtein(name, path), name));
+        let near = near.filter(|(changes, _)| *changes <= MOST_CHANGES).min();
+        let meant = near.map_or_else(String::new, |(_, name)| format!("; did you mean {name}?"));
+        unusable!("{what} ({}) nor a readable file: {error}{meant}", names.join(", "))
     })
 }
 
@@ -53,13 +58,6 @@ pub(crate) fn text_of(
 pub(crate) fn class_labels(manifest: &Manifest) -> [String; FunctionalRoadClass::COUNT] {
     let settings = &manifest.settings;
     settings.recorded_labels().unwrap_or_else(|| preset_labels(&settings.frc_table))
-}
-
-/// Loads the table of areas: a preset by name, or a file by path.
-pub(crate) fn area_table(name_or_path: &str) -> Result<AreaTable, CommandFailure> {
-    let what = format!("--areas {name_or_path:?} is neither off nor a preset");
-    let text = text_of(name_or_path, area_preset(name_or_path), (&what, area_preset_names()))?;
-    parse_area_table(&text).map_err(|error| refuse(&format!("area table {name_or_path:?}"), &error))
 }
 
 /// Reads a settings file.

@@ -2,14 +2,12 @@
 
 use std::path::PathBuf;
 
-use corniche_areas::BoundaryNames;
 use corniche_export::Elevation;
 use corniche_network::Network;
 use corniche_presets::frc_preset;
 use corniche_roads::FrcTable;
-use corniche_spec::BuildObserver;
 use corniche_tileset::FilePackage;
-use corniche_verify::{RecordedElevation, VerifyError, VerifyOsm};
+use corniche_verify::{RecordedElevation, VerifyOsm};
 
 use crate::{
     args::{ExtractArgs, RecordedArgs, ThreadsArg},
@@ -47,36 +45,20 @@ pub(crate) fn for_export(recorded: &RecordedElevation) -> Elevation<'_> {
 pub(crate) fn network(
     args: &ExtractArgs,
     osm: &[PathBuf],
-    of: (&ThreadsArg, &FilePackage),
-) -> Result<Option<Network>, CommandFailure> {
-    from_extracts(args, osm, of, corniche_verify::network)
-}
-
-/// Reads the names of bounded areas, if extracts are named; those of another package are rejected.
-pub(crate) fn boundary_names(
-    (args, osm): (&ExtractArgs, &[PathBuf]),
-    of: (&ThreadsArg, &FilePackage),
-) -> Result<Option<BoundaryNames>, CommandFailure> {
-    from_extracts(args, osm, of, corniche_verify::boundary_names)
-}
-
-fn from_extracts<T>(
-    args: &ExtractArgs,
-    osm: &[PathBuf],
     (cpu, package): (&ThreadsArg, &FilePackage),
-    read: impl FnOnce(&FilePackage, &VerifyOsm, usize, &dyn BuildObserver) -> Result<T, VerifyError>,
-) -> Result<Option<T>, CommandFailure> {
+) -> Result<Option<Network>, CommandFailure> {
     if osm.is_empty() {
         return Ok(None);
     }
     let extract = VerifyOsm {
         paths: corniche_spec::inputs::extract_names(osm)?,
         table: frc_table(args.frc_table.as_deref(), package)?,
-        areas: None,
         memory_bytes: MEMORY_BYTES,
     };
-    let found =
-        Progress::show_during(|progress| read(package, &extract, threads(cpu.threads), progress))?;
+    let threads = threads(cpu.threads);
+    let found = Progress::show_during(|progress| {
+        corniche_verify::network(package, &extract, threads, progress)
+    })?;
     Ok(Some(found))
 }
 
@@ -90,15 +72,10 @@ pub(crate) fn frc_table(
     }
     let name = &package.manifest().settings.frc_table;
     if frc_preset(name).is_none() {
-        return Err(no_preset(package, &format!("FRC table {name:?}"), "--frc-table"));
+        return Err(unusable!(
+            "{:?} was built with the FRC table {name:?}, which is not a preset; pass its file with --frc-table",
+            package.path()
+        ));
     }
     presets::frc_table(name)
-}
-
-/// The failure for a package whose table does not come with the program.
-pub(crate) fn no_preset(package: &FilePackage, table: &str, option: &str) -> CommandFailure {
-    unusable!(
-        "{:?} was built with the {table}, which is not a preset; pass its file with {option}",
-        package.path()
-    )
 }

@@ -4,11 +4,11 @@ mod picture_files;
 
 use corniche_export::{PictureFacts, PlaceOfPicture};
 use corniche_osm::AreaLoss;
-use corniche_styles::{OwnWidths, Style};
+use corniche_styles::OwnWidths;
 use corniche_tileset::Manifest;
 use corniche_viewer::{
-    LegendRequest, Mapping, PictureOptions, RenderReport, RenderRequest, RoadMethod, TitleFlaws,
-    render,
+    LegendRequest, Mapping, PictureOptions, RenderReport, RenderRequest, RoadMethod, ShownLayers,
+    TitleFlaws, render,
     tiles::{MapPackage as _, TileDecoder},
 };
 
@@ -41,6 +41,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), CommandFailure> {
             exaggeration: args.ground.exaggeration,
             supersampling: args.supersampling,
             style,
+            layers: args.look.shown_layers(),
         },
         camera: args.from_above.request(&args.camera),
         legend: None,
@@ -51,8 +52,10 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), CommandFailure> {
     request.check()?;
     let package = packages::source(&args.from.package)?;
     let overlays = overlays::load(&args.look, package.manifest())?;
+    let options = &request.options;
+    let looks = options.looks(package.manifest());
     let decoder =
-        TileDecoder::default().for_look(request.options.roads.method, &request.options.style);
+        TileDecoder::default().for_look(options.roads.method, &options.style, looks.drawn_layers());
     let package = package.with_decoder(decoder.with_overlays(overlays).with_mapping(mapping));
     let scale = args.from_above.print_scale();
     let legend = args.legend.then(|| LegendRequest {
@@ -78,7 +81,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), CommandFailure> {
             manifest.crs
         ));
     }
-    if let Some(text) = incomplete_areas(manifest, &request.options.style) {
+    if let Some(text) = incomplete_areas(manifest, &request.options.layers) {
         messages::note(&text);
     }
     Ok(())
@@ -126,11 +129,11 @@ fn tell(args: &RenderArgs, report: &RenderReport) {
     }
 }
 
-/// A note about areas that are incomplete in the extract; `None` if there are none, or the style
-/// draws no areas.
-fn incomplete_areas(manifest: &Manifest, style: &Style) -> Option<String> {
+/// A note about drawn areas that are incomplete in the extract; `None` if there are none.
+fn incomplete_areas(manifest: &Manifest, shown: &ShownLayers) -> Option<String> {
     let reasons = [AreaLoss::MissingWays, AreaLoss::MissingNodes].map(AreaLoss::reason);
-    let lost = manifest.areas.as_ref().filter(|_| style.has_areas())?.counts.lost.iter();
+    let layers = manifest.layers.iter().filter(|of| shown.contains(&of.table.id));
+    let lost = layers.flat_map(|layer| &layer.counts.lost);
     let objects =
         lost.filter(|(reason, _)| reasons.contains(&reason.as_str())).map(|(_, objects)| objects);
     let objects: u64 = objects.sum();

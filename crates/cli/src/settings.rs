@@ -7,12 +7,12 @@ use std::{
     thread,
 };
 
-use corniche_areas::AreaTable;
 use corniche_gis::RegionPolygons;
 use corniche_ground::terrain::recorded::TerrainRecord;
+use corniche_layers::{LayerTable, stacked_layers};
 use corniche_presets::{
-    AreaOptions, BoundsChoice, InputFiles, OutputFiles, PhotoOptions, RoadOptions, TerrainOptions,
-    class_filter, is_photo_off, parse_bytes,
+    BoundsChoice, InputFiles, LayerOptions, OutputFiles, PhotoOptions, RoadOptions, TerrainOptions,
+    class_filter, is_no_layers, is_photo_off, parse_bytes,
 };
 use corniche_roads::ClassFilter;
 use corniche_spec::{
@@ -21,7 +21,7 @@ use corniche_spec::{
     machine::{MIN_MEMORY_BYTES, default_memory_bytes},
 };
 
-use crate::{args::WorkArgs, credits, failure::CommandFailure, presets};
+use crate::{args::WorkArgs, credits, failure::CommandFailure, layers, presets};
 
 /// Default JPEG quality of photos: quality 85 needs a fifth more bytes for half a decibel
 /// (docs/lab/measured.md).
@@ -56,7 +56,7 @@ pub(crate) fn complete(args: &mut WorkArgs) -> Result<OutputFiles, CommandFailur
     args.photos = mem::take(&mut args.photos).or(config.photo);
     args.terrain = mem::take(&mut args.terrain).or(config.terrain);
     args.roads = mem::take(&mut args.roads).or(config.roads);
-    args.areas = mem::take(&mut args.areas).or(config.areas);
+    args.layers = mem::take(&mut args.layers).or(config.layers);
     args.resources = mem::take(&mut args.resources).or(config.resources);
     Ok(config.output)
 }
@@ -82,8 +82,7 @@ pub(crate) fn build_work(args: WorkArgs) -> Result<BuildWork, CommandFailure> {
     }
     credits::check(&attribution)?;
     let osm = extract_names(&inputs.osm)?;
-    let areas = area_table(&args.areas, &osm)?;
-    let boundaries = boundaries(&args.areas, &osm)?;
+    let layers = layer_tables(&args.layers, &osm)?;
     let bounds = terrain.bounds.map(|bounds| in_degrees(bounds, &osm)).transpose()?;
     let polygon = inputs.polygon.map(polygon).transpose()?;
     let dem = elevation_names(&inputs.dem)?;
@@ -94,8 +93,7 @@ pub(crate) fn build_work(args: WorkArgs) -> Result<BuildWork, CommandFailure> {
         dem,
         terrain_of: inputs.terrain,
         osm,
-        areas,
-        boundaries,
+        layers,
         photo,
         attribution,
         terrain,
@@ -181,25 +179,21 @@ fn photo_choice(names: &[PathBuf], options: &PhotoOptions) -> Result<PhotoChoice
     Ok(PhotoChoice::Files(PhotoSettings { files, levels: options.levels, quality }))
 }
 
-/// The table of areas; `None` without areas.
-fn area_table(options: &AreaOptions, osm: &[PathBuf]) -> Result<Option<AreaTable>, CommandFailure> {
-    match options.table.as_deref() {
-        None | Some("off") => Ok(None),
-        Some(_) if osm.is_empty() => {
-            Err(unusable!("--areas needs an extract; pass one with --osm"))
-        }
-        Some(table) => presets::area_table(table).map(Some),
+/// The tables of the layers, the lowest layer first.
+fn layer_tables(
+    LayerOptions { tables }: &LayerOptions,
+    osm: &[PathBuf],
+) -> Result<Vec<LayerTable>, CommandFailure> {
+    if tables.is_empty() || is_no_layers(tables) {
+        return Ok(Vec::new());
     }
-}
-
-/// Whether boundaries are requested.
-fn boundaries(options: &AreaOptions, osm: &[PathBuf]) -> Result<bool, CommandFailure> {
-    match options.boundaries {
-        Some(true) if osm.is_empty() => {
-            Err(unusable!("--boundaries needs an extract; pass one with --osm"))
-        }
-        wanted => Ok(wanted == Some(true)),
+    if osm.is_empty() {
+        return Err(unusable!("--layers needs an extract; pass one with --osm"));
     }
+    let tables: Vec<LayerTable> =
+        tables.iter().map(|table| layers::table(table)).collect::<Result<_, _>>()?;
+    let order = stacked_layers(&tables).map_err(|error| presets::refuse("--layers", &error))?;
+    Ok(order.into_iter().map(|index| tables[index].clone()).collect())
 }
 
 fn road_settings(options: RoadOptions) -> Result<RoadSettings, CommandFailure> {

@@ -45,12 +45,12 @@ fn is_key(line: &str) -> bool {
 
 /// The settings in a file; without inputs, outputs and settings that depend on the machine.
 fn settings_of(text: &str) -> String {
-    let Config { terrain, roads, areas, photo, .. } = Config::parse(text).unwrap();
+    let Config { terrain, roads, layers, photo, .. } = Config::parse(text).unwrap();
     let credits = (terrain.attribution.clone(), photo.attribution.clone(), terrain.bounds);
     let terrain = terrain_settings(terrain, TerrainSettings::usual()).unwrap();
     let photo = photo_choice(&[PathBuf::from("a.tif")], &photo).unwrap();
-    let areas = (area_table(&areas, &[]).unwrap(), boundaries(&areas, &[]).unwrap());
-    format!("{credits:?} {terrain:?} {:?} {areas:?} {photo:?}", road_settings(roads).unwrap())
+    let layers = layer_tables(&layers, &[]).unwrap();
+    format!("{credits:?} {terrain:?} {:?} {layers:?} {photo:?}", road_settings(roads).unwrap())
 }
 
 /// Every key of the settings file is known. A default has no effect, but an example has. Inputs and

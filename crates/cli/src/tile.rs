@@ -2,16 +2,15 @@
 
 use corniche_geom::{Bounds, LatticePoint, NodeIndex, TileId};
 use corniche_tileset::{
-    AreaRecord, FilePackage, GeoRoad, LineRecord, Manifest, Sections, SpanPoint, SpanRun, SvRoad,
-    TilePayload, TileTerrain, decode_areas, decode_boundaries,
+    FilePackage, GeoRoad, LayerObject, Manifest, Sections, SpanPoint, SpanRun, SvRoad, TilePayload,
+    TileTerrain,
 };
 use corniche_tin::Surface;
 
 use crate::{
     args::{DumpCoordinates, TileArgs},
     documents::{
-        areas::TileAreaDocument,
-        lines::TileBoundaryDocument,
+        layers::tile_layers,
         spans::TileSpanDocument,
         tile::{
             GeoRoadDocument, StreamedList, SvRoadDocument, TileDocument, TinDocument, WayDocument,
@@ -36,15 +35,16 @@ pub(crate) fn run(args: &TileArgs) -> Result<(), CommandFailure> {
         let document = document(package.manifest(), &payload, layers, args.coordinates)?;
         messages::answer_document(&document)?;
     } else {
-        messages::answer(&to_text(&payload, &layers, Digits::of_answers()))?;
+        let digits = Digits::of_answers();
+        messages::answer(&to_text(package.manifest(), &payload, &layers, digits))?;
     }
     Ok(())
 }
 
 /// The layers of a tile that are read separately.
 struct TileLayers {
-    areas: Vec<AreaRecord>,
-    boundaries: Vec<LineRecord>,
+    /// The objects of each layer of the package.
+    layers: Vec<Vec<LayerObject>>,
     spans: Vec<SpanRun>,
 }
 
@@ -52,13 +52,10 @@ impl TileLayers {
     fn read(package: &FilePackage, id: TileId) -> Result<Self, CommandFailure> {
         let bytes = package.tile(id).map_err(CommandFailure::unusable)?.unwrap_or_default();
         let manifest = package.manifest();
-        let boundaries = decode_boundaries(&bytes, id);
-        let spans = manifest.decode_spans(&bytes, id);
-        Ok(Self {
-            areas: decode_areas(&bytes, id, &manifest.frame).map_err(CommandFailure::unusable)?,
-            boundaries: boundaries.map_err(CommandFailure::unusable)?,
-            spans: spans.map_err(CommandFailure::unusable)?,
-        })
+        let layers = manifest.layers().map(|(slot, _)| manifest.decode_layer(&bytes, id, slot));
+        let layers = layers.collect::<Result<_, _>>().map_err(CommandFailure::unusable)?;
+        let spans = manifest.decode_spans(&bytes, id).map_err(CommandFailure::unusable)?;
+        Ok(Self { layers, spans })
     }
 }
 
@@ -150,7 +147,12 @@ fn tile_at(
     })
 }
 
-fn to_text(payload: &TilePayload, layers: &TileLayers, digits: Digits) -> String {
+fn to_text(
+    manifest: &Manifest,
+    payload: &TilePayload,
+    layers: &TileLayers,
+    digits: Digits,
+) -> String {
     let mut table = Table::new(["tile", &payload.id.to_string()]);
     let count = |number: usize| digits.count(number as u64);
     if let Some(terrain) = &payload.terrain {
@@ -165,12 +167,9 @@ fn to_text(payload: &TilePayload, layers: &TileLayers, digits: Digits) -> String
     table.row(["GEO vertices".into(), count(vertices)]);
     table.row(["SV lines".into(), count(payload.roads_sv.len())]);
     table.row(["OSM ways".into(), count(payload.attributes.len())]);
-    let layers = [
-        ("areas", layers.areas.len()),
-        ("boundaries", layers.boundaries.len()),
-        ("spans", layers.spans.len()),
-    ];
-    for (name, number) in layers.into_iter().filter(|(_, number)| *number > 0) {
+    let ids = manifest.layers.iter().map(|layer| layer.table.id.as_str());
+    let named = ids.zip(layers.layers.iter().map(Vec::len)).chain([("spans", layers.spans.len())]);
+    for (name, number) in named.filter(|(_, number)| *number > 0) {
         table.row([name.into(), count(number)]);
     }
     table.to_text()
@@ -212,7 +211,6 @@ fn document<'a>(
         DumpCoordinates::Crs => ("crs", manifest.metres_per_unit),
     };
     let places = Places { manifest, unit };
-    let at = |point| places.of_point(point);
     let Bounds { min_x, min_y, max_x, max_y } = frame.tile_bounds(id);
     // If an axis is reversed, the smallest coordinate is that of the other end.
     let mut bounds = Bounds::EMPTY;
@@ -245,16 +243,7 @@ fn document<'a>(
         roads_geo,
         roads_sv: StreamedList::from_slice(&payload.roads_sv, move |road| sv_road(road, places)),
         attributes: StreamedList::from_slice(&payload.attributes, WayDocument::from),
-        areas: layers
-            .areas
-            .into_iter()
-            .map(|area| TileAreaDocument::from_record(area, &at))
-            .collect(),
-        boundaries: layers
-            .boundaries
-            .into_iter()
-            .map(|line| TileBoundaryDocument::from_record(line, at))
-            .collect(),
+        layers: tile_layers(manifest, layers.layers, |point| places.of_point(point)),
         spans,
     })
 }

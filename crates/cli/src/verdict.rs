@@ -4,9 +4,7 @@
 use std::path::Path;
 
 use corniche_roads::LossReason;
-use corniche_tileset::{
-    AreasRecord, LeftOutRecord, LinesRecord, Manifest, ManifestCounts, VerticalRecord,
-};
+use corniche_tileset::{LayerRecord, LeftOutRecord, Manifest, ManifestCounts, VerticalRecord};
 
 use crate::{
     escaped::in_line,
@@ -21,6 +19,8 @@ const MOST_LINES: usize = 10;
 const WIDTH: usize = 87;
 /// The largest number of lines about skipped objects.
 const MOST_LEFT_OUT: usize = 3;
+/// The largest number of layers with a line each.
+const MOST_LAYERS: usize = 3;
 /// The largest number of values of `highway` in a line.
 const MOST_VALUES: usize = 3;
 
@@ -32,9 +32,8 @@ pub(crate) fn to_text(
     digits: Digits,
 ) -> String {
     let counts = &manifest.counts;
-    let [areas, boundaries] = [areas(manifest, digits), boundaries(manifest, digits)];
-    let some = [areas, boundaries, defects(counts, digits), datum(manifest)];
-    let mut end: Vec<String> = some.into_iter().flatten().collect();
+    let mut end = layers(manifest, digits);
+    end.extend([defects(counts, digits), datum(manifest)].into_iter().flatten());
     end.extend([error(manifest), size(manifest, package_bytes, digits), look(output)]);
     let mut lines = vec![roads(manifest, digits)];
     lines.extend(left_out(counts, digits, MOST_LEFT_OUT.min(MOST_LINES - 1 - end.len())));
@@ -155,22 +154,26 @@ fn remedy(reason: &str) -> Option<&'static str> {
     }
 }
 
-/// Areas, if they were requested.
-fn areas(manifest: &Manifest, digits: Digits) -> Option<String> {
-    let AreasRecord { counts, .. } = manifest.areas.as_ref()?;
-    let kept = digits.count(counts.kept.iter().map(|of| of.areas).sum());
-    Some(format!("areas        {kept} of {} objects kept", digits.count(counts.objects)))
-}
-
-/// Boundaries, if they were requested.
-fn boundaries(manifest: &Manifest, digits: Digits) -> Option<String> {
-    let record @ LinesRecord { counts, .. } = manifest.boundaries.as_ref()?;
-    let kept = digits.count(counts.kept.iter().map(|of| of.ways).sum());
-    let missing = match beyond_extract(record) {
-        0 => String::new(),
-        number => format!(", {} missing from the extract", digits.count(number)),
+/// The objects of the layers: a line for each of a few layers, or one line for all of them.
+fn layers(manifest: &Manifest, digits: Digits) -> Vec<String> {
+    let kept = |layer: &LayerRecord| layer.counts.kept.iter().map(|of| of.objects).sum::<u64>();
+    let layers = &manifest.layers;
+    if layers.len() > MOST_LAYERS {
+        let ids: Vec<&str> = layers.iter().map(|layer| layer.table.id.as_str()).collect();
+        let kept = digits.count(layers.iter().map(kept).sum());
+        let (shown, more) = (&ids[..MOST_LAYERS], ids.len() - MOST_LAYERS);
+        let shown = shown.join(", ");
+        return vec![format!("layers       {kept} objects in {shown} and {more} more")];
+    }
+    let line = |layer: &LayerRecord| {
+        let missing = match beyond_extract(layer) {
+            0 => String::new(),
+            number => format!(", {} missing from the extract", digits.count(number)),
+        };
+        let [kept, objects] = [kept(layer), layer.counts.objects].map(|n| digits.count(n));
+        format!("{:<12} {kept} of {objects} objects kept{missing}", layer.table.id)
     };
-    Some(format!("boundaries   {kept} of {} ways kept{missing}", digits.count(counts.ways)))
+    layers.iter().map(line).collect()
 }
 
 /// The number of defects in the input.

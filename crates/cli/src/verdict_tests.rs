@@ -2,9 +2,7 @@
 
 use corniche_osm::LineLoss;
 use corniche_testing::package::manifest;
-use corniche_tileset::{
-    AreaCounts, AreasRecord, InputRecord, LeftOutRecord, LineCounts, Manifest, RoadLoss,
-};
+use corniche_tileset::{InputRecord, LayerCounts, LeftOutRecord, Manifest, RoadLoss};
 
 use super::*;
 
@@ -46,13 +44,30 @@ fn full() -> Manifest {
     counts.defects = [("area", 16), ("missing nodes", 3), ("split by gaps", 1)]
         .map(|(name, number)| (name.to_owned(), number))
         .to_vec();
-    let kept = Vec::new();
-    let counts = AreaCounts { objects: 30, kept, lost: Vec::new() };
-    manifest.areas = Some(AreasRecord { counts, levels: Vec::new() });
-    let lost = vec![(LineLoss::MissingWay.reason().to_owned(), 1493)];
-    let counts = LineCounts { ways: 1602, kept: Vec::new(), lost };
-    manifest.boundaries = Some(LinesRecord { counts, levels: Vec::new() });
+    let missing = (LineLoss::MissingWay.reason().to_owned(), 1493);
+    manifest.layers =
+        vec![layer("areas", 30, Vec::new()), layer("boundaries", 1602, vec![missing])];
     manifest
+}
+
+/// A layer without kept objects.
+fn layer(id: &str, objects: u64, lost: Vec<(String, u64)>) -> LayerRecord {
+    let class = serde_json::json!({ "id": "one", "tags": { "natural": true } });
+    let table = serde_json::json!({ "id": id, "geometry": "area", "class": [class] });
+    let counts = LayerCounts { objects, kept: Vec::new(), lost, unread_values: Vec::new() };
+    LayerRecord { table: serde_json::from_value(table).unwrap(), counts, levels: Vec::new() }
+}
+
+#[test]
+fn many_layers_are_told_in_one_line() {
+    let ids = ["areas", "boundaries", "railways", "walls", "trees"];
+    let mut manifest = full();
+    manifest.layers = ids.map(|id| layer(id, 7, Vec::new())).to_vec();
+    let text = told(&manifest);
+    assert!(
+        text.contains("\nlayers       0 objects in areas, boundaries, railways and 2 more\n"),
+        "{text}"
+    );
 }
 
 #[test]
@@ -71,7 +86,7 @@ fn the_verdict_has_at_most_ten_lines_and_names_what_is_left_out() {
             "skipped      2002 ways, class is off (path, footway, …), 441.0 km; --classes 0-8 includes them",
             "             85 more, for other reasons, 28.0 km; corniche info lists them",
             "areas        0 of 30 objects kept",
-            "boundaries   0 of 1602 ways kept, 1493 missing from the extract",
+            "boundaries   0 of 1602 objects kept, 1493 missing from the extract",
         ]
     );
     assert!(lines[6].starts_with("datum        vertical datum unknown; "), "{text}");
@@ -84,7 +99,7 @@ fn the_verdict_has_at_most_ten_lines_and_names_what_is_left_out() {
 #[test]
 fn what_can_be_had_comes_first_with_its_option() {
     let mut manifest = full();
-    (manifest.areas, manifest.boundaries) = (None, None);
+    manifest.layers.clear();
     manifest.counts.defects.truncate(1);
     let text = told(&manifest);
     let lines: Vec<&str> = text.lines().collect();

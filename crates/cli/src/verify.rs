@@ -2,8 +2,6 @@
 
 use std::{fmt::Write as _, path::PathBuf};
 
-use corniche_areas::AreaTable;
-use corniche_presets::area_preset;
 use corniche_tileset::FilePackage;
 use corniche_verify::{
     Check, CheckId, ErrorFigures, Needs, VerifyError, VerifyOsm, VerifyReport, VerifySettings,
@@ -16,9 +14,9 @@ use crate::{
     exit::ExitCode,
     failure::CommandFailure,
     info::or_dash,
-    messages, packages, presets,
+    messages, packages,
     progress::Progress,
-    recorded::{MEMORY_BYTES, frc_table, no_preset},
+    recorded::{MEMORY_BYTES, frc_table},
     settings::{polygon, threads},
     table::{Digits, Table},
 };
@@ -76,24 +74,7 @@ fn extract(
         return Err(VerifyError::NoExtract.into());
     }
     let table = frc_table(args.frc_table.as_deref(), package)?;
-    let areas = areas(args, package)?;
-    Ok(Some(VerifyOsm { paths, table, areas, memory_bytes: MEMORY_BYTES }))
-}
-
-/// The table of areas that the package names: the given one, or the preset with that name; `None`
-/// if the package has no areas.
-fn areas(args: &VerifyArgs, package: &FilePackage) -> Result<Option<AreaTable>, CommandFailure> {
-    match (&args.areas, &package.manifest().settings.areas) {
-        (Some(table), _) => presets::area_table(table).map(Some),
-        (None, None) => Ok(None),
-        (None, Some(recorded)) => {
-            let name = &recorded.table;
-            if area_preset(name).is_none() {
-                return Err(no_preset(package, &format!("table of areas {name:?}"), "--areas"));
-            }
-            presets::area_table(name).map(Some)
-        }
-    }
+    Ok(Some(VerifyOsm { paths, table, memory_bytes: MEMORY_BYTES }))
 }
 
 /// Inputs that were not given, although checks of the package need them.

@@ -54,8 +54,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, CommandFailure> {
         camera: args.camera.request(),
         settings: MapSettings {
             photo: args.look.photo,
-            areas: args.look.areas,
-            boundaries: args.look.boundaries,
+            layers: args.look.shown_layers(),
             screen_space_error_px: args.ground.screen_space_error,
             cell_px: args.ground.cell_px,
             exaggeration: args.ground.exaggeration,

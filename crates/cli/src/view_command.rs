@@ -72,11 +72,8 @@ fn words(package: &str, overlays: &[OverlayArg], shown: &ShownView) -> Vec<Strin
     if let Some(photo) = settings.photo {
         option("--photo", photo.to_string());
     }
-    if !settings.areas {
-        option("--areas", "off".to_owned());
-    }
-    if !settings.boundaries {
-        option("--boundaries", "off".to_owned());
+    if let Some(list) = settings.layers.to_list() {
+        option("--layers", list);
     }
     for (number, overlay) in overlays.iter().enumerate() {
         if settings.hidden_overlays.contains(&number) {

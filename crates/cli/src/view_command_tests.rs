@@ -2,7 +2,7 @@
 
 use clap::Parser as _;
 use corniche_remote::PackagePlace;
-use corniche_viewer::camera::Orientation;
+use corniche_viewer::{ShownLayers, camera::Orientation};
 
 use corniche_window::MapSettings;
 
@@ -156,9 +156,10 @@ fn every_look_of_roads_is_read_as_it_was() {
     assert_eq!(count, 84);
     let none = shown(RoadOptions::for_method(RoadMethod::None));
     assert_eq!(read("a", &none).roads, Roads::None);
-    for areas in [true, false] {
-        let shown = with(&none, |settings| settings.areas = areas);
-        assert_eq!(read("a", &shown).look.areas, areas);
+    for layers in [ShownLayers::ALL, ShownLayers::from_list("none"), ShownLayers::from_list("a,b")]
+    {
+        let shown = with(&none, |settings| settings.layers = layers.clone());
+        assert_eq!(read("a", &shown).look.shown_layers(), layers);
     }
 }
 

@@ -6,8 +6,8 @@ use std::{
     path::Path,
 };
 
-use corniche_areas::AreaObject;
 use corniche_geom::LatticePoint;
+use corniche_layers::OsmObject;
 use corniche_network::{Breaks, Chain, ChainNumber, Chains, Link, Network};
 use corniche_roads::{FunctionalRoadClass, Oneway, Structure};
 use corniche_tileset::FilePackage;
@@ -26,8 +26,8 @@ use crate::{
     road_query::{RoadQuery, named_ways},
     span_facts::SpanFacts,
     vector::{
-        FeatureField, FeatureGeometry, FeatureRecord, FieldKind, FieldValue, ShapeKind, VectorFile,
-        fields, fields_of, real, text,
+        FeatureField, FeatureGeometry, FeatureRecord, FieldKind, FieldValue, ShapeKind,
+        StyledClasses, VectorFile, fields, fields_of, real, text,
     },
 };
 
@@ -135,9 +135,9 @@ pub fn export_edges(
     let mut nodes = DemNodes::new(elevation, frame);
     let places = &source.places;
     let measured = MeasuredChains::measure(network, places, elevation, observer)?;
-    let description = format!("Roads from junction to junction. Heights: {}.", places.heights);
-    let metadata = vec![("HEIGHTS", places.heights.clone())];
-    let layer = source.layer(("edges", ShapeKind::Lines), edge_fields(), description, metadata);
+    let called = ("edges", StyledClasses::Roads);
+    let what = "Roads from junction to junction";
+    let layer = source.layer(called, ShapeKind::Lines, edge_fields(), what);
     let mut file = VectorFile::create(path, request.format, layer)?;
     let mut summary = EdgesSummary {
         heights: places.heights.clone(),
@@ -177,7 +177,7 @@ pub fn export_edges(
             summary.edges += 1;
             summary.length_m += edge.shares.length_m;
             summary.without_ascent += u64::from(edge.grades.is_none());
-            let object = AreaObject::Way(network.way_of(chain.links[0]).way_id);
+            let object = OsmObject::Way(network.way_of(chain.links[0]).way_id);
             let mut carried = Vec::new();
             for line in lines {
                 summary.height_tolerance_m =

@@ -14,13 +14,13 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use corniche_areas::AreaObject;
 use corniche_dem::ReadHeightsError;
 use corniche_drape::BadLine;
 use corniche_geom::{ProjectError, TileId, TooMuchWork};
 use corniche_gis::{CrsError, LibraryError};
+use corniche_layers::{LayerForm, OsmObject};
 use corniche_store::LackOfRoom;
-use corniche_tileset::{DecodeError, FilePackage, OpenError, ReadError};
+use corniche_tileset::{FilePackage, LayerRecord, LayerSlot, OpenError, ReadError};
 
 /// The kind of an error, from which callers derive an exit code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -139,10 +139,12 @@ pub struct CutError;
 pub enum SelectionError {
     #[error("{package:?} has no level {level}; its finest level is {finest}")]
     NoLevel { package: PathBuf, level: u8, finest: u8 },
-    #[error(
-        "{package:?} has no {layer}: it was built without --{layer}; build it again with this option"
-    )]
-    NoLayer { package: PathBuf, layer: &'static str },
+    #[error("{package:?} has no layers; build it again with --osm and --layers")]
+    NoLayers { package: PathBuf },
+    #[error("{package:?} has no layer {layer:?}; its layers are {layers}")]
+    NoLayer { package: PathBuf, layer: String, layers: String },
+    #[error("layer {layer:?} has no class {class:?}; its classes are {classes}")]
+    NoClass { layer: String, class: String, classes: String },
     #[error("{package:?} has no roads: it was built without --osm; build it again with an extract")]
     NoRoads { package: PathBuf },
     #[error("{package:?} has no ground in the requested area; corniche info prints its extent")]
@@ -155,14 +157,36 @@ impl SelectionError {
         Self::NoGround { package: package.path().to_path_buf() }
     }
 
-    /// Fails if a package lacks a requested layer.
-    pub(crate) fn check_layer<T>(
-        package: &FilePackage,
-        layer: &'static str,
-        found: Option<&T>,
-    ) -> Result<(), Self> {
-        let missing = || Self::NoLayer { package: package.path().to_path_buf(), layer };
-        found.map(drop).ok_or_else(missing)
+    /// Returns a layer of a package by its id.
+    pub(crate) fn find_layer<'a>(
+        package: &'a FilePackage,
+        layer: &str,
+    ) -> Result<(LayerSlot, &'a LayerRecord), Self> {
+        let manifest = package.manifest();
+        manifest.layer(layer).ok_or_else(|| {
+            let ids = manifest.layers().map(|(_, record)| record.table.id.as_str());
+            let layers = ids.collect::<Vec<_>>().join(", ");
+            let (package, layer) = (package.path().to_path_buf(), layer.to_owned());
+            if layers.is_empty() {
+                Self::NoLayers { package }
+            } else {
+                Self::NoLayer { package, layer, layers }
+            }
+        })
+    }
+
+    /// Returns the classes of a layer with these ids as flags, in the order of its table; all of
+    /// them without ids.
+    pub(crate) fn find_classes(table: &LayerForm, ids: &[String]) -> Result<Vec<bool>, Self> {
+        let all = || table.classes.iter().map(|class| class.id.as_str());
+        if let Some(class) = ids.iter().find(|id| !all().any(|class| class == **id)) {
+            return Err(Self::NoClass {
+                layer: table.id.clone(),
+                class: class.clone(),
+                classes: all().collect::<Vec<_>>().join(", "),
+            });
+        }
+        Ok(all().map(|class| ids.is_empty() || ids.iter().any(|id| id == class)).collect())
     }
 
     /// Fails if a package was built without an extract.
@@ -183,14 +207,12 @@ pub enum TileError {
     Package(#[from] OpenError),
     #[error(transparent)]
     Tile(#[from] ReadError),
-    #[error("the roads of tile {tile} do not match its ground; run corniche verify for details")]
+    #[error("the lines of tile {tile} do not match its ground; run corniche verify for details")]
     Line { tile: TileId, source: BadLine },
     #[error(
         "tile {tile} contains way {way_id}, but not its attributes; run corniche verify for details"
     )]
     NoAttributes { tile: TileId, way_id: i64 },
-    #[error("the {layer} of a tile are corrupt; run corniche verify for details")]
-    Damaged { layer: &'static str, source: Box<DecodeError> },
 }
 
 /// Errors of naming the vertical datum of a package.
@@ -240,11 +262,11 @@ pub enum CoordinatesError {
     #[error(
         "a position of {object} has no coordinates in the requested CRS; choose another CRS with --crs, or clip with --bounds"
     )]
-    NoPosition { object: AreaObject },
+    NoPosition { object: OsmObject },
     #[error(
         "{object} crosses 180 degrees of longitude and cannot be split there; export it in the package's CRS"
     )]
-    AcrossAntimeridian { object: AreaObject },
+    AcrossAntimeridian { object: OsmObject },
 }
 
 impl CoordinatesError {
@@ -345,15 +367,18 @@ activity! {
 }
 
 activity! {
-    /// Errors of writing roads, edges, areas or lines as features, and of measuring the growth of
-    /// ways.
+    /// Errors of writing roads, edges or layers as features, and of measuring the growth of ways.
     FeaturesError: package [
         Road(RoadQueryError) Elevation(ElevationError) File(GdalFileError)
     ] failed [Sort] {
         #[error("{object} differs between tiles; run corniche verify for details")]
-        Differs { object: AreaObject },
+        Differs { object: OsmObject },
         #[error("{object} cannot be clipped to --bounds; omit --bounds")]
-        BoundsAcross { object: AreaObject },
+        BoundsAcross { object: OsmObject },
+        #[error(
+            "the lines of a tile cross its ground more often than in any valid package; run corniche verify for details"
+        )]
+        TooManyCrossings(#[from] TooMuchWork),
         #[error(
             "GeoJSON needs longitudes and latitudes of WGS84 (RFC 7946); omit --crs, name a registered CRS (--crs EPSG:N), or choose another format"
         )]

@@ -1,10 +1,10 @@
-//! The export of each layer of a package: pieces of tiles, sorted by object, become features of a
-//! vector file.
+//! The export of roads and of each layer of a package: pieces of tiles, sorted by object, become
+//! features of a vector file.
 
 use std::path::Path;
 
-use corniche_areas::AreaObject;
 use corniche_geom::TileId;
+use corniche_layers::OsmObject;
 use corniche_store::SortRecord;
 use corniche_tileset::FilePackage;
 use corniche_work::{Observer, Stage};
@@ -15,7 +15,9 @@ use crate::{
     places::{FeatureCoordinates, Places},
     read,
     sorted_pieces::{FileScratch, SortedPieces},
-    vector::{FeatureField, FeatureRecord, Layer, ShapeKind, VectorFile, VectorFormat},
+    vector::{
+        FeatureField, FeatureRecord, Layer, ShapeKind, StyledClasses, VectorFile, VectorFormat,
+    },
 };
 
 /// The objects of a layer that are exported, and the form of the file.
@@ -25,11 +27,12 @@ pub struct FeatureRequest<C> {
     pub format: VectorFormat,
     /// The level whose objects are exported; `None` means the finest.
     pub level: Option<u8>,
-    /// The classes that are exported.
+    /// The classes that are exported: of roads, or the ids of a layer's classes, none for all of
+    /// them.
     pub classes: Vec<C>,
     /// The rectangle to which objects are clipped.
     pub bounds: Option<DegreeBounds>,
-    /// The coordinates of features. Only roads have heights.
+    /// The coordinates of features. Areas have no heights.
     pub coordinates: FeatureCoordinates,
     /// Memory for sorting, in bytes.
     pub memory_bytes: u64,
@@ -82,7 +85,7 @@ pub(crate) trait Features {
     ) -> Result<Vec<Self::TilePiece>, FeaturesError>;
 
     /// The object of a piece.
-    fn object(piece: &Self::TilePiece) -> AreaObject;
+    fn object(piece: &Self::TilePiece) -> OsmObject;
 
     /// Returns the features of an object, made from all its pieces.
     fn records(
@@ -117,14 +120,14 @@ impl<'a, C> FeatureSource<'a, C> {
         Ok(Self { package, request, level, places })
     }
 
-    /// Returns the description of the file's layer: its own metadata, and the metadata of the
-    /// package that all layers share.
+    /// Returns the description of the file's layer, with the metadata of the package. `what` says
+    /// what the features are.
     pub(crate) fn layer(
         &self,
-        (name, shapes): (&'static str, ShapeKind),
+        (name, classes): (&str, StyledClasses),
+        shapes: ShapeKind,
         fields: Vec<FeatureField>,
-        description: String,
-        metadata: Vec<(&'static str, String)>,
+        what: &str,
     ) -> Layer {
         let Self { package, level, places, .. } = self;
         let manifest = package.manifest();
@@ -140,14 +143,25 @@ impl<'a, C> FeatureSource<'a, C> {
             ("LEVEL", level.to_string()),
             ("FIELDS", meanings(&fields)),
         ];
+        let heights = [
+            ("HEIGHTS", places.heights.clone()),
+            ("VERTICAL_DATUM_OF_PACKAGE", manifest.vertical.datum.clone()),
+        ];
+        let has_heights = shapes != ShapeKind::Polygons;
+        let heights_told =
+            if has_heights { format!(" Heights: {}.", places.heights) } else { String::new() };
         Layer {
-            name,
+            name: name.to_owned(),
             fields,
             shapes,
             crs,
-            description,
+            description: format!("{what}.{heights_told}"),
             attribution: manifest.attribution.join("; "),
-            metadata: of_package.into_iter().chain(metadata).collect(),
+            metadata: of_package
+                .into_iter()
+                .chain(heights.into_iter().filter(|_| has_heights))
+                .collect(),
+            classes,
         }
     }
 

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use corniche_areas::AreaObject;
 use corniche_geom::LatticeBounds;
+use corniche_layers::OsmObject;
 use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::{FilePackage, tile_of_order};
 use corniche_work::{Observer, Stage};
@@ -80,7 +80,7 @@ fn growth_of(
     let mut of_finest = Vec::new();
     for piece in pieces {
         if piece.class != class {
-            return Err(FeaturesError::Differs { object: AreaObject::Way(way_id) });
+            return Err(FeaturesError::Differs { object: OsmObject::Way(way_id) });
         }
         // Keys come from tiles that the package has.
         let Some(tile) = tile_of_order(piece.key.tile) else { continue };

@@ -1,118 +1,162 @@
-//! Lines that are not roads of the package, draped on the ground of a level.
+//! Lines in plan, laid on the ground of a level: those of layers, and lines that are not in the
+//! package.
+
+use std::collections::BTreeMap;
 
 use corniche_drape::OwnedBorders;
-use corniche_geom::{LatticeBounds, LatticePoint, Polyline, StepBudget, TileId};
-use corniche_tileset::{FilePackage, Sections};
+use corniche_geom::{LatticeBounds, LatticePoint, Polyline, StepBudget, TileId, TooMuchWork};
+use corniche_tileset::{FilePackage, Manifest, ReadError, Sections};
+use corniche_tin::Surface;
 use corniche_work::{Observer, Stage, workers::one_by_one};
+use serde::{Deserialize, Serialize};
 
 use crate::{
     error::{ProfileError, TileError},
     piece::Vertex,
+    plane::vector,
     read,
 };
 
 /// The work that draping lines may take, in steps; a vertex counts 32 steps, so this is eight
 /// million vertices.
-const MOST_STEPS: u64 = 1 << 28;
+pub(crate) const MOST_STEPS: u64 = 1 << 28;
 
-/// The part of a line on one tile.
-struct LaidOnTile {
-    line: usize,
-    /// The distance along the line at which the part begins, lattice steps.
-    along: f64,
-    vertices: Vec<Vertex>,
+/// The ground of a tile, on which lines are laid.
+pub(crate) struct TileGround {
+    id: TileId,
+    bounds: LatticeBounds,
+    surface: Surface,
 }
 
-/// Returns the parts of each line that are on ground, in order. Parts that meet on a tile border
-/// are joined.
+/// A stretch of a segment of a line that is on the ground of one tile.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct LaidStretch {
+    /// The number of the segment in the line.
+    pub(crate) segment: usize,
+    /// At least two vertices.
+    pub(crate) vertices: Vec<Vertex>,
+}
+
+impl TileGround {
+    /// Reads the ground from the bytes of a tile; `None` if it has none.
+    pub(crate) fn decode(
+        manifest: &Manifest,
+        id: TileId,
+        bytes: &[u8],
+    ) -> Result<Option<Self>, ReadError> {
+        let terrain = manifest.decode(bytes, id, Sections::TERRAIN)?.terrain;
+        Ok(terrain.map(|terrain| Self {
+            id,
+            bounds: manifest.frame.tile_lattice_bounds(id),
+            surface: manifest.surface(id, &terrain.tin),
+        }))
+    }
+
+    /// Returns the stretches of a line on the ground, segment by segment. A stretch along a border
+    /// is on both of its tiles.
+    pub(crate) fn lay<E: From<TileError> + From<TooMuchWork>>(
+        &self,
+        line: &[LatticePoint],
+        work: &StepBudget,
+    ) -> Result<Vec<LaidStretch>, E> {
+        let mut laid = Vec::new();
+        for (segment, ends) in line.array_windows::<2>().enumerate() {
+            let around = LatticeBounds::around(ends);
+            if !around.is_some_and(|around| around.intersects(&self.bounds)) {
+                continue;
+            }
+            let Ok(path) = Polyline::new(ends.to_vec()) else { continue };
+            for part in corniche_drape::clip(&path, &self.bounds, OwnedBorders::ALL) {
+                for draped in corniche_drape::drape_within(&part, &self.surface, work)?.lines {
+                    let failed = |source| TileError::Line { tile: self.id, source };
+                    let vertices = read::vertices(&draped, &self.surface).map_err(failed)?;
+                    laid.push(LaidStretch { segment, vertices });
+                }
+            }
+        }
+        Ok(laid)
+    }
+
+    /// Returns a point at the height of the ground; `None` if there is none.
+    pub(crate) fn vertex(&self, point: LatticePoint) -> Option<Vertex> {
+        let z_m = self.surface.height_at_point_m(self.surface.locate(point)?, point);
+        Some(Vertex { at: point.in_steps(), z_m, is_source: true })
+    }
+}
+
+/// Returns the parts of a line that are on ground, in order. `laid` returns the stretches of a
+/// segment, by its number, on all tiles in any order. Stretches that meet on a tile border are
+/// joined.
+pub(crate) fn parts_on_ground<'a>(
+    line: &[LatticePoint],
+    laid: impl Fn(usize) -> Vec<&'a [Vertex]>,
+) -> Vec<Vec<Vertex>> {
+    let mut parts: Vec<Vec<Vertex>> = Vec::new();
+    for (segment, [from, _]) in line.array_windows().enumerate() {
+        let from = from.in_steps();
+        let along = |vertex: &Vertex| {
+            let [u, v] = vector(from, vertex.at);
+            u.hypot(v)
+        };
+        let ends = |vertices: &[Vertex]| {
+            [vertices.first(), vertices.last()].map(|end| end.map_or(0.0, along))
+        };
+        let mut stretches = laid(segment);
+        stretches.sort_by(|one, other| {
+            let ([one, one_end], [other, other_end]) = (ends(one), ends(other));
+            one.total_cmp(&other).then(other_end.total_cmp(&one_end))
+        });
+        // The distance along the segment that the last part has reached.
+        let last = parts.last().and_then(|part| part.last());
+        let mut reached = last.map(along).filter(|off| *off <= 0.0);
+        for vertices in stretches {
+            let [first, last] = ends(vertices);
+            let goes_on = reached.filter(|reached| first <= *reached);
+            let is_new = |vertex: &&Vertex| goes_on.is_none_or(|reached| along(vertex) > reached);
+            let new = vertices.iter().filter(is_new).copied();
+            match parts.last_mut().filter(|_| goes_on.is_some()) {
+                Some(part) => part.extend(new),
+                None => parts.push(new.collect()),
+            }
+            reached = Some(goes_on.map_or(last, |reached| reached.max(last)));
+        }
+    }
+    parts
+}
+
+/// Returns the parts of each line that are on ground, in order.
 pub(crate) fn laid_lines(
     package: &FilePackage,
     lines: &[&[LatticePoint]],
     level: u8,
     observer: &dyn Observer,
 ) -> Result<Vec<Vec<Vec<Vertex>>>, ProfileError> {
-    let path_of = |line: &&[LatticePoint]| {
-        let mut points = line.to_vec();
-        points.dedup();
-        Polyline::new(points).ok()
-    };
-    let paths: Vec<Option<Polyline>> = lines.iter().map(path_of).collect();
+    let manifest = package.manifest();
     let tiles = read::tiles(package, level, None)?;
-    let mut laid = Vec::new();
+    let mut laid: Vec<BTreeMap<usize, Vec<Vec<Vertex>>>> = vec![BTreeMap::new(); lines.len()];
     let work = StepBudget::new(MOST_STEPS);
     one_by_one((observer, Stage::ExportTiles), &tiles, |&id| {
-        lay_on(package, id, &paths, &work, &mut laid)
+        let tile = manifest.frame.tile_lattice_bounds(id);
+        let is_near = |line: &&[LatticePoint]| {
+            LatticeBounds::around(line).is_some_and(|bounds| bounds.intersects(&tile))
+        };
+        if !lines.iter().any(is_near) {
+            return Ok(());
+        }
+        let Some(bytes) = package.tile(id)? else { return Ok(()) };
+        let Some(ground) = TileGround::decode(manifest, id, &bytes)? else { return Ok(()) };
+        for (line, laid) in lines.iter().zip(&mut laid) {
+            for LaidStretch { segment, vertices } in ground.lay::<ProfileError>(line, &work)? {
+                laid.entry(segment).or_default().push(vertices);
+            }
+        }
+        Ok::<(), ProfileError>(())
     })?;
-    laid.sort_by(|one, other| (one.line.cmp(&other.line)).then(one.along.total_cmp(&other.along)));
-    // A part along a border is on both of its tiles.
-    let end = |laid: &LaidOnTile| laid.vertices.last().map(|vertex| vertex.at.map(f64::to_bits));
-    laid.dedup_by(|later, one| {
-        (later.line, later.along.to_bits(), end(later)) == (one.line, one.along.to_bits(), end(one))
-    });
-    let mut parts: Vec<Vec<Vec<Vertex>>> = vec![Vec::new(); lines.len()];
-    for LaidOnTile { line, vertices, .. } in laid {
-        let ends_at = |part: &Vec<Vertex>| part.last().map(|vertex| vertex.at);
-        match parts[line].last_mut() {
-            Some(part) if ends_at(part) == vertices.first().map(|vertex| vertex.at) => {
-                part.extend(vertices.into_iter().skip(1));
-            }
-            _ => parts[line].push(vertices),
-        }
-    }
-    Ok(parts)
-}
-
-fn lay_on(
-    package: &FilePackage,
-    id: TileId,
-    paths: &[Option<Polyline>],
-    work: &StepBudget,
-    laid: &mut Vec<LaidOnTile>,
-) -> Result<(), ProfileError> {
-    let manifest = package.manifest();
-    let tile = manifest.frame.tile_lattice_bounds(id);
-    let is_near = |path: &Polyline| {
-        LatticeBounds::around(path.points()).is_some_and(|bounds| bounds.intersects(&tile))
+    let parts = |(line, laid): (&&[LatticePoint], &BTreeMap<usize, Vec<Vec<Vertex>>>)| {
+        let of_segment = |segment| {
+            laid.get(&segment).into_iter().flatten().map(Vec::as_slice).collect::<Vec<_>>()
+        };
+        parts_on_ground(line, of_segment)
     };
-    if !paths.iter().flatten().any(is_near) {
-        return Ok(());
-    }
-    let Some(payload) = package.payload(id, Sections::TERRAIN)? else { return Ok(()) };
-    let Some(terrain) = &payload.terrain else { return Ok(()) };
-    let surface = manifest.surface(id, &terrain.tin);
-    for (line, path) in paths.iter().enumerate() {
-        let Some(path) = path else { continue };
-        let starts = starts_of(path);
-        for part in corniche_drape::clip_parts(path, &tile, OwnedBorders::ALL) {
-            for draped in corniche_drape::drape_within(&part.line, &surface, work)?.lines {
-                let failed = |source| TileError::Line { tile: id, source };
-                let vertices = read::vertices(&draped, &surface).map_err(failed)?;
-                let sources = corniche_drape::source_segments(&draped);
-                let (Some(first), Some(source)) = (vertices.first(), sources.first()) else {
-                    continue;
-                };
-                let points = part.line.points();
-                let own = points.windows(2).position(|pair| pair == source);
-                let segment = own.and_then(|own| part.segments.get(own)).copied();
-                let Some(segment) = segment else { continue };
-                let from = path.points()[segment];
-                let beyond = (first.at[0] - from.u as f64).hypot(first.at[1] - from.v as f64);
-                laid.push(LaidOnTile { line, along: starts[segment] + beyond, vertices });
-            }
-        }
-    }
-    Ok(())
-}
-
-/// The distance along the line at which each segment begins, lattice steps.
-fn starts_of(path: &Polyline) -> Vec<f64> {
-    let mut along = 0.0;
-    path.points()
-        .array_windows()
-        .map(|[from, to]| {
-            let start = along;
-            along += from.distance_steps(*to);
-            start
-        })
-        .collect()
+    Ok(lines.iter().zip(&laid).map(parts).collect())
 }

@@ -1,5 +1,5 @@
-//! Exports the contents of a package for other programs: roads, areas and boundaries as features
-//! (GeoPackage, FlatGeobuf, GeoJSON, CSV), ground and roads as models (GLB, PLY, OBJ).
+//! Exports the contents of a package for other programs: roads and layers as features (GeoPackage,
+//! FlatGeobuf, GeoJSON, CSV), ground and roads as models (GLB, PLY, OBJ).
 //!
 //! ```text
 //!   tiles of a level ──► pieces ──► cut at the bounds ──► sorted by way, on disk
@@ -17,9 +17,10 @@
 //!
 //! [`profile`] follows ways and returns height and grade along them.
 //!
-//! Each layer is exported in this way (`features`). The pieces of an area in several tiles are
-//! joined where both sides of a border have the same segments. Pieces of boundaries overlap, and
-//! each of their segments is used once.
+//! Layers are exported in the same way (`features`). The pieces of an area in several tiles are
+//! joined where both sides of a border have the same segments. Lines and points of layers are in
+//! plan, and are laid on the ground of each tile. Lines of several tiles overlap, and each of their
+//! segments is used once.
 //!
 //! [`export_mesh`] writes a level's ground and roads as a model for 3D programs.
 //!
@@ -36,7 +37,6 @@
 //! This crate never reads an extract, reads elevation files only for heights or comparisons that
 //! are requested, never decides which road matters, and writes only the requested file.
 
-mod areas;
 mod between_samples;
 mod bounds;
 mod cut;
@@ -56,12 +56,13 @@ mod growth;
 mod heights;
 mod join;
 mod laid_lines;
-mod lines;
+mod layer_fields;
+mod layer_piece;
+mod layers;
 mod measures;
 mod mesh;
 mod piece;
 mod places;
-mod plan_piece;
 mod plane;
 mod profile;
 mod quantized_mesh;
@@ -78,7 +79,6 @@ mod tiles3d;
 mod vector;
 mod whole_lines;
 
-pub use areas::{AreasSummary, export_areas};
 pub use bounds::DegreeBounds;
 pub use edges::{EdgesSummary, edge_fields, export_edges};
 pub use error::{
@@ -93,7 +93,7 @@ pub use geotiff::{
 };
 pub use growth::{WayGrowth, growth_by_way};
 pub use heights::{Elevation, with_vertical_crs};
-pub use lines::{LinesSummary, export_boundaries};
+pub use layers::{LayerSummary, export_layer};
 pub use measures::ProfileGrades;
 pub use mesh::{MeshFormat, MeshRequest, MeshSummary, ModelRoads, UpAxis, export_mesh};
 pub use places::FeatureCoordinates;

@@ -1,8 +1,8 @@
 //! The positions of vertices, in the requested coordinates.
 
-use corniche_areas::AreaObject;
 use corniche_geom::{LatticePoint, Projection as _, known_line_length_m};
 use corniche_gis::{CrsError, DemProjection, ProjectedCrs, RecordedCrs, RecordedHeights};
+use corniche_layers::OsmObject;
 use corniche_tileset::Manifest;
 
 use crate::{
@@ -221,7 +221,7 @@ impl<'a> Places<'a> {
     /// Transforms positions of an object from working metres to the features' coordinates.
     pub(crate) fn carry_plan(
         &self,
-        object: AreaObject,
+        object: OsmObject,
         mut plan: Vec<[f64; 2]>,
     ) -> Result<Vec<[f64; 2]>, CoordinatesError> {
         match &self.target {
@@ -247,7 +247,7 @@ impl<'a> Places<'a> {
     /// `rounding_m`.
     pub(crate) fn cut_polygon(
         &self,
-        object: AreaObject,
+        object: OsmObject,
         rings: Vec<Vec<[f64; 2]>>,
         rounding_m: f64,
     ) -> Result<Vec<Vec<Vec<[f64; 2]>>>, CoordinatesError> {
@@ -264,7 +264,7 @@ impl<'a> Places<'a> {
     /// crosses the antimeridian in degrees.
     pub(crate) fn carry(
         &self,
-        object: AreaObject,
+        object: OsmObject,
         vertices: &[Vertex],
     ) -> Result<Vec<Vec<[f64; 3]>>, CoordinatesError> {
         let frame = &self.manifest.frame;

@@ -6,7 +6,7 @@ use corniche_drape::{DrapedLine, DrapedVertex};
 use corniche_geom::{Bounds, GridFrame, TileId};
 use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::{
-    DecodeError, FilePackage, GeoRoad, Manifest, Sections, SpanRun, TilePayload, pmtiles_order,
+    FilePackage, GeoRoad, Manifest, ReadError, Sections, SpanRun, TilePayload, pmtiles_order,
 };
 use corniche_tin::Surface;
 
@@ -139,17 +139,6 @@ pub(crate) fn bounded_pieces(
     Ok(pieces)
 }
 
-/// Returns a layer of one tile, which `decode` reads from its bytes.
-pub(crate) fn layer<T>(
-    package: &FilePackage,
-    id: TileId,
-    layer: &'static str,
-    decode: impl FnOnce(&[u8]) -> Result<Vec<T>, DecodeError>,
-) -> Result<Vec<T>, TileError> {
-    let Some(bytes) = package.tile(id)? else { return Ok(Vec::new()) };
-    decode(&bytes).map_err(|source| TileError::Damaged { layer, source: Box::new(source) })
-}
-
 /// Returns the runs of bridges and tunnels of one tile by way; none if the package was built
 /// without them.
 pub(crate) fn span_runs(
@@ -161,8 +150,8 @@ pub(crate) fn span_runs(
     if manifest.spans.is_none() {
         return Ok(runs);
     }
-    let runs_of = |bytes: &[u8]| manifest.decode_spans(bytes, id);
-    for run in layer(package, id, "bridges and tunnels", runs_of)? {
+    let Some(bytes) = package.tile(id)? else { return Ok(runs) };
+    for run in manifest.decode_spans(&bytes, id).map_err(ReadError::from)? {
         runs.entry(run.way_id).or_default().push(run);
     }
     Ok(runs)

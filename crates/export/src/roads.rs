@@ -5,8 +5,8 @@ use std::{
     path::Path,
 };
 
-use corniche_areas::AreaObject;
 use corniche_geom::TileId;
+use corniche_layers::OsmObject;
 use corniche_network::Network;
 use corniche_roads::{FunctionalRoadClass, Structure, grade_limit};
 use corniche_tileset::{FilePackage, tile_of_order};
@@ -28,7 +28,7 @@ use crate::{
     read,
     road_query::{RoadQuery, named_ways},
     span_facts::{SpanFacts, least_free_heights},
-    vector::{FeatureGeometry, FeatureRecord, Layer, ShapeKind},
+    vector::{FeatureGeometry, FeatureRecord, Layer, ShapeKind, StyledClasses},
 };
 
 /// The figures of an export of roads.
@@ -147,18 +147,14 @@ impl Features for Roads<'_> {
     type TilePiece = WayPiece;
     fn layer(&self, source: &FeatureSource<'_, FunctionalRoadClass>) -> Layer {
         let what = if self.by_piece { "Pieces of roads" } else { "Roads" };
-        let (cells, heights) = (source.cells(), &source.places.heights);
+        let cells = source.cells();
         let (from, laid) = match self.dem {
             None => (HeightSource::Ground, format!("laid on terrain with {cells}")),
             Some(_) => (HeightSource::Dem, "laid on the elevation files".to_owned()),
         };
-        let description = format!("{what} {laid}. Heights: {heights}.");
-        let metadata = vec![
-            ("HEIGHTS", heights.clone()),
-            ("VERTICAL_DATUM_OF_PACKAGE", source.package.manifest().vertical.datum.clone()),
-        ];
         let fields = road_fields(self.by_piece, from);
-        source.layer(("roads", ShapeKind::Lines), fields, description, metadata)
+        let named = ("roads", StyledClasses::Roads);
+        source.layer(named, ShapeKind::Lines, fields, &format!("{what} {laid}"))
     }
 
     fn heights_told(&self, source: &FeatureSource<'_, FunctionalRoadClass>) -> Option<String> {
@@ -196,8 +192,8 @@ impl Features for Roads<'_> {
         Ok(found)
     }
 
-    fn object(piece: &WayPiece) -> AreaObject {
-        AreaObject::Way(piece.key.way_id)
+    fn object(piece: &WayPiece) -> OsmObject {
+        OsmObject::Way(piece.key.way_id)
     }
 
     fn records(

@@ -1,4 +1,4 @@
-//! Files of features through GDAL's vector drivers. Nothing here depends on roads or areas, except
+//! Files of features through GDAL's vector drivers. Nothing here depends on roads or layers, except
 //! for the colours of their classes.
 
 mod cell;
@@ -16,3 +16,4 @@ pub(crate) use field::{
 };
 pub(crate) use file::{Layer, VectorFile};
 pub use format::VectorFormat;
+pub(crate) use map_style::StyledClasses;

@@ -33,7 +33,7 @@ pub struct LayerForm {
     /// The layers above which this one is drawn, by id.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub above: Vec<String>,
-    /// Lines and areas: how far simplification may move a line, in cells of a level. Default: 0.5.
+    /// Lines only: how far simplification may move a line, in cells of a level. Default: 0.5.
     #[serde(default = "half", skip_serializing_if = "is_half")]
     pub simplify_cells: f64,
     /// The tags that are kept, by key.

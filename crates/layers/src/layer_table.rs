@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use crate::{
-    AttributeKind, ClassForm, LayerForm, LayerGeometry, LayerTableError, LinePlacement,
-    TagCondition,
+    AttributeKind, AttributeValue, ClassForm, LayerForm, LayerGeometry, LayerTableError,
+    LinePlacement, TagCondition,
+    layer_attribute::MAX_TAG_CHARS,
     shadowing::{Shadow, shadows},
     table_error::{CheckResult, ErrorPath, wrong},
     titles::is_plain_text,
@@ -30,8 +31,6 @@ const MAX_CONDITIONS: usize = 8192;
 const MAX_VALUES: usize = 16_384;
 /// The largest number in a condition; numbers of tags are not larger.
 const MAX_NUMBER: f64 = 1e15;
-/// OSM's limit on the length of keys and values, characters.
-const MAX_TAG_CHARS: usize = 255;
 /// The largest length of ids, characters.
 const MAX_ID_CHARS: usize = 32;
 /// The side of a pixel, metres: 1/96 inch, as in styles. On the ground it is this times the scale's
@@ -139,6 +138,16 @@ impl LayerTable {
     pub fn classify(&self, tags: &[(&str, &str)]) -> Option<u8> {
         let class = self.form.classes.iter().position(|class| class.tags.is_met(tags))?;
         u8::try_from(class).ok()
+    }
+
+    /// Returns the values of the kept tags, in the order of [`Self::attributes`]. Calls `on_unread`
+    /// with the key of each value that is not of its attribute's kind, or cannot be stored.
+    pub fn values(
+        &self,
+        tags: &[(&str, &str)],
+        mut on_unread: impl FnMut(&str),
+    ) -> Vec<Option<AttributeValue>> {
+        self.attributes().map(|(key, kind)| kind.read(key, tags, || on_unread(key))).collect()
     }
 
     /// Returns keys, ascending: an object that has none of them has no class by its own tags. Ways

@@ -5,7 +5,7 @@ use std::{ops::Range, rc::Rc};
 use corniche_geom::TileId;
 use corniche_styles::Style;
 use corniche_viewer::{
-    FrameView, RoadMethod, RoadOptions,
+    FrameView, PackageLooks, RoadMethod, RoadOptions,
     camera::Camera,
     gpu::{
         Gpu, GpuError, PassTimer, PassTimes, Picture, ReadBack, ReadBackError, Renderer,
@@ -28,6 +28,8 @@ pub struct MapScene {
     pub shown_px: [u32; 2],
     /// Colours and widths.
     pub style: Style,
+    /// How the package's layers are drawn.
+    pub layers: PackageLooks,
     /// Whether one method is shown, or two are compared.
     pub compare: Compare,
     /// The drawing method of the roads of each image: one image, or GEO and SV.
@@ -60,6 +62,7 @@ impl MapScene {
         FrameView {
             camera: &self.camera,
             style: &self.style,
+            layers: &self.layers,
             roads,
             exaggeration: self.exaggeration,
             point_scale: self.point_scale,

@@ -13,7 +13,7 @@ use corniche_geom::TileId;
 use corniche_styles::{Rgb, Style};
 use corniche_tileset::Manifest;
 use corniche_viewer::{
-    CameraRequest, SightedGround, ViewpointOffGround,
+    CameraRequest, PackageLooks, SightedGround, ViewpointOffGround,
     camera::Camera,
     flight::Pose,
     stream::StreamBudget,
@@ -180,6 +180,12 @@ impl Session {
     #[must_use]
     pub fn look(&self) -> Style {
         self.settings.applied_to(self.style())
+    }
+
+    /// How the package's layers are drawn.
+    #[must_use]
+    pub fn layer_looks(&self) -> PackageLooks {
+        self.settings.looks(self.manifest(), self.style())
     }
 
     /// Changes the settings. If heights change, the camera keeps its place above the ground.
@@ -393,6 +399,7 @@ impl Session {
             camera: self.camera.view().camera(size_px),
             shown_px: size_px,
             style: self.look(),
+            layers: self.layer_looks(),
             compare: settings.compare,
             roads: settings.compare.pictures(settings.roads),
             exaggeration: settings.exaggeration,

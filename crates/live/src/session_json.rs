@@ -3,7 +3,7 @@
 use corniche_styles::Rgb;
 use corniche_tileset::FORMAT_VERSION;
 use corniche_viewer::{
-    BoundaryLines,
+    LayerLegend,
     flight::{Flight, FlightRecord, WorkingCrs},
     gpu::Gpu,
     range,
@@ -29,8 +29,16 @@ impl Session {
         let entry = |label: &str, color| json!({ "label": label, "color": css(color) });
         let roads = labels.iter().zip(&look.roads);
         let roads = roads.map(|(label, road)| entry(label, road.bands.main_color()));
-        let boundaries = BoundaryLines::from_manifest(manifest, &look).into_iter();
-        let boundaries = boundaries.map(|lines| entry(&lines.label, lines.style.color));
+        let layers = LayerLegend::from_manifest(manifest, &self.layer_looks()).into_iter();
+        let layers = layers.map(|LayerLegend { id, title, geometry, rows }| {
+            let classes = rows.iter().map(|row| entry(&row.label, row.look.color()));
+            json!({
+                "id": id,
+                "title": title,
+                "geometry": geometry.name(),
+                "classes": classes.collect::<Vec<Value>>(),
+            })
+        });
         json!({
             "attribution": manifest.attribution,
             "bounds": manifest.wgs84_bounds.to_array(),
@@ -38,12 +46,8 @@ impl Session {
             "tiles": manifest.levels.iter().map(|level| level.tiles).sum::<u64>(),
             "levels": manifest.levels.len(),
             "classes": roads.collect::<Vec<Value>>(),
-            "boundaries": boundaries.collect::<Vec<Value>>(),
-            "has": {
-                "photo": manifest.settings.photo.is_some(),
-                "areas": manifest.areas.is_some(),
-                "boundaries": manifest.boundaries.is_some(),
-            },
+            "layers": layers.collect::<Vec<Value>>(),
+            "has": { "photo": manifest.settings.photo.is_some() },
             "adapter": &gpu.adapter_name,
             "is_software": gpu.is_software(),
             "max_side_px": gpu.max_side_px(),

@@ -6,7 +6,7 @@ use corniche_roads::FunctionalRoadClass;
 use corniche_styles::Style;
 use corniche_tileset::Manifest;
 use corniche_viewer::{
-    RoadMethod, RoadOptions,
+    PackageLooks, RoadMethod, RoadOptions, ShownLayers,
     lod::{Fineness, Quality},
     tiles::TileDecoder,
 };
@@ -53,10 +53,8 @@ pub struct MapSettings {
     pub style: usize,
     /// The opacity of photos, 0 to 1; `None` for that of the style.
     pub photo: Option<f32>,
-    /// Whether areas are drawn as in the style, or not at all.
-    pub areas: bool,
-    /// Whether boundaries are drawn as in the style, or not at all.
-    pub boundaries: bool,
+    /// The layers that are drawn.
+    pub layers: ShownLayers,
     /// The numbers of the line files that are hidden.
     pub hidden_overlays: BTreeSet<usize>,
     /// Factor on heights; 1 is true.
@@ -110,8 +108,7 @@ impl MapSettings {
             width_factors: [1.0; FunctionalRoadClass::COUNT],
             style: 0,
             photo: None,
-            areas: true,
-            boundaries: true,
+            layers: ShownLayers::ALL,
             hidden_overlays: BTreeSet::new(),
             exaggeration: 1.0,
             screen_space_error_px: 2.0,
@@ -126,16 +123,10 @@ impl MapSettings {
     }
 
     /// The style with its widths multiplied by their factors, with the chosen opacity of photos,
-    /// and without hidden areas and lines of files.
+    /// and without hidden lines of files.
     #[must_use]
     pub fn applied_to(&self, style: &Style) -> Style {
         let mut applied = style.clone();
-        if !self.areas {
-            applied = applied.without_areas();
-        }
-        if !self.boundaries {
-            applied = applied.without_boundaries();
-        }
         applied.photo = self.photo.unwrap_or(applied.photo);
         for (number, line) in applied.overlays.iter_mut().enumerate() {
             if self.hidden_overlays.contains(&number) {
@@ -156,13 +147,22 @@ impl MapSettings {
         Quality::of_package(manifest, fineness, style, self.roads, self.exaggeration)
     }
 
-    /// The decoder of the tile sections that this style needs.
+    /// How the layers of a package are drawn in this style.
     #[must_use]
-    pub fn decoder(&self, style: &Style) -> TileDecoder {
-        let look = self.applied_to(style);
+    pub fn looks(&self, manifest: &Manifest, style: &Style) -> PackageLooks {
+        PackageLooks::new(manifest, style, &self.layers)
+    }
+
+    /// The decoder of the tile sections of a package that this style needs.
+    #[must_use]
+    pub fn decoder(&self, manifest: &Manifest, style: &Style) -> TileDecoder {
+        let (look, layers) = (self.applied_to(style), self.looks(manifest, style));
+        let decoder = TileDecoder::default();
         match self.compare {
-            Compare::Off => TileDecoder::default().for_look(self.roads.method, &look),
-            Compare::Split | Compare::Difference => TileDecoder::default().with_layers_of(&look),
+            Compare::Off => decoder.for_look(self.roads.method, &look, layers.drawn_layers()),
+            Compare::Split | Compare::Difference => {
+                decoder.with_layers_of(&look, layers.drawn_layers())
+            }
         }
     }
 }

@@ -1,7 +1,9 @@
 //! Settings of a map as JSON: what a page can change.
 
 use corniche_roads::FunctionalRoadClass;
-use corniche_viewer::{ClassSet, OutOfRange, RoadMethod, RoadOptions, RoadOutline, range};
+use corniche_viewer::{
+    ClassSet, OutOfRange, RoadMethod, RoadOptions, RoadOutline, ShownLayers, range,
+};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -11,12 +13,11 @@ use crate::settings::{Compare, MapSettings};
 pub type SettingChanges = Map<String, Value>;
 
 /// Settings for which `null` is a value. For others, `null` means unchanged.
-const WITH_NULL: [&str; 2] = ["photo", "cell_px"];
+const WITH_NULL: [&str; 3] = ["photo", "layers", "cell_px"];
 
 /// All settings that a page can change.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-#[expect(clippy::struct_excessive_bools, reason = "they are independent checkboxes")]
 pub struct StoredSettings {
     /// The drawing method of roads, if one method is shown.
     pub roads: RoadMethod,
@@ -34,10 +35,8 @@ pub struct StoredSettings {
     pub style: String,
     /// The opacity of photos, 0 to 1; `None` for that of the style.
     pub photo: Option<f32>,
-    /// Whether areas are drawn as in the style.
-    pub areas: bool,
-    /// Whether boundaries are drawn as in the style.
-    pub boundaries: bool,
+    /// The ids of the layers that are drawn; `None` for all.
+    pub layers: ShownLayers,
     /// Factor on heights; 1 is true.
     pub exaggeration: f64,
     /// A tile is refined while its error looks larger than this, pixels.
@@ -65,8 +64,7 @@ impl Default for StoredSettings {
             outline: RoadOutline::OfStyle,
             style: "road-atlas".to_owned(),
             photo: None,
-            areas: true,
-            boundaries: true,
+            layers: ShownLayers::ALL,
             exaggeration: 1.0,
             error_px: 2.0,
             cell_px: Some(2.0),
@@ -137,8 +135,7 @@ impl StoredSettings {
             divider_share: self.divider,
             width_factors: self.widths,
             photo: self.photo,
-            areas: self.areas,
-            boundaries: self.boundaries,
+            layers: self.layers.clone(),
             exaggeration: self.exaggeration,
             screen_space_error_px: self.error_px,
             cell_px: self.cell_px.unwrap_or(f64::INFINITY),

@@ -55,13 +55,19 @@ fn what_cannot_be_is_told_in_words() {
 }
 
 #[test]
-fn widths_and_layers_change_the_style() {
+fn widths_change_the_style_and_layers_what_is_drawn() {
     let look = |settings: &StoredSettings| settings.of_session().applied_to(&Style::road_atlas());
-    let usual = look(&StoredSettings::default());
-    let changed = StoredSettings::default()
-        .changed_by(r#"{"widths": [2,1,1,1,1,1,1,1,1], "areas": false, "boundaries": false}"#)
-        .unwrap();
-    let style = look(&changed);
-    assert!((style.roads[0].width_m / usual.roads[0].width_m - 2.0).abs() < 1e-6);
-    assert!(!style.has_areas() && !style.has_boundaries() && usual.has_areas());
+    let usual = StoredSettings::default();
+    let changed = usual.changed_by(r#"{"widths": [2,1,1,1,1,1,1,1,1], "layers": ["walls"]}"#);
+    let changed = changed.unwrap();
+    let widths_m = [&changed, &usual].map(|settings| look(settings).roads[0].width_m);
+    assert!((widths_m[0] / widths_m[1] - 2.0).abs() < 1e-6);
+    let shown = |settings: &StoredSettings| {
+        ["walls", "areas"].map(|id| settings.of_session().layers.contains(id))
+    };
+    assert_eq!(shown(&usual), [true, true]);
+    assert_eq!(shown(&changed), [true, false]);
+    let none = changed.changed_by(r#"{"layers": []}"#).unwrap();
+    assert_eq!(shown(&none), [false, false]);
+    assert_eq!(none.changed_by(r#"{"layers": null}"#).unwrap().layers, usual.layers);
 }

@@ -1,9 +1,9 @@
-//! Reasons why an object with area tags is skipped.
+//! Reasons why an object with tags of a layer of areas or points is skipped.
 
 use serde::{Deserialize, Serialize};
 
 corniche_roads::listed! {
-    /// The reason why an object with area tags did not become an area.
+    /// The reason why an object became neither an area nor a point.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
     #[non_exhaustive]
     pub enum AreaLoss {
@@ -16,18 +16,19 @@ corniche_roads::listed! {
         MissingWays = "outline of an area lacks ways",
         /// Nodes of the outline are missing from the file.
         MissingNodes = "outline of an area lacks nodes",
-        /// Nodes of the outline are beyond ±180° or ±90°.
-        OutOfRange = "outline of an area is out of range",
+        /// The node, or nodes of the outline, are beyond ±180° or ±90°.
+        OutOfRange = "area or point is out of range",
         /// The outline crosses itself between its points.
         CrossingOutline = "outline of an area crosses itself",
         /// The outline has no segments, or each segment occurs twice.
         NoOutline = "area has no outline",
         /// The outline has too many long segments close together to be checked for crossings.
         TooIntricate = "outline of an area is too intricate",
-        /// Nodes of the outline cannot be converted to the working CRS, or too few remain.
-        OutsideProjection = "area is outside the projection",
+        /// The node, or nodes of the outline, cannot be converted to the working CRS, or too few
+        /// remain.
+        OutsideProjection = "area or point is outside the projection",
         /// Several objects of the file have this id; the first is kept.
-        Duplicate = "duplicate area",
+        Duplicate = "duplicate object of a layer",
         /// The coastline claims sea where another one claims land, or it crosses another one.
         ContradictingCoastline = "coastline contradicts others",
     }

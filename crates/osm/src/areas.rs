@@ -1,15 +1,17 @@
-//! Areas of extracts: closed ways and relations with tags of the table.
+//! Areas of a layer: closed ways and relations with tags of the table.
 //!
 //! ```text
 //!  objects and the located ways of their outlines (`outlines`) ──► hand_parts ──► OutlineWayRecord by object ──► make_areas
 //!                                                                                                                 │
-//!                                                                               Area, ways first, by id ◄─────────┘
+//!                                                                          LayerArea, ways first, by id ◄─────────┘
 //! ```
 
 mod hand_out_areas;
+mod layer_area;
 mod make_areas;
 mod over_seam;
 mod summary;
 
 pub(crate) use hand_out_areas::hand_out_areas;
+pub use layer_area::LayerArea;
 pub use summary::{AreaSummary, KeptAreas};

@@ -12,6 +12,9 @@ use crate::{
     wire::{self, WireValue, zigzag},
 };
 
+/// The reason for rejecting a block whose dense nodes have fewer tags than it claims.
+const INCOMPLETE_TAGS: &str = "the tags of dense nodes are incomplete";
+
 /// An audited block (message `PrimitiveBlock`).
 pub(crate) struct AuditedBlock<'a> {
     texts: &'a [u8],
@@ -33,17 +36,21 @@ pub(crate) struct DenseNodes<'a> {
     /// of visible nodes.
     pub(crate) versions: PackedField<'a>,
     pub(crate) visible: PackedField<'a>,
+    /// For each node, the numbers of the texts of its keys and values, and a 0; or nothing if no
+    /// node has a tag.
+    tags: PackedField<'a>,
 }
 
 impl<'a> DenseNodes<'a> {
     fn from_message(nodes: &'a [u8]) -> Self {
-        let [ids, lats, lons] = [1, 8, 9].map(|number| PackedField::from_message(nodes, number));
+        let [ids, lats, lons, tags] =
+            [1, 8, 9, 10].map(|number| PackedField::from_message(nodes, number));
         let info = parts(nodes, 5).last().unwrap_or_default();
         let [versions, visible] = [1, 6].map(|number| PackedField::from_message(info, number));
         // Allocated at full size: a growing list checks for space before each number.
         let mut known = vec![0; ids.len()];
         known.iter_mut().zip(ids.sums()).for_each(|(id, sum)| *id = sum);
-        Self { ids: known, places: [lats, lons], versions, visible }
+        Self { ids: known, places: [lats, lons], versions, visible, tags }
     }
 }
 
@@ -184,6 +191,53 @@ impl<'a> AuditedBlock<'a> {
             take(found, self.placed(id, [lat, lon], version))?;
         }
         ControlFlow::Continue(())
+    }
+
+    /// Passes the nodes with a key that `is_wanted` accepts to `take`, with the numbers of the
+    /// texts of their tags. Dense nodes come first.
+    ///
+    /// # Errors
+    /// When tags are incomplete, which the audit does not find, and those of `take`.
+    pub(crate) fn try_each_tagged<E: From<&'static str>>(
+        &self,
+        is_wanted: impl Fn(usize) -> bool,
+        mut take: impl FnMut(BlockNode, &[[usize; 2]]) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let mut pairs: Vec<[usize; 2]> = Vec::new();
+        for nodes in self.dense().iter().filter(|nodes| !nodes.tags.is_empty()) {
+            let mut texts = nodes.tags.numbers().map(|number| number as usize);
+            let [mut lats, mut lons] = nodes.places.each_ref().map(PackedField::sums);
+            let mut versions = nodes.versions.numbers();
+            let mut passed = 0;
+            for (index, &id) in nodes.ids.iter().enumerate() {
+                pairs.clear();
+                loop {
+                    match texts.next().ok_or(INCOMPLETE_TAGS)? {
+                        0 => break,
+                        key => pairs.push([key, texts.next().ok_or(INCOMPLETE_TAGS)?]),
+                    }
+                }
+                if !pairs.iter().any(|&[key, _]| is_wanted(key)) {
+                    continue;
+                }
+                let skipped = index - passed;
+                passed = index + 1;
+                let [lat, lon] =
+                    [&mut lats, &mut lons].map(|sums| sums.nth(skipped).unwrap_or_default());
+                let version = versions.nth(skipped).map_or(0, to_version);
+                take(self.placed(id, [lat, lon], version), &pairs)?;
+            }
+        }
+        for node in self.groups.iter().flat_map(|group| parts(group, 1)) {
+            let [keys, values] = [2, 3].map(|number| PackedField::from_message(node, number));
+            let texts = keys.numbers().zip(values.numbers());
+            pairs.clear();
+            pairs.extend(texts.map(|(key, value)| [key as usize, value as usize]));
+            if pairs.iter().any(|&[key, _]| is_wanted(key)) {
+                take(self.node(node), &pairs)?;
+            }
+        }
+        Ok(())
     }
 
     fn node(&self, node: &[u8]) -> BlockNode {

@@ -1,6 +1,8 @@
 //! Blocks are decoded as an independent decoder does.
 
-use corniche_testing::pbf::{BlockBuilder as Made, deltas, field, number, varint, zigzags};
+use corniche_testing::pbf::{
+    BlockBuilder as Made, TaggedNode, deltas, field, number, varint, zigzags,
+};
 use osmpbf::PrimitiveBlock;
 use proptest::prelude::*;
 
@@ -21,6 +23,9 @@ fn decoded(message: &[u8]) -> PrimitiveBlock {
     audit(message, u64::MAX).unwrap();
     decode(message).unwrap()
 }
+
+/// Keys and values.
+type Tags = Vec<(String, String)>;
 
 type MadeWay = (i64, Vec<i64>, Vec<(usize, usize)>);
 
@@ -46,6 +51,59 @@ fn made_block() -> impl Strategy<Value = Made> {
 }
 
 proptest! {
+    /// An independent decoder is the oracle for tags of nodes, too.
+    #[test]
+    fn tagged_nodes_are_those_that_the_decoder_finds(
+        nodes in prop::collection::vec(
+            (-9_i64..99, prop::collection::vec((0..TEXTS.len(), 0..TEXTS.len()), 0..3)),
+            0..20,
+        ),
+        wanted in 0..TEXTS.len(),
+        dense_first in any::<bool>(),
+    ) {
+        let tags: Vec<Vec<(&str, &str)>> = nodes
+            .iter()
+            .map(|(_, tags)| tags.iter().map(|&(key, value)| (TEXTS[key], TEXTS[value])).collect())
+            .collect();
+        let nodes: Vec<TaggedNode<'_>> = nodes
+            .iter()
+            .zip(&tags)
+            .map(|(&(id, _), tags)| TaggedNode { id, at: [10 * id, -7 * id], tags })
+            .collect();
+        let (first, second) = nodes.split_at(nodes.len() / 2);
+        let mut made = Made::new();
+        made.tagged(first, dense_first);
+        made.tagged(second, !dense_first);
+        let bytes = made.bytes();
+        let decoded = decoded(&bytes);
+        let [mut dense, mut plain]: [Vec<(i64, i64, i64, Tags)>; 2] = Default::default();
+        let owned = |(key, value): (&str, &str)| (key.to_owned(), value.to_owned());
+        for group in decoded.groups() {
+            dense.extend(group.dense_nodes().map(|node| {
+                (node.id(), node.nano_lon(), node.nano_lat(), node.tags().map(owned).collect())
+            }));
+            plain.extend(group.nodes().map(|node| {
+                (node.id(), node.nano_lon(), node.nano_lat(), node.tags().map(owned).collect())
+            }));
+        }
+        let mut expected = [dense, plain].concat();
+        expected.retain(|(.., tags)| tags.iter().any(|(key, _)| key == TEXTS[wanted]));
+        let block = AuditedBlock::new(&bytes);
+        let texts = block.texts();
+        let mut found = Vec::new();
+        let text = |at: usize| String::from_utf8(texts[at].to_vec()).unwrap();
+        let taken: Result<(), &str> = block.try_each_tagged(
+            |key| texts[key] == TEXTS[wanted].as_bytes(),
+            |node, pairs| {
+                let tags = pairs.iter().map(|&[key, value]| (text(key), text(value))).collect();
+                found.push((node.id, node.lon_nano_deg, node.lat_nano_deg, tags));
+                Ok(())
+            },
+        );
+        prop_assert_eq!(taken, Ok(()));
+        prop_assert_eq!(found, expected);
+    }
+
     /// An independent decoder is the oracle.
     #[test]
     fn nodes_and_ways_are_those_that_the_decoder_finds(made in made_block()) {

@@ -1,5 +1,6 @@
 //! Defects of an extract that do not stop the reading: each names its object and its reason.
 
+use corniche_layers::OsmObject;
 use serde::{Deserialize, Serialize};
 
 use crate::{area_loss::AreaLoss, line_loss::LineLoss};
@@ -117,13 +118,11 @@ pub enum ExtractDefect {
         /// The way.
         way_id: i64,
     },
-    /// An object with area tags did not become an area.
+    /// An object with tags of a layer of areas or points became neither.
     LostArea {
-        /// Whether the object is a relation; otherwise it is a way.
-        is_relation: bool,
-        /// The id of the object.
-        id: i64,
-        /// The reason why it is not an area.
+        /// The object.
+        object: OsmObject,
+        /// The reason why it was lost.
         loss: AreaLoss,
     },
     /// Ways of an area's relation are missing from the file; the area that the other ways surround
@@ -137,10 +136,8 @@ pub enum ExtractDefect {
     /// An area's outline has repeated segments, or points in the middle of segments. Such segments
     /// are divided, and segments that occur an even number of times are removed.
     MendedOutline {
-        /// Whether the object is a relation; otherwise it is a way.
-        is_relation: bool,
-        /// The id of the object.
-        id: i64,
+        /// The object.
+        object: OsmObject,
         /// The number of segments.
         segments: u32,
     },
@@ -150,7 +147,15 @@ pub enum ExtractDefect {
         /// The way.
         way_id: i64,
     },
-    /// A way of a boundary is skipped.
+    /// The value of an attribute is not of the kind that the layer requires; the object has no such
+    /// value.
+    UnreadValue {
+        /// The object.
+        object: OsmObject,
+        /// The key of the attribute.
+        key: String,
+    },
+    /// A way of a layer of lines is skipped.
     LostLine {
         /// The way.
         way_id: i64,
@@ -193,6 +198,7 @@ impl ExtractDefect {
             Self::MissingWays { .. } => "missing ways of an area",
             Self::MendedOutline { .. } => "mended outline of an area",
             Self::OpenCoastline { .. } => "open end of a coastline",
+            Self::UnreadValue { .. } => "attribute value not read",
         }
     }
 
@@ -228,10 +234,9 @@ impl ExtractDefect {
             | Self::SelfCrossing { way_id, .. } => ("way", way_id),
             Self::ConflictingNode { node_id } => ("node", node_id),
             Self::MissingWays { relation_id, .. } => ("relation", relation_id),
-            Self::LostArea { is_relation, id, .. }
-            | Self::MendedOutline { is_relation, id, .. } => {
-                (if is_relation { "relation" } else { "way" }, id)
-            }
+            Self::LostArea { object, .. }
+            | Self::MendedOutline { object, .. }
+            | Self::UnreadValue { object, .. } => object.parts(),
         }
     }
 
@@ -260,6 +265,7 @@ impl ExtractDefect {
             | Self::ConflictingWay { .. }
             | Self::ConflictingNode { .. }
             | Self::OpenCoastline { .. }
+            | Self::UnreadValue { .. }
             | Self::LostLine { .. }
             | Self::LostArea { .. } => None,
         }
@@ -271,6 +277,7 @@ impl ExtractDefect {
         match self {
             Self::UnknownHighway { value, .. } => Some(value),
             Self::TagTakenOtherwise { tag, .. } => Some(tag),
+            Self::UnreadValue { key, .. } => Some(key),
             _ => None,
         }
     }

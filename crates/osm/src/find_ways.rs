@@ -12,6 +12,7 @@ use crate::{
     failed::Failed,
     location::Location,
     looked::{BlockSurvey, LookedAt, check_held},
+    outlines::found_nodes::{FoundNodes, NodeScan},
     outlines::{
         found::Outlines,
         judge::{self, OwnTags, WantedWays},
@@ -57,22 +58,28 @@ struct OfBlock {
     looked: Option<BlockSurvey>,
     roads: BlockWays,
     outlines: Vec<judge::OfBlock>,
+    /// The nodes of layers of points.
+    nodes: Vec<judge::OfBlock>,
 }
 
 impl OfBlock {
-    /// Scans a block; `None` if the findings take more than `most_bytes`.
+    /// Scans a block. Fails if the findings take more than `most_bytes`, or tags of nodes are
+    /// corrupt.
     fn scan(
         message: &[u8],
         wanted: &WaysWanted<'_>,
-        (outlines, counted): (&[WantedObjects<'_>], Counted),
-        most_bytes: u64,
-    ) -> Option<Self> {
+        (outlines, nodes): (&[WantedObjects<'_>], &NodeScan<'_>),
+        (counted, most_bytes): (Counted, u64),
+    ) -> Result<Self, &'static str> {
         let block = AuditedBlock::new(message);
         let texts = block.texts();
         // Each way of a block with ways alone is inspected once, for all purposes together.
         let mut of_ways = (wanted.is_first && block.has_ways_alone()).then(BlockSurvey::of_ways);
         let looked = (wanted.is_first && of_ways.is_none()).then(|| BlockSurvey::scan(&block));
-        let mut found = Self { looked, roads: BlockWays::default(), outlines: Vec::new() };
+        let has_nodes = looked.is_some();
+        let nodes = if has_nodes { nodes.scan(&block, most_bytes)? } else { Vec::new() };
+        let mut found = Self { looked, roads: BlockWays::default(), outlines: Vec::new(), nodes };
+        let of_nodes: u64 = found.nodes.iter().map(|own| own.held_bytes).sum();
         let roads = wanted.roads.map(|table| WayJudge::new(&texts, table));
         let judges: Vec<judge::OutlineJudge<'_>> =
             outlines.iter().map(|&wanted| judge::OutlineJudge::new(&texts, wanted)).collect();
@@ -95,12 +102,12 @@ impl OfBlock {
                 wanted.look_at(&way, judge, own);
             }
             let of_outlines: u64 = found.outlines.iter().map(|own| own.held_bytes).sum();
-            if found.roads.held_bytes + of_outlines > most_bytes {
-                return None;
+            if found.roads.held_bytes + of_outlines + of_nodes > most_bytes {
+                return Err(TOO_MUCH_FOUND);
             }
         }
         found.looked = of_ways.or(found.looked);
-        Some(found)
+        Ok(found)
     }
 }
 
@@ -127,22 +134,24 @@ impl<'a> FoundWays<'a> {
         file: &mut Extracts<R>,
         numbers: &[usize],
         wanted: &WaysWanted<'_>,
-        outlines: &mut [Outlines<'a>],
+        (outlines, nodes): (&mut [Outlines<'a>], &mut FoundNodes<'a>),
         on_defect: &mut dyn FnMut(ExtractDefect),
     ) -> Result<(), Failed> {
         let [before, all_bytes] = wanted.bytes;
         let on_bytes = &|bytes| reading.tell(ReadingStep::Ways, before + bytes, all_bytes);
         let counted = if reading.is_of_several() { Counted::ByWay } else { Counted::ByBlock };
         let of_outlines: Vec<_> = outlines.iter().map(|outlines| outlines.wanted).collect();
+        let of_nodes = nodes.scanned();
         let scan = |block: Vec<u8>, most_bytes| {
-            let how = (of_outlines.as_slice(), counted);
-            Ok(OfBlock::scan(&block, wanted, how, most_bytes).ok_or(TOO_MUCH_FOUND)?)
+            let of_layers = (of_outlines.as_slice(), &of_nodes);
+            Ok(OfBlock::scan(&block, wanted, of_layers, (counted, most_bytes))?)
         };
         file.for_each_block(reading, numbers, on_bytes, scan, |place, of_block| {
             let [file, _] = place;
             if let Some(looked) = of_block.looked {
                 self.looked_at.take(reading, place, looked)?;
             }
+            nodes.take(reading, file as u32, of_block.nodes)?;
             // Layers are numbered in their order: roads come last.
             let place = [file as u32, of_outlines.len() as u32];
             self.take_roads(reading, place, of_block.roads, on_defect)?;

@@ -1,11 +1,5 @@
 //! Receivers of the contents of an extract's layers.
 
-use corniche_areas::BoundaryClass;
-
-/// Receives the names of the objects that ways bound: the id of a way, the class of the object, and
-/// its name.
-pub type NamesSink<'a> = dyn FnMut(i64, BoundaryClass, &str) + 'a;
-
 /// Receives the objects of a layer. Defects of a layer are reported between its beginning and its
 /// end.
 pub trait LayerSink<T, S> {

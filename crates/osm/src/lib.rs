@@ -1,15 +1,18 @@
-//! Reads roads, areas and boundaries from `OpenStreetMap` extracts (`.osm.pbf`), all in one
-//! reading.
+//! Reads roads and layers of areas, lines and points from `OpenStreetMap` extracts (`.osm.pbf`),
+//! all in one reading.
 //!
 //! ```text
-//!  blobs with relations ──► find_objects ──► objects of areas and boundaries, ids of the ways that they reference
-//!  blobs with ways ───────► find_ways ─────► WayRecord of each layer by way id ──► number_nodes ──► Mention by node id ─┐
+//! blobs with relations ──► find_objects ──► objects of layers, ids of the ways that they reference
+//! blobs with ways ───────► find_ways ─────► WayRecord of each layer by way id ──► number_nodes ──►
+//! Mention by node id ─┐
 //!                                                                                     │                               ▼
 //!                                                                what the ways are ◄──┘   blobs with nodes ──► locate_nodes
 //!                                                                      │                                              │
-//!  Road, Area, ClassedLine: by layer, each in order of ids ◄───── hand_out ◄── Stop in the order of the ways ◄────────┘
+//! LayerArea, LayerLine, LayerPoint, Road: each in order of ids ◄─── hand_out ◄── Stop in the order
+//! of the ways ◄────────┘
 //!
-//!  blob ──► unpack, within its limit ──► audit ──► block: nodes and ways read in place; relations by osmpbf
+//! blob ──► unpack, within its limit ──► audit ──► block: nodes and ways read in place; relations
+//! by osmpbf
 //! ```
 //!
 //! In an extract that is sorted by type, each blob is unpacked once, whatever layers are requested:
@@ -35,6 +38,7 @@ mod layer_sink;
 mod layers;
 mod lines;
 mod outlines;
+mod points;
 mod read_extract;
 mod read_request;
 mod reading;
@@ -90,15 +94,16 @@ mod line_loss;
 mod summary;
 
 pub use area_loss::AreaLoss;
-pub use areas::{AreaSummary, KeptAreas};
+pub use areas::{AreaSummary, KeptAreas, LayerArea};
 pub use defect::ExtractDefect;
 pub use error::ReadOsmError;
 pub use header_bounds::header_bounds_deg;
 pub use kept_error::KeptError;
-pub use layer_sink::{LayerSink, NamesSink};
-pub use layers::Layers;
+pub use layer_sink::LayerSink;
+pub use layers::{LayerReceiver, Layers};
 pub use line_loss::LineLoss;
-pub use lines::{ClassedLine, LineSummary};
+pub use lines::{LayerLine, LineSummary};
+pub use points::{LayerPoint, PointSummary};
 pub use read_extract::{read_extract, read_extract_from};
 pub use read_request::{OnProgress, ReadRequest, RingArea, ToLattice};
 pub use share::{Share, ShareError};

@@ -1,18 +1,17 @@
-//! Classified lines of extracts: each way that gets a class from relations or from its own tags,
-//! once.
+//! Lines of a layer: each way that gets a class from its own tags or from relations, once.
 //!
 //! ```text
-//!  objects and their located ways (`outlines`) ──► members by way id ──┐
-//!                                                                      ├──► ClassedLine by way id
-//!                                                  class of each object ┘
+//!  objects and their located ways (`outlines`) ──► members by way id ─────────────┐
+//!                                                                                 ├──► LayerLine by way id
+//!                                                  class and values of each object ┘
 //! ```
 
-mod classed_line;
 mod hand_out_lines;
-mod line_names;
+mod layer_line;
+mod line_objects;
 mod make_lines;
 mod summary;
 
-pub use classed_line::ClassedLine;
 pub(crate) use hand_out_lines::hand_out_lines;
+pub use layer_line::LayerLine;
 pub use summary::LineSummary;

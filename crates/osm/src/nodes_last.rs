@@ -13,12 +13,15 @@ use crate::{
     locate_nodes::{NodeSource, ShareOfNodes, read_places, tell_nodes},
     looked::{BlockSurvey, LookedAt},
     nodes::{FoundNode, NodeIds, NodePlaces},
+    outlines::found_nodes::FoundNodes,
     reading::ExtractReading,
 };
 
 /// A source of node positions for an extract whose first blobs have not been read yet.
-pub(crate) struct NodesLast<'a, R> {
+pub(crate) struct NodesLast<'a, 'b, R> {
     pub(crate) file: &'a mut Extracts<R>,
+    /// The nodes of layers of points.
+    pub(crate) points: &'a mut FoundNodes<'b>,
     /// The number of blobs that have not been read: the blobs before the ways.
     pub(crate) unread: usize,
     /// The facts of the blobs that were read, and finally of all blobs.
@@ -28,7 +31,7 @@ pub(crate) struct NodesLast<'a, R> {
     pub(crate) is_out_of_order: bool,
 }
 
-impl<R: Read + Seek> NodesLast<'_, R> {
+impl<R: Read + Seek> NodesLast<'_, '_, R> {
     /// Reads all blobs that have not been read yet.
     fn read_first(
         &mut self,
@@ -38,19 +41,22 @@ impl<R: Read + Seek> NodesLast<'_, R> {
         take: &mut dyn FnMut(FoundNode),
     ) -> Result<(), Failed> {
         let numbers: Vec<usize> = (0..std::mem::take(&mut self.unread)).collect();
+        let points = self.points.scanned();
         let scan = |block: Vec<u8>, most_bytes| {
             let block = AuditedBlock::new(&block);
             let found = ids.scan(&block, most_bytes).ok_or(TOO_MUCH_FOUND)?;
-            Ok((BlockSurvey::scan(&block), block.has_others_than_nodes(), found))
+            let points = points.scan(&block, most_bytes)?;
+            Ok((BlockSurvey::scan(&block), block.has_others_than_nodes(), found, points))
         };
         let mut first = LookedAt::default();
         self.file.for_each_block(reading, &numbers, on_bytes, scan, |place, of_block| {
-            let (looked, has_others, found): (_, _, Vec<FoundNode>) = of_block;
+            let (looked, has_others, found, points): (_, _, Vec<FoundNode>, _) = of_block;
             if has_others {
                 self.is_out_of_order = true;
                 return Err(reading.stopped().into());
             }
             first.take(reading, place, looked)?;
+            self.points.take(reading, place[0] as u32, points)?;
             found.into_iter().for_each(&mut *take);
             Ok(())
         })?;
@@ -60,7 +66,7 @@ impl<R: Read + Seek> NodesLast<'_, R> {
     }
 }
 
-impl<R: Read + Seek> NodeSource for NodesLast<'_, R> {
+impl<R: Read + Seek> NodeSource for NodesLast<'_, '_, R> {
     fn read(
         &mut self,
         reading: &ExtractReading<'_>,

@@ -30,7 +30,7 @@ use crate::{
     failed::Failed,
     find_ways::{FoundWays, WaysWanted},
     hand_out::{RoadWays, hand_out_roads},
-    layers::Layers,
+    layers::{LayerReceiver, Layers},
     left_out_lengths::LeftOutNodes,
     lines::hand_out_lines,
     locate_nodes::{locate_nodes, most_ids},
@@ -39,10 +39,12 @@ use crate::{
     outlines::{
         find_objects::find_objects,
         found::{OutlineObjects, Outlines},
+        found_nodes::FoundNodes,
         judge::OwnTags,
         located_ways::LocatedWays,
         wanted::WantedObjects,
     },
+    points::hand_out_points,
     read_request::ReadRequest,
     reading::{ExtractReading, LayerCount},
     sought_ids::SoughtIds,
@@ -72,11 +74,11 @@ use crate::{
 /// part that fits. If these blobs are sorted by id, only the blobs with nodes of that part are
 /// read: each blob once more, and once more if a part ends within it.
 ///
-/// Areas and lines also need relations. A sorted extract is read once: relations, ways, nodes. An
-/// unsorted one is read three times: for objects, for ways, for nodes. If the ids of the ways that
-/// relations reference do not fit in memory, blobs with ways are read again for each part that
-/// fits. `should_stop` is called every few blobs, and every 65 536 nodes or ways while these are
-/// sorted and joined.
+/// Areas, lines, and points inside closed ways also need relations. A sorted extract is read once:
+/// relations, ways, nodes. An unsorted one is read three times: for objects, for ways, for nodes.
+/// If the ids of the ways that relations reference do not fit in memory, blobs with ways are read
+/// again for each part that fits. `should_stop` is called every few blobs, and every 65 536 nodes
+/// or ways while these are sorted and joined.
 ///
 /// # Memory
 /// Ways and nodes of all layers take about [`ReadRequest::memory_bytes`] at most. What does not fit
@@ -87,7 +89,7 @@ use crate::{
 /// - a few thousand ways that are delivered, assembled or read at a time, 100 bytes for each of
 ///   their nodes;
 /// - 48 bytes for each blob of the file, and the texts of the summary;
-/// - one byte for each object that gives ways a class, and 16 bytes for each point of coastlines.
+/// - 32 bytes for each relation that gives ways a class, and 16 bytes for each point of coastlines.
 ///
 /// # Limits
 /// These limits apply to every file, including malicious ones; the limit of stored data applies to
@@ -162,10 +164,12 @@ fn read_all<R: Read + Seek>(
         }
     };
     let request = &ReadRequest { on_progress: Some(&told), ..*request };
-    let of_areas = layers.areas.as_ref().map(|&(table, _)| WantedObjects::Areas(table));
-    let of_boundaries = layers.boundaries.is_some().then_some(WantedObjects::Boundaries);
     let wanted = LayersWanted {
-        outlines: of_areas.into_iter().chain(of_boundaries).collect(),
+        outlines: layers
+            .layers
+            .iter()
+            .map(|(table, receiver)| WantedObjects { table, geometry: receiver.geometry() })
+            .collect(),
         roads: layers.roads.is_some().then_some(request.table),
     };
     let reading = ExtractReading {
@@ -186,12 +190,12 @@ fn read_all<R: Read + Seek>(
     };
     // If nothing is assumed to be sorted, nothing can be out of order.
     let Some(LayerObjects { outlines, roads }) = found else { return Ok(()) };
-    let mut outlines = outlines.into_iter();
-    if let (Some((_, sink)), Some(found)) = (layers.areas, of_areas.and_then(|_| outlines.next())) {
-        hand_out_areas(&reading, found, sink, on_defect)?;
-    }
-    if let (Some(sink), Some(found)) = (layers.boundaries, outlines.next()) {
-        hand_out_lines(&reading, found, (sink, on_defect), layers.boundary_names)?;
+    for ((_, receiver), found) in layers.layers.into_iter().zip(outlines) {
+        match receiver {
+            LayerReceiver::Areas(sink) => hand_out_areas(&reading, found, sink, on_defect)?,
+            LayerReceiver::Lines(sink) => hand_out_lines(&reading, found, sink, on_defect)?,
+            LayerReceiver::Points(sink) => hand_out_points(&reading, found, sink, on_defect)?,
+        }
     }
     if let (Some(sink), Some(mut found)) = (layers.roads, roads) {
         let header = file.take_header();
@@ -236,7 +240,9 @@ impl<'a> LayerObjects<'a> {
             wanted.outlines.iter().map(|&wanted| Outlines::new(reading, wanted)).collect();
         let mut of_roads = Deferred::new(reading.request.scratch, reading.shares().defects);
         let on_defect = &mut |defect| of_roads.push(&defect);
-        let Some(found) = read_ways(reading, file, order, wanted, &mut outlines, on_defect)? else {
+        let mut points = FoundNodes::new(reading, &wanted.outlines);
+        let found = (&mut outlines[..], &mut points);
+        let Some(found) = read_ways(reading, file, order, wanted, found, on_defect)? else {
             return Ok(None);
         };
         let FoundWays { ways, located, mut summary, looked_at, nodes_named, .. } = found;
@@ -264,7 +270,13 @@ impl<'a> LayerObjects<'a> {
             questions.push(asked);
             layers.push(ways);
         }
-        let mut nodes = NodesLast { file, unread: order.nodes, looked_at, is_out_of_order: false };
+        let mut nodes = NodesLast {
+            file,
+            points: &mut points,
+            unread: order.nodes,
+            looked_at,
+            is_out_of_order: false,
+        };
         let located = located.finish()?;
         let answers =
             locate_nodes(reading, &mut nodes, questions, located, &mut |layer, defect| {
@@ -275,6 +287,7 @@ impl<'a> LayerObjects<'a> {
         }
         let nodes_seen = nodes.looked_at.nodes_seen;
         let mut layers = layers.into_iter().zip(answers?);
+        points.number(reading, &mut objects)?;
         let mut found = Self { outlines: Vec::new(), roads: None };
         for own in objects {
             let Some((NumberedWays { ways, count, .. }, nodes)) = layers.next() else { break };
@@ -295,7 +308,7 @@ fn read_ways<'a, R: Read + Seek>(
     file: &mut Extracts<R>,
     order: BlobOrder,
     wanted: &LayersWanted<'_>,
-    outlines: &mut [Outlines<'a>],
+    (outlines, points): (&mut [Outlines<'a>], &mut FoundNodes<'a>),
     on_defect: &mut dyn FnMut(ExtractDefect),
 ) -> Result<Option<FoundWays<'a>>, Failed> {
     let mut found = FoundWays::new(reading);
@@ -307,7 +320,8 @@ fn read_ways<'a, R: Read + Seek>(
     let is_sorted = end > 0;
     let [relations_bytes, ways_bytes] =
         [&relations, if is_sorted { &ways } else { &relations }].map(|blobs| file.bytes_of(blobs));
-    let before = find_objects(reading, file, &relations, outlines, !is_sorted, ways_bytes)?;
+    let before =
+        find_objects(reading, file, &relations, (outlines, points), !is_sorted, ways_bytes)?;
     let mut way_ids: Vec<SoughtIds<'_>> =
         outlines.iter_mut().map(|own| own.take_way_ids(reading)).collect::<Result<_, _>>()?;
     let most_ids = (reading.shares().way_ids / size_of::<i64>() as u64).max(1) as usize;
@@ -323,13 +337,13 @@ fn read_ways<'a, R: Read + Seek>(
         is_first: true,
         bytes: [relations_bytes, all_bytes],
     };
-    found.read(reading, file, &ways, &wanted, outlines, on_defect)?;
+    found.read(reading, file, &ways, &wanted, (outlines, points), on_defect)?;
     if !outlines.is_empty() && found.looked_at.has_relations {
         return Ok(None);
     }
     wanted = WaysWanted { is_first: false, bytes: [all_bytes - rest_bytes, all_bytes], ..wanted };
     let rest = &before.with_ways;
-    found.read(reading, file, rest, &wanted, outlines, on_defect)?;
+    found.read(reading, file, rest, &wanted, (outlines, points), on_defect)?;
     // Ways that relations reference, if their ids did not fit in memory together.
     let blobs = [&found.looked_at.with_ways[..], rest].concat();
     loop {
@@ -339,7 +353,7 @@ fn read_ways<'a, R: Read + Seek>(
         }
         let own_tags = if is_sorted { OwnTags::KeptBefore } else { OwnTags::Ignored };
         wanted = WaysWanted { roads: None, own_tags, way_ids, bytes: [all_bytes; 2], ..wanted };
-        found.read(reading, file, &blobs, &wanted, outlines, on_defect)?;
+        found.read(reading, file, &blobs, &wanted, (outlines, points), on_defect)?;
     }
     found.looked_at.append(reading, before)?;
     Ok(Some(found))

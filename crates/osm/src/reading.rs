@@ -14,7 +14,8 @@ use crate::{ReadOsmError, nodes::Precedence, read_request::ReadRequest};
 /// | nodes are located | | 4 | ½ | ½ | 1 | 4 | 2 | 4 | 4 | 20 |
 /// | a layer is delivered | (parts) 4 | (members) 4 | | | 1 | | | 4 | 4 | 17 |
 ///
-/// Data that exists for each layer has an equal part of this for each layer.
+/// Data that exists for each layer has an equal part of this for each layer. A layer of points
+/// shares its part for objects between nodes and other objects.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Shares {
     /// The memory for ways that are sorted by id, bytes; all fields are in bytes.

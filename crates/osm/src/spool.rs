@@ -79,6 +79,12 @@ pub(crate) struct SpoolReader<'a> {
 }
 
 impl SpoolReader<'_> {
+    /// Returns a reader of these records and of those of `later`.
+    pub(crate) fn followed_by(mut self, later: Self) -> Self {
+        self.pages = self.pages.chain(later.pages).collect::<Vec<_>>().into_iter();
+        self
+    }
+
     /// Returns the next record, which `decode` takes from the front of the bytes; `None` after the
     /// last one.
     pub(crate) fn next<T>(

@@ -1,4 +1,4 @@
-//! Areas of the extract: their distribution to the tiles of each level, and the sections of tiles.
+//! Areas of layers: their distribution to the tiles of each level.
 
 pub mod layer;
 pub(crate) mod sea;

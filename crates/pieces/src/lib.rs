@@ -1,9 +1,9 @@
-//! Cuts the extract into pieces: the roads, areas, lines, bridges and tunnels that each tile of
-//! each level needs.
+//! Cuts the extract into pieces: the roads, objects of layers, bridges and tunnels that each tile
+//! of each level needs.
 //!
 //! ```text
 //!   extract ─► roads ─► pieces of tiles           ─┐
-//!           ─► areas, lines ─► sections of tiles  ─┴─► store
+//!           ─► layers ──────► sections of tiles  ─┴─► store
 //!           ─► bridges and tunnels ─► runs, when the ground is complete
 //! ```
 //!
@@ -13,6 +13,7 @@ pub mod areas;
 pub mod extract;
 pub mod layers;
 pub mod lines;
+pub mod points;
 pub mod roads;
 pub mod spans;
 

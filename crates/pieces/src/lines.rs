@@ -1,3 +1,3 @@
-//! Boundaries of the extract, split by tile.
+//! Lines of layers: their distribution to the tiles of each level.
 
 pub mod layer;

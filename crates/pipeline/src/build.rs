@@ -124,11 +124,11 @@ pub(crate) fn warn(context: &BuildContext<'_>) {
     warn_of_other_network(context);
 }
 
-/// Warns if the package that provides the terrain has roads or areas that were built with other
+/// Warns if the package that provides the terrain has roads or layers that were built with other
 /// settings: users who put new roads on it each week may have forgotten an option.
 fn warn_of_other_network(context: &BuildContext<'_>) {
     let GroundSource::Package(terrain) = context.source else { return };
-    let PlanSettings { terrain: of_terrain, roads, areas, boundaries, osm, .. } = context.settings;
+    let PlanSettings { terrain: of_terrain, roads, layers, osm, .. } = context.settings;
     let manifest = terrain.manifest();
     if osm.is_empty() || !manifest.has_extract() {
         return;
@@ -138,12 +138,12 @@ fn warn_of_other_network(context: &BuildContext<'_>) {
         roads,
         context.opened.max_error_m,
         None,
-        (areas.as_ref(), *boundaries),
+        layers,
     );
     let differences = network_differences(&ours, &manifest.settings);
     if !differences.is_empty() {
         context.observer.warning(&format!(
-            "roads and areas are built with settings that differ from those of {:?}: {}",
+            "roads and layers are built with settings that differ from those of {:?}: {}",
             terrain.path(),
             differences.join("; ")
         ));

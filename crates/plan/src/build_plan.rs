@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use corniche_areas::{AreaTable, AreaTableError};
 use corniche_geom::{Bounds, Cell, GridFrame, NodeIndex, TileId};
 use corniche_gis::RegionPolygons;
+use corniche_layers::{LayerForm, LayerTable};
 use corniche_roads::{FrcTable, FrcTableError};
 use corniche_spec::{
     PhotoChoice, PhotoSettings, PlanSettings, data_tiles::DataTiles, hex::hex,
@@ -40,27 +40,15 @@ pub struct BuildPlan {
     pub settings: SettingsRecord,
     /// The complete FRC (functional road class) table.
     pub(crate) frc_table: FrcTableRecord,
-    /// The complete area table; omitted if there are no areas.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) area_table: Option<AreaTableText>,
+    /// The complete tables of the layers, the lowest layer first; omitted without layers.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) layers: Vec<LayerForm>,
     /// Attribution given by the user, without that of the inputs.
     pub attribution: Vec<String>,
     /// The grid that results from inputs and settings.
     pub grid: PlannedGrid,
     /// The values that result for each level, root first.
     pub levels: Vec<PlannedLevel>,
-}
-
-/// An area table as it is stored.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct AreaTableText {
-    /// Name of the table.
-    pub name: String,
-    /// Whether the sea is included.
-    pub(crate) sea: bool,
-    /// Each tag, `key=value`, in order of precedence, with the number of its class.
-    pub(crate) tags: Vec<(String, u8)>,
 }
 
 /// An FRC table as it is stored.
@@ -145,8 +133,7 @@ impl BuildPlan {
     /// See [`PlanError`].
     pub fn from_settings(settings: &PlanSettings, opened: &Opened) -> Result<Self, PlanError> {
         let grid = &opened.grid;
-        let PlanSettings { terrain, roads, areas, boundaries, attribution, generator, .. } =
-            settings;
+        let PlanSettings { terrain, roads, layers, attribution, generator, .. } = settings;
         Ok(Self {
             plan_version: PLAN_VERSION,
             generator: generator.clone(),
@@ -157,10 +144,10 @@ impl BuildPlan {
                 roads,
                 opened.max_error_m,
                 opened.photo.record(),
-                (areas.as_ref(), *boundaries),
+                layers,
             ),
             frc_table: FrcTableRecord::from_table(&roads.table),
-            area_table: areas.as_ref().map(AreaTableText::from_table),
+            layers: layers.iter().map(|table| table.form().clone()).collect(),
             attribution: attribution.clone(),
             grid: PlannedGrid {
                 frame: grid.frame,
@@ -229,8 +216,7 @@ impl BuildPlan {
             terrain_of: paths("terrain").next(),
             osm: paths("osm").collect(),
             terrain,
-            areas: self.area_table.as_ref().map(AreaTableText::table).transpose()?,
-            boundaries: self.settings.boundaries,
+            layers: self.layers.iter().cloned().map(LayerTable::new).collect::<Result<_, _>>()?,
             roads: settings_record::roads(&self.settings, table).ok_or(PlanFileError::Filter)?,
             attribution: self.attribution.clone(),
             generator: self.generator.clone(),
@@ -288,30 +274,6 @@ impl BuildPlan {
     #[must_use]
     pub fn hash(&self) -> String {
         hex(&self.digest())
-    }
-}
-
-impl AreaTableText {
-    fn from_table(table: &AreaTable) -> Self {
-        let tag = |(key, value, class): (&str, &str, corniche_areas::AreaClass)| {
-            (format!("{key}={value}"), class.number())
-        };
-        Self {
-            name: table.name().to_owned(),
-            sea: table.has_sea(),
-            tags: table.tags().map(tag).collect(),
-        }
-    }
-
-    fn table(&self) -> Result<AreaTable, PlanFileError> {
-        let tag = |(tag, class): &(String, u8)| {
-            let class = corniche_areas::AreaClass::from_number(*class);
-            Ok((tag.clone(), class.ok_or(PlanFileError::AreaClass)?))
-        };
-        let tags = self.tags.iter().map(tag).collect::<Result<_, PlanFileError>>()?;
-        let table: Result<AreaTable, AreaTableError> = AreaTable::new(self.name.clone(), tags);
-        let table = table?;
-        Ok(table.with_sea(self.sea))
     }
 }
 

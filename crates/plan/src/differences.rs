@@ -22,8 +22,8 @@ impl BuildPlan {
             inputs: _,
             settings,
             frc_table,
-            // The hash of the area table is among the settings.
-            area_table: _,
+            // The hashes of the tables are among the settings.
+            layers: _,
             attribution,
             grid: _,
             levels: _,

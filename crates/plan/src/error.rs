@@ -7,7 +7,7 @@ use corniche_roads::FrcTableError;
 use corniche_spec::inputs::InputError;
 
 /// Version of a plan's JSON; other versions are rejected.
-pub const PLAN_VERSION: u32 = 9;
+pub const PLAN_VERSION: u32 = 10;
 
 /// Why a text is not a plan, or a plan cannot be used here.
 #[derive(Debug, thiserror::Error)]
@@ -26,10 +26,8 @@ pub enum PlanFileError {
         "the plan's list of the levels on which each road class is shown is invalid; create the plan again"
     )]
     Filter,
-    #[error("the plan's area table is invalid; create the plan again")]
-    AreaTable(#[from] corniche_areas::AreaTableError),
-    #[error("the plan's area table names a class that does not exist; create the plan again")]
-    AreaClass,
+    #[error("the plan's table of a layer is invalid ({0}); create the plan again")]
+    Layer(#[from] corniche_layers::LayerTableError),
     #[error(transparent)]
     Polygon(#[from] corniche_gis::PolygonError),
     #[error(

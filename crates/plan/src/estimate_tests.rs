@@ -98,7 +98,6 @@ fn recorded_rates_fit_what_they_were_taken_from() {
 fn some_tiles_tell_how_the_ground_is() {
     let table = FrcTable::new("one", vec![("motorway".to_owned(), 0)], Vec::new(), 0).unwrap();
     let settings = PlanSettings {
-        boundaries: false,
         dem: vec![corniche_testing::sample("pass/pass-dem.tif")],
         terrain_of: None,
         osm: Vec::new(),
@@ -114,7 +113,7 @@ fn some_tiles_tell_how_the_ground_is() {
             spans: false,
         },
         photo: PhotoChoice::Off,
-        areas: None,
+        layers: Vec::new(),
         attribution: Vec::new(),
         generator: "tests".to_owned(),
     };

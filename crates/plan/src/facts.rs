@@ -46,13 +46,13 @@ pub(crate) fn terrain_differences(ours: &SettingsRecord, package: &SettingsRecor
     differences_from(ours, &theirs, &[SettingSection::Terrain])
 }
 
-/// Returns in words how the settings for roads and areas differ from those that a package records.
+/// Returns in words how the settings for roads and layers differ from those that a package records.
 /// Settings for the ground are not compared.
 #[must_use]
 pub fn network_differences(ours: &SettingsRecord, package: &SettingsRecord) -> Vec<String> {
     // The labels of classes do not change roads.
     let theirs = SettingsRecord { class_labels: ours.class_labels.clone(), ..package.clone() };
-    differences_from(ours, &theirs, &[SettingSection::Roads, SettingSection::Areas])
+    differences_from(ours, &theirs, &[SettingSection::Roads, SettingSection::Layers])
 }
 
 fn differences_from(

@@ -144,7 +144,7 @@ impl Opened {
             &settings.roads,
             max_error_m,
             None,
-            (None, false),
+            &[],
         );
         let differences = terrain_differences(&ours, &manifest.settings);
         if !differences.is_empty() {

@@ -31,8 +31,8 @@ pub struct Config {
     pub terrain: TerrainOptions,
     /// `[roads]`
     pub roads: RoadOptions,
-    /// `[areas]`
-    pub areas: AreaOptions,
+    /// `[layers]`
+    pub layers: LayerOptions,
     /// `[photo]`
     pub photo: PhotoOptions,
     /// `[resources]`
@@ -132,26 +132,14 @@ fn one_or_two<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Cell>
     }))
 }
 
-/// The value of `boundaries`.
-fn off_or_on<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<bool>, D::Error> {
-    yes_or_no(deserializer, ["off", "on"], "boundaries is on or off")
-}
-
 /// The value of `structures`: whether there are spans.
 fn ground_or_spans<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<bool>, D::Error> {
-    yes_or_no(deserializer, ["ground", "spans"], r#"structures must be "ground" or "spans""#)
-}
-
-/// One of two words; the second means yes.
-fn yes_or_no<'de, D: Deserializer<'de>>(
-    deserializer: D,
-    words: [&str; 2],
-    advice: &str,
-) -> Result<Option<bool>, D::Error> {
     let text = String::deserialize(deserializer)?;
-    match words.iter().position(|word| *word == text) {
+    match ["ground", "spans"].iter().position(|word| *word == text) {
         Some(place) => Ok(Some(place == 1)),
-        None => Err(Error::custom(format!("{advice}, not {text:?}"))),
+        None => {
+            Err(Error::custom(format!(r#"structures must be "ground" or "spans", not {text:?}"#)))
+        }
     }
 }
 

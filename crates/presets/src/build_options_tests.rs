@@ -80,7 +80,7 @@ fn what_the_first_leaves_out_is_taken_from_the_second() {
 
 /// Options with a different value in each field for each `n`. Every field is named, so that a new
 /// one cannot be forgotten.
-fn all_options(n: u8) -> (TerrainOptions, RoadOptions, AreaOptions, ResourceOptions) {
+fn all_options(n: u8) -> (TerrainOptions, RoadOptions, LayerOptions, ResourceOptions) {
     let (text, number) = (|name: &str| format!("{name} {n}"), f64::from(n));
     let terrain = TerrainOptions {
         crs: Some(text("crs")),
@@ -110,25 +110,25 @@ fn all_options(n: u8) -> (TerrainOptions, RoadOptions, AreaOptions, ResourceOpti
         spans: Some(n == 1),
         class_max_cell: Some(BTreeMap::from([(text("class"), number)])),
     };
-    let areas = AreaOptions { table: Some(text("areas")), boundaries: Some(n == 1) };
+    let layers = LayerOptions { tables: vec![text("layers")] };
     let resources = ResourceOptions {
         threads: NonZeroUsize::new(n.into()),
         memory: Some(text("memory")),
         tmp: Some(text("tmp").into()),
     };
-    (terrain, roads, areas, resources)
+    (terrain, roads, layers, resources)
 }
 
 #[test]
 fn each_option_is_the_firsts_and_only_without_it_the_seconds() {
-    let (terrain, roads, areas, resources) = all_options(1);
-    let (other_terrain, other_roads, other_areas, other_resources) = all_options(2);
+    let (terrain, roads, layers, resources) = all_options(1);
+    let (other_terrain, other_roads, other_layers, other_resources) = all_options(2);
     assert_eq!(terrain.clone().or(other_terrain), terrain);
     assert_eq!(TerrainOptions::default().or(terrain.clone()), terrain);
     assert_eq!(roads.clone().or(other_roads), roads);
     assert_eq!(RoadOptions::default().or(roads.clone()), roads);
-    assert_eq!(areas.clone().or(other_areas), areas);
-    assert_eq!(AreaOptions::default().or(areas.clone()), areas);
+    assert_eq!(layers.clone().or(other_layers), layers);
+    assert_eq!(LayerOptions::default().or(layers.clone()), layers);
     assert_eq!(resources.clone().or(other_resources), resources);
     assert_eq!(ResourceOptions::default().or(resources.clone()), resources);
 }

@@ -1,6 +1,5 @@
 //! Errors of parsing settings and tables, and the limit on the length of their texts.
 
-use corniche_areas::{AreaClass, AreaTableError};
 use corniche_layers::LayerTableError;
 use corniche_roads::{ClassFilterError, FrcTableError};
 
@@ -16,22 +15,12 @@ pub enum PresetError {
     Toml(#[from] toml::de::Error),
     #[error(transparent)]
     FrcTable(#[from] FrcTableError),
-    #[error(transparent)]
-    AreaTable(#[from] AreaTableError),
-    #[error("area table: {class:?} is not a class of areas; the classes are {}", class_names())]
-    AreaClass { class: String },
     #[error("line {line}: {error}")]
     Layer { line: usize, error: LayerTableError },
     #[error("class-max-cell: {text:?} is not a class; the classes are 0 to 8")]
     Class { text: String },
     #[error("class-max-cell: {0}")]
     ClassFilter(#[from] ClassFilterError),
-}
-
-/// The classes that tables can assign to tags.
-fn class_names() -> String {
-    let names = AreaClass::ALL.into_iter().filter(|&class| class != AreaClass::Sea);
-    names.map(AreaClass::name).collect::<Vec<_>>().join(", ")
 }
 
 /// The largest length of a text. The longest preset has some 3 kB.

@@ -14,15 +14,15 @@ pub struct OutputFiles {
     pub defects: Option<PathBuf>,
 }
 
-/// The names of files: a list, or a single name.
-pub(crate) fn one_or_many_names<'de, D: Deserializer<'de>>(
+/// The names of files or of layers: a list, or a single name.
+pub(crate) fn one_or_many_names<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
     deserializer: D,
-) -> Result<Vec<PathBuf>, D::Error> {
+) -> Result<Vec<T>, D::Error> {
     #[derive(Deserialize)]
-    #[serde(untagged, expecting = "expected the name of a file or a list of names")]
-    enum OneOrMany {
-        One(PathBuf),
-        Many(Vec<PathBuf>),
+    #[serde(untagged, expecting = "expected a name or a list of names")]
+    enum OneOrMany<T> {
+        One(T),
+        Many(Vec<T>),
     }
     Ok(match OneOrMany::deserialize(deserializer)? {
         OneOrMany::One(path) => vec![path],

@@ -3,7 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use crate::{
-    InputFiles, areas::area_preset, build_options::Config, frc::frc_preset, photo::is_photo_off,
+    InputFiles,
+    build_options::Config,
+    frc::frc_preset,
+    layers::{is_no_layers, layer_preset},
+    photo::is_photo_off,
 };
 
 impl Config {
@@ -12,7 +16,7 @@ impl Config {
     /// and names of presets are unchanged.
     #[must_use]
     pub fn in_folder(mut self, folder: &Path) -> Self {
-        let Self { inputs, output, roads, areas, resources, .. } = &mut self;
+        let Self { inputs, output, roads, layers, resources, .. } = &mut self;
         let InputFiles { dem, terrain, osm, polygon, photo } = inputs;
         let files = dem.iter_mut().chain(terrain).chain(osm.iter_mut()).chain(polygon);
         let photo = if is_photo_off(photo) { &mut [] } else { &mut photo[..] };
@@ -22,12 +26,10 @@ impl Config {
         for path in files.chain(written) {
             *path = within(folder, path);
         }
-        let is_name = |table: &&mut String| *table == "off" || area_preset(table).is_some();
-        let tables = [
-            roads.frc_table.as_mut().filter(|table| frc_preset(table).is_none()),
-            areas.table.as_mut().filter(|table| !is_name(table)),
-        ];
-        for table in tables.into_iter().flatten() {
+        let layers = if is_no_layers(&layers.tables) { &mut [] } else { &mut layers.tables[..] };
+        let layers = layers.iter_mut().filter(|table| layer_preset(table).is_none());
+        let frc_table = roads.frc_table.as_mut().filter(|table| frc_preset(table).is_none());
+        for table in layers.chain(frc_table) {
             if let Some(path) = within(folder, Path::new(table)).to_str() {
                 path.clone_into(table);
             }

@@ -52,6 +52,17 @@ fn photos_that_are_off_are_no_file() {
 }
 
 #[test]
+fn layers_are_names_or_files() {
+    let layers = |text: &str| {
+        let config = Config::parse(&format!("[layers]\nlayers = {text}\n")).unwrap();
+        config.in_folder(Path::new("/maps")).layers.tables
+    };
+    assert_eq!(layers("\"none\""), ["none"]);
+    assert_eq!(layers("\"areas\""), ["areas"]);
+    assert_eq!(layers("[\"walls.toml\", \"railways\"]"), ["/maps/walls.toml", "railways"]);
+}
+
+#[test]
 fn lists_stay_lists_and_names_of_drivers_stay_as_they_are() {
     let text = "[inputs]\ndem = [\"@list.txt\", \"@/all/list.txt\", \"GTIFF_DIR:1:a.tif\", \"/vsizip/a.zip/b.tif\", \"c:d.tif\"]\n";
     let config = Config::parse(text).unwrap().in_folder(Path::new("/maps"));

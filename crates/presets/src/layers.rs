@@ -6,6 +6,13 @@ use toml::de::{DeTable, DeValue};
 
 use crate::{PresetError, error::bounded};
 
+/// Whether these names of layers are the single word that turns all layers off. A file of this name
+/// is `./none`.
+#[must_use]
+pub fn is_no_layers(names: &[String]) -> bool {
+    names == ["none"]
+}
+
 /// Names of the built-in layers.
 pub fn layer_preset_names() -> impl Iterator<Item = &'static str> {
     LAYERS.iter().map(|(name, _)| *name)

@@ -256,8 +256,10 @@ pub(crate) fn tag<'t>(tags: &[(&'t str, &'t str)], key: &str) -> Option<&'t str>
     tags.iter().find(|(k, _)| *k == key).map(|&(_, value)| value)
 }
 
-/// The three spellings of *yes* that data consumers accept (OSM wiki, *Key:oneway*).
-pub(crate) fn is_yes(value: &str) -> bool {
+/// Whether a value is one of the three spellings of *yes* that data consumers accept (OSM wiki,
+/// *Key:oneway*).
+#[must_use]
+pub fn is_yes(value: &str) -> bool {
     matches!(value, "yes" | "true" | "1")
 }
 

@@ -18,7 +18,7 @@ mod value_records;
 pub use record::{SettingFact, SettingSection, SettingsRecord};
 pub use relief_levels::ReliefLevels;
 pub use value::SettingValue;
-pub use value_records::{AreaTableRecord, PhotoRecord, PolygonRecord};
+pub use value_records::{LayerTableRecord, PhotoRecord, PolygonRecord};
 
 /// The upper limit of lengths, heights and coordinates of a package: far beyond every planet, and
 /// its square still fits an f32.

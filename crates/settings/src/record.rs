@@ -5,7 +5,7 @@ use corniche_roads::FunctionalRoadClass;
 use serde::{Deserialize, Serialize, Serializer, ser::SerializeStruct as _};
 
 use crate::{
-    AreaTableRecord, MAX_MEASURE_M, PhotoRecord, PolygonRecord, ReliefLevels, SettingValue,
+    LayerTableRecord, MAX_MEASURE_M, PhotoRecord, PolygonRecord, ReliefLevels, SettingValue,
     table::KEYS_IN_ORDER,
 };
 
@@ -16,8 +16,8 @@ pub enum SettingSection {
     Terrain,
     /// Which roads a package has, and how exact they are.
     Roads,
-    /// Which areas and boundaries a package has.
-    Areas,
+    /// Which layers a package has.
+    Layers,
     /// How photos are stored.
     Photo,
 }

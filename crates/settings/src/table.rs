@@ -272,22 +272,14 @@ Roads(RoadOptions, "Roads") {
         ["the names of classes"] class_labels: Option<Vec<String>>, left_out "is_default"
     }
 }
-Areas(AreaOptions, "Areas") {
-    /// Store areas of the extract, such as water and forest, as polygons: off, the preset named
-    /// default, or your own table of classes (TOML) [default: off]
-    #[arg(id = "areas", long = "areas", value_name = "off|default|FILE")]
-    #[serde(rename = "areas")]
-    table: Option<String> => {
-        /// The table that selects areas; omitted without areas.
-        ["--areas"] areas: Option<AreaTableRecord>, left_out "is_default"
-    };
-    /// Store boundaries of the extract (administrative levels 2 to 8, protected areas): on or off.
-    /// A border between two of these areas is stored once [default: off]
-    #[arg(long, value_name = "off|on", value_parser = either(["off", "on"]))]
-    #[serde(deserialize_with = "off_or_on")]
-    boundaries: Option<bool> => {
-        /// Whether the package has boundaries; omitted without them.
-        ["--boundaries"] boundaries: bool, left_out "is_default"
+Layers(LayerOptions, "Layers") {
+    /// Layers of the extract to store: areas, boundaries, railways, or tables of your own (TOML
+    /// files); separate several by commas. The word none: no layers [default: none]
+    #[arg(id = "layers", long = "layers", value_name = "NAME|FILE|none", value_delimiter = ',')]
+    #[serde(rename = "layers", deserialize_with = "one_or_many_names")]
+    tables: Vec<String> => {
+        /// The tables of the layers, the lowest layer first; omitted without layers.
+        ["--layers"] layers: Vec<LayerTableRecord>, left_out "is_default"
     };
 } and {}
 Photo(PhotoOptions, "Photos") {
@@ -331,7 +323,7 @@ pub(crate) const KEYS_IN_ORDER: &str = "max_error_m fill_voids nodata height_ran
     dem_vertical_crs vertical_crs \
     vertical_shift_m vertical_unit crs cell_m cell_every scale_latitude_deg bounds_deg polygon \
     relief frc_table frc_table_sha256 class_labels classes class_max_cell_m simplify_cells photo \
-    areas boundaries spans";
+    layers spans";
 
 /// Passes the records of all settings that determine bytes to the macro `then`, each as `Section {
 /// RECORD }`: `recorded! { [then] }`.

@@ -2,7 +2,7 @@
 
 use corniche_geom::Cell;
 
-use crate::{AreaTableRecord, PolygonRecord, ReliefLevels};
+use crate::{LayerTableRecord, PolygonRecord, ReliefLevels};
 
 /// A value in the form in which settings are compared.
 pub trait SettingValue {
@@ -84,9 +84,9 @@ impl SettingValue for PolygonRecord {
     }
 }
 
-impl SettingValue for AreaTableRecord {
+impl SettingValue for LayerTableRecord {
     fn text(&self) -> String {
-        named(&self.table, &self.sha256)
+        named(&self.id, &self.sha256)
     }
 }
 

@@ -11,12 +11,12 @@ pub struct PolygonRecord {
     pub sha256: String,
 }
 
-/// The table of classes of areas.
+/// The table of a layer.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct AreaTableRecord {
-    /// Its name.
-    pub table: String,
-    /// SHA-256 of its text.
+pub struct LayerTableRecord {
+    /// The id of the layer.
+    pub id: String,
+    /// SHA-256 of the table as JSON.
     pub sha256: String,
 }
 

@@ -23,10 +23,8 @@
 //! | `NodesShare` | share | the number of blocks of positions | nodes | roads |
 //! | `PhotoTexture` | finest tile | its photo, encoded; empty if it has none | heights | tiles |
 //! | `PhotoRaster` | tile | texels of its photo, one for each cell; empty if it has none | heights, top | top, tiles |
-//! | `AreaSection` | tile | its areas section, encoded, with counts; empty if it has none | roads | tiles |
-//! | `AreaTotals` | 0 | counts of the extract's areas; written after all their sections | roads | tiles, merge |
-//! | `BoundarySection` | tile | its boundaries section, encoded, with counts; empty if it has none | roads | tiles |
-//! | `BoundaryTotals` | 0 | counts of the extract's boundaries; written after all their sections | roads | merge |
+//! | `LayerSection` | layer, tile | the layer's section of the tile, encoded, with counts; missing if it has none | roads | tiles |
+//! | `LayerTotals` | layer | counts of the layer's objects; written after all their sections | roads | merge |
 //! | `SpanRoads` | block of roads | whole bridges and tunnels, and the pieces of roads of all classes near them | roads | merge |
 //! | `SpanGround` | tile | the parts of its bridges and tunnels on the ground; empty if it has none | tiles, merge | merge |
 //! | `SpanSection` | tile | its section of spans (bridges and tunnels), encoded, with counts; empty if it has none | merge | merge |
@@ -93,10 +91,8 @@ pub enum ArtifactKind {
     NodesShare,
     PhotoTexture,
     PhotoRaster,
-    AreaSection,
-    AreaTotals,
-    BoundarySection,
-    BoundaryTotals,
+    LayerSection,
+    LayerTotals,
     SpanRoads,
     SpanGround,
     SpanSection,

@@ -1,8 +1,8 @@
-//! The spacing of the lattice to which points of areas and boundaries are snapped on each level.
+//! The spacing of the lattice to which points of layers are snapped on each level.
 
 use corniche_geom::GridFrame;
 
-/// On the finest level, points of areas and boundaries are on a lattice of at most this spacing,
+/// On the finest level, points of layers are on a lattice of at most this spacing,
 /// metres, because they may be viewed from near.
 const FINEST_STEP_M: f64 = 0.1;
 /// On other levels, a cell has at least this many lattice steps. Tiles are drawn while their cells

@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use corniche_areas::AreaTable;
 use corniche_dem::{OpenOptions, PlanOptions};
 use corniche_geom::Cell;
+use corniche_layers::LayerTable;
 use corniche_roads::{ClassFilter, FrcTable};
 use corniche_store::Existing;
 use corniche_tileset::ReliefLevels;
@@ -52,10 +52,8 @@ pub struct PlanSettings {
     pub terrain: TerrainSettings,
     /// How roads are built.
     pub roads: RoadSettings,
-    /// Which objects of the extracts are areas, if areas are requested.
-    pub areas: Option<AreaTable>,
-    /// Whether boundaries of the extracts are requested.
-    pub boundaries: bool,
+    /// The requested layers of the extracts, in the package's order: the lowest first.
+    pub layers: Vec<LayerTable>,
     /// Photos of the ground.
     pub photo: PhotoChoice,
     /// Attribution in addition to that of the inputs, such as a DEM's.

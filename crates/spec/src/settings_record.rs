@@ -7,10 +7,11 @@
 //! The build records the settings with [`record_settings`]; `verify` converts them back with
 //! [`terrain`] and [`roads`] to open the elevation files and the extract as the build did.
 
-use corniche_areas::AreaTable;
 use corniche_gis::RegionPolygons;
+use corniche_layers::LayerTable;
 use corniche_roads::{ClassFilter, FrcTable};
-use corniche_tileset::{AreaTableRecord, PhotoRecord, PolygonRecord, SettingsRecord};
+use corniche_tileset::{LayerTableRecord, PhotoRecord, PolygonRecord, SettingsRecord};
+use serde::Serialize;
 use sha2::{Digest, Sha256};
 
 use crate::{RoadSettings, TerrainSettings, hex::hex};
@@ -32,7 +33,7 @@ pub fn record_settings(
     roads: &RoadSettings,
     max_error_m: f64,
     photo: Option<PhotoRecord>,
-    (areas, boundaries): (Option<&AreaTable>, bool),
+    layers: &[LayerTable],
 ) -> SettingsRecord {
     let RoadSettings { table, filter, .. } = roads;
     let mut record = SettingsRecord {
@@ -44,8 +45,7 @@ pub fn record_settings(
         classes: table.chosen_classes(),
         class_max_cell_m: filter.class_max_cell_m().to_vec(),
         photo,
-        areas: areas.map(area_table_record),
-        boundaries,
+        layers: layers.iter().map(layer_table_record).collect(),
         ..SettingsRecord::default()
     };
     corniche_settings::placed! { Terrain [take] (record from terrain) }
@@ -53,11 +53,11 @@ pub fn record_settings(
     record
 }
 
-/// The record of an area table.
+/// The record of a layer's table.
 #[must_use]
-pub fn area_table_record(table: &AreaTable) -> AreaTableRecord {
-    let sha256 = hex(&Sha256::digest(table.canonical_text()));
-    AreaTableRecord { table: table.name().to_owned(), sha256 }
+pub fn layer_table_record(table: &LayerTable) -> LayerTableRecord {
+    let sha256 = hex(&Sha256::digest(json_text(table.form())));
+    LayerTableRecord { id: table.id().to_owned(), sha256 }
 }
 
 /// The record of a polygon: the name of its file, and the hash of the region that it encloses.
@@ -105,10 +105,14 @@ pub fn filter(record: &SettingsRecord) -> Option<ClassFilter> {
 /// SHA-256 of a record as JSON.
 #[must_use]
 pub fn sha256(record: &SettingsRecord) -> String {
+    hex(&Sha256::digest(json_text(record)))
+}
+
+/// A record as JSON.
+fn json_text<T: Serialize + std::fmt::Debug>(record: &T) -> String {
     // A record of numbers and texts can always be written as JSON; if it cannot, its debug form is
     // just as unique.
-    let json = serde_json::to_string(record).unwrap_or_else(|_| format!("{record:?}"));
-    hex(&Sha256::digest(json))
+    serde_json::to_string(record).unwrap_or_else(|_| format!("{record:?}"))
 }
 
 /// SHA-256 of an FRC table's text.

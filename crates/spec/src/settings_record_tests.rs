@@ -36,13 +36,7 @@ fn table(name: &str) -> FrcTable {
 
 fn record((terrain, roads): &Settings) -> SettingsRecord {
     let photo = Some(PhotoRecord { levels: 2, quality: 80 });
-    record_settings(
-        terrain,
-        roads,
-        terrain.max_error_m.unwrap_or(MAX_ERROR_M),
-        photo,
-        (None, false),
-    )
+    record_settings(terrain, roads, terrain.max_error_m.unwrap_or(MAX_ERROR_M), photo, &[])
 }
 
 /// Every setting that determines bytes, with another value for it.

@@ -1,12 +1,9 @@
-//! The styles of areas: a colour and an opacity for each class.
-
-use corniche_areas::AreaClass;
-use serde::{Deserialize, Serialize};
+//! The style of a class of areas: a colour and an opacity.
 
 use crate::Rgb;
 
 /// How the areas of one class are drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AreaStyle {
     /// Colour.
     pub color: Rgb,
@@ -20,23 +17,6 @@ pub struct AreaStyle {
 impl AreaStyle {
     /// From this share of the tangent of [`AreaStyle::steepest_deg`] on, the ground shows through.
     pub const STEEP_SHARE: f64 = 0.7;
-
-    /// All classes, the topmost first. Where drawn areas of several classes overlap, only the first
-    /// of these classes is visible: colours of classes are never mixed. Areas of one class form a
-    /// union.
-    ///
-    /// Classes that maps draw small and sharp are above classes that cover wide ground: water in a
-    /// forest is water, a park in a town is a park.
-    pub const TOP_FIRST: [AreaClass; AreaClass::COUNT] = [
-        AreaClass::Sea,
-        AreaClass::Water,
-        AreaClass::Glacier,
-        AreaClass::Forest,
-        AreaClass::Rock,
-        AreaClass::Park,
-        AreaClass::Meadow,
-        AreaClass::Settlement,
-    ];
 
     /// Whether anything of the class is drawn.
     #[must_use]

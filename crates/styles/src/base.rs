@@ -40,47 +40,55 @@ pub(crate) fn table(text: &str) -> Result<Spanned<DeTable<'_>>, StyleError> {
         };
         let base = style_preset(&name).ok_or(StyleError::Base { text: name })?;
         inherit(table.get_mut(), DeTable::parse(base)?.into_inner());
-        // A built-in style may omit areas and boundaries, too.
-        let mut usual = usual()?;
-        for part in ["areas", "boundaries"] {
-            if let Some((name, entries)) = usual.remove_entry(part) {
-                inherit(table.get_mut(), DeTable::from_iter([(name, entries)]));
-            }
-        }
     }
-    complete(table.get_mut(), usual()?);
+    let usual = DeTable::parse(style_preset(USUAL).unwrap_or_default())?.into_inner();
+    complete(table.get_mut(), usual);
+    gather_entries(table.get_mut());
     Ok(table)
 }
 
-fn usual() -> Result<DeTable<'static>, StyleError> {
-    Ok(DeTable::parse(style_preset(USUAL).unwrap_or_default())?.into_inner())
-}
-
-/// Fills `own` with the entries that every style may omit, taken from the default style: whole
-/// classes of areas and boundaries, and some entries of light and background if `own` has these
-/// tables.
+/// Fills `own` with the entries that every style may omit, taken from the default style: the looks
+/// of layers, and some entries of light and background if `own` has these tables.
 fn complete<'t>(own: &mut DeTable<'t>, usual: DeTable<'t>) {
     for (part, entries) in usual {
-        let names: Option<&[&str]> = match part.get_ref().as_ref() {
-            "areas" | "boundaries" => None,
-            "light" => Some(&["sky", "gentle", "valley_haze", "shadow", "sunlit"]),
-            "background" => Some(&["water", "wall"]),
+        let names: &[&str] = match part.get_ref().as_ref() {
+            "layers" | "layer_defaults" => {
+                inherit(own, DeTable::from_iter([(part, entries)]));
+                continue;
+            }
+            "light" => &["sky", "gentle", "valley_haze", "shadow", "sunlit"],
+            "background" => &["water", "wall"],
             _ => continue,
         };
-        match own.get_mut(part.get_ref().as_ref()).map(Spanned::get_mut) {
-            None if names.is_none() => drop(own.insert(part, entries)),
-            Some(DeValue::Table(own)) => {
-                let DeValue::Table(entries) = entries.into_inner() else { continue };
-                for (name, entry) in entries {
-                    let is_left_out = !own.contains_key(name.get_ref().as_ref());
-                    let may_be = names.is_none_or(|names| names.contains(&name.get_ref().as_ref()));
-                    if is_left_out && may_be {
-                        own.insert(name, entry);
-                    }
-                }
-            }
-            _ => {}
+        if let (Some(DeValue::Table(own)), DeValue::Table(entries)) =
+            (own.get_mut(part.get_ref().as_ref()).map(Spanned::get_mut), entries.into_inner())
+        {
+            let may_be =
+                entries.into_iter().filter(|(name, _)| names.contains(&name.get_ref().as_ref()));
+            inherit(own, may_be.collect());
         }
+    }
+}
+
+/// Moves the entries of each layer that are not the table of a class into a table with an empty
+/// name.
+fn gather_entries(style: &mut DeTable<'_>) {
+    let Some(DeValue::Table(layers)) = style.get_mut("layers").map(Spanned::get_mut) else {
+        return;
+    };
+    for (_, layer) in layers.iter_mut() {
+        let span = layer.span();
+        let DeValue::Table(layer) = layer.get_mut() else { continue };
+        let (classes, entries): (DeTable<'_>, DeTable<'_>) =
+            std::mem::take(layer).into_iter().partition(|(name, value)| {
+                !["", "pattern"].contains(&name.get_ref().as_ref())
+                    && matches!(value.get_ref(), DeValue::Table(_))
+            });
+        *layer = classes;
+        layer.insert(
+            Spanned::new(span.clone(), "".into()),
+            Spanned::new(span, DeValue::Table(entries)),
+        );
     }
 }
 

@@ -1,9 +1,10 @@
 //! A style with a base equals the base with the style's own entries; errors name a wrong base and
 //! wrong entries.
 
-use corniche_areas::{AreaClass, BoundaryClass};
-
-use crate::{Style, StyleError, TintHeights, parse_style, style_preset, style_preset_names};
+use crate::{
+    LayerLook, LineStyle, Style, StyleError, TintHeights, layer_looks::built_in_layer, parse_style,
+    style_preset, style_preset_names,
+};
 
 fn preset(name: &str) -> Style {
     parse_style(style_preset(name).unwrap()).unwrap()
@@ -11,6 +12,13 @@ fn preset(name: &str) -> Style {
 
 fn style(text: &str) -> Style {
     parse_style(text).unwrap_or_else(|error| panic!("{text}: {error}"))
+}
+
+fn boundary(style: &Style, class: &str) -> LineStyle {
+    let layer = built_in_layer("boundaries");
+    let class = layer.classes.iter().position(|of| of.id == class).unwrap();
+    let LayerLook::Line(line) = style.layer_look(&layer, class) else { panic!("{class}") };
+    line
 }
 
 /// Returns the error for a text with a base.
@@ -28,14 +36,15 @@ fn a_style_that_says_nothing_is_its_base() {
 #[test]
 fn what_is_said_goes_before_the_base_and_the_rest_is_the_bases() {
     let own = style(
-        "base = \"dark\"\nphoto = 0.5\n[light]\nhillshade = 0.25\n[roads.3]\nwidth_m = 77\n[areas.water]\nopacity = 0.125\n",
+        "base = \"dark\"\nphoto = 0.5\n[light]\nhillshade = 0.25\n[roads.3]\nwidth_m = 77\n[layers.areas.water]\nopacity = 0.125\n",
     );
     let mut expected = preset("dark");
     expected.photo = 0.5;
     expected.light.hillshade = 0.25;
     // Half of another width would not be a carriageway of this width.
     (expected.roads[3].width_m, expected.roads[3].carriageway_width_m) = (77.0, 77.0);
-    expected.areas[usize::from(AreaClass::Water.number())].opacity = 0.125;
+    let water = expected.layers.layers.get_mut("areas").unwrap().get_mut("water").unwrap();
+    water.opacity = Some(0.125);
     assert_eq!(own, expected);
     // Another style may replace every part of the base; the result is that style.
     let dark = style_preset("dark").unwrap();
@@ -59,11 +68,10 @@ fn entries_that_exclude_each_other_are_not_mixed() {
         for (base, class) in
             style_preset_names().zip(["admin-2", "admin-4", "admin-8", "protected"])
         {
-            let own = style(&format!("base = \"{base}\"\n[boundaries.{class}]\n{line}\n"));
-            let index = usize::from(BoundaryClass::from_name(class).unwrap().number());
-            let (own, bases) = (own.boundaries[index], preset(base).boundaries[index]);
-            assert_eq!((own.color, own.width_px), (bases.color, bases.width_px), "{base}");
+            let own = style(&format!("base = \"{base}\"\n[layers.boundaries.{class}]\n{line}\n"));
+            let [own, bases] = [own, preset(base)].map(|style| boundary(&style, class));
             assert_ne!(own.dash, bases.dash, "{base}");
+            assert_eq!(LineStyle { dash: bases.dash, ..own }, bases, "{base}");
         }
     }
     let tint =
@@ -105,7 +113,11 @@ fn mistakes_beside_a_base_are_told_with_their_place() {
         ("light = 3", &["line 2"]),
         ("[roads.9]\nwidth_m = 3", &["line 2", "missing field"]),
         ("[roads.3]\nwidth_m = 0", &["roads.3.width_m of 0", "0.1 to 500"]),
-        ("[areas.swamp]\ncolor = \"#000000\"\nopacity = 1", &["swamp", "forest"]),
+        ("[layers.areas.swamp]\ncolour = \"#000000\"", &["line 3", "colour"]),
+        ("[layers.areas]\ncolour = \"#000000\"", &["line 3", "colour"]),
+        ("layers = 3", &["line 2", "map"]),
+        ("[layers]\nareas = 3", &["line 3", "map"]),
+        ("[areas.forest]\nopacity = 1", &["line 2", "unknown field `areas`"]),
         ("base = \"dark\"", &["line 2", "duplicate key"]),
         ("[roads]\nbase = \"dark\"", &["line 3"]),
     ] {

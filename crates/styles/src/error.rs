@@ -1,5 +1,7 @@
 //! Errors of reading a style.
 
+use corniche_layers::LayerGeometry;
+
 use crate::style_preset_names;
 
 /// Why a text is not a valid style. The caller knows which file the text came from.
@@ -24,14 +26,24 @@ pub enum StyleError {
         "[roads.{class}] is missing; define every class from 0 to 8, or start the style with base = \"road-atlas\""
     )]
     MissingClass { class: String },
+    #[error("layer_defaults.{text:?} is not a geometry; choose area, line or point")]
+    LayerDefaults { text: String },
     #[error(
-        "areas.{text:?} is not an area class; classes are sea, water, glacier, forest, meadow, settlement, park, rock"
+        "{path} is not the name of a layer or of a class; use 1 to 32 characters of a-z, 0-9 and '-', beginning with a letter"
     )]
-    AreaClass { text: String },
+    LayerId { path: String },
     #[error(
-        "boundaries.{text:?} is not a boundary class; classes are admin-2 to admin-8 and protected"
+        "{path}: {entry} is for layers of {geometry}s, but {}; remove it",
+        if other.is_empty() { format!("these are {}s", expected.name()) } else { format!("{other} is for layers of {}s", expected.name()) },
+        geometry = geometry.name()
     )]
-    BoundaryClass { text: String },
+    LayerGeometry {
+        path: String,
+        entry: &'static str,
+        geometry: LayerGeometry,
+        other: &'static str,
+        expected: LayerGeometry,
+    },
     #[error(
         "a dash pattern needs two or four lengths (dash, gap, dash, gap), or none for a solid line; {count} were given"
     )]

@@ -1,10 +1,12 @@
 //! Road classes in the built-in styles: distinguishable for all kinds of colour vision, with more
 //! contrast for more important classes.
 
-use corniche_areas::AreaClass;
 use corniche_roads::FunctionalRoadClass;
 
-use crate::{Rgb, RoadStyle, Style, parse_style, style_preset, style_preset_names};
+use crate::{
+    LayerLook, Rgb, RoadStyle, Style, layer_looks::built_in_layer, parse_style, style_preset,
+    style_preset_names,
+};
 
 /// Kinds of colour vision: normal, without cones for long waves (protanopia), and without cones for
 /// middle waves (deuteranopia).
@@ -131,11 +133,11 @@ fn contrast(one: Rgb, other: Rgb) -> f64 {
 /// not included, because no roads are on it.
 fn grounds(style: &Style) -> Vec<Rgb> {
     let tints = || style.tint.stops.iter().map(|(_, color)| *color);
-    let dry = AreaClass::ALL
-        .into_iter()
-        .filter(|class| !matches!(class, AreaClass::Sea | AreaClass::Water));
-    let over = dry.flat_map(|class| {
-        let area = *style.area(class);
+    let layer = built_in_layer("areas");
+    let classes = layer.classes.iter().enumerate();
+    let dry = classes.filter(|(_, class)| !["sea", "water"].contains(&class.id.as_str()));
+    let over = dry.flat_map(|(class, _)| {
+        let LayerLook::Area(area) = style.layer_look(&layer, class) else { panic!("areas") };
         tints()
             .map(move |tint| [0, 1, 2].map(|k| tint[k] + area.opacity * (area.color[k] - tint[k])))
     });

@@ -10,7 +10,6 @@
 //! This crate never opens a file, never draws and does not access a GPU, so that it also builds for
 //! WebAssembly.
 
-mod area_sheet;
 mod area_style;
 mod base;
 pub mod climate;
@@ -19,9 +18,11 @@ mod dash;
 mod error;
 mod ground;
 mod ground_sheet;
-mod line_sheet;
+mod layer_looks;
+mod layer_sheet;
 mod line_style;
 mod lines_as_roads;
+mod point_style;
 mod presets;
 mod road_bands;
 mod road_scale;
@@ -35,7 +36,9 @@ pub use area_style::AreaStyle;
 pub use dash::Dash;
 pub use error::StyleError;
 pub use ground::{Light, MOST_TINT_STOPS, Tint, TintHeights, TintStop};
+pub use layer_looks::{LayerLook, LayerLooks};
 pub use line_style::LineStyle;
+pub use point_style::PointStyle;
 pub use presets::{style_preset, style_preset_names};
 pub use road_bands::{RoadBand, RoadBands};
 pub use road_scale::FADE_FACTOR;

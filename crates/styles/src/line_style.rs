@@ -1,4 +1,4 @@
-//! Styles of lines that are not roads: boundaries, and lines from users' files.
+//! Styles of lines that are not roads: lines of layers, and lines from users' files.
 
 use corniche_roads::FunctionalRoadClass;
 use serde::{Deserialize, Serialize};
@@ -21,10 +21,13 @@ pub struct LineStyle {
     /// The most true metres of ground per pixel at which the line is fully drawn, as in
     /// [`RoadStyle::max_pixel_m`](crate::RoadStyle::max_pixel_m).
     pub max_pixel_m: Option<f32>,
+    /// Whether lines are omitted on roads and close to them: a line that follows a road would look
+    /// like the dashes of a tunnel.
+    pub is_apart_from_roads: bool,
 }
 
 impl LineStyle {
-    /// How many styles one layer of lines can have.
+    /// How many styles lines that are drawn at once can have.
     pub const MOST: usize = FunctionalRoadClass::COUNT;
 
     /// Styles for lines of users' files, in the order of the files. The colours differ from each
@@ -45,7 +48,7 @@ impl LineStyle {
     pub(crate) const DRAWN: Self = Self::with_edge([0xFF, 0xE6, 0x00], [0x2B; 3]);
 
     /// A style that draws nothing.
-    pub(crate) const NOTHING: Self = Self { opacity: 0.0, ..Self::solid([0.0; 3], 1.0) };
+    pub const NOTHING: Self = Self { opacity: 0.0, ..Self::solid([0.0; 3], 1.0) };
 
     const fn with_edge(color: [u8; 3], edge: [u8; 3]) -> Self {
         Self { casing: Some(shares(edge)), ..Self::solid(shares(color), 3.0) }
@@ -54,8 +57,15 @@ impl LineStyle {
     /// A solid line of this colour and width, drawn everywhere.
     #[must_use]
     pub const fn solid(color: Rgb, width_px: f32) -> Self {
-        let (opacity, dash) = (1.0, Dash::SOLID);
-        Self { color, width_px, casing: None, opacity, dash, max_pixel_m: None }
+        Self {
+            color,
+            width_px,
+            casing: None,
+            opacity: 1.0,
+            dash: Dash::SOLID,
+            max_pixel_m: None,
+            is_apart_from_roads: false,
+        }
     }
 
     /// Whether lines in this style are drawn at all.

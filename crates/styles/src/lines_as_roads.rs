@@ -1,7 +1,4 @@
-//! Lines in the slots of roads, and user-drawn areas in the slot of a class: the viewer draws both
-//! with the code for roads and areas.
-
-use corniche_areas::AreaClass;
+//! Lines in the slots of roads: the viewer draws them with the code for roads. User-drawn areas.
 
 use crate::{AreaStyle, LineStyle, RoadBand, RoadBands, RoadStyle, Style};
 
@@ -50,21 +47,15 @@ impl Style {
 }
 
 impl Style {
-    /// The class whose slot holds the areas that a user draws.
-    pub const DRAWN_AREAS: AreaClass = AreaClass::Settlement;
-
     /// How much of the map user-drawn areas hide.
     const DRAWN_AREAS_OPACITY: f32 = 0.3;
 
-    /// Returns this style for a picture whose only areas are drawn by a user: they are filled with
-    /// the colour of their outlines, and the map shows through.
+    /// How areas that a user draws look: they are filled with the colour of their outlines, and the
+    /// map shows through.
     #[must_use]
-    pub fn with_drawn_areas(&self) -> Self {
-        let mut areas = self.areas.map(|area| AreaStyle { opacity: 0.0, ..area });
+    pub fn drawn_area(&self) -> AreaStyle {
         let opacity = Self::DRAWN_AREAS_OPACITY * self.drawn.opacity;
-        areas[usize::from(Self::DRAWN_AREAS.number())] =
-            AreaStyle { color: self.drawn.color, opacity, steepest_deg: None };
-        Self { areas, ..self.clone() }
+        AreaStyle { color: self.drawn.color, opacity, steepest_deg: None }
     }
 }
 

@@ -8,10 +8,9 @@ use serde::Deserialize;
 
 use crate::{
     LineStyle, OwnWidths, RoadStyle, Style, StyleError, WidthScaling,
-    area_sheet::{AreaSheet, areas},
     base::{self, USUAL},
     ground_sheet::{LightSheet, TintSheet, tint},
-    line_sheet::{LineSheet, boundaries},
+    layer_sheet::{ClassSheets, LookSheet, layer_looks},
     road_sheet::RoadSheet,
     sheet_values::{Rgb8, within},
     style_preset,
@@ -76,9 +75,9 @@ struct StyleFile {
     tint_by_climate: bool,
     tint: Vec<TintSheet>,
     #[serde(default)]
-    areas: BTreeMap<String, AreaSheet>,
+    layer_defaults: BTreeMap<String, LookSheet>,
     #[serde(default)]
-    boundaries: BTreeMap<String, LineSheet>,
+    layers: BTreeMap<String, ClassSheets>,
     roads: BTreeMap<String, RoadSheet>,
 }
 
@@ -123,14 +122,12 @@ pub fn parse_style(text: &str) -> Result<Style, StyleError> {
     }
     let tint = tint(&file.tint, file.tint_by_climate)?;
     let roads = all_classes(&file.roads)?;
-    let areas = areas(&file.areas)?;
-    let boundaries = boundaries(&file.boundaries)?;
+    let layers = layer_looks(&file.layer_defaults, &file.layers)?;
     file.check()?;
     let StyleFile { width_scaling, background, .. } = file;
     Ok(Style {
         roads,
-        areas,
-        boundaries,
+        layers,
         overlays: LineStyle::OVERLAYS,
         drawn: LineStyle::DRAWN,
         own_widths: file

@@ -1,7 +1,5 @@
 //! The built-in styles follow their rules, and errors name the mistakes in a style.
 
-use corniche_areas::AreaClass;
-
 use super::*;
 use crate::{Rgb, TintHeights, style_preset, style_preset_names};
 
@@ -114,7 +112,7 @@ fn numbers_out_of_their_range_are_named_with_it() {
         ("roads.1", "min_width_px", "51", "0.1 to 50"),
         ("roads.2", "max_pixel_m", "0", "0.01 to 1000000"),
         ("roads.0", "max_width_px", "0", "0.1 to 500"),
-        ("areas.sea", "opacity", "1.1", "0 to 1"),
+        ("layers.areas.sea", "opacity", "1.1", "0 to 1"),
         ("light", "azimuth_deg", "361", "0 to 360"),
         ("light", "altitude_deg", "91", "0 to 90"),
         ("light", "sky", "-1", "0 to 1"),
@@ -136,21 +134,6 @@ fn numbers_out_of_their_range_are_named_with_it() {
     );
     let see_through = "[roads.0]\nopacity = 1.5";
     refuses("[roads.0]", see_through, &["roads.0.opacity", "0.01 to 1"]);
-}
-
-#[test]
-fn areas_that_are_left_out_look_as_in_the_atlas() {
-    let style = |text: &str| parse_style(text).unwrap();
-    let without = atlas().replacen("[areas.forest]\ncolor = \"#", "[areas.rock_]\ncolor = \"#", 1);
-    assert!(matches!(parse_style(&without), Err(StyleError::AreaClass { .. })));
-    let start = atlas().find("[areas.sea]").unwrap();
-    let end = atlas().find("[roads.0]").unwrap();
-    let bare = format!("{}{}", &atlas()[..start], &atlas()[end..]);
-    assert_eq!(style(&bare), Style::road_atlas());
-    let one = format!("{bare}\n[areas.forest]\ncolor = \"#102030\"\nopacity = 0\n");
-    let forest = style(&one).areas[usize::from(AreaClass::Forest.number())];
-    assert_eq!((forest.opacity, forest.is_drawn()), (0.0, false));
-    assert_eq!(style(&one).areas[1], Style::road_atlas().areas[1]);
 }
 
 #[test]

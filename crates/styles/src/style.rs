@@ -1,10 +1,10 @@
 //! The style of the map as plain values, without GPU.
 
-use corniche_areas::AreaClass;
+use corniche_layers::LayerForm;
 use corniche_roads::{Form, FunctionalRoadClass, OwnWidth, RoadAttributes};
 use serde::{Deserialize, Serialize};
 
-use crate::{AreaStyle, Dash, Light, LineStyle, Rgb, RoadBands, Tint};
+use crate::{Dash, LayerLook, LayerLooks, Light, LineStyle, Rgb, RoadBands, Tint};
 
 /// How the roads of one class are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -115,11 +115,8 @@ impl OwnWidths {
 pub struct Style {
     /// The roads of each class, 0 first.
     pub roads: [RoadStyle; FunctionalRoadClass::COUNT],
-    /// The areas of each class, in order of their numbers. [`AreaStyle::TOP_FIRST`] sets which
-    /// class is drawn above which.
-    pub areas: [AreaStyle; AreaClass::COUNT],
-    /// The styles of boundaries, by class.
-    pub boundaries: [LineStyle; LineStyle::MOST],
+    /// How the layers of packages look: [`Style::layer_look`].
+    pub layers: LayerLooks,
     /// The styles of lines from users' files, in the order of the files.
     pub overlays: [LineStyle; LineStyle::MOST],
     /// The style of lines that a user draws.
@@ -156,36 +153,12 @@ pub struct Style {
 }
 
 impl Style {
-    /// Returns the style without areas.
+    /// How the class with this number in the table of a layer is drawn: as the style says of the
+    /// class, else of the layer, else of its geometry. The scale of a class limits lines and points
+    /// for which the style sets no limit.
     #[must_use]
-    pub fn without_areas(self) -> Self {
-        let areas = self.areas.map(|area| AreaStyle { opacity: 0.0, ..area });
-        Self { areas, ..self }
-    }
-
-    /// Whether areas of any class are drawn.
-    #[must_use]
-    pub fn has_areas(&self) -> bool {
-        self.areas.iter().any(AreaStyle::is_drawn)
-    }
-
-    /// Returns the style without boundaries.
-    #[must_use]
-    pub fn without_boundaries(self) -> Self {
-        let boundaries = self.boundaries.map(|line| LineStyle { opacity: 0.0, ..line });
-        Self { boundaries, ..self }
-    }
-
-    /// Whether boundaries of any class are drawn.
-    #[must_use]
-    pub fn has_boundaries(&self) -> bool {
-        self.boundaries.iter().any(LineStyle::is_drawn)
-    }
-
-    /// Returns the style of an area class.
-    #[must_use]
-    pub fn area(&self, class: AreaClass) -> &AreaStyle {
-        &self.areas[usize::from(class.number())]
+    pub fn layer_look(&self, layer: &LayerForm, class: usize) -> LayerLook {
+        self.layers.look(layer, class)
     }
 
     /// Width on the ground near the eye of a road of this class whose tags give `own`.

@@ -62,26 +62,6 @@ fn colours_of_a_tint_are_linear_between_stops() {
     }
 }
 
-/// Every class is in the order, and the order is the documented one.
-#[test]
-fn water_lies_above_forest_and_forest_above_settlements() {
-    let mut classes = AreaStyle::TOP_FIRST;
-    let place = |class| classes.iter().position(|other| *other == class);
-    let [water, forest, settlement] =
-        [AreaClass::Water, AreaClass::Forest, AreaClass::Settlement].map(place);
-    assert!(water < forest && forest < settlement);
-    classes.sort_unstable();
-    assert_eq!(classes, AreaClass::ALL);
-}
-
-#[test]
-fn a_style_without_areas_keeps_all_else() {
-    let style = Style::road_atlas();
-    let without = style.clone().without_areas();
-    assert!(style.has_areas() && !without.has_areas());
-    assert_eq!(Style { areas: style.areas, ..without }, style);
-}
-
 /// A share is a position in the package's range of heights; metres are metres; by climate, heights
 /// move with the snow line, but not at sea level.
 #[test]

@@ -3,6 +3,7 @@
 
 mod case;
 mod file_cases;
+mod layer_cases;
 mod lie_cases;
 mod metadata_cases;
 mod parts;
@@ -20,11 +21,12 @@ pub use text_cases::{TextCase, text_cases};
 type Family = (&'static str, fn() -> Vec<Case>);
 
 /// The cases by kind of damage; each family is created on request, because some are large.
-pub const FAMILIES: [Family; 6] = [
+pub const FAMILIES: [Family; 7] = [
     ("file", file_cases::all),
     ("metadata", metadata_cases::all),
     ("tile", tile_cases::all),
     ("roads", road_cases::all),
     ("lies", lie_cases::all),
     ("spans", span_cases::all),
+    ("layers", layer_cases::all),
 ];

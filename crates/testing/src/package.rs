@@ -98,8 +98,7 @@ pub fn manifest_of(frame: GridFrame) -> Manifest {
         counts: ManifestCounts { roads_in: 2, roads_kept: 2, ..ManifestCounts::default() },
         growth: vec![GrowthRow::default()],
         photos: Vec::new(),
-        areas: None,
-        boundaries: None,
+        layers: Vec::new(),
         spans: None,
         sv_tails: Vec::new(),
     }

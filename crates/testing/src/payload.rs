@@ -30,7 +30,7 @@ impl RawSection {
 /// Returns a payload with correct offsets and checksums, of at most 255 sections.
 #[must_use]
 pub fn payload(id: TileId, sections: &[RawSection]) -> Vec<u8> {
-    let mut bytes = b"CRNT\x01\0".to_vec();
+    let mut bytes = b"CRNT\x02\0".to_vec();
     bytes.extend([sections.len() as u8, id.z()]);
     bytes.extend(id.x().to_le_bytes());
     bytes.extend(id.y().to_le_bytes());

@@ -160,6 +160,17 @@ pub fn network(texts: &[&str], nodes: &[(i64, [f64; 2])], ways: &[PbfWay<'_>]) -
     [header(&["OsmSchema-V0.6"]), data.concat()].concat()
 }
 
+/// A node with tags.
+#[derive(Debug, Clone, Copy)]
+pub struct TaggedNode<'a> {
+    /// The id.
+    pub id: i64,
+    /// Latitude and longitude.
+    pub at: [i64; 2],
+    /// Keys and values.
+    pub tags: &'a [(&'a str, &'a str)],
+}
+
 /// A block that grows. Positions are in units of its granularity: 1e-7 degrees unless `frame` sets
 /// another.
 #[derive(Debug, Clone, Default)]
@@ -219,6 +230,43 @@ impl BlockBuilder {
             field(1, &[key(1), zigzag(id), key(8), zigzag(lat), key(9), zigzag(lon)].concat())
         };
         self.groups.push(nodes.iter().flat_map(node).collect());
+    }
+
+    /// Adds groups of nodes with tags: one of dense nodes if `is_dense`, otherwise one of plain
+    /// nodes.
+    pub fn tagged(&mut self, nodes: &[TaggedNode<'_>], is_dense: bool) {
+        let mut tags_of = |node: &TaggedNode<'_>| -> Vec<[u64; 2]> {
+            let tags = node.tags.iter();
+            tags.map(|(key, value)| [key, value].map(|text| self.text(text.as_bytes()))).collect()
+        };
+        let tags: Vec<Vec<[u64; 2]>> = nodes.iter().map(&mut tags_of).collect();
+        let mut group = Vec::new();
+        if is_dense {
+            let column =
+                |of: fn(&TaggedNode<'_>) -> i64| deltas(&nodes.iter().map(of).collect::<Vec<_>>());
+            let of_node = |tags: &Vec<[u64; 2]>| [&tags.concat()[..], &[0]].concat();
+            let dense = [
+                field(1, &column(|node| node.id)),
+                field(8, &column(|node| node.at[0])),
+                field(9, &column(|node| node.at[1])),
+                field(10, &packed(&tags.iter().flat_map(of_node).collect::<Vec<_>>())),
+            ];
+            group = field(2, &dense.concat());
+        } else {
+            let key = |number: u8| vec![number << 3];
+            for (node, tags) in nodes.iter().zip(&tags) {
+                let [keys, values] =
+                    [0, 1].map(|part| tags.iter().map(|tag| tag[part]).collect::<Vec<_>>());
+                let fields = [
+                    [key(1), zigzag(node.id)].concat(),
+                    field(2, &packed(&keys)),
+                    field(3, &packed(&values)),
+                    [key(8), zigzag(node.at[0]), key(9), zigzag(node.at[1])].concat(),
+                ];
+                group.extend(field(1, &fields.concat()));
+            }
+        }
+        self.groups.push(group);
     }
 
     /// Returns the message of a way.

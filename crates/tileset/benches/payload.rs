@@ -10,7 +10,7 @@ use corniche_tileset::{FilePackage, PayloadContext, Sections, decode, encode};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 
 /// Packages of this repository: in metres, and in degrees, where roads are range-coded.
-const PACKAGES: [&str; 2] = ["version-1.pmtiles", "version-1-degrees.pmtiles"];
+const PACKAGES: [&str; 2] = ["version-2.pmtiles", "version-2-degrees.pmtiles"];
 
 /// A package and the payloads of its tiles.
 fn package(name: &str) -> (FilePackage, Vec<(TileId, Vec<u8>)>) {

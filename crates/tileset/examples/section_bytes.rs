@@ -14,7 +14,7 @@ const PHOTO_PARTS: [&str; 3] = ["coverage", "heads and tables", "coded blocks"];
 /// Bytes of a package.
 #[derive(Default)]
 struct Sums {
-    sections: [u64; 10],
+    sections: [u64; 9],
     photo: [u64; PHOTO_PARTS.len()],
 }
 
@@ -39,9 +39,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             "road tags",
             "relief",
             "photo",
-            "areas",
-            "boundaries",
             "spans",
+            "layers",
         ];
         table("sections", &names, &sums.sections, whole);
         table("photo", &PHOTO_PARTS, &sums.photo, whole);
@@ -49,8 +48,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn stored(sizes: &PayloadSizes) -> [u64; 10] {
-    [
+fn stored(sizes: &PayloadSizes) -> [u64; 9] {
+    let layers = sizes.layers.iter().map(|size| size.stored).sum();
+    let [terrain, geo, sv, attributes, tags, relief, photo, spans] = [
         sizes.terrain,
         sizes.roads_geo,
         sizes.roads_sv,
@@ -58,11 +58,10 @@ fn stored(sizes: &PayloadSizes) -> [u64; 10] {
         sizes.road_tags,
         sizes.relief,
         sizes.photo,
-        sizes.areas,
-        sizes.boundaries,
         sizes.spans,
     ]
-    .map(|size| size.stored)
+    .map(|size| size.stored);
+    [terrain, geo, sv, attributes, tags, relief, photo, spans, layers]
 }
 
 /// Counts the bytes before the JPEG image, of its markers with their content, and of its scans.

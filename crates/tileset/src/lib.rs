@@ -30,20 +30,21 @@
 //! # }
 //! ```
 
+mod layer_slot;
 pub mod limits;
 mod manifest;
 mod package;
 mod payload;
 mod tile_order;
 
+pub use layer_slot::LayerSlot;
 pub use manifest::{
-    AreaClassRecord, AreaCounts, AreaLevelRecord, AreaTableRecord, AreasRecord, ClipRecord,
-    CreditError, DatumOperationRecord, Distribution, GrowthRow, InputKind, InputRecord,
-    LeftOutRecord, LevelRecord, LineClassRecord, LineCounts, LineLevelRecord, LinesRecord,
+    ClipRecord, CreditError, DatumOperationRecord, Distribution, GrowthRow, InputKind, InputRecord,
+    LayerClassRecord, LayerCounts, LayerRecord, LayerTableRecord, LeftOutRecord, LevelRecord,
     Manifest, ManifestCounts, OuterGround, PhotoLevelRecord, PhotoRecord, PolygonRecord,
     ReliefLevels, RoadLoss, SampleCounts, SampleErrorRecord, SampleSums, ScaleRecord,
-    SettingsRecord, SpanCounts, SpansRecord, SvTail, SvTails, VerticalRecord, check_credit,
-    to_credit,
+    SectionLevelRecord, SettingsRecord, SpanCounts, SpansRecord, SvTail, SvTails, VerticalRecord,
+    check_credit, to_credit,
 };
 #[cfg(not(target_arch = "wasm32"))]
 pub use package::{AnySource, BlockingSource, FilePackage, FileSource};
@@ -54,14 +55,14 @@ pub use package::{
 #[cfg(feature = "write")]
 pub use package::{PackageWriter, WriteError};
 pub use payload::{
-    AreaRecord, AreaRings, Damage, DecodeError, EncodeError, GeoRoad, LineRecord, PHOTO_BORDER,
-    PayloadSizes, Photo, Relief, RoadRecord, SectionSize, Sections, SpanHeight, SpanPoint, SpanRun,
-    SvRoad, TerrainSummary, TilePayload, TileTerrain, decode, decode_areas, decode_boundaries,
+    AreaPolygon, Damage, DecodeError, EncodeError, GeoRoad, LayerCoding, LayerObject, LayerShape,
+    PHOTO_BORDER, PayloadSizes, Photo, Relief, RoadRecord, SectionSize, Sections, SpanHeight,
+    SpanPoint, SpanRun, SvRoad, TerrainSummary, TilePayload, TileTerrain, decode, decode_layer,
     decode_photo, decode_spans, payload_sizes, terrain_summary,
 };
 #[cfg(feature = "write")]
 pub use payload::{
-    EncodedTile, PayloadBuilder, PayloadContext, Section, encode, encode_areas, encode_boundaries,
-    encode_photo, encode_sections, encode_spans, photo_section,
+    EncodedTile, PayloadBuilder, PayloadContext, Section, encode, encode_layer, encode_photo,
+    encode_sections, encode_spans, photo_section,
 };
 pub use tile_order::{pmtiles_order, tile_of_order};

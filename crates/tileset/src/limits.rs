@@ -48,16 +48,22 @@ pub const MAX_POINTS: usize = 1 << 22;
 pub const MAX_SPAN_POINTS: usize = 1 << 18;
 /// Vertices of all lines of the GEO section, crossings included: 128 MiB in memory.
 pub const MAX_LINE_VERTICES: usize = 1 << 22;
-/// Parts of lines of one layer, such as boundaries, in one tile.
-pub const MAX_CLASSED_LINES: usize = 1 << 18;
-/// Areas in one tile.
-pub const MAX_AREAS: usize = 1 << 18;
-/// Rings, and thus polygons, of all areas of a tile.
-pub const MAX_AREA_RINGS: usize = 1 << 19;
+/// Objects of one layer in one tile.
+pub const MAX_LAYER_OBJECTS: usize = 1 << 18;
+/// Attribute values of all objects of one layer in one tile, missing values included: 64 MiB in
+/// memory.
+pub const MAX_LAYER_VALUES: usize = 1 << 21;
+/// Different texts of one layer in one tile.
+pub const MAX_LAYER_TEXTS: usize = 1 << 20;
+/// Names in all languages of all objects of one layer in one tile, for each attribute: 48 MiB in
+/// memory.
+pub const MAX_LAYER_NAMES: usize = 1 << 20;
+/// Rings, and thus polygons, of all areas of one layer in one tile.
+pub const MAX_RINGS: usize = 1 << 19;
 /// Ways with attributes in one tile.
 pub const MAX_WAYS: usize = 1 << 20;
-/// Bytes of all names of a tile's areas, and of all texts of its ways, counting a shared text for
-/// each way: as much as the section that contains them.
+/// Bytes of all texts of a layer's objects, and of all texts of a tile's ways, counting a shared
+/// text for each object: as much as the section that contains them.
 pub const MAX_TEXT_BYTES: usize = MAX_SECTION_BYTES;
 
 /// Steps of the walk over the triangles; each examined vertex, row of vertices or edge is a step,

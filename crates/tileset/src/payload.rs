@@ -15,9 +15,8 @@ mod summary;
 mod context;
 mod envelope;
 
-mod areas;
 mod attributes;
-mod lines;
+mod layers;
 mod photo;
 mod relief;
 mod road_tags;
@@ -43,9 +42,6 @@ mod work_limit;
 mod damage;
 
 #[cfg(feature = "write")]
-pub use areas::encode_areas;
-pub use areas::{AreaRecord, AreaRings, decode_areas};
-#[cfg(feature = "write")]
 pub use builder::{EncodedTile, PayloadBuilder, Section};
 pub use damage::{Damage, DecodeError, EncodeError};
 pub use decode::decode;
@@ -53,8 +49,8 @@ pub use decode::decode;
 pub use encode::{PayloadContext, encode, encode_sections};
 pub use envelope::SectionSize;
 #[cfg(feature = "write")]
-pub use lines::encode_boundaries;
-pub use lines::{LineRecord, decode_boundaries};
+pub use layers::encode_layer;
+pub use layers::{AreaPolygon, LayerCoding, LayerObject, LayerShape, decode_layer};
 pub use photo::{PHOTO_BORDER, Photo, decode_photo};
 #[cfg(feature = "write")]
 pub use photo::{encode_photo, photo_section};

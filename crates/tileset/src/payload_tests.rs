@@ -349,8 +349,8 @@ fn hostile_sections_do_not_panic() {
 fn bombs_and_foreign_bytes_are_refused() {
     let payload = sample();
     let bytes = encode(&payload, &context()).unwrap().bytes;
-    let part =
-        |bytes: &[u8], sections| read(bytes, sections).map_err(|error| (error.part, error.damage));
+    let leaked = |part: std::borrow::Cow<'static, str>| &*part.into_owned().leak();
+    let part = |bytes: &[u8], wanted| read(bytes, wanted).map_err(|e| (leaked(e.part), e.damage));
     let resealed = |at: usize, value: &[u8]| {
         let mut bytes = bytes.clone();
         bytes[at..at + value.len()].copy_from_slice(value);
@@ -361,9 +361,9 @@ fn bombs_and_foreign_bytes_are_refused() {
     };
     assert!(matches!(part(b"PNG", Sections::ALL), Err(("header", Damage::TooShort))));
     assert!(matches!(part(b"PNG, or what", Sections::ALL), Err(("header", Damage::Magic))));
-    for found in [0, 2] {
+    for found in [0, 1] {
         let other = part(&resealed(4, &[found as u8]), Sections::ALL);
-        assert_eq!(other, Err(("header", Damage::Version { found, supported: 1 })));
+        assert_eq!(other, Err(("header", Damage::Version { found, supported: 2 })));
     }
     let other = TileId::new(1, 0, 0).unwrap();
     let error = decode(&bytes, other, &frame(), QUANTUM_M, Sections::NONE).unwrap_err();

@@ -23,10 +23,10 @@
 
 use std::collections::BTreeMap;
 
-use corniche_areas::AreaObject;
 use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, TileId};
+use corniche_layers::OsmObject;
 use corniche_spec::points_step::points_step;
-use corniche_tileset::AreaRecord;
+use corniche_tileset::LayerObject;
 
 /// A stretch of a border: the coordinates of its ends along the border, the smaller one first.
 pub(crate) type SeamStretch = [i64; 2];
@@ -89,10 +89,10 @@ impl TileSeam {
 
     /// The stretches of the border that each object covers: sorted, and without common points.
     #[must_use]
-    pub fn covered(&self, areas: &[AreaRecord]) -> BTreeMap<AreaObject, Vec<SeamStretch>> {
-        let mut covered: BTreeMap<AreaObject, Vec<SeamStretch>> = BTreeMap::new();
+    pub fn covered(&self, areas: &[LayerObject]) -> BTreeMap<OsmObject, Vec<SeamStretch>> {
+        let mut covered: BTreeMap<OsmObject, Vec<SeamStretch>> = BTreeMap::new();
         for area in areas {
-            for ring in area.rings() {
+            for ring in area.shape.rings() {
                 let next = ring.iter().cycle().skip(1);
                 for (&a, &b) in ring.iter().zip(next) {
                     if let (Some(a), Some(b)) = (self.along(a), self.along(b)) {

@@ -1,8 +1,7 @@
 //! The check of area seams finds an area that a tile lacks, and reports no outline along a border.
 
-use corniche_areas::AreaClass;
 use corniche_geom::NodeIndex;
-use corniche_tileset::AreaRings;
+use corniche_tileset::{AreaPolygon, LayerShape};
 
 use super::*;
 
@@ -21,15 +20,15 @@ fn seams() -> [TileSeam; 2] {
     [Beside::East, Beside::South].map(|beside| TileSeam::new(&frame(), tile(), beside, None))
 }
 
-fn record(object: AreaObject, rings: &[&[[i64; 2]]]) -> AreaRecord {
+fn record(object: OsmObject, rings: &[&[[i64; 2]]]) -> LayerObject {
     let points = |ring: &[[i64; 2]]| ring.iter().map(|&[u, v]| LatticePoint::new(u, v)).collect();
-    let polygons = rings.iter().map(|ring| AreaRings { rings: vec![points(ring)] }).collect();
-    AreaRecord { object, class: AreaClass::Water, name: String::new(), polygons }
+    let polygons = rings.iter().map(|ring| AreaPolygon { rings: vec![points(ring)] }).collect();
+    LayerObject { class: 0, object, values: Vec::new(), shape: LayerShape::Area(polygons) }
 }
 
 #[test]
 fn what_an_area_covers_of_a_line() {
-    let object = AreaObject::Way(1);
+    let object = OsmObject::Way(1);
     // Two parts that touch on the line, one next to the line, and a corner on the line.
     let areas = [record(
         object,

@@ -6,7 +6,7 @@ use std::{collections::BTreeMap, fmt::Display};
 use corniche_geom::TileId;
 use corniche_pieces::layers::tile_section::{SectionOfTile, SectionSums};
 use corniche_spec::BuildObserver;
-use corniche_tileset::{FilePackage, LineLevelRecord};
+use corniche_tileset::{FilePackage, SectionLevelRecord};
 use corniche_work::{Stage, workers};
 
 use super::{
@@ -73,42 +73,57 @@ pub(crate) fn compare_in_order<T: PartialEq, N: Display>(
     }
 }
 
-/// The findings and the sums of a layer in one tile.
+/// The findings and the counts of the sections of a tile.
 #[derive(Default)]
 pub(crate) struct OfTile {
     pub(crate) findings: Findings,
-    pub counts: SectionOfTile,
+    /// One for each kind of section that is looked at; none if the tile cannot be read.
+    pub(crate) counts: Vec<SectionOfTile>,
 }
 
-/// The recorded sums of a layer of lines, or of spans, on a level.
-pub(crate) fn recorded(of: &LineLevelRecord) -> (u8, SectionSums) {
-    let &LineLevelRecord { level, tiles, parts, points, bytes } = of;
-    (level, SectionSums { tiles, parts, points, bytes })
+/// The sums that a manifest records of a kind of section.
+pub(crate) struct RecordedSums<'a> {
+    name: &'a str,
+    levels: BTreeMap<u8, SectionSums>,
 }
 
-/// Visits the layer in each tile, and compares the sums with the recorded ones of each level.
-pub(crate) fn look_at_layer(
+impl<'a> RecordedSums<'a> {
+    /// Gathers the sums; `name` is that of the layer.
+    pub(crate) fn new(name: &'a str, levels: &[SectionLevelRecord]) -> Self {
+        let sums = |of: &SectionLevelRecord| {
+            let &SectionLevelRecord { level, tiles, parts, points, bytes } = of;
+            (level, SectionSums { tiles, parts, points, bytes })
+        };
+        Self { name, levels: levels.iter().map(sums).collect() }
+    }
+}
+
+/// Visits sections in each tile, and compares the sums with the recorded ones of each level.
+pub(crate) fn look_at_sections(
     run: &VerifyRun<'_>,
-    stage: Stage,
+    (stage, check): (Stage, CheckId),
     look_at: impl Fn(TileId) -> OfTile + Sync,
-    (check, recorded): (CheckId, Vec<(u8, SectionSums)>),
+    recorded: &[RecordedSums<'_>],
     findings: &mut Findings,
 ) -> Result<(), VerifyError> {
-    let mut levels: BTreeMap<u8, SectionSums> = BTreeMap::new();
+    let mut sums: Vec<BTreeMap<u8, SectionSums>> = vec![BTreeMap::new(); recorded.len()];
     run.each_tile(
         stage,
         |id| Ok(look_at(id)),
         |id, found| {
             findings.merge(found.findings);
-            if found.counts.parts > 0 {
-                levels.entry(id.z()).or_default().add(found.counts);
+            for (levels, counts) in sums.iter_mut().zip(found.counts) {
+                if counts.parts > 0 {
+                    levels.entry(id.z()).or_default().add(counts);
+                }
             }
         },
     )?;
-    let found: Vec<(u8, SectionSums)> = levels.into_iter().collect();
-    findings.look(check, found == recorded, || {
-        format!("{found:?} in the tiles, {recorded:?} are recorded")
-    });
+    for (found, RecordedSums { name, levels }) in sums.iter().zip(recorded) {
+        findings.look(check, found == levels, || {
+            format!("{name}: {found:?} in the tiles, {levels:?} are recorded")
+        });
+    }
     Ok(())
 }
 

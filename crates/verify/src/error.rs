@@ -47,8 +47,6 @@ pub enum VerifyError {
         "the FRC table {given:?} is not the one that the package was built with; pass {expected:?} with --frc-table"
     )]
     OtherTable { given: String, expected: String },
-    #[error("{}", other_area_table(given.as_deref(), expected))]
-    OtherAreaTable { given: Option<String>, expected: String },
     #[error(
         "the package was clipped to the polygon {expected:?}; pass the same polygon with --polygon"
     )]
@@ -141,20 +139,6 @@ impl From<InputError> for VerifyError {
             InputError::Interrupted => Self::Interrupted,
             other => Self::Setup(other),
         }
-    }
-}
-
-/// The error for a table of areas that is missing or not that of the build. Two tables can have the
-/// same name.
-fn other_area_table(given: Option<&str>, expected: &str) -> String {
-    match given {
-        Some(given) if given == expected => format!(
-            "the package was built with another table of areas, read from a file and also called {expected:?}; pass that file with --areas"
-        ),
-        Some(given) => format!(
-            "the table of areas {given:?} is not the one that the package was built with; pass {expected:?} with --areas"
-        ),
-        None => format!("the package has areas; pass their table {expected:?} with --areas"),
     }
 }
 

@@ -13,7 +13,7 @@ use super::{
     checks::{Check, Findings},
     dem_inputs,
     error::VerifyError,
-    osm, osm_layers, photo_files,
+    osm, photo_files,
     verify_settings::{GivenFiles, VerifySettings},
 };
 
@@ -56,9 +56,7 @@ impl GivenInputs {
         let osm = settings.osm.as_ref().map(|asked| {
             let others = OtherInputs { osm: &asked.paths, ..OtherInputs::default() };
             looked_at(InputFiles::find(&[], others)?, |inputs| {
-                let paths = osm::check_inputs(manifest, asked, inputs, &mut findings, observer)?;
-                osm_layers::table(asked.areas.as_ref(), manifest)?;
-                Ok(paths)
+                osm::check_inputs(manifest, asked, inputs, &mut findings, observer)
             })
         });
         let osm = osm.transpose()?;

@@ -1,7 +1,6 @@
 //! Verifies packages: checks every tile and every recorded number of a package.
 
 pub mod area_seams;
-mod areas;
 mod attributes;
 mod checks;
 mod decoded_tiles;
@@ -15,7 +14,7 @@ mod geo_against_sv;
 mod georeference;
 mod given_inputs;
 mod header;
-mod lines;
+mod layers;
 mod near_index;
 mod network;
 mod osm;
@@ -55,7 +54,6 @@ pub use self::{
     elevation::RecordedElevation,
     error::VerifyError,
     network::network,
-    read_again::boundary_names,
     report::{ErrorFigures, GapFigures, VerifyReport},
     verify_settings::{VerifyOsm, VerifySettings},
 };
@@ -99,8 +97,7 @@ fn look_at_all(
     let (mut report, mut findings) = tiles::verify(run)?;
     findings.merge(of_inputs);
     photos::verify(run, &mut findings)?;
-    areas::verify(run, &mut findings)?;
-    lines::verify(run, &mut findings)?;
+    layers::verify(run, &mut findings)?;
     spans::verify(run, &mut findings)?;
     derived_records::verify_sums(package.manifest(), &mut findings);
     derived_records::verify(package.manifest(), &mut findings);

@@ -65,7 +65,7 @@ fn compare_all(
     findings: &mut Findings,
 ) -> Result<(), VerifyError> {
     let manifest = run.package.manifest();
-    let area_table = osm_layers::table(osm.areas.as_ref(), manifest)?;
+    let tables = osm_layers::tables(manifest);
     // If one of them is missing, the check `levels.derived` or `manifest.crs` is broken, and roads
     // cannot be draped.
     let (Some(settings), Some([first, last])) = (
@@ -90,8 +90,7 @@ fn compare_all(
     let input = ExtractInput {
         osm: paths,
         settings: &settings,
-        areas: area_table,
-        boundaries: manifest.settings.boundaries,
+        layers: &tables,
         data: DataTiles::spanning(first, last),
         projection: &projection,
         levels: &levels,
@@ -113,12 +112,7 @@ fn compare_all(
     let classes = lay(&laying, store, &mut fates, run, findings)?;
     let losses = fates.finish(&roads, store, &Silent)?;
     check_counts(manifest, &roads, &losses, findings);
-    if area_table.is_some() {
-        osm_layers::compare_areas(run, store, findings)?;
-    }
-    if manifest.settings.boundaries {
-        osm_layers::compare_boundaries(run, store, findings)?;
-    }
+    osm_layers::compare_layers(run, store, findings)?;
     if settings.spans {
         let whole = whole_rectangle(&frame, &manifest.whole_data_bounds());
         let inputs = SpanInputs { store, frame: &frame, projection: &projection, whole };

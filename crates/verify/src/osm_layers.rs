@@ -1,23 +1,19 @@
 //! Splits the layers of the extract that have sections again, and compares them with those of the
 //! package, tile by tile.
 
-use corniche_areas::AreaTable;
 use corniche_geom::TileId;
+use corniche_layers::{LayerGeometry, LayerTable};
 use corniche_pieces::ExtractError;
 use corniche_pieces::{
     layers::{
         SectionLayer,
-        tile_section::TileSection,
-        tile_section::{AreaTotals, LineTotals},
+        tile_section::{LayerTotals, TileSection},
     },
     roads::losses,
     spans::{solving::SpanSolving, span_network::SpanInputs},
 };
-use corniche_spec::settings_record;
 use corniche_store::Artifacts;
-use corniche_tileset::{
-    AreaRecord, LineRecord, Manifest, Section, SpanRun, decode_areas, decode_boundaries,
-};
+use corniche_tileset::{LayerCoding, LayerObject, LayerRecord, Manifest, Section, SpanRun};
 use corniche_work::Stage;
 use serde::Serialize;
 
@@ -27,71 +23,45 @@ use super::{
     error::VerifyError,
 };
 
-/// The table of areas with which the package was built, taken from the given one; `None` if the
-/// package has no areas.
-///
-/// Fails if the given table is another one.
-pub(crate) fn table<'a>(
-    given: Option<&'a AreaTable>,
-    manifest: &Manifest,
-) -> Result<Option<&'a AreaTable>, VerifyError> {
-    let Some(expected) = &manifest.settings.areas else { return Ok(None) };
-    let is_it = |table: &&AreaTable| settings_record::area_table_record(table) == *expected;
-    match given.filter(is_it) {
-        Some(table) => Ok(Some(table)),
-        None => Err(VerifyError::OtherAreaTable {
-            given: given.map(|table| table.name().to_owned()),
-            expected: expected.table.clone(),
-        }),
-    }
+/// The tables of the package's layers.
+pub(crate) fn tables(manifest: &Manifest) -> Vec<LayerTable> {
+    // The tables were checked when the package was opened.
+    manifest.layers.iter().filter_map(|of| LayerTable::new(of.table.clone()).ok()).collect()
 }
 
-/// Compares the areas of each tile, and their counts, with those in the store.
-pub(crate) fn compare_areas(
+/// Compares the objects of each layer in each tile, and their counts, with those in the store.
+pub(crate) fn compare_layers(
     run: &VerifyRun<'_>,
     store: &dyn Artifacts,
     findings: &mut Findings,
 ) -> Result<(), VerifyError> {
     let manifest = run.package.manifest();
     let frame = &manifest.frame;
-    let how = HowCompared {
-        stage: Stage::CompareAreas,
-        layer: SectionLayer::Areas,
-        check: CheckId::OsmAreas,
-        recorded: |payload: &[u8], id| decode_areas(payload, id, frame).ok(),
-        expected: |section: Section, id| section.areas(id, frame).ok(),
-        name: |area: &AreaRecord| {
-            let points: usize = area.rings().map(Vec::len).sum();
-            format!("{} {} with {points} points", area.class, area.object)
-        },
-    };
-    compare(run, store, &how, findings)?;
-    let found = AreaTotals::get(how.layer, store)?.map(|totals| totals.counts());
-    let recorded = manifest.areas.as_ref().map(|areas| &areas.counts);
-    look_at_counts(CheckId::OsmAreaCounts, recorded, found.as_ref(), findings);
-    Ok(())
-}
-
-/// Compares the boundaries of each tile, and their counts, with those in the store.
-pub(crate) fn compare_boundaries(
-    run: &VerifyRun<'_>,
-    store: &dyn Artifacts,
-    findings: &mut Findings,
-) -> Result<(), VerifyError> {
-    let how = HowCompared {
-        stage: Stage::CompareBoundaries,
-        layer: SectionLayer::Boundaries,
-        check: CheckId::OsmBoundaries,
-        recorded: |payload: &[u8], id| decode_boundaries(payload, id).ok(),
-        expected: |section: Section, id| section.boundaries(id).ok(),
-        name: |of: &LineRecord| {
-            format!("{} way {} with {} points", of.class, of.way_id, of.points.len())
-        },
-    };
-    compare(run, store, &how, findings)?;
-    let found = LineTotals::get(how.layer, store)?.map(|totals| totals.counts());
-    let recorded = run.package.manifest().boundaries.as_ref().map(|of| &of.counts);
-    look_at_counts(CheckId::OsmBoundaryCounts, recorded, found.as_ref(), findings);
+    for (slot, LayerRecord { table, counts, .. }) in manifest.layers() {
+        let check = match table.geometry {
+            LayerGeometry::Line => CheckId::OsmLines,
+            LayerGeometry::Area => CheckId::OsmAreas,
+            LayerGeometry::Point => CheckId::OsmPoints,
+        };
+        let coding = LayerCoding::from_table(table);
+        let how = HowCompared {
+            stage: Stage::CompareLayers,
+            layer: SectionLayer::Extract(slot),
+            check,
+            recorded: |payload: &[u8], id| manifest.decode_layer(payload, id, slot).ok(),
+            expected: |section: Section, id| section.objects(id, frame, &coding).ok(),
+            name: |of: &LayerObject| {
+                let (object, points) = (of.object, of.shape.points().count());
+                format!(
+                    "{object} of layer {:?}, class {}, with {points} points",
+                    table.id, of.class
+                )
+            },
+        };
+        compare(run, store, &how, findings)?;
+        let found = LayerTotals::get(how.layer, store)?.map(|totals| totals.counts());
+        look_at_counts(CheckId::OsmLayerCounts, Some(counts), found.as_ref(), findings);
+    }
     Ok(())
 }
 

@@ -1,4 +1,4 @@
-//! Checks that areas and boundaries end at the polygon to which the package was clipped.
+//! Checks that the objects of layers end at the polygon to which the package was clipped.
 //!
 //! The build cuts outlines with a library that splits them at their crossings. This check cuts
 //! nothing: for points it determines the side of the polygon and the distance from its outline.
@@ -6,7 +6,7 @@
 use std::f64::consts::TAU;
 
 use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, LatticeRegion, TileId, cross};
-use corniche_tileset::{AreaRecord, decode_areas, decode_boundaries};
+use corniche_tileset::LayerShape;
 use corniche_work::Stage;
 
 use super::{
@@ -25,31 +25,27 @@ const BEYOND_FINEST_M: f64 = 0.3;
 /// The tolerance in lattice steps, if the package's lattice is coarser than that.
 const BEYOND_STEPS: f64 = 3.0;
 
-/// Checks the areas and lines of all tiles. `region` is the polygon.
+/// Checks the objects of all tiles. `region` is the polygon.
 pub(crate) fn verify(
     run: &VerifyRun<'_>,
     region: &LatticeRegion,
     findings: &mut Findings,
 ) -> Result<(), VerifyError> {
     let package = run.package;
-    let frame = &package.manifest().frame;
+    let manifest = package.manifest();
+    let frame = &manifest.frame;
     let look_at = |id: TileId| {
         let mut findings = Findings::default();
         // Unreadable tiles are reported by the check of tiles.
         let Some(payload) = package.tile(id).ok().flatten() else { return Ok(findings) };
         let cut = Cut { region, beyond: beyond_steps(frame, id.z()) };
-        for area in decode_areas(&payload, id, frame).unwrap_or_default() {
-            findings.look(CheckId::AreaPolygon, cut.holds_area(&area), || {
-                format!("{} {} of tile {id} reaches beyond the polygon", area.class, area.object)
-            });
-        }
-        for line in decode_boundaries(&payload, id).unwrap_or_default() {
-            findings.look(CheckId::BoundaryPolygon, cut.holds_line(&line.points), || {
-                format!(
-                    "{} way {} of tile {id} reaches beyond the polygon",
-                    line.class, line.way_id
-                )
-            });
+        for (slot, layer) in manifest.layers() {
+            for object in manifest.decode_layer(&payload, id, slot).unwrap_or_default() {
+                findings.look(CheckId::LayerPolygon, cut.holds_shape(&object.shape), || {
+                    let (object, layer) = (object.object, &layer.table.id);
+                    format!("{object} of layer {layer:?} in tile {id} reaches beyond the polygon")
+                });
+            }
         }
         Ok(findings)
     };
@@ -73,6 +69,17 @@ struct Cut<'a> {
 }
 
 impl Cut<'_> {
+    /// Whether an object stays within the polygon.
+    fn holds_shape(&self, shape: &LayerShape) -> bool {
+        match shape {
+            LayerShape::Line(points) => {
+                points.array_windows().all(|&[from, to]| self.holds(from, to))
+            }
+            LayerShape::Area(_) => self.holds_area(shape),
+            LayerShape::Point(point) => self.holds(*point, *point),
+        }
+    }
+
     /// Whether an area stays within the polygon: all its outlines do, and no corner of the polygon
     /// or of its holes, with ground beyond the corner, lies deep inside the area.
     ///
@@ -83,7 +90,7 @@ impl Cut<'_> {
     ///   │    └──────×     │      area covers the hole.
     ///   └─────────────────┘
     /// ```
-    fn holds_area(&self, area: &AreaRecord) -> bool {
+    fn holds_area(&self, area: &LayerShape) -> bool {
         let outlines = || {
             let rings = area.rings();
             rings.flat_map(|ring| ring.iter().copied().zip(ring.iter().copied().cycle().skip(1)))
@@ -100,11 +107,6 @@ impl Cut<'_> {
         };
         let mut corners = self.region.edges_near(&bounds).flatten();
         !corners.any(|corner| self.has_ground_beyond(corner, deep) && lies_deep(corner))
-    }
-
-    /// Whether a line stays within the polygon.
-    fn holds_line(&self, points: &[LatticePoint]) -> bool {
-        points.array_windows().all(|&[from, to]| self.holds(from, to))
     }
 
     /// Whether a segment stays within the polygon: both ends do, and the middle of each stretch

@@ -1,8 +1,7 @@
 //! Lines and areas beyond the polygon are found: uncut ones, filled holes and closed notches.
 //! Rounding is tolerated.
 
-use corniche_areas::{AreaClass, AreaObject};
-use corniche_tileset::AreaRings;
+use corniche_tileset::AreaPolygon;
 
 use super::*;
 
@@ -48,14 +47,8 @@ fn region() -> LatticeRegion {
 }
 
 fn holds(rings: &[Ring]) -> bool {
-    let part = AreaRings { rings: rings.iter().map(|ring| points(ring)).collect() };
-    let area = AreaRecord {
-        object: AreaObject::Way(1),
-        class: AreaClass::Water,
-        name: String::new(),
-        polygons: vec![part],
-    };
-    Cut { region: &region(), beyond: 3.0 }.holds_area(&area)
+    let part = AreaPolygon { rings: rings.iter().map(|ring| points(ring)).collect() };
+    Cut { region: &region(), beyond: 3.0 }.holds_shape(&LayerShape::Area(vec![part]))
 }
 
 #[test]
@@ -104,7 +97,7 @@ fn what_was_not_cut_lies_beyond() {
 fn lines_are_looked_at_between_their_points() {
     let region = region();
     let cut = Cut { region: &region, beyond: 3.0 };
-    let holds = |line: &[[i64; 2]]| cut.holds_line(&points(line));
+    let holds = |line: &[[i64; 2]]| cut.holds_shape(&LayerShape::Line(points(line)));
     assert!(holds(&[[10, 500], [500, 600], [590, 600]]));
     assert!(holds(&[[0, 0], [0, 1000]]), "along the outline");
     assert!(holds(&[[-2, 0], [-2, 1000]]), "rounded");

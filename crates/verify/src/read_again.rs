@@ -1,8 +1,7 @@
 //! Reads the extracts from which a package was built again, for data that the package does not
-//! store, such as the names of areas that boundaries enclose.
+//! store, such as the nodes that roads share.
 
-use corniche_areas::BoundaryNames;
-use corniche_osm::{ClassedLine, LayerSink, Layers, LineSummary, read_extract};
+use corniche_osm::{Layers, read_extract};
 use corniche_pieces::extract::{placed_reading::PlacedReading, reading_pool};
 use corniche_spec::{
     BuildObserver,
@@ -65,38 +64,4 @@ fn read(
     })?;
     observer.end(Stage::Extract);
     Ok(())
-}
-
-/// Reads the extracts from which a package was built again, for the names of what boundaries
-/// enclose: of relations, and of closed ways.
-///
-/// # Errors
-/// When a file cannot be read, changes meanwhile, or the files are not those of the build.
-pub fn boundary_names(
-    package: &FilePackage,
-    extract: &VerifyOsm,
-    threads: usize,
-    observer: &dyn BuildObserver,
-) -> Result<BoundaryNames, VerifyError> {
-    let mut names = BoundaryNames::default();
-    let mut on_name = |way_id, class, name: &str| {
-        names.entry(way_id).or_default().entry(class).or_default().insert(name.to_owned());
-    };
-    let mut lines = Unneeded;
-    let layers = Layers {
-        boundaries: Some(&mut lines),
-        boundary_names: Some(&mut on_name),
-        ..Layers::default()
-    };
-    read_again(package, (extract, layers), threads, observer)?;
-    Ok(names)
-}
-
-/// A receiver of boundaries that ignores them: the package has the lines.
-struct Unneeded;
-
-impl LayerSink<ClassedLine, LineSummary> for Unneeded {
-    fn take(&mut self, _: ClassedLine) {}
-
-    fn end(&mut self, _: LineSummary) {}
 }

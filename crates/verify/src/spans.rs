@@ -19,7 +19,7 @@ use corniche_work::{Stage, locked};
 use super::{
     checks::{CheckId, Findings},
     decoded_tiles::DecodedTiles,
-    each_tile::{OfTile, VerifyRun, look_at_layer, recorded},
+    each_tile::{OfTile, RecordedSums, VerifyRun, look_at_sections},
     error::VerifyError,
     near_index::NearIndex,
     span_order::{self, OrderedCrossing, RunPiece},
@@ -51,14 +51,15 @@ pub(crate) fn verify(run: &VerifyRun<'_>, findings: &mut Findings) -> Result<(),
     findings.look(CheckId::SpanSums, record.is_some() == is_wanted, || {
         "spans are counted but the settings do not include them, or the other way round".to_owned()
     });
-    let levels = record.iter().flat_map(|record| &record.levels);
-    let recorded = (CheckId::SpanSums, levels.map(recorded).collect());
+    let levels = record.map_or(&[][..], |record| &record.levels);
+    let recorded = [RecordedSums::new("spans", levels)];
     let ends: Mutex<EndsByPlace> = Mutex::default();
     let crossings: Mutex<Vec<(TileId, OrderedCrossing)>> = Mutex::default();
     // The heights of both spans are rounded away from the ground.
     let least_m = LEVEL_M.max(2.0 * manifest.vertical.quantum_m);
     let look_at = |id| look_at(&run.tiles, id, least_m, (&ends, &crossings));
-    look_at_layer(run, Stage::VerifySpans, look_at, recorded, findings)?;
+    let how = (Stage::VerifySpans, CheckId::SpanSums);
+    look_at_sections(run, how, look_at, &recorded, findings)?;
     let crossings = crossings.into_inner().unwrap_or_else(PoisonError::into_inner);
     look_at_reversed(told(manifest, SpanReason::OrderReversed), crossings, findings);
     let ends = ends.into_inner().unwrap_or_else(PoisonError::into_inner);
@@ -181,7 +182,7 @@ fn look_at(
     }
     let points = runs.iter().map(|run| run.points.len() as u64).sum();
     let bytes = payload_sizes(&bytes, id).map_or(0, |sizes| sizes.spans.stored);
-    found.counts = SectionOfTile { parts: runs.len() as u64, points, bytes };
+    found.counts.push(SectionOfTile { parts: runs.len() as u64, points, bytes });
     found
 }
 

@@ -3,7 +3,6 @@
 
 use std::path::PathBuf;
 
-use corniche_areas::AreaTable;
 use corniche_gis::RegionPolygons;
 use corniche_roads::FrcTable;
 use corniche_spec::inputs::InputFiles;
@@ -33,9 +32,7 @@ pub struct VerifyOsm {
     pub paths: Vec<PathBuf>,
     /// The FRC table that the manifest names.
     pub table: FrcTable,
-    /// The table of areas that the manifest names; not needed if the package has no areas.
-    pub areas: Option<AreaTable>,
-    /// The memory for sorting roads and areas by tile, in bytes.
+    /// The memory for sorting roads and objects of layers by tile, in bytes.
     pub memory_bytes: u64,
 }
 

@@ -13,7 +13,8 @@ use std::{collections::BTreeMap, env, error::Error, fs, path::Path, time::Instan
 
 use corniche_styles::Style;
 use corniche_viewer::{
-    CameraRequest, FrameView, RoadMethod, RoadOptions, SightedGround, for_tests,
+    CameraRequest, FrameView, PackageLooks, RoadMethod, RoadOptions, ShownLayers, SightedGround,
+    for_tests,
     gpu::{DrawTile, Gpu, Renderer, SlopeChain, Targets, TileBuffers, tile_bytes},
     lod::{Fineness, Quality},
     tiles::{LoadTileError, MapPackage as _, PackageSource, TileDecoder, TileStore},
@@ -60,7 +61,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let style = Style::road_atlas();
     let roads = RoadOptions::for_method(RoadMethod::ShadowVolumes);
     let package = PackageSource::open(Path::new(&file))?;
-    let package = package.with_decoder(TileDecoder::default().for_look(roads.method, &style));
+    let looks = PackageLooks::new(package.manifest(), &style, &ShownLayers::ALL);
+    let decoder = TileDecoder::default().for_look(roads.method, &style, looks.drawn_layers());
+    let package = package.with_decoder(decoder);
     let manifest = package.manifest();
     stages.end("package opened");
 
@@ -100,6 +103,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let view = FrameView {
         camera: &camera,
         style: &style,
+        layers: &looks,
         roads,
         exaggeration: 1.0,
         point_scale: manifest.point_scale,

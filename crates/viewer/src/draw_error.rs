@@ -2,6 +2,7 @@
 
 use crate::{
     gpu::{GpuError, ReadBackError},
+    layers::UnknownLayer,
     range::OutOfRange,
     tiles::LoadTileError,
     viewpoint::ViewpointOffGround,
@@ -28,6 +29,8 @@ pub enum DrawError {
     EyeUnderGround { depth_m: f64 },
     #[error(transparent)]
     Range(#[from] OutOfRange),
+    #[error(transparent)]
+    Layer(#[from] UnknownLayer),
     #[error("interrupted")]
     Stopped,
     #[error("the package has no ground to fly over")]

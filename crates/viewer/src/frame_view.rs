@@ -2,7 +2,7 @@
 
 use corniche_styles::Style;
 
-use crate::{camera::Camera, options::RoadOptions};
+use crate::{camera::Camera, layers::PackageLooks, options::RoadOptions};
 
 /// Maximum size of a cell on the picture, pixels, unless `--cell-px` sets another.
 const COARSEST_PX: f64 = 2.0;
@@ -14,6 +14,8 @@ pub struct FrameView<'a> {
     pub camera: &'a Camera,
     /// Colours and widths.
     pub style: &'a Style,
+    /// How the package's layers are drawn.
+    pub layers: &'a PackageLooks,
     /// How roads are drawn.
     pub roads: RoadOptions,
     /// Factor on heights.

@@ -76,6 +76,7 @@ pub(crate) mod labels_tests;
 mod passes;
 mod picture;
 mod pipeline;
+mod point_buffers;
 mod read_back;
 mod renderer;
 mod resident_tiles;

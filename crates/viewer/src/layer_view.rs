@@ -11,18 +11,17 @@ use crate::{
 
 impl LineLayer {
     /// The styles of the lines of the layer.
-    #[must_use]
-    pub fn lines_of(self, style: &Style) -> &[LineStyle] {
+    pub(crate) fn lines_of<'a>(self, view: &FrameView<'a>) -> &'a [LineStyle] {
         match self {
-            Self::Boundaries => &style.boundaries,
-            Self::Overlays => &style.overlays,
-            Self::Drawn => std::slice::from_ref(&style.drawn),
+            Self::Package(group) => view.layers.lines(group),
+            Self::Overlays => &view.style.overlays,
+            Self::Drawn => std::slice::from_ref(&view.style.drawn),
         }
     }
 
     /// A style whose roads are the lines of the layer.
-    pub(crate) fn style_of(self, style: &Style) -> Style {
-        style.with_lines_as_roads(self.lines_of(style))
+    pub(crate) fn style_of(self, view: &FrameView<'_>) -> Style {
+        view.style.with_lines_as_roads(self.lines_of(view))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Draws packages: tiles are chosen, loaded and rendered to pixels.
 //!
 //! ```text
-//!  package ──► tiles ──► lod::select ──► scene ──► gpu: terrain, areas, roads, composite ──► picture
+//!  package ──► tiles ──► lod::select ──► scene ──► gpu: terrain, areas, roads, lines, points ──► picture
 //!                 ▲            │
 //!                 └─ requests ─┘
 //! ```
@@ -21,7 +21,6 @@
 
 #[cfg(feature = "annotations")]
 mod annotations;
-mod boundary_lines;
 pub mod camera;
 mod class_scale;
 #[cfg(all(feature = "annotations", not(target_arch = "wasm32")))]
@@ -30,7 +29,11 @@ pub mod eye_height;
 pub mod flight;
 mod frame_view;
 pub mod gpu;
+mod layer_class;
+mod layer_legend;
 mod layer_view;
+mod layers;
+mod line_places;
 pub mod lod;
 mod lon_lat;
 mod options;
@@ -71,11 +74,13 @@ pub use annotations::{
     TitleFlaws, WrittenTitle, bar_length, bar_length_m, draw_attribution, draw_legend, draw_title,
     grouped,
 };
-pub use boundary_lines::BoundaryLines;
 pub use class_scale::LevelScales;
 #[cfg(all(feature = "annotations", not(target_arch = "wasm32")))]
 pub use draw_error::DrawError;
 pub use frame_view::FrameView;
+pub use layer_class::LayerClass;
+pub use layer_legend::{LayerLegend, LayerRow};
+pub use layers::{PackageLooks, ShownLayers, UnknownLayer};
 pub use lon_lat::{LonLatError, parse_lon_lat};
 pub use options::{
     CapTest, Caps, ClassSet, Mapping, Quads, RoadMethod, RoadOptions, RoadOutline, WidthGrowth,

@@ -38,6 +38,7 @@ fn tile(x: f64, y: f64, height_m: impl Fn(f64, f64) -> f64) -> TileGeometry {
         ground: GroundMesh::of_surface(vertices, indices.into_iter()),
         shading: None,
         areas: crate::tiles::AreaVolumes::default(),
+        points: crate::tiles::PointMarks::default(),
         lines: crate::tiles::LineLayers::default(),
         photo: None,
         roads: RoadSegments::default(),

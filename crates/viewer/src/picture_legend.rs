@@ -1,16 +1,15 @@
 //! The legend of a picture: the features that the picture shows, as they look in its middle.
 
-use corniche_areas::BoundaryClass;
 use corniche_roads::FunctionalRoadClass;
-use corniche_styles::{AreaStyle, LineStyle, Rgb, RoadBand, RoadStyle};
+use corniche_styles::{AreaStyle, LayerLook, LineStyle, PointStyle, Rgb, RoadBand, RoadStyle};
+use corniche_tileset::Manifest;
 
 use crate::{
     annotations::{Legend, LegendEdge, LegendHeights, LegendRoad, LegendRow, LegendSample},
     class_scale,
     frame_view::FrameView,
-    gpu::seen::{SeenArea, ShownTiles},
-    layer_view::view_of_lines,
-    tiles::LineLayer,
+    gpu::seen::{SeenClass, ShownTiles},
+    layer_legend::class_title,
 };
 
 /// Remaining share of the colours of a tunnel's surface and of its edge, as in
@@ -39,7 +38,7 @@ pub struct LegendRequest {
 /// its height.
 pub(crate) fn legend(
     view: &FrameView<'_>,
-    request: &LegendRequest,
+    (request, manifest): (&LegendRequest, &Manifest),
     seen: &ShownTiles,
     has_tint: bool,
 ) -> Legend {
@@ -53,7 +52,11 @@ pub(crate) fn legend(
         LegendRow { label, sample: LegendSample::Tunnel(tunnel(view, class)) }
     });
     let rows = seen.roads.iter().map(road).chain(tunnel);
-    let rows = rows.chain(boundaries(view, seen)).chain(areas(view, seen)).collect();
+    let of_layer = |seen: &SeenClass| {
+        let sample = layer_sample(view, seen)?;
+        Some(LegendRow { label: class_title(manifest, seen.class), sample })
+    };
+    let rows = rows.chain(seen.layers.iter().filter_map(of_layer)).collect();
     Legend {
         pixel_m: view.camera.pixel_at_unit_depth_m() * view.camera.focus_m / view.point_scale,
         // The right axis of the view is level, and its angle from east is the angle of north from
@@ -154,30 +157,23 @@ fn tint(view: &FrameView<'_>, height_m: f64) -> Rgb {
     view.style.tint.color_at(height_m, view.height_range_m, view.latitude_deg)
 }
 
-/// Rows of boundary classes, the most important first.
-fn boundaries(view: &FrameView<'_>, seen: &ShownTiles) -> Vec<LegendRow> {
-    let layer = LineLayer::Boundaries;
-    let style = layer.style_of(view.style);
-    let lines_view = view_of_lines(view, &style);
-    let row = |class: FunctionalRoadClass| {
-        let label = BoundaryClass::from_number(class.number())?.label().to_owned();
-        let style = layer.lines_of(view.style)[usize::from(class.number())];
-        let color = over_ground(&lines_view, style.color, style.opacity);
-        Some(LegendRow { label, sample: LegendSample::Line(LineStyle { color, ..style }) })
-    };
-    seen.boundaries.iter().filter_map(row).collect()
-}
-
-/// Rows of area classes, the topmost first, each in its colour over the ground under it.
-fn areas(view: &FrameView<'_>, seen: &ShownTiles) -> Vec<LegendRow> {
-    let find = |class| seen.areas.iter().find(|area| area.class == class);
-    let row = |area: &SeenArea| {
-        let AreaStyle { color, opacity, .. } = *view.style.area(area.class);
-        let ground = tint(view, area.height_m.unwrap_or_else(|| middle_m(view)));
-        let sample = LegendSample::Area(mix(ground, color, opacity));
-        LegendRow { label: area.class.to_string(), sample }
-    };
-    AreaStyle::TOP_FIRST.into_iter().filter_map(find).map(row).collect()
+/// How a class of a layer looks over the ground under it; `None` if it is not drawn.
+fn layer_sample(view: &FrameView<'_>, seen: &SeenClass) -> Option<LegendSample> {
+    let ground = tint(view, seen.height_m.unwrap_or_else(|| middle_m(view)));
+    Some(match view.layers.look(seen.class)? {
+        LayerLook::Area(AreaStyle { color, opacity, .. }) => {
+            LegendSample::Area(mix(ground, color, opacity))
+        }
+        LayerLook::Line(line) => {
+            let color = mix(ground, line.color, line.opacity);
+            LegendSample::Line(LineStyle { color, ..line })
+        }
+        LayerLook::Point(point) => {
+            let over = |color| mix(ground, color, point.opacity);
+            let outline = point.outline.map(over);
+            LegendSample::Point(PointStyle { color: over(point.color), outline, ..point })
+        }
+    })
 }
 
 /// The colours of the ground between two heights; `None` if they do not show heights.

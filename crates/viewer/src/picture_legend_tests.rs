@@ -1,12 +1,17 @@
 //! A legend lists the visible features, in the order of their importance, as they are drawn.
 
-use corniche_areas::AreaClass;
+use corniche_layers::LayerGeometry;
 use corniche_styles::Style;
 use glam::DVec2;
 
 use super::*;
 use crate::{
     camera::Camera,
+    layer_class::LayerClass,
+    layers::{
+        PackageLooks, ShownLayers,
+        tests::{built_in, class, own, package},
+    },
     options::{ClassSet, RoadMethod, RoadOptions},
 };
 
@@ -18,6 +23,7 @@ fn view<'a>(camera: &'a Camera, style: &'a Style) -> FrameView<'a> {
     FrameView {
         camera,
         style,
+        layers: PackageLooks::NONE,
         roads: RoadOptions::for_method(RoadMethod::ShadowVolumes),
         exaggeration: 1.0,
         point_scale: 1.0,
@@ -42,29 +48,51 @@ fn is_near(one: Rgb, other: Rgb) -> bool {
     one.iter().zip(other).all(|(one, other)| (one - other).abs() < 1e-6)
 }
 
+/// A package with areas, lines and points.
+fn manifest() -> Manifest {
+    let tables = [built_in("areas"), built_in("boundaries"), own("trees", LayerGeometry::Point, 1)];
+    package(tables.map(|table| (table, Vec::new())).into())
+}
+
+fn looks(style: &Style) -> PackageLooks {
+    PackageLooks::new(&manifest(), style, &ShownLayers::ALL)
+}
+
 fn seen() -> ShownTiles {
+    let layers = [class(2, 0), class(1, 0), class(1, 7), class(0, 0), class(0, 1), class(0, 3)];
     ShownTiles {
         roads: classes(&[3, 0]),
         tunnels: classes(&[3]),
-        boundaries: classes(&[7, 0]),
-        areas: [AreaClass::Water, AreaClass::Forest, AreaClass::Sea]
-            .map(|class| SeenArea { class, height_m: Some(500.0) })
-            .to_vec(),
+        layers: layers.map(|class| SeenClass { class, height_m: Some(500.0) }).into(),
         heights_m: Some([100.0, 900.0]),
     }
 }
 
+fn told(view: &FrameView<'_>, seen: &ShownTiles, has_tint: bool) -> Legend {
+    legend(view, (&labels(), &manifest()), seen, has_tint)
+}
+
 #[test]
-fn roads_come_first_then_tunnels_boundaries_and_areas() {
+fn roads_come_first_then_tunnels_and_layers_from_the_highest() {
     let (camera, style) = (camera(1.0), Style::road_atlas());
-    let told = legend(&view(&camera, &style), &labels(), &seen(), true);
-    let names: Vec<&str> = told.rows.iter().map(|row| row.label.as_str()).collect();
-    // Sea and water have the same colour.
-    let expected =
-        ["zero", "three", "tunnel", "country border", "protected area", "sea, water", "forest"];
+    let layers = looks(&style);
+    let view = FrameView { layers: &layers, ..view(&camera, &style) };
+    let all = told(&view, &seen(), true);
+    let names: Vec<&str> = all.rows.iter().map(|row| row.label.as_str()).collect();
+    // Sea and water have the same colour. The layer of trees has no titles.
+    let expected = [
+        "zero",
+        "three",
+        "tunnel",
+        "class-0",
+        "Country border",
+        "Protected area",
+        "Sea, Water",
+        "Forest",
+    ];
     assert_eq!(names, expected);
-    assert_eq!(told.scale, Some(10_000));
-    assert!((told.pixel_m - 1.0).abs() < 1e-9 && told.north_deg.abs() < 1e-9);
+    assert_eq!(all.scale, Some(10_000));
+    assert!((all.pixel_m - 1.0).abs() < 1e-9 && all.north_deg.abs() < 1e-9);
 }
 
 #[test]
@@ -73,11 +101,10 @@ fn nothing_is_listed_of_a_picture_that_shows_nothing() {
     let none = ShownTiles {
         roads: ClassSet::NONE,
         tunnels: ClassSet::NONE,
-        boundaries: ClassSet::NONE,
-        areas: Vec::new(),
+        layers: Vec::new(),
         heights_m: None,
     };
-    let told = legend(&view(&camera, &style), &labels(), &none, true);
+    let told = told(&view(&camera, &style), &none, true);
     assert!(told.rows.is_empty() && told.heights.is_none());
 }
 
@@ -115,9 +142,8 @@ fn thin_roads_look_as_they_are_drawn() {
 #[test]
 fn heights_are_told_where_colours_tell_them() {
     let (camera, mut style) = (camera(1.0), Style::road_atlas());
-    let heights_of = |style: &Style, has_tint| {
-        legend(&view(&camera, style), &labels(), &seen(), has_tint).heights
-    };
+    let heights_of =
+        |style: &Style, has_tint| told(&view(&camera, style), &seen(), has_tint).heights;
     let told = heights_of(&style, true).unwrap();
     assert_eq!(told.range_m, [100.0, 900.0]);
     assert_eq!(told.colors.len(), RAMP_COLORS);
@@ -135,13 +161,15 @@ fn heights_are_told_where_colours_tell_them() {
 #[test]
 fn areas_have_the_colour_over_their_own_ground() {
     let (camera, style) = (camera(1.0), Style::road_atlas());
-    let view = view(&camera, &style);
+    let layers = looks(&style);
+    let view = FrameView { layers: &layers, ..view(&camera, &style) };
     for height_m in [0.0, 900.0] {
-        let area = SeenArea { class: AreaClass::Meadow, height_m: Some(height_m) };
-        let row = &areas(&view, &ShownTiles { areas: vec![area], ..seen() })[0];
-        let AreaStyle { color, opacity, .. } = *style.area(AreaClass::Meadow);
+        let meadow: LayerClass = class(0, 5);
+        let row = layer_sample(&view, &SeenClass { class: meadow, height_m: Some(height_m) });
+        let AreaStyle { color, opacity, .. } = layers.area(meadow).unwrap();
+        assert!(opacity < 1.0);
         let expected = mix(tint(&view, height_m), color, opacity);
-        assert_eq!(row.sample, LegendSample::Area(expected));
+        assert_eq!(row, Some(LegendSample::Area(expected)));
     }
 }
 

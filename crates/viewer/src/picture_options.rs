@@ -6,6 +6,7 @@ use corniche_tileset::Manifest;
 use crate::{
     camera::Camera,
     frame_view::FrameView,
+    layers::{PackageLooks, ShownLayers},
     lod::{Fineness, Quality},
     options::RoadOptions,
     range::{self, OutOfRange},
@@ -28,6 +29,8 @@ pub struct PictureOptions {
     pub supersampling: u32,
     /// Colours and widths.
     pub style: Style,
+    /// The layers to draw.
+    pub layers: ShownLayers,
 }
 
 impl PictureOptions {
@@ -43,16 +46,24 @@ impl PictureOptions {
         Quality::of_package(manifest, fineness, &self.style, roads, exaggeration)
     }
 
+    /// How the layers of a package are drawn.
+    #[must_use]
+    pub fn looks(&self, manifest: &Manifest) -> PackageLooks {
+        PackageLooks::new(manifest, &self.style, &self.layers)
+    }
+
     /// The view of a camera on a package whose ground has these heights.
     pub(crate) fn view<'a>(
         &'a self,
         camera: &'a Camera,
+        layers: &'a PackageLooks,
         manifest: &Manifest,
         height_range_m: [f64; 2],
     ) -> FrameView<'a> {
         FrameView {
             camera,
             style: &self.style,
+            layers,
             roads: self.roads,
             exaggeration: self.exaggeration,
             point_scale: manifest.point_scale,

@@ -76,6 +76,8 @@ pub struct RenderReport {
     pub area_polygons: u64,
     /// Points of the outlines of areas, including points on borders of tiles.
     pub area_points: u64,
+    /// Points of layers in the tiles drawn.
+    pub layer_points: u64,
     /// Tiles in which a road may have been drawn narrower than its style says, because half its
     /// width exceeds the level's width margin.
     pub clamped_tiles: u64,
@@ -108,8 +110,8 @@ pub struct RenderReport {
 /// is called for each tile of the view that is read, and once more at the end.
 ///
 /// # Errors
-/// When the request is not valid, a tile cannot be read, there is no graphics adapter, or the
-/// drawing was stopped.
+/// When the request is not valid, the package lacks one of its layers, a tile cannot be read, there
+/// is no graphics adapter, or the drawing was stopped.
 pub fn render(
     request: &RenderRequest,
     package: &dyn BlockingPackage,
@@ -118,6 +120,7 @@ pub fn render(
     request.check()?;
     let mut store: TileStore<'_> = TileStore::new(package);
     let (manifest, options) = (package.manifest(), &request.options);
+    options.layers.check(manifest)?;
     let quality = options.quality(manifest);
     let ground = request.camera.sighted_ground(&mut store, manifest)?;
     let ground = ground.ok_or_else(|| DrawError::NoGround { name: request.name.clone() })?;
@@ -128,9 +131,10 @@ pub fn render(
 
     let gpu = Gpu::new()?;
     let targets = Targets::new(&gpu, options.size_px, options.supersampling)?;
+    let looks = options.looks(manifest);
     let view = FrameView {
         is_wireframe: request.is_wireframe,
-        ..options.view(&camera, manifest, height_range_m)
+        ..options.view(&camera, &looks, manifest, height_range_m)
     };
     let mut slopes = BTreeMap::new();
     let grounds: Vec<(&TileGeometry, f64)> = scene::draw_list(&store, &drawn).collect();
@@ -158,7 +162,7 @@ pub fn render(
         let seen = renderer.seen(&gpu, &view, &tiles, &targets)?;
         let has_tint = has_tint(&options.style, grounds.iter().map(|(tile, _)| *tile));
         let taken = OccupiedMargins { title_px: title.height_px, credits_px };
-        let legend = legend(&view, asked, &seen, has_tint);
+        let legend = legend(&view, (asked, manifest), &seen, has_tint);
         is_legend_cut = draw_legend(&mut picture, &legend, taken);
     }
 
@@ -170,6 +174,7 @@ pub fn render(
         road_segments: tiles.iter().map(|tile| tile.road_segments(&view)).sum(),
         area_polygons: sum_of_areas(&tiles, &view, |volumes| u64::from(volumes.polygons)),
         area_points: sum_of_areas(&tiles, &view, |volumes| volumes.walls.len() as u64),
+        layer_points: tiles.iter().map(|tile| tile.layer_points(&view)).sum(),
         clamped_tiles: grounds.iter().filter(|(tile, _)| scene::may_be_clamped(tile, &view)).count()
             as u64,
         capped_ways: scene::capped_ways(grounds.iter().map(|(tile, _)| *tile), &view),
@@ -194,7 +199,7 @@ fn sum_of_areas(
     view: &FrameView<'_>,
     count: impl Fn(&ClassVolumes) -> u64,
 ) -> u64 {
-    let drawn = |volumes: &&ClassVolumes| view.style.area(volumes.class).is_drawn();
+    let drawn = |volumes: &&ClassVolumes| view.layers.area(volumes.class).is_some();
     tiles.iter().flat_map(|tile| tile.buffers.area_classes()).filter(drawn).map(count).sum()
 }
 

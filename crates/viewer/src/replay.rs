@@ -28,6 +28,7 @@ use crate::{
     draw_error::DrawError,
     flight::{Flight, Pose},
     gpu::{Gpu, PassTimer, Renderer, ResidentTiles, Targets},
+    layers::PackageLooks,
     lod::DrawnTile,
     tiles::{BlockingPackage, TileStore},
 };
@@ -43,6 +44,7 @@ pub struct Replay<'a> {
     gpu: &'a Gpu,
     package: &'a dyn BlockingPackage,
     options: &'a ReplayOptions,
+    looks: PackageLooks,
     is_stopped: &'a dyn Fn() -> bool,
     timetable: Timetable<'a>,
     height_range_m: [f64; 2],
@@ -88,6 +90,7 @@ impl<'a> Replay<'a> {
         is_stopped: &'a dyn Fn() -> bool,
     ) -> Result<Self, DrawError> {
         check(options)?;
+        options.picture.layers.check(package.manifest())?;
         let coarsest =
             TileStore::new(package).coarsest_ground()?.ok_or(DrawError::NothingBeneath)?;
         let timetable = Timetable { flight, frames: options.frames };
@@ -105,6 +108,7 @@ impl<'a> Replay<'a> {
             gpu,
             package,
             options,
+            looks: options.picture.looks(package.manifest()),
             is_stopped,
             timetable,
             height_range_m: coarsest.height_range_m,
@@ -139,7 +143,7 @@ impl<'a> Replay<'a> {
         let (resident, above_bytes) = self.tiles.resident();
         let tiles = resident.draw_list(&drawn);
         let manifest = self.package.manifest();
-        let view = self.options.picture.view(&camera, manifest, self.height_range_m);
+        let view = self.options.picture.view(&camera, &self.looks, manifest, self.height_range_m);
         self.renderer.draw_timed(self.gpu, &view, &tiles, &self.targets, self.timer.as_mut());
         self.gpu.finish()?;
         let draw_ms = ms_since(started);

@@ -21,6 +21,7 @@ mod on_disk;
 mod package;
 mod photo;
 pub(crate) mod plan_scale;
+mod point_marks;
 mod relief;
 pub(crate) mod roads;
 mod shading_slopes;
@@ -36,16 +37,15 @@ pub use self::on_disk::PackageSource;
 #[cfg(test)]
 pub(crate) use self::roads::GroundNet;
 pub use self::{
-    areas::{AreaCorner, AreaVolumes, AreaWall, BadArea, BadAreas, ClassVolumes},
+    areas::{AreaCorner, AreaVolumes, AreaWall, BadArea, BadAreas, ClassVolumes, TileArea},
     decoder::TileDecoder,
     drawn_area::DrawnArea,
     geometry::{TileGeometry, TransferError},
-    line_layers::{
-        LayerLine, LineLayer, LineLayers, LineMethods, Overlays, TileLayer, TileSurface,
-    },
+    line_layers::{LineLayers, LineMethods, Overlays, StyledLine, TileLayer, TileSurface},
     map_extent::MapExtent,
     package::{PackageTiles, may_have_roads},
     photo::PhotoImage,
+    point_marks::PointMarks,
     roads::{
         DashPlace, DeckLine, DeckPiece, DeckPieces, RoadKind, RoadList, RoadLook, RoadSegment,
         RoadSegments, RoadVolume, RoadVolumes, TileLines,
@@ -66,3 +66,4 @@ pub(crate) use self::{
         dash_of_segment_m,
     },
 };
+pub use crate::line_places::LineLayer;

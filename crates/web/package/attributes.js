@@ -2,6 +2,11 @@
 
 const number = (/** @type {string} */ text) => (text.trim() === "" || !Number.isFinite(Number(text)) ? undefined : Number(text));
 const flag = (/** @type {string} */ text) => !/^(off|false|no|none)$/i.test(text);
+/** The ids of layers; `null` for all. */
+const layers = (/** @type {string} */ text) => {
+  const ids = text.split(",").map((id) => id.trim());
+  return ids[0] === "all" ? null : ids.filter((id) => id !== "" && id !== "none");
+};
 const word = (/** @type {string} */ text) => text;
 
 /** Attribute, property, setting, and the conversion of the attribute's text to the setting's value.
@@ -17,8 +22,7 @@ export const SETTINGS = [
   ["cell-px", "cellPx", "cell_px", number],
   ["samples", "samples", "samples", number],
   ["photo", "photo", "photo", (text) => (text === "style" ? null : flag(text) ? number(text) : 0)],
-  ["areas", "areas", "areas", flag],
-  ["boundaries", "boundaries", "boundaries", flag],
+  ["layers", "layers", "layers", layers],
   ["wireframe", "wireframe", "wireframe", flag],
   ["inertia", "inertia", "inertia", flag],
 ];

@@ -452,7 +452,7 @@ for (const [attribute, property, setting] of SETTINGS) {
       return this.settings[setting];
     },
     set(value) {
-      this.setAttribute(attribute, typeof value === "number" ? String(value) : attributeText(value));
+      this.setAttribute(attribute, typeof value === "number" ? String(value) : attributeText(value, setting));
     },
   });
 }

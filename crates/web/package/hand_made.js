@@ -6,8 +6,9 @@ const same = (/** @type {unknown} */ a, /** @type {unknown} */ b) => JSON.string
 const rounded = (/** @type {number} */ value) => String(+value.toFixed(4));
 
 /** A setting as the text of an attribute. */
-export function attributeText(/** @type {unknown} */ value) {
+export function attributeText(/** @type {unknown} */ value, /** @type {string} */ setting) {
   if (typeof value === "number") return rounded(value);
+  if (setting === "layers") return value === null ? "all" : String(value) || "none";
   return value === null ? "style" : value === true ? "on" : value === false ? "off" : String(value);
 }
 
@@ -41,7 +42,7 @@ const LISTS = [
 ];
 
 /** @type {[string, string, (text: string, settings: any) => unknown, (value: any) => string][]} */
-const NAMES = [...SETTINGS.map(([attribute, , setting, valueOf]) => /** @type {any} */ ([attribute, setting, valueOf, attributeText])), ...LISTS];
+const NAMES = [...SETTINGS.map(([attribute, , setting, valueOf]) => /** @type {any} */ ([attribute, setting, valueOf, (/** @type {unknown} */ value) => attributeText(value, setting)])), ...LISTS];
 
 /** Readable characters stay unescaped where an address allows them. */
 const escaped = (/** @type {string} */ text) => encodeURIComponent(text).replace(/%(2C|2F|3A)/g, decodeURIComponent);

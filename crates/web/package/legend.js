@@ -1,5 +1,5 @@
-// The legend: names of the classes with the colours of the shown style. Each class of roads can be
-// hidden; boundaries are listed.
+// The legend: names of the classes with the colours of the shown style. Each class of roads and
+// each layer can be hidden.
 import { make } from "./dom.js";
 
 /**
@@ -41,20 +41,50 @@ export function makeLegend(set) {
   };
 }
 
-/** The boundaries of the map, with the colours of the shown style. */
-export function makeLines() {
-  const element = make("ul", { class: "legend", "aria-label": "Boundaries" });
+/**
+ * The layers of the map, with their classes in the colours of the shown style.
+ *
+ * @param {(change: Record<string, unknown>) => void} set
+ * @returns {import("./controls.js").Control & { list: (layers: import("./corniche-map.js").About["layers"]) => void }}
+ */
+export function makeLayers(set) {
+  const element = make("ul", { class: "legend", "aria-label": "Layers" });
+  /** @type {Map<string, any>} */
+  const inputs = new Map();
+  /** @type {Map<string, HTMLElement>} */
+  const rows = new Map();
+
+  function change() {
+    const shown = [...inputs].flatMap(([id, input]) => (input.checked ? [id] : []));
+    set({ layers: shown.length === inputs.size ? null : shown });
+  }
+
   return {
     element,
-    list(/** @type {{ label: string, color: string }[]} */ lines) {
-      element.hidden = lines.length === 0;
-      element.replaceChildren(
-        ...lines.map((one) => {
-          const swatch = make("span", { class: "line-swatch" });
-          swatch.style.color = one.color;
-          return make("li", { class: "named-line" }, swatch, make("span", {}, one.label));
-        }),
-      );
+    list(layers) {
+      if (layers.map((layer) => layer.id).join() !== [...inputs.keys()].join()) {
+        inputs.clear();
+        rows.clear();
+        for (const { id } of layers) {
+          inputs.set(id, make("input", { type: "checkbox", onchange: change }));
+          rows.set(id, make("ul", { class: "legend" }));
+        }
+        element.replaceChildren(
+          ...layers.map(({ id, title }) => make("li", {}, make("label", { class: "check" }, inputs.get(id), make("span", {}, title)), rows.get(id))),
+        );
+      }
+      for (const { id, geometry, classes } of layers) {
+        rows.get(id)?.replaceChildren(
+          ...classes.map((one) => {
+            const swatch = make("span", { class: geometry === "line" ? "line-swatch" : `swatch ${geometry}-swatch` });
+            swatch.style[geometry === "line" ? "color" : "backgroundColor"] = one.color;
+            return make("li", { class: "named-class" }, swatch, make("span", {}, one.label));
+          }),
+        );
+      }
+    },
+    show: (settings) => {
+      for (const [id, input] of inputs) input.checked = settings.layers?.includes(id) ?? true;
     },
   };
 }

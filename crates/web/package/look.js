@@ -79,7 +79,9 @@ summary:focus-visible { outline-offset: -3px; }
 .check { display: flex; align-items: center; gap: 0.55rem; min-block-size: var(--row); cursor: pointer; }
 input[type="checkbox"] { inline-size: 1.05rem; block-size: 1.05rem; margin: 0; accent-color: var(--accent); flex: none; }
 .swatch { inline-size: 1.5rem; block-size: 0.45rem; border-radius: 3px; flex: none; box-shadow: 0 0 0 1px light-dark(rgb(0 0 0 / 45%), rgb(255 255 255 / 45%)); }
-.named-line { display: flex; align-items: center; gap: 0.55rem; min-block-size: var(--row); }
+.named-class { display: flex; align-items: center; gap: 0.55rem; min-block-size: var(--row); }
+.legend .legend { margin-inline-start: 1.6rem; }
+.point-swatch { border-radius: 50%; inline-size: 0.6rem; block-size: 0.6rem; }
 .line-swatch { inline-size: 1.5rem; border-block-start: 2px dashed currentColor; flex: none; }
 .choice { border: 0; margin: 0; padding: 0; min-inline-size: 0; }
 .choice legend, .field label { color: var(--quiet); padding: 0; }

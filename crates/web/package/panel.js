@@ -2,7 +2,7 @@
 import { action, choice, section, select, slider, toggle } from "./controls.js";
 import { make, setText } from "./dom.js";
 import { closeButton, icons } from "./icons.js";
-import { makeLegend, makeLines } from "./legend.js";
+import { makeLayers, makeLegend } from "./legend.js";
 
 const percent = (/** @type {number} */ value) => `${Math.round(value * 100)} %`;
 const times = (/** @type {number} */ value) => `× ${value.toFixed(2)}`;
@@ -82,7 +82,7 @@ export function makePanel(map, about, close) {
     return control.element;
   };
   const legend = makeLegend(set);
-  const lines = makeLines();
+  const layers = makeLayers(set);
   const figures = makeFigures();
   const record = action(icons.record(), "Record flight", () => map.command("record"));
   record.classList.add("record");
@@ -154,9 +154,7 @@ export function makePanel(map, about, close) {
               }),
             )
           : null,
-        about.has.areas ? use(toggle(set, "areas", "Areas")) : null,
-        about.has.boundaries ? use(toggle(set, "boundaries", "Boundaries")) : null,
-        about.has.boundaries ? lines.element : null,
+        about.layers.length > 0 ? use(layers) : null,
       ),
       section(
         "View",
@@ -223,7 +221,7 @@ export function makePanel(map, about, close) {
     show(/** @type {any} */ settings, /** @type {import("./corniche-map.js").About} */ now) {
       last = settings;
       legend.list(now.classes);
-      lines.list(settings.boundaries ? now.boundaries : []);
+      layers.list(now.layers);
       for (const control of controls) control.show(settings);
     },
     /** @param {import("./corniche-map.js").FrameReport} report */

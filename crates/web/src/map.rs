@@ -65,7 +65,7 @@ impl Map {
     pub(crate) fn change(&mut self, changes: &str) -> Result<(), String> {
         let (changed, style) = changed(&self.settings, changes)?;
         let shown = changed.of_session();
-        let reading = DecodedParts::from_decoder(&shown.decoder(&style));
+        let reading = DecodedParts::from_decoder(&shown.decoder(self.session.manifest(), &style));
         self.session.change(shown);
         self.session.styles = style_list(&changed.style, style);
         self.session.camera.navigator.has_inertia = changed.inertia;

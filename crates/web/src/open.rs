@@ -115,7 +115,7 @@ impl Opened {
         let decoders = Decoders::new(host.clone(), &metadata);
         let tileset = Rc::new(Tileset { package: Arc::clone(&package), decoders });
         let FirstViewRequest { settings, style, .. } = *first;
-        let reading = DecodedParts::from_decoder(&settings.decoder(style));
+        let reading = DecodedParts::from_decoder(&settings.decoder(manifest, style));
         let (ready, ground) = first_tiles(&tileset, first.request, &reading).await?;
         let home = first.view(manifest, ground, size_px)?;
         let loader = PageLoader::new(Rc::clone(&tileset), host.clone(), reading, ready);

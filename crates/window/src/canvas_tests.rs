@@ -45,6 +45,7 @@ pub(crate) fn scene_of_size(compare: Compare, size_px: [u32; 2]) -> MapScene {
         camera: Camera::look_at(DVec3::ZERO, 1000.0, level, size_px),
         shown_px: size_px,
         style: Style::road_atlas(),
+        layers: corniche_viewer::PackageLooks::default(),
         compare,
         roads: compare.pictures(RoadOptions::for_method(RoadMethod::Geometry)),
         exaggeration: 1.0,

@@ -4,8 +4,9 @@ use corniche_live::{
     Compare, DrawingContent, FrameTimes, GroundPoint, Notice, Shot, controls::Mode,
 };
 use corniche_roads::FunctionalRoadClass;
+use corniche_styles::{AreaStyle, LayerLook, LineStyle, PointStyle};
 use corniche_viewer::{
-    BoundaryLines, RoadMethod, RoadOptions,
+    LayerLegend, LayerRow, RoadMethod, RoadOptions,
     camera::Orientation,
     flight::{Pose, WorkingCrs},
     gpu::PassTimes,
@@ -27,9 +28,8 @@ struct Told {
     styles: Vec<String>,
     notices: Vec<Notice>,
     passes: Vec<(RoadMethod, PassTimes)>,
-    has_areas: bool,
     class_labels: [String; FunctionalRoadClass::COUNT],
-    boundary_lines: Vec<BoundaryLines>,
+    layers: Vec<LayerLegend>,
 }
 
 impl Told {
@@ -53,9 +53,8 @@ impl Told {
                 Notice { words: "saved somewhere/corniche-001.png".into(), until_s: Some(1.0) },
                 Notice { words: "a long notice ".repeat(12), until_s: None },
             ],
-            has_areas: false,
             passes: vec![(RoadMethod::Geometry, pass), (RoadMethod::ShadowVolumes, pass)],
-            boundary_lines: Vec::new(),
+            layers: Vec::new(),
             class_labels: std::array::from_fn(|class| {
                 format!("unclassified, living street {class}")
             }),
@@ -78,12 +77,10 @@ impl Told {
             mode: Mode::Map,
             style_names: &self.styles,
             photo: None,
-            has_areas: self.has_areas,
-            has_boundaries: !self.boundary_lines.is_empty(),
             overlays: &[],
             drawing: DrawingContent::default(),
             overlay_colors: Vec::new(),
-            boundary_lines: self.boundary_lines.clone(),
+            layers: self.layers.clone(),
             road_colors: &[[0.8, 0.2, 0.1]; 9],
             class_labels: &self.class_labels,
             tiles_drawn: 123,
@@ -384,15 +381,14 @@ fn what_nobody_moves_stays_as_it_was_given() {
 }
 
 #[test]
-fn areas_can_be_left_out_where_the_package_has_some() {
+fn areas_have_a_time_where_some_are_drawn() {
     let mut told = Told::new();
-    for has_areas in [true, false] {
-        told.has_areas = has_areas;
+    for areas_ms in [2.5, 0.0] {
+        told.passes.iter_mut().for_each(|(_, times)| times.areas_ms = areas_ms);
         // The window is wide enough for everything in the status line.
         let (texts, _) = lay_out([4000.0, 1000.0], &mut usual(), &told.content(), &[&[], &[]]);
-        assert_eq!(texts.iter().any(|(words, ..)| words == "Areas"), has_areas);
-        let timed = texts.iter().any(|(words, ..)| words.contains(" areas 0.0,"));
-        assert_eq!(timed, has_areas, "{texts:?}");
+        let timed = texts.iter().any(|(words, ..)| words.contains(" areas 2.5,"));
+        assert_eq!(timed, areas_ms > 0.0, "{texts:?}");
     }
 }
 
@@ -408,24 +404,58 @@ fn classes_have_their_names_and_the_colours_of_the_style() {
     assert!(!texts.iter().any(|(words, ..)| words == "Wireframe"), "folded away");
 }
 
+/// Each layer has its title and the classes that are drawn, of any geometry.
 #[test]
-fn boundaries_are_listed_while_they_are_shown() {
-    let line = |label: &str| BoundaryLines {
-        label: label.to_owned(),
-        style: corniche_styles::LineStyle::solid([0.5, 0.2, 0.5], 2.0),
-    };
+fn layers_are_listed_with_their_classes() {
     let long = "boundary, level 6, boundary, level 7, boundary, level 8";
-    let boundary_lines = vec![line("country border"), line(long)];
-    let told = Told { boundary_lines, ..Told::new() };
-    for boundaries in [true, false] {
-        let mut settings = MapSettings { boundaries, ..usual() };
-        let (texts, _) = lay_out([1280.0, 1200.0], &mut settings, &told.content(), &[&[], &[]]);
-        for label in ["country border", long] {
-            let found = texts.iter().find(|(words, ..)| words == label);
-            assert_eq!(found.is_some(), boundaries, "{label}");
-            let fits = found.is_none_or(|(_, place, clip)| clip.contains_rect(*place));
-            assert!(fits, "{found:?}");
-        }
+    let color = [0.5, 0.2, 0.5];
+    let looks = [
+        (long, LayerLook::Line(LineStyle::solid(color, 2.0))),
+        ("water", LayerLook::Area(AreaStyle { color, opacity: 1.0, steepest_deg: None })),
+        (
+            "trees",
+            LayerLook::Point(PointStyle {
+                color,
+                size_px: 7.0,
+                outline: None,
+                opacity: 1.0,
+                max_pixel_m: None,
+            }),
+        ),
+    ];
+    let layer = |(number, (label, look)): (usize, (&str, LayerLook))| LayerLegend {
+        id: format!("layer-{number}"),
+        title: format!("Layer {number}"),
+        geometry: corniche_layers::LayerGeometry::Line,
+        rows: vec![LayerRow { label: label.to_owned(), look }],
+    };
+    let layers: Vec<LayerLegend> = looks.into_iter().enumerate().map(layer).collect();
+    let told = Told { layers, ..Told::new() };
+    let (texts, _) = lay_out([1280.0, 1200.0], &mut usual(), &told.content(), &[&[], &[]]);
+    for label in [long, "water", "trees", "Layer 0", "Layer 1", "Layer 2"] {
+        let (_, place, clip) = texts.iter().find(|(words, ..)| words == label).expect(label);
+        assert!(clip.contains_rect(*place), "{label}");
+    }
+}
+
+/// A click on the title of a layer hides it, and another one shows it.
+#[test]
+fn layers_are_hidden_by_a_click() {
+    let layer = |id: &str| LayerLegend {
+        id: id.to_owned(),
+        title: format!("the {id}"),
+        geometry: corniche_layers::LayerGeometry::Line,
+        rows: Vec::new(),
+    };
+    let told = Told { layers: vec![layer("walls"), layer("trees")], ..Told::new() };
+    let mut settings = usual();
+    let (texts, _) = lay_out([1280.0, 1200.0], &mut settings, &told.content(), &[&[], &[]]);
+    let (_, place, _) = texts.iter().find(|(words, ..)| words == "the walls").unwrap();
+    let [over, press, release] = click(place.center());
+    for (walls, trees) in [(false, true), (true, true)] {
+        lay_out([1280.0, 1200.0], &mut settings, &told.content(), &[&over, &press, &release]);
+        let shown = ["walls", "trees"].map(|id| settings.layers.contains(id));
+        assert_eq!(shown, [walls, trees]);
     }
 }
 

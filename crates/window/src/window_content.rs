@@ -4,13 +4,12 @@ use corniche_live::{DrawingContent, FrameTimes, GroundPoint, Notice, controls::M
 use corniche_roads::FunctionalRoadClass;
 use corniche_styles::Rgb;
 use corniche_viewer::{
-    BoundaryLines, RoadMethod,
+    LayerLegend, RoadMethod,
     flight::{Pose, WorkingCrs},
     gpu::PassTimes,
 };
 
 /// All values that the panel and the overlay show, apart from the settings.
-#[expect(clippy::struct_excessive_bools, reason = "independent facts")]
 pub(crate) struct WindowContent<'a> {
     /// Name of the graphics adapter.
     pub(crate) adapter: &'a str,
@@ -32,16 +31,12 @@ pub(crate) struct WindowContent<'a> {
     pub(crate) style_names: &'a [String],
     /// The opacity of photos in the shown style; `None` in a package without photos.
     pub(crate) photo: Option<f32>,
-    /// Whether the package has areas (water, forest and so on).
-    pub(crate) has_areas: bool,
-    /// Whether the package has boundaries.
-    pub(crate) has_boundaries: bool,
     /// Names of the files of lines.
     pub(crate) overlays: &'a [String],
     /// The colours of the lines of each file.
     pub(crate) overlay_colors: Vec<Rgb>,
-    /// The boundaries of the package that the style draws.
-    pub(crate) boundary_lines: Vec<BoundaryLines>,
+    /// The layers of the package, with the classes that are drawn.
+    pub(crate) layers: Vec<LayerLegend>,
     /// The colours of roads in the shown style, by class.
     pub(crate) road_colors: &'a [Rgb],
     /// The names of the classes.

@@ -50,10 +50,8 @@ stages! {
     Hash = "hash", "hashing inputs", Unit::Bytes;
     /// Read the extract: ways and nodes of all layers.
     Extract = "extract", "reading extract", Unit::Bytes;
-    /// Split areas by tile.
-    MapAreas = "areas", "splitting areas", Unit::Things("objects");
-    /// Split boundaries by tile.
-    Boundaries = "boundaries", "splitting boundaries", Unit::Things("ways");
+    /// Split the objects of layers by tile.
+    Layers = "layers", "splitting layers", Unit::Things("objects");
     /// Split roads by tile.
     Roads = "roads", "splitting roads", Unit::Things("ways");
     /// Read the DEM, reproject it, fill its voids, create the rasters of all levels.
@@ -79,23 +77,19 @@ stages! {
     Verify = "verify", "checking tiles", TILES;
     /// Check photos and their seams.
     VerifyPhotos = "verify-photos", "checking photos", TILES;
-    /// Check areas and their seams.
-    VerifyAreas = "verify-areas", "checking areas", TILES;
-    /// Check boundaries.
-    VerifyBoundaries = "verify-boundaries", "checking boundaries", TILES;
+    /// Check layers and the seams of areas.
+    VerifyLayers = "verify-layers", "checking layers", TILES;
     /// Check bridges and tunnels.
     VerifySpans = "verify-spans", "checking bridges", TILES;
     /// Compare vertices and reliefs with the DEM.
     CompareHeights = "compare-heights", "comparing heights", TILES;
     /// Compare roads with the extract.
     CompareRoads = "compare-roads", "comparing roads", TILES;
-    /// Compare areas with the extract.
-    CompareAreas = "compare-areas", "comparing areas", TILES;
-    /// Compare boundaries with the extract.
-    CompareBoundaries = "compare-boundaries", "comparing boundaries", TILES;
+    /// Compare layers with the extract.
+    CompareLayers = "compare-layers", "comparing layers", TILES;
     /// Compare bridges and tunnels with the extract.
     CompareSpans = "compare-spans", "comparing bridges", TILES;
-    /// Compare the ends of areas and boundaries with the polygon.
+    /// Compare the ends of layers with the polygon.
     ComparePolygon = "compare-polygon", "comparing with polygon", TILES;
     /// An export reads tiles and sorts their content by way, or converts it.
     ExportTiles = "export-tiles", "reading tiles", TILES;

@@ -44,6 +44,11 @@ fn every_payload_is_decoded_or_refused() {
 }
 
 #[test]
+fn every_section_of_a_layer_is_decoded_or_refused() {
+    replay("layers", corniche_fuzz::layers);
+}
+
+#[test]
 fn every_extract_is_read_or_refused() {
     replay("osm", corniche_fuzz::osm);
 }
@@ -106,6 +111,11 @@ fn change(target: &str, run: fn(&[u8])) {
             std::panic::resume_unwind(panic);
         }
     }
+}
+
+#[test]
+fn changed_sections_of_layers_are_decoded_or_refused() {
+    change("layers", corniche_fuzz::layers);
 }
 
 #[test]

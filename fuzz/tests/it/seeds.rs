@@ -1,18 +1,20 @@
-//! Creates the seeds of the fuzz target `package` (`corpus/package`), and some of `payload`; the
-//! target reads them to their end. `CORNICHE_WRITE_SEEDS=1` rewrites them. Those of `osm` are
+//! Creates the seeds of the fuzz targets `package` (`corpus/package`) and `layers`, and some of
+//! `payload`; the targets read them to their end. `CORNICHE_WRITE_SEEDS=1` rewrites them. Those of `osm` are
 //! created by `crates/osm/tests/it/seeds.rs`.
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
 use std::{collections::BTreeMap, fs, path::Path};
 
-use corniche_geom::{HeightGrid, TileId};
+use corniche_fuzz::layer_coding;
+use corniche_geom::{HeightGrid, LatticePoint, TileId};
+use corniche_layers::{AttributeValue, LayerGeometry, OsmObject};
 use corniche_testing::{
     package::{context, encoded, encoded_with_spans, ids, manifest, metadata},
     pmtiles::{RawDirectoryEntry, directory, file, gzip},
 };
 use corniche_tileset::{
-    MemorySource, PHOTO_BORDER, Package, Photo, Relief, Sections, TilePayload, decode, encode,
-    encode_photo, pmtiles_order,
+    AreaPolygon, LayerObject, LayerShape, LayerSlot, MemorySource, PHOTO_BORDER, Package, Photo,
+    Relief, Sections, TilePayload, decode, encode, encode_layer, encode_photo, pmtiles_order,
 };
 
 /// A root directory, a leaf directory and tiles, in the form that the target splits.
@@ -95,6 +97,44 @@ fn payload_with_spans() -> Vec<u8> {
     [&[1], &encoded_with_spans(TileId::ROOT.children().nth(1).unwrap())[..]].concat()
 }
 
+/// A section of three objects with and without values, in the form of the target `layers`. Lines
+/// and rings share points.
+fn layer(geometry: LayerGeometry) -> Vec<u8> {
+    let frame = context().frame;
+    let corner = frame.tile_lattice_bounds(TileId::ROOT).min;
+    let at = |u: i64, v: i64| {
+        let [u, v] = [(corner.u, u), (corner.v, v)].map(|(from, by)| (from / 64 + 1 + by) * 64);
+        LatticePoint::new(u, v)
+    };
+    let border: Vec<LatticePoint> = (0..9).map(|n| at(100 + n * n, 90 * n)).collect();
+    let names =
+        [("", "Lac"), ("de", "See"), ("fr", "Lac")].map(|(a, b)| (a.to_owned(), b.to_owned()));
+    let object = |(class, number): (u8, f64)| {
+        let end = at(900 * i64::from(class), 7);
+        let mut points = [&border[..], &[end]].concat();
+        if class == 1 {
+            points.reverse();
+        }
+        let shape = match geometry {
+            LayerGeometry::Line => LayerShape::Line(points),
+            LayerGeometry::Area => LayerShape::Area(vec![AreaPolygon { rings: vec![points] }]),
+            LayerGeometry::Point => LayerShape::Point(end),
+        };
+        let values = vec![
+            Some(AttributeValue::Text("See".to_owned())),
+            (class > 0).then(|| AttributeValue::Names(names.to_vec())),
+            (class > 0).then_some(AttributeValue::YesNo(class > 1)),
+            (class != 1).then_some(AttributeValue::Number(number)),
+        ];
+        LayerObject { class, object: OsmObject::Way(1 << 33), values, shape }
+    };
+    let objects: Vec<LayerObject> = (0..).zip([-12.0, 0.1, 1e300]).map(object).collect();
+    let (slot, coding) = (LayerSlot::new(0).unwrap(), layer_coding(geometry));
+    let section = encode_layer(TileId::ROOT, &frame, slot, &coding, 64, &objects).unwrap().unwrap();
+    let first = LayerGeometry::ALL.iter().position(|&known| known == geometry).unwrap();
+    [&[first as u8], section.bytes()].concat()
+}
+
 #[test]
 fn the_seed_with_a_relief_is_as_it_is_made_here_and_is_read() {
     let bytes = relief_seed();
@@ -124,6 +164,8 @@ fn the_seeds_of_the_fuzz_targets_are_as_they_are_made_here() {
         [("photo", photo()), ("spans", payload_with_spans()), ("whole", whole_payload())];
     check(&all.join("payload"), BTreeMap::from(of_payload));
     corniche_fuzz::payload(&payload_with_spans());
+    let of_layers = LayerGeometry::ALL.iter().map(|&geometry| (geometry.name(), layer(geometry)));
+    check(&all.join("layers"), of_layers.collect());
 }
 
 fn check(folder: &Path, seeds: BTreeMap<&'static str, Vec<u8>>) {

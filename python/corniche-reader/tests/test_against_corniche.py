@@ -14,7 +14,7 @@ import pytest
 from corniche_reader import Package
 
 REPOSITORY = Path(__file__).parents[3]
-GOLDEN = [REPOSITORY / "crates/tileset/tests/data" / name for name in ("version-1.pmtiles", "version-1-degrees.pmtiles")]
+GOLDEN = [REPOSITORY / "crates/tileset/tests/data" / name for name in ("version-2.pmtiles", "version-2-degrees.pmtiles")]
 DATA = Path(os.environ.get("CORNICHE_DATA", REPOSITORY.parent / "shared/data"))
 PROGRAM = os.environ.get("CORNICHE")
 REAL = {
@@ -50,6 +50,14 @@ def compare(path: Path) -> None:
                 assert not (known.bridge and known.tunnel)
                 for key in ("way_id", "form", "layer", "name", "ref", "surface", "highway", "lanes", "maxspeed", "sac_scale", "tracktype"):
                     assert getattr(known, key) == other[key], (z, x, y, known.way_id, key)
+            layers = {layer["layer"]: layer["objects"] for layer in expected.get("layers") or []}
+            for layer, objects in tile.layers.items():
+                for of, other in zip(objects, layers.pop(layer, []), strict=True):
+                    assert (of.osm_type, of.osm_id, of.class_id) == (other["object"], other["id"], other["class"])
+                    assert of.attributes == other.get("attributes", {}), (z, x, y, layer, of.osm_id)
+                    shapes = other["polygons"] if of.points is None else [[other["line"] if "line" in other else [other["point"]]]]
+                    assert [[ring.tolist() for ring in polygon] for polygon in of.polygons or [[of.points]]] == shapes
+            assert not layers
 
 
 @pytest.mark.parametrize("path", GOLDEN, ids=lambda path: path.stem)

@@ -8,11 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from encoding import package_of, payload
 
-from corniche_reader import Package, ReadError, UnknownTile
+from corniche_reader import ContainerError, Package, PayloadError, ReadError, UnknownTile
 from corniche_reader.container import tile_number, tile_of
 
-GOLDEN = Path(__file__).parents[3] / "crates/tileset/tests/data/version-1.pmtiles"
+GOLDEN = Path(__file__).parents[3] / "crates/tileset/tests/data/version-2.pmtiles"
 ROOT = (0, 0, 0)
 #: CRC-32 of the decoded values; `corniche tile --json` gives the same.
 SUMS = {"positions": 0x51A80049, "triangles": 0x2E36449E, "normals": 0x2F4CC374, "roads": 0x63973D00}
@@ -41,6 +42,17 @@ def test_the_golden_package_reads_as_it_did():
 def test_a_tile_that_is_not_there_is_named():
     with Package.open(GOLDEN) as package, pytest.raises(UnknownTile, match="no tile 1/1/1"):
         package.tile(1, 1, 1)
+
+
+def test_packages_and_tiles_of_version_1_are_refused():
+    with Package.open(GOLDEN) as package:
+        old = package_of(package, ROOT, payload(ROOT, package.tile(*ROOT).sections, version=1))
+        package.metadata["corniche"]["format_version"] = 1
+        older = package_of(package, ROOT, b"CRNT")
+    with Package(io.BytesIO(old)) as package, pytest.raises(PayloadError, match="has version 1 of the format"):
+        package.tile(*ROOT)
+    with pytest.raises(ContainerError, match="has version 1 of the format; this reader knows version 2"):
+        Package(io.BytesIO(older))
 
 
 def places_of(part: str) -> range:

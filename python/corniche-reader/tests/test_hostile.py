@@ -18,7 +18,7 @@ import pytest
 
 from corniche_reader import Package, ReadError
 
-GOLDEN = Path(__file__).parents[3] / "crates/tileset/tests/data/version-1.pmtiles"
+GOLDEN = Path(__file__).parents[3] / "crates/tileset/tests/data/version-2.pmtiles"
 #: The values that replace a number, as JSON.
 HOSTILE = [
     "0", "-0.0", "-1", "1", "0.3", "5e-324", "1e-320", "1e308", "-1e308", "1e400", "NaN", "-Infinity", "4294967296",
@@ -115,11 +115,12 @@ def test_no_number_of_a_manifest_raises_another_error(text):
             signal.alarm(0)
 
 
-@pytest.mark.parametrize("name", ["corniche", "frame", "coordinates", "cell_m", "vertical"])
+@pytest.mark.parametrize("name", ["corniche", "frame", "coordinates", "cell_m", "vertical", "layers", "table"])
 @pytest.mark.parametrize("text", ["[" * 100_000, "[" * 100_000 + "]" * 100_000, '{"a":' * 50_000 + "1" + "}" * 50_000, "7", "null", "[]"])
 def test_no_other_shape_of_a_manifest_raises_another_error(name, text):
     whole = golden_metadata()
-    for inner in (whole, whole["corniche"], whole["corniche"]["frame"]):
+    layers = whole["corniche"].get("layers", [])
+    for inner in (whole, whole["corniche"], whole["corniche"]["frame"], *layers):
         if name in inner:
             inner[name] = "HERE"
             break
@@ -143,7 +144,9 @@ def test_hostile_packages_are_read_or_refused():
         try:
             with Package.open(path) as package:
                 for name in package.tiles():
-                    package.tile(*name)
+                    for objects in package.tile(*name).layers.values():
+                        for found in objects[:99]:
+                            found.on_ground()
         except ReadError as error:
             assert str(error)
         except Exception as error:

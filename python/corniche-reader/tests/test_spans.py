@@ -3,43 +3,27 @@
 from __future__ import annotations
 
 import functools
-import gzip
 import io
 import json
 import os
-import struct
 import subprocess
-import zlib
 from pathlib import Path
 
 import numpy as np
 import pytest
+from encoding import package_of, payload, planes, signed, varint
 
 from corniche_reader import Package, PayloadError, Span
-from corniche_reader.container import tile_number
 from corniche_reader.grid import Grid
 from corniche_reader.height import Ground
 from corniche_reader.spans import read_spans
 
 REPOSITORY = Path(__file__).parents[3]
-GOLDEN = [REPOSITORY / "crates/tileset/tests/data" / name for name in ("version-1.pmtiles", "version-1-degrees.pmtiles")]
+GOLDEN = [REPOSITORY / "crates/tileset/tests/data" / name for name in ("version-2.pmtiles", "version-2-degrees.pmtiles")]
 PROGRAM = os.environ.get("CORNICHE")
 # : Columns of a section with two runs of two points: from the ground in triangle 0 to the air, and
 # back.
 SOUND = [[24 + 1, 24 + 4 + 2], [2000, 0], [0, 0], [2, 2, 0, 8], [0, 2, 0, 0], [800, 1], [0, 0]]
-
-
-def varint(number: int) -> bytes:
-    found = bytearray()
-    while number > 127:
-        found.append(number & 127 | 128)
-        number >>= 7
-    return bytes([*found, number])
-
-
-def planes(numbers: list[int]) -> bytes:
-    width = (max(numbers, default=0).bit_length() + 7) // 8
-    return bytes([width, *(number >> 8 * plane & 255 for plane in range(width) for number in numbers)])
 
 
 def section(columns: list[list[int]], runs: int | None = None) -> bytes:
@@ -105,29 +89,6 @@ def test_counts_cuts_and_bytes_too_many_are_refused():
             read(data)
 
 
-def payload(tile: tuple[int, int, int], sections: dict[int, bytes]) -> bytes:
-    """A payload of uncompressed sections (section 3 of the format)."""
-    z, x, y = tile
-    table, at = struct.pack("<4sHBBII", b"CRNT", 1, len(sections), z, x, y), 16 + 20 * len(sections) + 4
-    for kind, content in sections.items():
-        table += struct.pack("<HBBIIII", kind, 0, 0, at, len(content), len(content), zlib.crc32(content))
-        at += len(content)
-    return table + zlib.crc32(table).to_bytes(4, "little") + b"".join(sections.values())
-
-
-def package_of(package: Package, tile: tuple[int, int, int], content: bytes) -> bytes:
-    """A package with the metadata of another and one tile (section 1 of the format)."""
-    root = gzip.compress(b"".join(map(varint, (1, tile_number(*tile), 1, len(content), 1))), mtime=0)
-    metadata = gzip.compress(json.dumps(package.metadata).encode(), mtime=0)
-    regions, at = [], 127
-    for length in (len(root), len(metadata), 0, len(content)):
-        regions += [at, length]
-        at += length
-    header = struct.pack("<7sB11Q", b"PMTiles", 3, *regions, 1, 1, 1)
-    header += bytes([1, 2, 1, 0, 0, package.grid.max_level])
-    return header.ljust(127, b"\0") + root + metadata + content
-
-
 def spans_over(package: Package, tile: tuple[int, int, int]) -> bytes:
     """Runs over the tile's whole ground; every other run has its ends on the ground."""
     ground, grid = package.tile(*tile).terrain, package.grid
@@ -135,9 +96,6 @@ def spans_over(package: Package, tile: tuple[int, int, int]) -> bytes:
     corner = grid.lattice_of_node(tile, 0, 0)
     nodes = [grid.lattice_of_node(tile, int(c), int(r)) for c, r in ground.vertices.tolist()]
     columns: list[list[int]] = [[] for _ in range(7)]
-
-    def signed(number: int) -> int:
-        return 2 * number if number >= 0 else -2 * number - 1
 
     (u, v), height, way = corner, 0, 0
     for k in range(0, len(triangles) - 7, 7):

@@ -1,13 +1,13 @@
-//! `corniche build --areas`: areas through the whole binary, for all ways to build a package;
-//! losses; errors.
+//! `corniche build --layers areas`: areas through the whole binary, for all ways to build a
+//! package; losses; errors.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
 use std::{collections::BTreeMap, fs, path::Path};
 
 use e2e::{
-    Job, Ran, When, built_in_parts, corniche, extract_with_areas, extract_with_coast, json,
-    manifest, sample, text,
+    Job, Ran, When, built_in_parts, corniche, extract_with_areas, extract_with_coast, json, layer,
+    manifest, objects, sample, text,
 };
 use serde_json::Value;
 
@@ -35,7 +35,7 @@ fn areas_of(package: &Path) -> BTreeMap<(u64, String), f64> {
             tile.as_str().map_or_else(|| tile["id"].as_str().unwrap().to_owned(), str::to_owned);
         let level: u64 = id.split('/').next().unwrap().parse().unwrap();
         let tile = json(&["tile", text(package), &id, "--json"]);
-        for area in tile["areas"].as_array().into_iter().flatten() {
+        for area in objects(&tile, "areas") {
             let name = format!(
                 "{} {} {}",
                 area["object"].as_str().unwrap(),
@@ -57,7 +57,7 @@ fn areas_are_the_same_however_the_package_is_made() {
     let (dem, osm) = (sample("pass/pass-dem.tif"), extract_with_areas(folder.path()));
     let whole = at("whole.pmtiles");
     let inputs =
-        ["--dem", text(&dem), "--osm", text(&osm), "--max-error", "10", "--areas", "default"];
+        ["--dem", text(&dem), "--osm", text(&osm), "--max-error", "10", "--layers", "areas"];
     let build = |package: &Path, inputs: &[&str], more: &[&str]| {
         succeed(corniche([&["build", "-q", "-o", text(package)], inputs, more].concat()));
         fs::read(package).unwrap()
@@ -66,7 +66,8 @@ fn areas_are_the_same_however_the_package_is_made() {
     succeed(corniche(["verify", text(&whole), "--dem", text(&dem), "--osm", text(&osm)]));
 
     // All read objects are either kept or lost, with their ids.
-    let counts = &manifest(&whole)["areas"];
+    let found = manifest(&whole);
+    let counts = layer(&found, "areas");
     assert_eq!(counts["objects"], 4);
     let lost: Vec<&str> = counts["lost"]
         .as_array()
@@ -83,7 +84,7 @@ fn areas_are_the_same_however_the_package_is_made() {
     );
     let ran = succeed(corniche(["info", text(&whole)]));
     assert!(
-        ran.out.contains("Areas: 4 objects of the extract, 2 of them converted"),
+        ran.out.contains("Layer areas: 4 objects of the extract, 2 of them converted"),
         "{}",
         ran.out
     );
@@ -108,8 +109,8 @@ fn areas_are_the_same_however_the_package_is_made() {
     );
     let plain = at("plain.pmtiles");
     build(&plain, &inputs[..6], &[]);
-    assert!(manifest(&plain).get("areas").is_none());
-    let onto = ["--terrain", text(&plain), "--osm", text(&osm), "--areas", "default"];
+    assert!(manifest(&plain).get("layers").is_none());
+    let onto = ["--terrain", text(&plain), "--osm", text(&osm), "--layers", "areas"];
     assert!(build(&at("onto.pmtiles"), &onto, &[]) == bytes, "onto recorded terrain");
     let without = ["--terrain", text(&whole), "--osm", text(&osm)];
     assert!(
@@ -124,7 +125,7 @@ fn areas_are_the_same_however_the_package_is_made() {
 fn a_build_with_areas_that_was_stopped_goes_on_to_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
     let inputs = || [sample("pass/pass-dem.tif"), extract_with_areas(folder.path())];
-    let options = ["--max-error", "0.25", "--areas", "default"];
+    let options = ["--max-error", "0.25", "--layers", "areas"];
     let whole = Job::new(&options).with_inputs(inputs());
     whole.succeed(&["--quiet"]);
     for signal in ["TERM", "KILL"] {
@@ -150,26 +151,19 @@ fn tables_that_are_none_and_areas_without_an_extract_are_refused() {
         ran.err
     };
     assert!(
-        refused(&["--areas", "default"]).contains("--areas needs an extract; pass one with --osm")
+        refused(&["--layers", "areas"]).contains("--layers needs an extract; pass one with --osm")
     );
-    let no_table = refused(&["--osm", text(&osm), "--areas", "nothing"]);
-    assert!(
-        no_table.contains("neither off nor a preset (default) nor a readable file"),
-        "{no_table}"
-    );
-    fs::write(&table, "name = 'own'\n[[area]]\nclass = 'pond'\ntags = ['natural=water']\n")
-        .unwrap();
-    let no_class = refused(&["--osm", text(&osm), "--areas", text(&table)]);
-    assert!(
-        no_class.contains("\"pond\" is not a class of areas; the classes are water, glacier"),
-        "{no_class}"
-    );
+    let no_table = refused(&["--osm", text(&osm), "--layers", "nothing"]);
+    for words in ["\"nothing\"", "(areas, boundaries, railways)", "readable file"] {
+        assert!(no_table.contains(words), "{no_table}");
+    }
 
     // A custom table next to a settings file that names it.
-    fs::write(&table, "name = 'own'\n[[area]]\nclass = 'rock'\ntags = ['natural=water']\n")
-        .unwrap();
+    let text_of_table =
+        "id = 'own'\ngeometry = 'area'\n[[class]]\nid = 'pond'\ntags = { natural = 'water' }\n";
+    fs::write(&table, text_of_table).unwrap();
     let settings = folder.path().join("settings.toml");
-    fs::write(&settings, "[areas]\nareas = 'table.toml'\n").unwrap();
+    fs::write(&settings, "[layers]\nlayers = 'table.toml'\n").unwrap();
     let ran = corniche([
         "build",
         "-q",
@@ -186,11 +180,11 @@ fn tables_that_are_none_and_areas_without_an_extract_are_refused() {
     ]);
     succeed(ran);
     let found = manifest(&package);
-    assert_eq!(found["settings"]["areas"]["table"], "own");
-    assert_eq!(found["areas"]["kept"][0]["class"], "rock");
+    assert_eq!(found["settings"]["layers"][0]["id"], "own");
+    assert_eq!(e2e::kept(layer(&found, "own")), [("pond", 1)]);
 }
 
-/// When new roads are built onto existing terrain without `--areas`, the missing areas are
+/// When new roads are built onto existing terrain without `--layers`, the missing layers are
 /// reported.
 #[test]
 fn areas_that_are_not_asked_for_again_are_told() {
@@ -199,7 +193,7 @@ fn areas_that_are_not_asked_for_again_are_told() {
     let (dem, osm) = (sample("pass/pass-dem.tif"), extract_with_areas(folder.path()));
     let old = at("old.pmtiles");
     let words = ["--dem", text(&dem), "--osm", text(&osm), "--max-error", "10"];
-    let words = [&["build", "-q", "-o", text(&old)], &words[..], &["--areas", "default"]].concat();
+    let words = [&["build", "-q", "-o", text(&old)], &words[..], &["--layers", "areas"]].concat();
     succeed(corniche(words));
     let again = |more: &[&str]| {
         let new = at("new.pmtiles");
@@ -207,8 +201,8 @@ fn areas_that_are_not_asked_for_again_are_told() {
         succeed(corniche([&words[..], &[text(&new)], more].concat())).err
     };
     let said = again(&[]);
-    assert!(said.contains("--areas is not given, but it was built with default"), "{said}");
-    let said = again(&["--areas", "default"]);
+    assert!(said.contains("--layers is none, but it was built with areas ("), "{said}");
+    let said = again(&["--layers", "areas"]);
     assert!(!said.contains("settings that differ"), "{said}");
 }
 
@@ -225,7 +219,7 @@ fn the_sea_is_closed_along_the_edge_and_ends_at_the_bounds() {
         let osm = extract_with_coast(folder.path(), is_whole);
         let package = folder.path().join("coast.pmtiles");
         let words = ["build", "-q", "-O", "--dem", text(&dem), "--osm", text(&osm), "-o"];
-        let more = ["--areas", "default", "--bounds", "9.5,46.86,9.56,46.92", "--max-error", "10"];
+        let more = ["--layers", "areas", "--bounds", "9.5,46.86,9.56,46.92", "--max-error", "10"];
         succeed(corniche([&words[..], &[text(&package)], &more].concat()));
         let areas = areas_of(&package);
         let finest = areas.keys().map(|(level, _)| *level).max().unwrap();
@@ -234,8 +228,7 @@ fn the_sea_is_closed_along_the_edge_and_ends_at_the_bounds() {
             assert!((ratio - 1.0).abs() < 0.02, "level {level}: {ratio}");
         }
         let manifest = manifest(&package);
-        let sea = &manifest["areas"]["kept"][0];
-        assert_eq!((&sea["class"], &sea["areas"]), (&"sea".into(), &1.into()));
+        assert_eq!(e2e::kept(layer(&manifest, "areas")), [("sea", 1)]);
         let said = manifest["counts"]["defects"].to_string();
         let told = format!(r#"{{"count":{open_ends},"name":"open end of a coastline"}}"#);
         assert_eq!(said.contains(&told), open_ends > 0, "{said}");

@@ -1,13 +1,13 @@
-//! `corniche build --boundaries`: boundaries through the whole binary, for all ways to build a
-//! package; losses; errors.
+//! `corniche build --layers boundaries`: boundaries through the whole binary, for all ways to build
+//! a package; losses; errors.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
 use std::{fs, path::Path};
 
 use e2e::{
-    Job, Ran, When, built_in_parts, corniche, extract_with_boundaries, lacks_adapter, manifest,
-    sample, text,
+    Job, Ran, When, built_in_parts, corniche, extract_with_boundaries, kept, lacks_adapter, layer,
+    manifest, sample, text,
 };
 
 fn succeed(ran: Ran) -> Ran {
@@ -23,7 +23,7 @@ fn boundaries_are_the_same_however_the_package_is_made() {
     let (dem, osm) = (sample("pass/pass-dem.tif"), extract_with_boundaries(folder.path()));
     let whole = at("whole.pmtiles");
     let inputs =
-        ["--dem", text(&dem), "--osm", text(&osm), "--max-error", "10", "--boundaries", "on"];
+        ["--dem", text(&dem), "--osm", text(&osm), "--max-error", "10", "--layers", "boundaries"];
     let build = |package: &Path, inputs: &[&str], more: &[&str]| {
         succeed(corniche([&["build", "-q", "-o", text(package)], inputs, more].concat()));
         fs::read(package).unwrap()
@@ -33,23 +33,22 @@ fn boundaries_are_the_same_however_the_package_is_made() {
     assert!(!ran.out.contains("broken"), "{}", ran.out);
 
     // All read ways are either kept or lost, with their ids.
-    let found = &manifest(&whole)["boundaries"];
-    assert_eq!(found["ways"], 4);
-    let kept: Vec<(&str, u64)> = found["kept"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|kept| (kept["class"].as_str().unwrap(), kept["ways"].as_u64().unwrap()))
-        .collect();
-    assert_eq!(kept, [("admin-2", 1), ("admin-6", 1), ("protected", 1)]);
-    assert_eq!(found["lost"][0]["reason"], "way of a boundary is missing");
+    let found = manifest(&whole);
+    let found = layer(&found, "boundaries");
+    assert_eq!(found["objects"], 4);
+    assert_eq!(kept(found), [("admin-2", 1), ("admin-6", 1), ("protected", 1)]);
+    assert_eq!(found["lost"][0]["reason"], "way of a line is missing");
     let defects = fs::read_to_string(at("defects.csv")).unwrap();
     // It is in the neighbouring country, which is not a defect of the extract.
-    assert!(!defects.contains("boundary"), "{defects}");
+    assert!(!defects.contains("way of a line"), "{defects}");
     let ran = succeed(corniche(["info", text(&whole)]));
-    assert!(ran.out.contains("Boundaries: 4 ways of the extract"), "{}", ran.out);
+    assert!(
+        ran.out.contains("Layer boundaries: 4 ways of the extract, 3 of them converted"),
+        "{}",
+        ran.out
+    );
     assert!(ran.out.contains("  ways missing from the extract: 1\n"), "{}", ran.out);
-    assert!(!ran.out.contains("defect: way of a boundary"), "{}", ran.out);
+    assert!(!ran.out.contains("defect: way of a line"), "{}", ran.out);
     // 5 by 4 steps of the lattice of nodes and so on: 382 by 445 metres each.
     let length_km = found["kept"][0]["length_um"].as_f64().unwrap() / 1e9;
     let expected_km = (3.0_f64 * 0.382).hypot(2.0 * 0.4447) + (4.0_f64 * 0.382).hypot(0.4447);
@@ -60,10 +59,10 @@ fn boundaries_are_the_same_however_the_package_is_made() {
     assert!(again == bytes, "threads");
     let plain = at("plain.pmtiles");
     let plain_bytes = build(&plain, &inputs[..6], &[]);
-    assert!(manifest(&plain).get("boundaries").is_none());
-    let off = build(&at("off.pmtiles"), &inputs[..6], &["--boundaries", "off"]);
-    assert!(off == plain_bytes, "off is what is usual");
-    let onto = ["--terrain", text(&plain), "--osm", text(&osm), "--boundaries", "on"];
+    assert!(manifest(&plain).get("layers").is_none());
+    let none = build(&at("none.pmtiles"), &inputs[..6], &["--layers", "none"]);
+    assert!(none == plain_bytes, "none is what is usual");
+    let onto = ["--terrain", text(&plain), "--osm", text(&osm), "--layers", "boundaries"];
     assert!(build(&at("onto.pmtiles"), &onto, &[]) == bytes, "onto recorded terrain");
     let without = ["--terrain", text(&whole), "--osm", text(&osm)];
     assert!(build(&at("without.pmtiles"), &without, &[]) == plain_bytes, "left out");
@@ -75,7 +74,7 @@ fn boundaries_are_the_same_however_the_package_is_made() {
 fn a_build_with_boundaries_that_was_stopped_goes_on_to_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
     let inputs = || [sample("pass/pass-dem.tif"), extract_with_boundaries(folder.path())];
-    let options = ["--max-error", "0.25", "--boundaries", "on"];
+    let options = ["--max-error", "0.25", "--layers", "boundaries"];
     let whole = Job::new(&options).with_inputs(inputs());
     whole.succeed(&["--quiet"]);
     let job = Job::new(&options).with_inputs(inputs());
@@ -93,7 +92,7 @@ fn they_are_drawn_by_both_methods_and_can_be_left_out() {
     let dem = sample("pass/pass-dem.tif");
     let package = at("package.pmtiles");
     let words = ["build", "-q", "-o", text(&package), "--dem", text(&dem), "--osm", text(&osm)];
-    succeed(corniche([&words[..], &["--max-error", "5", "--boundaries", "on"]].concat()));
+    succeed(corniche([&words[..], &["--max-error", "5", "--layers", "boundaries"]].concat()));
     let render = |name: &str, more: &[&str]| {
         let picture = at(name);
         let words = ["render", text(&package), "-o", text(&picture), "--size", "500x400"];
@@ -106,7 +105,7 @@ fn they_are_drawn_by_both_methods_and_can_be_left_out() {
     };
     let Some(geo) = render("geo.png", &["--roads", "geo"]) else { return };
     let sv = render("sv.png", &["--roads", "sv"]).unwrap();
-    let without = render("without.png", &["--roads", "sv", "--boundaries", "off"]).unwrap();
+    let without = render("without.png", &["--roads", "sv", "--layers", "none"]).unwrap();
     let differ = |one: &image::RgbaImage, other: &image::RgbaImage| {
         one.pixels().zip(other.pixels()).filter(|(a, b)| a != b).count()
     };
@@ -114,7 +113,7 @@ fn they_are_drawn_by_both_methods_and_can_be_left_out() {
     assert!(differ(&geo, &sv) * 20 < differ(&sv, &without), "{} pixels", differ(&geo, &sv));
 
     // Where there is a road, no boundary is drawn.
-    let bare = render("bare.png", &["--roads", "none", "--boundaries", "off"]).unwrap();
+    let bare = render("bare.png", &["--roads", "none", "--layers", "none"]).unwrap();
     let alone = render("alone.png", &["--roads", "none"]).unwrap();
     let on_roads = |with: &image::RgbaImage, plain: &image::RgbaImage| {
         let roads = without.pixels().zip(bare.pixels()).map(|(a, b)| a != b);
@@ -137,18 +136,18 @@ fn bounds_leave_out_what_is_far_and_an_extract_is_needed() {
         let words = ["build", "-q", "-o", text(package), "--dem", text(&dem), "--max-error", "5"];
         corniche([&words[..], more].concat())
     };
-    let from_extract = ["--osm", text(&osm), "--boundaries", "on"];
+    let from_extract = ["--osm", text(&osm), "--layers", "boundaries"];
     succeed(build(&whole, &from_extract));
     let bounds = ["--bounds", "9.505,46.875,9.52,46.885"];
     succeed(build(&part, &[&from_extract[..], &bounds].concat()));
     succeed(corniche(["verify", text(&part), "--osm", text(&osm)]));
     let points = |package: &Path| {
-        let levels = manifest(package)["boundaries"]["levels"].clone();
+        let levels = layer(&manifest(package), "boundaries")["levels"].clone();
         let finest = levels.as_array().unwrap().last().unwrap().clone();
         finest["points"].as_u64().unwrap()
     };
     assert!(points(&part) < points(&whole), "{} and {}", points(&part), points(&whole));
-    let refused = build(&at("none.pmtiles"), &["--boundaries", "on"]);
+    let refused = build(&at("none.pmtiles"), &["--layers", "boundaries"]);
     assert_eq!(refused.code, 2);
     assert!(refused.err.contains("pass one with --osm"), "{}", refused.err);
 }

@@ -215,7 +215,7 @@ fn done(arguments: &[&str]) -> String {
 fn built(model: &Model, dems: &[PathBuf], osm: &Path, package: &Path) {
     let mut words = vec!["build", "-q", "--osm", text(osm), "-o", text(package)];
     words.extend(dems.iter().flat_map(|dem| ["--dem", text(dem)]));
-    words.extend(["--areas", "default", "--boundaries", "on"]);
+    words.extend(["--layers", "areas,boundaries"]);
     words.extend(model.options);
     done(&words);
 }
@@ -295,7 +295,7 @@ fn check(model: &Model, folder: &Path, extracts: &[PathBuf; 2]) {
     }
 
     let target = at("-areas.geojson");
-    let words = ["export", "areas", "-q", text(&package), "-o", text(&target)];
+    let words = ["export", "layer", "areas", text(&package), "-q", "-o", text(&target)];
     done(&[&words[..], &["--crs", "EPSG:4326"]].concat());
     let found = features(&target);
     let forests = FORESTS.iter().filter(|(id, _)| is_there(*id, FORESTS[1].0)).count();
@@ -310,7 +310,7 @@ fn check(model: &Model, folder: &Path, extracts: &[PathBuf; 2]) {
     }
 
     let told = manifest(&package);
-    let kept = &told["boundaries"]["kept"];
+    let kept = &e2e::layer(&told, "boundaries")["kept"];
     let borders: f64 = BORDERS.iter().map(|&(_, along)| WAYS[along].2).sum();
     near(&format!("{name}, borders"), kept[0]["length_um"].as_f64().unwrap() / 1e6, borders);
     if !model.is_global {
@@ -318,7 +318,7 @@ fn check(model: &Model, folder: &Path, extracts: &[PathBuf; 2]) {
         let without = at("-without.pmtiles");
         built(model, &dems, &extracts[0], &without);
         let without = manifest(&without);
-        let levels = |told: &Value, layer: &str| told[layer]["levels"].clone();
+        let levels = |told: &Value, layer: &str| e2e::layer(told, layer)["levels"].clone();
         for layer in ["areas", "boundaries"] {
             assert_eq!(levels(&told, layer), levels(&without, layer), "{name}, {layer}");
         }
@@ -377,14 +377,14 @@ fn a_coast_over_the_end_of_the_map_is_closed_there() {
     fs::write(&osm, file(&block)).unwrap();
     let defects = at("defects.csv");
     let words = ["build", "-q", "--dem", text(dem), "--osm", text(&osm), "-o", text(&package)];
-    let more = ["--crs", "dem", "--areas", "default", "--defects", text(&defects)];
+    let more = ["--crs", "dem", "--layers", "areas", "--defects", text(&defects)];
     done(&[&words[..], &more].concat());
     let defects = fs::read_to_string(&defects).unwrap();
     assert!(!defects.contains("coastline"), "{defects}");
     let said = done(&["verify", text(&package), "--dem", text(dem), "--osm", text(&osm)]);
     assert!(!said.contains("broken"), "{said}");
     let target = at("sea.gpkg");
-    done(&["export", "areas", "-q", text(&package), "-o", text(&target)]);
+    done(&["export", "layer", "areas", text(&package), "-q", "-o", text(&target)]);
     let [(_, sea)] = &features(&target)[..] else { panic!("one sea") };
     let is_sea = |lon: f64, lat: f64| {
         sea.contains(&Geometry::from_wkt(&format!("POINT ({lon} {lat})")).unwrap())

@@ -14,11 +14,11 @@ use gdal::{
 /// Sides of a cell of the extract's lattice, metres.
 const CELL_M: [f64; 2] = [382.0, 444.7];
 
-fn build(folder: &Path, areas: &str) -> std::path::PathBuf {
-    let package = folder.join(format!("{areas}.pmtiles"));
+fn build(folder: &Path, layers: &str) -> std::path::PathBuf {
+    let package = folder.join(format!("{layers}.pmtiles"));
     let (dem, osm) = (sample("pass/pass-dem.tif"), extract_with_areas(folder));
     let inputs = ["build", "-q", "--dem", text(&dem), "--osm", text(&osm), "--max-error", "10"];
-    let ran = corniche([&inputs[..], &["--areas", areas, "-o", text(&package)]].concat());
+    let ran = corniche([&inputs[..], &["--layers", layers, "-o", text(&package)]].concat());
     assert_eq!(ran.code, 0, "{}", ran.err);
     package
 }
@@ -52,7 +52,7 @@ fn points(geometry: &Geometry) -> usize {
 #[test]
 fn areas_come_back_whole_in_each_format() {
     let folder = tempfile::tempdir().unwrap();
-    let package = build(folder.path(), "default");
+    let package = build(folder.path(), "areas");
     for (ending, more) in [
         ("gpkg", &[][..]),
         ("fgb", &[]),
@@ -61,10 +61,10 @@ fn areas_come_back_whole_in_each_format() {
         ("gpkg", &["--crs", "EPSG:4326", "-O"]),
     ] {
         let file = folder.path().join(format!("areas.{ending}"));
-        let ran =
-            corniche([&["export", "areas", text(&package), "-o", text(&file)], more].concat());
+        let words = ["export", "layer", "areas", text(&package), "-o", text(&file)];
+        let ran = corniche([&words[..], more].concat());
         assert_eq!(ran.code, 0, "{}", ran.err);
-        assert!(ran.err.contains("2 areas of level"), "{}", ran.err);
+        assert!(ran.err.contains("2 objects of layer areas on level"), "{}", ran.err);
         assert!(ran.err.contains("© OpenStreetMap contributors"), "{}", ran.err);
         let dataset = Dataset::open(&file).unwrap();
         if ending == "gpkg" {
@@ -93,27 +93,35 @@ fn areas_come_back_whole_in_each_format() {
 #[test]
 fn levels_and_classes_can_be_chosen_and_areas_that_are_not_there_are_told() {
     let folder = tempfile::tempdir().unwrap();
-    let package = build(folder.path(), "default");
+    let package = build(folder.path(), "areas");
     let file = folder.path().join("areas.geojson");
     let export = |package: &Path, more: &[&str]| {
-        let words =
-            ["export", "areas", text(package), "-O", "--crs", "EPSG:4326", "-o", text(&file)];
+        let words = ["export", "layer", "areas", text(package), "-O", "-o", text(&file)];
         corniche([&words[..], more].concat())
     };
     let ran = export(&package, &["--classes", "water", "--level", "0"]);
-    assert!(ran.code == 0 && ran.err.contains("1 areas of level 0"), "{}", ran.err);
+    assert!(
+        ran.code == 0 && ran.err.contains("1 objects of layer areas on level 0"),
+        "{}",
+        ran.err
+    );
     let ran = export(&package, &["--classes", "water,glacier"]);
-    assert!(ran.code == 0 && ran.err.contains("1 areas of level"), "{}", ran.err);
+    assert!(ran.code == 0 && ran.err.contains("1 objects of layer areas on level"), "{}", ran.err);
 
     let refused = |ran: e2e::Ran, why: &str| {
         assert_eq!(ran.code, 2, "{}", ran.err);
         assert!(ran.err.contains(why), "{}", ran.err);
     };
-    refused(export(&package, &["--classes", "pond"]), "classes of areas are sea, water, glacier");
+    refused(
+        export(&package, &["--classes", "pond"]),
+        "has no class \"pond\"; its classes are sea, water, glacier",
+    );
     refused(export(&package, &["--level", "9"]), "has no level 9");
-    refused(export(&build(folder.path(), "off"), &[]), "it was built without --areas");
-    let words = ["export", "areas", text(&package), "-O", "-o", text(&file), "--crs", "package"];
-    refused(corniche(words), "RFC 7946");
+    refused(
+        export(&build(folder.path(), "none"), &[]),
+        "has no layers; build it again with --osm and --layers",
+    );
+    refused(export(&package, &["--crs", "package"]), "RFC 7946");
     // The existing file is unchanged.
     assert_eq!(json_features(&file), 1);
 }
@@ -146,12 +154,12 @@ fn bounds_cut_areas_and_boundaries_as_geos_does() {
     for (layer, osm) in extracts {
         let package = at(&format!("{layer}.pmtiles"));
         let inputs = ["build", "-q", "--dem", text(&dem), "--osm", text(&osm), "--max-error", "10"];
-        let more = ["--areas", "default", "--boundaries", "on", "--crs", "EPSG:32633"];
+        let more = ["--layers", "areas,boundaries", "--crs", "EPSG:32633"];
         let ran = corniche([&inputs[..], &more, &["-o", text(&package)]].concat());
         assert_eq!(ran.code, 0, "{}", ran.err);
         let export = |more: &[&str]| {
             let file = at("file.gpkg");
-            let words = ["export", layer, text(&package), "-O", "-o", text(&file)];
+            let words = ["export", "layer", layer, text(&package), "-O", "-o", text(&file)];
             let ran = corniche([&words[..], more].concat());
             assert_eq!(ran.code, 0, "{}", ran.err);
             by_id(&file)
@@ -203,7 +211,7 @@ fn by_id(file: &Path) -> Vec<(i64, Geometry)> {
     own.set_axis_mapping_strategy(AxisMappingStrategy::TraditionalGisOrder);
     let transform = CoordTransform::new(&own, &wgs84).unwrap();
     let features = layer.features().map(|feature| {
-        let id = ["id", "way_id"].iter().find_map(|name| feature.field_index(name).ok()).unwrap();
+        let id = feature.field_index("id").unwrap();
         let geometry = feature.geometry().unwrap().transform(&transform).unwrap();
         (feature.field_as_integer64(id).unwrap().unwrap(), geometry)
     });

@@ -20,8 +20,14 @@ use gdal::{
 /// The package's own system.
 const PACKAGE_EPSG: u32 = 32632;
 
+/// The words of an export; `layer` is one word, or `layer` and its name.
+fn words<'a>(package: &'a Path, layer: &'a str, file: &'a Path, more: &[&'a str]) -> Vec<&'a str> {
+    let words = ["export"].into_iter().chain(layer.split(' '));
+    words.chain([text(package), "-o", text(file)]).chain(more.iter().copied()).collect()
+}
+
 fn export(package: &Path, layer: &str, file: &Path, more: &[&str]) -> Ran {
-    let ran = corniche([&["export", layer, text(package), "-O", "-o", text(file)], more].concat());
+    let ran = corniche(words(package, layer, file, &[&["-O"], more].concat()));
     assert_eq!(ran.code, 0, "{layer} {more:?}: {}", ran.err);
     ran
 }
@@ -87,15 +93,15 @@ fn layers(folder: &Path) -> Vec<(&'static str, PathBuf, Vec<String>)> {
         assert_eq!(ran.code, 0, "{}", ran.err);
         package
     };
-    let areas = built("areas.pmtiles", &extract_with_areas(folder), &["--areas", "default"]);
+    let areas = built("areas.pmtiles", &extract_with_areas(folder), &["--layers", "areas"]);
     let of_boundaries = extract_with_boundaries(folder);
-    let boundaries = built("boundaries.pmtiles", &of_boundaries, &["--boundaries", "on"]);
+    let boundaries = built("boundaries.pmtiles", &of_boundaries, &["--layers", "boundaries"]);
     let inputs = ["--dem", text(&dem), "--osm", text(&osm)].map(str::to_owned).to_vec();
     vec![
         ("roads", roads.clone(), Vec::new()),
         ("edges", roads, inputs),
-        ("areas", areas, Vec::new()),
-        ("boundaries", boundaries, Vec::new()),
+        ("layer areas", areas, Vec::new()),
+        ("layer boundaries", boundaries, Vec::new()),
     ]
 }
 
@@ -111,7 +117,7 @@ fn every_layer_and_format_has_degrees_and_projected_coordinates() {
         let json = folder.path().join("degrees.geojson");
         let ran = export(&package, layer, &json, &inputs);
         assert!(ran.err.contains("coordinates: EPSG:4326, the CRS of GeoJSON"), "{}", ran.err);
-        let has_heights = ["roads", "edges"].contains(&layer);
+        let has_heights = layer != "layer areas";
         assert_eq!(ran.err.contains("as in the package (--crs"), has_heights, "{}", ran.err);
         are_same(&positions(&json), &carried(own.clone(), 4326), 1e-8, layer);
         // The datum of the last one was made for a neighbouring country: its operation counts
@@ -152,8 +158,8 @@ fn every_layer_and_format_has_degrees_and_projected_coordinates() {
             [("EPSG:4258", "not a projected"), ("EPSG:1", "EPSG:1"), ("utm", "ogr2ogr")]
         {
             let file = folder.path().join("refused.gpkg");
-            let words = ["export", layer, text(&package), "-o", text(&file), "--crs", crs];
-            let ran = corniche([&words[..], &inputs].concat());
+            let more = [&["--crs", crs][..], &inputs].concat();
+            let ran = corniche(words(&package, layer, &file, &more));
             assert_eq!(ran.code, 2, "{}", ran.err);
             assert!(ran.err.contains(why), "{}", ran.err);
             assert!(!file.exists());

@@ -12,7 +12,7 @@ use corniche_testing::{
     pbf::{self, PbfWay},
     real_data,
 };
-use e2e::{corniche, manifest, text, write_ascii_grid};
+use e2e::{corniche, layer, manifest, text, write_ascii_grid};
 use serde_json::Value;
 
 /// Builds and verifies a package with areas, and returns its manifest and the areas of its exported
@@ -29,14 +29,14 @@ fn built_from(
     let package = folder.join("areas.pmtiles");
     let dem: Vec<&str> = dem.iter().map(|file| text(file)).collect();
     let inputs = [&["--dem"], &dem[..], &["--osm", text(osm)]].concat();
-    let options = ["-q", "-O", "--areas", "default", "-o", text(&package)];
+    let options = ["-q", "-O", "--layers", "areas", "-o", text(&package)];
     let ran = corniche([&["build"], &inputs[..], &options, more].concat());
     assert_eq!(ran.code, 0, "{}{}", ran.out, ran.err);
     let ran = corniche([&["verify", text(&package)], &inputs[..]].concat());
     assert_eq!(ran.code, 0, "{}{}", ran.out, ran.err);
     let exported = folder.join("areas.geojson");
     let crs = ["--crs", "EPSG:4326", "-O", "-o", text(&exported)];
-    let ran = corniche([&["export", "areas", text(&package)], &crs[..]].concat());
+    let ran = corniche([&["export", "layer", "areas", text(&package)], &crs[..]].concat());
     assert_eq!(ran.code, 0, "{}{}", ran.out, ran.err);
     let features: Value = serde_json::from_slice(&fs::read(&exported).unwrap()).unwrap();
     let area = |feature: &Value| {
@@ -68,7 +68,7 @@ fn the_sea_ends_where_data_and_box_end() {
             let is_right = |found: f64| (found / expected_km2 - 1.0).abs() < allowed;
             assert!(is_right(*exported_km2), "{name} {crs:?}: {exported_km2}");
             // The manifest has the whole area of OSM objects.
-            let counted_km2 = manifest["areas"]["kept"][0]["area_km2"].as_f64().unwrap();
+            let counted_km2 = layer(&manifest, "areas")["kept"][0]["area_km2"].as_f64().unwrap();
             assert!(name == "forest" || is_right(counted_km2), "{name} {crs:?}: {counted_km2}");
         }
     }

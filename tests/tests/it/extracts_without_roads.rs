@@ -1,5 +1,5 @@
-//! An extract without roads is rejected with the classes that are off, but accepted for its areas
-//! and boundaries if they are requested.
+//! An extract without roads is rejected with the classes that are off, but accepted for its layers
+//! if they are requested.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -9,7 +9,7 @@ use std::{
 };
 
 use corniche_testing::pbf::{BlockBuilder, file};
-use e2e::{Ran, corniche, manifest, sample, text};
+use e2e::{Ran, corniche, kept, layer, manifest, sample, text};
 
 /// Tags, and positions on a lattice.
 type Way<'a> = (&'a [(&'a str, &'a str)], &'a [[i64; 2]]);
@@ -88,25 +88,25 @@ fn an_extract_of_paths_alone_is_refused_with_the_classes_that_are_off() {
 }
 
 #[test]
-fn an_extract_of_areas_or_boundaries_alone_is_built_if_they_are_asked_for() {
+fn an_extract_of_a_layer_alone_is_built_if_the_layer_is_asked_for() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     let lake = extract(at, "lake.osm.pbf", &[(LAKE, RING)]);
-    refused(at, &lake, &[], &["none of its ways has a highway tag", "--areas default"]);
-    let (ran, manifest) = built(at, &lake, &["--areas", "default"]);
+    refused(at, &lake, &[], &["none of its ways has a highway tag", "--layers"]);
+    let (ran, manifest) = built(at, &lake, &["--layers", "areas"]);
     assert!(ran.err.contains("has no road: none of its ways has a highway tag"), "{}", ran.err);
     assert_eq!(manifest["counts"]["roads_in"], 0);
-    assert_eq!(manifest["areas"]["kept"][0]["areas"], 1, "{}", manifest["areas"]);
+    assert_eq!(kept(layer(&manifest, "areas")), [("water", 1)]);
     let border = extract(at, "border.osm.pbf", &[(BORDER, LINE)]);
-    refused(at, &border, &["--areas", "default"], &["has no road"]);
-    let (_, manifest) = built(at, &border, &["--boundaries", "on"]);
-    assert_eq!(manifest["boundaries"]["ways"], 1, "{}", manifest["boundaries"]);
+    refused(at, &border, &["--layers", "areas"], &["has no road"]);
+    let (_, manifest) = built(at, &border, &["--layers", "boundaries"]);
+    assert_eq!(layer(&manifest, "boundaries")["objects"], 1, "{}", manifest["layers"]);
     // Paths that are off, next to a lake.
     let both = extract(at, "both.osm.pbf", &[(PATH, LINE), (LAKE, RING)]);
-    let (ran, manifest) = built(at, &both, &["--areas", "default"]);
+    let (ran, manifest) = built(at, &both, &["--layers", "areas"]);
     assert!(ran.err.contains("off: 8 (path 1)"), "{}", ran.err);
     assert_eq!(manifest["counts"]["highways_in"], 1);
     // A lake next to the requested region.
-    let part = ["--areas", "default", "--bounds", "9.45,46.865,9.48,46.88"];
-    refused(at, &lake, &part, &["no area or boundary of", "lake.osm.pbf", "is on ground"]);
+    let part = ["--layers", "areas", "--bounds", "9.45,46.865,9.48,46.88"];
+    refused(at, &lake, &part, &["lake.osm.pbf", "is on ground"]);
 }

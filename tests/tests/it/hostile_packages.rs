@@ -28,7 +28,7 @@ const MOST_MIB: u64 = 1024;
 
 /// The commands: the words before the package's name, and those after. Most of these packages have
 /// their tile on level 0 only.
-const COMMANDS: [(&str, &[&str], &[&str]); 15] = [
+const COMMANDS: [(&str, &[&str], &[&str]); 16] = [
     ("verify", &["verify", "-q"], &[]),
     ("render geo", &["render", "-q", "--size", "200x150", "--roads", "geo"], &["-o", "OUT.png"]),
     ("render sv", &["render", "-q", "--size", "200x150", "--roads", "sv"], &["-o", "OUT.png"]),
@@ -39,8 +39,9 @@ const COMMANDS: [(&str, &[&str], &[&str]); 15] = [
     ),
     // Without a system for its heights.
     ("export roads plain", &["export", "roads", "-q", "--level", "0"], &["-o", "OUT.gpkg"]),
-    ("export areas", &["export", "areas", "-q", "--level", "0"], &["-o", "OUT.gpkg"]),
-    ("export boundaries", &["export", "boundaries", "-q", "--level", "0"], &["-o", "OUT.gpkg"]),
+    ("export line", &["export", "layer", "line", "-q", "--level", "0"], &["-o", "OUT.gpkg"]),
+    ("export area", &["export", "layer", "area", "-q", "--level", "0"], &["-o", "OUT.gpkg"]),
+    ("export point", &["export", "layer", "point", "-q", "--level", "0"], &["-o", "OUT.gpkg"]),
     ("export mesh", &["export", "mesh", "-q", "--level", "0"], &["-o", "OUT.glb"]),
     ("export tiles3d", &["export", "3dtiles", "-q", "--heights", "as-is"], &["-o", "OUT.tiles"]),
     (

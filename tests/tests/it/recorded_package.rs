@@ -14,22 +14,24 @@ use std::{
 };
 
 use corniche_testing::pictures::Golden;
-use e2e::{corniche, draw, json, manifest, root, skip, text};
+use e2e::{corniche, draw, json, layer, manifest, objects, root, skip, text};
 use gdal::{Dataset, vector::LayerAccess as _};
 use serde_json::Value;
 use tempfile::TempDir;
 
 /// Kinds of sections, and the number of the five tiles that have them.
-const KINDS: [(u16, &str, usize); 9] = [
+const KINDS: [(u16, &str, usize); 11] = [
     (1, "terrain", 5),
     (4, "road attributes", 5),
     (5, "road tags", 5),
     (6, "relief", 5),
     (7, "photo", 5),
-    (9, "boundaries", 5),
     (10, "coded GEO roads", 5),
     (11, "coded SV roads", 5),
-    (12, "coded areas", 4),
+    (13, "spans", 3),
+    (64, "areas", 4),
+    (65, "railways", 2),
+    (66, "boundaries", 5),
 ];
 /// Kinds of road sections in packages in metres, which another recorded package has.
 const KINDS_IN_METRES: [(u16, &str); 2] = [(2, "GEO roads"), (3, "SV roads")];
@@ -37,11 +39,20 @@ const KINDS_IN_METRES: [(u16, &str); 2] = [(2, "GEO roads"), (3, "SV roads")];
 /// A tile, its contents (vertices, triangles, GEO lines, SV lines, ways, areas) and the checksum of
 /// all its numbers.
 const TILES: [(&str, [usize; 6], u32); 5] = [
-    ("0/0/0", [791, 1522, 75, 88, 88, 18], 1_253_906_107),
-    ("1/0/0", [1015, 1956, 454, 690, 652, 40], 1_750_483_359),
-    ("1/0/1", [717, 1371, 521, 731, 714, 29], 736_148_464),
-    ("1/1/0", [427, 796, 1, 6, 4, 0], 1_445_455_419),
-    ("1/1/1", [291, 536, 24, 53, 42, 2], 3_552_441_388),
+    ("0/0/0", [1985, 3848, 75, 88, 88, 18], 592_387_155),
+    ("1/0/0", [2754, 5360, 454, 690, 652, 40], 3_194_202_821),
+    ("1/0/1", [2531, 4918, 521, 731, 714, 29], 1_891_017_418),
+    ("1/1/0", [1063, 2017, 1, 6, 4, 0], 1_751_112_402),
+    ("1/1/1", [1011, 1912, 24, 53, 42, 2], 2_486_351_119),
+];
+
+/// A tile, the numbers of its boundaries and railways, and the checksum of their ids and points.
+const LINES: [(&str, [usize; 2], u32); 5] = [
+    ("0/0/0", [49, 25], 3_726_138_138),
+    ("1/0/0", [71, 34], 1_321_870_796),
+    ("1/0/1", [48, 0], 1_745_052_563),
+    ("1/1/0", [8, 0], 1_855_749_471),
+    ("1/1/1", [22, 0], 2_350_016_144),
 ];
 
 const CREDITS: [&str; 2] =
@@ -52,7 +63,7 @@ fn recorded() -> PathBuf {
 }
 
 fn recorded_in_metres() -> PathBuf {
-    root().join("crates/tileset/tests/data/version-1.pmtiles")
+    root().join("crates/tileset/tests/data/version-2.pmtiles")
 }
 
 /// A number of seven bits per byte, the lowest first, from the front of `bytes`.
@@ -114,7 +125,8 @@ fn add_each(sum: &mut crc32fast::Hasher, list: &[Value], members: &[&str]) {
 /// Runs `corniche export` with the package; returns the path of its output in a folder.
 fn export(folder: &TempDir, what: &str, name: &str) -> PathBuf {
     let path = folder.path().join(name);
-    let ran = corniche(["export", what, text(&recorded()), "-q", "-o", text(&path)]);
+    let words = ["export"].into_iter().chain(what.split(' '));
+    let ran = corniche(words.chain([text(&recorded()), "-q", "-o", text(&path)]));
     assert_eq!(ran.code, 0, "{what}: {}{}", ran.out, ran.err);
     path
 }
@@ -147,18 +159,19 @@ fn every_kind_of_section_is_recorded() {
 fn it_opens_and_tells_what_it_is() {
     let package = recorded();
     let manifest = manifest(&package);
-    assert_eq!(manifest["format_version"], 1);
+    assert_eq!(manifest["format_version"], 2);
     assert_eq!(manifest["generator"], "corniche 0.1.0, GDAL 3.6.2, PROJ 9.1.1");
     assert_eq!(manifest["attribution"], serde_json::json!(CREDITS));
     let counts = &manifest["counts"];
     assert_eq!([&counts["roads_in"], &counts["roads_kept"]], [2749, 963]);
-    assert_eq!(manifest["areas"]["objects"], 229);
-    assert_eq!(manifest["boundaries"]["ways"], 1602);
+    assert_eq!(layer(&manifest, "areas")["objects"], 229);
+    assert_eq!(layer(&manifest, "boundaries")["objects"], 1602);
+    assert_eq!(e2e::kept(layer(&manifest, "railways")), [("service", 2), ("main", 32)]);
     let ran = corniche(["info", text(&package)]);
     assert_eq!(ran.code, 0, "{}", ran.err);
     let growth = json(&["growth", text(&package), "--json"]);
     let vertices = growth["rows"].as_array().unwrap().iter();
-    assert_eq!(vertices.map(|row| row["geo_vertices"].as_u64().unwrap()).sum::<u64>(), 14_278);
+    assert_eq!(vertices.map(|row| row["geo_vertices"].as_u64().unwrap()).sum::<u64>(), 17_041);
 }
 
 #[test]
@@ -179,7 +192,8 @@ fn it_keeps_its_promises() {
         "relief.seams",
         "photo.levels",
         "areas.seams",
-        "boundaries.places",
+        "lines.places",
+        "spans.ends",
     ] {
         let check = checks.iter().find(|check| check["id"] == id).expect(id);
         assert!(check["checked"].as_u64().unwrap() > 0, "{check}");
@@ -193,8 +207,8 @@ fn its_tiles_are_decoded_to_the_same_numbers() {
         let tile = json(&["tile", text(&package), id, "--json"]);
         let list = |value: &Value| value.as_array().cloned().unwrap_or_default();
         let tin = &tile["tin"];
-        let [geo, sv, ways, areas] =
-            ["roads_geo", "roads_sv", "attributes", "areas"].map(|name| list(&tile[name]));
+        let [geo, sv, ways] = ["roads_geo", "roads_sv", "attributes"].map(|name| list(&tile[name]));
+        let areas = objects(&tile, "areas").to_vec();
         let [vertices, triangles] = ["vertices", "triangles"].map(|name| list(&tin[name]));
         let found = [&vertices, &triangles, &geo, &sv, &ways, &areas].map(Vec::len);
         assert_eq!(found, expected, "{id}");
@@ -207,13 +221,22 @@ fn its_tiles_are_decoded_to_the_same_numbers() {
         add_each(&mut sum, &areas, &["id", "polygons"]);
         assert_eq!(sum.finalize(), expected_sum, "{id}");
     }
-    // Texts of a road, an area and a track.
+    for (id, expected, expected_sum) in LINES {
+        let tile = json(&["tile", text(&package), id, "--json"]);
+        let layers = ["boundaries", "railways"].map(|name| objects(&tile, name));
+        let mut sum = crc32fast::Hasher::new();
+        for lines in layers {
+            add_each(&mut sum, lines, &["id", "line"]);
+        }
+        assert_eq!((layers.map(<[Value]>::len), sum.finalize()), (expected, expected_sum), "{id}");
+    }
+    // Texts of a road, a track, an area and a boundary.
     let tile = json(&["tile", text(&package), "1/0/0", "--json"]);
-    let has = |list: &str, name: &str, value: &str| {
-        tile[list].as_array().unwrap().iter().any(|object| object[name] == value)
-    };
-    assert!(has("attributes", "name", "Dorfstrasse") && has("attributes", "highway", "tertiary"));
-    assert!(has("attributes", "tracktype", "grade2") && has("areas", "class", "forest"));
+    let has = |list: &[Value], name: &str, value: &str| list.iter().any(|of| of[name] == value);
+    let ways = tile["attributes"].as_array().unwrap();
+    assert!(has(ways, "name", "Dorfstrasse") && has(ways, "highway", "tertiary"));
+    assert!(has(ways, "tracktype", "grade2") && has(objects(&tile, "areas"), "class", "forest"));
+    assert!(has(objects(&tile, "boundaries"), "class", "admin-8"));
 }
 
 #[test]
@@ -235,13 +258,15 @@ fn it_is_drawn_as_it_was() {
 }
 
 #[test]
-fn its_roads_and_areas_are_exported() {
+fn its_roads_and_layers_are_exported() {
     let folder = TempDir::new().unwrap();
-    for (what, features) in [("roads", 963), ("areas", 66)] {
-        let file = export(&folder, what, &format!("{what}.gpkg"));
-        let dataset = Dataset::open(&file).unwrap();
-        assert_eq!(dataset.layer(0).unwrap().feature_count(), features, "{what}");
-    }
+    let features = |what: &str| {
+        let dataset = Dataset::open(export(&folder, what, &format!("{what}.gpkg"))).unwrap();
+        dataset.layer(0).unwrap().feature_count()
+    };
+    assert_eq!(["roads", "layer areas"].map(features), [963, 66]);
+    // Of 109 boundaries and 34 railways, the others are beside the ground.
+    assert_eq!(["layer boundaries", "layer railways"].map(features), [38, 7]);
 }
 
 #[test]
@@ -253,12 +278,12 @@ fn its_ground_is_exported_as_a_raster_and_as_a_model() {
     let range = heights.data().iter().fold([f64::MAX, f64::MIN], |[low, high], &height_m| {
         [low.min(height_m), high.max(height_m)]
     });
-    assert_eq!(range.map(|height_m| height_m as i32), [442, 2242], "whole metres here");
+    assert_eq!(range.map(|height_m| height_m as i32), [441, 2242], "whole metres here");
 
     let model = fs::read_to_string(export(&folder, "mesh", "model.obj")).unwrap();
     let lines = ["v ", "f ", "l "]
         .map(|begin| model.lines().filter(|line| line.starts_with(begin)).count());
-    assert_eq!(lines, [16_159, 4659, 1000], "vertices, triangles, lines of roads");
+    assert_eq!(lines, [23_645, 14_207, 1000], "vertices, triangles, lines of roads");
 }
 
 #[test]
@@ -284,7 +309,7 @@ fn it_is_exported_as_3d_tiles() {
             }
         }
     }
-    assert_eq!(triangles, 86_178, "ground, walls and roads");
+    assert_eq!(triangles, 106_011, "ground, walls and roads");
 }
 
 #[test]

@@ -161,7 +161,7 @@ fn what_needs_a_card_is_measured_in_one_command() {
         (done.status.code(), String::from_utf8(done.stderr).unwrap())
     };
     let small = ["--size", "48x32", "--frames", "3", "--rounds", "1", e2e::text(&package)];
-    let (code, said) = measure(&[&["--parts", "curves,areas"][..], &small].concat());
+    let (code, said) = measure(&[&["--parts", "curves,layers"][..], &small].concat());
     assert_eq!(code, Some(0), "{said}");
     let told: serde_json::Value =
         serde_json::from_slice(&fs::read(out.join("card.json")).unwrap()).unwrap();
@@ -204,7 +204,7 @@ fn what_needs_a_card_is_measured_in_one_command() {
     ] {
         assert!(page.contains(beside), "{beside}: {page}");
     }
-    for left_out in ["levels", "pixels", "excluded by --parts", "areas: pass has none"] {
+    for left_out in ["levels", "pixels", "excluded by --parts", "layers: pass has none"] {
         assert!(said.contains(left_out) && page.contains(left_out), "{left_out}: {said}");
     }
     // The existing folder is unchanged.

@@ -17,7 +17,7 @@ fn a_build_ends_with_a_verdict_and_tells_the_rest_with_v() {
     let package = folder.path().join("pass.pmtiles");
     let [dem, osm] = [sample("pass/pass-dem.tif"), sample("pass/pass.osm.pbf")];
     let line = ["build", "--dem", text(&dem), "--osm", text(&osm), "-O", "-o", text(&package)];
-    let options = ["--max-error", "10", "--areas", "default", "--classes", "0-4"];
+    let options = ["--max-error", "10", "--layers", "areas", "--classes", "0-4"];
     let build = |more: &[&str]| {
         let ran = corniche([&line[..], &options[..], more].concat());
         assert_eq!(ran.code, 0, "{}", ran.err);

@@ -1,7 +1,7 @@
 //! The treatment of plans, stores, settings and styles of newer and older versions: they are
 //! rejected with both versions and with advice.
 //!
-//! Packages of other versions: `hostile_packages`, and the tests `version_1` of `tileset`. Newer
+//! Packages of other versions: `hostile_packages`, and the tests `version_2` of `tileset`. Newer
 //! packages in older programs: `reader_of_before` of `pipeline`'s tests.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
@@ -22,14 +22,14 @@ fn plans_of_other_versions_and_other_programs_are_refused_by_name() {
     let program = concat!("corniche ", env!("CARGO_PKG_VERSION"));
     let cases = [
         (
-            "\"plan_version\": 9",
             "\"plan_version\": 10",
-            "has version 10, but this program reads version 9",
+            "\"plan_version\": 11",
+            "has version 11, but this program reads version 10",
         ),
         (
-            "\"plan_version\": 9",
+            "\"plan_version\": 10",
             "\"plan_version\": 7",
-            "has version 7, but this program reads version 9",
+            "has version 7, but this program reads version 10",
         ),
         (program, "corniche 99.0.0", "created by corniche 99.0.0"),
         ("\"libraries\": \"GDAL ", "\"libraries\": \"GDAL 9.9, not ", "GDAL 9.9"),
@@ -89,7 +89,10 @@ fn stores_of_other_versions_are_refused_with_the_folder_that_can_be_removed() {
 const OLDER_TEXTS: [(&str, &str); 4] = [
     ("settings.toml", "[terrain]\nmax-error = 50\n"),
     ("classes.toml", "name = \"own\"\nleast_class = 7\nnot_roads = []\n[classes]\nprimary = 1\n"),
-    ("areas.toml", "name = \"own\"\n[[area]]\nclass = \"forest\"\ntags = [\"natural=wood\"]\n"),
+    (
+        "layer.toml",
+        "id = \"own\"\ngeometry = \"area\"\n[[class]]\nid = \"wood\"\ntags = { natural = \"wood\" }\n",
+    ),
     ("style.toml", "base = \"road-atlas\"\noutline_px = 1\n"),
 ];
 
@@ -106,7 +109,7 @@ fn texts_that_a_program_does_not_know_are_refused_with_their_line_and_older_ones
         let (command, option) = match name {
             "settings.toml" => (planned.as_slice(), "--config"),
             "classes.toml" => (planned.as_slice(), "--frc-table"),
-            "areas.toml" => (planned.as_slice(), "--areas"),
+            "layer.toml" => (planned.as_slice(), "--layers"),
             _ => (drawing.as_slice(), "--style"),
         };
         corniche(command.iter().copied().chain([option, text(&file(name))]))

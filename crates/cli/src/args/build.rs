@@ -7,7 +7,7 @@ use std::{
 
 use clap::Args;
 use corniche_presets::{
-    AreaOptions, InputFiles, PhotoOptions, ResourceOptions, RoadOptions, TerrainOptions,
+    InputFiles, LayerOptions, PhotoOptions, ResourceOptions, RoadOptions, TerrainOptions,
     is_photo_off,
 };
 
@@ -35,7 +35,7 @@ pub(crate) struct WorkArgs {
     #[command(flatten)]
     pub(crate) roads: RoadOptions,
     #[command(flatten)]
-    pub(crate) areas: AreaOptions,
+    pub(crate) layers: LayerOptions,
     #[command(flatten)]
     pub(crate) photos: PhotoOptions,
     #[command(flatten)]

@@ -1,20 +1,17 @@
 //! Commands that export packages to other formats.
 
-use clap::{ArgAction, Args, Subcommand, ValueHint};
-use corniche_areas::{AreaClass, BoundaryClass};
+use clap::{ArgAction, Args, Subcommand};
 use corniche_export::{
     Availability, FeatureCoordinates, MeshFormat, ModelRoads, TileRoads, Tiling, UpAxis,
     VectorFormat,
 };
 use corniche_presets::{Words, one_of};
-use corniche_remote::PackagePlace;
 
 use super::{
     shared::{
         BoundsArg, ClassesArg, DatumArg, ExtractArgs, FileArgs, FolderArgs, LevelArg, PackageArg,
         RecordedArgs, RoadArg, ThreadsArg,
     },
-    values::package_place,
     voice::json_progress,
 };
 #[derive(Debug, Subcommand)]
@@ -25,10 +22,9 @@ pub(crate) enum Export {
     /// Write the road network of a package's extract as edges from junction to junction, with
     /// ascents and grades, for routers
     Edges(Box<ExportEdgesArgs>),
-    /// Write the areas of a package (water, forest and so on) as polygons for GIS programs
-    Areas(Box<ExportAreasArgs>),
-    /// Write the boundaries of a package (administrative, protected) as lines for GIS programs
-    Boundaries(Box<ExportBoundariesArgs>),
+    /// Write a layer of a package (areas, boundaries, railways, your own) as lines, polygons or
+    /// points for GIS programs
+    Layer(Box<ExportLayerArgs>),
     /// Write the terrain and roads of a package as a model for 3D programs (GLB, PLY, OBJ)
     Mesh(Box<ExportMeshArgs>),
     /// Write the heights of a package as a raster (GeoTIFF), with --dem also their differences from
@@ -108,9 +104,18 @@ pub(crate) struct VectorArgs {
     pub(crate) datum: DatumArg,
 }
 
-// Options of the exports of layers without heights.
 #[derive(Debug, Args)]
-pub(crate) struct InPlanArgs {
+#[command(
+    arg = json_progress(),
+    mut_arg("level", |arg| arg.help("The level whose objects are exported [default: the finest]")),
+    mut_arg("bounds", |arg| arg.help("Clip objects to a bounding box in WGS84 degrees; one with west > east crosses 180°")),
+)]
+pub(crate) struct ExportLayerArgs {
+    /// The id of the layer; corniche info lists those of a package
+    #[arg(value_name = "LAYER")]
+    pub(crate) layer: String,
+    #[command(flatten)]
+    pub(crate) from: PackageArg,
     #[command(flatten)]
     pub(crate) file: FileArgs,
     /// Output format, if the file's extension does not name it
@@ -120,48 +125,18 @@ pub(crate) struct InPlanArgs {
     pub(crate) at: LevelArg,
     #[command(flatten)]
     pub(crate) within: BoundsArg,
-    /// CRS of the coordinates: "package" (its own), "EPSG:4326" (longitude and latitude of WGS84),
-    /// or a projected CRS such as "EPSG:2056" [default: package; GeoJSON: EPSG:4326]
-    #[arg(long, value_name = "CRS", value_parser = parse_plan_crs)]
-    pub(crate) crs: Option<FeatureCoordinates>,
-}
-
-#[derive(Debug, Args)]
-#[command(
-    arg = json_progress(),
-    mut_arg("level", |arg| arg.help("The level whose areas are exported [default: the finest]")),
-    mut_arg("bounds", |arg| arg.help("Clip areas to a bounding box in WGS84 degrees; one with west > east crosses 180°")),
-)]
-pub(crate) struct ExportAreasArgs {
-    #[command(flatten)]
-    pub(crate) from: PackageArg,
-    #[command(flatten)]
-    pub(crate) plan: InPlanArgs,
     /// Classes to export, such as water,forest [default: all]
-    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = parse_area_class)]
-    pub(crate) classes: Vec<AreaClass>,
-}
-
-#[derive(Debug, Args)]
-#[command(
-    arg = json_progress(),
-    mut_arg("level", |arg| arg.help("The level whose boundaries are exported [default: the finest]")),
-    mut_arg("bounds", |arg| arg.help("Clip boundaries to a bounding box in WGS84 degrees; one with west > east crosses 180°")),
-    mut_arg("osm", |arg| arg.help("The extracts the package was built from: boundaries then have the names of the areas on both sides")),
-)]
-pub(crate) struct ExportBoundariesArgs {
-    /// The package: a file, or a URL (https://…)
-    #[arg(required_unless_present = "osm", value_parser = package_place(), value_hint = ValueHint::AnyPath)]
-    pub(crate) package: Option<PackagePlace>,
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    pub(crate) classes: Vec<String>,
+    /// Languages of additional fields with names, such as de,en
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    pub(crate) lang: Vec<String>,
+    /// CRS of the coordinates: "package", "EPSG:4979" (with heights above the WGS84 ellipsoid),
+    /// "EPSG:4326", or a projected CRS such as "EPSG:2056" [default: package; GeoJSON: EPSG:4326]
+    #[arg(long, value_name = "CRS", value_parser = parse_crs)]
+    pub(crate) crs: Option<FeatureCoordinates>,
     #[command(flatten)]
-    pub(crate) plan: InPlanArgs,
-    /// Classes to export, such as admin-2,admin-8,protected [default: all]
-    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = parse_boundary_class)]
-    pub(crate) classes: Vec<BoundaryClass>,
-    #[command(flatten)]
-    pub(crate) extract: ExtractArgs,
-    #[command(flatten)]
-    pub(crate) cpu: ThreadsArg,
+    pub(crate) datum: DatumArg,
 }
 
 #[derive(Debug, Args)]
@@ -405,30 +380,6 @@ pub(crate) const VECTOR_FORMATS: Words<VectorFormat, 4> = [
     ("geojson", "GeoJSON (RFC 7946)", VectorFormat::GeoJson),
     ("csv", "Comma-separated values, geometries as WKT", VectorFormat::Csv),
 ];
-
-fn parse_area_class(text: &str) -> Result<AreaClass, String> {
-    class_named(text, "areas", &AreaClass::ALL)
-}
-
-fn parse_boundary_class(text: &str) -> Result<BoundaryClass, String> {
-    class_named(text, "boundaries", &BoundaryClass::ALL)
-}
-
-fn class_named<C: Copy + ToString>(text: &str, layer: &str, classes: &[C]) -> Result<C, String> {
-    let names: Vec<String> = classes.iter().map(ToString::to_string).collect();
-    let place = names.iter().position(|name| name == text);
-    let class = place.map(|place| classes[place]);
-    class.ok_or_else(|| format!("the classes of {layer} are {}", names.join(", ")))
-}
-
-fn parse_plan_crs(text: &str) -> Result<FeatureCoordinates, String> {
-    match parse_crs(text)? {
-        FeatureCoordinates::Wgs84 => {
-            Err("EPSG:4979 has heights, but these layers have none; use EPSG:4326".to_owned())
-        }
-        crs => Ok(crs),
-    }
-}
 
 fn parse_crs(text: &str) -> Result<FeatureCoordinates, String> {
     if text == "package" {

@@ -1,10 +1,10 @@
 //! Options of how roads and everything else look, for all commands that draw.
 
-use clap::{ArgAction, Args, builder::TypedValueParser};
+use clap::{Args, builder::TypedValueParser};
 use corniche_presets::{Words, one_of};
 use corniche_styles::Style;
 use corniche_viewer::{
-    CapTest, Caps, ClassSet, Quads, RoadMethod, RoadOptions, RoadOutline, WidthGrowth,
+    CapTest, Caps, ClassSet, Quads, RoadMethod, RoadOptions, RoadOutline, ShownLayers, WidthGrowth,
 };
 
 use super::{
@@ -75,9 +75,6 @@ impl Roads {
     }
 }
 
-/// The values of `--areas` and `--boundaries`.
-const ON_OFF: Words<bool, 2> = [("on", "As the style draws them", true), ("off", "None", false)];
-
 /// The shape of the ends and bends of roads.
 const CAPS: Words<Caps, 2> = [
     ("round", "With a half disc around every point", Caps::Round),
@@ -132,12 +129,9 @@ pub(crate) struct LookArgs {
     /// Opacity of photos, where the package has some: off, or 0 to 1 [default: from the style]
     #[arg(long, value_name = "off|SHARE", value_parser = parse_strength)]
     pub(crate) photo: Option<f32>,
-    /// Areas (water, forest …), where the package has some: on (as the style draws them) or off
-    #[arg(long, value_parser = one_of(ON_OFF), default_value = "on", action = ArgAction::Set)]
-    pub(crate) areas: bool,
-    /// Boundaries, where the package has some: on (as the style draws them) or off
-    #[arg(long, value_parser = one_of(ON_OFF), default_value = "on", action = ArgAction::Set)]
-    pub(crate) boundaries: bool,
+    /// The layers of the package to draw, such as areas,railways; or none [default: all]
+    #[arg(long, value_name = "NAMES|none")]
+    layers: Option<String>,
     /// Draw the lines of a file over the map: GeoJSON, GPX, GeoPackage, Shapefile …; repeat the
     /// option for more files
     ///
@@ -173,13 +167,15 @@ fn parse_strength(text: &str) -> Result<f32, String> {
 }
 
 impl LookArgs {
-    /// The style with the opacity of `--photo`, with or without the areas of `--areas`, and with
-    /// the lines of `--overlay`.
+    /// The style with the opacity of `--photo`, and with the lines of `--overlay`.
     pub(crate) fn styled(&self, style: Style) -> Style {
-        let style = if self.areas { style } else { style.without_areas() };
-        let style = if self.boundaries { style } else { style.without_boundaries() };
         let style = Style { photo: self.photo.unwrap_or(style.photo), ..style };
         overlay::styled(&self.overlay, style)
+    }
+
+    /// The layers of `--layers`.
+    pub(crate) fn shown_layers(&self) -> ShownLayers {
+        self.layers.as_deref().map_or(ShownLayers::ALL, ShownLayers::from_list)
     }
 
     /// Whether an option is given that applies to some methods only.

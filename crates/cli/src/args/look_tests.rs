@@ -40,8 +40,12 @@ fn every_option_reaches_the_drawing() {
     };
     assert_eq!(look.road_options(look.roads(&roads).unwrap()[0]), expected);
     assert_eq!(look.style, "dark");
-    assert!(look.styled(Style::road_atlas()).has_areas());
-    assert!(!line("--areas off").look.styled(Style::road_atlas()).has_areas());
+    assert!(look.shown_layers().contains("areas"));
+    let shown = |list: &str| line(list).look.shown_layers();
+    assert!(shown("--layers railways,areas").contains("areas"));
+    assert!(
+        !shown("--layers railways").contains("areas") && !shown("--layers none").contains("areas")
+    );
     let look = line("--roads geo --width-growth none --outline none").look;
     let options = look.road_options(Roads::GeoNoCaps);
     assert_eq!(options.width_growth, corniche_viewer::WidthGrowth::None);

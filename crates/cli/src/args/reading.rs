@@ -59,10 +59,6 @@ pub(crate) struct VerifyArgs {
     /// preset of the recorded name]
     #[arg(long, value_name = "NAME|FILE", requires = "osm")]
     pub(crate) frc_table: Option<String>,
-    /// With --osm: the table of areas the package was built with [default: the preset of the
-    /// recorded name]
-    #[arg(long, value_name = "NAME|FILE", requires = "osm")]
-    pub(crate) areas: Option<String>,
     #[command(flatten)]
     pub(crate) cpu: ThreadsArg,
     /// Print JSON, for programs

@@ -17,6 +17,20 @@ pub(crate) struct CompletionsArgs {
 
 #[derive(Debug, Args)]
 #[command(
+    after_help = "For example: corniche layers railways > my.toml; then corniche layers my.toml checks the changed table, and corniche build --layers my.toml uses it"
+)]
+pub(crate) struct LayersArgs {
+    /// The name of a built-in layer, whose table is printed, or the file of a table, which is
+    /// checked; without it, the built-in layers are listed
+    #[arg(value_name = "NAME|FILE")]
+    pub(crate) layer: Option<String>,
+    /// Print the JSON schema of tables, for editors
+    #[arg(long, conflicts_with = "layer")]
+    pub(crate) schema: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(
     after_help = "For example: corniche man ~/.local/share/man/man1; then read a page with man corniche-build"
 )]
 pub(crate) struct ManArgs {

@@ -21,6 +21,19 @@ pub(crate) struct GrowthDocument {
     /// Growth of the size of the road data that Vaaraniemi, Treib & Westermann 2011 report (section
     /// 7, "about"), as a factor.
     pub(crate) paper: f64,
+    /// The layers, which are stored in plan and do not grow; omitted if there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) layers: Vec<LayerBytesDocument>,
+}
+
+/// The bytes of a layer.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct LayerBytesDocument {
+    /// The id of the layer.
+    pub(crate) layer: String,
+    /// Stored bytes of its sections on all levels.
+    pub(crate) stored_bytes: u64,
 }
 
 /// The cost of one level, all classes. Ratios with a denominator of 0 are null.

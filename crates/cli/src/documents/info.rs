@@ -9,7 +9,7 @@ use corniche_tileset::{
 };
 use serde::{Serialize, Serializer};
 
-use super::{areas::AreasDocument, lines::LinesDocument, spans::SpansDocument};
+use super::{layers::LayerDocument, spans::SpansDocument};
 
 /// The contents of a package.
 #[derive(Serialize)]
@@ -58,22 +58,16 @@ struct ManifestDocument {
     growth: Vec<GrowthRow>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     photos: Vec<PhotoLevelRecord>,
-    #[serde(getter = "areas", skip_serializing_if = "Option::is_none")]
-    areas: Option<AreasDocument>,
-    #[serde(getter = "boundaries", skip_serializing_if = "Option::is_none")]
-    boundaries: Option<LinesDocument>,
+    #[serde(getter = "layers", skip_serializing_if = "Vec::is_empty")]
+    layers: Vec<LayerDocument>,
     #[serde(getter = "spans", skip_serializing_if = "Option::is_none")]
     spans: Option<SpansDocument>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     sv_tails: Vec<SvTail>,
 }
 
-fn areas(manifest: &Manifest) -> Option<AreasDocument> {
-    manifest.areas.clone().map(Into::into)
-}
-
-fn boundaries(manifest: &Manifest) -> Option<LinesDocument> {
-    manifest.boundaries.clone().map(LinesDocument::from_record)
+fn layers(manifest: &Manifest) -> Vec<LayerDocument> {
+    manifest.layers.iter().map(Into::into).collect()
 }
 
 fn spans(manifest: &Manifest) -> Option<SpansDocument> {

@@ -6,8 +6,7 @@
 use schemars::JsonSchema;
 
 use super::{
-    areas::AreasDocument,
-    lines::LinesDocument,
+    layers::LayerDocument,
     record_schemas::{
         DistributionDocument, LeftOutDocument, LossDocument, NodeCountsDocument, NodeDocument,
         SamplesDocument,
@@ -89,13 +88,9 @@ pub(crate) struct ManifestDocument {
     /// The photos of each level that has some, root first; omitted if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     photos: Vec<PhotoLevelDocument>,
-    /// The areas; omitted in packages built without areas.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    areas: Option<AreasDocument>,
-    /// The boundaries, in the classes "admin-2" to "admin-8" and "protected"; omitted in packages
-    /// built without boundaries.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    boundaries: Option<LinesDocument>,
+    /// The layers, from the lowest to the highest; omitted in packages without layers.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    layers: Vec<LayerDocument>,
     /// Bridges and tunnels off the ground, whose heights are estimates; omitted in packages built
     /// without spans.
     #[serde(skip_serializing_if = "Option::is_none")]

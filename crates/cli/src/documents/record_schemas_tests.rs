@@ -7,41 +7,26 @@ use corniche_geom::NodeIndex;
 use corniche_pipeline::Job;
 use corniche_plan::{BuildEstimate, MemoryEstimate, Rates};
 use corniche_tileset::{
-    AreaLevelRecord, Distribution, LeftOutRecord, LineLevelRecord, RoadLoss, SampleCounts,
-    SampleErrorRecord,
+    Distribution, LeftOutRecord, RoadLoss, SampleCounts, SampleErrorRecord, SectionLevelRecord,
 };
 use corniche_verify::{ErrorFigures, GapFigures};
 use schemars::{JsonSchema, schema_for};
 use serde::Serialize;
 use serde_json::{Value, json, to_value};
 
-/// The areas of a level.
+/// A layer, or bridges and tunnels, on a level.
 #[derive(JsonSchema)]
-pub(crate) struct AreaLevelDocument {
+pub(crate) struct SectionLevelDocument {
     /// Level, 0 = root.
     level: u8,
-    /// Tiles with areas.
+    /// Tiles with objects.
     tiles: u64,
-    /// Areas of these tiles; an area in several tiles counts in each.
-    areas: u64,
-    /// Points of all rings.
-    points: u64,
-    /// Stored bytes of the area sections.
-    bytes: u64,
-}
-
-/// The lines of a level.
-#[derive(JsonSchema)]
-pub(crate) struct LineLevelDocument {
-    /// Level, 0 = root.
-    level: u8,
-    /// Tiles with lines.
-    tiles: u64,
-    /// Parts of lines near these tiles; a part near several tiles counts in each.
+    /// Objects, or parts of them, in or near these tiles; an object in several tiles counts in
+    /// each.
     parts: u64,
     /// Points of these parts.
     points: u64,
-    /// Stored bytes of the line sections.
+    /// Stored bytes of the sections.
     bytes: u64,
 }
 
@@ -268,14 +253,7 @@ fn records_have_the_fields_of_their_schemas() {
         after: Vec::new(),
         args: Vec::new(),
     });
-    check::<AreaLevelDocument>(&AreaLevelRecord {
-        level: 0,
-        tiles: 1,
-        areas: 1,
-        points: 1,
-        bytes: 1,
-    });
-    check::<LineLevelDocument>(&LineLevelRecord {
+    check::<SectionLevelDocument>(&SectionLevelRecord {
         level: 0,
         tiles: 1,
         parts: 1,

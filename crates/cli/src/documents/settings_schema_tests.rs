@@ -9,7 +9,7 @@ type Cell = [f64; 2];
 /// The name of a choice of levels.
 type ReliefLevels = String;
 type PolygonRecord = PolygonDocument;
-type AreaTableRecord = AreaTableDocument;
+type LayerTableRecord = LayerTableDocument;
 type PhotoRecord = PhotoDocument;
 
 /// The polygon that the package was clipped to.
@@ -22,13 +22,13 @@ pub(crate) struct PolygonDocument {
     sha256: String,
 }
 
-/// The table of classes of areas.
+/// The table of a layer.
 #[derive(schemars::JsonSchema)]
 #[expect(dead_code, reason = "only its schema is wanted")]
-pub(crate) struct AreaTableDocument {
-    /// Its name.
-    table: String,
-    /// SHA-256 of its text.
+pub(crate) struct LayerTableDocument {
+    /// The id of the layer.
+    id: String,
+    /// SHA-256 of the table as JSON.
     sha256: String,
 }
 

@@ -1,10 +1,10 @@
 //! Bridges and tunnels in the JSON documents of several commands.
 
-use corniche_tileset::{LineLevelRecord, SpanHeight, SpanPoint, SpanRun, SpansRecord};
+use corniche_tileset::{SectionLevelRecord, SpanHeight, SpanPoint, SpanRun, SpansRecord};
 use serde::Serialize;
 
 #[cfg(test)]
-use crate::documents::record_schemas::LineLevelDocument;
+use crate::documents::record_schemas::SectionLevelDocument;
 
 /// The bridges and tunnels of a package (spans). A bridge or tunnel consists of all connected OSM
 /// ways of its kind; heights are estimates.
@@ -24,8 +24,8 @@ pub(crate) struct SpansDocument {
     /// Number of spans to inspect, by reason.
     reasons: Vec<ReasonDocument>,
     /// Stretches off the ground (runs, here `parts`) on each level that has some, root first.
-    #[cfg_attr(test, schemars(with = "Vec<LineLevelDocument>"))]
-    levels: Vec<LineLevelRecord>,
+    #[cfg_attr(test, schemars(with = "Vec<SectionLevelDocument>"))]
+    levels: Vec<SectionLevelRecord>,
 }
 
 /// A reason to inspect bridges or tunnels.

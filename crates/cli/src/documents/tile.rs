@@ -4,7 +4,7 @@ use corniche_roads::Oneway;
 use corniche_tileset::RoadRecord;
 use serde::{Serialize, Serializer};
 
-use super::{areas::TileAreaDocument, lines::TileBoundaryDocument, spans::TileSpanDocument};
+use super::{layers::TileLayerDocument, spans::TileSpanDocument};
 
 /// A list whose items are computed one by one during serialization: all of them together would need
 /// several times the memory of the tile.
@@ -62,12 +62,9 @@ pub(crate) struct TileDocument<'a> {
     /// Attributes of each OSM way in the tile, sorted by id.
     #[cfg_attr(test, schemars(with = "Vec<WayDocument>"))]
     pub(crate) attributes: StreamedList<'a, WayDocument>,
-    /// Parts of areas in the tile; omitted if there are none.
+    /// The objects of layers in or near the tile; layers without any are omitted.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub(crate) areas: Vec<TileAreaDocument>,
-    /// Parts of boundaries near the tile; omitted if there are none.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub(crate) boundaries: Vec<TileBoundaryDocument>,
+    pub(crate) layers: Vec<TileLayerDocument>,
     /// Stretches of bridges above the ground, and of tunnels below it; omitted if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) spans: Vec<TileSpanDocument>,

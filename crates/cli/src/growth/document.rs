@@ -3,7 +3,9 @@
 use corniche_tileset::Manifest;
 
 use super::factors::{PAPER_GROWTH, of_level, whole};
-use crate::documents::growth::{GrowthDocument, LevelGrowthDocument, WholeGrowthDocument};
+use crate::documents::growth::{
+    GrowthDocument, LayerBytesDocument, LevelGrowthDocument, WholeGrowthDocument,
+};
 
 /// Creates the document from a manifest.
 pub(crate) fn document(manifest: &Manifest) -> GrowthDocument {
@@ -33,5 +35,13 @@ pub(crate) fn document(manifest: &Manifest) -> GrowthDocument {
             stored_bytes_over_source: all_factors.stored_bytes_over_source,
         },
         paper: PAPER_GROWTH,
+        layers: manifest
+            .layers
+            .iter()
+            .map(|layer| LayerBytesDocument {
+                layer: layer.table.id.clone(),
+                stored_bytes: layer.levels.iter().map(|level| level.bytes).sum(),
+            })
+            .collect(),
     }
 }

@@ -43,7 +43,7 @@ const WORDS: [(&str, &str); 30] = [
     ("samples", "the heights in the DEM's files; filled nodes are not samples"),
     ("RMS", "root mean square"),
     ("texel", "a pixel of a photo on the ground"),
-    ("parts", "pieces of lines in or near a tile"),
+    ("parts", "objects of a layer, or pieces of them, in or near a tile"),
     ("spans", "bridges or tunnels: all connected ways, between the points on the ground"),
     ("runs", "stretches of spans off the ground in one tile"),
     ("FRC", "functional road class, the importance of a road: 0 (motorway) to 8"),

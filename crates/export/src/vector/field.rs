@@ -1,5 +1,7 @@
 //! Fields, values and geometries of exported features.
 
+use std::borrow::Cow;
+
 /// The type of a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FieldKind {
@@ -27,16 +29,16 @@ impl FieldKind {
 }
 
 /// A field of features.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FeatureField {
     /// Its name in the file.
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// The type of its values.
     pub kind: FieldKind,
     /// The unit of a number; empty without one.
     pub unit: &'static str,
     /// The meaning of the field.
-    pub meaning: &'static str,
+    pub meaning: Cow<'static, str>,
 }
 
 /// The value of a field.
@@ -90,14 +92,14 @@ pub(crate) struct FeatureRecord {
 }
 
 /// The geometries that a layer holds.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ShapeKind {
     /// [`FeatureGeometry::Lines`]
     Lines,
-    /// [`FeatureGeometry::Lines`], without heights.
-    PlanLines,
     /// [`FeatureGeometry::Polygons`]
     Polygons,
+    /// [`FeatureGeometry::Point`]
+    Points,
 }
 
 /// The geometry of a feature.
@@ -107,6 +109,8 @@ pub(crate) enum FeatureGeometry {
     /// Polygons in plan: an outer ring, then the rings of holes. The first point of a ring is not
     /// repeated at its end.
     Polygons(Vec<Vec<Vec<[f64; 2]>>>),
+    /// A point: x, y and height.
+    Point([f64; 3]),
 }
 
 impl FeatureGeometry {
@@ -115,6 +119,7 @@ impl FeatureGeometry {
         match self {
             Self::Lines(lines) => lines.iter().map(Vec::len).sum(),
             Self::Polygons(polygons) => polygons.iter().flatten().map(|ring| ring.len() + 1).sum(),
+            Self::Point(_) => 1,
         }
     }
 }
@@ -124,7 +129,12 @@ macro_rules! fields {
     ($fields:ident, $of:ident: $type:ty: $($name:literal, $kind:ident, $unit:literal, $meaning:literal, $value:expr;)+) => {
         const $fields: &[(FeatureField, fn($type) -> FieldValue)] = &[
             $((
-                FeatureField { name: $name, kind: FieldKind::$kind, unit: $unit, meaning: $meaning },
+                FeatureField {
+                    name: ::std::borrow::Cow::Borrowed($name),
+                    kind: FieldKind::$kind,
+                    unit: $unit,
+                    meaning: ::std::borrow::Cow::Borrowed($meaning),
+                },
                 |$of| FieldValue::from($value),
             ),)+
         ];
@@ -135,5 +145,5 @@ pub(crate) use fields;
 
 /// Returns the fields without the functions that return their values.
 pub(crate) fn fields_of<V>(fields: &[(FeatureField, V)]) -> Vec<FeatureField> {
-    fields.iter().map(|(field, _)| *field).collect()
+    fields.iter().map(|(field, _)| field.clone()).collect()
 }

@@ -19,6 +19,7 @@ use crate::{
         field::{FeatureField, FeatureGeometry, FeatureRecord, FieldKind, FieldValue, ShapeKind},
         format::VectorFormat,
         geopackage,
+        map_style::StyledClasses,
         whole::{self, FeatureFileContents},
     },
 };
@@ -32,7 +33,7 @@ const SETTINGS: [(&str, &str); 2] =
 
 /// The name, fields and metadata of a layer.
 pub(crate) struct Layer {
-    pub(crate) name: &'static str,
+    pub(crate) name: String,
     pub(crate) fields: Vec<FeatureField>,
     pub(crate) shapes: ShapeKind,
     /// WKT2, or a code such as "EPSG:4979".
@@ -43,6 +44,8 @@ pub(crate) struct Layer {
     pub(crate) attribution: String,
     /// Keys and values of metadata, for formats that support them.
     pub(crate) metadata: Vec<(&'static str, String)>,
+    /// The classes of its features, for the style in which QGIS draws them.
+    pub(crate) classes: StyledClasses,
 }
 
 /// A file of features while it is written.
@@ -126,9 +129,10 @@ impl VectorFile {
         let Self { path, format, dataset, layer, heights, written, .. } = self;
         if format == VectorFormat::GeoPackage {
             let told = heights.map_or(Ok(()), |heights| {
-                geopackage::describe(&dataset, layer.name, &layer.about(&heights))
+                geopackage::describe(&dataset, &layer.name, &layer.about(&heights))
             });
-            let styled = told.and_then(|()| geopackage::add_style(&dataset, layer.name));
+            let styled =
+                told.and_then(|()| geopackage::add_style(&dataset, &layer.name, &layer.classes));
             styled.map_err(|error| GdalFileError::write(&path, error))?;
         }
         gdal_writing::close(dataset, &path)?;
@@ -170,7 +174,7 @@ fn create(
     let options = options(format, layer, driver);
     let options: Vec<&str> = options.iter().map(String::as_str).collect();
     let created = dataset.create_layer(LayerOptions {
-        name: layer.name,
+        name: &layer.name,
         // RFC 7946 has one CRS and no member for it. For others, GDAL writes the member `crs` of
         // the older GeoJSON specification.
         srs: (format != VectorFormat::GeoJson || crs.is_projected()).then_some(&crs),
@@ -184,7 +188,7 @@ fn create(
             FieldKind::Real => OGRFieldType::OFTReal,
             FieldKind::Text => OGRFieldType::OFTString,
         };
-        FieldDefn::new(field.name, kind)?.add_to_layer(&created)?;
+        FieldDefn::new(&field.name, kind)?.add_to_layer(&created)?;
     }
     Ok(dataset)
 }
@@ -246,10 +250,7 @@ fn geometry(shape: &FeatureGeometry, kind: ShapeKind) -> Result<Geometry, GdalEr
                 let mut part = Geometry::empty(kind.types()[1])?;
                 // From the end, so that GDAL allocates memory for all vertices at once.
                 for (index, &[x, y, z]) in line.iter().enumerate().rev() {
-                    match kind {
-                        ShapeKind::PlanLines => part.set_point_2d(index, (x, y)),
-                        _ => part.set_point(index, (x, y, written_height(z))),
-                    }
+                    part.set_point(index, (x, y, written_height(z)));
                 }
                 all.add_geometry(part)?;
             }
@@ -269,6 +270,7 @@ fn geometry(shape: &FeatureGeometry, kind: ShapeKind) -> Result<Geometry, GdalEr
                 all.add_geometry(polygon)?;
             }
         }
+        FeatureGeometry::Point([x, y, z]) => all.set_point(0, (*x, *y, written_height(*z))),
     }
     Ok(all)
 }
@@ -280,10 +282,8 @@ impl ShapeKind {
             Self::Lines => {
                 [OGRwkbGeometryType::wkbMultiLineString25D, OGRwkbGeometryType::wkbLineString25D]
             }
-            Self::PlanLines => {
-                [OGRwkbGeometryType::wkbMultiLineString, OGRwkbGeometryType::wkbLineString]
-            }
             Self::Polygons => [OGRwkbGeometryType::wkbMultiPolygon, OGRwkbGeometryType::wkbPolygon],
+            Self::Points => [OGRwkbGeometryType::wkbPoint25D; 2],
         }
     }
 }

@@ -3,7 +3,7 @@
 use corniche_styles::Style;
 use gdal::{Dataset, errors::GdalError, vector::sql::Dialect};
 
-use super::map_style;
+use super::map_style::{self, StyledClasses};
 
 /// The only time stamp in files, so that the same features give the same bytes.
 pub(crate) const NO_TIME: &str = "1970-01-01T00:00:00.000Z";
@@ -18,10 +18,13 @@ const STYLES_TABLE: [&str; 2] = [
 VALUES ('layer_styles', 'attributes', 'layer_styles', '', '1970-01-01T00:00:00.000Z', 0)",
 ];
 
-/// Adds the style by class that QGIS applies when it opens the layer. Nothing is added for a layer
-/// without classes.
-pub(crate) fn add_style(file: &Dataset, layer: &str) -> Result<(), GdalError> {
-    let Some(qml) = map_style::qml(layer, &Style::road_atlas()) else { return Ok(()) };
+/// Adds the style by class that QGIS applies when it opens the layer.
+pub(crate) fn add_style(
+    file: &Dataset,
+    layer: &str,
+    classes: &StyledClasses,
+) -> Result<(), GdalError> {
+    let qml = map_style::qml(classes, &Style::road_atlas());
     for statement in STYLES_TABLE {
         run(file, statement)?;
     }

@@ -6,11 +6,19 @@
 
 use std::fmt::Write as _;
 
-use corniche_areas::{AreaClass, BoundaryClass};
-use corniche_styles::{AreaStyle, Dash, LineStyle, Rgb, RoadStyle, Style};
+use corniche_layers::{ClassForm, LayerForm, LayerGeometry};
+use corniche_styles::{AreaStyle, Dash, LayerLook, LineStyle, PointStyle, Rgb, RoadStyle, Style};
 
 /// Millimetres per pixel: QGIS assumes screens with 96 pixels per inch.
 const MM_PER_PX: f32 = 25.4 / 96.0;
+
+/// The classes in the field `class` of features.
+pub(crate) enum StyledClasses {
+    /// The functional road classes.
+    Roads,
+    /// The classes of the layer with this table.
+    Layer(Box<LayerForm>),
+}
 
 /// One class: its value in the field `class`, its name in the legend, and its symbol parts, the
 /// lowest first.
@@ -29,17 +37,21 @@ struct SymbolPart {
     properties: Vec<(&'static str, String)>,
 }
 
-/// Returns the QML of a layer of this name in this style; `None` for a layer without classes.
-pub(crate) fn qml(layer: &str, style: &Style) -> Option<String> {
-    let (categories, geometry_type, symbol_type) = match layer {
-        "roads" | "edges" => (roads(style), 1, "line"),
-        "areas" => (areas(style), 2, "fill"),
-        "boundaries" => (boundaries(style), 1, "line"),
-        _ => return None,
+/// Returns the QML of these classes in this style.
+pub(crate) fn qml(classes: &StyledClasses, style: &Style) -> String {
+    let (categories, geometry) = match classes {
+        StyledClasses::Roads => (roads(style), LayerGeometry::Line),
+        StyledClasses::Layer(table) => (layer(table, style), table.geometry),
+    };
+    let (geometry_type, symbol_type) = match geometry {
+        LayerGeometry::Point => (0, "marker"),
+        LayerGeometry::Line => (1, "line"),
+        LayerGeometry::Area => (2, "fill"),
     };
     let (mut values, mut symbols) = (String::new(), String::new());
     for (number, category) in categories.iter().enumerate() {
         let Category { value, label, .. } = category;
+        let label = label.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
         // Writing to a text cannot fail.
         let _ = writeln!(
             values,
@@ -53,7 +65,7 @@ pub(crate) fn qml(layer: &str, style: &Style) -> Option<String> {
         category.parts.iter().for_each(|part| part.write(&mut symbols));
         symbols.push_str("</symbol>\n");
     }
-    Some(format!(
+    format!(
         r#"<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>
 <qgis version="3.22.0" styleCategories="Symbology">
 <renderer-v2 type="categorizedSymbol" attr="class" symbollevels="1" forceraster="0" enableorderby="0">
@@ -68,7 +80,7 @@ pub(crate) fn qml(layer: &str, style: &Style) -> Option<String> {
 <layerGeometryType>{geometry_type}</layerGeometryType>
 </qgis>
 "#
-    ))
+    )
 }
 
 /// Edges are below all roads, and important roads above others.
@@ -90,33 +102,30 @@ fn roads(style: &Style) -> Vec<Category> {
     style.roads.iter().enumerate().map(category).collect()
 }
 
-fn areas(style: &Style) -> Vec<Category> {
-    let category = |(below, class): (usize, AreaClass)| {
-        let AreaStyle { color, opacity, .. } = *style.area(class);
-        let pass = AreaClass::COUNT - 1 - below;
-        let properties =
-            vec![("color", rgba(color)), ("style", "solid".into()), ("outline_style", "no".into())];
-        let parts = vec![SymbolPart { pass, kind: "SimpleFill", properties }];
-        Category::named(class.name(), opacity, parts)
+/// The first class of a layer is above the others.
+fn layer(table: &LayerForm, style: &Style) -> Vec<Category> {
+    let category = |(number, class): (usize, &ClassForm)| {
+        let pass = table.classes.len() - number;
+        let (opacity, parts) = match style.layer_look(table, number) {
+            LayerLook::Area(AreaStyle { color, opacity, .. }) => {
+                let properties = vec![
+                    ("color", rgba(color)),
+                    ("style", "solid".into()),
+                    ("outline_style", "no".into()),
+                ];
+                (opacity, vec![SymbolPart { pass, kind: "SimpleFill", properties }])
+            }
+            LayerLook::Line(LineStyle { color, width_px, casing, opacity, dash, .. }) => {
+                let casing = casing.map(|casing| line(0, casing, width_px + 2.0, &dash));
+                let own = line(pass, color, width_px, &dash);
+                (opacity, casing.into_iter().chain([own]).collect())
+            }
+            LayerLook::Point(look) => (look.opacity, vec![marker(pass, &look)]),
+        };
+        let label = class.title.title(&["en"]).unwrap_or(&class.id).to_owned();
+        Category { value: class.id.clone(), label, opacity, parts }
     };
-    AreaStyle::TOP_FIRST.into_iter().enumerate().map(category).collect()
-}
-
-fn boundaries(style: &Style) -> Vec<Category> {
-    let category = |(class, style): (BoundaryClass, &LineStyle)| {
-        let LineStyle { color, width_px, casing, opacity, dash, .. } = *style;
-        let pass = BoundaryClass::COUNT - usize::from(class.number());
-        let casing = casing.map(|casing| line(0, casing, width_px + 2.0, &dash));
-        let parts = casing.into_iter().chain([line(pass, color, width_px, &dash)]).collect();
-        Category::named(class.name(), opacity, parts)
-    };
-    BoundaryClass::ALL.into_iter().zip(&style.boundaries).map(category).collect()
-}
-
-impl Category {
-    fn named(name: &str, opacity: f32, parts: Vec<SymbolPart>) -> Self {
-        Self { value: name.to_owned(), label: name.to_owned(), opacity, parts }
-    }
+    table.classes.iter().enumerate().map(category).collect()
 }
 
 impl SymbolPart {
@@ -152,6 +161,22 @@ fn line(pass: usize, color: Rgb, width_px: f32, dash: &Dash) -> SymbolPart {
         ]);
     }
     SymbolPart { pass, kind: "SimpleLine", properties }
+}
+
+/// QGIS centres the edge on the border of the disc.
+fn marker(pass: usize, PointStyle { color, size_px, outline, .. }: &PointStyle) -> SymbolPart {
+    let edge_px = if outline.is_some() { 1.0 } else { 0.0 };
+    let properties = vec![
+        ("name", "circle".into()),
+        ("color", rgba(*color)),
+        ("size", millimetres(size_px + edge_px)),
+        ("size_unit", "MM".into()),
+        ("outline_style", if outline.is_some() { "solid" } else { "no" }.into()),
+        ("outline_color", rgba(outline.unwrap_or(*color))),
+        ("outline_width", millimetres(edge_px)),
+        ("outline_width_unit", "MM".into()),
+    ];
+    SymbolPart { pass, kind: "SimpleMarker", properties }
 }
 
 fn rgba(color: Rgb) -> String {

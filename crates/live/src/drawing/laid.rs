@@ -8,7 +8,7 @@ use std::{
 use corniche_geom::{GridFrame, LatticePoint, TileId};
 use corniche_tileset::Manifest;
 use corniche_viewer::tiles::{
-    AreaVolumes, DrawnArea, LayerLine, LineMethods, Overlays, TileGeometry, TileLayer, TileSurface,
+    AreaVolumes, DrawnArea, LineMethods, Overlays, StyledLine, TileGeometry, TileLayer, TileSurface,
 };
 
 use super::document::{Document, DocumentLine};
@@ -122,7 +122,7 @@ impl PreparedLine {
         if line.is_area {
             points.extend(points.first().copied());
         }
-        let layer_line = LayerLine { id: line.id as i64, style: 0, points };
+        let layer_line = StyledLine { id: line.id as i64, style: 0, points };
         Self { line: Arc::clone(line), outline: Overlays::new(&[layer_line], frame), area }
     }
 }

@@ -1,9 +1,8 @@
 //! Delivers areas and their defects in the order of the objects.
 
-use corniche_areas::Area;
 use corniche_store::{Sorter, take_record};
 
-use super::{make_areas::make_areas, summary::AreaSummary};
+use super::{layer_area::LayerArea, make_areas::make_areas, summary::AreaSummary};
 use crate::{
     AreaLoss, ExtractDefect,
     failed::Failed,
@@ -21,15 +20,26 @@ use crate::{
 pub(crate) fn hand_out_areas<'a>(
     reading: &ExtractReading<'a>,
     (objects, located): (OutlineObjects<'a>, LocatedWays<'a>),
-    sink: &mut dyn LayerSink<Area, AreaSummary>,
+    sink: &mut dyn LayerSink<LayerArea, AreaSummary>,
     on_defect: &mut dyn FnMut(ExtractDefect),
 ) -> Result<(), Failed> {
-    let OutlineObjects { known, count, duplicates, members, open_ways, defects, held_bytes } =
-        objects;
+    let OutlineObjects {
+        known,
+        counts,
+        duplicates,
+        members,
+        open_ways,
+        unread,
+        defects,
+        held_bytes,
+        ..
+    } = objects;
+    let ([ways, relations], count) = (known, counts.iter().sum::<u64>());
+    let known = ways.followed_by(relations);
     sink.begin();
     defects.tell(on_defect)?;
     let all = open_ways + duplicates + count;
-    let mut summary = AreaSummary { objects: all, ..AreaSummary::default() };
+    let mut summary = AreaSummary { objects: all, unread, ..AreaSummary::default() };
     for (loss, count) in [(AreaLoss::OpenWay, open_ways), (AreaLoss::Duplicate, duplicates)] {
         if count > 0 {
             summary.lost.insert(loss, count);

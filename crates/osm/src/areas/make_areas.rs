@@ -2,22 +2,20 @@
 
 use std::{collections::HashSet, io};
 
-use corniche_areas::{
-    Area, AreaClass, AreaObject, AssembledArea, Coastline, OutlineError, OutlineWay, Polygon,
-    assemble,
-};
+use corniche_areas::{AssembledArea, Coastline, OutlineError, OutlineWay, Polygon, assemble};
 use corniche_geom::{LatticePoint, split_at_seam};
+use corniche_layers::OsmObject;
 use corniche_store::{Sorted, take_record};
 use rayon::prelude::*;
 
-use super::{over_seam, summary::AreaSummary};
+use super::{layer_area::LayerArea, over_seam, summary::AreaSummary};
 use crate::{
     AreaLoss, ExtractDefect,
     ahead::Ahead,
     failed::Failed,
     layer_sink::LayerSink,
     looked::check_held,
-    outlines::records::{ObjectRecord, OutlineWayRecord, degrees_of, to_point},
+    outlines::records::{ObjectRecord, OutlineWayRecord, degrees_of, take_values, to_point},
     read_request::LatticePlacement,
     reading::ExtractReading,
     spool::SpoolReader,
@@ -35,7 +33,7 @@ pub(crate) fn make_areas(
     parts: Sorted<'_, OutlineWayRecord>,
     mut held_bytes: u64,
     summary: &mut AreaSummary,
-    sink: &mut dyn LayerSink<Area, AreaSummary>,
+    sink: &mut dyn LayerSink<LayerArea, AreaSummary>,
     on_defect: &mut dyn FnMut(ExtractDefect),
 ) -> Result<(), Failed> {
     let pool = reading.request.pool;
@@ -70,7 +68,8 @@ pub(crate) fn make_areas(
                 summary.coastlines.push(coastline);
             }
             match made.area {
-                Ok(Some(area)) => {
+                Ok(Some(mut area)) => {
+                    area.values = take_values(&made.values)?;
                     count(summary, &area);
                     sink.take(area);
                 }
@@ -94,7 +93,7 @@ fn parts_of(
     Ok(own)
 }
 
-fn count(summary: &mut AreaSummary, area: &Area) {
+fn count(summary: &mut AreaSummary, area: &LayerArea) {
     let kept = summary.kept.entry(area.class).or_default();
     kept.areas += 1;
     kept.polygons += area.polygons.len() as u64;
@@ -105,7 +104,10 @@ fn count(summary: &mut AreaSummary, area: &Area) {
 
 /// The result of building one object.
 struct MadeArea {
-    area: Result<Option<Area>, AreaLoss>,
+    /// The area without its values.
+    area: Result<Option<LayerArea>, AreaLoss>,
+    /// The values as bytes.
+    values: Box<[u8]>,
     coastlines: Vec<Coastline>,
     defects: Vec<ExtractDefect>,
 }
@@ -115,24 +117,23 @@ fn make(
     parts: &[OutlineWayRecord],
     placing: LatticePlacement<'_>,
 ) -> MadeArea {
-    let (kind, id) = known.object.parts();
-    let is_relation = kind == "relation";
+    let object = known.object;
     let mut defects = Vec::new();
-    let lines = if known.is_coastline { coastlines(id, parts, placing) } else { Ok(Vec::new()) };
+    let lines =
+        if known.is_coastline { coastlines(object.id(), parts, placing) } else { Ok(Vec::new()) };
     let (coastlines, failed) = match lines {
         Ok(lines) => (lines, None),
         Err(loss) => (Vec::new(), Some(loss)),
     };
-    let class = known.class.and_then(AreaClass::from_number);
-    let area = match (class, failed) {
-        (Some(class), _) => try_making((known, class), parts, placing, &mut defects).map(Some),
+    let area = match (known.class, failed) {
+        (Some(class), _) => try_making((object, class), parts, placing, &mut defects).map(Some),
         (None, Some(loss)) => Err(loss),
         (None, None) => Ok(None),
     };
     if let Err(loss) = area {
-        defects.push(ExtractDefect::LostArea { is_relation, id, loss });
+        defects.push(ExtractDefect::LostArea { object, loss });
     }
-    MadeArea { area, coastlines, defects }
+    MadeArea { area, values: known.values, coastlines, defects }
 }
 
 /// Returns the lines of a way on the package's lattice: several if points between them cannot be
@@ -157,13 +158,11 @@ fn coastlines(
 }
 
 fn try_making(
-    (known, class): (ObjectRecord, AreaClass),
+    (object, class): (OsmObject, u8),
     parts: &[OutlineWayRecord],
     placing: LatticePlacement<'_>,
     defects: &mut Vec<ExtractDefect>,
-) -> Result<Area, AreaLoss> {
-    let ObjectRecord { object, name, .. } = known;
-    let (kind, id) = object.parts();
+) -> Result<LayerArea, AreaLoss> {
     let mut missing = 0;
     let mut ways: Vec<LocatedOutlineWay> = Vec::new();
     for part in parts {
@@ -198,20 +197,15 @@ fn try_making(
     for polygon in &assembled.polygons {
         polygons.extend(over_seam::placed(polygon, placing)?);
     }
-    if let (AreaObject::Relation(relation_id), true) = (object, missing > 0) {
+    if let (OsmObject::Relation(relation_id), true) = (object, missing > 0) {
         defects.push(ExtractDefect::MissingWays { relation_id, ways: missing });
     }
     let mended = assembled.repeated_segments + assembled.divided_segments;
     if mended > 0 {
         let segments = u32::try_from(mended).unwrap_or(u32::MAX);
-        defects.push(ExtractDefect::MendedOutline {
-            is_relation: kind == "relation",
-            id,
-            segments,
-        });
+        defects.push(ExtractDefect::MendedOutline { object, segments });
     }
-    let name = (!name.is_empty()).then(|| name.into());
-    Ok(Area { object, class, name, polygons, area_m2 })
+    Ok(LayerArea { object, class, values: Vec::new(), polygons, area_m2 })
 }
 
 /// A way of an outline that is in the file.

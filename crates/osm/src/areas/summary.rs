@@ -2,19 +2,21 @@
 
 use std::collections::BTreeMap;
 
-use corniche_areas::{AreaClass, Coastline};
+use corniche_areas::Coastline;
 
 use crate::AreaLoss;
 
 /// The areas of an extract, and what became of them. In numbers: `objects = kept + lost`.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct AreaSummary {
-    /// Ways and relations with area tags.
+    /// Ways and relations with tags of the layer.
     pub objects: u64,
-    /// Delivered areas, by class.
-    pub kept: BTreeMap<AreaClass, KeptAreas>,
+    /// Delivered areas, by the number of their class.
+    pub kept: BTreeMap<u8, KeptAreas>,
     /// Objects that did not become areas, by reason.
     pub lost: BTreeMap<AreaLoss, u64>,
+    /// Values that are not of the kinds of their attributes, by key.
+    pub unread: BTreeMap<String, u64>,
     /// Coastlines on the package's lattice, if the table includes the sea. They do not count as
     /// objects.
     pub coastlines: Vec<Coastline>,

@@ -1,12 +1,12 @@
-//! Builds classified lines from ways and from the relations that contain them.
+//! Builds lines from ways and from the relations that contain them.
 
 use std::{io, iter};
 
-use corniche_areas::BoundaryClass;
 use corniche_geom::{LatticePoint, split_at_seam};
+use corniche_layers::AttributeValue;
 use corniche_store::take_record;
 
-use super::{classed_line::ClassedLine, line_names::NamedObjects, summary::LineSummary};
+use super::{layer_line::LayerLine, line_objects::LineObjects, summary::LineSummary};
 use crate::{
     ExtractDefect,
     ahead::Ahead,
@@ -16,7 +16,7 @@ use crate::{
     location,
     outlines::{
         located_ways::{LocatedWay, LocatedWays},
-        records::{MemberRecord, degrees_of, to_point},
+        records::{MemberRecord, ObjectRecord, degrees_of, to_point},
     },
     reading::ExtractReading,
     spool::SpoolReader,
@@ -25,41 +25,34 @@ use crate::{
 /// The number of ways between two progress reports.
 const WAYS_TO_TELL: u64 = 1 << 10;
 
-/// The class number of an object that gives its ways no class; no class has this number.
-pub(crate) const NO_CLASS: u8 = u8::MAX;
-
-/// Builds the lines. Members and ways arrive in the order of way ids; `classes` contains the class
-/// numbers of the objects, by the objects' numbers.
+/// Builds the lines. Members and ways arrive in the order of way ids.
 pub(crate) fn make_lines(
     reading: &ExtractReading<'_>,
-    (mut members, classes): (SpoolReader<'_>, &[u8]),
+    (mut members, mut objects): (
+        SpoolReader<'_>,
+        LineObjects<'_, impl Iterator<Item = io::Result<ObjectRecord>>>,
+    ),
     mut located: LocatedWays<'_>,
     summary: &mut LineSummary,
-    (sink, on_defect): (
-        &mut dyn LayerSink<ClassedLine, LineSummary>,
-        &mut dyn FnMut(ExtractDefect),
-    ),
-    mut names: Option<NamedObjects<'_, '_>>,
+    (sink, on_defect): (&mut dyn LayerSink<LayerLine, LineSummary>, &mut dyn FnMut(ExtractDefect)),
 ) -> Result<(), Failed> {
     let records =
         Ahead::new(iter::from_fn(|| members.next(take_record::<MemberRecord>).transpose()));
     let mut members = Members { records, objects: Vec::new() };
     let (mut count, all) = (0, located.count);
-    while let Some((way_id, class)) = members.next_way(classes)? {
+    while let Some(way_id) = members.next_way()? {
         reading.check_stop_at(count)?;
         if count.is_multiple_of(WAYS_TO_TELL) {
             // Relations also reference ways that are not in the file.
             sink.reached(count.min(all), all);
         }
         count += 1;
-        let Some(class) = BoundaryClass::from_number(class) else { continue };
+        let given = objects.class_and_values(way_id, &members.objects)?;
+        let Some((class, values)) = given else { continue };
         summary.ways += 1;
         let made = match located.find(way_id)? {
-            Some(way) => parts_of(reading, way, class).inspect(|_| {
+            Some(way) => parts_of(reading, way, (class, &values)).inspect(|_| {
                 tell_gaps(way, on_defect);
-                if let Some(names) = &mut names {
-                    names.tell(way, &members.objects);
-                }
             }),
             None => Err(LineLoss::MissingWay),
         };
@@ -88,19 +81,16 @@ struct Members<I: Iterator> {
 }
 
 impl<I: Iterator<Item = io::Result<MemberRecord>>> Members<I> {
-    /// Returns the next way, and the number of the most important class that objects give it.
-    fn next_way(&mut self, classes: &[u8]) -> io::Result<Option<(i64, u8)>> {
+    /// Returns the next way.
+    fn next_way(&mut self) -> io::Result<Option<i64>> {
         let Self { records, objects } = self;
-        let mut way: Option<(i64, u8)> = None;
+        let mut way: Option<i64> = None;
         objects.clear();
         while let Some(record) = records.peek()? {
-            let own = classes.get(record.object_number as usize).copied().unwrap_or(NO_CLASS);
             let way_id = record.member.way_id;
-            let (id, class) = way.get_or_insert((way_id, NO_CLASS));
-            if *id != way_id {
+            if *way.get_or_insert(way_id) != way_id {
                 break;
             }
-            *class = own.min(*class);
             objects.push(record.object_number);
             records.take();
         }
@@ -129,8 +119,8 @@ fn tell_gaps(way: &LocatedWay, on_defect: &mut dyn FnMut(ExtractDefect)) {
 fn parts_of(
     reading: &ExtractReading<'_>,
     way: &LocatedWay,
-    class: BoundaryClass,
-) -> Result<Vec<ClassedLine>, LineLoss> {
+    (class, values): (u8, &[Option<AttributeValue>]),
+) -> Result<Vec<LayerLine>, LineLoss> {
     let is_missing = |place: &location::Location| *place == location::MISSING;
     let is_valid =
         |place: &location::Location| !is_missing(place) && *place != location::OUT_OF_RANGE;
@@ -148,12 +138,19 @@ fn parts_of(
             point.filter(|_| is_valid(place)).map(|at| (at, is_shared))
         })
         .collect();
-    let parts: Vec<ClassedLine> = points
+    let parts: Vec<LayerLine> = points
         .split(Option::is_none)
         .flat_map(|run| {
             split_at_seam(run.iter().flatten().copied().collect(), reading.request.seam)
         })
-        .filter_map(|line| part(way.way_id, class, line))
+        .filter_map(part)
+        .map(|(points, fixed)| LayerLine {
+            way_id: way.way_id,
+            class,
+            values: values.to_vec(),
+            points,
+            fixed,
+        })
         .collect();
     if !parts.is_empty() {
         return Ok(parts);
@@ -168,7 +165,8 @@ fn parts_of(
     })
 }
 
-fn part(way_id: i64, class: BoundaryClass, run: Vec<(LatticePoint, bool)>) -> Option<ClassedLine> {
+/// Returns the points of a part, and the indices of those that are fixed.
+fn part(run: Vec<(LatticePoint, bool)>) -> Option<(Vec<LatticePoint>, Vec<u32>)> {
     let mut points: Vec<(LatticePoint, bool)> = Vec::new();
     for (at, is_shared) in run {
         match points.last_mut() {
@@ -184,10 +182,5 @@ fn part(way_id: i64, class: BoundaryClass, run: Vec<(LatticePoint, bool)>) -> Op
         (*is_shared || index == 0 || index == last).then_some(index as u32)
     });
     let fixed = fixed.collect();
-    Some(ClassedLine {
-        way_id,
-        class,
-        fixed,
-        points: points.into_iter().map(|(at, _)| at).collect(),
-    })
+    Some((points.into_iter().map(|(at, _)| at).collect(), fixed))
 }

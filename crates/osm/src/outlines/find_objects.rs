@@ -1,5 +1,5 @@
-//! Finds the objects in blobs that are read before the ways: relations, and also ways if the
-//! extract is not sorted.
+//! Finds the objects in blobs that are read before the ways: relations, and also nodes and ways if
+//! the extract is not sorted.
 
 use std::io::{Read, Seek};
 
@@ -13,6 +13,7 @@ use crate::{
     extracts::{Extracts, TOO_MUCH_FOUND},
     failed::Failed,
     looked::{BlockSurvey, LookedAt},
+    outlines::found_nodes::FoundNodes,
     reading::{ExtractReading, ReadingStep},
 };
 
@@ -23,7 +24,7 @@ pub(crate) fn find_objects<R: Read + Seek>(
     reading: &ExtractReading<'_>,
     file: &mut Extracts<R>,
     numbers: &[usize],
-    outlines: &mut [Outlines<'_>],
+    (outlines, nodes): (&mut [Outlines<'_>], &mut FoundNodes<'_>),
     with_ways: bool,
     later_bytes: u64,
 ) -> Result<LookedAt, Failed> {
@@ -31,6 +32,7 @@ pub(crate) fn find_objects<R: Read + Seek>(
     let all_bytes = file.bytes_of(numbers) + later_bytes;
     let on_bytes = &|bytes| reading.tell(ReadingStep::Ways, bytes, all_bytes);
     let wanted: Vec<_> = outlines.iter().map(|outlines| outlines.wanted).collect();
+    let of_nodes = nodes.scanned();
     let scan = |message: Vec<u8>, most_bytes| {
         let block = AuditedBlock::new(&message);
         let texts = block.texts();
@@ -51,13 +53,17 @@ pub(crate) fn find_objects<R: Read + Seek>(
                 found.look_at_relations(&decoded, judge);
             }
         }
-        if found.iter().map(|found| found.held_bytes).sum::<u64>() > most_bytes {
+        let of_nodes = of_nodes.scan(&block, most_bytes)?;
+        let held_bytes: u64 = found.iter().chain(&of_nodes).map(|found| found.held_bytes).sum();
+        if held_bytes > most_bytes {
             return Err(TOO_MUCH_FOUND.into());
         }
-        Ok((looked, found))
+        Ok((looked, found, of_nodes))
     };
-    file.for_each_block(reading, numbers, on_bytes, scan, |[file, number], (looked, found)| {
+    file.for_each_block(reading, numbers, on_bytes, scan, |[file, number], of_block| {
+        let (looked, found, of_nodes) = of_block;
         looked_at.take(reading, [file, number], looked)?;
+        nodes.take(reading, file as u32, of_nodes)?;
         for (outlines, of_block) in outlines.iter_mut().zip(found) {
             outlines.take(reading, file as u32, of_block, true)?;
         }

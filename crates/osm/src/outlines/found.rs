@@ -1,7 +1,8 @@
-//! The findings for one kind of outlined objects while an extract is read.
+//! The findings for the objects of a layer while an extract is read.
 
-use std::io;
+use std::{collections::BTreeMap, io};
 
+use corniche_layers::OsmObject;
 use corniche_store::Sorter;
 
 use super::{
@@ -24,7 +25,7 @@ use crate::{
     way_facts::WayFacts,
 };
 
-/// The objects and ways of one kind that were found so far.
+/// The objects of a layer and their ways that were found so far.
 pub(crate) struct Outlines<'a> {
     pub(crate) wanted: WantedObjects<'a>,
     objects: Sorter<'a, ObjectRecord>,
@@ -52,7 +53,8 @@ impl<'a> Outlines<'a> {
         }
         Self {
             wanted,
-            objects: reading.sorter(shares.objects),
+            // Nodes of the layer get the other half.
+            objects: reading.sorter(shares.objects / if wanted.has_nodes() { 2 } else { 1 }),
             objects_count: 0,
             ways: reading.sorter(shares.ways),
             ways_count: 0,
@@ -77,8 +79,8 @@ impl<'a> Outlines<'a> {
         check_held(reading, self.held_bytes)?;
         for id in of_block.open_ways {
             self.open_ways += 1;
-            let (is_relation, loss) = (false, AreaLoss::OpenWay);
-            self.defects.push(&ExtractDefect::LostArea { is_relation, id, loss });
+            let (object, loss) = (OsmObject::Way(id), AreaLoss::OpenWay);
+            self.defects.push(&ExtractDefect::LostArea { object, loss });
         }
         for mut object in of_block.objects {
             object.origin.place(reading, file, &mut self.objects_count);
@@ -102,10 +104,10 @@ impl<'a> Outlines<'a> {
         self,
         reading: &ExtractReading<'a>,
     ) -> Result<(OutlineObjects<'a>, NumberedNodes<'a>), Failed> {
-        let Self { objects, ways, open_ways, mut defects, held_bytes, .. } = self;
+        let Self { wanted, objects, ways, open_ways, mut defects, held_bytes, .. } = self;
         let on_defect = &mut |defect: ExtractDefect| defects.push(&defect);
-        let NumberedObjects { known, count, duplicates, members } =
-            number_objects(reading, objects, on_defect)?;
+        let NumberedObjects { known, counts, duplicates, members, unread } =
+            number_objects(reading, (objects, wanted), on_defect)?;
         let kept = Spool::new(reading.request.scratch, reading.shares().spool);
         let members = members.finish()?;
         let mut ways = MemberWays::new(ways.finish()?, members, kept);
@@ -113,9 +115,18 @@ impl<'a> Outlines<'a> {
         let none = &mut ExtractSummary::default();
         let numbered = number_nodes(reading, &mut ways, none, on_defect, None)?;
         let members = ways.into_members()?.read();
-        let known = known.read();
-        let objects =
-            OutlineObjects { known, count, duplicates, members, open_ways, defects, held_bytes };
+        let known = known.map(Spool::read);
+        let objects = OutlineObjects {
+            known,
+            counts,
+            duplicates,
+            members,
+            open_ways,
+            unread,
+            defects,
+            nodes: None,
+            held_bytes,
+        };
         Ok((objects, numbered))
     }
 
@@ -128,18 +139,24 @@ impl<'a> Outlines<'a> {
     }
 }
 
-/// The objects of one kind, with all their data except the positions of their ways.
+/// The objects of a layer, with all their data except the positions of their ways.
 pub(crate) struct OutlineObjects<'a> {
-    /// The [`ObjectRecord`] of each object, without its ways, in the order of their numbers.
-    pub(crate) known: SpoolReader<'a>,
-    pub(crate) count: u64,
+    /// The [`ObjectRecord`] of each way and of each relation, without their ways, in the order of
+    /// their numbers. Ways come first.
+    pub(crate) known: [SpoolReader<'a>; 2],
+    /// The numbers of ways and of relations.
+    pub(crate) counts: [u64; 2],
     /// The number of further objects that have the id of another one.
     pub(crate) duplicates: u64,
     /// The [`super::records::MemberRecord`] of each way that the objects need, in order of way ids.
     pub(crate) members: SpoolReader<'a>,
     /// The number of ways with area tags that are not closed.
     pub(crate) open_ways: u64,
+    /// Values that are not of the kinds of their attributes, by key.
+    pub(crate) unread: BTreeMap<String, u64>,
     pub(crate) defects: Deferred<'a>,
+    /// The nodes of a layer of points, when they have been read.
+    pub(crate) nodes: Option<NumberedObjects<'a>>,
     /// The memory of all this, bytes, by an estimate that is never too low.
     pub(crate) held_bytes: u64,
 }

@@ -1,6 +1,7 @@
 //! Finds the objects and the outline ways of a block.
 
-use corniche_areas::AreaObject;
+use corniche_layers::OsmObject;
+use corniche_store::record_bytes;
 use osmpbf::{PrimitiveBlock, RelMemberType, Relation};
 
 use super::{
@@ -8,8 +9,8 @@ use super::{
     wanted::WantedObjects,
 };
 use crate::{
-    block::BlockWay,
-    location::Location,
+    block::{BlockNode, BlockWay},
+    location::{Location, location_from_nano},
     records::{Origin, WayRecord},
     search::IdSearch,
     text::Text,
@@ -55,21 +56,24 @@ impl<'a> OutlineJudge<'a> {
         Self { wanted, texts, is_key }
     }
 
+    /// Whether the text with this number is a key of such an object.
+    pub(crate) fn is_key(&self, text: usize) -> bool {
+        self.is_key.get(text) == Some(&true)
+    }
+
     /// Whether one of the keys belongs to such an object. Most ways and relations have no such key,
     /// and their tags need no decoding.
     fn is_any_key(&self, mut keys: impl Iterator<Item = usize>) -> bool {
-        keys.any(|key| self.is_key.get(key) == Some(&true))
+        keys.any(|key| self.is_key(key))
     }
 
     /// Returns the tags of an object, which are given by the numbers of their texts.
     fn tags(&self, pairs: impl Iterator<Item = [usize; 2]>) -> Tags<'a> {
         // The block was checked: every tag is in its table.
         let text = |index: usize| Text::new(self.texts.get(index).copied().unwrap_or_default());
-        let texts: Vec<[Text<'_>; 2]> = pairs.map(|pair| pair.map(text)).collect();
-        let plain: Vec<(&str, &str)> =
-            texts.iter().map(|[key, value]| (&*key.text, &*value.text)).collect();
-        let class = self.wanted.classify(&plain);
-        Tags { texts, class }
+        let mut tags = Tags { texts: pairs.map(|pair| pair.map(text)).collect(), class: None };
+        tags.class = self.wanted.classify(&tags.plain());
+        tags
     }
 }
 
@@ -80,7 +84,7 @@ impl OfBlock {
         way: &BlockWay<'_, '_>,
         judge: &OutlineJudge<'_>,
     ) -> bool {
-        if !judge.is_any_key(way.keys()) {
+        if !judge.wanted.has_ways() || !judge.is_any_key(way.keys()) {
             return false;
         }
         let tags = judge.tags(way.keys().zip(way.values()).map(|(key, value)| [key, value]));
@@ -99,8 +103,8 @@ impl OfBlock {
             return false;
         }
         let member = Member { way_id: way.id, is_inner: false };
-        let what = (AreaObject::Way(way.id), way.info.version);
-        self.push(what, (class, is_coastline), &tags, Box::new([member]));
+        let what = (OsmObject::Way(way.id), way.info.version);
+        self.push(what, (class, is_coastline), (&tags, judge.wanted), Box::new([member]));
         true
     }
 
@@ -125,15 +129,18 @@ impl OfBlock {
     }
 
     fn look_at_relation(&mut self, relation: &Relation<'_>, judge: &OutlineJudge<'_>) {
+        if !judge.wanted.has_ways() {
+            return;
+        }
         let pairs = relation.raw_tags().map(|(key, value)| [key as usize, value as usize]);
         if !judge.is_any_key(pairs.clone().map(|[key, _]| key)) {
             return;
         }
         let tags = judge.tags(pairs);
-        if !tags.is("type", "multipolygon") && !tags.is("type", "boundary") {
+        let kind = tags.value("type").unwrap_or_default();
+        let Some(class) = tags.class.filter(|_| judge.wanted.is_relation_type(kind)) else {
             return;
-        }
-        let Some(class) = tags.class else { return };
+        };
         let role = |role: i32| {
             let role = usize::try_from(role).ok().and_then(|role| judge.texts.get(role));
             role.copied().unwrap_or_default()
@@ -141,34 +148,56 @@ impl OfBlock {
         let ways = relation.members().filter(|member| member.member_type == RelMemberType::Way);
         let mut ways: Vec<Member> = ways
             .map(|way| (way.member_id, role(way.role_sid)))
-            .filter(|(_, role)| judge.wanted.is_outline(role))
+            .filter(|(_, role)| judge.wanted.is_role(role))
             .map(|(way_id, role)| Member { way_id, is_inner: role == b"inner" })
             .collect();
         // A way that is referenced twice counts once, as in libosmium.
         ways.sort_unstable();
         ways.dedup_by_key(|way| way.way_id);
         let version = relation.info().version().unwrap_or_default();
-        let what = (AreaObject::Relation(relation.id()), version);
-        self.push(what, (Some(class), false), &tags, ways.into());
+        let what = (OsmObject::Relation(relation.id()), version);
+        self.push(what, (Some(class), false), (&tags, judge.wanted), ways.into());
+    }
+
+    /// Checks a node with these tags, given by the numbers of their texts.
+    pub(crate) fn look_at_node(
+        &mut self,
+        node: &BlockNode,
+        pairs: &[[usize; 2]],
+        judge: &OutlineJudge<'_>,
+    ) {
+        let tags = judge.tags(pairs.iter().copied());
+        if tags.class.is_none() {
+            return;
+        }
+        let what = (OsmObject::Node(node.id), node.version);
+        self.push(what, (tags.class, false), (&tags, judge.wanted), Box::default());
+        if let Some(object) = self.objects.last_mut() {
+            object.at = Some(location_from_nano(node.lon_nano_deg, node.lat_nano_deg));
+        }
     }
 
     fn push(
         &mut self,
-        (object, version): (AreaObject, i32),
+        (object, version): (OsmObject, i32),
         (class, is_coastline): (Option<u8>, bool),
-        tags: &Tags<'_>,
+        (tags, wanted): (&Tags<'_>, WantedObjects<'_>),
         ways: Box<[Member]>,
     ) {
-        let name: Box<str> = tags.value("name").unwrap_or_default().into();
+        let (values, unread) = wanted.values(&tags.plain());
+        let values: Box<[u8]> = record_bytes(values).into();
         // Each way is sorted twice more.
-        self.held_bytes += (OBJECT_BYTES + name.len() + 80 * ways.len()) as u64;
+        let own_bytes = values.len() + unread.len() + 80 * ways.len();
+        self.held_bytes += (OBJECT_BYTES + own_bytes) as u64;
         self.objects.push(ObjectRecord {
             object,
             origin: Origin::of_version(version),
             class,
             is_coastline,
-            name,
+            values,
+            unread: unread.into(),
             ways,
+            at: None,
         });
     }
 }
@@ -219,6 +248,10 @@ struct Tags<'a> {
 }
 
 impl Tags<'_> {
+    fn plain(&self) -> Vec<(&str, &str)> {
+        self.texts.iter().map(|[key, value]| (&*key.text, &*value.text)).collect()
+    }
+
     fn value(&self, key: &str) -> Option<&str> {
         self.texts.iter().find(|[own, _]| own.text == key).map(|[_, value]| &*value.text)
     }

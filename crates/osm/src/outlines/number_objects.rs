@@ -1,9 +1,14 @@
 //! Numbers objects that ways outline.
 
-use corniche_areas::AreaObject;
+use std::collections::BTreeMap;
+
+use corniche_layers::OsmObject;
 use corniche_store::{Sorter, append_record};
 
-use super::records::{MemberRecord, ObjectRecord};
+use super::{
+    records::{MemberRecord, ObjectRecord},
+    wanted::WantedObjects,
+};
 use crate::{
     AreaLoss, ExtractDefect, ReadOsmError,
     failed::Failed,
@@ -14,12 +19,15 @@ use crate::{
 
 /// Objects in the order of their numbers, and the ways that they need.
 pub(crate) struct NumberedObjects<'a> {
-    /// Each object, without its ways.
-    pub(crate) known: Spool<'a>,
-    pub(crate) count: u64,
+    /// Each way, and each relation without its ways.
+    pub(crate) known: [Spool<'a>; 2],
+    /// The numbers of ways and of relations.
+    pub(crate) counts: [u64; 2],
     /// The number of further objects that have the id of another one.
     pub(crate) duplicates: u64,
     pub(crate) members: Sorter<'a, MemberRecord>,
+    /// Values that are not of the kinds of their attributes, by key.
+    pub(crate) unread: BTreeMap<String, u64>,
 }
 
 /// Numbers the objects consecutively. Of objects with the same id, the newest is kept, or else the
@@ -28,17 +36,18 @@ pub(crate) struct NumberedObjects<'a> {
 /// Fails if one extract contains an object in two versions.
 pub(crate) fn number_objects<'a>(
     reading: &ExtractReading<'a>,
-    objects: Sorter<'a, ObjectRecord>,
+    (objects, wanted): (Sorter<'a, ObjectRecord>, WantedObjects<'_>),
     on_defect: &mut dyn FnMut(ExtractDefect),
 ) -> Result<NumberedObjects<'a>, Failed> {
     let (request, shares) = (reading.request, reading.shares());
     let mut numbered = NumberedObjects {
-        known: Spool::new(request.scratch, shares.spool),
-        count: 0,
+        known: [(); 2].map(|()| Spool::new(request.scratch, shares.spool / 2)),
+        counts: [0; 2],
         duplicates: 0,
         members: Sorter::new(request.scratch, shares.way_ids),
+        unread: BTreeMap::new(),
     };
-    let mut last: Option<(AreaObject, u32, Option<i32>)> = None;
+    let mut last: Option<(OsmObject, u32, Option<i32>)> = None;
     for (count, object) in (0..).zip(objects.finish()?) {
         reading.check_stop_at(count)?;
         let mut object = object?;
@@ -58,18 +67,24 @@ pub(crate) fn number_objects<'a>(
                 return Err(ReadOsmError::History { path: request.extract(file), reason }.into());
             }
             numbered.duplicates += 1;
-            let (is_relation, loss) = (kind == "relation", AreaLoss::Duplicate);
-            on_defect(ExtractDefect::LostArea { is_relation, id, loss });
+            let (object, loss) = (object.object, AreaLoss::Duplicate);
+            on_defect(ExtractDefect::LostArea { object, loss });
             continue;
         }
         last = Some((object.object, object.origin.file, version));
-        let ways = std::mem::take(&mut object.ways);
-        numbered.known.push(|bytes| append_record(bytes, object))?;
-        for &member in &ways {
-            let record = MemberRecord { member, object_number: numbered.count };
-            numbered.members.push(record)?;
+        for number in std::mem::take(&mut object.unread) {
+            let key = wanted.table.attributes().nth(number.into()).map(|(key, _)| key.to_owned());
+            let Some(key) = key else { continue };
+            *numbered.unread.entry(key.clone()).or_default() += 1;
+            on_defect(ExtractDefect::UnreadValue { object: object.object, key });
         }
-        numbered.count += 1;
+        let object_number = numbered.counts.iter().sum();
+        for member in std::mem::take(&mut object.ways) {
+            numbered.members.push(MemberRecord { member, object_number })?;
+        }
+        let kind = usize::from(matches!(object.object, OsmObject::Relation(_)));
+        numbered.known[kind].push(|bytes| append_record(bytes, object))?;
+        numbered.counts[kind] += 1;
     }
     Ok(numbered)
 }

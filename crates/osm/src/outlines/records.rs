@@ -1,28 +1,36 @@
-//! The records that are sorted on the way from objects to areas and boundaries.
+//! The records that are sorted on the way from objects to areas, lines and points.
 
-use corniche_areas::AreaObject;
+use std::io;
+
 use corniche_geom::LatticePoint;
-use corniche_store::SerdeRecord;
+use corniche_layers::{AttributeValue, OsmObject};
+use corniche_store::{SerdeRecord, take_record};
 use serde::{Deserialize, Serialize};
 
 use crate::{
     AreaLoss,
     location::{self, Location},
     records::Origin,
+    spool::damaged,
 };
 
-/// A way or relation with area tags, or a coastline. Ways come first; each type is sorted by id.
+/// An object of a layer, or a coastline. Nodes come before ways, and ways before relations; each
+/// type is sorted by id.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) struct ObjectRecord {
-    pub(crate) object: AreaObject,
+    pub(crate) object: OsmObject,
     pub(crate) origin: Origin,
     /// The number of its class; `None` for a coastline that is not an area.
     pub(crate) class: Option<u8>,
     pub(crate) is_coastline: bool,
-    /// The name; empty if there is none.
-    pub(crate) name: Box<str>,
+    /// The values of its attributes, as bytes; see [`take_values`].
+    pub(crate) values: Box<[u8]>,
+    /// The numbers of the attributes with values that are not of their kind.
+    pub(crate) unread: Box<[u8]>,
     /// The ways of its outline; a way references itself.
     pub(crate) ways: Box<[Member]>,
+    /// The position of a node.
+    pub(crate) at: Option<Location>,
 }
 
 /// A way of an outline.
@@ -131,6 +139,11 @@ mod differences {
     }
 }
 
+/// Returns the values of an object's attributes.
+pub(crate) fn take_values(mut bytes: &[u8]) -> io::Result<Vec<Option<AttributeValue>>> {
+    take_record(&mut bytes).ok_or_else(damaged)
+}
+
 /// Returns the point of a position on the lattice of 1e-7 degrees.
 pub(crate) fn to_point([lon, lat]: Location) -> LatticePoint {
     LatticePoint::new(lon.into(), lat.into())
@@ -143,7 +156,7 @@ pub(crate) fn degrees_of(point: LatticePoint) -> [f64; 2] {
 
 impl SerdeRecord for ObjectRecord {
     fn extra_bytes(&self) -> usize {
-        self.name.len() + size_of_val(&*self.ways) + 32
+        self.values.len() + self.unread.len() + size_of_val(&*self.ways) + 48
     }
 }
 

@@ -24,15 +24,17 @@ fn member(way_id: i64) -> Member {
 #[test]
 fn records_come_back() {
     let classes = [(Some(7), false), (None, true)];
-    let objects = [AreaObject::Way(-7), AreaObject::Relation(i64::MAX)];
+    let objects = [OsmObject::Way(-7), OsmObject::Relation(i64::MAX)];
     for (object, (class, is_coastline)) in objects.into_iter().zip(classes) {
         comes_back(&ObjectRecord {
             object,
             origin: Origin { age: 3, order: 1 << 40, version: -1, file: 2 },
             class,
             is_coastline,
-            name: "Füssen".into(),
+            values: "Füssen".as_bytes().into(),
+            unread: Box::new([0, 63]),
             ways: Box::new([1, -2, i64::MIN].map(member)),
+            at: is_coastline.then_some([i32::MIN, 7]),
         });
     }
     comes_back(&MemberRecord { member: member(-5), object_number: 300 });

@@ -11,6 +11,7 @@ use crate::{
     failed::Failed,
     find_ways::{FoundWays, WaysWanted},
     open_file::Extract,
+    outlines::found_nodes::FoundNodes,
     outlines::judge::OwnTags,
     read_request::ReadRequest,
     reading::{ExtractReading, ReadingStep},
@@ -58,7 +59,8 @@ fn keep(
         bytes: [0, file.bytes_of(&own)],
     };
     let mut found = FoundWays::new(reading);
-    found.read(reading, file, &own, &wanted, &mut [], &mut |defect| {
+    let no_layers = (&mut [][..], &mut FoundNodes::new(reading, &[]));
+    found.read(reading, file, &own, &wanted, no_layers, &mut |defect| {
         if not_kept.is_none() {
             not_kept = defects.push(&defect).err();
         }

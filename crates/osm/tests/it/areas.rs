@@ -4,21 +4,23 @@
 
 use std::fs;
 
-use crate::common::{outlined::read_areas, to_lattice};
-use corniche_areas::{Area, AreaClass, AreaObject, AreaTable};
-use corniche_osm::{AreaLoss, AreaSummary, ExtractDefect, ReadOsmError, ReadRequest};
-use corniche_presets::{area_preset, parse_area_table};
+use crate::common::{
+    outlined::{built_in, class_number, read_areas},
+    to_lattice,
+};
+use corniche_layers::{AttributeValue, OsmObject};
+use corniche_osm::{AreaLoss, AreaSummary, ExtractDefect, LayerArea, ReadOsmError, ReadRequest};
 use corniche_testing::MemoryScratch;
 use corniche_testing::pbf::{BlockBuilder, deltas, field, file, number};
 
 struct Found {
-    areas: Vec<Area>,
+    areas: Vec<LayerArea>,
     defects: Vec<ExtractDefect>,
     summary: AreaSummary,
 }
 
-fn table() -> AreaTable {
-    parse_area_table(area_preset("default").unwrap()).unwrap()
+fn class(id: &str) -> u8 {
+    class_number(&built_in("areas"), id)
 }
 
 /// Reads with a memory limit. Nodes are in a square lattice of 0.001 degrees: number 10 y + x + 1
@@ -45,9 +47,10 @@ fn read_within(bytes: &[u8], memory_bytes: u64) -> Result<Found, ReadOsmError> {
         on_progress: None,
     };
     let (mut areas, mut defects) = (Vec::new(), Vec::new());
-    let summary = read_areas(&request, &table(), &mut |area| areas.push(area), &mut |defect| {
-        defects.push(defect);
-    })?;
+    let summary =
+        read_areas(&request, &built_in("areas"), &mut |area| areas.push(area), &mut |defect| {
+            defects.push(defect);
+        })?;
     Ok(Found { areas, defects, summary })
 }
 
@@ -96,13 +99,14 @@ fn closed_ways_and_relations_are_areas() {
     );
     assert_eq!(found.defects, []);
     let [lake, forest] = &found.areas[..] else { panic!("{:?}", found.areas) };
-    assert_eq!((lake.object, lake.class), (AreaObject::Way(1), AreaClass::Water));
-    assert_eq!(lake.name.as_deref(), Some("Bodensee"));
+    assert_eq!((lake.object, lake.class), (OsmObject::Way(1), class("water")));
+    assert_eq!(lake.values, [Some(AttributeValue::Text("Bodensee".to_owned()))]);
+    assert_eq!(forest.values, [None]);
     assert!((lake.area_m2 / cell_m2() - 1.0).abs() < 1e-4, "{}", lake.area_m2);
-    assert_eq!((forest.object, forest.class), (AreaObject::Relation(9), AreaClass::Forest));
+    assert_eq!((forest.object, forest.class), (OsmObject::Relation(9), class("forest")));
     assert_eq!(forest.polygons[0].holes().len(), 1);
     assert!((forest.area_m2 / cell_m2() - 15.0).abs() < 1e-2, "{}", forest.area_m2 / cell_m2());
-    let kept = found.summary.kept[&AreaClass::Forest];
+    let kept = found.summary.kept[&class("forest")];
     assert_eq!((kept.areas, kept.polygons, kept.points), (1, 1, 8));
 }
 
@@ -132,8 +136,8 @@ fn each_object_is_an_area_or_lost_for_a_reason() {
             (14, &[("type", "route"), ("landuse", "forest")], &[2]),
         ],
     );
-    let way = |id, loss| ExtractDefect::LostArea { is_relation: false, id, loss };
-    let relation = |id, loss| ExtractDefect::LostArea { is_relation: true, id, loss };
+    let way = |id, loss| ExtractDefect::LostArea { object: OsmObject::Way(id), loss };
+    let relation = |id, loss| ExtractDefect::LostArea { object: OsmObject::Relation(id), loss };
     let mut defects = found.defects;
     defects.retain(|defect| {
         matches!(defect, ExtractDefect::LostArea { .. } | ExtractDefect::MissingWays { .. })
@@ -153,8 +157,8 @@ fn each_object_is_an_area_or_lost_for_a_reason() {
             relation(15, AreaLoss::MissingWays),
         ]
     );
-    let kept: Vec<AreaObject> = found.areas.iter().map(|area| area.object).collect();
-    assert_eq!(kept, [AreaObject::Way(2), AreaObject::Relation(13)]);
+    let kept: Vec<OsmObject> = found.areas.iter().map(|area| area.object).collect();
+    assert_eq!(kept, [OsmObject::Way(2), OsmObject::Relation(13)]);
     assert_eq!(found.summary.objects, 11);
 }
 
@@ -233,11 +237,11 @@ fn coastlines_are_handed_on_in_order_of_their_points() {
         to_lattice(&[[9.5 + 0.001 * (n % 10) as f64, 47.0 + 0.001 * (n / 10) as f64]])[0].unwrap()
     };
     assert_eq!(coasts[0].points, [1, 2, 12].map(lattice));
-    let objects: Vec<AreaObject> = found.areas.iter().map(|area| area.object).collect();
-    assert_eq!(objects, [AreaObject::Way(2), AreaObject::Way(5)]);
+    let objects: Vec<OsmObject> = found.areas.iter().map(|area| area.object).collect();
+    assert_eq!(objects, [OsmObject::Way(2), OsmObject::Way(5)]);
     // Coastlines that are not areas do not count as objects, unless they are lost.
     assert_eq!(found.summary.objects, 4);
-    let way = |id, loss| ExtractDefect::LostArea { is_relation: false, id, loss };
+    let way = |id, loss| ExtractDefect::LostArea { object: OsmObject::Way(id), loss };
     let expected = [way(3, AreaLoss::OpenWay), way(4, AreaLoss::MissingNodes)];
     assert_eq!(found.defects, expected);
 }

@@ -9,20 +9,25 @@ use std::{
     process::Command,
 };
 
-use crate::common::{default_table, outlined::read_areas, to_lattice};
-use corniche_areas::{Area, AreaObject, AreaTable, Polygon};
+use crate::common::{
+    default_table,
+    outlined::{built_in, read_areas},
+    to_lattice,
+};
+use corniche_areas::Polygon;
 use corniche_geom::wgs84;
-use corniche_osm::{AreaLoss, AreaSummary, ExtractDefect, ReadRequest};
-use corniche_presets::{area_preset, parse_area_table};
+use corniche_layers::{LayerTable, OsmObject};
+use corniche_osm::{AreaLoss, AreaSummary, ExtractDefect, LayerArea, ReadRequest};
 use corniche_testing::{MemoryScratch, real_data};
 use serde_json::{Value, json};
 
 /// Returns the areas of osmium, m², by object: all closed ways with a tag of the table, and all
 /// relations.
-fn areas_of_osmium(extract: &Path, table: &AreaTable) -> Option<BTreeMap<AreaObject, f64>> {
+fn areas_of_osmium(extract: &Path, table: &LayerTable) -> Option<BTreeMap<OsmObject, f64>> {
     let folder = tempfile::tempdir().unwrap();
     let [config, output] = ["config.json", "areas.geojsonseq"].map(|name| folder.path().join(name));
-    let tags: Vec<String> = table.tags().map(|(key, value, _)| format!("{key}={value}")).collect();
+    // `export` decides by key which closed ways are areas; the table's classes are compared below.
+    let tags = table.needed_keys();
     let attributes = json!({ "type": true, "id": true });
     let settings = json!({ "attributes": attributes, "linear_tags": false, "area_tags": tags });
     fs::write(&config, settings.to_string()).unwrap();
@@ -50,8 +55,8 @@ fn areas_of_osmium(extract: &Path, table: &AreaTable) -> Option<BTreeMap<AreaObj
         }
         let id = properties["@id"].as_i64().unwrap();
         let object = match properties["@type"].as_str().unwrap() {
-            "way" => AreaObject::Way(id),
-            _ => AreaObject::Relation(id),
+            "way" => OsmObject::Way(id),
+            _ => OsmObject::Relation(id),
         };
         let area_m2 = polygons_of(&feature["geometry"]).iter().map(|rings| area_m2(rings)).sum();
         assert_eq!(areas.insert(object, area_m2), None, "{object}");
@@ -73,7 +78,10 @@ fn area_m2(rings: &[Vec<[f64; 2]>]) -> f64 {
     rings.iter().map(of_ring).reduce(|outer, hole| outer - hole).unwrap()
 }
 
-fn own_areas(extract: &Path, table: &AreaTable) -> (Vec<Area>, Vec<ExtractDefect>, AreaSummary) {
+fn own_areas(
+    extract: &Path,
+    table: &LayerTable,
+) -> (Vec<LayerArea>, Vec<ExtractDefect>, AreaSummary) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
     let scratch = MemoryScratch::default();
     let request = ReadRequest {
@@ -102,7 +110,7 @@ fn own_areas(extract: &Path, table: &AreaTable) -> (Vec<Area>, Vec<ExtractDefect
 /// were mended, or lack ways.
 #[test]
 fn areas_are_those_of_osmium() {
-    let table = parse_area_table(area_preset("default").unwrap()).unwrap();
+    let table = built_in("areas");
     for name in [
         "liechtenstein/liechtenstein-2013-08-03.osm.pbf",
         "liechtenstein/liechtenstein-2021-10-28.osm.pbf",
@@ -153,7 +161,7 @@ fn areas_are_those_of_osmium() {
             println!("{}: {:?}", area.object, defects.iter().find(of_it));
             assert!(excused.contains(&area.object.parts()), "{name}: {}", area.object);
         }
-        let own: BTreeSet<AreaObject> = areas.iter().map(|area| area.object).collect();
+        let own: BTreeSet<OsmObject> = areas.iter().map(|area| area.object).collect();
         let only_osmium: Vec<_> = expected.keys().filter(|object| !own.contains(object)).collect();
         let km2 = |m2: f64| m2 / 1e6;
         println!(
@@ -169,7 +177,7 @@ fn areas_are_those_of_osmium() {
             summary.lost,
         );
         assert!(worst < 1e-9, "{name}: {worst}");
-        assert_eq!(only_osmium, Vec::<&AreaObject>::new(), "{name}");
+        assert_eq!(only_osmium, Vec::<&OsmObject>::new(), "{name}");
         assert!(
             areas.iter().flat_map(|area| &area.polygons).all(|p: &Polygon| p.doubled_area() > 0)
         );

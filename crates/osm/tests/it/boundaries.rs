@@ -4,36 +4,30 @@
 
 use std::fs;
 
-use crate::common::{outlined::check_lines, to_lattice};
-use corniche_areas::BoundaryClass;
-use corniche_osm::{
-    ClassedLine, ExtractDefect, LayerSink, Layers, LineLoss, LineSummary, ReadRequest, read_extract,
+use crate::common::{
+    outlined::{built_in, read_lines},
+    to_lattice,
 };
+use corniche_layers::{AttributeValue, LayerTable};
+use corniche_osm::{ExtractDefect, LayerLine, LineLoss, LineSummary, ReadRequest};
+use corniche_presets::parse_layer_table;
 use corniche_testing::MemoryScratch;
 use corniche_testing::pbf::{BlockBuilder, file};
 
 #[derive(Default)]
 struct Found {
-    boundaries: Vec<ClassedLine>,
+    boundaries: Vec<LayerLine>,
     defects: Vec<ExtractDefect>,
     summary: LineSummary,
-    names: Vec<(i64, String, String)>,
-}
-
-impl LayerSink<ClassedLine, LineSummary> for Found {
-    fn take(&mut self, line: ClassedLine) {
-        self.boundaries.push(line);
-    }
-
-    fn end(&mut self, summary: LineSummary) {
-        check_lines(&summary);
-        self.summary = summary;
-    }
 }
 
 /// Reads with a memory limit. Nodes are in a square lattice of 0.001 degrees: number 10 y + x + 1
 /// at (x, y).
 fn read(bytes: &[u8], memory_bytes: u64) -> Found {
+    read_by(&built_in("boundaries"), bytes, memory_bytes)
+}
+
+fn read_by(table: &LayerTable, bytes: &[u8], memory_bytes: u64) -> Found {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("made.osm.pbf");
     fs::write(&path, bytes).unwrap();
@@ -54,17 +48,10 @@ fn read(bytes: &[u8], memory_bytes: u64) -> Found {
         scratch: &scratch,
         on_progress: None,
     };
-    let (mut found, mut defects, mut names) = (Found::default(), Vec::new(), Vec::new());
-    let mut on_name = |way_id, class: BoundaryClass, name: &str| {
-        names.push((way_id, class.to_string(), name.to_owned()));
-    };
-    let layers = Layers {
-        boundaries: Some(&mut found),
-        boundary_names: Some(&mut on_name),
-        ..Layers::default()
-    };
-    read_extract(&request, layers, &mut |defect| defects.push(defect), &|| false).unwrap();
-    Found { defects, names, ..found }
+    let (mut boundaries, mut defects) = (Vec::new(), Vec::new());
+    let sink = &mut |line| boundaries.push(line);
+    let summary = read_lines(&request, table, sink, &mut |defect| defects.push(defect)).unwrap();
+    Found { boundaries, defects, summary }
 }
 
 type Tags<'a> = &'a [(&'a str, &'a str)];
@@ -89,8 +76,14 @@ const DISTRICT: Tags<'_> =
     &[("type", "boundary"), ("boundary", "administrative"), ("admin_level", "6")];
 const PARK: Tags<'_> = &[("type", "boundary"), ("boundary", "protected_area")];
 
-fn classes(found: &Found) -> Vec<(i64, BoundaryClass)> {
-    found.boundaries.iter().map(|line| (line.way_id, line.class)).collect()
+fn classes(found: &Found) -> Vec<(i64, String)> {
+    let table = built_in("boundaries");
+    let class = |line: &LayerLine| table.classes()[usize::from(line.class)].id.clone();
+    found.boundaries.iter().map(|line| (line.way_id, class(line))).collect()
+}
+
+fn expected(classes: &[(i64, &str)]) -> Vec<(i64, String)> {
+    classes.iter().map(|&(way_id, class)| (way_id, class.to_owned())).collect()
 }
 
 #[test]
@@ -103,10 +96,7 @@ fn a_shared_border_comes_once_in_the_most_important_class() {
         (12, PARK, &[(3, "outer"), (2, "outer")]),
     ];
     let found = read(&made(&ways, &relations), 1 << 24);
-    assert_eq!(
-        classes(&found),
-        [(1, BoundaryClass::Admin2), (2, BoundaryClass::Admin2), (3, BoundaryClass::Admin6)]
-    );
+    assert_eq!(classes(&found), expected(&[(1, "admin-2"), (2, "admin-2"), (3, "admin-6")]));
     assert!(found.defects.is_empty(), "{:?}", found.defects);
     assert_eq!((found.summary.objects, found.summary.ways), (3, 3));
 }
@@ -126,39 +116,68 @@ fn ways_with_tags_count_by_themselves_and_other_roles_do_not() {
         ),
     ];
     let found = read(&made(&ways, &relations), 1 << 24);
-    assert_eq!(classes(&found), [(1, BoundaryClass::Admin2), (2, BoundaryClass::Admin8)]);
+    assert_eq!(classes(&found), expected(&[(1, "admin-2"), (2, "admin-8")]));
 }
 
-/// An open way bounds nothing by itself, and a relation that gives it no class is not bounded by
-/// it.
+/// Values come from the object that gives the class: the way itself before relations, and of
+/// relations of one class the one with the lowest id.
 #[test]
-fn names_are_those_of_what_a_way_bounds() {
+fn values_are_those_of_the_object_that_gives_the_class() {
     let named = |tags: Tags<'static>, name| [tags, &[("name", name)]].concat();
-    let own = |name| named(&[("boundary", "administrative"), ("admin_level", "8")], name);
-    let (open, closed) = (own("a line"), own("an enclave"));
-    let ways: [(i64, Tags<'_>, &[i64]); 3] =
-        [(1, &open, &[1, 2]), (2, &closed, &[2, 3, 13, 2]), (3, &[], &[5, 6])];
+    let own = named(&[("boundary", "administrative"), ("admin_level", "2")], "own");
     let (country, district) = (named(COUNTRY, "A"), named(DISTRICT, "B"));
-    let other = named(&[("type", "boundary"), ("boundary", "postal_code")], "12345");
+    let other = [named(COUNTRY, "C"), vec![("disputed", "perhaps")]].concat();
+    let ways: [(i64, Tags<'_>, &[i64]); 4] =
+        [(1, &own, &[1, 2]), (2, &[], &[2, 3]), (3, &[], &[5, 6]), (4, &[], &[7, 8])];
     let relations: [(i64, Tags<'_>, Members<'_>); 4] = [
-        (10, &country, &[(1, "outer"), (2, "inner"), (9, "outer")]),
-        (11, &district, &[(3, ""), (1, "outer"), (2, "label")]),
-        (12, PARK, &[(1, "outer")]),
-        (13, &other, &[(1, "outer"), (3, "outer")]),
+        (9, &district, &[(1, ""), (2, ""), (3, "")]),
+        (10, &country, &[(1, ""), (2, "")]),
+        (11, &other, &[(2, ""), (4, "")]),
+        (12, PARK, &[(4, "")]),
     ];
-    let found = read(&made(&ways, &relations), 1 << 24);
-    let names: Vec<(i64, &str, &str)> =
-        found.names.iter().map(|(way_id, class, name)| (*way_id, &**class, &**name)).collect();
-    assert_eq!(
-        names,
-        [
-            (1, "admin-2", "A"),
-            (1, "admin-6", "B"),
-            (2, "admin-8", "an enclave"),
-            (2, "admin-2", "A"),
-            (3, "admin-6", "B"),
-        ]
-    );
+    let bytes = made(&ways, &relations);
+    for memory_bytes in [1 << 24, 1 << 10] {
+        let found = read(&bytes, memory_bytes);
+        let names: Vec<(i64, &str)> = found
+            .boundaries
+            .iter()
+            .map(|line| match &line.values[..] {
+                // Disputed, maritime and name, in the order of their keys.
+                [None, None, Some(AttributeValue::Text(name))] => (line.way_id, &**name),
+                values => panic!("{values:?}"),
+            })
+            .collect();
+        assert_eq!(names, [(1, "own"), (2, "A"), (3, "B"), (4, "C")]);
+        let unread = ExtractDefect::UnreadValue {
+            object: corniche_layers::OsmObject::Relation(11),
+            key: "disputed".to_owned(),
+        };
+        assert_eq!(found.defects, [unread]);
+        assert_eq!(found.summary.unread, [("disputed".to_owned(), 1)].into());
+    }
+}
+
+/// A layer without `members` contains no ways of relations, and `members` without `roles` accepts
+/// every role.
+#[test]
+fn members_are_those_of_the_table() {
+    let ways: [(i64, Tags<'_>, &[i64]); 3] =
+        [(1, &[("route", "hiking")], &[1, 2]), (2, &[], &[2, 3]), (3, &[], &[5, 6])];
+    let route: Tags<'_> = &[("type", "route"), ("route", "hiking")];
+    let relations: [(i64, Tags<'_>, Members<'_>); 2] = [
+        (9, route, &[(2, "forward")]),
+        (10, &[("type", "superroute"), ("route", "hiking")], &[(3, "")]),
+    ];
+    let bytes = made(&ways, &relations);
+    let of_table = |members: &str| {
+        let class = "[[class]]\nid = \"hiking\"\ntags.route = \"hiking\"";
+        let text = format!("id = \"paths\"\ngeometry = \"line\"\n{members}\n{class}");
+        let found = read_by(&parse_layer_table(&text).unwrap(), &bytes, 1 << 24);
+        found.boundaries.iter().map(|line| line.way_id).collect::<Vec<i64>>()
+    };
+    assert_eq!(of_table(""), [1]);
+    assert_eq!(of_table("members = { types = [\"route\"] }"), [1, 2]);
+    assert_eq!(of_table("members = { types = [\"route\"], roles = [\"\"] }"), [1]);
 }
 
 /// The fixed points are the ends, and the points where two boundaries meet.

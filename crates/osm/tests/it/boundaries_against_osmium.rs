@@ -4,34 +4,39 @@
 
 use std::{collections::BTreeMap, path::Path, process::Command};
 
-use crate::common::{default_table, outlined::read_boundaries, to_lattice};
-use corniche_areas::BoundaryClass;
+use crate::common::{
+    default_table,
+    outlined::{built_in, read_lines},
+    to_lattice,
+};
+use corniche_layers::LayerTable;
 use corniche_osm::{ExtractDefect, LineLoss, ReadRequest};
 use corniche_testing::{MemoryScratch, real_data};
 
-/// Returns the class that tags give, implemented independently: `Tkey=value,key=value`.
-fn class_of(fields: &str) -> Option<BoundaryClass> {
+/// Returns the number of the class that tags give, implemented independently:
+/// `Tkey=value,key=value`.
+fn class_of(table: &LayerTable, fields: &str) -> Option<u8> {
     let tags: BTreeMap<&str, &str> =
         fields.split(',').filter_map(|tag| tag.split_once('=')).collect();
-    match *tags.get("boundary")? {
-        "administrative" => {
-            BoundaryClass::from_name(&format!("admin-{}", tags.get("admin_level")?))
-        }
-        "protected_area" | "national_park" => Some(BoundaryClass::Protected),
-        _ => None,
-    }
+    let id = match *tags.get("boundary")? {
+        "administrative" => format!("admin-{}", tags.get("admin_level")?),
+        "protected_area" | "national_park" => "protected".to_owned(),
+        _ => return None,
+    };
+    let number = table.classes().iter().position(|class| class.id == id)?;
+    Some(number as u8)
 }
 
 /// Returns for each way its class, and whether the extract contains it.
-fn of_osmium(extract: &Path) -> Option<BTreeMap<i64, (BoundaryClass, bool)>> {
+fn of_osmium(table: &LayerTable, extract: &Path) -> Option<BTreeMap<i64, (u8, bool)>> {
     let mut command = Command::new("osmium");
     command.args(["cat", "-f", "opl", "-o", "-", "-t", "way", "-t", "relation"]).arg(extract);
     let done = command.output().ok()?;
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
     let text = String::from_utf8(done.stdout).unwrap();
-    let mut ways: BTreeMap<i64, BoundaryClass> = BTreeMap::new();
+    let mut ways: BTreeMap<i64, u8> = BTreeMap::new();
     let mut present = std::collections::BTreeSet::new();
-    let mut name = |way_id: i64, class: BoundaryClass| {
+    let mut name = |way_id: i64, class: u8| {
         let known = ways.entry(way_id).or_insert(class);
         *known = (*known).min(class);
     };
@@ -43,7 +48,7 @@ fn of_osmium(extract: &Path) -> Option<BTreeMap<i64, (BoundaryClass, bool)>> {
         let field = |letter: char| {
             fields.iter().find(|field| field.starts_with(letter)).map_or("", |field| &field[1..])
         };
-        let class = class_of(field('T'));
+        let class = class_of(table, field('T'));
         if object.starts_with('w') {
             present.insert(id);
             if let Some(class) = class {
@@ -65,6 +70,7 @@ fn of_osmium(extract: &Path) -> Option<BTreeMap<i64, (BoundaryClass, bool)>> {
 
 #[test]
 fn boundaries_are_the_ways_that_osmium_lists() {
+    let table = built_in("boundaries");
     for name in [
         "liechtenstein/liechtenstein-2013-08-03.osm.pbf",
         "liechtenstein/liechtenstein-2021-10-28.osm.pbf",
@@ -72,7 +78,7 @@ fn boundaries_are_the_ways_that_osmium_lists() {
         "swellendam/swellendam-roads.osm.pbf",
     ] {
         let Some(extract) = real_data(name) else { return };
-        let Some(expected) = of_osmium(&extract) else {
+        let Some(expected) = of_osmium(&table, &extract) else {
             return corniche_testing::skip("there is no program osmium (Debian: osmium-tool)");
         };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
@@ -91,8 +97,9 @@ fn boundaries_are_the_ways_that_osmium_lists() {
             on_progress: None,
         };
         let (mut kept, mut lost) = (BTreeMap::new(), BTreeMap::new());
-        let summary = read_boundaries(
+        let summary = read_lines(
             &request,
+            &table,
             &mut |boundary| {
                 kept.insert(boundary.way_id, boundary.class);
             },

@@ -12,6 +12,8 @@ mod history;
 mod hostile;
 mod losses;
 mod one_reading;
+mod points;
+mod points_against_osmium;
 mod real_data;
 mod seeds;
 mod several;

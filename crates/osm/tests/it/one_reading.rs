@@ -6,18 +6,19 @@
 use std::{cell::Cell, fs, io::Cursor, path::Path};
 
 use crate::common::{
-    CountedBlobs, Gathered, POOL, gather, request, roads::read_roads_from, to_lattice,
+    CountedBlobs, Gathered, POOL, gather, outlined::built_in, request, roads::read_roads_from,
+    to_lattice,
 };
-use corniche_areas::{Area, AreaTable};
 use corniche_osm::{
-    AreaSummary, ClassedLine, ExtractDefect, ExtractSummary, LayerSink, Layers, LineSummary,
-    ReadOsmError, ReadRequest, read_extract, read_extract_from,
+    AreaSummary, ExtractDefect, ExtractSummary, LayerArea, LayerLine, LayerPoint, LayerReceiver,
+    LayerSink, Layers, LineSummary, PointSummary, ReadOsmError, ReadRequest, read_extract,
+    read_extract_from,
 };
-use corniche_presets::{area_preset, parse_area_table};
+use corniche_presets::parse_layer_table;
 use corniche_roads::Road;
 use corniche_testing::MemoryScratch;
 use corniche_testing::{
-    pbf::{BlockBuilder, plain_header, raw},
+    pbf::{BlockBuilder, TaggedNode, plain_header, raw},
     real_data, sample,
 };
 use proptest::prelude::*;
@@ -25,44 +26,60 @@ use proptest::prelude::*;
 /// All layers of an extract, and the defects of each.
 #[derive(Debug, Default, PartialEq)]
 struct All {
-    areas: (Vec<Area>, Option<AreaSummary>),
-    boundaries: (Vec<ClassedLine>, Option<LineSummary>),
+    areas: (Vec<LayerArea>, Option<AreaSummary>),
+    boundaries: (Vec<LayerLine>, Option<LineSummary>),
+    points: (Vec<LayerPoint>, Option<PointSummary>),
     roads: (Vec<Road>, Option<ExtractSummary>),
     defects: Vec<ExtractDefect>,
 }
 
 #[derive(Clone, Copy, PartialEq)]
 struct Which {
-    areas: bool,
-    boundaries: bool,
+    /// Areas, boundaries, points.
+    layers: [bool; 3],
     roads: bool,
 }
 
-const ALL: Which = Which { areas: true, boundaries: true, roads: true };
-const NONE: Which = Which { areas: false, boundaries: false, roads: false };
+const ALL: Which = Which { layers: [true; 3], roads: true };
+const NONE: Which = Which { layers: [false; 3], roads: false };
 
-fn table() -> AreaTable {
-    parse_area_table(area_preset("default").unwrap()).unwrap()
-}
+/// Trees and shops of real extracts; springs and lakes of generated ones.
+const POINTS: &str = r#"
+id = "places"
+geometry = "point"
+attributes = { name = "text" }
+[[class]]
+id = "water"
+tags = { natural = ["spring", "water"] }
+[[class]]
+id = "place"
+tags = [{ natural = "tree" }, { shop = true }, { place = true }]
+"#;
 
 fn with_layers(
     which: Which,
     read: impl FnOnce(Layers<'_>, &mut dyn FnMut(ExtractDefect)) -> Result<(), ReadOsmError>,
 ) -> Result<All, String> {
-    let table = table();
-    let (mut areas, mut boundaries, mut roads) =
-        (Gathered::default(), Gathered::default(), Gathered::default());
+    let tables = ["areas", "boundaries"].map(built_in);
+    let places = parse_layer_table(POINTS).unwrap();
+    let (mut areas, mut boundaries) = (Gathered::default(), Gathered::default());
+    let (mut points, mut roads) = (Gathered::default(), Gathered::default());
     let mut defects = Vec::new();
+    let all = [
+        (&tables[0], LayerReceiver::Areas(&mut areas)),
+        (&tables[1], LayerReceiver::Lines(&mut boundaries)),
+        (&places, LayerReceiver::Points(&mut points)),
+    ];
+    let wanted = all.into_iter().zip(which.layers).filter(|(_, is_wanted)| *is_wanted);
     let layers = Layers {
-        areas: which.areas.then_some((&table, &mut areas as &mut dyn LayerSink<_, _>)),
-        boundaries: which.boundaries.then_some(&mut boundaries as &mut dyn LayerSink<_, _>),
-        boundary_names: None,
+        layers: wanted.map(|(layer, _)| layer).collect(),
         roads: which.roads.then_some(&mut roads as &mut dyn LayerSink<_, _>),
     };
     read(layers, &mut |defect| defects.push(defect)).map_err(|error| error.to_string())?;
     Ok(All {
         areas: (areas.objects, areas.summary),
         boundaries: (boundaries.objects, boundaries.summary),
+        points: (points.objects, points.summary),
         roads: (roads.objects, roads.summary),
         defects,
     })
@@ -80,11 +97,13 @@ fn read(bytes: &[u8], memory_bytes: u64, which: Which) -> Result<All, String> {
 /// Reads each layer alone: together they must equal all layers read at once, with defects in the
 /// order of the layers.
 fn each_alone(read: impl Fn(Which) -> Result<All, String>) -> Result<All, String> {
-    let areas = read(Which { areas: true, ..NONE })?;
-    let boundaries = read(Which { boundaries: true, ..NONE })?;
+    let areas = read(Which { layers: [true, false, false], ..NONE })?;
+    let boundaries = read(Which { layers: [false, true, false], ..NONE })?;
+    let points = read(Which { layers: [false, false, true], ..NONE })?;
     let roads = read(Which { roads: true, ..NONE })?;
-    let defects = [areas.defects, boundaries.defects, roads.defects].concat();
-    Ok(All { areas: areas.areas, boundaries: boundaries.boundaries, roads: roads.roads, defects })
+    let defects = [areas.defects, boundaries.defects, points.defects, roads.defects].concat();
+    let (areas, boundaries) = (areas.areas, boundaries.boundaries);
+    Ok(All { areas, boundaries, points: points.points, roads: roads.roads, defects })
 }
 
 #[test]
@@ -139,7 +158,12 @@ fn no_blob_of_a_sorted_extract_is_unpacked_oftener_for_more_layers() {
             .unwrap();
         let once = blobs.get();
         let sought = u64::from(once.ilog2()) + 1;
-        for which in [ALL, Which { areas: true, ..NONE }, Which { boundaries: true, ..NONE }] {
+        for which in [
+            ALL,
+            Which { layers: [true, false, false], ..NONE },
+            Which { layers: [false, true, false], ..NONE },
+            Which { layers: [false, false, true], ..NONE },
+        ] {
             let found = blobs_read(&bytes, which);
             assert!(found <= once + sought, "{found} blobs for all layers, {once} for roads");
         }
@@ -174,12 +198,20 @@ fn made_block(kind: Kind, blob: i64) -> BlockBuilder {
         let [east, north] =
             [95_000_000 + 10_000 * (square % 50), 470_000_000 + 10_000 * (square / 50)];
         match kind {
-            Kind::Nodes => block.dense(&[
-                (node, north, east),
-                (node + 1, north, east + 5000),
-                (node + 2, north + 5000, east + 5000),
-                (node + 3, north + 5000, east),
-            ]),
+            Kind::Nodes => {
+                let tagged = |(id, at)| TaggedNode {
+                    id,
+                    at,
+                    tags: if id % 5 == 0 { &[("natural", "spring")] } else { &[] },
+                };
+                let corners = [
+                    (node, [north, east]),
+                    (node + 1, [north, east + 5000]),
+                    (node + 2, [north + 5000, east + 5000]),
+                    (node + 3, [north + 5000, east]),
+                ];
+                block.tagged(&corners.map(tagged), square % 4 > 0);
+            }
             Kind::Ways => {
                 let way = 1 + 3 * square;
                 block.way(way, &[("highway", "track")], &[node, node + 1, node + 2]);
@@ -213,6 +245,7 @@ fn an_extract_in_any_order_gives_the_same() {
     assert_eq!(expected.roads.0.len(), 96);
     assert_eq!(expected.areas.0.len(), 96 / 2 + 96 / 3);
     assert_eq!(expected.boundaries.0.len(), 96 + 48);
+    assert_eq!(expected.points.0.len(), 4 * 96 / 5 + 96 / 3);
     for order in [
         [Nodes, Ways, Relations],
         [Nodes, Relations, Ways],
@@ -260,6 +293,7 @@ fn several_extracts_give_the_same() {
         .unwrap();
         assert!(found.roads.0 == whole.roads.0 && found.areas == whole.areas);
         assert_eq!(found.boundaries, whole.boundaries);
+        assert_eq!(found.points, whole.points);
         assert_eq!(found.defects, whole.defects);
     }
 }

@@ -1,28 +1,17 @@
-//! The areas of the extract, split by tile: each tile of each level gets a section with the areas
-//! inside it.
+//! Areas of a layer, split by tile: each tile of each level gets the areas inside it.
 
-use corniche_areas::{
-    Area, AreaClass, AreaObject, Axis, OutlineError, Polygon, coarsen, cut_out, divide_all,
-    intersection,
-};
-use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, LatticeRegion, TileId};
-use corniche_osm::{AreaLoss, AreaSummary};
-use corniche_spec::{Defect, artifacts::damaged, data_tiles::DataTiles, extent::AreaExtent};
-use corniche_store::{Artifacts, ScratchSpace, record_bytes, take_record};
-use corniche_tileset::{AreaRecord, AreaRings, encode_areas};
-use corniche_work::Stage;
+use corniche_areas::{Axis, OutlineError, Polygon, coarsen, cut_out, divide_all, intersection};
+use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, LatticeRegion, Projection, TileId};
+use corniche_osm::{AreaSummary, ExtractDefect, LayerArea};
+use corniche_spec::{data_tiles::DataTiles, extent::AreaExtent};
+use corniche_tileset::{AreaPolygon, LayerShape};
 
 use super::sea::SeaPlace;
-use crate::{
-    ExtractError,
-    layers::{
-        SectionLayer,
-        layer_writer::{LayerContext, LayerEncoder, TileSplitting},
-        parts_by_tile::PartsByTile,
-        plan_splitting::PlanSplitting,
-        tile_section::AreaTotals,
-        tile_section::TileSection,
-    },
+use crate::layers::{
+    layer_writer::TileSplitting,
+    object_layer::{ObjectSplitting, SplitObject, value_points},
+    plan_splitting::PlanSplitting,
+    tile_section::ObjectMeasure,
 };
 
 /// Splits areas by tile.
@@ -30,15 +19,20 @@ pub(crate) struct AreaSplitting<'a> {
     pub plan: PlanSplitting<'a>,
     /// The extent to which areas are clipped.
     pub extent: &'a AreaExtent,
+    /// WGS84 ⇄ the grid's working CRS, for the size of the sea.
+    pub projection: &'a (dyn Projection + Sync),
 }
 
 impl AreaSplitting<'_> {
     /// Returns the parts of an area by tile. On coarse levels, polygons smaller than a cell are
     /// skipped.
-    pub(crate) fn split(&self, area: &Area) -> Result<Vec<(TileId, AreaRecord)>, OutlineError> {
+    pub(crate) fn split(
+        &self,
+        area: &LayerArea,
+    ) -> Result<Vec<(TileId, Vec<AreaPolygon>)>, OutlineError> {
         let PlanSplitting { frame, data, polygon, .. } = self.plan;
         let mut parts = Vec::new();
-        for level in 0..=frame.max_level() {
+        for level in self.plan.levels_of(area.class) {
             let step = self.plan.step(level);
             let mut coarse = Vec::new();
             for polygon in &area.polygons {
@@ -57,7 +51,8 @@ impl AreaSplitting<'_> {
             let mut tiles = Vec::new();
             let wanted = DataTilesOfLevel { frame, data: data.above(level), level };
             wanted.divide(TileId::ROOT, coarse, &mut tiles)?;
-            parts.extend(tiles.into_iter().map(|(id, polygons)| (id, record(area, &polygons))));
+            let rings = |polygons: Vec<Polygon>| polygons.iter().map(rings_of).collect();
+            parts.extend(tiles.into_iter().map(|(id, polygons)| (id, rings(polygons))));
         }
         Ok(parts)
     }
@@ -131,147 +126,44 @@ fn meets(polygon: &Polygon, bounds: &LatticeBounds) -> bool {
     LatticeBounds::around(polygon.outer().points()).is_some_and(|own| own.intersects(bounds))
 }
 
-fn record(area: &Area, polygons: &[Polygon]) -> AreaRecord {
-    let rings = |polygon: &Polygon| AreaRings {
-        rings: polygon.rings().map(|ring| ring.points().to_vec()).collect(),
-    };
-    AreaRecord {
-        object: area.object,
-        class: area.class,
-        name: area.name.clone().unwrap_or_default(),
-        polygons: polygons.iter().map(rings).collect(),
-    }
-}
-
-/// Receives areas in the order in which they are read.
-pub(crate) struct AreaLayer<'a> {
-    splitting: AreaSplitting<'a>,
-    sea: SeaPlace<'a>,
-    store: &'a dyn Artifacts,
-    parts: PartsByTile<'a, u64>,
-    /// Areas that were too complex to split, with their true area.
-    intricate: Vec<(AreaObject, AreaClass, f64)>,
-}
-
-impl<'a> AreaLayer<'a> {
-    pub(crate) fn new(
-        (splitting, sea): (AreaSplitting<'a>, SeaPlace<'a>),
-        (store, scratch): (&'a dyn Artifacts, &'a dyn ScratchSpace),
-        memory_bytes: u64,
-    ) -> Self {
-        let parts = PartsByTile::new(scratch, memory_bytes);
-        Self { splitting, sea, store, parts, intricate: Vec::new() }
-    }
-}
-
-/// An area that has been split.
-pub(crate) struct SplitArea {
-    number: u64,
-    object: AreaObject,
-    class: AreaClass,
-    area_m2: f64,
-    parts: Result<Vec<(TileId, Vec<u8>)>, OutlineError>,
-}
-
 impl TileSplitting for AreaSplitting<'_> {
-    type Object = Area;
-    type Split = SplitArea;
+    type Object = LayerArea;
+    type Split = SplitObject;
 
-    fn points(area: &Area) -> usize {
+    fn points(area: &LayerArea) -> usize {
         let rings = area.polygons.iter().flat_map(Polygon::rings);
-        rings.map(|ring| ring.points().len()).sum()
+        rings.map(|ring| ring.points().len()).sum::<usize>() + value_points(&area.values)
     }
 
-    fn split_object(&self, number: u64, area: Area) -> SplitArea {
-        let Area { object, class, area_m2, .. } = area;
-        let parts = self
-            .split(&area)
-            .map(|parts| parts.into_iter().map(|(id, part)| (id, record_bytes(part))).collect());
-        SplitArea { number, object, class, area_m2, parts }
+    fn split_object(&self, _: u64, area: LayerArea) -> SplitObject {
+        let parts = self.split(&area);
+        let shape = |(id, polygons): (TileId, Vec<AreaPolygon>)| (id, LayerShape::Area(polygons));
+        let shapes = parts.map(|parts| parts.into_iter().map(shape).collect());
+        let measure = ObjectMeasure { area_m2: area.area_m2, ..ObjectMeasure::default() };
+        SplitObject::new((area.class, area.object), &area.values, measure, shapes)
     }
 }
 
-impl<'a> LayerEncoder for AreaLayer<'a> {
-    type Splitting = AreaSplitting<'a>;
+impl ObjectSplitting for AreaSplitting<'_> {
     type Summary = AreaSummary;
-    type Done = AreaTotals;
 
-    fn stage(&self) -> Stage {
-        SectionLayer::Areas.stage()
+    fn plan(&self) -> &PlanSplitting<'_> {
+        &self.plan
     }
 
-    fn splitting(&self) -> &AreaSplitting<'a> {
-        &self.splitting
-    }
-
-    fn take(&mut self, split: SplitArea) -> Result<(), ExtractError> {
-        let SplitArea { number, object, class, area_m2, parts } = split;
-        let Ok(parts) = parts else {
-            self.intricate.push((object, class, area_m2));
-            return Ok(());
-        };
-        parts.into_iter().try_for_each(|(id, bytes)| self.parts.push(id, number, bytes))
-    }
-
-    /// Closes the sea, and stores the sections of all tiles and finally the totals.
-    fn finish(
-        mut self,
-        count: u64,
-        mut summary: AreaSummary,
-        told: &LayerContext<'_>,
-    ) -> Result<AreaTotals, ExtractError> {
-        let on_defect = &mut |defect| told.on_defect(Defect::from(defect));
-        if let Some(sea) = self.sea.close(&mut summary, on_defect) {
-            let split = self.splitting.split_object(count, sea);
-            self.take(split)?;
-        }
-        for (object, class, area_m2) in self.intricate {
-            if let Some(kept) = summary.kept.get_mut(&class) {
-                kept.areas -= 1;
-                kept.area_m2 -= area_m2;
-            }
-            *summary.lost.entry(AreaLoss::TooIntricate).or_default() += 1;
-            let (kind, id) = object.parts();
-            let (is_relation, loss) = (kind == "relation", AreaLoss::TooIntricate);
-            on_defect(corniche_osm::ExtractDefect::LostArea { is_relation, id, loss });
-        }
-        let (splitting, store) = (&self.splitting.plan, self.store);
-        self.parts.for_each_tile(
-            told.observer,
-            |parts: &mut Vec<AreaRecord>, tile, _, bytes| {
-                parts.push(take_record(&mut &*bytes).ok_or_else(|| {
-                    let key = SectionLayer::Areas.section().item(tile);
-                    damaged(key, &"the record read back is not an area")
-                })?);
-                Ok(())
-            },
-            |tile, parts| put_section(tile, &parts, splitting, store),
-        )?;
-        let totals = AreaTotals {
-            objects: summary.objects,
-            kept: summary
-                .kept
-                .iter()
-                .map(|(class, kept)| (class.number(), (kept.areas, kept.area_m2)))
-                .collect(),
-            lost: summary.lost.iter().map(|(loss, &n)| (loss.reason().to_owned(), n)).collect(),
-        };
-        totals.put(SectionLayer::Areas, store)?;
-        Ok(totals)
+    fn last_object(
+        &self,
+        summary: &mut AreaSummary,
+        on_defect: &mut dyn FnMut(ExtractDefect),
+    ) -> Option<LayerArea> {
+        let PlanSplitting { table, frame, .. } = self.plan;
+        let sea = SeaPlace { table, extent: self.extent, frame, projection: self.projection };
+        sea.close(summary, on_defect)
     }
 }
 
-fn put_section(
-    tile: u64,
-    areas: &[AreaRecord],
-    splitting: &PlanSplitting<'_>,
-    store: &dyn Artifacts,
-) -> Result<(), ExtractError> {
-    let rings = areas.iter().flat_map(AreaRecord::rings);
-    let counts = [areas.len() as u64, rings.map(|ring| ring.len() as u64).sum()];
-    TileSection::put((SectionLayer::Areas, tile), store, counts, |id| {
-        encode_areas(id, splitting.frame, splitting.step(id.z()), areas)
-    })
+fn rings_of(polygon: &Polygon) -> AreaPolygon {
+    AreaPolygon { rings: polygon.rings().map(|ring| ring.points().to_vec()).collect() }
 }
 
 #[cfg(test)]

@@ -5,12 +5,22 @@ use std::{
     sync::LazyLock,
 };
 
-use corniche_areas::{AreaClass, AreaObject, OutlineWay, assemble};
+use corniche_areas::{OutlineWay, assemble};
 use corniche_geom::{LatticePoint, NodeIndex};
+use corniche_layers::{LayerTable, OsmObject};
+use corniche_presets::{layer_preset, parse_layer_table};
+use corniche_testing::FlatProjection;
+use corniche_tileset::LayerObject;
 use corniche_verify::area_seams::{Beside, TileSeam};
 use proptest::prelude::*;
 
 use super::*;
+
+static TABLE: LazyLock<LayerTable> =
+    LazyLock::new(|| parse_layer_table(layer_preset("areas").unwrap()).unwrap());
+
+const PROJECTION: FlatProjection =
+    FlatProjection { origin_m: [0.0; 2], origin_deg: [0.0; 2], metres_per_degree: [1e5; 2] };
 
 /// Three levels of tiles, 10 m cells.
 fn frame() -> GridFrame {
@@ -27,12 +37,12 @@ fn root() -> &'static AreaExtent {
 fn splitting(frame: &GridFrame) -> AreaSplitting<'_> {
     let [south_west, north_east] = [[-512, -512], [511, 511]].map(|[i, j]| NodeIndex { i, j });
     let data = DataTiles::between(frame, south_west, north_east);
-    let plan = PlanSplitting { frame, data, clip: None, polygon: None };
-    AreaSplitting { plan, extent: root() }
+    let plan = PlanSplitting { table: &TABLE, frame, data, clip: None, polygon: None };
+    AreaSplitting { plan, extent: root(), projection: &PROJECTION }
 }
 
 /// A star around a position, with a hole.
-fn star(center: [i64; 2], radii: &[i64]) -> Area {
+fn star(center: [i64; 2], radii: &[i64]) -> LayerArea {
     let ring = |part: f64| -> Vec<LatticePoint> {
         let corner = |(number, radius): (usize, &i64)| {
             let angle = number as f64 / radii.len() as f64 * std::f64::consts::TAU;
@@ -48,35 +58,39 @@ fn star(center: [i64; 2], radii: &[i64]) -> Area {
     area(assemble(&ways).unwrap().polygons)
 }
 
-fn area(polygons: Vec<Polygon>) -> Area {
-    let object = AreaObject::Way(5);
-    Area { object, class: AreaClass::Water, name: None, polygons, area_m2: 1.0 }
+fn area(polygons: Vec<Polygon>) -> LayerArea {
+    LayerArea { object: OsmObject::Way(5), class: 1, values: vec![None], polygons, area_m2: 1.0 }
+}
+
+fn record(area: &LayerArea, polygons: Vec<AreaPolygon>) -> LayerObject {
+    let LayerArea { object, class, values, .. } = area.clone();
+    LayerObject { class, object, values, shape: LayerShape::Area(polygons) }
 }
 
 /// The parts of an area by level and tile.
 fn by_level(
     splitting: &AreaSplitting<'_>,
-    area: &Area,
-) -> BTreeMap<u8, BTreeMap<TileId, AreaRecord>> {
-    let mut by_level: BTreeMap<u8, BTreeMap<TileId, AreaRecord>> = BTreeMap::new();
-    for (id, record) in splitting.split(area).unwrap() {
-        by_level.entry(id.z()).or_default().insert(id, record);
+    area: &LayerArea,
+) -> BTreeMap<u8, BTreeMap<TileId, LayerObject>> {
+    let mut by_level: BTreeMap<u8, BTreeMap<TileId, LayerObject>> = BTreeMap::new();
+    for (id, polygons) in splitting.split(area).unwrap() {
+        by_level.entry(id.z()).or_default().insert(id, record(area, polygons));
     }
     by_level
 }
 
-fn doubled_area(parts: &[AreaRings]) -> i128 {
+fn doubled_area(object: &LayerObject) -> i128 {
     let of_ring = |ring: &Vec<LatticePoint>| -> i128 {
         let next = ring.iter().cycle().skip(1);
         ring.iter().zip(next).map(|(&a, &b)| corniche_geom::cross(ring[0], a, b)).sum()
     };
-    parts.iter().flat_map(|part| &part.rings).map(of_ring).sum()
+    object.shape.rings().map(of_ring).sum()
 }
 
 /// Asserts that neighbours cover the same sections of the line between them. Outlines of the area
 /// that run along this line are excepted: an outline along the whole line cannot be distinguished
 /// from a missing part.
-fn assert_seams_hold(area: &Area, tiles: &BTreeMap<TileId, AreaRecord>) {
+fn assert_seams_hold(area: &LayerArea, tiles: &BTreeMap<TileId, LayerObject>) {
     let frame = &frame();
     let all = tiles
         .keys()
@@ -92,7 +106,10 @@ fn assert_seams_hold(area: &Area, tiles: &BTreeMap<TileId, AreaRecord>) {
             let step = splitting(frame).plan.step(id.z());
             let whole: Vec<Polygon> =
                 area.polygons.iter().flat_map(|polygon| coarsen(polygon, step).unwrap()).collect();
-            let outline = seam.covered(&[record(area, &whole)]).into_values().flatten();
+            let outline = seam
+                .covered(&[record(area, whole.iter().map(rings_of).collect())])
+                .into_values()
+                .flatten();
             let outline: Vec<[i64; 2]> = outline.collect();
             broken.retain(|[from, to]| !outline.iter().any(|[a, b]| a <= from && to <= b));
             assert_eq!(broken, [[0; 2]; 0], "{id} and {neighbour}: {covered:?}");
@@ -138,10 +155,9 @@ proptest! {
         for (level, tiles) in by_level(&splitting, &area) {
             for (&id, record) in &tiles {
                 let bounds = frame.tile_lattice_bounds(id);
-                let points = record.polygons.iter().flat_map(|part| &part.rings).flatten();
-                prop_assert!(points.into_iter().all(|&point| bounds.contains(point)));
+                prop_assert!(record.shape.points().all(|&point| bounds.contains(point)));
             }
-            let sum: i128 = tiles.values().map(|record| doubled_area(&record.polygons)).sum();
+            let sum: i128 = tiles.values().map(doubled_area).sum();
             // The whole star is inside the root unless it reaches beyond 5120 m.
             let around: i128 = 4 * radii.iter().map(|&radius| i128::from(radius)).sum::<i128>();
             let off = i128::from(splitting.plan.step(level)) * around;
@@ -171,7 +187,7 @@ proptest! {
         let whole: BTreeMap<_, _> = by_level(&splitting(&frame), &area);
         let [within, beside] = [&inside, &outside].map(|region| {
             let plan = PlanSplitting { polygon: Some(region), ..splitting(&frame).plan };
-            by_level(&AreaSplitting { plan, extent: root() }, &area)
+            by_level(&AreaSplitting { plan, ..splitting(&frame) }, &area)
         });
         for (level, tiles) in &whole {
             let step = splitting(&frame).plan.step(*level);
@@ -179,15 +195,15 @@ proptest! {
             for (part, sum) in [&within, &beside].into_iter().zip(&mut sums) {
                 let Some(tiles) = part.get(level) else { continue };
                 assert_seams_hold(&area, tiles);
-                *sum = tiles.values().map(|record| doubled_area(&record.polygons)).sum::<i128>();
+                *sum = tiles.values().map(doubled_area).sum::<i128>();
             }
             // `verify` tolerates the same amount: corners and crossings move by half a step, and
             // then to a nearby end.
             let around = inside.bounds().expanded(3 * step);
             let points = within.get(level).into_iter().flat_map(|tiles| tiles.values());
-            let mut points = points.flat_map(|record| &record.polygons).flat_map(|part| &part.rings).flatten();
+            let mut points = points.flat_map(|record| record.shape.points());
             prop_assert!(points.all(|&point| around.contains(point)));
-            let all: i128 = tiles.values().map(|record| doubled_area(&record.polygons)).sum();
+            let all: i128 = tiles.values().map(doubled_area).sum();
             let off = i128::from(step) * 4 * (radii.iter().map(|&radius| i128::from(radius)).sum::<i128>() + 3 * 12_000 * i128::from(metre));
             prop_assert!((sums[0] + sums[1] - all).abs() <= off, "{level}: {sums:?} of {all}");
         }

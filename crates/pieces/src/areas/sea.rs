@@ -1,17 +1,19 @@
 //! The sea of an extract: its coastlines, closed along the edge of the area that data, extract and
 //! bounds cover.
 
-use corniche_areas::{Area, AreaClass, AreaObject, Coastline, Polygon, Ring, close_sea};
+use corniche_areas::{Coastline, Polygon, Ring, close_sea};
 use corniche_geom::{GridFrame, Projection};
-use corniche_osm::{AreaLoss, AreaSummary, ExtractDefect};
+use corniche_layers::{LayerTable, OsmObject};
+use corniche_osm::{AreaLoss, AreaSummary, ExtractDefect, LayerArea};
 use corniche_spec::{extent::AreaExtent, true_areas::lattice_ring_m2};
 
 /// The sea, which is not an object of OSM.
-const SEA: AreaObject = AreaObject::Way(0);
+const SEA: OsmObject = OsmObject::Way(0);
 
 /// The region in which coastlines are closed to form the sea.
 #[derive(Clone, Copy)]
 pub(crate) struct SeaPlace<'a> {
+    pub table: &'a LayerTable,
     pub extent: &'a AreaExtent,
     pub frame: &'a GridFrame,
     pub projection: &'a (dyn Projection + Sync),
@@ -24,7 +26,8 @@ impl SeaPlace<'_> {
         &self,
         summary: &mut AreaSummary,
         on_defect: &mut dyn FnMut(ExtractDefect),
-    ) -> Option<Area> {
+    ) -> Option<LayerArea> {
+        let class = self.table.coastline_class()?;
         let coastlines: Vec<Coastline> = std::mem::take(&mut summary.coastlines);
         let first = coastlines.iter().map(|coastline| coastline.way_id).min()?;
         let closed = close_sea(coastlines, &self.extent.polygons);
@@ -38,7 +41,7 @@ impl SeaPlace<'_> {
         };
         let loss = AreaLoss::ContradictingCoastline;
         for &id in &left_out {
-            on_defect(ExtractDefect::LostArea { is_relation: false, id, loss });
+            on_defect(ExtractDefect::LostArea { object: OsmObject::Way(id), loss });
         }
         if !left_out.is_empty() {
             summary.objects += left_out.len() as u64;
@@ -49,13 +52,14 @@ impl SeaPlace<'_> {
         }
         let area_m2 = polygons.iter().map(|polygon| self.area_m2(polygon)).sum();
         summary.objects += 1;
-        let kept = summary.kept.entry(AreaClass::Sea).or_default();
+        let kept = summary.kept.entry(class).or_default();
         kept.areas += 1;
         kept.polygons += polygons.len() as u64;
         let rings = polygons.iter().flat_map(Polygon::rings);
         kept.points += rings.map(|ring| ring.points().len() as u64).sum::<u64>();
         kept.area_m2 += area_m2;
-        Some(Area { object: SEA, class: AreaClass::Sea, name: None, polygons, area_m2 })
+        let values = vec![None; self.table.attributes().count()];
+        Some(LayerArea { object: SEA, class, values, polygons, area_m2 })
     }
 
     fn area_m2(&self, polygon: &Polygon) -> f64 {

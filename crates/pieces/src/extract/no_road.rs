@@ -29,7 +29,7 @@ pub(crate) fn why(extract: &ExtractSummary, table: &FrcTable) -> NoRoad {
     let because = |reason: String, advice: &str| NoRoad { reason, advice: advice.to_owned() };
     if ways == 0 {
         let reason = "none of its ways has a highway tag".to_owned();
-        let others = "pass --areas default or --boundaries on to convert its other objects";
+        let others = "pass --layers areas,boundaries to convert its other objects";
         return because(reason, &format!("{RIGHT_ONE}, or {others}"));
     }
     let off = values_left_out(extract, LeftOutReason::ClassOff);

@@ -11,10 +11,11 @@
 
 use std::{path::PathBuf, sync::atomic::Ordering};
 
-use corniche_areas::AreaTable;
 use corniche_geom::{Bounds, LatticeBounds, LatticeRegion, Projection};
+use corniche_layers::{LayerGeometry, LayerTable};
 use corniche_osm::{
-    ExtractSummary, LayerSink, Layers, ReadOsmError, ReadRequest, read_extract, read_kept_roads,
+    ExtractSummary, LayerReceiver, LayerSink, Layers, ReadOsmError, ReadRequest, read_extract,
+    read_kept_roads,
 };
 use corniche_spec::{
     BuildObserver, Defect, RoadSettings,
@@ -25,21 +26,22 @@ use corniche_spec::{
     true_lengths::TrueLengths,
 };
 use corniche_store::{Artifacts, ScratchSpace};
+use corniche_tileset::LayerSlot;
 use corniche_work::Stage;
 
 use super::{kept::kept_in, no_road, placed_reading::PlacedReading};
 use crate::{
     ExtractError,
-    areas::{
-        layer::{AreaLayer, AreaSplitting},
-        sea::SeaPlace,
-    },
+    areas::layer::AreaSplitting,
     layers::{
         defects::{DefectsWriter, replay_defects},
         layer_writer::{LayerContext, LayerWriter},
+        object_layer::ObjectLayer,
         plan_splitting::PlanSplitting,
+        tile_section::LayerTotals,
     },
-    lines::layer::{LineSplitting, LinesLayer},
+    lines::layer::LineSplitting,
+    points::layer::PointSplitting,
     roads::{
         layer::RoadLayer,
         split::RoadSplitting,
@@ -56,10 +58,8 @@ pub struct ExtractInput<'a> {
     pub osm: &'a [PathBuf],
     /// How roads are built.
     pub settings: &'a RoadSettings,
-    /// Which objects are areas, if areas are requested.
-    pub areas: Option<&'a AreaTable>,
-    /// Whether boundaries are requested.
-    pub boundaries: bool,
+    /// The requested layers, in the package's order.
+    pub layers: &'a [LayerTable],
     /// The tiles in which there can be data.
     pub data: DataTiles,
     /// WGS84 ⇄ the grid's working CRS.
@@ -111,9 +111,8 @@ pub fn partition(
             return Err(ExtractError::NoRoads { osm: input.osm.to_vec(), why: why.to_string() });
         }
         let (osm, reason) = (input.osm, why.reason);
-        observer.warning(&format!(
-            "{osm:?} has no road: {reason}; only its areas and boundaries are included"
-        ));
+        observer
+            .warning(&format!("{osm:?} has no road: {reason}; only its other layers are included"));
     }
     let defects = told.end().finish()?;
     let totals = RoadTotals { defects, extract: ExtractCounts::from(&extract), ..totals };
@@ -137,12 +136,10 @@ fn read(
 ) -> Result<ExtractFindings, ExtractError> {
     let (store, scratch) = places;
     let extent = area_extent(input, told.observer)?;
-    let mut areas = input
-        .areas
-        .zip(extent.as_ref())
-        .map(|(table, extent)| (table, LayerWriter::new(area_layer(input, extent, places), told)));
-    let writer = || LayerWriter::new(boundary_layer(input, places), told);
-    let mut boundaries = input.boundaries.then(writer);
+    let slots = (0..).map_while(LayerSlot::new).zip(input.layers);
+    let writer = |of| ObjectWriter::new(input, of, (extent.as_ref(), places), told);
+    let mut writers: Vec<ObjectWriter<'_, '_>> =
+        slots.map(writer).collect::<Option<_>>().unwrap_or_default();
     let mut roads = LayerWriter::new(road_layer(input, places), told);
     let kept = kept_in(store);
     let of = kept.complete();
@@ -152,14 +149,13 @@ fn read(
     let (observer, has_failed) = (told.observer, &told.has_failed);
     let should_stop = || observer.is_cancelled() || has_failed.load(Ordering::Relaxed);
     let on_defect = &mut |defect| told.on_defect(Defect::from(defect));
+    let receivers = writers.iter_mut().map(ObjectWriter::receiver);
     let layers = Layers {
-        areas: areas.as_mut().map(|(table, sink)| (*table, sink as &mut dyn LayerSink<_, _>)),
-        boundaries: boundaries.as_mut().map(|sink| sink as &mut dyn LayerSink<_, _>),
-        boundary_names: None,
+        layers: input.layers.iter().zip(receivers).collect(),
         // Shares contain roads only.
         roads: of.is_none().then_some(&mut roads as &mut dyn LayerSink<_, _>),
     };
-    let read = if of.is_none() || input.areas.is_some() || input.boundaries {
+    let read = if of.is_none() || !input.layers.is_empty() {
         on_extract(input, scratch, told, |request| {
             read_extract(request, layers, on_defect, &should_stop)
         })
@@ -167,18 +163,13 @@ fn read(
         Ok(())
     };
     // If something could not be stored, reading has ended.
-    if let Some((_, areas)) = &mut areas {
-        areas.check()?;
-    }
-    if let Some(boundaries) = &mut boundaries {
-        boundaries.check()?;
-    }
+    writers.iter_mut().try_for_each(ObjectWriter::check)?;
     roads.check()?;
     read?;
-    let areas = areas.map_or(Ok(None), |(_, writer)| writer.done())?;
-    let boundaries = boundaries.map_or(Ok(None), LayerWriter::done)?;
-    let has_others = areas.is_some_and(|totals| totals.has_any())
-        || boundaries.is_some_and(|totals| totals.has_any());
+    let mut has_others = false;
+    for writer in writers {
+        has_others |= writer.done()?.is_some_and(|totals| totals.has_any());
+    }
     if let Some(of) = of {
         let read = on_extract(input, scratch, told, |request| {
             read_kept_roads(request, of, kept, &mut roads, on_defect, &should_stop)
@@ -190,9 +181,66 @@ fn read(
     Ok(ExtractFindings { roads, has_others })
 }
 
-fn plan_splitting<'a>(input: &ExtractInput<'a>) -> PlanSplitting<'a> {
-    let ExtractInput { data, clip, polygon, .. } = *input;
-    PlanSplitting { frame: input.levels.frame(), data, clip, polygon }
+/// A layer while its objects are read.
+enum ObjectWriter<'a, 'b> {
+    Areas(LayerWriter<'a, 'b, ObjectLayer<'a, AreaSplitting<'a>>>),
+    Lines(LayerWriter<'a, 'b, ObjectLayer<'a, LineSplitting<'a>>>),
+    Points(LayerWriter<'a, 'b, ObjectLayer<'a, PointSplitting<'a>>>),
+}
+
+impl<'a, 'b> ObjectWriter<'a, 'b> {
+    /// Creates the writer of a layer; `None` for a layer of areas without an extent.
+    fn new(
+        input: &ExtractInput<'a>,
+        (slot, table): (LayerSlot, &'a LayerTable),
+        (extent, places): (Option<&'a AreaExtent>, (&'a dyn Artifacts, &'a dyn ScratchSpace)),
+        told: &'a LayerContext<'b>,
+    ) -> Option<Self> {
+        let ExtractInput { data, clip, polygon, levels, lengths, projection, .. } = *input;
+        let plan = PlanSplitting { table, frame: levels.frame(), data, clip, polygon };
+        let memory_bytes = input.memory_bytes;
+        Some(match table.geometry() {
+            LayerGeometry::Area => {
+                let splitting = AreaSplitting { plan, extent: extent?, projection };
+                let layer = ObjectLayer::new((slot, splitting), places, memory_bytes);
+                Self::Areas(LayerWriter::new(layer, told))
+            }
+            LayerGeometry::Point => {
+                let layer = ObjectLayer::new((slot, PointSplitting { plan }), places, memory_bytes);
+                Self::Points(LayerWriter::new(layer, told))
+            }
+            LayerGeometry::Line => {
+                let splitting = LineSplitting { plan, levels, lengths };
+                let layer = ObjectLayer::new((slot, splitting), places, memory_bytes);
+                Self::Lines(LayerWriter::new(layer, told))
+            }
+        })
+    }
+
+    fn receiver(&mut self) -> LayerReceiver<'_> {
+        match self {
+            Self::Areas(writer) => LayerReceiver::Areas(writer),
+            Self::Lines(writer) => LayerReceiver::Lines(writer),
+            Self::Points(writer) => LayerReceiver::Points(writer),
+        }
+    }
+
+    /// Fails if the layer's result could not be stored.
+    fn check(&mut self) -> Result<(), ExtractError> {
+        match self {
+            Self::Areas(writer) => writer.check(),
+            Self::Lines(writer) => writer.check(),
+            Self::Points(writer) => writer.check(),
+        }
+    }
+
+    fn done(self) -> Result<Option<LayerTotals>, ExtractError> {
+        match self {
+            Self::Areas(writer) => writer.done(),
+            Self::Lines(writer) => writer.done(),
+            Self::Points(writer) => writer.done(),
+        }
+    }
 }
 
 /// The extent of areas, if areas are requested.
@@ -200,7 +248,7 @@ fn area_extent(
     input: &ExtractInput<'_>,
     observer: &dyn BuildObserver,
 ) -> Result<Option<AreaExtent>, ExtractError> {
-    if input.areas.is_none() {
+    if input.layers.iter().all(|table| table.geometry() != LayerGeometry::Area) {
         return Ok(None);
     }
     let boxes: Result<Option<Vec<[f64; 4]>>, _> =
@@ -223,17 +271,6 @@ fn area_extent(
     })))
 }
 
-fn area_layer<'a>(
-    input: &ExtractInput<'a>,
-    extent: &'a AreaExtent,
-    places: (&'a dyn Artifacts, &'a dyn ScratchSpace),
-) -> AreaLayer<'a> {
-    let frame = input.levels.frame();
-    let splitting = AreaSplitting { plan: plan_splitting(input), extent };
-    let sea = SeaPlace { extent, frame, projection: input.projection };
-    AreaLayer::new((splitting, sea), places, input.memory_bytes)
-}
-
 fn road_layer<'a>(
     input: &ExtractInput<'a>,
     places: (&'a dyn Artifacts, &'a dyn ScratchSpace),
@@ -248,15 +285,6 @@ fn road_layer<'a>(
         spans: input.settings.spans,
     };
     RoadLayer::new(splitting, places, input.memory_bytes)
-}
-
-fn boundary_layer<'a>(
-    input: &ExtractInput<'a>,
-    places: (&'a dyn Artifacts, &'a dyn ScratchSpace),
-) -> LinesLayer<'a> {
-    let ExtractInput { levels, lengths, .. } = *input;
-    let splitting = LineSplitting { plan: plan_splitting(input), levels, lengths };
-    LinesLayer::new(splitting, places, input.memory_bytes)
 }
 
 /// Reads the extract.

@@ -100,7 +100,6 @@ impl World {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let frame = *self.levels.frame();
         let input = ExtractInput {
-            boundaries: false,
             data: DataTiles::between(
                 &frame,
                 NodeIndex { i: -512, j: -512 },
@@ -108,7 +107,7 @@ impl World {
             ),
             osm: &[osm.to_path_buf()],
             settings: &self.settings,
-            areas: None,
+            layers: &[],
             projection: &self.projection,
             levels: &self.levels,
             lengths: &TrueLengths::new(frame, &self.table, &self.projection),

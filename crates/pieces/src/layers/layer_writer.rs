@@ -75,6 +75,8 @@ pub(crate) struct LayerContext<'a> {
     pub defects: RefCell<DefectsWriter<'a>>,
     /// The current stage.
     stage: Cell<Stage>,
+    /// The objects of the layers that the stage has finished, and those of its current layer.
+    objects: Cell<[u64; 2]>,
     /// Whether a layer's result could not be stored: then the rest need not be read.
     pub(crate) has_failed: AtomicBool,
 }
@@ -92,6 +94,7 @@ impl<'a> LayerContext<'a> {
             observer,
             defects: RefCell::new(defects),
             stage: Cell::new(Stage::Extract),
+            objects: Cell::new([0; 2]),
             has_failed: AtomicBool::new(false),
         }
     }
@@ -103,14 +106,20 @@ impl<'a> LayerContext<'a> {
     /// Reports the progress of a stage, if it is the current stage.
     pub(crate) fn reached(&self, stage: Stage, done: u64, total: u64) {
         if self.stage.get() == stage {
-            self.observer.reached(stage, done, total);
+            let [before, _] = self.objects.get();
+            self.objects.set([before, total]);
+            self.observer.reached(stage, before + done, before + total);
         }
     }
 
-    /// Ends the current stage, and starts another one.
+    /// Ends the current stage, and starts another one. Several layers are one stage.
     pub(crate) fn go_on_to(&self, stage: Stage) {
         let before = self.stage.replace(stage);
-        if before != stage {
+        if before == stage {
+            let [finished, current] = self.objects.get();
+            self.objects.set([finished + current, 0]);
+        } else {
+            self.objects.set([0; 2]);
             self.observer.end(before);
             self.observer.begin(stage, None);
         }

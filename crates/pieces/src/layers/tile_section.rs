@@ -3,12 +3,11 @@
 use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
-use corniche_spec::artifacts::{self, ArtifactError};
+use corniche_osm::{AreaSummary, LineSummary, PointSummary};
+use corniche_spec::artifacts::{self, ArtifactError, ArtifactKind};
 use corniche_store::Artifacts;
-use corniche_tileset::{
-    AreaClassRecord, AreaCounts, EncodeError, LineClassRecord, LineCounts, Section,
-};
-use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use corniche_tileset::{EncodeError, LayerClassRecord, LayerCounts, Section, pmtiles_order};
+use serde::{Deserialize, Serialize};
 
 use super::SectionLayer;
 use crate::ExtractError;
@@ -36,8 +35,8 @@ impl TileSection {
         [parts, points]: [u64; 2],
         encode: impl FnOnce(TileId) -> Result<Option<Section>, EncodeError>,
     ) -> Result<(), ExtractError> {
-        let key = layer.section().item(tile);
-        let id = artifacts::tile_of(key)?;
+        let key = layer.section_key(tile);
+        let id = artifacts::tile_of(ArtifactKind::Record.item(tile))?;
         let Some(section) = encode(id)?.map(Section::into_bytes) else { return Ok(()) };
         Ok(artifacts::put(store, key, &Self { section, parts, points })?)
     }
@@ -51,7 +50,7 @@ impl TileSection {
         store: &dyn Artifacts,
         id: TileId,
     ) -> Result<Option<Self>, ArtifactError> {
-        artifacts::get(store, layer.section().of_tile(id))
+        artifacts::get(store, layer.section_key(pmtiles_order(id)))
     }
 }
 
@@ -90,29 +89,66 @@ impl SectionSums {
 }
 
 /// Counts of a layer of the extract: `objects = kept + lost`. They are stored after all sections.
-/// `M` is the measure of the layer's objects.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct LayerTotals<M> {
+pub struct LayerTotals {
     /// Objects of the layer in the extract.
     pub objects: u64,
-    /// Number and measure of the kept objects of each class, by the class's number.
-    pub kept: BTreeMap<u8, (u64, M)>,
+    /// The kept objects of each class, by the class's number.
+    pub kept: BTreeMap<u8, KeptObjects>,
     /// The number of lost objects, by reason.
     pub(crate) lost: BTreeMap<String, u64>,
+    /// Values that are not of the kinds of their attributes, by key.
+    pub(crate) unread: BTreeMap<String, u64>,
 }
 
-/// Areas, in square metres.
-pub type AreaTotals = LayerTotals<f64>;
-/// Ways of boundaries, in micrometres.
-pub type LineTotals = LayerTotals<u64>;
+/// The kept objects of a class.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct KeptObjects {
+    /// The number of objects.
+    pub objects: u64,
+    /// The size of these objects.
+    pub(crate) measure: ObjectMeasure,
+}
 
-impl<M: Serialize + DeserializeOwned> LayerTotals<M> {
+/// The true size of objects: lines have a length, areas an area.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct ObjectMeasure {
+    /// Length in plan, micrometres.
+    pub(crate) length_um: u64,
+    /// Square metres.
+    pub(crate) area_m2: f64,
+}
+
+impl ObjectMeasure {
+    pub(crate) fn add(&mut self, other: Self) {
+        self.length_um += other.length_um;
+        self.area_m2 += other.area_m2;
+    }
+}
+
+impl LayerTotals {
+    /// Returns the totals of a reader's counts, without the sizes of the objects.
+    fn from_counts(
+        objects: u64,
+        kept: impl Iterator<Item = (u8, u64)>,
+        lost: impl Iterator<Item = (&'static str, u64)>,
+        unread: BTreeMap<String, u64>,
+    ) -> Self {
+        let measure = ObjectMeasure::default();
+        Self {
+            objects,
+            kept: kept.map(|(class, objects)| (class, KeptObjects { objects, measure })).collect(),
+            lost: lost.map(|(reason, objects)| (reason.to_owned(), objects)).collect(),
+            unread,
+        }
+    }
+
     /// Stores the totals of a layer.
     ///
     /// # Errors
     /// When the artifact cannot be stored.
     pub fn put(&self, layer: SectionLayer, store: &dyn Artifacts) -> Result<(), ArtifactError> {
-        artifacts::put(store, layer.totals().item(0), self)
+        artifacts::put(store, layer.totals_key(), self)
     }
 
     /// Reads the totals of a layer; `None` in a build without the layer.
@@ -120,44 +156,54 @@ impl<M: Serialize + DeserializeOwned> LayerTotals<M> {
     /// # Errors
     /// When the artifact cannot be read or is invalid.
     pub fn get(layer: SectionLayer, store: &dyn Artifacts) -> Result<Option<Self>, ArtifactError> {
-        artifacts::get(store, layer.totals().item(0))
+        artifacts::get(store, layer.totals_key())
     }
 
     /// Whether the extract has an object of this layer.
     pub(crate) fn has_any(&self) -> bool {
-        self.kept.values().any(|&(objects, _)| objects > 0)
+        self.kept.values().any(|kept| kept.objects > 0)
     }
 
-    /// The number of lost objects, by reason.
-    fn lost(&self) -> Vec<(String, u64)> {
-        self.lost.iter().map(|(reason, &objects)| (reason.clone(), objects)).collect()
+    /// The manifest's record of these totals.
+    #[must_use]
+    pub fn counts(&self) -> LayerCounts {
+        let list = |counts: &BTreeMap<String, u64>| counts.clone().into_iter().collect();
+        let class = |(&class, kept): (&u8, &KeptObjects)| LayerClassRecord {
+            class,
+            objects: kept.objects,
+            length_um: kept.measure.length_um,
+            area_km2: kept.measure.area_m2 / 1e6,
+        };
+        LayerCounts {
+            objects: self.objects,
+            kept: self.kept.iter().map(class).collect(),
+            lost: list(&self.lost),
+            unread_values: list(&self.unread),
+        }
     }
 }
 
-impl AreaTotals {
-    /// The manifest's record of these totals.
-    #[must_use]
-    pub fn counts(&self) -> AreaCounts {
-        let class = |(&class, &(areas, area_m2)): (&u8, &(u64, f64))| AreaClassRecord {
-            class,
-            areas,
-            area_km2: area_m2 / 1e6,
-        };
-        let kept = self.kept.iter().map(class).collect();
-        AreaCounts { objects: self.objects, kept, lost: self.lost() }
+impl From<AreaSummary> for LayerTotals {
+    fn from(summary: AreaSummary) -> Self {
+        let AreaSummary { objects, kept, lost, unread, .. } = summary;
+        let kept = kept.into_iter().map(|(class, kept)| (class, kept.areas));
+        let lost = lost.into_iter().map(|(loss, objects)| (loss.reason(), objects));
+        Self::from_counts(objects, kept, lost, unread)
     }
 }
 
-impl LineTotals {
-    /// The manifest's record of these totals.
-    #[must_use]
-    pub fn counts(&self) -> LineCounts {
-        let class = |(&class, &(ways, length_um)): (&u8, &(u64, u64))| LineClassRecord {
-            class,
-            ways,
-            length_um,
-        };
-        let kept = self.kept.iter().map(class).collect();
-        LineCounts { ways: self.objects, kept, lost: self.lost() }
+impl From<PointSummary> for LayerTotals {
+    fn from(summary: PointSummary) -> Self {
+        let PointSummary { objects, kept, lost, unread } = summary;
+        let lost = lost.into_iter().map(|(loss, objects)| (loss.reason(), objects));
+        Self::from_counts(objects, kept.into_iter(), lost, unread)
+    }
+}
+
+impl From<LineSummary> for LayerTotals {
+    fn from(summary: LineSummary) -> Self {
+        let LineSummary { ways, kept, lost, unread, .. } = summary;
+        let lost = lost.into_iter().map(|(loss, ways)| (loss.reason(), ways));
+        Self::from_counts(ways, kept.into_iter(), lost, unread)
     }
 }

@@ -2,12 +2,24 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use std::sync::LazyLock;
+
 use corniche_geom::{GridFrame, LatticeBounds, LatticeRegion, NodeIndex};
+use corniche_layers::LayerTable;
+use corniche_presets::{layer_preset, parse_layer_table};
 use corniche_roads::{ClassFilter, FrcTable};
 use corniche_spec::{RoadSettings, data_tiles::DataTiles};
 use corniche_testing::FlatProjection;
 
 use super::*;
+
+/// Boundaries, which have classes for large and for small cells.
+static TABLE: LazyLock<LayerTable> =
+    LazyLock::new(|| parse_layer_table(layer_preset("boundaries").unwrap()).unwrap());
+
+fn class(id: &str) -> u8 {
+    TABLE.classes().iter().position(|class| class.id == id).unwrap() as u8
+}
 
 /// Three levels of tiles with cells of 10, 20 and 40 m.
 fn levels() -> Levels {
@@ -28,32 +40,37 @@ fn lengths(levels: &Levels) -> TrueLengths<'static> {
 fn splitting<'a>(levels: &'a Levels, lengths: &'a TrueLengths<'a>) -> LineSplitting<'a> {
     let [south_west, north_east] = [[-512, -512], [511, 511]].map(|[i, j]| NodeIndex { i, j });
     let data = DataTiles::between(levels.frame(), south_west, north_east);
-    let plan = PlanSplitting { frame: levels.frame(), data, clip: None, polygon: None };
+    let plan =
+        PlanSplitting { table: &TABLE, frame: levels.frame(), data, clip: None, polygon: None };
     LineSplitting { plan, levels, lengths }
 }
 
 /// A wave across the whole root, in metres; its middle is a junction.
-fn wave(levels: &Levels, class: BoundaryClass) -> ClassedLine {
+fn wave(levels: &Levels) -> LayerLine {
     let point = |k: i32| {
         let x = f64::from(k) * 20.0 - 5000.0;
         levels.frame().snap([x, 900.0 * (x / 700.0).sin()]).unwrap()
     };
     let points: Vec<LatticePoint> = (0..=500).map(point).collect();
-    ClassedLine { way_id: 7, class, points, fixed: vec![0, 250, 500] }
+    let (class, fixed) = (class("admin-2"), vec![0, 250, 500]);
+    LayerLine { way_id: 7, class, values: vec![None; 3], points, fixed }
+}
+
+fn part(line: &LayerLine) -> LinePart<'_> {
+    (Cow::Borrowed(&line.points), Cow::Borrowed(&line.fixed))
 }
 
 #[test]
 fn every_tile_has_the_segments_that_come_near_it() {
     let levels = levels();
     let lengths = lengths(&levels);
-    let (splitting, boundary) =
-        (splitting(&levels, &lengths), wave(&levels, BoundaryClass::Admin2));
-    let mut by_tile: BTreeMap<TileId, Vec<LineRecord>> = BTreeMap::new();
-    for (id, record) in splitting.split(&boundary) {
-        by_tile.entry(id).or_default().push(record);
+    let (splitting, boundary) = (splitting(&levels, &lengths), wave(&levels));
+    let mut by_tile: BTreeMap<TileId, Vec<Vec<LatticePoint>>> = BTreeMap::new();
+    for (id, points) in splitting.split(&boundary) {
+        by_tile.entry(id).or_default().push(points);
     }
     for level in levels.numbers() {
-        let line = splitting.line(&boundary, level);
+        let line = splitting.line(&part(&boundary), level);
         let step = splitting.plan.step(level);
         assert!(line.iter().all(|point| point.u % step == 0 && point.v % step == 0));
         let margin = levels.margin_steps(level);
@@ -68,7 +85,7 @@ fn every_tile_has_the_segments_that_come_near_it() {
                 .get(&id)
                 .into_iter()
                 .flatten()
-                .flat_map(|record| record.points.array_windows().copied().collect::<Vec<_>>())
+                .flat_map(|points| points.array_windows().copied().collect::<Vec<_>>())
                 .collect();
             assert!(found.is_superset(&needed), "{id}: {} of {}", found.len(), needed.len());
         }
@@ -79,10 +96,9 @@ fn every_tile_has_the_segments_that_come_near_it() {
 fn junctions_stay_and_coarse_levels_have_fewer_points() {
     let levels = levels();
     let lengths = lengths(&levels);
-    let (splitting, boundary) =
-        (splitting(&levels, &lengths), wave(&levels, BoundaryClass::Admin2));
+    let (splitting, boundary) = (splitting(&levels, &lengths), wave(&levels));
     let lines: Vec<Vec<LatticePoint>> =
-        levels.numbers().map(|level| splitting.line(&boundary, level)).collect();
+        levels.numbers().map(|level| splitting.line(&part(&boundary), level)).collect();
     let counts: Vec<usize> = lines.iter().map(Vec::len).collect();
     assert!(counts[0] < counts[1] && counts[1] < counts[2], "{counts:?}");
     for (level, line) in (0..).zip(&lines) {
@@ -106,14 +122,12 @@ fn small_units_are_stored_where_cells_are_small() {
     let levels = Levels::new(frame, 1.0, &settings, 1.0);
     let lengths = lengths(&levels);
     let splitting = splitting(&levels, &lengths);
-    let shown = |class: BoundaryClass| -> Vec<u8> {
-        levels.numbers().filter(|&level| splitting.shows(level, class)).collect()
-    };
+    let shown = |id: &str| -> Vec<u8> { splitting.plan.levels_of(class(id)).collect() };
     // The levels have cells of 240, 120 and 60 m.
-    assert_eq!(shown(BoundaryClass::Admin2), [0, 1, 2]);
-    assert_eq!(shown(BoundaryClass::Admin6), [0, 1, 2]);
-    assert_eq!(shown(BoundaryClass::Admin8), [2]);
-    assert_eq!(shown(BoundaryClass::Protected), [2]);
+    assert_eq!(shown("admin-2"), [0, 1, 2]);
+    assert_eq!(shown("admin-6"), [0, 1, 2]);
+    assert_eq!(shown("admin-8"), [2]);
+    assert_eq!(shown("protected"), [2]);
 }
 
 /// The part of the wave in a square around the middle: cut at the outline on every level, with
@@ -125,13 +139,13 @@ fn boundaries_end_at_the_outline_of_a_polygon() {
     let square = [[-1000.0, -2000.0], [1000.0, -2000.0], [1000.0, 2000.0], [-1000.0, 2000.0]];
     let region = LatticeRegion::new(&[vec![square.map(corner).to_vec()]]).unwrap();
     let bounds = region.bounds();
-    let boundary = wave(&levels, BoundaryClass::Admin2);
+    let boundary = wave(&levels);
     let lengths = lengths(&levels);
     let mut splitting = splitting(&levels, &lengths);
     splitting.plan.polygon = Some(&region);
     let parts = splitting.split(&boundary);
     for level in 0..=2 {
-        let points = parts.iter().filter(|(id, _)| id.z() == level).flat_map(|(_, of)| &of.points);
+        let points = parts.iter().filter(|(id, _)| id.z() == level).flat_map(|(_, points)| points);
         let own = LatticeBounds::around(&points.copied().collect::<Vec<_>>()).unwrap();
         let step = splitting.plan.step(level);
         assert!(

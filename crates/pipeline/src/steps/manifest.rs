@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
 use corniche_ground::heights::pyramid::HeightSums;
+use corniche_layers::LayerTable;
 use corniche_pieces::{
     layers::{
-        ByLayer, SectionLayer,
-        tile_section::{AreaTotals, LineTotals},
-        tile_section::{SectionOfTile, SectionSums},
+        extract_layers,
+        tile_section::{LayerTotals, SectionOfTile, SectionSums},
     },
     roads::{
         lay::ClassSums,
@@ -18,11 +18,13 @@ use corniche_pieces::{
     },
     spans::totals::SpanTotals,
 };
-use corniche_spec::{extent::ExtentOutline, manifest_texts, settings_record};
+use corniche_spec::{
+    artifacts::ArtifactError, extent::ExtentOutline, manifest_texts, settings_record,
+};
 use corniche_tileset::{
-    AreaLevelRecord, AreasRecord, Distribution, FORMAT_VERSION, GrowthRow, InputRecord,
-    LevelRecord, LineLevelRecord, LinesRecord, Manifest, ManifestCounts, PhotoLevelRecord,
-    SampleSums, SpansRecord, SvTails, VerticalRecord,
+    Distribution, FORMAT_VERSION, GrowthRow, InputRecord, LayerRecord, LevelRecord, Manifest,
+    ManifestCounts, PhotoLevelRecord, SampleSums, SectionLevelRecord, SpansRecord, SvTails,
+    VerticalRecord,
 };
 
 use crate::{
@@ -38,8 +40,7 @@ pub(crate) struct ManifestSources<'a> {
     pub(crate) outline: Option<ExtentOutline>,
     pub(crate) heights: HeightSums,
     pub(crate) roads: Option<(&'a RoadTotals, &'a losses::Sums)>,
-    pub(crate) areas: Option<AreaTotals>,
-    pub(crate) boundaries: Option<LineTotals>,
+    pub(crate) layers: Vec<LayerTotals>,
     pub(crate) spans: Option<SpanTotals>,
     pub(crate) tiles: &'a ManifestSums,
 }
@@ -53,7 +54,7 @@ pub(crate) fn build_manifest(outcome: &ManifestSources<'_>) -> Manifest {
         &settings.roads,
         outcome.context.opened.max_error_m,
         outcome.context.opened.photo.record(),
-        (settings.areas.as_ref(), settings.boundaries),
+        &settings.layers,
     );
     let mut attribution = settings.attribution.clone();
     for credit in outcome.context.opened.photo.files().into_iter().flat_map(|photo| &photo.credits)
@@ -99,8 +100,7 @@ pub(crate) fn build_manifest(outcome: &ManifestSources<'_>) -> Manifest {
         counts: counts(outcome),
         growth: growth(outcome),
         photos: photos(outcome),
-        areas: areas(outcome),
-        boundaries: boundaries(outcome),
+        layers: layers(outcome),
         spans: spans(outcome),
         sv_tails: outcome.tiles.sv_tails.list(),
     }
@@ -164,22 +164,21 @@ fn photos(outcome: &ManifestSources<'_>) -> Vec<PhotoLevelRecord> {
         .collect()
 }
 
-fn areas(outcome: &ManifestSources<'_>) -> Option<AreasRecord> {
-    let counts = outcome.areas.as_ref()?.counts();
-    let level = |(level, SectionSums { tiles, parts: areas, points, bytes })| AreaLevelRecord {
-        level,
-        tiles,
-        areas,
-        points,
-        bytes,
-    };
-    let levels = sections(outcome, SectionLayer::Areas).map(level).collect();
-    Some(AreasRecord { counts, levels })
+/// Reads the totals of all layers.
+pub(crate) fn layer_totals(context: &BuildContext<'_>) -> Result<Vec<LayerTotals>, ArtifactError> {
+    let layers = extract_layers(context.settings.layers.len());
+    let totals = layers.map(|layer| LayerTotals::get(layer, context.store));
+    totals.map(|totals| Ok(totals?.unwrap_or_default())).collect()
 }
 
-fn boundaries(outcome: &ManifestSources<'_>) -> Option<LinesRecord> {
-    let counts = outcome.boundaries.as_ref()?.counts();
-    Some(LinesRecord { counts, levels: line_levels(outcome, SectionLayer::Boundaries) })
+fn layers(outcome: &ManifestSources<'_>) -> Vec<LayerRecord> {
+    let tables = outcome.context.settings.layers.iter().enumerate();
+    let record = |((index, table), totals): ((usize, &LayerTable), &LayerTotals)| LayerRecord {
+        table: table.form().clone(),
+        counts: totals.counts(),
+        levels: levels_of(outcome, |sums| sums.layers.get(index).copied().unwrap_or_default()),
+    };
+    tables.zip(&outcome.layers).map(record).collect()
 }
 
 fn spans(outcome: &ManifestSources<'_>) -> Option<SpansRecord> {
@@ -187,29 +186,27 @@ fn spans(outcome: &ManifestSources<'_>) -> Option<SpansRecord> {
     let totals = outcome.spans.as_ref()?;
     Some(SpansRecord {
         counts: totals.counts(kept),
-        levels: line_levels(outcome, SectionLayer::Spans),
+        levels: levels_of(outcome, |sums| sums.spans),
         outer_grounds: totals.outer.clone(),
     })
 }
 
-fn line_levels(outcome: &ManifestSources<'_>, layer: SectionLayer) -> Vec<LineLevelRecord> {
-    let level = |(level, SectionSums { tiles, parts, points, bytes })| LineLevelRecord {
-        level,
-        tiles,
-        parts,
-        points,
-        bytes,
-    };
-    sections(outcome, layer).map(level).collect()
-}
-
-/// The sums of a layer on the levels that contain it.
-fn sections(
+/// The sums of sections on the levels that have some.
+fn levels_of(
     outcome: &ManifestSources<'_>,
-    layer: SectionLayer,
-) -> impl Iterator<Item = (u8, SectionSums)> {
-    let levels = outcome.tiles.levels.iter();
-    levels.map(move |(&level, sums)| (level, sums.sections[layer])).filter(|(_, own)| own.tiles > 0)
+    sums_of: impl Fn(&LevelSums) -> SectionSums,
+) -> Vec<SectionLevelRecord> {
+    let levels = outcome.tiles.levels.iter().map(|(&level, sums)| (level, sums_of(sums)));
+    let levels = levels.filter(|(_, own)| own.tiles > 0);
+    levels
+        .map(|(level, SectionSums { tiles, parts, points, bytes })| SectionLevelRecord {
+            level,
+            tiles,
+            parts,
+            points,
+            bytes,
+        })
+        .collect()
 }
 
 fn growth(outcome: &ManifestSources<'_>) -> Vec<GrowthRow> {
@@ -259,7 +256,9 @@ pub(crate) struct LevelSums {
     /// Tiles with a photo.
     pub(crate) photo_tiles: u64,
     pub(crate) photo_bytes: u64,
-    pub(crate) sections: ByLayer<SectionSums>,
+    /// The sections of the layers, in their order.
+    pub(crate) layers: Vec<SectionSums>,
+    pub(crate) spans: SectionSums,
     /// Geometric errors of the level's tiles.
     pub(crate) geometric_errors_m: Vec<f64>,
     /// Ratios of the tiles' geometric errors to their deviations, if those can be measured.
@@ -283,7 +282,7 @@ impl ManifestSums {
 
     /// Adds the spans of a tile.
     pub(crate) fn add_spans(&mut self, level: u8, own: SectionOfTile) {
-        self.levels.entry(level).or_default().sections[SectionLayer::Spans].add(own);
+        self.levels.entry(level).or_default().spans.add(own);
     }
 
     /// Adds a tile.
@@ -296,7 +295,7 @@ impl ManifestSums {
                 self.levels.entry(above).or_default().uncovered_nodes += seen.uncovered_nodes;
             }
         }
-        let Some(ground) = record.ground else { return };
+        let Some(ground) = &record.ground else { return };
         let sums = self.levels.entry(level).or_default();
         let deviation = ground.deviation;
         sums.tiles += 1;
@@ -306,8 +305,9 @@ impl ManifestSums {
         sums.relief_bytes += ground.relief_bytes;
         sums.photo_tiles += u64::from(ground.photo_bytes > 0);
         sums.photo_bytes += ground.photo_bytes;
-        for layer in SectionLayer::ALL {
-            sums.sections[layer].add(ground.sections[layer]);
+        sums.layers.resize_with(ground.layers.len(), SectionSums::default);
+        for (sums, &own) in sums.layers.iter_mut().zip(&ground.layers) {
+            sums.add(own);
         }
         sums.geometric_errors_m.push(deviation.geometric_error_m);
         if deviation.deviation_m >= self.least_measured_m {

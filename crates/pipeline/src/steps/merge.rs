@@ -12,7 +12,7 @@ use corniche_pieces::{
     ExtractError,
     layers::{
         SectionLayer,
-        tile_section::{LayerTotals, SectionOfTile, TileSection},
+        tile_section::{SectionOfTile, TileSection},
     },
     roads::losses::LossFold,
     spans::{
@@ -111,8 +111,7 @@ pub(crate) fn make(
         outline: context.data_outline()?,
         heights,
         roads: roads.as_ref().zip(losses.as_ref()),
-        areas: LayerTotals::get(SectionLayer::Areas, context.store)?,
-        boundaries: LayerTotals::get(SectionLayer::Boundaries, context.store)?,
+        layers: manifest::layer_totals(context)?,
         spans: artifacts::get(context.store, ArtifactKind::SpanTotals.item(0))?,
         tiles: &tiles,
     });
@@ -132,13 +131,11 @@ pub(crate) fn make(
 
 /// Returns the kind of objects in the extract, if none of them is on ground.
 fn all_beside_ground(manifest: &Manifest) -> Option<&'static str> {
-    // An extract without roads is used for its areas and boundaries.
+    // An extract without roads is used for its other layers.
     if manifest.counts.roads_in > 0 {
         return (manifest.counts.roads_kept == 0).then_some("road");
     }
-    let has_areas = manifest.areas.as_ref().is_some_and(|areas| !areas.levels.is_empty());
-    let has_boundaries = manifest.boundaries.as_ref().is_some_and(|of| !of.levels.is_empty());
-    (!has_areas && !has_boundaries).then_some("area or boundary")
+    manifest.layers.iter().all(|layer| layer.levels.is_empty()).then_some("object of a layer")
 }
 
 /// Fails if the levels of a package whose terrain is reused differ from those found in its tiles.

@@ -53,8 +53,7 @@ pub(crate) fn make(
     let input = ExtractInput {
         osm,
         settings: &context.settings.roads,
-        areas: context.settings.areas.as_ref(),
-        boundaries: context.settings.boundaries,
+        layers: &context.settings.layers,
         data: context.data(),
         projection: context.projection,
         levels: context.levels,

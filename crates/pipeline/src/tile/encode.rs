@@ -7,7 +7,7 @@ use corniche_geom::{HeightGrid, TILE_NODES, TileId};
 use corniche_ground::{heights::rasters, photos::textures};
 use corniche_pieces::{
     layers::{
-        ByLayer, SectionLayer,
+        extract_layers,
         tile_section::{SectionOfTile, TileSection},
     },
     roads::{
@@ -78,18 +78,18 @@ pub(crate) fn with_ground(
     if let Some(photo) = textures::of_tile(context.textures(), id, earlier)? {
         builder.add(photo)?;
     }
-    let mut sections = ByLayer::<SectionOfTile>::default();
-    for layer in SectionLayer::OF_EXTRACT {
+    let mut layers = vec![SectionOfTile::default(); context.settings.layers.len()];
+    for (layer, own) in extract_layers(layers.len()).zip(&mut layers) {
         if let Some(TileSection { section, parts, points }) =
             TileSection::get(layer, context.store, id)?
         {
             builder.add(layer.section_of(section))?;
-            sections[layer] = SectionOfTile { parts, points, bytes: 0 };
+            *own = SectionOfTile { parts, points, bytes: 0 };
         }
     }
     let EncodedTile { bytes, sizes } = builder.seal()?;
-    for layer in SectionLayer::OF_EXTRACT {
-        sections[layer].bytes = layer.size_in(&sizes).stored;
+    for (own, size) in layers.iter_mut().zip(&sizes.layers) {
+        own.bytes = size.stored;
     }
     context.store.put(ArtifactKind::Payload.of_tile(id), &bytes)?;
     Ok(TileRecord {
@@ -99,7 +99,7 @@ pub(crate) fn with_ground(
             terrain_bytes: sizes.terrain.stored,
             relief_bytes: sizes.relief.stored,
             photo_bytes: sizes.photo.stored,
-            sections,
+            layers,
             deviation,
         }),
         classes: class_sums(laid_classes, &payload, &sizes),

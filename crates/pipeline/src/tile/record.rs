@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use corniche_geom::TileId;
 use corniche_ground::heights::patch::union;
 use corniche_pieces::{
-    layers::{ByLayer, tile_section::SectionOfTile},
+    layers::tile_section::SectionOfTile,
     roads::lay::{ClassSums, RoadFate},
 };
 use corniche_spec::artifacts::{self, ArtifactError, ArtifactKind};
@@ -30,7 +30,7 @@ pub(crate) struct TileRecord {
 }
 
 /// Counts of a tile's ground, and its distance from the heights.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct GroundRecord {
     pub(crate) vertices: u64,
     pub(crate) triangles: u64,
@@ -38,7 +38,8 @@ pub(crate) struct GroundRecord {
     pub(crate) relief_bytes: u64,
     /// Bytes of the photo; 0 without one.
     pub(crate) photo_bytes: u64,
-    pub(crate) sections: ByLayer<SectionOfTile>,
+    /// The sections of the layers, in their order.
+    pub(crate) layers: Vec<SectionOfTile>,
     pub(crate) deviation: TileDeviation,
 }
 

@@ -31,8 +31,9 @@ pub(crate) fn of_tile(
     let levels = context.levels;
     let cell = levels.frame().level_cell(id.z());
     let shown = low_passed(with_two, step_m);
-    let relief = Relief::of_heights(&with_two.inner(1), &shown, cell, levels.quantum_m())
-        .map_err(|what| EncodeError::Unencodable { tile: id, section: "relief section", what })?;
+    let relief = Relief::of_heights(&with_two.inner(1), &shown, cell, levels.quantum_m()).map_err(
+        |what| EncodeError::Unencodable { tile: id, section: "relief section".into(), what },
+    )?;
     Ok(Some(relief))
 }
 

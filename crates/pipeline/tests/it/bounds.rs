@@ -160,7 +160,6 @@ fn check_verify(files: &Files, package: &Path) {
     let osm = VerifyOsm {
         paths: vec![files.at("roads.osm.pbf")],
         table: table(),
-        areas: None,
         memory_bytes: 64 << 20,
     };
     let settings = VerifySettings {

@@ -5,6 +5,7 @@
 use std::fs;
 
 use corniche_dem::PlanOptions;
+use corniche_layers::LayerTable;
 use corniche_plan::BuildPlan;
 use corniche_roads::{ClassFilter, FrcTable};
 use corniche_spec::{PhotoChoice, PlanSettings, RoadSettings, TerrainSettings};
@@ -16,7 +17,6 @@ fn settings() -> PlanSettings {
     let classes = classes.map(|(value, class)| (value.to_owned(), class)).to_vec();
     let table = FrcTable::new("few", classes, vec!["steps".to_owned()], 7).unwrap();
     PlanSettings {
-        boundaries: false,
         dem: vec![sample("pass/pass-dem.tif")],
         terrain_of: None,
         osm: vec![sample("pass/pass.osm.pbf")],
@@ -31,7 +31,7 @@ fn settings() -> PlanSettings {
             spans: false,
         },
         photo: PhotoChoice::Off,
-        areas: None,
+        layers: Vec::new(),
         attribution: vec!["a credit".to_owned()],
         generator: "corniche 0.0.0".to_owned(),
     }
@@ -143,6 +143,34 @@ fn every_other_value_makes_another_plan_and_is_named() {
 }
 
 #[test]
+fn another_table_of_a_layer_is_named() {
+    let walls = |cells: f64| {
+        let form = json!({
+            "id": "walls",
+            "geometry": "line",
+            "simplify_cells": cells,
+            "class": [{ "id": "wall", "tags": { "barrier": "wall" } }],
+        });
+        LayerTable::new(serde_json::from_value(form).unwrap()).unwrap()
+    };
+    let plan = |layers| BuildPlan::make(&PlanSettings { layers, ..settings() }).unwrap();
+    let [own, other] = [0.5, 1.0].map(|cells| plan(vec![walls(cells)]));
+    assert_ne!(own.hash(), other.hash());
+    for (store, words) in [(&other, "walls ("), (&plan(Vec::new()), "--layers")] {
+        let said = own.differences(store);
+        assert_eq!(said.len(), 1, "{said:?}");
+        assert!(said[0].contains("--layers") && said[0].contains(words), "{said:?}");
+    }
+    // The plan contains the tables.
+    let read = BuildPlan::from_json(&own.to_json().unwrap()).unwrap();
+    assert_eq!(read.settings().unwrap().layers, [walls(0.5)]);
+    let text =
+        own.to_json().unwrap().replacen("\"barrier\": \"wall\"", "\"barrier\": \"fence\"", 1);
+    let said = BuildPlan::from_json(&text).unwrap().differences(&own);
+    assert!(said.len() == 1 && said[0].contains("edited by hand"), "{said:?}");
+}
+
+#[test]
 fn a_changed_file_is_named_with_what_changed() {
     let folder = tempfile::tempdir().unwrap();
     let dem = folder.path().join("dem.tif");
@@ -192,9 +220,9 @@ fn a_worker_that_derives_another_grid_says_so() {
 #[test]
 fn what_is_no_plan_is_refused() {
     let text = BuildPlan::make(&settings()).unwrap().to_json().unwrap();
-    let later = text.replace("\"plan_version\": 9", "\"plan_version\": 10");
+    let later = text.replace("\"plan_version\": 10", "\"plan_version\": 11");
     let error = BuildPlan::from_json(&later).unwrap_err().to_string();
-    assert!(error.contains("version 10") && error.contains("version 9"), "{error}");
+    assert!(error.contains("version 11") && error.contains("version 10"), "{error}");
     for bad in ["", "{}", "[7]", &text[..text.len() / 2], "\"plan\""] {
         let error = BuildPlan::from_json(bad).unwrap_err().to_string();
         assert!(error.contains("corniche plan -o"), "{bad}: {error}");

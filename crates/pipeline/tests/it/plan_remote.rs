@@ -62,7 +62,6 @@ fn a_file_on_a_server_is_known_by_its_size_and_etag() {
     let table = FrcTable::new("one", vec![("motorway".to_owned(), 0)], Vec::new(), 0).unwrap();
     let dem = format!("/vsicurl/http://{address}/dem.tif");
     let settings = PlanSettings {
-        boundaries: false,
         dem: vec![dem.clone().into()],
         terrain_of: None,
         osm: Vec::new(),
@@ -74,7 +73,7 @@ fn a_file_on_a_server_is_known_by_its_size_and_etag() {
             spans: false,
         },
         photo: PhotoChoice::Off,
-        areas: None,
+        layers: Vec::new(),
         attribution: Vec::new(),
         generator: "tests".to_owned(),
     };

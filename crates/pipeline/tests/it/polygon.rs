@@ -102,7 +102,6 @@ impl Files {
         let osm = VerifyOsm {
             paths: vec![self.at("roads.osm.pbf")],
             table: table(),
-            areas: None,
             memory_bytes: 64 << 20,
         };
         let settings = VerifySettings {

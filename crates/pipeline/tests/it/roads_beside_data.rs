@@ -62,7 +62,6 @@ fn broken(folder: &Path) -> Vec<String> {
         osm: Some(VerifyOsm {
             paths: vec![folder.join("roads.osm.pbf")],
             table: table(),
-            areas: None,
             memory_bytes: 64 << 20,
         }),
         threads: 2,

@@ -83,7 +83,7 @@ fn verified(package: &Path, osm: &[PathBuf]) -> Result<VerifyReport, VerifyError
     let settings = VerifySettings {
         dem: Vec::new(),
         photo: Vec::new(),
-        osm: Some(VerifyOsm { paths, table: table(), areas: None, memory_bytes: 64 << 20 }),
+        osm: Some(VerifyOsm { paths, table: table(), memory_bytes: 64 << 20 }),
         threads: 2,
         polygon: None,
     };

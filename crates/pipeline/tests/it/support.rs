@@ -5,6 +5,7 @@
 
 pub(crate) mod agreement;
 pub(crate) mod extract;
+pub(crate) mod layers;
 pub(crate) mod parts;
 pub(crate) mod rays;
 pub(crate) mod seen;
@@ -166,7 +167,6 @@ pub(crate) fn settings(
 ) -> BuildSettings {
     BuildSettings {
         plan: PlanSettings {
-            boundaries: false,
             dem: vec![dem],
             terrain_of: None,
             osm: osm.into_iter().collect(),
@@ -189,7 +189,7 @@ pub(crate) fn settings(
                 spans: false,
             },
             photo: PhotoChoice::Off,
-            areas: None,
+            layers: Vec::new(),
             attribution: Vec::new(),
             generator: "tests".to_owned(),
         },

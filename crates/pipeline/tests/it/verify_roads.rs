@@ -49,15 +49,19 @@ fn no_check_is_broken_when_nothing_was_changed() {
     let path = folder.path().join("same.pmtiles");
     SOUND.parts.write(&path).unwrap();
     let report = assert_broken(report_on(&path, Against::Osm), &[]);
-    // The package has no photos, no areas, no boundaries and no spans.
+    // The package has no photos, no layers and no spans.
     let mut others = report.checks.iter().filter(|check| {
         let id = check.id.id();
         let others = [
             "photo.",
             "areas.",
+            "lines.",
+            "points.",
+            "layers.",
             "osm.areas",
-            "boundaries.",
-            "osm.boundaries",
+            "osm.lines",
+            "osm.points",
+            "osm.layers",
             "spans.",
             "osm.spans",
             "P6.structures",

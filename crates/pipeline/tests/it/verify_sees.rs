@@ -29,13 +29,13 @@ fn no_check_is_broken_when_nothing_was_changed() {
     );
     let report = assert_broken(report_on(&path, Against::Dem), &[]);
     assert_eq!(report.tiles, parts.tiles.len() as u64);
-    // The package has no photos, areas, boundaries and spans; `verify_photos.rs`, `verify_areas.rs`
-    // and `verify_spans.rs` have some.
+    // The package has no photos, layers and spans; `verify_photos.rs`, `verify_layers.rs` and
+    // `verify_spans.rs` have some.
     let mut others = report.checks.iter().filter(|check| {
         let id = check.id.id();
-        !["photo.", "areas.", "boundaries.", "spans.", "P6.structures"]
-            .iter()
-            .any(|start| id.starts_with(start))
+        let others =
+            ["photo.", "areas.", "lines.", "points.", "layers.", "spans.", "P6.structures"];
+        !others.iter().any(|start| id.starts_with(start))
     });
     assert!(others.all(|check| check.checked > 0), "{:#?}", report.checks);
 }

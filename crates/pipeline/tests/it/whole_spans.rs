@@ -59,7 +59,6 @@ fn holds(package: &FilePackage, settings: &BuildSettings) {
     let osm = VerifyOsm {
         paths: plan.osm.clone(),
         table: plan.roads.table.clone(),
-        areas: None,
         memory_bytes: 64 << 20,
     };
     let verified = VerifySettings {

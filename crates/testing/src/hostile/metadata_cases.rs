@@ -98,7 +98,7 @@ pub(crate) fn all() -> Vec<Case> {
         ),
         ("growth of 28 rows", "/growth", json!(vec![growth("level", 0); 28]), "growth rows is 28"),
         ("another version", "/format_version", json!(7), "format version 7 is not supported"),
-        ("the version before", "/format_version", json!(0), "format version 0 is not supported"),
+        ("the version before", "/format_version", json!(1), "format version 1 is not supported"),
         ("a version that is a text", "/format_version", json!("0"), "manifest is damaged"),
     ];
     let mut cases: Vec<Case> = values

@@ -1,8 +1,8 @@
 //! The small package in pieces, so that each piece can be invalid by itself.
 
+use corniche_layers::LayerGeometry;
 use corniche_tileset::{
-    AreaCounts, AreaTableRecord, AreasRecord, InputRecord, LineCounts, LinesRecord, Manifest,
-    SettingsRecord, SpanCounts, SpansRecord,
+    InputRecord, LayerCounts, LayerRecord, Manifest, SettingsRecord, SpanCounts, SpansRecord,
 };
 
 use crate::{
@@ -60,37 +60,61 @@ impl PackageParts {
     }
 }
 
-/// The valid package's metadata, in a CRS that PROJ knows and with an extract, areas, boundaries
-/// and spans, so that no command ends before it has read tiles.
+/// The valid package's metadata, in a CRS that PROJ knows and with an extract, layers of each
+/// geometry and spans, so that no command ends before it has read tiles.
 pub(crate) fn metadata() -> serde_json::Value {
     let (kind, name) = ("osm".to_owned(), "pass.osm.pbf".to_owned());
     let extract = InputRecord { kind, name, bytes: 1, sha256: "0".repeat(64) };
-    let (table, sha256) = ("default".to_owned(), "0".repeat(64));
-    let areas = AreaCounts { objects: 0, kept: vec![], lost: vec![] };
-    let boundaries = LineCounts { ways: 0, kept: vec![], lost: vec![] };
     let (bridges, tunnels, crossings, reasons) = (0, 0, 0, vec![]);
     let spans = SpanCounts { bridges, tunnels, bridges_um: 0, tunnels_um: 0, crossings, reasons };
     let sound = package::manifest();
     package::metadata(&Manifest {
         crs_wkt: "EPSG:32632".to_owned(),
         inputs: vec![extract],
-        areas: Some(AreasRecord { counts: areas, levels: vec![] }),
-        boundaries: Some(LinesRecord { counts: boundaries, levels: vec![] }),
+        layers: LayerGeometry::ALL.iter().map(|&geometry| layer(geometry)).collect(),
         spans: Some(SpansRecord { counts: spans, levels: vec![], outer_grounds: vec![] }),
-        settings: SettingsRecord {
-            areas: Some(AreaTableRecord { table, sha256 }),
-            boundaries: true,
-            spans: true,
-            ..sound.settings.clone()
-        },
+        settings: SettingsRecord { spans: true, ..sound.settings.clone() },
         ..sound
     })
+}
+
+/// A layer of a geometry with attributes of all kinds and without objects; its id is the name of
+/// the geometry.
+fn layer(geometry: LayerGeometry) -> LayerRecord {
+    let table = serde_json::json!({
+        "id": geometry.name(),
+        "geometry": geometry,
+        "attributes": { "ele": { "number": "m" }, "name": "names", "ref": "text", "seamark": "yes-no" },
+        "class": [{ "id": "one", "tags": { "natural": true } }],
+    });
+    let counts = LayerCounts { objects: 0, kept: vec![], lost: vec![], unread_values: vec![] };
+    LayerRecord { table: serde_json::from_value(table).unwrap(), counts, levels: vec![] }
 }
 
 /// Appends `count` numbers in planes in which every byte is `byte`.
 pub(crate) fn planes(blob: &mut Vec<u8>, planes: u8, count: usize, byte: u8) {
     blob.push(planes);
     blob.resize(blob.len() + usize::from(planes) * count, byte);
+}
+
+/// Returns a column of `count` numbers of `width` bytes, which are all the same.
+pub(crate) fn column(width: u8, count: usize, byte: u8) -> Vec<u8> {
+    let mut column = Vec::new();
+    planes(&mut column, width, count, byte);
+    column
+}
+
+/// Returns a column of these numbers.
+pub(crate) fn numbers(values: &[u64]) -> Vec<u8> {
+    let all = values.iter().fold(0, |all, value| all | value);
+    let width = (64 - all.leading_zeros()).div_ceil(8);
+    let plane = |plane| values.iter().map(move |value| (value >> (8 * plane)) as u8);
+    std::iter::once(width as u8).chain((0..width).flat_map(plane)).collect()
+}
+
+/// Returns a section, compressed if it is long: short ones do not become smaller.
+pub(crate) fn section_of(kind: u16, raw: &[u8]) -> RawSection {
+    if raw.len() < 1000 { RawSection::plain(kind, raw.to_vec()) } else { zstd_section(kind, raw) }
 }
 
 /// Returns a section as one zstd frame.

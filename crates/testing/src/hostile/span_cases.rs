@@ -9,7 +9,7 @@ use crate::{package, payload::RawSection, pmtiles::put_varint, random::Random};
 
 use super::{
     case::{Case, ReadOutcome, refused},
-    parts::{planes, raw_sections, zstd_section},
+    parts::{column, numbers, raw_sections, section_of},
     tile_cases::{with_sections, with_tile},
 };
 
@@ -32,13 +32,6 @@ fn section(runs: u64, columns: &[Vec<u8>]) -> Vec<u8> {
     raw
 }
 
-/// A column of `count` numbers of `width` bytes, which are all the same.
-fn column(width: u8, count: usize, byte: u8) -> Vec<u8> {
-    let mut column = Vec::new();
-    planes(&mut column, width, count, byte);
-    column
-}
-
 /// Columns of runs of class 0 that go east by one step per point, at a height of 0.
 fn columns(runs: usize, points: usize) -> Vec<Vec<u8>> {
     let mut columns = vec![vec![0]; 7];
@@ -49,14 +42,6 @@ fn columns(runs: usize, points: usize) -> Vec<Vec<u8>> {
     }
     columns[EAST] = column(1, runs * points, 2);
     columns
-}
-
-/// A column of these numbers.
-fn numbers(values: &[u64]) -> Vec<u8> {
-    let all = values.iter().fold(0, |all, value| all | value);
-    let width = (64 - all.leading_zeros()).div_ceil(8);
-    let plane = |plane| values.iter().map(move |value| (value >> (8 * plane)) as u8);
-    iter::once(width as u8).chain((0..width).flat_map(plane)).collect()
 }
 
 /// The numbers of points of the spans in a tile of [`attack`]: some, as many as allowed, and more.
@@ -124,13 +109,8 @@ pub fn attack(number: usize) -> Case {
 
 /// A package whose tile has ground and this section.
 fn beside_ground(raw: &[u8]) -> Vec<u8> {
-    // Short sections do not become smaller by compression.
-    let spans = if raw.len() < 1000 {
-        RawSection::plain(SPANS, raw.to_vec())
-    } else {
-        zstd_section(SPANS, raw)
-    };
-    with_sections(&[RawSection::plain(1, raw_sections().swap_remove(0)), spans])
+    let ground = RawSection::plain(1, raw_sections().swap_remove(0));
+    with_sections(&[ground, section_of(SPANS, raw)])
 }
 
 pub(crate) fn all() -> Vec<Case> {

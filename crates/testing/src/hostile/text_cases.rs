@@ -57,8 +57,9 @@ fn with_all_texts() -> Value {
     manifest["counts"]["roads_lost"] = json!([{ "reason": "text", "roads": 1, "length_um": 1 }]);
     manifest["counts"]["left_out"] =
         json!([{ "reason": "text", "highway": "track", "ways": 1, "length_um": 1 }]);
-    manifest["areas"]["counts"]["lost"] = number();
-    manifest["boundaries"]["counts"]["lost"] = number();
+    for counted in ["lost", "unread_values"] {
+        manifest["layers"][0]["counts"][counted] = number();
+    }
     manifest["settings"]["class_labels"] = json!(vec!["text"; 9]);
     manifest["settings"]["crs"] = json!("EPSG:32632");
     manifest["settings"]["vertical_unit"] = json!("metre");

@@ -85,7 +85,7 @@ pub(crate) fn all() -> Vec<Case> {
             with_tile(vec![b'x'; 99]),
             "tile 0/0/0, header: the bytes are not",
         ),
-        refused("another version", with_tile(resealed(good(), 4, &[0])), "payload version 0"),
+        refused("the version before", with_tile(resealed(good(), 4, &[1])), "payload version 1"),
         refused(
             "another tile",
             with_tile(package::encoded("1/1/0".parse().unwrap())),
@@ -149,7 +149,7 @@ pub(crate) fn all() -> Vec<Case> {
         refused(
             "a damaged section of an unknown kind",
             with_tile({
-                let mut bytes = two(RawSection::plain(99, vec![1, 2, 3]));
+                let mut bytes = two(RawSection::plain(999, vec![1, 2, 3]));
                 let last = bytes.len() - 1;
                 bytes[last] ^= 1;
                 bytes
@@ -158,7 +158,7 @@ pub(crate) fn all() -> Vec<Case> {
         ),
         Case {
             name: "a section of an unknown kind",
-            bytes: with_tile(two(RawSection::plain(99, vec![1, 2, 3]))),
+            bytes: with_tile(two(RawSection::plain(999, vec![1, 2, 3]))),
             outcome: ReadOutcome::Read,
             limit_mib: 2,
         },

@@ -4,16 +4,17 @@
 //! The numbers in a package can be anything: a count of 2^64 − 1 would overflow the first sum, a
 //! coordinate of 1e308 the first product, and comparisons with NaN would give wrong results.
 
-use corniche_areas::{AreaClass, BoundaryClass};
 use corniche_geom::{Bounds, Cell, MAX_COORDINATE_M, MAX_LATTICE_STEPS, NodeIndex, TileId};
+use corniche_layers::{LayerTable, stacked_layers};
 use corniche_roads::FrcTable;
 use corniche_settings::{MAX_MEASURE_M, MAX_NODATA};
 
 use crate::limits::MAX_PHOTO_LEVELS;
-use crate::manifest::contents::{AreasRecord, LineLevelRecord, LinesRecord, Manifest, SpansRecord};
+use crate::manifest::contents::{Manifest, SpansRecord};
 use crate::manifest::counts::{GrowthRow, ManifestCounts};
 use crate::manifest::credits::MOST_CREDITS_BYTES;
-use crate::manifest::levels::{Distribution, LevelRecord, SampleErrorRecord};
+use crate::manifest::layers::LayerRecord;
+use crate::manifest::levels::{Distribution, LevelRecord, SampleErrorRecord, SectionLevelRecord};
 use crate::manifest::sv_tails::{LEAST_TAIL_BYTES, MOST_TAILS, SvTail};
 use crate::tile_order::pmtiles_order;
 
@@ -117,8 +118,7 @@ impl Manifest {
         }
         check_sum("growth", self.growth.iter().flat_map(GrowthRow::counts))?;
         self.check_photos()?;
-        self.check_areas()?;
-        self.check_boundaries()?;
+        self.check_layers()?;
         self.check_spans()?;
         self.check_sv_tails()?;
         if self.crs_wkt.contains('\0') {
@@ -156,14 +156,25 @@ impl Manifest {
         check_sum("photos", self.photos.iter().flat_map(|photos| [photos.tiles, photos.bytes]))
     }
 
-    fn check_boundaries(&self) -> Result<(), String> {
-        let Some(LinesRecord { counts, levels }) = &self.boundaries else { return Ok(()) };
-        let lengths_um = counts.kept.iter().map(|kept| kept.length_um);
-        check_sum("boundaries.counts.kept.length_um", lengths_um)?;
-        let levels = levels.iter().map(LineLevelRecord::figures);
-        let kept = counts.kept.iter().map(|kept| (kept.class, kept.ways));
-        let is_class = |class| BoundaryClass::from_number(class).is_some();
-        self.check_layer("boundaries", levels, kept, is_class, &counts.lost)
+    fn check_layers(&self) -> Result<(), String> {
+        let mut tables = Vec::with_capacity(self.layers.len());
+        for LayerRecord { table, counts, levels } in &self.layers {
+            let name = format!("layer {:?}", table.id);
+            tables
+                .push(LayerTable::new(table.clone()).map_err(|error| format!("{name}: {error}"))?);
+            let areas_km2 = counts.kept.iter().map(|kept| kept.area_km2);
+            all_measures(&format!("{name}: counts.kept.area_km2"), areas_km2)?;
+            let lengths_um = counts.kept.iter().map(|kept| kept.length_um);
+            check_sum(&format!("{name}: counts.kept.length_um"), lengths_um)?;
+            let unread = counts.unread_values.iter().map(|&(_, values)| values);
+            check_sum(&format!("{name}: counts.unread_values"), unread)?;
+            let levels = levels.iter().map(SectionLevelRecord::figures);
+            let kept = counts.kept.iter().map(|kept| (kept.class, kept.objects));
+            let is_class = |class| usize::from(class) < table.classes.len();
+            self.check_layer(&name, levels, kept, is_class, &counts.lost)?;
+        }
+        let order = stacked_layers(&tables).map_err(|error| error.to_string())?;
+        that(order.is_sorted(), "the order of layers", order)
     }
 
     fn check_spans(&self) -> Result<(), String> {
@@ -176,7 +187,7 @@ impl Manifest {
         for ground in outer_grounds {
             that(ground.height_m.is_finite(), "spans.outer_grounds", ground)?;
         }
-        let levels = levels.iter().map(LineLevelRecord::figures);
+        let levels = levels.iter().map(SectionLevelRecord::figures);
         check_sum("spans.counts", [counts.bridges_um, counts.tunnels_um])?;
         let kept = (0..).zip([counts.bridges, counts.tunnels, counts.crossings]);
         self.check_layer("spans", levels, kept, |_| true, &counts.reasons)
@@ -193,16 +204,6 @@ impl Manifest {
             that(*bytes >= LEAST_TAIL_BYTES, "sv_tails.bytes", *bytes)?;
         }
         Ok(())
-    }
-
-    fn check_areas(&self) -> Result<(), String> {
-        let Some(AreasRecord { counts, levels }) = &self.areas else { return Ok(()) };
-        let areas_km2 = counts.kept.iter().map(|kept| kept.area_km2);
-        all_measures("areas.counts.kept.area_km2", areas_km2)?;
-        let levels = levels.iter().map(|of| (of.level, [of.tiles, of.areas, of.points, of.bytes]));
-        let kept = counts.kept.iter().map(|kept| (kept.class, kept.areas));
-        let is_class = |class| AreaClass::from_number(class).is_some();
-        self.check_layer("areas", levels, kept, is_class, &counts.lost)
     }
 
     /// Checks the numbers of each level, and the numbers of objects by class and by reason.

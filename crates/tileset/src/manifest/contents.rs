@@ -7,9 +7,11 @@ use corniche_geom::{
 use corniche_settings::SettingsRecord;
 use serde::{Deserialize, Serialize};
 
+use crate::layer_slot::LayerSlot;
 use crate::manifest::counts::{GrowthRow, ManifestCounts};
 use crate::manifest::inputs::{InputKind, InputRecord};
-use crate::manifest::levels::LevelRecord;
+use crate::manifest::layers::LayerRecord;
+use crate::manifest::levels::{LevelRecord, SectionLevelRecord};
 use crate::manifest::sv_tails::SvTail;
 
 /// The table of contents of a package: its JSON metadata.
@@ -82,12 +84,9 @@ pub struct Manifest {
     /// The photos of each level that has any, root first; omitted if there are none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub photos: Vec<PhotoLevelRecord>,
-    /// The areas; omitted in packages that were built without areas.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub areas: Option<AreasRecord>,
-    /// The boundaries; omitted in packages that were built without boundaries.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub boundaries: Option<LinesRecord>,
+    /// The layers, from the lowest to the highest; omitted in packages without layers.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub layers: Vec<LayerRecord>,
     /// Spans (bridges and tunnels between two points on the ground); omitted in packages that were
     /// built without spans.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -102,6 +101,18 @@ impl Manifest {
     /// The input files of a kind, in the order in which they were given.
     pub fn inputs_of(&self, kind: InputKind) -> impl Iterator<Item = &InputRecord> {
         self.inputs.iter().filter(move |input| kind.is_of(input))
+    }
+
+    /// The layers with their positions, from the lowest to the highest.
+    pub fn layers(&self) -> impl Iterator<Item = (LayerSlot, &LayerRecord)> {
+        let slots = (0..self.layers.len()).filter_map(LayerSlot::new);
+        slots.zip(&self.layers)
+    }
+
+    /// The layer with this id, and its position.
+    #[must_use]
+    pub fn layer(&self, id: &str) -> Option<(LayerSlot, &LayerRecord)> {
+        self.layers().find(|(_, layer)| layer.table.id == id)
     }
 
     /// Whether the package was built with an OSM extract, so that it may have roads.
@@ -207,54 +218,6 @@ impl VerticalRecord {
     }
 }
 
-/// The areas of a package.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct AreasRecord {
-    /// Numbers of objects read, kept and lost.
-    pub counts: AreaCounts,
-    /// The areas of each level that has any, root first.
-    pub levels: Vec<AreaLevelRecord>,
-}
-
-/// Objects of the extract that have the tags of an area: `objects` = objects of `kept` + objects of
-/// `lost`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct AreaCounts {
-    /// Number of objects.
-    pub objects: u64,
-    /// Number of areas per class, inside and outside the built region.
-    pub kept: Vec<AreaClassRecord>,
-    /// Objects that did not become areas: reason and number.
-    pub lost: Vec<(String, u64)>,
-}
-
-/// Areas of one class.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct AreaClassRecord {
-    /// The class's number.
-    pub class: u8,
-    /// Number of areas.
-    pub areas: u64,
-    /// The true area of the objects in square kilometres, inside and outside the built region;
-    /// where areas overlap, each of them counts.
-    pub area_km2: f64,
-}
-
-/// The areas of a level.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct AreaLevelRecord {
-    /// Level, 0 = root.
-    pub level: u8,
-    /// Tiles with areas.
-    pub tiles: u64,
-    /// Areas in these tiles; an area in several tiles counts in each of them.
-    pub areas: u64,
-    /// Points of all rings.
-    pub points: u64,
-    /// Stored bytes of their areas sections.
-    pub bytes: u64,
-}
-
 /// The photos of a level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PhotoLevelRecord {
@@ -273,7 +236,7 @@ pub struct SpansRecord {
     pub counts: SpanCounts,
     /// The runs of the tiles, by level (a run is a stretch of a span that is off the ground);
     /// levels without runs are omitted.
-    pub levels: Vec<LineLevelRecord>,
+    pub levels: Vec<SectionLevelRecord>,
     /// Ground on which spans are carried and which the package does not contain: where bounds cut
     /// spans, the ground of the finest tiles without bounds. In ascending order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -321,58 +284,4 @@ pub struct SpanCounts {
     pub crossings: u64,
     /// Reasons to inspect a span, each with its number of occurrences.
     pub reasons: Vec<(String, u64)>,
-}
-
-/// The boundaries of a package.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct LinesRecord {
-    /// Numbers of ways read, kept and lost.
-    pub counts: LineCounts,
-    /// The lines of the tiles, by level; levels without lines are omitted.
-    pub levels: Vec<LineLevelRecord>,
-}
-
-/// Lines of a layer of the extract.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct LineCounts {
-    /// Ways that have a class; each counts once, in its most important class.
-    pub ways: u64,
-    /// Ways that were read, by class, inside and outside the built region.
-    pub kept: Vec<LineClassRecord>,
-    /// Ways that were skipped, by reason.
-    pub lost: Vec<(String, u64)>,
-}
-
-/// Lines of one class.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct LineClassRecord {
-    /// Number of the class.
-    pub class: u8,
-    /// Number of ways.
-    pub ways: u64,
-    /// The true length of the ways in plan, in micrometres, inside and outside the built region.
-    pub length_um: u64,
-}
-
-/// The lines of a level.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct LineLevelRecord {
-    /// The level.
-    pub level: u8,
-    /// Tiles with lines.
-    pub tiles: u64,
-    /// Parts of lines in these tiles; a part near several tiles counts in each of them.
-    pub parts: u64,
-    /// Number of points of the parts.
-    pub points: u64,
-    /// Stored bytes of the layer's sections in these tiles.
-    pub bytes: u64,
-}
-
-impl LineLevelRecord {
-    /// The level, and the numbers in the order of the fields.
-    #[must_use]
-    pub fn figures(&self) -> (u8, [u64; 4]) {
-        (self.level, [self.tiles, self.parts, self.points, self.bytes])
-    }
 }

@@ -100,3 +100,27 @@ impl Distribution {
         })
     }
 }
+
+/// The sections of a level with the objects of a layer, or with runs of spans.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SectionLevelRecord {
+    /// Level, 0 = root.
+    pub level: u8,
+    /// Tiles with a section.
+    pub tiles: u64,
+    /// Objects, or parts of them, in these tiles; an object in several tiles counts in each of
+    /// them.
+    pub parts: u64,
+    /// Points of all parts.
+    pub points: u64,
+    /// Stored bytes of the sections.
+    pub bytes: u64,
+}
+
+impl SectionLevelRecord {
+    /// The level, and the numbers in the order of the fields.
+    #[must_use]
+    pub fn figures(&self) -> (u8, [u64; 4]) {
+        (self.level, [self.tiles, self.parts, self.points, self.bytes])
+    }
+}

@@ -7,7 +7,7 @@ use crate::Manifest;
 /// Version of a package's encodings, in
 /// [`Manifest::format_version`](crate::Manifest::format_version). Readers reject all other
 /// versions.
-pub const FORMAT_VERSION: u32 = 1;
+pub const FORMAT_VERSION: u32 = 2;
 
 /// The JSON metadata of the file: texts for PMTiles tools, and the manifest under its own key.
 #[derive(Serialize, Deserialize)]

@@ -31,15 +31,10 @@ impl Section {
         &self.bytes
     }
 
-    /// Returns the bytes for [`Section::of_areas`] and the corresponding functions of other layers:
-    /// the bytes of the section, preceded by the kind if the layer has two kinds of section.
+    /// Returns the bytes for [`Section::of_layer`] and the corresponding functions of other kinds.
     #[must_use]
     pub fn into_bytes(self) -> Vec<u8> {
-        match self.kind {
-            SectionKind::Areas => [&[0], &self.bytes[..]].concat(),
-            SectionKind::CodedAreas => [&[1], &self.bytes[..]].concat(),
-            _ => self.bytes,
-        }
+        self.bytes
     }
 
     /// Returns the size of the section in the payload of a tile.
@@ -102,7 +97,8 @@ impl<'a> PayloadBuilder<'a> {
     /// # Errors
     /// When the bytes are not a payload of the tile, or have a section of an unknown kind.
     pub fn with_all_of(payload: &'a [u8], tile: TileId) -> Result<Self, EncodeError> {
-        let refused = |what| EncodeError::Unencodable { tile, section: "other sections", what };
+        let refused =
+            |what| EncodeError::Unencodable { tile, section: "other sections".into(), what };
         let sections = envelope::open(payload, tile).map_err(|_| refused("a damaged payload"))?;
         let mut builder = Self::new(tile);
         for stored in sections {
@@ -125,10 +121,8 @@ impl<'a> PayloadBuilder<'a> {
     /// are added before the ground.
     pub fn add(&mut self, section: Section) -> Result<(), EncodeError> {
         let mut kinds = self.sections.iter().map(Content::kind);
-        let name = section.kind.name();
         let refused = section.kind.refused(self.tile);
-        // Both kinds of section of a layer have the same name.
-        if kinds.clone().any(|other| other.name() == name) {
+        if kinds.clone().any(|other| section.kind.excludes(other)) {
             return Err(refused("a second section of the same kind"));
         }
         if section.kind == SectionKind::Spans && !kinds.any(|other| other == SectionKind::Terrain) {
@@ -169,7 +163,7 @@ impl<'a> PayloadBuilder<'a> {
                     (compression, stored.as_slice(), raw.len(), crc32fast::hash(stored))
                 }
             };
-            table.extend((content.kind() as u16).to_le_bytes());
+            table.extend(content.kind().number().to_le_bytes());
             table.extend([compression, 0]);
             for number in [start + body.len(), stored.len(), raw_length] {
                 table.extend((number as u32).to_le_bytes());

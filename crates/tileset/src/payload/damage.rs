@@ -1,5 +1,7 @@
 //! Errors of encoding and decoding a tile, and the kinds of damage that bytes can have.
 
+use std::borrow::Cow;
+
 use corniche_geom::TileId;
 
 /// What is wrong with the bytes of a payload or section.
@@ -72,7 +74,7 @@ pub enum Damage {
 impl Damage {
     /// Returns the error for damage in the header of a payload.
     pub(crate) fn in_header(self, tile: TileId) -> DecodeError {
-        DecodeError { tile, part: "header", damage: self }
+        DecodeError { tile, part: "header".into(), damage: self }
     }
 }
 
@@ -83,7 +85,7 @@ pub struct DecodeError {
     /// The tile.
     pub tile: TileId,
     /// The part of the tile: "header", or the name of a section.
-    pub part: &'static str,
+    pub part: Cow<'static, str>,
     /// The damage.
     pub damage: Damage,
 }
@@ -98,7 +100,7 @@ pub enum EncodeError {
         /// The tile.
         tile: TileId,
         /// The section.
-        section: &'static str,
+        section: Cow<'static, str>,
         /// The content that cannot be encoded.
         what: &'static str,
     },
@@ -110,7 +112,7 @@ pub enum EncodeError {
         /// The tile.
         tile: TileId,
         /// The section.
-        section: &'static str,
+        section: Cow<'static, str>,
         /// The size of the section before compression.
         bytes: usize,
         /// The largest accepted size.
@@ -122,7 +124,7 @@ pub enum EncodeError {
         /// The tile.
         tile: TileId,
         /// The section.
-        section: &'static str,
+        section: Cow<'static, str>,
         /// The error of the compressor.
         reason: String,
     },

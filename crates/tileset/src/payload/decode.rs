@@ -9,9 +9,7 @@ use crate::payload::envelope::StoredSection;
 use crate::payload::relief::Relief;
 use crate::payload::section_kind::{GEO, SV, SectionKind, Sections, TwoKinds};
 use crate::payload::tile_payload::{GeoRoad, TilePayload, TileTerrain};
-use crate::payload::{
-    areas, attributes, envelope, lines, road_tags, roads_geo, roads_sv, spans, terrain,
-};
+use crate::payload::{attributes, envelope, road_tags, roads_geo, roads_sv, spans, terrain};
 
 /// Decodes the wanted sections of a payload; sections that are absent or not wanted are empty or
 /// `None`.
@@ -34,9 +32,9 @@ pub fn decode(
 ) -> Result<TilePayload, DecodeError> {
     let (context, sections) = CodingContext::open(bytes, id, frame, quantum_m)?;
     if wanted == Sections::ALL {
-        let part = "section of an unknown kind";
-        let failed = |damage| DecodeError { tile: id, part, damage };
-        envelope::check_unknown(&sections).map_err(failed)?;
+        let part = "section of an unknown kind".into();
+        let checked = envelope::check_unknown(&sections);
+        checked.map_err(|damage| DecodeError { tile: id, part, damage })?;
     }
     let reader = SectionReader { sections: &sections, wanted, tile: id };
     let roads_geo = reader.roads(GEO, Sections::ROADS_GEO)?;
@@ -79,12 +77,11 @@ pub fn decode(
     })?;
     // The image itself is only decoded on request.
     reader.read(SectionKind::Photo, Sections::PHOTO, Ok)?;
-    if wanted.contains(Sections::AREAS) {
-        let bounds = frame.tile_lattice_bounds(id);
-        areas::decode_in(&sections, bounds).map_err(SectionKind::Areas.damaged(id))?;
-    }
-    if wanted.contains(Sections::BOUNDARIES) {
-        lines::decode_in(&sections).map_err(SectionKind::Boundaries.damaged(id))?;
+    // Objects of layers are only decoded with the tables of the layers.
+    for kind in sections.iter().filter_map(StoredSection::known_kind) {
+        if let SectionKind::Layer(_) = kind {
+            reader.read(kind, Sections::LAYERS, Ok)?;
+        }
     }
     Ok(TilePayload {
         id,

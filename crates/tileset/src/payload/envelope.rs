@@ -13,7 +13,7 @@ use crate::payload::section_kind::{SectionKind, TwoKinds};
 /// The first bytes of every payload: "Corniche Tile".
 pub(crate) const MAGIC: [u8; 4] = *b"CRNT";
 /// Version of the payload's layout.
-pub(crate) const VERSION: u16 = 1;
+pub(crate) const VERSION: u16 = 2;
 /// The section is stored without compression.
 pub(crate) const STORED: u8 = 0;
 /// The section is stored as one zstd frame.
@@ -35,7 +35,7 @@ pub(crate) struct StoredSection<'a> {
 impl StoredSection<'_> {
     /// The kind of the section, if this version knows it.
     pub(crate) fn known_kind(&self) -> Option<SectionKind> {
-        SectionKind::ALL.iter().copied().find(|&kind| kind as u16 == self.kind)
+        SectionKind::from_number(self.kind)
     }
 
     /// Whether the bytes of the section were read.
@@ -159,7 +159,7 @@ pub(crate) fn read_part<T>(
     read(&sections).map_err(kind.damaged(tile))
 }
 
-/// Returns the bytes of roads or areas, which are in one of two kinds of section, and whether their
+/// Returns the bytes of roads, which are in one of two kinds of section, and whether their
 /// points are range-coded bits.
 pub(crate) fn section_of_two(
     sections: &[StoredSection<'_>],
@@ -177,7 +177,7 @@ pub(crate) fn find<'a>(
     sections: &[StoredSection<'a>],
     kind: SectionKind,
 ) -> Option<StoredSection<'a>> {
-    sections.iter().find(|section| section.kind == kind as u16).copied()
+    sections.iter().find(|section| section.kind == kind.number()).copied()
 }
 
 /// Returns the size of the section of one kind; 0 if it is absent.

@@ -3,9 +3,11 @@
 use corniche_geom::TileId;
 use corniche_tin::{Surface, Tin};
 
+use crate::layer_slot::LayerSlot;
 use crate::manifest::Manifest;
 use crate::payload::damage::DecodeError;
 use crate::payload::decode::decode;
+use crate::payload::layers::{LayerCoding, LayerObject, decode_layer};
 use crate::payload::section_kind::Sections;
 use crate::payload::spans::{SpanRun, decode_spans};
 use crate::payload::tile_payload::TilePayload;
@@ -21,7 +23,35 @@ impl Manifest {
         id: TileId,
         wanted: Sections,
     ) -> Result<TilePayload, DecodeError> {
+        if wanted.contains(Sections::LAYERS) {
+            for (slot, _) in self.layers() {
+                self.decode_layer(bytes, id, slot)?;
+            }
+        }
         decode(bytes, id, &self.frame, self.vertical.quantum_m, wanted)
+    }
+
+    /// Reads the objects of a layer from a tile's payload, as [`decode_layer`] does; empty for a
+    /// layer that the package does not have.
+    ///
+    /// # Errors
+    /// Same as [`decode_layer`]; the error names the layer.
+    pub fn decode_layer(
+        &self,
+        bytes: &[u8],
+        id: TileId,
+        slot: LayerSlot,
+    ) -> Result<Vec<LayerObject>, DecodeError> {
+        let Some(record) = self.layers.get(slot.index()) else { return Ok(Vec::new()) };
+        let coding = LayerCoding::from_table(&record.table);
+        decode_layer(bytes, id, &self.frame, slot, &coding).map_err(|error| {
+            let part = if error.part == "header" {
+                error.part
+            } else {
+                format!("section of layer {:?}", record.table.id).into()
+            };
+            DecodeError { part, ..error }
+        })
     }
 
     /// Reads the spans of a tile's payload, as [`decode_spans`] does.

@@ -133,7 +133,7 @@ fn a_flipped_byte_breaks_the_checksum() {
     let last = bytes.len() - 3;
     bytes[last] ^= 1;
     let error = decode_photo(&bytes, id()).unwrap_err();
-    assert_eq!((error.part, &error.damage), ("photo section", &Damage::Checksum));
+    assert_eq!((&*error.part, &error.damage), ("photo section", &Damage::Checksum));
     // Reading all sections detects the damage, too; reading the ground does not inspect the photo.
     let frame = corniche_geom::GridFrame::covering(
         [0.0; 2],

@@ -1,10 +1,11 @@
 //! The sections that a payload can have.
 
-use std::ops::BitOr;
+use std::{borrow::Cow, ops::BitOr};
 
 use corniche_geom::TileId;
 use serde::{Deserialize, Serialize};
 
+use crate::layer_slot::LayerSlot;
 #[cfg(feature = "write")]
 use crate::payload::damage::EncodeError;
 use crate::payload::damage::{Damage, DecodeError};
@@ -12,22 +13,40 @@ use crate::payload::damage::{Damage, DecodeError};
 /// Declares the kinds, so that the list of all kinds is complete.
 macro_rules! kinds {
     ($($kind:ident = $number:literal, $name:literal;)+) => {
-        /// The kinds of section that this version knows, with the number that a payload stores;
-        /// readers skip other kinds.
+        /// The kinds of section that this version knows; readers skip other kinds.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-        #[repr(u16)]
         pub(crate) enum SectionKind {
-            $($kind = $number,)+
+            $($kind,)+
+            /// The objects of a layer.
+            Layer(LayerSlot),
         }
 
         impl SectionKind {
-            /// All kinds.
-            pub(crate) const ALL: &'static [Self] = &[$(Self::$kind),+];
+            /// All kinds but those of layers.
+            #[cfg(test)]
+            pub(crate) const FIXED: &'static [Self] = &[$(Self::$kind),+];
+
+            /// The number that a payload stores.
+            pub(crate) const fn number(self) -> u16 {
+                match self {
+                    $(Self::$kind => $number,)+
+                    Self::Layer(slot) => FIRST_LAYER + slot.index() as u16,
+                }
+            }
+
+            /// Returns the kind with this number, if this version knows it.
+            pub(crate) fn from_number(number: u16) -> Option<Self> {
+                match number {
+                    $($number => Some(Self::$kind),)+
+                    _ => number.checked_sub(FIRST_LAYER).and_then(LayerSlot::new).map(Self::Layer),
+                }
+            }
 
             /// The name of the kind in errors.
-            pub(crate) fn name(self) -> &'static str {
+            pub(crate) fn name(self) -> Cow<'static, str> {
                 match self {
-                    $(Self::$kind => $name,)+
+                    $(Self::$kind => $name.into(),)+
+                    Self::Layer(slot) => format!("section of layer {}", slot.index()).into(),
                 }
             }
         }
@@ -42,13 +61,13 @@ kinds! {
     RoadTags = 5, "road tags section";
     Relief = 6, "relief section";
     Photo = 7, "photo section";
-    Areas = 8, "areas section";
-    Boundaries = 9, "boundaries section";
     CodedGeo = 10, "GEO roads section";
     CodedSv = 11, "SV roads section";
-    CodedAreas = 12, "areas section";
     Spans = 13, "spans section";
 }
+
+/// The number of the kind of section of a package's first layer; the other layers follow.
+const FIRST_LAYER: u16 = 64;
 
 impl SectionKind {
     /// Returns a function that turns damage of a section of this kind into an error.
@@ -73,9 +92,18 @@ impl SectionKind {
     pub(crate) const fn is_dense(self) -> bool {
         matches!(self, Self::Terrain | Self::CodedGeo | Self::CodedSv | Self::Photo)
     }
+
+    /// Whether a payload has only one of the two sections, because they are for the same objects.
+    #[cfg(feature = "write")]
+    pub(crate) fn excludes(self, other: Self) -> bool {
+        self == other
+            || [GEO, SV].iter().any(|of| {
+                [of.planes, of.coded].contains(&self) && [of.planes, of.coded].contains(&other)
+            })
+    }
 }
 
-/// The two kinds of section in which the roads of a method, or the areas, can be stored.
+/// The two kinds of section in which the roads of a method can be stored.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TwoKinds {
     /// The kind with numbers in planes.
@@ -90,9 +118,6 @@ pub(crate) const GEO: TwoKinds =
 /// The kinds of SV roads: lines in plan for shadow volumes.
 pub(crate) const SV: TwoKinds =
     TwoKinds { planes: SectionKind::RoadsSv, coded: SectionKind::CodedSv };
-/// The kinds of areas.
-pub(crate) const AREAS: TwoKinds =
-    TwoKinds { planes: SectionKind::Areas, coded: SectionKind::CodedAreas };
 
 /// The set of sections of a payload to decode; combine sets with `|`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -117,32 +142,26 @@ impl Sections {
     /// The photo. [`decode`](crate::decode) checks it; [`decode_photo`](crate::decode_photo)
     /// returns it.
     pub const PHOTO: Self = Self::from_kind(SectionKind::Photo);
-    /// The areas. [`decode`](crate::decode) checks them; [`decode_areas`](crate::decode_areas)
-    /// returns them.
-    pub const AREAS: Self =
-        Self::from_kind(SectionKind::Areas).and(Self::from_kind(SectionKind::CodedAreas));
-    /// The boundaries. [`decode`](crate::decode) checks them;
-    /// [`decode_boundaries`](crate::decode_boundaries) returns them.
-    pub const BOUNDARIES: Self = Self::from_kind(SectionKind::Boundaries);
+    /// The objects of all layers. [`Manifest::decode`](crate::Manifest::decode) checks them;
+    /// [`Manifest::decode_layer`](crate::Manifest::decode_layer) returns those of a layer.
+    pub const LAYERS: Self = Self(1 << 15);
     /// The runs of spans, which are stretches of bridges and tunnels off the ground.
     /// [`decode`](crate::decode) checks them, and reads the ground, too, because their ends are on
     /// it; [`decode_spans`](crate::decode_spans) returns them.
     pub const SPANS: Self = Self::from_kind(SectionKind::Spans);
     /// All sections, including the checksums of sections of unknown kinds.
-    pub const ALL: Self = Self::all();
+    pub const ALL: Self = Self::TERRAIN
+        .and(Self::ROADS_GEO)
+        .and(Self::ROADS_SV)
+        .and(Self::ATTRIBUTES)
+        .and(Self::RELIEF)
+        .and(Self::PHOTO)
+        .and(Self::LAYERS)
+        .and(Self::SPANS);
 
     /// One bit per kind, by its number.
     const fn from_kind(kind: SectionKind) -> Self {
-        Self(1 << (kind as u16 - 1))
-    }
-
-    const fn all() -> Self {
-        let (mut all, mut k) = (Self::NONE, 0);
-        while k < SectionKind::ALL.len() {
-            all = all.and(Self::from_kind(SectionKind::ALL[k]));
-            k += 1;
-        }
-        all
+        Self(1 << (kind.number() - 1))
     }
 
     /// Returns the union with `other`; like `|`, but for constants.

@@ -1,17 +1,19 @@
 //! The sizes of the parts of a payload, without decoding their content.
 
 use corniche_geom::TileId;
+use corniche_layers::MAX_LAYERS;
 use corniche_roads::FunctionalRoadClass;
 
+use crate::layer_slot::LayerSlot;
 use crate::payload::damage::{Damage, DecodeError};
 use crate::payload::envelope::SectionSize;
 use crate::payload::number_codes::Cursor;
-use crate::payload::section_kind::{AREAS, GEO, SV, SectionKind, TwoKinds};
+use crate::payload::section_kind::{GEO, SV, SectionKind, TwoKinds};
 use crate::payload::source_grid::GRID_BYTES;
 use crate::payload::{class_table, envelope};
 
 /// Sizes of the sections of a payload, and of the classes in its road sections.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PayloadSizes {
     /// The terrain section; all sizes are 0 if the section is absent.
     pub terrain: SectionSize,
@@ -30,12 +32,10 @@ pub struct PayloadSizes {
     pub relief: SectionSize,
     /// The photo section.
     pub photo: SectionSize,
-    /// The areas section.
-    pub areas: SectionSize,
-    /// The boundaries section.
-    pub boundaries: SectionSize,
     /// The spans section.
     pub spans: SectionSize,
+    /// The section of each layer, by its position.
+    pub layers: [SectionSize; MAX_LAYERS],
     /// Bytes of each class in the GEO section before compression: the stored bytes are distributed
     /// to classes in proportion to them.
     pub geo_class_bytes: [u64; FunctionalRoadClass::COUNT],
@@ -61,9 +61,11 @@ impl PayloadSizes {
             road_tags: size(SectionKind::RoadTags),
             relief: size(SectionKind::Relief),
             photo: size(SectionKind::Photo),
-            areas: either(AREAS),
-            boundaries: size(SectionKind::Boundaries),
             spans: size(SectionKind::Spans),
+            layers: std::array::from_fn(|index| {
+                let kind = LayerSlot::new(index).map(SectionKind::Layer);
+                kind.map(&size).unwrap_or_default()
+            }),
             geo_class_bytes,
             sv_class_bytes,
         }

@@ -165,7 +165,7 @@ fn triangles_that_the_tile_does_not_have_are_refused() {
     let (alone, all) = reads(triangles);
     let damage = Damage::Invalid("a triangle under a run");
     for error in [alone.unwrap_err(), all.unwrap_err()] {
-        assert_eq!((error.part, &error.damage), ("spans section", &damage));
+        assert_eq!((&*error.part, &error.damage), ("spans section", &damage));
     }
 }
 

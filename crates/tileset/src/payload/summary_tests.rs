@@ -7,7 +7,7 @@ use crate::{FilePackage, Sections, decode};
 
 fn golden() -> FilePackage {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
-    FilePackage::open(&folder.join("version-1.pmtiles")).unwrap()
+    FilePackage::open(&folder.join("version-2.pmtiles")).unwrap()
 }
 
 #[test]

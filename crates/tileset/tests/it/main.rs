@@ -5,4 +5,4 @@ mod damage;
 mod package;
 mod sizes;
 mod sv_tails;
-mod version_1;
+mod version_2;

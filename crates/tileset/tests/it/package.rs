@@ -218,9 +218,9 @@ fn ordinary_pmtiles_and_other_files_are_refused() {
     ));
     let newer = ordinary(pmtiles::TileType::Unknown, r#"{"corniche":{"format_version":7}}"#);
     assert!(matches!(newer, OpenError::Version { found: 7 }), "{newer}");
-    let older = ordinary(pmtiles::TileType::Unknown, r#"{"corniche":{"format_version":0}}"#);
-    assert!(matches!(older, OpenError::Version { found: 0 }), "{older}");
-    let broken = ordinary(pmtiles::TileType::Unknown, r#"{"corniche":{"format_version":1}}"#);
+    let older = ordinary(pmtiles::TileType::Unknown, r#"{"corniche":{"format_version":1}}"#);
+    assert!(matches!(older, OpenError::Version { found: 1 }), "{older}");
+    let broken = ordinary(pmtiles::TileType::Unknown, r#"{"corniche":{"format_version":2}}"#);
     assert!(matches!(broken, OpenError::Manifest { .. }), "{broken}");
     assert!(matches!(open(Vec::new()), Err(OpenError::NotPmtiles)));
     assert!(matches!(open(b"\x89PNG and so on".to_vec()), Err(OpenError::NotPmtiles)));

@@ -3,7 +3,7 @@
 use image::RgbaImage;
 
 use super::letters::{fill, of_255};
-use corniche_styles::{LineStyle, Rgb, RoadBand};
+use corniche_styles::{LineStyle, PointStyle, Rgb, RoadBand};
 
 /// Colours of lines that differ by at most this in each channel count as the same: on lines of a
 /// few pixels the eye does not see the difference.
@@ -35,6 +35,8 @@ pub enum LegendSample {
     Tunnel(LegendRoad),
     /// A line that is not a road, such as a boundary.
     Line(LineStyle),
+    /// A point.
+    Point(PointStyle),
     /// An area.
     Area(Rgb),
 }
@@ -93,6 +95,11 @@ impl LegendSample {
                     && (one.width_px - other.width_px).abs() < ALIKE_PX
                     && are_alike(one.color, other.color, ALIKE_ON_LINES)
             }
+            (Self::Point(one), Self::Point(other)) => {
+                one.outline.is_some() == other.outline.is_some()
+                    && (one.size_px - other.size_px).abs() < ALIKE_PX
+                    && are_alike(one.color, other.color, ALIKE_ON_LINES)
+            }
             (Self::Area(one), Self::Area(other)) => are_alike(*one, *other, ALIKE_ON_AREAS),
             _ => false,
         }
@@ -105,6 +112,7 @@ impl LegendSample {
             Self::Road(road) => road.draw(picture, corner, size, None),
             Self::Tunnel(road) => road.draw(picture, corner, size, Some(TUNNEL_DASH_PX)),
             Self::Line(style) => draw_line(picture, style, corner, size),
+            Self::Point(style) => draw_point(picture, style, corner, size),
             Self::Area(color) => {
                 let rows = top + height / 8..top + height - height / 8;
                 fill(picture, left..left + width, rows, of_255(*color), 1.0);
@@ -190,6 +198,29 @@ fn draw_line(
                 fill(picture, columns.clone(), rows, of_255(casing), 1.0);
             }
             fill(picture, columns, rows, of_255(style.color), 1.0);
+        }
+    }
+}
+
+/// Draws a disc into the middle of a cell, as large as the cell allows.
+fn draw_point(
+    picture: &mut RgbaImage,
+    style: &PointStyle,
+    [left, top]: [u32; 2],
+    [width, height]: [u32; 2],
+) {
+    let radius = (style.size_px / 2.0).min(height as f32 / 2.0 - 1.0);
+    let edge_px = f32::from(u8::from(style.outline.is_some()));
+    for row in 0..height {
+        for column in 0..width {
+            let from_middle = |at: u32, side: u32| at as f32 + 0.5 - side as f32 / 2.0;
+            let from_middle = from_middle(column, width).hypot(from_middle(row, height));
+            if from_middle > radius + edge_px {
+                continue;
+            }
+            let color = style.outline.filter(|_| from_middle > radius).unwrap_or(style.color);
+            let (x, y) = (left + column, top + row);
+            fill(picture, x..x + 1, y..y + 1, of_255(color), 1.0);
         }
     }
 }

@@ -43,6 +43,18 @@ fn a_tunnel_is_no_road_and_a_line_no_area() {
         LegendSample::Area([1.0; 3]),
     ];
     assert_eq!(joined(&samples).len(), 4);
+    let point = PointStyle {
+        color: [1.0; 3],
+        size_px: 6.0,
+        outline: None,
+        opacity: 1.0,
+        max_pixel_m: None,
+    };
+    let edged = PointStyle { outline: Some([0.0; 3]), ..point };
+    let larger = PointStyle { size_px: 8.0, ..point };
+    let points = [point, edged, larger].map(LegendSample::Point);
+    assert_eq!(joined(&points).len(), 3);
+    assert_eq!(joined(&[points[0].clone(), samples[3].clone()]).len(), 2);
 }
 
 #[test]

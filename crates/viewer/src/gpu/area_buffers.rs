@@ -1,26 +1,27 @@
 //! GPU buffers of the areas of a tile.
 
-use corniche_areas::AreaClass;
 use wgpu::{
     Buffer, BufferUsages, IndexFormat, RenderPass, VertexAttribute, VertexBufferLayout,
     VertexStepMode, vertex_attr_array,
 };
 
 use super::Gpu;
-use crate::tiles::{AreaCorner, AreaVolumes, AreaWall, ClassVolumes};
+use crate::{
+    layer_class::LayerClass,
+    tiles::{AreaCorner, AreaVolumes, AreaWall, ClassVolumes},
+};
 
 /// Bytes of a wall: two plan positions, bottom and top as f32.
 const WALL_BYTES: u64 = size_of::<AreaWall>() as u64;
 /// Bytes of a corner of caps: a plan position, bottom and top as f32.
 const CORNER_BYTES: u64 = size_of::<AreaCorner>() as u64;
-/// Bytes of the box around a class: two positions as f32, its number as u32.
-const BOX_BYTES: u64 = 28;
+/// Bytes of the box around a class: two positions as f32.
+const BOX_BYTES: u64 = 24;
 
 const WALL_ATTRIBUTES: [VertexAttribute; 3] =
     vertex_attr_array![0 => Float32x2, 1 => Float32x2, 2 => Float32x2];
 const CORNER_ATTRIBUTES: [VertexAttribute; 2] = vertex_attr_array![0 => Float32x2, 1 => Float32x2];
-const BOX_ATTRIBUTES: [VertexAttribute; 3] =
-    vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Uint32];
+const BOX_ATTRIBUTES: [VertexAttribute; 2] = vertex_attr_array![0 => Float32x3, 1 => Float32x3];
 
 /// Vertex layout with one instance per wall.
 pub(crate) const WALLS: VertexBufferLayout<'static> = VertexBufferLayout {
@@ -60,6 +61,7 @@ impl AreaBuffers {
     /// Uploads the areas of a tile; `None` if it has none.
     pub(crate) fn new(gpu: &Gpu, areas: &AreaVolumes) -> Option<Self> {
         let box_in_tile = areas.box_in_tile?;
+        let boxes: Vec<_> = areas.classes.iter().map(|of| of.box_in_tile).collect();
         let vertices = |name, bytes: &[u8]| gpu.buffer(name, bytes, BufferUsages::VERTEX);
         Some(Self {
             walls: vertices("area walls", bytemuck::cast_slice(&areas.walls)),
@@ -69,7 +71,7 @@ impl AreaBuffers {
                 bytemuck::cast_slice(&areas.triangles),
                 BufferUsages::INDEX,
             ),
-            boxes: vertices("area boxes", &box_bytes(areas)),
+            boxes: vertices("area boxes", bytemuck::cast_slice(&boxes)),
             classes: areas.classes.clone(),
             box_in_tile,
         })
@@ -91,8 +93,13 @@ impl AreaBuffers {
             .sum()
     }
 
+    /// Whether there are areas of a class.
+    pub(crate) fn has_class(&self, class: LayerClass) -> bool {
+        self.of_class(class).is_some()
+    }
+
     /// Draws the walls of a class. The caller sets pipeline and bind groups.
-    pub(crate) fn draw_walls(&self, pass: &mut RenderPass<'_>, class: AreaClass) {
+    pub(crate) fn draw_walls(&self, pass: &mut RenderPass<'_>, class: LayerClass) {
         if let Some(volumes) = self.of_class(class) {
             pass.set_vertex_buffer(0, self.walls.slice(..));
             pass.draw(0..WALL_CORNERS, volumes.walls.clone());
@@ -101,7 +108,7 @@ impl AreaBuffers {
 
     /// Draws the upper or the lower caps of a class, depending on the pipeline. The caller sets
     /// pipeline and bind groups.
-    pub(crate) fn draw_caps(&self, pass: &mut RenderPass<'_>, class: AreaClass) {
+    pub(crate) fn draw_caps(&self, pass: &mut RenderPass<'_>, class: LayerClass) {
         if let Some(volumes) = self.of_class(class) {
             pass.set_vertex_buffer(0, self.corners.slice(..));
             pass.set_index_buffer(self.triangles.slice(..), IndexFormat::Uint32);
@@ -110,7 +117,7 @@ impl AreaBuffers {
     }
 
     /// Draws the box around a class. The caller sets pipeline and bind groups.
-    pub(crate) fn draw_box(&self, pass: &mut RenderPass<'_>, class: AreaClass) {
+    pub(crate) fn draw_box(&self, pass: &mut RenderPass<'_>, class: LayerClass) {
         let place = self.classes.iter().position(|volumes| volumes.class == class);
         if let Some(place) = place.map(|place| place as u32) {
             pass.set_vertex_buffer(0, self.boxes.slice(..));
@@ -118,16 +125,7 @@ impl AreaBuffers {
         }
     }
 
-    fn of_class(&self, class: AreaClass) -> Option<&ClassVolumes> {
+    fn of_class(&self, class: LayerClass) -> Option<&ClassVolumes> {
         self.classes.iter().find(|volumes| volumes.class == class)
     }
-}
-
-fn box_bytes(areas: &AreaVolumes) -> Vec<u8> {
-    let mut bytes = Vec::with_capacity(areas.classes.len() * BOX_BYTES as usize);
-    for volumes in &areas.classes {
-        bytes.extend_from_slice(bytemuck::cast_slice(&volumes.box_in_tile));
-        bytes.extend_from_slice(&u32::from(volumes.class.number()).to_ne_bytes());
-    }
-    bytes
 }

@@ -19,13 +19,13 @@
 //! A drawable may use
 //!
 //! - the leaf modules of `gpu`: `pipeline`, `bindings`, `shared_bindings`, `uniforms`, `passes`,
-//!   `formats`, `targets`, `picture`, `ground_buffers`, `area_buffers`, `tile_textures` and
-//!   `road_instances`;
+//!   `formats`, `targets`, `picture`, `ground_buffers`, `area_buffers`, `point_buffers`,
+//!   `tile_textures` and `road_instances`;
 //! - of the crate: `tiles`, `scene`, `options`, `frame_view` and `style`.
 //!
 //! It uses neither the renderer nor another drawable, with two exceptions: [`level_connectors`]
-//! creates instances in the formats of [`sv_roads`] and [`decks`], and [`decks`] uses the colours
-//! of [`composite`].
+//! creates instances in the formats of [`sv_roads`] and [`decks`]; [`decks`] and [`points`] use the
+//! colours of [`composite`].
 //!
 //! # How to add a drawable
 //!
@@ -58,6 +58,7 @@ pub(crate) mod label_blocks;
 pub(crate) mod label_colors;
 pub(crate) mod level_connectors;
 pub(crate) mod line_layers;
+pub(crate) mod points;
 pub(crate) mod sv_roads;
 pub(crate) mod terrain;
 

@@ -3,9 +3,10 @@
 #[cfg(all(feature = "annotations", not(target_arch = "wasm32")))]
 mod read_seen;
 
-use std::sync::OnceLock;
+use std::{collections::BTreeSet, sync::OnceLock};
 
-use wgpu::{CommandEncoder, LoadOp};
+use corniche_styles::LayerLook;
+use wgpu::{CommandEncoder, LoadOp, TextureView};
 
 use super::{
     Gpu, GpuError,
@@ -20,6 +21,7 @@ use super::{
         label_colors::LabelColors,
         level_connectors::LevelConnectors,
         line_layers,
+        points::{PointDrawable, PointTile},
         terrain::{GroundOfTile, TerrainDrawable},
     },
     passes::{begin, begin_with_stencil},
@@ -35,6 +37,7 @@ use super::{
 use crate::{
     frame_view::FrameView,
     layer_view::view_of_lines,
+    layers::PackageLooks,
     options::{ClassSet, RoadMethod},
     scene::BorderTile,
     tiles::{LineLayer, RoadSegment, RoadVolume},
@@ -52,6 +55,7 @@ pub struct Renderer {
     blocks: LabelBlocks,
     composite: Composite,
     line_colors: OnceLock<LabelColors>,
+    points: OnceLock<PointDrawable>,
     average: Average,
     difference: OnceLock<DifferenceDrawable>,
 }
@@ -71,13 +75,14 @@ impl Renderer {
             blocks: LabelBlocks::new(device, &layouts),
             composite: Composite::new(device, &layouts),
             line_colors: OnceLock::new(),
+            points: OnceLock::new(),
             average: Average::new(device),
             difference: OnceLock::new(),
             layouts,
         }
     }
 
-    /// Draws terrain, areas, roads and composite into `targets`.
+    /// Draws terrain, areas, roads, lines and points into `targets`.
     pub fn draw(&self, gpu: &Gpu, view: &FrameView<'_>, tiles: &[DrawTile<'_>], targets: &Targets) {
         self.draw_timed(gpu, view, tiles, targets, None);
     }
@@ -97,9 +102,10 @@ impl Renderer {
         let on_ground = LevelConnectors::on_ground;
         let roads = DrawnRoads::new(frame, tiles, |tile| tile.roads(method), on_ground);
         let areas = areas_of(tiles, view, |tile| &tile.areas);
-        let drawn_style = view.style.with_drawn_areas();
-        let drawn_view = &FrameView { style: &drawn_style, ..*view };
+        let drawn = PackageLooks::from_looks(vec![vec![LayerLook::Area(view.style.drawn_area())]]);
+        let drawn_view = &FrameView { layers: &drawn, ..*view };
         let drawn_areas = areas_of(tiles, drawn_view, |tile| &tile.drawn_areas);
+        let points = points_of(tiles, view);
         let of_decks = LevelConnectors::of_decks;
         let decks = DrawnRoads::new(frame, tiles, |tile| tile.decks(method), of_decks);
         if let Some(timer) = &mut timer {
@@ -123,9 +129,10 @@ impl Renderer {
             self.pass_decks(frame, encoder, &decks);
             mark(encoder, 4);
             self.pass_composite(frame, encoder, &decks);
-            for layer in LineLayer::ALL {
+            for layer in line_layers_of(tiles) {
                 self.pass_lines(frame, encoder, tiles, layer);
             }
+            self.pass_points(frame, encoder, &points, targets.picture.drawn());
             self.average.draw(gpu, encoder, &targets.picture);
             mark(encoder, 5);
         });
@@ -260,7 +267,7 @@ impl Renderer {
         tiles: &[DrawTile<'_>],
         layer: LineLayer,
     ) {
-        let style = layer.style_of(frame.view.style);
+        let (styles, style) = (layer.lines_of(frame.view), layer.style_of(frame.view));
         let frame = DrawnFrame { view: &view_of_lines(frame.view, &style), ..frame };
         let lines = DrawnRoads::of_layer(frame, tiles, layer);
         if lines.is_empty() {
@@ -276,9 +283,24 @@ impl Renderer {
         let mut pass = begin(encoder, "lines", &into, None, LoadOp::Load);
         let new = || line_layers::line_colors(&gpu.device, &self.layouts);
         let colors = self.line_colors.get_or_init(new);
-        let rows = line_layers::rows(view, layer);
+        let rows = line_layers::rows(view, styles);
         colors.bind(frame, &mut pass, &rows, labels, &[&targets.roads.labels]);
         colors.draw(&mut pass, targets);
+    }
+
+    /// Draws points over the samples of a picture. Without points there is no points pass.
+    fn pass_points(
+        &self,
+        frame: DrawnFrame<'_>,
+        encoder: &mut CommandEncoder,
+        points: &[PointTile<'_>],
+        into: &TextureView,
+    ) {
+        if !points.is_empty() {
+            let mut pass = begin(encoder, "points", &[into], None, LoadOp::Load);
+            let new = || PointDrawable::new(&frame.gpu.device, &self.layouts);
+            self.points.get_or_init(new).draw(frame, &mut pass, points);
+        }
     }
 
     /// Draws the samples of the picture. Drawables over the map, such as labels, are drawn after
@@ -363,10 +385,25 @@ fn areas_of<'a>(
     of: impl Fn(&'a TileBuffers) -> &'a Option<AreaBuffers>,
 ) -> Vec<AreaTile<'a>> {
     let has_drawn = |(_, areas, _): &AreaTile<'_>| {
-        areas.classes.iter().any(|of| view.style.area(of.class).is_drawn())
+        areas.classes.iter().any(|of| view.layers.area(of.class).is_some())
     };
     let counted = |(index, tile): (usize, &DrawTile<'a>)| {
         Some(tile.counted(index, of(tile.buffers).as_ref()?, view))
     };
     tiles.iter().enumerate().filter_map(counted).filter(has_drawn).collect()
+}
+
+/// The tiles that have points of a drawn class.
+fn points_of<'a>(tiles: &[DrawTile<'a>], view: &FrameView<'_>) -> Vec<PointTile<'a>> {
+    let has_drawn = |(_, points): &PointTile<'_>| {
+        points.classes.iter().any(|of| view.layers.point(of.0).is_some())
+    };
+    let of_tile =
+        |(index, tile): (usize, &DrawTile<'a>)| Some((index, tile.buffers.points.as_ref()?));
+    tiles.iter().enumerate().filter_map(of_tile).filter(has_drawn).collect()
+}
+
+/// The lines that tiles have, from the lowest to the highest.
+fn line_layers_of(tiles: &[DrawTile<'_>]) -> BTreeSet<LineLayer> {
+    tiles.iter().flat_map(|tile| tile.buffers.line_layers()).collect()
 }

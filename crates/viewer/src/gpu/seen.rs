@@ -1,18 +1,19 @@
 //! The classes and heights that a finished picture shows. A class counts if it covers as much of
 //! the picture as a few pixels.
 
-use corniche_areas::AreaClass;
+use std::{cmp::Reverse, collections::BTreeMap};
+
 use corniche_roads::FunctionalRoadClass;
 use glam::DVec2;
 
 use super::labels::{class_of, is_tunnel};
-use crate::{camera::Camera, options::ClassSet};
+use crate::{camera::Camera, layer_class::LayerClass, options::ClassSet};
 
 /// Minimum number of pixels of a class in a picture. Fewer pixels are not noticed.
 const LEAST_PX: u32 = 4;
-/// Boundaries are not drawn this close to roads of class [`LAST_WIDE_ROAD`] and above, as in
-/// `shaders/lines.wgsl`.
-const BOUNDARY_APART_PX: u32 = 2;
+/// Lines apart from roads are not drawn this close to roads of class [`LAST_WIDE_ROAD`] and above,
+/// as in `shaders/lines.wgsl`.
+const APART_PX: u32 = 2;
 const LAST_WIDE_ROAD: u8 = 6;
 /// Deck labels below this are labels of sides and undersides.
 const DECK_ROADS: u8 = 3;
@@ -24,19 +25,17 @@ pub(crate) struct ShownTiles {
     pub(crate) roads: ClassSet,
     /// Classes of roads in tunnels.
     pub(crate) tunnels: ClassSet,
-    /// Classes of boundaries, by their numbers.
-    pub(crate) boundaries: ClassSet,
-    /// Classes of areas, in order of their numbers.
-    pub(crate) areas: Vec<SeenArea>,
+    /// Classes of layers: those of the highest layer and the first class of a layer come first.
+    pub(crate) layers: Vec<SeenClass>,
     /// The lowest and the highest ground, true metres; `None` without ground.
     pub(crate) heights_m: Option<[f64; 2]>,
 }
 
-/// A class of areas in a picture.
+/// A class of a layer in a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct SeenArea {
-    pub(crate) class: AreaClass,
-    /// The mean true height of the visible ground under the areas; `None` if it is unknown.
+pub(crate) struct SeenClass {
+    pub(crate) class: LayerClass,
+    /// The mean true height of the visible ground under areas; `None` if it is unknown.
     pub(crate) height_m: Option<f64>,
 }
 
@@ -50,54 +49,77 @@ pub(crate) struct SeenSamples<'a> {
     pub(crate) roads: &'a [u8],
     /// Labels of decks, which hide the ground.
     pub(crate) decks: Option<&'a [u8]>,
-    /// Labels of boundaries.
-    pub(crate) boundaries: Option<&'a [u8]>,
-    /// Numbers of area classes plus 1; 0 without an area.
-    pub(crate) areas: Option<&'a [u8]>,
+    /// Lines of layers, for each time that lines are drawn.
+    pub(crate) lines: &'a [LineSamples],
+    /// Numbers of classes of areas; 0 without an area.
+    pub(crate) areas: Option<&'a [u16]>,
+    /// Numbers of classes of points; 0 without a point.
+    pub(crate) points: Option<&'a [u16]>,
+    /// The classes with the numbers 1, 2, and so on.
+    pub(crate) numbered: &'a [LayerClass],
+}
+
+/// Samples of lines of layers.
+pub(crate) struct LineSamples {
+    /// Labels as defined in `gpu::labels`.
+    pub(crate) labels: Vec<u8>,
+    /// The class of each style, and whether it is apart from roads.
+    pub(crate) classes: [Option<(LayerClass, bool)>; FunctionalRoadClass::COUNT],
 }
 
 impl SeenSamples<'_> {
     /// Returns the visible classes, without heights.
     pub(crate) fn seen(&self) -> ShownTiles {
-        let (mut roads, mut areas) = ([0_u32; 256], [0_u32; 256]);
+        let mut roads = [0_u32; 256];
+        let mut layers: BTreeMap<LayerClass, u32> = BTreeMap::new();
+        let class = |number: Option<&u16>| {
+            let number = usize::from(*number?).checked_sub(1)?;
+            self.numbered.get(number).copied()
+        };
         for (place, road) in self.roads.iter().enumerate() {
-            let at = |samples: Option<&[u8]>| samples.and_then(|all| all.get(place).copied());
-            let deck = at(self.decks).unwrap_or(0);
+            let deck = self.decks.and_then(|all| all.get(place)).copied().unwrap_or(0);
             let label = match deck {
                 0 => *road,
                 1..DECK_ROADS => 0,
                 _ => deck,
             };
             roads[usize::from(label)] += 1;
-            if let (0, 0, Some(area)) = (label, deck, at(self.areas)) {
-                areas[usize::from(area)] += 1;
+            let area = self.areas.and_then(|all| class(all.get(place)));
+            let point = self.points.and_then(|all| class(all.get(place)));
+            let area = area.filter(|_| label == 0 && deck == 0);
+            for class in area.into_iter().chain(point) {
+                *layers.entry(class).or_default() += 1;
             }
-        }
-        let mut boundaries = [0_u32; 256];
-        for (place, label) in self.boundaries.unwrap_or_default().iter().enumerate() {
-            let deck = self.decks.and_then(|all| all.get(place)).copied().unwrap_or(0);
-            if *label != 0 && deck == 0 && !self.is_beside_road(place) {
-                boundaries[usize::from(*label)] += 1;
+            for lines in self.lines {
+                let style = lines.labels.get(place).and_then(|label| class_of(*label));
+                let of_style = style.and_then(|style| *lines.classes.get(usize::from(style))?);
+                let Some((class, is_apart)) = of_style.filter(|_| deck == 0) else { continue };
+                if !(is_apart && self.is_beside_road(place)) {
+                    *layers.entry(class).or_default() += 1;
+                }
             }
         }
         let least = LEAST_PX * self.per_side * self.per_side;
-        let is_seen = |class: &AreaClass| areas[usize::from(class.number()) + 1] >= least;
-        let area = |class| SeenArea { class, height_m: None };
+        let mut layers: Vec<LayerClass> = layers
+            .into_iter()
+            .filter(|(_, count)| *count >= least)
+            .map(|(class, _)| class)
+            .collect();
+        layers.sort_by_key(|of| (Reverse(of.layer), of.class));
         ShownTiles {
             roads: classes(&roads, least, |_| true),
             tunnels: classes(&roads, least, is_tunnel),
-            boundaries: classes(&boundaries, least, |_| true),
-            areas: AreaClass::ALL.into_iter().filter(is_seen).map(area).collect(),
+            layers: layers.into_iter().map(|class| SeenClass { class, height_m: None }).collect(),
             heights_m: None,
         }
     }
 }
 
 impl SeenSamples<'_> {
-    /// Whether a boundary is hidden at a sample because it is close to a road, as in
+    /// Whether a line apart from roads is hidden at a sample because it is close to a road, as in
     /// `shaders/lines.wgsl`. Checks four samples around it.
     fn is_beside_road(&self, place: usize) -> bool {
-        let across = (BOUNDARY_APART_PX * self.per_side) as usize;
+        let across = (APART_PX * self.per_side) as usize;
         let down = across * self.columns as usize;
         let is_road = |place: usize| {
             self.roads.get(place).is_some_and(|label| {
@@ -146,24 +168,31 @@ pub(crate) fn heights_m(
 }
 
 impl ShownTiles {
-    /// Adds the heights of samples; `areas` has their classes as in [`SeenSamples`].
+    /// Adds the heights of samples; `areas` and `numbered` are as in [`SeenSamples`].
     pub(crate) fn with_heights(
         mut self,
         heights_m: impl Iterator<Item = (usize, f64)>,
-        areas: Option<&[u8]>,
+        areas: Option<&[u16]>,
+        numbered: &[LayerClass],
     ) -> Self {
-        let (mut sums_m, mut counts) = ([0.0_f64; 256], [0_u32; 256]);
+        let count = numbered.len() + 1;
+        let (mut sums_m, mut counts) = (vec![0.0_f64; count], vec![0_u32; count]);
         for (place, height_m) in heights_m {
             let [lowest, highest] = self.heights_m.unwrap_or([height_m; 2]);
             self.heights_m = Some([lowest.min(height_m), highest.max(height_m)]);
             let area =
                 areas.and_then(|areas| areas.get(place)).map_or(0, |area| usize::from(*area));
-            sums_m[area] += height_m;
-            counts[area] += 1;
+            if let (Some(sum_m), Some(count)) = (sums_m.get_mut(area), counts.get_mut(area)) {
+                *sum_m += height_m;
+                *count += 1;
+            }
         }
-        for area in &mut self.areas {
-            let place = usize::from(area.class.number()) + 1;
-            area.height_m = (counts[place] > 0).then(|| sums_m[place] / f64::from(counts[place]));
+        for seen in &mut self.layers {
+            let number = numbered.iter().position(|class| *class == seen.class);
+            seen.height_m = number
+                .map(|number| number + 1)
+                .filter(|number| counts[*number] > 0)
+                .map(|number| sums_m[number] / f64::from(counts[number]));
         }
         self
     }

@@ -7,6 +7,7 @@ use super::*;
 use crate::{
     camera::{Orientation, WorldBox},
     gpu::labels_tests::{road_label, service_label, tunnel_label},
+    layers::tests::class,
 };
 
 fn numbers(classes: ClassSet) -> Vec<u8> {
@@ -14,7 +15,26 @@ fn numbers(classes: ClassSet) -> Vec<u8> {
 }
 
 fn samples(roads: &[u8]) -> SeenSamples<'_> {
-    SeenSamples { per_side: 1, columns: 8, roads, decks: None, boundaries: None, areas: None }
+    SeenSamples {
+        per_side: 1,
+        columns: 8,
+        roads,
+        decks: None,
+        lines: &[],
+        areas: None,
+        points: None,
+        numbered: &[],
+    }
+}
+
+/// Samples of lines whose classes have the numbers of their styles.
+fn lines(labels: &[u8], is_apart: bool) -> [LineSamples; 1] {
+    let classes = std::array::from_fn(|style| Some((class(2, style as u8), is_apart)));
+    [LineSamples { labels: labels.to_vec(), classes }]
+}
+
+fn classes_of(seen: &ShownTiles) -> Vec<u8> {
+    seen.layers.iter().map(|of| of.class.class).collect()
 }
 
 #[test]
@@ -49,32 +69,39 @@ fn decks_hide_what_is_beneath_them() {
 }
 
 #[test]
-fn areas_beneath_roads_are_not_seen() {
+fn areas_beneath_roads_are_not_seen_and_points_above_them_are() {
     let roads = [[0; 4], [road_label(3, 0); 4]].concat();
-    let [forest, water] = [AreaClass::Forest, AreaClass::Water];
-    let areas = [[forest.number() + 1; 4], [water.number() + 1; 4]].concat();
-    let seen = SeenSamples { areas: Some(&areas), ..samples(&roads) }.seen();
-    assert_eq!(seen.areas, [SeenArea { class: forest, height_m: None }]);
+    let areas = [[1; 4], [2; 4]].concat();
+    let points = [[0; 4], [3; 4]].concat();
+    let numbered = [class(0, 7), class(0, 8), class(5, 0)];
+    let samples = SeenSamples {
+        areas: Some(&areas),
+        points: Some(&points),
+        numbered: &numbered,
+        ..samples(&roads)
+    };
+    let seen = samples.seen();
+    let of = |class| SeenClass { class, height_m: None };
+    assert_eq!(seen.layers, [of(class(5, 0)), of(class(0, 7))]);
 }
 
-/// Three rows of eight samples: samples of a boundary on a road or within two pixels of it are not
-/// drawn.
+/// Three rows of eight samples: samples of a line on a road or within two pixels of it are not
+/// drawn, if the style says so.
 #[test]
-fn boundaries_make_room_for_roads() {
-    let country = road_label(0, 0);
-    let county = road_label(4, 0);
-    let boundaries = [[country; 8], [0; 8], [county; 8]].concat();
-    let nothing = [0; 24];
-    let of = |roads: &[u8]| {
-        let all = SeenSamples { boundaries: Some(&boundaries), ..samples(roads) };
-        numbers(all.seen().boundaries)
+fn lines_make_room_for_roads() {
+    let (country, county) = (road_label(0, 0), road_label(4, 0));
+    let labels = [[country; 8], [0; 8], [county; 8]].concat();
+    let of = |roads: &[u8], is_apart| {
+        let lines = lines(&labels, is_apart);
+        classes_of(&SeenSamples { lines: &lines, ..samples(roads) }.seen())
     };
-    assert_eq!(of(&nothing), [0, 4]);
+    assert_eq!(of(&[0; 24], true), [0, 4]);
     let below = [[0; 8], [0; 8], [road_label(5, 0); 8]].concat();
-    assert!(of(&below).is_empty());
-    // Boundaries are drawn on paths and tunnels.
-    assert_eq!(of(&[[0; 8], [0; 8], [road_label(8, 0); 8]].concat()), [0, 4]);
-    assert_eq!(of(&[[0; 8], [0; 8], [tunnel_label(5, true); 8]].concat()), [0, 4]);
+    assert!(of(&below, true).is_empty());
+    assert_eq!(of(&below, false), [0, 4]);
+    // Such lines are drawn on paths and tunnels.
+    assert_eq!(of(&[[0; 8], [0; 8], [road_label(8, 0); 8]].concat(), true), [0, 4]);
+    assert_eq!(of(&[[0; 8], [0; 8], [tunnel_label(5, true); 8]].concat(), true), [0, 4]);
 }
 
 /// The depth of each sample is computed from a point on the ground; the same heights are computed
@@ -117,30 +144,29 @@ fn heights_come_back_from_depths() {
 /// The range is that of all samples, the mean that of each class.
 #[test]
 fn areas_have_their_mean_heights() {
-    let [forest, water] = [AreaClass::Forest, AreaClass::Water];
-    let numbers = [forest, forest, forest, forest, water, water, water, water];
-    let numbers = numbers.map(|class| class.number() + 1);
-    let seen = SeenSamples { areas: Some(&numbers), ..samples(&[0; 8]) }.seen();
+    let numbered = [class(0, 3), class(0, 1)];
+    let numbers = [1, 1, 1, 1, 2, 2, 2, 2];
+    let all = SeenSamples { areas: Some(&numbers), numbered: &numbered, ..samples(&[0; 8]) };
     let heights = [(0, 100.0), (1, 300.0), (9, 1000.0), (4, 50.0)].into_iter();
-    let seen = seen.with_heights(heights, Some(&numbers));
+    let seen = all.seen().with_heights(heights, Some(&numbers), &numbered);
     assert_eq!(seen.heights_m, Some([50.0, 1000.0]));
-    let area = |class, height_m| SeenArea { class, height_m: Some(height_m) };
-    assert_eq!(seen.areas, [area(water, 50.0), area(forest, 200.0)]);
-    let none = samples(&[0; 8]).seen().with_heights([].into_iter(), None);
+    let area = |class, height_m| SeenClass { class, height_m: Some(height_m) };
+    assert_eq!(seen.layers, [area(class(0, 1), 50.0), area(class(0, 3), 200.0)]);
+    let none = samples(&[0; 8]).seen().with_heights([].into_iter(), None, &[]);
     assert_eq!(none.heights_m, None);
 }
 
 /// The first sample of a row is not next to the last ones of the previous row, and bridges hide
-/// boundaries.
+/// lines.
 #[test]
-fn boundaries_at_the_rim_and_beneath_bridges() {
+fn lines_at_the_rim_and_beneath_bridges() {
     let column = |of: usize, label: u8| {
         (0..64).map(|place| if place % 8 == of { label } else { 0 }).collect::<Vec<u8>>()
     };
-    let (roads, lines) = (column(6, road_label(3, 0)), column(0, road_label(0, 0)));
-    let all = SeenSamples { boundaries: Some(&lines), ..samples(&roads) };
-    assert_eq!(numbers(all.seen().boundaries), [0]);
+    let (roads, lines) = (column(6, road_label(3, 0)), lines(&column(0, road_label(0, 0)), true));
+    let all = SeenSamples { lines: &lines, ..samples(&roads) };
+    assert_eq!(classes_of(&all.seen()), [0]);
     let decks = [road_label(2, 0); 64];
     let all = SeenSamples { decks: Some(&decks), ..all };
-    assert!(numbers(all.seen().boundaries).is_empty());
+    assert!(classes_of(&all.seen()).is_empty());
 }

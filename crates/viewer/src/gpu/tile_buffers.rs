@@ -1,5 +1,7 @@
 //! The GPU buffers of a tile, and their size.
 
+use std::collections::BTreeMap;
+
 use corniche_geom::TileId;
 use glam::{DVec3, DVec4};
 
@@ -8,6 +10,7 @@ use super::{
     area_buffers::AreaBuffers,
     drawables::areas::{AreaTile, Counting},
     ground_buffers::GroundBuffers,
+    point_buffers::PointBuffers,
     road_instances::RoadBuffers,
     slope_chain::SlopeChain,
     tile_textures::TileTextures,
@@ -40,7 +43,9 @@ pub struct TileBuffers {
     roads: LayerBuffers,
     /// Bridges, for both methods.
     decks: RoadBuffers,
-    layers: [LayerBuffers; LineLayer::ALL.len()],
+    layers: BTreeMap<LineLayer, LayerBuffers>,
+    /// `None` without points.
+    pub(crate) points: Option<PointBuffers>,
     width_margin_m: f64,
     /// Lowest and highest true height of the ground and the decks; `None` without ground.
     height_range_m: Option<[f64; 2]>,
@@ -94,7 +99,8 @@ pub fn tile_bytes(tile: &TileGeometry) -> u64 {
         + RoadBuffers::bytes_of(&tile.roads)
         + RoadBuffers::bytes_of(&tile.volumes)
         + RoadBuffers::bytes_of(&tile.decks)
-        + LineLayer::ALL.map(|layer| layer_bytes(tile.lines.tile_layer(layer))).iter().sum::<u64>()
+        + tile.lines.0.values().map(layer_bytes).sum::<u64>()
+        + PointBuffers::bytes_of(&tile.points)
 }
 
 fn layer_bytes(lines: &TileLayer) -> u64 {
@@ -116,8 +122,13 @@ impl TileBuffers {
             drawn_areas: None,
             roads: LayerBuffers::new(gpu, &tile.roads, &tile.volumes),
             decks: RoadBuffers::new(gpu, &tile.decks),
-            layers: LineLayer::ALL
-                .map(|layer| LayerBuffers::of_lines(gpu, tile.lines.tile_layer(layer))),
+            layers: tile
+                .lines
+                .0
+                .iter()
+                .map(|(layer, lines)| (*layer, LayerBuffers::of_lines(gpu, lines)))
+                .collect(),
+            points: PointBuffers::new(gpu, &tile.points),
             width_margin_m: tile.width_margin_m,
             height_range_m: tile.summary.map(|ground| ground.height_range_m),
             triangles: (tile.ground.surface_indices / 3) as u64,
@@ -143,12 +154,13 @@ impl TileBuffers {
             + self.textures.gpu_bytes()
             + self.roads.gpu_bytes()
             + self.decks.gpu_bytes()
-            + self.layers.iter().map(LayerBuffers::gpu_bytes).sum::<u64>()
+            + self.points.as_ref().map_or(0, PointBuffers::gpu_bytes)
+            + self.layers.values().map(LayerBuffers::gpu_bytes).sum::<u64>()
     }
 
     /// Replaces a layer of lines by the tile's current lines of that layer.
     pub fn replace_lines(&mut self, gpu: &Gpu, layer: LineLayer, lines: &TileLayer) {
-        self.layers[layer as usize] = LayerBuffers::of_lines(gpu, lines);
+        self.layers.insert(layer, LayerBuffers::of_lines(gpu, lines));
     }
 
     /// Replaces the user-drawn areas by the tile's current ones.
@@ -172,9 +184,14 @@ impl TileBuffers {
         self.roads(method).map(|_| &self.decks)
     }
 
+    /// The lines that the tile has, from the lowest to the highest.
+    pub(crate) fn line_layers(&self) -> impl Iterator<Item = LineLayer> {
+        self.layers.keys().copied()
+    }
+
     /// The lines of a layer for a method.
     pub(crate) fn lines(&self, layer: LineLayer, method: RoadMethod) -> Option<&RoadBuffers> {
-        self.layers[layer as usize].for_method(method)
+        self.layers.get(&layer)?.for_method(method)
     }
 }
 
@@ -198,6 +215,14 @@ impl DrawTile<'_> {
         let drawn = [tile.roads(method), tile.decks(method)].into_iter().flatten();
         let drawn = drawn.flat_map(|roads| roads.runs(self.shown_classes(view)));
         drawn.map(|range| u64::from(range.end - range.start)).sum()
+    }
+
+    /// The number of points of layers that are drawn in a view, hidden ones included.
+    #[must_use]
+    pub fn layer_points(&self, view: &FrameView<'_>) -> u64 {
+        let classes = self.buffers.points.iter().flat_map(|points| &points.classes);
+        let drawn = classes.filter(|of| view.layers.point(of.0).is_some());
+        drawn.map(|of| u64::from(of.1.end - of.1.start)).sum()
     }
 
     /// The classes of roads that are shown anywhere in the tile.

@@ -117,38 +117,28 @@ fn cap_fragment(in: Face) {
     }
 }
 
-const AREA_CLASSES = 8u;
-
-// Indexed by the numbers of the classes.
-struct Looks {
+// How areas of a class look.
+struct AreaLook {
     // rgb; w: opacity.
-    colors: array<vec4<f32>, AREA_CLASSES>,
+    color: vec4<f32>,
     // x: the slope from which on nothing is painted, tangent of the angle; y: the slope up to which
     // everything is painted.
-    steepest: array<vec4<f32>, AREA_CLASSES>,
+    steepest: vec4<f32>,
 }
 
-@group(3) @binding(0) var<uniform> looks: Looks;
-
-struct Covered {
-    @builtin(position) clip: vec4<f32>,
-    @location(0) @interpolate(flat) area_class: u32,
-}
+@group(3) @binding(0) var<uniform> look: AreaLook;
 
 // The box around the volumes of a class. Only its far faces are drawn: one fragment for each pixel
 // that sees the box, also with the eye inside. The stencil decides which of these pixels are
 // painted.
 @vertex
-fn box_vertex(@builtin(vertex_index) index: u32, @location(0) low: vec3<f32>, @location(1) high: vec3<f32>,
-    @location(2) area_class: u32) -> Covered {
+fn box_vertex(@builtin(vertex_index) index: u32, @location(0) low: vec3<f32>, @location(1) high: vec3<f32>)
+    -> @builtin(position) vec4<f32> {
     let corner = STRIP[index];
     let plan = tile.offset.xy
         + vec2(select(low.x, high.x, (corner & 1u) != 0u), select(low.y, high.y, (corner & 2u) != 0u));
     let height = height_of(vec2(low.z, high.z), (corner & 4u) != 0u);
-    var out: Covered;
-    out.clip = clip_of(vec3(plan, height));
-    out.area_class = area_class;
-    return out;
+    return clip_of(vec3(plan, height));
 }
 
 // The step from the position of a tile's own ground at a pixel to the position at the adjacent
@@ -171,9 +161,7 @@ fn slope_at(center: vec2<f32>) -> f32 {
 }
 
 @fragment
-fn box_fragment(in: Covered) -> @location(0) vec4<f32> {
-    let color = looks.colors[in.area_class];
-    let steepest = looks.steepest[in.area_class];
-    let painted = clamp((steepest.x - slope_at(in.clip.xy)) / (steepest.x - steepest.y), 0.0, 1.0);
-    return vec4(color.rgb, color.a * painted);
+fn box_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let painted = (look.steepest.x - slope_at(position.xy)) / (look.steepest.x - look.steepest.y);
+    return vec4(look.color.rgb, look.color.a * clamp(painted, 0.0, 1.0));
 }

@@ -233,11 +233,16 @@ fn full_distance_m(class_number: u32, look: u32) -> f32 {
     return frame.road_widths[class_number].w * select(1.0, SERVICE_SHARE, look == SERVICE);
 }
 
-// Share of a road's width that is drawn at a distance from the eye: 1, except for roads in short
-// parts of the network, which become thinner over half a zoom step.
-fn part_share(road: Road, distance_m: f32) -> f32 {
-    let full_m = road.part_m * frame.network.x;
+// Share that is shown at a distance from the eye of what is fully shown up to another one: it fades
+// over half a zoom step, linear in the zoom.
+fn share_within(full_m: f32, distance_m: f32) -> f32 {
     return clamp(1.0 - log2(max(distance_m, 1e-3) / full_m) / log2(FADE_FACTOR), 0.0, 1.0);
+}
+
+// Share of a road's width that is drawn at a distance from the eye: 1, except for roads in short
+// parts of the network.
+fn part_share(road: Road, distance_m: f32) -> f32 {
+    return share_within(road.part_m * frame.network.x, distance_m);
 }
 
 // Whether any part of a road is shown at a distance from the eye. Both methods and the connectors
@@ -247,10 +252,15 @@ fn is_shown(road: Road, distance_m: f32) -> bool {
         && distance_m < full_distance_m(road.class_number, road.look) * FADE_FACTOR;
 }
 
-// Share of a road's colour that is shown at a distance from the eye: linear in the zoom.
+// Share of a road's colour that is shown at a distance from the eye.
 fn shown_share(class_number: u32, look: u32, distance_m: f32) -> f32 {
-    let steps = log2(max(distance_m, 1e-3) / full_distance_m(class_number, look)) / log2(FADE_FACTOR);
-    return clamp(1.0 - steps, 0.0, 1.0);
+    return share_within(full_distance_m(class_number, look), distance_m);
+}
+
+// The share of a colour that haze hides at a distance from the eye; at `reach_m` it is two thirds.
+fn haze_share(distance_m: f32, reach_m: f32) -> f32 {
+    let reach = distance_m / reach_m;
+    return 1.0 - exp(-reach * reach);
 }
 
 // Share of the edge of a road that is drawn at a distance from the eye: it fades within a zoom

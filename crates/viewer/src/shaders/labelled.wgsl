@@ -54,6 +54,5 @@ fn block_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f3
 
 // The share of a colour that haze hides on the way from the eye.
 fn haze_at(distance_m: f32) -> f32 {
-    let reach = distance_m / colors.haze.w;
-    return 1.0 - exp(-reach * reach);
+    return haze_share(distance_m, colors.haze.w);
 }

@@ -4,8 +4,8 @@
 struct LineColors {
     // rgb; w: distance at which haze hides two thirds of a colour.
     haze: vec4<f32>,
-    // x: 1 for lines that are hidden near roads.
-    layer: vec4<f32>,
+    // x: 1 for lines that are omitted close to roads, by style.
+    apart: array<vec4<f32>, CLASSES>,
     bands: array<vec4<f32>, BANDS * CLASSES>,
 }
 
@@ -38,10 +38,10 @@ fn is_road_around(pixel: vec2<i32>, radius_px: f32, samples: u32) -> bool {
     return false;
 }
 
-// Share of a line that is drawn at a pixel. A boundary that follows a road would look like the
-// dashes of a tunnel; with this rule a boundary that crosses a road leaves the road whole.
-fn share_beside_roads(pixel: vec2<i32>) -> f32 {
-    if colors.layer.x == 0.0 {
+// Share of a line that is drawn at a pixel. A line that follows a road would look like the dashes
+// of a tunnel; with this rule a line that crosses a road leaves the road whole.
+fn share_beside_roads(pixel: vec2<i32>, line_class: u32) -> f32 {
+    if colors.apart[line_class].x == 0.0 {
         return 1.0;
     }
     if is_road(pixel) || is_road_around(pixel, APART_PX, 8u) {
@@ -61,6 +61,6 @@ fn line_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f3
     let line_class = class_of(label);
     let distance_m = scale_depth_of(depth_buffer) * length(ray_at(position.xy));
     let color = mix(colors.bands[line_class * BANDS + label % BANDS].rgb, colors.haze.rgb, 0.5 * haze_at(distance_m));
-    let opacity = frame.road_limits[line_class].z * share_beside_roads(pixel);
+    let opacity = frame.road_limits[line_class].z * share_beside_roads(pixel, line_class);
     return vec4(color, opacity * shown_share(line_class, PLAIN, distance_m));
 }

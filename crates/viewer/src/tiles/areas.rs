@@ -19,20 +19,21 @@ mod plan_mesh;
 
 use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Serialize};
-use std::ops::Range;
+use std::{collections::BTreeSet, ops::Range};
 
-use corniche_areas::{AreaClass, AreaObject};
 use corniche_geom::{
     Bounds, GridFrame, LatticeBounds, LatticePoint, MOST_TILE_STEPS, StepBudget, TileId,
     TooMuchWork,
 };
-use corniche_tileset::{AreaRecord, AreaRings};
+use corniche_layers::OsmObject;
+use corniche_tileset::AreaPolygon;
 
 use self::{
     border_strips::{Strip, with_strips},
     plan_mesh::PlanMesh,
 };
 use super::{GroundMesh, blocks, ground_mesh::relative_in_plan};
+use crate::layer_class::LayerClass;
 
 /// How far volumes extend beyond their ground, below and above, as a share of a cell of the tile's
 /// level. This is far more than the rounding of the ground's heights when they are drawn.
@@ -44,12 +45,21 @@ const STRIP_CELLS: f64 = 0.25;
 
 /// An area that cannot be drawn.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("the outline of {object} ({class}) crosses itself")]
+#[error("the outline of {object} crosses itself")]
 pub struct BadArea {
     /// OSM object of the area.
-    pub object: AreaObject,
-    /// Class of the area.
-    pub class: AreaClass,
+    pub object: OsmObject,
+}
+
+/// An area of a tile.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TileArea {
+    /// Its class.
+    pub class: LayerClass,
+    /// OSM object of the area.
+    pub object: OsmObject,
+    /// The parts of the area in the tile.
+    pub polygons: Vec<AreaPolygon>,
 }
 
 /// Why the areas of a tile cannot be drawn.
@@ -89,7 +99,7 @@ pub struct AreaCorner {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ClassVolumes {
     /// The class.
-    pub class: AreaClass,
+    pub class: LayerClass,
     /// Range of the walls of the class.
     pub walls: Range<u32>,
     /// Range of the indices of the class in [`AreaVolumes::triangles`].
@@ -113,7 +123,7 @@ pub struct AreaVolumes {
     /// Indices of `corners`, three for each triangle of a cap, counter-clockwise seen from above.
     #[serde(with = "blocks::plain")]
     pub triangles: Vec<u32>,
-    /// The classes of the tile, in order of their numbers.
+    /// The classes of the tile, in order.
     pub classes: Vec<ClassVolumes>,
     /// The box around all volumes, as [`ClassVolumes::box_in_tile`]; `None` without volumes.
     pub box_in_tile: Option<[[f32; 3]; 2]>,
@@ -122,7 +132,7 @@ pub struct AreaVolumes {
 impl AreaVolumes {
     /// Creates the volumes of some areas of a tile over its ground; without ground there are none.
     pub(crate) fn new(
-        areas: &[AreaRecord],
+        areas: &[TileArea],
         id: TileId,
         frame: &GridFrame,
         ground: &GroundMesh,
@@ -131,13 +141,14 @@ impl AreaVolumes {
         let mut volumes = Self::default();
         let work = StepBudget::new(MOST_TILE_STEPS);
         let site = Site::new(id, frame, ground, reference_m);
-        for class in AreaClass::ALL {
+        let classes: BTreeSet<LayerClass> = areas.iter().map(|area| area.class).collect();
+        for class in classes {
             let (first_wall, first_index) = (volumes.walls.len(), volumes.triangles.len());
             let mut around = NOWHERE;
             let mut polygons = 0;
             for area in areas.iter().filter(|area| area.class == class) {
                 for rings in &area.polygons {
-                    let bad = || BadArea { object: area.object, class };
+                    let bad = || BadArea { object: area.object };
                     let mesh = site.mesh(rings).ok_or_else(bad)?;
                     work.check()?;
                     let Some(heights) = site.heights_in_tile(&mesh.points, &work) else { continue };
@@ -155,7 +166,8 @@ impl AreaVolumes {
     #[must_use]
     pub fn joined(parts: &[&Self]) -> Self {
         let mut joined = Self::default();
-        for class in AreaClass::ALL {
+        let classes = parts.iter().flat_map(|part| &part.classes).map(|of| of.class);
+        for class in classes.collect::<BTreeSet<LayerClass>>() {
             let (first_wall, first_index) = (joined.walls.len(), joined.triangles.len());
             let mut around = NOWHERE;
             let mut polygons = 0;
@@ -186,7 +198,7 @@ impl AreaVolumes {
     /// without polygons.
     fn end_class(
         &mut self,
-        class: AreaClass,
+        class: LayerClass,
         [first_wall, first_index]: [usize; 2],
         around: [[f32; 3]; 2],
         polygons: u32,
@@ -274,7 +286,7 @@ impl<'a> Site<'a> {
     }
 
     /// The mesh of the inside of the rings; `None` if they cross.
-    fn mesh(&self, AreaRings { rings }: &AreaRings) -> Option<PlanMesh> {
+    fn mesh(&self, AreaPolygon { rings }: &AreaPolygon) -> Option<PlanMesh> {
         let rings: Vec<_> = rings.iter().map(|ring| with_strips(ring, self.strip)).collect();
         PlanMesh::inside(&rings, self.tile.min)
     }

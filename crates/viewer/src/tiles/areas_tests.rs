@@ -3,11 +3,21 @@
 use std::collections::BTreeMap;
 
 use corniche_geom::{Cell, NodeIndex};
+use corniche_tileset::LayerSlot;
 
 use super::*;
 use crate::tiles::{GroundVertex, relative};
 
 type Ring = Vec<LatticePoint>;
+
+/// Classes of different layers.
+fn water() -> LayerClass {
+    LayerClass { layer: LayerSlot::new(0_u8).unwrap(), class: 5 }
+}
+
+fn rock() -> LayerClass {
+    LayerClass { layer: LayerSlot::new(1_u8).unwrap(), class: 2 }
+}
 
 fn ring(points: &[[i64; 2]]) -> Ring {
     points.iter().map(|[u, v]| LatticePoint::new(*u, *v)).collect()
@@ -123,14 +133,9 @@ fn ground(reference_m: [f64; 3]) -> GroundMesh {
     GroundMesh::of_surface(vertices.collect(), indices.into_iter())
 }
 
-fn area(class: AreaClass, frame: &GridFrame, corners_m: &[[f64; 2]]) -> AreaRecord {
+fn area(class: LayerClass, frame: &GridFrame, corners_m: &[[f64; 2]]) -> TileArea {
     let ring = corners_m.iter().map(|at| frame.snap(*at).expect("on the lattice")).collect();
-    AreaRecord {
-        object: AreaObject::Way(7),
-        class,
-        name: String::new(),
-        polygons: vec![AreaRings { rings: vec![ring] }],
-    }
+    TileArea { class, object: OsmObject::Way(7), polygons: vec![AreaPolygon { rings: vec![ring] }] }
 }
 
 fn at(west: f64, south: f64, side: f64) -> [[f64; 2]; 4] {
@@ -141,9 +146,9 @@ fn at(west: f64, south: f64, side: f64) -> [[f64; 2]; 4] {
 fn volumes_reach_just_beyond_the_ground_near_them_and_are_sorted_by_class() {
     let (frame, reference_m) = (frame(), [1280.0, 1280.0, 100.0]);
     let areas = [
-        area(AreaClass::Rock, &frame, &at(2000.0, 500.0, 100.0)),
-        area(AreaClass::Water, &frame, &at(200.0, 300.0, 100.0)),
-        area(AreaClass::Rock, &frame, &at(2200.0, 500.0, 100.0)),
+        area(rock(), &frame, &at(2000.0, 500.0, 100.0)),
+        area(water(), &frame, &at(200.0, 300.0, 100.0)),
+        area(rock(), &frame, &at(2200.0, 500.0, 100.0)),
     ];
     let volumes =
         AreaVolumes::new(&areas, TileId::ROOT, &frame, &ground(reference_m), reference_m).unwrap();
@@ -152,7 +157,7 @@ fn volumes_reach_just_beyond_the_ground_near_them_and_are_sorted_by_class() {
         .iter()
         .map(|class| (class.class, class.polygons, class.walls.clone(), class.triangles.clone()))
         .collect();
-    let expected = [(AreaClass::Water, 1, 0..4, 0..6), (AreaClass::Rock, 2, 4..12, 6..18)];
+    let expected = [(water(), 1, 0..4, 0..6), (rock(), 2, 4..12, 6..18)];
     assert_eq!(found, expected);
     // An eighth of a cell.
     assert_eq!(volumes.walls[0].heights_in_tile, [-101.25, -98.75]);
@@ -168,10 +173,10 @@ fn volumes_reach_just_beyond_the_ground_near_them_and_are_sorted_by_class() {
 fn an_outline_that_crosses_itself_is_named() {
     let (frame, reference_m) = (frame(), [1280.0, 1280.0, 100.0]);
     let bow_tie = [[100.0, 100.0], [900.0, 900.0], [900.0, 100.0], [100.0, 900.0]];
-    let areas = [area(AreaClass::Park, &frame, &bow_tie)];
+    let areas = [area(rock(), &frame, &bow_tie)];
     let ground = ground(reference_m);
     let error = AreaVolumes::new(&areas, TileId::ROOT, &frame, &ground, reference_m).unwrap_err();
-    assert_eq!(error.to_string(), "the outline of way 7 (park) crosses itself");
+    assert_eq!(error.to_string(), "the outline of way 7 crosses itself");
     let nowhere = AreaVolumes::new(&areas[..0], TileId::ROOT, &frame, &ground, reference_m);
     assert_eq!(nowhere, Ok(AreaVolumes::default()));
 }
@@ -183,7 +188,7 @@ fn an_outline_that_crosses_itself_is_named() {
 fn too_many_areas_over_too_many_triangles_are_refused() {
     let (frame, reference_m) = (frame(), [1280.0, 1280.0, 100.0]);
     let square = [[0.0, 0.0], [2560.0, 0.0], [2560.0, 2560.0], [0.0, 2560.0]];
-    let areas = vec![area(AreaClass::Park, &frame, &square); 40_000];
+    let areas = vec![area(rock(), &frame, &square); 40_000];
     let tin = corniche_testing::package::full_tin();
     let normals = vec![[0, 0]; tin.vertices().len()];
     let full = GroundMesh::new(TileId::ROOT, &tin, &normals, &frame, 1.0, reference_m);

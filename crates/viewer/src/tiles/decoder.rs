@@ -1,19 +1,24 @@
 //! Decodes the bytes of a tile into drawable geometry.
 
-use std::sync::Arc;
+use std::{cell::OnceCell, collections::BTreeMap, sync::Arc};
 
-use corniche_geom::{TileId, TooMuchWork};
+use corniche_geom::{MOST_TILE_STEPS, StepBudget, TileId, TooMuchWork};
+use corniche_layers::LayerGeometry;
 use corniche_styles::Style;
 use corniche_tileset::{
-    DecodeError, Manifest, Sections, SpanRun, decode_areas, decode_boundaries, decode_photo,
+    DecodeError, LayerObject, LayerShape, LayerSlot, Manifest, Sections, SpanRun, decode_photo,
 };
 use serde::{Deserialize, Serialize};
 
 use super::{
-    LayerLine, LineLayer, LineMethods, LoadTileError, Overlays, PhotoImage, PlanScale,
+    LineLayers, LineMethods, LoadTileError, Overlays, PhotoImage, PlanScale, StyledLine,
     TileGeometry, TileSurface,
 };
-use crate::options::{Mapping, RoadMethod};
+use crate::{
+    layer_class::LayerClass,
+    line_places::{LineLayer, LinePlaces},
+    options::{Mapping, RoadMethod},
+};
 
 /// The lines from users' files take too much work on a tile.
 #[derive(Debug, thiserror::Error)]
@@ -34,8 +39,9 @@ const GROUND: Sections = Sections::TERRAIN.and(Sections::RELIEF);
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct TileDecoder {
     sections: Sections,
-    /// Which of photos, areas and boundaries are read.
-    layers: Sections,
+    has_photos: bool,
+    /// The layers that are read; `None` for all.
+    layers: Option<Vec<LayerSlot>>,
     mapping: Mapping,
     /// The overlays, which are not transferred to other instances.
     #[serde(skip)]
@@ -43,12 +49,12 @@ pub struct TileDecoder {
 }
 
 impl Default for TileDecoder {
-    /// Reads everything that a picture may show: roads for both methods, photos, areas and
-    /// boundaries.
+    /// Reads everything that a picture may show: roads for both methods, photos and all layers.
     fn default() -> Self {
         Self {
             sections: GROUND | Sections::ROADS_GEO | Sections::ROADS_SV | Sections::ATTRIBUTES,
-            layers: Sections::PHOTO | Sections::AREAS | Sections::BOUNDARIES,
+            has_photos: true,
+            layers: None,
             mapping: Mapping::default(),
             overlays: Arc::default(),
         }
@@ -67,22 +73,18 @@ impl TileDecoder {
         Self { sections: GROUND | roads, ..self }
     }
 
-    /// Reads only what a picture in this style shows, with roads by this method: no photos, areas
-    /// or boundaries if the style hides them. If there are photos, they take most of the time and
-    /// memory.
+    /// Reads only what a picture in this style shows, with roads by this method: no photos if the
+    /// style hides them, and only the layers that are drawn. If there are photos, they take most of
+    /// the time and memory.
     #[must_use]
-    pub fn for_look(self, method: RoadMethod, style: &Style) -> Self {
-        self.for_method(method).with_layers_of(style)
+    pub fn for_look(self, method: RoadMethod, style: &Style, drawn: Vec<LayerSlot>) -> Self {
+        self.for_method(method).with_layers_of(style, drawn)
     }
 
-    /// Reads photos, areas and boundaries only if the style shows them.
+    /// Reads photos only if the style shows them, and only the layers that are drawn.
     #[must_use]
-    pub fn with_layers_of(self, style: &Style) -> Self {
-        let of = |is_shown, layer| if is_shown { layer } else { Sections::NONE };
-        let layers = of(style.photo > 0.0, Sections::PHOTO)
-            | of(style.has_areas(), Sections::AREAS)
-            | of(style.has_boundaries(), Sections::BOUNDARIES);
-        Self { layers, ..self }
+    pub fn with_layers_of(self, style: &Style, drawn: Vec<LayerSlot>) -> Self {
+        Self { has_photos: style.photo > 0.0, layers: Some(drawn), ..self }
     }
 
     /// Sets whether roads as geometry are draped on the ground.
@@ -100,7 +102,12 @@ impl TileDecoder {
     /// The sections to read.
     #[must_use]
     pub fn sections(&self) -> Sections {
-        self.sections | Sections::SPANS | self.layers
+        let of = |is_read, section| if is_read { section } else { Sections::NONE };
+        let has_layers = self.layers.as_ref().is_none_or(|layers| !layers.is_empty());
+        self.sections
+            | Sections::SPANS
+            | of(self.has_photos, Sections::PHOTO)
+            | of(has_layers, Sections::LAYERS)
     }
 
     /// The methods for which lines are prepared: the methods of the roads that are read.
@@ -158,7 +165,7 @@ impl TileDecoder {
         let scale = PlanScale::of_tile(coordinates, frame.tile_bounds(id), *point_scale);
         let spans = self.spans(payload, id, manifest)?;
         let spans = spans.as_deref();
-        let mut tile = TileGeometry::from_payload(
+        let tile = TileGeometry::from_payload(
             &decoded,
             spans,
             frame,
@@ -166,33 +173,63 @@ impl TileDecoder {
             (margin_m, scale),
             self.mapping,
         )?;
-        let methods = self.line_methods();
-        let boundaries = if self.layers.contains(Sections::BOUNDARIES) {
-            decode_boundaries(payload, id)?
-        } else {
-            Vec::new()
+        let surface = OnceCell::new();
+        let surface = || {
+            let ground = decoded.terrain.as_ref()?;
+            Some(surface.get_or_init(|| TileSurface::new(&tile, &ground.tin, manifest)))
         };
-        let boundaries: Vec<LayerLine> = boundaries.into_iter().map(LayerLine::from).collect();
+        let mut lines = LineLayers::default();
         let margin = (margin_m / frame.lattice_step_m()).ceil() as i64;
         let overlays = self.overlays.near(id, frame, margin);
-        let has_lines = !boundaries.is_empty() || !overlays.is_empty();
-        if let Some(terrain) = decoded.terrain.filter(|_| has_lines) {
-            let surface = TileSurface::new(&tile, &terrain.tin, manifest);
-            tile.lines.set(LineLayer::Boundaries, surface.lay(&boundaries, methods)?);
-            let overlays = surface.lay(&overlays, methods).map_err(|source| TooManyOverlays {
+        let mut others = Vec::new();
+        let (methods, work) = (self.line_methods(), StepBudget::new(MOST_TILE_STEPS));
+        let places = LinePlaces::from_manifest(manifest);
+        for (slot, record) in manifest.layers() {
+            if self.layers.as_ref().is_some_and(|layers| !layers.contains(&slot)) {
+                continue;
+            }
+            let objects = manifest.decode_layer(payload, id, slot)?;
+            if record.table.geometry != LayerGeometry::Line {
+                others.push((slot, objects));
+                continue;
+            }
+            for (layer, of_layer) in by_group(objects, slot, &places) {
+                if let Some(surface) = surface() {
+                    lines.add(layer, surface.lay_within(&of_layer, methods, &work)?);
+                }
+            }
+        }
+        if !overlays.is_empty()
+            && let Some(surface) = surface()
+        {
+            let laid = surface.lay(&overlays, methods).map_err(|source| TooManyOverlays {
                 files: self.overlays.names_of(&overlays),
                 source,
             })?;
-            tile.lines.set(LineLayer::Overlays, overlays);
+            lines.add(LineLayer::Overlays, laid);
         }
-        if self.layers.contains(Sections::AREAS) {
-            tile = tile.with_areas(&decode_areas(payload, id, frame)?, frame)?;
-        }
-        if self.layers.contains(Sections::PHOTO) {
+        let mut tile = TileGeometry { lines, ..tile.with_layers(others, frame)? };
+        if self.has_photos {
             tile.photo = decode_photo(payload, id)?.map(PhotoImage::new);
         }
         Ok(tile)
     }
+}
+
+/// The lines of a layer, by the groups in which they are drawn.
+fn by_group(
+    objects: Vec<LayerObject>,
+    layer: LayerSlot,
+    places: &LinePlaces,
+) -> BTreeMap<LineLayer, Vec<StyledLine>> {
+    let mut groups: BTreeMap<LineLayer, Vec<StyledLine>> = BTreeMap::new();
+    for LayerObject { class, object, shape, .. } in objects {
+        let place = places.place(LayerClass { layer, class });
+        if let (LayerShape::Line(points), Some((group, style))) = (shape, place) {
+            groups.entry(group).or_default().push(StyledLine { id: object.id(), style, points });
+        }
+    }
+    groups
 }
 
 #[cfg(test)]

@@ -31,7 +31,9 @@ fn the_parts_in_tiles_make_up_the_area() {
         let tile = source.load(id).unwrap();
         tile.summary?;
         let volumes = area.over(&tile, frame);
-        assert!(volumes.classes.iter().all(|of| of.class == Style::DRAWN_AREAS));
+        assert!(
+            volumes.classes.iter().all(|of| of.class.layer.index() == 0 && of.class.class == 0)
+        );
         let triangles = volumes.triangles.as_chunks::<3>().0.iter();
         let doubled = triangles.map(|corners| {
             let [a, b, c] =

@@ -2,16 +2,16 @@
 
 use corniche_geom::{Bounds, GridFrame, MOST_TILE_STEPS, StepBudget, TileId, barycentric};
 use corniche_styles::OwnWidths;
-use corniche_tileset::{AreaRecord, SpanRun, TilePayload, TileTerrain};
+use corniche_tileset::{LayerObject, LayerShape, LayerSlot, SpanRun, TilePayload, TileTerrain};
 use corniche_tin::Surface;
 use serde::{Deserialize, Serialize};
 
 use super::{
     AreaVolumes, BadAreas, BadRoads, DeckLine, DeckPieces, GroundMesh, LineLayers, PhotoImage,
-    PlanScale, RoadKind, RoadSegments, RoadVolumes, ShadingSlopes, TileLayer, TileLines,
-    relief::RoadRelief,
+    PlanScale, PointMarks, RoadKind, RoadSegments, RoadVolumes, ShadingSlopes, TileArea, TileLayer,
+    TileLines, relief::RoadRelief,
 };
-use crate::{lod::GroundSummary, options::Mapping};
+use crate::{layer_class::LayerClass, lod::GroundSummary, options::Mapping};
 
 /// A decoded tile, ready to be uploaded: positions are f32 and relative to the tile's reference
 /// point.
@@ -36,8 +36,10 @@ pub struct TileGeometry {
     pub volumes: RoadVolumes,
     /// Bridges over it; empty if they were not read.
     pub decks: DeckPieces,
-    /// The areas on it as volumes; empty if that section was not read.
+    /// The areas on it as volumes; empty if no layers of areas were read.
     pub areas: AreaVolumes,
+    /// The points on it; empty if no layers of points were read.
+    pub points: PointMarks,
     /// Lines that are not roads.
     pub lines: LineLayers,
     /// Maximum half width of drawn roads, working metres.
@@ -166,6 +168,7 @@ impl TileGeometry {
             shading: None,
             photo: None,
             areas: AreaVolumes::default(),
+            points: PointMarks::default(),
             lines: LineLayers::default(),
             most_width_factor,
             roads,
@@ -216,13 +219,34 @@ impl TileGeometry {
         Ok(Self { summary, shading, ..tile })
     }
 
-    /// Returns the tile with these areas.
+    /// Returns the tile with the areas and points of these layers. Points without ground under them
+    /// are omitted.
     ///
     /// # Errors
     /// When an outline crosses itself, or placing areas on the ground takes too much work.
-    pub fn with_areas(self, areas: &[AreaRecord], frame: &GridFrame) -> Result<Self, BadAreas> {
-        let areas = AreaVolumes::new(areas, self.id, frame, &self.ground, self.reference_m)?;
-        Ok(Self { areas, ..self })
+    pub fn with_layers(
+        self,
+        layers: Vec<(LayerSlot, Vec<LayerObject>)>,
+        frame: &GridFrame,
+    ) -> Result<Self, BadAreas> {
+        let (mut areas, mut points) = (Vec::new(), Vec::new());
+        for (layer, objects) in layers {
+            for LayerObject { class, object, shape, .. } in objects {
+                let class = LayerClass { layer, class };
+                match shape {
+                    LayerShape::Area(polygons) => areas.push(TileArea { class, object, polygons }),
+                    LayerShape::Point(point) => {
+                        let [x, y] = frame.position_m(point);
+                        let height_m = self.ground_height_m([x, y]);
+                        points.extend(height_m.map(|height_m| (class, [x, y, height_m])));
+                    }
+                    LayerShape::Line(_) => {}
+                }
+            }
+        }
+        let areas = AreaVolumes::new(&areas, self.id, frame, &self.ground, self.reference_m)?;
+        let points = PointMarks::new(points, self.reference_m);
+        Ok(Self { areas, points, ..self })
     }
 
     /// Serializes the tile for another instance of this program, of the same version: a worker of a
@@ -248,7 +272,7 @@ impl TileGeometry {
         }
     }
 
-    /// Returns the tile without its roads, lines, areas, slopes and photo: enough for rays and
+    /// Returns the tile without its roads, layers, slopes and photo: enough for rays and
     /// heights.
     #[must_use]
     pub fn without_roads(self) -> Self {
@@ -258,6 +282,7 @@ impl TileGeometry {
             volumes: RoadVolumes::default(),
             decks: DeckPieces::default(),
             areas: AreaVolumes::default(),
+            points: PointMarks::default(),
             lines: LineLayers::default(),
             photo: None,
             ..self

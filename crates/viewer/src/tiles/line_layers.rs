@@ -1,5 +1,5 @@
-//! Lines that are not roads: boundaries, and lines from users' files. They are drawn like roads, by
-//! both methods, over the roads.
+//! Lines that are not roads: lines of layers, and lines from users' files. They are drawn like
+//! roads, by both methods, over the roads.
 //!
 //! A package stores such lines in plan, or not at all. Their position on the ground, and the
 //! heights of the ground next to them, are computed when a tile is read, with the clipper that also
@@ -10,8 +10,9 @@ mod dashes;
 mod lay;
 mod overlays;
 
+use std::collections::BTreeMap;
+
 use corniche_geom::{Bounds, LatticePoint, StepBudget};
-use corniche_tileset::LineRecord;
 use serde::{Deserialize, Serialize};
 
 pub use self::{lay::TileSurface, overlays::Overlays};
@@ -19,27 +20,11 @@ use super::{
     InNet, OffGroundRoads, RoadSegments, RoadVolumes, TileLines, relief::RoadRelief,
     roads::GroundNet,
 };
-use crate::options::Mapping;
-
-/// The layers of lines, from the lowest to the highest.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LineLayer {
-    /// Boundaries of the package.
-    Boundaries,
-    /// Lines from users' files.
-    Overlays,
-    /// Lines that the user draws in the window.
-    Drawn,
-}
-
-impl LineLayer {
-    /// All layers, in the order in which they are drawn.
-    pub const ALL: [Self; 3] = [Self::Boundaries, Self::Overlays, Self::Drawn];
-}
+use crate::{line_places::LineLayer, options::Mapping};
 
 /// A line in plan.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct LayerLine {
+pub struct StyledLine {
     /// Lines with the same id are parts of one line: the OSM id of the way, or the number of a line
     /// in a file.
     pub id: i64,
@@ -48,12 +33,6 @@ pub struct LayerLine {
     pub style: u8,
     /// The points of the line, at least two.
     pub points: Vec<LatticePoint>,
-}
-
-impl From<LineRecord> for LayerLine {
-    fn from(LineRecord { way_id, class, points }: LineRecord) -> Self {
-        Self { id: way_id, style: class.number(), points }
-    }
 }
 
 /// The lines of one layer of a tile, ready to be uploaded; only for the requested methods.
@@ -107,18 +86,25 @@ impl TileLayer {
 
 /// The lines of all layers of a tile.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct LineLayers([TileLayer; LineLayer::ALL.len()]);
+pub struct LineLayers(pub(crate) BTreeMap<LineLayer, TileLayer>);
 
 impl LineLayers {
-    /// Returns one layer.
+    /// Returns the lines that are drawn at once; `None` without lines.
     #[must_use]
-    pub fn tile_layer(&self, layer: LineLayer) -> &TileLayer {
-        &self.0[layer as usize]
+    pub fn tile_layer(&self, layer: LineLayer) -> Option<&TileLayer> {
+        self.0.get(&layer)
     }
 
-    /// Replaces one layer.
-    pub fn set(&mut self, layer: LineLayer, lines: TileLayer) {
-        self.0[layer as usize] = lines;
+    /// Adds lines to those that are drawn at once.
+    pub fn add(&mut self, layer: LineLayer, lines: TileLayer) {
+        if lines.is_empty() {
+            return;
+        }
+        let all = match self.0.get(&layer) {
+            Some(known) => TileLayer::joined([known, &lines].into_iter()),
+            None => lines,
+        };
+        self.0.insert(layer, all);
     }
 }
 

@@ -4,7 +4,7 @@ use corniche_testing::package::written;
 use corniche_tileset::{FilePackage, Sections};
 
 use super::*;
-use crate::tiles::{LayerLine, LineMethods, PackageSource, TileSource as _};
+use crate::tiles::{LineMethods, PackageSource, StyledLine, TileSource as _};
 
 /// The restored vertices and triangles are those of the package.
 #[test]
@@ -43,7 +43,7 @@ fn a_drawn_line_lies_on_the_ground_of_every_level() {
         manifest.frame.snap(place).unwrap()
     };
     let points = vec![at(0.05, 0.1), at(0.6, 0.35), at(0.31, 0.77), at(0.98, 0.9)];
-    let lines = [LayerLine { id: 1, style: 0, points }];
+    let lines = [StyledLine { id: 1, style: 0, points }];
     let mut levels = std::collections::BTreeMap::new();
     for id in package.tile_ids().unwrap() {
         let tile = source.load(id).unwrap().without_roads();

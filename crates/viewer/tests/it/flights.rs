@@ -10,7 +10,7 @@ use crate::support::{
 use corniche_geom::TileId;
 use corniche_styles::Style;
 use corniche_viewer::{
-    FrameView, RoadMethod, RoadOptions,
+    FrameView, PackageLooks, RoadMethod, RoadOptions,
     camera::{Camera, Orientation},
     gpu::{DrawTile, PassTimer, Renderer, Targets, TileBuffers, tile_bytes},
     tiles::TileSource,
@@ -50,6 +50,7 @@ fn passes_take_some_time_and_no_more_than_the_frame() {
         let view = FrameView {
             camera: &camera,
             style: &style,
+            layers: PackageLooks::NONE,
             roads: RoadOptions::for_method(method),
             exaggeration: 1.0,
             point_scale: 1.0,

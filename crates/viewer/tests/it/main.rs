@@ -7,6 +7,7 @@ mod golden;
 mod gpu;
 #[path = "../../src/gpu/labels_tests.rs"]
 mod labels;
+mod layers;
 mod oracle;
 mod outlines;
 mod package_tiles;

@@ -25,6 +25,7 @@ mod measures;
 mod metamorphic;
 mod must_fail;
 mod package;
+mod points;
 pub(crate) mod reference;
 mod road_widths;
 mod short_parts;

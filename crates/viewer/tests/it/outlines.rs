@@ -9,7 +9,7 @@ use crate::support::{frame, gpu, ground_line, lay, plain_style, terrain, triangl
 use corniche_geom::TileId;
 use corniche_styles::{RoadStyle, Style};
 use corniche_viewer::{
-    FrameView, RoadMethod, RoadOptions, RoadOutline,
+    FrameView, PackageLooks, RoadMethod, RoadOptions, RoadOutline,
     camera::{Camera, Orientation},
     for_tests::{class_of, is_service, is_tunnel},
     gpu::{DrawTile, Gpu, Renderer, Targets, TileBuffers},
@@ -65,6 +65,7 @@ impl<'a> Edges<'a> {
         let view = FrameView {
             camera: self.camera,
             style: &self.style,
+            layers: PackageLooks::NONE,
             roads: RoadOptions { outline, ..RoadOptions::for_method(RoadMethod::Geometry) },
             exaggeration: 1.0,
             point_scale: 1.0,

@@ -8,7 +8,7 @@ use crate::support::{class, frame, gpu, ground_line, lay, plain_style, terrain, 
 use corniche_geom::TileId;
 use corniche_styles::Style;
 use corniche_viewer::{
-    FrameView, RoadMethod, RoadOptions,
+    FrameView, PackageLooks, RoadMethod, RoadOptions,
     camera::{Camera, Orientation},
     for_tests::PlanLine,
     gpu::{
@@ -57,6 +57,7 @@ fn view<'a>(camera: &'a Camera, style: &'a Style) -> FrameView<'a> {
     FrameView {
         camera,
         style,
+        layers: PackageLooks::NONE,
         roads: RoadOptions::for_method(RoadMethod::Geometry),
         exaggeration: 1.0,
         point_scale: 1.0,

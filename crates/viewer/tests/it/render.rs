@@ -10,6 +10,7 @@ use crate::support::{
 use corniche_styles::Style;
 use corniche_viewer::{
     CameraRequest, DrawError, PictureOptions, RenderRequest, Rendered, RoadMethod, RoadOptions,
+    ShownLayers,
     camera::Orientation,
     tiles::{PackageSource, TileDecoder},
 };
@@ -26,6 +27,7 @@ fn request(package: &Path) -> RenderRequest {
             exaggeration: 1.0,
             supersampling: 2,
             style: Style::road_atlas(),
+            layers: ShownLayers::ALL,
         },
         camera: CameraRequest::Overview,
         legend: None,

@@ -10,7 +10,7 @@ use crate::support::{
 use corniche_geom::TileId;
 use corniche_styles::Style;
 use corniche_viewer::{
-    FrameView, RoadMethod, RoadOptions,
+    FrameView, PackageLooks, RoadMethod, RoadOptions,
     camera::{Camera, Orientation},
     for_tests,
     gpu::{DrawTile, Renderer, Targets, TileBuffers},
@@ -53,6 +53,7 @@ fn picture(
     let view = FrameView {
         camera,
         style,
+        layers: PackageLooks::NONE,
         roads: RoadOptions::for_method(RoadMethod::Geometry),
         exaggeration: 1.0,
         point_scale: 1.0,

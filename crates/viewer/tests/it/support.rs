@@ -18,7 +18,7 @@ use corniche_styles::{RoadBand, RoadBands, RoadStyle, Style, WidthScaling};
 use corniche_tileset::TileTerrain;
 use corniche_tin::{Tin, TinVertex};
 use corniche_viewer::{
-    FrameView, RoadMethod, RoadOptions,
+    FrameView, PackageLooks, RoadMethod, RoadOptions,
     camera::Camera,
     for_tests::{GroundLine, TileOwner, class_of},
     gpu::{DrawTile, Gpu, Renderer, Targets, TileBuffers},
@@ -337,6 +337,7 @@ pub(crate) fn draw_exaggerated(
     let view = FrameView {
         camera,
         style,
+        layers: PackageLooks::NONE,
         roads: RoadOptions::for_method(RoadMethod::Geometry),
         exaggeration,
         point_scale: 1.0,

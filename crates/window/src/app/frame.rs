@@ -5,7 +5,7 @@
 
 use corniche_live::{MapSettings, Redraw, TraceLine};
 use corniche_styles::Rgb;
-use corniche_viewer::{BoundaryLines, flight::WorkingCrs};
+use corniche_viewer::{LayerLegend, flight::WorkingCrs};
 use egui_wgpu::ScreenDescriptor;
 
 use super::App;
@@ -169,12 +169,10 @@ impl App {
             metres_per_point: session.probe.middle_pixel_m.map(|pixel_m| pixel_m * points),
             mode: session.camera.navigator.mode,
             style_names: &session.styles.names,
-            has_areas: manifest.areas.is_some(),
-            has_boundaries: manifest.boundaries.is_some(),
             overlays: &self.desk.overlays,
             overlay_colors: session.overlay_colors(self.desk.overlays.len()),
             photo: manifest.settings.photo.map(|_| style.photo),
-            boundary_lines: BoundaryLines::from_manifest(manifest, style),
+            layers: LayerLegend::from_manifest(manifest, &session.layer_looks()),
             road_colors,
             class_labels: &self.class_labels,
             tiles_drawn: tiles.drawn.len(),

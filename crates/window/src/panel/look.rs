@@ -5,7 +5,8 @@ use std::ops::RangeInclusive;
 
 use corniche_live::{Compare, MapSettings, range};
 use corniche_roads::FunctionalRoadClass;
-use corniche_viewer::{BoundaryLines, CapTest, Caps, Quads, RoadMethod, RoadOutline, WidthGrowth};
+use corniche_styles::LayerLook;
+use corniche_viewer::{CapTest, Caps, LayerRow, Quads, RoadMethod, RoadOutline, WidthGrowth};
 use egui::{
     ComboBox, Grid, Label, Rect, Response, RichText, Slider, SliderClamping, Ui, emath::Numeric,
     pos2, vec2,
@@ -54,7 +55,7 @@ pub(crate) fn classes(ui: &mut Ui, settings: &mut MapSettings, content: &WindowC
     });
 }
 
-/// The section for style, heights, areas, lines of files and photos.
+/// The section for style, heights, layers, lines of files and photos.
 pub(crate) fn map(ui: &mut Ui, settings: &mut MapSettings, content: &WindowContent<'_>) {
     ui.horizontal(|ui| {
         ui.label("Style");
@@ -71,15 +72,13 @@ pub(crate) fn map(ui: &mut Ui, settings: &mut MapSettings, content: &WindowConte
     slide(ui, &mut settings.exaggeration, range::EXAGGERATION, |slider| {
         slider.prefix("× ").max_decimals(2).text("heights")
     });
-    if content.has_areas {
-        ui.checkbox(&mut settings.areas, "Areas")
-            .on_hover_text("Water, forest and other areas, drawn as in the style");
-    }
-    if content.has_boundaries {
-        ui.checkbox(&mut settings.boundaries, "Boundaries").on_hover_text("Drawn as in the style");
-        if settings.boundaries {
-            boundaries(ui, &content.boundary_lines);
+    for layer in &content.layers {
+        let mut is_shown = settings.layers.contains(&layer.id);
+        if ui.checkbox(&mut is_shown, &layer.title).on_hover_text(&layer.id).changed() {
+            let all = content.layers.iter().map(|layer| layer.id.as_str());
+            settings.layers.toggle(&layer.id, all);
         }
+        legend(ui, &layer.rows);
     }
     for (number, (name, color)) in content.overlays.iter().zip(&content.overlay_colors).enumerate()
     {
@@ -105,17 +104,27 @@ pub(crate) fn map(ui: &mut Ui, settings: &mut MapSettings, content: &WindowConte
     }
 }
 
-/// The legend of boundaries: their lines and names.
-fn boundaries(ui: &mut Ui, all: &[BoundaryLines]) {
-    for BoundaryLines { label, style } in all {
+/// The legend of a layer: samples and names of its classes.
+fn legend(ui: &mut Ui, rows: &[LayerRow]) {
+    for LayerRow { label, look } in rows {
         ui.horizontal(|ui| {
             let (swatch, _) = ui.allocate_exact_size(vec2(36.0, 10.0), egui::Sense::hover());
-            for column in 0..swatch.width() as u16 {
-                let along = f32::from(column) + 0.5;
-                let width = style.width_px * style.dash.width_at(along);
-                let middle = pos2(swatch.left() + along, swatch.center().y);
-                let part = Rect::from_center_size(middle, vec2(1.0, width));
-                ui.painter().rect_filled(part, 0, color32(style.color));
+            let (painter, color) = (ui.painter(), color32(look.color()));
+            match look {
+                LayerLook::Area(_) => drop(painter.rect_filled(swatch, 0, color)),
+                LayerLook::Line(line) => {
+                    for column in 0..swatch.width() as u16 {
+                        let along = f32::from(column) + 0.5;
+                        let width = line.width_px * line.dash.width_at(along);
+                        let middle = pos2(swatch.left() + along, swatch.center().y);
+                        let part = Rect::from_center_size(middle, vec2(1.0, width));
+                        painter.rect_filled(part, 0, color);
+                    }
+                }
+                LayerLook::Point(point) => {
+                    let radius = (point.size_px / 2.0).min(swatch.height() / 2.0);
+                    painter.circle_filled(swatch.center(), radius, color);
+                }
             }
             ui.add(Label::new(label).wrap());
         });

@@ -139,8 +139,7 @@ fn positions(settings: &MapSettings, content: &WindowContent<'_>) -> Vec<StatusI
     items.push(StatusItem::new(3, format!("{roads}{by}")));
     for (method, times) in content.passes {
         let PassTimes { terrain_ms, areas_ms, roads_ms, decks_ms, composite_ms } = *times;
-        let areas =
-            if content.has_areas { format!(" areas {areas_ms:.1},") } else { String::new() };
+        let areas = if areas_ms > 0.0 { format!(" areas {areas_ms:.1},") } else { String::new() };
         let bridges =
             if decks_ms > 0.0 { format!(" bridges {decks_ms:.1},") } else { String::new() };
         let method = formatting::method(*method);

@@ -2,6 +2,7 @@
 
 from .attributes import Attributes
 from .errors import ContainerError, PayloadError, ReadError, UnknownTile
+from .layers import LayerObject
 from .package import Package, Tile
 from .roads import CROSSING, SOURCE, TIN_VERTEX, Road
 from .spans import Span
@@ -13,6 +14,7 @@ __all__ = [
     "TIN_VERTEX",
     "Attributes",
     "ContainerError",
+    "LayerObject",
     "Package",
     "PayloadError",
     "ReadError",

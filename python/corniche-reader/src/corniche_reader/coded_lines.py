@@ -10,6 +10,7 @@ from .codes import Bits, Numbers, models
 from .errors import PayloadError
 from .grid import Grid
 from .mesh import Point
+from .steps import Steps
 
 #: A surprise: the number of vertices before it that are as guessed, and its fields.
 Surprise = tuple[int, tuple[int, ...]]
@@ -47,11 +48,9 @@ class _Class:
         self.ids, self.parts, self.sizes, self.back = (Numbers(bits, 1, 1) for _ in range(4))
         self.starts = Numbers(bits, 1, 1), Numbers(bits, 1, 1)
         self.beside = Numbers(bits, 1, 1), Numbers(bits, 1, 1)
-        self.along, self.across = Numbers(bits, 33, 5), Numbers(bits, 100, 33)
+        self.steps = Steps(bits)
         self.flags, self.off = models(2), models(1)[0]
         self.same = [models(2) for _ in range(3)]
-        self.negative_along = [models(4) for _ in range(5)]
-        self.negative_across = [[models(7), models(7)] for _ in range(5)]
         self.counts, self.gaps, self.indices = Numbers(bits, 4, 1), Numbers(bits, 1, 1), Numbers(bits, 1, 1)
         self.kinds = models(4)
         self.at: Point = (0, 0)
@@ -89,7 +88,7 @@ class _Class:
                     raise PayloadError(f"{self.bits.what}: a reference to a point that does not exist")
                 self.at, point = self.new[-1 - back]
             else:
-                step = tuple(kind.read() for kind in self.starts) if i == 0 else self._step(before)
+                step = tuple(kind.read() for kind in self.starts) if i == 0 else self.steps.read(before)
                 self.at = last[0] + step[0], last[1] + step[1]
                 if max(map(abs, self.at)) > 1 << 33:
                     raise PayloadError(f"{self.bits.what}: a point is too far away")
@@ -100,23 +99,6 @@ class _Class:
                 self.new.append((self.at, point))
             before = (0, 0) if i == 0 else (self.at[0] - last[0], self.at[1] - last[1])
             yield point
-
-    def _step(self, before: Point) -> Point:
-        long, short = sorted(map(abs, before), reverse=True)
-        slope = 1 + min(4 * short // long, 3) if long else 0
-        along = self.along.unsigned(long.bit_length(), slope)
-        across = self.across.unsigned(5 * min(along.bit_length(), 19) + slope, long.bit_length())
-        back = 0
-        if along:
-            back = self.bits.bit(self.negative_along[slope][min(max(along.bit_length() + 2 - long.bit_length(), 0), 3)])
-        side = 0
-        if across:
-            size = min(max(across.bit_length() + 3 - along.bit_length(), 0), 6)
-            side = self.bits.bit(self.negative_across[slope][back][size])
-        step = -along if back else along, -across if side else across
-        if abs(before[1]) > abs(before[0]):
-            step = step[1], step[0]
-        return -step[0] if before[0] < 0 else step[0], -step[1] if before[1] < 0 else step[1]
 
     def _surprises(self, flags: int) -> list[Surprise]:
         count = self.counts.unsigned(flags)

@@ -1,4 +1,4 @@
-"""The height of the ground at a position, interpolated in its triangle like the source points of roads (section 7 of the format)."""
+"""The ground of a tile: heights and the vertices of lines on it (section 7 of the format, *Positions*)."""
 
 from __future__ import annotations
 
@@ -7,8 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from .grid import Grid, TileName
-from .mesh import Mesh, Point
+from .mesh import Mesh, Point, orient
 from .terrain import Terrain
+
+#: A position on the lattice, and the height in metres.
+Vertex = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
@@ -38,6 +41,24 @@ class Ground:
         du, dv = float(point[0] - at[a][0]), float(point[1] - at[a][1])
         total = (bu * cv) - (bv * cu)
         return h[a] + (((((du * cv) - (dv * cu)) / total) * (h[b] - h[a])) + ((((bu * dv) - (bv * du)) / total) * (h[c] - h[a])))
+
+    def source(self, point: Point, triangle: int) -> Vertex:
+        """The vertex of a line at one of its points, which is in this triangle."""
+        return float(point[0]), float(point[1]), self.height_in(triangle, point)
+
+    def vertex(self, number: int) -> Vertex:
+        """The vertex of a line at a TIN vertex."""
+        u, v = self.mesh.points[number]
+        return float(u), float(v), self.heights_m[number]
+
+    def crossing(self, a: int, b: int, p: Point, q: Point) -> Vertex:
+        """The vertex of a line where its segment p ► q crosses the edge between the TIN vertices a < b."""
+        sa, sb = orient(p, q, self.mesh.points[a]), orient(p, q, self.mesh.points[b])
+        near, far, s_near, s_far = (a, b, sa, sb) if abs(sa) <= abs(sb) else (b, a, sb, sa)
+        t = float(s_near) / float(s_near - s_far)
+        (un, vn), (uf, vf) = self.mesh.points[near], self.mesh.points[far]
+        hn, hf = self.heights_m[near], self.heights_m[far]
+        return float(un) + (t * float(uf - un)), float(vn) + (t * float(vf - vn)), hn + (t * (hf - hn))
 
 
 def tiles_at(grid: Grid, level: int, point: Point) -> list[TileName]:

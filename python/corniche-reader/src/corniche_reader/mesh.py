@@ -38,6 +38,21 @@ class Mesh:
     def _bucket(self, point: Point) -> Point:
         return (point[0] - self._origin[0]) // self._side, (point[1] - self._origin[1]) // self._side
 
+    def near(self, p: Point, q: Point) -> set[int]:
+        """The triangles near a segment: all that it meets, and others."""
+        (u, v), (to_u, to_v) = sorted((p, q))
+        found: set[int] = set()
+        first, last = (self._bucket(end)[0] for end in ((u, v), (to_u, to_v)))
+        for column in range(max(first, 0), min(last, BUCKETS) + 1):
+            left = self._origin[0] + self._side * column
+            ends = max(left, u), min(left + self._side, to_u)
+            # The quotients are rounded down, so the segment may reach the next row.
+            at_ends = [v + (to_v - v) * (at - u) // (to_u - u) for at in ends] if u < to_u else [v, to_v]
+            low, high = sorted(self._bucket((u, at))[1] for at in at_ends)
+            for row in range(max(low, 0), min(high + 1, BUCKETS) + 1):
+                found.update(self._buckets.get((column, row), ()))
+        return found
+
     def locate(self, point: Point) -> int | None:
         """The smallest number of a triangle that contains the point, borders included; None without one."""
         for t in self._buckets.get(self._bucket(point), ()):

@@ -16,11 +16,11 @@ from .coordinates import Coordinates
 from .errors import ContainerError, PayloadError, UnknownTile
 from .grid import Grid, TileName
 from .height import Ground, tiles_at
+from .layers import FIRST_KIND, LayerObject, layer_tables, read_layer
 from .payload import sections
 from .roads import Road, read_roads
 from .spans import Span, read_spans
 from .terrain import Terrain, read_terrain
-
 
 #: The number of tiles whose triangles stay in memory for the next height query.
 KEPT_TILES = 32
@@ -40,6 +40,8 @@ class Tile:
     # : Runs of bridges and tunnels off the ground, which replace the stretches of the same ways'
     # roads on the ground.
     spans: list[Span]
+    #: The objects of each layer of the package, from the lowest layer to the highest, by id of the layer.
+    layers: dict[str, list[LayerObject]]
     sections: dict[int, bytes]
 
     def fields(self, road: Road) -> dict[str, Any]:
@@ -63,11 +65,12 @@ class Package:
         manifest = self.metadata.get("corniche") if isinstance(self.metadata, dict) else None
         if not isinstance(manifest, dict):
             raise ContainerError("the PMTiles archive has no Corniche manifest")
-        if manifest.get("format_version") != 1:
-            raise ContainerError(f"the package has version {manifest.get('format_version')} of the format; this reader knows version 1")
+        if manifest.get("format_version") != 2:
+            raise ContainerError(f"the package has version {manifest.get('format_version')} of the format; this reader knows version 2")
         self.manifest: dict[str, Any] = manifest
         self.grid = Grid.of(manifest)
         self._coordinates = Coordinates(manifest)
+        self._layers = dict(enumerate(layer_tables(manifest), FIRST_KIND))
         self._grounds: OrderedDict[TileName, Ground | None] = OrderedDict()
         for z, x, y in self._places:
             if z > self.grid.max_level:
@@ -105,22 +108,24 @@ class Package:
         found = self._sections((z, x, y))
         terrain = self._terrain((z, x, y), found)
         what = f"tile {z}/{x}/{y}"
-        roads, spans = self._on_ground((z, x, y), found, terrain, what)
+        kinds = found.keys() & {2, 10, 13, *(kind for kind, table in self._layers.items() if table.geometry != "area")}
+        ground = Ground.of(terrain, self.grid, (z, x, y)) if kinds and terrain is not None else None
+        roads, spans = self._on_ground((z, x, y), found, ground, what)
+        layers = {
+            table.id: read_layer(found[kind], table, ground, self.grid, (z, x, y)) if kind in found else [] for kind, table in self._layers.items()
+        }
         if 5 in found and 4 not in found:
             raise PayloadError(f"{what} has tags without attributes")
         attributes = read_attributes(found[4], f"attributes of {what}", found.get(5), f"tags of {what}") if 4 in found else []
-        return Tile(z, x, y, terrain, roads, attributes, spans, found)
+        return Tile(z, x, y, terrain, roads, attributes, spans, layers, found)
 
-    def _on_ground(
-        self, name: TileName, found: dict[int, bytes], terrain: Terrain | None, what: str
-    ) -> tuple[list[Road], list[Span]]:
+    def _on_ground(self, name: TileName, found: dict[int, bytes], ground: Ground | None, what: str) -> tuple[list[Road], list[Span]]:
         """Decodes the sections that refer to the triangles: GEO roads and spans."""
         kinds = {2, 10, 13} & found.keys()
         if not kinds:
             return [], []
-        if terrain is None or {2, 10} <= kinds:
+        if ground is None or {2, 10} <= kinds:
             raise PayloadError(f"{what} has GEO roads or spans without ground, or GEO roads twice")
-        ground = Ground.of(terrain, self.grid, name)
         roads = [road for kind in sorted(kinds - {13}) for road in read_roads(found[kind], kind == 10, ground, self.grid, name)]
         return roads, read_spans(found[13], ground, self.grid, name) if 13 in kinds else []
 

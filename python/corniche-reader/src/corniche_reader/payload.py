@@ -19,8 +19,8 @@ def sections(data: bytes, tile: TileName) -> dict[int, bytes]:
     if len(data) < 20 or data[:4] != b"CRNT":
         raise PayloadError(f"{what}: not the payload of a tile")
     version, count, z, x, y = struct.unpack_from("<HBBII", data, 4)
-    if version != 1:
-        raise PayloadError(f"{what} has version {version} of the format, and this reader knows version 1")
+    if version != 2:
+        raise PayloadError(f"{what} has version {version} of the format, and this reader knows version 2")
     at = 16 + 20 * count
     if len(data) < at + 4 or zlib.crc32(data[:at]) != int.from_bytes(data[at : at + 4], "little"):
         raise PayloadError(f"{what}: the section table is corrupt (CRC-32)")

@@ -10,11 +10,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .codes import Cursor, unzigzag
 from .coded_lines import Line, Surprise, coded_lines
+from .codes import Cursor, unzigzag
 from .errors import PayloadError
 from .grid import Grid, TileName
-from .height import Ground
+from .height import Ground, Vertex
 from .mesh import Point, orient
 from .points import lattice_points
 
@@ -102,13 +102,13 @@ class _Follower:
     """Follows lines over the TIN, and computes the positions of their vertices in f64 as the format specifies."""
 
     def __init__(self, ground: Ground, what: str) -> None:
-        self.ground, self.mesh, self.heights, self.what = ground, ground.mesh, ground.heights_m, what
+        self.ground, self.mesh, self.what = ground, ground.mesh, what
 
-    def follow(self, line: Line, surprises: list[Surprise]) -> list[tuple[int, tuple[float, float, float]]]:
+    def follow(self, line: Line, surprises: list[Surprise]) -> list[tuple[int, Vertex]]:
         """The kind and the position [u, v, z] of each vertex."""
         points, used = line.points, line.flags & 1
         last = len(points) - (line.flags >> 1 & 1)
-        found: list[tuple[int, tuple[float, float, float]]] = []
+        found: list[tuple[int, Vertex]] = []
         rest: Iterator[Surprise] = iter(surprises)
         gap, surprise = next(rest, (-1, END))
         here: tuple[int, ...] | None = None
@@ -126,16 +126,17 @@ class _Follower:
             if vertex[0] == SOURCE:
                 if used >= last:
                     raise PayloadError(f"{self.what}: way {line.way_id} has more vertices than points")
-                u, v = points[used]
-                found.append((SOURCE, (float(u), float(v), self.ground.height_in(vertex[1], (u, v)))))
+                found.append((SOURCE, self.ground.source(points[used], vertex[1])))
                 used += 1
             elif vertex[0] == CROSSING:
                 if not 0 < used < len(points):
                     raise PayloadError(f"{self.what}: way {line.way_id} crosses an edge outside its segments")
-                found.append((CROSSING, self._crossing(vertex[1], vertex[2], points[used - 1], points[used])))
+                a, b, p, q = *vertex[1:], points[used - 1], points[used]
+                if orient(p, q, self.mesh.points[a]) == orient(p, q, self.mesh.points[b]):
+                    raise PayloadError(f"{self.what}: way {line.way_id} does not cross the edge that it names")
+                found.append((CROSSING, self.ground.crossing(a, b, p, q)))
             else:
-                u, v = self.mesh.points[vertex[1]]
-                found.append((TIN_VERTEX, (float(u), float(v), self.heights[vertex[1]])))
+                found.append((TIN_VERTEX, self.ground.vertex(vertex[1])))
             here = vertex
         if used != last or gap >= 0:
             raise PayloadError(f"{self.what}: way {line.way_id} ends before its last point or surprise")
@@ -208,13 +209,3 @@ class _Follower:
             if side == 0 and v != at and (q[0] - p[0]) * (cx - x) + (q[1] - p[1]) * (cy - y) > 0:
                 return (TIN_VERTEX, v)
         return END
-
-    def _crossing(self, a: int, b: int, p: Point, q: Point) -> tuple[float, float, float]:
-        sa, sb = orient(p, q, self.mesh.points[a]), orient(p, q, self.mesh.points[b])
-        near, far, s_near, s_far = (a, b, sa, sb) if abs(sa) <= abs(sb) else (b, a, sb, sa)
-        if s_near == s_far:
-            raise PayloadError(f"{self.what}: a line does not cross the edge that it names")
-        t = float(s_near) / float(s_near - s_far)
-        (un, vn), (uf, vf) = self.mesh.points[near], self.mesh.points[far]
-        hn, hf = self.heights[near], self.heights[far]
-        return float(un) + (t * float(uf - un)), float(vn) + (t * float(vf - vn)), hn + (t * (hf - hn))

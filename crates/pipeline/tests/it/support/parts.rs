@@ -118,7 +118,6 @@ pub(crate) fn verify_against(path: &Path, against: Against) -> Result<VerifyRepo
         Against::Osm => Some(VerifyOsm {
             paths: vec![sample("pass.osm.pbf")],
             table: super::table(),
-            areas: None,
             memory_bytes: 64 << 20,
         }),
     };

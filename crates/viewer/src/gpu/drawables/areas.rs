@@ -6,11 +6,12 @@
 //!                       painted   how many volumes of the class that is being drawn the ground is in, modulo 128
 //! ```
 //!
-//! Classes are drawn one after another, the topmost first. No class paints over another, so colours
-//! of classes are not mixed. All tiles use one stencil: a volume counts only on the ground of its
-//! own tile.
+//! Classes are drawn one after another, the topmost first: those of the highest layer, and the
+//! first class of a layer. No class paints over another, so colours of classes are not mixed. All
+//! tiles use one stencil: a volume counts only on the ground of its own tile.
 
-use corniche_areas::AreaClass;
+use std::cmp::Reverse;
+
 use corniche_styles::AreaStyle;
 use wgpu::{
     BindGroupLayout, BlendState, ColorWrites, CompareFunction, DepthStencilState, Device, Face,
@@ -26,7 +27,7 @@ use super::super::{
     shared_bindings::{DrawnFrame, SharedBindings, SharedLayouts},
     uniforms::color,
 };
-use crate::frame_view::FrameView;
+use crate::layer_class::LayerClass;
 
 pub(crate) const SHADER: Shader =
     shader!("areas": "common", "tile", "drawn_ground", "boxes", "areas");
@@ -67,7 +68,7 @@ struct Counters {
 
 impl StencilAreas {
     pub(crate) fn new(device: &Device, layouts: &SharedLayouts) -> Self {
-        let layout = layout(device, "area colors", &[uniform(0, None)]);
+        let layout = layout(device, "area look", &[uniform(0, None)]);
         let groups =
             [Some(&layouts.frame), Some(&layouts.tile), Some(&layouts.ground), Some(&layout)];
         let boxes = PipelineRecipe {
@@ -95,12 +96,12 @@ impl StencilAreas {
         pass: &mut RenderPass<'_>,
         tiles: &[AreaTile<'_>],
     ) {
-        let colors = block(gpu, "area colors", &self.layout, &rows(view));
         shared.set_frame(pass);
         pass.set_bind_group(2, &shared.ground, &[]);
-        pass.set_bind_group(3, &colors, &[]);
-        for class in AreaStyle::TOP_FIRST {
-            if view.style.area(class).is_drawn() {
+        for class in classes_of(tiles) {
+            if let Some(area) = view.layers.area(class) {
+                let look = block(gpu, "area look", &self.layout, &rows(area));
+                pass.set_bind_group(3, &look, &[]);
                 self.draw_class(pass, shared, tiles, class);
             }
         }
@@ -111,16 +112,14 @@ impl StencilAreas {
         pass: &mut RenderPass<'_>,
         shared: &SharedBindings,
         tiles: &[AreaTile<'_>],
-        class: AreaClass,
+        class: LayerClass,
     ) {
         pass.set_stencil_reference(0);
         for (counting, counters) in
             [(Counting::InFront, &self.in_front), (Counting::Behind, &self.behind)]
         {
-            let has_class =
-                |tile: &&AreaTile<'_>| tile.1.classes.iter().any(|of| of.class == class);
-            let tiles: Vec<_> =
-                tiles.iter().filter(|tile| tile.2 == counting).filter(has_class).collect();
+            let is_counted = |tile: &&AreaTile<'_>| tile.2 == counting && tile.1.has_class(class);
+            let tiles: Vec<_> = tiles.iter().filter(is_counted).collect();
             let mut draw = |pipeline: &RenderPipeline, draw: &dyn Fn(&AreaBuffers, &mut _)| {
                 pass.set_pipeline(pipeline);
                 for (index, areas, _) in &tiles {
@@ -141,6 +140,15 @@ impl StencilAreas {
             areas.draw_box(pass, class);
         }
     }
+}
+
+/// The classes of the areas of some tiles, the topmost first.
+fn classes_of(tiles: &[AreaTile<'_>]) -> Vec<LayerClass> {
+    let mut classes: Vec<LayerClass> =
+        tiles.iter().flat_map(|tile| &tile.1.classes).map(|of| of.class).collect();
+    classes.sort_unstable_by_key(|of| (Reverse(of.layer), of.class));
+    classes.dedup();
+    classes
 }
 
 impl Counters {
@@ -210,13 +218,9 @@ fn stencil_of_boxes() -> DepthStencilState {
 /// A slope steeper than any ground, for classes that paint all ground; tangent of the angle.
 const ANY_SLOPE: f64 = 1e9;
 
-/// The block `looks` of `shaders/areas.wgsl`.
-pub(crate) fn rows(view: &FrameView<'_>) -> Vec<[f32; 4]> {
-    let areas = &view.style.areas;
-    let steepest = areas.iter().map(|area| {
-        let slope =
-            area.steepest_deg.map_or(ANY_SLOPE, |deg| libm::tan(f64::from(deg).to_radians()));
-        [slope as f32, (slope * AreaStyle::STEEP_SHARE) as f32, 0.0, 0.0]
-    });
-    areas.iter().map(|area| color(area.color, area.opacity)).chain(steepest).collect()
+/// The block `look` of `shaders/areas.wgsl`.
+fn rows(area: AreaStyle) -> [[f32; 4]; 2] {
+    let slope = area.steepest_deg.map_or(ANY_SLOPE, |deg| libm::tan(f64::from(deg).to_radians()));
+    let steepest = [slope as f32, (slope * AreaStyle::STEEP_SHARE) as f32, 0.0, 0.0];
+    [color(area.color, area.opacity), steepest]
 }

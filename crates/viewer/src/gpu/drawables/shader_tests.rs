@@ -84,6 +84,7 @@ fn uniform_blocks_are_as_long_as_shaders_declare_them() {
     let view = crate::FrameView {
         camera: &camera,
         style: &style,
+        layers: crate::PackageLooks::NONE,
         roads: crate::RoadOptions::for_method(crate::RoadMethod::None),
         exaggeration: 1.0,
         point_scale: 1.0,

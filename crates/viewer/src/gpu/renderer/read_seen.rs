@@ -1,31 +1,30 @@
-//! Finds what a finished drawing shows, sample by sample: classes of roads, boundaries and areas,
-//! and heights.
+//! Finds what a finished drawing shows, sample by sample: classes of roads and of layers, and
+//! heights.
 //!
-//! Labels of roads still exist after a picture is drawn. Labels of boundaries are drawn again,
-//! because all layers of lines share one target. Areas are mixed with the colours of the ground, so
-//! they are drawn again into a texture of their own, in a style whose colours are numbers of
-//! classes.
+//! Labels of roads still exist after a picture is drawn. Labels of lines are drawn again, because
+//! all lines share one target. Areas and points are mixed with the colours of the map, so they are
+//! drawn again into textures of their own, with looks whose colours are numbers of classes.
 
-use corniche_areas::AreaClass;
-use corniche_styles::{AreaStyle, Style};
+use corniche_styles::{AreaStyle, FADE_FACTOR, LayerLook, LineStyle, PointStyle, Style};
+use wgpu::CommandEncoder;
 
 use super::{
     super::{
         Gpu, ReadBackError,
         formats::COLOR,
         inspection::{TileOwner, owners},
-        seen::{SeenSamples, ShownTiles, heights_m},
+        seen::{LineSamples, SeenSamples, ShownTiles, heights_m},
         shared_bindings::{DrawnFrame, SharedBindings},
         target_texture::TargetTexture,
         targets::Targets,
         tile_buffers::DrawTile,
     },
-    DrawnRoads, Renderer, areas_of,
+    DrawnRoads, Renderer, areas_of, line_layers_of, points_of,
 };
-use crate::{frame_view::FrameView, layer_view::view_of_lines, tiles::LineLayer};
-
-/// Bytes of a sample of [`COLOR`].
-const COLOR_BYTES: usize = 4;
+use crate::{
+    frame_view::FrameView, layer_class::LayerClass, layer_view::view_of_lines,
+    layers::PackageLooks, tiles::LineLayer,
+};
 
 impl Renderer {
     /// Returns what the last drawing shows. [`Renderer::draw`] must have just drawn the same view
@@ -42,19 +41,25 @@ impl Renderer {
     ) -> Result<ShownTiles, ReadBackError> {
         let frame =
             DrawnFrame { gpu, shared: &self.shared(gpu, view, tiles, targets), view, targets };
-        let boundaries = self.boundary_labels(frame, tiles)?;
-        let areas = self.area_classes(frame, tiles)?;
+        let lines = line_layers_of(tiles)
+            .into_iter()
+            .filter_map(|layer| self.line_samples(frame, tiles, layer).transpose());
+        let lines: Vec<LineSamples> = lines.collect::<Result<_, _>>()?;
+        let numbered: Vec<LayerClass> = view.layers.all().map(|(class, _)| class).collect();
+        let [areas, points] = self.class_numbers(frame, tiles)?;
         let samples_per_side = targets.picture.samples_per_side;
         let seen = SeenSamples {
             per_side: samples_per_side,
             columns: targets.picture.size_px[0] * samples_per_side,
             roads: &targets.read_labels(gpu)?,
             decks: targets.read_deck_labels(gpu)?.as_deref(),
-            boundaries: boundaries.as_deref(),
+            lines: &lines,
             areas: areas.as_deref(),
+            points: points.as_deref(),
+            numbered: &numbered,
         }
         .seen();
-        drop(boundaries);
+        drop(lines);
         let is_ground: Vec<bool> = owners(&targets.owners.read(gpu)?)
             .map(|owner| matches!(owner, TileOwner::Ground(_)))
             .collect();
@@ -64,17 +69,21 @@ impl Renderer {
         let camera = view.camera.supersampled(samples_per_side);
         let depths = depths.map(|(place, depth)| (place, f64::from(*depth)));
         let heights_m = heights_m(&camera, view.vertical_scale(), depths);
-        Ok(seen.with_heights(heights_m, areas.as_deref()))
+        Ok(seen.with_heights(heights_m, areas.as_deref(), &numbered))
     }
 
-    /// Draws the labels of boundaries; `None` if no tile has any that are drawn.
-    fn boundary_labels(
+    /// Draws the labels of lines of the package's layers; `None` if no tile has any that are drawn.
+    fn line_samples(
         &self,
         frame: DrawnFrame<'_>,
         tiles: &[DrawTile<'_>],
-    ) -> Result<Option<Vec<u8>>, ReadBackError> {
-        let layer = LineLayer::Boundaries;
-        let style = layer.style_of(frame.view.style);
+        layer: LineLayer,
+    ) -> Result<Option<LineSamples>, ReadBackError> {
+        let classes = frame.view.layers.classes_of(layer);
+        if classes.iter().all(Option::is_none) {
+            return Ok(None);
+        }
+        let style = layer.style_of(frame.view);
         let frame = DrawnFrame { view: &view_of_lines(frame.view, &style), ..frame };
         let lines = DrawnRoads::of_layer(frame, tiles, layer);
         if lines.is_empty() {
@@ -83,49 +92,83 @@ impl Renderer {
         let frame =
             DrawnFrame { shared: &SharedBindings::with_view(frame, &self.layouts), ..frame };
         let labels = frame.targets.lines(frame.gpu);
-        frame.gpu.submit("boundary labels", |encoder| {
+        frame.gpu.submit("line labels", |encoder| {
             self.pass_labels(frame, encoder, &lines, labels);
         });
-        labels.labels.read(frame.gpu).map(Some)
+        Ok(Some(LineSamples { labels: labels.labels.read(frame.gpu)?, classes }))
     }
 
-    /// Returns the number of the area class at each sample plus 1, 0 without an area; `None` if no
-    /// tile has areas that are drawn.
-    fn area_classes(
+    /// Returns the numbers of the classes of areas and of points at each sample, from 1 in the
+    /// order of the layers; 0 without an area or a point; `None` if no tile has any that are drawn.
+    fn class_numbers(
         &self,
         frame: DrawnFrame<'_>,
         tiles: &[DrawTile<'_>],
-    ) -> Result<Option<Vec<u8>>, ReadBackError> {
+    ) -> Result<[Option<Vec<u16>>; 2], ReadBackError> {
         let DrawnFrame { gpu, view, targets, .. } = frame;
-        let style = with_numbers_as_colors(view.style);
-        let view = &FrameView { style: &style, ..*view };
-        let areas = areas_of(tiles, view, |tile| &tile.areas);
-        if areas.is_empty() {
-            return Ok(None);
-        }
+        let looks = with_numbers_as_colors(view);
+        // Haze would mix a number with another colour.
+        let style = Style { haze_reach: 1e30, ..view.style.clone() };
+        let view = &FrameView { layers: &looks, style: &style, ..*view };
         let frame = DrawnFrame { view, ..frame };
-        // A new texture contains zeros.
-        let sampled_px = targets.picture.sampled_px();
-        let classes = TargetTexture::new(gpu, "area classes", COLOR, sampled_px);
-        gpu.submit("area classes", |encoder| self.pass_areas(frame, encoder, &areas, &classes));
-        let texels = classes.read(gpu)?;
-        let numbers = texels.chunks_exact(COLOR_BYTES).map(|texel| texel[0] / CLASS_STEP);
-        Ok(Some(numbers.collect()))
+        let numbers = |draw: &dyn Fn(&mut CommandEncoder, &TargetTexture)| {
+            // A new texture contains zeros.
+            let sampled_px = targets.picture.sampled_px();
+            let classes = TargetTexture::new(gpu, "class numbers", COLOR, sampled_px);
+            gpu.submit("class numbers", |encoder| draw(encoder, &classes));
+            let texels = classes.read(gpu)?;
+            let number = |texel: &[u8; 4]| u16::from_le_bytes([texel[0], texel[1]]);
+            Ok::<Vec<u16>, ReadBackError>(texels.as_chunks().0.iter().map(number).collect())
+        };
+        let areas = areas_of(tiles, view, |tile| &tile.areas);
+        let points = points_of(tiles, view);
+        let of_areas = (!areas.is_empty())
+            .then(|| numbers(&|encoder, into| self.pass_areas(frame, encoder, &areas, into)));
+        let of_points = (!points.is_empty()).then(|| {
+            numbers(&|encoder, into| self.pass_points(frame, encoder, &points, &into.view))
+        });
+        Ok([of_areas.transpose()?, of_points.transpose()?])
     }
 }
 
-/// Step between numbers of classes in the red channel.
-const CLASS_STEP: u8 = u8::MAX / (AreaClass::COUNT as u8 + 1);
-
-/// A style in which the colour of each drawn area class is its number plus 1, fully opaque.
-fn with_numbers_as_colors(style: &Style) -> Style {
-    let mut style = style.clone();
-    for (area, number) in style.areas.iter_mut().zip(1_u8..) {
-        let opacity = if area.is_drawn() { 1.0 } else { 0.0 };
-        // Half a step is added, so that rounding has no effect.
-        let red = f32::from(number * CLASS_STEP + CLASS_STEP / 2) / 255.0;
-        // A faded colour would be another number: so steep ground counts as the area on it.
-        *area = AreaStyle { color: [red, 0.0, 0.0], opacity, steepest_deg: None };
+impl PackageLooks {
+    /// For each style of lines that are drawn at once the class that has it, if it is drawn, and
+    /// whether it is apart from roads.
+    fn classes_of(&self, layer: LineLayer) -> [Option<(LayerClass, bool)>; LineStyle::MOST] {
+        let mut classes = [None; LineStyle::MOST];
+        for (class, look) in self.all() {
+            if let (LayerLook::Line(line), Some((of, style))) = (look, self.places.place(class))
+                && of == layer
+                && line.is_drawn()
+            {
+                classes[usize::from(style)] = Some((class, line.is_apart_from_roads));
+            }
+        }
+        classes
     }
-    style
+}
+
+/// Looks in which the colour of each class of areas or points is its number, fully opaque. Classes
+/// of points that have faded out in the middle of the picture are not drawn.
+fn with_numbers_as_colors(view: &FrameView<'_>) -> PackageLooks {
+    let pixel_m = view.camera.pixel_at_unit_depth_m() * view.camera.focus_m / view.point_scale;
+    let mut number = 0_u16;
+    view.layers.map(|look| {
+        number = number.saturating_add(1);
+        let [red, green] = number.to_le_bytes().map(|byte| f32::from(byte) / 255.0);
+        let color = [red, green, 0.0];
+        match look {
+            // A faded colour would be another number: so steep ground counts as the area on it.
+            LayerLook::Area(area) if area.is_drawn() => {
+                LayerLook::Area(AreaStyle { color, opacity: 1.0, steepest_deg: None })
+            }
+            LayerLook::Point(point) if point.is_drawn() => {
+                let is_near = |most_m| pixel_m < f64::from(most_m) * FADE_FACTOR;
+                let opacity = f32::from(u8::from(point.max_pixel_m.is_none_or(is_near)));
+                let outline = point.outline.map(|_| color);
+                LayerLook::Point(PointStyle { color, outline, opacity, max_pixel_m: None, ..point })
+            }
+            hidden => hidden,
+        }
+    })
 }

@@ -6,7 +6,7 @@ use corniche_roads::FunctionalRoadClass;
 use corniche_tin::Surface;
 
 use super::{
-    LayerLine, LineMethods, TileLayer,
+    LineMethods, StyledLine, TileLayer,
     dashes::{DashPlaces, GroundLengths},
 };
 use crate::tiles::{
@@ -39,8 +39,21 @@ impl TileSurface {
     /// # Errors
     /// When draping takes too much work, which depends on the number of triangles that the lines
     /// cross.
-    pub fn lay(&self, lines: &[LayerLine], methods: LineMethods) -> Result<TileLayer, TooMuchWork> {
-        let work = &StepBudget::new(self.most_steps);
+    pub fn lay(
+        &self,
+        lines: &[StyledLine],
+        methods: LineMethods,
+    ) -> Result<TileLayer, TooMuchWork> {
+        self.lay_within(lines, methods, &StepBudget::new(self.most_steps))
+    }
+
+    /// Does the same as [`TileSurface::lay`] with a budget of work.
+    pub(crate) fn lay_within(
+        &self,
+        lines: &[StyledLine],
+        methods: LineMethods,
+        work: &StepBudget,
+    ) -> Result<TileLayer, TooMuchWork> {
         let mut ground = Vec::new();
         let mut plan = Vec::new();
         for line in lines {

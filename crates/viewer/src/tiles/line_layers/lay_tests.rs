@@ -44,7 +44,7 @@ fn laid_on(surface: &Surface, lines_m: &[&[[f64; 2]]]) -> Result<TileLayer, TooM
         vertical_scale: 1.0,
         most_steps: FEW_STEPS,
     };
-    let line = |points_m: &&[[f64; 2]]| LayerLine {
+    let line = |points_m: &&[[f64; 2]]| StyledLine {
         id: 7,
         style: 2,
         points: points_m.iter().map(place).collect(),

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, Polyline, TileId};
 use corniche_roads::{FunctionalRoadClass, simplify};
 
-use super::LayerLine;
+use super::StyledLine;
 
 /// Simplification tolerance on levels above the finest, in cells of the level, as for roads.
 const TOLERANCE_CELLS: f64 = 0.25;
@@ -40,7 +40,7 @@ struct Level {
 
 #[derive(Debug, Clone, PartialEq)]
 struct LevelLine {
-    line: LayerLine,
+    line: StyledLine,
     /// The bounding box of each [`RUN`] of segments.
     runs: Vec<LatticeBounds>,
 }
@@ -48,7 +48,7 @@ struct LevelLine {
 impl Overlays {
     /// Creates overlays. Lines with fewer than two different points are skipped.
     #[must_use]
-    pub fn new(lines: &[LayerLine], frame: &GridFrame) -> Self {
+    pub fn new(lines: &[StyledLine], frame: &GridFrame) -> Self {
         let levels = (0..=frame.max_level()).map(|level| {
             let tolerance_m = if level == frame.max_level() {
                 0.0
@@ -68,7 +68,7 @@ impl Overlays {
     }
 
     /// The names of the files from which some lines come.
-    pub(crate) fn names_of(&self, lines: &[LayerLine]) -> String {
+    pub(crate) fn names_of(&self, lines: &[StyledLine]) -> String {
         let has_some = |style: usize| lines.iter().any(|line| usize::from(line.style) == style);
         let named = self.names.iter().enumerate().filter(|(style, _)| has_some(*style));
         named.map(|(_, name)| name.as_str()).collect::<Vec<_>>().join(", ")
@@ -82,7 +82,7 @@ impl Overlays {
 
     /// The parts of lines within a tile and `margin` steps of the lattice around it.
     #[must_use]
-    pub fn near(&self, id: TileId, frame: &GridFrame, margin: i64) -> Vec<LayerLine> {
+    pub fn near(&self, id: TileId, frame: &GridFrame, margin: i64) -> Vec<StyledLine> {
         let around = frame.tile_lattice_bounds(id).expanded(margin.saturating_add(1));
         let level = self.levels.get(usize::from(id.z()));
         let lines = level.map_or(&[][..], |level| self.of_level(level));
@@ -98,7 +98,7 @@ impl Overlays {
 
 impl SourceLine {
     /// `None` if the line has fewer than two different points, or its style is out of range.
-    fn from_layer_line(line: &LayerLine) -> Option<Self> {
+    fn from_layer_line(line: &StyledLine) -> Option<Self> {
         let mut points = line.points.clone();
         points.dedup();
         let (path, class) = (Polyline::new(points).ok()?, FunctionalRoadClass::new(line.style)?);
@@ -112,11 +112,11 @@ impl LevelLine {
         let runs = (0..points.len() - 1).step_by(RUN).filter_map(|first| {
             LatticeBounds::around(&points[first..points.len().min(first + RUN + 1)])
         });
-        Self { runs: runs.collect(), line: LayerLine { id, style, points } }
+        Self { runs: runs.collect(), line: StyledLine { id, style, points } }
     }
 
     /// The parts with a segment whose bounding box touches these bounds.
-    fn near(&self, around: &LatticeBounds) -> Vec<LayerLine> {
+    fn near(&self, around: &LatticeBounds) -> Vec<StyledLine> {
         let points = &self.line.points;
         let is_near = |segment: &usize| {
             LatticeBounds::around(&points[*segment..*segment + 2])
@@ -131,7 +131,7 @@ impl LevelLine {
         let part = |part: &[usize]| -> Vec<LatticePoint> {
             points[part[0]..part[part.len() - 1] + 2].to_vec()
         };
-        parts.map(|of| LayerLine { points: part(of), ..self.line.clone() }).collect()
+        parts.map(|of| StyledLine { points: part(of), ..self.line.clone() }).collect()
     }
 }
 

@@ -9,8 +9,8 @@ fn frame() -> GridFrame {
     GridFrame::new([0.0, 0.0], 10.0, NodeIndex { i: 0, j: 0 }, 2).unwrap()
 }
 
-fn line(points: Vec<LatticePoint>) -> LayerLine {
-    LayerLine { id: 1, style: 0, points }
+fn line(points: Vec<LatticePoint>) -> StyledLine {
+    StyledLine { id: 1, style: 0, points }
 }
 
 /// Converts shares of the root tile's sides to points on the lattice.

@@ -5,7 +5,7 @@ use corniche_geom::{HeightGrid, TileId};
 use corniche_styles::Style;
 use corniche_tileset::{Relief, TilePayload};
 use corniche_viewer::{
-    FrameView, Mapping, RoadMethod, RoadOptions,
+    FrameView, Mapping, PackageLooks, RoadMethod, RoadOptions,
     for_tests::PlanScale,
     gpu::{DrawTile, Gpu, Renderer, SlopeChain, Targets, TileBuffers},
     tiles::TileGeometry,
@@ -114,6 +114,7 @@ fn draw_beneath(
     let view = FrameView {
         camera: &camera,
         style: &style,
+        layers: PackageLooks::NONE,
         roads: RoadOptions::for_method(RoadMethod::None),
         exaggeration: look.exaggeration,
         point_scale: 1.0,

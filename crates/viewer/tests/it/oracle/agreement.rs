@@ -5,7 +5,7 @@ use corniche_geom::TileId;
 use corniche_styles::{Style, WidthScaling};
 use corniche_testing::some_of;
 use corniche_viewer::{
-    CapTest, Caps, RoadMethod, RoadOptions, WidthGrowth,
+    CapTest, Caps, PackageLooks, RoadMethod, RoadOptions, WidthGrowth,
     camera::{Camera, Orientation},
     for_tests::{class_of, may_be_clamped, settle},
     lod::Quality,
@@ -219,7 +219,7 @@ pub(crate) fn country_scene(
             Tile::of_payload(&payload, &country.frame, QUANTUM_M, widths, drawn.skirt_depth_m)
         })
         .collect();
-    Scene { tiles, style }
+    Scene { tiles, style, layers: PackageLooks::default() }
 }
 
 fn country_camera(country: &Country, distance_m: f64, heading_deg: f64, pitch_deg: f64) -> Camera {

@@ -1,11 +1,11 @@
 //! Areas against two references: by the position that the GPU's own depth gives, and by rays at the
 //! drawn triangles. Both use whole outlines, without tiles, volumes and stencils.
 
-use corniche_areas::AreaClass;
 use corniche_geom::{GridFrame, TileId};
+use corniche_styles::{AreaStyle, LayerLook};
 use corniche_testing::some_of;
 use corniche_viewer::{
-    RoadMethod, RoadOptions,
+    PackageLooks, RoadMethod, RoadOptions,
     camera::{Camera, Orientation},
     for_tests::TileOwner,
     gpu::{TileBuffers, tile_bytes},
@@ -16,7 +16,10 @@ use super::{
     ground_rays::Caster,
     support::{
         self, Drawing,
-        areas::{PlanArea, class_of, with_areas},
+        areas::{
+            FOREST, MEADOW, PARK, PlanArea, ROCK, SETTLEMENT, WATER, class_of, flat_looks,
+            with_areas,
+        },
         country::{self, Country},
         gpu,
         scene::{Scene, Tile},
@@ -27,18 +30,6 @@ use super::{
 /// The pictures of these tests are small, because every sample is compared with every outline near
 /// it.
 const SIZE: [u32; 2] = [280, 210];
-
-/// The topmost class first, repeated independently.
-const TOP_FIRST: [AreaClass; 8] = [
-    AreaClass::Sea,
-    AreaClass::Water,
-    AreaClass::Glacier,
-    AreaClass::Forest,
-    AreaClass::Rock,
-    AreaClass::Park,
-    AreaClass::Meadow,
-    AreaClass::Settlement,
-];
 
 /// The number of compared samples and the results.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -78,13 +69,9 @@ impl<'a> Outlines<'a> {
     }
 
     /// The visible class at a position.
-    fn topmost(&self, at: DVec2) -> Option<AreaClass> {
-        let classes: Vec<_> = self
-            .around(at, 0.0)
-            .filter(|area| is_inside(area, at))
-            .map(|area| area.class)
-            .collect();
-        TOP_FIRST.into_iter().find(|class| classes.contains(class))
+    fn topmost(&self, at: DVec2) -> Option<u8> {
+        let inside = self.around(at, 0.0).filter(|area| is_inside(area, at));
+        inside.map(|area| area.class).min()
     }
 
     /// Whether an outline is within this distance of a position.
@@ -155,7 +142,7 @@ fn compare(scene: &Scene, areas: &[PlanArea], camera: &Camera, drawing: &Drawing
 }
 
 /// The class that a sample shows.
-fn drawn_at(drawing: &Drawing, index: usize) -> Option<AreaClass> {
+fn drawn_at(drawing: &Drawing, index: usize) -> Option<u8> {
     class_of(&drawing.ground[4 * index..4 * index + 4])
 }
 
@@ -209,22 +196,22 @@ fn areas() -> Vec<PlanArea> {
     let area = |class, rings: &[Vec<[f64; 2]>]| PlanArea::new(class, center(), rings);
     vec![
         area(
-            AreaClass::Water,
+            WATER,
             &[
                 circle([-350.0, 50.0], 260.0, 200),
                 circle([-350.0, 50.0], 130.0, 40),
                 square([-380.0, 20.0], 70.0),
             ],
         ),
-        area(AreaClass::Forest, &[star([-40.0, 120.0], 300.0)]),
-        area(AreaClass::Forest, &[square([180.0, -320.0], 250.0)]),
-        area(AreaClass::Forest, &[square([180.0, -70.0], 250.0)]),
-        area(AreaClass::Meadow, &[square([430.0, -320.0], 400.0)]),
-        area(AreaClass::Settlement, &[square([-260.0, -520.0], 400.0)]),
-        area(AreaClass::Park, &[square([-160.0, -440.0], 160.0)]),
-        area(AreaClass::Water, &[circle([-80.0, -360.0], 40.0, 30)]),
-        area(AreaClass::Park, &[circle([140.0, -400.0], 70.0, 60)]),
-        area(AreaClass::Rock, &[vec![[-200.0, 480.0], [560.0, 300.0], [700.0, 760.0]]]),
+        area(FOREST, &[star([-40.0, 120.0], 300.0)]),
+        area(FOREST, &[square([180.0, -320.0], 250.0)]),
+        area(FOREST, &[square([180.0, -70.0], 250.0)]),
+        area(MEADOW, &[square([430.0, -320.0], 400.0)]),
+        area(SETTLEMENT, &[square([-260.0, -520.0], 400.0)]),
+        area(PARK, &[square([-160.0, -440.0], 160.0)]),
+        area(WATER, &[circle([-80.0, -360.0], 40.0, 30)]),
+        area(PARK, &[circle([140.0, -400.0], 70.0, 60)]),
+        area(ROCK, &[vec![[-200.0, 480.0], [560.0, 300.0], [700.0, 760.0]]]),
     ]
 }
 
@@ -323,7 +310,7 @@ fn areas_agree_with_both_references_on_the_plane_of_a_wall_and_of_a_cap() {
         let reference_m = scene.tiles[0].geometry.reference_m[2];
         let top_m = reference_m + f64::from(volumes.box_in_tile[1][2]);
         let camera = eye_at([-900.0, -700.0], top_m, 900.0, [50.0, 88.0]);
-        check(&format!("as high as {}", volumes.class), &scene, &areas, &camera, 100);
+        check(&format!("as high as class {}", volumes.class.class), &scene, &areas, &camera, 100);
     }
 }
 
@@ -365,16 +352,13 @@ fn stepped() -> (Scene, GridFrame, Vec<PlanArea>) {
         let (payload, widths) = (country.payload(id), country.widths(id));
         Tile::of_payload(&payload, &country.frame, country::QUANTUM_M, widths, 120.0)
     });
-    let scene = Scene { tiles: tiles.to_vec(), style: style(1.0) };
+    let scene = Scene { tiles: tiles.to_vec(), style: style(1.0), layers: PackageLooks::default() };
     let middle = DVec2::from_array(country.frame.tile_bounds(TileId::ROOT).center());
     let area = |class, rings: &[Vec<[f64; 2]>]| PlanArea::new(class, middle, rings);
     let areas = vec![
-        area(
-            AreaClass::Water,
-            &[circle([0.0, 300.0], 1500.0, 120), square([-300.0, -200.0], 700.0)],
-        ),
-        area(AreaClass::Forest, &[star([200.0, -2500.0], 2200.0)]),
-        area(AreaClass::Settlement, &[square([-1200.0, 1000.0], 3100.0)]),
+        area(WATER, &[circle([0.0, 300.0], 1500.0, 120), square([-300.0, -200.0], 700.0)]),
+        area(FOREST, &[star([200.0, -2500.0], 2200.0)]),
+        area(SETTLEMENT, &[square([-1200.0, 1000.0], 3100.0)]),
     ];
     (with_areas(&scene, &country.frame, &areas), country.frame, areas)
 }
@@ -459,7 +443,7 @@ fn walls_that_face_inwards_fail() {
 fn a_wall_left_out_fails() {
     check_fails("a wall omitted", 0, |scene| {
         let areas = &mut scene.tiles[0].geometry.areas;
-        let forest = areas.classes.iter().find(|volumes| volumes.class == AreaClass::Forest);
+        let forest = areas.classes.iter().find(|volumes| volumes.class.class == FOREST);
         let first = forest.unwrap().walls.start as usize;
         areas.walls[first] = areas.walls[first + 1];
     });
@@ -496,11 +480,12 @@ fn areas_that_are_not_drawn_change_no_byte_and_all_bytes_are_counted() {
     let plain = one_tile(8, hills, &crate::support::scenes::junction(), style(20.0));
     let with = with_areas(&plain, &support::frame(), &areas());
     let without = |scene: &Scene| Scene {
-        style: with.style.clone().without_areas(),
+        style: with.style.clone(),
+        layers: flat_looks(0.0),
         tiles: scene.tiles.clone(),
     };
     assert_eq!(bytes(&without(&with), &camera), bytes(&without(&plain), &camera));
-    let drawn = Scene { style: with.style.clone(), ..plain.clone() };
+    let drawn = Scene { tiles: plain.tiles.clone(), ..with.clone() };
     assert_eq!(bytes(&drawn, &camera), bytes(&without(&plain), &camera), "a package without areas");
     assert_ne!(bytes(&with, &camera), bytes(&drawn, &camera));
 
@@ -512,7 +497,7 @@ fn areas_that_are_not_drawn_change_no_byte_and_all_bytes_are_counted() {
     assert_eq!((with_bytes, plain_bytes), (with_told, plain_told));
     let areas = &with.tiles[0].geometry.areas;
     let (walls, corners) = (areas.walls.len() as u64, areas.corners.len() as u64);
-    let boxes = areas.classes.len() as u64 * 28;
+    let boxes = areas.classes.len() as u64 * 24;
     let triangles = areas.triangles.len() as u64 * 4;
     assert_eq!(with_bytes - plain_bytes, walls * 24 + corners * 16 + triangles + boxes);
 }
@@ -522,8 +507,13 @@ fn areas_that_are_not_drawn_change_no_byte_and_all_bytes_are_counted() {
 #[test]
 fn steep_ground_is_not_painted() {
     let mut scene = on_hills();
-    let water = usize::from(AreaClass::Water.number());
-    scene.style.areas[water].steepest_deg = Some(14.0);
+    let classes = scene.layers.all().map(|(of, look)| match look {
+        LayerLook::Area(area) if of.class == WATER => {
+            LayerLook::Area(AreaStyle { steepest_deg: Some(14.0), ..area })
+        }
+        other => other,
+    });
+    scene.layers = PackageLooks::from_looks(vec![classes.collect()]);
     let (areas, steepest) = (areas(), 14_f64.to_radians().tan());
     let outlines = Outlines::new(&areas);
     for camera in [two_cameras()[0], Camera::from_above(center(), 4.0, 0.0, [-3e3, 3e3], SIZE)] {
@@ -534,7 +524,7 @@ fn steep_ground_is_not_painted() {
         for (index, pixel) in some_of(drawing.pixels(), [2, 2, 1]) {
             let is_steep = |at: DVec2| {
                 let hit = caster.hit(at)?;
-                let is_water = outlines.topmost(hit.at.truncate()) == Some(AreaClass::Water);
+                let is_water = outlines.topmost(hit.at.truncate()) == Some(WATER);
                 let slope = hit.normal.truncate().length() / hit.normal.z.abs();
                 let is_clear = !(0.69..1.01).contains(&(slope / steepest));
                 (is_water && is_clear).then_some((slope > steepest, hit.normal.to_array()))

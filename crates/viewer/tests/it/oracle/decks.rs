@@ -6,7 +6,7 @@ use corniche_roads::OwnWidth;
 use corniche_styles::Style;
 use corniche_testing::some_of;
 use corniche_viewer::{
-    RoadOptions,
+    PackageLooks, RoadOptions,
     camera::Camera,
     for_tests::class_of,
     tiles::{DeckLine, RoadKind, RoadLook},
@@ -56,7 +56,7 @@ fn deck(way_id: i64, (number, points): &Deck) -> DeckLine {
 fn scene(height_m: impl Fn(f64, f64) -> f64, decks: &[Deck], style: Style) -> Scene {
     let bare = scenes::tile(TileId::ROOT, 8, &height_m, &[], 0.0);
     let decks = (1..).zip(decks).map(|(way_id, of)| deck(way_id, of)).collect();
-    Scene { tiles: vec![bare.with_decks(decks)], style }
+    Scene { tiles: vec![bare.with_decks(decks)], style, layers: PackageLooks::default() }
 }
 
 /// The reference's data of a deck: its points, divided as the manual of the tile format describes,

@@ -4,7 +4,7 @@ use corniche_geom::TileId;
 use corniche_roads::OwnWidth;
 use corniche_styles::Style;
 use corniche_viewer::{
-    RoadOptions,
+    PackageLooks, RoadOptions,
     camera::{Camera, Orientation},
     tiles::RoadLook,
 };
@@ -60,7 +60,7 @@ fn stepped(country: &Country) -> Scene {
             Tile::of_payload(&payload, &country.frame, QUANTUM_M, widths, 120.0)
         })
         .to_vec();
-    Scene { tiles, style: Style::road_atlas() }
+    Scene { tiles, style: Style::road_atlas(), layers: PackageLooks::default() }
 }
 
 #[test]

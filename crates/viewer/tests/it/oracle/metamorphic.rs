@@ -1,7 +1,7 @@
 //! Changes that must not change a picture.
 
 use corniche_geom::TileId;
-use corniche_viewer::{RoadMethod, RoadOptions};
+use corniche_viewer::{PackageLooks, RoadMethod, RoadOptions};
 
 use super::{
     reference::DepthOracle,
@@ -127,7 +127,7 @@ fn skirts_carry_no_road() {
         .filter(|id| id.y() == 0)
         .map(|id| tile(id, 16, &|_, _| 300.0, &roads, 60.0))
         .collect();
-    let scene = Scene { tiles, style: style(40.0) };
+    let scene = Scene { tiles, style: style(40.0), layers: PackageLooks::default() };
     for method in [RoadMethod::Geometry, SV] {
         let drawing =
             scene.draw(&gpu, &camera(300.0, 900.0, 0.0, 60.0), RoadOptions::for_method(method));
@@ -180,7 +180,7 @@ fn a_volume_paints_the_ground_of_its_own_tile_only() {
         .children()
         .map(|id| tile(id, 16, &hills, if id.x() == 0 { &roads } else { &[] }, 0.0))
         .collect();
-    let scene = Scene { tiles, style: style(60.0) };
+    let scene = Scene { tiles, style: style(60.0), layers: PackageLooks::default() };
     let (view, options) = (camera(400.0, 1200.0, 10.0, 30.0), RoadOptions::for_method(SV));
     let drawing = scene.draw(&gpu, &view, options);
     let oracle =

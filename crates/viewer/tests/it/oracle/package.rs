@@ -4,7 +4,7 @@ use corniche_styles::Style;
 use corniche_testing::some_of;
 use corniche_tileset::{FilePackage, Sections};
 use corniche_viewer::{
-    RoadMethod, RoadOptions,
+    PackageLooks, RoadMethod, RoadOptions,
     camera::{Camera, Orientation, WorldBox},
     for_tests::settle,
     gpu::Gpu,
@@ -37,7 +37,7 @@ fn scene_of(
         .iter()
         .map(|drawn| Tile::of_package(package, drawn.id, drawn.skirt_depth_m))
         .collect();
-    Scene { tiles, style: Style::road_atlas() }
+    Scene { tiles, style: Style::road_atlas(), layers: PackageLooks::default() }
 }
 
 fn measure(gpu: &Gpu, name: &str, scene: &Scene, camera: &Camera) {
@@ -150,5 +150,6 @@ fn scene_at(tiles: &[Tile], cell_m: f64, target: DVec3) -> (Scene, Camera) {
         })
         .cloned()
         .collect();
-    (Scene { tiles: near, style: Style::road_atlas() }, camera)
+    let layers = PackageLooks::default();
+    (Scene { tiles: near, style: Style::road_atlas(), layers }, camera)
 }

@@ -68,7 +68,7 @@ fn compare(
     gpu: &corniche_viewer::gpu::Gpu,
 ) -> Found {
     let options = options();
-    let unmapped = Scene { tiles: vec![scene.tiles[0].unmapped()], style: scene.style.clone() };
+    let unmapped = Scene { tiles: vec![scene.tiles[0].unmapped()], ..scene.clone() };
     let drawing = unmapped.draw(gpu, camera, options);
     assert!(drawing.labels.iter().all(|label| *label == 0), "nothing lies on the ground");
     let look = Look { style: &scene.style, options, camera };
@@ -102,8 +102,7 @@ fn the_ground_hides_a_road_that_is_laid_on_nothing() {
     let view = camera(120.0, 1500.0, 0.0, 0.0);
     let seen = |ground: Ground| {
         let mapped = scene(ground);
-        let unmapped =
-            Scene { tiles: vec![mapped.tiles[0].unmapped()], style: mapped.style.clone() };
+        let unmapped = Scene { tiles: vec![mapped.tiles[0].unmapped()], ..mapped.clone() };
         let on_ground = mapped.draw(&gpu, &view, options());
         let on_ground = on_ground.labels.iter().filter(|label| **label != 0).count();
         let drawing = unmapped.draw(&gpu, &view, options());

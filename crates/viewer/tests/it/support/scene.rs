@@ -8,7 +8,7 @@ use corniche_styles::Style;
 use corniche_tileset::{FilePackage, Sections, TilePayload, TileTerrain};
 use corniche_tin::{Placement, Surface};
 use corniche_viewer::{
-    FrameView, Mapping, RoadOptions,
+    FrameView, Mapping, PackageLooks, RoadOptions,
     camera::Camera,
     for_tests::{GroundLine, PlanLine, PlanScale},
     gpu::{DrawTile, Gpu, Renderer, Targets, TileBuffers},
@@ -68,6 +68,8 @@ pub(crate) struct Widths {
 pub(crate) struct Scene {
     pub(crate) tiles: Vec<Tile>,
     pub(crate) style: Style,
+    /// How the layers of the tiles are drawn.
+    pub(crate) layers: PackageLooks,
 }
 
 impl Tile {
@@ -318,6 +320,7 @@ impl Scene {
         FrameView {
             camera,
             style,
+            layers: PackageLooks::NONE,
             roads,
             exaggeration: 1.0,
             point_scale: 1.0,
@@ -330,7 +333,8 @@ impl Scene {
     }
 
     pub(crate) fn draw(&self, gpu: &Gpu, camera: &Camera, options: RoadOptions) -> Drawing {
-        let targets = self.draw_view(gpu, &Self::view(camera, &self.style, options), 1);
+        let view = FrameView { layers: &self.layers, ..Self::view(camera, &self.style, options) };
+        let targets = self.draw_view(gpu, &view, 1);
         Drawing::read(gpu, &targets)
     }
 

@@ -5,7 +5,10 @@ use std::num::{NonZeroU8, NonZeroU32};
 use corniche_geom::TileId;
 use corniche_roads::OwnWidth;
 use corniche_styles::{OwnWidths, Style, WidthScaling};
-use corniche_viewer::camera::{Camera, Orientation};
+use corniche_viewer::{
+    PackageLooks,
+    camera::{Camera, Orientation},
+};
 use glam::DVec2;
 
 use super::{
@@ -46,7 +49,11 @@ pub(crate) fn one_tile(
     roads: &[Road],
     style: Style,
 ) -> Scene {
-    Scene { tiles: vec![tile(TileId::ROOT, step, &height_m, roads, 0.0)], style }
+    Scene {
+        tiles: vec![tile(TileId::ROOT, step, &height_m, roads, 0.0)],
+        style,
+        layers: PackageLooks::default(),
+    }
 }
 
 pub(crate) fn tile(
@@ -81,7 +88,7 @@ pub(crate) fn four_tiles(
         .zip(steps)
         .map(|(id, step)| tile(id, step, &height_m, roads, 0.0))
         .collect();
-    Scene { tiles, style }
+    Scene { tiles, style, layers: PackageLooks::default() }
 }
 
 pub(crate) fn hills(x: f64, y: f64) -> f64 {
@@ -119,6 +126,7 @@ pub(crate) fn with_own_widths(scene: &Scene, widths: &[OwnWidth]) -> Scene {
     Scene {
         tiles: scene.tiles.iter().map(|tile| tile.with_own_widths(of_way)).collect(),
         style: by_own_widths(&scene.style),
+        ..scene.clone()
     }
 }
 

@@ -1,0 +1,23 @@
+//! A part of a way of a layer of lines, with its class, its values and its points.
+
+use corniche_geom::LatticePoint;
+use corniche_layers::AttributeValue;
+
+/// A part of a way of a layer of lines.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LayerLine {
+    /// OSM's id of the way.
+    pub way_id: i64,
+    /// The number of the first of the classes that objects give the way.
+    pub class: u8,
+    /// The values of the layer's attributes, in the table's order: those of the object that gives
+    /// the class. The way itself comes before relations, and a relation with a lower id before
+    /// others.
+    pub values: Vec<Option<AttributeValue>>,
+    /// The points on the package's lattice, at least two; neighbours differ. A way has several
+    /// parts if points between them have no position.
+    pub points: Vec<LatticePoint>,
+    /// The indices of the points that simplification must keep: the ends, and every node that
+    /// another line shares. Ascending.
+    pub fixed: Vec<u32>,
+}

@@ -1,0 +1,3 @@
+//! Points of layers: their distribution to the tiles of each level.
+
+pub mod layer;
