@@ -184,14 +184,26 @@ fn span_texts(spans: &SpansRecord, digits: Digits) -> String {
     let reasons = counts.reasons.iter();
     let reasons = reasons
         .map(|(reason, number)| format!("  {} × {}\n", digits.count(*number), in_line(reason)));
+    let crossings = counts.crossings.iter();
+    let crossings = crossings.map(|(upper, lower, number)| {
+        format!("  {} over {}: {}\n", in_line(upper), in_line(lower), digits.count(*number))
+    });
+    let railways = match (counts.railway_bridges, counts.railway_tunnels) {
+        (0, 0) => String::new(),
+        (bridges, tunnels) => {
+            let [bridges, tunnels] = [bridges, tunnels].map(|number| digits.count(number));
+            format!("; of railways {bridges} bridges and {tunnels} tunnels")
+        }
+    };
     format!(
-        "Bridges and tunnels (spans), heights estimated: {} bridges ({}) and {} tunnels ({}), connected ways counted as one; {} crossings{}:\n{}{}",
+        "Bridges and tunnels (spans), heights estimated: {} bridges ({}) and {} tunnels ({}), connected ways counted as one{railways}; {} crossings{}:\n{}{}{}",
         digits.count(counts.bridges),
         kilometres(counts.bridges_um),
         digits.count(counts.tunnels),
         kilometres(counts.tunnels_um),
-        digits.count(counts.crossings),
+        digits.count(counts.crossings()),
         if counts.reasons.is_empty() { "" } else { "; to check" },
+        crossings.collect::<String>(),
         reasons.collect::<String>(),
         level_text("runs", levels, digits)
     )

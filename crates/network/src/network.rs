@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use corniche_geom::{IndexLists, LatticePoint};
-use corniche_roads::{FunctionalRoadClass, Oneway, Structure};
+use corniche_roads::{FunctionalRoadClass, Oneway, Railway, Structure};
 
 /// A road of a network. A way that is cut, at missing nodes or at the seam of the map, becomes
 /// several roads with the same id.
@@ -13,6 +13,8 @@ pub struct NetworkWay {
     pub way_id: i64,
     /// Functional road class.
     pub class: FunctionalRoadClass,
+    /// The kind of railway, if the way is one: it joins roads, and is none.
+    pub railway: Option<Railway>,
     /// The structure that carries the road.
     pub structure: Structure,
     /// OSM's `layer`, which says which of two crossing roads is above.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use corniche_geom::{IndexLists, LatticePoint};
-use corniche_roads::Road;
+use corniche_roads::{Railway, Road};
 
 use crate::network::{Network, NetworkWay};
 
@@ -24,6 +24,11 @@ pub struct NetworkBuilder {
 impl NetworkBuilder {
     /// Adds a road. Ends without an id meet no other road.
     pub fn push(&mut self, road: &Road) {
+        self.push_way(road, None);
+    }
+
+    /// Adds a road, or a railway with the line and the nodes of `road`.
+    pub fn push_way(&mut self, road: &Road, railway: Option<Railway>) {
         for &[one, other] in &road.same_places {
             let [one, other] = [one, other].map(|id| self.representative(id));
             if one != other {
@@ -45,6 +50,7 @@ impl NetworkBuilder {
         self.ways.push(NetworkWay {
             way_id: road.way_id,
             class: road.class,
+            railway,
             structure: road.attributes.structure,
             layer: road.attributes.layer,
             oneway: road.attributes.oneway,

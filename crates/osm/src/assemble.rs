@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use corniche_geom::{LatticePoint, OnSeamedMap, Polyline, Seam, line_length_m, split_at_seam};
-use corniche_roads::{FunctionalRoadClass, MetNodes, Road, RoadAttributes};
+use corniche_roads::{FunctionalRoadClass, MetNodes, Railway, Road, RoadAttributes};
 
 use crate::{
     ExtractDefect, LeftOutReason, ReadOsmError, location,
@@ -12,7 +12,7 @@ use crate::{
     records::Stop,
     self_crossings::self_crossings,
     to_and_fro::go_to_and_fro,
-    way_bytes::{LeftOutWay, WayKind},
+    way_bytes::{LeftOutWay, Track, WayKind},
 };
 
 /// A way without its nodes.
@@ -31,6 +31,8 @@ pub(crate) struct PlainWay {
 pub(crate) struct AssembledWay {
     /// The roads of the way. A skipped way has roads only if it carries bridges and tunnels.
     pub(crate) roads: Vec<Road>,
+    /// What the roads are instead, if the way is no road.
+    pub(crate) railway: Option<Railway>,
     pub(crate) defects: Vec<ExtractDefect>,
     /// The reason why the way is skipped, its `highway` value and its length in micrometres.
     pub(crate) left_out: Option<(LeftOutReason, String, u64)>,
@@ -47,6 +49,7 @@ pub(crate) fn assemble(
         WayKind::Road(..) => true,
         // Other ways join it by the ids of its nodes.
         WayKind::LeftOut(way_kind) => way_kind.carrier.is_some() && !way.node_ids.is_empty(),
+        WayKind::Railway(_) => true,
     };
     let stops = some.iter().filter(has_line).flat_map(stops_of);
     let positions_deg: Vec<_> = stops.filter_map(|stop| location::degrees(stop.location)).collect();
@@ -71,12 +74,17 @@ pub(crate) fn assemble(
                 if let Some((structure, layer)) = carrier.filter(|_| has_line) {
                     let of_tags = RoadAttributes { structure, layer, ..RoadAttributes::default() };
                     let attributes = RoadAttributes { highway: highway.clone(), ..of_tags };
-                    let (class, node_ids) = (FunctionalRoadClass::LEAST, &*node_ids);
-                    let what = What { way_id, class, attributes, node_ids, is_carrier: true };
+                    let what = What::carrier(way_id, attributes, &node_ids);
                     roads = assemble_way(what, stops, &mut points, placing).roads;
                 }
                 let left_out = Some((reason, highway, length_um));
                 AssembledWay { roads, left_out, ..AssembledWay::default() }
+            }
+            WayKind::Railway(Track { kind, structure, layer }) => {
+                let attributes = RoadAttributes { structure, layer, ..RoadAttributes::default() };
+                let what = What::carrier(way_id, attributes, &node_ids);
+                let roads = assemble_way(what, stops, &mut points, placing).roads;
+                AssembledWay { roads, railway: Some(kind), ..AssembledWay::default() }
             }
         }
     };
@@ -105,8 +113,8 @@ struct What<'a> {
     attributes: RoadAttributes,
     /// One id per stop, or none at all.
     node_ids: &'a [i64],
-    /// Whether the way is skipped and carries bridges and tunnels; then each node counts at which
-    /// it may carry or meet another way.
+    /// Whether the way is no road here, but carries or crosses bridges and tunnels; then each node
+    /// counts at which it may carry or meet another way.
     is_carrier: bool,
 }
 
@@ -245,7 +253,12 @@ fn assemble_way(
     assembled
 }
 
-impl What<'_> {
+impl<'a> What<'a> {
+    /// Creates the properties of a way that is no road here.
+    fn carrier(way_id: i64, attributes: RoadAttributes, node_ids: &'a [i64]) -> Self {
+        Self { way_id, class: FunctionalRoadClass::LEAST, attributes, node_ids, is_carrier: true }
+    }
+
     /// Returns the node of a stop with its point on the lattice.
     fn placed(&self, point: LatticePoint, index: usize, stop: &Stop) -> PlacedNode {
         let is_met = stop.is_met();

@@ -13,7 +13,7 @@ use crate::{
     records::{Mention, WayRecord, WayUse},
     spool::{Spool, SpoolReader},
     versions::{known_version, two_versions},
-    way_bytes::{is_carrier, is_left_out, take_node_ids},
+    way_bytes::{is_carrier, is_left_out, is_railway, take_node_ids},
     way_facts::WayFacts,
     ways::add_summary,
     wire::{push_bytes, push_signed, push_varint, take_bytes, take_number, take_signed},
@@ -45,7 +45,8 @@ pub(crate) struct NumberedWays<'a> {
 /// of the first extract; their counts go to `summary`.
 ///
 /// Skipped ways go to `left_out`, except ways that carry bridges and tunnels if these are
-/// requested. Without `left_out`, all skipped ways are numbered like the others.
+/// requested. Without `left_out`, all skipped ways are numbered like the others. Railways are
+/// numbered only if bridges and tunnels are requested.
 ///
 /// Fails if a way is present in two versions.
 pub(crate) fn number_nodes<'a>(
@@ -86,9 +87,12 @@ pub(crate) fn number_nodes<'a>(
         let kind = way.take_apart(&mut node_ids)?;
         // If ids are requested, they are stored before the properties of the way.
         let kept = if request.node_ids { &*way.bytes } else { kind };
-        if is_left_out(kind) {
-            // If bridges and tunnels are requested, so are the ways that may carry them.
+        if is_left_out(kind) || is_railway(kind) {
+            // If bridges and tunnels are requested, so are the ways that may carry or cross them.
             let carries = request.node_ids && is_carrier(kind);
+            if is_railway(kind) && !carries {
+                continue;
+            }
             match &mut numbered.left_out {
                 Some(apart) if !carries => apart.push(&way.bytes, &node_ids),
                 _ => {

@@ -9,13 +9,18 @@
 //! ```text
 //!  │ how many nodes │ their ids, as differences │ 255 reason │ highway value │ structure layer │
 //! ```
-//! Its structure is counted from 1; 0 means that the way carries nothing. Counts and lengths are
-//! varints, differences zigzag varints; the width is a varint of millimetres, 0 for none; the six
-//! others are a byte each.
+//! Its structure is counted from 1; 0 means that the way carries nothing. A railway has another
+//! mark:
+//!
+//! ```text
+//!  │ how many nodes │ their ids, as differences │ 254 kind │ structure layer │
+//! ```
+//! Counts and lengths are varints, differences zigzag varints; the width is a varint of
+//! millimetres, 0 for none; the six others are a byte each.
 
 use std::io;
 
-use corniche_roads::{FunctionalRoadClass, RoadAttributes, Structure};
+use corniche_roads::{FunctionalRoadClass, Railway, RoadAttributes, Structure};
 
 use crate::{
     LeftOutReason,
@@ -38,12 +43,23 @@ pub(crate) fn way_bytes(
 
 /// The mark in place of the class if the way is skipped.
 const LEFT_OUT: u8 = u8::MAX;
+/// The mark in place of the class of a railway.
+const RAILWAY: u8 = u8::MAX - 1;
 
-/// A road or a skipped way, with its properties.
+/// A road, a skipped way or a railway, with its properties.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum WayKind {
     Road(FunctionalRoadClass, RoadAttributes),
     LeftOut(LeftOutWay<String>),
+    Railway(Track),
+}
+
+/// A railway: bridges and tunnels cross it, and it has some itself.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Track {
+    pub(crate) kind: Railway,
+    pub(crate) structure: Structure,
+    pub(crate) layer: i8,
 }
 
 /// A skipped way.
@@ -70,11 +86,26 @@ pub(crate) fn left_out_bytes(node_ids: &[i64], way: LeftOutWay<&str>) -> Box<[u8
     bytes.into()
 }
 
-/// Writes the nodes of a way of which nothing else is needed.
-pub(crate) fn node_bytes(node_ids: &[i64]) -> Box<[u8]> {
+/// Writes the nodes and properties of a railway.
+pub(crate) fn railway_bytes(node_ids: &[i64], track: Track) -> Box<[u8]> {
+    let Track { kind, structure, layer } = track;
     let mut bytes = Vec::with_capacity(2 * node_ids.len() + 16);
     push_node_ids(&mut bytes, node_ids);
+    bytes.extend([RAILWAY, kind as u8, structure as u8 + 1, layer.cast_unsigned()]);
     bytes.into()
+}
+
+/// Writes the nodes of a way and its structure, which is all that layers need.
+pub(crate) fn node_bytes(node_ids: &[i64], structure: Structure) -> Box<[u8]> {
+    let mut bytes = Vec::with_capacity(2 * node_ids.len() + 16);
+    push_node_ids(&mut bytes, node_ids);
+    bytes.push(structure as u8);
+    bytes.into()
+}
+
+/// Returns the structure of a way whose bytes end with those of [`node_bytes`].
+pub(crate) fn structure_of_layer_way(bytes: &[u8]) -> Option<Structure> {
+    Structure::ALL.get(usize::from(*bytes.last()?)).copied()
 }
 
 fn push_node_ids(bytes: &mut Vec<u8>, node_ids: &[i64]) {
@@ -89,6 +120,11 @@ fn push_node_ids(bytes: &mut Vec<u8>, node_ids: &[i64]) {
 /// Whether the bytes after the nodes belong to a skipped way.
 pub(crate) fn is_left_out(after_nodes: &[u8]) -> bool {
     after_nodes.first() == Some(&LEFT_OUT)
+}
+
+/// Whether the bytes after the nodes belong to a railway.
+pub(crate) fn is_railway(after_nodes: &[u8]) -> bool {
+    after_nodes.first() == Some(&RAILWAY)
 }
 
 /// Takes the ids of a road's nodes from the front of its bytes and passes each to `take`; returns
@@ -113,6 +149,12 @@ pub(crate) fn take_way(bytes: &mut &[u8]) -> Option<WayKind> {
         let LeftOutWay { reason, highway, carrier } = take_left_out(bytes)?;
         return Some(WayKind::LeftOut(LeftOutWay { reason, highway: highway.to_owned(), carrier }));
     }
+    if is_railway(bytes) {
+        let [_, kind, structure, layer] = take_array(bytes)?;
+        let kind = *Railway::ALL.get(usize::from(kind))?;
+        let structure = take_structure(structure)??;
+        return Some(WayKind::Railway(Track { kind, structure, layer: layer.cast_signed() }));
+    }
     let [class] = take_array(bytes)?;
     let attributes = RoadAttributes::take_from(bytes)?;
     Some(WayKind::Road(FunctionalRoadClass::new(class)?, attributes))
@@ -124,16 +166,21 @@ pub(crate) fn take_left_out<'b>(bytes: &mut &'b [u8]) -> Option<LeftOutWay<&'b s
     let reason = *LeftOutReason::ALL.get(usize::from(reason))?;
     let highway = take_text(bytes)?;
     let [structure, layer] = take_array(bytes)?;
-    let carrier = match structure.checked_sub(1) {
-        Some(code) => Some((*Structure::ALL.get(usize::from(code))?, layer.cast_signed())),
-        None => None,
-    };
+    let structure = take_structure(structure)?;
+    let carrier = structure.map(|structure| (structure, layer.cast_signed()));
     Some(LeftOutWay { reason, highway, carrier })
 }
 
-/// Whether the bytes after the nodes belong to a skipped way that carries bridges and tunnels.
+/// Reads a structure that is counted from 1: 0 is none; `None` if there is no such structure.
+fn take_structure(code: u8) -> Option<Option<Structure>> {
+    let Some(code) = code.checked_sub(1) else { return Some(None) };
+    Structure::ALL.get(usize::from(code)).copied().map(Some)
+}
+
+/// Whether the bytes after the nodes belong to a way that is no road here, but may carry or cross
+/// bridges and tunnels.
 pub(crate) fn is_carrier(after_nodes: &[u8]) -> bool {
-    matches!(after_nodes, [LEFT_OUT, .., structure, _] if *structure > 0)
+    matches!(after_nodes, [LEFT_OUT | RAILWAY, .., structure, _] if *structure > 0)
 }
 
 #[cfg(test)]

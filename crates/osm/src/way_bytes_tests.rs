@@ -49,6 +49,23 @@ proptest! {
     }
 
     #[test]
+    fn a_railway_comes_back_from_its_bytes(
+        ids: Vec<i64>, kind in prop::sample::select(&Railway::ALL[..]),
+        structure in prop::sample::select(&Structure::ALL), layer: i8,
+    ) {
+        let track = Track { kind, structure, layer };
+        let bytes = railway_bytes(&ids, track);
+        let mut after_nodes = &*bytes;
+        take_node_ids(&mut after_nodes, |_| Ok(())).unwrap();
+        prop_assert!(is_railway(after_nodes) && is_carrier(after_nodes));
+        prop_assert!(!is_left_out(after_nodes));
+        prop_assert_eq!(take_all(&mut &*bytes), Some((ids, WayKind::Railway(track))));
+        for len in 0..bytes.len() {
+            prop_assert_eq!(take_all(&mut &bytes[..len]), None);
+        }
+    }
+
+    #[test]
     fn a_way_that_is_left_out_comes_back_from_its_bytes(
         ids: Vec<i64>, reason in prop::sample::select(&LeftOutReason::ALL[..]), highway in ".*",
         carrier in prop::option::of((prop::sample::select(&Structure::ALL), any::<i8>())),

@@ -3,8 +3,8 @@
 use std::{borrow::Cow, cell::OnceCell, collections::BTreeMap};
 
 use corniche_roads::{
-    Classified, FrcTable, FunctionalRoadClass, NotARoad, RoadAttributes, attributes, is_area,
-    structure_and_layer, tags_taken_otherwise,
+    Classified, FrcTable, FunctionalRoadClass, NotARoad, Railway, RoadAttributes, attributes,
+    is_area, structure_and_layer, tags_taken_otherwise,
 };
 
 use crate::{
@@ -13,7 +13,7 @@ use crate::{
     location::Location,
     records::{Origin, WayRecord},
     text::Text,
-    way_bytes::{LeftOutWay, left_out_bytes, way_bytes},
+    way_bytes::{LeftOutWay, Track, left_out_bytes, railway_bytes, way_bytes},
     way_facts::WayFacts,
 };
 
@@ -53,14 +53,18 @@ pub(crate) struct WayJudge<'a> {
     read: Vec<OnceCell<Text<'a>>>,
     /// The numbers of the texts that are the key `highway`; usually one.
     highway: Vec<usize>,
+    /// The numbers of the texts that are the key `railway`.
+    railway: Vec<usize>,
     table: &'a FrcTable,
 }
 
 impl<'a> WayJudge<'a> {
     /// Creates the criteria from `texts`, the keys and values of the block's tags.
     pub(crate) fn new(texts: &'a [&'a [u8]], table: &'a FrcTable) -> Self {
-        let highway = (0..texts.len()).filter(|&text| texts[text] == b"highway").collect();
-        Self { texts, read: vec![OnceCell::new(); texts.len()], highway, table }
+        let numbers =
+            |key: &[u8]| (0..texts.len()).filter(|&text| texts[text] == key).collect::<Vec<_>>();
+        let [highway, railway] = [numbers(b"highway"), numbers(b"railway")];
+        Self { texts, read: vec![OnceCell::new(); texts.len()], highway, railway, table }
     }
 
     /// Returns the text with this number. The block was checked, so every tag is in its table.
@@ -108,6 +112,9 @@ impl BlockWays {
     fn look_at_tags(&mut self, way: &BlockWay<'_, '_>, judge: &WayJudge<'_>) {
         // Most ways are buildings and land cover; their tags need no decoding.
         if !way.keys().any(|key| judge.highway.contains(&key)) {
+            if way.keys().any(|key| judge.railway.contains(&key)) {
+                self.look_at_railway(way, judge);
+            }
             return;
         }
         // Space for the tags of nearly every way.
@@ -129,6 +136,19 @@ impl BlockWays {
             self.push_defect(ExtractDefect::LongText { way_id });
         }
         self.judge(way, &tags, judge.table);
+    }
+
+    /// Stores a way that is a railway and no road. It counts nowhere, and its defects are those of
+    /// layers with railways.
+    fn look_at_railway(&mut self, way: &BlockWay<'_, '_>, judge: &WayJudge<'_>) {
+        let texts = way.keys().zip(way.values());
+        let texts = texts.filter_map(|(key, value)| Some((judge.text(key)?, judge.text(value)?)));
+        let tags: Vec<(&str, &str)> =
+            texts.map(|(key, value)| (&*key.text, &*value.text)).collect();
+        if let Some(kind) = Railway::from_tags(&tags) {
+            let (structure, layer) = structure_and_layer(&tags);
+            self.keep(way, 0, |ids| railway_bytes(ids, Track { kind, structure, layer }));
+        }
     }
 
     fn push_defect(&mut self, defect: ExtractDefect) {

@@ -16,6 +16,8 @@ pub(crate) mod layer_writer;
 pub(crate) mod object_layer;
 pub(crate) mod parts_by_tile;
 pub(crate) mod plan_splitting;
+pub(crate) mod segment_run;
+pub mod span_pieces;
 pub mod tile_section;
 
 use corniche_spec::artifacts::ArtifactKind;
@@ -37,10 +39,7 @@ impl SectionLayer {
     #[must_use]
     pub fn section_key(self, tile: u64) -> ArtifactKey {
         match self {
-            // Numbers of tiles have at most 55 bits.
-            Self::Extract(slot) => {
-                ArtifactKind::LayerSection.item((slot.index() as u64) << 56 | tile)
-            }
+            Self::Extract(slot) => in_tile(ArtifactKind::LayerSection, slot, tile),
             Self::Spans => ArtifactKind::SpanSection.item(tile),
         }
     }
@@ -62,6 +61,12 @@ impl SectionLayer {
             Self::Spans => Section::of_spans(bytes),
         }
     }
+}
+
+/// The key of an artifact of a layer in a tile.
+pub(crate) fn in_tile(kind: ArtifactKind, slot: LayerSlot, tile: u64) -> ArtifactKey {
+    // Numbers of tiles have at most 55 bits.
+    kind.item((slot.index() as u64) << 56 | tile)
 }
 
 /// The layers of a package, in their order.

@@ -18,6 +18,7 @@ mod grade_limit;
 mod listed;
 mod loss_reason;
 mod quantities;
+mod railway;
 mod road;
 mod simplify;
 mod slab_thickness;
@@ -29,6 +30,7 @@ pub use frc_table::{Classified, FrcTable, FrcTableError, NotARoad, is_area, is_y
 pub use grade_limit::grade_limit;
 pub use loss_reason::LossReason;
 pub use quantities::number_and_unit;
+pub use railway::Railway;
 pub use road::{
     Form, FunctionalRoadClass, MetNodes, Oneway, OwnWidth, Road, RoadAttributes, Structure,
 };

@@ -104,8 +104,9 @@ impl<'a> ChainLines<'a> {
             let way = self.network.way_of(link);
             let layer = kind.map_or(0, |_| way.layer);
             let steepest = steepest_of(self.network, way);
+            let (way_id, is_railway) = (way.way_id, way.railway.is_some());
             let place =
-                CrossingPlace { chain, way_id: way.way_id, along_m: 0.0, kind, layer, steepest };
+                CrossingPlace { chain, way_id, along_m: 0.0, kind, layer, steepest, is_railway };
             let [from, to] = self.network.nodes_of_link(link);
             let first = line.points.len().saturating_sub(1);
             line.parts.push((first, place));

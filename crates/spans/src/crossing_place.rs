@@ -25,8 +25,10 @@ pub struct CrossingPlace {
     /// OSM's `layer` of a bridge or a tunnel, which orders it among spans of its kind; 0 on the
     /// ground.
     pub layer: i8,
-    /// The steepest grade with which roads of the way's kind are built, rise over run.
+    /// The steepest grade with which roads or railways of the way's kind are built, rise over run.
     pub steepest: f64,
+    /// Whether the way is a railway.
+    pub is_railway: bool,
 }
 
 impl CrossingPlace {
@@ -39,7 +41,11 @@ impl CrossingPlace {
     }
 }
 
-/// Returns the steepest grade with which roads of a way's kind are built, rise over run.
+/// Returns the steepest grade with which roads or railways of a way's kind are built, rise over run.
 pub(crate) fn steepest_of(network: &Network, way: &NetworkWay) -> f64 {
-    grade_limit(network.highway_of(way)).unwrap_or(OTHER_LIMIT_PCT) / 100.0
+    let limit_pct = match way.railway {
+        Some(railway) => railway.steepest_pct(),
+        None => grade_limit(network.highway_of(way)).unwrap_or(OTHER_LIMIT_PCT),
+    };
+    limit_pct / 100.0
 }

@@ -24,6 +24,7 @@
 //! | `PhotoTexture` | finest tile | its photo, encoded; empty if it has none | heights | tiles |
 //! | `PhotoRaster` | tile | texels of its photo, one for each cell; empty if it has none | heights, top | top, tiles |
 //! | `LayerSection` | layer, tile | the layer's section of the tile, encoded, with counts; missing if it has none | roads | tiles |
+//! | `LayerSpans` | layer, tile | the pieces of the layer's lines on bridges and in tunnels that meet the tile; missing if it has none | roads | tiles, merge |
 //! | `LayerTotals` | layer | counts of the layer's objects; written after all their sections | roads | merge |
 //! | `SpanRoads` | block of roads | whole bridges and tunnels, and the pieces of roads of all classes near them | roads | merge |
 //! | `SpanGround` | tile | the parts of its bridges and tunnels on the ground; empty if it has none | tiles, merge | merge |
@@ -92,6 +93,7 @@ pub enum ArtifactKind {
     PhotoTexture,
     PhotoRaster,
     LayerSection,
+    LayerSpans,
     LayerTotals,
     SpanRoads,
     SpanGround,

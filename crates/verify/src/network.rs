@@ -15,7 +15,7 @@ use corniche_pieces::{
     },
     spans::outer_ground::whole_rectangle,
 };
-use corniche_roads::Road;
+use corniche_roads::{Railway, Road};
 use corniche_spec::{BuildObserver, levels::most_scale};
 use corniche_store::MemoryStore;
 use corniche_tileset::FilePackage;
@@ -68,7 +68,7 @@ pub fn network(
     let mut of_spans = NetworkBuilder::default();
     near_spans::for_each(&store, |near| {
         if let Some(road) = near.road() {
-            push(&mut of_spans, &road, &whole);
+            push(&mut of_spans, (&road, near.railway), &whole);
         }
     })?;
     Ok(roads.with_spans(of_spans.finish()))
@@ -84,14 +84,18 @@ fn ways_of_edges(network: &Network, data: &LatticeBounds) -> HashSet<i64> {
         .collect()
 }
 
-/// Adds the parts of a road inside the data to a network.
-fn push(roads: &mut NetworkBuilder, road: &Road, whole: &LatticeBounds) {
+/// Adds the parts of a road or a railway inside the data to a network.
+fn push(
+    network: &mut NetworkBuilder,
+    (road, railway): (&Road, Option<Railway>),
+    whole: &LatticeBounds,
+) {
     if road.line.points().iter().all(|point| whole.contains(*point)) {
-        roads.push(road);
+        network.push_way(road, railway);
         return;
     }
     for part in corniche_drape::clip_parts(&road.line, whole, OwnedBorders::ALL) {
-        roads.push(&road_of_part(road, part));
+        network.push_way(&road_of_part(road, part), railway);
     }
 }
 
@@ -108,10 +112,13 @@ struct RelevantRoads<'a> {
 }
 
 impl RelevantRoads<'_> {
-    fn take_near(&mut self, road: &Road, ordinal: Option<u32>) {
+    /// Whether the rectangle around a road reaches the data.
+    fn reaches(&self, road: &Road) -> bool {
         let bounds = LatticeBounds::around(road.line.points());
-        let is_reached = bounds.is_some_and(|bounds| bounds.intersects(&self.data));
-        let near = NearRoad::from_road(road, ordinal, &[], is_reached);
+        bounds.is_some_and(|bounds| bounds.intersects(&self.data))
+    }
+
+    fn take_near(&mut self, near: NearRoad) {
         if self.failed.is_none()
             && let Err(error) = self.near_spans.push(near)
         {
@@ -122,15 +129,15 @@ impl RelevantRoads<'_> {
 
 impl LayerSink<Road, ExtractSummary> for RelevantRoads<'_> {
     fn take(&mut self, road: Road) {
-        self.take_near(&road, Some(0));
+        self.take_near(NearRoad::from_road(&road, Some(0), &[], self.reaches(&road)));
         let bounds = LatticeBounds::around(road.line.points());
         if bounds.is_some_and(|bounds| bounds.intersects(&self.around)) {
-            push(&mut self.roads, &road, &self.whole);
+            push(&mut self.roads, (&road, None), &self.whole);
         }
     }
 
-    fn take_carrier(&mut self, road: Road) {
-        self.take_near(&road, None);
+    fn take_carrier(&mut self, road: Road, railway: Option<Railway>) {
+        self.take_near(NearRoad::of_carrier(&road, railway, &[], self.reaches(&road)));
     }
 
     fn end(&mut self, _: ExtractSummary) {}

@@ -7,25 +7,43 @@ use serde::Serialize;
 use crate::documents::record_schemas::SectionLevelDocument;
 
 /// The bridges and tunnels of a package (spans). A bridge or tunnel consists of all connected OSM
-/// ways of its kind; heights are estimates.
+/// ways of its kind; heights are estimates. All lengths are those of roads.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct SpansDocument {
-    /// Number of bridges.
+    /// Number of bridges of roads.
     bridges: u64,
-    /// Number of tunnels.
+    /// Number of tunnels of roads.
     tunnels: u64,
     /// True length in plan of the parts of all bridges in the package, kilometres.
     bridges_km: f64,
     /// True length in plan of the parts of all tunnels in the package, kilometres.
     tunnels_km: f64,
-    /// Number of crossings with other roads or with each other.
+    /// Number of bridges of railways alone.
+    railway_bridges: u64,
+    /// Number of tunnels of railways alone.
+    railway_tunnels: u64,
+    /// Number of crossings with other roads and railways or with each other.
     crossings: u64,
+    /// The same number by what is above and what is below.
+    crossings_by_layers: Vec<CrossingsDocument>,
     /// Number of spans to inspect, by reason.
     reasons: Vec<ReasonDocument>,
     /// Stretches off the ground (runs, here `parts`) on each level that has some, root first.
     #[cfg_attr(test, schemars(with = "Vec<SectionLevelDocument>"))]
     levels: Vec<SectionLevelRecord>,
+}
+
+/// Crossings of bridges and tunnels with what is above or below them.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct CrossingsDocument {
+    /// What is above: "roads" or "railways".
+    upper: String,
+    /// What is below: "roads" or "railways".
+    lower: String,
+    /// Number of crossings.
+    count: u64,
 }
 
 /// A reason to inspect bridges or tunnels.
@@ -40,13 +58,19 @@ struct ReasonDocument {
 
 impl From<SpansRecord> for SpansDocument {
     fn from(SpansRecord { counts, levels, .. }: SpansRecord) -> Self {
-        let reasons = counts.reasons.into_iter();
+        let crossings = counts.crossings.clone().into_iter();
+        let reasons = counts.reasons.clone().into_iter();
         Self {
             bridges: counts.bridges,
             tunnels: counts.tunnels,
             bridges_km: counts.bridges_um as f64 / 1e9,
             tunnels_km: counts.tunnels_um as f64 / 1e9,
-            crossings: counts.crossings,
+            railway_bridges: counts.railway_bridges,
+            railway_tunnels: counts.railway_tunnels,
+            crossings: counts.crossings(),
+            crossings_by_layers: crossings
+                .map(|(upper, lower, count)| CrossingsDocument { upper, lower, count })
+                .collect(),
             reasons: reasons.map(|(reason, count)| ReasonDocument { reason, count }).collect(),
             levels,
         }

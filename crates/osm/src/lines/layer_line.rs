@@ -2,12 +2,16 @@
 
 use corniche_geom::LatticePoint;
 use corniche_layers::AttributeValue;
+use corniche_roads::Structure;
 
 /// A part of a way of a layer of lines.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LayerLine {
     /// OSM's id of the way.
     pub way_id: i64,
+    /// The structure that carries the way, if lines of the layer may be on bridges and in tunnels;
+    /// otherwise the ground.
+    pub structure: Structure,
     /// The number of the first of the classes that objects give the way.
     pub class: u8,
     /// The values of the layer's attributes, in the table's order: those of the object that gives

@@ -146,6 +146,7 @@ fn parts_of(
         .filter_map(part)
         .map(|(points, fixed)| LayerLine {
             way_id: way.way_id,
+            structure: way.structure,
             class,
             values: values.to_vec(),
             points,

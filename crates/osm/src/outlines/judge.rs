@@ -1,6 +1,7 @@
 //! Finds the objects and the outline ways of a block.
 
 use corniche_layers::OsmObject;
+use corniche_roads::{Structure, structure_and_layer};
 use corniche_store::record_bytes;
 use osmpbf::{PrimitiveBlock, RelMemberType, Relation};
 
@@ -67,11 +68,27 @@ impl<'a> OutlineJudge<'a> {
         keys.any(|key| self.is_key(key))
     }
 
+    /// Returns the structure that carries a way; the ground if the layer does not need it.
+    fn structure_of(&self, way: &BlockWay<'_, '_>) -> Structure {
+        if !self.wanted.has_spans() {
+            return Structure::Ground;
+        }
+        let texts = way.keys().zip(way.values());
+        let texts: Vec<_> = texts.map(|pair| <[usize; 2]>::from(pair).map(|at| self.text(at))).collect();
+        let tags: Vec<(&str, &str)> =
+            texts.iter().map(|[key, value]| (&*key.text, &*value.text)).collect();
+        structure_and_layer(&tags).0
+    }
+
+    /// Returns the text with this number. The block was checked: every tag is in its table.
+    fn text(&self, index: usize) -> Text<'a> {
+        Text::new(self.texts.get(index).copied().unwrap_or_default())
+    }
+
     /// Returns the tags of an object, which are given by the numbers of their texts.
     fn tags(&self, pairs: impl Iterator<Item = [usize; 2]>) -> Tags<'a> {
-        // The block was checked: every tag is in its table.
-        let text = |index: usize| Text::new(self.texts.get(index).copied().unwrap_or_default());
-        let mut tags = Tags { texts: pairs.map(|pair| pair.map(text)).collect(), class: None };
+        let texts = pairs.map(|pair| pair.map(|index| self.text(index))).collect();
+        let mut tags = Tags { texts, class: None };
         tags.class = self.wanted.classify(&tags.plain());
         tags
     }
@@ -109,14 +126,14 @@ impl OfBlock {
     }
 
     /// Stores a way of an outline.
-    pub(crate) fn keep(&mut self, way: &BlockWay<'_, '_>) {
+    pub(crate) fn keep(&mut self, way: &BlockWay<'_, '_>, judge: &OutlineJudge<'_>) {
         way.take_nodes(&mut self.node_ids, &mut self.located);
         // Ids and positions are each sorted twice.
         self.held_bytes += (WAY_BYTES + 48 * self.node_ids.len()) as u64;
         self.ways.push(WayRecord {
             way_id: way.id,
             origin: Origin::of_version(way.info.version),
-            bytes: node_bytes(&self.node_ids),
+            bytes: node_bytes(&self.node_ids, judge.structure_of(way)),
             facts: Box::default(),
         });
     }
@@ -235,7 +252,7 @@ impl WantedWays<'_> {
             }
         };
         if is_kept {
-            found.keep(way);
+            found.keep(way, judge);
         }
     }
 }

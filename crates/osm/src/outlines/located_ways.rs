@@ -2,6 +2,7 @@
 
 use std::io;
 
+use corniche_roads::Structure;
 use corniche_store::Sorted;
 
 use crate::{
@@ -9,6 +10,7 @@ use crate::{
     number_nodes::take_numbered,
     records::Stop,
     spool::{SpoolReader, damaged},
+    way_bytes::structure_of_layer_way,
 };
 
 /// Ways in order of their ids, each with the positions of its nodes.
@@ -23,6 +25,8 @@ pub(crate) struct LocatedWays<'a> {
 
 pub(crate) struct LocatedWay {
     pub(crate) way_id: i64,
+    /// The structure that carries the way, if the layer needs it.
+    pub(crate) structure: Structure,
     pub(crate) places: Vec<Location>,
     /// Whether another way also contains the node, or this way contains it twice; one entry per
     /// node.
@@ -43,16 +47,17 @@ impl LocatedWays<'_> {
     }
 
     fn next(&mut self) -> io::Result<Option<LocatedWay>> {
-        // The properties of the ways are not needed.
-        let take =
-            |bytes: &mut &[u8]| take_numbered(bytes).map(|(way_id, nodes, _)| (way_id, nodes));
-        let Some((way_id, nodes)) = self.ways.next(take)? else { return Ok(None) };
+        let take = |bytes: &mut &[u8]| {
+            let (way_id, nodes, rest) = take_numbered(bytes)?;
+            Some((way_id, nodes, structure_of_layer_way(rest)?))
+        };
+        let Some((way_id, nodes, structure)) = self.ways.next(take)? else { return Ok(None) };
         let (mut places, mut is_shared) = (Vec::new(), Vec::new());
         for _ in 0..nodes {
             let stop = self.stops.next().ok_or_else(damaged)??;
             places.push(stop.location);
             is_shared.push(stop.is_shared());
         }
-        Ok(Some(LocatedWay { way_id, places, is_shared }))
+        Ok(Some(LocatedWay { way_id, structure, places, is_shared }))
     }
 }

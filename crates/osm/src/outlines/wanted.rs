@@ -1,6 +1,6 @@
 //! The objects of a layer to look for in an extract, with their keys, tags and roles.
 
-use corniche_layers::{AttributeValue, LayerGeometry, LayerTable};
+use corniche_layers::{AttributeValue, LayerGeometry, LayerTable, LinePlacement};
 
 /// The objects of a layer.
 #[derive(Clone, Copy)]
@@ -41,6 +41,11 @@ impl WantedObjects<'_> {
     /// Whether nodes with the tags are objects of the layer.
     pub(crate) fn has_nodes(self) -> bool {
         self.geometry == LayerGeometry::Point
+    }
+
+    /// Whether the layer's lines may be on bridges and in tunnels.
+    pub(crate) fn has_spans(self) -> bool {
+        self.table.form().placement == LinePlacement::Spans
     }
 
     /// Whether coastlines are also looked for.

@@ -12,7 +12,7 @@
 use std::{path::PathBuf, sync::atomic::Ordering};
 
 use corniche_geom::{Bounds, LatticeBounds, LatticeRegion, Projection};
-use corniche_layers::{LayerGeometry, LayerTable};
+use corniche_layers::{LayerGeometry, LayerTable, LinePlacement};
 use corniche_osm::{
     ExtractSummary, LayerReceiver, LayerSink, Layers, ReadOsmError, ReadRequest, read_extract,
     read_kept_roads,
@@ -210,7 +210,9 @@ impl<'a, 'b> ObjectWriter<'a, 'b> {
                 Self::Points(LayerWriter::new(layer, told))
             }
             LayerGeometry::Line => {
-                let splitting = LineSplitting { plan, levels, lengths };
+                let spans = input.settings.spans
+                    && table.form().placement == LinePlacement::Spans;
+                let splitting = LineSplitting { plan, levels, lengths, spans };
                 let layer = ObjectLayer::new((slot, splitting), places, memory_bytes);
                 Self::Lines(LayerWriter::new(layer, told))
             }

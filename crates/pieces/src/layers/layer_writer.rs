@@ -7,6 +7,7 @@ use std::{
 };
 
 use corniche_osm::LayerSink;
+use corniche_roads::Railway;
 use corniche_spec::{BuildObserver, Defect};
 use corniche_work::Stage;
 use rayon::prelude::*;
@@ -48,9 +49,13 @@ pub(crate) trait LayerEncoder {
     /// Receives the parts of the next object.
     fn take(&mut self, split: SplitOf<Self>) -> Result<(), ExtractError>;
 
-    /// Receives a road that is skipped but may carry bridges and tunnels; see
+    /// Receives a way that is no road but may carry or cross bridges and tunnels; see
     /// [`LayerSink::take_carrier`].
-    fn take_carrier(&mut self, _object: ObjectOf<Self>) -> Result<(), ExtractError> {
+    fn take_carrier(
+        &mut self,
+        _object: ObjectOf<Self>,
+        _railway: Option<Railway>,
+    ) -> Result<(), ExtractError> {
         Ok(())
     }
 
@@ -205,10 +210,10 @@ impl<L: LayerEncoder> LayerSink<ObjectOf<L>, L::Summary> for LayerWriter<'_, '_,
         }
     }
 
-    fn take_carrier(&mut self, object: ObjectOf<L>) {
+    fn take_carrier(&mut self, object: ObjectOf<L>, railway: Option<Railway>) {
         if self.done.is_ok()
             && let Some(layer) = &mut self.layer
-            && let Err(error) = layer.take_carrier(object)
+            && let Err(error) = layer.take_carrier(object, railway)
         {
             self.fail(error);
         }

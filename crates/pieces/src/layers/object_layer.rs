@@ -17,6 +17,7 @@ use super::{
     layer_writer::{LayerContext, LayerEncoder, TileSplitting},
     parts_by_tile::PartsByTile,
     plan_splitting::PlanSplitting,
+    span_pieces::{self, SpanPiece},
     tile_section::{LayerTotals, ObjectMeasure, TileSection},
 };
 use crate::ExtractError;
@@ -28,6 +29,11 @@ pub(crate) trait ObjectSplitting: TileSplitting<Split = SplitObject> {
 
     /// The tiles and levels for which objects are split.
     fn plan(&self) -> &PlanSplitting<'_>;
+
+    /// Whether objects may be on bridges and in tunnels.
+    fn has_spans(&self) -> bool {
+        false
+    }
 
     /// Creates the object that follows from all others, such as the sea, and counts it.
     fn last_object(
@@ -49,6 +55,8 @@ pub(crate) struct SplitObject {
     object: OsmObject,
     measure: ObjectMeasure,
     parts: Result<Vec<(TileId, PartOrder, Vec<u8>)>, OutlineError>,
+    /// The parts on bridges and in tunnels.
+    spans: Vec<(TileId, SpanPiece)>,
 }
 
 impl SplitObject {
@@ -68,7 +76,12 @@ impl SplitObject {
             (id, (class, object, start, number), bytes)
         };
         let parts = shapes.map(|shapes| (0..).zip(shapes).map(part).collect());
-        Self { class, object, measure, parts }
+        Self { class, object, measure, parts, spans: Vec::new() }
+    }
+
+    /// Returns the same object with its parts on bridges and in tunnels.
+    pub(crate) fn with_spans(self, spans: Vec<(TileId, SpanPiece)>) -> Self {
+        Self { spans, ..self }
     }
 }
 
@@ -79,6 +92,8 @@ pub(crate) struct ObjectLayer<'a, S> {
     coding: LayerCoding,
     store: &'a dyn Artifacts,
     parts: PartsByTile<'a, PartOrder>,
+    /// The parts on bridges and in tunnels, by way and position; `None` if the layer has none.
+    spans: Option<PartsByTile<'a, (i64, LatticePoint, u64)>>,
     /// The sizes of all objects that were read and split, by class.
     measures: BTreeMap<u8, ObjectMeasure>,
     /// Objects that were too complex to split.
@@ -92,9 +107,12 @@ impl<'a, S: ObjectSplitting> ObjectLayer<'a, S> {
         memory_bytes: u64,
     ) -> Self {
         let coding = LayerCoding::from_table(splitting.plan().table.form());
-        let parts = PartsByTile::new(scratch, memory_bytes);
+        let has_spans = splitting.has_spans();
+        let part_bytes = if has_spans { memory_bytes / 4 * 3 } else { memory_bytes };
+        let parts = PartsByTile::new(scratch, part_bytes);
+        let spans = has_spans.then(|| PartsByTile::new(scratch, memory_bytes / 4));
         let (measures, intricate) = (BTreeMap::new(), Vec::new());
-        Self { splitting, slot, coding, store, parts, measures, intricate }
+        Self { splitting, slot, coding, store, parts, spans, measures, intricate }
     }
 }
 
@@ -112,12 +130,18 @@ impl<S: ObjectSplitting> LayerEncoder for ObjectLayer<'_, S> {
     }
 
     fn take(&mut self, split: SplitObject) -> Result<(), ExtractError> {
-        let SplitObject { class, object, measure, parts } = split;
+        let SplitObject { class, object, measure, parts, spans } = split;
         let Ok(parts) = parts else {
             self.intricate.push((class, object));
             return Ok(());
         };
         self.measures.entry(class).or_default().add(measure);
+        if let Some(all) = &mut self.spans {
+            for (id, piece) in spans {
+                let from_um = piece.along_um.first().copied().unwrap_or_default();
+                all.push(id, (piece.way_id, piece.start, from_um), record_bytes(&piece))?;
+            }
+        }
         parts.into_iter().try_for_each(|(id, order, bytes)| self.parts.push(id, order, bytes))
     }
 
@@ -165,6 +189,20 @@ impl<S: ObjectSplitting> LayerEncoder for ObjectLayer<'_, S> {
                 })
             },
         )?;
+        let slot = self.slot;
+        if let Some(spans) = self.spans {
+            spans.for_each_tile(
+                told.observer,
+                |pieces: &mut Vec<SpanPiece>, tile, _, bytes| {
+                    pieces.push(take_record(&mut &*bytes).ok_or_else(|| {
+                        let key = layer.section_key(tile);
+                        damaged(key, &"the record read back is not a piece of a line")
+                    })?);
+                    Ok(())
+                },
+                |tile, pieces| Ok(span_pieces::put(store, (slot, tile), &pieces)?),
+            )?;
+        }
         totals.put(layer, store)?;
         Ok(totals)
     }

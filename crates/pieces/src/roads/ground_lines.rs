@@ -1,9 +1,9 @@
-//! The ground beneath bridges and tunnels, by tile: the draped lines of their roads, with the
-//! position of each vertex along its road.
+//! The ground beneath bridges and tunnels, by tile: the draped lines of their ways, with the
+//! position of each vertex along its way.
 
 use corniche_drape::{ClippedPart, DrapedLine, DrapedVertex, positions};
 use corniche_geom::{LatticePoint, TileId};
-use corniche_roads::{FunctionalRoadClass, Structure};
+use corniche_roads::Structure;
 use corniche_spans::SpanKind;
 use corniche_spec::{
     artifacts::{self, ArtifactError, ArtifactKind},
@@ -13,19 +13,13 @@ use corniche_store::Artifacts;
 use corniche_tin::Surface;
 use serde::{Deserialize, Serialize};
 
-use super::pieces::{RoadPiece, SegmentRun};
+use crate::layers::{segment_run::SegmentRun, span_pieces::SpanLineOf};
 
 /// A line of a bridge or a tunnel on the ground of a tile.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SpanGroundLine {
-    /// The number of its road.
-    pub ordinal: u32,
-    /// The way of the road.
-    pub way_id: i64,
-    /// The class of the road.
-    pub class: FunctionalRoadClass,
-    /// Whether it is a tunnel; otherwise it is a bridge.
-    pub(crate) is_tunnel: bool,
+    /// What it is a part of.
+    pub of: SpanLineOf,
     /// Vertices in the direction of the way; at least two.
     pub vertices: Vec<SpanGroundPoint>,
 }
@@ -51,11 +45,11 @@ impl SpanGroundLine {
     /// The kind of span (bridge or tunnel) above or below the line.
     #[must_use]
     pub fn kind(&self) -> SpanKind {
-        if self.is_tunnel { SpanKind::Tunnel } else { SpanKind::Bridge }
+        if self.of.is_tunnel { SpanKind::Tunnel } else { SpanKind::Bridge }
     }
 
     pub(crate) fn structure(&self) -> Structure {
-        if self.is_tunnel { Structure::Tunnel } else { Structure::Bridge }
+        if self.of.is_tunnel { Structure::Tunnel } else { Structure::Bridge }
     }
 }
 
@@ -70,7 +64,7 @@ pub(crate) struct PartOfRun<'a> {
 /// Converts a draped line of a part, which begins on the part's segment `begun`; `None` if less
 /// than two vertices have a position on the lattice.
 pub(crate) fn line_of(
-    (ordinal, road): (u32, &RoadPiece),
+    of: SpanLineOf,
     PartOfRun { run, starts_um, part }: &PartOfRun<'_>,
     (line, begun): (&DrapedLine, usize),
     (surface, lengths): (&Surface, &TrueLengths<'_>),
@@ -113,13 +107,7 @@ pub(crate) fn line_of(
         let vertex = SpanGroundPoint { at, triangle, next_triangle, height_m, along_um, is_source };
         vertices.push(vertex);
     }
-    (vertices.len() >= 2).then(|| SpanGroundLine {
-        ordinal,
-        way_id: road.way_id,
-        class: road.class,
-        is_tunnel: road.attributes.structure == Structure::Tunnel,
-        vertices,
-    })
+    (vertices.len() >= 2).then_some(SpanGroundLine { of, vertices })
 }
 
 /// The lattice point at a fraction of the way from one point to another.

@@ -9,13 +9,17 @@ use corniche_spec::{
     levels::Levels,
     true_lengths::{TrueLengths, starts_um},
 };
-use corniche_tileset::{GeoRoad, RoadRecord, SvRoad, TilePayload, TileTerrain};
+use corniche_tileset::{GeoRoad, RoadRecord, RunOwner, SvRoad, TilePayload, TileTerrain};
 use corniche_tin::Surface;
 use serde::{Deserialize, Serialize};
 
 use super::{
     ground_lines::{PartOfRun, SpanGroundLine, line_of},
-    pieces::{RoadPiece, SegmentRun, TilePieces},
+    pieces::{RoadPiece, TilePieces},
+};
+use crate::layers::{
+    segment_run::SegmentRun,
+    span_pieces::{CarriedLine, SpanLineOf},
 };
 
 /// Sums over the roads of a class on a level.
@@ -144,6 +148,9 @@ impl DrapedRoads {
         for (ordinal, piece) in &pieces.roads {
             laid.lay(*ordinal, piece, on, levels);
         }
+        for (of, run) in &pieces.of_layers {
+            laid.lay_span_of_layer(*of, run, on, levels);
+        }
         laid
     }
 
@@ -193,10 +200,16 @@ impl DrapedRoads {
                 }
                 if is_span {
                     let own = PartOfRun { run, starts_um: &starts_um, part: &part };
+                    let of = SpanLineOf {
+                        line: CarriedLine::Road(ordinal),
+                        way_id: road.way_id,
+                        owner: RunOwner::Road(road.class),
+                        is_tunnel: road.attributes.structure == Structure::Tunnel,
+                    };
                     let lines = draped.lines.iter().zip(draped.starts.iter().copied());
-                    self.ground_lines.extend(lines.filter_map(|line| {
-                        line_of((ordinal, road), &own, line, (surface, lengths))
-                    }));
+                    self.ground_lines.extend(
+                        lines.filter_map(|line| line_of(of, &own, line, (surface, lengths))),
+                    );
                 }
                 for line in draped.lines {
                     let (way_id, class, part) = (road.way_id, road.class, *next_part);
@@ -206,6 +219,28 @@ impl DrapedRoads {
             }
         }
         fate
+    }
+
+    /// Drapes a piece of a layer's line on a bridge or in a tunnel. The tile has the line itself in
+    /// plan.
+    fn lay_span_of_layer(
+        &mut self,
+        of: SpanLineOf,
+        run: &SegmentRun,
+        on: &TileToLayOn<'_>,
+        levels: &Levels,
+    ) {
+        let &TileToLayOn { id, surface, lengths, .. } = on;
+        let bounds = levels.frame().tile_lattice_bounds(id);
+        let starts_um = starts_um(run.from_um, &run.segments_um);
+        // Both tiles have a line on their border.
+        for part in corniche_drape::clip_parts(&run.line, &bounds, OwnedBorders::ALL) {
+            let draped = corniche_drape::drape(&part.line, surface);
+            let own = PartOfRun { run, starts_um: &starts_um, part: &part };
+            let lines = draped.lines.iter().zip(draped.starts.iter().copied());
+            self.ground_lines
+                .extend(lines.filter_map(|line| line_of(of, &own, line, (surface, lengths))));
+        }
     }
 
     fn lay_sv(&mut self, road: &RoadPiece, on: &TileToLayOn<'_>, levels: &Levels) {

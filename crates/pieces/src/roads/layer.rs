@@ -3,7 +3,7 @@
 
 use corniche_geom::{LatticeBounds, TileId};
 use corniche_osm::ExtractSummary;
-use corniche_roads::{FunctionalRoadClass, Road};
+use corniche_roads::{FunctionalRoadClass, Railway, Road, Structure};
 use corniche_spec::artifacts::ArtifactKind;
 use corniche_store::{Artifacts, ScratchSpace};
 use corniche_work::Stage;
@@ -88,10 +88,19 @@ impl<'a> LayerEncoder for RoadLayer<'a> {
         &self.splitting
     }
 
-    fn take_carrier(&mut self, road: Road) -> Result<(), ExtractError> {
+    fn take_carrier(
+        &mut self,
+        road: Road,
+        railway: Option<Railway>,
+    ) -> Result<(), ExtractError> {
         let Some(near_spans) = &mut self.near_spans else { return Ok(()) };
         let is_reached = self.splitting.reaches(&road);
-        near_spans.push(NearRoad::from_road(&road, None, &[], is_reached))
+        // Lines of layers are on this way, too, and refer to positions along it.
+        let segments_um = match road.attributes.structure {
+            Structure::Ground => Vec::new(),
+            _ => self.splitting.lengths.projected_segments_um(&road.line),
+        };
+        near_spans.push(NearRoad::of_carrier(&road, railway, &segments_um, is_reached))
     }
 
     fn take(&mut self, (road, pieces): SplitOf<Self>) -> Result<(), ExtractError> {

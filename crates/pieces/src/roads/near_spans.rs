@@ -1,14 +1,14 @@
-//! Stores the roads that spans depend on: bridges and tunnels themselves, and the pieces of other
-//! roads that can carry, touch or cross them.
+//! Stores the roads and railways that spans depend on: bridges and tunnels themselves, and the
+//! pieces of others that can carry, touch or cross them.
 //!
-//! They are taken from whole roads, independently of position and class, so the data about a bridge
+//! They are taken from whole ways, independently of position and class, so the data about a bridge
 //! do not depend on bounds, tiles and classes. Bridges and tunnels are skipped if neither they nor
 //! any span that may depend on them reaches the data and the requested region.
 
 use std::collections::BTreeMap;
 
 use corniche_geom::{LatticePoint, Polyline, TileId};
-use corniche_roads::{FunctionalRoadClass, MetNodes, Road, RoadAttributes, Structure};
+use corniche_roads::{FunctionalRoadClass, MetNodes, Railway, Road, RoadAttributes, Structure};
 use corniche_spans::{SpanLine, Vicinity, connected};
 use corniche_spec::{
     BuildObserver,
@@ -32,9 +32,11 @@ const BLOCK_ROADS: usize = 4096;
 /// A road near spans, or a piece of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NearRoad {
-    /// The number of its road; `None` for a way whose class is off or unknown, which is not a road
-    /// of the package.
+    /// The number of its road; `None` for a way that is not a road of the package: a railway, or a
+    /// road whose class is off or unknown.
     pub ordinal: Option<u32>,
+    /// The kind of railway, if it is one.
+    pub railway: Option<Railway>,
     /// The way of the road.
     pub way_id: i64,
     /// The class of the road.
@@ -73,6 +75,7 @@ impl NearRoad {
         let is_span = structure != Structure::Ground;
         Self {
             ordinal,
+            railway: None,
             way_id: road.way_id,
             class: road.class,
             structure,
@@ -84,6 +87,17 @@ impl NearRoad {
             nodes,
             same_places: [&road.same_places[..], &road.met.same_places].concat(),
         }
+    }
+
+    /// Creates the record of a whole way that is not a road of the package.
+    #[must_use]
+    pub fn of_carrier(
+        road: &Road,
+        railway: Option<Railway>,
+        segments_um: &[u64],
+        is_reached: bool,
+    ) -> Self {
+        Self { railway, ..Self::from_road(road, None, segments_um, is_reached) }
     }
 
     /// Returns the record as a road. Its ends are preserved, whether they are nodes or not.

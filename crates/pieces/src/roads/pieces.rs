@@ -2,11 +2,17 @@
 
 use std::sync::Arc;
 
-use corniche_geom::{LatticePoint, Polyline, TileId};
+use corniche_geom::{LatticePoint, TileId};
 use corniche_roads::{FunctionalRoadClass, RoadAttributes};
 use corniche_spec::artifacts::{ArtifactError, ArtifactKind, damaged};
 use corniche_store::Artifacts;
+use corniche_tileset::LayerSlot;
 use corniche_varints::{push_signed, push_varint, take_array, take_number, take_signed};
+
+use crate::layers::{
+    segment_run::{SegmentRun, take_count},
+    span_pieces::{self, SpanLineOf},
+};
 
 /// The part of one road that a tile needs.
 ///
@@ -35,40 +41,42 @@ pub struct RoadPiece {
     pub(crate) runs: Vec<SegmentRun>,
 }
 
-/// Consecutive segments of the level's line that may touch the tile or its margin.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct SegmentRun {
-    pub line: Polyline,
-    /// The true length of each segment in micrometres: on the finest level, and for bridges and
-    /// tunnels on all levels if spans are requested. Simplified segments have the length of the
-    /// source line. Otherwise empty.
-    pub(crate) segments_um: Vec<u64>,
-    /// Distance of its start along the road, micrometres; 0 if lengths are not known.
-    pub(crate) from_um: u64,
-    /// The nodes at which other roads may join: the indices of their points, and their ids. Only on
-    /// the finest level and if spans are requested.
-    pub nodes: Vec<(u32, i64)>,
-}
-
-/// The pieces of all roads of a tile with the roads' ordinals, ascending.
+/// The pieces of all roads of a tile with the roads' ordinals, ascending, and the pieces of layers'
+/// lines that may be off its ground.
 ///
-/// Encoding: for each road, the number of ordinals skipped since the road before, and then its
+/// Encoding of roads: for each road, the number of ordinals skipped since the road before, and then its
 /// piece.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TilePieces {
     /// Pieces with the numbers of their roads.
     pub roads: Vec<(u32, RoadPiece)>,
+    /// Pieces of lines of layers on bridges and in tunnels.
+    pub(crate) of_layers: Vec<(SpanLineOf, SegmentRun)>,
 }
 
 impl TilePieces {
-    /// Reads the pieces of a tile; none if the store has no artifact.
+    /// Reads the pieces of a tile in a build with this number of layers; none if the store has no
+    /// artifact.
     ///
     /// # Errors
-    /// When the artifact cannot be read or is invalid.
-    pub fn load(store: &dyn Artifacts, id: TileId) -> Result<Self, ArtifactError> {
+    /// When an artifact cannot be read or is invalid.
+    pub fn load(store: &dyn Artifacts, id: TileId, layers: usize) -> Result<Self, ArtifactError> {
         let key = ArtifactKind::RoadPieces.of_tile(id);
-        let Some(bytes) = store.get(key)? else { return Ok(Self::default()) };
-        Self::from_bytes(&bytes).ok_or_else(|| damaged(key, &"it does not hold pieces of roads"))
+        let mut pieces = match store.get(key)? {
+            Some(bytes) => Self::from_bytes(&bytes)
+                .ok_or_else(|| damaged(key, &"it does not hold pieces of roads"))?,
+            None => Self::default(),
+        };
+        for slot in (0..layers).map_while(LayerSlot::new) {
+            pieces.of_layers.extend(span_pieces::get(store, slot, id)?);
+        }
+        Ok(pieces)
+    }
+
+    /// Whether the tile needs nothing of any road and of any line.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.roads.is_empty() && self.of_layers.is_empty()
     }
 
     /// Decodes the bytes of a `TilePiecesWriter`; `None` for other bytes.
@@ -82,7 +90,7 @@ impl TilePieces {
             roads.push((ordinal, RoadPiece::take(&mut rest)?));
             next = ordinal.checked_add(1)?;
         }
-        Some(Self { roads })
+        Some(Self { roads, of_layers: Vec::new() })
     }
 }
 
@@ -123,23 +131,7 @@ impl RoadPiece {
         push_varint(&mut bytes, runs.len() as u64);
         let mut before = LatticePoint::new(0, 0);
         for run in runs {
-            let points = run.line.points();
-            push_varint(&mut bytes, points.len() as u64);
-            for &point in points {
-                push_signed(&mut bytes, point.u.wrapping_sub(before.u));
-                push_signed(&mut bytes, point.v.wrapping_sub(before.v));
-                before = point;
-            }
-            push_varint(&mut bytes, run.segments_um.len() as u64);
-            for &segment_um in &run.segments_um {
-                push_varint(&mut bytes, segment_um);
-            }
-            push_varint(&mut bytes, run.from_um);
-            push_varint(&mut bytes, run.nodes.len() as u64);
-            for &(index, node_id) in &run.nodes {
-                push_varint(&mut bytes, index.into());
-                push_signed(&mut bytes, node_id);
-            }
+            run.push_to(&mut bytes, &mut before);
         }
         bytes
     }
@@ -157,41 +149,6 @@ impl RoadPiece {
         }
         let class = FunctionalRoadClass::new(class)?;
         Some(Self { way_id, class, attributes, source_points, simplified_points, runs })
-    }
-}
-
-/// Reads the number of items that follow, each at least a byte long: never more than there are
-/// bytes.
-fn take_count(rest: &mut &[u8]) -> Option<usize> {
-    take_number(rest).filter(|count| *count <= rest.len())
-}
-
-impl SegmentRun {
-    fn take(rest: &mut &[u8], before: &mut LatticePoint) -> Option<Self> {
-        let count = take_count(rest)?;
-        let mut points = Vec::with_capacity(count);
-        for _ in 0..count {
-            let [u, v] = [take_signed(rest)?, take_signed(rest)?];
-            *before = LatticePoint::new(before.u.wrapping_add(u), before.v.wrapping_add(v));
-            points.push(*before);
-        }
-        let lengths = take_count(rest)?;
-        let mut segments_um = Vec::with_capacity(lengths);
-        for _ in 0..lengths {
-            segments_um.push(take_number(rest)?);
-        }
-        let from_um = take_number(rest)?;
-        let of_nodes = take_count(rest)?;
-        let mut nodes = Vec::with_capacity(of_nodes);
-        for _ in 0..of_nodes {
-            nodes.push((take_number(rest)?, take_signed(rest)?));
-        }
-        let mut lengths_um = segments_um.iter();
-        lengths_um.try_fold(from_um, |sum: u64, length_um| sum.checked_add(*length_um))?;
-        let line = Polyline::new(points).ok()?;
-        // Equal neighbours would have been merged, so a run has none.
-        let is_whole = line.points().len() == count && (lengths == 0 || lengths == count - 1);
-        is_whole.then_some(Self { line, segments_um, from_um, nodes })
     }
 }
 

@@ -13,10 +13,10 @@ use corniche_spec::{
 
 use super::{
     near_spans::NearRoad,
-    pieces::{RoadPiece, SegmentRun},
+    pieces::RoadPiece,
     totals::RoadLength,
 };
-use crate::layers::fixed_points::road_of_part;
+use crate::layers::{fixed_points::road_of_part, segment_run::SegmentRun};
 
 /// The settings and data that splitting needs.
 pub(crate) struct RoadSplitting<'a> {

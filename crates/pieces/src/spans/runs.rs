@@ -11,8 +11,11 @@ use corniche_geom::LatticePoint;
 use corniche_spans::{Decks, SpanKind};
 use corniche_tileset::{SpanHeight, SpanPoint, SpanRun};
 
-use super::span_network::{OnRoad, SpanNetwork};
-use crate::roads::ground_lines::{SpanGroundLine, SpanGroundPoint, between};
+use super::span_network::{OnCarriedLine, SpanNetwork};
+use crate::{
+    layers::span_pieces::SpanLineOf,
+    roads::ground_lines::{SpanGroundLine, SpanGroundPoint, between},
+};
 
 /// Distance from the ground, metres, below which a deck is on the ground.
 const ON_GROUND_M: f64 = 1e-6;
@@ -93,8 +96,8 @@ pub(crate) fn runs_of(
             is_same
         });
         if points.len() >= 2 {
-            let (way_id, class, structure) = (line.way_id, line.class, line.structure());
-            runs.push(SpanRun { way_id, class, structure, points });
+            let SpanLineOf { way_id, owner, .. } = line.of;
+            runs.push(SpanRun { way_id, owner, structure: line.structure(), points });
         }
         first += off;
     }
@@ -104,9 +107,9 @@ pub(crate) fn runs_of(
 /// All places of a line at which its deck or the ground bends, or at which they meet.
 fn stations(line: &SpanGroundLine, (network, decks): (&SpanNetwork, &Decks)) -> Vec<Station> {
     let station = |vertex: SpanGroundPoint, is_bend: bool| {
-        let on_road = OnRoad { ordinal: line.ordinal, along_um: vertex.along_um };
+        let at = OnCarriedLine { line: line.of.line, along_um: vertex.along_um };
         let deck_m =
-            network.on_chain(on_road).and_then(|(chain, along_m)| decks.height_m(chain, along_m));
+            network.on_chain(at).and_then(|(chain, along_m)| decks.height_m(chain, along_m));
         Station {
             at: vertex.at,
             along_um: vertex.along_um,
@@ -140,7 +143,7 @@ fn stations(line: &SpanGroundLine, (network, decks): (&SpanNetwork, &Decks)) -> 
         if let Some(from) = before {
             let ends_um = [from.along_um, vertex.along_um];
             let mut last_at = from.at;
-            for along_um in network.bends(decks, line.ordinal, ends_um) {
+            for along_um in network.bends(decks, line.of.line, ends_um) {
                 let share = (along_um - ends_um[0]) as f64 / (ends_um[1] - ends_um[0]) as f64;
                 let at = between([from.at, vertex.at], share);
                 if at == last_at || at == vertex.at {

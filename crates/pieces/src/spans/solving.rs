@@ -184,9 +184,9 @@ impl SpanSolving<'_> {
         let mut lines = ground_lines::get(self.of.store, id)?;
         lines.sort_by_key(|line| {
             (
-                line.class,
-                line.way_id,
-                line.ordinal,
+                line.of.owner,
+                line.of.way_id,
+                line.of.line,
                 line.vertices.first().map(|first| first.along_um),
             )
         });
@@ -200,7 +200,7 @@ impl SpanSolving<'_> {
                     SpanKind::Bridge => SpanReason::DeckInGround,
                     SpanKind::Tunnel => SpanReason::TunnelAboveGround,
                 };
-                within.push(SpanProblem::of_way(reason, line.way_id));
+                within.push(SpanProblem::of_way(reason, line.of.way_id));
             }
         }
         let too_long = left_out(&mut runs);

@@ -1,4 +1,4 @@
-//! The network of bridges, tunnels and the roads near them, with the position of each stretch along
+//! The network of bridges, tunnels and the roads and railways near them, with the position of each stretch along
 //! its road.
 
 use std::{collections::HashMap, sync::Arc};
@@ -12,7 +12,7 @@ use corniche_store::Artifacts;
 
 use crate::{
     ExtractError,
-    layers::fixed_points::road_of_part,
+    layers::{fixed_points::road_of_part, span_pieces::CarriedLine},
     roads::near_spans::{self, NearRoad},
 };
 
@@ -32,25 +32,25 @@ pub struct SpanInputs<'a> {
     pub whole: LatticeBounds,
 }
 
-/// A position along a road.
+/// A position along a road or a line of a layer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct OnRoad {
-    /// The number of the road.
-    pub ordinal: u32,
-    /// Distance along the road, micrometres.
+pub(crate) struct OnCarriedLine {
+    /// The line.
+    pub(crate) line: CarriedLine,
+    /// Distance along the line, micrometres.
     pub(crate) along_um: u64,
 }
 
 /// Bridges and tunnels of a build, before their heights are known.
 pub struct SpanNetwork {
-    /// Stretches in the order of their roads, and along each road.
+    /// Stretches in the order of their lines, and along each line.
     stretches: Vec<Stretch>,
     /// Bridges and tunnels with their junctions.
     pub spans: Arc<Spans>,
     pub(crate) crossings: Crossings,
-    /// For each span, whether it has a road of the package that reaches the requested region: only
-    /// these spans are counted.
-    pub(crate) is_counted: Vec<bool>,
+    /// For each span, whether it has a road of the package, and whether it has a railway, that
+    /// reaches the requested region: only these spans are counted.
+    pub(crate) is_counted: Vec<[bool; 2]>,
     /// The ways of the counted spans, ascending.
     pub(crate) counted_ways: Vec<i64>,
     /// For each span, the segments of its roads.
@@ -71,7 +71,7 @@ pub struct SpanPlace {
 
 /// A stretch of a bridge or a tunnel between two nodes at which roads may join.
 struct Stretch {
-    ordinal: u32,
+    line: CarriedLine,
     from_um: u64,
     to_um: u64,
     chain: ChainNumber,
@@ -108,7 +108,7 @@ impl SpanNetwork {
         let crossings = crossings(&network, &chains, &distance_m);
         let lengths = chains.lengths(&network, &distance_m);
         let mut stretches = Vec::new();
-        let mut is_counted = vec![false; spans.len()];
+        let mut is_counted = vec![[false; 2]; spans.len()];
         let mut is_reached = vec![false; spans.len()];
         let mut segments = vec![Vec::new(); spans.len()];
         let mut ways: Vec<(usize, i64)> = Vec::new();
@@ -125,19 +125,25 @@ impl SpanNetwork {
                 }
                 if let Some(span) = spans.span_of(chain) {
                     is_reached[span] |= place.is_reached;
-                    is_counted[span] |= place.is_reached && place.ordinal.is_some();
+                    let [by_roads, by_railways] = &mut is_counted[span];
+                    *by_roads |= place.is_reached && place.ordinal.is_some();
+                    *by_railways |= place.is_reached && way.railway.is_some();
                     ways.push((span, way.way_id));
                     let points: Vec<LatticePoint> = network.points_of_link(link).collect();
                     segments[span].extend(points.array_windows());
-                    if let Some(ordinal) = place.ordinal {
-                        stretches.push(Stretch { ordinal, from_um, to_um, chain, on_chain_m });
-                    }
+                    let road = place.ordinal.map(CarriedLine::Road);
+                    let way = CarriedLine::Way(way.way_id, place.start);
+                    stretches.extend(
+                        road.into_iter()
+                            .chain([way])
+                            .map(|line| Stretch { line, from_um, to_um, chain, on_chain_m }),
+                    );
                 }
                 from_um = to_um;
             }
         }
-        stretches.sort_by_key(|own| (own.ordinal, own.from_um));
-        let counted = ways.into_iter().filter(|(span, _)| is_counted[*span]);
+        stretches.sort_by_key(|own| (own.line, own.from_um));
+        let counted = ways.into_iter().filter(|(span, _)| is_counted[*span] != [false; 2]);
         let mut counted_ways: Vec<i64> = counted.map(|(_, way_id)| way_id).collect();
         counted_ways.sort_unstable();
         counted_ways.dedup();
@@ -183,31 +189,31 @@ impl SpanNetwork {
     }
 
     /// The chain at a position on a bridge or a tunnel, and the distance along the chain, metres.
-    pub(crate) fn on_chain(&self, at: OnRoad) -> Option<(ChainNumber, f64)> {
+    pub(crate) fn on_chain(&self, at: OnCarriedLine) -> Option<(ChainNumber, f64)> {
         let after = self
             .stretches
-            .partition_point(|own| (own.ordinal, own.from_um) <= (at.ordinal, at.along_um));
+            .partition_point(|own| (own.line, own.from_um) <= (at.line, at.along_um));
         let own = self.stretches.get(after.checked_sub(1)?)?;
-        if own.ordinal != at.ordinal || own.to_um < at.along_um {
+        if own.line != at.line || own.to_um < at.along_um {
             return None;
         }
         Some((own.chain, own.along_m(at.along_um)))
     }
 
-    /// The bends of a deck between two positions of a road, as distances along it, ascending; both
+    /// The bends of a deck between two positions of a line, as distances along it, ascending; both
     /// positions are on one stretch.
     pub(crate) fn bends(
         &self,
         decks: &Decks,
-        ordinal: u32,
+        line: CarriedLine,
         [from_um, to_um]: [u64; 2],
     ) -> Vec<u64> {
         let mut bends = Vec::new();
         let first =
-            self.stretches.partition_point(|own| (own.ordinal, own.to_um) <= (ordinal, from_um));
+            self.stretches.partition_point(|own| (own.line, own.to_um) <= (line, from_um));
         let own = self.stretches[first..]
             .iter()
-            .take_while(|own| own.ordinal == ordinal && own.from_um < to_um);
+            .take_while(|own| own.line == line && own.from_um < to_um);
         for stretch in own {
             let ends = [from_um, to_um].map(|um| um.clamp(stretch.from_um, stretch.to_um));
             let mut on_chain_m = ends.map(|um| stretch.along_m(um));
@@ -247,6 +253,8 @@ impl Stretch {
 /// A road of the network: a piece of a road of the extract.
 struct PlacedRoad {
     ordinal: Option<u32>,
+    /// The first point of the whole road.
+    start: LatticePoint,
     is_reached: bool,
     from_um: u64,
     segments_um: Vec<u64>,
@@ -290,22 +298,24 @@ fn degrees_of(
     Ok(all().map(|point| point.in_steps().map(f64::to_bits)).zip(positions).collect())
 }
 
-/// The roads as a network, with the origin of each road. Roads end at the edge of the data.
+/// The roads and railways as a network, with the origin of each of them. They end at the edge of the
+/// data.
 fn network(inputs: &SpanInputs<'_>) -> Result<(Network, Vec<PlacedRoad>), ExtractError> {
     let lengths = TrueLengths::projected(*inputs.frame, inputs.projection);
     let mut builder = NetworkBuilder::default();
     let mut places = Vec::new();
     near_spans::for_each(inputs.store, |near| {
         let Some(road) = near.road() else { return };
-        let NearRoad { ordinal, is_reached, segments_um, .. } = near;
+        let NearRoad { ordinal, railway, is_reached, segments_um, .. } = near;
+        let start = road.line.points()[0];
         if road.line.points().iter().all(|point| inputs.whole.contains(*point)) {
-            builder.push(&road);
-            places.push(PlacedRoad { ordinal, is_reached, from_um: 0, segments_um });
+            builder.push_way(&road, railway);
+            places.push(PlacedRoad { ordinal, start, is_reached, from_um: 0, segments_um });
             return;
         }
         for part in corniche_drape::clip_parts(&road.line, &inputs.whole, OwnedBorders::ALL) {
             let mut placed =
-                PlacedRoad { ordinal, is_reached, from_um: 0, segments_um: Vec::new() };
+                PlacedRoad { ordinal, start, is_reached, from_um: 0, segments_um: Vec::new() };
             // The position along the way is not needed for roads on the ground.
             if let ([_, ..], Some(&first)) = (&segments_um[..], part.segments.first()) {
                 let pieces: Vec<[u64; 2]> =
@@ -315,7 +325,7 @@ fn network(inputs: &SpanInputs<'_>) -> Result<(Network, Vec<PlacedRoad>), Extrac
                 placed.segments_um = pieces.iter().map(|[from, to]| to - from).collect();
             }
             places.push(placed);
-            builder.push(&road_of_part(&road, part));
+            builder.push_way(&road_of_part(&road, part), railway);
         }
     })?;
     Ok((builder.finish(), places))

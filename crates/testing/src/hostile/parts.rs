@@ -65,8 +65,16 @@ impl PackageParts {
 pub(crate) fn metadata() -> serde_json::Value {
     let (kind, name) = ("osm".to_owned(), "pass.osm.pbf".to_owned());
     let extract = InputRecord { kind, name, bytes: 1, sha256: "0".repeat(64) };
-    let (bridges, tunnels, crossings, reasons) = (0, 0, 0, vec![]);
-    let spans = SpanCounts { bridges, tunnels, bridges_um: 0, tunnels_um: 0, crossings, reasons };
+    let spans = SpanCounts {
+        bridges: 0,
+        tunnels: 0,
+        bridges_um: 0,
+        tunnels_um: 0,
+        railway_bridges: 0,
+        railway_tunnels: 0,
+        crossings: Vec::new(),
+        reasons: Vec::new(),
+    };
     let sound = package::manifest();
     package::metadata(&Manifest {
         crs_wkt: "EPSG:32632".to_owned(),

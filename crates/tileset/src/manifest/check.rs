@@ -189,7 +189,10 @@ impl Manifest {
         }
         let levels = levels.iter().map(SectionLevelRecord::figures);
         check_sum("spans.counts", [counts.bridges_um, counts.tunnels_um])?;
-        let kept = (0..).zip([counts.bridges, counts.tunnels, counts.crossings]);
+        let spans = [counts.bridges, counts.tunnels, counts.railway_bridges, counts.railway_tunnels];
+        let crossings = counts.crossings.iter().map(|(.., count)| *count);
+        check_sum("spans.counts.crossings", crossings.clone())?;
+        let kept = (0..).zip(spans.into_iter().chain([counts.crossings()]));
         self.check_layer("spans", levels, kept, |_| true, &counts.reasons)
     }
 

@@ -268,9 +268,9 @@ impl From<OuterGround> for (i64, i64, f64) {
 /// Numbers of bridges and tunnels, each with all ways that it connects.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SpanCounts {
-    /// Number of bridges.
+    /// Number of bridges of roads.
     pub bridges: u64,
-    /// Number of tunnels.
+    /// Number of tunnels of roads.
     pub tunnels: u64,
     /// The true length in plan of the ways of bridges, as far as they are kept at the finest level,
     /// in micrometres: a part of `roads_kept_um`.
@@ -280,8 +280,23 @@ pub struct SpanCounts {
     /// in micrometres: a part of `roads_kept_um`.
     #[serde(default)]
     pub tunnels_um: u64,
-    /// Number of crossings with other roads and with each other.
-    pub crossings: u64,
+    /// Number of bridges of railways alone.
+    #[serde(default)]
+    pub railway_bridges: u64,
+    /// Number of tunnels of railways alone.
+    #[serde(default)]
+    pub railway_tunnels: u64,
+    /// Numbers of crossings with other roads and railways and with each other: what is above, what
+    /// is below ("roads" or "railways"), and the number.
+    pub crossings: Vec<(String, String, u64)>,
     /// Reasons to inspect a span, each with its number of occurrences.
     pub reasons: Vec<(String, u64)>,
+}
+
+impl SpanCounts {
+    /// Returns the number of all crossings.
+    #[must_use]
+    pub fn crossings(&self) -> u64 {
+        self.crossings.iter().fold(0, |sum, (.., count)| sum.saturating_add(*count))
+    }
 }

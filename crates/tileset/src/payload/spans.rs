@@ -8,7 +8,7 @@ mod span_run;
 use std::iter;
 
 use corniche_geom::{GridFrame, LatticePoint, TileId};
-use corniche_roads::{FunctionalRoadClass, Structure};
+use corniche_roads::Structure;
 use corniche_varints::zigzag;
 
 use crate::limits::{MAX_LINES, MAX_SPAN_POINTS};
@@ -22,14 +22,14 @@ use crate::payload::terrain;
 
 #[cfg(feature = "write")]
 pub use encode::encode_spans;
-pub use span_run::{SpanHeight, SpanPoint, SpanRun};
+pub use span_run::{RunOwner, SpanHeight, SpanPoint, SpanRun};
 
 /// The flag bits of a run's first number.
 const FIRST_ON_GROUND: u64 = 1;
 const LAST_ON_GROUND: u64 = 2;
 const TUNNEL: u64 = 4;
-/// The class begins at this bit.
-const CLASS_BIT: u32 = 3;
+/// The number of the owner begins at this bit.
+const OWNER_BIT: u32 = 3;
 
 /// Bridges need ground beneath them, and tunnels need ground above them.
 pub(crate) const WITHOUT_GROUND: Damage = Damage::Invalid("spans in a tile without ground");
@@ -91,7 +91,7 @@ pub(crate) fn decode(
         points = rest;
         let run = SpanRun {
             way_id,
-            class: class(code)?,
+            owner: owner(code)?,
             structure: if code & TUNNEL == 0 { Structure::Bridge } else { Structure::Tunnel },
             points: heights.lift(of_run, code)?,
         };
@@ -103,10 +103,9 @@ pub(crate) fn decode(
     Ok(runs)
 }
 
-/// Returns the class in a run's first number.
-fn class(code: u64) -> Result<FunctionalRoadClass, Damage> {
-    let class = u8::try_from(code >> CLASS_BIT).ok().and_then(FunctionalRoadClass::new);
-    class.ok_or(Damage::Invalid("a class of runs"))
+/// Returns the owner in a run's first number.
+fn owner(code: u64) -> Result<RunOwner, Damage> {
+    RunOwner::from_number(code >> OWNER_BIT).ok_or(Damage::Invalid("the owner of a run"))
 }
 
 /// Decodes the heights of points off the ground, each as the difference from the height before, and

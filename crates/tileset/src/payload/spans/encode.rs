@@ -5,7 +5,7 @@ use corniche_roads::Structure;
 use corniche_varints::{push_varint, to_zigzag};
 
 use super::{
-    CLASS_BIT, FIRST_ON_GROUND, LAST_ON_GROUND, SpanHeight, SpanPoint, SpanRun, TUNNEL, decode,
+    FIRST_ON_GROUND, LAST_ON_GROUND, OWNER_BIT, SpanHeight, SpanPoint, SpanRun, TUNNEL, decode,
     is_height,
 };
 use crate::limits::{MAX_LINES, MAX_SPAN_POINTS, MAX_TRIANGLES};
@@ -41,7 +41,7 @@ fn corner(tile: TileId, frame: &GridFrame) -> LatticePoint {
 
 /// Encodes the spans of a tile; `None` if there are none. Equal runs result in equal bytes.
 ///
-/// Runs are sorted by class, then way id, then by their order along the way.
+/// Runs are sorted by owner, then way id, then by their order along the way.
 ///
 /// # Errors
 /// When runs are not sorted, a run is neither a bridge nor a tunnel, has too few points, two equal
@@ -93,7 +93,7 @@ fn section_bytes(runs: &[SpanRun], corner: LatticePoint) -> Result<Vec<u8>, &'st
 /// Returns a run's first number.
 fn code(run: &SpanRun) -> u64 {
     let flag = |is_set, bit| if is_set { bit } else { 0 };
-    u64::from(run.class.number()) << CLASS_BIT
+    run.owner.number() << OWNER_BIT
         | flag(run.structure == Structure::Tunnel, TUNNEL)
         | flag(run.points.last().is_some_and(is_on_ground), LAST_ON_GROUND)
         | flag(run.points.first().is_some_and(is_on_ground), FIRST_ON_GROUND)
@@ -119,7 +119,7 @@ fn check(runs: &[SpanRun]) -> Result<(), &'static str> {
         return Err("a point on the ground between the ends of its run");
     }
     if !runs.is_sorted_by_key(SpanRun::key) {
-        return Err("runs that are not sorted by class and way id");
+        return Err("runs that are not sorted by owner and way id");
     }
     let is_known = |point: &SpanPoint| match point.height {
         SpanHeight::Steps(steps) => is_height(steps),

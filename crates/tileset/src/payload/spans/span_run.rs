@@ -4,14 +4,56 @@ use corniche_geom::LatticePoint;
 use corniche_roads::{FunctionalRoadClass, Structure};
 use corniche_tin::Surface;
 
+use crate::payload::layers::LayerSlot;
+
+/// What a run is a part of.
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize,
+)]
+pub enum RunOwner {
+    /// A road of this class.
+    Road(FunctionalRoadClass),
+    /// A line of a layer.
+    Layer(LayerSlot),
+}
+
+impl RunOwner {
+    /// Returns the number in a section: the class of a road; layers follow.
+    #[must_use]
+    pub fn number(self) -> u64 {
+        match self {
+            Self::Road(class) => class.number().into(),
+            Self::Layer(slot) => (FunctionalRoadClass::COUNT + slot.index()) as u64,
+        }
+    }
+
+    /// Returns the owner with a number; `None` if there is none.
+    pub(crate) fn from_number(number: u64) -> Option<Self> {
+        let number = usize::try_from(number).ok()?;
+        match number.checked_sub(FunctionalRoadClass::COUNT) {
+            None => FunctionalRoadClass::new(number as u8).map(Self::Road),
+            Some(index) => LayerSlot::new(index).map(Self::Layer),
+        }
+    }
+
+    /// Returns the class of a road; `None` for a line of a layer.
+    #[must_use]
+    pub fn road_class(self) -> Option<FunctionalRoadClass> {
+        match self {
+            Self::Road(class) => Some(class),
+            Self::Layer(_) => None,
+        }
+    }
+}
+
 /// A stretch of a way of a bridge that is above the ground of its tile, or of a tunnel that is
 /// below the ground. Its heights are estimates.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SpanRun {
     /// OSM's id of the way.
     pub way_id: i64,
-    /// Functional road class.
-    pub class: FunctionalRoadClass,
+    /// The road or the layer.
+    pub owner: RunOwner,
     /// The structure: a bridge or a tunnel, never the ground.
     pub structure: Structure,
     /// At least two points; neighbouring points differ in plan. Only the first and the last may be
@@ -21,8 +63,8 @@ pub struct SpanRun {
 
 impl SpanRun {
     /// The sort key of the runs of a tile; runs of one way are in their order along the way.
-    pub(crate) fn key(&self) -> (FunctionalRoadClass, i64) {
-        (self.class, self.way_id)
+    pub(crate) fn key(&self) -> (RunOwner, i64) {
+        (self.owner, self.way_id)
     }
 }
 
