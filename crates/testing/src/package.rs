@@ -10,7 +10,7 @@ use corniche_geom::{
 use corniche_roads::{FunctionalRoadClass, RoadAttributes, Structure};
 use corniche_tileset::{
     FORMAT_VERSION, GeoRoad, GrowthRow, LevelRecord, Manifest, ManifestCounts, PackageWriter,
-    PayloadBuilder, PayloadContext, RoadRecord, SampleErrorRecord, ScaleRecord, Section,
+    PayloadBuilder, PayloadContext, RoadRecord, RunOwner, SampleErrorRecord, ScaleRecord, Section,
     SettingsRecord, SpanHeight, SpanPoint, SpanRun, SvRoad, TilePayload, TileTerrain,
     VerticalRecord, encode, encode_spans, pmtiles_order,
 };
@@ -199,8 +199,8 @@ pub fn spans(id: TileId) -> Vec<SpanRun> {
     let low =
         |at| SpanPoint { at, height: SpanHeight::Ground { triangle: surface.locate(at).unwrap() } };
     let high = |at, steps| SpanPoint { at, height: SpanHeight::Steps(steps) };
-    let class = FunctionalRoadClass::new(3).unwrap();
-    let run = |way_id, structure, points| SpanRun { way_id, class, structure, points };
+    let owner = RunOwner::Road(FunctionalRoadClass::new(3).unwrap());
+    let run = |way_id, structure, points| SpanRun { way_id, owner, structure, points };
     vec![
         run(
             7,

@@ -57,7 +57,7 @@ pub use package::{PackageWriter, WriteError};
 pub use payload::{
     AreaPolygon, Damage, DecodeError, EncodeError, GeoRoad, LayerCoding, LayerObject, LayerShape,
     PHOTO_BORDER, PayloadSizes, Photo, Relief, RoadRecord, SectionSize, Sections, SpanHeight,
-    SpanPoint, SpanRun, SvRoad, TerrainSummary, TilePayload, TileTerrain, decode, decode_layer,
+    RunOwner, SpanPoint, SpanRun, SvRoad, TerrainSummary, TilePayload, TileTerrain, decode, decode_layer,
     decode_photo, decode_spans, payload_sizes, terrain_summary,
 };
 #[cfg(feature = "write")]

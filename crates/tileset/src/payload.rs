@@ -59,7 +59,7 @@ pub use section_kind::Sections;
 pub use sizes::{PayloadSizes, payload_sizes};
 #[cfg(feature = "write")]
 pub use spans::encode_spans;
-pub use spans::{SpanHeight, SpanPoint, SpanRun, decode_spans};
+pub use spans::{RunOwner, SpanHeight, SpanPoint, SpanRun, decode_spans};
 pub use summary::terrain_summary;
 pub use tile_payload::{GeoRoad, RoadRecord, SvRoad, TerrainSummary, TilePayload, TileTerrain};
 

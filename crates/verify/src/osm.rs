@@ -193,6 +193,7 @@ fn lay(
     run: &VerifyRun<'_>,
     findings: &mut Findings,
 ) -> Result<BTreeMap<(u8, u8), ClassSums>, VerifyError> {
+    let layers = run.package.manifest().layers.len();
     let [first, last] = laying.data;
     let mut ids = run.package.tile_ids()?;
     for y in first.y()..=last.y() {
@@ -208,7 +209,7 @@ fn lay(
         run.threads,
         &ids,
         || Ok::<_, VerifyError>(()),
-        |(), &id| Ok(look_at(laying, id, &TilePieces::load(store, id)?)),
+        |(), &id| Ok(look_at(laying, id, &TilePieces::load(store, id, layers)?)),
         |id, found: OsmTileFindings| {
             findings.merge(found.findings);
             fates.add(&found.fates)?;

@@ -6,12 +6,15 @@ use std::{
     sync::{Mutex, PoisonError},
 };
 
-use corniche_geom::{LatticeBounds, LatticePoint, StepBudget, TileId};
+use corniche_drape::OwnedBorders;
+use corniche_geom::{LatticeBounds, LatticePoint, Polyline, StepBudget, TileId};
+use corniche_layers::LinePlacement;
 use corniche_pieces::layers::tile_section::SectionOfTile;
-use corniche_roads::{FunctionalRoadClass, Structure};
+use corniche_roads::Structure;
 use corniche_spans::{SpanKind, SpanReason};
 use corniche_tileset::{
-    Manifest, Sections, SpanHeight, SpanPoint, SpanRun, TilePayload, payload_sizes,
+    LayerObject, LayerShape, Manifest, RunOwner, Sections, SpanHeight, SpanPoint, SpanRun,
+    TilePayload, payload_sizes,
 };
 use corniche_tin::Surface;
 use corniche_work::{Stage, locked};
@@ -39,8 +42,9 @@ const NEAR_STEPS: f64 = 2.0;
 /// The limit of work for a tile, in steps: comparing a vertex with a segment of a run is one step.
 const MOST_STEPS: u64 = 1 << 28;
 
-/// An end of a way's line on the border of a tile: its level, way and position.
-type BorderEnd = (u8, i64, LatticePoint);
+/// An end of a way's line on the border of a tile: its level, the road's class or the layer, the way
+/// and the position.
+type BorderEnd = (u8, RunOwner, i64, LatticePoint);
 /// The ends at each position: the height of a run in steps, or `None` on the ground.
 type EndsByPlace = BTreeMap<BorderEnd, Vec<(TileId, Option<i64>)>>;
 
@@ -63,7 +67,7 @@ pub(crate) fn verify(run: &VerifyRun<'_>, findings: &mut Findings) -> Result<(),
     let crossings = crossings.into_inner().unwrap_or_else(PoisonError::into_inner);
     look_at_reversed(told(manifest, SpanReason::OrderReversed), crossings, findings);
     let ends = ends.into_inner().unwrap_or_else(PoisonError::into_inner);
-    for ((level, way_id, at), of_tiles) in ends {
+    for ((level, _, way_id, at), of_tiles) in ends {
         let [(first, height), others @ ..] = &of_tiles[..] else { continue };
         let agree = others.iter().all(|(_, other)| other == height);
         findings.look(CheckId::SpanSeams, agree, || {
@@ -131,7 +135,8 @@ fn look_at(
     let quantum_m = manifest.vertical.quantum_m;
     let Ok(runs) = manifest.decode_spans(&bytes, id) else { return found };
     let of_structures = structures(&bytes, id, manifest);
-    if runs.is_empty() && of_structures.is_empty() {
+    let of_layers = layer_lines(&bytes, id, manifest);
+    if runs.is_empty() && of_structures.is_empty() && of_layers.is_empty() {
         return found;
     }
     let whole = tiles.tile_at(id);
@@ -147,15 +152,18 @@ fn look_at(
     };
     let Some(terrain) = &payload.terrain else { return found };
     let surface = manifest.surface(id, &terrain.tin);
-    let lines = lines_of_structures(payload, &of_structures, &surface);
     let bounds = manifest.frame.tile_lattice_bounds(id);
+    let work = StepBudget::new(MOST_STEPS);
+    let lines = lines_of_structures((payload, &of_structures), of_layers, (&surface, &bounds), &work);
     put_ends((id, &bounds), &lines, &runs, ends);
     let place = TilePlace::from_frame(&manifest.frame, id);
     let ground = tiles.ground(id);
-    let work = StepBudget::new(MOST_STEPS);
     let tile = Tile { id, place, ground: &ground, surface: &surface, quantum_m, work: &work };
     for run in &runs {
-        let own = lines.get(&(run.way_id, run.class, run.structure == Structure::Tunnel));
+        let is_of_structure = |structure: &(Structure, i8)| structure.0 == run.structure;
+        let is_of_layer = run.owner.layer().is_some();
+        let is_own = is_of_layer || of_structures.get(&run.way_id).is_some_and(is_of_structure);
+        let own = lines.get(&(run.owner, run.way_id)).filter(|_| is_own);
         tile.look_at_ends(run, own, &mut found.findings);
         tile.look_at_side(run, own, &mut found.findings);
         if let Err(error) = work.check() {
@@ -216,8 +224,8 @@ impl WayLines {
     }
 }
 
-/// Lines by way, class and whether it is a tunnel.
-type Lines = BTreeMap<(i64, FunctionalRoadClass, bool), WayLines>;
+/// Lines by class or layer and way.
+type Lines = BTreeMap<(RunOwner, i64), WayLines>;
 
 /// The ways of a tile that are bridges or tunnels, with their layers.
 fn structures(bytes: &[u8], id: TileId, manifest: &Manifest) -> BTreeMap<i64, (Structure, i8)> {
@@ -229,17 +237,49 @@ fn structures(bytes: &[u8], id: TileId, manifest: &Manifest) -> BTreeMap<i64, (S
     ways.filter(|(_, (structure, _))| *structure != Structure::Ground).collect()
 }
 
+/// The lines of a tile that may be on bridges and in tunnels and are in layers; damage of their
+/// sections is reported by the check of tiles.
+fn layer_lines(bytes: &[u8], id: TileId, manifest: &Manifest) -> Vec<(RunOwner, i64, Polyline)> {
+    let with_spans =
+        manifest.layers().filter(|(_, record)| record.table.placement == LinePlacement::Spans);
+    with_spans
+        .flat_map(|(slot, _)| {
+            let objects = manifest.decode_layer(bytes, id, slot).unwrap_or_default();
+            objects.into_iter().map(move |object| (slot, object))
+        })
+        .filter_map(|(slot, LayerObject { object, shape, .. })| match shape {
+            LayerShape::Line(points) => {
+                Some((RunOwner::Layer(slot), object.id(), Polyline::new(points).ok()?))
+            }
+            _ => None,
+        })
+        .collect()
+}
+
+/// The lines of bridges and tunnels on the ground of a tile, and all lines of layers that may be
+/// some: a layer does not say which are.
 fn lines_of_structures(
-    payload: &TilePayload,
-    structures: &BTreeMap<i64, (Structure, i8)>,
-    surface: &Surface,
+    (payload, structures): (&TilePayload, &BTreeMap<i64, (Structure, i8)>),
+    of_layers: Vec<(RunOwner, i64, Polyline)>,
+    (surface, bounds): (&Surface, &LatticeBounds),
+    work: &StepBudget,
 ) -> Lines {
     let mut lines: BTreeMap<_, Vec<Vec<[f64; 3]>>> = BTreeMap::new();
-    for road in &payload.roads_geo {
-        let Some((structure, _)) = structures.get(&road.way_id) else { continue };
+    let on_structures = payload.roads_geo.iter().filter(|road| structures.contains_key(&road.way_id));
+    for road in on_structures {
         if let Ok(vertices) = corniche_drape::positions(&road.line, surface) {
-            let key = (road.way_id, road.class, *structure == Structure::Tunnel);
+            let key = (RunOwner::Road(road.class), road.way_id);
             lines.entry(key).or_default().push(vertices);
+        }
+    }
+    for (owner, way_id, line) in of_layers {
+        for part in corniche_drape::clip(&line, bounds, OwnedBorders::ALL) {
+            // Runs over more ground than any writer can have created are reported below.
+            let Ok(draped) = corniche_drape::drape_within(&part, surface, work) else { continue };
+            let on_ground = draped.lines.iter();
+            let on_ground =
+                on_ground.filter_map(|line| corniche_drape::positions(line, surface).ok());
+            lines.entry((owner, way_id)).or_default().extend(on_ground);
         }
     }
     lines.into_iter().map(|(key, own)| (key, WayLines::new(&own))).collect()
@@ -253,18 +293,18 @@ fn put_ends(
     all: &Mutex<EndsByPlace>,
 ) {
     let mut own: BTreeMap<BorderEnd, Option<i64>> = BTreeMap::new();
-    for (&(way_id, ..), own_lines) in lines {
+    for (&(owner, way_id), own_lines) in lines {
         for &[u, v] in own_lines.ends.iter().flatten() {
             let at = LatticePoint::new(u.round() as i64, v.round() as i64);
             if bounds.has_on_border(at) {
-                own.entry((id.z(), way_id, at)).or_default();
+                own.entry((id.z(), owner, way_id, at)).or_default();
             }
         }
     }
     for run in runs {
         for end in [run.points.first(), run.points.last()].into_iter().flatten() {
             if let (SpanHeight::Steps(steps), true) = (end.height, bounds.has_on_border(end.at)) {
-                own.insert((id.z(), run.way_id, end.at), Some(steps));
+                own.insert((id.z(), run.owner, run.way_id, end.at), Some(steps));
             }
         }
     }
@@ -320,7 +360,8 @@ impl Tile<'_> {
         is_there && around.into_iter().flatten().any(|at| self.surface.triangle_holds(triangle, at))
     }
 
-    /// The pieces of runs with known heights.
+    /// The pieces of runs of roads with known heights. Lines of layers do not say which OSM layer they
+    /// are on.
     fn pieces(&self, runs: &[SpanRun], ways: &BTreeMap<i64, (Structure, i8)>) -> Vec<RunPiece> {
         let of_run = |run: &SpanRun| {
             let kind = SpanKind::from_structure(run.structure);
@@ -335,7 +376,8 @@ impl Tile<'_> {
             });
             pairs.flatten().collect::<Vec<_>>()
         };
-        runs.iter().flat_map(of_run).collect()
+        let of_roads = runs.iter().filter(|run| run.owner.layer().is_none());
+        of_roads.flat_map(of_run).collect()
     }
 
     fn height_m(&self, point: &SpanPoint) -> Option<f64> {

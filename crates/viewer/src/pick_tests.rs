@@ -99,6 +99,7 @@ fn a_bridge_is_met_before_the_ground_beneath() {
     let deck = DeckLine {
         way_id: 1,
         kind: crate::tiles::RoadKind::plain(corniche_roads::FunctionalRoadClass::new(3).unwrap()),
+        is_road: true,
         points_m: vec![[-40.0, 0.0, 520.0], [40.0, 0.0, 520.0]],
         on_ground: [false; 2],
     };

@@ -1,6 +1,7 @@
 //! Bridges and tunnels in the JSON documents of several commands.
 
-use corniche_tileset::{SectionLevelRecord, SpanHeight, SpanPoint, SpanRun, SpansRecord};
+use corniche_roads::FunctionalRoadClass;
+use corniche_tileset::{LayerSlot, SectionLevelRecord, SpanHeight, SpanPoint, SpanRun, SpansRecord};
 use serde::Serialize;
 
 #[cfg(test)]
@@ -83,8 +84,10 @@ impl From<SpansRecord> for SpansDocument {
 pub(crate) struct TileSpanDocument {
     /// OSM id of the way.
     way_id: i64,
-    /// Functional road class (FRC).
-    frc: u8,
+    /// Functional road class (FRC); null for a line of a layer.
+    frc: Option<u8>,
+    /// Index of the layer in the manifest; null for a road.
+    layer: Option<usize>,
     /// "bridge" or "tunnel".
     structure: &'static str,
     /// Position (x, y and height in metres) of each point. Heights are estimates.
@@ -101,7 +104,8 @@ impl TileSpanDocument {
         };
         Self {
             way_id: run.way_id,
-            frc: run.class.number(),
+            frc: run.owner.road_class().map(FunctionalRoadClass::number),
+            layer: run.owner.layer().map(LayerSlot::index),
             structure: run.structure.name(),
             line,
             on_ground: [run.points.first(), run.points.last()].map(is_on_ground),

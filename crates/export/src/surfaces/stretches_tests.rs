@@ -2,7 +2,7 @@
 
 use corniche_geom::{LatticePoint, StepBudget};
 use corniche_roads::{FunctionalRoadClass, RoadAttributes, Structure};
-use corniche_tileset::{SpanHeight, SpanPoint, SpanRun};
+use corniche_tileset::{RunOwner, SpanHeight, SpanPoint, SpanRun};
 
 use super::{PlanStretch, slab_thickness_m, stretches};
 use crate::piece::{PieceHeights, PieceKey, Vertex, WayPiece};
@@ -45,7 +45,7 @@ fn at(east_m: i64, deck_m: Option<f64>) -> SpanPoint {
 }
 
 fn run(points: Vec<SpanPoint>) -> SpanRun {
-    SpanRun { way_id: 7, class: class(), structure: Structure::Bridge, points }
+    SpanRun { way_id: 7, owner: RunOwner::Road(class()), structure: Structure::Bridge, points }
 }
 
 fn divided(line: Vec<Vertex>, runs: &[SpanRun]) -> Vec<PlanStretch> {

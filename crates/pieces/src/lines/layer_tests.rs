@@ -42,7 +42,7 @@ fn splitting<'a>(levels: &'a Levels, lengths: &'a TrueLengths<'a>) -> LineSplitt
     let data = DataTiles::between(levels.frame(), south_west, north_east);
     let plan =
         PlanSplitting { table: &TABLE, frame: levels.frame(), data, clip: None, polygon: None };
-    LineSplitting { plan, levels, lengths }
+    LineSplitting { plan, levels, lengths, spans: true }
 }
 
 /// A wave across the whole root, in metres; its middle is a junction.
@@ -53,11 +53,17 @@ fn wave(levels: &Levels) -> LayerLine {
     };
     let points: Vec<LatticePoint> = (0..=500).map(point).collect();
     let (class, fixed) = (class("admin-2"), vec![0, 250, 500]);
-    LayerLine { way_id: 7, class, values: vec![None; 3], points, fixed }
+    let structure = Structure::Ground;
+    LayerLine { way_id: 7, structure, class, values: vec![None; 3], points, fixed }
 }
 
 fn part(line: &LayerLine) -> LinePart<'_> {
-    (Cow::Borrowed(&line.points), Cow::Borrowed(&line.fixed))
+    let LayerLine { points, fixed, .. } = line;
+    LinePart {
+        points: Cow::Borrowed(points),
+        fixed: Cow::Borrowed(fixed),
+        along_um: Vec::new(),
+    }
 }
 
 #[test]
@@ -66,11 +72,11 @@ fn every_tile_has_the_segments_that_come_near_it() {
     let lengths = lengths(&levels);
     let (splitting, boundary) = (splitting(&levels, &lengths), wave(&levels));
     let mut by_tile: BTreeMap<TileId, Vec<Vec<LatticePoint>>> = BTreeMap::new();
-    for (id, points) in splitting.split(&boundary) {
-        by_tile.entry(id).or_default().push(points);
+    for (id, part) in splitting.split(&boundary) {
+        by_tile.entry(id).or_default().push(part.points);
     }
     for level in levels.numbers() {
-        let line = splitting.line(&part(&boundary), level);
+        let line = splitting.line(&part(&boundary), level).points;
         let step = splitting.plan.step(level);
         assert!(line.iter().all(|point| point.u % step == 0 && point.v % step == 0));
         let margin = levels.margin_steps(level);
@@ -98,7 +104,7 @@ fn junctions_stay_and_coarse_levels_have_fewer_points() {
     let lengths = lengths(&levels);
     let (splitting, boundary) = (splitting(&levels, &lengths), wave(&levels));
     let lines: Vec<Vec<LatticePoint>> =
-        levels.numbers().map(|level| splitting.line(&part(&boundary), level)).collect();
+        levels.numbers().map(|level| splitting.line(&part(&boundary), level).points).collect();
     let counts: Vec<usize> = lines.iter().map(Vec::len).collect();
     assert!(counts[0] < counts[1] && counts[1] < counts[2], "{counts:?}");
     for (level, line) in (0..).zip(&lines) {
@@ -145,11 +151,50 @@ fn boundaries_end_at_the_outline_of_a_polygon() {
     splitting.plan.polygon = Some(&region);
     let parts = splitting.split(&boundary);
     for level in 0..=2 {
-        let points = parts.iter().filter(|(id, _)| id.z() == level).flat_map(|(_, points)| points);
+        let points = parts.iter().filter(|(id, _)| id.z() == level).flat_map(|(_, part)| &part.points);
         let own = LatticeBounds::around(&points.copied().collect::<Vec<_>>()).unwrap();
         let step = splitting.plan.step(level);
         assert!(
             (own.min.u - bounds.min.u).abs() <= step && (own.max.u - bounds.max.u).abs() <= step
         );
+    }
+}
+
+/// A piece of a bridge has the positions of its points along the whole line, on all levels, with and
+/// without a polygon that cuts the line.
+#[test]
+fn pieces_of_bridges_know_where_they_are_along_their_way() {
+    let levels = levels();
+    let lengths = lengths(&levels);
+    let mut splitting = splitting(&levels, &lengths);
+    let bridge = LayerLine { structure: Structure::Bridge, ..wave(&levels) };
+    let line = Polyline::new(bridge.points.clone()).unwrap();
+    let all_um: u64 = lengths.projected_segments_um(&line).iter().sum();
+    let corner = |[u, v]: [i64; 2]| LatticePoint::new(u, v);
+    let [low, high] = [bridge.points[100], bridge.points[400]].map(|at| at.u);
+    let far = 1 << 40;
+    let square = [[low, -far], [high, -far], [high, far], [low, far]];
+    let region = LatticeRegion::new(&[vec![square.map(corner).to_vec()]]).unwrap();
+    for polygon in [None, Some(&region)] {
+        splitting.plan.polygon = polygon;
+        for (id, LevelPart { points, along_um }) in splitting.split(&bridge) {
+            assert_eq!(points.len(), along_um.len());
+            assert!(along_um.is_sorted() && along_um.last().is_some_and(|last| *last <= all_um));
+            // A point of the wave is as far along as its east coordinate says, up to the steps
+            // of the level.
+            let step = splitting.plan.step(id.z());
+            for (point, along_um) in points.iter().zip(&along_um) {
+                let before = bridge.points.partition_point(|other| other.u + step < point.u);
+                let after = bridge.points.partition_point(|other| other.u <= point.u + step);
+                let along = |count: usize| -> u64 {
+                    let before = &bridge.points[..count.clamp(2, bridge.points.len())];
+                    let before = Polyline::new(before.to_vec()).unwrap();
+                    lengths.projected_segments_um(&before).iter().sum()
+                };
+                let least_um = if before < 2 { 0 } else { along(before) };
+                let most_um = along(after + 1);
+                assert!((least_um..=most_um).contains(along_um), "{id}: {point:?} at {along_um}");
+            }
+        }
     }
 }

@@ -2,6 +2,7 @@
 
 use std::num::{NonZeroU8, NonZeroU32};
 
+use corniche_geom::Polyline;
 use corniche_roads::{Form, Oneway, Structure};
 use proptest::{collection::vec, prelude::*};
 
@@ -65,7 +66,8 @@ proptest! {
     /// Decoded pieces equal the encoded ones.
     #[test]
     fn pieces_come_back(pieces in vec(pieces(), 0..5), ordinals in proptest::collection::btree_set(0..u32::MAX, 5)) {
-        let tile = TilePieces { roads: ordinals.into_iter().zip(pieces).collect() };
+        let roads = ordinals.into_iter().zip(pieces).collect();
+        let tile = TilePieces { roads, ..TilePieces::default() };
         prop_assert_eq!(TilePieces::from_bytes(&written(&tile)), Some(tile));
     }
 
@@ -73,7 +75,7 @@ proptest! {
     /// decodes to nothing.
     #[test]
     fn damage_is_no_panic(piece in pieces(), at in any::<prop::sample::Index>(), bit in 0..8_u8) {
-        let tile = TilePieces { roads: vec![(7, piece)] };
+        let tile = TilePieces { roads: vec![(7, piece)], ..TilePieces::default() };
         let mut bytes = written(&tile);
         let at = at.index(bytes.len());
         if at > 0 {

@@ -5,11 +5,13 @@ use std::sync::Arc;
 use corniche_geom::{GridFrame, NodeIndex, Polyline, TileId};
 use corniche_roads::{FunctionalRoadClass, MetNodes, Road, RoadAttributes, Structure};
 use corniche_store::MemoryStore;
+use corniche_tileset::RunOwner;
 use corniche_testing::{FlatProjection, MemoryScratch};
 use corniche_work::Silent;
 
 use super::*;
 use crate::{
+    layers::span_pieces::CarriedLine,
     roads::near_spans::{NearRoad, NearRoadsWriter},
     spans::span_network::SpanInputs,
 };
@@ -83,10 +85,12 @@ impl World {
             is_source: metres == 0 || metres == 400,
         };
         let line = SpanGroundLine {
-            ordinal: 1,
-            way_id: 2,
-            class: FunctionalRoadClass::new(3).unwrap(),
-            is_tunnel: false,
+            of: SpanLineOf {
+                line: CarriedLine::Road(1),
+                way_id: 2,
+                owner: RunOwner::Road(FunctionalRoadClass::new(3).unwrap()),
+                is_tunnel: false,
+            },
             vertices: ground.iter().map(vertex).collect(),
         };
         runs_of(&line, (&self.network, &self.decks), QUANTUM_M)

@@ -3,7 +3,7 @@
 
 use corniche_geom::LatticePoint;
 use corniche_roads::{FunctionalRoadClass, Structure};
-use corniche_tileset::{SpanHeight, SpanPoint};
+use corniche_tileset::{RunOwner, SpanHeight, SpanPoint};
 
 use super::*;
 
@@ -12,7 +12,7 @@ fn run(way_id: i64, points: usize) -> SpanRun {
         |k: usize| SpanPoint { at: LatticePoint::new(k as i64, 0), height: SpanHeight::Steps(1) };
     SpanRun {
         way_id,
-        class: FunctionalRoadClass::new(3).unwrap(),
+        owner: RunOwner::Road(FunctionalRoadClass::new(3).unwrap()),
         structure: Structure::Bridge,
         points: (0..points).map(point).collect(),
     }

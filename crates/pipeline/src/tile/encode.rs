@@ -45,8 +45,8 @@ pub(crate) fn with_ground(
 ) -> Result<TileRecord, BuildError> {
     let levels = context.levels;
     let frame = context.frame();
-    let pieces = TilePieces::load(context.store, id)?;
-    let mut laid = if pieces.roads.is_empty() {
+    let pieces = TilePieces::load(context.store, id, context.settings.layers.len())?;
+    let mut laid = if pieces.is_empty() {
         DrapedRoads::default()
     } else {
         let surface = Surface::of_tile(&meshed.tin, frame, id, levels.quantum_m());
@@ -115,7 +115,8 @@ pub(crate) fn without_ground(
     id: TileId,
     owned: impl FnOnce() -> Result<OwnedBorders, BuildError>,
 ) -> Result<TileRecord, BuildError> {
-    let pieces = TilePieces::load(context.store, id)?;
+    // Lines of layers need ground.
+    let pieces = TilePieces::load(context.store, id, 0)?;
     let mut record = TileRecord::default();
     if pieces.roads.is_empty() {
         return Ok(record);

@@ -9,7 +9,7 @@ use corniche_pipeline::build;
 use corniche_roads::{FunctionalRoadClass, Structure};
 use corniche_testing::package::with_section;
 use corniche_tileset::{
-    FilePackage, Manifest, PackageWriter, RoadRecord, Sections, SpanCounts, SpanHeight, SpanRun,
+    FilePackage, Manifest, PackageWriter, RoadRecord, RunOwner, Sections, SpanCounts, SpanHeight, SpanRun,
     decode_spans, encode_spans, payload_sizes,
 };
 use corniche_tin::{Placement, Surface};
@@ -201,7 +201,7 @@ fn the_class_of_a_run_is_that_of_its_way() {
     let [tile, _] = apart.bridge();
     apart.change(tile, |runs| {
         let last = runs.last_mut().unwrap();
-        last.class = FunctionalRoadClass::new(8).unwrap();
+        last.owner = RunOwner::Road(FunctionalRoadClass::new(8).unwrap());
     });
     assert_eq!(apart.broken(), (vec![CheckId::SpanEnds], true));
 }

@@ -1,14 +1,15 @@
 //! Decodes payloads of the tiles of a package, with the frame and the height step of its manifest.
 
 use corniche_geom::TileId;
+use corniche_layers::LinePlacement;
 use corniche_tin::{Surface, Tin};
 
 use crate::layer_slot::LayerSlot;
 use crate::manifest::Manifest;
-use crate::payload::damage::DecodeError;
+use crate::payload::damage::{Damage, DecodeError};
 use crate::payload::decode::decode;
 use crate::payload::layers::{LayerCoding, LayerObject, decode_layer};
-use crate::payload::section_kind::Sections;
+use crate::payload::section_kind::{SectionKind, Sections};
 use crate::payload::spans::{SpanRun, decode_spans};
 use crate::payload::tile_payload::TilePayload;
 
@@ -57,9 +58,18 @@ impl Manifest {
     /// Reads the spans of a tile's payload, as [`decode_spans`] does.
     ///
     /// # Errors
-    /// Same as [`decode_spans`].
+    /// Same as [`decode_spans`], and when a run belongs to a layer that the package does not have,
+    /// or whose lines are on the ground everywhere.
     pub fn decode_spans(&self, bytes: &[u8], id: TileId) -> Result<Vec<SpanRun>, DecodeError> {
-        decode_spans(bytes, id, &self.frame, self.vertical.quantum_m)
+        let runs = decode_spans(bytes, id, &self.frame, self.vertical.quantum_m)?;
+        let has_spans = |slot: LayerSlot| {
+            let record = self.layers.get(slot.index());
+            record.is_some_and(|record| record.table.placement == LinePlacement::Spans)
+        };
+        if runs.iter().all(|run| run.owner.layer().is_none_or(has_spans)) {
+            return Ok(runs);
+        }
+        Err(SectionKind::Spans.damaged(id)(Damage::Invalid("the layer of a run")))
     }
 
     /// Returns the ground of a tile with this TIN, on the package's lattice.

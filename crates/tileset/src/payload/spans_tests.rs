@@ -32,7 +32,7 @@ fn low(u: i64, v: i64, triangle: u32) -> SpanPoint {
 }
 
 fn run(class: u8, way_id: i64, structure: Structure, points: Vec<SpanPoint>) -> SpanRun {
-    SpanRun { way_id, class: FunctionalRoadClass::new(class).unwrap(), structure, points }
+    SpanRun { way_id, owner: RunOwner::from_number(class.into()).unwrap(), structure, points }
 }
 
 /// The example in the specification.

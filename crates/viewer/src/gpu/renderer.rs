@@ -108,6 +108,7 @@ impl Renderer {
         let points = points_of(tiles, view);
         let of_decks = LevelConnectors::of_decks;
         let decks = DrawnRoads::new(frame, tiles, |tile| tile.decks(method), of_decks);
+        let lines = line_layers_of(tiles);
         if let Some(timer) = &mut timer {
             timer.begin([!areas.is_empty() || !drawn_areas.is_empty(), !decks.is_empty()]);
         }
@@ -126,10 +127,20 @@ impl Renderer {
             mark(encoder, 2);
             self.pass_labels(frame, encoder, &roads, &targets.roads);
             mark(encoder, 3);
-            self.pass_decks(frame, encoder, &decks);
+            self.pass_decks(frame, encoder, &decks, tiles);
             mark(encoder, 4);
-            self.pass_composite(frame, encoder, &decks);
-            for layer in line_layers_of(tiles) {
+            self.pass_composite(frame, encoder);
+            let (of_package, of_user): (Vec<LineLayer>, Vec<LineLayer>) =
+                lines.iter().partition(|layer| matches!(layer, LineLayer::Package(_)));
+            // Decks hide the lines on the ground below them.
+            for &layer in &of_package {
+                self.pass_lines(frame, encoder, tiles, layer);
+            }
+            for &layer in &of_package {
+                self.pass_line_decks(frame, encoder, tiles, layer);
+            }
+            self.pass_deck_colors(frame, encoder, &decks);
+            for layer in of_user {
                 self.pass_lines(frame, encoder, tiles, layer);
             }
             self.pass_points(frame, encoder, &points, targets.picture.drawn());
@@ -267,25 +278,68 @@ impl Renderer {
         tiles: &[DrawTile<'_>],
         layer: LineLayer,
     ) {
-        let (styles, style) = (layer.lines_of(frame.view), layer.style_of(frame.view));
+        let styles = layer.lines_of(frame.view);
+        self.with_lines(frame, layer, |frame| {
+            let lines = DrawnRoads::of_layer(frame, tiles, layer);
+            if lines.is_empty() {
+                return;
+            }
+            let DrawnFrame { gpu, view, targets, .. } = frame;
+            let labels = targets.lines(gpu);
+            self.pass_labels(frame, encoder, &lines, labels);
+            self.blocks.find(frame, encoder, labels);
+            let into = [targets.picture.drawn()];
+            let mut pass = begin(encoder, "lines", &into, None, LoadOp::Load);
+            let new = || line_layers::line_colors(&gpu.device, &self.layouts);
+            let colors = self.line_colors.get_or_init(new);
+            let rows = line_layers::rows(view, styles);
+            colors.bind(frame, &mut pass, &rows, labels, &[&targets.roads.labels]);
+            colors.draw(&mut pass, targets);
+        });
+    }
+
+    /// Calls `draw` with a frame in which the lines of a layer take the place of roads.
+    fn with_lines<T>(
+        &self,
+        frame: DrawnFrame<'_>,
+        layer: LineLayer,
+        draw: impl FnOnce(DrawnFrame<'_>) -> T,
+    ) -> T {
+        let style = layer.style_of(frame.view);
         let frame = DrawnFrame { view: &view_of_lines(frame.view, &style), ..frame };
-        let lines = DrawnRoads::of_layer(frame, tiles, layer);
-        if lines.is_empty() {
+        let shared = SharedBindings::with_view(frame, &self.layouts);
+        draw(DrawnFrame { shared: &shared, ..frame })
+    }
+
+    /// Draws the decks of bridges among the lines of a layer over the samples of the picture.
+    /// Without such decks there is no pass.
+    fn pass_line_decks(
+        &self,
+        frame: DrawnFrame<'_>,
+        encoder: &mut CommandEncoder,
+        tiles: &[DrawTile<'_>],
+        layer: LineLayer,
+    ) {
+        if !has_line_decks(tiles, layer) {
             return;
         }
-        let frame =
-            DrawnFrame { shared: &SharedBindings::with_view(frame, &self.layouts), ..frame };
-        let DrawnFrame { gpu, view, targets, .. } = frame;
-        let labels = targets.lines(gpu);
-        self.pass_labels(frame, encoder, &lines, labels);
-        self.blocks.find(frame, encoder, labels);
-        let into = [targets.picture.drawn()];
-        let mut pass = begin(encoder, "lines", &into, None, LoadOp::Load);
-        let new = || line_layers::line_colors(&gpu.device, &self.layouts);
-        let colors = self.line_colors.get_or_init(new);
-        let rows = line_layers::rows(view, styles);
-        colors.bind(frame, &mut pass, &rows, labels, &[&targets.roads.labels]);
-        colors.draw(&mut pass, targets);
+        self.with_lines(frame, layer, |frame| {
+            let decks = DrawnRoads::line_decks(frame, tiles, layer);
+            if decks.is_empty() {
+                return;
+            }
+            let DrawnFrame { gpu, targets, .. } = frame;
+            let labels = [targets.line_decks(gpu), targets.lines(gpu)];
+            // Other lines may have been drawn since.
+            let on_ground = DrawnRoads::of_layer(frame, tiles, layer);
+            self.pass_labels(frame, encoder, &on_ground, labels[1]);
+            let drawable = self.decks(gpu);
+            drawable.draw_labels(frame, encoder, decks.parts(), labels);
+            self.blocks.find(frame, encoder, labels[0]);
+            let into = [targets.picture.drawn()];
+            let mut pass = begin(encoder, "line decks", &into, None, LoadOp::Load);
+            drawable.draw_colors(frame, &mut pass, labels, true);
+        });
     }
 
     /// Draws points over the samples of a picture. Without points there is no points pass.
@@ -305,37 +359,63 @@ impl Renderer {
 
     /// Draws the samples of the picture. Drawables over the map, such as labels, are drawn after
     /// the composite: in this pass, or in one with `LoadOp::Load` if they need a depth test.
-    fn pass_composite(
-        &self,
-        frame: DrawnFrame<'_>,
-        encoder: &mut CommandEncoder,
-        decks: &DrawnRoads<'_>,
-    ) {
-        let DrawnFrame { gpu, view, targets, .. } = frame;
+    fn pass_composite(&self, frame: DrawnFrame<'_>, encoder: &mut CommandEncoder) {
+        let DrawnFrame { view, targets, .. } = frame;
         if view.roads.method != RoadMethod::None {
             self.blocks.find(frame, encoder, &targets.roads);
-        }
-        if !decks.is_empty() {
-            self.blocks.find(frame, encoder, &targets.decks(gpu).labels);
         }
         let into = [targets.picture.drawn()];
         let mut pass = begin(encoder, "composite", &into, None, LoadOp::Clear(()));
         self.composite.draw(frame, &mut pass);
-        if !decks.is_empty() {
-            self.decks(gpu).draw_colors(frame, &mut pass);
-        }
     }
 
-    /// Draws depths and labels of decks of bridges. Without decks there are no deck passes.
+    /// Draws the depths of all decks of bridges, and the labels of those of roads. Without decks
+    /// there are no deck passes.
     fn pass_decks(
         &self,
         frame: DrawnFrame<'_>,
         encoder: &mut CommandEncoder,
         decks: &DrawnRoads<'_>,
+        tiles: &[DrawTile<'_>],
     ) {
+        let DrawnFrame { gpu, targets, .. } = frame;
+        let mut others = LoadOp::Clear(());
         if !decks.is_empty() {
-            self.decks(frame.gpu).draw(frame, encoder, &decks.of_tiles, &decks.connectors);
+            self.decks(gpu).draw_depths(frame, encoder, decks.parts(), others);
+            others = LoadOp::Load;
         }
+        for layer in line_layers_of(tiles) {
+            if !has_line_decks(tiles, layer) {
+                continue;
+            }
+            self.with_lines(frame, layer, |frame| {
+                let decks = DrawnRoads::line_decks(frame, tiles, layer);
+                self.decks(gpu).draw_depths(frame, encoder, decks.parts(), others);
+            });
+            others = LoadOp::Load;
+        }
+        if !decks.is_empty() {
+            let labels = [&targets.decks(gpu).labels, &targets.roads];
+            self.decks(gpu).draw_labels(frame, encoder, decks.parts(), labels);
+        }
+    }
+
+    /// Draws the colours of the decks of roads over the samples of the picture.
+    fn pass_deck_colors(
+        &self,
+        frame: DrawnFrame<'_>,
+        encoder: &mut CommandEncoder,
+        decks: &DrawnRoads<'_>,
+    ) {
+        if decks.is_empty() {
+            return;
+        }
+        let DrawnFrame { gpu, targets, .. } = frame;
+        let labels = [&targets.decks(gpu).labels, &targets.roads];
+        self.blocks.find(frame, encoder, labels[0]);
+        let into = [targets.picture.drawn()];
+        let mut pass = begin(encoder, "deck colors", &into, None, LoadOp::Load);
+        self.decks(gpu).draw_colors(frame, &mut pass, labels, false);
     }
 }
 
@@ -372,10 +452,25 @@ impl<'a> DrawnRoads<'a> {
         Self::new(frame, tiles, of, LevelConnectors::on_ground)
     }
 
+    /// The decks of bridges among the lines of a layer; the view must be the view of the layer.
+    fn line_decks(frame: DrawnFrame<'_>, tiles: &[DrawTile<'a>], layer: LineLayer) -> Self {
+        Self::new(frame, tiles, |tile| tile.line_decks(layer), LevelConnectors::of_decks)
+    }
+
+    /// The roads of tiles and the connectors between them.
+    fn parts(&self) -> (&[RoadsOfTile<'a>], &LevelConnectors) {
+        (&self.of_tiles, &self.connectors)
+    }
+
     /// Whether none of the roads is shown.
     fn is_empty(&self) -> bool {
         self.of_tiles.iter().all(|of| of.roads.runs(of.classes).is_empty())
     }
+}
+
+/// Whether a tile has bridges among the lines of a layer.
+fn has_line_decks(tiles: &[DrawTile<'_>], layer: LineLayer) -> bool {
+    tiles.iter().any(|tile| tile.buffers.line_decks(layer).is_some_and(|decks| !decks.is_empty()))
 }
 
 /// The tiles that have areas of a drawn class; `of` returns the areas of a tile.

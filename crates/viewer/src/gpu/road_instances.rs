@@ -172,6 +172,11 @@ impl RoadBuffers {
         (list.all().len() * size_of::<T::Words>()) as u64
     }
 
+    /// Whether there are no pieces.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.instances.is_none()
+    }
+
     /// Size of the buffer, bytes.
     pub(crate) fn gpu_bytes(&self) -> u64 {
         self.instances.as_ref().map_or(0, Buffer::size)

@@ -63,6 +63,8 @@ pub(crate) struct SeenSamples<'a> {
 pub(crate) struct LineSamples {
     /// Labels as defined in `gpu::labels`.
     pub(crate) labels: Vec<u8>,
+    /// Labels of decks, which hide what is below them.
+    pub(crate) decks: Option<Vec<u8>>,
     /// The class of each style, and whether it is apart from roads.
     pub(crate) classes: [Option<(LayerClass, bool)>; FunctionalRoadClass::COUNT],
 }
@@ -91,9 +93,12 @@ impl SeenSamples<'_> {
                 *layers.entry(class).or_default() += 1;
             }
             for lines in self.lines {
-                let style = lines.labels.get(place).and_then(|label| class_of(*label));
+                let on_deck = lines.decks.as_ref().and_then(|all| all.get(place));
+                let on_deck = on_deck.filter(|label| **label >= DECK_ROADS);
+                let label = on_deck.or(lines.labels.get(place).filter(|_| deck == 0));
+                let style = label.and_then(|label| class_of(*label));
                 let of_style = style.and_then(|style| *lines.classes.get(usize::from(style))?);
-                let Some((class, is_apart)) = of_style.filter(|_| deck == 0) else { continue };
+                let Some((class, is_apart)) = of_style else { continue };
                 if !(is_apart && self.is_beside_road(place)) {
                     *layers.entry(class).or_default() += 1;
                 }

@@ -30,7 +30,7 @@ fn samples(roads: &[u8]) -> SeenSamples<'_> {
 /// Samples of lines whose classes have the numbers of their styles.
 fn lines(labels: &[u8], is_apart: bool) -> [LineSamples; 1] {
     let classes = std::array::from_fn(|style| Some((class(2, style as u8), is_apart)));
-    [LineSamples { labels: labels.to_vec(), classes }]
+    [LineSamples { labels: labels.to_vec(), decks: None, classes }]
 }
 
 fn classes_of(seen: &ShownTiles) -> Vec<u8> {

@@ -33,8 +33,10 @@ impl LabelTargets {
 
 /// The depths and labels of decks of bridges.
 pub(crate) struct DeckTargets {
-    /// The depth of the nearest deck, encoded like the ground's; 0 without a deck.
+    /// The depth of the nearest deck of roads and lines, encoded like the ground's; 0 without a
+    /// deck.
     pub(crate) depth: TargetTexture,
+    /// The labels of roads.
     pub(crate) labels: LabelTargets,
 }
 
@@ -50,6 +52,8 @@ pub struct Targets {
     lines: OnceLock<LabelTargets>,
     /// Created when decks are first drawn.
     decks: OnceLock<DeckTargets>,
+    /// Created when decks of lines are first drawn.
+    line_decks: OnceLock<LabelTargets>,
     /// The picture.
     pub picture: Picture,
 }
@@ -58,8 +62,8 @@ impl Targets {
     /// Creates the targets for a picture of this size, with `samples_per_side` samples on each side
     /// of a pixel; with 1, only the pixel's centre is sampled. Besides the picture they take 17
     /// bytes per sample, one more once areas have been drawn, one more once lines that are not
-    /// roads have been drawn, five more once decks of bridges have been drawn, and one byte for
-    /// each block of 16 × 16 samples.
+    /// roads have been drawn, five more once decks of bridges have been drawn, one more once decks
+    /// of such lines have been drawn, and one byte for each block of 16 × 16 samples.
     ///
     /// # Errors
     /// When the size has a 0, when it has more samples than the adapter can draw, or when there are
@@ -76,6 +80,7 @@ impl Targets {
             stencil: OnceLock::new(),
             lines: OnceLock::new(),
             decks: OnceLock::new(),
+            line_decks: OnceLock::new(),
             picture,
         })
     }
@@ -101,6 +106,12 @@ impl Targets {
             depth: TargetTexture::new(gpu, "deck depth", DEPTH, sampled_px),
             labels: LabelTargets::new(gpu, "deck labels", sampled_px),
         })
+    }
+
+    /// The labels of decks of lines that are not roads; all layers share them.
+    pub(crate) fn line_decks(&self, gpu: &Gpu) -> &LabelTargets {
+        let sampled_px = self.picture.sampled_px();
+        self.line_decks.get_or_init(|| LabelTargets::new(gpu, "line deck labels", sampled_px))
     }
 
     /// The targets of decks; `None` if no decks have been drawn yet.

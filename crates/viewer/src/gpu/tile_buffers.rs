@@ -23,7 +23,7 @@ use crate::{
     options::{ClassSet, RoadMethod},
     scene::BorderTile,
     tiles::{
-        AreaVolumes, ClassVolumes, LineLayer, NearHeights, RoadSegments, RoadVolumes, TileGeometry,
+        AreaVolumes, ClassVolumes, DeckPieces, LineLayer, NearHeights, RoadSegments, RoadVolumes, TileGeometry,
         TileLayer, plan_around,
     },
 };
@@ -41,8 +41,6 @@ pub struct TileBuffers {
     /// User-drawn areas.
     pub(crate) drawn_areas: Option<AreaBuffers>,
     roads: LayerBuffers,
-    /// Bridges, for both methods.
-    decks: RoadBuffers,
     layers: BTreeMap<LineLayer, LayerBuffers>,
     /// `None` without points.
     pub(crate) points: Option<PointBuffers>,
@@ -53,19 +51,28 @@ pub struct TileBuffers {
     pub triangles: u64,
 }
 
-/// A layer of lines of a tile on the GPU, for both methods.
+/// The roads of a tile, or its lines that are drawn at once, on the GPU, for both methods.
 struct LayerBuffers {
     segments: RoadBuffers,
     volumes: RoadBuffers,
+    /// Bridges, for both methods.
+    decks: RoadBuffers,
 }
 
 impl LayerBuffers {
-    fn new(gpu: &Gpu, segments: &RoadSegments, volumes: &RoadVolumes) -> Self {
-        Self { segments: RoadBuffers::new(gpu, segments), volumes: RoadBuffers::new(gpu, volumes) }
+    fn new(
+        gpu: &Gpu,
+        (segments, volumes, decks): (&RoadSegments, &RoadVolumes, &DeckPieces),
+    ) -> Self {
+        Self {
+            segments: RoadBuffers::new(gpu, segments),
+            volumes: RoadBuffers::new(gpu, volumes),
+            decks: RoadBuffers::new(gpu, decks),
+        }
     }
 
-    fn of_lines(gpu: &Gpu, TileLayer { segments, volumes }: &TileLayer) -> Self {
-        Self::new(gpu, segments, volumes)
+    fn of_lines(gpu: &Gpu, TileLayer { segments, volumes, decks }: &TileLayer) -> Self {
+        Self::new(gpu, (segments, volumes, decks))
     }
 
     fn for_method(&self, method: RoadMethod) -> Option<&RoadBuffers> {
@@ -77,7 +84,7 @@ impl LayerBuffers {
     }
 
     fn gpu_bytes(&self) -> u64 {
-        self.segments.gpu_bytes() + self.volumes.gpu_bytes()
+        self.segments.gpu_bytes() + self.volumes.gpu_bytes() + self.decks.gpu_bytes()
     }
 }
 
@@ -104,7 +111,9 @@ pub fn tile_bytes(tile: &TileGeometry) -> u64 {
 }
 
 fn layer_bytes(lines: &TileLayer) -> u64 {
-    RoadBuffers::bytes_of(&lines.segments) + RoadBuffers::bytes_of(&lines.volumes)
+    RoadBuffers::bytes_of(&lines.segments)
+        + RoadBuffers::bytes_of(&lines.volumes)
+        + RoadBuffers::bytes_of(&lines.decks)
 }
 
 impl TileBuffers {
@@ -120,8 +129,7 @@ impl TileBuffers {
             textures: TileTextures::new(gpu, tile, above),
             areas: AreaBuffers::new(gpu, &tile.areas),
             drawn_areas: None,
-            roads: LayerBuffers::new(gpu, &tile.roads, &tile.volumes),
-            decks: RoadBuffers::new(gpu, &tile.decks),
+            roads: LayerBuffers::new(gpu, (&tile.roads, &tile.volumes, &tile.decks)),
             layers: tile
                 .lines
                 .0
@@ -153,7 +161,6 @@ impl TileBuffers {
                 .sum::<u64>()
             + self.textures.gpu_bytes()
             + self.roads.gpu_bytes()
-            + self.decks.gpu_bytes()
             + self.points.as_ref().map_or(0, PointBuffers::gpu_bytes)
             + self.layers.values().map(LayerBuffers::gpu_bytes).sum::<u64>()
     }
@@ -181,7 +188,7 @@ impl TileBuffers {
 
     /// The decks of bridges, which are part of the roads with every method.
     pub(crate) fn decks(&self, method: RoadMethod) -> Option<&RoadBuffers> {
-        self.roads(method).map(|_| &self.decks)
+        self.roads(method).map(|_| &self.roads.decks)
     }
 
     /// The lines that the tile has, from the lowest to the highest.
@@ -192,6 +199,11 @@ impl TileBuffers {
     /// The lines of a layer for a method.
     pub(crate) fn lines(&self, layer: LineLayer, method: RoadMethod) -> Option<&RoadBuffers> {
         self.layers.get(&layer)?.for_method(method)
+    }
+
+    /// The decks of bridges among the lines of a layer.
+    pub(crate) fn line_decks(&self, layer: LineLayer) -> Option<&RoadBuffers> {
+        Some(&self.layers.get(&layer)?.decks)
     }
 }
 

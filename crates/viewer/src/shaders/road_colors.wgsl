@@ -16,7 +16,8 @@ struct PictureColors {
     road_mains: array<vec4<f32>, CLASSES>,
     // Colours of roads that are too thin for an edge.
     road_thins: array<vec4<f32>, CLASSES>,
-    // Colour of the sides of bridges.
+    // rgb: colour of the sides of bridges. w: 1 if the roads are other lines, such as railways, whose
+    // widths are in pixels only.
     slab: vec4<f32>,
 }
 
@@ -80,7 +81,7 @@ fn fill_of(label: u32, sight: Sight) -> vec4<f32> {
     let fill = mix(colors.road_thins[road_class].rgb, wide, has_edge);
     // A road that is drawn too wide, because of its minimum width, is made paler.
     let least_px = 2.0 * frame.road_widths[road_class].y / frame.road_scale.w;
-    let presence = clamp(seen_px / least_px, 0.5, 1.0) * opacity_at(road_class, look, sight.distance_m)
+    let presence = select(clamp(seen_px / least_px, 0.5, 1.0), 1.0, colors.slab.w > 0.0) * opacity_at(road_class, look, sight.distance_m)
         * select(1.0, TUNNEL_FILL, is_tunnel(label));
     return vec4(mix(fill, colors.haze.rgb, 0.5 * sight.haze), presence);
 }

@@ -136,15 +136,17 @@ impl TileDecoder {
         self.read(bytes, id, manifest).map_err(LoadTileError::for_tile(id))
     }
 
-    /// The bridges and tunnels of a tile; `None` if the package has no data about them, or no roads
-    /// are read.
+    /// The bridges and tunnels of a tile; `None` if the package has no data about them, or neither
+    /// roads nor layers are read.
     pub(crate) fn spans(
         &self,
         payload: &[u8],
         id: TileId,
         manifest: &Manifest,
     ) -> Result<Option<Vec<SpanRun>>, DecodeError> {
-        if manifest.spans.is_none() || !self.sections.contains(Sections::ATTRIBUTES) {
+        let has_layers = self.layers.as_ref().is_none_or(|layers| !layers.is_empty());
+        let is_wanted = self.sections.contains(Sections::ATTRIBUTES) || has_layers;
+        if manifest.spans.is_none() || !is_wanted {
             return Ok(None);
         }
         manifest.decode_spans(payload, id).map(Some)
@@ -193,9 +195,12 @@ impl TileDecoder {
                 others.push((slot, objects));
                 continue;
             }
+            let runs = spans.unwrap_or_default().iter();
+            let runs: Vec<SpanRun> =
+                runs.filter(|run| run.owner.layer() == Some(slot)).cloned().collect();
             for (layer, of_layer) in by_group(objects, slot, &places) {
                 if let Some(surface) = surface() {
-                    lines.add(layer, surface.lay_within(&of_layer, methods, &work)?);
+                    lines.add(layer, surface.lay_within((&of_layer, &runs), methods, &work)?);
                 }
             }
         }

@@ -150,9 +150,9 @@ impl TileGeometry {
             sources.chain(segments).map(|ends_m| scale.across(ends_m)).fold(0.0, f64::max);
         let in_tile = (bounds, reference_m);
         let (laid, mut net) = TileLayer::of_lines(lines, &relief, in_tile, work);
-        let TileLayer { segments: roads, volumes } = laid;
+        let TileLayer { segments: roads, volumes, decks } = laid;
         let decks = match lines.mapping {
-            Mapping::OnTriangles => DeckPieces::of_decks(&lines.decks, &net, in_tile, scale, work),
+            Mapping::OnTriangles => decks,
             Mapping::Unmapped => {
                 let straight: Vec<DeckLine> = lines.ground.iter().map(DeckLine::unmapped).collect();
                 // The decks are these lines themselves, so their ends must not count twice.

@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 
 pub use self::{lay::TileSurface, overlays::Overlays};
 use super::{
-    InNet, OffGroundRoads, RoadSegments, RoadVolumes, TileLines, relief::RoadRelief,
+    DeckPieces, InNet, OffGroundRoads, RoadSegments, RoadVolumes, TileLines, relief::RoadRelief,
     roads::GroundNet,
 };
 use crate::{line_places::LineLayer, options::Mapping};
@@ -42,6 +42,8 @@ pub struct TileLayer {
     pub segments: RoadSegments,
     /// The pieces as volumes (SV). The line's style replaces the road class.
     pub volumes: RoadVolumes,
+    /// The pieces of decks of bridges, for both methods.
+    pub decks: DeckPieces,
 }
 
 impl TileLayer {
@@ -53,6 +55,7 @@ impl TileLayer {
         (tile, reference_m): (Bounds, [f64; 3]),
         work: &StepBudget,
     ) -> (Self, GroundNet) {
+        let TileLines { scale, .. } = lines;
         let decks = OffGroundRoads::new(lines, tile, work);
         let (on_ground, net) = InNet::all_of(&lines.ground, &decks, 0.0);
         let (in_plan, net_in_plan) = InNet::all_of(&lines.plan, &decks, lines.width_margin_m);
@@ -60,12 +63,13 @@ impl TileLayer {
         if lines.mapping == Mapping::Unmapped {
             return (Self::default(), net);
         }
-        let (wide, scale) = (relief.wide(&lines.ground), &lines.scale);
+        let wide = relief.wide(&lines.ground);
         let bed = |piece: &_| relief.bed(piece, wide.as_ref());
         let segments = RoadSegments::of_lines(&on_ground, &decks, reference_m, scale, bed);
         let near = |ends_m| relief.near(ends_m);
         let volumes = RoadVolumes::new(&in_plan, &decks, reference_m, scale, near);
-        (Self { segments, volumes }, net)
+        let decks = DeckPieces::of_decks(&lines.decks, &net, (tile, reference_m), scale, work);
+        (Self { segments, volumes, decks }, net)
     }
 
     /// Merges several layers of one tile.
@@ -73,14 +77,16 @@ impl TileLayer {
     pub fn joined<'a>(layers: impl Iterator<Item = &'a Self> + Clone) -> Self {
         Self {
             segments: RoadSegments::joined(layers.clone().map(|layer| &layer.segments)),
-            volumes: RoadVolumes::joined(layers.map(|layer| &layer.volumes)),
+            volumes: RoadVolumes::joined(layers.clone().map(|layer| &layer.volumes)),
+            decks: DeckPieces::joined(layers.map(|layer| &layer.decks)),
         }
     }
 
     /// Whether the layer has no lines.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.segments.all().is_empty() && self.volumes.all().is_empty()
+        let Self { segments, volumes, decks } = self;
+        segments.all().is_empty() && volumes.all().is_empty() && decks.all().is_empty()
     }
 }
 

@@ -20,9 +20,11 @@ mod volumes;
 pub(crate) use self::{
     cut::OffGroundRoads,
     dashes::dash_of_segment_m,
+    deck_line::deck_lines,
     decks::GroundNet,
     ends::RoadEnd,
     ground_beside::{Bed, NearHeights},
+    lines::portals,
     parts::{InNet, OPEN_M},
     segments::LinePiece,
 };

@@ -24,6 +24,7 @@ impl TileSurface {
             id: tile.id,
             surface: manifest.surface(tile.id, tin),
             frame: *frame,
+            quantum_m: manifest.vertical.quantum_m,
             reference_m: tile.reference_m,
             width_margin_m: tile.width_margin_m,
             scale: PlanScale::of_tile(coordinates, frame.tile_bounds(tile.id), *point_scale),

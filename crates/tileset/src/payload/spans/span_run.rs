@@ -4,7 +4,7 @@ use corniche_geom::LatticePoint;
 use corniche_roads::{FunctionalRoadClass, Structure};
 use corniche_tin::Surface;
 
-use crate::payload::layers::LayerSlot;
+use crate::layer_slot::LayerSlot;
 
 /// What a run is a part of.
 #[derive(
@@ -42,6 +42,15 @@ impl RunOwner {
         match self {
             Self::Road(class) => Some(class),
             Self::Layer(_) => None,
+        }
+    }
+
+    /// Returns the layer of a line; `None` for a road.
+    #[must_use]
+    pub fn layer(self) -> Option<LayerSlot> {
+        match self {
+            Self::Road(_) => None,
+            Self::Layer(slot) => Some(slot),
         }
     }
 }

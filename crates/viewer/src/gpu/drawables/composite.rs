@@ -76,7 +76,7 @@ pub(crate) fn rows(view: &FrameView<'_>) -> Vec<[f32; 4]> {
     rows.extend(roads.iter().map(|road| color(road.bands.main_color(), 1.0)));
     let thin = |road: &RoadStyle| road.thin.unwrap_or(road.bands.main_color());
     rows.extend(roads.iter().map(|road| color(thin(road), 1.0)));
-    rows.push(color(style.wall, 1.0));
+    rows.push(color(style.wall, 0.0));
     rows
 }
 

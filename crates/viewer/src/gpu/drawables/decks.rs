@@ -4,17 +4,20 @@
 use std::ops::Range;
 
 use wgpu::{
-    BindGroupLayout, BlendState, CommandEncoder, CompareFunction, Device, Face, LoadOp, RenderPass,
+    BindGroup, BindGroupLayout, BlendState, CommandEncoder, CompareFunction, Device, Face, LoadOp, RenderPass,
     VertexAttribute, vertex_attr_array,
 };
 
 use super::{
     super::{
+        Gpu,
         bindings::{UNFILTERED, layout, texture, textures},
         passes::begin,
         pipeline::{Shader, depth_test, shader},
         road_instances::{RoadInstance, RoadPipeline, RoadsOfTile, kind_bits, own_width_value},
         shared_bindings::{DrawnFrame, SharedLayouts},
+        target_texture::TargetTexture,
+        targets::LabelTargets,
     },
     composite::rows,
     label_colors::LabelColors,
@@ -49,27 +52,35 @@ impl DeckDrawable {
         Self { seen, depths, roads, sides, colors }
     }
 
-    /// Draws depths and labels of the decks of some tiles and of their connectors. Each tile is
-    /// given with its index in the list of tiles of the frame and the classes to draw.
-    pub(crate) fn draw(
+    /// Draws the depths of the decks of some tiles and of their connectors. Each tile is given with
+    /// its index in the list of tiles of the frame and the classes to draw. Depths of other decks
+    /// are cleared or kept.
+    pub(crate) fn draw_depths(
         &self,
         DrawnFrame { gpu, shared, targets, .. }: DrawnFrame<'_>,
         encoder: &mut CommandEncoder,
-        tiles: &[RoadsOfTile<'_>],
-        connectors: &LevelConnectors,
+        (tiles, connectors): (&[RoadsOfTile<'_>], &LevelConnectors),
+        others: LoadOp<()>,
     ) {
-        let decks = targets.decks(gpu);
-        let roads = &targets.roads.labels.view;
-        let bound = |second| textures(gpu, &self.seen, &[&targets.depth.view, second, roads]);
-        {
-            let ground_alone = bound(&targets.depth.view);
-            let depth = Some(&decks.depth.view);
-            let mut pass = begin(encoder, "deck depths", &[], depth, LoadOp::Clear(()));
-            self.depths.draw(&mut pass, shared, &ground_alone, tiles);
-            connectors.draw(&mut pass, shared, &ground_alone, &self.depths);
-        }
-        let both = bound(&decks.depth.view);
-        let labels = [&decks.labels.labels.view];
+        let textures = [&targets.depth, &targets.depth, &targets.roads.labels];
+        let ground_alone = self.bound(gpu, textures);
+        let depth = Some(&targets.decks(gpu).depth.view);
+        let mut pass = begin(encoder, "deck depths", &[], depth, others);
+        self.depths.draw(&mut pass, shared, &ground_alone, tiles);
+        connectors.draw(&mut pass, shared, &ground_alone, &self.depths);
+    }
+
+    /// Draws the labels of decks into `labels`, where no other deck hides them. The depths of all
+    /// decks must have been drawn. `ground` are the labels of the same roads on the ground.
+    pub(crate) fn draw_labels(
+        &self,
+        DrawnFrame { gpu, shared, targets, .. }: DrawnFrame<'_>,
+        encoder: &mut CommandEncoder,
+        (tiles, connectors): (&[RoadsOfTile<'_>], &LevelConnectors),
+        [labels, ground]: [&LabelTargets; 2],
+    ) {
+        let both = self.bound(gpu, [&targets.depth, &targets.decks(gpu).depth, &ground.labels]);
+        let labels = [&labels.labels.view];
         let mut pass = begin(encoder, "deck labels", &labels, None, LoadOp::Clear(()));
         for pipeline in [&self.roads, &self.sides] {
             pipeline.draw(&mut pass, shared, &both, tiles);
@@ -77,12 +88,26 @@ impl DeckDrawable {
         }
     }
 
-    /// Draws the colours of decks over the samples of the picture.
-    pub(crate) fn draw_colors(&self, frame: DrawnFrame<'_>, pass: &mut RenderPass<'_>) {
+    fn bound(&self, gpu: &Gpu, seen: [&TargetTexture; 3]) -> BindGroup {
+        textures(gpu, &self.seen, &seen.map(|texture| &texture.view))
+    }
+
+    /// Draws the colours of decks over the samples of the picture, from their labels and those of
+    /// the same roads on the ground. `are_lines`: the frame has lines in place of roads.
+    pub(crate) fn draw_colors(
+        &self,
+        frame: DrawnFrame<'_>,
+        pass: &mut RenderPass<'_>,
+        [labels, ground]: [&LabelTargets; 2],
+        are_lines: bool,
+    ) {
         let DrawnFrame { gpu, view, targets, .. } = frame;
-        let decks = targets.decks(gpu);
-        let more = [&decks.depth, &targets.roads.labels];
-        self.colors.bind(frame, pass, &rows(view), &decks.labels, &more);
+        let mut rows = rows(view);
+        if let Some([.., of_slabs]) = rows.last_mut() {
+            *of_slabs = if are_lines { 1.0 } else { 0.0 };
+        }
+        let more = [&targets.decks(gpu).depth, &ground.labels];
+        self.colors.bind(frame, pass, &rows, labels, &more);
         self.colors.draw(pass, targets);
     }
 }

@@ -14,7 +14,7 @@ use super::{
         formats::COLOR,
         inspection::{TileOwner, owners},
         seen::{LineSamples, SeenSamples, ShownTiles, heights_m},
-        shared_bindings::{DrawnFrame, SharedBindings},
+        shared_bindings::DrawnFrame,
         target_texture::TargetTexture,
         targets::Targets,
         tile_buffers::DrawTile,
@@ -22,8 +22,7 @@ use super::{
     DrawnRoads, Renderer, areas_of, line_layers_of, points_of,
 };
 use crate::{
-    frame_view::FrameView, layer_class::LayerClass, layer_view::view_of_lines,
-    layers::PackageLooks, tiles::LineLayer,
+    frame_view::FrameView, layer_class::LayerClass, layers::PackageLooks, tiles::LineLayer,
 };
 
 impl Renderer {
@@ -83,19 +82,26 @@ impl Renderer {
         if classes.iter().all(Option::is_none) {
             return Ok(None);
         }
-        let style = layer.style_of(frame.view);
-        let frame = DrawnFrame { view: &view_of_lines(frame.view, &style), ..frame };
-        let lines = DrawnRoads::of_layer(frame, tiles, layer);
-        if lines.is_empty() {
-            return Ok(None);
-        }
-        let frame =
-            DrawnFrame { shared: &SharedBindings::with_view(frame, &self.layouts), ..frame };
-        let labels = frame.targets.lines(frame.gpu);
-        frame.gpu.submit("line labels", |encoder| {
-            self.pass_labels(frame, encoder, &lines, labels);
-        });
-        Ok(Some(LineSamples { labels: labels.labels.read(frame.gpu)?, classes }))
+        self.with_lines(frame, layer, |frame| {
+            let DrawnFrame { gpu, targets, .. } = frame;
+            let lines = DrawnRoads::of_layer(frame, tiles, layer);
+            let decks = DrawnRoads::line_decks(frame, tiles, layer);
+            let [has_lines, has_decks] = [&lines, &decks].map(|drawn| !drawn.is_empty());
+            if !has_lines && !has_decks {
+                return Ok(None);
+            }
+            let labels = targets.lines(gpu);
+            gpu.submit("line labels", |encoder| {
+                self.pass_labels(frame, encoder, &lines, labels);
+                if has_decks {
+                    let labels = [targets.line_decks(gpu), labels];
+                    self.decks(gpu).draw_labels(frame, encoder, decks.parts(), labels);
+                }
+            });
+            let on_decks = has_decks.then(|| targets.line_decks(gpu).labels.read(gpu));
+            let labels = labels.labels.read(gpu)?;
+            Ok(Some(LineSamples { labels, decks: on_decks.transpose()?, classes }))
+        })
     }
 
     /// Returns the numbers of the classes of areas and of points at each sample, from 1 in the

@@ -1,8 +1,11 @@
-//! Drapes lines from users' files on the ground of a tile.
+//! Drapes lines of layers and lines from users' files on the ground of a tile.
+
+use std::collections::{BTreeMap, BTreeSet};
 
 use corniche_drape::{ClippedPart, OwnedBorders};
 use corniche_geom::{GridFrame, LatticePoint, Polyline, StepBudget, TileId, TooMuchWork};
-use corniche_roads::FunctionalRoadClass;
+use corniche_roads::{FunctionalRoadClass, Structure};
+use corniche_tileset::SpanRun;
 use corniche_tin::Surface;
 
 use super::{
@@ -10,7 +13,9 @@ use super::{
     dashes::{DashPlaces, GroundLengths},
 };
 use crate::tiles::{
-    DashPlace, GroundLine, PlanScale, RoadKind, TileLines, relief::RoadRelief, roads::PlanLine,
+    DashPlace, GroundLine, PlanScale, RoadKind, RoadLook, TileLines,
+    relief::RoadRelief,
+    roads::{PlanLine, deck_lines, portals},
     shares_in,
 };
 
@@ -22,6 +27,8 @@ pub struct TileSurface {
     pub(crate) id: TileId,
     pub(crate) surface: Surface,
     pub(crate) frame: GridFrame,
+    /// The height step, metres.
+    pub(crate) quantum_m: f64,
     /// The tile's reference point.
     pub(crate) reference_m: [f64; 3],
     /// Maximum half width of drawn lines, working metres.
@@ -44,16 +51,18 @@ impl TileSurface {
         lines: &[StyledLine],
         methods: LineMethods,
     ) -> Result<TileLayer, TooMuchWork> {
-        self.lay_within(lines, methods, &StepBudget::new(self.most_steps))
+        self.lay_within((lines, &[]), methods, &StepBudget::new(self.most_steps))
     }
 
-    /// Does the same as [`TileSurface::lay`] with a budget of work.
+    /// Does the same as [`TileSurface::lay`] with a budget of work, and with the bridges and tunnels
+    /// among the lines: only the parts that are not off the ground are draped on it.
     pub(crate) fn lay_within(
         &self,
-        lines: &[StyledLine],
+        (lines, spans): (&[StyledLine], &[SpanRun]),
         methods: LineMethods,
         work: &StepBudget,
     ) -> Result<TileLayer, TooMuchWork> {
+        let spans = LineSpans::new(lines, spans);
         let mut ground = Vec::new();
         let mut plan = Vec::new();
         for line in lines {
@@ -69,12 +78,55 @@ impl TileSurface {
         }
         let Self { width_margin_m, scale, .. } = *self;
         let lines = TileLines { ground, plan, width_margin_m, scale, ..TileLines::default() };
+        let lines = spans.put_into(lines, self);
         let relief =
             RoadRelief::new(self.id, Some(&self.surface), &self.frame, width_margin_m, work);
         let in_tile = (self.frame.tile_bounds(self.id), self.reference_m);
         let (layer, _) = TileLayer::of_lines(&lines, &relief, in_tile, work);
         work.check()?;
         Ok(layer)
+    }
+}
+
+/// The bridges and tunnels among some lines of a tile.
+struct LineSpans {
+    runs: Vec<SpanRun>,
+    /// The style of each line.
+    styles: BTreeMap<i64, FunctionalRoadClass>,
+}
+
+impl LineSpans {
+    /// Finds the runs of these lines.
+    fn new(lines: &[StyledLine], spans: &[SpanRun]) -> Self {
+        let class = |line: &StyledLine| Some((line.id, FunctionalRoadClass::new(line.style)?));
+        let lines = lines.iter().filter(|_| !spans.is_empty());
+        let styles: BTreeMap<_, _> = lines.filter_map(class).collect();
+        let is_own = |run: &&SpanRun| styles.contains_key(&run.way_id);
+        Self { runs: spans.iter().filter(is_own).cloned().collect(), styles }
+    }
+
+    /// Adds decks of bridges to the lines of a tile, and makes bores of tunnels.
+    fn put_into(&self, lines: TileLines, on: &TileSurface) -> TileLines {
+        let Self { runs, styles } = self;
+        if runs.is_empty() {
+            return lines;
+        }
+        let kind = |run: &SpanRun| styles.get(&run.way_id).copied().map(RoadKind::plain);
+        let decks = deck_lines(runs, kind, &on.surface, (&on.frame, on.quantum_m));
+        let of = |structure| {
+            let own = runs.iter().filter(move |run| run.structure == structure);
+            own.map(|run| run.way_id).collect::<BTreeSet<i64>>()
+        };
+        let [bridges, tunnels] = [Structure::Bridge, Structure::Tunnel].map(of);
+        let portals = portals(&runs.iter().collect::<Vec<_>>(), &on.frame);
+        let bridges = bridges.into_iter().collect();
+        let mut lines = TileLines { decks, portals, bridges, ..lines };
+        let ground = lines.ground.iter_mut().map(|line| (line.way_id, &mut line.kind));
+        let plan = lines.plan.iter_mut().map(|line| (line.way_id, &mut line.kind));
+        for (_, kind) in ground.chain(plan).filter(|(way_id, _)| tunnels.contains(way_id)) {
+            kind.look = RoadLook::Bore;
+        }
+        lines
     }
 }
 

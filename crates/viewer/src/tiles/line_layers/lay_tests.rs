@@ -38,6 +38,7 @@ fn laid_on(surface: &Surface, lines_m: &[&[[f64; 2]]]) -> Result<TileLayer, TooM
         id: TileId::ROOT,
         surface: surface.clone(),
         frame,
+        quantum_m: 0.125,
         reference_m: [tile.min_x, tile.max_y, 0.0],
         width_margin_m: 40.0,
         scale: PlanScale::uniform([1.0; 2]),

@@ -16,6 +16,7 @@ fn deck(way_id: i64, points: &[[f64; 2]]) -> DeckLine {
     DeckLine {
         way_id,
         kind: RoadKind::plain(class()),
+        is_road: true,
         points_m: points.iter().map(|[x, y]| [*x, *y, 9.0]).collect(),
         on_ground: [false; 2],
     }

@@ -14,6 +14,8 @@ pub struct DeckLine {
     pub way_id: i64,
     /// Kind of the road.
     pub kind: RoadKind,
+    /// Whether it is a road, and not a line of a layer.
+    pub is_road: bool,
     /// x, y in the working CRS and true height of the road at each point.
     pub points_m: Vec<[f64; 3]>,
     /// Whether the first and the last point are on the ground.
@@ -31,25 +33,38 @@ impl DeckLine {
     }
 }
 
-/// The bridges among the runs of a tile, with the attributes of their ways.
-pub(crate) fn deck_lines(
+/// The bridges of roads among the runs of a tile, with the attributes of their ways.
+pub(crate) fn road_decks(
     runs: &[SpanRun],
     payload: &TilePayload,
     surface: &Surface,
     (frame, quantum_m): (&GridFrame, f64),
 ) -> Vec<DeckLine> {
+    let kind =
+        |run: &SpanRun| Some(RoadKind::tagged(payload, run.way_id, run.owner.road_class()?));
+    deck_lines(runs, kind, surface, (frame, quantum_m))
+}
+
+/// The bridges among runs on a tile's ground, as far as `kind` returns one.
+pub(crate) fn deck_lines(
+    runs: &[SpanRun],
+    kind: impl Fn(&SpanRun) -> Option<RoadKind>,
+    surface: &Surface,
+    (frame, quantum_m): (&GridFrame, f64),
+) -> Vec<DeckLine> {
     let bridges = runs.iter().filter(|run| run.structure == Structure::Bridge);
     let deck = |run: &SpanRun| {
+        let kind = kind(run)?;
         let points_m = run.points.iter().filter_map(|point| {
             let [x, y] = frame.position_m(point.at);
             // The reader has checked that this triangle exists.
             Some([x, y, point.height_m(surface, quantum_m)?])
         });
-        let kind = RoadKind::tagged(payload, run.way_id, run.class);
         let on_ground = [run.points.first(), run.points.last()].map(|point| {
             point.is_some_and(|point| matches!(point.height, SpanHeight::Ground { .. }))
         });
-        DeckLine { way_id: run.way_id, kind, points_m: points_m.collect(), on_ground }
+        let (way_id, is_road) = (run.way_id, run.owner.layer().is_none());
+        Some(DeckLine { way_id, kind, is_road, points_m: points_m.collect(), on_ground })
     };
-    bridges.map(deck).collect()
+    bridges.filter_map(deck).collect()
 }

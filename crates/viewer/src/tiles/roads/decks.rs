@@ -27,6 +27,8 @@ const STEPS_OF_PIECE: usize = 704;
 /// Additional work per deck for each side of the tile that the deck is long: the drawn deck is
 /// wider than a pixel. Milan has decks of two sides; a tile may have a thousand.
 const STEPS_OF_SIDE: f64 = 65536.0;
+/// Thickness of the slab under a line of a layer, such as a railway, true metres.
+const LINE_SLAB_M: f64 = 1.0;
 /// A line that turns by more has no mitre.
 const LEAST_COSINE: f64 = -0.5;
 
@@ -148,10 +150,13 @@ impl RoadList<DeckPiece> {
             let dashes = dash_starts(&plan, tile);
             let goes_on = [plan.first(), plan.last()]
                 .map(|end| end.is_some_and(|at| TileSide::from_position(*at, tile).is_some()));
-            let lands = [0, 1].map(|end| deck.on_ground[end] && !goes_on[end]);
+            // The widths of roads below a line of a layer are not known where it is drawn.
+            let lands = [0, 1].map(|end| deck.is_road && deck.on_ground[end] && !goes_on[end]);
             // Its length beyond the tile is unknown.
             let length_m = plan.windows(2).map(|pair| distance(pair[0], pair[1])).sum::<f64>();
-            let deck_m = if goes_on == [false; 2] { length_m as f32 } else { OPEN_M };
+            let is_whole = deck.is_road && goes_on == [false; 2];
+            let deck_m = if is_whole { length_m as f32 } else { OPEN_M };
+            let slab_m = if deck.is_road { slab_thickness_m(deck.kind.class) } else { LINE_SLAB_M };
             let at_end = |at: [f64; 2], outward: [f64; 2]| match TileSide::from_position(at, tile) {
                 // It continues in the next tile.
                 Some(_) => Some(outward),
@@ -199,7 +204,7 @@ impl RoadList<DeckPiece> {
                             lands[1] && number + 1 == ways.len() && is_last && end.is_some(),
                         ],
                         deck_m,
-                        slab_m: slab_thickness_m(deck.kind.class) as f32,
+                        slab_m: slab_m as f32,
                         width_factor,
                         kind: deck.kind,
                         part_m: ground.parts_m.get(&deck.way_id).copied().unwrap_or(OPEN_M),

@@ -12,6 +12,7 @@ fn deck(way_id: i64, number: u8, points_m: &[[f64; 3]]) -> DeckLine {
     DeckLine {
         way_id,
         kind: RoadKind::plain(FunctionalRoadClass::new(number).unwrap()),
+        is_road: true,
         points_m: points_m.to_vec(),
         on_ground: [false; 2],
     }

@@ -6,7 +6,7 @@ use corniche_roads::{FunctionalRoadClass, Structure};
 use corniche_tileset::{SpanHeight, SpanPoint, SpanRun, TilePayload};
 use corniche_tin::Surface;
 
-use super::{super::PlanScale, DashPlace, DeckLine, RoadKind, deck_line::deck_lines};
+use super::{super::PlanScale, DashPlace, DeckLine, RoadKind, deck_line::road_decks};
 use crate::options::Mapping;
 
 /// A road on the ground (GEO): its centre-line, draped on the tile's TIN.
@@ -114,17 +114,19 @@ impl TileLines {
         let lines = Self { ground, plan, width_margin_m, ..Self::default() };
         let Some(spans) = spans else { return Ok(lines) };
         let decks = surface.map_or_else(Vec::new, |surface| {
-            deck_lines(spans, payload, surface, (frame, quantum_m))
+            road_decks(spans, payload, surface, (frame, quantum_m))
         });
         let bridges = payload.attributes.iter();
         let bridges = bridges.filter(|record| record.attributes.structure == Structure::Bridge);
         let bridges = bridges.map(|record| record.way_id).collect();
-        let lines = Self { decks, portals: portals(spans, frame), bridges, ..lines };
+        let of_roads: Vec<&SpanRun> =
+            spans.iter().filter(|run| run.owner.layer().is_none()).collect();
+        let lines = Self { decks, portals: portals(&of_roads, frame), bridges, ..lines };
         Ok(lines.with_bores())
     }
 
     /// Replaces the looks of tunnels by those of bores.
-    fn with_bores(mut self) -> Self {
+    pub(crate) fn with_bores(mut self) -> Self {
         let ground = self.ground.iter_mut().map(|line| &mut line.kind);
         for kind in ground.chain(self.plan.iter_mut().map(|line| &mut line.kind)) {
             kind.look = kind.look.with_portals();
@@ -137,7 +139,7 @@ impl TileLines {
 const SHORTEST_TUNNEL_M: f64 = 80.0;
 
 /// Points where tunnels emerge from the ground.
-fn portals(spans: &[SpanRun], frame: &GridFrame) -> Vec<[f64; 2]> {
+pub(crate) fn portals(spans: &[&SpanRun], frame: &GridFrame) -> Vec<[f64; 2]> {
     let is_on_ground = |point: &SpanPoint| matches!(point.height, SpanHeight::Ground { .. });
     let is_long = |run: &&SpanRun| {
         let steps = run.points.windows(2).map(|pair| pair[0].at.distance_steps(pair[1].at));
@@ -147,7 +149,8 @@ fn portals(spans: &[SpanRun], frame: &GridFrame) -> Vec<[f64; 2]> {
             [run.points.first(), run.points.last()].into_iter().flatten().all(is_on_ground);
         !is_whole || length_m >= SHORTEST_TUNNEL_M
     };
-    let tunnels = spans.iter().filter(|run| run.structure == Structure::Tunnel).filter(is_long);
+    let spans = spans.iter().copied();
+    let tunnels = spans.filter(|run| run.structure == Structure::Tunnel).filter(is_long);
     let on_ground = tunnels.flat_map(|run| &run.points).filter(|point| is_on_ground(point));
     on_ground.map(|point| frame.position_m(point.at)).collect()
 }

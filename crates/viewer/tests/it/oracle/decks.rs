@@ -48,6 +48,7 @@ fn deck(way_id: i64, (number, points): &Deck) -> DeckLine {
     DeckLine {
         way_id,
         kind: RoadKind { look: look_of(*number), ..RoadKind::plain(class(*number)) },
+        is_road: true,
         points_m: points.iter().map(|[x, y, z]| [middle.x + x, middle.y + y, *z]).collect(),
         on_ground: [false; 2],
     }
