@@ -41,8 +41,8 @@ export interface Settings {
   style: string;
   /** The opacity of photos, 0 to 1; `null` for that of the style. */
   photo: number | null;
-  areas: boolean;
-  boundaries: boolean;
+  /** The ids of the layers that are drawn; `null` for all. */
+  layers: string[] | null;
   /** A factor on heights. */
   exaggeration: number;
   /** The largest error of the ground on the screen, pixels. */
@@ -67,9 +67,9 @@ export interface About {
   styles: string[];
   /** Names of the classes of roads, and their colours in the style shown. */
   classes: { label: string; color: string }[];
-  /** Names of the map's boundaries that the style draws, and their colours. */
-  boundaries: { label: string; color: string }[];
-  has: { photo: boolean; areas: boolean; boundaries: boolean };
+  /** The layers of the map, the highest first, and the classes that are drawn, with their colours in the style shown. */
+  layers: { id: string; title: string; geometry: "line" | "area" | "point"; classes: { label: string; color: string }[] }[];
+  has: { photo: boolean };
   adapter: string;
   /** Whether the CPU draws. */
   is_software: boolean;
@@ -159,8 +159,7 @@ export class CornicheMap extends HTMLElement {
   cellPx: number | null;
   samples: number;
   photo: number | null;
-  areas: boolean;
-  boundaries: boolean;
+  layers: Settings["layers"];
   wireframe: boolean;
   inertia: boolean;
   /** All settings. An assigned object changes the settings that it contains; an invalid value throws a RangeError. A notice reports a style file that cannot be read. */

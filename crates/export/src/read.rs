@@ -139,7 +139,7 @@ pub(crate) fn bounded_pieces(
     Ok(pieces)
 }
 
-/// Returns the runs of bridges and tunnels of one tile by way; none if the package was built
+/// Returns the runs of roads on bridges and in tunnels of one tile by way; none if the package was built
 /// without them.
 pub(crate) fn span_runs(
     package: &FilePackage,
@@ -151,7 +151,8 @@ pub(crate) fn span_runs(
         return Ok(runs);
     }
     let Some(bytes) = package.tile(id)? else { return Ok(runs) };
-    for run in manifest.decode_spans(&bytes, id).map_err(ReadError::from)? {
+    let all = manifest.decode_spans(&bytes, id).map_err(ReadError::from)?;
+    for run in all.into_iter().filter(|run| run.owner.layer().is_none()) {
         runs.entry(run.way_id).or_default().push(run);
     }
     Ok(runs)

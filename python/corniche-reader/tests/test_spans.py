@@ -16,6 +16,7 @@ from encoding import package_of, payload, planes, signed, varint
 from corniche_reader import Package, PayloadError, Span
 from corniche_reader.grid import Grid
 from corniche_reader.height import Ground
+from corniche_reader.layers import LayerTable
 from corniche_reader.spans import read_spans
 
 REPOSITORY = Path(__file__).parents[3]
@@ -61,10 +62,21 @@ def test_sound_columns_are_read():
     assert not read(section([[]] * 7))[0]
 
 
+def test_runs_of_layers_are_named():
+    walls, railways = (LayerTable(name, "line", ["one"], {}, name == "railways") for name in ("walls", "railways"))
+    ground, grid = golden()
+    columns = [[24 + 1, 8 * 10 + 4 + 2], *SOUND[1:]]
+    one, other = read_spans(section(columns), ground, grid, (0, 0, 0), [walls, railways])
+    assert [(span.road_class, span.layer, span.structure) for span in (one, other)] == [(3, None, "bridge"), (None, "railways", "tunnel")]
+    for layers in ([], [railways], [railways, walls]):
+        with pytest.raises(PayloadError, match="with spans does not exist"):
+            read_spans(section(columns), ground, grid, (0, 0, 0), layers)
+
+
 @pytest.mark.parametrize(
     ("at", "numbers", "says"),
     [
-        (0, [72 + 1, 72 + 2], "a class does not exist"),
+        (0, [72 + 1, 72 + 2], "with spans does not exist"),
         (0, [24 + 1, 16 + 2], "not sorted"),
         (1, [2000, 1], "not sorted"),
         (2, [(1 << 64) - 1, 0], "too many points"),

@@ -10,6 +10,7 @@ mod plan;
 mod plan_remote;
 mod polygon;
 mod promises;
+mod railways;
 mod reader_of_before;
 mod recorded_terrain;
 mod rectangles;

@@ -20,7 +20,7 @@ use corniche_tin::{Placement, Surface};
 use corniche_verify::{VerifyOsm, VerifySettings, verify};
 use corniche_work::Silent;
 
-use crate::support::{Options, settings, table};
+use crate::support::{Options, layers::railways, settings, table};
 
 /// A DEM with an extract.
 struct Region {
@@ -38,6 +38,7 @@ impl Region {
         let mut settings = settings(dem, osm, folder.join(format!("{name}.pmtiles")), options);
         settings.plan.dem.clone_from(&self.dem);
         settings.plan.roads.spans = true;
+        settings.plan.layers = vec![railways()];
         "corniche tests".clone_into(&mut settings.plan.generator);
         settings
     }

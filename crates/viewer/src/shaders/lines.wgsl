@@ -16,6 +16,8 @@ struct LineColors {
 // this distance.
 const APART_PX = 2.0;
 const PALE = 0.3;
+// Strength of a line in a tunnel.
+const IN_TUNNEL = 0.6;
 // Roads of these classes and above are wide enough to be found by samples on a circle, and to be
 // confused with lines that follow them.
 const LAST_ROAD = 6u;
@@ -58,9 +60,16 @@ fn line_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f3
     if label == 0u || depth_buffer == 0.0 {
         discard;
     }
+    // Of a line in a tunnel only dashes are visible, and none under a road.
+    let is_below = is_tunnel(label);
+    let on_road = label_of(textureLoad(labels_of_roads, pixel, 0).r);
+    if is_below && (label % 2u == 0u || (on_road != 0u && !is_tunnel(on_road))) {
+        discard;
+    }
     let line_class = class_of(label);
     let distance_m = scale_depth_of(depth_buffer) * length(ray_at(position.xy));
-    let color = mix(colors.bands[line_class * BANDS + label % BANDS].rgb, colors.haze.rgb, 0.5 * haze_at(distance_m));
-    let opacity = frame.road_limits[line_class].z * share_beside_roads(pixel, line_class);
+    let band = select(label % BANDS, 0u, is_below);
+    let color = mix(colors.bands[line_class * BANDS + band].rgb, colors.haze.rgb, 0.5 * haze_at(distance_m));
+    let opacity = frame.road_limits[line_class].z * share_beside_roads(pixel, line_class) * select(1.0, IN_TUNNEL, is_below);
     return vec4(color, opacity * shown_share(line_class, PLAIN, distance_m));
 }

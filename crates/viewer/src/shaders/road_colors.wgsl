@@ -77,11 +77,12 @@ fn fill_of(label: u32, sight: Sight) -> vec4<f32> {
     let seen_px = width_px(road_class, look, sight.distance_m, sight.depth);
     let wide = select(colors.road_mains[road_class].rgb, colors.road_bands[road_class * BANDS + label % BANDS].rgb,
         look == PLAIN);
+    let are_lines = colors.slab.w > 0.0;
     let has_edge = smoothstep(1.0, 2.2, seen_px) * edge_share(road_class, sight.distance_m);
-    let fill = mix(colors.road_thins[road_class].rgb, wide, has_edge);
+    let fill = mix(colors.road_thins[road_class].rgb, wide, select(has_edge, 1.0, are_lines));
     // A road that is drawn too wide, because of its minimum width, is made paler.
     let least_px = 2.0 * frame.road_widths[road_class].y / frame.road_scale.w;
-    let presence = select(clamp(seen_px / least_px, 0.5, 1.0), 1.0, colors.slab.w > 0.0) * opacity_at(road_class, look, sight.distance_m)
+    let presence = select(clamp(seen_px / least_px, 0.5, 1.0), 1.0, are_lines) * opacity_at(road_class, look, sight.distance_m)
         * select(1.0, TUNNEL_FILL, is_tunnel(label));
     return vec4(mix(fill, colors.haze.rgb, 0.5 * sight.haze), presence);
 }

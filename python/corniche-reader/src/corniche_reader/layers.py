@@ -44,6 +44,8 @@ class LayerTable:
     classes: list[str]
     #: The kept tags, ascending, and what is kept of each: `text`, `names`, `yes-no` or `number`.
     attributes: dict[str, str]
+    #: Whether its lines may be on bridges and in tunnels, so that `Tile.spans` has their runs.
+    has_spans: bool = False
 
 
 @dataclass(frozen=True)
@@ -81,7 +83,8 @@ def layer_tables(manifest: dict[str, Any]) -> list[LayerTable]:
 def _table(form: dict[str, Any]) -> LayerTable:
     kinds = {key: "number" if isinstance(kind, dict) else kind for key, kind in form.get("attributes", {}).items()}
     attributes = dict(sorted(kinds.items(), key=lambda item: item[0].encode("utf-8", "surrogatepass")))
-    table = LayerTable(form["id"], form["geometry"], [of["id"] for of in form["class"]], attributes)
+    has_spans = form.get("placement") == "spans"
+    table = LayerTable(form["id"], form["geometry"], [of["id"] for of in form["class"]], attributes, has_spans)
     if not (
         all(isinstance(text, str) for text in (table.id, *table.classes))
         and table.geometry in ("line", "area", "point")

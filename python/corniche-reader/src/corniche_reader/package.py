@@ -127,7 +127,7 @@ class Package:
         if ground is None or {2, 10} <= kinds:
             raise PayloadError(f"{what} has GEO roads or spans without ground, or GEO roads twice")
         roads = [road for kind in sorted(kinds - {13}) for road in read_roads(found[kind], kind == 10, ground, self.grid, name)]
-        return roads, read_spans(found[13], ground, self.grid, name) if 13 in kinds else []
+        return roads, read_spans(found[13], ground, self.grid, name, list(self._layers.values())) if 13 in kinds else []
 
     def _sections(self, name: TileName) -> dict[int, bytes]:
         place, what = self._places.get(name), "tile {}/{}/{}".format(*name)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,9 +12,12 @@ from .codes import Cursor, unzigzag
 from .errors import PayloadError
 from .grid import Grid, TileName
 from .height import Ground
+from .layers import LayerTable
 from .points import lattice_points
 
-#: A limit of section 11 of the format.
+#: The number of classes of roads, after which the layers are numbered.
+CLASSES = 9
+#: Limits of section 11 of the format.
 MOST_RUNS, FARTHEST_STEPS, MOST_HEIGHT = 1 << 20, 1 << 55, 1 << 31
 
 
@@ -22,7 +26,10 @@ class Span:
     """A stretch of a bridge above the ground of its tile, or of a tunnel below it."""
 
     way_id: int
-    road_class: int
+    #: The class of a road; None for a line of a layer.
+    road_class: int | None
+    #: The id of the layer; None for a road.
+    layer: str | None
     #: `bridge` or `tunnel`.
     structure: str
     #: [x, y, z] of each vertex: working metres, and the height in metres, which is an estimate.
@@ -31,8 +38,10 @@ class Span:
     on_ground: tuple[bool, bool]
 
 
-def read_spans(data: bytes, ground: Ground, grid: Grid, tile: TileName) -> list[Span]:
-    """Decodes the section of spans of a tile with the given ground."""
+def read_spans(data: bytes, ground: Ground, grid: Grid, tile: TileName, layers: Sequence[LayerTable] = ()) -> list[Span]:
+    """Decodes the section of spans of a tile with the given ground, in a package with these layers."""
+    owners: dict[int, tuple[int | None, str | None]] = {number: (number, None) for number in range(CLASSES)}
+    owners.update({number: (None, table.id) for number, table in enumerate(layers, CLASSES) if table.has_spans})
     what = "spans of tile {}/{}/{}".format(*tile)
     cursor = Cursor(data, what)
     count = cursor.varint()
@@ -47,11 +56,14 @@ def read_spans(data: bytes, ground: Ground, grid: Grid, tile: TileName) -> list[
     cursor.end()
     steps, named = iter(heights), iter(triangles)
     spans: list[Span] = []
+    before = (0, -1 << 63)
     way = height = 0
     for code, way_step, points, (first, last) in zip(codes, ways, lines, ends, strict=True):
         way = (way + unzigzag(way_step) + (1 << 63)) % (1 << 64) - (1 << 63)
-        if code >> 3 > 8 or (spans and (spans[-1].road_class, spans[-1].way_id) > (code >> 3, way)):
-            raise PayloadError(f"{what}: a class does not exist, or runs are not sorted")
+        owner = owners.get(code >> 3)
+        if owner is None or before > (code >> 3, way):
+            raise PayloadError(f"{what}: a class or a layer with spans does not exist, or runs are not sorted")
+        before = (code >> 3, way)
         vertices = np.empty((len(points), 3))
         for i, point in enumerate(points):
             if i and point == points[i - 1] or max(abs(point[0] - corner[0]), abs(point[1] - corner[1])) > FARTHEST_STEPS:
@@ -67,5 +79,5 @@ def read_spans(data: bytes, ground: Ground, grid: Grid, tile: TileName) -> list[
                     raise PayloadError(f"{what}: a height is beyond 32 bits")
                 vertices[i, 2] = float(height) * grid.quantum_m
             vertices[i, :2] = grid.working(*point)
-        spans.append(Span(way, code >> 3, "tunnel" if code & 4 else "bridge", vertices, (first, last)))
+        spans.append(Span(way, *owner, "tunnel" if code & 4 else "bridge", vertices, (first, last)))
     return spans

@@ -73,6 +73,17 @@ fn tables() -> Vec<LayerTable> {
     forms.into_iter().map(|form| LayerTable::new(form).unwrap()).collect()
 }
 
+/// A layer of railways that may be on bridges and in tunnels.
+pub(crate) fn railways() -> LayerTable {
+    let form = json!({
+        "id": "railways",
+        "geometry": "line",
+        "placement": "spans",
+        "class": [{ "id": "rail", "tags": { "railway": true } }],
+    });
+    LayerTable::new(serde_json::from_value(form).unwrap()).unwrap()
+}
+
 /// Writes an extract with objects of all layers, over several tiles of the sample `pass`, on a
 /// lattice of nodes 382 by 445 metres apart. An outline of an area crosses itself, the nodes of a
 /// wall are missing, and a height is not a number.
