@@ -33,7 +33,7 @@ pub(crate) fn table(name_or_path: &str) -> Result<LayerTable, CommandFailure> {
     let preset = layer_preset(name_or_path);
     let text = text_of(name_or_path, preset, (&what, layer_preset_names()))?;
     let named = |error| refuse(&format!("layer table {:?}", Path::new(name_or_path)), &error);
-    parse_layer_table(&text).map_err(|error| named(error))
+    parse_layer_table(&text).map_err(named)
 }
 
 fn listed() -> Result<String, CommandFailure> {

@@ -297,7 +297,7 @@ fn span(
         let way = run.way_id;
         unusable!("tile {id}: a span of OSM way {way} does not end on the ground")
     })?;
-    Ok(TileSpanDocument::from_run(run, line))
+    Ok(TileSpanDocument::from_run(run, line, places.manifest))
 }
 
 fn sv_road(road: &SvRoad, places: Places<'_>) -> SvRoadDocument {

@@ -139,8 +139,8 @@ pub(crate) fn bounded_pieces(
     Ok(pieces)
 }
 
-/// Returns the runs of roads on bridges and in tunnels of one tile by way; none if the package was built
-/// without them.
+/// Returns the runs of roads on bridges and in tunnels of one tile by way; none if the package was
+/// built without them.
 pub(crate) fn span_runs(
     package: &FilePackage,
     id: TileId,

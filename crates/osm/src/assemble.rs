@@ -46,10 +46,9 @@ pub(crate) fn assemble(
 ) -> Result<Vec<AssembledWay>, ReadOsmError> {
     let stops_of = |way: &PlainWay| &all_stops[way.stops.clone()];
     let has_line = |way: &&PlainWay| match &way.kind {
-        WayKind::Road(..) => true,
+        WayKind::Road(..) | WayKind::Railway(_) => true,
         // Other ways join it by the ids of its nodes.
         WayKind::LeftOut(way_kind) => way_kind.carrier.is_some() && !way.node_ids.is_empty(),
-        WayKind::Railway(_) => true,
     };
     let stops = some.iter().filter(has_line).flat_map(stops_of);
     let positions_deg: Vec<_> = stops.filter_map(|stop| location::degrees(stop.location)).collect();
@@ -68,7 +67,7 @@ pub(crate) fn assemble(
                 let what = What { way_id, class, attributes, node_ids, is_carrier };
                 assemble_way(what, stops, &mut points, placing)
             }
-            WayKind::LeftOut(LeftOutWay { reason, highway, carrier }) => {
+            WayKind::LeftOut(LeftOutWay { reason, highway, carrier, railway }) => {
                 let length_um = length_um(stops.iter().map(|stop| stop.location));
                 let mut roads = Vec::new();
                 if let Some((structure, layer)) = carrier.filter(|_| has_line) {
@@ -78,7 +77,7 @@ pub(crate) fn assemble(
                     roads = assemble_way(what, stops, &mut points, placing).roads;
                 }
                 let left_out = Some((reason, highway, length_um));
-                AssembledWay { roads, left_out, ..AssembledWay::default() }
+                AssembledWay { roads, railway, left_out, ..AssembledWay::default() }
             }
             WayKind::Railway(Track { kind, structure, layer }) => {
                 let attributes = RoadAttributes { structure, layer, ..RoadAttributes::default() };

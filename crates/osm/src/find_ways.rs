@@ -43,6 +43,8 @@ pub(crate) struct FoundWays<'a> {
 pub(crate) struct WaysWanted<'w> {
     /// The table that says which ways are roads, if roads are requested.
     pub(crate) roads: Option<&'w FrcTable>,
+    /// Whether railways are stored with the roads, because bridges and tunnels are requested.
+    pub(crate) are_railways_wanted: bool,
     /// The treatment of ways that are objects by their own tags.
     pub(crate) own_tags: OwnTags,
     /// Ids of requested ways for each kind of objects, ascending.
@@ -80,7 +82,8 @@ impl OfBlock {
         let nodes = if has_nodes { nodes.scan(&block, most_bytes)? } else { Vec::new() };
         let mut found = Self { looked, roads: BlockWays::default(), outlines: Vec::new(), nodes };
         let of_nodes: u64 = found.nodes.iter().map(|own| own.held_bytes).sum();
-        let roads = wanted.roads.map(|table| WayJudge::new(&texts, table));
+        let roads =
+            wanted.roads.map(|table| WayJudge::new(&texts, table, wanted.are_railways_wanted));
         let judges: Vec<judge::OutlineJudge<'_>> =
             outlines.iter().map(|&wanted| judge::OutlineJudge::new(&texts, wanted)).collect();
         let mut wanted_ways: Vec<WantedWays<'_>> = wanted

@@ -69,7 +69,7 @@ pub(crate) fn hand_out_roads(
             let own = summary.left_out_ways.entry((reason, highway)).or_default();
             own.ways += 1;
             own.length_um += length_um;
-            assembled.roads.into_iter().for_each(|road| sink.take_carrier(road, None));
+            assembled.roads.into_iter().for_each(|road| sink.take_carrier(road, assembled.railway));
             return;
         }
         if assembled.railway.is_some() {

@@ -46,7 +46,8 @@ pub(crate) struct NumberedWays<'a> {
 ///
 /// Skipped ways go to `left_out`, except ways that carry bridges and tunnels if these are
 /// requested. Without `left_out`, all skipped ways are numbered like the others. Railways are
-/// numbered only if bridges and tunnels are requested.
+/// numbered only if bridges and tunnels are requested, and the first of several with the same id
+/// counts.
 ///
 /// Fails if a way is present in two versions.
 pub(crate) fn number_nodes<'a>(
@@ -67,14 +68,21 @@ pub(crate) fn number_nodes<'a>(
     };
     let mut last: Option<(i64, Option<i32>)> = None;
     let mut newest: Option<Newest> = None;
+    let mut last_railway: Option<i64> = None;
     let mut node_ids = Vec::new();
     for (count, way) in (0..).zip(ways) {
         reading.check_stop_at(count)?;
         let way = way?;
         // Without several extracts, nothing is counted per way.
+        let kind = way.take_apart(&mut node_ids)?;
         if !way.facts.is_empty() {
             if let Some(newest) = newest.as_mut().filter(|newest| newest.way.way_id == way.way_id) {
-                if newest.is_instead_of(&way, on_defect) {
+                let is_told = !is_railway(kind);
+                if newest.is_instead_of(&way, &mut |defect| {
+                    if is_told {
+                        on_defect(defect);
+                    }
+                }) {
                     continue;
                 }
             } else {
@@ -84,13 +92,14 @@ pub(crate) fn number_nodes<'a>(
             add_summary(summary, facts.counts);
             facts.defects.into_iter().for_each(&mut *on_defect);
         }
-        let kind = way.take_apart(&mut node_ids)?;
         // If ids are requested, they are stored before the properties of the way.
         let kept = if request.node_ids { &*way.bytes } else { kind };
         if is_left_out(kind) || is_railway(kind) {
             // If bridges and tunnels are requested, so are the ways that may carry or cross them.
             let carries = request.node_ids && is_carrier(kind);
-            if is_railway(kind) && !carries {
+            let is_repeated =
+                is_railway(kind) && last_railway.replace(way.way_id) == Some(way.way_id);
+            if is_repeated || (is_railway(kind) && !carries) {
                 continue;
             }
             match &mut numbered.left_out {

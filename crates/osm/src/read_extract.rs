@@ -332,6 +332,7 @@ fn read_ways<'a, R: Read + Seek>(
     let all_bytes = relations_bytes + file.bytes_of(&ways) + rest_bytes;
     let mut wanted = WaysWanted {
         roads: wanted.roads,
+        are_railways_wanted: reading.request.node_ids,
         own_tags: if is_sorted { OwnTags::Kept } else { OwnTags::Ignored },
         way_ids: next_ids()?,
         is_first: true,

@@ -7,9 +7,10 @@
 //! A skipped way has a mark in place of the class, then the reason and its `highway` value:
 //!
 //! ```text
-//!  │ how many nodes │ their ids, as differences │ 255 reason │ highway value │ structure layer │
+//!  │ how many nodes │ their ids, as differences │ 255 reason │ highway value │ structure layer railway │
 //! ```
-//! Its structure is counted from 1; 0 means that the way carries nothing. A railway has another
+//! Its structure and its kind of railway are counted from 1; 0 means that the way carries nothing,
+//! and that it is no railway. A railway has another
 //! mark:
 //!
 //! ```text
@@ -71,18 +72,21 @@ pub(crate) struct LeftOutWay<T> {
     /// The structure that carries the way and its layer, if the way is a road of another class;
     /// `None` if it is not a road.
     pub(crate) carrier: Option<(Structure, i8)>,
+    /// The kind of railway, if the way is also one and its `highway` value is not that of a road.
+    pub(crate) railway: Option<Railway>,
 }
 
 /// Writes the nodes of a skipped way, and the reason.
 pub(crate) fn left_out_bytes(node_ids: &[i64], way: LeftOutWay<&str>) -> Box<[u8]> {
-    let LeftOutWay { reason, highway, carrier } = way;
+    let LeftOutWay { reason, highway, carrier, railway } = way;
     let mut bytes = Vec::with_capacity(2 * node_ids.len() + highway.len() + 16);
     push_node_ids(&mut bytes, node_ids);
     bytes.extend([LEFT_OUT, reason as u8]);
     push_bytes(&mut bytes, highway.as_bytes());
     let (structure, layer) =
         carrier.map_or((0, 0), |(structure, layer)| (structure as u8 + 1, layer));
-    bytes.extend([structure, layer.cast_unsigned()]);
+    let railway = railway.map_or(0, |kind| kind as u8 + 1);
+    bytes.extend([structure, layer.cast_unsigned(), railway]);
     bytes.into()
 }
 
@@ -146,13 +150,14 @@ pub(crate) fn take_node_ids(
 /// Takes the bytes after the nodes; `None` if they are corrupt.
 pub(crate) fn take_way(bytes: &mut &[u8]) -> Option<WayKind> {
     if is_left_out(bytes) {
-        let LeftOutWay { reason, highway, carrier } = take_left_out(bytes)?;
-        return Some(WayKind::LeftOut(LeftOutWay { reason, highway: highway.to_owned(), carrier }));
+        let LeftOutWay { reason, highway, carrier, railway } = take_left_out(bytes)?;
+        let highway = highway.to_owned();
+        return Some(WayKind::LeftOut(LeftOutWay { reason, highway, carrier, railway }));
     }
     if is_railway(bytes) {
         let [_, kind, structure, layer] = take_array(bytes)?;
         let kind = *Railway::ALL.get(usize::from(kind))?;
-        let structure = take_structure(structure)??;
+        let structure = structure_of_code(structure)?;
         return Some(WayKind::Railway(Track { kind, structure, layer: layer.cast_signed() }));
     }
     let [class] = take_array(bytes)?;
@@ -165,22 +170,30 @@ pub(crate) fn take_left_out<'b>(bytes: &mut &'b [u8]) -> Option<LeftOutWay<&'b s
     let [_, reason] = take_array(bytes)?;
     let reason = *LeftOutReason::ALL.get(usize::from(reason))?;
     let highway = take_text(bytes)?;
-    let [structure, layer] = take_array(bytes)?;
-    let structure = take_structure(structure)?;
-    let carrier = structure.map(|structure| (structure, layer.cast_signed()));
-    Some(LeftOutWay { reason, highway, carrier })
+    let [structure, layer, railway] = take_array(bytes)?;
+    let railway = match railway {
+        0 => None,
+        code => Some(*Railway::ALL.get(usize::from(code) - 1)?),
+    };
+    let carrier = match structure {
+        0 => None,
+        code => Some((structure_of_code(code)?, layer.cast_signed())),
+    };
+    Some(LeftOutWay { reason, highway, carrier, railway })
 }
 
-/// Reads a structure that is counted from 1: 0 is none; `None` if there is no such structure.
-fn take_structure(code: u8) -> Option<Option<Structure>> {
-    let Some(code) = code.checked_sub(1) else { return Some(None) };
-    Structure::ALL.get(usize::from(code)).copied().map(Some)
+/// Returns a structure that is counted from 1; `None` if there is no such structure.
+fn structure_of_code(code: u8) -> Option<Structure> {
+    Structure::ALL.get(usize::from(code.checked_sub(1)?)).copied()
 }
 
 /// Whether the bytes after the nodes belong to a way that is no road here, but may carry or cross
 /// bridges and tunnels.
 pub(crate) fn is_carrier(after_nodes: &[u8]) -> bool {
-    matches!(after_nodes, [LEFT_OUT | RAILWAY, .., structure, _] if *structure > 0)
+    matches!(
+        after_nodes,
+        [LEFT_OUT, .., structure, _, _] | [RAILWAY, _, structure, _] if *structure > 0
+    )
 }
 
 #[cfg(test)]

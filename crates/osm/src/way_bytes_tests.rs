@@ -69,14 +69,15 @@ proptest! {
     fn a_way_that_is_left_out_comes_back_from_its_bytes(
         ids: Vec<i64>, reason in prop::sample::select(&LeftOutReason::ALL[..]), highway in ".*",
         carrier in prop::option::of((prop::sample::select(&Structure::ALL), any::<i8>())),
+        railway in prop::option::of(prop::sample::select(&Railway::ALL[..])),
     ) {
-        let bytes = left_out_bytes(&ids, LeftOutWay { reason, highway: &highway, carrier });
+        let bytes = left_out_bytes(&ids, LeftOutWay { reason, highway: &highway, carrier, railway });
         let mut after_nodes = &*bytes;
         take_node_ids(&mut after_nodes, |_| Ok(())).unwrap();
         prop_assert!(is_left_out(after_nodes));
         prop_assert_eq!(is_carrier(after_nodes), carrier.is_some());
         let mut rest = &*bytes;
-        prop_assert_eq!(take_all(&mut rest), Some((ids, WayKind::LeftOut(LeftOutWay { reason, highway, carrier }))));
+        prop_assert_eq!(take_all(&mut rest), Some((ids, WayKind::LeftOut(LeftOutWay { reason, highway, carrier, railway }))));
         prop_assert_eq!(rest, b"");
         for len in 0..bytes.len() {
             prop_assert_eq!(take_all(&mut &bytes[..len]), None);

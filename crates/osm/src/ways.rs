@@ -53,17 +53,22 @@ pub(crate) struct WayJudge<'a> {
     read: Vec<OnceCell<Text<'a>>>,
     /// The numbers of the texts that are the key `highway`; usually one.
     highway: Vec<usize>,
-    /// The numbers of the texts that are the key `railway`.
+    /// The numbers of the texts that are the key `railway`; none if railways are not requested.
     railway: Vec<usize>,
     table: &'a FrcTable,
 }
 
 impl<'a> WayJudge<'a> {
     /// Creates the criteria from `texts`, the keys and values of the block's tags.
-    pub(crate) fn new(texts: &'a [&'a [u8]], table: &'a FrcTable) -> Self {
+    pub(crate) fn new(
+        texts: &'a [&'a [u8]],
+        table: &'a FrcTable,
+        are_railways_wanted: bool,
+    ) -> Self {
         let numbers =
             |key: &[u8]| (0..texts.len()).filter(|&text| texts[text] == key).collect::<Vec<_>>();
-        let [highway, railway] = [numbers(b"highway"), numbers(b"railway")];
+        let highway = numbers(b"highway");
+        let railway = if are_railways_wanted { numbers(b"railway") } else { Vec::new() };
         Self { texts, read: vec![OnceCell::new(); texts.len()], highway, railway, table }
     }
 
@@ -138,8 +143,8 @@ impl BlockWays {
         self.judge(way, &tags, judge.table);
     }
 
-    /// Stores a way that is a railway and no road. It counts nowhere, and its defects are those of
-    /// layers with railways.
+    /// Stores a way that is a railway without a `highway` tag. It is not counted, and has no defects
+    /// but those of layers with railways.
     fn look_at_railway(&mut self, way: &BlockWay<'_, '_>, judge: &WayJudge<'_>) {
         let texts = way.keys().zip(way.values());
         let texts = texts.filter_map(|(key, value)| Some((judge.text(key)?, judge.text(value)?)));
@@ -172,20 +177,20 @@ impl BlockWays {
             }
             Classified::NotShown(_) => {
                 left_out.class_off += 1;
-                self.leave_out(way, LeftOutReason::ClassOff, highway, Some(tags));
+                self.leave_out(way, (LeftOutReason::ClassOff, highway), (tags, true));
             }
             Classified::NotARoad(NotARoad::Area) => {
                 left_out.area += 1;
-                self.leave_out(way, LeftOutReason::Area, highway, None);
+                self.leave_out(way, (LeftOutReason::Area, highway), (tags, false));
                 self.push_defect(ExtractDefect::Area { way_id });
             }
             Classified::NotARoad(NotARoad::Listed | NotARoad::NoHighway) => {
                 left_out.listed += 1;
-                self.leave_out(way, LeftOutReason::Listed, highway, None);
+                self.leave_out(way, (LeftOutReason::Listed, highway), (tags, false));
             }
             Classified::Unknown(value) => {
                 left_out.unknown += 1;
-                self.leave_out(way, LeftOutReason::Unknown, value, Some(tags));
+                self.leave_out(way, (LeftOutReason::Unknown, value), (tags, true));
                 *self.summary.unknown_highways.entry(value.to_owned()).or_default() += 1;
                 self.push_defect(ExtractDefect::UnknownHighway { way_id, value: value.to_owned() });
                 return;
@@ -227,17 +232,17 @@ impl BlockWays {
     }
 
     /// Stores a way that is not a road here: for its length, and, if it is a road of another class
-    /// with these tags, for what it carries.
+    /// or a railway, for what it carries.
     fn leave_out(
         &mut self,
         way: &BlockWay<'_, '_>,
-        reason: LeftOutReason,
-        highway: &str,
-        tags: Option<&[(&str, &str)]>,
+        (reason, highway): (LeftOutReason, &str),
+        (tags, is_road): (&[(&str, &str)], bool),
     ) {
-        let tags = tags.filter(|tags| !is_area(tags));
-        let carrier = tags.map(structure_and_layer);
-        let left_out = LeftOutWay { reason, highway, carrier };
+        let railway = if is_road { None } else { Railway::from_tags(tags) };
+        let carries = (is_road && !is_area(tags)) || railway.is_some();
+        let carrier = carries.then(|| structure_and_layer(tags));
+        let left_out = LeftOutWay { reason, highway, carrier, railway };
         self.keep(way, highway.len(), |ids| left_out_bytes(ids, left_out));
     }
 

@@ -24,9 +24,9 @@ crate::listed! {
     /// Returns the steepest grade with which such railways are built, percent.
     ///
     /// Source: Eisenbahn-Bau- und Betriebsordnung (EBO, Germany), section 7, which allows 1.25 % on
-    /// new main lines and 4 % on branch lines. The other limits are grades of existing railways: the
-    /// Bernina line without a rack has 7 %, trams in several cities have 10 %. A railway that is
-    /// steeper is worth a check, but is not an error.
+    /// new main lines and 4 % on branch lines. The other limits are grades of existing railways:
+    /// the Bernina line without a rack has 7 %, trams in several cities have 10 %. A railway that
+    /// is steeper is worth a check, but is not an error.
     pub fn steepest_pct() -> f64;
 }
 

@@ -41,7 +41,8 @@ impl CrossingPlace {
     }
 }
 
-/// Returns the steepest grade with which roads or railways of a way's kind are built, rise over run.
+/// Returns the steepest grade with which roads or railways of a way's kind are built, rise over
+/// run.
 pub(crate) fn steepest_of(network: &Network, way: &NetworkWay) -> f64 {
     let limit_pct = match way.railway {
         Some(railway) => railway.steepest_pct(),

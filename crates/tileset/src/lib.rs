@@ -56,9 +56,9 @@ pub use package::{
 pub use package::{PackageWriter, WriteError};
 pub use payload::{
     AreaPolygon, Damage, DecodeError, EncodeError, GeoRoad, LayerCoding, LayerObject, LayerShape,
-    PHOTO_BORDER, PayloadSizes, Photo, Relief, RoadRecord, SectionSize, Sections, SpanHeight,
-    RunOwner, SpanPoint, SpanRun, SvRoad, TerrainSummary, TilePayload, TileTerrain, decode, decode_layer,
-    decode_photo, decode_spans, payload_sizes, terrain_summary,
+    PHOTO_BORDER, PayloadSizes, Photo, Relief, RoadRecord, RunOwner, SectionSize, Sections,
+    SpanHeight, SpanPoint, SpanRun, SvRoad, TerrainSummary, TilePayload, TileTerrain, decode,
+    decode_layer, decode_photo, decode_spans, payload_sizes, terrain_summary,
 };
 #[cfg(feature = "write")]
 pub use payload::{

@@ -141,7 +141,9 @@ impl LayerOfTile<'_> {
             format!("layer {:?} in tile {id}", table.id)
         });
         if are_areas {
-            beside.iter().for_each(|beside| self.look_at_seam(beside, findings));
+            for beside in beside {
+                self.look_at_seam(beside, findings);
+            }
         }
     }
 

@@ -42,8 +42,8 @@ const NEAR_STEPS: f64 = 2.0;
 /// The limit of work for a tile, in steps: comparing a vertex with a segment of a run is one step.
 const MOST_STEPS: u64 = 1 << 28;
 
-/// An end of a way's line on the border of a tile: its level, the road's class or the layer, the way
-/// and the position.
+/// An end of a way's line on the border of a tile: its level, the road's class or the layer, the
+/// way and the position.
 type BorderEnd = (u8, RunOwner, i64, LatticePoint);
 /// The ends at each position: the height of a run in steps, or `None` on the ground.
 type EndsByPlace = BTreeMap<BorderEnd, Vec<(TileId, Option<i64>)>>;
@@ -154,7 +154,7 @@ fn look_at(
     let surface = manifest.surface(id, &terrain.tin);
     let bounds = manifest.frame.tile_lattice_bounds(id);
     let work = StepBudget::new(MOST_STEPS);
-    let lines = lines_of_structures((payload, &of_structures), of_layers, (&surface, &bounds), &work);
+    let lines = lines_of_structures((payload, &of_structures), of_layers, (&surface, &bounds));
     put_ends((id, &bounds), &lines, &runs, ends);
     let place = TilePlace::from_frame(&manifest.frame, id);
     let ground = tiles.ground(id);
@@ -237,9 +237,16 @@ fn structures(bytes: &[u8], id: TileId, manifest: &Manifest) -> BTreeMap<i64, (S
     ways.filter(|(_, (structure, _))| *structure != Structure::Ground).collect()
 }
 
+/// A line of a layer in a tile.
+struct LineOfLayer {
+    owner: RunOwner,
+    way_id: i64,
+    line: Polyline,
+}
+
 /// The lines of a tile that may be on bridges and in tunnels and are in layers; damage of their
 /// sections is reported by the check of tiles.
-fn layer_lines(bytes: &[u8], id: TileId, manifest: &Manifest) -> Vec<(RunOwner, i64, Polyline)> {
+fn layer_lines(bytes: &[u8], id: TileId, manifest: &Manifest) -> Vec<LineOfLayer> {
     let with_spans =
         manifest.layers().filter(|(_, record)| record.table.placement == LinePlacement::Spans);
     with_spans
@@ -249,7 +256,8 @@ fn layer_lines(bytes: &[u8], id: TileId, manifest: &Manifest) -> Vec<(RunOwner, 
         })
         .filter_map(|(slot, LayerObject { object, shape, .. })| match shape {
             LayerShape::Line(points) => {
-                Some((RunOwner::Layer(slot), object.id(), Polyline::new(points).ok()?))
+                let (owner, way_id) = (RunOwner::Layer(slot), object.id());
+                Some(LineOfLayer { owner, way_id, line: Polyline::new(points).ok()? })
             }
             _ => None,
         })
@@ -260,21 +268,23 @@ fn layer_lines(bytes: &[u8], id: TileId, manifest: &Manifest) -> Vec<(RunOwner, 
 /// some: a layer does not say which are.
 fn lines_of_structures(
     (payload, structures): (&TilePayload, &BTreeMap<i64, (Structure, i8)>),
-    of_layers: Vec<(RunOwner, i64, Polyline)>,
+    of_layers: Vec<LineOfLayer>,
     (surface, bounds): (&Surface, &LatticeBounds),
-    work: &StepBudget,
 ) -> Lines {
+    let work = &StepBudget::new(MOST_STEPS);
     let mut lines: BTreeMap<_, Vec<Vec<[f64; 3]>>> = BTreeMap::new();
-    let on_structures = payload.roads_geo.iter().filter(|road| structures.contains_key(&road.way_id));
+    let on_structures =
+        payload.roads_geo.iter().filter(|road| structures.contains_key(&road.way_id));
     for road in on_structures {
         if let Ok(vertices) = corniche_drape::positions(&road.line, surface) {
             let key = (RunOwner::Road(road.class), road.way_id);
             lines.entry(key).or_default().push(vertices);
         }
     }
-    for (owner, way_id, line) in of_layers {
+    for LineOfLayer { owner, way_id, line } in of_layers {
         for part in corniche_drape::clip(&line, bounds, OwnedBorders::ALL) {
-            // Runs over more ground than any writer can have created are reported below.
+            // More lines over more ground than any writer can have created: runs of the rest end on
+            // no line, which is reported.
             let Ok(draped) = corniche_drape::drape_within(&part, surface, work) else { continue };
             let on_ground = draped.lines.iter();
             let on_ground =
@@ -360,8 +370,8 @@ impl Tile<'_> {
         is_there && around.into_iter().flatten().any(|at| self.surface.triangle_holds(triangle, at))
     }
 
-    /// The pieces of runs of roads with known heights. Lines of layers do not say which OSM layer they
-    /// are on.
+    /// The pieces of runs of roads with known heights. Lines of layers do not say which OSM layer
+    /// they are on.
     fn pieces(&self, runs: &[SpanRun], ways: &BTreeMap<i64, (Structure, i8)>) -> Vec<RunPiece> {
         let of_run = |run: &SpanRun| {
             let kind = SpanKind::from_structure(run.structure);

@@ -94,9 +94,10 @@ impl Ray {
         nearest
     }
 
-    /// Depth of the first road of a bridge; infinite without a hit.
+    /// Depth of the first road or line on a bridge; infinite without a hit.
     fn first_deck(&self, tile: &TileGeometry, vertical_scale: f64) -> f64 {
-        let hits = tile.decks.all().iter().filter_map(|piece| {
+        let of_lines = tile.lines.0.values().flat_map(|lines| lines.decks.all());
+        let hits = tile.decks.all().iter().chain(of_lines).filter_map(|piece| {
             let place = |at: [f32; 3]| {
                 let [x, y, height_m] = at.map(f64::from);
                 DVec3::new(x, y, height_m * vertical_scale)

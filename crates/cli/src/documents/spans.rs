@@ -1,7 +1,9 @@
 //! Bridges and tunnels in the JSON documents of several commands.
 
 use corniche_roads::FunctionalRoadClass;
-use corniche_tileset::{LayerSlot, SectionLevelRecord, SpanHeight, SpanPoint, SpanRun, SpansRecord};
+use corniche_tileset::{
+    LayerSlot, Manifest, SectionLevelRecord, SpanHeight, SpanPoint, SpanRun, SpansRecord,
+};
 use serde::Serialize;
 
 #[cfg(test)]
@@ -27,7 +29,7 @@ pub(crate) struct SpansDocument {
     /// Number of crossings with other roads and railways or with each other.
     crossings: u64,
     /// The same number by what is above and what is below.
-    crossings_by_layers: Vec<CrossingsDocument>,
+    crossings_by_kind: Vec<CrossingsDocument>,
     /// Number of spans to inspect, by reason.
     reasons: Vec<ReasonDocument>,
     /// Stretches off the ground (runs, here `parts`) on each level that has some, root first.
@@ -59,8 +61,8 @@ struct ReasonDocument {
 
 impl From<SpansRecord> for SpansDocument {
     fn from(SpansRecord { counts, levels, .. }: SpansRecord) -> Self {
-        let crossings = counts.crossings.clone().into_iter();
-        let reasons = counts.reasons.clone().into_iter();
+        let crossings = counts.crossings();
+        let (by_kind, reasons) = (counts.crossings.into_iter(), counts.reasons.into_iter());
         Self {
             bridges: counts.bridges,
             tunnels: counts.tunnels,
@@ -68,8 +70,8 @@ impl From<SpansRecord> for SpansDocument {
             tunnels_km: counts.tunnels_um as f64 / 1e9,
             railway_bridges: counts.railway_bridges,
             railway_tunnels: counts.railway_tunnels,
-            crossings: counts.crossings(),
-            crossings_by_layers: crossings
+            crossings,
+            crossings_by_kind: by_kind
                 .map(|(upper, lower, count)| CrossingsDocument { upper, lower, count })
                 .collect(),
             reasons: reasons.map(|(reason, count)| ReasonDocument { reason, count }).collect(),
@@ -86,8 +88,8 @@ pub(crate) struct TileSpanDocument {
     way_id: i64,
     /// Functional road class (FRC); null for a line of a layer.
     frc: Option<u8>,
-    /// Index of the layer in the manifest; null for a road.
-    layer: Option<usize>,
+    /// Id of the layer; null for a road.
+    layer: Option<String>,
     /// "bridge" or "tunnel".
     structure: &'static str,
     /// Position (x, y and height in metres) of each point. Heights are estimates.
@@ -97,15 +99,16 @@ pub(crate) struct TileSpanDocument {
 }
 
 impl TileSpanDocument {
-    /// Converts a run; `line` has its points.
-    pub(crate) fn from_run(run: &SpanRun, line: Vec<[f64; 3]>) -> Self {
+    /// Converts a run of a package; `line` has its points.
+    pub(crate) fn from_run(run: &SpanRun, line: Vec<[f64; 3]>, manifest: &Manifest) -> Self {
+        let layer = |slot: LayerSlot| Some(manifest.layers.get(slot.index())?.table.id.clone());
         let is_on_ground = |point: Option<&SpanPoint>| {
             point.is_some_and(|point| matches!(point.height, SpanHeight::Ground { .. }))
         };
         Self {
             way_id: run.way_id,
             frc: run.owner.road_class().map(FunctionalRoadClass::number),
-            layer: run.owner.layer().map(LayerSlot::index),
+            layer: run.owner.layer().and_then(layer),
             structure: run.structure.name(),
             line,
             on_ground: [run.points.first(), run.points.last()].map(is_on_ground),

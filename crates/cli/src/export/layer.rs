@@ -1,6 +1,6 @@
 //! `corniche export layer`: writes the lines, areas or points of a layer.
 
-use corniche_export::{FeatureRequest, LayerSummary, export_layer};
+use corniche_export::{FeatureCoordinates, FeatureRequest, LayerSummary, export_layer};
 use corniche_layers::LayerGeometry;
 
 use super::vector_files::{MEMORY_BYTES, coordinates, crs_text, facts, fill};
@@ -39,12 +39,15 @@ pub(crate) fn run(args: &ExportLayerArgs) -> Result<(), CommandFailure> {
     })?;
     warn(args, &summary);
     let manifest = package.manifest();
-    let facts = match &summary.heights {
-        Some(heights) => facts((coordinates, format), heights, manifest),
-        None => {
-            let crs = crs_text(coordinates, format, manifest);
-            format!("coordinates: {crs}{}", credits_line(manifest))
-        }
+    let facts = if let Some(heights) = &summary.heights {
+        facts((coordinates, format), heights, manifest)
+    } else {
+        let in_plan = match coordinates {
+            FeatureCoordinates::Wgs84 => FeatureCoordinates::Wgs84WithPackageHeights,
+            other => other,
+        };
+        let crs = crs_text(in_plan, format, manifest);
+        format!("coordinates: {crs}{}", credits_line(manifest))
     };
     let name = args.file.output.to_string_lossy();
     messages::summary(&format!(

@@ -74,7 +74,8 @@ impl<'a> OutlineJudge<'a> {
             return Structure::Ground;
         }
         let texts = way.keys().zip(way.values());
-        let texts: Vec<_> = texts.map(|pair| <[usize; 2]>::from(pair).map(|at| self.text(at))).collect();
+        let texts: Vec<_> =
+            texts.map(|pair| <[usize; 2]>::from(pair).map(|at| self.text(at))).collect();
         let tags: Vec<(&str, &str)> =
             texts.iter().map(|[key, value]| (&*key.text, &*value.text)).collect();
         structure_and_layer(&tags).0

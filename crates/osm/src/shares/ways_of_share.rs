@@ -53,6 +53,7 @@ fn keep(
     let mut not_kept = None;
     let wanted = WaysWanted {
         roads: Some(reading.request.table),
+        are_railways_wanted: reading.request.node_ids,
         own_tags: OwnTags::Ignored,
         way_ids: Vec::new(),
         is_first: true,

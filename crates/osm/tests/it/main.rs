@@ -14,6 +14,7 @@ mod losses;
 mod one_reading;
 mod points;
 mod points_against_osmium;
+mod railways;
 mod real_data;
 mod seeds;
 mod several;

@@ -210,8 +210,7 @@ impl<'a, 'b> ObjectWriter<'a, 'b> {
                 Self::Points(LayerWriter::new(layer, told))
             }
             LayerGeometry::Line => {
-                let spans = input.settings.spans
-                    && table.form().placement == LinePlacement::Spans;
+                let spans = input.settings.spans && table.form().placement == LinePlacement::Spans;
                 let splitting = LineSplitting { plan, levels, lengths, spans };
                 let layer = ObjectLayer::new((slot, splitting), places, memory_bytes);
                 Self::Lines(LayerWriter::new(layer, told))

@@ -59,11 +59,7 @@ fn wave(levels: &Levels) -> LayerLine {
 
 fn part(line: &LayerLine) -> LinePart<'_> {
     let LayerLine { points, fixed, .. } = line;
-    LinePart {
-        points: Cow::Borrowed(points),
-        fixed: Cow::Borrowed(fixed),
-        along_um: Vec::new(),
-    }
+    LinePart { points: Cow::Borrowed(points), fixed: Cow::Borrowed(fixed), along_um: Vec::new() }
 }
 
 #[test]
@@ -151,7 +147,8 @@ fn boundaries_end_at_the_outline_of_a_polygon() {
     splitting.plan.polygon = Some(&region);
     let parts = splitting.split(&boundary);
     for level in 0..=2 {
-        let points = parts.iter().filter(|(id, _)| id.z() == level).flat_map(|(_, part)| &part.points);
+        let points =
+            parts.iter().filter(|(id, _)| id.z() == level).flat_map(|(_, part)| &part.points);
         let own = LatticeBounds::around(&points.copied().collect::<Vec<_>>()).unwrap();
         let step = splitting.plan.step(level);
         assert!(
@@ -160,8 +157,8 @@ fn boundaries_end_at_the_outline_of_a_polygon() {
     }
 }
 
-/// A piece of a bridge has the positions of its points along the whole line, on all levels, with and
-/// without a polygon that cuts the line.
+/// A piece of a bridge has the positions of its points along the whole line, on all levels, with
+/// and without a polygon that cuts the line.
 #[test]
 fn pieces_of_bridges_know_where_they_are_along_their_way() {
     let levels = levels();

@@ -88,11 +88,7 @@ impl<'a> LayerEncoder for RoadLayer<'a> {
         &self.splitting
     }
 
-    fn take_carrier(
-        &mut self,
-        road: Road,
-        railway: Option<Railway>,
-    ) -> Result<(), ExtractError> {
+    fn take_carrier(&mut self, road: Road, railway: Option<Railway>) -> Result<(), ExtractError> {
         let Some(near_spans) = &mut self.near_spans else { return Ok(()) };
         let is_reached = self.splitting.reaches(&road);
         // Lines of layers are on this way, too, and refer to positions along it.

@@ -44,8 +44,8 @@ pub struct RoadPiece {
 /// The pieces of all roads of a tile with the roads' ordinals, ascending, and the pieces of layers'
 /// lines that may be off its ground.
 ///
-/// Encoding of roads: for each road, the number of ordinals skipped since the road before, and then its
-/// piece.
+/// Encoding of roads: for each road, the number of ordinals skipped since the road before, and then
+/// its piece.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TilePieces {
     /// Pieces with the numbers of their roads.

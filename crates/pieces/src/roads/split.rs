@@ -11,11 +11,7 @@ use corniche_spec::{
     true_lengths::{TrueLengths, starts_um},
 };
 
-use super::{
-    near_spans::NearRoad,
-    pieces::RoadPiece,
-    totals::RoadLength,
-};
+use super::{near_spans::NearRoad, pieces::RoadPiece, totals::RoadLength};
 use crate::layers::{fixed_points::road_of_part, segment_run::SegmentRun};
 
 /// The settings and data that splitting needs.

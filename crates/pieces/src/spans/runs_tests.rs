@@ -5,8 +5,8 @@ use std::sync::Arc;
 use corniche_geom::{GridFrame, NodeIndex, Polyline, TileId};
 use corniche_roads::{FunctionalRoadClass, MetNodes, Road, RoadAttributes, Structure};
 use corniche_store::MemoryStore;
-use corniche_tileset::RunOwner;
 use corniche_testing::{FlatProjection, MemoryScratch};
+use corniche_tileset::RunOwner;
 use corniche_work::Silent;
 
 use super::*;

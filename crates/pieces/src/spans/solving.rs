@@ -16,7 +16,7 @@ use corniche_spec::{
     artifacts::{self, ArtifactKind},
 };
 use corniche_tileset::{
-    OuterGround, SpanRun, encode_spans, limits::MAX_SPAN_POINTS, pmtiles_order,
+    OuterGround, RunOwner, SpanRun, encode_spans, limits::MAX_SPAN_POINTS, pmtiles_order,
 };
 use corniche_tin::{Surface, Tin};
 use corniche_work::{Stage, workers};
@@ -195,7 +195,8 @@ impl SpanSolving<'_> {
         for line in &lines {
             let of_line = runs_of(line, (network, decks), self.quantum_m);
             runs.extend(of_line.runs);
-            if of_line.within_m > MOST_WITHIN_M {
+            // The package has lines of layers only as chosen, and notes must not depend on that.
+            if of_line.within_m > MOST_WITHIN_M && line.of.owner.layer().is_none() {
                 let reason = match line.kind() {
                     SpanKind::Bridge => SpanReason::DeckInGround,
                     SpanKind::Tunnel => SpanReason::TunnelAboveGround,
@@ -214,26 +215,25 @@ impl SpanSolving<'_> {
     }
 }
 
-/// Removes the runs of the ways with the most points until readers accept the rest. Returns the
-/// removed ways.
+/// Removes the runs of lines of layers and then of roads, those of the ways with the most points
+/// first, until readers accept the rest. Returns the removed ways.
 fn left_out(runs: &mut Vec<SpanRun>) -> impl Iterator<Item = i64> + use<> {
-    let mut of_ways: BTreeMap<i64, usize> = BTreeMap::new();
+    let mut of_ways: BTreeMap<(RunOwner, i64), usize> = BTreeMap::new();
     for run in runs.iter() {
-        *of_ways.entry(run.way_id).or_default() += run.points.len();
+        *of_ways.entry((run.owner, run.way_id)).or_default() += run.points.len();
     }
-    let mut all: Vec<(usize, i64)> =
-        of_ways.into_iter().map(|(way_id, points)| (points, way_id)).collect();
-    all.sort_unstable();
-    let mut points: usize = all.iter().map(|(points, _)| points).sum();
+    let mut all: Vec<((RunOwner, i64), usize)> = of_ways.into_iter().collect();
+    all.sort_unstable_by_key(|&(of, points)| (of.0.layer().is_some(), points, of));
+    let mut points: usize = all.iter().map(|(_, points)| points).sum();
     let mut left_out = BTreeSet::new();
     while points > MAX_SPAN_POINTS
-        && let Some((own, way_id)) = all.pop()
+        && let Some((of, own)) = all.pop()
     {
         points -= own;
-        left_out.insert(way_id);
+        left_out.insert(of);
     }
-    runs.retain(|run| !left_out.contains(&run.way_id));
-    left_out.into_iter()
+    runs.retain(|run| !left_out.contains(&(run.owner, run.way_id)));
+    left_out.into_iter().map(|(_, way_id)| way_id)
 }
 
 #[cfg(test)]

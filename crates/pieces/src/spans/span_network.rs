@@ -1,5 +1,5 @@
-//! The network of bridges, tunnels and the roads and railways near them, with the position of each stretch along
-//! its road.
+//! The network of bridges, tunnels and the roads and railways near them, with the position of each
+//! stretch along its road.
 
 use std::{collections::HashMap, sync::Arc};
 
@@ -133,11 +133,13 @@ impl SpanNetwork {
                     segments[span].extend(points.array_windows());
                     let road = place.ordinal.map(CarriedLine::Road);
                     let way = CarriedLine::Way(way.way_id, place.start);
-                    stretches.extend(
-                        road.into_iter()
-                            .chain([way])
-                            .map(|line| Stretch { line, from_um, to_um, chain, on_chain_m }),
-                    );
+                    stretches.extend(road.into_iter().chain([way]).map(|line| Stretch {
+                        line,
+                        from_um,
+                        to_um,
+                        chain,
+                        on_chain_m,
+                    }));
                 }
                 from_um = to_um;
             }
@@ -190,9 +192,8 @@ impl SpanNetwork {
 
     /// The chain at a position on a bridge or a tunnel, and the distance along the chain, metres.
     pub(crate) fn on_chain(&self, at: OnCarriedLine) -> Option<(ChainNumber, f64)> {
-        let after = self
-            .stretches
-            .partition_point(|own| (own.line, own.from_um) <= (at.line, at.along_um));
+        let after =
+            self.stretches.partition_point(|own| (own.line, own.from_um) <= (at.line, at.along_um));
         let own = self.stretches.get(after.checked_sub(1)?)?;
         if own.line != at.line || own.to_um < at.along_um {
             return None;
@@ -209,8 +210,7 @@ impl SpanNetwork {
         [from_um, to_um]: [u64; 2],
     ) -> Vec<u64> {
         let mut bends = Vec::new();
-        let first =
-            self.stretches.partition_point(|own| (own.line, own.to_um) <= (line, from_um));
+        let first = self.stretches.partition_point(|own| (own.line, own.to_um) <= (line, from_um));
         let own = self.stretches[first..]
             .iter()
             .take_while(|own| own.line == line && own.from_um < to_um);
@@ -298,8 +298,8 @@ fn degrees_of(
     Ok(all().map(|point| point.in_steps().map(f64::to_bits)).zip(positions).collect())
 }
 
-/// The roads and railways as a network, with the origin of each of them. They end at the edge of the
-/// data.
+/// The roads and railways as a network, with the origin of each of them. They end at the edge of
+/// the data.
 fn network(inputs: &SpanInputs<'_>) -> Result<(Network, Vec<PlacedRoad>), ExtractError> {
     let lengths = TrueLengths::projected(*inputs.frame, inputs.projection);
     let mut builder = NetworkBuilder::default();

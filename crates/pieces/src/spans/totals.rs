@@ -32,8 +32,8 @@ pub struct SpanTotals {
 }
 
 impl SpanTotals {
-    /// Counts solved decks with a road of the package or a railway in the requested region; `within`
-    /// are those with the ground on the wrong side.
+    /// Counts solved decks with a road of the package or a railway in the requested region;
+    /// `within` are those with the ground on the wrong side.
     #[must_use]
     pub fn from_network(
         network: &SpanNetwork,

@@ -1,5 +1,5 @@
-//! Railways take part in bridges and tunnels like roads: each knows what it crosses, with or without
-//! a layer of railways, whose lines then have runs.
+//! Railways take part in bridges and tunnels like roads: each knows what it crosses, with or
+//! without a layer of railways, whose lines then have runs.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -103,8 +103,7 @@ fn heights(package: &FilePackage, way_id: i64) -> Vec<[f64; 2]> {
     let manifest = package.manifest();
     let (frame, quantum_m) = (&manifest.frame, manifest.vertical.quantum_m);
     let own = runs(package).into_iter();
-    let own =
-        own.filter(|(id, run)| id.z() == frame.max_level() && run.way_id == way_id);
+    let own = own.filter(|(id, run)| id.z() == frame.max_level() && run.way_id == way_id);
     let of_run = |(_, run): (TileId, SpanRun)| run.points;
     own.flat_map(of_run)
         .filter_map(|point| match point.height {
@@ -155,7 +154,6 @@ fn lines_of_a_layer_are_on_their_bridges_and_in_their_tunnels() {
     for level in [0, package.manifest().frame.max_level()] {
         let own = of_layer.iter().filter(|(id, _)| id.z() == level);
         let mut ways: Vec<i64> = own.map(|(_, run)| run.way_id).collect();
-        ways.dedup();
         ways.sort_unstable();
         ways.dedup();
         assert_eq!(ways, [12, 15], "level {level}");

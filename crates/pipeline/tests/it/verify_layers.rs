@@ -70,8 +70,8 @@ fn point_of(object: &mut LayerObject) -> &mut LatticePoint {
     point
 }
 
-fn text(text: &str) -> Option<AttributeValue> {
-    Some(AttributeValue::Text(text.to_owned()))
+fn text(text: &str) -> AttributeValue {
+    AttributeValue::Text(text.to_owned())
 }
 
 /// The first object of the first class.
@@ -189,8 +189,8 @@ fn a_point_on_a_border_that_is_in_the_wrong_tile() {
     let id = apart.finest().find(has_east).unwrap().id;
     let LatticeBounds { min, max } = apart.frame().tile_lattice_bounds(id);
     for (point, expected) in [
-        (LatticePoint::new(max.u, (min.v + max.v) / 2), &[CheckId::PointPlaces][..]),
-        (LatticePoint::new(min.u, (min.v + max.v) / 2), &[]),
+        (LatticePoint::new(max.u, i64::midpoint(min.v, max.v)), &[CheckId::PointPlaces][..]),
+        (LatticePoint::new(min.u, i64::midpoint(min.v, max.v)), &[]),
     ] {
         let mut apart = Apart::sound();
         let (object, shape) = (OsmObject::Way(99), LayerShape::Point(point));
@@ -302,7 +302,7 @@ fn objects_that_are_not_those_of_the_extract() {
     type Change = fn(&mut LayerObject);
     let changes: [(usize, CheckId, Change); 9] = [
         (PLOTS, CheckId::OsmAreas, |area| area.class = 2),
-        (PLOTS, CheckId::OsmAreas, |area| area.values[0] = text("Pond")),
+        (PLOTS, CheckId::OsmAreas, |area| area.values[0] = Some(text("Pond"))),
         // The point moves by one lattice step, to the inside.
         (PLOTS, CheckId::OsmAreas, |area| {
             let ring = ring_of(area, 0);
@@ -326,7 +326,7 @@ fn objects_that_are_not_those_of_the_extract() {
     // What the changes replace.
     let mut apart = Apart::sound();
     let root = apart.tile(TileId::ROOT);
-    assert_eq!(root.layers[PLOTS][0].values, [text("Lake")]);
+    assert_eq!(root.layers[PLOTS][0].values, [Some(text("Lake"))]);
     assert_eq!(root.layers[WALLS][0].values[0], Some(AttributeValue::Number(2.0)));
     assert_eq!(root.layers[COURTS][0].values, [Some(AttributeValue::YesNo(true))]);
     let sound = apart.manifest.clone();

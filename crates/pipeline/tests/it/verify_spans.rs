@@ -9,8 +9,8 @@ use corniche_pipeline::build;
 use corniche_roads::{FunctionalRoadClass, Structure};
 use corniche_testing::package::with_section;
 use corniche_tileset::{
-    FilePackage, Manifest, PackageWriter, RoadRecord, RunOwner, Sections, SpanCounts, SpanHeight, SpanRun,
-    decode_spans, encode_spans, payload_sizes,
+    FilePackage, Manifest, PackageWriter, RoadRecord, RunOwner, Sections, SpanCounts, SpanHeight,
+    SpanRun, decode_spans, encode_spans, payload_sizes,
 };
 use corniche_tin::{Placement, Surface};
 use corniche_verify::{CheckId, Needs};

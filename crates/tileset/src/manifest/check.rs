@@ -189,9 +189,15 @@ impl Manifest {
         }
         let levels = levels.iter().map(SectionLevelRecord::figures);
         check_sum("spans.counts", [counts.bridges_um, counts.tunnels_um])?;
-        let spans = [counts.bridges, counts.tunnels, counts.railway_bridges, counts.railway_tunnels];
+        let spans =
+            [counts.bridges, counts.tunnels, counts.railway_bridges, counts.railway_tunnels];
         let crossings = counts.crossings.iter().map(|(.., count)| *count);
         check_sum("spans.counts.crossings", crossings.clone())?;
+        let pairs = || counts.crossings.iter().map(|(upper, lower, _)| [upper, lower]);
+        let is_kind = |kind: &String| ["railways", "roads"].contains(&kind.as_str());
+        let are_known =
+            pairs().flatten().all(is_kind) && pairs().is_sorted_by(|one, next| one < next);
+        that(are_known, "spans.counts.crossings", &counts.crossings)?;
         let kept = (0..).zip(spans.into_iter().chain([counts.crossings()]));
         self.check_layer("spans", levels, kept, |_| true, &counts.reasons)
     }

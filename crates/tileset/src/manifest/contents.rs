@@ -281,13 +281,11 @@ pub struct SpanCounts {
     #[serde(default)]
     pub tunnels_um: u64,
     /// Number of bridges of railways alone.
-    #[serde(default)]
     pub railway_bridges: u64,
     /// Number of tunnels of railways alone.
-    #[serde(default)]
     pub railway_tunnels: u64,
     /// Numbers of crossings with other roads and railways and with each other: what is above, what
-    /// is below ("roads" or "railways"), and the number.
+    /// is below ("roads" or "railways"), and the number; sorted, each pair once.
     pub crossings: Vec<(String, String, u64)>,
     /// Reasons to inspect a span, each with its number of occurrences.
     pub reasons: Vec<(String, u64)>,

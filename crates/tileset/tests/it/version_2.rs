@@ -138,7 +138,9 @@ fn decoded(name: &str) -> ([usize; 6], [u32; 9]) {
         for (slot, _) in package.manifest().layers() {
             let objects = package.manifest().decode_layer(&bytes, id, slot).unwrap();
             counts[5] += objects.len();
-            objects.iter().for_each(|object| sums.add_object(object));
+            for object in &objects {
+                sums.add_object(object);
+            }
         }
         for record in &tile.attributes {
             sums.attributes.update(&record.way_id.to_le_bytes());

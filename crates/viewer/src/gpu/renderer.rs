@@ -110,7 +110,9 @@ impl Renderer {
         let decks = DrawnRoads::new(frame, tiles, |tile| tile.decks(method), of_decks);
         let lines = line_layers_of(tiles);
         if let Some(timer) = &mut timer {
-            timer.begin([!areas.is_empty() || !drawn_areas.is_empty(), !decks.is_empty()]);
+            let has_decks =
+                !decks.is_empty() || lines.iter().any(|layer| has_line_decks(tiles, *layer));
+            timer.begin([!areas.is_empty() || !drawn_areas.is_empty(), has_decks]);
         }
         let mut mark = |encoder: &mut CommandEncoder, number| {
             if let Some(timer) = &mut timer {
@@ -136,10 +138,10 @@ impl Renderer {
             for &layer in &of_package {
                 self.pass_lines(frame, encoder, tiles, layer);
             }
+            self.pass_deck_colors(frame, encoder, &decks);
             for &layer in &of_package {
                 self.pass_line_decks(frame, encoder, tiles, layer);
             }
-            self.pass_deck_colors(frame, encoder, &decks);
             for layer in of_user {
                 self.pass_lines(frame, encoder, tiles, layer);
             }

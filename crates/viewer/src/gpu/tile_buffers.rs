@@ -23,8 +23,7 @@ use crate::{
     options::{ClassSet, RoadMethod},
     scene::BorderTile,
     tiles::{
-        AreaVolumes, ClassVolumes, DeckPieces, LineLayer, NearHeights, RoadSegments, RoadVolumes, TileGeometry,
-        TileLayer, plan_around,
+        AreaVolumes, ClassVolumes, LineLayer, NearHeights, TileGeometry, TileLayer, plan_around,
     },
 };
 
@@ -60,19 +59,12 @@ struct LayerBuffers {
 }
 
 impl LayerBuffers {
-    fn new(
-        gpu: &Gpu,
-        (segments, volumes, decks): (&RoadSegments, &RoadVolumes, &DeckPieces),
-    ) -> Self {
+    fn of_lines(gpu: &Gpu, TileLayer { segments, volumes, decks }: &TileLayer) -> Self {
         Self {
             segments: RoadBuffers::new(gpu, segments),
             volumes: RoadBuffers::new(gpu, volumes),
             decks: RoadBuffers::new(gpu, decks),
         }
-    }
-
-    fn of_lines(gpu: &Gpu, TileLayer { segments, volumes, decks }: &TileLayer) -> Self {
-        Self::new(gpu, (segments, volumes, decks))
     }
 
     fn for_method(&self, method: RoadMethod) -> Option<&RoadBuffers> {
@@ -129,7 +121,11 @@ impl TileBuffers {
             textures: TileTextures::new(gpu, tile, above),
             areas: AreaBuffers::new(gpu, &tile.areas),
             drawn_areas: None,
-            roads: LayerBuffers::new(gpu, (&tile.roads, &tile.volumes, &tile.decks)),
+            roads: LayerBuffers {
+                segments: RoadBuffers::new(gpu, &tile.roads),
+                volumes: RoadBuffers::new(gpu, &tile.volumes),
+                decks: RoadBuffers::new(gpu, &tile.decks),
+            },
             layers: tile
                 .lines
                 .0

@@ -16,8 +16,8 @@ struct PictureColors {
     road_mains: array<vec4<f32>, CLASSES>,
     // Colours of roads that are too thin for an edge.
     road_thins: array<vec4<f32>, CLASSES>,
-    // rgb: colour of the sides of bridges. w: 1 if the roads are other lines, such as railways, whose
-    // widths are in pixels only.
+    // rgb: colour of the sides of bridges. w: 1 if the roads are other lines, such as railways,
+    // whose widths are in pixels only.
     slab: vec4<f32>,
 }
 

@@ -3,7 +3,7 @@
 use std::{cell::OnceCell, collections::BTreeMap, sync::Arc};
 
 use corniche_geom::{MOST_TILE_STEPS, StepBudget, TileId, TooMuchWork};
-use corniche_layers::LayerGeometry;
+use corniche_layers::{LayerGeometry, LinePlacement};
 use corniche_styles::Style;
 use corniche_tileset::{
     DecodeError, LayerObject, LayerShape, LayerSlot, Manifest, Sections, SpanRun, decode_photo,
@@ -137,15 +137,18 @@ impl TileDecoder {
     }
 
     /// The bridges and tunnels of a tile; `None` if the package has no data about them, or neither
-    /// roads nor layers are read.
+    /// roads are read nor layers with bridges and tunnels.
     pub(crate) fn spans(
         &self,
         payload: &[u8],
         id: TileId,
         manifest: &Manifest,
     ) -> Result<Option<Vec<SpanRun>>, DecodeError> {
-        let has_layers = self.layers.as_ref().is_none_or(|layers| !layers.is_empty());
-        let is_wanted = self.sections.contains(Sections::ATTRIBUTES) || has_layers;
+        let is_read =
+            |slot: &LayerSlot| self.layers.as_ref().is_none_or(|layers| layers.contains(slot));
+        let mut of_layers = manifest.layers().filter(|(slot, _)| is_read(slot));
+        let is_wanted = self.sections.contains(Sections::ATTRIBUTES)
+            || of_layers.any(|(_, record)| record.table.placement == LinePlacement::Spans);
         if manifest.spans.is_none() || !is_wanted {
             return Ok(None);
         }
@@ -167,9 +170,10 @@ impl TileDecoder {
         let scale = PlanScale::of_tile(coordinates, frame.tile_bounds(id), *point_scale);
         let spans = self.spans(payload, id, manifest)?;
         let spans = spans.as_deref();
+        let has_roads = self.sections.contains(Sections::ATTRIBUTES);
         let tile = TileGeometry::from_payload(
             &decoded,
-            spans,
+            spans.filter(|_| has_roads),
             frame,
             quantum_m,
             (margin_m, scale),

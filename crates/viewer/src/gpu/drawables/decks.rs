@@ -4,8 +4,8 @@
 use std::ops::Range;
 
 use wgpu::{
-    BindGroup, BindGroupLayout, BlendState, CommandEncoder, CompareFunction, Device, Face, LoadOp, RenderPass,
-    VertexAttribute, vertex_attr_array,
+    BindGroup, BindGroupLayout, BlendState, CommandEncoder, CompareFunction, Device, Face, LoadOp,
+    RenderPass, VertexAttribute, vertex_attr_array,
 };
 
 use super::{

@@ -11,6 +11,7 @@ use wgpu::CommandEncoder;
 use super::{
     super::{
         Gpu, ReadBackError,
+        drawables::level_connectors::LevelConnectors,
         formats::COLOR,
         inspection::{TileOwner, owners},
         seen::{LineSamples, SeenSamples, ShownTiles, heights_m},
@@ -46,12 +47,18 @@ impl Renderer {
         let lines: Vec<LineSamples> = lines.collect::<Result<_, _>>()?;
         let numbered: Vec<LayerClass> = view.layers.all().map(|(class, _)| class).collect();
         let [areas, points] = self.class_numbers(frame, tiles)?;
+        let method = view.roads.method;
+        let of_decks = LevelConnectors::of_decks;
+        let has_decks =
+            !DrawnRoads::new(frame, tiles, |tile| tile.decks(method), of_decks).is_empty();
+        // Without decks the labels are those of an earlier frame.
+        let decks = has_decks.then(|| targets.read_deck_labels(gpu)).transpose()?.flatten();
         let samples_per_side = targets.picture.samples_per_side;
         let seen = SeenSamples {
             per_side: samples_per_side,
             columns: targets.picture.size_px[0] * samples_per_side,
             roads: &targets.read_labels(gpu)?,
-            decks: targets.read_deck_labels(gpu)?.as_deref(),
+            decks: decks.as_deref(),
             lines: &lines,
             areas: areas.as_deref(),
             points: points.as_deref(),

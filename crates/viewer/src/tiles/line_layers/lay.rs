@@ -54,8 +54,8 @@ impl TileSurface {
         self.lay_within((lines, &[]), methods, &StepBudget::new(self.most_steps))
     }
 
-    /// Does the same as [`TileSurface::lay`] with a budget of work, and with the bridges and tunnels
-    /// among the lines: only the parts that are not off the ground are draped on it.
+    /// Does the same as [`TileSurface::lay`] with a budget of work, and with the bridges and
+    /// tunnels among the lines: only the parts that are not off the ground are draped on it.
     pub(crate) fn lay_within(
         &self,
         (lines, spans): (&[StyledLine], &[SpanRun]),

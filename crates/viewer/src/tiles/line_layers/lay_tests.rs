@@ -1,9 +1,11 @@
 //! Lines from files are on the ground, and dashes are as long on slopes as on level ground.
 
 use corniche_geom::NodeIndex;
+use corniche_tileset::{LayerSlot, RunOwner, SpanHeight, SpanPoint};
 use corniche_tin::{Placement, Tin, TinVertex};
 
 use super::*;
+use crate::tiles::RoadSegment;
 
 const CELL_M: f64 = 10.0;
 /// The number of steps for some hundred diagonals, so that the test is quick.
@@ -29,11 +31,23 @@ fn laid(points_m: &[[f64; 2]]) -> TileLayer {
     laid_on(&surface(&frame()), &[points_m]).unwrap()
 }
 
+/// The lattice point this far east and south of the tile's corner.
+fn place(&[east, south]: &[f64; 2]) -> LatticePoint {
+    let tile = frame().tile_bounds(TileId::ROOT);
+    frame().snap([tile.min_x + east, tile.max_y - south]).unwrap()
+}
+
 fn laid_on(surface: &Surface, lines_m: &[&[[f64; 2]]]) -> Result<TileLayer, TooMuchWork> {
+    laid_with(surface, lines_m, &[])
+}
+
+fn laid_with(
+    surface: &Surface,
+    lines_m: &[&[[f64; 2]]],
+    spans: &[SpanRun],
+) -> Result<TileLayer, TooMuchWork> {
     let frame = frame();
     let tile = frame.tile_bounds(TileId::ROOT);
-    let place =
-        |&[east, south]: &[f64; 2]| frame.snap([tile.min_x + east, tile.max_y - south]).unwrap();
     let on = TileSurface {
         id: TileId::ROOT,
         surface: surface.clone(),
@@ -50,7 +64,8 @@ fn laid_on(surface: &Surface, lines_m: &[&[[f64; 2]]]) -> Result<TileLayer, TooM
         style: 2,
         points: points_m.iter().map(place).collect(),
     };
-    on.lay(&lines_m.iter().map(line).collect::<Vec<_>>(), LineMethods::Both)
+    let lines: Vec<StyledLine> = lines_m.iter().map(line).collect();
+    on.lay_within((&lines, spans), LineMethods::Both, &StepBudget::new(FEW_STEPS))
 }
 
 fn starts_and_rates(layer: &TileLayer) -> Vec<([f32; 2], [f32; 2])> {
@@ -142,4 +157,47 @@ fn lines_that_cross_too_many_triangles_are_refused() {
     // One line of many long segments is the same case.
     let back: Vec<[f64; 2]> = (0..20_000).map(|k| diagonal[k % 2]).collect();
     assert!(laid_on(&surface, &[&back]).is_err());
+}
+
+/// A bridge of a line is a deck in its style, and the line is on the ground on both sides of it.
+#[test]
+fn a_line_leaves_the_ground_where_it_has_a_bridge() {
+    let surface = surface(&frame());
+    let ground = |at: [f64; 2]| {
+        let at = place(&at);
+        SpanPoint { at, height: SpanHeight::Ground { triangle: surface.locate(at).unwrap() } }
+    };
+    let high = SpanPoint { at: place(&[450.0, 900.0]), height: SpanHeight::Steps(4000) };
+    let run = SpanRun {
+        way_id: 7,
+        owner: RunOwner::Layer(LayerSlot::new(0).unwrap()),
+        structure: Structure::Bridge,
+        points: vec![ground([300.0, 900.0]), high, ground([600.0, 900.0])],
+    };
+    let line = [[100.0, 900.0], [1000.0, 900.0]];
+    let of_other = SpanRun { way_id: 8, ..run.clone() };
+    let layer = laid_with(&surface, &[&line], &[run.clone(), of_other]).unwrap();
+    let east = |at: [f32; 3]| f64::from(at[0]);
+    let decks = layer.decks.all();
+    let class = FunctionalRoadClass::new(2).unwrap();
+    assert!(decks.iter().all(|deck| deck.kind == RoadKind::plain(class) && deck.slab_m > 0.0));
+    let highest_m = decks.iter().map(|deck| deck.end_in_tile[2]).fold(0.0, f32::max);
+    assert!((highest_m - 500.0).abs() < 0.01, "{highest_m}");
+    assert_eq!((decks.len(), layer.volumes.all().is_empty()), (2, false));
+    assert!((east(decks[0].start_in_tile) - 300.0).abs() < 0.01);
+    let is_covered = |at_m: f64| {
+        let is_in = |of: &RoadSegment| {
+            let [from, to] = [of.start_in_tile[0], of.end_in_tile[0]];
+            let [first, last] = of.shares.map(|share| f64::from(from + share * (to - from)));
+            first <= at_m && at_m <= last
+        };
+        layer.segments.all().iter().any(is_in)
+    };
+    assert!([150.0, 290.0, 610.0, 900.0].into_iter().all(is_covered));
+    assert!(![310.0, 450.0, 590.0].into_iter().any(is_covered));
+    // In a tunnel the line stays on the ground, with another look.
+    let tunnel = SpanRun { structure: Structure::Tunnel, ..run };
+    let layer = laid_with(&surface, &[&line], &[tunnel]).unwrap();
+    assert!(layer.decks.all().is_empty());
+    assert!(layer.segments.all().iter().all(|of| of.kind.look == RoadLook::Bore));
 }

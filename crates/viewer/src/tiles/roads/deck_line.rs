@@ -40,8 +40,7 @@ pub(crate) fn road_decks(
     surface: &Surface,
     (frame, quantum_m): (&GridFrame, f64),
 ) -> Vec<DeckLine> {
-    let kind =
-        |run: &SpanRun| Some(RoadKind::tagged(payload, run.way_id, run.owner.road_class()?));
+    let kind = |run: &SpanRun| Some(RoadKind::tagged(payload, run.way_id, run.owner.road_class()?));
     deck_lines(runs, kind, surface, (frame, quantum_m))
 }
 

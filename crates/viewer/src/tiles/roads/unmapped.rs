@@ -10,13 +10,7 @@ impl DeckLine {
         // Vertices within a source segment are its crossings with edges of triangles.
         let is_source = |at: usize| at == 0 || sources_m.get(at - 1) != sources_m.get(at);
         let points_m = (0..points_m.len()).filter(|at| is_source(*at)).map(|at| points_m[at]);
-        Self {
-            way_id,
-            kind,
-            is_road: true,
-            points_m: points_m.collect(),
-            on_ground: [false; 2],
-        }
+        Self { way_id, kind, is_road: true, points_m: points_m.collect(), on_ground: [false; 2] }
     }
 }
 
