@@ -143,8 +143,8 @@ impl BlockWays {
         self.judge(way, &tags, judge.table);
     }
 
-    /// Stores a way that is a railway without a `highway` tag. It is not counted, and has no defects
-    /// but those of layers with railways.
+    /// Stores a way that is a railway without a `highway` tag. It is not counted, and has no
+    /// defects but those of layers with railways.
     fn look_at_railway(&mut self, way: &BlockWay<'_, '_>, judge: &WayJudge<'_>) {
         let texts = way.keys().zip(way.values());
         let texts = texts.filter_map(|(key, value)| Some((judge.text(key)?, judge.text(value)?)));

@@ -134,7 +134,7 @@ fn spans_of_a_tile_are_told() {
     assert_eq!(spans.as_array().unwrap().len(), 2);
     assert_eq!(
         spans[0],
-        value!({ "way_id": 7, "frc": 3, "structure": "bridge", "line": bridge, "on_ground": [true, false] })
+        value!({ "way_id": 7, "frc": 3, "layer": null, "structure": "bridge", "line": bridge, "on_ground": [true, false] })
     );
     let is_vertex = |vertex: &Value| *vertex == spans[0]["line"][0];
     assert!(tile["tin"]["vertices"].as_array().unwrap().iter().any(is_vertex));
@@ -144,7 +144,7 @@ fn spans_of_a_tile_are_told() {
     let tunnel = [point(10.0, 200.0, -1.75), point(20.0, 201.0, ground_m)];
     assert_eq!(
         spans[1],
-        value!({ "way_id": 9, "frc": 3, "structure": "tunnel", "line": tunnel, "on_ground": [false, true] })
+        value!({ "way_id": 9, "frc": 3, "layer": null, "structure": "tunnel", "line": tunnel, "on_ground": [false, true] })
     );
     let told = corniche(["tile", text(&path), "2/2/1"]).out;
     assert!(told.lines().any(|line| line.split_whitespace().eq(["spans", "2"])), "{told}");

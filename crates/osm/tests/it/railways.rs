@@ -1,5 +1,5 @@
-//! Railways are delivered beside roads where bridges and tunnels are requested, each once, also with
-//! a `highway` tag that is not that of a road.
+//! Railways are delivered beside roads where bridges and tunnels are requested, each once, also
+//! with a `highway` tag that is not that of a road.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
