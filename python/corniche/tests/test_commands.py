@@ -21,7 +21,7 @@ from corniche.running import TELL_PROGRESS
 
 def test_a_build_returns_what_the_package_holds_and_tells_how_far_it_is(program: str, tmp_path: Path) -> None:
     told: list[Stage] = []
-    made = corniche.build(tmp_path / "pass.pmtiles", **corniche.sample(), **COARSE, areas="default", progress=told.append)
+    made = corniche.build(tmp_path / "pass.pmtiles", **corniche.sample(), **COARSE, layers="areas", progress=told.append)
     assert made["manifest"]["generator"].startswith("corniche ")
     assert made == corniche.info(tmp_path / "pass.pmtiles")
     ended = {stage.stage for stage in told if stage.state == "end"}

@@ -17,7 +17,7 @@ from corniche.records import error_of, record_of, stage_of, warning_of
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"max_error": 2.5, "areas": "default"}, ["--max-error=2.5", "--areas=default"]),
+        ({"max_error": 2.5, "layers": "areas"}, ["--max-error=2.5", "--layers=areas"]),
         ({"overwrite": True, "force": False, "osm": None}, ["--overwrite"]),
         ({"dem": [Path("a.tif"), "b c.tif"]}, ["--dem=a.tif", "--dem=b c.tif"]),
         ({"bounds": (-9.5, 46.8, 9.6, 46.9)}, ["--bounds=-9.5,46.8,9.6,46.9"]),

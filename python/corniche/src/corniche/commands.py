@@ -16,7 +16,7 @@ from .running import Progress, ran, refuse, run
 def build(output: Place, *, progress: Progress = None, corniche: Place | None = None, **options: Any) -> dict[str, Any]:
     """Builds a tile package; returns the same document as :func:`info`.
 
-    ``build("my.pmtiles", dem="dem.tif", osm="roads.osm.pbf", max_error=2.5, areas="default")``
+    ``build("my.pmtiles", dem="dem.tif", osm="roads.osm.pbf", max_error=2.5, layers="areas")``
 
     :param output: the package to write; an existing one is overwritten only with ``overwrite=True``
     :param progress: a function that is called with a :class:`Stage` about twice a second; ``True`` shows bars of tqdm
