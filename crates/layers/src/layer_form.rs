@@ -118,12 +118,7 @@ fn half() -> f64 {
     0.5
 }
 
-#[expect(
-    clippy::trivially_copy_pass_by_ref,
-    clippy::float_cmp,
-    reason = "serde passes references; the default is exact"
-)]
-fn is_half(cells: &f64) -> bool {
+fn is_half<T: PartialEq<f64>>(cells: &T) -> bool {
     *cells == half()
 }
 

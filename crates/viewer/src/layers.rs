@@ -169,6 +169,7 @@ impl PackageLooks {
     }
 
     /// The same layers with other looks.
+    #[cfg(all(feature = "annotations", not(target_arch = "wasm32")))]
     pub(crate) fn map(&self, mut look: impl FnMut(LayerLook) -> LayerLook) -> Self {
         let map = |looks: &Vec<LayerLook>| looks.iter().map(|of| look(*of)).collect();
         Self::from_looks(self.layers.iter().map(map).collect())

@@ -16,6 +16,7 @@ use crate::payload::damage::Damage;
 use crate::payload::number_codes::Cursor;
 
 /// Whole numbers of doubles up to this size are exact.
+#[cfg(feature = "write")]
 const MAX_WHOLE: f64 = 9_007_199_254_740_992.0;
 
 /// The column of an attribute while it is read.
