@@ -148,6 +148,22 @@ impl<'a> TrueLengths<'a> {
         })
     }
 
+    /// The distance of a part's start along its line, and the lengths of the part's segments,
+    /// micrometres. `segments_um` are the true lengths of the line's segments.
+    #[must_use]
+    pub fn part_um(
+        &self,
+        line: &Polyline,
+        part: &ClippedPart,
+        segments_um: &[u64],
+    ) -> (u64, Vec<u64>) {
+        let pieces: Vec<[u64; 2]> = self.pieces_um(line, part, segments_um).collect();
+        let first = part.segments.first();
+        let before_um: u64 = first.map_or(0, |&first| segments_um[..first].iter().sum());
+        let from_um = before_um + pieces.first().map_or(0, |[from, _]| *from);
+        (from_um, pieces.iter().map(|[from, to]| to - from).collect())
+    }
+
     /// The length of a part that is over the gaps found when the part was draped, micrometres.
     /// `pieces` are those of [`Self::pieces_um`]: a gap is cut out of them.
     #[must_use]

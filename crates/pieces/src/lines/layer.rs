@@ -86,13 +86,11 @@ impl LineSplitting<'_> {
         (line, part): (&Polyline, &ClippedPart),
         segments_um: &[u64],
     ) -> Vec<u64> {
-        let Some(&first) = part.segments.first().filter(|_| !segments_um.is_empty()) else {
+        if segments_um.is_empty() {
             return Vec::new();
-        };
-        let pieces: Vec<[u64; 2]> = self.lengths.pieces_um(line, part, segments_um).collect();
-        let before_um: u64 = segments_um[..first].iter().sum();
-        let from_um = before_um + pieces.first().map_or(0, |[from, _]| *from);
-        alongs_um(from_um, pieces.iter().map(|[from, to]| to - from))
+        }
+        let (from_um, part_um) = self.lengths.part_um(line, part, segments_um);
+        alongs_um(from_um, part_um.into_iter())
     }
 
     fn split_level(&self, part: &LinePart<'_>, level: u8) -> Vec<(TileId, LevelPart)> {

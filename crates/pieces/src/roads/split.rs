@@ -210,14 +210,8 @@ struct RoadPart<'r> {
 impl RoadPart<'_> {
     /// Cuts a part out of a road whose segments have these lengths.
     fn cut(road: &Road, part: ClippedPart, segments_um: &[u64], lengths: &TrueLengths<'_>) -> Self {
-        let pieces: Vec<[u64; 2]> = lengths.pieces_um(&road.line, &part, segments_um).collect();
-        let before_um: u64 =
-            part.segments.first().map_or(0, |&first| segments_um[..first].iter().sum());
-        Self {
-            from_um: before_um + pieces.first().map_or(0, |[from, _]| *from),
-            segments_um: pieces.iter().map(|[from, to]| to - from).collect(),
-            road: Cow::Owned(road_of_part(road, part)),
-        }
+        let (from_um, segments_um) = lengths.part_um(&road.line, &part, segments_um);
+        Self { from_um, segments_um, road: Cow::Owned(road_of_part(road, part)) }
     }
 
     fn length_in_um(&self, bounds: &LatticeBounds, lengths: &TrueLengths<'_>) -> u64 {

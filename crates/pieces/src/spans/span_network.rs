@@ -317,12 +317,9 @@ fn network(inputs: &SpanInputs<'_>) -> Result<(Network, Vec<PlacedRoad>), Extrac
             let mut placed =
                 PlacedRoad { ordinal, start, is_reached, from_um: 0, segments_um: Vec::new() };
             // The position along the way is not needed for roads on the ground.
-            if let ([_, ..], Some(&first)) = (&segments_um[..], part.segments.first()) {
-                let pieces: Vec<[u64; 2]> =
-                    lengths.pieces_um(&road.line, &part, &segments_um).collect();
-                let before_um: u64 = segments_um[..first].iter().sum();
-                placed.from_um = before_um + pieces.first().map_or(0, |[from, _]| *from);
-                placed.segments_um = pieces.iter().map(|[from, to]| to - from).collect();
+            if !segments_um.is_empty() {
+                (placed.from_um, placed.segments_um) =
+                    lengths.part_um(&road.line, &part, &segments_um);
             }
             places.push(placed);
             builder.push_way(&road_of_part(&road, part), railway);
