@@ -18,6 +18,13 @@ pub const LAYERS: &[(&str, &str)] = &[
     ("areas", include_str!("layers/areas.toml")),
     ("boundaries", include_str!("layers/boundaries.toml")),
     ("railways", include_str!("layers/railways.toml")),
+    ("waterways", include_str!("layers/waterways.toml")),
+    ("buildings", include_str!("layers/buildings.toml")),
+    ("landforms", include_str!("layers/landforms.toml")),
+    ("places", include_str!("layers/places.toml")),
+    ("peaks", include_str!("layers/peaks.toml")),
+    ("pois", include_str!("layers/pois.toml")),
+    ("ferries", include_str!("layers/ferries.toml")),
 ];
 
 /// Styles of the map, the default one first.

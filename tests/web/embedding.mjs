@@ -65,12 +65,13 @@ export function tests({ browser, server, other, site, sources, package: file }) 
     await ready(page);
     assert.match(await page.title(), /Pass/);
     server.state.replaced.set("/packages.json", {
-      bytes: Buffer.from('[{"name":"Pass","src":"packages/pass.pmtiles"},{"name":"Other","src":"packages/other.pmtiles"}]'),
+      bytes: Buffer.from('[{"name":"Pass","src":"packages/pass.pmtiles","layers":"none"},{"name":"Other","src":"packages/other.pmtiles"}]'),
       type: "application/json",
     });
     await page.goto(`${server.origin}/`);
     await page.getByRole("link", { name: "Pass" }).click();
     await ready(page);
+    assert.deepEqual(await ask(page, (map) => map.settings.layers), [], "the layers of the list are shown at first");
     server.state.replaced.set("/packages.json", { bytes: null });
     await page.goto(`${server.origin}/`);
     await page.getByText("There is no map next to this page").waitFor();

@@ -30,7 +30,7 @@ use crate::{
 
 pub(crate) fn run(args: &ServeArgs) -> Result<(), CommandFailure> {
     let page = page::load(args.page.as_deref())?;
-    let packages = shown::open(&args.packages)?;
+    let packages = shown::open(&args.packages, args.layers.as_deref())?;
     match &args.site {
         Some(folder) => write_site(args, folder, &page, &packages),
         None => serve(args, page, &packages),

@@ -1,5 +1,5 @@
-// The page of the viewer: ?src=ADDRESS names the package; without it, the page offers the packages
-// next to it, and accepts a file.
+// The page of the viewer: ?src=ADDRESS names the package, &layers=NAMES the layers that are shown at
+// first. Without an address, the page offers the packages next to it, and accepts a file.
 import { packages } from "./packages.js";
 
 const map = document.getElementById("map");
@@ -7,10 +7,12 @@ const chooser = document.getElementById("chooser");
 const said = document.getElementById("said");
 const drop = document.getElementById("drop");
 
-function show(src, title) {
+/** Shows a package, at first with these layers; without them, with all. */
+function show(src, title, layers) {
   chooser.hidden = true;
   map.hidden = false;
   document.title = `${title} – Corniche`;
+  if (layers != null) map.setAttribute("layers", layers);
   map.src = src;
 }
 
@@ -29,17 +31,18 @@ function showFile(file) {
 }
 
 async function begin() {
-  const src = new URLSearchParams(location.search).get("src");
-  if (src) return show(src, nameOf(src));
+  const query = new URLSearchParams(location.search);
+  const src = query.get("src");
+  if (src) return show(src, nameOf(src), query.get("layers"));
   const known = await packages();
-  if (known.length === 1) return show(known[0].src, known[0].name);
+  if (known.length === 1) return show(known[0].src, known[0].name, known[0].layers);
   said.textContent =
     known.length > 1 ? "Choose a map." : "There is no map next to this page. Name one in its address, ?src=ADDRESS, or open a file.";
   document.getElementById("list").append(
-    ...known.map(({ name, src }) => {
+    ...known.map(({ name, ...rest }) => {
       const item = document.createElement("li");
       const link = document.createElement("a");
-      link.href = `?src=${encodeURIComponent(src)}`;
+      link.href = `?${new URLSearchParams(rest)}`;
       link.textContent = name;
       item.append(link);
       return item;

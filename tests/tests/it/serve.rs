@@ -273,6 +273,13 @@ fn packages_of_one_name_get_numbers() {
         {"name": "Zürich 50 %", "src": "packages/Z%C3%BCrich%2050%20%25.pmtiles"},
     ]);
     assert_eq!(list, expected);
+    // Layers that the page shows at first.
+    let bare = place.serve(&[&same], &["--layers", "none"]);
+    let shown: serde_json::Value =
+        serde_json::from_slice(&bare.get("/packages.json").body).unwrap();
+    assert_eq!(shown[0]["layers"], "none");
+    let ran = corniche(["serve", text(&same), "--layers", "forests"]);
+    assert!(ran.code == 2 && ran.err.contains("\"forests\""), "{} {}", ran.code, ran.err);
     for (entry, file) in list.as_array().unwrap().iter().zip([&place.package(), &same, &spaced]) {
         let answer = serving.get(&format!("/{}", entry["src"].as_str().unwrap()));
         assert!(answer.status == 200 && answer.body == fs::read(file).unwrap(), "{entry}");

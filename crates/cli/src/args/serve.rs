@@ -26,6 +26,9 @@ pub(crate) struct ServeArgs {
     /// Open the page in the browser of this computer: $BROWSER, or the system's default
     #[arg(long, conflicts_with = "site")]
     pub(crate) open: bool,
+    /// The layers that the page shows at first, such as areas,railways; or none [default: all]
+    #[arg(long, value_name = "NAMES|none")]
+    pub(crate) layers: Option<String>,
     /// Use the page files in this folder [default: the built-in ones]
     #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     pub(crate) page: Option<PathBuf>,

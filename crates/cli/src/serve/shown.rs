@@ -6,6 +6,7 @@ use std::{
 };
 
 use corniche_remote::PackagePlace;
+use corniche_viewer::{DrawError, ShownLayers};
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 use serde::Serialize;
 
@@ -25,6 +26,8 @@ pub(crate) struct Shown {
     pub(crate) name: String,
     /// The file.
     pub(crate) file: PathBuf,
+    /// The layers that the page shows at first, as they were passed.
+    pub(crate) layers: Option<String>,
 }
 
 impl Shown {
@@ -40,14 +43,23 @@ struct ShownEntry<'a> {
     name: &'a str,
     /// The URL, relative to that of the page.
     src: String,
+    /// The layers that the page shows at first; without them, all.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    layers: Option<&'a str>,
 }
 
 /// Opens each package, so that invalid ones are reported before the server starts, and assigns
-/// names.
-pub(crate) fn open(places: &[PackagePlace]) -> Result<Vec<Shown>, CommandFailure> {
+/// names. Each package must have the layers that are shown at first.
+pub(crate) fn open(
+    places: &[PackagePlace],
+    layers: Option<&str>,
+) -> Result<Vec<Shown>, CommandFailure> {
+    let wanted = layers.map_or(ShownLayers::ALL, ShownLayers::from_list);
     let file = |place: &PackagePlace| match place {
         PackagePlace::File(path) => {
-            packages::open(place)?;
+            let package = packages::open(place)?;
+            let known = wanted.check(package.manifest());
+            known.map_err(|error| CommandFailure::from(DrawError::from(error)).about(path))?;
             Ok(path.clone())
         }
         PackagePlace::Address(_) => Err(unusable!(
@@ -57,7 +69,9 @@ pub(crate) fn open(places: &[PackagePlace]) -> Result<Vec<Shown>, CommandFailure
     };
     let files: Vec<PathBuf> = places.iter().map(file).collect::<Result<_, _>>()?;
     let names = names(&files);
-    Ok(names.into_iter().zip(files).map(|(name, file)| Shown { name, file }).collect())
+    let layers = layers.map(str::to_owned);
+    let shown = |(name, file)| Shown { name, file, layers: layers.clone() };
+    Ok(names.into_iter().zip(files).map(shown).collect())
 }
 
 /// A unique name for each file, also if case is ignored.
@@ -82,9 +96,9 @@ fn names(files: &[PathBuf]) -> Vec<String> {
 pub(crate) fn list(shown: &[Shown]) -> String {
     let entries: Vec<ShownEntry<'_>> = shown
         .iter()
-        .map(|Shown { name, .. }| {
+        .map(|Shown { name, layers, .. }| {
             let src = format!("packages/{}.pmtiles", utf8_percent_encode(name, ENCODED));
-            ShownEntry { name, src }
+            ShownEntry { name, src, layers: layers.as_deref() }
         })
         .collect();
     format!("{}\n", to_line(&entries))

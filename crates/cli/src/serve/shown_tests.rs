@@ -19,9 +19,12 @@ fn no_two_packages_have_one_name() {
 
 #[test]
 fn the_list_has_names_for_people_and_addresses_for_programs() {
-    let shown = ["Zürich 50 %", "a#b?c&d"]
-        .map(|name| Shown { name: name.to_owned(), file: PathBuf::new() });
-    let expected = r#"[{"name":"Zürich 50 %","src":"packages/Z%C3%BCrich%2050%20%25.pmtiles"},{"name":"a#b?c&d","src":"packages/a%23b%3Fc%26d.pmtiles"}]"#;
+    let shown = [("Zürich 50 %", None), ("a#b?c&d", Some("none"))].map(|(name, layers)| Shown {
+        name: name.to_owned(),
+        file: PathBuf::new(),
+        layers: layers.map(str::to_owned),
+    });
+    let expected = r#"[{"name":"Zürich 50 %","src":"packages/Z%C3%BCrich%2050%20%25.pmtiles"},{"name":"a#b?c&d","src":"packages/a%23b%3Fc%26d.pmtiles","layers":"none"}]"#;
     assert_eq!(list(&shown), format!("{expected}\n"));
     assert_eq!(shown[0].path(), "packages/Zürich 50 %.pmtiles");
 }
