@@ -21,10 +21,10 @@ pub const LAYERS: &[(&str, &str)] = &[
     ("waterways", include_str!("layers/waterways.toml")),
     ("buildings", include_str!("layers/buildings.toml")),
     ("landforms", include_str!("layers/landforms.toml")),
+    ("ferries", include_str!("layers/ferries.toml")),
     ("places", include_str!("layers/places.toml")),
     ("peaks", include_str!("layers/peaks.toml")),
     ("pois", include_str!("layers/pois.toml")),
-    ("ferries", include_str!("layers/ferries.toml")),
 ];
 
 /// Styles of the map, the default one first.

@@ -273,8 +273,9 @@ Roads(RoadOptions, "Roads") {
     }
 }
 Layers(LayerOptions, "Layers") {
-    /// Layers of the extract to store: areas, boundaries, railways, or tables of your own (TOML
-    /// files); separate several by commas. The word none: no layers [default: none]
+    /// Layers of the extract to store: built-in ones such as areas, waterways and buildings
+    /// (`corniche layers` lists them), or tables of your own (TOML files); separate several by
+    /// commas. The word none: no layers [default: none]
     #[arg(id = "layers", long = "layers", value_name = "NAME|FILE|none", value_delimiter = ',')]
     #[serde(rename = "layers", deserialize_with = "one_or_many_names")]
     tables: Vec<String> => {

@@ -154,7 +154,7 @@ fn tables_that_are_none_and_areas_without_an_extract_are_refused() {
         refused(&["--layers", "areas"]).contains("--layers needs an extract; pass one with --osm")
     );
     let no_table = refused(&["--osm", text(&osm), "--layers", "nothing"]);
-    for words in ["\"nothing\"", "(areas, boundaries, railways)", "readable file"] {
+    for words in ["\"nothing\"", "(areas, boundaries, railways, waterways, ", "readable file"] {
         assert!(no_table.contains(words), "{no_table}");
     }
 

@@ -314,8 +314,8 @@ fn each_class_has_the_objects_that_osmium_finds() {
         let mut exact = nodes_and_ways_of_osmium(&extract).unwrap();
         exact.insert("boundaries", boundaries);
         let mut areas = areas_of_osmium(&extract, folder.path()).unwrap();
-        for (class, objects) in areas.remove("pois").unwrap() {
-            *exact.get_mut("pois").unwrap().entry(class).or_default() += objects;
+        for (class, objects) in areas.remove("pois").unwrap_or_default() {
+            *exact.entry("pois").or_default().entry(class).or_default() += objects;
         }
         let [package, defects] = ["a.pmtiles", "defects.csv"].map(|name| folder.path().join(name));
         let inputs = ["build", "-q", "--dem", text(&dem), "--osm", text(&extract)];

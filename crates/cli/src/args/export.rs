@@ -22,8 +22,8 @@ pub(crate) enum Export {
     /// Write the road network of a package's extract as edges from junction to junction, with
     /// ascents and grades, for routers
     Edges(Box<ExportEdgesArgs>),
-    /// Write a layer of a package (areas, boundaries, railways, your own) as lines, polygons or
-    /// points for GIS programs
+    /// Write a layer of a package (areas, waterways, your own …) as lines, polygons or points for
+    /// GIS programs
     Layer(Box<ExportLayerArgs>),
     /// Write the terrain and roads of a package as a model for 3D programs (GLB, PLY, OBJ)
     Mesh(Box<ExportMeshArgs>),

@@ -32,7 +32,19 @@ fn built_in_layers_are_valid() {
     }
     let order: Vec<&str> =
         stacked_layers(&layers).unwrap().into_iter().map(|index| layers[index].id()).collect();
-    assert_eq!(order, ["areas", "railways", "boundaries"]);
+    let expected = [
+        "areas",
+        "waterways",
+        "buildings",
+        "landforms",
+        "railways",
+        "ferries",
+        "boundaries",
+        "places",
+        "peaks",
+        "pois",
+    ];
+    assert_eq!(order, expected);
     assert_eq!(layer_preset("roads"), None);
 }
 
