@@ -31,7 +31,7 @@ pub(crate) fn run(args: &MatchArgs) -> Result<(), CommandFailure> {
     let files =
         ReportFiles::begin(args.svg.as_deref(), list, &inputs, existing_of(args.overwrite))?;
     let request = MatchRequest {
-        classes: args.filter.classes.classes(),
+        classes: args.filter.of_package(manifest)?,
         radius_m: args.radius,
         region_m: args.region,
     };

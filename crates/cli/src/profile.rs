@@ -55,7 +55,7 @@ pub(crate) fn run(args: &ProfileArgs) -> Result<(), CommandFailure> {
             level,
             road: args.road.query(),
             ends_deg: args.ends_deg(),
-            classes: args.filter.classes.classes(),
+            classes: args.filter.of_package(package.manifest())?,
         };
         let found = route(&package, &request, network.as_ref(), &progress);
         if let Err(RouteError::SeveralRoads { roads, .. }) = &found {

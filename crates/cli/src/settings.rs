@@ -14,7 +14,7 @@ use corniche_presets::{
     BoundsChoice, InputFiles, LayerOptions, OutputFiles, PhotoOptions, RoadOptions, TerrainOptions,
     class_filter, is_no_layers, is_photo_off, parse_bytes,
 };
-use corniche_roads::ClassFilter;
+use corniche_roads::{ClassFilter, FunctionalRoadClass};
 use corniche_spec::{
     PhotoChoice, PhotoSettings, PlanSettings, Resources, RoadSettings, TerrainSettings,
     inputs::{elevation_names, extract_names, input_name},
@@ -205,9 +205,12 @@ fn road_settings(options: RoadOptions) -> Result<RoadSettings, CommandFailure> {
     };
     let table = presets::frc_table(options.frc_table.as_deref().unwrap_or("default"))?;
     let table = match &options.classes {
-        Some(classes) => table
-            .with_classes(classes.numbers())
-            .map_err(|error| presets::refuse("--classes", &error))?,
+        Some(classes) => {
+            let classes = classes.classes(&table.class_labels());
+            let classes = classes.map_err(|error| presets::refuse("--classes", &error))?;
+            let numbers: Vec<u8> = classes.into_iter().map(FunctionalRoadClass::number).collect();
+            table.with_classes(&numbers).map_err(|error| presets::refuse("--classes", &error))?
+        }
         None => table,
     };
     let mut settings = RoadSettings { filter, ..RoadSettings::from_table(table) };

@@ -3,65 +3,102 @@
 use corniche_roads::FunctionalRoadClass;
 use serde::{Deserialize, Deserializer};
 
-/// Class numbers, ascending and unique; at least one.
+/// Road classes by number (`0-4,7`) and by name (`motorway`); at least one.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Classes(Vec<u8>);
+pub struct Classes(Vec<ClassEntry>);
+
+/// An entry of a list of classes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum ClassEntry {
+    /// The first and the last number of a range.
+    Range(u8, u8),
+    /// A value of `highway`, as in the labels of classes.
+    Name(String),
+}
+
+/// The reason why a list of classes does not fit a table.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("no class is called {name:?}; the classes are {}", labels.join("; "))]
+pub struct UnknownClass {
+    name: String,
+    labels: Vec<String>,
+}
 
 impl Classes {
-    /// Parses numbers and ranges, such as `0-7`, `0,1,2` or `0-2,5`.
+    /// Parses numbers, ranges and names, such as `0-7`, `0,1,2` or `motorway,trunk,5`.
     ///
     /// # Errors
     /// When it is not such a list, or has a number above 8.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let range = |part: &str| -> Option<(u8, u8)> {
-            let (first, last) = part.split_once('-').unwrap_or((part, part));
-            Some((first.trim().parse().ok()?, last.trim().parse().ok()?))
-        };
-        let mut numbers = Vec::new();
-        for part in text.split(',') {
-            match range(part) {
-                Some((first, last)) if first <= last && is_class(last) => {
-                    numbers.extend(first..=last);
-                }
-                _ => return Err("write classes from 0 to 8, like 0-7 or 0,1,2".to_owned()),
+        let entry = |part: &str| -> Option<ClassEntry> {
+            if part.starts_with(char::is_alphabetic) {
+                return Some(ClassEntry::Name(part.to_owned()));
             }
+            let (first, last) = part.split_once('-').unwrap_or((part, part));
+            let (first, last) = (first.trim().parse().ok()?, last.trim().parse().ok()?);
+            let is_range = first <= last && FunctionalRoadClass::new(last).is_some();
+            is_range.then_some(ClassEntry::Range(first, last))
+        };
+        let entries: Option<Vec<_>> = text.split(',').map(str::trim).map(entry).collect();
+        entries.map(Self).ok_or_else(|| {
+            "write classes from 0 to 8, like 0-4,7, or their names, like motorway,trunk".to_owned()
+        })
+    }
+
+    /// The classes, ascending, of a table with these [labels](crate::class_labels).
+    ///
+    /// # Errors
+    /// When no label contains a name.
+    pub fn classes(
+        &self,
+        labels: &[String; FunctionalRoadClass::COUNT],
+    ) -> Result<Vec<FunctionalRoadClass>, UnknownClass> {
+        let mut classes = Vec::new();
+        for entry in &self.0 {
+            let (first, last) = match entry {
+                &ClassEntry::Range(first, last) => (first, last),
+                ClassEntry::Name(name) => {
+                    let called = name.replace('_', " ");
+                    let has_name = |label: &String| label.split(", ").any(|own| own == called);
+                    let number = labels.iter().position(has_name).ok_or_else(|| UnknownClass {
+                        name: name.clone(),
+                        labels: labels.to_vec(),
+                    })?;
+                    (number as u8, number as u8)
+                }
+            };
+            classes.extend((first..=last).filter_map(FunctionalRoadClass::new));
         }
-        numbers.sort_unstable();
-        numbers.dedup();
-        Ok(Self(numbers))
+        classes.sort_unstable();
+        classes.dedup();
+        Ok(classes)
     }
-
-    /// The numbers.
-    #[must_use]
-    pub fn numbers(&self) -> &[u8] {
-        &self.0
-    }
-
-    /// The classes of these numbers.
-    #[must_use]
-    pub fn classes(&self) -> Vec<FunctionalRoadClass> {
-        self.0.iter().copied().filter_map(FunctionalRoadClass::new).collect()
-    }
-}
-
-fn is_class(number: u8) -> bool {
-    FunctionalRoadClass::new(number).is_some()
 }
 
 impl<'de> Deserialize<'de> for Classes {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         #[derive(Deserialize)]
+        #[serde(untagged)]
+        enum WrittenClass {
+            Number(u8),
+            Text(String),
+        }
+        #[derive(Deserialize)]
         #[serde(
             untagged,
-            expecting = "expected a list of classes like [0, 1, 2], or a text like \"0-8\""
+            expecting = "expected a list of classes like [0, 1, \"primary\"], or a text like \"0-8\""
         )]
         enum WrittenClasses {
-            Numbers(Vec<u8>),
+            List(Vec<WrittenClass>),
             Text(String),
         }
         let text = match WrittenClasses::deserialize(deserializer)? {
-            WrittenClasses::Numbers(numbers) => {
-                numbers.iter().map(ToString::to_string).collect::<Vec<_>>().join(",")
+            WrittenClasses::List(list) => {
+                let texts = list.into_iter().map(|class| match class {
+                    WrittenClass::Number(number) => number.to_string(),
+                    WrittenClass::Text(text) => text,
+                });
+                texts.collect::<Vec<_>>().join(",")
             }
             WrittenClasses::Text(text) => text,
         };

@@ -23,7 +23,7 @@ pub use build_options::{
 };
 pub use class_cells::class_filter;
 pub use class_labels::class_labels;
-pub use classes::Classes;
+pub use classes::{Classes, UnknownClass};
 pub use error::PresetError;
 pub use files::OutputFiles;
 pub use frc::{frc_preset, frc_preset_names, parse_frc_table};

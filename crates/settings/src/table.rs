@@ -217,9 +217,9 @@ Roads(RoadOptions, "Roads") {
         /// Name of the FRC table.
         ["--frc-table"] frc_table: String
     };
-    /// Functional road classes (FRC) to convert, such as 0-8 or 0,1,2; other roads are skipped, and
-    /// counted with their lengths. 0 is motorways, 7 service roads and tracks, 8 ways for
-    /// pedestrians, riders and cyclists [default: those that the FRC table turns on, 0-7 in the
+    /// Functional road classes (FRC) to convert, such as 0-8 or motorway,1,2; other roads are
+    /// skipped, and counted with their lengths. 0 is motorways, 7 service roads and tracks, 8 ways
+    /// for pedestrians, riders and cyclists [default: those that the FRC table turns on, 0-7 in the
     /// default table]
     #[arg(long, value_name = "LIST", value_parser = Classes::parse)]
     classes: Option<Classes> => {

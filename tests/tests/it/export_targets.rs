@@ -43,6 +43,7 @@ fn what_cannot_be_exported_is_refused() {
         (&package, "a", &[], "--format"),
         (&package, "a.gpkg", &["--level", "9"], "its finest level is 3"),
         (&package, "a.gpkg", &["--classes", "9"], "0-4,7"),
+        (&package, "a.gpkg", &["--classes", "lanes"], "the classes are motorway; trunk; "),
         (&package, "a.gpkg", &["--bounds", "1,2,3"], "west,south,east,north"),
         (&package, "a.gpkg", &["--bounds", "9,48,10,47"], "south must be less"),
         (&package, "a.geojson", &["--crs", "package"], "RFC 7946"),

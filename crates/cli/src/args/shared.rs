@@ -7,10 +7,12 @@ use clap::{Args, ValueHint};
 use corniche_export::{DegreeBounds, RoadQuery};
 use corniche_presets::{BoundsChoice, Classes, parse_bytes};
 use corniche_remote::PackagePlace;
+use corniche_roads::FunctionalRoadClass;
+use corniche_tileset::Manifest;
 use corniche_viewer::stream::StreamBudget;
 
 use super::values::{package_among, package_place};
-use crate::failure::CommandFailure;
+use crate::{failure::CommandFailure, presets};
 
 // The package to read.
 #[derive(Debug, Args)]
@@ -113,9 +115,23 @@ pub(crate) struct DatumArg {
 // A selection of road classes.
 #[derive(Debug, Args)]
 pub(crate) struct ClassesArg {
-    /// Functional road classes (FRC) to use, such as 0-4,7
-    #[arg(long, value_name = "LIST", default_value = "0-8", value_parser = parse_classes)]
-    pub(crate) classes: Classes,
+    /// Functional road classes (FRC) to use, such as 0-4,7 or motorway,trunk
+    #[arg(long, value_name = "LIST", default_value = "0-8", value_parser = Classes::parse)]
+    classes: Classes,
+}
+
+impl ClassesArg {
+    /// The classes of a package.
+    ///
+    /// # Errors
+    /// When the package has no class of a name.
+    pub(crate) fn of_package(
+        &self,
+        manifest: &Manifest,
+    ) -> Result<Vec<FunctionalRoadClass>, CommandFailure> {
+        let classes = self.classes.classes(&presets::class_labels(manifest));
+        classes.map_err(|error| presets::refuse("--classes", &error))
+    }
 }
 
 // A selection of roads by number or name.
@@ -174,10 +190,6 @@ fn parse_road(text: &str) -> Result<String, String> {
     } else {
         Err("it contains neither letters nor digits".to_owned())
     }
-}
-
-fn parse_classes(text: &str) -> Result<Classes, String> {
-    Classes::parse(text).map_err(|_| "write classes from 0 to 8, like 0-4,7".to_owned())
 }
 
 fn parse_bounds(text: &str) -> Result<DegreeBounds, String> {

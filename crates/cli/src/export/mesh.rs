@@ -36,7 +36,7 @@ pub(crate) fn run(args: &ExportMeshArgs) -> Result<(), CommandFailure> {
         level: args.at.level,
         bounds: args.within.bounds,
         roads: args.roads,
-        classes: args.filter.classes.classes(),
+        classes: args.filter.of_package(package.manifest())?,
         relief: args.relief != Some(false),
         style,
         material_file: materials.as_deref().map(file_name),

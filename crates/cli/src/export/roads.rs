@@ -25,7 +25,7 @@ pub(crate) fn run(args: &ExportRoadsArgs) -> Result<(), CommandFailure> {
     let request = FeatureRequest {
         format,
         level: args.at.level,
-        classes: args.filter.classes.classes(),
+        classes: args.filter.of_package(package.manifest())?,
         bounds: args.within.bounds,
         coordinates,
         memory_bytes: MEMORY_BYTES,

@@ -24,7 +24,7 @@ pub(crate) fn run(args: &ExportTiles3dArgs) -> Result<(), CommandFailure> {
         finest_level: args.finest_level,
         bounds: args.within.bounds,
         roads: args.roads,
-        classes: args.filter.classes.classes(),
+        classes: args.filter.of_package(package.manifest())?,
         style,
         relief: args.relief,
         skirts: args.skirts,
