@@ -192,7 +192,7 @@ fn span_texts(spans: &SpansRecord, digits: Digits) -> String {
         (0, 0) => String::new(),
         (bridges, tunnels) => {
             let [bridges, tunnels] = [bridges, tunnels].map(|number| digits.count(number));
-            format!("; of railways {bridges} bridges and {tunnels} tunnels")
+            format!("; railways: {bridges} bridges and {tunnels} tunnels")
         }
     };
     format!(

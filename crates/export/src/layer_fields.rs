@@ -1,6 +1,8 @@
 //! The fields of a layer as features: the object, its attributes, and its measures.
 
-use corniche_layers::{AttributeKind, AttributeValue, LayerForm, LayerGeometry, OsmObject};
+use corniche_layers::{
+    AttributeKind, AttributeValue, DerivedNumber, LayerForm, LayerGeometry, OsmObject,
+};
 use corniche_tileset::LayerObject;
 
 use crate::vector::{FeatureField, FieldKind, FieldValue, fields, fields_of, real};
@@ -104,8 +106,16 @@ impl LayerFields {
                     AttributeKind::Number(unit) => {
                         (FieldKind::Real, unit.symbol(), "; null if unknown")
                     }
+                    AttributeKind::Derived(DerivedNumber::Isolation) => (
+                        FieldKind::Real,
+                        "m",
+                        "Distance to the nearest point of the layer with a larger `ele`; null without `ele`",
+                    ),
                 };
-                let meaning = format!("OSM's `{tag}`{meaning}").into();
+                let meaning = match kind {
+                    AttributeKind::Derived(_) => meaning.into(),
+                    _ => format!("OSM's `{tag}`{meaning}").into(),
+                };
                 let field = FeatureField { name: name.into(), kind: field_kind, unit, meaning };
                 attributes.push(AttributeField { field, attribute, language: language.cloned() });
             }

@@ -19,6 +19,25 @@ pub enum AttributeKind {
     YesNo,
     /// A number in this unit; values that are not numbers are counted.
     Number(TagUnit),
+    /// A number that follows from all objects of the layer, whatever the tag of this key is.
+    Derived(DerivedNumber),
+}
+
+/// A number that follows from all objects of a layer in the extract, also from those outside the
+/// built region.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum DerivedNumber {
+    /// For points: the distance in whole metres to the nearest point of the layer with a larger
+    /// number `ele`, along a great circle of a sphere with a radius of 6 371 008.8 m. Of two points
+    /// with one `ele`, the one with the smaller id counts as higher. The highest has half the
+    /// circumference. Points without `ele` have no distance.
+    Isolation,
+}
+
+impl DerivedNumber {
+    /// The attribute that has the heights of points.
+    pub const HEIGHT_KEY: &'static str = "ele";
 }
 
 /// The value of an attribute of an object.
@@ -86,6 +105,7 @@ impl AttributeKind {
             }
             .map(AttributeValue::YesNo),
             Self::Number(unit) => unit.number(tagged?).map(AttributeValue::Number),
+            Self::Derived(_) => return None,
         };
         if value.is_none() {
             on_unread();
@@ -103,7 +123,9 @@ impl AttributeValue {
             (Self::Names(names), AttributeKind::Names) => {
                 (1..=MAX_NAMES).contains(&names.len()) && names.is_sorted_by(|a, b| a.0 < b.0)
             }
-            (Self::Number(number), AttributeKind::Number(_)) => number.is_finite(),
+            (Self::Number(number), AttributeKind::Number(_) | AttributeKind::Derived(_)) => {
+                number.is_finite()
+            }
             _ => false,
         }
     }

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use crate::{
-    AttributeKind, AttributeValue, ClassForm, LayerForm, LayerGeometry, LayerTableError,
-    LinePlacement, TagCondition,
+    AttributeKind, AttributeValue, ClassForm, DerivedNumber, LayerForm, LayerGeometry,
+    LayerTableError, LinePlacement, TagCondition,
     layer_attribute::MAX_TAG_CHARS,
     shadowing::{Shadow, shadows},
     table_error::{CheckResult, ErrorPath, wrong},
@@ -219,8 +219,12 @@ fn check_lists(form: &LayerForm) -> CheckResult {
         };
         checked.nth(index).at("above")?;
     }
-    for key in form.attributes.keys() {
-        check_text(key, "a key").at(key).at("attributes")?;
+    for (key, &kind) in &form.attributes {
+        let derived = match kind {
+            AttributeKind::Derived(number) => check_derived(form, number),
+            _ => Ok(()),
+        };
+        check_text(key, "a key").and(derived).at(key).at("attributes")?;
     }
     let Some(members) = &form.members else { return Ok(()) };
     if members.types.is_empty() {
@@ -235,6 +239,17 @@ fn check_lists(form: &LayerForm) -> CheckResult {
         }
     }
     Ok(())
+}
+
+fn check_derived(form: &LayerForm, DerivedNumber::Isolation: DerivedNumber) -> CheckResult {
+    let key = DerivedNumber::HEIGHT_KEY;
+    let has_heights = matches!(form.attributes.get(key), Some(AttributeKind::Number(_)));
+    if form.geometry == LayerGeometry::Point && !form.closed_ways && has_heights {
+        return Ok(());
+    }
+    Err(wrong(format!(
+        "isolation applies to layers of points with closed_ways = false and with the attribute {key} = {{ number = \"m\" }}"
+    )))
 }
 
 fn check_length(length: usize, most: usize) -> CheckResult {

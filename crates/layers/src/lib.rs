@@ -22,7 +22,7 @@ mod tag_rule;
 mod tag_unit;
 mod titles;
 
-pub use layer_attribute::{AttributeKind, AttributeValue, MAX_NAMES};
+pub use layer_attribute::{AttributeKind, AttributeValue, DerivedNumber, MAX_NAMES};
 pub use layer_form::{ClassForm, LayerForm, LayerGeometry, LinePlacement, RelationMembers};
 pub use layer_stack::{LayerStackError, MAX_LAYERS, stacked_layers};
 pub use layer_table::{LayerTable, MAX_LAYER_CLASSES};

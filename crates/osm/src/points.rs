@@ -7,6 +7,7 @@
 //! ```
 
 mod hand_out_points;
+mod isolation;
 mod layer_point;
 mod summary;
 

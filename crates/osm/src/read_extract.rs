@@ -190,11 +190,13 @@ fn read_all<R: Read + Seek>(
     };
     // If nothing is assumed to be sorted, nothing can be out of order.
     let Some(LayerObjects { outlines, roads }) = found else { return Ok(()) };
-    for ((_, receiver), found) in layers.layers.into_iter().zip(outlines) {
+    for ((table, receiver), found) in layers.layers.into_iter().zip(outlines) {
         match receiver {
             LayerReceiver::Areas(sink) => hand_out_areas(&reading, found, sink, on_defect)?,
             LayerReceiver::Lines(sink) => hand_out_lines(&reading, found, sink, on_defect)?,
-            LayerReceiver::Points(sink) => hand_out_points(&reading, found, sink, on_defect)?,
+            LayerReceiver::Points(sink) => {
+                hand_out_points(&reading, table, found, sink, on_defect)?
+            }
         }
     }
     if let (Some(sink), Some(mut found)) = (layers.roads, roads) {

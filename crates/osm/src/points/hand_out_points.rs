@@ -2,9 +2,10 @@
 
 use corniche_areas::inside_point;
 use corniche_geom::LatticePoint;
+use corniche_layers::LayerTable;
 use corniche_store::take_record;
 
-use super::{layer_point::LayerPoint, summary::PointSummary};
+use super::{isolation::NodeIsolations, layer_point::LayerPoint, summary::PointSummary};
 use crate::{
     AreaLoss, ExtractDefect,
     areas::{AreaSummary, LayerArea, hand_out_areas},
@@ -26,14 +27,19 @@ const NODES_PER_BATCH: usize = 1 << 12;
 /// Delivers the points of a layer and their defects.
 pub(crate) fn hand_out_points<'a>(
     reading: &ExtractReading<'a>,
+    table: &LayerTable,
     (mut objects, located): (OutlineObjects<'a>, LocatedWays<'a>),
     sink: &mut dyn LayerSink<LayerPoint, PointSummary>,
     on_defect: &mut dyn FnMut(ExtractDefect),
 ) -> Result<(), Failed> {
     sink.begin();
     let mut summary = PointSummary::default();
-    if let Some(nodes) = objects.nodes.take() {
-        hand_out_nodes(reading, nodes, &mut summary, sink, on_defect)?;
+    if let Some(mut nodes) = objects.nodes.take() {
+        let [known, none] = nodes.known;
+        let (known, isolations) =
+            NodeIsolations::measure(reading, table, (known, objects.held_bytes))?;
+        nodes.known = [known, none];
+        hand_out_nodes(reading, (nodes, isolations), &mut summary, sink, on_defect)?;
     }
     let mut areas = InsideAreas { sink, summary };
     hand_out_areas(reading, (objects, located), &mut areas, on_defect)?;
@@ -44,7 +50,7 @@ pub(crate) fn hand_out_points<'a>(
 
 fn hand_out_nodes(
     reading: &ExtractReading<'_>,
-    nodes: NumberedObjects<'_>,
+    (nodes, mut isolations): (NumberedObjects<'_>, Option<NodeIsolations>),
     summary: &mut PointSummary,
     sink: &mut dyn LayerSink<LayerPoint, PointSummary>,
     on_defect: &mut dyn FnMut(ExtractDefect),
@@ -74,10 +80,14 @@ fn hand_out_nodes(
         let placed = (reading.request.place)(&positions_deg);
         for (node, placed) in batch.into_iter().zip(placed) {
             let object = node.object;
+            let mut values = take_values(&node.values)?;
+            if let Some(isolations) = &mut isolations {
+                isolations.set_next(&mut values);
+            }
             match (node.class, place_of(at(&node), placed)) {
                 (Some(class), Ok(at)) => {
                     *summary.kept.entry(class).or_default() += 1;
-                    sink.take(LayerPoint { object, class, values: take_values(&node.values)?, at });
+                    sink.take(LayerPoint { object, class, values, at });
                 }
                 (_, found) => {
                     let loss = found.err().unwrap_or(AreaLoss::OutOfRange);

@@ -111,6 +111,9 @@ fn errors_name_line_and_key() {
             "line 5: attributes.\"a\\u{7}\"",
         ),
     ];
+    let isolated = "geometry = \"point\"\n[attributes]\nfar = { derived = \"isolation\" }\n[[class]]\nid = \"a\"\ntags.b = true\n";
+    let error = parse_layer_table(&format!("id = \"peaks\"\n{isolated}")).unwrap_err().to_string();
+    assert!(error.contains("line 4: attributes.far: isolation applies to"), "{error}");
     for (text, fragment) in classes {
         let error = parse_layer_table(&format!("{head}{text}")).unwrap_err().to_string();
         assert!(error.contains(fragment), "{error}");

@@ -42,7 +42,7 @@ impl<'a> ColumnReader<'a> {
             [Box::new(std::iter::empty()), Box::new(std::iter::empty())];
         match kind {
             AttributeKind::Text | AttributeKind::YesNo => {}
-            AttributeKind::Number(_) => {
+            AttributeKind::Number(_) | AttributeKind::Derived(_) => {
                 let values = heads.iter().filter(|&head| head > 0).count();
                 parts[0] = Box::new(cursor.planes(values)?.iter());
             }
@@ -66,7 +66,7 @@ impl<'a> ColumnReader<'a> {
         let value = match (self.kind, head) {
             (AttributeKind::Text, _) => AttributeValue::Text(texts.copy(less)?),
             (AttributeKind::YesNo, 1 | 2) => AttributeValue::YesNo(head == 2),
-            (AttributeKind::Number(_), 1 | 2) => {
+            (AttributeKind::Number(_) | AttributeKind::Derived(_), 1 | 2) => {
                 let code = first.next().unwrap_or_default();
                 let number = if head == 1 { zigzag(code) as f64 } else { f64::from_bits(code) };
                 AttributeValue::Number(number)
@@ -134,7 +134,7 @@ pub(crate) fn put_column<'a>(
     put_planes(out, &heads);
     let columns = match kind {
         AttributeKind::Text | AttributeKind::YesNo => 0,
-        AttributeKind::Number(_) => 1,
+        AttributeKind::Number(_) | AttributeKind::Derived(_) => 1,
         AttributeKind::Names => 2,
     };
     for part in &parts[..columns] {
