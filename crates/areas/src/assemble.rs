@@ -6,7 +6,7 @@ use corniche_geom::LatticePoint;
 
 use crate::{
     faces::inner_faces,
-    outline::{OutlineError, OutlineWay},
+    outline::OutlineError,
     planar_graph::{OddEnds, PlanarGraph},
     polygon::{Polygon, Ring},
     segments::{OrderedSegment, segments_of},
@@ -42,7 +42,7 @@ pub struct AssembledArea {
 ///
 /// # Errors
 /// When an end is open, segments cross between their points, or nothing remains.
-pub fn assemble(ways: &[OutlineWay<'_>]) -> Result<AssembledArea, OutlineError> {
+pub fn assemble(ways: &[impl AsRef<[LatticePoint]>]) -> Result<AssembledArea, OutlineError> {
     let found = segments_of(ways)?;
     if found.segments.is_empty() {
         return Err(OutlineError::Nothing);

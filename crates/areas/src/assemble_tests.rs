@@ -5,6 +5,7 @@ use geo::Validation as _;
 use proptest::prelude::*;
 
 use super::*;
+use crate::OutlineWay;
 use crate::chessboard_tests::{DOUBLED_CELL, cells, groups, to_geo, ways_around};
 
 fn points(list: &[[i64; 2]]) -> Vec<LatticePoint> {

@@ -4,10 +4,7 @@
 use corniche_geom::LatticePoint;
 
 use crate::{
-    Polygon, Ring,
-    assemble::polygons_of,
-    outline::{OutlineError, OutlineWay},
-    segments::uncrossed_segments_of,
+    Polygon, Ring, assemble::polygons_of, outline::OutlineError, segments::uncrossed_segments_of,
 };
 
 /// Snaps a polygon to a coarser lattice, whose points are whole multiples of `step`.
@@ -37,8 +34,7 @@ pub fn surrounded(rings: &[&[LatticePoint]], step: i64) -> Result<Vec<Polygon>, 
     let coarse = |point: &LatticePoint| LatticePoint::new(to_coarse(point.u), to_coarse(point.v));
     let closed = |ring: &&[LatticePoint]| ring.iter().chain(ring.first()).map(coarse).collect();
     let rings: Vec<Vec<LatticePoint>> = rings.iter().map(closed).collect();
-    let ways: Vec<OutlineWay<'_>> = rings.iter().map(|points| OutlineWay { points }).collect();
-    let polygons = polygons_of(uncrossed_segments_of(&ways)?)?;
+    let polygons = polygons_of(uncrossed_segments_of(&rings)?)?;
     let fine = |point: LatticePoint| Some(LatticePoint::new(point.u * step, point.v * step));
     Ok(polygons.iter().filter_map(|polygon| polygon.placed(fine)).collect())
 }

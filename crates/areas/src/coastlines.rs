@@ -16,9 +16,9 @@ pub struct Coastline {
 /// Coastlines joined one after the other. A ring repeats its first point at the end.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct CoastlineChain {
-    pub(crate) points: Vec<LatticePoint>,
+    pub points: Vec<LatticePoint>,
     /// The way of each segment.
-    pub(crate) ways: Vec<i64>,
+    pub ways: Vec<i64>,
 }
 
 impl CoastlineChain {

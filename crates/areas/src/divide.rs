@@ -3,10 +3,7 @@
 use corniche_geom::LatticePoint;
 
 use crate::{
-    Polygon, Ring,
-    assemble::polygons_of,
-    outline::{OutlineError, OutlineWay},
-    segments::uncrossed_segments_of,
+    Polygon, Ring, assemble::polygons_of, outline::OutlineError, segments::uncrossed_segments_of,
 };
 
 /// The axis along which a polygon is divided.
@@ -85,8 +82,7 @@ impl DivisionLine {
     fn part(self, polygon: &Polygon, part: LineSide) -> Result<Vec<Polygon>, OutlineError> {
         let rings: Vec<Vec<LatticePoint>> =
             polygon.rings().map(|ring| self.part_of_ring(ring, part)).collect();
-        let ways: Vec<OutlineWay<'_>> = rings.iter().map(|points| OutlineWay { points }).collect();
-        polygons_of(uncrossed_segments_of(&ways)?)
+        polygons_of(uncrossed_segments_of(&rings)?)
     }
 
     /// Returns the points of a ring on one side of the line, with the first repeated at the end.

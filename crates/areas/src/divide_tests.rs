@@ -6,6 +6,7 @@ use geo::Validation as _;
 use proptest::prelude::*;
 
 use super::*;
+use crate::OutlineWay;
 use crate::chessboard_tests::{cells, polygons_around, to_geo};
 
 fn doubled_area(polygons: &[Polygon]) -> i128 {

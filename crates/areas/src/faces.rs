@@ -8,7 +8,7 @@
 
 use std::cmp::Ordering;
 
-use corniche_geom::{LatticePoint, Side, side};
+use corniche_geom::{LatticePoint, Side, cross, side};
 
 use crate::{planar_graph::PlanarGraph, segments::OrderedSegment, stabbing::Stabbing};
 
@@ -93,11 +93,7 @@ fn parts_of(graph: &PlanarGraph, walks: &Walks) -> Vec<ConnectedPart> {
         let last = (half..graph.half_edges())
             .step_by(2)
             .take_while(|&other| graph.origin(other) == westernmost)
-            .max_by(|&a, &b| match side(westernmost, graph.target(a), graph.target(b)) {
-                Side::Left => Ordering::Less,
-                Side::On => Ordering::Equal,
-                Side::Right => Ordering::Greater,
-            })
+            .max_by(|&a, &b| 0.cmp(&cross(westernmost, graph.target(a), graph.target(b))))
             .unwrap_or(half);
         let outer_walk = walks.of[last];
         parts.push(ConnectedPart { westernmost, outer_walk });

@@ -9,6 +9,12 @@ pub struct OutlineWay<'a> {
     pub points: &'a [LatticePoint],
 }
 
+impl AsRef<[LatticePoint]> for OutlineWay<'_> {
+    fn as_ref(&self) -> &[LatticePoint] {
+        self.points
+    }
+}
+
 /// The reason why an outline encloses nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]

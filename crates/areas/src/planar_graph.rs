@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use corniche_geom::{LatticePoint, Side, side};
+use corniche_geom::{LatticePoint, cross};
 
 use crate::segments::OrderedSegment;
 
@@ -26,8 +26,8 @@ pub(crate) struct PlanarGraph {
 
 /// The first odd end of an outline, and the number of odd ends.
 pub(crate) struct OddEnds {
-    pub(crate) count: u64,
-    pub(crate) first: LatticePoint,
+    pub count: u64,
+    pub first: LatticePoint,
 }
 
 impl PlanarGraph {
@@ -85,9 +85,5 @@ impl PlanarGraph {
 /// equal.
 fn by_angle(from: LatticePoint, a: LatticePoint, b: LatticePoint) -> Ordering {
     let is_lower_half = |to: LatticePoint| to.v < from.v || (to.v == from.v && to.u < from.u);
-    is_lower_half(a).cmp(&is_lower_half(b)).then_with(|| match side(from, a, b) {
-        Side::Left => Ordering::Less,
-        Side::On => Ordering::Equal,
-        Side::Right => Ordering::Greater,
-    })
+    is_lower_half(a).cmp(&is_lower_half(b)).then_with(|| 0.cmp(&cross(from, a, b)))
 }

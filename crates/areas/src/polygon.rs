@@ -1,6 +1,6 @@
 //! Rings and polygons on the lattice, with their areas in square steps.
 
-use corniche_geom::{LatticeBounds, LatticePoint, cross};
+use corniche_geom::{LatticeBounds, LatticePoint, doubled_area, ring_edges};
 
 /// A closed line that neither touches nor crosses itself. The first point is not repeated at the
 /// end.
@@ -36,15 +36,13 @@ impl Ring {
 
     /// Returns the segments of the ring; the one that closes it comes last.
     pub fn segments(&self) -> impl Iterator<Item = [LatticePoint; 2]> {
-        let next = self.points.iter().cycle().skip(1);
-        self.points.iter().zip(next).map(|(&from, &to)| [from, to])
+        ring_edges(&self.points)
     }
 
     /// Returns twice the area inside, in square lattice steps; negative for a clockwise ring.
     #[must_use]
     pub fn doubled_area(&self) -> i128 {
-        let Some(&first) = self.points.first() else { return 0 };
-        self.segments().map(|[from, to]| cross(first, from, to)).sum()
+        doubled_area(&self.points)
     }
 }
 

@@ -1,10 +1,10 @@
 //! Builds the sea from coastlines: closes them along the edge of a region, and reports what is
 //! missing or wrong.
 
-use corniche_geom::{LatticePoint, cross};
+use corniche_geom::{LatticePoint, doubled_area};
 
 use crate::{
-    OutlineError, OutlineWay, Polygon, Ring, assemble,
+    OutlineError, Polygon, Ring, assemble,
     assemble::polygons_of,
     coastlines::{Coastline, CoastlineChain, cut, join},
     intersection,
@@ -84,14 +84,13 @@ fn close_in(
     if crossings.is_empty() && is_surrounded_by_sea(&rings) {
         lines.push(closed(edge.corners().to_vec()));
     }
-    let ways: Vec<OutlineWay<'_>> = lines.iter().map(|points| OutlineWay { points }).collect();
-    match assemble(&ways) {
+    match assemble(&lines) {
         Ok(assembled) => Ok(assembled.polygons),
         Err(OutlineError::Nothing) => Ok(Vec::new()),
         // Coasts are rounded where they meet a slanting edge, so a line along the edge may cross
         // one of them by less than a step.
-        Err(OutlineError::Crossing { .. }) if segments_of(&ways[..coasts]).is_ok() => {
-            polygons_of(uncrossed_segments_of(&ways)?)
+        Err(OutlineError::Crossing { .. }) if segments_of(&lines[..coasts]).is_ok() => {
+            polygons_of(uncrossed_segments_of(&lines)?)
         }
         Err(error) => Err(error),
     }
@@ -298,10 +297,7 @@ fn edge_lines(crossings: &[Crossing], edge: &RegionEdge) -> Vec<Vec<LatticePoint
 /// island.
 fn is_surrounded_by_sea(rings: &[CoastlineChain]) -> bool {
     let outermost = rings.iter().min_by_key(|ring| ring.points.iter().min().copied());
-    outermost.is_some_and(|ring| {
-        let origin = ring.points[0];
-        ring.points.windows(2).map(|pair| cross(origin, pair[0], pair[1])).sum::<i128>() > 0
-    })
+    outermost.is_some_and(|ring| doubled_area(&ring.points) > 0)
 }
 
 #[cfg(test)]

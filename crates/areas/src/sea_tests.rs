@@ -6,6 +6,7 @@ use corniche_geom::LatticeBounds;
 use proptest::prelude::*;
 
 use super::*;
+use crate::OutlineWay;
 use crate::chessboard_tests::random;
 
 fn coast(way_id: i64, points: &[(i64, i64)]) -> Coastline {

@@ -3,7 +3,7 @@
 
 use corniche_geom::{LatticePoint, Side, cross, dot, side};
 
-use crate::outline::{OutlineError, OutlineWay};
+use crate::outline::OutlineError;
 
 /// Two different points, the smaller first.
 pub(crate) type OrderedSegment = [LatticePoint; 2];
@@ -11,11 +11,11 @@ pub(crate) type OrderedSegment = [LatticePoint; 2];
 /// Segments that meet only at their ends.
 pub(crate) struct Separated {
     /// The segments in ascending order.
-    pub(crate) segments: Vec<OrderedSegment>,
+    pub segments: Vec<OrderedSegment>,
     /// The number of segments that occurred an even number of times; they separate nothing.
-    pub(crate) cancelled: u64,
+    pub cancelled: u64,
     /// The number of points that were in the middle of a segment, which was then divided there.
-    pub(crate) divided: u64,
+    pub divided: u64,
 }
 
 /// The maximum number of segment pairs to compare. Real outlines of a million points need a tenth
@@ -23,7 +23,7 @@ pub(crate) struct Separated {
 const MOST_COMPARISONS: u64 = 1 << 30;
 
 /// Splits the ways of an outline into segments. Fails if segments cross.
-pub(crate) fn segments_of(ways: &[OutlineWay<'_>]) -> Result<Separated, OutlineError> {
+pub(crate) fn segments_of(ways: &[impl AsRef<[LatticePoint]>]) -> Result<Separated, OutlineError> {
     let mut all = all_segments(ways);
     let mut cancelled = cancel_pairs(&mut all);
     let Meetings { inner_points, crossings } = meetings_of(&all)?;
@@ -53,7 +53,7 @@ const MOST_ROUNDS: usize = 32;
 /// points are only as near to the crossing as the lattice allows, and segments are not pulled to
 /// points that they pass.
 pub(crate) fn uncrossed_segments_of(
-    ways: &[OutlineWay<'_>],
+    ways: &[impl AsRef<[LatticePoint]>],
 ) -> Result<Vec<OrderedSegment>, OutlineError> {
     let mut all = all_segments(ways);
     for _ in 0..MOST_ROUNDS {
@@ -72,8 +72,8 @@ pub(crate) fn uncrossed_segments_of(
     Err(OutlineError::TooIntricate)
 }
 
-fn all_segments(ways: &[OutlineWay<'_>]) -> Vec<OrderedSegment> {
-    let pairs = ways.iter().flat_map(|way| way.points.array_windows());
+fn all_segments(ways: &[impl AsRef<[LatticePoint]>]) -> Vec<OrderedSegment> {
+    let pairs = ways.iter().flat_map(|way| way.as_ref().array_windows());
     pairs.filter(|[from, to]| from != to).map(|&[a, b]| [a.min(b), a.max(b)]).collect()
 }
 

@@ -52,8 +52,7 @@ pub fn clip_parts_within(
 ) -> Vec<ClippedPart> {
     let both = bounds.intersection(within);
     let mut parts = ClippedParts::default();
-    for (index, pair) in line.points().windows(2).enumerate() {
-        let segment = [pair[0], pair[1]];
+    for (index, &segment) in line.points().array_windows().enumerate() {
         parts.segment = index;
         if let Some(along) = Along::from_segment(segment, bounds) {
             along.keep_owned(&owned, &both, &mut parts);
@@ -77,14 +76,14 @@ pub fn clip_closed(line: &Polyline, bounds: &LatticeBounds) -> Vec<Polyline> {
 /// The parts that are being assembled.
 #[derive(Default)]
 pub(crate) struct ClippedParts {
-    pub(crate) ended: Vec<ClippedPart>,
+    pub ended: Vec<ClippedPart>,
     current: Vec<LatticePoint>,
     /// The index of the segment of the line that contains each segment of `current`.
     segments: Vec<usize>,
     /// The segment of the line that is being clipped.
-    pub(crate) segment: usize,
+    pub segment: usize,
     /// Whether the last segment's end was kept, so that the next segment continues from it.
-    pub(crate) goes_on: bool,
+    pub goes_on: bool,
 }
 
 impl ClippedParts {
@@ -114,11 +113,11 @@ impl ClippedParts {
 /// The part of a segment inside the rectangle.
 #[derive(Clone, Copy)]
 pub(crate) struct Inside {
-    pub(crate) ends: [LatticePoint; 2],
+    pub ends: [LatticePoint; 2],
     /// Whether the first end is the segment's own.
-    pub(crate) whole_start: bool,
+    pub whole_start: bool,
     /// Whether the second end is the segment's own.
-    pub(crate) whole_end: bool,
+    pub whole_end: bool,
 }
 
 /// A segment on the line of a border.

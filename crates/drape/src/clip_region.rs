@@ -19,9 +19,8 @@ pub fn clip_region(line: &Polyline, region: &LatticeRegion) -> Vec<ClippedPart> 
     let mut parts = ClippedParts::default();
     // Whether the end of the last segment is inside, if no outline touches that segment.
     let mut last_inside = None;
-    for (index, pair) in line.points().windows(2).enumerate() {
+    for (index, &segment) in line.points().array_windows().enumerate() {
         parts.segment = index;
-        let segment = [pair[0], pair[1]];
         let Some(inside) = region.shares_inside(segment) else {
             let is_inside = last_inside.unwrap_or_else(|| region.contains(segment[0]));
             last_inside = Some(is_inside);

@@ -1,5 +1,7 @@
 //! A triangle of the ground, cut by straight lines.
 
+use corniche_geom::along;
+
 /// A convex polygon from a triangle that was cut by up to four lines: at most seven corners, stored
 /// in place. A corner is [along, across, height].
 #[derive(Clone, Copy)]
@@ -45,7 +47,7 @@ impl ConvexPolygon {
             }
             if (here > 0.0 && there < 0.0) || (here < 0.0 && there > 0.0) {
                 let part = here / (here - there);
-                let mut cut = [0, 1, 2].map(|axis| this[axis] + part * (next[axis] - this[axis]));
+                let mut cut = along(this, next, part);
                 // Rounding must not lift a cut above its edge: the result would then depend on the
                 // order of the search.
                 cut[2] = cut[2].clamp(this[2].min(next[2]), this[2].max(next[2]));

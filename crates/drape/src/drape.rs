@@ -68,9 +68,9 @@ pub fn drape_within(
         Walk { surface, drape, segment: 0, begun: 0, part: None, room, near: Vec::new(), work };
     let mut place = PlaceOnTin::locate(points[0], surface);
     walk.arrive(points[0], place);
-    for (segment, pair) in points.windows(2).enumerate() {
+    for (segment, &ends) in points.array_windows().enumerate() {
         walk.segment = segment;
-        place = walk.follow([pair[0], pair[1]], place);
+        place = walk.follow(ends, place);
         work.check()?;
     }
     walk.close(None);

@@ -37,26 +37,24 @@ pub fn extrude_within(
     // Add one step to the margin: rounding to f64 must not lose ground at the edge.
     let margin = margin_steps.max(0) + 1;
     let mut lines = Vec::new();
-    let mut current = SvLine { points: Vec::new(), ground_range_m: Vec::new() };
+    let none = || SvLine { points: Vec::new(), ground_range_m: Vec::new() };
+    let mut current = none();
     let mut near = Near { surface, lowest_first: Vec::new(), highest_first: Vec::new(), work };
     let points = line.points();
     let mut searched = 0..0;
-    for (index, pair) in points.windows(2).enumerate() {
+    for (index, &ends) in points.array_windows().enumerate() {
         work.check()?;
         if !searched.contains(&index) {
             searched = near.search(points, index, margin);
         }
-        if let Some(range_m) = near.ground_range_m([pair[0], pair[1]], margin) {
+        if let Some(range_m) = near.ground_range_m(ends, margin) {
             if current.points.is_empty() {
-                current.points.push(pair[0]);
+                current.points.push(ends[0]);
             }
-            current.points.push(pair[1]);
+            current.points.push(ends[1]);
             current.ground_range_m.push(range_m);
         } else if !current.points.is_empty() {
-            lines.push(std::mem::replace(
-                &mut current,
-                SvLine { points: Vec::new(), ground_range_m: Vec::new() },
-            ));
+            lines.push(std::mem::replace(&mut current, none()));
         }
     }
     if !current.points.is_empty() {
@@ -89,10 +87,8 @@ impl Near<'_> {
     /// Collects the triangles near segment `first` and near the segments after it that add few;
     /// returns the range of segments.
     fn search(&mut self, points: &[LatticePoint], first: usize, margin: i64) -> Range<usize> {
-        let ends = |index: usize| {
-            let (p, q) = (points[index], points[index + 1]);
-            LatticeBounds::at(p).union(&LatticeBounds::at(q))
-        };
+        let ends =
+            |at: usize| LatticeBounds::at(points[at]).union(&LatticeBounds::at(points[at + 1]));
         let mut bounds = ends(first);
         let mut end = first + 1;
         while end + 1 < points.len() {

@@ -1,6 +1,6 @@
 //! Computes positions and heights of a draped line from the TIN on which it is.
 
-use corniche_geom::{LatticePoint, MAX_LATTICE_STEPS, cross};
+use corniche_geom::{LatticePoint, MAX_LATTICE_STEPS, along, cross};
 use corniche_tin::Surface;
 
 use crate::{DrapedLine, DrapedVertex};
@@ -237,10 +237,9 @@ fn crossing(surface: &Surface, [p, q]: [LatticePoint; 2], ends: [u32; 2]) -> [f6
     // runs the other way, both numbers only change their signs.
     let (near, far) = if from_line[0].abs() <= from_line[1].abs() { (0, 1) } else { (1, 0) };
     let part = from_line[near] as f64 / (from_line[near] - from_line[far]) as f64;
-    let heights_m = ends.map(|vertex| surface.heights_m()[vertex as usize]);
-    [
-        at[near].u as f64 + part * (at[far].u - at[near].u) as f64,
-        at[near].v as f64 + part * (at[far].v - at[near].v) as f64,
-        heights_m[near] + part * (heights_m[far] - heights_m[near]),
-    ]
+    let place = |end: usize| {
+        let [u, v] = at[end].in_steps();
+        [u, v, surface.heights_m()[ends[end] as usize]]
+    };
+    along(place(near), place(far), part)
 }

@@ -76,9 +76,9 @@ pub(crate) enum NextCrossing {
 /// ```
 #[derive(Clone, Copy)]
 pub(crate) struct SegmentWalk<'a> {
-    pub(crate) surface: &'a Surface,
-    pub(crate) p: LatticePoint,
-    pub(crate) q: LatticePoint,
+    pub surface: &'a Surface,
+    pub p: LatticePoint,
+    pub q: LatticePoint,
 }
 
 impl SegmentWalk<'_> {

@@ -129,7 +129,7 @@ impl Bounds {
 }
 
 /// An axis-parallel rectangle on the lattice, edges included.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LatticeBounds {
     /// South-west corner.
     pub min: LatticePoint,

@@ -54,7 +54,7 @@ impl LatticeRegion {
         let (mut edges, mut rings) = (Vec::new(), Vec::new());
         for polygon in polygons {
             for (index, ring) in polygon.iter().enumerate() {
-                let area = twice_signed_area(ring);
+                let area = doubled_area(ring);
                 if area == 0 && index == 0 {
                     break;
                 }
@@ -280,13 +280,14 @@ fn twice(point: LatticePoint) -> LatticePoint {
 }
 
 /// The edges of a ring, including the one from its last point to its first.
-fn ring_edges(ring: &[LatticePoint]) -> impl Iterator<Item = [LatticePoint; 2]> {
+pub fn ring_edges(ring: &[LatticePoint]) -> impl Iterator<Item = [LatticePoint; 2]> {
     let next = ring.iter().cycle().skip(1);
     ring.iter().zip(next).map(|(&from, &to)| [from, to])
 }
 
 /// Twice the area of a ring; positive if the ring winds counter-clockwise.
-fn twice_signed_area(ring: &[LatticePoint]) -> i128 {
+#[must_use]
+pub fn doubled_area(ring: &[LatticePoint]) -> i128 {
     let Some(&first) = ring.first() else { return 0 };
     ring_edges(ring).map(|[from, to]| cross(first, from, to)).sum()
 }

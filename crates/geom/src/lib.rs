@@ -43,7 +43,7 @@ pub use grid_frame::{GridFrame, GridFrameError, MAX_COORDINATE_M, MAX_LATTICE_ST
 pub use height_grid::HeightGrid;
 pub use index_lists::IndexLists;
 pub use lattice::LatticePoint;
-pub use lattice_region::LatticeRegion;
+pub use lattice_region::{LatticeRegion, doubled_area, ring_edges};
 pub use map_lines::{Degrees, known_line_length_m, line_length_m, ring_area_m2};
 pub use node::{NodeIndex, NodeWindow};
 pub use orientation::{Side, cross, dot, side};

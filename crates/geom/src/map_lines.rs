@@ -1,6 +1,6 @@
 //! True lengths of lines that are straight on a map, and true areas inside such lines.
 
-use crate::wgs84;
+use crate::{along, wgs84};
 
 /// Lines whose ends are at most this far apart are measured only by their ends: a map bends them by
 /// less than a tenth of a millimetre.
@@ -91,7 +91,7 @@ impl Course<'_> {
 
     fn place_deg(&self, share: f64) -> [f64; 2] {
         let [from, to] = self.ends;
-        (self.degrees)([0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis])))
+        (self.degrees)(along(from, to, share))
     }
 
     /// The sum between two fractions of the line; the positions at both and halfway are known.

@@ -1,6 +1,6 @@
 //! The seam of a map of the earth: lines go the shorter way around, and are cut where the map ends.
 
-use crate::{GridFrame, LatticePoint};
+use crate::{GridFrame, LatticePoint, along};
 
 /// The rounding error of computations with coordinates, in turns.
 const ROUNDING: f64 = 1e-12;
@@ -244,7 +244,7 @@ impl<const N: usize> OnSeamedMap for [f64; N] {
     }
 
     fn towards(self, other: Self, share: f64) -> Self {
-        std::array::from_fn(|axis| self[axis] + share * (other[axis] - self[axis]))
+        along(self, other, share)
     }
 
     fn is_at(&self, other: &Self) -> bool {

@@ -38,7 +38,7 @@ pub(crate) fn photos_of(target: &MatchTarget<'_>) -> Result<Option<PhotoGrid>, M
 /// The source of images.
 pub(crate) struct Images<'a> {
     package: &'a FilePackage,
-    pub(crate) scale: TexelScale,
+    pub scale: TexelScale,
     source: Source<'a>,
 }
 

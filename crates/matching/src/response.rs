@@ -6,9 +6,9 @@ use crate::{samples::RoadSample, votes::ShiftSearch};
 #[derive(Debug, Clone)]
 pub(crate) struct Grey {
     /// The texel of the first value, eastwards and southwards.
-    pub(crate) first: [i64; 2],
-    pub(crate) columns: usize,
-    pub(crate) values: Vec<f32>,
+    pub first: [i64; 2],
+    pub columns: usize,
+    pub values: Vec<f32>,
 }
 
 impl Grey {
@@ -39,9 +39,9 @@ impl Grey {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TexelScale {
     /// The position of the outer corner of texel (0, 0).
-    pub(crate) origin_m: [f64; 2],
+    pub origin_m: [f64; 2],
     /// East and north.
-    pub(crate) texel_m: [f64; 2],
+    pub texel_m: [f64; 2],
 }
 
 impl TexelScale {
@@ -59,8 +59,8 @@ const MOST_HALF_WIDTH_M: f64 = 15.0;
 /// metres.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RoadCrossSection {
-    pub(crate) half_width_m: f64,
-    pub(crate) beside_m: f64,
+    pub half_width_m: f64,
+    pub beside_m: f64,
 }
 
 impl RoadCrossSection {

@@ -9,9 +9,9 @@ const SPACING_M: f64 = 4.0;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct RoadSample {
     /// Working metres.
-    pub(crate) at: [f64; 2],
+    pub at: [f64; 2],
     /// The direction to the left of the road, of length 1.
-    pub(crate) normal: [f64; 2],
+    pub normal: [f64; 2],
 }
 
 /// Returns samples in the middles of equal parts of a line; none if the line has no length.

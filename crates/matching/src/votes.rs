@@ -74,7 +74,7 @@ impl ShiftSearch {
 pub(crate) struct Votes {
     /// The sums in the order of [`ShiftSearch::shifts`]; empty before the first.
     sums: Vec<f32>,
-    pub(crate) samples: u64,
+    pub samples: u64,
     /// Sums of the products of the normals' components: east · east, east · north, north · north.
     normals: [f64; 3],
 }

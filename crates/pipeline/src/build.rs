@@ -16,15 +16,11 @@ pub(crate) mod work_store;
 
 use std::{sync::Arc, time::Duration};
 
-use corniche_dem::GridPlan;
 use corniche_geom::TileId;
 use corniche_gis::DatumOperation;
 use corniche_ground::terrain::ground::GroundSource;
 use corniche_plan::{BuildPlan, Opened, check_room, network_differences};
-use corniche_spec::{
-    BuildObserver, BuildSettings, PlanSettings, TerrainSettings, memory_shares::MemoryShares,
-    settings_record,
-};
+use corniche_spec::{BuildObserver, BuildSettings, memory_shares::MemoryShares, settings_record};
 use corniche_store::{Disk, LocalStore, SYNC_INTERVAL, SystemDisk};
 use corniche_tileset::Manifest;
 
@@ -84,8 +80,8 @@ pub fn build_on(
         let store = settings.tmp.as_deref().unwrap_or(folder);
         check_room(&opened, settings.resources, [store, folder], held_bytes, observer)?;
     }
-    let place = work_store::StorePlace { disk, folder: &store_folder, sync_interval };
-    let store = work_store::open(place, &plan, settings.leftovers, observer)?;
+    let leftovers = settings.leftovers;
+    let store = work_store::open(disk, &store_folder, sync_interval, &plan, leftovers, observer)?;
     observer.keeps(&store_folder);
     let finished = destination.begin(claim)?;
     let finished_path = finished.path().to_path_buf();
@@ -112,66 +108,38 @@ pub fn build_on(
 
 /// Warns of settings that the user may not have intended, before any work.
 pub(crate) fn warn(context: &BuildContext<'_>) {
-    warn_of_other_grids(context.grid, context.observer);
-    if let GroundSource::Dem(dem) = context.source {
-        let of_datums = context.grid.datum_operations.iter().filter_map(DatumOperation::warning);
-        for text in of_datums.chain(dem.unit_warning()) {
-            context.observer.warning(&text);
-        }
-    }
-    context.opened.file_datums.warnings().for_each(|text| context.observer.warning(&text));
-    warn_of_unused_latitude(&context.settings.terrain, context.grid, context.observer);
-    warn_of_other_network(context);
-}
-
-/// Warns if the package that provides the terrain has roads or layers that were built with other
-/// settings: users who put new roads on it each week may have forgotten an option.
-fn warn_of_other_network(context: &BuildContext<'_>) {
-    let GroundSource::Package(terrain) = context.source else { return };
-    let PlanSettings { terrain: of_terrain, roads, layers, osm, .. } = context.settings;
-    let manifest = terrain.manifest();
-    if osm.is_empty() || !manifest.has_extract() {
-        return;
-    }
-    let ours = settings_record::record_settings(
-        of_terrain,
-        roads,
-        context.opened.max_error_m,
-        None,
-        layers,
-    );
-    let differences = network_differences(&ours, &manifest.settings);
-    if !differences.is_empty() {
-        context.observer.warning(&format!(
-            "roads and layers are built with settings that differ from those of {:?}: {}",
-            terrain.path(),
-            differences.join("; ")
-        ));
-    }
-}
-
-/// Warns of files that are resampled onto the grid of the first one.
-fn warn_of_other_grids(plan: &GridPlan, observer: &dyn BuildObserver) {
-    if let Some([files, first]) = &plan.resampled_onto_first {
+    let BuildContext { settings, opened, source, grid, observer, .. } = *context;
+    if let Some([files, first]) = &grid.resampled_onto_first {
         observer.warning(&format!(
             "{files}: samples are not on the grid of {first}, the first file named; they are resampled onto its grid"
         ));
     }
-}
-
-/// Warns if `--scale-latitude` was given and has no effect.
-fn warn_of_unused_latitude(
-    terrain: &TerrainSettings,
-    plan: &GridPlan,
-    observer: &dyn BuildObserver,
-) {
-    if let Some(latitude_deg) =
-        terrain.plan.scale_latitude_deg.filter(|_| !plan.has_standard_latitude())
-    {
+    if let GroundSource::Dem(dem) = source {
+        let of_datums = grid.datum_operations.iter().filter_map(DatumOperation::warning);
+        of_datums.chain(dem.unit_warning()).for_each(|text| observer.warning(&text));
+    }
+    opened.file_datums.warnings().for_each(|text| observer.warning(&text));
+    let latitude_deg = settings.terrain.plan.scale_latitude_deg;
+    if let Some(latitude_deg) = latitude_deg.filter(|_| !grid.has_standard_latitude()) {
         observer.warning(&format!(
             "--scale-latitude {latitude_deg} has no effect: lengths in {} are not rescaled",
-            plan.crs
+            grid.crs
         ));
+    }
+    // Users who put new roads on a package's terrain each week may have forgotten an option.
+    if let GroundSource::Package(terrain) = source
+        && !settings.osm.is_empty()
+        && terrain.manifest().has_extract()
+    {
+        let ours = settings_record::record_settings(settings, opened.max_error_m, None);
+        let differences = network_differences(&ours, &terrain.manifest().settings);
+        if !differences.is_empty() {
+            observer.warning(&format!(
+                "roads and layers are built with settings that differ from those of {:?}: {}",
+                terrain.path(),
+                differences.join("; ")
+            ));
+        }
     }
 }
 

@@ -21,16 +21,16 @@ use crate::BuildError;
 /// The context that the steps of a build share. It is derived from the settings alone, so every
 /// process of a build has the same context.
 pub(crate) struct BuildContext<'a> {
-    pub(crate) settings: &'a PlanSettings,
-    pub(crate) resources: Resources,
-    pub(crate) opened: &'a Opened,
-    pub(crate) source: &'a GroundSource,
-    pub(crate) grid: &'a GridPlan,
-    pub(crate) levels: &'a Levels,
+    pub settings: &'a PlanSettings,
+    pub resources: Resources,
+    pub opened: &'a Opened,
+    pub source: &'a GroundSource,
+    pub grid: &'a GridPlan,
+    pub levels: &'a Levels,
     /// WGS84 ⇄ the grid's working CRS.
-    pub(crate) projection: &'a DemProjection,
-    pub(crate) store: &'a dyn Artifacts,
-    pub(crate) observer: &'a dyn BuildObserver,
+    pub projection: &'a DemProjection,
+    pub store: &'a dyn Artifacts,
+    pub observer: &'a dyn BuildObserver,
 }
 
 impl<'a> BuildContext<'a> {

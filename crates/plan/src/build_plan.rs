@@ -133,18 +133,16 @@ impl BuildPlan {
     /// See [`PlanError`].
     pub fn from_settings(settings: &PlanSettings, opened: &Opened) -> Result<Self, PlanError> {
         let grid = &opened.grid;
-        let PlanSettings { terrain, roads, layers, attribution, generator, .. } = settings;
+        let PlanSettings { roads, layers, attribution, generator, .. } = settings;
         Ok(Self {
             plan_version: PLAN_VERSION,
             generator: generator.clone(),
             libraries: grid.libraries.clone(),
             inputs: opened.inputs.planned()?,
             settings: settings_record::record_settings(
-                terrain,
-                roads,
+                settings,
                 opened.max_error_m,
                 opened.photo.record(),
-                layers,
             ),
             frc_table: FrcTableRecord::from_table(&roads.table),
             layers: layers.iter().map(|table| table.form().clone()).collect(),

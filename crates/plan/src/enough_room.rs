@@ -15,7 +15,7 @@ pub(crate) struct AvailableSpace {
     /// The limit of `--memory`.
     pub memory_bytes: u64,
     /// The machine's memory; `None` if it is unknown.
-    pub(crate) machine_bytes: Option<u64>,
+    pub machine_bytes: Option<u64>,
     /// The folder and file system of intermediate results.
     pub store: (PathBuf, FileSystem),
     /// The folder and file system of the package.

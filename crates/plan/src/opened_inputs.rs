@@ -139,13 +139,7 @@ impl Opened {
         let terrain = RecordedTerrain::open(package, &settings.generator)?;
         let manifest = terrain.manifest();
         let max_error_m = settings.terrain.max_error_m.unwrap_or(manifest.settings.max_error_m);
-        let ours = settings_record::record_settings(
-            &settings.terrain,
-            &settings.roads,
-            max_error_m,
-            None,
-            &[],
-        );
+        let ours = settings_record::record_settings(settings, max_error_m, None);
         let differences = terrain_differences(&ours, &manifest.settings);
         if !differences.is_empty() {
             let differences = differences.join("; ");

@@ -14,9 +14,9 @@ const MOST_RAYS: usize = 16;
 
 /// The line of a chain.
 pub(crate) struct ChainLine {
-    pub(crate) chain: ChainNumber,
-    pub(crate) kind: Option<SpanKind>,
-    pub(crate) points: Vec<LatticePoint>,
+    pub chain: ChainNumber,
+    pub kind: Option<SpanKind>,
+    pub points: Vec<LatticePoint>,
     /// The node of each point at which roads may join.
     nodes: Vec<Option<NodeNumber>>,
     /// The distance of each point along the chain, metres. It is 0 on the ground, where it is not
@@ -40,10 +40,10 @@ pub(crate) enum OnLine {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ChainRay {
     /// The chain that leaves in this direction.
-    pub(crate) chain: ChainNumber,
+    pub chain: ChainNumber,
     /// The next point in this direction.
-    pub(crate) to: LatticePoint,
-    pub(crate) onward: Onward,
+    pub to: LatticePoint,
+    pub onward: Onward,
 }
 
 /// The continuation of a line.
@@ -58,8 +58,8 @@ pub(crate) enum Onward {
 /// A point of a line, as reached from another position on it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct NextPoint {
-    pub(crate) point: usize,
-    pub(crate) is_forward: bool,
+    pub point: usize,
+    pub is_forward: bool,
 }
 
 impl NextPoint {

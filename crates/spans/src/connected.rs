@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use corniche_geom::{DisjointSets, LatticePoint, StepBudget};
+use corniche_geom::{DisjointSets, LatticeBounds, LatticePoint, StepBudget};
 use rstar::{
     AABB, RTree,
     primitives::{GeomWithData, Rectangle},
@@ -69,16 +69,10 @@ fn boxes_of(
 ) -> impl Iterator<Item = GeomWithData<Rectangle<[f64; 2]>, usize>> + '_ {
     let segments = points.len().saturating_sub(1);
     let step = segments.div_ceil(MOST_BOXES).max(1);
-    (0..segments).step_by(step).map(move |first| {
-        let own = points[first..=(first + step).min(segments)].iter().map(|point| point.in_steps());
-        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for at in own {
-            for axis in [0, 1] {
-                low[axis] = low[axis].min(at[axis]);
-                high[axis] = high[axis].max(at[axis]);
-            }
-        }
-        GeomWithData::new(Rectangle::from_corners(low, high), number)
+    (0..segments).step_by(step).filter_map(move |first| {
+        let own = LatticeBounds::around(&points[first..=(first + step).min(segments)])?;
+        let corners = [own.min, own.max].map(LatticePoint::in_steps);
+        Some(GeomWithData::new(Rectangle::from_corners(corners[0], corners[1]), number))
     })
 }
 

@@ -24,9 +24,9 @@ const MOST_BEYOND: usize = 4096;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Contact {
     /// The segments of both lines at the beginning of the stretch.
-    pub(crate) segments: [usize; 2],
+    pub segments: [usize; 2],
     /// The start and the end of the stretch along both lines, metres.
-    pub(crate) along_m: [[f64; 2]; 2],
+    pub along_m: [[f64; 2]; 2],
 }
 
 /// A position on both lines.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use corniche_geom::{LatticePoint, Side, cross, side};
+use corniche_geom::{LatticePoint, Side, along, cross, side};
 use corniche_network::{ChainNumber, Chains, Network};
 use rstar::{
     AABB, RTree,
@@ -307,8 +307,7 @@ fn crossed(both: [(&ChainLine, usize); 2]) -> Crossing {
         of_from / (of_from - of_to)
     };
     let shares = [share([a, b], [c, d]), share([c, d], [a, b])];
-    let [from, to] = [a.in_steps(), b.in_steps()];
-    let at = [0, 1].map(|axis| from[axis] + shares[0] * (to[axis] - from[axis]));
+    let at = along(a.in_steps(), b.in_steps(), shares[0]);
     let places = [0, 1].map(|k| {
         let (line, segment) = both[k];
         line.place(segment, line.along_m(segment, shares[k]))

@@ -75,8 +75,8 @@ impl Tent {
 /// A position on an edge.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct OnEdge {
-    pub(crate) edge: usize,
-    pub(crate) along_m: f64,
+    pub edge: usize,
+    pub along_m: f64,
 }
 
 /// The distances of joints from a stretch of an edge, up to the nearest support.
@@ -85,7 +85,7 @@ pub(crate) struct Reach {
     /// The start and the end of the stretch along the edge, metres.
     stretch_m: [f64; 2],
     /// The distance of the nearest support.
-    pub(crate) support_m: f64,
+    pub support_m: f64,
     /// The joints that are nearer, with their distances.
     joints: BTreeMap<u32, f64>,
 }

@@ -34,9 +34,9 @@ const STEP_M: f64 = 1e-6;
 
 /// The results for all joints.
 pub(crate) struct Refusals {
-    pub(crate) is_refused: Vec<bool>,
+    pub is_refused: Vec<bool>,
     /// Joints with so many others around them that they were not solved.
-    pub(crate) unsolved: Vec<usize>,
+    pub unsolved: Vec<usize>,
 }
 
 /// The order of joints: the one that is farther from the line, or that has the smaller node, comes

@@ -68,17 +68,17 @@ pub struct Joint {
 /// A chain of a span.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct SpanEdge {
-    pub(crate) chain: ChainNumber,
-    pub(crate) kind: SpanKind,
-    pub(crate) span: u32,
+    pub chain: ChainNumber,
+    pub kind: SpanKind,
+    pub span: u32,
     /// The joints at the ends of the chain.
-    pub(crate) joints: [u32; 2],
-    pub(crate) length_m: f64,
+    pub joints: [u32; 2],
+    pub length_m: f64,
     /// The smallest id of the chain's ways.
-    pub(crate) way_id: i64,
+    pub way_id: i64,
     /// The steepest grade with which roads of the kinds of the chain's ways are built, rise over
     /// run.
-    pub(crate) steepest: f64,
+    pub steepest: f64,
 }
 
 corniche_roads::listed! {

@@ -33,31 +33,20 @@ pub enum Defect {
     },
 }
 
-/// The reason why a road was lost.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Loss {
-    /// The road is outside the elevation data.
-    OutsideData,
-    /// The road is on the elevation data, but there is no ground.
-    NoGround,
-    /// The road is outside the requested bounds. It is counted, but it is not a defect.
-    OutsideBounds,
-}
-
-impl Loss {
-    /// All reasons, in the order of the manifest.
-    pub const ALL: [Self; 3] = [Self::OutsideData, Self::NoGround, Self::OutsideBounds];
+corniche_roads::listed! {
+    /// The reason why a road was lost, in the order of the manifest.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum Loss {
+        /// The road is outside the elevation data.
+        OutsideData = LossReason::OutsideData.text(),
+        /// The road is on the elevation data, but there is no ground.
+        NoGround = LossReason::NoGround.text(),
+        /// The road is outside the requested bounds. It is counted, but it is not a defect.
+        OutsideBounds = LossReason::OutsideBounds.text(),
+    }
 
     /// The reason in words: the name under which it is counted.
-    #[must_use]
-    pub const fn reason(self) -> &'static str {
-        match self {
-            Self::OutsideData => LossReason::OutsideData,
-            Self::NoGround => LossReason::NoGround,
-            Self::OutsideBounds => LossReason::OutsideBounds,
-        }
-        .text()
-    }
+    pub fn reason() -> &'static str;
 }
 
 impl Defect {

@@ -14,7 +14,7 @@ use corniche_tileset::{LayerTableRecord, PhotoRecord, PolygonRecord, SettingsRec
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
-use crate::{RoadSettings, TerrainSettings, hex::hex};
+use crate::{PlanSettings, RoadSettings, TerrainSettings, hex::hex};
 
 /// Copies one setting from the checked settings into a record, or back.
 macro_rules! take {
@@ -29,12 +29,11 @@ macro_rules! take {
 /// The record of a build. `max_error_m` is the tolerance of the finest level, given or derived from
 /// the cell; the levels of `photo` are given or derived from the photos.
 pub fn record_settings(
-    terrain: &TerrainSettings,
-    roads: &RoadSettings,
+    settings: &PlanSettings,
     max_error_m: f64,
     photo: Option<PhotoRecord>,
-    layers: &[LayerTable],
 ) -> SettingsRecord {
+    let PlanSettings { terrain, roads, layers, .. } = settings;
     let RoadSettings { table, filter, .. } = roads;
     let mut record = SettingsRecord {
         max_error_m,

@@ -5,6 +5,7 @@ use corniche_geom::Cell;
 use corniche_tileset::ReliefLevels;
 
 use super::*;
+use crate::PhotoChoice;
 
 const MAX_ERROR_M: f64 = 5.0;
 
@@ -36,7 +37,18 @@ fn table(name: &str) -> FrcTable {
 
 fn record((terrain, roads): &Settings) -> SettingsRecord {
     let photo = Some(PhotoRecord { levels: 2, quality: 80 });
-    record_settings(terrain, roads, terrain.max_error_m.unwrap_or(MAX_ERROR_M), photo, &[])
+    let settings = PlanSettings {
+        dem: Vec::new(),
+        terrain_of: None,
+        osm: Vec::new(),
+        terrain: terrain.clone(),
+        roads: roads.clone(),
+        layers: Vec::new(),
+        photo: PhotoChoice::Off,
+        attribution: Vec::new(),
+        generator: String::new(),
+    };
+    record_settings(&settings, terrain.max_error_m.unwrap_or(MAX_ERROR_M), photo)
 }
 
 /// Every setting that determines bytes, with another value for it.

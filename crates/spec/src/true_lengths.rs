@@ -2,7 +2,7 @@
 
 use corniche_drape::{ClippedPart, Gap};
 use corniche_geom::{
-    CoordinateTable, GridFrame, LatticeBounds, LatticePoint, Polyline, Projection,
+    CoordinateTable, GridFrame, LatticeBounds, LatticePoint, Polyline, Projection, along, dot,
     known_line_length_m, line_length_m, wgs84,
 };
 
@@ -107,8 +107,7 @@ impl<'a> TrueLengths<'a> {
         let table = self.table_of(&segment);
         let degrees = |at| self.degrees(table, at);
         let ends = segment.map(|point| self.frame.position_m(point));
-        let at =
-            |share: f64| [0, 1].map(|axis| ends[0][axis] + share * (ends[1][axis] - ends[0][axis]));
+        let at = |share: f64| along(ends[0], ends[1], share);
         // Quarters are compared, because both halves have equal lengths if the scale is the same on
         // both sides of the middle.
         let places = [ends[0], at(0.25), at(0.5), at(0.75), ends[1]].map(degrees);
@@ -139,13 +138,19 @@ impl<'a> TrueLengths<'a> {
         part: &ClippedPart,
         segments_um: &[u64],
     ) -> impl Iterator<Item = [u64; 2]> {
-        let pairs = part.line.points().windows(2);
+        let pairs = part.line.points().array_windows::<2>();
         pairs.zip(&part.segments).map(|(pair, &segment)| {
             let whole = [line.points()[segment], line.points()[segment + 1]];
-            let [from, to] =
-                [pair[0], pair[1]].map(|at| self.along_um(whole, at, segments_um[segment]));
+            let [from, to] = pair.map(|at| self.along_um(whole, at, segments_um[segment]));
             [from, to.max(from)]
         })
+    }
+
+    /// The sum of the lengths of all segments of these parts, micrometres; see [`Self::pieces_um`].
+    #[must_use]
+    pub fn parts_um(&self, line: &Polyline, parts: &[ClippedPart], segments_um: &[u64]) -> u64 {
+        let pieces = parts.iter().flat_map(|part| self.pieces_um(line, part, segments_um));
+        pieces.map(|[from, to]| to - from).sum()
     }
 
     /// The distance of a part's start along its line, and the lengths of the part's segments,
@@ -195,11 +200,7 @@ pub fn starts_um(from_um: u64, segments_um: &[u64]) -> Vec<u64> {
 /// The result is the same for every tile.
 #[must_use]
 pub fn share([p, q]: [LatticePoint; 2], at: LatticePoint) -> f64 {
-    let along = |point: LatticePoint| {
-        i128::from(point.u - p.u) * i128::from(q.u - p.u)
-            + i128::from(point.v - p.v) * i128::from(q.v - p.v)
-    };
-    along(at) as f64 / along(q) as f64
+    dot(p, q, at) as f64 / dot(p, q, q) as f64
 }
 
 fn part_um(share: f64, segment_um: u64) -> u64 {

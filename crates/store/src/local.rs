@@ -201,7 +201,7 @@ impl LocalStore {
         binding::state(&files, own.folder)?;
         files.create_folder(own.folder)?;
         let lock = lock::lock_store(&files, own.folder, hold)?;
-        if !matches!(binding::state(&files, own.folder)?.0, FolderState::Store) {
+        if !matches!(binding::state(&files, own.folder)?, FolderState::Store) {
             binding::bind(&files, own.folder, own.plan)?;
         }
         let own_folder = Folder::at_path(&files, own.folder);
@@ -279,7 +279,7 @@ impl LocalStore {
     /// # Errors
     /// [`StoreError::ReadOnly`]; when the disk fails. The part then stays open and can be resumed.
     pub fn seal(mut self) -> Result<Option<PathBuf>, StoreError> {
-        let own = self.own.take().ok_or_else(|| self.read_only())?;
+        let own = self.take_own()?;
         own.part.seal(&own.folder, &self.index())
     }
 
@@ -296,7 +296,7 @@ impl LocalStore {
         place: &dyn Publish,
         should_stop: &dyn Fn() -> bool,
     ) -> Result<Option<PathBuf>, StoreError> {
-        let own = self.own.take().ok_or_else(|| self.read_only())?;
+        let own = self.take_own()?;
         own.part.seal(&own.folder, &self.index())?;
         let mut published = None;
         for path in sealed_paths(&self.files, &own.folder)? {
@@ -311,7 +311,7 @@ impl LocalStore {
     /// # Errors
     /// [`StoreError::ReadOnly`]; when the disk fails.
     pub fn abandon(mut self) -> Result<(), StoreError> {
-        let own = self.own.take().ok_or_else(|| self.read_only())?;
+        let own = self.take_own()?;
         own.part.abandon()
     }
 
@@ -332,7 +332,7 @@ impl LocalStore {
     /// [`StoreError::ReadOnly`] without an own part; [`StoreError::Locked`] if other processes
     /// write parts here; when the disk fails.
     pub fn remove(mut self) -> Result<Vec<PathBuf>, StoreError> {
-        let own = self.own.take().ok_or_else(|| self.read_only())?;
+        let own = self.take_own()?;
         if !own.lock.try_lock(Hold::Alone)? {
             let owner = "another process that writes a part".to_owned();
             return Err(StoreError::Locked { path: own.folder.clone(), owner });
@@ -350,7 +350,7 @@ impl LocalStore {
     pub fn discard(disk: Arc<dyn Disk>, folder: &Path) -> Result<Vec<PathBuf>, StoreError> {
         let files = Files::new(disk);
         binding::clear_damaged_lock(&files, folder)?;
-        if matches!(binding::state(&files, folder)?.0, FolderState::Absent) {
+        if matches!(binding::state(&files, folder)?, FolderState::Absent) {
             return Ok(Vec::new());
         }
         let _lock = lock::lock_store(&files, folder, Hold::Alone)?;
@@ -367,6 +367,10 @@ impl LocalStore {
 
     fn index(&self) -> RwLockReadGuard<'_, Index> {
         self.index.read().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn take_own(&mut self) -> Result<Own, StoreError> {
+        self.own.take().ok_or_else(|| self.read_only())
     }
 
     fn read_only(&self) -> StoreError {
@@ -479,7 +483,7 @@ fn part_number(path: &Path, count: usize) -> Result<u32, StoreError> {
 
 /// Fails if a folder already is a store or contains something else.
 fn refuse_store(files: &Arc<Files>, folder: &Path) -> Result<(), StoreError> {
-    match binding::state(files, folder)?.0 {
+    match binding::state(files, folder)? {
         FolderState::Store => Err(StoreError::Exists { path: folder.to_owned() }),
         FolderState::Absent | FolderState::Free => Ok(()),
     }
@@ -514,12 +518,7 @@ fn remove_all(files: &Arc<Files>, folder: &Path) -> Result<Vec<PathBuf>, StoreEr
         // Another process may have created something in between: then the folder is not empty, and
         // stays.
         if let Err(error) = files.remove_folder(folder) {
-            left = layout::look(files, folder)?
-                .unwrap_or_default()
-                .foreign
-                .into_iter()
-                .map(|name| folder.join(name))
-                .collect();
+            left = foreign(files, folder)?;
             if left.is_empty() {
                 return Err(error);
             }

@@ -15,19 +15,19 @@ pub(crate) use crate::surface::NO_TWIN;
 /// ```
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Face {
-    pub(crate) corners: [TinVertex; 3],
-    pub(crate) twins: [u32; 3],
+    pub corners: [TinVertex; 3],
+    pub twins: [u32; 3],
     /// The farthest node of the face, stored here because it is read together with the face. 0 m
     /// until the face is scanned.
-    pub(crate) farthest: Farthest,
+    pub farthest: Farthest,
 }
 
 /// The farthest node of a face.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct Farthest {
-    pub(crate) far_m: f32,
+    pub far_m: f32,
     /// The index of the node, row by row.
-    pub(crate) node: u32,
+    pub node: u32,
 }
 
 impl Face {

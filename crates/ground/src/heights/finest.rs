@@ -97,10 +97,8 @@ impl FinestHeights {
         let (heights, filled) = bytes
             .split_at_checked((TILE_NODES + 2 * HALO).pow(2) * 4)
             .ok_or_else(|| damaged(key, &"its data end early"))?;
-        let filled = filled
-            .chunks_exact(4)
-            .map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize)
-            .collect();
+        let filled = filled.as_chunks().0.iter();
+        let filled = filled.map(|&node| u32::from_le_bytes(node) as usize).collect();
         Ok(Some(Self { with_halo: grid_of(heights, TILE_NODES + 2 * HALO), filled }))
     }
 }
@@ -113,7 +111,6 @@ pub(crate) fn height_bytes(grid: &HeightGrid) -> Vec<u8> {
 /// The square grid with `side` nodes a side that `height_bytes` encoded.
 #[must_use]
 pub fn grid_of(bytes: &[u8], side: usize) -> HeightGrid {
-    let heights_m =
-        bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
-    HeightGrid::new(side, side, heights_m)
+    let heights_m = bytes.as_chunks().0.iter().map(|&height_m| f32::from_le_bytes(height_m));
+    HeightGrid::new(side, side, heights_m.collect())
 }

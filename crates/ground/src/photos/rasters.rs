@@ -56,10 +56,8 @@ pub fn get(
     if bytes.is_empty() {
         return Ok(None);
     }
-    match Texels::new(SIDE, SIDE, bytes) {
-        Some(texels) => Ok(Some(texels)),
-        None => Err(damaged(key, &"it is not a photo").into()),
-    }
+    let texels = Texels::new(SIDE, SIDE, bytes);
+    Ok(Some(texels.ok_or_else(|| damaged(key, &"it is not a photo"))?))
 }
 
 /// The texels of a tile above the finest level, twice as fine as its cells. They are the texels of
@@ -106,8 +104,6 @@ pub fn put_from_children(
     data: &DataTiles,
     id: TileId,
 ) -> Result<(), GroundError> {
-    match of_children(store, data, id, 0)? {
-        Some(texels) => put(store, id, &texels.halved()),
-        None => put(store, id, &Texels::empty(0, 0)),
-    }
+    let texels = of_children(store, data, id, 0)?;
+    put(store, id, &texels.map_or(Texels::empty(0, 0), |texels| texels.halved()))
 }

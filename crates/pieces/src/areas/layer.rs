@@ -6,7 +6,7 @@ use corniche_osm::{AreaSummary, ExtractDefect, LayerArea};
 use corniche_spec::{data_tiles::DataTiles, extent::AreaExtent};
 use corniche_tileset::{AreaPolygon, LayerShape};
 
-use super::sea::SeaPlace;
+use super::sea;
 use crate::layers::{
     layer_writer::TileSplitting,
     object_layer::{ObjectSplitting, SplitObject, value_points},
@@ -157,8 +157,7 @@ impl ObjectSplitting for AreaSplitting<'_> {
         on_defect: &mut dyn FnMut(ExtractDefect),
     ) -> Option<LayerArea> {
         let PlanSplitting { table, frame, .. } = self.plan;
-        let sea = SeaPlace { table, extent: self.extent, frame, projection: self.projection };
-        sea.close(summary, on_defect)
+        sea::close((table, self.extent), (frame, self.projection), summary, on_defect)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Why an extract has no roads, and what the user can do.
 
-use std::{collections::BTreeMap, fmt};
+use std::collections::BTreeMap;
 
 use corniche_osm::{ExtractSummary, LeftOutReason};
 use corniche_roads::{Classified, FrcTable};
@@ -13,13 +13,7 @@ pub(crate) struct NoRoad {
     /// Why its ways are not roads.
     pub reason: String,
     /// How the user can include its content.
-    advice: String,
-}
-
-impl fmt::Display for NoRoad {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}; {}", self.reason, self.advice)
-    }
+    pub advice: String,
 }
 
 /// Finds the reason why an extract has no roads under a table of classes.

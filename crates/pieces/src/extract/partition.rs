@@ -103,12 +103,12 @@ pub fn partition(
         return Ok(totals);
     }
     let told = LayerContext::begin(input.pool, observer, DefectsWriter::new(store, observer));
-    let found = read(input, (store, scratch), &told)?;
-    let (totals, extract) = found.roads;
+    let ((totals, extract), has_others) = read(input, (store, scratch), &told)?;
     if totals.roads == 0 {
         let why = no_road::why(&extract, &input.settings.table);
-        if !found.has_others {
-            return Err(ExtractError::NoRoads { osm: input.osm.to_vec(), why: why.to_string() });
+        if !has_others {
+            let why = format!("{}; {}", why.reason, why.advice);
+            return Err(ExtractError::NoRoads { osm: input.osm.to_vec(), why });
         }
         let (osm, reason) = (input.osm, why.reason);
         observer
@@ -120,20 +120,14 @@ pub fn partition(
     Ok(totals)
 }
 
-/// The findings about the extract.
-struct ExtractFindings {
-    roads: (RoadTotals, ExtractSummary),
-    /// Whether other layers were requested and the extract has objects of them: then roads are
-    /// optional.
-    has_others: bool,
-}
-
-/// Reads all requested layers, and stores what tiles need of them.
+/// Reads all requested layers, and stores what tiles need of them. Returns what was found of roads,
+/// and whether other layers were requested and the extract has objects of them: then roads are
+/// optional.
 fn read(
     input: &ExtractInput<'_>,
     places: (&dyn Artifacts, &dyn ScratchSpace),
     told: &LayerContext<'_>,
-) -> Result<ExtractFindings, ExtractError> {
+) -> Result<((RoadTotals, ExtractSummary), bool), ExtractError> {
     let (store, scratch) = places;
     let extent = area_extent(input, told.observer)?;
     let slots = (0..).map_while(LayerSlot::new).zip(input.layers);
@@ -177,8 +171,7 @@ fn read(
         roads.check()?;
         read?;
     }
-    let roads = roads.done()?.ok_or(ExtractError::Interrupted)?;
-    Ok(ExtractFindings { roads, has_others })
+    Ok((roads.done()?.ok_or(ExtractError::Interrupted)?, has_others))
 }
 
 /// A layer while its objects are read.
@@ -211,6 +204,7 @@ impl<'a, 'b> ObjectWriter<'a, 'b> {
             }
             LayerGeometry::Line => {
                 let spans = input.settings.spans && table.form().placement == LinePlacement::Spans;
+                let spans = spans.then_some(slot);
                 let splitting = LineSplitting { plan, levels, lengths, spans };
                 let layer = ObjectLayer::new((slot, splitting), places, memory_bytes);
                 Self::Lines(LayerWriter::new(layer, told))

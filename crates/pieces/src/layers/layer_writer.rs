@@ -42,7 +42,7 @@ pub(crate) trait LayerEncoder {
     type Done;
 
     /// The stage that is reported while the layer's objects are split.
-    fn stage(&self) -> Stage;
+    const STAGE: Stage;
 
     fn splitting(&self) -> &Self::Splitting;
 
@@ -83,7 +83,7 @@ pub(crate) struct LayerContext<'a> {
     /// The objects of the layers that the stage has finished, and those of its current layer.
     objects: Cell<[u64; 2]>,
     /// Whether a layer's result could not be stored: then the rest need not be read.
-    pub(crate) has_failed: AtomicBool,
+    pub has_failed: AtomicBool,
 }
 
 impl<'a> LayerContext<'a> {
@@ -139,7 +139,6 @@ impl<'a> LayerContext<'a> {
 
 /// A layer while its objects are read.
 pub(crate) struct LayerWriter<'a, 'b, L: LayerEncoder> {
-    stage: Stage,
     layer: Option<L>,
     told: &'a LayerContext<'b>,
     batch: Vec<ObjectOf<L>>,
@@ -152,8 +151,8 @@ pub(crate) struct LayerWriter<'a, 'b, L: LayerEncoder> {
 
 impl<'a, 'b, L: LayerEncoder> LayerWriter<'a, 'b, L> {
     pub(crate) fn new(layer: L, told: &'a LayerContext<'b>) -> Self {
-        let (stage, batch) = (layer.stage(), Vec::new());
-        Self { stage, layer: Some(layer), told, batch, batch_points: 0, count: 0, done: Ok(None) }
+        let (layer, batch) = (Some(layer), Vec::new());
+        Self { layer, told, batch, batch_points: 0, count: 0, done: Ok(None) }
     }
 
     fn fail(&mut self, error: ExtractError) {
@@ -194,7 +193,7 @@ impl<'a, 'b, L: LayerEncoder> LayerWriter<'a, 'b, L> {
 
 impl<L: LayerEncoder> LayerSink<ObjectOf<L>, L::Summary> for LayerWriter<'_, '_, L> {
     fn begin(&mut self) {
-        self.told.go_on_to(self.stage);
+        self.told.go_on_to(L::STAGE);
     }
 
     fn take(&mut self, object: ObjectOf<L>) {
@@ -220,7 +219,7 @@ impl<L: LayerEncoder> LayerSink<ObjectOf<L>, L::Summary> for LayerWriter<'_, '_,
     }
 
     fn reached(&mut self, done: u64, all: u64) {
-        self.told.reached(self.stage, done, all);
+        self.told.reached(L::STAGE, done, all);
     }
 
     fn end(&mut self, summary: L::Summary) {

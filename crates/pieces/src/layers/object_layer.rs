@@ -17,7 +17,7 @@ use super::{
     layer_writer::{LayerContext, LayerEncoder, TileSplitting},
     parts_by_tile::PartsByTile,
     plan_splitting::PlanSplitting,
-    span_pieces::{self, SpanPiece},
+    span_pieces,
     tile_section::{LayerTotals, ObjectMeasure, TileSection},
 };
 use crate::ExtractError;
@@ -49,6 +49,9 @@ pub(crate) trait ObjectSplitting: TileSplitting<Split = SplitObject> {
 /// that the order depends on the parts alone.
 type PartOrder = (u8, OsmObject, LatticePoint, u64);
 
+/// The order of a tile's parts on bridges and in tunnels: by way and position.
+type SpanOrder = (i64, LatticePoint, u64);
+
 /// An object that has been split.
 pub(crate) struct SplitObject {
     class: u8,
@@ -56,7 +59,7 @@ pub(crate) struct SplitObject {
     measure: ObjectMeasure,
     parts: Result<Vec<(TileId, PartOrder, Vec<u8>)>, OutlineError>,
     /// The parts on bridges and in tunnels.
-    spans: Vec<(TileId, SpanPiece)>,
+    spans: Vec<(TileId, SpanOrder, Vec<u8>)>,
 }
 
 impl SplitObject {
@@ -80,7 +83,7 @@ impl SplitObject {
     }
 
     /// Returns the same object with its parts on bridges and in tunnels.
-    pub(crate) fn with_spans(self, spans: Vec<(TileId, SpanPiece)>) -> Self {
+    pub(crate) fn with_spans(self, spans: Vec<(TileId, SpanOrder, Vec<u8>)>) -> Self {
         Self { spans, ..self }
     }
 }
@@ -92,8 +95,8 @@ pub(crate) struct ObjectLayer<'a, S> {
     coding: LayerCoding,
     store: &'a dyn Artifacts,
     parts: PartsByTile<'a, PartOrder>,
-    /// The parts on bridges and in tunnels, by way and position; `None` if the layer has none.
-    spans: Option<PartsByTile<'a, (i64, LatticePoint, u64)>>,
+    /// The parts on bridges and in tunnels; `None` if the layer has none.
+    spans: Option<PartsByTile<'a, SpanOrder>>,
     /// The sizes of all objects that were read and split, by class.
     measures: BTreeMap<u8, ObjectMeasure>,
     /// Objects that were too complex to split.
@@ -120,10 +123,7 @@ impl<S: ObjectSplitting> LayerEncoder for ObjectLayer<'_, S> {
     type Splitting = S;
     type Summary = S::Summary;
     type Done = LayerTotals;
-
-    fn stage(&self) -> Stage {
-        Stage::Layers
-    }
+    const STAGE: Stage = Stage::Layers;
 
     fn splitting(&self) -> &S {
         &self.splitting
@@ -137,10 +137,7 @@ impl<S: ObjectSplitting> LayerEncoder for ObjectLayer<'_, S> {
         };
         self.measures.entry(class).or_default().add(measure);
         if let Some(all) = &mut self.spans {
-            for (id, piece) in spans {
-                let from_um = piece.along_um.first().copied().unwrap_or_default();
-                all.push(id, (piece.way_id, piece.start, from_um), record_bytes(&piece))?;
-            }
+            spans.into_iter().try_for_each(|(id, order, bytes)| all.push(id, order, bytes))?;
         }
         parts.into_iter().try_for_each(|(id, order, bytes)| self.parts.push(id, order, bytes))
     }
@@ -170,38 +167,23 @@ impl<S: ObjectSplitting> LayerEncoder for ObjectLayer<'_, S> {
             kept.measure = self.measures.get(class).copied().unwrap_or_default();
         }
         let (plan, store) = (self.splitting.plan(), self.store);
-        let layer = SectionLayer::Extract(self.slot);
-        self.parts.for_each_tile(
-            told.observer,
-            |objects: &mut Vec<LayerObject>, tile, _, bytes| {
-                objects.push(take_record(&mut &*bytes).ok_or_else(|| {
-                    let key = layer.section_key(tile);
-                    damaged(key, &"the record read back is not an object of a layer")
-                })?);
-                Ok(())
-            },
-            |tile, objects| {
-                let points = objects.iter().map(|object| object.shape.points().count() as u64);
-                let counts = [objects.len() as u64, points.sum()];
-                TileSection::put((layer, tile), store, counts, |id| {
-                    let step = plan.step(id.z());
-                    encode_layer(id, plan.frame, self.slot, &self.coding, step, &objects)
-                })
-            },
-        )?;
-        let slot = self.slot;
+        let (slot, layer) = (self.slot, SectionLayer::Extract(self.slot));
+        self.parts.for_each_tile(told.observer, |tile, parts| {
+            let objects = parts.iter().map(|bytes| take_record(&mut &bytes[..]));
+            let objects: Vec<LayerObject> = objects.collect::<Option<_>>().ok_or_else(|| {
+                let key = layer.section_key(tile);
+                damaged(key, &"the record read back is not an object of a layer")
+            })?;
+            let points = objects.iter().map(|object| object.shape.points().count() as u64);
+            let counts = [objects.len() as u64, points.sum()];
+            TileSection::put((layer, tile), store, counts, |id| {
+                encode_layer(id, plan.frame, slot, &self.coding, plan.step(id.z()), &objects)
+            })
+        })?;
         if let Some(spans) = self.spans {
-            spans.for_each_tile(
-                told.observer,
-                |pieces: &mut Vec<SpanPiece>, tile, _, bytes| {
-                    pieces.push(take_record(&mut &*bytes).ok_or_else(|| {
-                        let key = layer.section_key(tile);
-                        damaged(key, &"the record read back is not a piece of a line")
-                    })?);
-                    Ok(())
-                },
-                |tile, pieces| Ok(span_pieces::put(store, (slot, tile), &pieces)?),
-            )?;
+            spans.for_each_tile(told.observer, |tile, pieces| {
+                Ok(store.put(span_pieces::key(slot, tile), &pieces.concat())?)
+            })?;
         }
         totals.put(layer, store)?;
         Ok(totals)

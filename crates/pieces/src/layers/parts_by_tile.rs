@@ -2,7 +2,9 @@
 
 use corniche_geom::TileId;
 use corniche_spec::BuildObserver;
-use corniche_store::{ScratchSpace, SortRecord, Sorter, append_record, take_record};
+use corniche_store::{
+    Groups, ScratchSpace, SortRecord, Sorted, Sorter, append_record, take_record,
+};
 use corniche_tileset::pmtiles_order;
 use serde::{Serialize, de::DeserializeOwned};
 
@@ -29,38 +31,34 @@ impl<'a, K: PartKey> PartsByTile<'a, K> {
         Ok(self.0.push(part)?)
     }
 
-    /// Gathers the parts of each tile with `add`, in their order, and passes the results to `put`,
-    /// in the order of the package.
-    pub(crate) fn for_each_tile<T: Default>(
+    /// All parts, sorted.
+    pub(crate) fn sorted(self) -> Result<Sorted<'a, ObjectPart<K>>, ExtractError> {
+        Ok(self.0.finish()?)
+    }
+
+    /// Passes the parts of each tile to `put`, in the order of the package.
+    pub(crate) fn for_each_tile(
         self,
         observer: &dyn BuildObserver,
-        mut add: impl FnMut(&mut T, u64, K, Vec<u8>) -> Result<(), ExtractError>,
-        mut put: impl FnMut(u64, T) -> Result<(), ExtractError>,
+        mut put: impl FnMut(u64, &[Vec<u8>]) -> Result<(), ExtractError>,
     ) -> Result<(), ExtractError> {
-        let mut put = |(tile, parts): (u64, T)| {
+        let mut tiles = Groups::from_sorted(self.sorted()?);
+        while let Some(parts) = tiles.next_by(|part| part.tile)? {
             observer.check()?;
-            put(tile, parts)
-        };
-        let mut current: Option<(u64, T)> = None;
-        for part in self.0.finish()? {
-            let ObjectPart { tile, key, bytes } = part?;
-            if let Some(done) = current.take_if(|(own, _)| *own != tile) {
-                put(done)?;
-            }
-            let (_, own) = current.get_or_insert_with(|| (tile, T::default()));
-            add(own, tile, key, bytes)?;
+            let tile = parts[0].tile;
+            put(tile, &parts.into_iter().map(|part| part.bytes).collect::<Vec<_>>())?;
         }
-        current.map_or(Ok(()), put)
+        Ok(())
     }
 }
 
 /// An encoded part of an object.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
-struct ObjectPart<K> {
+pub(crate) struct ObjectPart<K> {
     /// The tile's position in the order of the package.
     tile: u64,
-    key: K,
-    bytes: Vec<u8>,
+    pub key: K,
+    pub bytes: Vec<u8>,
 }
 
 impl<K: PartKey> SortRecord for ObjectPart<K> {

@@ -1,10 +1,10 @@
 //! Pieces of a layer's lines on bridges and in tunnels, by tile: with their positions along their
 //! way, so that their heights can be solved like those of roads.
 
-use corniche_geom::{LatticePoint, Polyline, TileId};
+use corniche_geom::{LatticePoint, TileId};
 use corniche_roads::Structure;
-use corniche_spec::artifacts::{self, ArtifactError, ArtifactKind, damaged};
-use corniche_store::Artifacts;
+use corniche_spec::artifacts::{ArtifactError, ArtifactKind, damaged};
+use corniche_store::{ArtifactKey, Artifacts, record_bytes, take_record};
 use corniche_tileset::{LayerSlot, RunOwner, pmtiles_order};
 use serde::{Deserialize, Serialize};
 
@@ -19,8 +19,8 @@ pub struct SpanLineOf {
     pub way_id: i64,
     /// The road's class, or the layer.
     pub owner: RunOwner,
-    /// Whether it is a tunnel; otherwise it is a bridge.
-    pub(crate) is_tunnel: bool,
+    /// Bridge or tunnel.
+    pub(crate) structure: Structure,
 }
 
 /// A line along which positions are measured.
@@ -32,59 +32,16 @@ pub(crate) enum CarriedLine {
     Way(i64, LatticePoint),
 }
 
-/// Consecutive segments of a line on a bridge or in a tunnel that may touch a tile.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct SpanPiece {
-    pub way_id: i64,
-    /// The first point of the line, from which positions are measured.
-    pub start: LatticePoint,
-    pub is_tunnel: bool,
-    /// At least two points, as the section of the tile has them.
-    pub points: Vec<LatticePoint>,
-    /// The position of each point along the line, micrometres.
-    pub along_um: Vec<u64>,
+/// Encodes a piece of a line.
+pub(crate) fn to_bytes(of: SpanLineOf, run: &SegmentRun) -> Vec<u8> {
+    let mut bytes = record_bytes(of);
+    run.push_to(&mut bytes, &mut LatticePoint::new(0, 0));
+    bytes
 }
 
-impl SpanPiece {
-    /// Creates a piece of a way with a structure that is not the ground.
-    pub(crate) fn new(
-        (way_id, start): (i64, LatticePoint),
-        structure: Structure,
-        (points, along_um): (&[LatticePoint], &[u64]),
-    ) -> Self {
-        let is_tunnel = structure == Structure::Tunnel;
-        Self { way_id, start, is_tunnel, points: points.to_vec(), along_um: along_um.to_vec() }
-    }
-
-    /// Returns the line with its lengths; `None` if points and positions do not match.
-    fn run(self, slot: LayerSlot) -> Option<(SpanLineOf, SegmentRun)> {
-        let Self { way_id, start, is_tunnel, points, along_um } = self;
-        let count = points.len();
-        let line = Polyline::new(points).ok()?;
-        if line.points().len() != count || along_um.len() != count || !along_um.is_sorted() {
-            return None;
-        }
-        let of = SpanLineOf {
-            line: CarriedLine::Way(way_id, start),
-            way_id,
-            owner: RunOwner::Layer(slot),
-            is_tunnel,
-        };
-        let segments_um = along_um.array_windows().map(|[from, to]| to - from).collect();
-        Some((of, SegmentRun { line, segments_um, from_um: along_um[0], nodes: Vec::new() }))
-    }
-}
-
-/// Stores the pieces of a layer in a tile.
-///
-/// # Errors
-/// When the artifact cannot be stored.
-pub(crate) fn put(
-    store: &dyn Artifacts,
-    (slot, tile): (LayerSlot, u64),
-    pieces: &[SpanPiece],
-) -> Result<(), ArtifactError> {
-    artifacts::put(store, in_tile(ArtifactKind::LayerSpans, slot, tile), &pieces)
+/// The key of the encoded pieces of a layer in a tile.
+pub(crate) fn key(slot: LayerSlot, tile: u64) -> ArtifactKey {
+    in_tile(ArtifactKind::LayerSpans, slot, tile)
 }
 
 /// Reads the pieces of a layer in a tile.
@@ -96,8 +53,14 @@ pub(crate) fn get(
     slot: LayerSlot,
     id: TileId,
 ) -> Result<Vec<(SpanLineOf, SegmentRun)>, ArtifactError> {
-    let key = in_tile(ArtifactKind::LayerSpans, slot, pmtiles_order(id));
-    let pieces: Vec<SpanPiece> = artifacts::get(store, key)?.unwrap_or_default();
-    let runs: Option<Vec<_>> = pieces.into_iter().map(|piece| piece.run(slot)).collect();
-    runs.ok_or_else(|| damaged(key, &"it does not hold pieces of lines"))
+    let key = key(slot, pmtiles_order(id));
+    let bytes = store.get(key)?.unwrap_or_default();
+    let mut rest = &bytes[..];
+    let mut pieces = Vec::new();
+    while !rest.is_empty() {
+        let of = take_record(&mut rest);
+        let piece = of.zip(SegmentRun::take(&mut rest, &mut LatticePoint::new(0, 0)));
+        pieces.push(piece.ok_or_else(|| damaged(key, &"it does not hold pieces of lines"))?);
+    }
+    Ok(pieces)
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
-use corniche_osm::{AreaSummary, LineSummary, PointSummary};
+use corniche_osm::{AreaLoss, AreaSummary, LineLoss, LineSummary, PointSummary};
 use corniche_spec::artifacts::{self, ArtifactError, ArtifactKind};
 use corniche_store::Artifacts;
 use corniche_tileset::{EncodeError, LayerClassRecord, LayerCounts, Section, pmtiles_order};
@@ -114,9 +114,9 @@ pub struct KeptObjects {
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct ObjectMeasure {
     /// Length in plan, micrometres.
-    pub(crate) length_um: u64,
+    pub length_um: u64,
     /// Square metres.
-    pub(crate) area_m2: f64,
+    pub area_m2: f64,
 }
 
 impl ObjectMeasure {
@@ -128,17 +128,23 @@ impl ObjectMeasure {
 
 impl LayerTotals {
     /// Returns the totals of a reader's counts, without the sizes of the objects.
-    fn from_counts(
+    fn from_counts<L>(
         objects: u64,
-        kept: impl Iterator<Item = (u8, u64)>,
-        lost: impl Iterator<Item = (&'static str, u64)>,
+        kept: impl IntoIterator<Item = (u8, u64)>,
+        (lost, reason): (BTreeMap<L, u64>, impl Fn(L) -> &'static str),
         unread: BTreeMap<String, u64>,
     ) -> Self {
         let measure = ObjectMeasure::default();
         Self {
             objects,
-            kept: kept.map(|(class, objects)| (class, KeptObjects { objects, measure })).collect(),
-            lost: lost.map(|(reason, objects)| (reason.to_owned(), objects)).collect(),
+            kept: kept
+                .into_iter()
+                .map(|(class, objects)| (class, KeptObjects { objects, measure }))
+                .collect(),
+            lost: lost
+                .into_iter()
+                .map(|(loss, objects)| (reason(loss).to_owned(), objects))
+                .collect(),
             unread,
         }
     }
@@ -187,23 +193,20 @@ impl From<AreaSummary> for LayerTotals {
     fn from(summary: AreaSummary) -> Self {
         let AreaSummary { objects, kept, lost, unread, .. } = summary;
         let kept = kept.into_iter().map(|(class, kept)| (class, kept.areas));
-        let lost = lost.into_iter().map(|(loss, objects)| (loss.reason(), objects));
-        Self::from_counts(objects, kept, lost, unread)
+        Self::from_counts(objects, kept, (lost, AreaLoss::reason), unread)
     }
 }
 
 impl From<PointSummary> for LayerTotals {
     fn from(summary: PointSummary) -> Self {
         let PointSummary { objects, kept, lost, unread } = summary;
-        let lost = lost.into_iter().map(|(loss, objects)| (loss.reason(), objects));
-        Self::from_counts(objects, kept.into_iter(), lost, unread)
+        Self::from_counts(objects, kept, (lost, AreaLoss::reason), unread)
     }
 }
 
 impl From<LineSummary> for LayerTotals {
     fn from(summary: LineSummary) -> Self {
         let LineSummary { ways, kept, lost, unread, .. } = summary;
-        let lost = lost.into_iter().map(|(loss, ways)| (loss.reason(), ways));
-        Self::from_counts(ways, kept.into_iter(), lost, unread)
+        Self::from_counts(ways, kept, (lost, LineLoss::reason), unread)
     }
 }

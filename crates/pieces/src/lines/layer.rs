@@ -7,15 +7,16 @@ use corniche_geom::{LatticePoint, Polyline, TileId};
 use corniche_layers::OsmObject;
 use corniche_osm::{LayerLine, LineSummary};
 use corniche_roads::{Structure, kept_points};
-use corniche_spec::{levels::Levels, tiles_near::for_each_tile_near, true_lengths::TrueLengths};
-use corniche_tileset::LayerShape;
+use corniche_spec::{levels::Levels, true_lengths::TrueLengths};
+use corniche_tileset::{LayerShape, LayerSlot, RunOwner};
 
 use crate::layers::{
     fixed_points::fixed_of_part,
     layer_writer::TileSplitting,
     object_layer::{ObjectSplitting, SplitObject, value_points},
     plan_splitting::PlanSplitting,
-    span_pieces::SpanPiece,
+    segment_run::{LevelPart, alongs_um},
+    span_pieces::{self, CarriedLine, SpanLineOf},
     tile_section::ObjectMeasure,
 };
 
@@ -24,8 +25,8 @@ pub(crate) struct LineSplitting<'a> {
     pub plan: PlanSplitting<'a>,
     pub levels: &'a Levels,
     pub lengths: &'a TrueLengths<'a>,
-    /// Whether bridges and tunnels of the layer become spans.
-    pub spans: bool,
+    /// The layer, if its bridges and tunnels become spans.
+    pub spans: Option<LayerSlot>,
 }
 
 /// A line, or a part of it inside the polygon.
@@ -35,14 +36,6 @@ struct LinePart<'a> {
     fixed: Cow<'a, [u32]>,
     /// The position of each point along the line, micrometres; empty on the ground.
     along_um: Vec<u64>,
-}
-
-/// A part of a line as a level shows it, or a stretch of it near a tile.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct LevelPart {
-    pub(crate) points: Vec<LatticePoint>,
-    /// The position of each point along the line, micrometres; empty on the ground.
-    pub(crate) along_um: Vec<u64>,
 }
 
 impl LineSplitting<'_> {
@@ -59,7 +52,7 @@ impl LineSplitting<'_> {
     fn parts<'b>(&self, object: &'b LayerLine) -> Vec<LinePart<'b>> {
         let LayerLine { points, fixed, .. } = object;
         let Ok(line) = Polyline::new(points.clone()) else { return Vec::new() };
-        let segments_um = if self.spans && object.structure != Structure::Ground {
+        let segments_um = if self.spans.is_some() && object.structure != Structure::Ground {
             // As for bridges and tunnels of roads, lengths do not depend on bounds.
             self.lengths.projected_segments_um(&line)
         } else {
@@ -69,52 +62,28 @@ impl LineSplitting<'_> {
             return vec![LinePart {
                 points: Cow::Borrowed(points),
                 fixed: Cow::Borrowed(fixed),
-                along_um: alongs_um(0, segments_um.iter().copied()),
+                along_um: alongs_um(0, &segments_um),
             }];
         };
-        let cut = |part: ClippedPart| LinePart {
-            fixed: Cow::Owned(fixed_of_part(points, fixed, &part)),
-            along_um: self.alongs_of_part_um((&line, &part), &segments_um),
-            points: Cow::Owned(part.line.points().to_vec()),
+        let cut = |part: ClippedPart| {
+            let along_um = if segments_um.is_empty() {
+                Vec::new()
+            } else {
+                let (from_um, part_um) = self.lengths.part_um(&line, &part, &segments_um);
+                alongs_um(from_um, &part_um)
+            };
+            let fixed = Cow::Owned(fixed_of_part(points, fixed, &part));
+            LinePart { points: Cow::Owned(part.line.into_points()), fixed, along_um }
         };
         clip_region(&line, region).into_iter().map(cut).collect()
     }
 
-    /// The positions of a part's points along the line, which has segments of these lengths.
-    fn alongs_of_part_um(
-        &self,
-        (line, part): (&Polyline, &ClippedPart),
-        segments_um: &[u64],
-    ) -> Vec<u64> {
-        if segments_um.is_empty() {
-            return Vec::new();
-        }
-        let (from_um, part_um) = self.lengths.part_um(line, part, segments_um);
-        alongs_um(from_um, part_um.into_iter())
-    }
-
     fn split_level(&self, part: &LinePart<'_>, level: u8) -> Vec<(TileId, LevelPart)> {
-        let LevelPart { points, along_um } = self.line(part, level);
+        let line = self.line(part, level);
         let data = self.plan.data.above(level);
-        let mut near: Vec<(TileId, usize)> = Vec::new();
-        for (segment, pair) in points.array_windows::<2>().enumerate() {
-            for_each_tile_near(*pair, level, self.levels, |id| {
-                if data.contains(id) && self.is_wanted(id) {
-                    near.push((id, segment));
-                }
-            });
-        }
-        near.sort_unstable();
-        let runs = near.chunk_by(|(one, at), (other, next)| one == other && at + 1 == *next);
-        let points_of = |run: &[(TileId, usize)]| {
-            let (first, last) = (run[0].1, run[run.len() - 1].1);
-            let own = LevelPart {
-                points: points[first..=last + 1].to_vec(),
-                along_um: along_um.get(first..=last + 1).unwrap_or_default().to_vec(),
-            };
-            (run[0].0, own)
-        };
-        runs.map(points_of).collect()
+        let is_wanted = |id| data.contains(id) && self.is_wanted(id);
+        let runs = line.runs(level, self.levels, is_wanted).into_iter();
+        runs.map(|(id, run)| (id, line.stretch(run))).collect()
     }
 
     fn is_wanted(&self, id: TileId) -> bool {
@@ -133,33 +102,8 @@ impl LineSplitting<'_> {
         let LinePart { points, fixed, along_um } = part;
         let Ok(line) = Polyline::new(points.to_vec()) else { return LevelPart::default() };
         let kept = kept_points(&line, fixed, tolerance_m / frame.lattice_step_m());
-        let mut of_level = LevelPart::default();
-        let last = kept.len().saturating_sub(1);
-        for (number, index) in kept.into_iter().enumerate() {
-            let at = self.plan.on_lattice(points[index], level);
-            let own_um = along_um.get(index).copied();
-            if of_level.points.last() != Some(&at) {
-                of_level.points.push(at);
-                of_level.along_um.extend(own_um);
-            } else if let (true, Some(last_um)) = (number == last, of_level.along_um.last_mut()) {
-                // Of two points in one place, the line's end counts: decks end there.
-                *last_um = own_um.unwrap_or(*last_um);
-            }
-        }
-        of_level
+        LevelPart::new((points, along_um), &kept, |at| self.plan.on_lattice(at, level))
     }
-}
-
-/// The positions of all points of a line, from the lengths of its segments; empty without lengths.
-fn alongs_um(from_um: u64, segments_um: impl ExactSizeIterator<Item = u64>) -> Vec<u64> {
-    if segments_um.len() == 0 {
-        return Vec::new();
-    }
-    let sum = |along_um: &mut u64, length_um: u64| {
-        *along_um += length_um;
-        Some(*along_um)
-    };
-    std::iter::once(from_um).chain(segments_um.scan(from_um, sum)).collect()
 }
 
 impl TileSplitting for LineSplitting<'_> {
@@ -175,12 +119,20 @@ impl TileSplitting for LineSplitting<'_> {
         let length_um = line.map_or(0, |line| self.lengths.segments_um(&line).iter().sum());
         let measure = ObjectMeasure { length_um, ..ObjectMeasure::default() };
         let (mut shapes, mut spans) = (Vec::new(), Vec::new());
-        let from = (object.way_id, object.points[0]);
-        for (id, LevelPart { points, along_um }) in self.split(&object) {
-            if !along_um.is_empty() {
-                spans.push((id, SpanPiece::new(from, object.structure, (&points, &along_um))));
+        let (way_id, start) = (object.way_id, object.points[0]);
+        for (id, part) in self.split(&object) {
+            shapes.push((id, LayerShape::Line(part.points.clone())));
+            if let Some((slot, &from_um)) = self.spans.zip(part.along_um.first())
+                && let Some(run) = part.run()
+            {
+                let of = SpanLineOf {
+                    line: CarriedLine::Way(way_id, start),
+                    way_id,
+                    owner: RunOwner::Layer(slot),
+                    structure: object.structure,
+                };
+                spans.push((id, (way_id, start, from_um), span_pieces::to_bytes(of, &run)));
             }
-            shapes.push((id, LayerShape::Line(points)));
         }
         let way = OsmObject::Way(object.way_id);
         let split = SplitObject::new((object.class, way), &object.values, measure, Ok(shapes));
@@ -196,7 +148,7 @@ impl ObjectSplitting for LineSplitting<'_> {
     }
 
     fn has_spans(&self) -> bool {
-        self.spans
+        self.spans.is_some()
     }
 }
 

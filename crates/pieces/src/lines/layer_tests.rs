@@ -42,7 +42,7 @@ fn splitting<'a>(levels: &'a Levels, lengths: &'a TrueLengths<'a>) -> LineSplitt
     let data = DataTiles::between(levels.frame(), south_west, north_east);
     let plan =
         PlanSplitting { table: &TABLE, frame: levels.frame(), data, clip: None, polygon: None };
-    LineSplitting { plan, levels, lengths, spans: true }
+    LineSplitting { plan, levels, lengths, spans: LayerSlot::new(0) }
 }
 
 /// A wave across the whole root, in metres; its middle is a junction.

@@ -1,13 +1,12 @@
 //! The ground beneath bridges and tunnels, by tile: the draped lines of their ways, with the
 //! position of each vertex along its way.
 
-use corniche_drape::{ClippedPart, DrapedLine, DrapedVertex, positions};
-use corniche_geom::{LatticePoint, TileId};
-use corniche_roads::Structure;
+use corniche_drape::{ClippedPart, Drape, DrapedLine, DrapedVertex, positions};
+use corniche_geom::{LatticePoint, TileId, along};
 use corniche_spans::SpanKind;
 use corniche_spec::{
     artifacts::{self, ArtifactError, ArtifactKind},
-    true_lengths::TrueLengths,
+    true_lengths::{TrueLengths, starts_um},
 };
 use corniche_store::Artifacts;
 use corniche_tin::Surface;
@@ -45,76 +44,75 @@ impl SpanGroundLine {
     /// The kind of span (bridge or tunnel) above or below the line.
     #[must_use]
     pub fn kind(&self) -> SpanKind {
-        if self.of.is_tunnel { SpanKind::Tunnel } else { SpanKind::Bridge }
-    }
-
-    pub(crate) fn structure(&self) -> Structure {
-        if self.of.is_tunnel { Structure::Tunnel } else { Structure::Bridge }
+        SpanKind::from_structure(self.of.structure).unwrap_or(SpanKind::Bridge)
     }
 }
 
-/// A part of a run of a bridge or a tunnel, with the start of each of the run's segments along its
-/// road.
-pub(crate) struct PartOfRun<'a> {
-    pub(crate) run: &'a SegmentRun,
-    pub(crate) starts_um: &'a [u64],
-    pub part: &'a ClippedPart,
-}
-
-/// Converts a draped line of a part, which begins on the part's segment `begun`; `None` if less
-/// than two vertices have a position on the lattice.
-pub(crate) fn line_of(
+/// Converts the draped lines of a part of a run of a bridge or a tunnel, except those with less
+/// than two vertices that have a position on the lattice.
+pub(crate) fn lines_of(
     of: SpanLineOf,
-    PartOfRun { run, starts_um, part }: &PartOfRun<'_>,
-    (line, begun): (&DrapedLine, usize),
+    (run, part): (&SegmentRun, &ClippedPart),
+    draped: &Drape,
     (surface, lengths): (&Surface, &TrueLengths<'_>),
-) -> Option<SpanGroundLine> {
+) -> Vec<SpanGroundLine> {
+    let starts_um = starts_um(run.from_um, &run.segments_um);
     let points = part.line.points();
-    // The point of the part that was passed last.
-    let mut passed = begun;
-    let mut vertices: Vec<SpanGroundPoint> = Vec::with_capacity(line.vertices.len());
-    for (vertex, position) in line.vertices.iter().zip(positions(line, surface).ok()?) {
-        let at = match vertex {
-            DrapedVertex::Source { point, .. } => *point,
-            _ => LatticePoint::new(position[0].round() as i64, position[1].round() as i64),
-        };
-        let is_source = matches!(vertex, DrapedVertex::Source { .. });
-        // A point belongs to the segment that ends there; only the first point of the part has
-        // none.
-        let segment = passed.min(part.segments.len().checked_sub(1)?);
-        if is_source && points.get(passed + 1) == Some(&at) {
-            passed += 1;
+    let line_of = |(line, &begun): (&DrapedLine, &usize)| {
+        // The point of the part that was passed last.
+        let mut passed = begun;
+        let mut vertices: Vec<SpanGroundPoint> = Vec::with_capacity(line.vertices.len());
+        for (vertex, position) in line.vertices.iter().zip(positions(line, surface).ok()?) {
+            let at = match vertex {
+                DrapedVertex::Source { point, .. } => *point,
+                _ => LatticePoint::new(position[0].round() as i64, position[1].round() as i64),
+            };
+            let is_source = matches!(vertex, DrapedVertex::Source { .. });
+            // A point belongs to the segment that ends there; only the first point of the part has
+            // none.
+            let segment = passed.min(part.segments.len().checked_sub(1)?);
+            if is_source && points.get(passed + 1) == Some(&at) {
+                passed += 1;
+            }
+            let of_run = *part.segments.get(segment)?;
+            let ends = [run.line.points()[of_run], run.line.points()[of_run + 1]];
+            let own_um = lengths.along_um(ends, at, *run.segments_um.get(of_run)?);
+            let along_um = starts_um[of_run] + own_um;
+            // The choice of the triangle must not depend on the direction of the line.
+            let Some(triangle) = surface.locate(at) else { continue };
+            let is_behind = |last: &mut SpanGroundPoint| last.at == at || last.along_um >= along_um;
+            if is_source {
+                // A crossing with an edge of the TIN that is less than a step before a point is
+                // dropped in favour of the point.
+                while vertices.pop_if(is_behind).is_some() {}
+            } else if vertices.last_mut().is_some_and(is_behind) {
+                continue;
+            }
+            let height_m = surface.height_at_point_m(triangle, at);
+            if let Some(last) = vertices.last_mut() {
+                let middle = between([last.at, at], 0.5);
+                last.next_triangle = surface.locate(middle).unwrap_or(triangle);
+            }
+            let next_triangle = triangle;
+            vertices.push(SpanGroundPoint {
+                at,
+                triangle,
+                next_triangle,
+                height_m,
+                along_um,
+                is_source,
+            });
         }
-        let of_run = *part.segments.get(segment)?;
-        let ends = [run.line.points()[of_run], run.line.points()[of_run + 1]];
-        let own_um = lengths.along_um(ends, at, *run.segments_um.get(of_run)?);
-        let along_um = starts_um[of_run] + own_um;
-        // The choice of the triangle must not depend on the direction of the line.
-        let Some(triangle) = surface.locate(at) else { continue };
-        let is_behind = |last: &mut SpanGroundPoint| last.at == at || last.along_um >= along_um;
-        if is_source {
-            // A crossing with an edge of the TIN that is less than a step before a point is dropped
-            // in favour of the point.
-            while vertices.pop_if(is_behind).is_some() {}
-        } else if vertices.last_mut().is_some_and(is_behind) {
-            continue;
-        }
-        let height_m = surface.height_at_point_m(triangle, at);
-        if let Some(last) = vertices.last_mut() {
-            last.next_triangle = surface.locate(between([last.at, at], 0.5)).unwrap_or(triangle);
-        }
-        let next_triangle = triangle;
-        let vertex = SpanGroundPoint { at, triangle, next_triangle, height_m, along_um, is_source };
-        vertices.push(vertex);
-    }
-    (vertices.len() >= 2).then_some(SpanGroundLine { of, vertices })
+        (vertices.len() >= 2).then_some(SpanGroundLine { of, vertices })
+    };
+    draped.lines.iter().zip(&draped.starts).filter_map(line_of).collect()
 }
 
 /// The lattice point at a fraction of the way from one point to another.
 pub(crate) fn between(ends: [LatticePoint; 2], share: f64) -> LatticePoint {
     let [from, to] = ends.map(LatticePoint::in_steps);
-    let mix = |axis: usize| (from[axis] + share * (to[axis] - from[axis])).round() as i64;
-    LatticePoint::new(mix(0), mix(1))
+    let [u, v] = along(from, to, share).map(|part| part.round() as i64);
+    LatticePoint::new(u, v)
 }
 
 /// Stores the lines of a tile, if it has any.

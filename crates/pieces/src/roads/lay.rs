@@ -5,16 +5,13 @@ use std::collections::BTreeMap;
 use corniche_drape::OwnedBorders;
 use corniche_geom::{LatticeBounds, TileId};
 use corniche_roads::Structure;
-use corniche_spec::{
-    levels::Levels,
-    true_lengths::{TrueLengths, starts_um},
-};
+use corniche_spec::{levels::Levels, true_lengths::TrueLengths};
 use corniche_tileset::{GeoRoad, RoadRecord, RunOwner, SvRoad, TilePayload, TileTerrain};
 use corniche_tin::Surface;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    ground_lines::{PartOfRun, SpanGroundLine, line_of},
+    ground_lines::{SpanGroundLine, lines_of},
     pieces::{RoadPiece, TilePieces},
 };
 use crate::layers::{
@@ -105,11 +102,8 @@ pub fn lost_pieces(
 ) -> Vec<(u32, RoadFate)> {
     let within = clip.unwrap_or(*bounds);
     let lost = |run: &SegmentRun| -> u64 {
-        corniche_drape::clip_parts_within(&run.line, bounds, owned, &within)
-            .iter()
-            .flat_map(|part| lengths.pieces_um(&run.line, part, &run.segments_um))
-            .map(|[from, to]| to - from)
-            .sum()
+        let parts = corniche_drape::clip_parts_within(&run.line, bounds, owned, &within);
+        lengths.parts_um(&run.line, &parts, &run.segments_um)
     };
     let mut fates = Vec::new();
     for (ordinal, piece) in &pieces.roads {
@@ -149,7 +143,13 @@ impl DrapedRoads {
             laid.lay(*ordinal, piece, on, levels);
         }
         for (of, run) in &pieces.of_layers {
-            laid.lay_span_of_layer(*of, run, on, levels);
+            // The tile has the line itself in plan. Both tiles have a line on their border.
+            let bounds = levels.frame().tile_lattice_bounds(on.id);
+            for part in corniche_drape::clip_parts(&run.line, &bounds, OwnedBorders::ALL) {
+                let draped = corniche_drape::drape(&part.line, on.surface);
+                let measured = (on.surface, on.lengths);
+                laid.ground_lines.extend(lines_of(*of, (run, &part), &draped, measured));
+            }
         }
         laid
     }
@@ -179,7 +179,13 @@ impl DrapedRoads {
         levels: &Levels,
     ) -> RoadFate {
         let &TileToLayOn { id, surface, owned, clip, spans, lengths } = on;
-        let is_span = spans && road.attributes.structure != Structure::Ground;
+        let structure = road.attributes.structure;
+        let of = SpanLineOf {
+            line: CarriedLine::Road(ordinal),
+            way_id: road.way_id,
+            owner: RunOwner::Road(road.class),
+            structure,
+        };
         let bounds = levels.frame().tile_lattice_bounds(id);
         let is_finest = id.z() == levels.frame().max_level();
         // On coarser levels the ground ends before the bounds, and so do the roads.
@@ -187,8 +193,6 @@ impl DrapedRoads {
         let [next_part, _] = self.parts.entry(road.way_id).or_default();
         let mut fate = RoadFate::default();
         for run in &road.runs {
-            let starts_um =
-                if is_span { starts_um(run.from_um, &run.segments_um) } else { Vec::new() };
             for part in corniche_drape::clip_parts_within(&run.line, &bounds, owned, &within) {
                 let draped = corniche_drape::drape(&part.line, surface);
                 if is_finest {
@@ -198,18 +202,9 @@ impl DrapedRoads {
                     let all_um: u64 = pieces.iter().map(|[from, to]| to - from).sum();
                     fate.merge(&RoadFate { kept_um: all_um - void_um, void_um });
                 }
-                if is_span {
-                    let own = PartOfRun { run, starts_um: &starts_um, part: &part };
-                    let of = SpanLineOf {
-                        line: CarriedLine::Road(ordinal),
-                        way_id: road.way_id,
-                        owner: RunOwner::Road(road.class),
-                        is_tunnel: road.attributes.structure == Structure::Tunnel,
-                    };
-                    let lines = draped.lines.iter().zip(draped.starts.iter().copied());
-                    self.ground_lines.extend(
-                        lines.filter_map(|line| line_of(of, &own, line, (surface, lengths))),
-                    );
+                if spans && structure != Structure::Ground {
+                    let measured = (surface, lengths);
+                    self.ground_lines.extend(lines_of(of, (run, &part), &draped, measured));
                 }
                 for line in draped.lines {
                     let (way_id, class, part) = (road.way_id, road.class, *next_part);
@@ -219,28 +214,6 @@ impl DrapedRoads {
             }
         }
         fate
-    }
-
-    /// Drapes a piece of a layer's line on a bridge or in a tunnel. The tile has the line itself in
-    /// plan.
-    fn lay_span_of_layer(
-        &mut self,
-        of: SpanLineOf,
-        run: &SegmentRun,
-        on: &TileToLayOn<'_>,
-        levels: &Levels,
-    ) {
-        let &TileToLayOn { id, surface, lengths, .. } = on;
-        let bounds = levels.frame().tile_lattice_bounds(id);
-        let starts_um = starts_um(run.from_um, &run.segments_um);
-        // Both tiles have a line on their border.
-        for part in corniche_drape::clip_parts(&run.line, &bounds, OwnedBorders::ALL) {
-            let draped = corniche_drape::drape(&part.line, surface);
-            let own = PartOfRun { run, starts_um: &starts_um, part: &part };
-            let lines = draped.lines.iter().zip(draped.starts.iter().copied());
-            self.ground_lines
-                .extend(lines.filter_map(|line| line_of(of, &own, line, (surface, lengths))));
-        }
     }
 
     fn lay_sv(&mut self, road: &RoadPiece, on: &TileToLayOn<'_>, levels: &Levels) {

@@ -1,7 +1,7 @@
 //! The roads of the extract: the pieces that each tile of each level needs, and the true lengths of
 //! all roads.
 
-use corniche_geom::{LatticeBounds, TileId};
+use corniche_geom::TileId;
 use corniche_osm::ExtractSummary;
 use corniche_roads::{FunctionalRoadClass, Railway, Road, Structure};
 use corniche_spec::artifacts::ArtifactKind;
@@ -10,7 +10,7 @@ use corniche_work::Stage;
 
 use super::{
     near_spans::{NearRoad, NearRoadsWriter},
-    pieces::{RoadPiece, TilePiecesWriter},
+    pieces::RoadPiece,
     split::{RoadSplitting, SplitRoad},
     totals::{RoadLength, RoadTotals, lengths_writer},
 };
@@ -68,9 +68,10 @@ impl TileSplitting for RoadSplitting<'_> {
     }
 
     fn split_object(&self, number: u64, road: Road) -> Self::Split {
-        let mut road = self.split(number as u32, &road);
+        let number = number as u32;
+        let mut road = self.split(number, &road);
         let pieces = std::mem::take(&mut road.pieces).into_iter();
-        let piece = |(id, piece): (TileId, RoadPiece)| (id, number as u32, piece.to_bytes());
+        let piece = |(id, piece): (TileId, RoadPiece)| (id, number, piece.to_bytes(number));
         (road, pieces.map(piece).collect())
     }
 }
@@ -79,10 +80,7 @@ impl<'a> LayerEncoder for RoadLayer<'a> {
     type Splitting = RoadSplitting<'a>;
     type Summary = ExtractSummary;
     type Done = (RoadTotals, ExtractSummary);
-
-    fn stage(&self) -> Stage {
-        Stage::Roads
-    }
+    const STAGE: Stage = Stage::Roads;
 
     fn splitting(&self) -> &RoadSplitting<'a> {
         &self.splitting
@@ -106,9 +104,8 @@ impl<'a> LayerEncoder for RoadLayer<'a> {
         let class = &mut self.totals.classes[usize::from(road.class.number())];
         *class = (class.0 + 1, class.1 + length_um);
         if let Some(own) = road.bounds {
-            let all =
-                self.totals.bounds.map_or(own, |[min, max]| own.union(&LatticeBounds { min, max }));
-            self.totals.bounds = Some([all.min, all.max]);
+            let bounds = &mut self.totals.bounds;
+            *bounds = Some(bounds.map_or(own, |all| all.union(&own)));
         }
         if let Some((near, near_spans)) = road.near.zip(self.near_spans.as_mut()) {
             near_spans.push(near)?;
@@ -125,16 +122,9 @@ impl<'a> LayerEncoder for RoadLayer<'a> {
         told: &LayerContext<'_>,
     ) -> Result<Self::Done, ExtractError> {
         self.lengths.finish()?;
-        self.pieces.for_each_tile(
-            told.observer,
-            |pieces: &mut TilePiecesWriter, _, ordinal, bytes| {
-                pieces.push(ordinal, &bytes);
-                Ok(())
-            },
-            |tile, pieces| {
-                Ok(self.store.put(ArtifactKind::RoadPieces.item(tile), &pieces.into_bytes())?)
-            },
-        )?;
+        self.pieces.for_each_tile(told.observer, |tile, pieces| {
+            Ok(self.store.put(ArtifactKind::RoadPieces.item(tile), &pieces.concat())?)
+        })?;
         if let Some(near_spans) = self.near_spans {
             let reach = self.splitting.levels.steps_of_true(NEAR_M);
             near_spans.finish((self.store, told.observer), reach)?;

@@ -3,7 +3,7 @@
 use corniche_roads::Structure;
 use corniche_spec::artifacts::ArtifactError;
 use corniche_spec::{BuildObserver, Defect, Loss, true_lengths::UM};
-use corniche_store::{Artifacts, ScratchSpace, SerdeRecord, Sorted, Sorter};
+use corniche_store::{Artifacts, ScratchSpace, SerdeRecord, Sorter};
 use corniche_tileset::{ManifestCounts, RoadLoss, SampleCounts};
 use serde::{Deserialize, Serialize};
 
@@ -15,12 +15,10 @@ use crate::ExtractError;
 
 /// A road's true length on the finest level, micrometres, divided by fate; each part is measured
 /// separately.
-#[expect(clippy::struct_field_names, reason = "the unit is part of every name")]
 struct Lengths {
     kept_um: u64,
-    outside_um: u64,
-    void_um: u64,
-    beyond_um: u64,
+    /// In the order of [`Loss::ALL`].
+    lost_um: [u64; Loss::ALL.len()],
 }
 
 /// Whether a length counts as more than 0. A cut moves a point by less than a lattice step, which
@@ -34,20 +32,17 @@ impl Lengths {
         is_some(self.kept_um)
     }
 
-    fn losses(&self) -> [(Loss, u64); 3] {
-        Loss::ALL.map(|loss| match loss {
-            Loss::OutsideData => (loss, self.outside_um),
-            Loss::NoGround => (loss, self.void_um),
-            Loss::OutsideBounds => (loss, self.beyond_um),
-        })
+    fn losses(&self) -> impl Iterator<Item = (Loss, u64)> {
+        Loss::ALL.into_iter().zip(self.lost_um)
     }
 
     /// The reason under which a completely lost road is counted: the reason of its longest lost
     /// part.
     fn reason(&self) -> Loss {
-        if self.beyond_um > self.void_um.max(self.outside_um) {
+        let [outside_um, void_um, beyond_um] = self.lost_um;
+        if beyond_um > void_um.max(outside_um) {
             Loss::OutsideBounds
-        } else if self.void_um >= self.outside_um {
+        } else if void_um >= outside_um {
             Loss::NoGround
         } else {
             Loss::OutsideData
@@ -126,22 +121,28 @@ impl<'a> LossFold<'a> {
         store: &dyn Artifacts,
         observer: &dyn BuildObserver,
     ) -> Result<Sums, ExtractError> {
-        let mut fates = Fates { sorted: self.fates.finish()?, next: None };
-        fates.advance()?;
+        let mut fates = self.fates.finish()?.peekable();
         let (mut sums, mut lost, mut by_tiles) =
             (Sums::default(), Lost::default(), Lost::default());
         for block in 0..totals.roads.div_ceil(BLOCK_ROADS) {
             let first = block * BLOCK_ROADS;
             let roads = BLOCK_ROADS.min(totals.roads - first);
             for (ordinal, length) in (first..).zip(lengths_of_block(store, block, roads)?) {
-                let RoadFate { kept_um, void_um } = fates.fate_at(ordinal)?;
+                let mut fate = RoadFate::default();
+                let is_other = |record: &FateRecord| u64::from(record.ordinal) != ordinal;
+                while let Some(record) =
+                    fates.next_if(|record| !record.as_ref().is_ok_and(is_other))
+                {
+                    fate.merge(&record?.fate);
+                }
+                let RoadFate { kept_um, void_um } = fate;
                 let RoadLength { outside_um, padding_um, beyond_um, .. } = length;
-                by_tiles.add(&Lengths { kept_um, outside_um, void_um, beyond_um });
+                by_tiles.add(&Lengths { kept_um, lost_um: [outside_um, void_um, beyond_um] });
                 // The padding of tiles has no ground. The two lengths are measured along different
                 // cuts.
                 let beside_um = padding_um.min(void_um);
-                let (outside_um, void_um) = (outside_um + beside_um, void_um - beside_um);
-                let road = Lengths { kept_um, outside_um, void_um, beyond_um };
+                let lost_um = [outside_um + beside_um, void_um - beside_um, beyond_um];
+                let road = Lengths { kept_um, lost_um };
                 lost.add(&road);
                 sums.roads_kept += u64::from(road.is_kept());
                 sums.roads_kept_um += kept_um;
@@ -149,7 +150,7 @@ impl<'a> LossFold<'a> {
                 road.report(length.way_id, observer);
             }
         }
-        if let Some(FateRecord { ordinal, .. }) = fates.next {
+        if let Some(FateRecord { ordinal, .. }) = fates.next().transpose()? {
             let what =
                 format!("a tile names road {ordinal}, but there are only {} roads", totals.roads);
             return Err(ArtifactError::Damaged { what }.into());
@@ -166,29 +167,6 @@ struct FateRecord {
 }
 
 impl SerdeRecord for FateRecord {}
-
-/// The fates, by ascending ordinal.
-struct Fates<'a> {
-    sorted: Sorted<'a, FateRecord>,
-    next: Option<FateRecord>,
-}
-
-impl Fates<'_> {
-    fn advance(&mut self) -> Result<(), ExtractError> {
-        self.next = self.sorted.next().transpose()?;
-        Ok(())
-    }
-
-    /// The complete fate of a road. Callers must request every road, in ascending order.
-    fn fate_at(&mut self, ordinal: u64) -> Result<RoadFate, ExtractError> {
-        let mut whole = RoadFate::default();
-        while let Some(record) = self.next.filter(|record| u64::from(record.ordinal) == ordinal) {
-            whole.merge(&record.fate);
-            self.advance()?;
-        }
-        Ok(whole)
-    }
-}
 
 /// The number of lost roads and the lost length in micrometres, in the order of [`Loss::ALL`].
 #[derive(Default)]
@@ -218,7 +196,7 @@ impl Lost {
 impl Lengths {
     fn report(&self, way_id: i64, observer: &dyn BuildObserver) {
         // Roads outside the user's own bounds are not defects.
-        let told = self.losses().into_iter().filter(|&(loss, _)| loss != Loss::OutsideBounds);
+        let told = self.losses().filter(|&(loss, _)| loss != Loss::OutsideBounds);
         for (loss, lost_um) in told {
             // A road shorter than 2 mm has no length to lose, but it can be lost as a whole.
             let is_counted = !self.is_kept() && self.reason() == loss;

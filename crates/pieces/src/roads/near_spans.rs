@@ -21,7 +21,7 @@ use crate::{
     ExtractError,
     layers::{
         blocks::{ListBlockWriter, for_each_block},
-        parts_by_tile::PartsByTile,
+        parts_by_tile::{ObjectPart, PartsByTile},
     },
 };
 
@@ -228,18 +228,15 @@ impl<'a> NearRoadsWriter<'a> {
         let mut of_spans = of_spans.into_iter().peekable();
         let damaged =
             || artifacts::damaged(ArtifactKind::SpanRoads.item(0), &"its content is invalid");
-        others.for_each_tile(
-            observer,
-            |(): &mut (), _, place, bytes| {
-                let other: NearRoad = take_record(&mut &*bytes).ok_or_else(damaged)?;
-                while let Some((_, road)) = of_spans.next_if(|(own, _)| *own < place) {
-                    put(road)?;
-                }
-                let pieces = other.pieces(|ends| near.may_meet(ends));
-                Ok(pieces.into_iter().try_for_each(&mut put)?)
-            },
-            |_, ()| Ok(()),
-        )?;
+        for part in others.sorted()? {
+            observer.check()?;
+            let ObjectPart { key: place, bytes, .. } = part?;
+            let other: NearRoad = take_record(&mut &bytes[..]).ok_or_else(damaged)?;
+            while let Some((_, road)) = of_spans.next_if(|(own, _)| *own < place) {
+                put(road)?;
+            }
+            other.pieces(|ends| near.may_meet(ends)).into_iter().try_for_each(&mut put)?;
+        }
         of_spans.try_for_each(|(_, road)| put(road))?;
         Ok(blocks.finish_with_mark()?)
     }

@@ -21,7 +21,7 @@ pub fn check_overlap(
 ) -> Result<(), ExtractError> {
     let (data_m, data_deg) = (&plan.data_bounds, &plan.wgs84_bounds);
     let Some(bounds) = roads.bounds else { return Ok(()) };
-    let [min, max] = bounds.map(|corner| frame.position_m(corner));
+    let [min, max] = [bounds.min, bounds.max].map(|corner| frame.position_m(corner));
     let roads_m = Bounds { min_x: min[0], min_y: min[1], max_x: max[0], max_y: max[1] };
     if roads_m.intersects(data_m) {
         return Ok(());

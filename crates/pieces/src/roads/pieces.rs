@@ -43,9 +43,6 @@ pub struct RoadPiece {
 
 /// The pieces of all roads of a tile with the roads' ordinals, ascending, and the pieces of layers'
 /// lines that may be off its ground.
-///
-/// Encoding of roads: for each road, the number of ordinals skipped since the road before, and then
-/// its piece.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TilePieces {
     /// Pieces with the numbers of their roads.
@@ -79,50 +76,27 @@ impl TilePieces {
         self.roads.is_empty() && self.of_layers.is_empty()
     }
 
-    /// Decodes the bytes of a `TilePiecesWriter`; `None` for other bytes.
+    /// Decodes the pieces of roads, one after another; `None` for other bytes.
     #[must_use]
     pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
         let mut rest = bytes;
         let mut roads = Vec::new();
-        let mut next = 0_u32;
         while !rest.is_empty() {
-            let ordinal = next.checked_add(take_number(&mut rest)?)?;
-            roads.push((ordinal, RoadPiece::take(&mut rest)?));
-            next = ordinal.checked_add(1)?;
+            roads.push((take_number(&mut rest)?, RoadPiece::take(&mut rest)?));
         }
-        Some(Self { roads, of_layers: Vec::new() })
-    }
-}
-
-/// Concatenates the pieces of a tile.
-#[derive(Default)]
-pub(crate) struct TilePiecesWriter {
-    bytes: Vec<u8>,
-    /// The smallest ordinal that can follow.
-    next: u32,
-}
-
-impl TilePiecesWriter {
-    /// Adds a road with its encoded piece. Ordinals must ascend.
-    pub(crate) fn push(&mut self, ordinal: u32, piece: &[u8]) {
-        debug_assert!(ordinal >= self.next, "ordinals ascend");
-        push_varint(&mut self.bytes, u64::from(ordinal - self.next));
-        self.bytes.extend(piece);
-        self.next = ordinal + 1;
-    }
-
-    pub(crate) fn into_bytes(self) -> Vec<u8> {
-        self.bytes
+        let ascend = roads.is_sorted_by(|(one, _), (next, _)| one < next);
+        ascend.then_some(Self { roads, of_layers: Vec::new() })
     }
 }
 
 impl RoadPiece {
-    /// Encodes the piece: numbers of variable length, and points as differences from the previous
-    /// point.
-    pub(crate) fn to_bytes(&self) -> Vec<u8> {
+    /// Encodes the piece of the road with this number: numbers of variable length, and points as
+    /// differences from the previous point.
+    pub(crate) fn to_bytes(&self, ordinal: u32) -> Vec<u8> {
         let Self { way_id, class, attributes, source_points, simplified_points, runs } = self;
         let points: usize = runs.iter().map(|run| run.line.points().len()).sum();
         let mut bytes = Vec::with_capacity(64 + points * 12);
+        push_varint(&mut bytes, ordinal.into());
         push_signed(&mut bytes, *way_id);
         bytes.push(class.number());
         attributes.push_to(&mut bytes);

@@ -55,11 +55,7 @@ fn pieces() -> impl Strategy<Value = RoadPiece> {
 }
 
 fn written(pieces: &TilePieces) -> Vec<u8> {
-    let mut writer = TilePiecesWriter::default();
-    for (ordinal, piece) in &pieces.roads {
-        writer.push(*ordinal, &piece.to_bytes());
-    }
-    writer.into_bytes()
+    pieces.roads.iter().flat_map(|(ordinal, piece)| piece.to_bytes(*ordinal)).collect()
 }
 
 proptest! {

@@ -5,14 +5,13 @@ use std::{borrow::Cow, sync::Arc};
 use corniche_drape::{ClippedPart, OwnedBorders};
 use corniche_geom::{LatticeBounds, LatticePoint, LatticeRegion, Polyline, TileId};
 use corniche_roads::{FunctionalRoadClass, Road, RoadAttributes, Structure};
-use corniche_spec::{
-    levels::Levels,
-    tiles_near::for_each_tile_near,
-    true_lengths::{TrueLengths, starts_um},
-};
+use corniche_spec::{levels::Levels, true_lengths::TrueLengths};
 
 use super::{near_spans::NearRoad, pieces::RoadPiece, totals::RoadLength};
-use crate::layers::{fixed_points::road_of_part, segment_run::SegmentRun};
+use crate::layers::{
+    fixed_points::road_of_part,
+    segment_run::{LevelPart, SegmentRun, alongs_um},
+};
 
 /// The settings and data that splitting needs.
 pub(crate) struct RoadSplitting<'a> {
@@ -35,13 +34,13 @@ pub(crate) struct RoadSplitting<'a> {
 
 /// A road that has been split.
 pub(crate) struct SplitRoad {
-    pub(crate) length: RoadLength,
+    pub length: RoadLength,
     pub class: FunctionalRoadClass,
     pub bounds: Option<LatticeBounds>,
     /// The pieces with their tiles, on all levels.
     pub pieces: Vec<(TileId, RoadPiece)>,
     /// The road as spans may need it, if spans are requested.
-    pub(crate) near: Option<NearRoad>,
+    pub near: Option<NearRoad>,
 }
 
 impl RoadSplitting<'_> {
@@ -142,26 +141,19 @@ impl RoadSplitting<'_> {
         pieces: &mut Vec<(TileId, RoadPiece)>,
     ) {
         let levels = self.levels;
-        let lines: Vec<LevelLine<'_>> = parts
+        let lines: Vec<LevelLine> = parts
             .iter()
             .filter(|part| self.is_near(LatticeBounds::around(part.road.line.points()), level))
             .map(|part| LevelLine::new(part, level, levels, self.spans))
             .collect();
         let mut near = Vec::new();
         for (of, line) in lines.iter().enumerate() {
-            for (index, pair) in line.line.points().windows(2).enumerate() {
-                for_each_tile_near([pair[0], pair[1]], level, levels, |id| {
-                    if self.is_data(id) {
-                        near.push((id, of, index));
-                    }
-                });
-            }
+            let runs = line.part.runs(level, levels, |id| self.is_data(id)).into_iter();
+            near.extend(runs.map(|(id, run)| (id, of, run)));
         }
         near.sort_unstable();
         for of_tile in near.chunk_by(|(one, ..), (other, ..)| one == other) {
             let id = of_tile[0].0;
-            let runs = of_tile
-                .chunk_by(|(_, line, one), (_, other, next)| line == other && one + 1 == *next);
             let road = &parts[0].road;
             pieces.push((
                 id,
@@ -171,9 +163,7 @@ impl RoadSplitting<'_> {
                     attributes: Arc::clone(attributes),
                     source_points: lines.iter().map(|line| line.source.count(id)).sum(),
                     simplified_points: lines.iter().map(|line| line.simplified.count(id)).sum(),
-                    runs: runs
-                        .filter_map(|run| lines[run[0].1].run([run[0].2, run[run.len() - 1].2]))
-                        .collect(),
+                    runs: of_tile.iter().filter_map(|&(_, of, run)| lines[of].run(run)).collect(),
                 },
             ));
         }
@@ -190,11 +180,9 @@ impl RoadSplitting<'_> {
 
     /// Whether a tile can have ground: it overlaps the data's tiles by more than a border.
     fn is_data(&self, id: TileId) -> bool {
-        let (tile, data) = (self.levels.frame().tile_lattice_bounds(id), &self.data_bounds);
-        tile.min.u < data.max.u
-            && data.min.u < tile.max.u
-            && tile.min.v < data.max.v
-            && data.min.v < tile.max.v
+        let tile = self.levels.frame().tile_lattice_bounds(id);
+        let LatticeBounds { min, max } = tile.intersection(&self.data_bounds);
+        min.u < max.u && min.v < max.v
     }
 }
 
@@ -216,22 +204,16 @@ impl RoadPart<'_> {
 
     fn length_in_um(&self, bounds: &LatticeBounds, lengths: &TrueLengths<'_>) -> u64 {
         let line = &self.road.line;
-        corniche_drape::clip_parts(line, bounds, OwnedBorders::ALL)
-            .iter()
-            .flat_map(|part| lengths.pieces_um(line, part, &self.segments_um))
-            .map(|[from, to]| to - from)
-            .sum()
+        let parts = corniche_drape::clip_parts(line, bounds, OwnedBorders::ALL);
+        lengths.parts_um(line, &parts, &self.segments_um)
     }
 }
 
 /// A part as a level shows it.
-struct LevelLine<'p> {
-    line: Polyline,
-    /// True lengths of the segments: on the finest level, and of bridges and tunnels that become
-    /// spans; otherwise empty.
-    segments_um: Cow<'p, [u64]>,
-    /// Start of each segment along the road; empty if no spans are requested.
-    starts_um: Vec<u64>,
+struct LevelLine {
+    /// Positions along the road are known on the finest level, and of bridges and tunnels that
+    /// become spans.
+    part: LevelPart,
     /// Nodes of the line at which other roads may join, by the index of their point; on the finest
     /// level only.
     nodes: Vec<(usize, i64)>,
@@ -239,66 +221,39 @@ struct LevelLine<'p> {
     simplified: PointsByTile,
 }
 
-impl<'p> LevelLine<'p> {
-    fn new(part: &'p RoadPart<'_>, level: u8, levels: &Levels, spans: bool) -> Self {
+impl LevelLine {
+    fn new(part: &RoadPart<'_>, level: u8, levels: &Levels, spans: bool) -> Self {
         let road = &part.road;
-        let tolerance_steps = levels.simplify_tolerance_steps(level);
-        let line = corniche_roads::simplify(&road.line, &road.fixed, tolerance_steps);
+        let points = road.line.points();
         // On the finest level the line is the source line, not simplified.
         let is_finest = level == levels.frame().max_level();
         let is_span = spans && road.attributes.structure != Structure::Ground;
-        let segments_um = match (is_finest, is_span) {
-            (true, _) => Cow::Borrowed(&part.segments_um[..]),
-            (false, true) => {
-                let kept = corniche_roads::kept_points(&road.line, &road.fixed, tolerance_steps);
-                Cow::Owned(simplified_um(&road.line, &part.segments_um, &kept))
-            }
-            (false, false) => Cow::Borrowed(&[][..]),
+        let along_um = if is_finest || is_span {
+            alongs_um(part.from_um, &part.segments_um)
+        } else {
+            Vec::new()
         };
+        let tolerance_steps = levels.simplify_tolerance_steps(level);
+        let kept = corniche_roads::kept_points(&road.line, &road.fixed, tolerance_steps);
+        let of_level = LevelPart::new((points, &along_um), &kept, |at| at);
         let nodes = road.fixed.iter().zip(&road.node_ids);
         let nodes = nodes.filter(|_| spans && is_finest);
         Self {
-            starts_um: if spans { starts_um(part.from_um, &segments_um) } else { Vec::new() },
-            segments_um,
             nodes: nodes.filter_map(|(&at, id)| Some((at as usize, (*id)?))).collect(),
-            source: PointsByTile::from_line(&road.line, level, levels),
-            simplified: PointsByTile::from_line(&line, level, levels),
-            line,
+            source: PointsByTile::new(points, level, levels),
+            simplified: PointsByTile::new(&of_level.points, level, levels),
+            part: of_level,
         }
     }
 
     /// The run from segment `first` to segment `last`, both included.
     fn run(&self, [first, last]: [usize; 2]) -> Option<SegmentRun> {
-        let line = Polyline::new(self.line.points()[first..=last + 1].to_vec()).ok()?;
-        let segments_um = self.segments_um.get(first..=last).unwrap_or_default().to_vec();
         let [from, to] =
             [first, last + 2].map(|end| self.nodes.partition_point(|(at, _)| *at < end));
         let nodes = self.nodes[from..to].iter();
-        Some(SegmentRun {
-            line,
-            from_um: self.starts_um.get(first).copied().unwrap_or_default(),
-            segments_um,
-            nodes: nodes.map(|&(at, id)| ((at - first) as u32, id)).collect(),
-        })
+        let nodes = nodes.map(|&(at, id)| ((at - first) as u32, id)).collect();
+        Some(SegmentRun { nodes, ..self.part.stretch([first, last]).run()? })
     }
-}
-
-/// The lengths of a line between the points that simplification keeps; equal neighbours count as
-/// one point.
-fn simplified_um(line: &Polyline, segments_um: &[u64], kept: &[usize]) -> Vec<u64> {
-    let points = line.points();
-    let mut lengths_um = Vec::with_capacity(kept.len());
-    let mut before_um = 0;
-    for [from, to] in kept.array_windows() {
-        before_um += segments_um[*from..*to].iter().sum::<u64>();
-        if points[*from] != points[*to] {
-            lengths_um.push(std::mem::take(&mut before_um));
-        }
-    }
-    if let Some(last_um) = lengths_um.last_mut() {
-        *last_um += before_um;
-    }
-    lengths_um
 }
 
 /// The number of a line's points in each tile of a level: each point belongs to at most one tile.
@@ -308,7 +263,7 @@ struct PointsByTile {
 }
 
 impl PointsByTile {
-    fn from_line(line: &Polyline, level: u8, levels: &Levels) -> Self {
+    fn new(points: &[LatticePoint], level: u8, levels: &Levels) -> Self {
         let frame = levels.frame();
         let last = (1_i64 << level) - 1;
         let outer = frame.tile_lattice_bounds(TileId::ROOT);
@@ -316,7 +271,7 @@ impl PointsByTile {
         let tile = |&point: &LatticePoint| {
             frame.tile_column_row(level, point).map(|index| index.min(last))
         };
-        let inside = line.points().iter().filter(|&&point| outer.contains(point));
+        let inside = points.iter().filter(|&&point| outer.contains(point));
         let mut tiles: Vec<[i64; 2]> = inside.map(tile).collect();
         tiles.sort_unstable();
         Self { tiles }

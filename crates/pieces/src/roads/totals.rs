@@ -2,7 +2,7 @@
 
 use std::{cmp::Reverse, collections::BTreeMap};
 
-use corniche_geom::LatticePoint;
+use corniche_geom::LatticeBounds;
 use corniche_osm::{ExtractSummary, LeftOut, LeftOutReason, LeftOutWays};
 use corniche_roads::{LossReason, Structure};
 use corniche_spec::artifacts::{self, ArtifactKind};
@@ -23,16 +23,16 @@ pub(crate) const BLOCK_ROADS: u64 = 1 << 16;
 pub(crate) struct RoadLength {
     pub way_id: i64,
     /// The structure of the road.
-    pub(crate) structure: Structure,
+    pub structure: Structure,
     /// The length of the whole road, micrometres.
     pub length_um: u64,
     /// The length outside the tiles of the data's rectangle, measured separately.
-    pub(crate) outside_um: u64,
+    pub outside_um: u64,
     /// The length inside these tiles, but outside the data's rectangle itself: in their padding. It
     /// is not counted under `outside_um`.
-    pub(crate) padding_um: u64,
+    pub padding_um: u64,
     /// The length outside the requested bounds; it is counted under nothing else.
-    pub(crate) beyond_um: u64,
+    pub beyond_um: u64,
 }
 
 /// The totals of all roads. They are stored last: if they are in the store, so are all pieces,
@@ -49,8 +49,8 @@ pub struct RoadTotals {
     pub defects: BTreeMap<String, u64>,
     /// The content of the extract, and the ways that are not roads.
     pub extract: ExtractCounts,
-    /// South-west and north-east corner of the rectangle around all roads.
-    pub bounds: Option<[LatticePoint; 2]>,
+    /// The rectangle around all roads.
+    pub bounds: Option<LatticeBounds>,
 }
 
 /// The counts of an extract that a manifest records.

@@ -44,10 +44,10 @@ impl Station {
 /// The runs of a bridge or a tunnel on a line.
 pub(crate) struct LineRuns {
     /// The runs that are off the ground.
-    pub(crate) runs: Vec<SpanRun>,
+    pub runs: Vec<SpanRun>,
     /// The largest distance by which the ground is on the wrong side of the deck, metres: there the
     /// deck stays on the ground.
-    pub(crate) within_m: f64,
+    pub within_m: f64,
 }
 
 /// Returns the runs of a line. Heights are multiples of `quantum_m`, rounded away from the ground,
@@ -96,8 +96,8 @@ pub(crate) fn runs_of(
             is_same
         });
         if points.len() >= 2 {
-            let SpanLineOf { way_id, owner, .. } = line.of;
-            runs.push(SpanRun { way_id, owner, structure: line.structure(), points });
+            let SpanLineOf { way_id, owner, structure, .. } = line.of;
+            runs.push(SpanRun { way_id, owner, structure, points });
         }
         first += off;
     }

@@ -89,7 +89,7 @@ impl World {
                 line: CarriedLine::Road(1),
                 way_id: 2,
                 owner: RunOwner::Road(FunctionalRoadClass::new(3).unwrap()),
-                is_tunnel: false,
+                structure: Structure::Bridge,
             },
             vertices: ground.iter().map(vertex).collect(),
         };

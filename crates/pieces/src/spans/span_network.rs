@@ -36,9 +36,9 @@ pub struct SpanInputs<'a> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct OnCarriedLine {
     /// The line.
-    pub(crate) line: CarriedLine,
+    pub line: CarriedLine,
     /// Distance along the line, micrometres.
-    pub(crate) along_um: u64,
+    pub along_um: u64,
 }
 
 /// Bridges and tunnels of a build, before their heights are known.

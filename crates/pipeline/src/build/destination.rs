@@ -13,10 +13,10 @@ use crate::BuildError;
 /// The target of a package, checked before any work is done.
 pub(crate) struct Destination {
     /// The path of the file, with a symbolic link resolved.
-    pub(crate) target: PathBuf,
+    pub target: PathBuf,
     /// The folder of the file.
-    pub(crate) folder: PathBuf,
-    pub(crate) existing: Existing,
+    pub folder: PathBuf,
+    pub existing: Existing,
 }
 
 impl Destination {

@@ -71,17 +71,12 @@ fn check(
     Ok(())
 }
 
-/// Where the store of a build is, and how often it is made durable.
-pub(crate) struct StorePlace<'a> {
-    pub(crate) disk: &'a Arc<dyn Disk>,
-    pub(crate) folder: &'a Path,
-    pub(crate) sync_interval: Duration,
-}
-
 /// Creates the store of a build, or resumes the existing one, depending on `leftovers`. The store
 /// is in a folder on a disk, and is synced at an interval.
 pub(crate) fn open(
-    StorePlace { disk, folder, sync_interval }: StorePlace<'_>,
+    disk: &Arc<dyn Disk>,
+    folder: &Path,
+    sync_interval: Duration,
     plan: &BuildPlan,
     leftovers: Leftovers,
     observer: &dyn BuildObserver,

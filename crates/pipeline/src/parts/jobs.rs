@@ -31,11 +31,7 @@ pub use list::Job;
 use list::{BuildCosts, ExtractCosts, list, micros};
 use tile_costs::TileCosts;
 
-use super::{
-    needed_parts::has_roads,
-    planned::open,
-    stores::{GivenStores, Stores},
-};
+use super::{needed_parts::has_roads, planned::open, stores::Stores};
 use crate::{BuildError, objects::ObjectAccess, steps::roads};
 
 /// The largest useful number of shares (chunks of the extract): each share of nodes reads the ways
@@ -99,8 +95,7 @@ fn piece_bytes(
     plan: &BuildPlan,
     resources: Resources,
 ) -> Result<Option<Vec<(TileId, u64)>>, BuildError> {
-    let given = GivenStores { names: stores, tmp: None };
-    let stores = Stores::look(given, plan, ObjectAccess::new(resources), true)?;
+    let stores = Stores::look(stores, None, plan, ObjectAccess::new(resources), true)?;
     let Some(store) = stores.open_to_read(&has_roads)? else { return Ok(None) };
     if !roads::are_done(&store) {
         return Ok(None);

@@ -11,12 +11,7 @@ use corniche_spec::{BuildObserver, Resources};
 use corniche_store::{Existing, LocalStore};
 use corniche_tileset::Manifest;
 
-use super::{
-    needed_parts::is_merged,
-    package::PackageDestination,
-    planned::open,
-    stores::{GivenStores, Stores},
-};
+use super::{needed_parts::is_merged, package::PackageDestination, planned::open, stores::Stores};
 use crate::{
     BuildError, BuildSummary,
     build::destination,
@@ -71,8 +66,7 @@ pub fn merge(
     let mut access = ObjectAccess::new(*resources);
     let place = PackageDestination::resolve(output, *existing, tmp.as_deref(), &mut access)?;
     let destination = &place.destination;
-    let given = GivenStores { names: stores, tmp: tmp.as_deref() };
-    let stores = Stores::look(given, plan, access, false)?;
+    let stores = Stores::look(stores, tmp.as_deref(), plan, access, false)?;
     let (plan_settings, opened) = open(plan, generator, *resources)?;
     place.refuse_inputs(&plan_settings, &settings.stores)?;
     let finished = destination.begin(destination.claim(observer)?)?;

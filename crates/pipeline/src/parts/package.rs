@@ -19,7 +19,7 @@ use crate::{
 /// The target of a package, checked before any work is done.
 pub(crate) struct PackageDestination {
     /// The path at which the file is written.
-    pub(crate) destination: Destination,
+    pub destination: Destination,
     /// The object to which the file is then uploaded.
     object: Option<PackageObject>,
 }

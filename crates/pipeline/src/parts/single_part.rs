@@ -13,7 +13,7 @@ use super::{
     needed_parts::{is_needed, part_name},
     planned::open,
     step::PartStep,
-    stores::{GivenStores, Stores},
+    stores::Stores,
 };
 use crate::{
     BuildError,
@@ -77,8 +77,7 @@ pub fn make_part(
     }
     let scope = subtree.unwrap_or(TileId::ROOT);
     let share = share.unwrap_or(Share::WHOLE);
-    let given = GivenStores { names: stores, tmp: tmp.as_deref() };
-    let stores = Stores::look(given, plan, ObjectAccess::new(*resources), true)?;
+    let stores = Stores::look(stores, tmp.as_deref(), plan, ObjectAccess::new(*resources), true)?;
     let (plan_settings, opened) = open(plan, generator, *resources)?;
     let finest_level = opened.grid.frame.max_level();
     if scope.z() > finest_level {

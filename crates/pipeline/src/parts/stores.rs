@@ -26,15 +26,6 @@ const MOST_COPIES: u32 = 16;
 /// The number of tries if a folder is deleted while it is being opened.
 const MOST_TRIES: u32 = 8;
 
-/// The stores as the user gives them.
-#[derive(Clone, Copy)]
-pub(crate) struct GivenStores<'a> {
-    /// Folders and addresses. All are read, and the first is written.
-    pub(crate) names: &'a [PathBuf],
-    /// The folder for a part that is then uploaded; `None`: the system's temporary folder.
-    pub(crate) tmp: Option<&'a Path>,
-}
-
 /// Stores that all belong to one plan.
 pub(crate) struct Stores<'a> {
     disk: Arc<dyn Disk>,
@@ -53,17 +44,19 @@ enum OneStore {
 
 /// A store with a part that is being built, and the destination of the part.
 pub(crate) struct OpenStores<'a> {
-    pub(crate) store: LocalStore,
+    pub store: LocalStore,
     /// The place to which the part is uploaded, and the folder in which it is built; `None` if it
     /// is built in place.
     sent: Option<(&'a ObjectPlace, PathBuf)>,
 }
 
 impl<'a> Stores<'a> {
-    /// Checks to which plans the stores belong, and changes nothing. The first store need not exist
-    /// yet if it `may_be_new`.
+    /// Checks to which plans the stores with these folders or addresses belong, and changes nothing.
+    /// All are read, and the first is written; it need not exist yet if it `may_be_new`. A part to
+    /// upload is first written in `tmp`; `None`: the system's temporary folder.
     pub(crate) fn look(
-        given: GivenStores<'_>,
+        names: &[PathBuf],
+        tmp: Option<&Path>,
         plan: &'a BuildPlan,
         mut access: ObjectAccess,
         may_be_new: bool,
@@ -72,7 +65,7 @@ impl<'a> Stores<'a> {
         let wanted = stored(plan)?;
         let mut stores = Vec::new();
         let mut seen: Vec<PathBuf> = Vec::new();
-        for (index, name) in given.names.iter().enumerate() {
+        for (index, name) in names.iter().enumerate() {
             let store = match address(name)? {
                 Some(address) => OneStore::Objects(Box::new(access.place(&address)?)),
                 None => OneStore::Folder(Folder::new(Arc::clone(&disk), &folder_of_store(name))),
@@ -97,7 +90,7 @@ impl<'a> Stores<'a> {
                 what: "no store is named; pass one with --store".to_owned(),
             });
         }
-        let tmp = given.tmp.map_or_else(env::temp_dir, Path::to_path_buf);
+        let tmp = tmp.map_or_else(env::temp_dir, Path::to_path_buf);
         Ok(Self { disk, all: stores, plan, stored: wanted, tmp, access })
     }
 
@@ -109,15 +102,12 @@ impl<'a> Stores<'a> {
         name: &str,
         is_needed: &dyn Fn(&str) -> bool,
     ) -> Result<OpenStores<'_>, BuildError> {
-        match self.all.first() {
-            None => Err(BuildError::Start {
-                what: "no store is named; pass one with --store".to_owned(),
-            }),
-            Some(OneStore::Folder(folder)) => {
+        match &self.all[0] {
+            OneStore::Folder(folder) => {
                 let store = self.open_in(folder.name(), name, is_needed, Hold::Shared)?;
                 Ok(OpenStores { store, sent: None })
             }
-            Some(OneStore::Objects(place)) => {
+            OneStore::Objects(place) => {
                 let bound = place.bind(&self.stored)?;
                 refuse_other(place.name(), self.plan, &self.stored, &bound)?;
                 let first = self.tmp.join(self.work_name(place.name(), name));

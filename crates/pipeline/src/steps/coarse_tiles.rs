@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use corniche_geom::TileId;
 use corniche_ground::heights::{pyramid::all_there, rasters};
 use corniche_spec::artifacts::{ArtifactError, ArtifactKind, damaged};
-use corniche_work::{Stage, workers};
+use corniche_work::Stage;
 
 use super::top;
 use crate::{
@@ -26,23 +26,18 @@ pub(crate) fn make(context: &BuildContext<'_>, scope: TileId) -> Result<(), Buil
     let (store, data) = (context.store, context.data());
     let deviations = deviations(context, scope)?;
     let mut ids: Vec<TileId> = deviations.keys().copied().collect();
-    let all = ids.len();
-    ids.retain(|&id| !store.has(ArtifactKind::Record.of_tile(id)));
     ids.sort_unstable_by_key(|&id| corniche_tileset::pmtiles_order(id));
+    let lacks = |kind: ArtifactKind, id: TileId| !store.has(kind.of_tile(id));
+    let lacks_both = |&id: &TileId| lacks(ArtifactKind::Record, id) && lacks(ArtifactKind::Tin, id);
     // The TINs exist, unless the part that created them for the tiles beneath is not among the
     // stores.
-    top::make_tins(
-        context,
-        ids.iter().copied().filter(|&id| !store.has(ArtifactKind::Tin.of_tile(id))).collect(),
-    )?;
+    top::make_tins(context, ids.iter().copied().filter(lacks_both).collect())?;
     let step_m = top::height_step_m(context)?;
-    workers::make_missing(
-        context.observer,
-        Stage::CoarseTiles,
-        context.threads(),
-        (&ids, all),
+    context.make_missing(
+        (Stage::CoarseTiles, ArtifactKind::Record),
+        ids,
         || Ok(()),
-        |(), &id| -> Result<(), BuildError> {
+        |(), id| {
             // According to the records of finest tiles it has ground.
             let empty = || damaged(ArtifactKind::Tin.of_tile(id), &"it has no ground");
             let meshed = Meshed::get(store, id)?.ok_or_else(empty)?;
@@ -61,8 +56,7 @@ pub(crate) fn make(context: &BuildContext<'_>, scope: TileId) -> Result<(), Buil
                 encode::owned_by_heights(context, id, heights.as_ref())
             };
             let tile = (meshed, relief);
-            encode::with_ground(context, id, tile, deviation, None, owned)?.put(store, id)?;
-            Ok(())
+            Ok(encode::with_ground(context, id, tile, deviation, None, owned)?.put(store, id)?)
         },
     )
 }

@@ -9,7 +9,7 @@ use corniche_layers::LayerTable;
 use corniche_pieces::{
     layers::{
         extract_layers,
-        tile_section::{LayerTotals, SectionOfTile, SectionSums},
+        tile_section::{LayerTotals, SectionSums},
     },
     roads::{
         lay::ClassSums,
@@ -34,31 +34,25 @@ use crate::{
 
 /// The sources of the manifest.
 pub(crate) struct ManifestSources<'a> {
-    pub(crate) context: &'a BuildContext<'a>,
-    pub(crate) inputs: Vec<InputRecord>,
+    pub context: &'a BuildContext<'a>,
+    pub inputs: Vec<InputRecord>,
     /// The outline of the elevation files, if they do not fill a rectangle.
-    pub(crate) outline: Option<ExtentOutline>,
-    pub(crate) heights: HeightSums,
-    pub(crate) roads: Option<(&'a RoadTotals, &'a losses::Sums)>,
-    pub(crate) layers: Vec<LayerTotals>,
-    pub(crate) spans: Option<SpanTotals>,
-    pub(crate) tiles: &'a ManifestSums,
+    pub outline: Option<ExtentOutline>,
+    pub heights: HeightSums,
+    pub roads: Option<(&'a RoadTotals, &'a losses::Sums)>,
+    pub layers: Vec<LayerTotals>,
+    pub spans: Option<SpanTotals>,
+    pub tiles: &'a ManifestSums,
 }
 
 /// Builds the manifest.
 pub(crate) fn build_manifest(outcome: &ManifestSources<'_>) -> Manifest {
-    let BuildContext { settings, grid: plan, levels, .. } = *outcome.context;
+    let BuildContext { settings, grid: plan, levels, opened, .. } = *outcome.context;
     let frame = *levels.frame();
-    let record = settings_record::record_settings(
-        &settings.terrain,
-        &settings.roads,
-        outcome.context.opened.max_error_m,
-        outcome.context.opened.photo.record(),
-        &settings.layers,
-    );
+    let record =
+        settings_record::record_settings(settings, opened.max_error_m, opened.photo.record());
     let mut attribution = settings.attribution.clone();
-    for credit in outcome.context.opened.photo.files().into_iter().flat_map(|photo| &photo.credits)
-    {
+    for credit in opened.photo.files().into_iter().flat_map(|photo| &photo.credits) {
         if !attribution.contains(credit) {
             attribution.push(credit.clone());
         }
@@ -91,13 +85,18 @@ pub(crate) fn build_manifest(outcome: &ManifestSources<'_>) -> Manifest {
             range_m: outcome.heights.range_m.map(f64::from),
         },
         datum_operations: manifest_texts::datum_operations(&plan.datum_operations),
-        coordinates: outcome.context.opened.coordinates.clone(),
+        coordinates: opened.coordinates.clone(),
         levels: level_records(outcome),
         settings_sha256: settings_record::sha256(&record),
         settings: record,
         inputs: outcome.inputs.clone(),
         attribution,
-        counts: counts(outcome),
+        counts: match outcome.roads {
+            Some((totals, losses)) => road_counts(outcome.heights.samples, totals, losses),
+            None => {
+                ManifestCounts { samples: outcome.heights.samples, ..ManifestCounts::default() }
+            }
+        },
         growth: growth(outcome),
         photos: photos(outcome),
         layers: layers(outcome),
@@ -142,15 +141,6 @@ fn level_records(outcome: &ManifestSources<'_>) -> Vec<LevelRecord> {
             LevelRecord { sample_error, tightness, uncovered_nodes, ..record }
         })
         .collect()
-}
-
-/// Counts of roads: read, kept, and lost by reason.
-fn counts(outcome: &ManifestSources<'_>) -> ManifestCounts {
-    let samples = outcome.heights.samples;
-    match outcome.roads {
-        Some((totals, losses)) => road_counts(samples, totals, losses),
-        None => ManifestCounts { samples, ..ManifestCounts::default() },
-    }
 }
 
 fn photos(outcome: &ManifestSources<'_>) -> Vec<PhotoLevelRecord> {
@@ -215,7 +205,7 @@ fn growth(outcome: &ManifestSources<'_>) -> Vec<GrowthRow> {
         .classes
         .iter()
         .filter(|(_, sums)| sums.source_vertices > 0)
-        .map(|(&(level, class), sums)| GrowthRow {
+        .map(|(&(level, class), &sums)| GrowthRow {
             level,
             class,
             source_vertices: sums.source_vertices,
@@ -236,35 +226,35 @@ fn growth(outcome: &ManifestSources<'_>) -> Vec<GrowthRow> {
 /// They are whole numbers, maxima, and lists that are sorted before they are used, so the order of
 /// the records does not matter.
 pub(crate) struct ManifestSums {
-    pub(crate) levels: BTreeMap<u8, LevelSums>,
+    pub levels: BTreeMap<u8, LevelSums>,
     /// Sums by level and class.
-    pub(crate) classes: BTreeMap<(u8, u8), ClassSums>,
+    pub classes: BTreeMap<(u8, u8), ClassSums>,
     /// Per level, root first: distances to samples.
-    pub(crate) samples: Vec<SampleSums>,
-    pub(crate) sv_tails: SvTails,
+    pub samples: Vec<SampleSums>,
+    pub sv_tails: SvTails,
     least_measured_m: f64,
 }
 
 /// Sums over the tiles of a level.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct LevelSums {
-    pub(crate) tiles: u64,
-    pub(crate) vertices: u64,
-    pub(crate) triangles: u64,
-    pub(crate) terrain_bytes: u64,
-    pub(crate) relief_bytes: u64,
+    pub tiles: u64,
+    pub vertices: u64,
+    pub triangles: u64,
+    pub terrain_bytes: u64,
+    pub relief_bytes: u64,
     /// Tiles with a photo.
-    pub(crate) photo_tiles: u64,
-    pub(crate) photo_bytes: u64,
+    pub photo_tiles: u64,
+    pub photo_bytes: u64,
     /// The sections of the layers, in their order.
-    pub(crate) layers: Vec<SectionSums>,
-    pub(crate) spans: SectionSums,
+    pub layers: Vec<SectionSums>,
+    pub spans: SectionSums,
     /// Geometric errors of the level's tiles.
-    pub(crate) geometric_errors_m: Vec<f64>,
+    pub geometric_errors_m: Vec<f64>,
     /// Ratios of the tiles' geometric errors to their deviations, if those can be measured.
-    pub(crate) tightness: Vec<f64>,
+    pub tightness: Vec<f64>,
     /// Nodes with data that the level's tiles do not cover, or that have no tile above them.
-    pub(crate) uncovered_nodes: u64,
+    pub uncovered_nodes: u64,
 }
 
 impl ManifestSums {
@@ -278,11 +268,6 @@ impl ManifestSums {
             sv_tails: SvTails::new(),
             least_measured_m: VerticalRecord::least_measured_error_m(quantum_m),
         }
-    }
-
-    /// Adds the spans of a tile.
-    pub(crate) fn add_spans(&mut self, level: u8, own: SectionOfTile) {
-        self.levels.entry(level).or_default().spans.add(own);
     }
 
     /// Adds a tile.

@@ -44,9 +44,9 @@ use crate::{BuildError, context::BuildContext, tile::record::TileRecord};
 /// The target of the package.
 pub(crate) struct MergeTarget<'a> {
     /// The file to write.
-    pub(crate) finished: &'a Path,
+    pub finished: &'a Path,
     /// Its final path, for messages.
-    pub(crate) named: &'a Path,
+    pub named: &'a Path,
 }
 
 /// Fails if one of the steps is not complete for all tiles.
@@ -89,9 +89,12 @@ pub(crate) fn make(
                 .into());
             }
             tiles.add(id, &record);
-            if let Some(TileSection { section, parts, points }) = spans_of_tile(context, id)? {
+            if let Some(TileSection { section, parts, points }) =
+                TileSection::get(SectionLayer::Spans, context.store, id)?
+            {
                 let bytes = SectionLayer::Spans.section_of(section).size(id)?.stored;
-                tiles.add_spans(id.z(), SectionOfTile { parts, points, bytes });
+                let sums = tiles.levels.entry(id.z()).or_default();
+                sums.spans.add(SectionOfTile { parts, points, bytes });
             }
             fold.add(&record.fates)?;
         }
@@ -181,7 +184,7 @@ fn write(
         let id = artifacts::tile_of(key)?;
         let mut payload =
             context.store.get(key)?.ok_or_else(|| artifacts::damaged(key, &"it is missing"))?;
-        if let Some(spans) = spans_of_tile(context, id)? {
+        if let Some(spans) = TileSection::get(SectionLayer::Spans, context.store, id)? {
             let mut builder = PayloadBuilder::with_all_of(&payload, id)?;
             builder.add(SectionLayer::Spans.section_of(spans.section))?;
             payload = builder.seal()?.bytes;
@@ -255,12 +258,4 @@ fn tin_of(context: &BuildContext<'_>, id: TileId) -> Result<Option<Tin>, Extract
     let payload = decode(&bytes, id, context.frame(), quantum_m, Sections::TERRAIN)
         .map_err(|error| artifacts::damaged(key, &error))?;
     Ok(payload.terrain.map(|terrain| terrain.tin).filter(|tin| !tin.is_empty()))
-}
-
-/// The section of spans (bridges and tunnels) of a tile, with its counts; `None` without spans.
-fn spans_of_tile(
-    context: &BuildContext<'_>,
-    id: TileId,
-) -> Result<Option<TileSection>, BuildError> {
-    Ok(TileSection::get(SectionLayer::Spans, context.store, id)?)
 }

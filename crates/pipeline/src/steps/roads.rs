@@ -32,11 +32,6 @@ pub(crate) fn are_done(store: &dyn Artifacts) -> bool {
     store.has(ArtifactKind::RoadTotals.item(0))
 }
 
-/// Returns the threads that read an extract.
-pub(crate) fn pool(context: &BuildContext<'_>) -> Result<rayon::ThreadPool, BuildError> {
-    Ok(reading_pool(context.threads())?)
-}
-
 /// Reads the extract, if there is one that was not read yet; fails if none of its roads is on the
 /// elevation data.
 pub(crate) fn make(
@@ -47,7 +42,7 @@ pub(crate) fn make(
     if osm.is_empty() {
         return Ok(());
     }
-    let pool = pool(context)?;
+    let pool = reading_pool(context.threads())?;
     let frame = *context.frame();
     let outline = context.data_outline()?;
     let input = ExtractInput {

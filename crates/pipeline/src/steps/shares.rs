@@ -2,12 +2,15 @@
 //! without them, the step *roads* runs both.
 
 use corniche_osm::{ReadOsmError, ReadRequest, Share, keep_nodes, keep_ways};
-use corniche_pieces::extract::kept::{kept_in, not_read};
+use corniche_pieces::extract::{
+    kept::{kept_in, not_read},
+    reading_pool,
+};
 use corniche_spec::artifacts::ArtifactError;
 use corniche_store::ScratchSpace;
 use corniche_work::Stage;
 
-use super::roads::{are_done, pool};
+use super::roads::are_done;
 use crate::{BuildError, context::BuildContext};
 
 /// Stores the missing road ways of a share; does nothing without an extract, or if the roads are
@@ -63,7 +66,7 @@ fn read(
         seam: None,
         square_steps: i64::MAX,
         node_ids: false,
-        pool: &pool(context)?,
+        pool: &reading_pool(context.threads())?,
         memory_bytes: context.memory().sorting,
         scratch,
         on_progress: Some(&|done, total| observer.reached(Stage::Extract, done, total)),

@@ -62,10 +62,10 @@ fn above_subtrees(context: &BuildContext<'_>) -> Vec<TileId> {
     let made: BTreeSet<TileId> = items.into_iter().filter_map(tile_of_order).collect();
     let is_in_another = |id: TileId| (0..id.z()).any(|level| made.contains(&id.ancestor(level)));
     let subtrees = made.iter().filter(|&&id| !is_in_another(id));
-    let above: BTreeSet<TileId> =
+    let mut above: Vec<TileId> =
         subtrees.flat_map(|id| (0..id.z()).map(|level| id.ancestor(level))).collect();
-    let mut above: Vec<TileId> = above.into_iter().collect();
     above.sort_unstable_by_key(|&id| pmtiles_order(id));
+    above.dedup();
     above
 }
 

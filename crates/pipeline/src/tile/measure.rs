@@ -164,9 +164,9 @@ const TRIANGLE_BYTES: u64 = 120;
 
 /// A tile's ground, prepared for measuring.
 pub(crate) struct MeasuredGround {
-    pub(crate) buckets: TriangleBuckets,
+    pub buckets: TriangleBuckets,
     /// Only if samples are not nodes: samples are located by their position.
-    pub(crate) surface: Option<Surface>,
+    pub surface: Option<Surface>,
     bytes: u64,
 }
 

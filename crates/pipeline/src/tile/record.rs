@@ -19,61 +19,61 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct TileRecord {
     /// The tile's ground; `None` if the tile has no ground, and therefore no payload.
-    pub(crate) ground: Option<GroundRecord>,
+    pub ground: Option<GroundRecord>,
     /// Sums by number of the class.
-    pub(crate) classes: BTreeMap<u8, ClassSums>,
+    pub classes: BTreeMap<u8, ClassSums>,
     /// Finest tiles only: the fates of roads in this tile, by ordinal.
-    pub(crate) fates: Vec<(u32, RoadFate)>,
+    pub fates: Vec<(u32, RoadFate)>,
     /// Finest tiles only, root first: distances of its nodes and samples from the TINs of its
     /// ancestors, and from its own TIN.
-    pub(crate) levels: Vec<LevelShare>,
+    pub levels: Vec<LevelShare>,
 }
 
 /// Counts of a tile's ground, and its distance from the heights.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct GroundRecord {
-    pub(crate) vertices: u64,
-    pub(crate) triangles: u64,
-    pub(crate) terrain_bytes: u64,
-    pub(crate) relief_bytes: u64,
+    pub vertices: u64,
+    pub triangles: u64,
+    pub terrain_bytes: u64,
+    pub relief_bytes: u64,
     /// Bytes of the photo; 0 without one.
-    pub(crate) photo_bytes: u64,
+    pub photo_bytes: u64,
     /// The sections of the layers, in their order.
-    pub(crate) layers: Vec<SectionOfTile>,
-    pub(crate) deviation: TileDeviation,
+    pub layers: Vec<SectionOfTile>,
+    pub deviation: TileDeviation,
 }
 
 /// The distance of one tile's TIN from the nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct TileDeviation {
     /// The value that the tile stores: never below the deviations of the tiles below it.
-    pub(crate) geometric_error_m: f64,
+    pub geometric_error_m: f64,
     /// The largest deviation of the tile itself and of its children, each by its own TIN.
-    pub(crate) deviation_m: f64,
-    pub(crate) height_range_m: [f64; 2],
-    pub(crate) uncovered_nodes: u64,
+    pub deviation_m: f64,
+    pub height_range_m: [f64; 2],
+    pub uncovered_nodes: u64,
 }
 
 /// The contribution of one finest tile to the statistics of a tile above it, or of itself.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct LevelShare {
     /// Whether the tile of that level has ground.
-    pub(crate) has_ground: bool,
-    pub(crate) seen: TinStatistics,
+    pub has_ground: bool,
+    pub seen: TinStatistics,
     /// Distances to the nodes that are not filled voids, or, where samples are not nodes, to the
     /// DEM's samples.
-    pub(crate) sums: SampleSums,
+    pub sums: SampleSums,
 }
 
 /// Statistics of a tile's TIN, collected over one or several finest tiles.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct TinStatistics {
     /// Largest vertical distance from the TIN to a node, metres.
-    pub(crate) max_abs_m: f64,
+    pub max_abs_m: f64,
     /// Lowest and highest node.
-    pub(crate) range_m: Option<[f32; 2]>,
+    pub range_m: Option<[f32; 2]>,
     /// Nodes with a height where there is no triangle.
-    pub(crate) uncovered_nodes: u64,
+    pub uncovered_nodes: u64,
 }
 
 impl TinStatistics {

@@ -35,14 +35,20 @@ pub fn elevation_names(names: &[PathBuf]) -> Result<Vec<PathBuf>, InputError> {
     raster_names(names, SoughtFiles::Elevation)
 }
 
-/// Expands names into rasters.
-fn raster_names(names: &[PathBuf], sought: SoughtFiles) -> Result<Vec<PathBuf>, InputError> {
+/// Expands names, each into the files for which it stands.
+fn expanded(names: &[PathBuf], sought: SoughtFiles) -> Result<Vec<PathBuf>, InputError> {
     let mut plain = Vec::new();
     for name in names {
         for name in expand_name(name, sought)? {
             plain.push(input_name(name)?);
         }
     }
+    Ok(plain)
+}
+
+/// Expands names into rasters.
+fn raster_names(names: &[PathBuf], sought: SoughtFiles) -> Result<Vec<PathBuf>, InputError> {
+    let plain = expanded(names, sought)?;
     // Archives on a server are opened, too.
     reach_servers(plain.iter().map(PathBuf::as_path))?;
     let mut files = Vec::new();
@@ -68,12 +74,7 @@ pub fn photo_names(names: &[PathBuf]) -> Result<Vec<PathBuf>, InputError> {
 /// # Errors
 /// When a name matches no file, or is not a valid address.
 pub fn extract_names(names: &[PathBuf]) -> Result<Vec<PathBuf>, InputError> {
-    let mut files = Vec::new();
-    for name in names {
-        for name in expand_name(name, SoughtFiles::Extracts)? {
-            files.push(input_name(name)?);
-        }
-    }
+    let mut files = expanded(names, SoughtFiles::Extracts)?;
     // One file may have been named in several ways.
     let place = |path: &PathBuf| path.canonicalize().unwrap_or_else(|_| path.clone());
     let key = |path: &PathBuf| (path.file_name().map(ToOwned::to_owned), place(path));

@@ -28,7 +28,7 @@ pub(crate) enum Stamp {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct FileState {
     /// In bytes.
-    pub(crate) size: u64,
+    pub size: u64,
     modified: Option<SystemTime>,
     /// Device and inode, and the time of the last status change (ctime), which programs cannot set.
     #[cfg(unix)]

@@ -9,9 +9,10 @@ use std::{path::Path, sync::Arc};
 use crate::{
     OpenMode, PlanHash, StoreError, StoredPlan,
     files::Files,
+    folder_of,
     local::{
         header::{self, FileKind, HEADER_BYTES, u32_at, u64_at},
-        layout::{self, StoreFolderFiles},
+        layout,
         lock::{self, Signature},
     },
 };
@@ -30,12 +31,9 @@ pub(crate) enum FolderState {
 ///
 /// # Errors
 /// [`StoreError::NotAStore`] if it contains something that does not belong to a store.
-pub(crate) fn state(
-    files: &Arc<Files>,
-    folder: &Path,
-) -> Result<(FolderState, StoreFolderFiles), StoreError> {
+pub(crate) fn state(files: &Arc<Files>, folder: &Path) -> Result<FolderState, StoreError> {
     let Some(found) = layout::look(files, folder)? else {
-        return Ok((FolderState::Absent, StoreFolderFiles::default()));
+        return Ok(FolderState::Absent);
     };
     let not_ours = |what: String| Err(StoreError::NotAStore { path: folder.to_owned(), what });
     let has_header = found.has(layout::STORE);
@@ -52,8 +50,8 @@ pub(crate) fn state(
         (Signature::None, Some(name)) if !(has_header && is_header(files, folder)?) => {
             not_ours(format!("its {name:?} may not have been created by Corniche"))
         }
-        _ if has_header => Ok((FolderState::Store, found)),
-        _ => Ok((FolderState::Free, found)),
+        _ if has_header => Ok(FolderState::Store),
+        _ => Ok(FolderState::Free),
     }
 }
 
@@ -116,22 +114,7 @@ pub(crate) fn bind(files: &Arc<Files>, folder: &Path, plan: &StoredPlan) -> Resu
         files.rename(&new, &folder.join(name))?;
         files.sync_folder(folder)?;
     }
-    sync_parent(files, folder)
-}
-
-/// Makes the existence of the folder durable.
-fn sync_parent(files: &Files, folder: &Path) -> Result<(), StoreError> {
-    match folder.parent() {
-        Some(parent) if parent.as_os_str().is_empty() => files.sync_folder(Path::new(".")),
-        Some(parent) => files.sync_folder(parent),
-        None => Ok(()),
-    }
-}
-
-/// Reads the hash in a store's header.
-pub(crate) fn read_hash(files: &Arc<Files>, folder: &Path) -> Result<PlanHash, StoreError> {
-    let header = read_header(files, folder)?;
-    decode_header(&header, &folder.join(layout::STORE)).map(|(hash, ..)| hash)
+    files.sync_folder(folder_of(folder))
 }
 
 /// Reads the hash and checks that it is `plan`.
@@ -140,7 +123,8 @@ pub(crate) fn check_hash(
     folder: &Path,
     plan: &PlanHash,
 ) -> Result<(), StoreError> {
-    if read_hash(files, folder)? == *plan {
+    let header = read_header(files, folder)?;
+    if decode_header(&header, &folder.join(layout::STORE))?.0 == *plan {
         Ok(())
     } else {
         Err(StoreError::OtherPlan { path: folder.to_owned() })

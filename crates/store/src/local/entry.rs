@@ -27,11 +27,11 @@ pub(crate) const ENTRY_BYTES: usize = 32;
 /// The position of an artifact in its file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct ArtifactEntry {
-    pub(crate) key: ArtifactKey,
-    pub(crate) offset: u64,
-    pub(crate) length: u32,
+    pub key: ArtifactKey,
+    pub offset: u64,
+    pub length: u32,
     /// The CRC-32 of the artifact.
-    pub(crate) crc: u32,
+    pub crc: u32,
 }
 
 /// Called for each entry of a part, with the file that contains it, so that the list need not be in

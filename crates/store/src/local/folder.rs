@@ -37,7 +37,7 @@ impl PartsPlace for Folder {
     }
 
     fn stored_plan(&self) -> Result<Option<StoredPlan>, StoreError> {
-        match binding::state(&self.files, &self.path)?.0 {
+        match binding::state(&self.files, &self.path)? {
             FolderState::Store => binding::read_plan(&self.files, &self.path).map(Some),
             FolderState::Absent | FolderState::Free => Ok(None),
         }

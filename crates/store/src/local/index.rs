@@ -8,13 +8,13 @@ use crate::ArtifactKey;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct ArtifactLocation {
     /// The number of its file, below [`PART_LIMIT`].
-    pub(crate) part: u32,
+    pub part: u32,
     /// The offset of its first byte, below [`OFFSET_LIMIT`].
-    pub(crate) offset: u64,
+    pub offset: u64,
     /// Its number of bytes.
-    pub(crate) length: u32,
+    pub length: u32,
     /// Its CRC-32.
-    pub(crate) crc: u32,
+    pub crc: u32,
 }
 
 /// The limit of offsets: 16 TiB.

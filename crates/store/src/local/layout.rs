@@ -94,8 +94,8 @@ pub(crate) fn check_part_name(name: &str) -> Result<(), StoreError> {
 /// a store.
 #[derive(Debug, Default)]
 pub(crate) struct StoreFolderFiles {
-    pub(crate) own: Vec<(String, Role)>,
-    pub(crate) foreign: Vec<String>,
+    pub own: Vec<(String, Role)>,
+    pub foreign: Vec<String>,
 }
 
 impl StoreFolderFiles {

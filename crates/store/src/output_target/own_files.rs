@@ -168,7 +168,7 @@ pub(crate) mod system {
         io,
         os::unix::{
             ffi::OsStringExt as _,
-            fs::{DirBuilderExt as _, MetadataExt as _, OpenOptionsExt as _},
+            fs::{DirBuilderExt as _, MetadataExt as _},
         },
         path::Path,
     };
@@ -188,16 +188,18 @@ pub(crate) mod system {
     /// The permissions of new files, minus those that the process masks.
     const PERMISSIONS: Mode = Mode::from_raw_mode(0o666);
 
+    fn flags_of(mode: OpenMode) -> OFlags {
+        SAFELY
+            | match mode {
+                OpenMode::Read => OFlags::RDONLY,
+                OpenMode::Change => OFlags::RDWR,
+                OpenMode::New => OFlags::RDWR | OFlags::CREATE | OFlags::EXCL,
+                OpenMode::ChangeOrNew => OFlags::RDWR | OFlags::CREATE,
+            }
+    }
+
     pub(crate) fn open(path: &Path, mode: OpenMode) -> io::Result<File> {
-        let mut options = File::options();
-        options.read(true).write(mode != OpenMode::Read);
-        options.custom_flags(SAFELY.bits().cast_signed());
-        match mode {
-            OpenMode::Read | OpenMode::Change => &mut options,
-            OpenMode::New => options.create_new(true),
-            OpenMode::ChangeOrNew => options.create(true),
-        };
-        options.open(path)
+        Ok(rustix::fs::open(path, flags_of(mode), PERMISSIONS)?.into())
     }
 
     /// Fails unless a file belongs to this user and has one name: a second name may belong to a
@@ -259,14 +261,7 @@ pub(crate) mod system {
             path: &Path,
             mode: OpenMode,
         ) -> io::Result<File> {
-            let flags = SAFELY
-                | match mode {
-                    OpenMode::Read => OFlags::RDONLY,
-                    OpenMode::Change => OFlags::RDWR,
-                    OpenMode::New => OFlags::RDWR | OFlags::CREATE | OFlags::EXCL,
-                    OpenMode::ChangeOrNew => OFlags::RDWR | OFlags::CREATE,
-                };
-            let opened = openat(&self.0, name, flags, PERMISSIONS).map(File::from);
+            let opened = openat(&self.0, name, flags_of(mode), PERMISSIONS).map(File::from);
             checked(opened.map_err(io::Error::from), path, mode)
         }
 

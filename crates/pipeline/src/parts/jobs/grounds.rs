@@ -14,9 +14,9 @@ use crate::BuildError;
 pub(crate) struct LevelTileCosts {
     /// Cost of the step *heights*; `None` if the terrain comes from a package and there are no
     /// photos.
-    pub(crate) heights: Option<Vec<(TileId, u64)>>,
+    pub heights: Option<Vec<(TileId, u64)>>,
     /// Cost of the step *tiles* without roads.
-    pub(crate) tiles: Vec<(TileId, u64)>,
+    pub tiles: Vec<(TileId, u64)>,
 }
 
 impl LevelTileCosts {
@@ -83,21 +83,13 @@ fn photos(opened: &Opened) -> impl Iterator<Item = (TileId, u64)> {
 /// For each tile above some finest tiles, the number of nodes of its own level inside the data.
 fn nodes_above(finest: &[(TileId, u64)]) -> BTreeMap<TileId, f64> {
     let mut all = BTreeMap::new();
-    let mut level: BTreeMap<TileId, f64> =
-        finest.iter().map(|&(id, nodes)| (id, nodes as f64)).collect();
-    loop {
-        let mut above: BTreeMap<TileId, f64> = BTreeMap::new();
-        for (id, nodes) in level {
-            if let Some(up) = id.z().checked_sub(1) {
-                *above.entry(id.ancestor(up)).or_default() += nodes / 4.0;
-            }
+    for &(id, nodes) in finest {
+        for level in 0..id.z() {
+            let share = 0.25_f64.powi((id.z() - level).into());
+            *all.entry(id.ancestor(level)).or_default() += nodes as f64 * share;
         }
-        if above.is_empty() {
-            return all;
-        }
-        all.extend(&above);
-        level = above;
     }
+    all
 }
 
 /// The number of nodes that belong to a tile.

@@ -37,28 +37,28 @@ pub struct Job {
 /// The cost of a build, microseconds of one core, without the start of processes.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct BuildCosts {
-    pub(crate) hashes_us: u64,
+    pub hashes_us: u64,
     /// Cost of the extract; `None` without an extract.
-    pub(crate) extract: Option<ExtractCosts>,
+    pub extract: Option<ExtractCosts>,
     /// Cost of heights; `None` if the terrain comes from a package and there are no photos.
-    pub(crate) heights: Option<TileCosts>,
-    pub(crate) tiles: TileCosts,
+    pub heights: Option<TileCosts>,
+    pub tiles: TileCosts,
     /// Cost of summing up and copying all tiles.
-    pub(crate) merge_us: u64,
+    pub merge_us: u64,
     /// Cost of starting a process and opening the inputs.
-    pub(crate) start_us: u64,
+    pub start_us: u64,
 }
 
 /// The cost of reading an extract, microseconds of one core.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct ExtractCosts {
     /// The useful number of shares; with 1 the step *roads* reads the extract itself.
-    pub(crate) shares: u16,
+    pub shares: u16,
     /// Cost of both passes.
-    pub(crate) ways_us: u64,
-    pub(crate) nodes_us: u64,
+    pub ways_us: u64,
+    pub nodes_us: u64,
     /// Cost of all later work.
-    pub(crate) roads_us: u64,
+    pub roads_us: u64,
 }
 
 impl ExtractCosts {

@@ -25,8 +25,8 @@ struct Cost {
 /// A subtree and its cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Subtree {
-    pub(crate) id: TileId,
-    pub(crate) cost_us: u64,
+    pub id: TileId,
+    pub cost_us: u64,
 }
 
 impl TileCosts {
