@@ -5,27 +5,19 @@ use corniche_geom::{LatticePoint, Seam};
 
 use crate::{
     bounds::DegreeBounds,
-    piece::{PieceKey, Vertex, WayPiece},
+    piece::{Vertex, WayPiece},
     plane,
 };
 
-/// Clips a piece to the bounds; see [`cut_line_at_bounds`]. New ends do not continue in other
-/// tiles.
+/// Clips a piece to the bounds, if there are any; see [`cut_line_at_bounds`].
 pub(crate) fn cut_at_bounds(
-    piece: &WayPiece,
-    bounds: &DegreeBounds,
+    piece: WayPiece,
+    bounds: Option<&DegreeBounds>,
     wgs84: &dyn Fn([f64; 2]) -> [f64; 2],
 ) -> Vec<WayPiece> {
-    let [first_end, last_end] = piece.goes_on;
-    (0..)
-        .zip(cut_line_at_bounds(&piece.vertices, bounds, wgs84))
-        .map(|(cut, CutLine { vertices, has_end: [first, last] })| WayPiece {
-            key: PieceKey { cut, ..piece.key },
-            vertices,
-            goes_on: [first && first_end, last && last_end],
-            ..piece.clone()
-        })
-        .collect()
+    let Some(bounds) = bounds else { return vec![piece] };
+    let cut = (0..).zip(cut_line_at_bounds(&piece.vertices, bounds, wgs84));
+    cut.map(|(cut, CutLine { vertices, has_end })| piece.part(cut, vertices, has_end)).collect()
 }
 
 /// A part of a line inside the bounds.

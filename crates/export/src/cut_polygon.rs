@@ -10,7 +10,7 @@ use crate::{
     bounds::DegreeBounds,
     cut::{STEPS, STRAIGHT_DEG, polygons_of},
     places::Places,
-    plane::{self, nearest_point},
+    plane::{self, distance, nearest_point},
 };
 
 /// A polygon as rings of positions in working metres, the outer one first.
@@ -188,9 +188,8 @@ fn add_between(
     corners: &mut Vec<Corner>,
 ) {
     let Some(between) = middle(from, to).filter(|_| halvings > 0) else { return };
-    let away = |at: [f64; 2], mean: [f64; 2]| (at[0] - mean[0]).hypot(at[1] - mean[1]);
-    if away(between.at_m, plane::middle(from.at_m, to.at_m)) > STRAIGHT_M
-        || away(between.at_deg, plane::middle(from.at_deg, to.at_deg)) > STRAIGHT_DEG
+    if distance(plane::middle(from.at_m, to.at_m), between.at_m) > STRAIGHT_M
+        || distance(plane::middle(from.at_deg, to.at_deg), between.at_deg) > STRAIGHT_DEG
     {
         add_between([from, between], middle, halvings - 1, corners);
         corners.push(between);

@@ -3,6 +3,7 @@
 use corniche_roads::{FunctionalRoadClass, RoadAttributes};
 
 use super::*;
+use crate::piece::PieceKey;
 
 /// A piece through longitudes at 0 north; its heights are its longitudes.
 fn piece(longitudes: &[f64]) -> WayPiece {
@@ -25,7 +26,7 @@ fn piece(longitudes: &[f64]) -> WayPiece {
 
 fn cut(piece: &WayPiece, west: f64, east: f64) -> Vec<WayPiece> {
     let bounds = DegreeBounds::new([west, -1.0, east, 1.0]).unwrap();
-    cut_at_bounds(piece, &bounds, &|at| at)
+    cut_at_bounds(piece.clone(), Some(&bounds), &|at| at)
 }
 
 fn longitudes(piece: &WayPiece) -> Vec<f64> {

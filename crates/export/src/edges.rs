@@ -23,7 +23,7 @@ use crate::{
     heights::{Elevation, dem_heights},
     measures::{ProfileGrades, profile_of},
     piece::{Vertex, larger},
-    road_query::{RoadQuery, named_ways},
+    road_query::{RoadQuery, meant_ways},
     span_facts::SpanFacts,
     vector::{
         FeatureField, FeatureGeometry, FeatureRecord, FieldKind, FieldValue, ShapeKind,
@@ -126,8 +126,7 @@ pub fn export_edges(
     observer: &dyn Observer,
 ) -> Result<EdgesSummary, FeaturesError> {
     let source = FeatureSource::new(package, request)?;
-    let named = road.map(|road| named_ways(package, source.level, Some(road), observer));
-    let named = named.transpose()?;
+    let meant = meant_ways(package, source.level, road, observer)?;
     let frame = &package.manifest().frame;
     // Edges that reach the package's data are exported whole.
     let plan = elevation.plan.of_whole_data();
@@ -146,8 +145,8 @@ pub fn export_edges(
     };
     let edges = Chains::from_network(network, Breaks::Junctions);
     let mut numbers: Vec<ChainNumber> = edges.numbers().collect();
-    if let Some(named) = &named {
-        let is_meant = |link: &Link| named.meant.contains(&network.way_of(*link).way_id);
+    if let Some(meant) = meant {
+        let is_meant = |link: &Link| meant.contains(&network.way_of(*link).way_id);
         numbers.retain(|&number| edges.get(number).links.iter().any(is_meant));
     }
     observer.begin(Stage::ExportFeatures, Some(numbers.len() as u64));
@@ -158,7 +157,7 @@ pub fn export_edges(
             if !measured.reaches(&chain) {
                 continue;
             }
-            let LaidEdge { lines, decks } = laid(&measured, &mut nodes, &chain)?;
+            let (lines, decks) = laid(&measured, &mut nodes, &chain)?;
             if lines.is_empty() {
                 summary.without_ground += 1;
                 continue;
@@ -195,19 +194,16 @@ pub fn export_edges(
     Ok(summary)
 }
 
-/// An edge on the elevation files, and on the decks of its bridges and tunnels.
-struct LaidEdge {
-    lines: Vec<DemLine>,
-    /// Distances and heights along the lines of its bridges and tunnels, by link number; lines with
-    /// a gap are missing.
-    decks: HashMap<usize, Vec<[f64; 2]>>,
-}
+/// Distances and heights along the lines of an edge's bridges and tunnels, by link number; lines
+/// with a gap are missing.
+type DeckProfiles = HashMap<usize, Vec<[f64; 2]>>;
 
+/// Returns an edge on the elevation files, and on the decks of its bridges and tunnels.
 fn laid(
     measured: &MeasuredChains<'_>,
     nodes: &mut DemNodes<'_>,
     chain: &Chain<'_>,
-) -> Result<LaidEdge, ElevationError> {
+) -> Result<(Vec<DemLine>, DeckProfiles), ElevationError> {
     let network = measured.network;
     let distance_m = measured.places.metric();
     let mut lines: Vec<DemLine> = Vec::new();
@@ -246,7 +242,7 @@ fn laid(
         }
         first_link += links.len();
     }
-    Ok(LaidEdge { lines, decks })
+    Ok((lines, decks))
 }
 
 /// Returns the grades of an edge. The descent of a level edge is −0, as it has always been in
@@ -317,18 +313,14 @@ impl<'a> Shares<'a> {
 
     /// Returns the class and tag with the largest share; of equal shares, the more important class.
     fn largest(&self) -> (Option<FunctionalRoadClass>, &'a str) {
-        let mut most: Option<((FunctionalRoadClass, &'a str), f64)> = None;
-        for (&kind, &own_m) in &self.kinds {
-            if most.is_none_or(|(_, most_m)| own_m > most_m) {
-                most = Some((kind, own_m));
-            }
-        }
-        most.map_or((None, ""), |((class, highway), _)| (Some(class), highway))
+        // Of equal maxima, `max_by` returns the last.
+        let kinds = self.kinds.iter().rev().max_by(|(_, one), (_, other)| one.total_cmp(other));
+        kinds.map_or((None, ""), |(&(class, highway), _)| (Some(class), highway))
     }
 
     fn oneway(&self) -> &'static str {
-        match self.oneways.split_first() {
-            Some((first, others)) if others.iter().all(|other| other == first) => oneway(*first),
+        match self.oneways[..] {
+            [first, ref others @ ..] if others.iter().all(|other| *other == first) => oneway(first),
             _ => "mixed",
         }
     }

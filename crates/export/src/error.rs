@@ -100,32 +100,24 @@ macro_rules! reads_tiles {
 
 /// An error enum whose errors are all of one kind.
 trait OfOneKind {
-    /// The kind of all errors.
-    const KIND: ErrorKind;
-
     fn kind(&self) -> ErrorKind {
-        Self::KIND
+        ErrorKind::Unusable
     }
 }
 
-macro_rules! of_one_kind {
-    ($($error:ident: $kind:ident;)*) => {$(
-        impl OfOneKind for $error {
-            const KIND: ErrorKind = ErrorKind::$kind;
-        }
-    )*};
+impl OfOneKind for SelectionError {}
+impl OfOneKind for TileError {}
+impl OfOneKind for CoordinatesError {}
+
+impl OfOneKind for GdalFileError {
+    fn kind(&self) -> ErrorKind {
+        ErrorKind::Failed
+    }
 }
 
 reads_tiles! {
     SurfaceError RoadQueryError FeaturesError RouteError ProfileError MeshError Tiles3dError
     QuantizedMeshError RasterError
-}
-
-of_one_kind! {
-    SelectionError: Unusable;
-    TileError: Unusable;
-    CoordinatesError: Unusable;
-    GdalFileError: Failed;
 }
 
 /// The error of a tile whose road outlines cannot be triangulated with its ground.

@@ -1,11 +1,11 @@
 //! The fields of roads as features.
 
 use corniche_geom::TileId;
-use corniche_roads::{FunctionalRoadClass, Oneway, RoadAttributes, Structure};
+use corniche_roads::{Oneway, Structure};
 
 use crate::{
     measures::{Measures, ProfileGrades},
-    piece::PieceHeights,
+    piece::WayPiece,
     vector::{FeatureField, FieldKind, FieldValue, fields, fields_of, real, text},
 };
 
@@ -15,12 +15,10 @@ const ROUNDING_PCT: f64 = 1e-6;
 
 /// A road with its measures, the input of a feature.
 pub(crate) struct FeatureRoad<'a> {
-    pub(crate) way_id: i64,
-    pub(crate) class: FunctionalRoadClass,
-    pub(crate) attributes: &'a RoadAttributes,
+    /// The first of its pieces, with the heights of all.
+    pub(crate) of: &'a WayPiece,
     pub(crate) parts: usize,
     pub(crate) measures: Measures,
-    pub(crate) heights: PieceHeights,
     /// The measures of the smooth line; present with heights of the elevation files.
     pub(crate) smooth: Option<Smooth>,
     /// The tile of a feature that is a single piece, and the number of the piece in the tile.
@@ -99,27 +97,27 @@ impl HeightKind {
 }
 
 fields! { FIELDS, road: &FeatureRoad<'_>:
-    "way_id", Integer64, "", "id of the way in OpenStreetMap", road.way_id;
+    "way_id", Integer64, "", "id of the way in OpenStreetMap", road.of.key.way_id;
     "class", Integer, "", "functional road class, 0 (motorway) to 8 (other road)",
-        i64::from(road.class.number());
-    "highway", Text, "", "OSM's `highway`", text(&road.attributes.highway);
+        i64::from(road.of.class.number());
+    "highway", Text, "", "OSM's `highway`", text(&road.of.attributes.highway);
     "form", Text, "", "`ordinary`, `dual_carriageway`, `link` or `roundabout`",
-        road.attributes.form.name();
-    "name", Text, "", "OSM's `name`; null if not tagged", text(&road.attributes.name);
-    "ref", Text, "", "OSM's `ref`; null if not tagged", text(&road.attributes.reference);
+        road.of.attributes.form.name();
+    "name", Text, "", "OSM's `name`; null if not tagged", text(&road.of.attributes.name);
+    "ref", Text, "", "OSM's `ref`; null if not tagged", text(&road.of.attributes.reference);
     "bridge", Integer, "", "1 for a bridge, else 0", is(road, Structure::Bridge);
     "tunnel", Integer, "", "1 for a tunnel, else 0", is(road, Structure::Tunnel);
-    "layer", Integer, "", "OSM's `layer`; 0 if not tagged", i64::from(road.attributes.layer);
+    "layer", Integer, "", "OSM's `layer`; 0 if not tagged", i64::from(road.of.attributes.layer);
     "oneway", Text, "", "`yes` (along the line), `-1` (against it) or `no`",
-        oneway(road.attributes.oneway);
-    "surface", Text, "", "OSM's `surface`; null if not tagged", text(&road.attributes.surface);
+        oneway(road.of.attributes.oneway);
+    "surface", Text, "", "OSM's `surface`; null if not tagged", text(&road.of.attributes.surface);
     "lanes", Integer, "", "OSM's `lanes`, both directions together; null if unknown",
-        road.attributes.lanes.map(|lanes| i64::from(lanes.get()));
-    "width", Real, "m", "OSM's `width`; null if unknown", road.attributes.width_m();
+        road.of.attributes.lanes.map(|lanes| i64::from(lanes.get()));
+    "width", Real, "m", "OSM's `width`; null if unknown", road.of.attributes.width_m();
     "maxspeed", Text, "", "OSM's `maxspeed`: a plain number is in km/h, `30 mph` in miles per hour, other values are as tagged; null if not tagged",
-        text(&road.attributes.max_speed);
-    "sac_scale", Text, "", "OSM's `sac_scale`; null if not tagged", text(&road.attributes.sac_scale);
-    "tracktype", Text, "", "OSM's `tracktype`; null if not tagged", text(&road.attributes.tracktype);
+        text(&road.of.attributes.max_speed);
+    "sac_scale", Text, "", "OSM's `sac_scale`; null if not tagged", text(&road.of.attributes.sac_scale);
+    "tracktype", Text, "", "OSM's `tracktype`; null if not tagged", text(&road.of.attributes.tracktype);
     "length_2d_m", Real, "m", "2D length (in plan), on the WGS84 ellipsoid", real(road.measures.length_2d_m);
     "length_3d_m", Real, "m", "3D length, with the ups and downs of the line", real(road.measures.length_3d_m);
 }
@@ -163,19 +161,19 @@ fields! { LAST_FIELDS, road: &FeatureRoad<'_>:
         road.measures.vertices_out as i64;
     "parts", Integer, "", "number of lines of the feature; gaps separate them", road.parts as i64;
     "height_source", Text, "", "`ground`: the package's triangles; `dem`: the elevation files; `deck`, `tunnel`: estimated from the heights of both ends; `ground_under_bridge`, `ground_over_tunnel`: the height of the ground under a bridge or over a tunnel, not that of the road",
-        road.height_source().kind(road.attributes.structure, road.heights.on_deck).name();
+        road.height_source().kind(road.of.attributes.structure, road.of.heights.on_deck).name();
 }
 
 fields! { BOUND_FIELDS, road: &FeatureRoad<'_>:
     "height_tolerance_m", Real, "m", "upper bound of the height difference between the whole line and the DEM (bilinear between samples); the DEM's own errors are not included; null if the package's grid nodes are not samples of the DEM",
-        road.heights.tolerance_m.map(bound);
+        road.of.heights.tolerance_m.map(bound);
 }
 
 fields! { MEASURED_FIELDS, road: &FeatureRoad<'_>:
     "height_tolerance_m", Real, "m", "largest height difference between the whole line and the DEM (bilinear between its own samples); the DEM's own errors are not included; null for `deck` and `tunnel` heights, and where voids were filled",
-        road.heights.tolerance_m.filter(|_| !road.heights.has_deck).map(bound);
+        road.of.heights.tolerance_m.filter(|_| !road.of.heights.has_deck).map(bound);
     "ground_tolerance_m", Real, "m", "largest height difference between the package's triangles and the DEM along the line; null if they were not compared",
-        road.heights.ground_m.map(bound);
+        road.of.heights.ground_m.map(bound);
 }
 
 fields! { PIECE_FIELDS, road: &FeatureRoad<'_>:
@@ -228,13 +226,13 @@ fn bound(value: f64) -> f64 {
 }
 
 fn smoothing_max(road: &FeatureRoad<'_>) -> Option<f64> {
-    let known = road.smooth.filter(|smooth| smooth.grades.is_some() && !road.heights.has_deck);
+    let known = road.smooth.filter(|smooth| smooth.grades.is_some() && !road.of.heights.has_deck);
     known.map(|smooth| bound(smooth.most_off_m))
 }
 
 /// Returns a measure of the line; `None` where the line is not at the road's own height.
 fn on_ground(road: &FeatureRoad<'_>, value: f64) -> Option<f64> {
-    let is_its_own = road.attributes.structure == Structure::Ground || road.heights.on_deck;
+    let is_its_own = road.of.attributes.structure == Structure::Ground || road.of.heights.on_deck;
     is_its_own.then(|| real(value))
 }
 
@@ -256,7 +254,7 @@ fn over_limit(road: &FeatureRoad<'_>) -> Option<i64> {
 }
 
 fn is(road: &FeatureRoad<'_>, structure: Structure) -> i64 {
-    (road.attributes.structure == structure).into()
+    (road.of.attributes.structure == structure).into()
 }
 
 pub(crate) fn oneway(oneway: Oneway) -> &'static str {

@@ -64,23 +64,19 @@ pub fn check_lines_request(
 
 /// The part of an export that is specific to a layer.
 pub(crate) trait Features {
-    /// The classes of its objects.
-    type Class;
     /// A piece: what one tile has of an object. Pieces sort by object.
     type TilePiece: SortRecord;
     /// The layer's name, fields and metadata in the file.
-    fn layer(&self, source: &FeatureSource<'_, Self::Class>) -> Layer;
+    fn layer(&self, source: &FeatureSource<'_>) -> Layer;
 
     /// A whole sentence with the largest error of heights, once all features are written; `None`
     /// for a layer without heights.
-    fn heights_told(&self, _source: &FeatureSource<'_, Self::Class>) -> Option<String> {
-        None
-    }
+    fn heights_told(&self, source: &FeatureSource<'_>) -> Option<String>;
 
     /// Returns the pieces of the requested objects in a tile.
     fn pieces(
         &mut self,
-        source: &FeatureSource<'_, Self::Class>,
+        source: &FeatureSource<'_>,
         tile: TileId,
     ) -> Result<Vec<Self::TilePiece>, FeaturesError>;
 
@@ -90,34 +86,37 @@ pub(crate) trait Features {
     /// Returns the features of an object, made from all its pieces.
     fn records(
         &mut self,
-        source: &FeatureSource<'_, Self::Class>,
+        source: &FeatureSource<'_>,
         pieces: &[Self::TilePiece],
     ) -> Result<Vec<FeatureRecord>, FeaturesError>;
 }
 
 /// The inputs of the features of a layer.
-pub(crate) struct FeatureSource<'a, C> {
+pub(crate) struct FeatureSource<'a> {
     pub(crate) package: &'a FilePackage,
-    pub(crate) request: &'a FeatureRequest<C>,
+    format: VectorFormat,
+    coordinates: FeatureCoordinates,
+    pub(crate) bounds: Option<&'a DegreeBounds>,
+    memory_bytes: u64,
     /// The level whose objects are exported.
     pub(crate) level: u8,
     pub(crate) places: Places<'a>,
 }
 
-impl<'a, C> FeatureSource<'a, C> {
+impl<'a> FeatureSource<'a> {
     /// Fails if the package or the format does not support the request.
-    pub(crate) fn new(
+    pub(crate) fn new<C>(
         package: &'a FilePackage,
         request: &'a FeatureRequest<C>,
     ) -> Result<Self, FeaturesError> {
-        let level = read::level(package, request.level)?;
-        if request.format == VectorFormat::GeoJson
-            && request.coordinates == FeatureCoordinates::Package
-        {
+        let &FeatureRequest { format, level, ref bounds, coordinates, memory_bytes, .. } = request;
+        let level = read::level(package, level)?;
+        if format == VectorFormat::GeoJson && coordinates == FeatureCoordinates::Package {
             return Err(FeaturesError::GeoJsonCrs);
         }
-        let places = Places::new(package.manifest(), request.coordinates)?;
-        Ok(Self { package, request, level, places })
+        let places = Places::new(package.manifest(), coordinates)?;
+        let bounds = bounds.as_ref();
+        Ok(Self { package, format, coordinates, bounds, memory_bytes, level, places })
     }
 
     /// Returns the description of the file's layer, with the metadata of the package. `what` says
@@ -131,36 +130,34 @@ impl<'a, C> FeatureSource<'a, C> {
     ) -> Layer {
         let Self { package, level, places, .. } = self;
         let manifest = package.manifest();
-        let crs = match (self.request.format, self.request.coordinates) {
+        let crs = match (self.format, self.coordinates) {
             // GeoJSON can name a CRS only by its code, and a compound CRS of two codes has none.
             (VectorFormat::GeoJson, FeatureCoordinates::Epsg(code)) => format!("EPSG:{code}"),
             _ => places.wkt.clone(),
         };
-        let of_package = [
+        let has_heights = shapes != ShapeKind::Polygons;
+        let mut metadata = vec![
             ("GENERATOR", manifest.generator.clone()),
             ("PACKAGE", package.file_name().to_owned()),
             ("PACKAGE_SETTINGS_SHA256", manifest.settings_sha256.clone()),
             ("LEVEL", level.to_string()),
             ("FIELDS", meanings(&fields)),
         ];
-        let heights = [
-            ("HEIGHTS", places.heights.clone()),
-            ("VERTICAL_DATUM_OF_PACKAGE", manifest.vertical.datum.clone()),
-        ];
-        let has_heights = shapes != ShapeKind::Polygons;
-        let heights_told =
-            if has_heights { format!(" Heights: {}.", places.heights) } else { String::new() };
+        let mut description = format!("{what}.");
+        if has_heights {
+            let heights = &places.heights;
+            description.extend([" Heights: ", heights.as_str(), "."]);
+            metadata.push(("HEIGHTS", heights.clone()));
+            metadata.push(("VERTICAL_DATUM_OF_PACKAGE", manifest.vertical.datum.clone()));
+        }
         Layer {
             name: name.to_owned(),
             fields,
             shapes,
             crs,
-            description: format!("{what}.{heights_told}"),
+            description,
             attribution: manifest.attribution.join("; "),
-            metadata: of_package
-                .into_iter()
-                .chain(heights.into_iter().filter(|_| has_heights))
-                .collect(),
+            metadata,
             classes,
         }
     }
@@ -177,17 +174,16 @@ impl<'a, C> FeatureSource<'a, C> {
 /// file at `path` is incomplete.
 pub(crate) fn write_features<F: Features>(
     features: &mut F,
-    source: &FeatureSource<'_, F::Class>,
+    source: &FeatureSource<'_>,
     path: &Path,
     observer: &dyn Observer,
 ) -> Result<(), FeaturesError> {
-    let FeatureSource { package, request, level, .. } = source;
     let scratch = FileScratch::create(corniche_store::folder_of(path))?;
-    let tiles = read::tiles(package, *level, request.bounds.as_ref())?;
-    let sorting = (&scratch, request.memory_bytes);
+    let tiles = read::tiles(source.package, source.level, source.bounds)?;
+    let sorting = (&scratch, source.memory_bytes);
     let pieces =
         SortedPieces::read(&tiles, sorting, observer, |tile| features.pieces(source, tile))?;
-    let mut file = VectorFile::create(path, request.format, features.layer(source))?;
+    let mut file = VectorFile::create(path, source.format, features.layer(source))?;
     pieces.for_each(observer, F::object, |pieces| {
         for record in features.records(source, &pieces)? {
             file.push(record)?;

@@ -42,7 +42,6 @@ pub(crate) fn write_container<W: Write + ?Sized>(
 }
 
 /// A document with its buffer while it is composed.
-#[derive(Default)]
 pub(crate) struct Gltf<B> {
     /// The target of the buffer's bytes.
     pub(crate) bytes: B,
@@ -93,16 +92,16 @@ impl<B: Write> Gltf<B> {
         self.accessors.len() - 1
     }
 
-    /// Adds numbers with a view and an accessor; returns the number of the accessor.
+    /// Adds numbers with a view for this target and an accessor; returns the accessor's number.
     pub(crate) fn numbers<T: bytemuck::Pod>(
         &mut self,
         items: &[T],
-        view: Value,
+        target: u32,
         accessor: Value,
     ) -> io::Result<usize> {
         // glTF is little-endian, and so is every supported machine.
         const { assert!(cfg!(target_endian = "little")) };
-        let view = self.view(bytemuck::cast_slice(items), view)?;
+        let view = self.view(bytemuck::cast_slice(items), json!({ "target": target }))?;
         Ok(self.accessor(accessor, view, items.len()))
     }
 

@@ -14,6 +14,7 @@ use crate::{
     measures::{Measures, Profiled},
     piece::{Vertex, WayPiece},
     places::{FeatureCoordinates, Places},
+    plane::sides,
     read,
     sorted_pieces::{FileScratch, SortedPieces},
 };
@@ -59,21 +60,14 @@ pub fn growth_by_way<E: From<FeaturesError>>(
     let places = Places::new(package.manifest(), FeatureCoordinates::Package)
         .map_err(FeaturesError::from)?;
     let way = |piece: &WayPiece| piece.key.way_id;
-    pieces.for_each(observer, way, |pieces| {
-        growth_of(pieces, &places)?.map_or(Ok(()), |way| each(&way))
-    })?;
+    pieces.for_each(observer, way, |pieces| each(&growth_of(pieces, &places)?))?;
     observer.end(Stage::ExportFeatures);
     Ok(())
 }
 
-/// Returns the growth of all pieces of a way, on all levels; `None` without any.
-fn growth_of(
-    pieces: Vec<WayPiece>,
-    places: &Places<'_>,
-) -> Result<Option<WayGrowth>, FeaturesError> {
-    let Some((way_id, class)) = pieces.first().map(|first| (first.key.way_id, first.class)) else {
-        return Ok(None);
-    };
+/// Returns the growth of all pieces of a way, on all levels; there is at least one.
+fn growth_of(pieces: Vec<WayPiece>, places: &Places<'_>) -> Result<WayGrowth, FeaturesError> {
+    let (way_id, class) = (pieces[0].key.way_id, pieces[0].class);
     let manifest = places.manifest;
     let finest = manifest.frame.max_level();
     let mut geo_vertices = vec![0; usize::from(finest) + 1];
@@ -92,35 +86,25 @@ fn growth_of(
         }
     }
     let joined = lines(&of_finest);
-    let distance_m = places.metric();
-    let profiled: Vec<Profiled<'_>> =
-        joined.iter().map(|line| Profiled::from_line(line, &distance_m)).collect();
-    let measures = Measures::from_lines(&profiled);
+    let measures = Measures::from_lines(&Profiled::from_lines(&joined, &places.metric()));
     let joins: usize = joined.iter().map(|line| line.joins.len()).sum();
     let clip = manifest.clip.as_ref().map(|clip| manifest.frame.lattice_bounds(clip.nodes));
     let cuts = cut_ends(&of_finest, clip).saturating_sub(2 * joins as u64);
-    Ok(Some(WayGrowth {
+    Ok(WayGrowth {
         way_id,
         class,
         length_m: measures.length_2d_m,
         source_vertices: measures.vertices_in.saturating_sub(cuts),
         geo_vertices,
-    }))
+    })
 }
 
 /// Counts the ends of pieces that cutting made, at the border of a tile or at the bounds of the
 /// package.
 fn cut_ends(pieces: &[WayPiece], clip: Option<LatticeBounds>) -> u64 {
-    let is_at_bounds = |vertex: &Vertex| {
-        // Points are whole steps, so they are exactly on a side or not at all.
-        let is_at = |along: f64, sides: [i64; 2]| {
-            sides.iter().any(|&side| along.to_bits() == (side as f64).to_bits())
-        };
-        let [u, v] = vertex.at;
-        clip.is_some_and(|LatticeBounds { min, max }| {
-            is_at(u, [min.u, max.u]) || is_at(v, [min.v, max.v])
-        })
-    };
+    // Points are whole steps, so they are exactly on a side or not at all.
+    let is_at_bounds =
+        |vertex: &Vertex| clip.is_some_and(|clip| sides(vertex.at, &clip).contains(&true));
     let is_cut = |end: Option<&Vertex>, goes_on: bool| {
         end.is_some_and(|vertex| vertex.is_source && (goes_on || is_at_bounds(vertex)))
     };

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use crate::{
     error::{ProfileError, TileError},
     piece::Vertex,
-    plane::vector,
+    plane::distance,
     read,
 };
 
@@ -31,8 +31,8 @@ pub(crate) struct TileGround {
 /// A stretch of a segment of a line that is on the ground of one tile.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct LaidStretch {
-    /// The number of the segment in the line.
-    pub(crate) segment: usize,
+    /// The ends of the segment.
+    pub(crate) segment: [LatticePoint; 2],
     /// At least two vertices.
     pub(crate) vertices: Vec<Vertex>,
 }
@@ -60,12 +60,12 @@ impl TileGround {
         work: &StepBudget,
     ) -> Result<Vec<LaidStretch>, E> {
         let mut laid = Vec::new();
-        for (segment, ends) in line.array_windows::<2>().enumerate() {
-            let around = LatticeBounds::around(ends);
+        for &segment in line.array_windows::<2>() {
+            let around = LatticeBounds::around(&segment);
             if !around.is_some_and(|around| around.intersects(&self.bounds)) {
                 continue;
             }
-            let Ok(path) = Polyline::new(ends.to_vec()) else { continue };
+            let Ok(path) = Polyline::new(segment.to_vec()) else { continue };
             for part in corniche_drape::clip(&path, &self.bounds, OwnedBorders::ALL) {
                 for draped in corniche_drape::drape_within(&part, &self.surface, work)?.lines {
                     let failed = |source| TileError::Line { tile: self.id, source };
@@ -84,24 +84,32 @@ impl TileGround {
     }
 }
 
-/// Returns the parts of a line that are on ground, in order. `laid` returns the stretches of a
-/// segment, by its number, on all tiles in any order. Stretches that meet on a tile border are
-/// joined.
-pub(crate) fn parts_on_ground<'a>(
-    line: &[LatticePoint],
-    laid: impl Fn(usize) -> Vec<&'a [Vertex]>,
-) -> Vec<Vec<Vertex>> {
+/// Returns the parts of each line that are on ground, in order, from the stretches of all lines on
+/// all tiles in any order.
+pub(crate) fn parts_on_ground<'a, L: AsRef<[LatticePoint]>>(
+    lines: &[L],
+    stretches: impl Iterator<Item = &'a LaidStretch>,
+) -> Vec<Vec<Vec<Vertex>>> {
+    let mut laid = BySegment::new();
+    for LaidStretch { segment, vertices } in stretches {
+        laid.entry(*segment).or_default().push(vertices);
+    }
+    lines.iter().map(|line| joined(line.as_ref(), &laid)).collect()
+}
+
+/// Stretches by the ends of their segments. A segment that occurs twice has each stretch twice.
+type BySegment<'a> = BTreeMap<[LatticePoint; 2], Vec<&'a [Vertex]>>;
+
+/// Returns the parts of a line that are on ground. Stretches that meet on a tile border are joined.
+fn joined(line: &[LatticePoint], laid: &BySegment<'_>) -> Vec<Vec<Vertex>> {
     let mut parts: Vec<Vec<Vertex>> = Vec::new();
-    for (segment, [from, _]) in line.array_windows().enumerate() {
-        let from = from.in_steps();
-        let along = |vertex: &Vertex| {
-            let [u, v] = vector(from, vertex.at);
-            u.hypot(v)
-        };
+    for segment in line.array_windows() {
+        let from = segment[0].in_steps();
+        let along = |vertex: &Vertex| distance(from, vertex.at);
         let ends = |vertices: &[Vertex]| {
             [vertices.first(), vertices.last()].map(|end| end.map_or(0.0, along))
         };
-        let mut stretches = laid(segment);
+        let mut stretches = laid.get(segment).cloned().unwrap_or_default();
         stretches.sort_by(|one, other| {
             let ([one, one_end], [other, other_end]) = (ends(one), ends(other));
             one.total_cmp(&other).then(other_end.total_cmp(&one_end))
@@ -133,7 +141,7 @@ pub(crate) fn laid_lines(
 ) -> Result<Vec<Vec<Vec<Vertex>>>, ProfileError> {
     let manifest = package.manifest();
     let tiles = read::tiles(package, level, None)?;
-    let mut laid: Vec<BTreeMap<usize, Vec<Vec<Vertex>>>> = vec![BTreeMap::new(); lines.len()];
+    let mut laid = Vec::new();
     let work = StepBudget::new(MOST_STEPS);
     one_by_one((observer, Stage::ExportTiles), &tiles, |&id| {
         let tile = manifest.frame.tile_lattice_bounds(id);
@@ -145,18 +153,10 @@ pub(crate) fn laid_lines(
         }
         let Some(bytes) = package.tile(id)? else { return Ok(()) };
         let Some(ground) = TileGround::decode(manifest, id, &bytes)? else { return Ok(()) };
-        for (line, laid) in lines.iter().zip(&mut laid) {
-            for LaidStretch { segment, vertices } in ground.lay::<ProfileError>(line, &work)? {
-                laid.entry(segment).or_default().push(vertices);
-            }
+        for line in lines {
+            laid.extend(ground.lay::<ProfileError>(line, &work)?);
         }
         Ok::<(), ProfileError>(())
     })?;
-    let parts = |(line, laid): (&&[LatticePoint], &BTreeMap<usize, Vec<Vec<Vertex>>>)| {
-        let of_segment = |segment| {
-            laid.get(&segment).into_iter().flatten().map(Vec::as_slice).collect::<Vec<_>>()
-        };
-        parts_on_ground(line, of_segment)
-    };
-    Ok(lines.iter().zip(&laid).map(parts).collect())
+    Ok(parts_on_ground(lines, laid.iter()))
 }

@@ -84,37 +84,34 @@ impl LayerFields {
         for (attribute, (key, &kind)) in table.attributes.iter().enumerate() {
             let of_names = languages.iter().filter(|_| kind == AttributeKind::Names);
             for language in std::iter::once(None).chain(of_names.map(Some)) {
-                let tag = match language {
-                    Some(language) => format!("{key}:{language}"),
-                    None => key.clone(),
-                };
+                let tag = language.map_or(key.clone(), |language| format!("{key}:{language}"));
                 let mut name = tag.clone();
                 while taken.contains(&name.to_ascii_lowercase()) {
                     name.push('_');
                 }
                 taken.push(name.to_ascii_lowercase());
-                let (field_kind, unit, meaning) = match kind {
+                let (field_kind, meaning) = match kind {
                     AttributeKind::Names if language.is_none() => {
-                        (FieldKind::Text, "", " in the local language; null if not tagged")
+                        (FieldKind::Text, " in the local language; null if not tagged")
                     }
                     AttributeKind::Names | AttributeKind::Text => {
-                        (FieldKind::Text, "", "; null if not tagged")
+                        (FieldKind::Text, "; null if not tagged")
                     }
                     AttributeKind::YesNo => {
-                        (FieldKind::Integer, "", ": 1 for yes, 0 for no; null if unknown")
+                        (FieldKind::Integer, ": 1 for yes, 0 for no; null if unknown")
                     }
-                    AttributeKind::Number(unit) => {
-                        (FieldKind::Real, unit.symbol(), "; null if unknown")
-                    }
+                    AttributeKind::Number(_) => (FieldKind::Real, "; null if unknown"),
                     AttributeKind::Derived(DerivedNumber::Isolation) => (
                         FieldKind::Real,
-                        "m",
                         "Distance to the nearest point of the layer with a larger `ele`; null without `ele`",
                     ),
                 };
-                let meaning = match kind {
-                    AttributeKind::Derived(_) => meaning.into(),
-                    _ => format!("OSM's `{tag}`{meaning}").into(),
+                let (unit, meaning) = match kind {
+                    AttributeKind::Derived(_) => ("m", meaning.into()),
+                    AttributeKind::Number(unit) => {
+                        (unit.symbol(), format!("OSM's `{tag}`{meaning}").into())
+                    }
+                    _ => ("", format!("OSM's `{tag}`{meaning}").into()),
                 };
                 let field = FeatureField { name: name.into(), kind: field_kind, unit, meaning };
                 attributes.push(AttributeField { field, attribute, language: language.cloned() });

@@ -1,7 +1,7 @@
 //! A piece of an object of a layer: what one tile has of it, laid on the tile's ground, and its
 //! form for sorting outside memory.
 
-use std::{cmp::Ordering, collections::BTreeMap};
+use std::cmp::Ordering;
 
 use corniche_geom::LatticePoint;
 use corniche_layers::{AttributeValue, OsmObject};
@@ -57,20 +57,8 @@ pub(crate) fn point_of(pieces: &[LayerPiece]) -> Vec<Vec<Vertex>> {
 
 /// Returns the lines of an object on the ground, from all its pieces, each segment once.
 pub(crate) fn lines_of(pieces: &[LayerPiece]) -> Vec<Vec<Vertex>> {
-    let mut laid: BTreeMap<[LatticePoint; 2], Vec<&[Vertex]>> = BTreeMap::new();
-    for piece in pieces {
-        let segments: Vec<_> = piece.line().array_windows::<2>().collect();
-        for LaidStretch { segment, vertices } in &piece.laid {
-            if let Some(&&ends) = segments.get(*segment) {
-                laid.entry(ends).or_default().push(vertices);
-            }
-        }
-    }
-    let parts = |line: Vec<LatticePoint>| {
-        let segments: Vec<_> = line.array_windows::<2>().collect();
-        parts_on_ground(&line, |at| laid.get(segments[at]).cloned().unwrap_or_default())
-    };
-    whole_lines(&pieces.iter().map(LayerPiece::line)).into_iter().flat_map(parts).collect()
+    let lines = whole_lines(&pieces.iter().map(LayerPiece::line));
+    parts_on_ground(&lines, pieces.iter().flat_map(|piece| &piece.laid)).concat()
 }
 
 /// No two pieces have the same key.

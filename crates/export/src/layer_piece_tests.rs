@@ -30,7 +30,10 @@ fn piece(tile: u64, shape: LayerShape, laid: Vec<LaidStretch>) -> LayerPiece {
 #[test]
 fn a_piece_comes_back_as_it_was_and_never_from_less() {
     let line = LayerShape::Line(vec![at(0, 0), at(1 << 40, -3), at(5, 5)]);
-    let stretch = LaidStretch { segment: 1, vertices: vec![vertex(0.5, 9.25), vertex(7.0, -1.0)] };
+    let stretch = LaidStretch {
+        segment: [at(1 << 40, -3), at(5, 5)],
+        vertices: vec![vertex(0.5, 9.25), vertex(7.0, -1.0)],
+    };
     let ring = vec![at(1, 1), at(2, 1), at(2, 2), at(1, 2)];
     let polygon = AreaPolygon { rings: vec![ring.clone(), ring] };
     for (object, shape, laid) in [
@@ -54,24 +57,24 @@ fn a_piece_comes_back_as_it_was_and_never_from_less() {
 /// only up to 26.
 #[test]
 fn stretches_of_several_tiles_are_joined_once_and_gaps_stay() {
-    let laid = |segment, places: &[f64]| {
+    let laid = |from, to, places: &[f64]| {
         let vertices = places.iter().map(|&place| vertex(place, place)).collect();
-        LaidStretch { segment, vertices }
+        LaidStretch { segment: [at(from, 0), at(to, 0)], vertices }
     };
     let line = |points: &[i64]| LayerShape::Line(points.iter().map(|&u| at(u, 0)).collect());
     let west = piece(
         1,
         line(&[0, 5, 20, 30, 40]),
-        vec![laid(0, &[1.0, 3.0, 5.0]), laid(1, &[5.0, 10.0]), laid(2, &[20.0, 26.0])],
+        vec![laid(0, 5, &[1.0, 3.0, 5.0]), laid(5, 20, &[5.0, 10.0]), laid(20, 30, &[20.0, 26.0])],
     );
     let east = piece(
         2,
         line(&[5, 20, 30, 40, 50]),
         vec![
-            laid(0, &[12.0, 20.0]),
-            laid(0, &[10.0, 11.0]),
-            laid(1, &[20.0, 25.0, 30.0]),
-            laid(2, &[30.0, 40.0]),
+            laid(5, 20, &[12.0, 20.0]),
+            laid(5, 20, &[10.0, 11.0]),
+            laid(20, 30, &[20.0, 25.0, 30.0]),
+            laid(30, 40, &[30.0, 40.0]),
         ],
     );
     let expected: [&[f64]; 2] = [&[1.0, 3.0, 5.0, 10.0, 11.0], &[12.0, 20.0, 25.0, 30.0, 40.0]];

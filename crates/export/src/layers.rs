@@ -93,7 +93,7 @@ pub fn export_layer(
 /// The largest rounding error of area corners on a level, metres. The build rounds corners to a
 /// lattice of 0.1 m on the finest level, and of a quarter of a cell on the levels above. Where
 /// tiles meet, corners are rounded twice, by up to half a step each time.
-fn rounding_m(source: &FeatureSource<'_, String>) -> f64 {
+fn rounding_m(source: &FeatureSource<'_>) -> f64 {
     let frame = &source.package.manifest().frame;
     let level = source.level;
     if level == frame.max_level() { 0.1 } else { frame.level_cell(level).shorter_m() / 4.0 }
@@ -110,10 +110,9 @@ struct Objects<'a> {
 }
 
 impl Features for Objects<'_> {
-    type Class = String;
     type TilePiece = LayerPiece;
 
-    fn layer(&self, source: &FeatureSource<'_, String>) -> Layer {
+    fn layer(&self, source: &FeatureSource<'_>) -> Layer {
         let (shapes, stored) = match self.table.geometry {
             LayerGeometry::Line => (ShapeKind::Lines, "laid on terrain with"),
             LayerGeometry::Area => (ShapeKind::Polygons, "as stored for"),
@@ -126,14 +125,14 @@ impl Features for Objects<'_> {
         source.layer((id, classes), shapes, self.fields.fields(), &what)
     }
 
-    fn heights_told(&self, source: &FeatureSource<'_, String>) -> Option<String> {
+    fn heights_told(&self, source: &FeatureSource<'_>) -> Option<String> {
         self.summary.heights.as_ref()?;
         height_bound(source.package.manifest(), source.level)
     }
 
     fn pieces(
         &mut self,
-        FeatureSource { package, .. }: &FeatureSource<'_, String>,
+        FeatureSource { package, .. }: &FeatureSource<'_>,
         tile: TileId,
     ) -> Result<Vec<LayerPiece>, FeaturesError> {
         let manifest = package.manifest();
@@ -149,7 +148,8 @@ impl Features for Objects<'_> {
                 LayerShape::Line(points) => ground.lay::<FeaturesError>(points, &work),
                 LayerShape::Area(_) => Ok(Vec::new()),
                 LayerShape::Point(point) => {
-                    let at = |vertex| LaidStretch { segment: 0, vertices: vec![vertex] };
+                    let segment = [*point; 2];
+                    let at = |vertex| LaidStretch { segment, vertices: vec![vertex] };
                     Ok(ground.vertex(*point).map(at).into_iter().collect())
                 }
             })?;
@@ -164,7 +164,7 @@ impl Features for Objects<'_> {
 
     fn records(
         &mut self,
-        source: &FeatureSource<'_, String>,
+        source: &FeatureSource<'_>,
         pieces: &[LayerPiece],
     ) -> Result<Vec<FeatureRecord>, FeaturesError> {
         let of = check_same(pieces)?;
@@ -192,24 +192,26 @@ impl Objects<'_> {
     /// Returns lines, or a point.
     fn lines(
         &mut self,
-        FeatureSource { places, request, .. }: &FeatureSource<'_, String>,
+        FeatureSource { places, bounds, .. }: &FeatureSource<'_>,
         pieces: &[LayerPiece],
     ) -> Result<MeasuredShape, FeaturesError> {
         let object = pieces[0].of.object;
         let is_point = self.table.geometry == LayerGeometry::Point;
-        let mut lines = if is_point { point_of(pieces) } else { lines_of(pieces) };
-        self.summary.without_ground += u64::from(lines.is_empty());
-        if let Some(bounds) = &request.bounds {
-            let cut = |line: Vec<Vertex>| {
-                if is_point {
-                    let at = places.wgs84(line[0].at);
-                    return bounds.inside(at, at).first().map(|_| line).into_iter().collect();
-                }
-                let cut = cut_line_at_bounds(&line, bounds, &|at| places.wgs84(at));
-                cut.into_iter().map(|cut| cut.vertices).collect::<Vec<_>>()
-            };
-            lines = lines.into_iter().flat_map(cut).collect();
-        }
+        let laid = if is_point { point_of(pieces) } else { lines_of(pieces) };
+        self.summary.without_ground += u64::from(laid.is_empty());
+        let wgs84 = |at| places.wgs84(at);
+        let cut = |line: Vec<Vertex>| match bounds {
+            None => vec![line],
+            Some(bounds) if is_point => {
+                let at = wgs84(line[0].at);
+                bounds.inside(at, at).first().map(|_| line).into_iter().collect()
+            }
+            Some(bounds) => {
+                let cut = cut_line_at_bounds(&line, bounds, &wgs84).into_iter();
+                cut.map(|cut| cut.vertices).collect()
+            }
+        };
+        let lines: Vec<Vec<Vertex>> = laid.into_iter().flat_map(cut).collect();
         let segments = lines.iter().flat_map(|line| line.array_windows());
         let measures = LayerMeasures {
             parts: lines.len() as u64,
@@ -231,15 +233,15 @@ impl Objects<'_> {
 
     fn polygons(
         &mut self,
-        source: &FeatureSource<'_, String>,
+        source: &FeatureSource<'_>,
         pieces: &[LayerPiece],
     ) -> Result<MeasuredShape, FeaturesError> {
-        let FeatureSource { places, request, .. } = source;
+        let FeatureSource { places, bounds, .. } = source;
         let object = pieces[0].of.object;
         let (joined, is_joined) = joined(pieces);
         let mut polygons: Vec<Rings> = Vec::new();
         for polygon in &joined {
-            match &request.bounds {
+            match bounds {
                 None => polygons.push(rings_of(polygon, places)),
                 Some(bounds) => polygons.extend(
                     cut_polygon_at_bounds(polygon, bounds, places)

@@ -3,7 +3,7 @@
 use crate::{
     join::JoinedLine,
     piece::{Vertex, larger},
-    plane::{doubled_area, vector},
+    plane::{distance, doubled_area, vector},
 };
 
 /// The least length over which a grade is measured. Over shorter lengths, grades reflect single
@@ -48,10 +48,12 @@ pub(crate) struct Profiled<'a> {
 }
 
 impl<'a> Profiled<'a> {
-    /// A line with its profile. `distance_m` gives the true distance in plan between two places on
-    /// the lattice.
-    pub(crate) fn from_line(line: &'a JoinedLine, distance_m: &Metric<'_>) -> Self {
-        Self { line, profile: profile_of(&line.vertices, distance_m) }
+    /// Lines with their profiles. `distance_m` gives the true distance in plan between two places
+    /// on the lattice.
+    pub(crate) fn from_lines(lines: &'a [JoinedLine], distance_m: &Metric<'_>) -> Vec<Self> {
+        let profiled =
+            |line: &'a JoinedLine| Self { line, profile: profile_of(&line.vertices, distance_m) };
+        lines.iter().map(profiled).collect()
     }
 }
 
@@ -85,7 +87,7 @@ impl Measures {
         let mut all = Self { grades, ..Self::default() };
         for Profiled { line, profile } in lines {
             for [from, to] in profile.array_windows::<2>() {
-                all.length_3d_m += (to[0] - from[0]).hypot(to[1] - from[1]);
+                all.length_3d_m += distance(*from, *to);
             }
             all.length_2d_m += profile.last().map_or(0.0, |last| last[0]);
             all.vertices_in += source_points(line);

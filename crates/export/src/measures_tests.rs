@@ -21,9 +21,7 @@ fn near(found: f64, expected: f64) {
 /// A straight road of 300 m on a plane that rises 1 in 10 along it, then 100 m down again on a
 /// plane that falls 1 in 4: every measure is known.
 fn measures(lines: &[JoinedLine]) -> Measures {
-    let profiled: Vec<Profiled<'_>> =
-        lines.iter().map(|line| Profiled::from_line(line, &flat_m)).collect();
-    Measures::from_lines(&profiled)
+    Measures::from_lines(&Profiled::from_lines(lines, &flat_m))
 }
 
 #[test]

@@ -69,6 +69,15 @@ pub(crate) struct WayPiece {
     pub(crate) heights: PieceHeights,
 }
 
+impl WayPiece {
+    /// Returns a part of the piece. `has_end` is whether its first vertex is the first of the
+    /// piece, and its last the last: new ends do not continue in other tiles.
+    pub(crate) fn part(&self, cut: u32, vertices: Vec<Vertex>, has_end: [bool; 2]) -> Self {
+        let goes_on = [0, 1].map(|end| has_end[end] && self.goes_on[end]);
+        Self { key: PieceKey { cut, ..self.key }, vertices, goes_on, ..self.clone() }
+    }
+}
+
 /// The largest distances of a piece's heights from those of the elevation files, metres.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PieceHeights {

@@ -71,7 +71,10 @@ impl<'a> Places<'a> {
         } else {
             format!("metres, datum of the package: {datum}")
         };
-        let projection = || Ok::<_, CrsError>(Box::new(crs.projection(area)?));
+        let wgs84 = |heights: Option<RecordedHeights>| -> Result<Target, CrsError> {
+            let projection = Box::new(crs.projection(area)?);
+            Ok(Target::Wgs84 { projection, heights: heights.map(Box::new) })
+        };
         let (target, wkt, heights) = match coordinates {
             FeatureCoordinates::Package => {
                 let both = known.as_ref().and_then(RecordedHeights::wkt);
@@ -84,27 +87,21 @@ impl<'a> Places<'a> {
                 let mut height_m = [f64::midpoint(vertical.range_m[0], vertical.range_m[1])];
                 let failed = CoordinatesError::of_heights(datum);
                 heights.to_wgs84_m(&[data_bounds.center()], &mut height_m).map_err(failed)?;
-                let target =
-                    Target::Wgs84 { projection: projection()?, heights: Some(Box::new(heights)) };
-                (target, "EPSG:4979".to_owned(), "above the ellipsoid of WGS84, metres".to_owned())
+                let above = "above the ellipsoid of WGS84, metres".to_owned();
+                (wgs84(Some(heights))?, "EPSG:4979".to_owned(), above)
             }
             FeatureCoordinates::Wgs84WithPackageHeights => {
-                let target = Target::Wgs84 { projection: projection()?, heights: None };
-                (target, "EPSG:4326".to_owned(), of_package)
+                (wgs84(None)?, "EPSG:4326".to_owned(), of_package)
             }
             FeatureCoordinates::Epsg(code) => {
-                let to = crs
-                    .projected(&format!("EPSG:{code}"), area)
-                    .map_err(|source| CoordinatesError::OtherCrs(Box::new(source)))?;
+                let to = crs.projected(&format!("EPSG:{code}"), area).map_err(other_crs)?;
                 let both = known.as_ref().and_then(|known| known.wkt_with(&to));
                 let wkt = both.unwrap_or_else(|| to.wkt().to_owned());
                 (Target::Projected(Box::new(to)), wkt, of_package)
             }
         };
-        let beyond = match manifest.clip {
-            Some(_) => Some(Box::new(crs.projection(manifest.area_deg())?)),
-            None => None,
-        };
+        let beyond = manifest.clip.as_ref().map(|_| crs.projection(manifest.area_deg()));
+        let beyond = beyond.transpose()?.map(Box::new);
         Ok(Self { manifest, target, beyond, wkt, heights })
     }
 
@@ -183,9 +180,8 @@ impl<'a> Places<'a> {
         places_deg: &[[f64; 2]],
         heights_m: &[f64],
     ) -> Result<(), CoordinatesError> {
-        let mut missing =
-            places_deg.iter().zip(heights_m).filter(|(_, height_m)| !height_m.is_finite());
-        missing.next().map_or(Ok(()), |(&[lon, lat], _)| {
+        let mut all = places_deg.iter().zip(heights_m);
+        all.find(|(_, height_m)| !height_m.is_finite()).map_or(Ok(()), |(&[lon, lat], _)| {
             let datum = self.manifest.vertical.datum.clone();
             Err(CoordinatesError::NoHeightHere { datum, lon, lat })
         })
@@ -235,8 +231,7 @@ impl<'a> Places<'a> {
                 projection.wgs84_from_working(&mut plan)?;
             }
             Target::Projected(to) => {
-                to.from_working(&mut plan)
-                    .map_err(|source| CoordinatesError::OtherCrs(Box::new(source)))?;
+                to.from_working(&mut plan).map_err(other_crs)?;
             }
         }
         if are_finite(&plan) { Ok(plan) } else { Err(CoordinatesError::NoPosition { object }) }
@@ -285,6 +280,10 @@ impl<'a> Places<'a> {
     pub(crate) fn are_degrees(&self) -> bool {
         matches!(self.target, Target::Wgs84 { .. })
     }
+}
+
+fn other_crs(source: CrsError) -> CoordinatesError {
+    CoordinatesError::OtherCrs(Box::new(source))
 }
 
 /// Whether all positions have coordinates.

@@ -1,7 +1,7 @@
 //! Places and numbers on straight lines.
 
-use corniche_geom::LatticePoint;
 pub(crate) use corniche_geom::along;
+use corniche_geom::{LatticeBounds, LatticePoint};
 
 /// Returns the number at a share of the way between two. At shares 0 and 1, it is exactly one of
 /// them.
@@ -21,6 +21,18 @@ pub(crate) fn middle(from: [f64; 2], to: [f64; 2]) -> [f64; 2] {
 /// Returns the vector from one place to another.
 pub(crate) fn vector(from: [f64; 2], to: [f64; 2]) -> [f64; 2] {
     [to[0] - from[0], to[1] - from[1]]
+}
+
+/// Returns the distance between two places.
+pub(crate) fn distance(from: [f64; 2], to: [f64; 2]) -> f64 {
+    (to[0] - from[0]).hypot(to[1] - from[1])
+}
+
+/// Whether a place on the lattice is on the western, eastern, southern and northern side of a
+/// rectangle.
+pub(crate) fn sides([u, v]: [f64; 2], bounds: &LatticeBounds) -> [bool; 4] {
+    let is_at = |here: f64, line: i64| (here - line as f64).abs() < f64::MIN_POSITIVE;
+    [is_at(u, bounds.min.u), is_at(u, bounds.max.u), is_at(v, bounds.min.v), is_at(v, bounds.max.v)]
 }
 
 /// Returns twice the area of a triangle, positive if it is counter-clockwise.

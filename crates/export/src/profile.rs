@@ -24,6 +24,7 @@ use crate::{
     measures::{LEAST_GRADE_LENGTH_M, ProfileGrades, profile_of},
     piece::{Vertex, WayPiece},
     places::{FeatureCoordinates, Places},
+    plane::distance,
     read,
     roads::RoadHeights,
 };
@@ -227,8 +228,7 @@ impl<'a> Telling<'a> {
             let vertices: Vec<Vertex> = part.iter().map(|(_, vertex)| *vertex).collect();
             let profile = profile_of(&vertices, &distance_m);
             let own_m = profile.last().map_or(0.0, |last| last[0]);
-            let lengths_m =
-                profile.array_windows().map(|[from, to]| (to[0] - from[0]).hypot(to[1] - from[1]));
+            let lengths_m = profile.array_windows().map(|[from, to]| distance(*from, *to));
             length_3d_m += lengths_m.sum::<f64>();
             let runs = self.runs_on_ground(part);
             let lengths_m = runs.iter().map(|run| profile[run.end - 1][0] - profile[run.start][0]);
@@ -479,21 +479,14 @@ fn joined(lines: impl Iterator<Item = ProfileLine>, places: &Places<'_>) -> Vec<
     let mut parts: Vec<ProfileLine> = Vec::new();
     let near_steps = NEAR_ON_MAP_M / places.manifest.frame.lattice_step_m();
     for line in lines {
-        let goes_on = |before: &&mut ProfileLine| match (before.last(), line.first()) {
-            (Some((_, end)), Some((_, begin))) => {
-                places.distance_m(end.at, begin.at) <= SAME_PLACE_M
-            }
-            _ => false,
-        };
-        match parts.last_mut().filter(goes_on) {
-            Some(before) => {
+        let (before, begin) = (parts.last_mut(), line[0].1.at);
+        let before = before.and_then(|part| Some((part.last()?.1.at, part)));
+        match before.filter(|(end, _)| places.distance_m(*end, begin) <= SAME_PLACE_M) {
+            Some((end, part)) => {
                 // At the other end of the map the line begins at a separate place: the distance
                 // from the previous one would be as wide as the map.
-                let is_there = |end: &(usize, Vertex), begin: &(usize, Vertex)| {
-                    (0..2).all(|axis| (end.1.at[axis] - begin.1.at[axis]).abs() <= near_steps)
-                };
-                let is_same = before.last().zip(line.first()).is_some_and(|(a, b)| is_there(a, b));
-                before.extend(line.into_iter().skip(usize::from(is_same)));
+                let is_same = (0..2).all(|axis| (end[axis] - begin[axis]).abs() <= near_steps);
+                part.extend(line.into_iter().skip(usize::from(is_same)));
             }
             None => parts.push(line),
         }

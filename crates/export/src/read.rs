@@ -103,40 +103,23 @@ fn place_deg(manifest: &Manifest, tile: &Bounds, [across, along]: [f64; 2]) -> [
     manifest.coordinates.wgs84_from_working(at)
 }
 
-/// Returns the pieces of one tile that have a requested class.
+/// Returns the pieces of one tile that have a requested class; see [`pieces_of`].
 pub(crate) fn pieces(
     package: &FilePackage,
     id: TileId,
     classes: &[FunctionalRoadClass],
+    is_bounded: bool,
 ) -> Result<Vec<WayPiece>, TileError> {
     let payload = package.payload(id, road_sections())?;
-    payload.map_or(Ok(Vec::new()), |payload| pieces_of(&payload, package.manifest(), classes))
+    payload.map_or(Ok(Vec::new()), |payload| {
+        pieces_of(&payload, package.manifest(), classes, is_bounded)
+    })
 }
 
 /// Returns the [`pieces`] of roads of all classes.
 pub(crate) fn all_pieces(package: &FilePackage, id: TileId) -> Result<Vec<WayPiece>, TileError> {
     let classes: Vec<FunctionalRoadClass> = FunctionalRoadClass::all().collect();
-    pieces(package, id, &classes)
-}
-
-/// Returns [`pieces`] with the package's bounds for the distance of the lines from the elevation
-/// data.
-pub(crate) fn bounded_pieces(
-    package: &FilePackage,
-    id: TileId,
-    classes: &[FunctionalRoadClass],
-) -> Result<Vec<WayPiece>, TileError> {
-    let Some(payload) = package.payload(id, road_sections())? else { return Ok(Vec::new()) };
-    let (manifest, Some(terrain)) = (package.manifest(), &payload.terrain) else {
-        return Ok(Vec::new());
-    };
-    let surface = manifest.surface(id, &terrain.tin);
-    let mut pieces = pieces_on(&surface, &payload, manifest, classes)?;
-    let mut cells = TileCells::from_level(manifest, id.z(), &surface, terrain.geometric_error_m);
-    for piece in &mut pieces {
-        piece.heights.tolerance_m = cells.as_mut().map(|cells| cells.bound_m(&piece.vertices));
-    }
-    Ok(pieces)
+    pieces(package, id, &classes, false)
 }
 
 /// Returns the runs of roads on bridges and in tunnels of one tile by way; none if the package was
@@ -147,49 +130,44 @@ pub(crate) fn span_runs(
 ) -> Result<HashMap<i64, Vec<SpanRun>>, TileError> {
     let mut runs: HashMap<i64, Vec<SpanRun>> = HashMap::new();
     let manifest = package.manifest();
-    if manifest.spans.is_none() {
-        return Ok(runs);
-    }
-    let Some(bytes) = package.tile(id)? else { return Ok(runs) };
-    let all = manifest.decode_spans(&bytes, id).map_err(ReadError::from)?;
-    for run in all.into_iter().filter(|run| run.owner.layer().is_none()) {
-        runs.entry(run.way_id).or_default().push(run);
+    if manifest.spans.is_some()
+        && let Some(bytes) = package.tile(id)?
+    {
+        let all = manifest.decode_spans(&bytes, id).map_err(ReadError::from)?;
+        for run in all.into_iter().filter(|run| run.owner.layer().is_none()) {
+            runs.entry(run.way_id).or_default().push(run);
+        }
     }
     Ok(runs)
 }
 
-/// Returns the [`pieces`] of a payload that was read with [`road_sections`].
+/// Returns the [`pieces`] of a payload that was read with [`road_sections`]; with `is_bounded`,
+/// including the package's bounds for the distance of the lines from the elevation data.
 pub(crate) fn pieces_of(
     payload: &TilePayload,
     manifest: &Manifest,
     classes: &[FunctionalRoadClass],
+    is_bounded: bool,
 ) -> Result<Vec<WayPiece>, TileError> {
     let Some(terrain) = &payload.terrain else { return Ok(Vec::new()) };
-    pieces_on(&manifest.surface(payload.id, &terrain.tin), payload, manifest, classes)
-}
-
-fn pieces_on(
-    surface: &Surface,
-    payload: &TilePayload,
-    Manifest { frame, .. }: &Manifest,
-    classes: &[FunctionalRoadClass],
-) -> Result<Vec<WayPiece>, TileError> {
     let id = payload.id;
+    let surface = manifest.surface(id, &terrain.tin);
+    let mut cells = TileCells::from_level(manifest, id.z(), &surface, terrain.geometric_error_m)
+        .filter(|_| is_bounded);
     let mut pieces = Vec::new();
     for road in payload.roads_geo.iter().filter(|road| classes.contains(&road.class)) {
-        let known = payload.attributes.binary_search_by_key(&road.way_id, |record| record.way_id);
-        let attributes = known
-            .ok()
-            .and_then(|at| payload.attributes.get(at))
-            .ok_or(TileError::NoAttributes { tile: id, way_id: road.way_id })?;
-        let vertices =
-            vertices(&road.line, surface).map_err(|source| TileError::Line { tile: id, source })?;
+        let way_id = road.way_id;
+        let known = payload.attributes.binary_search_by_key(&way_id, |record| record.way_id);
+        let known = known.map_err(|_| TileError::NoAttributes { tile: id, way_id })?;
+        let failed = |source| TileError::Line { tile: id, source };
+        let vertices = vertices(&road.line, &surface).map_err(failed)?;
+        let tolerance_m = cells.as_mut().map(|cells| cells.bound_m(&vertices));
         pieces.push(WayPiece {
-            key: PieceKey { way_id: road.way_id, tile: pmtiles_order(id), part: road.part, cut: 0 },
+            key: PieceKey { way_id, tile: pmtiles_order(id), part: road.part, cut: 0 },
             class: road.class,
-            attributes: attributes.attributes.clone(),
-            goes_on: goes_on(road, frame, id),
-            heights: PieceHeights::default(),
+            attributes: payload.attributes[known].attributes.clone(),
+            goes_on: goes_on(road, &manifest.frame, id),
+            heights: PieceHeights { tolerance_m, ..PieceHeights::default() },
             vertices,
         });
     }

@@ -109,6 +109,17 @@ fn folded(text: &str) -> String {
     ComposingNormalizerBorrowed::new_nfc().normalize(&lower.replace('ß', "ss")).into_owned()
 }
 
+/// Returns the ways of a level that match a query; `None` without a query.
+pub(crate) fn meant_ways(
+    package: &FilePackage,
+    level: u8,
+    query: Option<&RoadQuery>,
+    observer: &dyn Observer,
+) -> Result<Option<BTreeSet<i64>>, RoadQueryError> {
+    let named = query.map(|_| named_ways(package, level, query, observer));
+    Ok(named.transpose()?.map(|named| named.meant))
+}
+
 /// Returns the ways of a level, and those that match a query: none without a query.
 ///
 /// # Errors

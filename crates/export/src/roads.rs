@@ -23,10 +23,10 @@ use crate::{
     heights::{Elevation, dem_heights, height_bound, sample_bound_m},
     join::{JoinedLine, lines},
     measures::{Measures, Profiled},
-    piece::{PieceHeights, PieceKey, WayPiece, larger},
+    piece::{PieceHeights, WayPiece, larger},
     places::Places,
     read,
-    road_query::{RoadQuery, named_ways},
+    road_query::{RoadQuery, meant_ways},
     span_facts::{SpanFacts, least_free_heights},
     vector::{FeatureGeometry, FeatureRecord, Layer, ShapeKind, StyledClasses},
 };
@@ -87,8 +87,7 @@ pub fn export_roads(
     let manifest = package.manifest();
     SelectionError::check_roads(package)?;
     let source = FeatureSource::new(package, request)?;
-    let named = road.map(|road| named_ways(package, source.level, Some(road), observer));
-    let meant = named.transpose()?.map(|named| named.meant);
+    let meant = meant_ways(package, source.level, road, observer)?;
     let measure = |elevation| -> Result<OnDem<'_>, ElevationError> {
         let measure =
             |network| MeasuredChains::measure(network, &source.places, elevation, observer);
@@ -106,6 +105,7 @@ pub fn export_roads(
     let chains = dem.as_ref().and_then(|dem| dem.chains.as_ref());
     let spans = chains.map(|chains| chains.decks.facts.clone());
     let mut roads = Roads {
+        classes: &request.classes,
         by_piece: features == RoadFeatures::Pieces,
         meant,
         dem,
@@ -123,6 +123,7 @@ pub fn export_roads(
 
 /// An export of roads in progress.
 struct Roads<'a> {
+    classes: &'a [FunctionalRoadClass],
     by_piece: bool,
     /// The ways to export, if the user named roads.
     meant: Option<BTreeSet<i64>>,
@@ -143,9 +144,8 @@ struct OnDem<'a> {
 }
 
 impl Features for Roads<'_> {
-    type Class = FunctionalRoadClass;
     type TilePiece = WayPiece;
-    fn layer(&self, source: &FeatureSource<'_, FunctionalRoadClass>) -> Layer {
+    fn layer(&self, source: &FeatureSource<'_>) -> Layer {
         let what = if self.by_piece { "Pieces of roads" } else { "Roads" };
         let cells = source.cells();
         let (from, laid) = match self.dem {
@@ -157,7 +157,7 @@ impl Features for Roads<'_> {
         source.layer(named, ShapeKind::Lines, fields, &format!("{what} {laid}"))
     }
 
-    fn heights_told(&self, source: &FeatureSource<'_, FunctionalRoadClass>) -> Option<String> {
+    fn heights_told(&self, source: &FeatureSource<'_>) -> Option<String> {
         if self.dem.is_none() {
             height_bound(source.package.manifest(), source.level)
         } else {
@@ -168,22 +168,16 @@ impl Features for Roads<'_> {
 
     fn pieces(
         &mut self,
-        FeatureSource { package, request, places, .. }: &FeatureSource<'_, FunctionalRoadClass>,
+        FeatureSource { package, bounds, places, .. }: &FeatureSource<'_>,
         tile: TileId,
     ) -> Result<Vec<WayPiece>, FeaturesError> {
         let mut found = Vec::new();
-        let is_meant = |piece: &WayPiece| {
-            self.meant.as_ref().is_none_or(|meant| meant.contains(&piece.key.way_id))
-        };
         // With elevation files, the distances are measured.
-        let read = if self.dem.is_some() { read::pieces } else { read::bounded_pieces };
-        let mut pieces = read(package, tile, &request.classes)?;
-        pieces.retain(is_meant);
-        for piece in pieces {
-            let cut = match &request.bounds {
-                None => vec![piece],
-                Some(bounds) => cut_at_bounds(&piece, bounds, &|at| places.wgs84(at)),
-            };
+        for piece in read::pieces(package, tile, self.classes, self.dem.is_none())? {
+            if self.meant.as_ref().is_some_and(|meant| !meant.contains(&piece.key.way_id)) {
+                continue;
+            }
+            let cut = cut_at_bounds(piece, *bounds, &|at| places.wgs84(at));
             match &mut self.dem {
                 None => found.extend(cut),
                 Some(dem) => found.extend(dem.laid(cut, places)?),
@@ -198,10 +192,10 @@ impl Features for Roads<'_> {
 
     fn records(
         &mut self,
-        source: &FeatureSource<'_, FunctionalRoadClass>,
+        source: &FeatureSource<'_>,
         pieces: &[WayPiece],
     ) -> Result<Vec<FeatureRecord>, FeaturesError> {
-        let Some(first) = pieces.first() else { return Ok(Vec::new()) };
+        let first = &pieces[0];
         let is_same =
             |piece: &WayPiece| piece.class == first.class && piece.attributes == first.attributes;
         if !pieces.iter().all(is_same) {
@@ -234,7 +228,6 @@ impl OnDem<'_> {
         let mut laid = Vec::new();
         for piece in cut {
             let ground_m = off_dem_m(nodes, &piece.vertices)?;
-            let [first_end, last_end] = piece.goes_on;
             let (way_id, structure) = (piece.key.way_id, piece.attributes.structure);
             if let Some(chains) = chains
                 && structure != Structure::Ground
@@ -244,16 +237,12 @@ impl OnDem<'_> {
             }
             let way = deck.as_ref().map_or(&[][..], |(_, way)| way);
             let carrier = Carrier { structure, way, most_steps: *most_steps, is_turned: false };
-            for DemLine { vertices, tolerance_m, has_end: [first, last], on_deck } in
+            for DemLine { vertices, tolerance_m, has_end, on_deck } in
                 lay_on_deck(nodes, &piece.vertices, &carrier, &places.metric())?
             {
-                laid.push(WayPiece {
-                    key: PieceKey { cut: laid.len() as u32, ..piece.key },
-                    vertices,
-                    goes_on: [first && first_end, last && last_end],
-                    heights: PieceHeights { tolerance_m, ground_m, on_deck, has_deck: on_deck },
-                    ..piece.clone()
-                });
+                let heights = PieceHeights { tolerance_m, ground_m, on_deck, has_deck: on_deck };
+                let part = piece.part(laid.len() as u32, vertices, has_end);
+                laid.push(WayPiece { heights, ..part });
             }
         }
         Ok(laid)
@@ -312,10 +301,8 @@ impl Roads<'_> {
         lines: &[JoinedLine],
         way: &[SmoothLine],
     ) -> Result<FeatureRecord, CoordinatesError> {
-        let WayPiece { key, class, attributes, heights, .. } = of;
-        let distance_m = places.metric();
-        let profiled: Vec<Profiled<'_>> =
-            lines.iter().map(|line| Profiled::from_line(line, &distance_m)).collect();
+        let WayPiece { key, heights, .. } = of;
+        let profiled = Profiled::from_lines(lines, &places.metric());
         let measures = Measures::from_lines(&profiled);
         let summary = &mut self.summary;
         summary.features += 1;
@@ -325,12 +312,9 @@ impl Roads<'_> {
         summary.ground_tolerance_m = larger(summary.ground_tolerance_m, heights.ground_m);
         let piece = tile_of_order(key.tile).filter(|_| self.by_piece).map(|tile| (tile, key.part));
         let road = FeatureRoad {
-            way_id: key.way_id,
-            class: *class,
-            attributes,
+            of,
             parts: lines.len(),
             measures,
-            heights: *heights,
             smooth: self.dem.as_ref().map(|dem| dem.smooth(of, &profiled, way)),
             piece,
         };

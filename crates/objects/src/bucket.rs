@@ -21,10 +21,7 @@ use tokio::runtime::{Builder, Runtime};
 
 use crate::{
     ObjectAddress, ObjectError, StorageRequests, StorageSettings,
-    watch::{
-        AnswerTooLarge, AtTheEnd, BadAnswer, NoMachineCredentials, PermanentRefusal, RangeIgnored,
-        RequestWatch, StorageCounter, check_name,
-    },
+    watch::{AtTheEnd, FinalError, RequestWatch, StorageCounter, check_name},
 };
 
 /// The largest number of listed names directly below a prefix: many times the number of parts of
@@ -152,7 +149,7 @@ impl Bucket {
             let names = page.result.objects.iter().map(|object| object.location.as_ref());
             let token = page.page_token.as_deref().map(|token| ("the name of a page", token));
             for (of, name) in names.map(|name| ("the name of an object", name)).chain(token) {
-                check_name(of, name).map_err(|bad| self.bad_answer(&prefix, &bad))?;
+                check_name(of, name).map_err(|bad| self.explain_final(&prefix, &bad))?;
             }
             let before = found.len() + folders.len();
             found.extend(page.result.objects.into_iter().filter_map(|object| {
@@ -310,26 +307,14 @@ impl Bucket {
 
     /// Translates an error of the library for an object.
     pub(crate) fn explain(&self, key: &str, doing: &'static str, error: Error) -> ObjectError {
-        let name = self.address(key).to_string();
         let mut cause: Option<&(dyn std::error::Error + 'static)> = Some(&error);
         while let Some(found) = cause {
-            if let Some(refusal) = found.downcast_ref::<PermanentRefusal>() {
-                return self.refused(name, refusal);
-            }
-            if found.is::<RangeIgnored>() {
-                return ObjectError::NoRanges { name };
-            }
-            if let Some(AnswerTooLarge { most }) = found.downcast_ref() {
-                return ObjectError::TooMuchSent { name, most: *most };
-            }
-            if let Some(bad) = found.downcast_ref() {
-                return self.bad_answer(key, bad);
-            }
-            if found.is::<NoMachineCredentials>() {
-                return ObjectError::NoCredentials { name };
+            if let Some(found) = found.downcast_ref() {
+                return self.explain_final(key, found);
             }
             cause = found.source();
         }
+        let name = self.address(key).to_string();
         match error {
             Error::NotFound { .. } => ObjectError::Missing { name },
             Error::Precondition { .. } => ObjectError::Changed { name },
@@ -338,12 +323,18 @@ impl Bucket {
         }
     }
 
-    fn bad_answer(&self, key: &str, BadAnswer(what): &BadAnswer) -> ObjectError {
-        ObjectError::BadAnswer { name: self.address(key).to_string(), what: what.clone() }
-    }
-
-    fn refused(&self, name: String, refusal: &PermanentRefusal) -> ObjectError {
-        let advice = match (refusal.code.as_str(), refusal.status) {
+    fn explain_final(&self, key: &str, error: &FinalError) -> ObjectError {
+        let name = self.address(key).to_string();
+        let (code, status) = match error {
+            FinalError::Refused { code, status, .. } => (code.as_str(), *status),
+            FinalError::RangeIgnored => return ObjectError::NoRanges { name },
+            FinalError::TooLarge { most } => return ObjectError::TooMuchSent { name, most: *most },
+            FinalError::BadAnswer(what) => {
+                return ObjectError::BadAnswer { name, what: what.clone() };
+            }
+            FinalError::NoMachineCredentials => return ObjectError::NoCredentials { name },
+        };
+        let advice = match (code, status) {
             ("NoSuchBucket", _) => {
                 return ObjectError::NoBucket { name, bucket: self.name.clone() };
             }
@@ -366,6 +357,6 @@ impl Bucket {
             }
             _ => "correct the name or the settings (AWS_REGION, AWS_ENDPOINT_URL, credentials)",
         };
-        ObjectError::Refused { name, why: refusal.to_string(), advice }
+        ObjectError::Refused { name, why: error.to_string(), advice }
     }
 }

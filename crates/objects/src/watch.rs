@@ -61,7 +61,7 @@ pub(crate) enum AtTheEnd {
 }
 
 /// Creates HTTP clients with this layer.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct RequestWatch {
     pub(crate) counter: Arc<StorageCounter>,
     pub(crate) at_the_end: AtTheEnd,
@@ -70,56 +70,51 @@ pub(crate) struct RequestWatch {
 impl HttpConnector for RequestWatch {
     fn connect(&self, options: &ClientOptions) -> object_store::Result<HttpClient> {
         let inner = ReqwestConnector::default().connect(options)?;
-        let Self { counter, at_the_end } = self;
-        let counter = Arc::clone(counter);
-        Ok(HttpClient::new(Watched { inner, counter, at_the_end: *at_the_end }))
+        Ok(HttpClient::new(Watched { inner, watch: self.clone() }))
     }
 }
 
 #[derive(Debug)]
 struct Watched {
     inner: HttpClient,
-    counter: Arc<StorageCounter>,
-    at_the_end: AtTheEnd,
+    watch: RequestWatch,
 }
 
 /// An error that no retry can change.
 #[derive(Debug, thiserror::Error)]
-#[error("{status} {code}: {message}")]
-pub(crate) struct PermanentRefusal {
-    pub(crate) status: u16,
-    /// The S3 error code; empty if the answer has none.
-    pub(crate) code: String,
-    pub(crate) message: String,
+pub(crate) enum FinalError {
+    /// A refusal of the server. The S3 error code is empty if the answer has none.
+    #[error("{status} {code}: {message}")]
+    Refused { status: u16, code: String, message: String },
+    #[error("the answer contains the whole object instead of the requested range")]
+    RangeIgnored,
+    /// The answer has more bytes than the kind of answer allows.
+    #[error("the answer has more than {most} bytes")]
+    TooLarge { most: u64 },
+    /// The answer is invalid.
+    #[error("{0}")]
+    BadAnswer(String),
+    #[error("no credentials are set, and this machine provides none")]
+    NoMachineCredentials,
 }
 
-/// The server sent the whole object instead of the requested range.
-#[derive(Debug, thiserror::Error)]
-#[error("the answer contains the whole object instead of the requested range")]
-pub(crate) struct RangeIgnored;
-
-/// The answer has more bytes than the kind of answer allows.
-#[derive(Debug, thiserror::Error)]
-#[error("the answer has more than {most} bytes")]
-pub(crate) struct AnswerTooLarge {
-    pub(crate) most: u64,
+impl From<FinalError> for HttpError {
+    /// Converts the error to one that `object_store` does not retry.
+    fn from(error: FinalError) -> Self {
+        Self::new(HttpErrorKind::Decode, error)
+    }
 }
-
-/// The answer is invalid.
-#[derive(Debug, thiserror::Error)]
-#[error("{0}")]
-pub(crate) struct BadAnswer(pub(crate) String);
 
 /// The limit for names of objects (at most 1024 bytes), uploads and pages. `object_store` puts them
 /// into URLs of requests, and panics if they are too long.
 const LONGEST_NAME_BYTES: usize = 8192;
 
 /// Rejects names that are too long.
-pub(crate) fn check_name(of: &str, name: &str) -> Result<(), BadAnswer> {
+pub(crate) fn check_name(of: &str, name: &str) -> Result<(), FinalError> {
     if name.len() <= LONGEST_NAME_BYTES {
         return Ok(());
     }
-    Err(BadAnswer(format!("{of} of {} bytes", name.len())))
+    Err(FinalError::BadAnswer(format!("{of} of {} bytes", name.len())))
 }
 
 /// Whether the end of a byte range is possible; `object_store` adds one to it.
@@ -154,18 +149,14 @@ fn bounded(body: HttpResponseBody, most: u64) -> HttpResponseBody {
     let limited = Limited::new(body, usize::try_from(most).unwrap_or(usize::MAX));
     HttpResponseBody::new(limited.map_err(move |error| match error.downcast() {
         Ok(error) => *error,
-        Err(_) => HttpError::new(HttpErrorKind::Decode, AnswerTooLarge { most }),
+        Err(_) => FinalError::TooLarge { most }.into(),
     }))
 }
-
-/// This machine provides no credentials.
-#[derive(Debug, thiserror::Error)]
-#[error("no credentials are set, and this machine provides none")]
-pub(crate) struct NoMachineCredentials;
 
 #[async_trait]
 impl HttpService for Watched {
     async fn call(&self, mut request: HttpRequest) -> Result<HttpResponse, HttpError> {
+        let RequestWatch { counter, at_the_end } = &self.watch;
         let method = request.method().clone();
         // The addresses where cloud machines request credentials. Elsewhere nothing answers,
         // however often one asks.
@@ -173,13 +164,13 @@ impl HttpService for Watched {
         let has_range = request.headers().contains_key("range");
         let is_end_of_upload = method.as_str() == "POST"
             && request.uri().query().is_some_and(|query| query.contains("uploadId="));
-        if is_end_of_upload && self.at_the_end == AtTheEnd::Refuse {
+        if is_end_of_upload && *at_the_end == AtTheEnd::Refuse {
             // Only headers that begin with x-amz- must be signed.
             request.headers_mut().insert("if-none-match", HeaderValue::from_static("*"));
         }
         let most = most_bytes(&request);
         let sent_bytes = request.body().content_length() as u64;
-        self.counter.change(|counts| {
+        counter.change(|counts| {
             *counts.by_method.entry(method.as_str().to_owned()).or_default() += 1;
             counts.sent_bytes += sent_bytes;
         });
@@ -187,7 +178,7 @@ impl HttpService for Watched {
             let kind = error.kind();
             match kind {
                 HttpErrorKind::Connect | HttpErrorKind::Timeout if is_metadata => {
-                    HttpError::new(HttpErrorKind::Unknown, NoMachineCredentials)
+                    HttpError::new(HttpErrorKind::Unknown, FinalError::NoMachineCredentials)
                 }
                 HttpErrorKind::Interrupted | HttpErrorKind::Timeout | HttpErrorKind::Unknown => {
                     HttpError::new(HttpErrorKind::Request, error)
@@ -198,26 +189,26 @@ impl HttpService for Watched {
         let received = response.headers().get("content-length");
         let received = received.and_then(|length| length.to_str().ok()?.parse::<u64>().ok());
         if method.as_str() != "HEAD" {
-            self.counter.change(|counts| counts.received_bytes += received.unwrap_or_default());
+            counter.change(|counts| counts.received_bytes += received.unwrap_or_default());
         }
         if received.is_some_and(|length| length > most) && method.as_str() != "HEAD" {
-            return Err(HttpError::new(HttpErrorKind::Decode, AnswerTooLarge { most }));
+            return Err(FinalError::TooLarge { most }.into());
         }
         if response.headers().get("content-range").is_some_and(|range| !is_possible(range)) {
-            let bad = BadAnswer("a range that ends beyond any object".to_owned());
-            return Err(HttpError::new(HttpErrorKind::Decode, bad));
+            let what = "a range that ends beyond any object".to_owned();
+            return Err(FinalError::BadAnswer(what).into());
         }
         let response = response.map(|body| bounded(body, most));
         let status = response.status();
         if has_range && status.as_u16() == 200 {
-            return Err(HttpError::new(HttpErrorKind::Decode, RangeIgnored));
+            return Err(FinalError::RangeIgnored.into());
         }
         if status.is_success() || status.as_u16() == 304 {
             return Ok(response);
         }
         // A server that throttles requests does have credentials.
         if is_metadata && status.is_client_error() && status.as_u16() != 429 {
-            return Err(HttpError::new(HttpErrorKind::Decode, NoMachineCredentials));
+            return Err(FinalError::NoMachineCredentials.into());
         }
         let (mut parts, body) = response.into_parts();
         // With these S3 codes ("ConditionalRequestConflict", "OperationAborted"), `object_store`
@@ -246,8 +237,8 @@ impl HttpService for Watched {
                 _ if message.is_empty() => status.canonical_reason().unwrap_or_default().to_owned(),
                 _ => message,
             };
-            let refusal = PermanentRefusal { status: status.as_u16(), code, message };
-            return Err(HttpError::new(HttpErrorKind::Decode, refusal));
+            let status = status.as_u16();
+            return Err(FinalError::Refused { status, code, message }.into());
         }
         // The text is short, so that it fits a message.
         let told = if code.is_empty() { String::new() } else { format!("{code}: {message}") };

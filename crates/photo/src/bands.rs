@@ -37,6 +37,8 @@ struct FoundBand {
     number: usize,
     interpretation: ColorInterpretation,
     data_type: GdalDataType,
+    /// Its nodata value, if a byte can have it.
+    nodata: Option<u8>,
 }
 
 impl Bands {
@@ -50,6 +52,10 @@ impl Bands {
                 number,
                 interpretation: band.color_interpretation(),
                 data_type: band.band_type(),
+                nodata: band
+                    .no_data_value()
+                    .filter(|value| (0.0..=255.0).contains(value) && value.fract() == 0.0)
+                    .map(|value| value as u8),
             });
         }
         let alpha = found
@@ -66,16 +72,7 @@ impl Bands {
         }
         let first = dataset.rasterband(colour.bands()[0]).map_err(broken)?;
         let has_mask = has_own_mask(&first).map_err(broken)?;
-        let mut nodata = Vec::new();
-        for number in colour.bands() {
-            let band = dataset.rasterband(number).map_err(broken)?;
-            // A value that no byte can have marks nothing.
-            let value = band
-                .no_data_value()
-                .filter(|value| (0.0..=255.0).contains(value) && value.fract() == 0.0);
-            nodata.extend(value.map(|value| value as u8));
-        }
-        let nodata = (nodata.len() == colour.bands().len()).then_some(nodata);
+        let nodata = colour.bands().into_iter().map(|number| found[number - 1].nodata).collect();
         Ok(Self { colour, alpha, has_mask, nodata })
     }
 

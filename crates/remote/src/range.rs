@@ -19,7 +19,7 @@ use tokio::{runtime::Runtime, time::timeout};
 use crate::{
     HttpAddress, HttpError, HttpSettings,
     answer::{self, Version},
-    requests::RequestCounter,
+    requests::ServerRequests,
 };
 
 /// The ranges of one file on a web server.
@@ -35,7 +35,7 @@ pub(crate) struct Ranges {
     /// Whether all tries of the last request failed. Until a request succeeds, each has only one
     /// try, since waiting did not help.
     is_down: AtomicBool,
-    pub(crate) counter: RequestCounter,
+    counter: Mutex<ServerRequests>,
 }
 
 /// A failed request, and the time that the server asks to wait.
@@ -58,8 +58,13 @@ impl Ranges {
         address: HttpAddress,
     ) -> Self {
         let (redirected, is_down) = (Mutex::default(), AtomicBool::new(false));
-        let counter = RequestCounter::default();
+        let counter = Mutex::default();
         Self { client, runtime, settings, address, redirected, is_down, counter }
+    }
+
+    /// The traffic so far.
+    pub(crate) fn requests(&self) -> MutexGuard<'_, ServerRequests> {
+        self.counter.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Returns the bytes of the file in `asked` up to its end, and their version, which must be
@@ -142,7 +147,7 @@ impl Ranges {
         let begun = Instant::now();
         let explain = |error: reqwest::Error| self.explain(error);
         let range = format!("bytes={}-{}", asked.start, asked.end.saturating_sub(1));
-        self.counter.sent();
+        self.requests().count += 1;
         let request = self.client.get(url.clone()).header(RANGE, range);
         let mut response = request.send().await.map_err(explain)?;
         let (version, range) = answer::check(response.status(), response.headers(), asked)
@@ -165,7 +170,7 @@ impl Ranges {
             let chunk = timeout(left, response.chunk()).await;
             let chunk = chunk.map_err(|_| HttpError::TooSlow { within, least })?;
             let Some(chunk) = chunk.map_err(explain)? else { break };
-            self.counter.received(chunk.len());
+            self.requests().received_bytes += chunk.len() as u64;
             body.extend_from_slice(&chunk);
         }
         // A body that is longer than expected is an error, whether or not its header says so.
@@ -204,7 +209,8 @@ impl Ranges {
         // The address would show secrets.
         let error = error.without_url();
         let HttpSettings { connect_timeout, idle_timeout, .. } = self.settings;
-        let reason = last_cause(&error);
+        // The innermost cause says most.
+        let reason = causes(&error).last().map(ToString::to_string).unwrap_or_default();
         if error.is_redirect() {
             let refused = find::<HttpError>(&error).cloned();
             return refused.unwrap_or(HttpError::BadRedirection { why: reason });
@@ -256,9 +262,4 @@ fn tls_error<'a>(error: &'a (dyn Error + 'static)) -> Option<&'a rustls::Error> 
         Some(inner)
     };
     causes(error).find_map(|cause| cause.downcast_ref().or_else(|| tls_error(wrapped(cause)?)))
-}
-
-/// The innermost cause of an error, which says most.
-fn last_cause(error: &(dyn Error + 'static)) -> String {
-    causes(error).last().map(ToString::to_string).unwrap_or_default()
 }

@@ -55,7 +55,7 @@ impl HttpSource {
     /// The traffic of the server so far.
     #[must_use]
     pub fn requests(&self) -> ServerRequests {
-        self.ranges.counter.so_far()
+        *self.ranges.requests()
     }
 
     /// The length of the file in bytes, if it is already known.

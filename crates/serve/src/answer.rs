@@ -174,8 +174,7 @@ async fn send<B>(
 async fn open(headers: &HeaderMap, route: &ServedRoute) -> io::Result<Opened> {
     match &route.content {
         FileContent::Memory(bytes) => {
-            let way = route.packed.clone().filter(|_| packed::is_wanted(headers));
-            let packed = match way {
+            let packed = match route.packed.clone().filter(|_| packed::is_wanted(headers)) {
                 Some(way) => {
                     let bytes = bytes.clone();
                     let packed = tokio::task::spawn_blocking(move || way.compressed(&bytes));
@@ -183,9 +182,8 @@ async fn open(headers: &HeaderMap, route: &ServedRoute) -> io::Result<Opened> {
                 }
                 None => None,
             };
-            let tag = &route.tag_in_memory;
-            let tag = if packed.is_some() { packed::tag_of(tag) } else { tag.clone() };
-            let is_packed = packed.is_some();
+            let (tag, is_packed) = (&route.tag_in_memory, packed.is_some());
+            let tag = if is_packed { packed::tag_of(tag) } else { tag.clone() };
             let bytes = packed.unwrap_or_else(|| bytes.clone());
             let length_bytes = bytes.len() as u64;
             Ok(Opened { length_bytes, tag, is_packed, source: Source::Memory(bytes) })

@@ -37,19 +37,18 @@ impl RequestedRange {
         tag: &str,
     ) -> Self {
         let text = |name: HeaderName| headers.get(name)?.to_str().ok();
-        if headers.contains_key(IF_MATCH)
-            && !headers
-                .get_all(IF_MATCH)
-                .iter()
-                .any(|list| names(list.to_str().ok(), tag, Weak::Differs))
-        {
+        // Whether a list of tags contains this one. Our tags have no commas.
+        let names = |name: HeaderName, is_weak_same: bool| {
+            let lists = headers.get_all(name).into_iter().filter_map(|list| list.to_str().ok());
+            lists.flat_map(|list| list.split(',')).map(str::trim).any(|named| {
+                let weak = named.strip_prefix("W/").filter(|_| is_weak_same);
+                named == "*" || weak.unwrap_or(named) == tag
+            })
+        };
+        if headers.contains_key(IF_MATCH) && !names(IF_MATCH, false) {
             return Self::Changed;
         }
-        if headers
-            .get_all(IF_NONE_MATCH)
-            .iter()
-            .any(|list| names(list.to_str().ok(), tag, Weak::IsSame))
-        {
+        if names(IF_NONE_MATCH, true) {
             return Self::Unchanged;
         }
         // A range applies only to GET, and only to the version that the client expects.
@@ -73,22 +72,6 @@ impl RequestedRange {
             Err(_) => Self::NoSuchBytes,
         }
     }
-}
-
-/// Whether a weak tag (`W/"…"`) matches.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Weak {
-    IsSame,
-    Differs,
-}
-
-/// Whether a list of tags contains this one. Our tags have no commas.
-fn names(list: Option<&str>, tag: &str, weak: Weak) -> bool {
-    list.unwrap_or_default().split(',').map(str::trim).any(|named| {
-        named == "*"
-            || named == tag
-            || (weak == Weak::IsSame && named.strip_prefix("W/").is_some_and(|named| named == tag))
-    })
 }
 
 #[cfg(test)]

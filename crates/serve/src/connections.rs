@@ -7,18 +7,14 @@
 
 use std::{
     collections::BTreeMap,
-    io,
-    pin::Pin,
     sync::{
         Arc, Mutex, MutexGuard, PoisonError,
         atomic::{AtomicBool, Ordering},
     },
-    task::{Context, Poll},
     time::Instant,
 };
 
-use bytes::Bytes;
-use hyper::body::{Body as HttpBody, Frame, SizeHint};
+use http_body_util::BodyExt as _;
 use tokio::sync::Notify;
 
 use crate::body::Body;
@@ -159,9 +155,13 @@ impl Connection {
 pub(crate) struct Answering(Arc<Connection>);
 
 impl Answering {
-    /// The body, which ends the answer when it has been sent.
-    pub(crate) fn with_body(self, body: Body) -> AnswerBody {
-        AnswerBody { body, _answering: self }
+    /// The body, which ends the answer when it has been sent: until then, it owns this value.
+    pub(crate) fn with_body(self, body: Body) -> Body {
+        let own = move |error| {
+            let _answering = &self;
+            error
+        };
+        body.map_err(own).boxed_unsync()
     }
 }
 
@@ -169,31 +169,5 @@ impl Drop for Answering {
     fn drop(&mut self) {
         let mut state = self.0.state();
         (state.answers, state.since) = (state.answers.saturating_sub(1), Instant::now());
-    }
-}
-
-/// The body of an answer. Until it has been sent, its connection is busy.
-pub(crate) struct AnswerBody {
-    body: Body,
-    _answering: Answering,
-}
-
-impl HttpBody for AnswerBody {
-    type Data = Bytes;
-    type Error = io::Error;
-
-    fn poll_frame(
-        mut self: Pin<&mut Self>,
-        context: &mut Context<'_>,
-    ) -> Poll<Option<Result<Frame<Bytes>, io::Error>>> {
-        Pin::new(&mut self.body).poll_frame(context)
-    }
-
-    fn is_end_stream(&self) -> bool {
-        self.body.is_end_stream()
-    }
-
-    fn size_hint(&self) -> SizeHint {
-        self.body.size_hint()
     }
 }

@@ -78,33 +78,25 @@ pub(crate) fn open(on_disk: &dyn OnDisk, known: &Mutex<Option<Known>>) -> io::Re
     let file = on_disk.open()?;
     let state = State::from_metadata(&file.metadata()?)?;
     let length_bytes = state.length_bytes;
-    let of_known = |known: &Known| (known.state == state).then(|| known.tag.clone());
-    let tag = known.lock().unwrap_or_else(PoisonError::into_inner).as_ref().and_then(of_known);
-    if let Some(tag) = tag {
-        return Ok(OpenedFile { file, length_bytes, tag });
-    }
-    let tag = tag_of(on_disk, &file, &state)?;
-    let now = Known { state, tag: tag.clone() };
-    *known.lock().unwrap_or_else(PoisonError::into_inner) = Some(now);
+    let last = || known.lock().unwrap_or_else(PoisonError::into_inner);
+    let tag = last().as_ref().filter(|last| last.state == state).map(|last| last.tag.clone());
+    let tag = match tag {
+        Some(tag) => tag,
+        None => tag_of(on_disk, &file, &state)?,
+    };
+    *last() = Some(Known { state, tag: tag.clone() });
     Ok(OpenedFile { file, length_bytes, tag })
 }
 
 /// The tag: length, time and half of a hash of the bytes that distinguish versions, in quotes.
 fn tag_of(on_disk: &dyn OnDisk, file: &File, state: &State) -> io::Result<String> {
     let mut digest = Sha256::new();
-    let mut chunk = vec![0; 1 << 16];
     for range in on_disk.telling(file)? {
         let mut reader = file;
         reader.seek(SeekFrom::Start(range.start))?;
-        let mut part = reader.take((range.end - range.start).min(MOST_BYTES));
         digest.update(range.start.to_le_bytes());
         digest.update(range.end.to_le_bytes());
-        loop {
-            match part.read(&mut chunk)? {
-                0 => break,
-                length => digest.update(&chunk[..length]),
-            }
-        }
+        io::copy(&mut reader.take((range.end - range.start).min(MOST_BYTES)), &mut digest)?;
     }
     // Times before 1970 are distinguished, too.
     let (sign, since) = match state.modified.duration_since(UNIX_EPOCH) {

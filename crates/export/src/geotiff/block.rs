@@ -12,7 +12,7 @@ use corniche_tileset::{FilePackage, SampleSums, Sections, TileTerrain};
 use corniche_tin::{TriangleBuckets, WindowPlacement, heights_m};
 use corniche_work::locked;
 
-use super::{file::Number, grid::BLOCK};
+use super::{file::Pixel, grid::BLOCK};
 use crate::error::{ElevationError, RasterError, TileError};
 
 /// A block in the form in which it is written: 256 × 256 nodes, including those beyond the raster.
@@ -114,11 +114,12 @@ struct Heights {
     is_own: Vec<bool>,
 }
 
-/// Computes the block of a window.
-pub(crate) fn make<T: Number>(
+/// Computes the block of a window; `pixel` converts heights.
+pub(crate) fn make<T: Pixel>(
     tins: &Tins<'_>,
     window: &NodeWindow,
     reader: Option<&mut HeightReader<'_>>,
+    pixel: fn(f64) -> T,
 ) -> Result<RasterBlock<T>, RasterError> {
     let Heights { heights_m, is_own } = tins.heights(window)?;
     let quantum_m = tins.package.manifest().vertical.quantum_m;
@@ -137,17 +138,17 @@ pub(crate) fn make<T: Number>(
             sums.add(is_own[place].then_some(error_m.abs()));
             error_m
         });
-        errors_m = whole(&own.collect::<Vec<f64>>(), window);
+        errors_m = whole(&own.collect::<Vec<f64>>(), window, pixel);
     }
-    Ok(RasterBlock { heights_m: whole(&heights_m, window), errors_m, covered, sums })
+    Ok(RasterBlock { heights_m: whole(&heights_m, window, pixel), errors_m, covered, sums })
 }
 
 /// Extends the numbers of a window to a whole block.
-fn whole<T: Number>(numbers: &[f64], window: &NodeWindow) -> Vec<T> {
-    let mut block = vec![T::from_f64(f64::NAN); BLOCK * BLOCK];
+fn whole<T: Pixel>(numbers: &[f64], window: &NodeWindow, pixel: fn(f64) -> T) -> Vec<T> {
+    let mut block = vec![pixel(f64::NAN); BLOCK * BLOCK];
     for (from, to) in numbers.chunks(window.columns).zip(block.chunks_mut(BLOCK)) {
         for (from, to) in from.iter().zip(to) {
-            *to = T::from_f64(*from);
+            *to = pixel(*from);
         }
     }
     block

@@ -70,23 +70,6 @@ pub(crate) trait Pixel: GdalType + bytemuck::Pod + Send {}
 
 impl<T: GdalType + bytemuck::Pod + Send> Pixel for T {}
 
-/// The type of a height.
-pub(crate) trait Number: Pixel {
-    fn from_f64(value: f64) -> Self;
-}
-
-impl Number for f32 {
-    fn from_f64(value: f64) -> Self {
-        value as Self
-    }
-}
-
-impl Number for f64 {
-    fn from_f64(value: f64) -> Self {
-        value
-    }
-}
-
 /// The metadata of a raster.
 pub(crate) struct RasterFacts {
     pub(crate) pixels: &'static PixelKind,

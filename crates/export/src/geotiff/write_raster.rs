@@ -9,7 +9,7 @@ use corniche_work::{Observer, Stage, workers::make_all};
 
 use super::{
     block::{self, RasterBlock, Tins},
-    file::{HEIGHTS, Number, RasterFacts, RasterFile},
+    file::{HEIGHTS, Pixel, RasterFacts, RasterFile},
     grid::{RasterGrid, RasterSize},
 };
 use crate::{
@@ -88,22 +88,24 @@ pub fn export_geotiff(
     writing.check_size()?;
     let places = Places::new(manifest, FeatureCoordinates::Package)?;
     let facts = writing.facts(&places);
-    let (written, pixels) = if fits_f32(manifest) {
-        (writing.write::<f32>(path, &facts)?, "Float32")
-    } else {
-        (writing.write::<f64>(path, &facts)?, "Float64")
-    };
-    Ok(GeoTiffSummary {
+    let mut summary = GeoTiffSummary {
         level,
         columns: grid.size.columns as u64,
         rows: grid.size.rows as u64,
-        covered: written.covered,
-        pixels,
+        covered: 0,
+        pixels: "Float32",
         error_bound_m: writing.bound_m(),
-        sample_error: request.elevation.is_some().then(|| written.sums.record()),
-        heights: places.heights.clone(),
-        has_same_crs: written.has_same_crs,
-    })
+        sample_error: None,
+        heights: places.heights,
+        has_same_crs: false,
+    };
+    if fits_f32(manifest) {
+        writing.write(path, &facts, &mut summary, |height_m| height_m as f32)?;
+    } else {
+        summary.pixels = "Float64";
+        writing.write(path, &facts, &mut summary, |height_m| height_m)?;
+    }
+    Ok(summary)
 }
 
 /// Whether f32 preserves all heights of a package to a tenth of its quantum.
@@ -123,12 +125,6 @@ struct Writing<'a> {
     request: &'a GeoTiffRequest<'a>,
     grid: RasterGrid,
     observer: &'a dyn Observer,
-}
-
-struct RasterTotals {
-    covered: u64,
-    sums: SampleSums,
-    has_same_crs: bool,
 }
 
 impl Writing<'_> {
@@ -192,16 +188,17 @@ impl Writing<'_> {
         }
     }
 
-    fn write<T: Number>(
+    fn write<T: Pixel>(
         &self,
         path: &Path,
         facts: &RasterFacts,
-    ) -> Result<RasterTotals, RasterError> {
+        summary: &mut GeoTiffSummary,
+        pixel: fn(f64) -> T,
+    ) -> Result<(), RasterError> {
         let Self { package, level, request, grid, observer } = self;
         let mut file = RasterFile::<T>::create(path, grid.size, facts)?;
         let tins = Tins::new(package, *level);
         let mut sums = SampleSums::new(package.manifest().vertical.quantum_m);
-        let mut covered = 0;
         let [columns, rows] = grid.size.blocks();
         observer.begin(Stage::ExportBlocks, Some((columns * rows) as u64));
         let rows_at_once = BLOCKS_AT_ONCE.div_ceil(columns);
@@ -215,22 +212,23 @@ impl Writing<'_> {
                 request.threads,
                 &places,
                 || Ok(request.elevation.map(|Elevation { dem, plan }| dem.reader(plan))),
-                |reader, place| block::make(&tins, &grid.window(*place), reader.as_mut()),
+                |reader, place| block::make(&tins, &grid.window(*place), reader.as_mut(), pixel),
             )?;
             for RasterBlock { heights_m, errors_m, covered: own, sums: own_sums } in made {
                 file.push(0, heights_m)?;
                 if request.elevation.is_some() {
                     file.push(1, errors_m)?;
                 }
-                covered += own;
+                summary.covered += own;
                 sums.merge(&own_sums);
             }
         }
-        if covered == 0 {
+        if summary.covered == 0 {
             return Err(SelectionError::no_ground(package).into());
         }
-        let has_same_crs = file.finish()?;
+        summary.has_same_crs = file.finish()?;
+        summary.sample_error = request.elevation.is_some().then(|| sums.record());
         observer.end(Stage::ExportBlocks);
-        Ok(RasterTotals { covered, sums, has_same_crs })
+        Ok(())
     }
 }

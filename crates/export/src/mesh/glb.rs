@@ -16,7 +16,7 @@ use serde_json::{Map, Value, json};
 
 use super::{
     mesh_request::{color_of, ground_and_roads},
-    model::TileMesh,
+    model::{MeshCorner, TileMesh},
     writer::{Facts, MeshWriter, Spill, copy_all, spill_beside},
 };
 use crate::{
@@ -25,6 +25,7 @@ use crate::{
         ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Gltf, LINES, TRIANGLES, U32, floats, material,
         positions, write_container, y_up,
     },
+    relief_map::{ReliefMap, tangent},
     surfaces::SurfaceKind,
 };
 
@@ -70,42 +71,45 @@ impl<'a> GlbWriter<'a> {
         items: &[T],
         accessor: Value,
     ) -> io::Result<usize> {
-        self.gltf.numbers(items, json!({ "target": ARRAY_BUFFER }), accessor)
+        self.gltf.numbers(items, ARRAY_BUFFER, accessor)
     }
 
     fn add_indices(&mut self, indices: &[u32]) -> io::Result<usize> {
         let accessor = json!({ "componentType": U32, "type": "SCALAR" });
-        self.gltf.numbers(indices, json!({ "target": ELEMENT_ARRAY_BUFFER }), accessor)
+        self.gltf.numbers(indices, ELEMENT_ARRAY_BUFFER, accessor)
     }
 
     /// Adds the photo and the relief of a tile's ground, if the tile has them; returns the number
     /// of their material, and the attributes that vertices need.
     fn add_pictures(&mut self, tile: &TileMesh, name: &str) -> io::Result<(usize, Value)> {
         let (mut material, mut attributes) = (self.materials[0].clone(), json!({}));
-        if tile.picture.is_none() && tile.relief.is_none() {
+        if tile.texture.is_none() && tile.relief.is_none() {
             return Ok((0, attributes));
         }
         material["name"] = json!(format!("terrain {name}"));
         // Texture coordinates have the same order: the photo, then the relief.
-        if let Some(picture) = &tile.picture {
+        let corners = || tile.corners.iter();
+        if let Some(texture) = &tile.texture {
             let image = json!({ "mimeType": "image/jpeg", "name": format!("photo {name}") });
-            let texture = self.gltf.picture(&picture.jpeg, image)?;
-            material["pbrMetallicRoughness"]["baseColorTexture"] = json!({ "index": texture });
+            let index = self.gltf.picture(&texture.jpeg, image)?;
+            material["pbrMetallicRoughness"]["baseColorTexture"] = json!({ "index": index });
             material["pbrMetallicRoughness"]["baseColorFactor"] = json!([1.0, 1.0, 1.0, 1.0]);
-            attributes["TEXCOORD_0"] = json!(self.add_vertices(&picture.places, floats("VEC2"))?);
+            let places: Vec<_> = corners().map(|corner| texture.place(corner.across)).collect();
+            attributes["TEXCOORD_0"] = json!(self.add_vertices(&places, floats("VEC2"))?);
         }
         if let Some(relief) = &tile.relief {
             let image = json!({ "mimeType": "image/png", "name": format!("relief {name}") });
-            let texture = self.gltf.picture(&relief.map.png, image)?;
-            let number = usize::from(tile.picture.is_some());
-            material["normalTexture"] = json!({ "index": texture, "texCoord": number });
+            let index = self.gltf.picture(&relief.png, image)?;
+            let number = usize::from(tile.texture.is_some());
+            material["normalTexture"] = json!({ "index": index, "texCoord": number });
+            let places: Vec<_> = corners().map(|corner| ReliefMap::place(corner.across)).collect();
             attributes[format!("TEXCOORD_{number}")] =
-                json!(self.add_vertices(&relief.places, floats("VEC2"))?);
-            let tangent = |tangent: &[f32; 3]| {
-                let [x, y, z] = y_up(*tangent);
+                json!(self.add_vertices(&places, floats("VEC2"))?);
+            let tangent = |corner: &MeshCorner| {
+                let [x, y, z] = y_up(tangent(corner.normal));
                 [x, y, z, 1.0]
             };
-            let tangents: Vec<[f32; 4]> = relief.tangents.iter().map(tangent).collect();
+            let tangents: Vec<[f32; 4]> = corners().map(tangent).collect();
             attributes["TANGENT"] = json!(self.add_vertices(&tangents, floats("VEC4"))?);
         }
         self.materials.push(material);

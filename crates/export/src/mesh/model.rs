@@ -8,10 +8,10 @@ use super::mesh_request::{GROUND_COLOR, MeshFormat, MeshRequest, ModelRoads};
 use crate::{
     cut::cut_at_bounds,
     error::SurfaceError,
-    piece::{Vertex, WayPiece},
+    piece::Vertex,
     places::Places,
     read,
-    relief_map::{ReliefMap, tangent},
+    relief_map::ReliefMap,
     surfaces::{Divided, SurfaceKind, SurfaceLines, across},
     texture::Texture,
 };
@@ -76,25 +76,9 @@ pub(crate) struct TileMesh {
     pub(crate) kinds: Vec<SurfaceKind>,
     pub(crate) roads: Vec<ModelRoadLine>,
     /// The photo of the ground, in formats that embed images.
-    pub(crate) picture: Option<GroundImage>,
+    pub(crate) texture: Option<Texture>,
     /// The relief of the ground, in formats that embed images.
-    pub(crate) relief: Option<ReliefPicture>,
-}
-
-/// An image of the ground.
-pub(crate) struct GroundImage {
-    pub(crate) jpeg: Vec<u8>,
-    /// The texture coordinates of each corner, from the upper left.
-    pub(crate) places: Vec<[f32; 2]>,
-}
-
-/// The relief of the ground.
-pub(crate) struct ReliefPicture {
-    pub(crate) map: ReliefMap,
-    /// The texture coordinates of each corner, from the upper left, and the tangents of the normal
-    /// map.
-    pub(crate) places: Vec<[f32; 2]>,
-    pub(crate) tangents: Vec<[f32; 3]>,
+    pub(crate) relief: Option<ReliefMap>,
 }
 
 /// A corner of the ground or of a slab.
@@ -105,6 +89,8 @@ pub(crate) struct MeshCorner {
     /// The lattice point of a corner that other tiles may share: it is on the ground, on the tile's
     /// border.
     pub(crate) shared: Option<LatticePoint>,
+    /// Shares of the way across the tile, from the west and from the north.
+    pub(crate) across: [f32; 2],
 }
 
 /// A line of a road on the ground.
@@ -143,7 +129,6 @@ impl TileReading<'_> {
         // Corners of other triangles are dropped.
         let mut place = vec![u32::MAX; mesh.vertices.len()];
         let (mut corners, mut triangles, mut kinds) = (Vec::new(), Vec::new(), Vec::new());
-        let mut acrosses = Vec::new();
         for (triangle, label) in mesh.triangles.iter().zip(&mesh.labels) {
             if !is_wanted(triangle) {
                 continue;
@@ -156,11 +141,11 @@ impl TileReading<'_> {
                     // All vertices are on the lattice.
                     let point = LatticePoint::new(at[0] as i64, at[1] as i64);
                     let is_on_border = tile.has_on_border(point);
-                    acrosses.push(across(at, &tile));
                     corners.push(MeshCorner {
                         at_m: local.position_m(frame.position_of_fraction_m(at), vertex.height_m),
                         normal: vertex.normal,
                         shared: (is_on_border && !vertex.on_slab).then_some(point),
+                        across: across(at, &tile),
                     });
                 }
                 *place
@@ -174,24 +159,12 @@ impl TileReading<'_> {
             MeshFormat::Glb => Texture::of_tile(package, id, &request.style, GROUND_COLOR)?,
             MeshFormat::Ply | MeshFormat::Obj => None,
         };
-        let picture = texture.map(|texture| GroundImage {
-            places: acrosses.iter().map(|across| texture.place(*across)).collect(),
-            jpeg: texture.jpeg,
-        });
         let relief = ReliefMap::of_tile(package, id, payload.relief.as_ref(), mesh)?;
-        let relief = relief.map(|map| ReliefPicture {
-            map,
-            places: acrosses.iter().map(|across| ReliefMap::place(*across)).collect(),
-            tangents: corners.iter().map(|corner| tangent(corner.normal)).collect(),
-        });
         let pieces = match request.roads {
-            ModelRoads::Lines => read::pieces_of(&payload, manifest, &request.classes)?,
+            ModelRoads::Lines => read::pieces_of(&payload, manifest, &request.classes, false)?,
             ModelRoads::Surfaces | ModelRoads::None => Vec::new(),
         };
-        let cut = |piece: WayPiece| match &request.bounds {
-            Some(bounds) => cut_at_bounds(&piece, bounds, &|at| places.wgs84(at)),
-            None => vec![piece],
-        };
+        let cut = |piece| cut_at_bounds(piece, request.bounds.as_ref(), &|at| places.wgs84(at));
         let point_m =
             |vertex: &Vertex| local.position_m(frame.position_of_fraction_m(vertex.at), vertex.z_m);
         let roads = pieces.into_iter().flat_map(cut).map(|piece| ModelRoadLine {
@@ -204,7 +177,7 @@ impl TileReading<'_> {
             triangles,
             kinds,
             roads: roads.collect(),
-            picture,
+            texture,
             relief,
         }))
     }

@@ -114,12 +114,8 @@ impl MeshWriter for PlyWriter<'_> {
             writeln!(into, "comment {name}: {}", text.replace(['\n', '\r'], " "))?;
         }
         writeln!(into, "element vertex {}", vertices.count)?;
-        for axis in ["x", "y", "z"] {
-            writeln!(into, "property double {axis}")?;
-        }
-        for axis in ["nx", "ny", "nz"] {
-            writeln!(into, "property float {axis}")?;
-        }
+        writeln!(into, "property double x\nproperty double y\nproperty double z")?;
+        writeln!(into, "property float nx\nproperty float ny\nproperty float nz")?;
         writeln!(into, "property uchar frc")?;
         writeln!(into, "element face {face_count}\nproperty list uchar int vertex_indices")?;
         if style.is_some() {

@@ -13,7 +13,7 @@ use super::{
     facets::MeshVertex,
     horizon::{occlusion_point, sphere},
     mesh::QuantizedTile,
-    tiling::{Horizon, LAST_STEP},
+    tiling::LAST_STEP,
 };
 use crate::surfaces::by_first_use;
 
@@ -29,17 +29,14 @@ pub(crate) const METADATA_NAME: &str = "metadata";
 
 /// Encodes a tile, without compression. `metadata` is JSON. A tile without a horizon occlusion
 /// point gets NaN there, and viewers never treat it as hidden.
-pub(crate) fn encode(mesh: &QuantizedTile, metadata: Option<&str>, horizon: Horizon) -> Vec<u8> {
+pub(crate) fn encode(mesh: &QuantizedTile, metadata: Option<&str>, has_horizon: bool) -> Vec<u8> {
     // Number the vertices by first use, as high-water marks require.
     let mut triangles = mesh.triangles.clone();
     let order = by_first_use(&mut triangles, mesh.vertices.len());
     let vertices: Vec<&MeshVertex> = order.iter().map(|&k| &mesh.vertices[k as usize]).collect();
     let mut bytes = Vec::with_capacity(200 + 8 * vertices.len() + 12 * triangles.len());
     let (middle_m, radius_m) = sphere(mesh);
-    let horizon = match horizon {
-        Horizon::Point => occlusion_point(mesh, middle_m),
-        Horizon::None => [f64::NAN; 3],
-    };
+    let horizon = if has_horizon { occlusion_point(mesh, middle_m) } else { [f64::NAN; 3] };
     doubles(&mut bytes, &middle_m);
     for height_m in mesh.range_m {
         bytes.extend(height_m.to_le_bytes());

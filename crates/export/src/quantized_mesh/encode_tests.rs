@@ -59,7 +59,7 @@ fn a_square_is_laid_out_as_the_format_says() {
         triangles: vec![[1, 3, 2], [0, 1, 2]],
         range_m: [1000.0, 1009.0],
     };
-    let bytes = encode(&mesh, Some("{}"), Horizon::Point);
+    let bytes = encode(&mesh, Some("{}"), true);
     let half = |at: usize| u16::from_le_bytes([bytes[at], bytes[at + 1]]);
     let word = |at: usize| u32::from(half(at)) | u32::from(half(at + 2)) << 16;
     let single = |at: usize| f32::from_bits(word(at));
@@ -91,7 +91,7 @@ fn a_square_is_laid_out_as_the_format_says() {
     assert_eq!((bytes[177], word(178), word(182)), (METADATA, 6, 2));
     assert_eq!(&bytes[186..], b"{}");
     // A tile without a horizon occlusion point has numbers there that always compare as false.
-    let around_the_globe = encode(&mesh, None, Horizon::None);
+    let around_the_globe = encode(&mesh, None, false);
     assert!(
         around_the_globe[64..88]
             .chunks(8)
@@ -119,7 +119,7 @@ fn many_vertices_have_wide_indices() {
     let (count, mesh) =
         (vertices.len(), QuantizedTile { vertices, triangles, range_m: [1000.0, 1000.0] });
     assert!(count > MOST_OF_U16);
-    let bytes = encode(&mesh, None, Horizon::Point);
+    let bytes = encode(&mesh, None, true);
     let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
     assert_eq!(word(88) as usize, count);
     let uv = |from: usize| {

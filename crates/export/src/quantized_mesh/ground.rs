@@ -1,6 +1,6 @@
 //! Heights of a package's finest ground at places on the globe.
 
-use std::sync::Arc;
+use std::{collections::BTreeMap, sync::Arc};
 
 use corniche_geom::{Bounds, LatticeBounds, LatticePoint, Seam, TileId};
 use corniche_tileset::{FilePackage, Manifest, Sections};
@@ -50,16 +50,15 @@ impl<'a> GroundReader<'a> {
         for side in [[0, 0], [-1, 0], [0, 1], [-1, 1]] {
             self.add_heights(&positions, side, &mut own)?;
         }
-        let on_ground: Vec<usize> = (0..own.len()).filter(|&k| !own[k].is_nan()).collect();
-        let at: Vec<[f64; 2]> = on_ground.iter().map(|&k| positions[k]).collect();
-        let mut wanted: Vec<f64> = on_ground.iter().map(|&k| own[k]).collect();
+        let on_ground = near.into_iter().zip(positions.into_iter().zip(own));
+        let on_ground = on_ground.filter(|(_, (_, height_m))| !height_m.is_nan());
+        let (found, (at, mut wanted)): (Vec<usize>, (Vec<_>, Vec<_>)) = on_ground.unzip();
         self.places.to_wanted_heights(&at, &mut wanted)?;
-        let of_place = |k: usize| near[on_ground[k]];
-        let at_deg: Vec<[f64; 2]> = (0..at.len()).map(|k| places_deg[of_place(k)]).collect();
+        let at_deg: Vec<[f64; 2]> = found.iter().map(|&k| places_deg[k]).collect();
         self.places.all_have_heights(&at_deg, &wanted)?;
         let mut heights_m = vec![f64::NAN; places_deg.len()];
-        for (k, height_m) in wanted.into_iter().enumerate() {
-            heights_m[of_place(k)] = height_m;
+        for (k, height_m) in found.into_iter().zip(wanted) {
+            heights_m[k] = height_m;
         }
         Ok(heights_m)
     }
@@ -223,27 +222,14 @@ impl<'a> GroundReader<'a> {
             let [column, row] = frame.tile_column_row(finest, beside);
             TileId::new(finest, u32::try_from(column).ok()?, u32::try_from(row).ok()?).ok()
         };
-        // Neighbours are mostly in the same tile.
-        let mut by_tile: Vec<(TileId, Vec<(usize, LatticePoint)>)> = Vec::new();
-        let mut last = 0;
-        for (k, position) in positions.iter().enumerate() {
-            if !heights_m[k].is_nan() {
-                continue;
-            }
+        let mut by_tile: BTreeMap<TileId, Vec<(usize, LatticePoint)>> = BTreeMap::new();
+        for (k, position) in positions.iter().enumerate().filter(|(k, _)| heights_m[*k].is_nan()) {
             let Some(point) = frame.snap(*position) else { continue };
             let tile = tile_beside(point, side);
-            if side != [0, 0] && tile == tile_beside(point, [0, 0]) {
-                continue;
+            let is_new = side == [0, 0] || tile != tile_beside(point, [0, 0]);
+            if let Some(id) = tile.filter(|_| is_new) {
+                by_tile.entry(id).or_default().push((k, point));
             }
-            let Some(id) = tile else { continue };
-            if by_tile.get(last).is_none_or(|(known, _)| *known != id) {
-                let known = by_tile.iter().position(|(known, _)| *known == id);
-                last = known.unwrap_or(by_tile.len());
-                if known.is_none() {
-                    by_tile.push((id, Vec::new()));
-                }
-            }
-            by_tile[last].1.push((k, point));
         }
         for (id, members) in by_tile {
             let tile = self.tile(id)?;

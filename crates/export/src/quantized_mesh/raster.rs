@@ -74,13 +74,19 @@ impl Window {
         self.heights_m[self.at(node)]
     }
 
-    fn has_gap(&self) -> bool {
-        self.inner().any(|node| self.height_m(node).is_nan())
-    }
-
     /// Fills in a height at each node without ground: the mean of its neighbours with ground, if
-    /// any; otherwise the height at that place on the level above; otherwise that of the ellipsoid.
-    fn fill(&mut self, above: Option<&Self>) {
+    /// any; otherwise the height at that place on the level above, which is filled in the same way;
+    /// otherwise that of the ellipsoid.
+    fn fill(&mut self, ground: &GroundReader<'_>) -> Result<(), QuantizedMeshError> {
+        let gaps: Vec<[i64; 2]> =
+            self.inner().filter(|node| self.height_m(*node).is_nan()).collect();
+        if gaps.is_empty() {
+            return Ok(());
+        }
+        let mut above = self.above(ground)?;
+        if let Some(above) = &mut above {
+            above.fill(ground)?;
+        }
         let beside_ground = |[i, j]: [i64; 2]| {
             let around = (-1..=1).flat_map(|dj| (-1..=1).map(move |di| [i + di, j + dj]));
             mean(around.map(|node| self.height_m(node)).filter(|height_m| !height_m.is_nan()))
@@ -90,16 +96,14 @@ impl Window {
             let around = [low, [high[0], low[1]], [low[0], high[1]], high];
             mean(around.into_iter().map(|node| above.height_m(node)))
         };
-        let gaps = self.inner().filter(|node| self.height_m(*node).is_nan());
-        let found: Vec<(usize, f64)> = gaps
-            .map(|node| {
-                let height_m = beside_ground(node).or_else(|| between(above?, node));
-                (self.at(node), height_m.unwrap_or(FAR_FROM_GROUND_M))
-            })
-            .collect();
-        for (at, height_m) in found {
+        let filled = gaps.into_iter().map(|node| {
+            let height_m = beside_ground(node).or_else(|| between(above.as_ref()?, node));
+            (self.at(node), height_m.unwrap_or(FAR_FROM_GROUND_M))
+        });
+        for (at, height_m) in filled.collect::<Vec<_>>() {
             self.heights_m[at] = height_m;
         }
+        Ok(())
     }
 }
 
@@ -133,19 +137,7 @@ impl HeightRaster {
             .map(|node| window.at(node))
             .collect();
         let is_ground = order.iter().map(|&at| !window.heights_m[at].is_nan()).collect();
-        let mut coarser = Vec::new();
-        while let Some(above) = {
-            let last = coarser.last().unwrap_or(&window);
-            if last.has_gap() { last.above(ground)? } else { None }
-        } {
-            coarser.push(above);
-        }
-        let mut above: Option<Window> = None;
-        while let Some(mut next) = coarser.pop() {
-            next.fill(above.as_ref());
-            above = Some(next);
-        }
-        window.fill(above.as_ref());
+        window.fill(ground)?;
         Ok(Self {
             nodes,
             tile,
@@ -281,15 +273,11 @@ impl HeightRaster {
             wanted.extend(along.into_iter().map(|step| self.on_side(side, step)));
         }
         // All at once, so that tiles of the package are read once.
-        let places: Vec<[f64; 2]> =
-            wanted.iter().map(|(steps, _)| self.nodes.place_deg(self.tile, *steps)).collect();
-        let heights_m = ground.heights_m(&places)?;
-        let mut found = wanted.into_iter().zip(places).zip(heights_m).map(
-            |(((steps, between), [lon, lat]), height_m)| {
-                let has_ground = !height_m.is_nan();
-                has_ground.then(|| GroundSample::new(steps, [lon, lat, height_m], between))
-            },
-        );
+        let steps: Vec<[u16; 2]> = wanted.iter().map(|(steps, _)| *steps).collect();
+        let places = self.ground_at(&steps, ground)?;
+        let mut found = wanted.into_iter().zip(places).map(|((steps, between), place)| {
+            place.map(|place| GroundSample::new(steps, place, between))
+        });
         inside.extend(found.by_ref().take(of_inside).flatten());
         let border = |count| found.by_ref().take(count).flatten().collect();
         Ok(TileSamples { inside, borders: on_sides.into_iter().map(border).collect() })

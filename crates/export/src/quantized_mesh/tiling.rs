@@ -21,15 +21,6 @@ pub enum Tiling {
     WebMercator,
 }
 
-/// Whether a tile has a horizon occlusion point.
-#[derive(Clone, Copy)]
-pub(crate) enum Horizon {
-    /// The tile has a point that is hidden only when the whole tile is.
-    Point,
-    /// No such point exists: the tile is never hidden.
-    None,
-}
-
 /// A tile of the globe's grid, named as in the tile map service: rows count from the south.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct TerrainTile {
@@ -121,10 +112,10 @@ impl Tiling {
         ((share * Self::rows(level) as f64).floor() as i64).clamp(0, Self::rows(level) - 1)
     }
 
-    /// Returns the kind of a tile's horizon occlusion point: none for a tile that is wider than
-    /// half the globe.
-    pub(crate) fn horizon_of(self, tile: TerrainTile) -> Horizon {
-        if self == Self::WebMercator && tile.z == 0 { Horizon::None } else { Horizon::Point }
+    /// Whether a tile has a horizon occlusion point, which is hidden only when the whole tile is.
+    /// Tiles that are wider than half the globe have none, and are never hidden.
+    pub(crate) fn has_horizon(self, tile: TerrainTile) -> bool {
+        self != Self::WebMercator || tile.z > 0
     }
 }
 

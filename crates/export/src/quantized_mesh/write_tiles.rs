@@ -269,7 +269,7 @@ impl<'a> Job<'a> {
         let deviation = comparison.deviation(on_borders, limit_m, level.is_finest, at_steps)?;
         let mesh = mesh.to_tile();
         let metadata = metadata(self.request, available.unwrap_or_default(), tile);
-        let bytes = encode(&mesh, metadata.as_deref(), tiling.horizon_of(tile));
+        let bytes = encode(&mesh, metadata.as_deref(), tiling.has_horizon(tile));
         let file = packed(self.request, bytes)?;
         let triangles = mesh.triangles.len() as u64;
         Ok(Some((EncodedMesh { triangles, bytes: file.len() as u64, deviation }, file)))

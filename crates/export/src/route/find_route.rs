@@ -143,20 +143,16 @@ impl Finder<'_> {
 
     /// Returns the route along the whole named road, from its western to its eastern end.
     pub(crate) fn whole(&self) -> Result<NetworkRoute, RouteError> {
-        let mut matched = self.matched();
+        let matched = self.matched();
+        let nothing = || RouteError::NothingToFollow { of: self.of_text() };
+        let road = matched.first().ok_or_else(nothing)?;
         let all_m: f64 = matched.iter().map(|road| road.length_m).sum();
-        let is_clear = |road: &MatchedRoad| road.length_m >= MOST_OF_THEM * all_m;
-        if matched.is_empty() {
-            return Err(RouteError::NothingToFollow { of: self.of_text() });
+        let text = |road: &MatchedRoad| road.text(self.graph);
+        if road.length_m < MOST_OF_THEM * all_m {
+            let roads = matched.iter().map(text).collect();
+            return Err(RouteError::SeveralRoads { query: self.query_text(), roads });
         }
-        let others = matched.split_off(1);
-        let same_name: Vec<String> = others.iter().map(|road| road.text(self.graph)).collect();
-        let road = &matched[0];
-        if !is_clear(road) {
-            let query = self.road.map(RoadQuery::text).unwrap_or_default();
-            let roads = std::iter::once(road.text(self.graph)).chain(same_name).collect();
-            return Err(RouteError::SeveralRoads { query, roads });
-        }
+        let same_name = matched[1..].iter().map(text).collect();
         let mut best: Option<(f64, Vec<EdgeStretch>)> = None;
         for (from, tos) in self.end_pairs(road) {
             let ways = self.graph.shortest(&[(from, 0.0)], |_| true);
@@ -167,11 +163,13 @@ impl Finder<'_> {
                 }
             }
         }
-        let Some((_, stretches)) = best else {
-            return Err(RouteError::NothingToFollow { of: self.of_text() });
-        };
+        let (_, stretches) = best.ok_or_else(nothing)?;
         let route = self.route(&stretches)?;
         Ok(NetworkRoute { road_m: Some(road.length_m), same_name, ..route })
+    }
+
+    fn query_text(&self) -> String {
+        self.road.map(RoadQuery::text).unwrap_or_default()
     }
 
     fn of_text(&self) -> String {
@@ -329,7 +327,7 @@ impl Finder<'_> {
                 gap_m += own_m;
                 if gap_m > MOST_GAP_M {
                     let [lon, lat] = self.graph.places.wgs84(points[0].in_steps());
-                    let query = self.road.map(RoadQuery::text).unwrap_or_default();
+                    let query = self.query_text();
                     return Err(RouteError::RoadInterrupted { query, lon, lat });
                 }
             }
@@ -337,9 +335,8 @@ impl Finder<'_> {
             let is_against = stretch.from_m > stretch.to_m;
             legs.push(CourseLeg { way_id, is_against, points });
         }
-        let way = |leg: &CourseLeg| {
-            self.roads.known.get(&leg.way_id).map(|way| (leg.way_id, way.clone()))
-        };
+        let known = &self.roads.known;
+        let way = |leg: &CourseLeg| Some((leg.way_id, known.get(&leg.way_id)?.clone()));
         let ways = legs.iter().filter_map(way).collect();
         let course = Course { legs, ways, is_of_ways: true, begins_deg: None };
         Ok(NetworkRoute { course, length_m, others_m, ..NetworkRoute::default() })
@@ -359,10 +356,9 @@ impl Finder<'_> {
         };
         let [low_m, high_m] = [from_m.min(to_m), from_m.max(to_m)];
         let [first, last] = [at(low_m), at(high_m)];
-        let inner =
-            points.iter().zip(&along_m).filter(|(_, at_m)| **at_m > low_m && **at_m < high_m);
-        let inner: Vec<LatticePoint> = inner.map(|(point, _)| *point).collect();
-        points = [vec![first], inner, vec![last]].concat();
+        let inner = points.iter().zip(&along_m);
+        let inner = inner.filter(|(_, at_m)| **at_m > low_m && **at_m < high_m);
+        points = [first].into_iter().chain(inner.map(|(point, _)| *point)).chain([last]).collect();
         points.dedup();
         if from_m > to_m {
             points.reverse();

@@ -137,7 +137,7 @@ impl<'a> SurfaceLines<'a> {
         let work = StepBudget::new(MOST_STEPS);
         let failed = |source| SurfaceError::TooManyBridges { tile: id, source };
         let mut lines = Vec::new();
-        for piece in read::pieces(self.package, id, classes)? {
+        for piece in read::pieces(self.package, id, classes, false)? {
             if piece.attributes.structure == Structure::Tunnel {
                 continue;
             }

@@ -19,7 +19,7 @@ use corniche_tileset::{SpanHeight, SpanRun};
 
 use crate::{
     piece::{Vertex, WayPiece, own_points},
-    plane::nearest_point,
+    plane::{distance, nearest_point},
 };
 
 /// Points of runs are rounded to the lattice: they are within this many steps of their line.
@@ -296,10 +296,6 @@ fn high_parts(deck: &[Station], line: &MeasuredLine<'_>, least_m: f64) -> Vec<Ve
     }
     parts.retain(|part| part.len() > 1);
     parts
-}
-
-fn distance(from: [f64; 2], to: [f64; 2]) -> f64 {
-    (to[0] - from[0]).hypot(to[1] - from[1])
 }
 
 #[cfg(test)]

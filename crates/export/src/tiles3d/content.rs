@@ -224,48 +224,44 @@ impl<'a> Builder<'a> {
 
     /// Adds the ground, the surfaces of roads and slabs.
     fn surfaces(&mut self, divided: &Divided) {
-        let labels = &self.placed.labels;
-        let mut triangles: Vec<usize> = (0..labels.len()).collect();
-        triangles.sort_by_key(|&triangle| labels[triangle]);
+        let PlacedTile { vertices, triangles, labels, .. } = self.placed;
         // Primitives in the order of classes, ground first; roads are sorted by class.
-        let mut by_kind: BTreeMap<SurfaceKind, Vec<(u32, &[usize])>> = BTreeMap::new();
-        for of_label in triangles.chunk_by(|&one, &next| labels[one] == labels[next]) {
-            let label = labels[of_label[0]];
-            by_kind.entry(divided.kind_of(label)).or_default().push((label, of_label));
+        let mut by_label: BTreeMap<(SurfaceKind, u32), Vec<[u32; 3]>> = BTreeMap::new();
+        for (triangle, &label) in triangles.iter().zip(labels) {
+            by_label.entry((divided.kind_of(label), label)).or_default().push(*triangle);
         }
+        let mut parts: BTreeMap<SurfaceKind, Primitive> = BTreeMap::new();
         // For each placed vertex, the label that used it last, and its index in the primitive. Each
         // label has its own vertices.
-        let mut places = vec![None; self.placed.vertices.len()];
-        for (kind, labels) in by_kind {
-            let mut part = Primitive::default();
-            for (label, of_label) in labels {
-                let road = divided.road_of(label);
-                for corner in of_label.iter().flat_map(|&triangle| self.placed.triangles[triangle])
-                {
-                    let corner = corner as usize;
-                    let index = match places[corner] {
-                        Some((last, index)) if last == label => index,
-                        _ => {
-                            let index = part.positions.len() as u32;
-                            places[corner] = Some((label, index));
-                            let vertex = &self.placed.vertices[corner];
-                            part.positions.push(y_up(vertex.at_m));
-                            part.normals.push(y_up(vertex.normal));
-                            match road {
-                                Some(road) => part.ways.push(road.way.id),
-                                None => self.add_look(vertex, &mut part),
-                            }
-                            index
+        let mut places = vec![None; vertices.len()];
+        for ((kind, label), triangles) in by_label {
+            let part = parts.entry(kind).or_default();
+            let road = divided.road_of(label);
+            for corner in triangles.into_flattened() {
+                let corner = corner as usize;
+                let index = match places[corner] {
+                    Some((last, index)) if last == label => index,
+                    _ => {
+                        let index = part.positions.len() as u32;
+                        places[corner] = Some((label, index));
+                        let vertex = &vertices[corner];
+                        part.positions.push(y_up(vertex.at_m));
+                        part.normals.push(y_up(vertex.normal));
+                        match road {
+                            Some(road) => part.ways.push(road.way.id),
+                            None => self.add_look(vertex, part),
                         }
-                    };
-                    part.indices.push(index);
-                }
-                if let Some(road) = road {
-                    self.add_row(road.way.id, road.way.class, &road.way.attributes);
-                }
+                        index
+                    }
+                };
+                part.indices.push(index);
             }
-            self.parts.push((PrimitiveKind::Surface(kind), part));
+            if let Some(road) = road {
+                self.add_row(road.way.id, road.way.class, &road.way.attributes);
+            }
         }
+        let parts = parts.into_iter().map(|(kind, part)| (PrimitiveKind::Surface(kind), part));
+        self.parts.extend(parts);
     }
 
     fn skirt(&mut self, skirt: &Skirt) {
@@ -292,7 +288,7 @@ impl<'a> Builder<'a> {
         kind: fn(FunctionalRoadClass) -> PrimitiveKind,
     ) -> Result<(), Tiles3dError> {
         let lift_m = (error_m * LIFT_OF_ERROR).max(LEAST_LIFT_M);
-        let pieces = read::pieces_of(payload, self.manifest, &self.request.classes)?;
+        let pieces = read::pieces_of(payload, self.manifest, &self.request.classes, false)?;
         let mut by_class: BTreeMap<FunctionalRoadClass, Primitive> = BTreeMap::new();
         for piece in pieces {
             if piece.attributes.structure == Structure::Tunnel {
@@ -335,17 +331,13 @@ impl<'a> Builder<'a> {
     }
 
     fn finish(self, id: TileId) -> TileContent {
-        let Self { parts, rows, request, placed, manifest, look, .. } = self;
         TileContent {
-            name: id.to_string(),
-            translation: y_up(placed.middle_m),
-            parts,
-            roads: rows.into_values().collect(),
-            colors: request.style.roads.map(|road| road.bands.main_color()),
-            relief: look.relief,
-            picture: look.texture.map(|texture| texture.jpeg),
-            copyright: manifest.attribution.join("; "),
-            generator: manifest.generator.clone(),
+            id,
+            translation: y_up(self.placed.middle_m),
+            parts: self.parts,
+            roads: self.rows.into_values().collect(),
+            relief: self.look.relief,
+            picture: self.look.texture.map(|texture| texture.jpeg),
         }
     }
 }

@@ -9,10 +9,14 @@ use std::{
     io::{self, Write},
 };
 
-use corniche_styles::Rgb;
+use corniche_styles::Style;
+use corniche_tileset::Manifest;
 use serde_json::{Map, Value, json};
 
-use super::parts::{Primitive, PrimitiveKind, RESTART, RoadRow, TileContent};
+use super::{
+    content::Tiles3dRequest,
+    parts::{Primitive, PrimitiveKind, RESTART, RoadRow, TileContent},
+};
 use crate::{
     gltf::{
         ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Gltf, LINE_STRIP, LINES, SLAB_COLOR, TRIANGLES, U8,
@@ -33,15 +37,17 @@ const SHORT_INDICES: usize = 65_535;
 /// Writes a tile.
 pub(crate) fn write(
     tile: &TileContent,
-    is_compressed: bool,
+    manifest: &Manifest,
+    request: &Tiles3dRequest,
     into: &mut dyn Write,
 ) -> io::Result<()> {
-    let mut file = File { gltf: Gltf::default(), decoded: 0, is_compressed };
+    let gltf = Gltf::new(Vec::new());
+    let mut file = File { gltf, decoded: 0, is_compressed: request.compress };
     let (mut primitives, mut materials) = (Vec::new(), Vec::new());
     for (kind, part) in &tile.parts {
         let mut primitive = file.primitive(*kind, part, &tile.roads)?;
         primitive["material"] = json!(materials.len());
-        let mut material = material_of(*kind, &tile.colors);
+        let mut material = material_of(*kind, &request.style);
         // Textures and their coordinates have the same order: the photo, then the relief.
         let mut texture = 0;
         if !part.picture_places.is_empty() {
@@ -61,14 +67,14 @@ pub(crate) fn write(
     if let Some(relief) = &tile.relief {
         file.gltf.picture(&relief.png, json!({ "mimeType": "image/png" }))?;
     }
-    let document = file.document(tile, &primitives, &materials, table);
+    let document = file.document(tile, manifest, (&primitives, &materials), table);
     let Gltf { bytes, length, .. } = file.gltf;
     write_container(into, &document, length, |into| into.write_all(&bytes))
 }
 
-fn material_of(kind: PrimitiveKind, colors: &[Rgb]) -> Value {
+fn material_of(kind: PrimitiveKind, style: &Style) -> Value {
     let is_slab = matches!(kind, PrimitiveKind::Surface(SurfaceKind::Slab(_)));
-    let of_class = kind.class().map(|class| colors[usize::from(class.number())]);
+    let of_class = kind.class().map(|class| style.road(class).bands.main_color());
     let color = if is_slab { SLAB_COLOR } else { of_class.unwrap_or([1.0; 3]) };
     let mut material = material(&kind.name(), color);
     if of_class.is_some() && !is_slab {
@@ -164,11 +170,12 @@ impl File {
         let is_short = vertices < SHORT_INDICES;
         // The largest number restarts strips, with both index sizes.
         const { assert!(RESTART as u16 == u16::MAX) };
-        let short: Vec<u16> =
-            if is_short { indices.iter().map(|index| *index as u16).collect() } else { Vec::new() };
-        let plain: &[u8] =
-            if is_short { bytemuck::cast_slice(&short) } else { bytemuck::cast_slice(indices) };
-        let stride = if is_short { 2 } else { 4 };
+        let short = |index: &u32| (*index as u16).to_le_bytes();
+        let (plain, stride, component): (Vec<u8>, usize, u32) = if is_short {
+            (indices.iter().flat_map(short).collect(), 2, U16)
+        } else {
+            (bytemuck::cast_slice(indices).to_vec(), 4, U32)
+        };
         // The codec rejects indices that refer to no vertex.
         let is_compressed = self.is_compressed && !matches!(kind, PrimitiveKind::RoadStrips(_));
         let view = if is_compressed {
@@ -182,9 +189,8 @@ impl File {
             let how = json!({ "mode": mode, "count": indices.len() });
             self.compressed(&encoded, plain.len(), stride, how, ELEMENT_ARRAY_BUFFER)?
         } else {
-            self.gltf.view(plain, json!({ "target": ELEMENT_ARRAY_BUFFER }))?
+            self.gltf.view(&plain, json!({ "target": ELEMENT_ARRAY_BUFFER }))?
         };
-        let component = if is_short { U16 } else { U32 };
         let accessor = json!({ "componentType": component, "type": "SCALAR" });
         Ok(self.gltf.accessor(accessor, view, indices.len()))
     }
@@ -268,15 +274,17 @@ impl File {
     fn document(
         &self,
         tile: &TileContent,
-        primitives: &[Value],
-        materials: &[Value],
+        manifest: &Manifest,
+        (primitives, materials): (&[Value], &[Value]),
         table: Option<Value>,
     ) -> Value {
+        let copyright = manifest.attribution.join("; ");
         let asset = json!({
-            "version": "2.0", "generator": tile.generator, "copyright": tile.copyright,
+            "version": "2.0", "generator": manifest.generator, "copyright": copyright,
         });
-        let node = json!({ "name": tile.name, "mesh": 0, "translation": tile.translation });
-        let mesh = json!({ "name": tile.name, "primitives": primitives });
+        let name = tile.id.to_string();
+        let node = json!({ "name": name, "mesh": 0, "translation": tile.translation });
+        let mesh = json!({ "name": name, "primitives": primitives });
         let mut document = self.gltf.document(&asset, (&[node], &[mesh]), materials);
         let mut used = Vec::new();
         if self.is_compressed {

@@ -1,7 +1,7 @@
 //! The primitives of a tile, ready to be written.
 
+use corniche_geom::TileId;
 use corniche_roads::FunctionalRoadClass;
-use corniche_styles::Rgb;
 
 use crate::{relief_map::ReliefMap, surfaces::SurfaceKind};
 
@@ -66,17 +66,13 @@ pub(crate) struct RoadRow {
 
 /// The content of a tile of glTF.
 pub(crate) struct TileContent {
-    pub(crate) name: String,
+    pub(crate) id: TileId,
     /// The translation of the node, y upwards.
     pub(crate) translation: [f64; 3],
     pub(crate) parts: Vec<(PrimitiveKind, Primitive)>,
     pub(crate) roads: Vec<RoadRow>,
-    /// Colours of roads by class.
-    pub(crate) colors: [Rgb; FunctionalRoadClass::COUNT],
     /// The image of the ground as JPEG.
     pub(crate) picture: Option<Vec<u8>>,
     /// The normal map of the ground.
     pub(crate) relief: Option<ReliefMap>,
-    pub(crate) copyright: String,
-    pub(crate) generator: String,
 }

@@ -2,12 +2,13 @@
 
 use std::collections::HashMap;
 
-use corniche_geom::{LatticeBounds, TileId};
+use corniche_geom::TileId;
 
 use crate::{
     error::CoordinatesError,
     globe::{RootFrame, between, cross, dot, middle_of, unit},
     places::Places,
+    plane::sides,
     relief_map::tangent,
     surfaces::{LabelledMesh, across},
 };
@@ -179,11 +180,6 @@ fn turned(along: [f32; 3], [east, north, up]: [[f64; 3]; 3]) -> [f32; 3] {
     let [x, y, z] = along.map(f64::from);
     let turned = [0, 1, 2].map(|axis| x * east[axis] + y * north[axis] + z * up[axis]);
     unit(turned).map(|axis| axis as f32)
-}
-
-fn sides([u, v]: [f64; 2], bounds: &LatticeBounds) -> [bool; 4] {
-    let is_at = |here: f64, line: i64| (here - line as f64).abs() < f64::MIN_POSITIVE;
-    [is_at(u, bounds.min.u), is_at(u, bounds.max.u), is_at(v, bounds.min.v), is_at(v, bounds.max.v)]
 }
 
 /// A box along given axes.

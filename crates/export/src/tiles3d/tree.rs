@@ -29,15 +29,14 @@ const LEVELS_OF_A_DOCUMENT: u8 = 4;
 /// 3d-tiles, as `CesiumJS` 1.145 reads it.
 const VECTOR_EXTENSION: &str = "3DTILES_content_gltf_vector";
 
-/// The tiles with content in a tileset of vectors; the other tiles exist only because of those
-/// below. In any other tileset all tiles have a model.
-pub(crate) type WithVectors<'a> = Option<&'a BTreeSet<TileId>>;
-
 /// All tiles, by id.
 pub(crate) struct Tree<'a> {
     manifest: &'a Manifest,
     branches: BTreeMap<TileId, TileContentFacts>,
     documents: bool,
+    /// The tiles with content in a tileset of vectors; the other tiles exist only because of those
+    /// below. In any other tileset all tiles have a model.
+    pub(crate) with_vectors: Option<BTreeSet<TileId>>,
 }
 
 impl<'a> Tree<'a> {
@@ -58,7 +57,7 @@ impl<'a> Tree<'a> {
             }
         }
         let documents = branches.len() > TILES_OF_ONE_DOCUMENT;
-        Self { manifest, branches, documents }
+        Self { manifest, branches, documents, with_vectors: None }
     }
 
     /// Returns the tiles without a tile above.
@@ -69,32 +68,27 @@ impl<'a> Tree<'a> {
     }
 
     /// Writes all documents into a folder; returns their number.
-    pub(crate) fn write(
-        &self,
-        folder: &Path,
-        root: &RootFrame,
-        with_vectors: WithVectors<'_>,
-    ) -> io::Result<u64> {
+    pub(crate) fn write(&self, folder: &Path, root: &RootFrame) -> io::Result<u64> {
         let mut count = 1;
         if self.documents {
             for id in self.branches.keys().filter(|id| self.begins_document(**id)) {
                 // Documents are next to tiles, two folders deep.
-                let tile = self.tile(*id, *id, "../../", with_vectors);
-                let document = self.document(&tile, self.branches[id].error_m, with_vectors);
+                let tile = self.tile(*id, *id, "../../");
+                let document = self.document(&tile, self.branches[id].error_m);
                 write_json(&folder.join(document_name(*id)), &document)?;
                 count += 1;
             }
         }
         let roots = self.roots();
         let mut whole = match roots.as_slice() {
-            [only] => self.tile(*only, *only, "", with_vectors),
-            several => self.several(several, with_vectors),
+            [only] => self.tile(*only, *only, ""),
+            several => self.several(several),
         };
         whole["transform"] = json!(root.to_earth());
         let diagonal_m = roots.iter().map(|id| self.branches[id].tile_box.diagonal_m());
         // Before anything is drawn, all of it is missing.
         let error_m = diagonal_m.fold(0.0, f64::max);
-        let mut document = self.document(&whole, error_m, with_vectors);
+        let mut document = self.document(&whole, error_m);
         document["asset"]["extras"] = json!({ "corniche": {
             "crs": self.manifest.crs,
             "vertical_datum": self.manifest.vertical.datum,
@@ -104,7 +98,7 @@ impl<'a> Tree<'a> {
         Ok(count)
     }
 
-    fn several(&self, roots: &[TileId], with_vectors: WithVectors<'_>) -> Value {
+    fn several(&self, roots: &[TileId]) -> Value {
         let boxes = roots.iter().map(|id| self.branches[id].tile_box);
         let around = boxes.reduce(|mut around, next| {
             around.include_box(&next);
@@ -116,7 +110,7 @@ impl<'a> Tree<'a> {
             "geometricError": errors.fold(0.0, f64::max),
             "refine": "REPLACE",
             "children":
-                roots.iter().map(|id| self.tile(*id, *id, "", with_vectors)).collect::<Vec<_>>(),
+                roots.iter().map(|id| self.tile(*id, *id, "")).collect::<Vec<_>>(),
         })
     }
 
@@ -126,7 +120,7 @@ impl<'a> Tree<'a> {
 
     /// Returns a tile with its children; children in other documents are only referenced. `from` is
     /// the document's own root, `up` is the path to the folder.
-    fn tile(&self, id: TileId, from: TileId, up: &str, with_vectors: WithVectors<'_>) -> Value {
+    fn tile(&self, id: TileId, from: TileId, up: &str) -> Value {
         let TileContentFacts { tile_box, bound_m, error_m, .. } = self.branches[&id];
         let is_elsewhere = self.begins_document(id) && id != from;
         let is_named = is_elsewhere || (self.begins_document(id) && up.is_empty());
@@ -136,7 +130,7 @@ impl<'a> Tree<'a> {
             "geometricError": error_m,
             "content": { "uri": format!("{up}{name}") },
         });
-        if let (Some(tiles), false) = (with_vectors, is_named) {
+        if let (Some(tiles), false) = (&self.with_vectors, is_named) {
             if tiles.contains(&id) {
                 tile["content"]["extensions"] = json!({ VECTOR_EXTENSION: { "vector": true } });
             } else if let Some(tile) = tile.as_object_mut() {
@@ -155,7 +149,7 @@ impl<'a> Tree<'a> {
         let children: Vec<Value> = id
             .children()
             .filter(|child| self.branches.contains_key(child))
-            .map(|child| self.tile(child, from, up, with_vectors))
+            .map(|child| self.tile(child, from, up))
             .collect();
         if !children.is_empty() {
             tile["children"] = json!(children);
@@ -163,7 +157,7 @@ impl<'a> Tree<'a> {
         tile
     }
 
-    fn document(&self, root: &Value, error_m: f64, with_vectors: WithVectors<'_>) -> Value {
+    fn document(&self, root: &Value, error_m: f64) -> Value {
         let mut document = json!({
             "asset": {
                 "version": "1.1",
@@ -187,7 +181,7 @@ impl<'a> Tree<'a> {
             "geometricError": error_m,
             "root": root,
         });
-        if with_vectors.is_some() {
+        if self.with_vectors.is_some() {
             document["extensionsUsed"] = json!([VECTOR_EXTENSION]);
         }
         document

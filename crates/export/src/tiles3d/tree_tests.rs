@@ -92,7 +92,7 @@ fn every_tile_is_found_once() {
             fs::create_dir_all(place).unwrap();
         }
         let tree = Tree::new(&manifest, tiles);
-        documents.push(tree.write(folder.path(), &RootFrame::at([9.5, 47.0]), None).unwrap());
+        documents.push(tree.write(folder.path(), &RootFrame::at([9.5, 47.0])).unwrap());
         let first = fs::read(folder.path().join("tileset.json")).unwrap();
         let first: Value = serde_json::from_slice(&first).unwrap();
         assert_eq!(first["root"]["transform"].as_array().unwrap().len(), 16);
@@ -122,9 +122,10 @@ fn vectors_are_named_where_there_are_some() {
             let place = folder.path().join(id.z().to_string()).join(id.x().to_string());
             fs::create_dir_all(place).unwrap();
         }
-        let tree = Tree::new(&manifest, tiles);
+        let mut tree = Tree::new(&manifest, tiles);
         let root = RootFrame::at([9.5, 47.0]);
-        assert_eq!(tree.write(folder.path(), &root, Some(&with_roads)).unwrap(), documents);
+        tree.with_vectors = Some(with_roads.clone());
+        assert_eq!(tree.write(folder.path(), &root).unwrap(), documents);
         let (mut named, mut seen) = (BTreeSet::new(), 0);
         let mut open = vec![folder.path().join("tileset.json")];
         while let Some(path) = open.pop() {

@@ -1,7 +1,7 @@
 //! Writes a package as 3D Tiles into an empty folder.
 
 use std::{
-    collections::{BTreeMap, BTreeSet},
+    collections::BTreeMap,
     fs,
     io::{self, BufWriter, Write as _},
     path::Path,
@@ -104,7 +104,6 @@ pub fn export_tiles3d(
     if let Some(bounds) = &request.bounds {
         ids.retain(|id| read::meets(manifest, *id, bounds));
     }
-    let vector_folder = folder.join(VECTOR_FOLDER);
     make_folders(folder, &ids)?;
     let look = SurfaceRoads { classes: &request.classes, style: &request.style };
     let job = Job {
@@ -134,7 +133,7 @@ pub fn export_tiles3d(
             ..Tiles3dLevel::default()
         })
         .collect();
-    let tree = Tree::new(manifest, made.iter().map(|(id, tile)| (*id, tile.facts)));
+    let mut tree = Tree::new(manifest, made.iter().map(|(id, tile)| (*id, tile.facts)));
     for (id, WrittenTile { facts, bytes, .. }) in &made {
         let level = &mut levels[usize::from(id.z())];
         level.tiles += 1;
@@ -148,12 +147,13 @@ pub fn export_tiles3d(
     if made.is_empty() {
         return Err(SelectionError::no_ground(package).into());
     }
-    let mut documents = tree.write(folder, &job.root, None)?;
+    let mut documents = tree.write(folder, &job.root)?;
     if request.roads == TileRoads::Vector {
-        let with_roads: BTreeSet<TileId> =
-            made.iter().filter(|(_, tile)| tile.has_vector).map(|(id, _)| *id).collect();
+        let with_roads = made.iter().filter(|(_, tile)| tile.has_vector);
+        tree.with_vectors = Some(with_roads.map(|(id, _)| *id).collect());
+        let vector_folder = folder.join(VECTOR_FOLDER);
         fs::create_dir_all(&vector_folder)?;
-        documents += tree.write(&vector_folder, &job.root, Some(&with_roads))?;
+        documents += tree.write(&vector_folder, &job.root)?;
         vector_style::write(&vector_folder, &request.style)?;
     }
     Ok(Tiles3dSummary { levels, documents, heights })
@@ -276,8 +276,11 @@ impl Job<'_> {
         let placing = TilePlacement { places, root: &self.root, step_m: level.step_m };
         let made = content::make(self.package, id, self.request, &self.lines, &placing, level)?;
         let Some(made) = made else { return Ok(None) };
-        let write = |folder: &Path, content: &TileContent| {
-            write_content(&folder.join(content_name(id)), content, self.request.compress)
+        let write = |folder: &Path, content: &TileContent| -> io::Result<u64> {
+            let mut file = BufWriter::new(fs::File::create(folder.join(content_name(id)))?);
+            glb::write(content, self.package.manifest(), self.request, &mut file)?;
+            file.flush()?;
+            Ok(file.get_ref().metadata()?.len())
         };
         let mut bytes = write(self.folder, &made.content)?;
         if let Some(vector) = &made.vector {
@@ -287,11 +290,4 @@ impl Job<'_> {
         }
         Ok(Some(WrittenTile { facts: made.facts, bytes, has_vector: made.vector.is_some() }))
     }
-}
-
-fn write_content(path: &Path, content: &TileContent, is_compressed: bool) -> io::Result<u64> {
-    let mut file = BufWriter::new(fs::File::create(path)?);
-    glb::write(content, is_compressed, &mut file)?;
-    file.flush()?;
-    Ok(file.get_ref().metadata()?.len())
 }
