@@ -17,10 +17,4 @@ pub struct AreaStyle {
 impl AreaStyle {
     /// From this share of the tangent of [`AreaStyle::steepest_deg`] on, the ground shows through.
     pub const STEEP_SHARE: f64 = 0.7;
-
-    /// Whether anything of the class is drawn.
-    #[must_use]
-    pub fn is_drawn(&self) -> bool {
-        self.opacity > 0.0
-    }
 }

@@ -45,11 +45,10 @@ impl LayerLook {
     /// Whether anything of the class is drawn.
     #[must_use]
     pub fn is_drawn(&self) -> bool {
-        match self {
-            Self::Area(area) => area.is_drawn(),
-            Self::Line(line) => line.is_drawn(),
-            Self::Point(point) => point.is_drawn(),
-        }
+        let (Self::Area(AreaStyle { opacity, .. })
+        | Self::Line(LineStyle { opacity, .. })
+        | Self::Point(PointStyle { opacity, .. })) = self;
+        *opacity > 0.0
     }
 }
 

@@ -8,7 +8,7 @@ use serde::Deserialize;
 use crate::{
     Dash, Rgb, StyleError,
     layer_looks::{LayerLooks, LookEntries},
-    sheet_values::{Rgb8, within},
+    sheet_values::{Rgb8, number},
 };
 
 /// The entries of a layer, of one of its classes, or of a geometry.
@@ -140,11 +140,7 @@ impl LookSheet {
 
     /// The entries, if every number is within its range.
     fn checked(&self, path: &str) -> Result<LookEntries, StyleError> {
-        let number = |name, value: Option<f64>, range| {
-            let check = |value| within(&format!("{path}.{name}"), value, range);
-            value.map(check).transpose()?;
-            Ok::<_, StyleError>(value.map(|value| value as f32))
-        };
+        let number = |name, value, range| number(&format!("{path}.{name}"), value, range);
         Ok(LookEntries {
             color: self.color.map(Rgb::from),
             opacity: number("opacity", self.opacity, 0.0..=1.0)?,

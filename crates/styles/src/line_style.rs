@@ -67,12 +67,6 @@ impl LineStyle {
             is_apart_from_roads: false,
         }
     }
-
-    /// Whether lines in this style are drawn at all.
-    #[must_use]
-    pub fn is_drawn(&self) -> bool {
-        self.opacity > 0.0
-    }
 }
 
 /// Converts a colour in bytes to shares.

@@ -18,11 +18,3 @@ pub struct PointStyle {
     /// [`RoadStyle::max_pixel_m`](crate::RoadStyle::max_pixel_m).
     pub max_pixel_m: Option<f32>,
 }
-
-impl PointStyle {
-    /// Whether anything of the class is drawn.
-    #[must_use]
-    pub fn is_drawn(&self) -> bool {
-        self.opacity > 0.0
-    }
-}

@@ -4,7 +4,7 @@ use serde::Deserialize;
 
 use crate::{
     Dash, Rgb, RoadBand, RoadBands, RoadStyle, StyleError,
-    sheet_values::{Rgb8, within},
+    sheet_values::{Rgb8, number, within},
 };
 
 /// How the roads of one class are drawn.
@@ -66,38 +66,29 @@ impl RoadSheet {
     pub(crate) fn checked(&self, class: usize) -> Result<RoadStyle, StyleError> {
         let entry = |name| format!("roads.{class}.{name}");
         within(&entry("width_m"), self.width_m, 0.1..=500.0)?;
-        if let Some(carriageway_m) = self.carriageway_width_m {
-            within(&entry("carriageway_width_m"), carriageway_m, 0.1..=self.width_m)?;
-        }
+        let number = |name, value, range| number(&entry(name), value, range);
+        let carriageway_m =
+            number("carriageway_width_m", self.carriageway_width_m, 0.1..=self.width_m)?;
         within(&entry("min_width_px"), self.min_width_px, 0.1..=50.0)?;
-        let optional = [
-            ("max_pixel_m", self.max_pixel_m, 0.01..=1e6),
-            ("max_width_px", self.max_width_px, 0.1..=500.0),
-            ("exponent", self.exponent, 0.0..=1.0),
-            ("edge_max_pixel_m", self.edge_max_pixel_m, 0.01..=1e6),
-            ("opacity", self.opacity, 0.01..=1.0),
-            ("center.width_share", self.center.map(|center| center.width_share), 0.01..=0.99),
-        ];
-        for (name, value, range) in optional {
-            value.map_or(Ok(()), |value| within(&entry(name), value, range))?;
-        }
         Ok(RoadStyle {
             width_m: self.width_m as f32,
-            carriageway_width_m: self.carriageway_width_m.unwrap_or(self.width_m) as f32,
+            carriageway_width_m: carriageway_m.unwrap_or(self.width_m as f32),
             min_width_px: self.min_width_px as f32,
+            max_pixel_m: number("max_pixel_m", self.max_pixel_m, 0.01..=1e6)?,
+            max_width_px: number("max_width_px", self.max_width_px, 0.1..=500.0)?,
+            exponent: number("exponent", self.exponent, 0.0..=1.0)?,
+            edge_max_pixel_m: number("edge_max_pixel_m", self.edge_max_pixel_m, 0.01..=1e6)?,
+            opacity: number("opacity", self.opacity, 0.01..=1.0)?.unwrap_or(1.0),
             bands: self.bands(class)?,
             outline: self.outline.into(),
-            max_pixel_m: self.max_pixel_m.map(|max_pixel_m| max_pixel_m as f32),
-            max_width_px: self.max_width_px.map(|max_width_px| max_width_px as f32),
-            exponent: self.exponent.map(|exponent| exponent as f32),
-            edge_max_pixel_m: self.edge_max_pixel_m.map(|pixel_m| pixel_m as f32),
             thin: self.thin.map(Rgb::from),
-            opacity: self.opacity.unwrap_or(1.0) as f32,
             dash: Dash::SOLID,
         })
     }
 
     fn bands(&self, class: usize) -> Result<RoadBands, StyleError> {
+        let center = self.center.map(|center| center.width_share);
+        number(&format!("roads.{class}.center.width_share"), center, 0.01..=0.99)?;
         let band =
             |width: f64, color: Rgb8| RoadBand { width_share: width as f32, color: color.into() };
         match (self.color, self.center, &self.bands) {

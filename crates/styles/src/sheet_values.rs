@@ -42,3 +42,12 @@ pub(crate) fn within(
         most: *range.end(),
     })
 }
+
+/// Checks an optional number.
+pub(crate) fn number(
+    entry: &str,
+    value: Option<f64>,
+    range: RangeInclusive<f64>,
+) -> Result<Option<f32>, StyleError> {
+    value.map(|value| within(entry, value, range).map(|()| value as f32)).transpose()
+}

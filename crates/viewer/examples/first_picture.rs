@@ -134,7 +134,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let all = of_drawn(&tile_bytes);
     let slopes = of_drawn(&SlopeChain::bytes_of);
-    let volumes = of_drawn(&|tile| tile.volumes.all().len() as u64);
+    let volumes = of_drawn(&|tile| tile.roads.volumes.all().len() as u64);
     println!("\ntiles loaded {}, drawn {}", store.len(), drawn.len());
     println!("triangles {}, road segments {volumes}", count(&|tile| tile.triangles));
     println!("bytes on the GPU: all {all}, slopes {slopes}, roads {}", volumes * 60);

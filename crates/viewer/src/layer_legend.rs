@@ -38,8 +38,8 @@ impl LayerLegend {
             .layers()
             .map(|(layer, record)| {
                 let mut rows: Vec<LayerRow> = Vec::new();
-                let mut kept = record.counts.kept.iter().filter(|of| of.objects > 0).copied();
-                let mut classes: Vec<u8> = kept.by_ref().map(|of| of.class).collect();
+                let kept = record.counts.kept.iter().filter(|of| of.objects > 0);
+                let mut classes: Vec<u8> = kept.map(|of| of.class).collect();
                 classes.sort_unstable();
                 for class in classes {
                     let of = LayerClass { layer, class };

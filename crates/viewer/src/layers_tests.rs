@@ -114,6 +114,6 @@ fn lines_are_drawn_with_the_styles_of_their_classes() {
     }
     assert!(looks.lines(9).is_empty());
     let hidden = PackageLooks::new(&manifest, &style, &ShownLayers::from_list("walls"));
-    let drawn = (0..2).flat_map(|group| hidden.lines(group)).filter(|line| line.is_drawn());
+    let drawn = (0..2).flat_map(|group| hidden.lines(group)).filter(|line| line.opacity > 0.0);
     assert_eq!(drawn.count(), 2);
 }

@@ -6,7 +6,10 @@
 
 use glam::DVec3;
 
-use crate::{camera::WorldBox, tiles::TileGeometry};
+use crate::{
+    camera::WorldBox,
+    tiles::{TileGeometry, shares_in},
+};
 
 /// Where a ray meets the ground, or a bridge.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -96,8 +99,8 @@ impl Ray {
 
     /// Depth of the first road or line on a bridge; infinite without a hit.
     fn first_deck(&self, tile: &TileGeometry, vertical_scale: f64) -> f64 {
-        let of_lines = tile.lines.0.values().flat_map(|lines| lines.decks.all());
-        let hits = tile.decks.all().iter().chain(of_lines).filter_map(|piece| {
+        let lines = std::iter::once(&tile.roads).chain(tile.lines.0.values());
+        let hits = lines.flat_map(|lines| lines.decks.all()).filter_map(|piece| {
             let place = |at: [f32; 3]| {
                 let [x, y, height_m] = at.map(f64::from);
                 DVec3::new(x, y, height_m * vertical_scale)
@@ -148,18 +151,8 @@ fn world_box(tile: &TileGeometry, vertical_scale: f64) -> Option<WorldBox> {
 /// Source: Kay & Kajiya 1986, *Ray Tracing Complex Scenes*: the latest entry into three slabs,
 /// before the first exit.
 fn depths_within(subject: &WorldBox, eye: DVec3, ray: DVec3) -> Option<[f64; 2]> {
-    let (mut enters, mut leaves) = (0.0_f64, f64::INFINITY);
-    for axis in 0..3 {
-        if ray[axis] == 0.0 {
-            if eye[axis] < subject.min[axis] || eye[axis] > subject.max[axis] {
-                return None;
-            }
-            continue;
-        }
-        let ends = [subject.min, subject.max].map(|side| (side[axis] - eye[axis]) / ray[axis]);
-        enters = enters.max(ends[0].min(ends[1]));
-        leaves = leaves.min(ends[0].max(ends[1]));
-    }
+    let around = [0, 1, 2].map(|axis: usize| [subject.min[axis], subject.max[axis]]);
+    let [enters, leaves] = shares_in(eye.to_array(), ray.to_array(), around, f64::INFINITY);
     (enters <= leaves).then_some([enters, leaves])
 }
 

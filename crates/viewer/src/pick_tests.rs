@@ -6,9 +6,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::{
     lod::GroundSummary,
-    tiles::{
-        DeckLine, DeckPieces, GroundMesh, GroundVertex, RoadSegments, RoadVolumes, TileGeometry,
-    },
+    tiles::{DeckLine, DeckPieces, GroundMesh, GroundVertex, TileGeometry, TileLayer},
 };
 
 /// A tile of 100 m around (`x`, `y`): a grid of 11 × 11 nodes, whose heights `height_m` gives.
@@ -41,9 +39,7 @@ fn tile(x: f64, y: f64, height_m: impl Fn(f64, f64) -> f64) -> TileGeometry {
         points: crate::tiles::PointMarks::default(),
         lines: crate::tiles::LineLayers::default(),
         photo: None,
-        roads: RoadSegments::default(),
-        volumes: RoadVolumes::default(),
-        decks: DeckPieces::default(),
+        roads: TileLayer::default(),
         width_margin_m: 0.0,
         size_m: [100.0; 2],
         most_width_factor: 1.0,
@@ -111,7 +107,8 @@ fn a_bridge_is_met_before_the_ground_beneath() {
         &corniche_geom::StepBudget::unlimited(),
     );
     let summary = ground.summary.map(|of| GroundSummary { height_range_m: [500.0, 520.0], ..of });
-    let tiles = [TileGeometry { summary, decks, ..ground }];
+    let roads = TileLayer { decks, ..TileLayer::default() };
+    let tiles = [TileGeometry { summary, roads, ..ground }];
     let met_m = |x: f64, y: f64, ray: DVec3| {
         ground_at(tiles.iter(), 2.0, DVec3::new(x, y, 1200.0), ray).map(|hit| hit.at_in_world.z)
     };

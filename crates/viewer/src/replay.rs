@@ -24,7 +24,7 @@ use self::{
 };
 use crate::{
     annotations::draw_attribution,
-    camera::Camera,
+    camera::{Camera, WorldBox},
     draw_error::DrawError,
     flight::{Flight, Pose},
     gpu::{Gpu, PassTimer, Renderer, ResidentTiles, Targets},
@@ -215,8 +215,15 @@ impl<'a> Replay<'a> {
                 // The first frame waits until no tile is missing; the others do not wait.
                 streamed.advance(camera, ahead.as_ref(), quality, frame == 0, self.is_stopped)
             }
-            TileSupply::Finest(finest) if self.options.detail == Detail::Full => Ok(finest.all()),
-            TileSupply::Finest(finest) => Ok(finest.in_view(self.package, camera, vertical_scale)),
+            TileSupply::Finest(finest) => {
+                let frustum = camera.frustum();
+                Ok(finest.choose(|id, range_m| {
+                    let plan = self.package.frame().tile_bounds(id);
+                    let heights = range_m.map(|height_m| height_m * vertical_scale);
+                    self.options.detail == Detail::Full
+                        || frustum.may_see(&WorldBox::new(plan, heights))
+                }))
+            }
         }
     }
 }

@@ -13,7 +13,7 @@ use crate::{
     frame_view::FrameView,
     lod::{self, DrawnTile, Quality},
     options::RoadMethod,
-    tiles::{LoadTileError, RoadKind, TileGeometry, TileSource, TileStore, WideWay},
+    tiles::{LoadTileError, RoadKind, TileGeometry, TileLayer, TileSource, TileStore, WideWay},
 };
 
 pub(crate) use self::level_connectors::{BorderTile, LevelConnector, level_connectors};
@@ -83,10 +83,11 @@ pub fn may_be_clamped(tile: &TileGeometry, view: &FrameView<'_>) -> bool {
 fn widest_m(tile: &TileGeometry, view: &FrameView<'_>, class: FunctionalRoadClass) -> Option<f32> {
     let width_m = |kind: RoadKind| view.style.width_m(class, kind.own_width);
     let widest = |kinds: &mut dyn Iterator<Item = RoadKind>| kinds.map(width_m).reduce(f32::max);
-    let decks = tile.decks.kinds_of(class);
+    let TileLayer { segments, volumes, decks } = &tile.roads;
+    let decks = decks.kinds_of(class);
     match view.roads.method {
-        RoadMethod::Geometry => widest(&mut tile.roads.kinds_of(class).chain(decks)),
-        RoadMethod::ShadowVolumes => widest(&mut tile.volumes.kinds_of(class).chain(decks)),
+        RoadMethod::Geometry => widest(&mut segments.kinds_of(class).chain(decks)),
+        RoadMethod::ShadowVolumes => widest(&mut volumes.kinds_of(class).chain(decks)),
         RoadMethod::None => None,
     }
 }

@@ -85,12 +85,6 @@ impl CameraRequest {
         }
     }
 
-    /// Whether the request is for an overview, not for a named place.
-    #[must_use]
-    pub fn is_overview(self) -> bool {
-        matches!(self, Self::Overview | Self::OverviewFromAbove { .. })
-    }
-
     /// The ground on which the camera is based, without the height at its place; `None` if there is
     /// no ground.
     ///
@@ -104,7 +98,10 @@ impl CameraRequest {
         let data = manifest.data_bounds;
         let Some(coarsest) = store.coarsest_ground()? else { return Ok(None) };
         let heights_m = coarsest.height_range_m;
-        let extent = if self.is_overview() { store.map_extent(data)? } else { None };
+        let extent = match self {
+            Self::Overview | Self::OverviewFromAbove { .. } => store.map_extent(data)?,
+            Self::LookAt { .. } | Self::FromAbove { .. } => None,
+        };
         let extent = extent.unwrap_or_else(|| MapExtent::of_data(data, heights_m));
         Ok(Some(SightedGround { extent, heights_m, at_place_m: None }))
     }
@@ -140,27 +137,26 @@ impl CameraRequest {
             |heights_m: [f64; 2]| heights_m.map(|height_m: f64| height_m * vertical_scale);
         let subject = WorldBox::new(ground.extent.plan, in_world(ground.extent.heights_m));
         let all = in_world(ground.heights_m);
+        let from_above = |middle: DVec2, pixel_m: f64, heading_deg| {
+            let pixel_in_world_m = pixel_m * manifest.point_scale;
+            Camera::from_above(middle, pixel_in_world_m, heading_deg, all, size_px)
+        };
+        let at = self.place(manifest)?;
         match self {
             Self::Overview => Ok(Camera::framing(subject, self.orientation(), size_px)),
             Self::OverviewFromAbove { pixel_m: None } => {
                 Ok(Camera::framing_from_above(subject, 0.0, all, size_px))
             }
             Self::OverviewFromAbove { pixel_m: Some(pixel_m) } => {
-                let middle = subject.center().truncate();
-                let pixel_in_world_m = pixel_m * manifest.point_scale;
-                Ok(Camera::from_above(middle, pixel_in_world_m, 0.0, all, size_px))
+                Ok(from_above(subject.center().truncate(), pixel_m, 0.0))
             }
-            Self::FromAbove { lon_deg, lat_deg, pixel_m, heading_deg } => {
-                let Some([x, y]) = self.place(manifest)? else {
-                    return Err(off_ground(lon_deg, lat_deg, manifest));
-                };
-                let target = DVec2::new(x, y);
-                let pixel_in_world_m = pixel_m * manifest.point_scale;
-                Ok(Camera::from_above(target, pixel_in_world_m, heading_deg, all, size_px))
+            Self::FromAbove { pixel_m, heading_deg, .. } => {
+                // Such a request has a place.
+                Ok(from_above(at.unwrap_or_default().into(), pixel_m, heading_deg))
             }
             Self::LookAt { lon_deg, lat_deg, height_m, distance_m, orientation } => {
                 let height_m = height_m.or(ground.at_place_m);
-                let (Some([x, y]), Some(height_m)) = (self.place(manifest)?, height_m) else {
+                let (Some([x, y]), Some(height_m)) = (at, height_m) else {
                     return Err(off_ground(lon_deg, lat_deg, manifest));
                 };
                 let target = DVec3::new(x, y, height_m * vertical_scale);

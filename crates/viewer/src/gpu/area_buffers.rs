@@ -1,46 +1,31 @@
 //! GPU buffers of the areas of a tile.
 
 use wgpu::{
-    Buffer, BufferUsages, IndexFormat, RenderPass, VertexAttribute, VertexBufferLayout,
-    VertexStepMode, vertex_attr_array,
+    Buffer, BufferUsages, IndexFormat, RenderPass, VertexBufferLayout, VertexStepMode,
+    vertex_attr_array,
 };
 
-use super::Gpu;
+use super::{Gpu, pipeline::vertex_layout};
 use crate::{
     layer_class::LayerClass,
     tiles::{AreaCorner, AreaVolumes, AreaWall, ClassVolumes},
 };
 
-/// Bytes of a wall: two plan positions, bottom and top as f32.
-const WALL_BYTES: u64 = size_of::<AreaWall>() as u64;
-/// Bytes of a corner of caps: a plan position, bottom and top as f32.
-const CORNER_BYTES: u64 = size_of::<AreaCorner>() as u64;
-/// Bytes of the box around a class: two positions as f32.
-const BOX_BYTES: u64 = 24;
-
-const WALL_ATTRIBUTES: [VertexAttribute; 3] =
-    vertex_attr_array![0 => Float32x2, 1 => Float32x2, 2 => Float32x2];
-const CORNER_ATTRIBUTES: [VertexAttribute; 2] = vertex_attr_array![0 => Float32x2, 1 => Float32x2];
-const BOX_ATTRIBUTES: [VertexAttribute; 2] = vertex_attr_array![0 => Float32x3, 1 => Float32x3];
-
-/// Vertex layout with one instance per wall.
-pub(crate) const WALLS: VertexBufferLayout<'static> = VertexBufferLayout {
-    array_stride: WALL_BYTES,
-    step_mode: VertexStepMode::Instance,
-    attributes: &WALL_ATTRIBUTES,
-};
-/// Vertex layout with one vertex per corner of the caps.
-pub(crate) const CORNERS: VertexBufferLayout<'static> = VertexBufferLayout {
-    array_stride: CORNER_BYTES,
-    step_mode: VertexStepMode::Vertex,
-    attributes: &CORNER_ATTRIBUTES,
-};
-/// Vertex layout with one instance for the box around each class.
-pub(crate) const BOXES: VertexBufferLayout<'static> = VertexBufferLayout {
-    array_stride: BOX_BYTES,
-    step_mode: VertexStepMode::Instance,
-    attributes: &BOX_ATTRIBUTES,
-};
+/// Vertex layout with one instance per wall: two plan positions, bottom and top.
+pub(crate) const WALLS: VertexBufferLayout<'static> = vertex_layout::<AreaWall>(
+    VertexStepMode::Instance,
+    &vertex_attr_array![0 => Float32x2, 1 => Float32x2, 2 => Float32x2],
+);
+/// Vertex layout with one vertex per corner of the caps: a plan position, bottom and top.
+pub(crate) const CORNERS: VertexBufferLayout<'static> = vertex_layout::<AreaCorner>(
+    VertexStepMode::Vertex,
+    &vertex_attr_array![0 => Float32x2, 1 => Float32x2],
+);
+/// Vertex layout with one instance for the box around each class: two positions.
+pub(crate) const BOXES: VertexBufferLayout<'static> = vertex_layout::<[[f32; 3]; 2]>(
+    VertexStepMode::Instance,
+    &vertex_attr_array![0 => Float32x3, 1 => Float32x3],
+);
 
 /// Corners of the triangle strips of a wall and of a box, in the order of `shaders/areas.wgsl`.
 const WALL_CORNERS: u32 = 4;
@@ -79,10 +64,10 @@ impl AreaBuffers {
 
     /// Size of the buffers that [`AreaBuffers::new`] creates, bytes.
     pub(crate) fn bytes_of(areas: &AreaVolumes) -> u64 {
-        areas.walls.len() as u64 * WALL_BYTES
-            + areas.corners.len() as u64 * CORNER_BYTES
-            + size_of_val(&areas.triangles[..]) as u64
-            + areas.classes.len() as u64 * BOX_BYTES
+        let lists = size_of_val(&areas.walls[..])
+            + size_of_val(&areas.corners[..])
+            + size_of_val(&areas.triangles[..]);
+        lists as u64 + areas.classes.len() as u64 * BOXES.array_stride
     }
 
     /// Size of the buffers, bytes.
@@ -93,27 +78,23 @@ impl AreaBuffers {
             .sum()
     }
 
-    /// Whether there are areas of a class.
-    pub(crate) fn has_class(&self, class: LayerClass) -> bool {
-        self.of_class(class).is_some()
+    /// The areas of a class.
+    pub(crate) fn of_class(&self, class: LayerClass) -> Option<&ClassVolumes> {
+        self.classes.iter().find(|volumes| volumes.class == class)
     }
 
     /// Draws the walls of a class. The caller sets pipeline and bind groups.
-    pub(crate) fn draw_walls(&self, pass: &mut RenderPass<'_>, class: LayerClass) {
-        if let Some(volumes) = self.of_class(class) {
-            pass.set_vertex_buffer(0, self.walls.slice(..));
-            pass.draw(0..WALL_CORNERS, volumes.walls.clone());
-        }
+    pub(crate) fn draw_walls(&self, pass: &mut RenderPass<'_>, volumes: &ClassVolumes) {
+        pass.set_vertex_buffer(0, self.walls.slice(..));
+        pass.draw(0..WALL_CORNERS, volumes.walls.clone());
     }
 
     /// Draws the upper or the lower caps of a class, depending on the pipeline. The caller sets
     /// pipeline and bind groups.
-    pub(crate) fn draw_caps(&self, pass: &mut RenderPass<'_>, class: LayerClass) {
-        if let Some(volumes) = self.of_class(class) {
-            pass.set_vertex_buffer(0, self.corners.slice(..));
-            pass.set_index_buffer(self.triangles.slice(..), IndexFormat::Uint32);
-            pass.draw_indexed(volumes.triangles.clone(), 0, 0..1);
-        }
+    pub(crate) fn draw_caps(&self, pass: &mut RenderPass<'_>, volumes: &ClassVolumes) {
+        pass.set_vertex_buffer(0, self.corners.slice(..));
+        pass.set_index_buffer(self.triangles.slice(..), IndexFormat::Uint32);
+        pass.draw_indexed(volumes.triangles.clone(), 0, 0..1);
     }
 
     /// Draws the box around a class. The caller sets pipeline and bind groups.
@@ -123,9 +104,5 @@ impl AreaBuffers {
             pass.set_vertex_buffer(0, self.boxes.slice(..));
             pass.draw(0..BOX_CORNERS, place..place + 1);
         }
-    }
-
-    fn of_class(&self, class: LayerClass) -> Option<&ClassVolumes> {
-        self.classes.iter().find(|volumes| volumes.class == class)
     }
 }

@@ -3,23 +3,18 @@
 use std::{ops::Range, sync::OnceLock};
 
 use wgpu::{
-    Buffer, BufferUsages, IndexFormat, RenderPass, VertexAttribute, VertexBufferLayout,
-    VertexStepMode, vertex_attr_array,
+    Buffer, BufferUsages, IndexFormat, RenderPass, VertexBufferLayout, VertexStepMode,
+    vertex_attr_array,
 };
 
-use super::Gpu;
+use super::{Gpu, pipeline::vertex_layout};
 use crate::tiles::{GroundMesh, GroundVertex};
 
-/// Bytes of a vertex: position as three f32, normal and skirt flag as four i8.
-const VERTEX_BYTES: u64 = size_of::<GroundVertex>() as u64;
-const ATTRIBUTES: [VertexAttribute; 2] = vertex_attr_array![0 => Float32x3, 1 => Snorm8x4];
-
-/// The vertex layout of [`GroundBuffers`] for pipelines.
-pub(crate) const GROUND_VERTICES: VertexBufferLayout<'static> = VertexBufferLayout {
-    array_stride: VERTEX_BYTES,
-    step_mode: VertexStepMode::Vertex,
-    attributes: &ATTRIBUTES,
-};
+/// The vertex layout of [`GroundBuffers`] for pipelines: position, normal and skirt flag.
+pub(crate) const GROUND_VERTICES: VertexBufferLayout<'static> = vertex_layout::<GroundVertex>(
+    VertexStepMode::Vertex,
+    &vertex_attr_array![0 => Float32x3, 1 => Snorm8x4],
+);
 
 /// The ground of a tile on the GPU.
 pub(crate) struct GroundBuffers {
@@ -58,7 +53,7 @@ impl GroundBuffers {
 
     /// Size of the buffers that [`GroundBuffers::new`] creates for a mesh, bytes.
     pub(crate) fn bytes_of(mesh: &GroundMesh) -> u64 {
-        mesh.vertices.len() as u64 * VERTEX_BYTES
+        size_of_val(&mesh.vertices[..]) as u64
             + index_buffer_bytes(mesh.indices.len() as u64, index_format(mesh))
     }
 

@@ -2,7 +2,8 @@
 
 use wgpu::{
     BindGroupLayout, BlendState, ColorWrites, CompareFunction, DepthStencilState, Device,
-    FrontFace, PrimitiveTopology, RenderPipeline, VertexBufferLayout,
+    FrontFace, PrimitiveTopology, RenderPipeline, VertexAttribute, VertexBufferLayout,
+    VertexStepMode,
 };
 
 use super::formats::{COLOR, DEPTH};
@@ -33,6 +34,14 @@ pub(crate) fn depth_test(compare: CompareFunction, is_written: bool) -> DepthSte
         stencil: wgpu::StencilState::default(),
         bias: wgpu::DepthBiasState::default(),
     }
+}
+
+/// The layout of vertices, or instances, of type `T`.
+pub(crate) const fn vertex_layout<T>(
+    step_mode: VertexStepMode,
+    attributes: &[VertexAttribute],
+) -> VertexBufferLayout<'_> {
+    VertexBufferLayout { array_stride: size_of::<T>() as u64, step_mode, attributes }
 }
 
 /// The parameters in which pipelines differ.

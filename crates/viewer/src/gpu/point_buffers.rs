@@ -3,21 +3,15 @@
 use std::ops::Range;
 
 use wgpu::{
-    Buffer, BufferUsages, RenderPass, VertexAttribute, VertexBufferLayout, VertexStepMode,
-    vertex_attr_array,
+    Buffer, BufferUsages, RenderPass, VertexBufferLayout, VertexStepMode, vertex_attr_array,
 };
 
-use super::Gpu;
+use super::{Gpu, pipeline::vertex_layout};
 use crate::{layer_class::LayerClass, tiles::PointMarks};
 
-const ATTRIBUTES: [VertexAttribute; 1] = vertex_attr_array![0 => Float32x3];
-
 /// Vertex layout with one instance per point.
-pub(crate) const POINTS: VertexBufferLayout<'static> = VertexBufferLayout {
-    array_stride: size_of::<[f32; 3]>() as u64,
-    step_mode: VertexStepMode::Instance,
-    attributes: &ATTRIBUTES,
-};
+pub(crate) const POINTS: VertexBufferLayout<'static> =
+    vertex_layout::<[f32; 3]>(VertexStepMode::Instance, &vertex_attr_array![0 => Float32x3]);
 
 /// The points of a tile on the GPU.
 pub(crate) struct PointBuffers {

@@ -138,7 +138,18 @@ impl Band {
             usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
             mapped_at_creation: false,
         });
-        copy_rows(gpu, texture, layout, [top, rows], &buffer);
+        let origin = Origin3d { x: 0, y: top, z: 0 };
+        let from = wgpu::TexelCopyTextureInfo { origin, ..texture.as_image_copy() };
+        let in_buffer = TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(layout.padded_bytes),
+            rows_per_image: Some(rows),
+        };
+        let size = wgpu::Extent3d { width: layout.width, height: rows, depth_or_array_layers: 1 };
+        gpu.submit("read back", |encoder| {
+            let into = TexelCopyBufferInfo { buffer: &buffer, layout: in_buffer };
+            encoder.copy_texture_to_buffer(from, into, size);
+        });
         let (sender, mapped) = mpsc::channel();
         buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
             // Sending fails if the band was dropped; then nobody needs the result.
@@ -171,28 +182,6 @@ impl Band {
         }
         Ok(())
     }
-}
-
-/// Submits the copy of some rows of a texture, starting at `top`, to a buffer.
-fn copy_rows(
-    gpu: &Gpu,
-    texture: &wgpu::Texture,
-    layout: &Layout,
-    [top, rows]: [u32; 2],
-    buffer: &wgpu::Buffer,
-) {
-    let origin = Origin3d { x: 0, y: top, z: 0 };
-    let from = wgpu::TexelCopyTextureInfo { origin, ..texture.as_image_copy() };
-    let in_buffer = TexelCopyBufferLayout {
-        offset: 0,
-        bytes_per_row: Some(layout.padded_bytes),
-        rows_per_image: Some(rows),
-    };
-    let size = wgpu::Extent3d { width: layout.width, height: rows, depth_or_array_layers: 1 };
-    gpu.submit("read back", |encoder| {
-        let into = TexelCopyBufferInfo { buffer, layout: in_buffer };
-        encoder.copy_texture_to_buffer(from, into, size);
-    });
 }
 
 #[cfg(test)]

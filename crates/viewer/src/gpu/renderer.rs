@@ -31,7 +31,7 @@ use super::{
     shared_bindings::{DrawnFrame, SharedBindings, SharedLayouts},
     target_texture::TargetTexture,
     targets::{LabelTargets, Targets},
-    tile_buffers::{DrawTile, TileBuffers},
+    tile_buffers::{DrawTile, LayerBuffers, TileBuffers},
     timings::PassTimer,
 };
 use crate::{
@@ -98,56 +98,56 @@ impl Renderer {
     ) {
         let shared = &self.shared(gpu, view, tiles, targets);
         let frame = DrawnFrame { gpu, shared, view, targets };
-        let method = view.roads.method;
-        let on_ground = LevelConnectors::on_ground;
-        let roads = DrawnRoads::new(frame, tiles, |tile| tile.roads(method), on_ground);
+        let roads = DrawnLines::new(frame, tiles, |tile| Some(&tile.roads));
         let areas = areas_of(tiles, view, |tile| &tile.areas);
         let drawn = PackageLooks::from_looks(vec![vec![LayerLook::Area(view.style.drawn_area())]]);
         let drawn_view = &FrameView { layers: &drawn, ..*view };
         let drawn_areas = areas_of(tiles, drawn_view, |tile| &tile.drawn_areas);
         let points = points_of(tiles, view);
-        let of_decks = LevelConnectors::of_decks;
-        let decks = DrawnRoads::new(frame, tiles, |tile| tile.decks(method), of_decks);
-        let lines = line_layers_of(tiles);
-        if let Some(timer) = &mut timer {
-            let has_decks =
-                !decks.is_empty() || lines.iter().any(|layer| has_line_decks(tiles, *layer));
-            timer.begin([!areas.is_empty() || !drawn_areas.is_empty(), has_decks]);
-        }
-        let mut mark = |encoder: &mut CommandEncoder, number| {
+        self.with_lines(frame, tiles, |lines| {
             if let Some(timer) = &mut timer {
-                timer.mark(encoder, number);
+                let has_decks = roads.has_decks() || lines.iter().any(|(_, of)| of.has_decks());
+                timer.begin([!areas.is_empty() || !drawn_areas.is_empty(), has_decks]);
             }
-        };
-        gpu.submit("frame", |encoder| {
-            mark(encoder, 0);
-            self.pass_terrain(frame, encoder, tiles);
-            mark(encoder, 1);
-            self.pass_areas(frame, encoder, &areas, &targets.ground);
-            let drawn = DrawnFrame { view: drawn_view, ..frame };
-            self.pass_areas(drawn, encoder, &drawn_areas, &targets.ground);
-            mark(encoder, 2);
-            self.pass_labels(frame, encoder, &roads, &targets.roads);
-            mark(encoder, 3);
-            self.pass_decks(frame, encoder, &decks, tiles);
-            mark(encoder, 4);
-            self.pass_composite(frame, encoder);
-            let (of_package, of_user): (Vec<LineLayer>, Vec<LineLayer>) =
-                lines.iter().partition(|layer| matches!(layer, LineLayer::Package(_)));
-            // Decks hide the lines on the ground below them.
-            for &layer in &of_package {
-                self.pass_lines(frame, encoder, tiles, layer);
-            }
-            self.pass_deck_colors(frame, encoder, &decks);
-            for &layer in &of_package {
-                self.pass_line_decks(frame, encoder, tiles, layer);
-            }
-            for layer in of_user {
-                self.pass_lines(frame, encoder, tiles, layer);
-            }
-            self.pass_points(frame, encoder, &points, targets.picture.drawn());
-            self.average.draw(gpu, encoder, &targets.picture);
-            mark(encoder, 5);
+            let mut mark = |encoder: &mut CommandEncoder, number| {
+                if let Some(timer) = &mut timer {
+                    timer.mark(encoder, number);
+                }
+            };
+            gpu.submit("frame", |encoder| {
+                mark(encoder, 0);
+                self.pass_terrain(frame, encoder, tiles);
+                mark(encoder, 1);
+                self.pass_areas(frame, encoder, &areas, &targets.ground);
+                let drawn = DrawnFrame { view: drawn_view, ..frame };
+                self.pass_areas(drawn, encoder, &drawn_areas, &targets.ground);
+                mark(encoder, 2);
+                self.pass_labels(frame, encoder, &roads.on_ground, &targets.roads);
+                mark(encoder, 3);
+                self.pass_decks(&roads, lines, encoder);
+                mark(encoder, 4);
+                self.pass_composite(frame, encoder);
+                let of_package = |(layer, _): &(LineLayer, _)| *layer < LineLayer::Overlays;
+                let (of_package, of_user) = lines.split_at(lines.partition_point(of_package));
+                // Decks hide the lines on the ground below them.
+                for (layer, lines) in of_package {
+                    self.pass_lines(*layer, lines, encoder);
+                }
+                if roads.has_decks() {
+                    let labels = [&targets.decks(gpu).labels, &targets.roads];
+                    self.pass_deck_colors(frame, encoder, labels, false);
+                }
+                for (_, lines) in of_package.iter().filter(|(_, lines)| lines.has_decks()) {
+                    let labels = self.draw_line_labels(lines, encoder);
+                    self.pass_deck_colors(lines.frame, encoder, labels, true);
+                }
+                for (layer, lines) in of_user {
+                    self.pass_lines(*layer, lines, encoder);
+                }
+                self.pass_points(frame, encoder, &points, targets.picture.drawn());
+                self.average.draw(gpu, encoder, &targets.picture);
+                mark(encoder, 5);
+            });
         });
     }
 
@@ -273,75 +273,57 @@ impl Renderer {
 
     /// Draws a layer of lines over the samples of the picture. If no tile has such lines, or the
     /// style draws none, there is no lines pass.
-    fn pass_lines(
-        &self,
-        frame: DrawnFrame<'_>,
-        encoder: &mut CommandEncoder,
-        tiles: &[DrawTile<'_>],
-        layer: LineLayer,
-    ) {
-        let styles = layer.lines_of(frame.view);
-        self.with_lines(frame, layer, |frame| {
-            let lines = DrawnRoads::of_layer(frame, tiles, layer);
-            if lines.is_empty() {
-                return;
-            }
-            let DrawnFrame { gpu, view, targets, .. } = frame;
-            let labels = targets.lines(gpu);
-            self.pass_labels(frame, encoder, &lines, labels);
-            self.blocks.find(frame, encoder, labels);
-            let into = [targets.picture.drawn()];
-            let mut pass = begin(encoder, "lines", &into, None, LoadOp::Load);
-            let new = || line_layers::line_colors(&gpu.device, &self.layouts);
-            let colors = self.line_colors.get_or_init(new);
-            let rows = line_layers::rows(view, styles);
-            colors.bind(frame, &mut pass, &rows, labels, &[&targets.roads.labels]);
-            colors.draw(&mut pass, targets);
-        });
+    fn pass_lines(&self, layer: LineLayer, lines: &DrawnLines<'_>, encoder: &mut CommandEncoder) {
+        let frame = lines.frame;
+        if lines.on_ground.is_empty() {
+            return;
+        }
+        let DrawnFrame { gpu, view, targets, .. } = frame;
+        let labels = targets.lines(gpu);
+        self.pass_labels(frame, encoder, &lines.on_ground, labels);
+        self.blocks.find(frame, encoder, labels);
+        let into = [targets.picture.drawn()];
+        let mut pass = begin(encoder, "lines", &into, None, LoadOp::Load);
+        let new = || line_layers::line_colors(&gpu.device, &self.layouts);
+        let colors = self.line_colors.get_or_init(new);
+        let rows = line_layers::rows(view, layer.lines_of(view));
+        colors.bind(frame, &mut pass, &rows, labels, &[&targets.roads.labels]);
+        colors.draw(&mut pass, targets);
     }
 
-    /// Calls `draw` with a frame in which the lines of a layer take the place of roads.
+    /// Calls `draw` with the lines of all layers that tiles have, from the lowest to the highest.
     fn with_lines<T>(
         &self,
         frame: DrawnFrame<'_>,
-        layer: LineLayer,
-        draw: impl FnOnce(DrawnFrame<'_>) -> T,
+        tiles: &[DrawTile<'_>],
+        draw: impl FnOnce(&[(LineLayer, DrawnLines<'_>)]) -> T,
     ) -> T {
-        let style = layer.style_of(frame.view);
-        let frame = DrawnFrame { view: &view_of_lines(frame.view, &style), ..frame };
-        let shared = SharedBindings::with_view(frame, &self.layouts);
-        draw(DrawnFrame { shared: &shared, ..frame })
+        let layers: BTreeSet<LineLayer> =
+            tiles.iter().flat_map(|tile| tile.buffers.layers.keys().copied()).collect();
+        let styles: Vec<_> = layers.iter().map(|layer| layer.style_of(frame.view)).collect();
+        let views: Vec<_> = styles.iter().map(|style| view_of_lines(frame.view, style)).collect();
+        let bound = |view| SharedBindings::with_view(DrawnFrame { view, ..frame }, &self.layouts);
+        let shared: Vec<_> = views.iter().map(bound).collect();
+        let frames = views.iter().zip(&shared);
+        let frames = frames.map(|(view, shared)| DrawnFrame { shared, view, ..frame });
+        let lines = layers.into_iter().zip(frames).map(|(layer, frame)| {
+            (layer, DrawnLines::new(frame, tiles, |tile| tile.layers.get(&layer)))
+        });
+        draw(&lines.collect::<Vec<_>>())
     }
 
-    /// Draws the decks of bridges among the lines of a layer over the samples of the picture.
-    /// Without such decks there is no pass.
-    fn pass_line_decks(
+    /// Draws the labels of the decks of bridges among lines, and of the lines on the ground: other
+    /// lines may have been drawn since. Returns both labels.
+    fn draw_line_labels<'a>(
         &self,
-        frame: DrawnFrame<'_>,
+        DrawnLines { frame, on_ground, decks }: &DrawnLines<'a>,
         encoder: &mut CommandEncoder,
-        tiles: &[DrawTile<'_>],
-        layer: LineLayer,
-    ) {
-        if !has_line_decks(tiles, layer) {
-            return;
-        }
-        self.with_lines(frame, layer, |frame| {
-            let decks = DrawnRoads::line_decks(frame, tiles, layer);
-            if decks.is_empty() {
-                return;
-            }
-            let DrawnFrame { gpu, targets, .. } = frame;
-            let labels = [targets.line_decks(gpu), targets.lines(gpu)];
-            // Other lines may have been drawn since.
-            let on_ground = DrawnRoads::of_layer(frame, tiles, layer);
-            self.pass_labels(frame, encoder, &on_ground, labels[1]);
-            let drawable = self.decks(gpu);
-            drawable.draw_labels(frame, encoder, decks.parts(), labels);
-            self.blocks.find(frame, encoder, labels[0]);
-            let into = [targets.picture.drawn()];
-            let mut pass = begin(encoder, "line decks", &into, None, LoadOp::Load);
-            drawable.draw_colors(frame, &mut pass, labels, true);
-        });
+    ) -> [&'a LabelTargets; 2] {
+        let DrawnFrame { gpu, targets, .. } = *frame;
+        let labels = [targets.line_decks(gpu), targets.lines(gpu)];
+        self.pass_labels(*frame, encoder, on_ground, labels[1]);
+        self.decks(gpu).draw_labels(*frame, encoder, decks.parts(), labels);
+        labels
     }
 
     /// Draws points over the samples of a picture. Without points there is no points pass.
@@ -375,53 +357,71 @@ impl Renderer {
     /// there are no deck passes.
     fn pass_decks(
         &self,
-        frame: DrawnFrame<'_>,
+        roads: &DrawnLines<'_>,
+        lines: &[(LineLayer, DrawnLines<'_>)],
         encoder: &mut CommandEncoder,
-        decks: &DrawnRoads<'_>,
-        tiles: &[DrawTile<'_>],
     ) {
-        let DrawnFrame { gpu, targets, .. } = frame;
+        let DrawnFrame { gpu, targets, .. } = roads.frame;
         let mut others = LoadOp::Clear(());
-        if !decks.is_empty() {
-            self.decks(gpu).draw_depths(frame, encoder, decks.parts(), others);
+        let all = std::iter::once(roads).chain(lines.iter().map(|(_, lines)| lines));
+        for lines in all.filter(|lines| lines.has_decks()) {
+            self.decks(gpu).draw_depths(lines.frame, encoder, lines.decks.parts(), others);
             others = LoadOp::Load;
         }
-        for layer in line_layers_of(tiles) {
-            if !has_line_decks(tiles, layer) {
-                continue;
-            }
-            self.with_lines(frame, layer, |frame| {
-                let decks = DrawnRoads::line_decks(frame, tiles, layer);
-                self.decks(gpu).draw_depths(frame, encoder, decks.parts(), others);
-            });
-            others = LoadOp::Load;
-        }
-        if !decks.is_empty() {
+        if roads.has_decks() {
             let labels = [&targets.decks(gpu).labels, &targets.roads];
-            self.decks(gpu).draw_labels(frame, encoder, decks.parts(), labels);
+            self.decks(gpu).draw_labels(roads.frame, encoder, roads.decks.parts(), labels);
         }
     }
 
-    /// Draws the colours of the decks of roads over the samples of the picture.
+    /// Draws the colours of decks, of roads or of lines, over the samples of the picture, from
+    /// their labels and those on the ground.
     fn pass_deck_colors(
         &self,
         frame: DrawnFrame<'_>,
         encoder: &mut CommandEncoder,
-        decks: &DrawnRoads<'_>,
+        labels: [&LabelTargets; 2],
+        are_lines: bool,
     ) {
-        if decks.is_empty() {
-            return;
-        }
-        let DrawnFrame { gpu, targets, .. } = frame;
-        let labels = [&targets.decks(gpu).labels, &targets.roads];
         self.blocks.find(frame, encoder, labels[0]);
-        let into = [targets.picture.drawn()];
+        let into = [frame.targets.picture.drawn()];
         let mut pass = begin(encoder, "deck colors", &into, None, LoadOp::Load);
-        self.decks(gpu).draw_colors(frame, &mut pass, labels, false);
+        self.decks(frame.gpu).draw_colors(frame, &mut pass, labels, are_lines);
     }
 }
 
-/// The roads of all tiles of a frame, their decks of bridges, or their lines of one layer.
+/// The roads of all tiles of a frame, or their lines of one layer.
+struct DrawnLines<'a> {
+    /// For lines a frame in which they take the place of roads.
+    frame: DrawnFrame<'a>,
+    on_ground: DrawnRoads<'a>,
+    decks: DrawnRoads<'a>,
+}
+
+impl<'a> DrawnLines<'a> {
+    /// Collects the roads, or lines, that `of` returns for tiles.
+    fn new(
+        frame: DrawnFrame<'a>,
+        tiles: &[DrawTile<'a>],
+        of: impl Fn(&'a TileBuffers) -> Option<&'a LayerBuffers>,
+    ) -> Self {
+        let method = frame.view.roads.method;
+        let on_ground = |tile| of(tile)?.for_method(method);
+        let decks = |tile| of(tile)?.decks_for(method);
+        Self {
+            frame,
+            on_ground: DrawnRoads::new(frame, tiles, on_ground, LevelConnectors::on_ground),
+            decks: DrawnRoads::new(frame, tiles, decks, LevelConnectors::of_decks),
+        }
+    }
+
+    /// Whether bridges are shown.
+    fn has_decks(&self) -> bool {
+        !self.decks.is_empty()
+    }
+}
+
+/// Roads of all tiles of a frame, on the ground or on decks.
 struct DrawnRoads<'a> {
     /// The roads of tiles, each with its index in the list of tiles of the frame and the classes
     /// that are shown there.
@@ -448,17 +448,6 @@ impl<'a> DrawnRoads<'a> {
         Self { of_tiles: of_tiles.collect(), connectors }
     }
 
-    /// The lines of a layer; the view must be the view of the layer.
-    fn of_layer(frame: DrawnFrame<'_>, tiles: &[DrawTile<'a>], layer: LineLayer) -> Self {
-        let of = |tile| TileBuffers::lines(tile, layer, frame.view.roads.method);
-        Self::new(frame, tiles, of, LevelConnectors::on_ground)
-    }
-
-    /// The decks of bridges among the lines of a layer; the view must be the view of the layer.
-    fn line_decks(frame: DrawnFrame<'_>, tiles: &[DrawTile<'a>], layer: LineLayer) -> Self {
-        Self::new(frame, tiles, |tile| tile.line_decks(layer), LevelConnectors::of_decks)
-    }
-
     /// The roads of tiles and the connectors between them.
     fn parts(&self) -> (&[RoadsOfTile<'a>], &LevelConnectors) {
         (&self.of_tiles, &self.connectors)
@@ -468,11 +457,6 @@ impl<'a> DrawnRoads<'a> {
     fn is_empty(&self) -> bool {
         self.of_tiles.iter().all(|of| of.roads.runs(of.classes).is_empty())
     }
-}
-
-/// Whether a tile has bridges among the lines of a layer.
-fn has_line_decks(tiles: &[DrawTile<'_>], layer: LineLayer) -> bool {
-    tiles.iter().any(|tile| tile.buffers.line_decks(layer).is_some_and(|decks| !decks.is_empty()))
 }
 
 /// The tiles that have areas of a drawn class; `of` returns the areas of a tile.
@@ -498,9 +482,4 @@ fn points_of<'a>(tiles: &[DrawTile<'a>], view: &FrameView<'_>) -> Vec<PointTile<
     let of_tile =
         |(index, tile): (usize, &DrawTile<'a>)| Some((index, tile.buffers.points.as_ref()?));
     tiles.iter().enumerate().filter_map(of_tile).filter(has_drawn).collect()
-}
-
-/// The lines that tiles have, from the lowest to the highest.
-fn line_layers_of(tiles: &[DrawTile<'_>]) -> BTreeSet<LineLayer> {
-    tiles.iter().flat_map(|tile| tile.buffers.line_layers()).collect()
 }

@@ -7,13 +7,13 @@ use corniche_roads::{FunctionalRoadClass, OwnWidth};
 use wgpu::{
     BindGroup, BlendComponent, BlendFactor, BlendOperation, BlendState, Buffer, BufferUsages,
     ColorWrites, Device, PrimitiveTopology, RenderPass, RenderPipeline, VertexAttribute,
-    VertexBufferLayout, VertexStepMode,
+    VertexStepMode,
 };
 
 use super::{
     Gpu,
     formats::LABEL,
-    pipeline::{PipelineRecipe, Shader},
+    pipeline::{PipelineRecipe, Shader, vertex_layout},
     shared_bindings::{SharedBindings, SharedLayouts},
 };
 use crate::{
@@ -65,11 +65,7 @@ impl RoadPipeline {
         let groups = [Some(&layouts.frame), Some(&layouts.tile), Some(drawn)];
         let pipeline = PipelineRecipe {
             entries,
-            buffer: Some(VertexBufferLayout {
-                array_stride: size_of::<T::Words>() as u64,
-                step_mode: VertexStepMode::Instance,
-                attributes: T::ATTRIBUTES,
-            }),
+            buffer: Some(vertex_layout::<T::Words>(VertexStepMode::Instance, T::ATTRIBUTES)),
             topology: PrimitiveTopology::TriangleStrip,
             cull: T::CULL,
             depth,
@@ -170,11 +166,6 @@ impl RoadBuffers {
     /// Size of the buffer for a list, bytes.
     pub(crate) fn bytes_of<T: RoadInstance>(list: &RoadList<T>) -> u64 {
         (list.all().len() * size_of::<T::Words>()) as u64
-    }
-
-    /// Whether there are no pieces.
-    pub(crate) fn is_empty(&self) -> bool {
-        self.instances.is_none()
     }
 
     /// Size of the buffer, bytes.

@@ -1,7 +1,7 @@
 //! The classes and heights that a finished picture shows. A class counts if it covers as much of
 //! the picture as a few pixels.
 
-use std::{cmp::Reverse, collections::BTreeMap};
+use std::collections::BTreeMap;
 
 use corniche_roads::FunctionalRoadClass;
 use glam::DVec2;
@@ -105,12 +105,8 @@ impl SeenSamples<'_> {
             }
         }
         let least = LEAST_PX * self.per_side * self.per_side;
-        let mut layers: Vec<LayerClass> = layers
-            .into_iter()
-            .filter(|(_, count)| *count >= least)
-            .map(|(class, _)| class)
-            .collect();
-        layers.sort_by_key(|of| (Reverse(of.layer), of.class));
+        let layers = layers.into_iter().filter(|(_, count)| *count >= least);
+        let layers = LayerClass::topmost_first(layers.map(|(class, _)| class));
         ShownTiles {
             roads: classes(&roads, least, |_| true),
             tunnels: classes(&roads, least, is_tunnel),

@@ -39,8 +39,8 @@ pub struct TileBuffers {
     pub(crate) areas: Option<AreaBuffers>,
     /// User-drawn areas.
     pub(crate) drawn_areas: Option<AreaBuffers>,
-    roads: LayerBuffers,
-    layers: BTreeMap<LineLayer, LayerBuffers>,
+    pub(crate) roads: LayerBuffers,
+    pub(crate) layers: BTreeMap<LineLayer, LayerBuffers>,
     /// `None` without points.
     pub(crate) points: Option<PointBuffers>,
     width_margin_m: f64,
@@ -51,7 +51,7 @@ pub struct TileBuffers {
 }
 
 /// The roads of a tile, or its lines that are drawn at once, on the GPU, for both methods.
-struct LayerBuffers {
+pub(crate) struct LayerBuffers {
     segments: RoadBuffers,
     volumes: RoadBuffers,
     /// Bridges, for both methods.
@@ -67,12 +67,18 @@ impl LayerBuffers {
         }
     }
 
-    fn for_method(&self, method: RoadMethod) -> Option<&RoadBuffers> {
+    /// The roads on the ground for a method.
+    pub(crate) fn for_method(&self, method: RoadMethod) -> Option<&RoadBuffers> {
         match method {
             RoadMethod::Geometry => Some(&self.segments),
             RoadMethod::ShadowVolumes => Some(&self.volumes),
             RoadMethod::None => None,
         }
+    }
+
+    /// The decks of bridges, which are part of the roads with every method.
+    pub(crate) fn decks_for(&self, method: RoadMethod) -> Option<&RoadBuffers> {
+        self.for_method(method).map(|_| &self.decks)
     }
 
     fn gpu_bytes(&self) -> u64 {
@@ -95,9 +101,7 @@ pub fn tile_bytes(tile: &TileGeometry) -> u64 {
     GroundBuffers::bytes_of(&tile.ground)
         + TileTextures::bytes_of(tile)
         + AreaBuffers::bytes_of(&tile.areas)
-        + RoadBuffers::bytes_of(&tile.roads)
-        + RoadBuffers::bytes_of(&tile.volumes)
-        + RoadBuffers::bytes_of(&tile.decks)
+        + layer_bytes(&tile.roads)
         + tile.lines.0.values().map(layer_bytes).sum::<u64>()
         + PointBuffers::bytes_of(&tile.points)
 }
@@ -121,11 +125,7 @@ impl TileBuffers {
             textures: TileTextures::new(gpu, tile, above),
             areas: AreaBuffers::new(gpu, &tile.areas),
             drawn_areas: None,
-            roads: LayerBuffers {
-                segments: RoadBuffers::new(gpu, &tile.roads),
-                volumes: RoadBuffers::new(gpu, &tile.volumes),
-                decks: RoadBuffers::new(gpu, &tile.decks),
-            },
+            roads: LayerBuffers::of_lines(gpu, &tile.roads),
             layers: tile
                 .lines
                 .0
@@ -176,31 +176,6 @@ impl TileBuffers {
     pub fn area_classes(&self) -> &[ClassVolumes] {
         self.areas.as_ref().map_or(&[], |areas| &areas.classes)
     }
-
-    /// The roads for a method.
-    pub(crate) fn roads(&self, method: RoadMethod) -> Option<&RoadBuffers> {
-        self.roads.for_method(method)
-    }
-
-    /// The decks of bridges, which are part of the roads with every method.
-    pub(crate) fn decks(&self, method: RoadMethod) -> Option<&RoadBuffers> {
-        self.roads(method).map(|_| &self.roads.decks)
-    }
-
-    /// The lines that the tile has, from the lowest to the highest.
-    pub(crate) fn line_layers(&self) -> impl Iterator<Item = LineLayer> {
-        self.layers.keys().copied()
-    }
-
-    /// The lines of a layer for a method.
-    pub(crate) fn lines(&self, layer: LineLayer, method: RoadMethod) -> Option<&RoadBuffers> {
-        self.layers.get(&layer)?.for_method(method)
-    }
-
-    /// The decks of bridges among the lines of a layer.
-    pub(crate) fn line_decks(&self, layer: LineLayer) -> Option<&RoadBuffers> {
-        Some(&self.layers.get(&layer)?.decks)
-    }
 }
 
 impl DrawTile<'_> {
@@ -219,8 +194,8 @@ impl DrawTile<'_> {
     /// The number of road segments or volumes, and pieces of decks, that are drawn in a view.
     #[must_use]
     pub fn road_segments(&self, view: &FrameView<'_>) -> u64 {
-        let (tile, method) = (self.buffers, view.roads.method);
-        let drawn = [tile.roads(method), tile.decks(method)].into_iter().flatten();
+        let (roads, method) = (&self.buffers.roads, view.roads.method);
+        let drawn = [roads.for_method(method), roads.decks_for(method)].into_iter().flatten();
         let drawn = drawn.flat_map(|roads| roads.runs(self.shown_classes(view)));
         drawn.map(|range| u64::from(range.end - range.start)).sum()
     }

@@ -6,7 +6,6 @@ use corniche_geom::TileId;
 
 use super::{FrameRecord, elapsed::ms_since};
 use crate::{
-    camera::{Camera, WorldBox},
     draw_error::DrawError,
     gpu::{Gpu, ResidentTiles, SlopeChain, TileBuffers, tile_bytes},
     lod::DrawnTile,
@@ -65,32 +64,12 @@ impl FinestTiles {
         Ok(finest)
     }
 
-    /// Selects all tiles.
-    pub(crate) fn all(&self) -> (Vec<DrawnTile>, FrameRecord) {
-        let started = Instant::now();
-        self.choose(started, |_, _| true)
-    }
-
-    /// Selects the tiles in view. World heights are true heights times `vertical_scale`.
-    pub(crate) fn in_view(
+    /// Selects tiles by their ids and true heights.
+    pub(crate) fn choose(
         &self,
-        package: &dyn BlockingPackage,
-        camera: &Camera,
-        vertical_scale: f64,
-    ) -> (Vec<DrawnTile>, FrameRecord) {
-        let started = Instant::now();
-        let frustum = camera.frustum();
-        self.choose(started, |id, range_m| {
-            let plan = package.frame().tile_bounds(id);
-            frustum.may_see(&WorldBox::new(plan, range_m.map(|height_m| height_m * vertical_scale)))
-        })
-    }
-
-    fn choose(
-        &self,
-        started: Instant,
         is_drawn: impl Fn(TileId, [f64; 2]) -> bool,
     ) -> (Vec<DrawnTile>, FrameRecord) {
+        let started = Instant::now();
         let drawn = self
             .height_ranges_m
             .iter()

@@ -20,9 +20,9 @@
 
 struct Face {
     // Faces of a volume must meet without a gap, with any pipeline.
-    @invariant @builtin(position) clip: vec4<f32>,
+    @invariant @builtin(position) clip: vec4f,
     // Walls: both ends in plan, relative to the eye. Caps: xy is 0, z the height above the eye.
-    @location(0) @interpolate(flat) ends: vec4<f32>,
+    @location(0) @interpolate(flat) ends: vec4f,
 }
 
 // 1 draws upper caps, 0 draws lower caps.
@@ -31,7 +31,7 @@ override IS_TOP: u32 = 0u;
 override IS_FAIL: u32 = 0u;
 
 // `heights` are bottom and top above the tile's reference point, true metres.
-fn height_of(heights: vec2<f32>, is_top: bool) -> f32 {
+fn height_of(heights: vec2f, is_top: bool) -> f32 {
     let height = tile.offset.z + select(heights.x, heights.y, is_top) * frame.scale.y;
     // Skirts are painted like the ground from which they hang.
     return height - select(tile.offset.w, 0.0, is_top);
@@ -39,37 +39,32 @@ fn height_of(heights: vec2<f32>, is_top: bool) -> f32 {
 
 // In a view from above, walls are edge-on and cover nothing.
 @vertex
-fn wall_vertex(@builtin(vertex_index) corner: u32, @location(0) start: vec2<f32>, @location(1) end: vec2<f32>,
-    @location(2) heights: vec2<f32>) -> Face {
+fn wall_vertex(@builtin(vertex_index) corner: u32, @location(0) start: vec2f, @location(1) end: vec2f,
+    @location(2) heights: vec2f) -> Face {
     //  2 ── 3     seen from outside: the inside is on the left in the direction from start to end
     //  │  ╲ │
     //  0 ── 1
     let plan = tile.offset.xy + select(start, end, (corner & 1u) == 1u);
-    var out: Face;
-    out.clip = clip_of(vec3(plan, height_of(heights, corner > 1u)));
-    out.ends = vec4(tile.offset.xy + start, tile.offset.xy + end);
-    return out;
+    let clip = clip_of(vec3(plan, height_of(heights, corner > 1u)));
+    return Face(clip, vec4(tile.offset.xy + start, tile.offset.xy + end));
 }
 
 @vertex
-fn cap_vertex(@location(0) place: vec2<f32>, @location(1) heights: vec2<f32>) -> Face {
+fn cap_vertex(@location(0) place: vec2f, @location(1) heights: vec2f) -> Face {
     let plan = tile.offset.xy + place;
     let height = height_of(heights, IS_TOP == 1u);
-    var out: Face;
-    out.clip = clip_of(vec3(plan, height));
-    out.ends = vec4(0.0, 0.0, height, 0.0);
-    return out;
+    return Face(clip_of(vec3(plan, height)), vec4(0.0, 0.0, height, 0.0));
 }
 
 // The side of the line through a and b on which a position is. Both tiles and both areas at a
 // common edge use the same line.
-fn is_left(a: vec2<f32>, b: vec2<f32>, at: vec2<f32>) -> bool {
+fn is_left(a: vec2f, b: vec2f, at: vec2f) -> bool {
     return (b.x - a.x) * (at.y - a.y) - (b.y - a.y) * (at.x - a.x) > 0.0;
 }
 
 // Whether a ray from the eye to a position on the ground passes the wall over a–b. The ray is known
 // to meet the wall somewhere.
-fn is_beyond_wall(a: vec2<f32>, b: vec2<f32>, at: vec2<f32>, ray: vec2<f32>) -> bool {
+fn is_beyond_wall(a: vec2f, b: vec2f, at: vec2f, ray: vec2f) -> bool {
     // Along the ray, the wall is only between its ends. This decides if the wall is seen edge-on:
     // then its line is the ray.
     let along = vec2(dot(a, ray), dot(b, ray));
@@ -88,9 +83,9 @@ fn is_beyond_wall(a: vec2<f32>, b: vec2<f32>, at: vec2<f32>, ray: vec2<f32>) -> 
 
 // Position of the tile's own ground or skirt at a pixel; w is 0 if the pixel shows something else
 // or is outside the picture.
-fn own_ground(center: vec2<f32>) -> vec4<f32> {
-    let pixel = vec2<i32>(floor(center));
-    let is_outside = any(pixel < vec2(0)) || any(pixel >= vec2<i32>(textureDimensions(owners)));
+fn own_ground(center: vec2f) -> vec4f {
+    let pixel = vec2i(floor(center));
+    let is_outside = any(pixel < vec2(0)) || any(pixel >= vec2i(textureDimensions(owners)));
     if is_outside || (textureLoad(owners, pixel, 0).r & ~SKIRT) != u32(tile.base.z) {
         return vec4(0.0);
     }
@@ -120,10 +115,10 @@ fn cap_fragment(in: Face) {
 // How areas of a class look.
 struct AreaLook {
     // rgb; w: opacity.
-    color: vec4<f32>,
+    color: vec4f,
     // x: the slope from which on nothing is painted, tangent of the angle; y: the slope up to which
     // everything is painted.
-    steepest: vec4<f32>,
+    steepest: vec4f,
 }
 
 @group(3) @binding(0) var<uniform> look: AreaLook;
@@ -132,8 +127,8 @@ struct AreaLook {
 // that sees the box, also with the eye inside. The stencil decides which of these pixels are
 // painted.
 @vertex
-fn box_vertex(@builtin(vertex_index) index: u32, @location(0) low: vec3<f32>, @location(1) high: vec3<f32>)
-    -> @builtin(position) vec4<f32> {
+fn box_vertex(@builtin(vertex_index) index: u32, @location(0) low: vec3f, @location(1) high: vec3f)
+    -> @builtin(position) vec4f {
     let corner = STRIP[index];
     let plan = tile.offset.xy
         + vec2(select(low.x, high.x, (corner & 1u) != 0u), select(low.y, high.y, (corner & 2u) != 0u));
@@ -143,7 +138,7 @@ fn box_vertex(@builtin(vertex_index) index: u32, @location(0) low: vec3<f32>, @l
 
 // The step from the position of a tile's own ground at a pixel to the position at the adjacent
 // pixel, on the side where that is nearer. 0 if neither pixel shows the tile's ground.
-fn step_on_ground(center: vec2<f32>, here: vec3<f32>, aside: vec2<f32>) -> vec3<f32> {
+fn step_on_ground(center: vec2f, here: vec3f, aside: vec2f) -> vec3f {
     let after = own_ground(center + aside);
     let before = own_ground(center - aside);
     let forth = after.xyz - here;
@@ -153,7 +148,7 @@ fn step_on_ground(center: vec2<f32>, here: vec3<f32>, aside: vec2<f32>) -> vec3<
 }
 
 // The slope of a tile's own ground at a pixel: tangent of the angle.
-fn slope_at(center: vec2<f32>) -> f32 {
+fn slope_at(center: vec2f) -> f32 {
     let here = own_ground(center).xyz;
     let normal = cross(step_on_ground(center, here, vec2(1.0, 0.0)), step_on_ground(center, here, vec2(0.0, 1.0)));
     // If the ground is only one pixel wide, its slope is unknown.
@@ -161,7 +156,7 @@ fn slope_at(center: vec2<f32>) -> f32 {
 }
 
 @fragment
-fn box_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+fn box_fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let painted = (look.steepest.x - slope_at(position.xy)) / (look.steepest.x - look.steepest.y);
     return vec4(look.color.rgb, look.color.a * clamp(painted, 0.0, 1.0));
 }

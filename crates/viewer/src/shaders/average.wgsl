@@ -7,14 +7,14 @@
 override PER_SIDE: u32 = 2u;
 
 @fragment
-fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    let first = vec2<u32>(position.xy) * PER_SIDE;
+fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let first = vec2u(position.xy) * PER_SIDE;
     let count = PER_SIDE * PER_SIDE;
     var sum = vec4(count / 2u);
     for (var y = 0u; y < PER_SIDE; y++) {
         for (var x = 0u; x < PER_SIDE; x++) {
-            sum += vec4<u32>(round(textureLoad(samples, first + vec2(x, y), 0) * 255.0));
+            sum += vec4u(round(textureLoad(samples, first + vec2(x, y), 0) * 255.0));
         }
     }
-    return vec4<f32>(sum / count) / 255.0;
+    return vec4f(sum / count) / 255.0;
 }

@@ -8,11 +8,11 @@
 override BLOCK: i32 = 16;
 
 @fragment
-fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) f32 {
+fn fragment(@builtin(position) position: vec4f) -> @location(0) f32 {
     // The edges of bridges extend farthest.
     let radius = i32(ceil(1.5 * frame.road_scale.z));
     let last = last_pixel();
-    let corner = vec2<i32>(position.xy) * BLOCK;
+    let corner = vec2i(position.xy) * BLOCK;
     let first = max(corner - radius, vec2(0));
     let end = min(corner + (BLOCK - 1 + radius), last);
     var largest = 0.0;

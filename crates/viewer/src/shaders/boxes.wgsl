@@ -6,7 +6,7 @@ const STRIP = array<u32, 14>(0u, 1u, 4u, 5u, 7u, 1u, 3u, 0u, 2u, 4u, 6u, 7u, 2u,
 
 // A corner of the box around all positions within `radius_m` of a segment in plan, between a lower
 // and an upper height.
-fn box_corner(index: u32, start: vec2<f32>, start_to_end: vec2<f32>, direction: vec2<f32>, radius_m: f32, heights: vec2<f32>) -> vec4<f32> {
+fn box_corner(index: u32, start: vec2f, start_to_end: vec2f, direction: vec2f, radius_m: f32, heights: vec2f) -> vec4f {
     let corner = STRIP[index];
     let at_end = f32(corner & 1u);
     let side = f32((corner >> 1u) & 1u) * 2.0 - 1.0;

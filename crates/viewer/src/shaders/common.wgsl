@@ -16,49 +16,49 @@ const BANDS = 16u;
 const PATTERN_WIDTHS = 16u;
 
 struct Frame {
-    clip_from_relative: mat4x4<f32>,
+    clip_from_relative: mat4x4f,
     // xyz: the view's right axis × half width at depth 1, from above at any depth; w: width of the
     // picture in pixels.
-    right: vec4<f32>,
+    right: vec4f,
     // xyz: the view's up axis × half height, likewise; w: height of the picture in pixels.
-    up: vec4<f32>,
+    up: vec4f,
     // xyz: the direction of view; w: depth of the near plane.
-    forward: vec4<f32>,
+    forward: vec4f,
     // x: side of a pixel at depth 1, metres; y: world height of one metre of true height; z: half
     // the drawn width per metre of a road's own width, 0 if own widths are ignored; w: width of a
     // lane, 0 if lanes are ignored.
-    scale: vec4<f32>,
+    scale: vec4f,
     // x: distance up to which roads have their true width; z: radius of the outline kernel in
     // pixels of this target; w: how many of these pixels make one pixel of the final picture.
-    road_scale: vec4<f32>,
+    road_scale: vec4f,
     // x: 1 with caps, 0 without; y: 1 for the paper's test in the fragment shader of volumes; z:
     // world metres per true metre, one value for the whole package; w: maximum width from a road's
     // own tags, true metres.
-    road_options: vec4<f32>,
+    road_options: vec4f,
     // x: distance from the eye up to which roads of a part of the network are fully shown, per
     // metre of that part; y: 1 for the paper's level quads of geometry; z: in a view from above,
     // depth of the far plane; w: in a view from above, the distance at which a perspective view has
     // pixels of this size, otherwise 0.
-    network: vec4<f32>,
+    network: vec4f,
     // x: half width in true metres near the eye; y: minimum half width in pixels of this target; z:
     // number of bands; w: distance from the eye up to which the class is fully shown.
-    road_widths: array<vec4<f32>, CLASSES>,
+    road_widths: array<vec4f, CLASSES>,
     // x: exponent with which widths grow beyond the distance of true widths; y: distance from the
     // eye up to which the edge of roads is fully drawn.
-    road_growth: array<vec4<f32>, CLASSES>,
+    road_growth: array<vec4f, CLASSES>,
     // x: half width, as a share of the distance from the eye, at which roads stop growing; y: width
     // of one of two carriageways as a share of the width of its class; z: how much of the ground a
     // road hides; w: number of bands of a slip road.
-    road_limits: array<vec4<f32>, CLASSES>,
+    road_limits: array<vec4f, CLASSES>,
     // The widths of the bands of each class as shares of the road's width, four in each row.
-    road_bands: array<vec4<f32>, BANDS / 4u * CLASSES>,
+    road_bands: array<vec4f, BANDS / 4u * CLASSES>,
     // The dashes of each class. xyz: where the first dash, the first gap and the second dash end,
     // as shares of the pattern; w: minimum length of the pattern in pixels of the final picture, 0
     // without gaps.
-    dashes: array<vec4<f32>, CLASSES>,
+    dashes: array<vec4f, CLASSES>,
     // The widths of the lines of each class along their pattern, as shares of their width, four in
     // each row; below 0 without a pattern.
-    pattern_widths: array<vec4<f32>, PATTERN_WIDTHS / 4u * CLASSES>,
+    pattern_widths: array<vec4f, PATTERN_WIDTHS / 4u * CLASSES>,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -69,7 +69,7 @@ fn is_from_above() -> bool {
 }
 
 // Direction through a pixel position, scaled to depth 1.
-fn ray_at(pixel: vec2<f32>) -> vec3<f32> {
+fn ray_at(pixel: vec2f) -> vec3f {
     if is_from_above() {
         return frame.forward.xyz;
     }
@@ -78,18 +78,18 @@ fn ray_at(pixel: vec2<f32>) -> vec3<f32> {
 }
 
 // A pixel position in clip space, from -1 to 1, upwards.
-fn in_clip_space(pixel: vec2<f32>) -> vec2<f32> {
+fn in_clip_space(pixel: vec2f) -> vec2f {
     return vec2(2.0 * pixel.x / frame.right.w - 1.0, 1.0 - 2.0 * pixel.y / frame.up.w);
 }
 
 // The last pixel of the last row.
-fn last_pixel() -> vec2<i32> {
-    return vec2<i32>(i32(frame.right.w), i32(frame.up.w)) - 1;
+fn last_pixel() -> vec2i {
+    return vec2i(i32(frame.right.w), i32(frame.up.w)) - 1;
 }
 
 // Clip position for drawing without depth test. In a view from above, nothing may be cut off at the
 // planes between which all ground is.
-fn clip_of(position: vec3<f32>) -> vec4<f32> {
+fn clip_of(position: vec3f) -> vec4f {
     var clip = frame.clip_from_relative * vec4(position, 1.0);
     if is_from_above() {
         clip.z = 0.5;
@@ -99,7 +99,7 @@ fn clip_of(position: vec3<f32>) -> vec4<f32> {
 
 // Start of the ray through a pixel position: the eye, or in a view from above the level plane
 // through the eye.
-fn ray_start_at(pixel: vec2<f32>) -> vec3<f32> {
+fn ray_start_at(pixel: vec2f) -> vec3f {
     if !is_from_above() {
         return vec3(0.0);
     }
@@ -123,12 +123,12 @@ fn depth_buffer_of(view_depth: f32) -> f32 {
 }
 
 // The position of the ground at a pixel, relative to the eye.
-fn position_at(pixel: vec2<f32>, depth_buffer: f32) -> vec3<f32> {
+fn position_at(pixel: vec2f, depth_buffer: f32) -> vec3f {
     return ray_start_at(pixel) + ray_at(pixel) * view_depth_of(depth_buffer);
 }
 
 // The distance from the eye that decides how large things look at a position.
-fn distance_to(position: vec3<f32>) -> f32 {
+fn distance_to(position: vec3f) -> f32 {
     return select(length(position), frame.network.w, is_from_above());
 }
 

@@ -9,7 +9,7 @@
 @group(1) @binding(4) var ground_color: texture_2d<f32>;
 
 // The largest label around a pixel, of roads on ground of at least this depth in the buffer.
-fn largest_around(pixel: vec2<i32>, own: f32, least_depth: f32) -> f32 {
+fn largest_around(pixel: vec2i, own: f32, least_depth: f32) -> f32 {
     let radius = i32(frame.road_scale.z);
     let last = last_pixel();
     var largest = own;
@@ -40,7 +40,7 @@ fn hatch(along: f32, spacing: f32, footprint: f32) -> f32 {
 
 // The plane of voids: neutral, with oblique lines at fixed positions. From far away there are fewer
 // lines.
-fn void_at(ray: vec3<f32>, position: vec2<f32>) -> vec3<f32> {
+fn void_at(ray: vec3f, position: vec2f) -> vec3f {
     let plane = colors.void_plane;
     let down = max(-ray.z, 1e-4);
     let distance = max(plane.z, 0.0) / down;
@@ -59,11 +59,11 @@ fn void_at(ray: vec3<f32>, position: vec2<f32>) -> vec3<f32> {
 
 // Between 0 and 1, different for each pixel, without a pattern (Jimenez, Next Generation Post
 // Processing in Call of Duty: Advanced Warfare, SIGGRAPH 2014: interleaved gradient noise).
-fn noise_at(position: vec2<f32>) -> f32 {
+fn noise_at(position: vec2f) -> f32 {
     return fract(52.9829189 * fract(dot(position, vec2(0.06711056, 0.00583715))));
 }
 
-fn background_at(ray: vec3<f32>, position: vec2<f32>) -> vec3<f32> {
+fn background_at(ray: vec3f, position: vec2f) -> vec3f {
     let elevation = ray.z / length(ray);
     let above = mix(colors.haze.rgb, colors.sky.rgb, smoothstep(0.0, 0.35, elevation));
     let color = mix(void_at(ray, position), above, smoothstep(-0.2, 0.0, elevation));
@@ -73,9 +73,9 @@ fn background_at(ray: vec3<f32>, position: vec2<f32>) -> vec3<f32> {
     return color + grain;
 }
 
-fn sight_at(position: vec2<f32>) -> Sight {
+fn sight_at(position: vec2f) -> Sight {
     // Derivatives also access positions beyond the last row and column.
-    let pixel = min(vec2<i32>(position), last_pixel());
+    let pixel = min(vec2i(position), last_pixel());
     var sight = sight_of(position, textureLoad(terrain_depth, pixel, 0).r);
     if sight.depth_buffer == 0.0 {
         sight.color = background_at(ray_at(position), position);
@@ -93,13 +93,13 @@ fn edge_over_share(label: u32, sight: Sight) -> f32 {
 }
 
 @fragment
-fn ground_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+fn ground_fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     return vec4(sight_at(position.xy).color, 1.0);
 }
 
 @fragment
-fn road_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    let pixel = vec2<i32>(position.xy);
+fn road_fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let pixel = vec2i(position.xy);
     let sight = sight_at(position.xy);
     let facing = facing_of(position.xy, sight);
     if sight.depth_buffer == 0.0 {

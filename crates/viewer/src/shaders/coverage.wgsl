@@ -18,9 +18,9 @@
 
 // The output of a road's vertex stage for its fragment stage, for both methods.
 struct RoadFragment {
-    @builtin(position) clip: vec4<f32>,
-    @location(0) @interpolate(flat) start: vec2<f32>,
-    @location(1) @interpolate(flat) start_to_end: vec2<f32>,
+    @builtin(position) clip: vec4f,
+    @location(0) @interpolate(flat) start: vec2f,
+    @location(1) @interpolate(flat) start_to_end: vec2f,
     // Lowest four bits: class; three bits: look; one bit each if the segment ends flat at its start
     // and at its end. Above, for a connector, the number of its other tile, otherwise 0.
     @location(2) @interpolate(flat) class_and_other: u32,
@@ -28,7 +28,7 @@ struct RoadFragment {
     @location(3) @interpolate(flat) half_width_m: f32,
     // Dash positions. x: the distance of the segment's start along the line, world metres; y: such
     // metres along the line per metre in plan, more than 1 uphill.
-    @location(4) @interpolate(flat) dash: vec2<f32>,
+    @location(4) @interpolate(flat) dash: vec2f,
     // Length of the part of the network to which the road belongs, world metres.
     @location(5) @interpolate(flat) part_m: f32,
 }
@@ -39,8 +39,8 @@ fn road_of(in: RoadFragment) -> Road {
 
 // A segment of a road in plan, relative to the eye, or on the picture.
 struct Segment {
-    start: vec2<f32>,
-    start_to_end: vec2<f32>,
+    start: vec2f,
+    start_to_end: vec2f,
     // Whether it ends flat at its start and at its end, because the road continues there as another
     // one.
     flat_start: bool,
@@ -52,7 +52,7 @@ fn segment_of(in: RoadFragment) -> Segment {
 }
 
 // The direction of a segment of some length; any direction if it has no length.
-fn direction_of(start_to_end: vec2<f32>, length_m: f32) -> vec2<f32> {
+fn direction_of(start_to_end: vec2f, length_m: f32) -> vec2f {
     return select(vec2(1.0, 0.0), start_to_end / length_m, length_m > 1e-6);
 }
 
@@ -84,7 +84,7 @@ fn has_caps() -> bool {
 
 // Vector from the nearest point of a segment. Beyond a flat end, and beyond any end of a road
 // without caps, its length is `NEVER`.
-fn from_segment(at: vec2<f32>, segment: Segment) -> vec2<f32> {
+fn from_segment(at: vec2f, segment: Segment) -> vec2f {
     let from_start = at - segment.start;
     let length_squared = dot(segment.start_to_end, segment.start_to_end);
     let along = dot(from_start, segment.start_to_end) / max(length_squared, 1e-12);
@@ -100,11 +100,11 @@ fn from_segment(at: vec2<f32>, segment: Segment) -> vec2<f32> {
 struct Neighbour {
     depth_buffer: f32,
     // Position in plan, relative to the eye.
-    position: vec2<f32>,
+    position: vec2f,
     to_segment_m: f32,
 }
 
-fn neighbour(pixel: vec2<i32>, step: vec2<i32>, segment: Segment) -> Neighbour {
+fn neighbour(pixel: vec2i, step: vec2i, segment: Segment) -> Neighbour {
     let last = last_pixel();
     let at = pixel + step;
     var out: Neighbour;
@@ -113,7 +113,7 @@ fn neighbour(pixel: vec2<i32>, step: vec2<i32>, segment: Segment) -> Neighbour {
     }
     out.depth_buffer = textureLoad(terrain_depth, at, 0).r;
     if out.depth_buffer > 0.0 {
-        out.position = position_at(vec2<f32>(at) + 0.5, out.depth_buffer).xy;
+        out.position = position_at(vec2f(at) + 0.5, out.depth_buffer).xy;
         out.to_segment_m = length(from_segment(out.position, segment));
     }
     return out;
@@ -122,7 +122,7 @@ fn neighbour(pixel: vec2<i32>, step: vec2<i32>, segment: Segment) -> Neighbour {
 // The change of the ground's position in plan from this pixel to the next one, on the side where
 // the segment is closer. If that side has no ground or a silhouette, the other side is used: within
 // one triangle the depth buffer is linear, so both sides have the same change.
-fn plan_step(pixel: vec2<i32>, step: vec2<i32>, depth_buffer: f32, position: vec2<f32>, segment: Segment) -> vec2<f32> {
+fn plan_step(pixel: vec2i, step: vec2i, depth_buffer: f32, position: vec2f, segment: Segment) -> vec2f {
     let ahead = neighbour(pixel, step, segment);
     let behind = neighbour(pixel, -step, segment);
     let change_ahead = abs(ahead.depth_buffer - depth_buffer);
@@ -140,14 +140,14 @@ fn plan_step(pixel: vec2<i32>, step: vec2<i32>, depth_buffer: f32, position: vec
 }
 
 // Maps plan to pixels, where `right` and `down` map pixels to plan and span this area.
-fn px_from_plan(right: vec2<f32>, down: vec2<f32>, area: f32) -> mat2x2<f32> {
+fn px_from_plan(right: vec2f, down: vec2f, area: f32) -> mat2x2f {
     return mat2x2(vec2(down.y, -right.y) / area, vec2(-down.x, right.x) / area);
 }
 
 // Distance in pixels from the centre of this pixel to the image of a segment. `right` and `down`
 // map pixels to plan; their inverse maps the segment to pixels. (Its nearest point on the picture
 // is not its nearest in plan.)
-fn seen_px(right: vec2<f32>, down: vec2<f32>, at: vec2<f32>, segment: Segment) -> f32 {
+fn seen_px(right: vec2f, down: vec2f, at: vec2f, segment: Segment) -> f32 {
     let area = right.x * down.y - right.y * down.x;
     if area == 0.0 {
         return NEVER;
@@ -166,7 +166,7 @@ const LEAST_TICK_PX = 1.2;
 
 // Whether the ground at a position is on the tick of a tunnel. The segments of a tunnel end flat
 // only at portals.
-fn is_tick(segment: Segment, road: Road, position: vec3<f32>, distance_m: f32) -> bool {
+fn is_tick(segment: Segment, road: Road, position: vec3f, distance_m: f32) -> bool {
     let half_m = scaled_half_width_m(road, distance_m);
     let length_m = length(segment.start_to_end);
     let pixel_m = pixel_m_at(distance_m);
@@ -184,15 +184,18 @@ fn is_tick(segment: Segment, road: Road, position: vec3<f32>, distance_m: f32) -
 }
 
 // The label that a segment gives the ground at a pixel: 0 if that ground is not on the road.
-// `width_share` is the share of the road's width there.
-fn label_at(pixel: vec2<i32>, center: vec2<f32>, depth_buffer: f32, segment: Segment, road: Road, widest_m: f32, width_share: f32) -> u32 {
-    let position = position_at(center, depth_buffer);
+fn label_at(in: RoadFragment, depth_buffer: f32) -> u32 {
+    let pixel = vec2i(in.clip.xy);
+    let segment = segment_of(in);
+    let road = road_of(in);
+    let position = position_at(in.clip.xy, depth_buffer);
     let distance_m = distance_to(position);
-    if !is_shown(road, distance_m) || width_share == 0.0 {
+    let narrowed = width_share(in, pixel, depth_buffer, position);
+    if !is_shown(road, distance_m) || narrowed == 0.0 {
         return NOTHING;
     }
     let plan_m = length(from_segment(position.xy, segment));
-    if plan_m > widest_m {
+    if plan_m > tile.base.y {
         return NOTHING;
     }
     if is_bore(road.look) && is_tick(segment, road, position, distance_m) {
@@ -201,7 +204,7 @@ fn label_at(pixel: vec2<i32>, center: vec2<f32>, depth_buffer: f32, segment: Seg
     // Each band is treated as a road of its own whose widths are all smaller. So a pixel in one
     // band is also in all previous bands.
     let bands = band_count(road);
-    let part = width_share * part_share(road, distance_m);
+    let part = narrowed * part_share(road, distance_m);
     let half_m = part * scaled_half_width_m(road, distance_m);
     let looks_m = part * stretch_of(distance_m, position.z)
         * least_half_width_m(road, scale_depth_of(depth_buffer));
@@ -263,7 +266,7 @@ struct InPattern {
 
 // `from_start_m` is the distance of the position from the segment's start, in plan along the
 // segment.
-fn in_pattern(in: RoadFragment, position: vec3<f32>, from_start_m: f32, least_px: f32) -> InPattern {
+fn in_pattern(in: RoadFragment, position: vec3f, from_start_m: f32, least_px: f32) -> InPattern {
     let along_m = in.dash.x + in.dash.y * from_start_m;
     let least_m = least_px * pixel_m_at(distance_to(position));
     // Lengths are counted modulo 2^16 metres (tiles/roads/dashes.rs).
@@ -271,7 +274,7 @@ fn in_pattern(in: RoadFragment, position: vec3<f32>, from_start_m: f32, least_px
     return InPattern(fract(along_m / pattern_m), pattern_m / least_m);
 }
 
-fn dash_share(in: RoadFragment, position: vec3<f32>, least_px: f32) -> f32 {
+fn dash_share(in: RoadFragment, position: vec3f, least_px: f32) -> f32 {
     let segment_m = max(length(in.start_to_end), 1e-6);
     let from_start_m = dot(position.xy - in.start, in.start_to_end) / segment_m;
     return in_pattern(in, position, from_start_m, least_px).share;
@@ -284,7 +287,7 @@ fn pattern_width(class_number: u32, place: u32) -> f32 {
 // The distance along a segment in plan from its start to the point that is closest to the centre of
 // a pixel on the picture. The closest point in plan is another one: with it, shapes across the line
 // would be sheared on the picture.
-fn seen_from_start_m(pixel: vec2<i32>, depth_buffer: f32, position: vec2<f32>, segment: Segment) -> f32 {
+fn seen_from_start_m(pixel: vec2i, depth_buffer: f32, position: vec2f, segment: Segment) -> f32 {
     let right = plan_step(pixel, vec2(1, 0), depth_buffer, position, segment);
     let down = plan_step(pixel, vec2(0, 1), depth_buffer, position, segment);
     let area = right.x * down.y - right.y * down.x;
@@ -300,7 +303,7 @@ fn seen_from_start_m(pixel: vec2<i32>, depth_buffer: f32, position: vec2<f32>, s
 
 // The width of a line at a position, as a share of its full width. The shapes of a pattern keep
 // their length where the pattern gets longer.
-fn width_share(in: RoadFragment, pixel: vec2<i32>, depth_buffer: f32, position: vec3<f32>) -> f32 {
+fn width_share(in: RoadFragment, pixel: vec2i, depth_buffer: f32, position: vec3f) -> f32 {
     let class_number = in.class_and_other & 15u;
     if pattern_width(class_number, 0u) < 0.0 {
         return 1.0;
@@ -315,7 +318,7 @@ fn width_share(in: RoadFragment, pixel: vec2<i32>, depth_buffer: f32, position: 
 }
 
 // The label of a line at a position: none in a gap. The label of a tunnel is odd on a dash.
-fn label_on(label: u32, in: RoadFragment, position: vec3<f32>) -> u32 {
+fn label_on(label: u32, in: RoadFragment, position: vec3f) -> u32 {
     let road = road_of(in);
     if label == NOTHING {
         return NOTHING;
@@ -332,6 +335,14 @@ fn label_on(label: u32, in: RoadFragment, position: vec3<f32>) -> u32 {
     let share = dash_share(in, position, dashes.w);
     let is_dash = share < dashes.x || (share >= dashes.y && share < dashes.z);
     return select(NOTHING, label, is_dash);
+}
+
+// What is stored for a label of a road at a pixel, with its dashes; nothing without a label.
+fn painted(label: u32, in: RoadFragment, depth_buffer: f32) -> f32 {
+    if label == NOTHING {
+        discard;
+    }
+    return stored(label_on(label, in, position_at(in.clip.xy, depth_buffer)));
 }
 
 // A label as it is stored in the target; blending keeps the largest.

@@ -21,12 +21,12 @@ const WIDER_EDGE = 1.5;
 const IN_SHADE = 0.7;
 
 // The visible depth at a pixel: of a deck, otherwise of the ground.
-fn depth_at(pixel: vec2<i32>) -> f32 {
+fn depth_at(pixel: vec2i) -> f32 {
     return max(textureLoad(terrain_depth, pixel, 0).r, textureLoad(deck_depth, pixel, 0).r);
 }
 
 // Whether the visible deck at a pixel is painted on the ground.
-fn is_painted(pixel: vec2<i32>) -> bool {
+fn is_painted(pixel: vec2i) -> bool {
     return textureLoad(deck_depth, pixel, 0).r <= textureLoad(terrain_depth, pixel, 0).r * (1.0 + 4e-6);
 }
 
@@ -43,13 +43,13 @@ struct Edge {
 // The edge of the most important road around a pixel: of a deck that is higher than the visible
 // surface at the pixel, or as high if that surface is not a road. Where one deck rises above
 // another, its edge fades in.
-fn edge_at(pixel: vec2<i32>, own: u32, sight: Sight) -> Edge {
+fn edge_at(pixel: vec2i, own: u32, sight: Sight) -> Edge {
     // Where a deck begins, the road continues on the ground.
     let road = select(own, label_of(textureLoad(ground_labels, pixel, 0).r), own == 0u);
     let is_bare = own == 0u && road == 0u;
     let radius = i32(ceil(WIDER_EDGE * frame.road_scale.z));
     let last = last_pixel();
-    let place = position_at(vec2<f32>(pixel) + 0.5, sight.depth_buffer);
+    let place = position_at(vec2f(pixel) + 0.5, sight.depth_buffer);
     let pixel_m = pixel_m_at(sight.distance_m);
     let own_is_painted = own != 0u && is_painted(pixel);
     var most = Edge(0u, 0.0);
@@ -66,7 +66,7 @@ fn edge_at(pixel: vec2<i32>, own: u32, sight: Sight) -> Edge {
                 continue;
             }
             let rises = select(STEEPEST, STEEPEST_GROUND * f32(radius) * frame.scale.y, own_is_painted || is_painted(near));
-            let there = position_at(vec2<f32>(near) + 0.5, depth_buffer);
+            let there = position_at(vec2f(near) + 0.5, depth_buffer);
             let is_alike = own != 0u && class_of(label) == class_of(own);
             let along_m = select(0.0, STEEPEST_ALONG * frame.scale.y * distance(place.xy, there.xy), is_alike);
             let same_m = SAME_HEIGHT_M * frame.scale.y + rises * pixel_m + along_m;
@@ -86,8 +86,8 @@ fn edge_at(pixel: vec2<i32>, own: u32, sight: Sight) -> Edge {
 
 // The result is premultiplied.
 @fragment
-fn deck_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    let pixel = vec2<i32>(position.xy);
+fn deck_fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let pixel = vec2i(position.xy);
     let sight = sight_of(position.xy, depth_at(min(pixel, last_pixel())));
     let facing = facing_of(position.xy, sight);
     // The sky has neither a deck nor its edge.

@@ -21,36 +21,36 @@
 struct DeckIn {
     @builtin(vertex_index) corner: u32,
     // Plan position and true height above the reference point.
-    @location(0) start_in_tile: vec3<f32>,
-    @location(1) end_in_tile: vec3<f32>,
+    @location(0) start_in_tile: vec3f,
+    @location(1) end_in_tile: vec3f,
     // Mitres at the start and at the end: the piece is cut off perpendicular to these unit vectors;
     // 0 for a round cap.
-    @location(2) mitres: vec4<f32>,
+    @location(2) mitres: vec4f,
     // x: thickness of the slab, true metres; y: world metres across the road per true metre.
-    @location(3) slab_width_factor: vec2<f32>,
+    @location(3) slab_width_factor: vec2f,
     // Lowest four bits: class; three bits: look; one bit each if the deck comes down to the ground
     // at its start and at its end; one bit for a ribbon.
     @location(4) class_and_look: u32,
     // The road's own width, as `road_with` takes it.
     @location(5) own_width: f32,
     // Same as in RoadFragment.
-    @location(6) dash: vec2<f32>,
+    @location(6) dash: vec2f,
     // x: same as part_m in RoadFragment; y: length of the deck, world metres.
-    @location(7) lengths: vec2<f32>,
+    @location(7) lengths: vec2f,
 }
 
 struct DeckFragment {
-    @builtin(position) clip: vec4<f32>,
+    @builtin(position) clip: vec4f,
     // Relative to the eye.
-    @location(0) @interpolate(flat) start: vec3<f32>,
-    @location(1) @interpolate(flat) start_to_end: vec3<f32>,
-    @location(2) @interpolate(flat) mitres: vec4<f32>,
+    @location(0) @interpolate(flat) start: vec3f,
+    @location(1) @interpolate(flat) start_to_end: vec3f,
+    @location(2) @interpolate(flat) mitres: vec4f,
     // xy: half the width at the start and at the end; z: thickness of the slab. World metres.
-    @location(3) @interpolate(flat) size: vec3<f32>,
+    @location(3) @interpolate(flat) size: vec3f,
     @location(4) @interpolate(flat) class_and_look: u32,
     // Same as in RoadFragment.
     @location(5) @interpolate(flat) half_width_m: f32,
-    @location(6) @interpolate(flat) dash: vec2<f32>,
+    @location(6) @interpolate(flat) dash: vec2f,
     @location(7) @interpolate(flat) part_m: f32,
     // Whether the deck is so short that the more important road is drawn on top, as on the ground.
     @location(8) @interpolate(flat) is_short: u32,
@@ -74,7 +74,7 @@ const TRUE_HALF_WIDTH_M = 6.0;
 const SHORTEST_DECK = 2.5;
 
 // The offset on the picture of a point next to a position, pixels per metre of `step`.
-fn seen_step(at: vec3<f32>, step: vec3<f32>) -> vec2<f32> {
+fn seen_step(at: vec3f, step: vec3f) -> vec2f {
     let right = frame.right.xyz * (0.5 * frame.right.w / dot(frame.right.xyz, frame.right.xyz));
     let up = frame.up.xyz * (0.5 * frame.up.w / dot(frame.up.xyz, frame.up.xyz));
     let straight = vec2(dot(step, right), dot(step, up));
@@ -88,7 +88,7 @@ fn seen_step(at: vec3<f32>, step: vec3<f32>) -> vec2<f32> {
 
 // Half the width of a deck at a position: the same rule as for roads on the ground, but constant
 // over the whole cross-section.
-fn half_width_at(road: Road, at: vec3<f32>, along: vec3<f32>) -> f32 {
+fn half_width_at(road: Road, at: vec3f, along: vec3f) -> f32 {
     let distance_m = distance_to(at);
     let half_m = scaled_half_width_m(road, distance_m);
     let depth = select(dot(at, frame.forward.xyz), frame.network.w, is_from_above());
@@ -107,7 +107,7 @@ fn half_width_at(road: Road, at: vec3<f32>, along: vec3<f32>) -> f32 {
 
 // How far a drawn deck is extended where it comes down to the ground: as far as a carriageway of
 // class 0 below it is drawn too wide.
-fn approach_m(at: vec3<f32>, deck_m: f32) -> f32 {
+fn approach_m(at: vec3f, deck_m: f32) -> f32 {
     let beneath = road_with(0u, CARRIAGEWAY, 0.0, frame.road_options.z);
     let wider_m = scaled_half_width_m(beneath, distance_to(at)) - TRUE_HALF_WIDTH_M * frame.road_options.z;
     // The edge of the road is added.
@@ -117,14 +117,14 @@ fn approach_m(at: vec3<f32>, deck_m: f32) -> f32 {
 
 // A deck that is shorter than the width of roads below it would cut them to pieces: in this case
 // the more important road is on top.
-fn is_short(at: vec3<f32>, deck_m: f32) -> bool {
+fn is_short(at: vec3f, deck_m: f32) -> bool {
     let beneath = road_with(0u, PLAIN, 0.0, frame.road_options.z);
     return deck_m < SHORTEST_DECK * scaled_half_width_m(beneath, distance_to(at));
 }
 
 // The mitre, if it fits within the piece. Where a wide road turns around a narrow bend, the piece
 // ends in a half disc instead.
-fn mitre_within(mitre: vec2<f32>, outward: vec2<f32>, half_width_m: f32, length_m: f32) -> vec2<f32> {
+fn mitre_within(mitre: vec2f, outward: vec2f, half_width_m: f32, length_m: f32) -> vec2f {
     let cosine = dot(mitre, outward);
     let sine = abs(mitre.x * outward.y - mitre.y * outward.x);
     return select(vec2(0.0), mitre, half_width_m * sine <= length_m * cosine);
@@ -208,7 +208,7 @@ fn cut(inside: Inside, first: f32, each: f32, face: u32) -> Inside {
 }
 
 // The part of the range within a disc around the origin of `origin`.
-fn cut_by_disc(inside: Inside, origin: vec2<f32>, way: vec2<f32>, radius_m: f32) -> Inside {
+fn cut_by_disc(inside: Inside, origin: vec2f, way: vec2f, radius_m: f32) -> Inside {
     var out = inside;
     let squared = dot(way, way);
     if squared < 1e-12 {
@@ -235,6 +235,12 @@ fn cut_by_disc(inside: Inside, origin: vec2<f32>, way: vec2<f32>, radius_m: f32)
     return out;
 }
 
+// The part of the range within a round cap around the origin of `origin`.
+fn cut_by_cap(inside: Inside, origin: vec3f, way: vec3f, radius_m: f32, slab_m: f32) -> Inside {
+    let in_disc = cut_by_disc(inside, origin.xy, way.xy, radius_m);
+    return cut(cut(in_disc, -origin.z - slab_m, -way.z, UNDERSIDE), origin.z, way.z, TOP);
+}
+
 fn first_depth() -> f32 {
     return select(0.0, -NEVER, is_from_above());
 }
@@ -250,7 +256,7 @@ fn nearer(a: Inside, b: Inside) -> Inside {
 }
 
 // The point where the ray through a pixel enters a piece of a deck.
-fn entry(in: DeckFragment, center: vec2<f32>) -> Inside {
+fn entry(in: DeckFragment, center: vec2f) -> Inside {
     let way = ray_at(center);
     let origin = ray_start_at(center) - in.start;
     let length_m = length(in.start_to_end.xy);
@@ -276,15 +282,10 @@ fn entry(in: DeckFragment, center: vec2<f32>) -> Inside {
         found = cut(middle, over.x, over.y, TOP);
     }
     if has_caps() {
-        var first = cut(all, o.x, w.x, INNER);
-        first = cut_by_disc(first, origin.xy, way.xy, in.size.x);
-        first = cut(first, -origin.z - in.size.z, -way.z, UNDERSIDE);
-        found = nearer(found, cut(first, origin.z, way.z, TOP));
-        let from_end = origin - in.start_to_end;
-        var last = cut(all, length_m - o.x, -w.x, INNER);
-        last = cut_by_disc(last, from_end.xy, way.xy, in.size.y);
-        last = cut(last, -from_end.z - in.size.z, -way.z, UNDERSIDE);
-        found = nearer(found, cut(last, from_end.z, way.z, TOP));
+        let first = cut(all, o.x, w.x, INNER);
+        found = nearer(found, cut_by_cap(first, origin, way, in.size.x, in.size.z));
+        let last = cut(all, length_m - o.x, -w.x, INNER);
+        found = nearer(found, cut_by_cap(last, origin - in.start_to_end, way, in.size.y, in.size.z));
     }
     return found;
 }
@@ -298,7 +299,7 @@ struct Beside {
     half_width_m: f32,
 }
 
-fn beside(in: DeckFragment, at: vec2<f32>) -> Beside {
+fn beside(in: DeckFragment, at: vec2f) -> Beside {
     let from_start = at - in.start.xy;
     let along = dot(from_start, in.start_to_end.xy) / max(dot(in.start_to_end.xy, in.start_to_end.xy), 1e-12);
     let share = clamp(along, 0.0, 1.0);
@@ -321,14 +322,14 @@ const BEHIND = 2e-5;
 struct Seen {
     face: u32,
     view_depth: f32,
-    position: vec3<f32>,
+    position: vec3f,
     // Same as in Beside.
     share: f32,
 }
 
 fn seen_at(in: DeckFragment) -> Seen {
     let center = in.clip.xy;
-    let ground = textureLoad(terrain_depth, vec2<i32>(center), 0).r;
+    let ground = textureLoad(terrain_depth, vec2i(center), 0).r;
     let ground_depth = select(NEVER, view_depth_of(ground), ground > 0.0);
     let found = entry(in, center);
     var out = Seen(NONE, NEVER, vec3(0.0), NEVER);
@@ -383,7 +384,7 @@ fn road_fragment(in: DeckFragment) -> @location(0) f32 {
     if seen.face != TOP {
         discard;
     }
-    let front = view_depth_of(textureLoad(deck_depth, vec2<i32>(in.clip.xy), 0).r);
+    let front = view_depth_of(textureLoad(deck_depth, vec2i(in.clip.xy), 0).r);
     let ray = ray_at(in.clip.xy);
     let apart_m = SAME_HEIGHT_M * frame.scale.y / max(abs(ray.z), 0.1 * length(ray));
     if seen.view_depth > front + apart_m + 2e-6 * abs(front) {
@@ -399,7 +400,7 @@ fn road_fragment(in: DeckFragment) -> @location(0) f32 {
     let label = band_label(road, max(within, 1u));
     let as_road = RoadFragment(in.clip, in.start.xy, in.start_to_end.xy, in.class_and_look, in.half_width_m, in.dash, in.part_m);
     let shown = label_on(label, as_road, seen.position);
-    if in.is_short == 1u && stored(label) < textureLoad(ground_labels, vec2<i32>(in.clip.xy), 0).r {
+    if in.is_short == 1u && stored(label) < textureLoad(ground_labels, vec2i(in.clip.xy), 0).r {
         discard;
     }
     // The slab is visible in the gaps between dashes.
@@ -412,7 +413,7 @@ fn side_fragment(in: DeckFragment) -> @location(0) f32 {
     if (seen.face != SIDE && seen.face != UNDERSIDE) || in.is_short == 1u {
         discard;
     }
-    let front = view_depth_of(textureLoad(deck_depth, vec2<i32>(in.clip.xy), 0).r);
+    let front = view_depth_of(textureLoad(deck_depth, vec2i(in.clip.xy), 0).r);
     if seen.view_depth > front + 2e-6 * abs(front) {
         discard;
     }

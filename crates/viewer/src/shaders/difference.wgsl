@@ -13,8 +13,8 @@ const OTHER_LABEL = vec3(204.0, 121.0, 167.0) / 255.0;
 const CONTRAST = 0.35;
 
 @fragment
-fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    let pixel = vec2<i32>(position.xy);
+fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let pixel = vec2i(position.xy);
     let first = textureLoad(first_labels, pixel, 0).r;
     let second = textureLoad(second_labels, pixel, 0).r;
     if first == second {

@@ -9,24 +9,24 @@ const TINT_STOPS = 12u;
 // The same fields as in gpu/drawables/terrain.rs, in the same order.
 struct GroundColors {
     // xyz: towards the light; w: strength of the hillshade.
-    light: vec4<f32>,
+    light: vec4f,
     // xyz: towards the second light; w: how much darker steep slopes are.
-    second_light: vec4<f32>,
+    second_light: vec4f,
     // x: lowest ground; y: 1 / height range; z: how many times steeper the gentlest slopes are
     // shaded; w: number of stops.
-    heights: vec4<f32>,
+    heights: vec4f,
     // rgb; w: how strongly far valleys take the haze's colour.
-    haze: vec4<f32>,
+    haze: vec4f,
     // rgb; w: 1 / distance at which a valley has two thirds of its haze.
-    shadow: vec4<f32>,
+    shadow: vec4f,
     // rgb; w: height of the wall along the edge of the data, world metres.
-    sunlit: vec4<f32>,
+    sunlit: vec4f,
     // rgb; w: how strongly photos are visible.
-    water: vec4<f32>,
+    water: vec4f,
     // rgb; w: maximum size of a cell of the relief on the picture, pixels.
-    wall: vec4<f32>,
+    wall: vec4f,
     // rgb; w: height, metres.
-    tint: array<vec4<f32>, TINT_STOPS>,
+    tint: array<vec4f, TINT_STOPS>,
 }
 
 @group(2) @binding(0) var<uniform> colors: GroundColors;
@@ -36,7 +36,7 @@ const GENTLE_SLOPE = 0.12;
 
 // Colour of the ground at a true height: the mix of its two adjacent stops. Mixing all stops in
 // turn gives the same colour, but took a tenth of the time of a picture on software Vulkan.
-fn tint_at(height_m: f32) -> vec3<f32> {
+fn tint_at(height_m: f32) -> vec3f {
     let last = u32(colors.heights.w) - 1u;
     var k = min(1u, last);
     while k < last && height_m > colors.tint[k].w {
@@ -50,7 +50,7 @@ fn tint_at(height_m: f32) -> vec3<f32> {
 
 // Light on a slope from one direction: 1 on level ground, less on slopes turned away, below 0
 // beyond a right angle.
-fn light_from(towards: vec3<f32>, normal: vec3<f32>) -> f32 {
+fn light_from(towards: vec3f, normal: vec3f) -> f32 {
     return dot(normal, towards) / max(towards.z, 0.17);
 }
 
@@ -60,7 +60,7 @@ fn light_from(towards: vec3<f32>, normal: vec3<f32>) -> f32 {
 // There the second light, from farther left, takes over. (Mark, Multidirectional, oblique-weighted,
 // shaded-relief image of the Island of Hawaii, 1992, weights several lights by the aspect in the
 // same way.)
-fn light_on(normal: vec3<f32>) -> f32 {
+fn light_on(normal: vec3f) -> f32 {
     let across = cross(vec3(colors.light.xy, 0.0), vec3(normal.xy, 0.0)).z;
     let along = length(colors.light.xy) * length(normal.xy);
     let turned = select(0.0, across * across / max(along * along, 1e-12), along > 0.0);
@@ -70,7 +70,7 @@ fn light_on(normal: vec3<f32>) -> f32 {
 
 // Light on a slope from the direction of the first light, turned by 60° to the side from which the
 // slope gets less.
-fn light_from_the_side(normal: vec3<f32>) -> f32 {
+fn light_from_the_side(normal: vec3f) -> f32 {
     let across = length(colors.light.xy);
     let level = colors.light.xy / max(across, 1e-6);
     let along = dot(level, normal.xy);
@@ -82,7 +82,7 @@ fn light_from_the_side(normal: vec3<f32>) -> f32 {
 // are nearly equally bright, whatever their steepness. A ridge that runs up to the light has two
 // sides; the side light shades the side that is turned away from it, and the steep parts of both.
 // The value is 0 on level ground and on slopes that the light misses, and has no step anywhere.
-fn lacking_in_light(normal: vec3<f32>) -> f32 {
+fn lacking_in_light(normal: vec3f) -> f32 {
     let lacking = max(1.0 - light_from_the_side(normal), 0.0);
     let faces = smoothstep(0.0, 0.3, light_from(colors.light.xyz, normal) - 1.0);
     return 1.2 * faces * lacking * lacking / (lacking + 0.2);
@@ -90,7 +90,7 @@ fn lacking_in_light(normal: vec3<f32>) -> f32 {
 
 // Shades a colour with a strength. `normal` is the unit normal of the drawn ground, exaggeration
 // included.
-fn shaded(color: vec3<f32>, normal: vec3<f32>, strength: f32) -> vec3<f32> {
+fn shaded(color: vec3f, normal: vec3f, strength: f32) -> vec3f {
     // Gentle ground is shaded as if it were steeper; steep ground is shaded as it is.
     let slope = length(normal.xy) / max(normal.z, 1e-3);
     let s2 = GENTLE_SLOPE * GENTLE_SLOPE;
@@ -107,7 +107,7 @@ fn shaded(color: vec3<f32>, normal: vec3<f32>, strength: f32) -> vec3<f32> {
 }
 
 // Tints far valleys with the haze, so that the heights stand out.
-fn hazy(color: vec3<f32>, height_m: f32, distance_m: f32) -> vec3<f32> {
+fn hazy(color: vec3f, height_m: f32, distance_m: f32) -> vec3f {
     let share = clamp((height_m - colors.heights.x) * colors.heights.y, 0.0, 1.0);
     let near = exp(-distance_m * colors.shadow.w);
     return mix(color, colors.haze.rgb, colors.haze.w * exp(-4.0 * share) * (1.0 - near));

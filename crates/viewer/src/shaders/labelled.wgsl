@@ -37,7 +37,7 @@ fn class_of(label: u32) -> u32 {
 
 // Two triangles for each block, row by row; the triangles of a block without roads have no area.
 @vertex
-fn block_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+fn block_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
     let number = index / 6u;
     let columns = textureDimensions(road_blocks).x;
     let block = vec2(number % columns, number / columns);
@@ -49,7 +49,7 @@ fn block_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f3
     let corner = select(in_block, in_block - 2u, in_block > 2u);
     let side = select(vec2(0u), vec2(corner & 1u, corner >> 1u), has_roads);
     // The last blocks may extend beyond the edge of the picture, where nothing is drawn.
-    return vec4(in_clip_space(vec2<f32>((block + side) * BLOCK)), 0.0, 1.0);
+    return vec4(in_clip_space(vec2f((block + side) * BLOCK)), 0.0, 1.0);
 }
 
 // The share of a colour that haze hides on the way from the eye.

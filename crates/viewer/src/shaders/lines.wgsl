@@ -3,10 +3,10 @@
 // The same fields as in gpu/drawables/line_layers.rs, in the same order.
 struct LineColors {
     // rgb; w: distance at which haze hides two thirds of a colour.
-    haze: vec4<f32>,
+    haze: vec4f,
     // x: 1 for lines that are omitted close to roads, by style.
-    apart: array<vec4<f32>, CLASSES>,
-    bands: array<vec4<f32>, BANDS * CLASSES>,
+    apart: array<vec4f, CLASSES>,
+    bands: array<vec4f, BANDS * CLASSES>,
 }
 
 @group(1) @binding(3) var<uniform> colors: LineColors;
@@ -22,18 +22,18 @@ const IN_TUNNEL = 0.6;
 // confused with lines that follow them.
 const LAST_ROAD = 6u;
 
-fn is_road(pixel: vec2<i32>) -> bool {
+fn is_road(pixel: vec2i) -> bool {
     let last = last_pixel();
     let label = label_of(textureLoad(labels_of_roads, clamp(pixel, vec2(0), last), 0).r);
     return label != 0u && !is_tunnel(label) && class_of(label) <= LAST_ROAD;
 }
 
 // Whether there is a road on a circle around a pixel. Samples are at most two pixels apart.
-fn is_road_around(pixel: vec2<i32>, radius_px: f32, samples: u32) -> bool {
+fn is_road_around(pixel: vec2i, radius_px: f32, samples: u32) -> bool {
     for (var k = 0u; k < samples; k++) {
         let angle = 6.2831853 * f32(k) / f32(samples);
         let offset = radius_px * frame.road_scale.w * vec2(cos(angle), sin(angle));
-        if is_road(pixel + vec2<i32>(round(offset))) {
+        if is_road(pixel + vec2i(round(offset))) {
             return true;
         }
     }
@@ -42,7 +42,7 @@ fn is_road_around(pixel: vec2<i32>, radius_px: f32, samples: u32) -> bool {
 
 // Share of a line that is drawn at a pixel. A line that follows a road would look like the dashes
 // of a tunnel; with this rule a line that crosses a road leaves the road whole.
-fn share_beside_roads(pixel: vec2<i32>, line_class: u32) -> f32 {
+fn share_beside_roads(pixel: vec2i, line_class: u32) -> f32 {
     if colors.apart[line_class].x == 0.0 {
         return 1.0;
     }
@@ -53,8 +53,8 @@ fn share_beside_roads(pixel: vec2<i32>, line_class: u32) -> f32 {
 }
 
 @fragment
-fn line_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    let pixel = vec2<i32>(position.xy);
+fn line_fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let pixel = vec2i(position.xy);
     let label = label_of(textureLoad(road_labels, pixel, 0).r);
     let depth_buffer = textureLoad(terrain_depth, pixel, 0).r;
     if label == 0u || depth_buffer == 0.0 {

@@ -7,7 +7,7 @@
 
 // rgb: the photo's colour; a: 1 with a photo, 0 without. `plan_in_tile` is in metres from the
 // tile's middle. For fragment stages only, and not inside a branch.
-fn photo_at(plan_in_tile: vec2<f32>) -> vec4<f32> {
+fn photo_at(plan_in_tile: vec2f) -> vec4f {
     // The condition is the same for all pixels of a tile, so they may sample here. Without it,
     // ground without photos took three times as long on the CPU: one anisotropic sample may read
     // sixteen texels.

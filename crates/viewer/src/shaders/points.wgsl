@@ -3,23 +3,23 @@
 
 struct PointLook {
     // rgb; w: opacity.
-    color: vec4<f32>,
+    color: vec4f,
     // rgb of the edge.
-    outline: vec4<f32>,
+    outline: vec4f,
     // rgb; w: distance at which haze hides two thirds of a colour.
-    haze: vec4<f32>,
+    haze: vec4f,
     // x: radius of the disc; y: radius with its edge, both in pixels of the final picture; z:
     // distance from the eye up to which the class is fully shown.
-    size: vec4<f32>,
+    size: vec4f,
 }
 
 @group(2) @binding(0) var terrain_depth: texture_2d<f32>;
 @group(3) @binding(0) var<uniform> look: PointLook;
 
 struct Corner {
-    @builtin(position) clip: vec4<f32>,
+    @builtin(position) clip: vec4f,
     // Place on the disc, pixels of the final picture.
-    @location(0) on_disc: vec2<f32>,
+    @location(0) on_disc: vec2f,
     // Distance from the eye.
     @location(1) @interpolate(flat) distance_m: f32,
 }
@@ -29,12 +29,12 @@ const BIAS = 0.001;
 
 // Whether the ground hides a point with this clip position: it is nearer at the point's pixel and
 // at all pixels next to it. From above nothing is hidden.
-fn is_hidden(clip: vec4<f32>) -> bool {
+fn is_hidden(clip: vec4f) -> bool {
     if is_from_above() {
         return false;
     }
     let at = vec2(0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w);
-    let pixel = vec2<i32>(floor(at * vec2(frame.right.w, frame.up.w)));
+    let pixel = vec2i(floor(at * vec2(frame.right.w, frame.up.w)));
     var depth_buffer = 1e30;
     for (var k = 0; k < 9; k++) {
         let near = clamp(pixel + vec2(k % 3 - 1, k / 3 - 1), vec2(0), last_pixel());
@@ -44,13 +44,10 @@ fn is_hidden(clip: vec4<f32>) -> bool {
 }
 
 @vertex
-fn vertex(@builtin(vertex_index) corner: u32, @location(0) place: vec3<f32>) -> Corner {
+fn vertex(@builtin(vertex_index) corner: u32, @location(0) place: vec3f) -> Corner {
     let position = vec3(tile.offset.xy + place.xy, tile.offset.z + place.z * frame.scale.y);
     let side = vec2(f32(corner & 1u), f32(corner >> 1u)) * 2.0 - 1.0;
-    var out: Corner;
-    out.clip = clip_of(position);
-    out.distance_m = distance_to(position);
-    out.on_disc = side * look.size.y;
+    var out = Corner(clip_of(position), side * look.size.y, distance_to(position));
     // Points behind the eye have no place on the picture.
     if out.clip.w <= frame.forward.w && !is_from_above() || is_hidden(out.clip) {
         out.clip = vec4(2.0, 2.0, 0.5, 1.0);
@@ -62,7 +59,7 @@ fn vertex(@builtin(vertex_index) corner: u32, @location(0) place: vec3<f32>) -> 
 }
 
 @fragment
-fn fragment(in: Corner) -> @location(0) vec4<f32> {
+fn fragment(in: Corner) -> @location(0) vec4f {
     let from_middle = length(in.on_disc);
     if from_middle > look.size.y {
         discard;

@@ -16,12 +16,12 @@
 struct TileTextures {
     // xy: 1 / the tile's sides east and north; z: 1 if the tile has slopes, otherwise 0; w: the
     // same for water.
-    plan: vec4<f32>,
+    plan: vec4f,
     // x: 1 if the tile has a photo, otherwise 0; y: texels of its border on each side.
-    photo: vec4<f32>,
+    photo: vec4f,
     // xy: column and row of the tile in its level, modulo a power of 2; z: number of ancestors with
     // slopes; w: log2 of the side of its cells in metres.
-    levels: vec4<f32>,
+    levels: vec4f,
 }
 
 @group(3) @binding(0) var<uniform> tile_textures: TileTextures;
@@ -40,31 +40,31 @@ struct TileTextures {
 const FADE = 0.5;
 
 // A position in its tile: 0 at the western and northern border, 1 at the others.
-fn share_of_tile(plan_in_tile: vec2<f32>) -> vec2<f32> {
+fn share_of_tile(plan_in_tile: vec2f) -> vec2f {
     return vec2(0.5, 0.5) + vec2(1.0, -1.0) * plan_in_tile * tile_textures.plan.xy;
 }
 
 // A position in a texture of nodes: node 0 is in the middle of the first texel, the last node in
 // the middle of the last.
-fn place_among_nodes(share: vec2<f32>, nodes: vec2<f32>) -> vec2<f32> {
+fn place_among_nodes(share: vec2f, nodes: vec2f) -> vec2f {
     return (share * (nodes - 1.0) + 0.5) / nodes;
 }
 
 // Whether a pixel is water. Water ends at its last node: the nodes at the shore have higher
 // neighbours, so they are not water themselves.
-fn is_water(plan_in_tile: vec2<f32>) -> bool {
+fn is_water(plan_in_tile: vec2f) -> bool {
     if tile_textures.plan.w == 0.0 {
         return false;
     }
-    let at = place_among_nodes(share_of_tile(plan_in_tile), vec2<f32>(textureDimensions(water)));
+    let at = place_among_nodes(share_of_tile(plan_in_tile), vec2f(textureDimensions(water)));
     return textureSampleLevel(water, tile_sampler, at, 0.0).x > 0.1;
 }
 
 // The slopes at a position, from the ancestor `levels` above the tile.
-fn slopes_above(share: vec2<f32>, levels: u32) -> vec2<f32> {
+fn slopes_above(share: vec2f, levels: u32) -> vec2f {
     let tiles = 1u << levels;
-    let corner = vec2<f32>(vec2<u32>(tile_textures.levels.xy) % tiles);
-    let at = place_among_nodes((corner + share) / f32(tiles), vec2<f32>(textureDimensions(slopes)));
+    let corner = vec2f(vec2u(tile_textures.levels.xy) % tiles);
+    let at = place_among_nodes((corner + share) / f32(tiles), vec2f(textureDimensions(slopes)));
     switch levels {
         case 0u: { return textureSampleLevel(slopes, tile_sampler, at, 0.0).xy; }
         case 1u: { return textureSampleLevel(slopes_1_above, tile_sampler, at, 0.0).xy; }
@@ -74,7 +74,7 @@ fn slopes_above(share: vec2<f32>, levels: u32) -> vec2<f32> {
 }
 
 // The slopes for pixels of this size, in metres.
-fn blended_slopes(plan_in_tile: vec2<f32>, pixel_m: f32) -> vec2<f32> {
+fn blended_slopes(plan_in_tile: vec2f, pixel_m: f32) -> vec2f {
     let share = share_of_tile(plan_in_tile);
     // 0 where the tile's own cells have their maximum size on the picture, 1 where its parent's
     // cells have it.
@@ -91,7 +91,7 @@ fn blended_slopes(plan_in_tile: vec2<f32>, pixel_m: f32) -> vec2<f32> {
 
 // `vertex_normal` is the normal of the exaggerated ground, of any length; `plan_in_tile` is in
 // metres from the tile's middle; `distance_m` is the distance from the eye.
-fn ground_normal(vertex_normal: vec3<f32>, plan_in_tile: vec2<f32>, distance_m: f32) -> vec3<f32> {
+fn ground_normal(vertex_normal: vec3f, plan_in_tile: vec2f, distance_m: f32) -> vec3f {
     if tile_textures.plan.z == 0.0 {
         return normalize(vertex_normal);
     }

@@ -3,22 +3,22 @@
 // The same fields as in gpu/drawables/composite.rs, in the same order.
 struct PictureColors {
     // rgb; w: distance at which haze hides two thirds of a colour.
-    haze: vec4<f32>,
-    sky: vec4<f32>,
-    background: vec4<f32>,
+    haze: vec4f,
+    sky: vec4f,
+    background: vec4f,
     // The plane that is visible where there is no ground, below all ground: xy: the eye's position
     // on it, modulo w; z: the eye's height above it; w: the widest spacing of its lines. World
     // metres.
-    void_plane: vec4<f32>,
-    road_bands: array<vec4<f32>, BANDS * CLASSES>,
-    road_outlines: array<vec4<f32>, CLASSES>,
+    void_plane: vec4f,
+    road_bands: array<vec4f, BANDS * CLASSES>,
+    road_outlines: array<vec4f, CLASSES>,
     // Colours of tunnels and service roads.
-    road_mains: array<vec4<f32>, CLASSES>,
+    road_mains: array<vec4f, CLASSES>,
     // Colours of roads that are too thin for an edge.
-    road_thins: array<vec4<f32>, CLASSES>,
+    road_thins: array<vec4f, CLASSES>,
     // rgb: colour of the sides of bridges. w: 1 if the roads are other lines, such as railways,
     // whose widths are in pixels only.
-    slab: vec4<f32>,
+    slab: vec4f,
 }
 
 @group(1) @binding(3) var<uniform> colors: PictureColors;
@@ -38,7 +38,7 @@ fn width_px(road_class: u32, look: u32, distance_m: f32, depth: f32) -> f32 {
 
 // The ground or the sky at a pixel.
 struct Sight {
-    color: vec3<f32>,
+    color: vec3f,
     // Share of the ground's colour that haze hides.
     haze: f32,
     // 0 in the sky, where the following fields have no meaning.
@@ -48,7 +48,7 @@ struct Sight {
 }
 
 // The view of a position on the picture, without its colour.
-fn sight_of(position: vec2<f32>, depth_buffer: f32) -> Sight {
+fn sight_of(position: vec2f, depth_buffer: f32) -> Sight {
     var sight: Sight;
     sight.depth_buffer = depth_buffer;
     if depth_buffer != 0.0 {
@@ -71,7 +71,7 @@ const TUNNEL_EDGE = 0.75;
 const LEAST_FACING = 0.3;
 
 // The colour of a road at a pixel with this label, and how much it hides of the ground.
-fn fill_of(label: u32, sight: Sight) -> vec4<f32> {
+fn fill_of(label: u32, sight: Sight) -> vec4f {
     let road_class = class_of(label);
     let look = look_of(label);
     let seen_px = width_px(road_class, look, sight.distance_m, sight.depth);
@@ -89,7 +89,7 @@ fn fill_of(label: u32, sight: Sight) -> vec4<f32> {
 
 // The colour of the edge around a road with this label. Of a tunnel only the dashes of its edge are
 // visible: if the edge is as dark as the ground, they have the colour of the road.
-fn edge_color(label: u32, sight: Sight) -> vec3<f32> {
+fn edge_color(label: u32, sight: Sight) -> vec3f {
     let road_class = class_of(label);
     let outline = colors.road_outlines[road_class].rgb;
     let main_color = colors.road_mains[road_class].rgb;
@@ -99,7 +99,7 @@ fn edge_color(label: u32, sight: Sight) -> vec3<f32> {
 }
 
 // The colour of the edge around a road with this label, and how much it hides.
-fn edge_of(label: u32, sight: Sight, facing: f32) -> vec4<f32> {
+fn edge_of(label: u32, sight: Sight, facing: f32) -> vec4f {
     let road_class = class_of(label);
     // A very thin road has no edge, because the edge would hide the road; nor has a road that is
     // seen at such a grazing angle that the edge would break into dashes.
@@ -114,7 +114,7 @@ fn edge_of(label: u32, sight: Sight, facing: f32) -> vec4<f32> {
 // meets the ground at less than 19 degrees. At a silhouette, where the angle is unknown, it is at
 // least LEAST_FACING, so that a wide road keeps its edge there. It must be computed for every
 // pixel, including the sky.
-fn facing_of(position: vec2<f32>, sight: Sight) -> f32 {
+fn facing_of(position: vec2f, sight: Sight) -> f32 {
     let ray = ray_at(position);
     let depth = select(sight.depth, view_depth_of(sight.depth_buffer), is_from_above());
     let ground = ray_start_at(position) + ray * depth;

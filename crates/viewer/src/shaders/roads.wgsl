@@ -25,25 +25,25 @@
 struct SegmentIn {
     @builtin(vertex_index) corner: u32,
     // The segment to which the piece belongs, in plan: start and end.
-    @location(0) segment_in_tile: vec4<f32>,
+    @location(0) segment_in_tile: vec4f,
     // xy: the range of the piece in the segment, from 0 to 1; zw: how the plane rises along the
     // piece and to its left.
-    @location(1) shares_slopes: vec4<f32>,
+    @location(1) shares_slopes: vec4f,
     // Height of the piece's start; world metres across the road per true metre.
-    @location(2) height_width_factor: vec2<f32>,
+    @location(2) height_width_factor: vec2f,
     // Lowest four bits: class. Then three bits for the look, and two if the segment ends flat at
     // its start and at its end. Then one bit for a cap at the start, one for a cap at the end, and
     // one for each of the three reaches, if ground of other tiles may be within it.
     @location(3) class_and_flags: u32,
     // Maximum distance of the ground below and above the plane. xy: per metre of distance, within
     // the first reach; zw: anywhere within the first reach.
-    @location(4) rises_near: vec4<f32>,
+    @location(4) rises_near: vec4f,
     // Maximum distance anywhere within the second reach (xy) and within the third (zw).
-    @location(5) farther: vec4<f32>,
+    @location(5) farther: vec4f,
     // The road's own width, as `road_with` takes it.
     @location(6) own_width: f32,
     // Same as in RoadFragment.
-    @location(7) dash: vec2<f32>,
+    @location(7) dash: vec2f,
     // Same as in RoadFragment.
     @location(8) part_m: f32,
 }
@@ -59,7 +59,7 @@ const AWAY = 1024.0;
 const LEAST_NEAREST = 0.05;
 
 // Maximum distance of the ground within a radius below and above the plane, world metres.
-fn leaving_m(in: SegmentIn, radius_m: f32) -> vec2<f32> {
+fn leaving_m(in: SegmentIn, radius_m: f32) -> vec2f {
     let near_m = tile.base.w;
     var most = min(in.rises_near.xy * radius_m, in.rises_near.zw);
     var leaves_tile = in.class_and_flags & LEAVES_TILE;
@@ -77,23 +77,23 @@ fn leaving_m(in: SegmentIn, radius_m: f32) -> vec2<f32> {
 // A bed: its points are start + along · x + across · y + up · z, with x, y and z within these
 // ranges.
 struct RoadBed {
-    start: vec3<f32>,
-    along: vec3<f32>,
-    across: vec3<f32>,
-    x: vec2<f32>,
-    y: vec2<f32>,
-    z: vec2<f32>,
+    start: vec3f,
+    along: vec3f,
+    across: vec3f,
+    x: vec2f,
+    y: vec2f,
+    z: vec2f,
 }
 
 // A plane in front of the eye, at the distance `plane_m` along `normal`, and the rectangle on it,
 // along `u` and `v`, that covers a bed on the picture.
 struct Shown {
-    u: vec3<f32>,
-    v: vec3<f32>,
-    normal: vec3<f32>,
+    u: vec3f,
+    v: vec3f,
+    normal: vec3f,
     plane_m: f32,
-    least: vec2<f32>,
-    most: vec2<f32>,
+    least: vec2f,
+    most: vec2f,
     // Distance of the bed's nearest point along the normal, divided by the distance of the plane.
     nearest: f32,
 }
@@ -167,7 +167,7 @@ fn shown_from_above(bed: RoadBed) -> Shown {
     return out;
 }
 
-fn least_of(values: vec4<f32>) -> f32 {
+fn least_of(values: vec4f) -> f32 {
     return min(min(values.x, values.y), min(values.z, values.w));
 }
 
@@ -208,13 +208,7 @@ fn vertex(in: SegmentIn) -> RoadFragment {
         length_m + select(pad_m, radius_m, (in.class_and_flags & AT_END) != 0u),
     );
 
-    var bed: RoadBed;
-    bed.start = a;
-    bed.along = along;
-    bed.across = vec3(left, slopes.y);
-    bed.x = ends;
-    bed.y = vec2(-radius_m, radius_m);
-    bed.z = vec2(-leaving.x, leaving.y);
+    let bed = RoadBed(a, along, vec3(left, slopes.y), ends, vec2(-radius_m, radius_m), vec2(-leaving.x, leaving.y));
     var shown: Shown;
     if is_from_above() {
         shown = shown_from_above(bed);
@@ -239,21 +233,15 @@ fn vertex(in: SegmentIn) -> RoadFragment {
         position = bed.start + bed.along * mix(bed.x.x, bed.x.y, side.x) + vec3(left * across, 0.0);
     }
 
-    var out: RoadFragment;
-    out.clip = clip_of(select(position * AWAY, position, is_from_above()));
-    out.start = start;
-    out.start_to_end = start_to_end;
+    let clip = clip_of(select(position * AWAY, position, is_from_above()));
     // Class, look and flat ends.
-    out.class_and_other = in.class_and_flags & 511u;
-    out.half_width_m = road.half_width_m;
-    out.dash = in.dash;
-    out.part_m = in.part_m;
-    return out;
+    let class_and_ends = in.class_and_flags & 511u;
+    return RoadFragment(clip, start, start_to_end, class_and_ends, road.half_width_m, in.dash, in.part_m);
 }
 
 @fragment
 fn fragment(in: RoadFragment) -> @location(0) f32 {
-    let pixel = vec2<i32>(in.clip.xy);
+    let pixel = vec2i(in.clip.xy);
     let owner = textureLoad(owners, pixel, 0).r;
     // Sky and skirts are not painted. The ground of any tile is painted: near a border each of the
     // two tiles paints on both sides.
@@ -261,12 +249,5 @@ fn fragment(in: RoadFragment) -> @location(0) f32 {
         discard;
     }
     let depth_buffer = textureLoad(terrain_depth, pixel, 0).r;
-    let road = road_of(in);
-    let position = position_at(in.clip.xy, depth_buffer);
-    let share = width_share(in, pixel, depth_buffer, position);
-    let label = label_at(pixel, in.clip.xy, depth_buffer, segment_of(in), road, tile.base.y, share);
-    if label == NOTHING {
-        discard;
-    }
-    return stored(label_on(label, in, position));
+    return painted(label_at(in, depth_buffer), in, depth_buffer);
 }

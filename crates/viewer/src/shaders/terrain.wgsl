@@ -15,23 +15,23 @@ override SKIRT: u32 = 0u;
 override PULL_PX: f32 = 0.0;
 
 struct VertexIn {
-    @location(0) position_in_tile: vec3<f32>,
+    @location(0) position_in_tile: vec3f,
     // xyz: unit normal of the ground; w: 1 at the lower edge of a skirt.
-    @location(1) normal_skirt: vec4<f32>,
+    @location(1) normal_skirt: vec4f,
 }
 
 struct VertexOut {
-    @builtin(position) clip: vec4<f32>,
-    @location(0) normal: vec3<f32>,
+    @builtin(position) clip: vec4f,
+    @location(0) normal: vec3f,
     @location(1) height_m: f32,
     // Position relative to the eye, world metres.
-    @location(2) position: vec3<f32>,
+    @location(2) position: vec3f,
     // Metres from the tile's middle, east and north.
-    @location(3) plan_in_tile: vec2<f32>,
+    @location(3) plan_in_tile: vec2f,
 }
 
 struct Pixel {
-    @location(0) color: vec4<f32>,
+    @location(0) color: vec4f,
     @location(1) owner: u32,
 }
 
@@ -88,7 +88,7 @@ fn wall_fragment(in: VertexOut) -> Pixel {
 }
 
 @fragment
-fn wire_fragment(in: VertexOut) -> @location(0) vec4<f32> {
+fn wire_fragment(in: VertexOut) -> @location(0) vec4f {
     let color = tint_at(in.height_m);
     let is_dark = dot(color, vec3(0.299, 0.587, 0.114)) < 0.4;
     return vec4(mix(color, vec3(select(0.0, 1.0, is_dark)), 0.6), 1.0);

@@ -23,20 +23,20 @@
 
 struct VolumeIn {
     @builtin(vertex_index) corner: u32,
-    @location(0) start_in_tile: vec2<f32>,
-    @location(1) end_in_tile: vec2<f32>,
-    @location(2) height_range_in_tile: vec2<f32>,
+    @location(0) start_in_tile: vec2f,
+    @location(1) end_in_tile: vec2f,
+    @location(2) height_range_in_tile: vec2f,
     // Lowest and highest ground below the segment.
-    @location(3) near_range_in_tile: vec2<f32>,
+    @location(3) near_range_in_tile: vec2f,
     // x: how much lower or higher the ground may be per metre away from the segment, up to
     // `tile.base.w` away; y: world metres across the road per true metre.
-    @location(4) near_rise_width_factor: vec2<f32>,
+    @location(4) near_rise_width_factor: vec2f,
     // Same as in RoadFragment.
     @location(5) class_and_other: u32,
     // The road's own width, as `road_with` takes it.
     @location(6) own_width: f32,
     // Same as in RoadFragment.
-    @location(7) dash: vec2<f32>,
+    @location(7) dash: vec2f,
     // Same as in RoadFragment.
     @location(8) part_m: f32,
 }
@@ -44,11 +44,11 @@ struct VolumeIn {
 struct Reach {
     radius_m: f32,
     // Heights relative to the eye.
-    heights: vec2<f32>,
+    heights: vec2f,
 }
 
 // Half the width of a road whose ground is between these heights, and these heights.
-fn reach_over(heights: vec2<f32>, road: Road, plan_m: f32) -> Reach {
+fn reach_over(heights: vec2f, road: Road, plan_m: f32) -> Reach {
     let far_m = distance_to(vec3(plan_m, 0.0, max(abs(heights.x), abs(heights.y))));
     let near_height_m = select(0.0, min(abs(heights.x), abs(heights.y)), heights.x * heights.y > 0.0);
     // Heights are known only within the margin.
@@ -91,21 +91,14 @@ fn vertex(in: VolumeIn) -> RoadFragment {
     let pad_height_m = pad_m + select(0.0, 2.0 * radius_m * vertical_scale, is_connector);
     let heights = reach.heights + vec2(-pad_height_m, pad_height_m);
 
-    var out: RoadFragment;
-    out.clip = box_corner(in.corner, a, ab, direction, radius_m + pad_m, heights);
-    out.start = a;
-    out.start_to_end = ab;
-    out.class_and_other = in.class_and_other;
-    out.half_width_m = road.half_width_m;
-    out.dash = in.dash;
-    out.part_m = in.part_m;
-    return out;
+    let clip = box_corner(in.corner, a, ab, direction, radius_m + pad_m, heights);
+    return RoadFragment(clip, a, ab, in.class_and_other, road.half_width_m, in.dash, in.part_m);
 }
 
 // The distances at which a ray from the eye along the unit vector `ray` enters and leaves the cap
 // at an end, as the paper computes them. If the ray misses the cap, the entry is behind the exit.
 // `cap` is relative to the ray's start.
-fn through_cap(ray: vec3<f32>, cap: vec2<f32>, radius_m: f32) -> vec2<f32> {
+fn through_cap(ray: vec3f, cap: vec2f, radius_m: f32) -> vec2f {
     let c = -cap;
     if is_from_above() {
         return select(vec2(NEVER, -NEVER), vec2(-NEVER, NEVER), dot(c, c) <= radius_m * radius_m);
@@ -121,7 +114,7 @@ fn through_cap(ray: vec3<f32>, cap: vec2<f32>, radius_m: f32) -> vec2<f32> {
 
 // The distances at which `origin + distance · speed` comes between `low` and `high` and leaves that
 // range.
-fn through_slab(origin: f32, speed: f32, low: f32, high: f32) -> vec2<f32> {
+fn through_slab(origin: f32, speed: f32, low: f32, high: f32) -> vec2f {
     if abs(speed) < 1e-9 {
         return select(vec2(NEVER, -NEVER), vec2(-NEVER, NEVER), origin >= low && origin <= high);
     }
@@ -130,19 +123,20 @@ fn through_slab(origin: f32, speed: f32, low: f32, high: f32) -> vec2<f32> {
 }
 
 // The paper's test, section 5.2: z0 < zt < z1. `share` is the share of the road's width.
-fn is_road_by_the_paper(center: vec2<f32>, depth_buffer: f32, start_from_eye: vec2<f32>, start_to_end: vec2<f32>,
-    road: Road, share: f32) -> bool {
+fn is_road_by_the_paper(in: RoadFragment, depth_buffer: f32, share: f32) -> bool {
+    let center = in.clip.xy;
+    let road = road_of(in);
     let position = position_at(center, depth_buffer);
     let ray_start = ray_start_at(center);
-    let start = start_from_eye - ray_start.xy;
+    let start = in.start - ray_start.xy;
     let ground = length(position - ray_start);
     let distance_m = distance_to(position);
     let ray = normalize(ray_at(center));
     let radius_m = min(tile.base.y, share
         * max(scaled_half_width_m(road, distance_m), least_half_width_m(road, scale_depth_of(depth_buffer))));
 
-    let length_m = length(start_to_end);
-    let direction = direction_of(start_to_end, length_m);
+    let length_m = length(in.start_to_end);
+    let direction = direction_of(in.start_to_end, length_m);
     let normal = vec2(-direction.y, direction.x);
     let along = through_slab(-dot(start, direction), dot(ray.xy, direction), 0.0, length_m);
     let across = through_slab(-dot(start, normal), dot(ray.xy, normal), -radius_m, radius_m);
@@ -152,22 +146,22 @@ fn is_road_by_the_paper(center: vec2<f32>, depth_buffer: f32, start_from_eye: ve
     }
     if has_caps() {
         let first = through_cap(ray, start, radius_m);
-        let last = through_cap(ray, start + start_to_end, radius_m);
+        let last = through_cap(ray, start + in.start_to_end, radius_m);
         between = vec2(min(between.x, min(first.x, last.x)), max(between.y, max(first.y, last.y)));
     }
     return between.x < ground && ground < between.y;
 }
 
-fn label_by_the_paper(center: vec2<f32>, depth_buffer: f32, start: vec2<f32>, start_to_end: vec2<f32>,
-    road: Road) -> u32 {
-    if !is_shown(road, distance_to(position_at(center, depth_buffer))) {
+fn label_by_the_paper(in: RoadFragment, depth_buffer: f32) -> u32 {
+    let road = road_of(in);
+    let distance_m = distance_to(position_at(in.clip.xy, depth_buffer));
+    if !is_shown(road, distance_m) {
         return NOTHING;
     }
-    let part = part_share(road, distance_to(position_at(center, depth_buffer)));
+    let part = part_share(road, distance_m);
     let bands = band_count(road);
     var within = 0u;
-    while within < bands && is_road_by_the_paper(center, depth_buffer, start, start_to_end, road,
-        part * band_share(road.class_number, within)) {
+    while within < bands && is_road_by_the_paper(in, depth_buffer, part * band_share(road.class_number, within)) {
         within++;
     }
     return band_label(road, within);
@@ -175,7 +169,7 @@ fn label_by_the_paper(center: vec2<f32>, depth_buffer: f32, start: vec2<f32>, st
 
 @fragment
 fn fragment(in: RoadFragment) -> @location(0) f32 {
-    let pixel = vec2<i32>(in.clip.xy);
+    let pixel = vec2i(in.clip.xy);
     let owner = textureLoad(owners, pixel, 0).r;
     let own = u32(tile.base.z);
     let other = in.class_and_other >> 9u;
@@ -185,18 +179,9 @@ fn fragment(in: RoadFragment) -> @location(0) f32 {
     if !is_mine && !is_connected {
         discard;
     }
-    let road = road_of(in);
     let depth_buffer = textureLoad(terrain_depth, pixel, 0).r;
-    let position = position_at(in.clip.xy, depth_buffer);
-    var label: u32;
     if frame.road_options.y > 0.5 {
-        label = label_by_the_paper(in.clip.xy, depth_buffer, in.start, in.start_to_end, road);
-    } else {
-        let share = width_share(in, pixel, depth_buffer, position);
-        label = label_at(pixel, in.clip.xy, depth_buffer, segment_of(in), road, tile.base.y, share);
+        return painted(label_by_the_paper(in, depth_buffer), in, depth_buffer);
     }
-    if label == NOTHING {
-        discard;
-    }
-    return stored(label_on(label, in, position));
+    return painted(label_at(in, depth_buffer), in, depth_buffer);
 }

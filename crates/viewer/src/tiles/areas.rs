@@ -19,7 +19,7 @@ mod plan_mesh;
 
 use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Serialize};
-use std::{collections::BTreeSet, ops::Range};
+use std::{collections::BTreeSet, convert::Infallible, ops::Range};
 
 use corniche_geom::{
     Bounds, GridFrame, LatticeBounds, LatticePoint, MOST_TILE_STEPS, StepBudget, TileId,
@@ -138,13 +138,9 @@ impl AreaVolumes {
         ground: &GroundMesh,
         reference_m: [f64; 3],
     ) -> Result<Self, BadAreas> {
-        let mut volumes = Self::default();
         let work = StepBudget::new(MOST_TILE_STEPS);
         let site = Site::new(id, frame, ground, reference_m);
-        let classes: BTreeSet<LayerClass> = areas.iter().map(|area| area.class).collect();
-        for class in classes {
-            let (first_wall, first_index) = (volumes.walls.len(), volumes.triangles.len());
-            let mut around = NOWHERE;
+        Self::by_class(areas.iter().map(|area| area.class), |volumes, class, around| {
             let mut polygons = 0;
             for area in areas.iter().filter(|area| area.class == class) {
                 for rings in &area.polygons {
@@ -152,24 +148,19 @@ impl AreaVolumes {
                     let mesh = site.mesh(rings).ok_or_else(bad)?;
                     work.check()?;
                     let Some(heights) = site.heights_in_tile(&mesh.points, &work) else { continue };
-                    volumes.add(&site, &mesh, heights, &mut around);
+                    volumes.add(&site, &mesh, heights, around);
                     polygons += 1;
                 }
             }
-            volumes.end_class(class, [first_wall, first_index], around, polygons);
-        }
-        volumes.unite_boxes();
-        Ok(volumes)
+            Ok(polygons)
+        })
     }
 
     /// Merges several sets of volumes of one tile.
     #[must_use]
     pub fn joined(parts: &[&Self]) -> Self {
-        let mut joined = Self::default();
         let classes = parts.iter().flat_map(|part| &part.classes).map(|of| of.class);
-        for class in classes.collect::<BTreeSet<LayerClass>>() {
-            let (first_wall, first_index) = (joined.walls.len(), joined.triangles.len());
-            let mut around = NOWHERE;
+        let Ok(joined) = Self::by_class::<Infallible>(classes, |joined, class, around| {
             let mut polygons = 0;
             for part in parts {
                 let Some(of) = part.classes.iter().find(|of| of.class == class) else { continue };
@@ -179,43 +170,44 @@ impl AreaVolumes {
                 joined.corners.extend_from_slice(&part.corners);
                 let triangles = part.triangles[in_list(&of.triangles)].iter();
                 joined.triangles.extend(triangles.map(|corner| first + corner));
-                around = united(around, of.box_in_tile);
+                *around = united(*around, of.box_in_tile);
                 polygons += of.polygons;
             }
-            joined.end_class(class, [first_wall, first_index], around, polygons);
-        }
-        joined.unite_boxes();
+            Ok(polygons)
+        });
         joined
+    }
+
+    /// Creates volumes class by class. `add` adds those of a class, extends the box around them,
+    /// and returns the number of its polygons.
+    fn by_class<E>(
+        classes: impl Iterator<Item = LayerClass>,
+        mut add: impl FnMut(&mut Self, LayerClass, &mut [[f32; 3]; 2]) -> Result<u32, E>,
+    ) -> Result<Self, E> {
+        let mut volumes = Self::default();
+        for class in classes.collect::<BTreeSet<_>>() {
+            let (first_wall, first_index) = (volumes.walls.len(), volumes.triangles.len());
+            let mut box_in_tile = NOWHERE;
+            let polygons = add(&mut volumes, class, &mut box_in_tile)?;
+            if polygons > 0 {
+                volumes.classes.push(ClassVolumes {
+                    class,
+                    walls: first_wall as u32..volumes.walls.len() as u32,
+                    triangles: first_index as u32..volumes.triangles.len() as u32,
+                    box_in_tile,
+                    polygons,
+                });
+            }
+        }
+        let boxes = volumes.classes.iter().map(|class| class.box_in_tile);
+        volumes.box_in_tile = boxes.reduce(united);
+        Ok(volumes)
     }
 
     /// Whether there are no volumes.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.classes.is_empty()
-    }
-
-    /// Ends a class: all walls and indices after these numbers are its volumes. Does nothing
-    /// without polygons.
-    fn end_class(
-        &mut self,
-        class: LayerClass,
-        [first_wall, first_index]: [usize; 2],
-        around: [[f32; 3]; 2],
-        polygons: u32,
-    ) {
-        if polygons > 0 {
-            self.classes.push(ClassVolumes {
-                class,
-                walls: first_wall as u32..self.walls.len() as u32,
-                triangles: first_index as u32..self.triangles.len() as u32,
-                box_in_tile: around,
-                polygons,
-            });
-        }
-    }
-
-    fn unite_boxes(&mut self) {
-        self.box_in_tile = self.classes.iter().map(|class| class.box_in_tile).reduce(united);
     }
 
     /// Adds the prism over a mesh, and extends `around` by its box.

@@ -110,6 +110,10 @@ impl TileDecoder {
             | of(has_layers, Sections::LAYERS)
     }
 
+    fn reads(&self, layer: LayerSlot) -> bool {
+        self.layers.as_ref().is_none_or(|layers| layers.contains(&layer))
+    }
+
     /// The methods for which lines are prepared: the methods of the roads that are read.
     fn line_methods(&self) -> LineMethods {
         match [Sections::ROADS_GEO, Sections::ROADS_SV].map(|of| self.sections.contains(of)) {
@@ -144,9 +148,7 @@ impl TileDecoder {
         id: TileId,
         manifest: &Manifest,
     ) -> Result<Option<Vec<SpanRun>>, DecodeError> {
-        let is_read =
-            |slot: &LayerSlot| self.layers.as_ref().is_none_or(|layers| layers.contains(slot));
-        let mut of_layers = manifest.layers().filter(|(slot, _)| is_read(slot));
+        let mut of_layers = manifest.layers().filter(|(slot, _)| self.reads(*slot));
         let is_wanted = self.sections.contains(Sections::ATTRIBUTES)
             || of_layers.any(|(_, record)| record.table.placement == LinePlacement::Spans);
         if manifest.spans.is_none() || !is_wanted {
@@ -191,7 +193,7 @@ impl TileDecoder {
         let (methods, work) = (self.line_methods(), StepBudget::new(MOST_TILE_STEPS));
         let places = LinePlaces::from_manifest(manifest);
         for (slot, record) in manifest.layers() {
-            if self.layers.as_ref().is_some_and(|layers| !layers.contains(&slot)) {
+            if !self.reads(slot) {
                 continue;
             }
             let objects = manifest.decode_layer(payload, id, slot)?;
@@ -200,8 +202,7 @@ impl TileDecoder {
                 continue;
             }
             let runs = spans.unwrap_or_default().iter();
-            let runs: Vec<SpanRun> =
-                runs.filter(|run| run.owner.layer() == Some(slot)).cloned().collect();
+            let runs: Vec<&SpanRun> = runs.filter(|run| run.owner.layer() == Some(slot)).collect();
             for (layer, of_layer) in by_group(objects, slot, &places) {
                 if let Some(surface) = surface() {
                     lines.add(layer, surface.lay_within((&of_layer, &runs), methods, &work)?);

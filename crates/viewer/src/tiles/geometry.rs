@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     AreaVolumes, BadAreas, BadRoads, DeckLine, DeckPieces, GroundMesh, LineLayers, PhotoImage,
-    PlanScale, PointMarks, RoadKind, RoadSegments, RoadVolumes, ShadingSlopes, TileArea, TileLayer,
-    TileLines, relief::RoadRelief,
+    PlanScale, PointMarks, RoadKind, ShadingSlopes, TileArea, TileLayer, TileLines,
+    relief::RoadRelief,
 };
 use crate::{layer_class::LayerClass, lod::GroundSummary, options::Mapping};
 
@@ -30,12 +30,8 @@ pub struct TileGeometry {
     pub(crate) shading: Option<ShadingSlopes>,
     /// The photo of the ground; `None` if there is none, or it was not read.
     pub photo: Option<PhotoImage>,
-    /// The roads on it as geometry (GEO); empty if that section was not read.
-    pub roads: RoadSegments,
-    /// The roads on it as volumes (SV); empty if that section was not read.
-    pub volumes: RoadVolumes,
-    /// Bridges over it; empty if they were not read.
-    pub decks: DeckPieces,
+    /// The roads on it, with the bridges over it; what was not read is empty.
+    pub roads: TileLayer,
     /// The areas on it as volumes; empty if no layers of areas were read.
     pub areas: AreaVolumes,
     /// The points on it; empty if no layers of points were read.
@@ -149,17 +145,13 @@ impl TileGeometry {
         let most_width_factor =
             sources.chain(segments).map(|ends_m| scale.across(ends_m)).fold(0.0, f64::max);
         let in_tile = (bounds, reference_m);
-        let (laid, mut net) = TileLayer::of_lines(lines, &relief, in_tile, work);
-        let TileLayer { segments: roads, volumes, decks } = laid;
-        let decks = match lines.mapping {
-            Mapping::OnTriangles => decks,
-            Mapping::Unmapped => {
-                let straight: Vec<DeckLine> = lines.ground.iter().map(DeckLine::unmapped).collect();
-                // The decks are these lines themselves, so their ends must not count twice.
-                net.ends.clear();
-                DeckPieces::of_decks(&straight, &net, in_tile, scale, work).as_ribbons()
-            }
-        };
+        let (mut roads, mut net) = TileLayer::of_lines(lines, &relief, in_tile, work);
+        if lines.mapping == Mapping::Unmapped {
+            let straight: Vec<DeckLine> = lines.ground.iter().map(DeckLine::unmapped).collect();
+            // The decks are these lines themselves, so their ends must not count twice.
+            net.ends.clear();
+            roads.decks = DeckPieces::of_decks(&straight, &net, in_tile, scale, work).as_ribbons();
+        }
         Self {
             id,
             reference_m,
@@ -172,8 +164,6 @@ impl TileGeometry {
             lines: LineLayers::default(),
             most_width_factor,
             roads,
-            volumes,
-            decks,
             width_margin_m: lines.width_margin_m,
             size_m: [bounds.width(), bounds.height()],
             wide_ways: wide_ways(lines),
@@ -278,9 +268,7 @@ impl TileGeometry {
     pub fn without_roads(self) -> Self {
         Self {
             shading: None,
-            roads: RoadSegments::default(),
-            volumes: RoadVolumes::default(),
-            decks: DeckPieces::default(),
+            roads: TileLayer::default(),
             areas: AreaVolumes::default(),
             points: PointMarks::default(),
             lines: LineLayers::default(),

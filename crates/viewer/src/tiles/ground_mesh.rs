@@ -65,9 +65,15 @@ impl GroundMesh {
         };
         let vertices = tin.vertices().iter().zip(normals).map(place).collect();
         let mut mesh = Self::of_surface(vertices, tin.triangles().iter().flatten().copied());
-        mesh.add_skirts(tin);
+        mesh.hang_where(tin, |from, to| on_border(tin, from, to));
         mesh.skirt_indices = mesh.indices.len();
-        mesh.add_walls(tin);
+        // Edges of the ground inside the tile belong to one triangle only: the neighbouring triangle
+        // would have the same edge in the other direction.
+        let mut all: Vec<(u32, u32)> = tin.triangles().iter().flat_map(sides).collect();
+        all.sort_unstable();
+        mesh.hang_where(tin, |from, to| {
+            all.binary_search(&(to, from)).is_err() && !on_border(tin, from, to)
+        });
         mesh
     }
 
@@ -127,29 +133,11 @@ impl GroundMesh {
         range
     }
 
-    fn add_skirts(&mut self, tin: &Tin) {
-        for corners in tin.triangles() {
-            for k in 0..3 {
-                let (from, to) = (corners[k], corners[(k + 1) % 3]);
-                if on_border(tin, from, to) {
-                    self.hang(from, to);
-                }
-            }
-        }
-    }
-
-    /// Adds curtains below the edges of the ground inside the tile: edges that belong to one
-    /// triangle only.
-    fn add_walls(&mut self, tin: &Tin) {
-        let sides = |corners: &[u32; 3]| [0, 1, 2].map(|k| (corners[k], corners[(k + 1) % 3]));
-        let mut all: Vec<(u32, u32)> = tin.triangles().iter().flat_map(sides).collect();
-        all.sort_unstable();
-        for corners in tin.triangles() {
-            for (from, to) in sides(corners) {
-                // The neighbouring triangle has the same edge in the other direction.
-                if all.binary_search(&(to, from)).is_err() && !on_border(tin, from, to) {
-                    self.hang(from, to);
-                }
+    /// Adds curtains below some of the edges of triangles.
+    fn hang_where(&mut self, tin: &Tin, is_edge: impl Fn(u32, u32) -> bool) {
+        for (from, to) in tin.triangles().iter().flat_map(sides) {
+            if is_edge(from, to) {
+                self.hang(from, to);
             }
         }
     }
@@ -164,6 +152,11 @@ impl GroundMesh {
         }
         self.indices.extend([from, lower, to, to, lower, lower + 1]);
     }
+}
+
+/// The edges of a triangle.
+fn sides(corners: &[u32; 3]) -> [(u32, u32); 3] {
+    [0, 1, 2].map(|k| (corners[k], corners[(k + 1) % 3]))
 }
 
 /// Whether an edge is on one side of the tile.

@@ -35,12 +35,13 @@ pub struct StyledLine {
     pub points: Vec<LatticePoint>,
 }
 
-/// The lines of one layer of a tile, ready to be uploaded; only for the requested methods.
+/// The roads of a tile, or its lines of one layer, ready to be uploaded; only for the requested
+/// methods.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct TileLayer {
-    /// The pieces as geometry (GEO). The line's style replaces the road class.
+    /// The pieces as geometry (GEO). The style of a line replaces the road class.
     pub segments: RoadSegments,
-    /// The pieces as volumes (SV). The line's style replaces the road class.
+    /// The pieces as volumes (SV), likewise.
     pub volumes: RoadVolumes,
     /// The pieces of decks of bridges, for both methods.
     pub decks: DeckPieces,

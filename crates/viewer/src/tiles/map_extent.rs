@@ -126,10 +126,10 @@ fn densest_cluster(pieces: Vec<RoadStretch>) -> Vec<RoadStretch> {
 
 fn pieces(tile: &TileGeometry) -> impl Iterator<Item = RoadStretch> {
     let [x, y, _] = tile.reference_m;
-    let on_ground = tile.roads.all().iter().map(|piece| {
+    let on_ground = tile.roads.segments.all().iter().map(|piece| {
         (part_of(piece.start_in_tile, piece.end_in_tile, piece.shares), piece.kind.class)
     });
-    let in_plan = tile.volumes.all().iter().map(|volume| {
+    let in_plan = tile.roads.volumes.all().iter().map(|volume| {
         (part_of(volume.start_in_tile, volume.end_in_tile, [0.0, 1.0]), volume.kind.class)
     });
     on_ground.chain(in_plan).map(move |(ends, class)| RoadStretch {
@@ -160,8 +160,7 @@ fn span(ranges: impl Iterator<Item = [f64; 2]>) -> Option<[f64; 2]> {
 /// The ends of a part of a segment.
 fn part_of(start: [f32; 2], end: [f32; 2], shares: [f32; 2]) -> [[f64; 2]; 2] {
     let [start, end] = [start, end].map(|point| point.map(f64::from));
-    shares
-        .map(|share| [0, 1].map(|axis| start[axis] + f64::from(share) * (end[axis] - start[axis])))
+    shares.map(|share| along(start, end, f64::from(share)))
 }
 
 /// The range of one coordinate without the tails; `None` if the total length is 0.

@@ -24,7 +24,7 @@ pub(crate) use self::{
     decks::GroundNet,
     ends::RoadEnd,
     ground_beside::{Bed, NearHeights},
-    lines::portals,
+    lines::{draped_points_m, portals},
     parts::{InNet, OPEN_M},
     segments::LinePiece,
 };

@@ -24,7 +24,10 @@ fn a_tile_takes_as_many_bytes_as_told_before() {
     let country = Country::new();
     for id in [TileId::ROOT, TileId::new(2, 1, 2).unwrap(), TileId::new(4, 8, 8).unwrap()] {
         let tile = country.load(id).unwrap();
-        assert!(!tile.roads.all().is_empty() && !tile.volumes.all().is_empty(), "{id} has roads");
+        assert!(
+            !tile.roads.segments.all().is_empty() && !tile.roads.volumes.all().is_empty(),
+            "{id} has roads"
+        );
         assert_eq!(tile_bytes(&tile), TileBuffers::new(&gpu, &tile, None).gpu_bytes(), "{id}");
     }
 }

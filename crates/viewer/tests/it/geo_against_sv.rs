@@ -161,8 +161,8 @@ fn roads_of_the_reference_are_as_wide_as_the_drawn_ones() {
         let factors = |volumes: &RoadVolumes| -> Vec<f32> {
             volumes.all().iter().map(|volume| volume.width_factor).collect()
         };
-        let drawn = factors(&drawn.volumes);
-        assert_eq!(factors(&tile.geometry.volumes), drawn, "{id:?}");
+        let drawn = factors(&drawn.roads.volumes);
+        assert_eq!(factors(&tile.geometry.roads.volumes), drawn, "{id:?}");
         widest = drawn.iter().fold(widest, |widest, factor| widest.max((factor - 1.0).abs()));
     }
     // Otherwise any reference would pass.

@@ -121,7 +121,7 @@ fn what_does_not_come_costs_one_tile() {
     line.set(Line::Open);
     let loaded = done(tiles.tile(tile("1/0/1"))).unwrap();
     assert!(
-        loaded.roads.all().is_empty() && loaded.volumes.all().is_empty(),
+        loaded.roads.segments.all().is_empty() && loaded.roads.volumes.all().is_empty(),
         "without roads, as requested"
     );
 }

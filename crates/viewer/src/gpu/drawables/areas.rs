@@ -10,8 +10,6 @@
 //! first class of a layer. No class paints over another, so colours of classes are not mixed. All
 //! tiles use one stencil: a volume counts only on the ground of its own tile.
 
-use std::cmp::Reverse;
-
 use corniche_styles::AreaStyle;
 use wgpu::{
     BindGroupLayout, BlendState, ColorWrites, CompareFunction, DepthStencilState, Device, Face,
@@ -27,7 +25,7 @@ use super::super::{
     shared_bindings::{DrawnFrame, SharedBindings, SharedLayouts},
     uniforms::color,
 };
-use crate::layer_class::LayerClass;
+use crate::{layer_class::LayerClass, tiles::ClassVolumes};
 
 pub(crate) const SHADER: Shader =
     shader!("areas": "common", "tile", "drawn_ground", "boxes", "areas");
@@ -54,13 +52,13 @@ pub(crate) type AreaTile<'a> = (usize, &'a AreaBuffers, Counting);
 /// Draws areas.
 pub(crate) struct StencilAreas {
     layout: BindGroupLayout,
-    in_front: Counters,
-    behind: Counters,
+    counters: [Counters; 2],
     boxes: RenderPipeline,
 }
 
 /// The pipelines of one way of counting.
 struct Counters {
+    counting: Counting,
     walls: RenderPipeline,
     tops: RenderPipeline,
     bottoms: RenderPipeline,
@@ -83,9 +81,9 @@ impl StencilAreas {
             ..PipelineRecipe::new(SHADER, &groups, &[])
         };
         let boxes = boxes.build(device);
-        let [in_front, behind] = [Counting::InFront, Counting::Behind]
+        let counters = [Counting::InFront, Counting::Behind]
             .map(|counting| Counters::new(device, &groups, counting));
-        Self { layout, in_front, behind, boxes }
+        Self { layout, counters, boxes }
     }
 
     /// Draws the areas of some tiles over their ground: into its colours and the stencil, which
@@ -98,7 +96,8 @@ impl StencilAreas {
     ) {
         shared.set_frame(pass);
         pass.set_bind_group(2, &shared.ground, &[]);
-        for class in classes_of(tiles) {
+        let classes = tiles.iter().flat_map(|tile| &tile.1.classes).map(|of| of.class);
+        for class in LayerClass::topmost_first(classes) {
             if let Some(area) = view.layers.area(class) {
                 let look = block(gpu, "area look", &self.layout, &rows(area));
                 pass.set_bind_group(3, &look, &[]);
@@ -115,22 +114,23 @@ impl StencilAreas {
         class: LayerClass,
     ) {
         pass.set_stencil_reference(0);
-        for (counting, counters) in
-            [(Counting::InFront, &self.in_front), (Counting::Behind, &self.behind)]
-        {
-            let is_counted = |tile: &&AreaTile<'_>| tile.2 == counting && tile.1.has_class(class);
-            let tiles: Vec<_> = tiles.iter().filter(is_counted).collect();
-            let mut draw = |pipeline: &RenderPipeline, draw: &dyn Fn(&AreaBuffers, &mut _)| {
-                pass.set_pipeline(pipeline);
-                for (index, areas, _) in &tiles {
-                    shared.set_tile(pass, *index);
-                    draw(areas, pass);
-                }
-            };
-            draw(&counters.walls, &|areas, pass| areas.draw_walls(pass, class));
-            draw(&counters.tops, &|areas, pass| areas.draw_caps(pass, class));
-            if counting == Counting::Behind {
-                draw(&counters.bottoms, &|areas, pass| areas.draw_caps(pass, class));
+        for Counters { counting, walls, tops, bottoms } in &self.counters {
+            let tiles = tiles.iter().filter(|tile| tile.2 == *counting);
+            let tiles = tiles
+                .filter_map(|(index, areas, _)| Some((*index, *areas, areas.of_class(class)?)));
+            let tiles: Vec<_> = tiles.collect();
+            let mut draw =
+                |pipeline, draw: fn(&AreaBuffers, &mut RenderPass<'_>, &ClassVolumes)| {
+                    pass.set_pipeline(pipeline);
+                    for (index, areas, volumes) in &tiles {
+                        shared.set_tile(pass, *index);
+                        draw(areas, pass, volumes);
+                    }
+                };
+            draw(walls, AreaBuffers::draw_walls);
+            draw(tops, AreaBuffers::draw_caps);
+            if *counting == Counting::Behind {
+                draw(bottoms, AreaBuffers::draw_caps);
             }
         }
         pass.set_stencil_reference(PAINTED);
@@ -140,15 +140,6 @@ impl StencilAreas {
             areas.draw_box(pass, class);
         }
     }
-}
-
-/// The classes of the areas of some tiles, the topmost first.
-fn classes_of(tiles: &[AreaTile<'_>]) -> Vec<LayerClass> {
-    let mut classes: Vec<LayerClass> =
-        tiles.iter().flat_map(|tile| &tile.1.classes).map(|of| of.class).collect();
-    classes.sort_unstable_by_key(|of| (Reverse(of.layer), of.class));
-    classes.dedup();
-    classes
 }
 
 impl Counters {
@@ -178,20 +169,20 @@ impl Counters {
             tops: caps(&tops, FrontFace::Ccw).build(device),
             bottoms: caps(&bottoms, FrontFace::Cw).build(device),
             walls: walls.build(device),
+            counting,
         }
     }
+}
+
+fn stencil_face(compare: CompareFunction, pass_op: StencilOperation) -> StencilFaceState {
+    StencilFaceState { compare, pass_op, ..StencilFaceState::IGNORE }
 }
 
 /// Counts faces: in front of the ground, faces that the eye sees from outside add one; behind it
 /// they subtract one.
 fn stencil_of_faces(counting: Counting) -> DepthStencilState {
-    let face = |pass_op| StencilFaceState {
-        // Only where no higher class has painted.
-        compare: CompareFunction::Equal,
-        pass_op,
-        fail_op: StencilOperation::Keep,
-        depth_fail_op: StencilOperation::Keep,
-    };
+    // Only where no higher class has painted.
+    let face = |pass_op| stencil_face(CompareFunction::Equal, pass_op);
     let (more, less) =
         (face(StencilOperation::IncrementWrap), face(StencilOperation::DecrementWrap));
     let (front, back) = match counting {
@@ -204,12 +195,7 @@ fn stencil_of_faces(counting: Counting) -> DepthStencilState {
 
 /// Passes samples with a count, and marks them as painted.
 fn stencil_of_boxes() -> DepthStencilState {
-    let face = StencilFaceState {
-        compare: CompareFunction::NotEqual,
-        pass_op: StencilOperation::Replace,
-        fail_op: StencilOperation::Keep,
-        depth_fail_op: StencilOperation::Keep,
-    };
+    let face = stencil_face(CompareFunction::NotEqual, StencilOperation::Replace);
     let write_mask = PAINTED | COUNT;
     let state = StencilState { front: face, back: face, read_mask: COUNT, write_mask };
     DepthStencilState::stencil(STENCIL, state)

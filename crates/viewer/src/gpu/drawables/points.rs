@@ -1,7 +1,5 @@
 //! Points: discs of a size in pixels, where the ground does not hide them.
 
-use std::cmp::Reverse;
-
 use corniche_styles::PointStyle;
 use wgpu::{
     BindGroupLayout, BindGroupLayoutEntry, BlendState, Device, PrimitiveTopology, RenderPass,
@@ -58,14 +56,11 @@ impl PointDrawable {
         pass: &mut RenderPass<'_>,
         tiles: &[PointTile<'_>],
     ) {
-        let mut classes: Vec<LayerClass> =
-            tiles.iter().flat_map(|tile| &tile.1.classes).map(|of| of.0).collect();
-        classes.sort_unstable_by_key(|of| (of.layer, Reverse(of.class)));
-        classes.dedup();
+        let classes = tiles.iter().flat_map(|tile| &tile.1.classes).map(|of| of.0);
         pass.set_pipeline(&self.pipeline);
         shared.set_frame(pass);
         pass.set_bind_group(2, &textures(gpu, &self.ground, &[&targets.depth.view]), &[]);
-        for class in classes {
+        for class in LayerClass::topmost_first(classes).into_iter().rev() {
             let Some(point) = view.layers.point(class) else { continue };
             let look = block(gpu, "point look", &self.look, &rows(view, point));
             pass.set_bind_group(3, &look, &[]);

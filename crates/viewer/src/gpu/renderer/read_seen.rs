@@ -11,7 +11,6 @@ use wgpu::CommandEncoder;
 use super::{
     super::{
         Gpu, ReadBackError,
-        drawables::level_connectors::LevelConnectors,
         formats::COLOR,
         inspection::{TileOwner, owners},
         seen::{LineSamples, SeenSamples, ShownTiles, heights_m},
@@ -20,7 +19,7 @@ use super::{
         targets::Targets,
         tile_buffers::DrawTile,
     },
-    DrawnRoads, Renderer, areas_of, line_layers_of, points_of,
+    DrawnLines, Renderer, areas_of, points_of,
 };
 use crate::{
     frame_view::FrameView, layer_class::LayerClass, layers::PackageLooks, tiles::LineLayer,
@@ -41,16 +40,14 @@ impl Renderer {
     ) -> Result<ShownTiles, ReadBackError> {
         let frame =
             DrawnFrame { gpu, shared: &self.shared(gpu, view, tiles, targets), view, targets };
-        let lines = line_layers_of(tiles)
-            .into_iter()
-            .filter_map(|layer| self.line_samples(frame, tiles, layer).transpose());
-        let lines: Vec<LineSamples> = lines.collect::<Result<_, _>>()?;
+        let lines = self.with_lines(frame, tiles, |lines| {
+            let of_layer = |(layer, lines): &_| self.line_samples(*layer, lines).transpose();
+            let samples = lines.iter().filter_map(of_layer);
+            samples.collect::<Result<Vec<LineSamples>, _>>()
+        })?;
         let numbered: Vec<LayerClass> = view.layers.all().map(|(class, _)| class).collect();
         let [areas, points] = self.class_numbers(frame, tiles)?;
-        let method = view.roads.method;
-        let of_decks = LevelConnectors::of_decks;
-        let has_decks =
-            !DrawnRoads::new(frame, tiles, |tile| tile.decks(method), of_decks).is_empty();
+        let has_decks = DrawnLines::new(frame, tiles, |tile| Some(&tile.roads)).has_decks();
         // Without decks the labels are those of an earlier frame.
         let decks = has_decks.then(|| targets.read_deck_labels(gpu)).transpose()?.flatten();
         let samples_per_side = targets.picture.samples_per_side;
@@ -65,7 +62,6 @@ impl Renderer {
             numbered: &numbered,
         }
         .seen();
-        drop(lines);
         let is_ground: Vec<bool> = owners(&targets.owners.read(gpu)?)
             .map(|owner| matches!(owner, TileOwner::Ground(_)))
             .collect();
@@ -81,34 +77,26 @@ impl Renderer {
     /// Draws the labels of lines of the package's layers; `None` if no tile has any that are drawn.
     fn line_samples(
         &self,
-        frame: DrawnFrame<'_>,
-        tiles: &[DrawTile<'_>],
         layer: LineLayer,
+        lines: &DrawnLines<'_>,
     ) -> Result<Option<LineSamples>, ReadBackError> {
+        let DrawnLines { frame, on_ground, .. } = lines;
         let classes = frame.view.layers.classes_of(layer);
-        if classes.iter().all(Option::is_none) {
+        let has_decks = lines.has_decks();
+        if classes.iter().all(Option::is_none) || (on_ground.is_empty() && !has_decks) {
             return Ok(None);
         }
-        self.with_lines(frame, layer, |frame| {
-            let DrawnFrame { gpu, targets, .. } = frame;
-            let lines = DrawnRoads::of_layer(frame, tiles, layer);
-            let decks = DrawnRoads::line_decks(frame, tiles, layer);
-            let [has_lines, has_decks] = [&lines, &decks].map(|drawn| !drawn.is_empty());
-            if !has_lines && !has_decks {
-                return Ok(None);
+        let DrawnFrame { gpu, targets, .. } = *frame;
+        let labels = targets.lines(gpu);
+        gpu.submit("line labels", |encoder| {
+            if has_decks {
+                self.draw_line_labels(lines, encoder);
+            } else {
+                self.pass_labels(*frame, encoder, on_ground, labels);
             }
-            let labels = targets.lines(gpu);
-            gpu.submit("line labels", |encoder| {
-                self.pass_labels(frame, encoder, &lines, labels);
-                if has_decks {
-                    let labels = [targets.line_decks(gpu), labels];
-                    self.decks(gpu).draw_labels(frame, encoder, decks.parts(), labels);
-                }
-            });
-            let on_decks = has_decks.then(|| targets.line_decks(gpu).labels.read(gpu));
-            let labels = labels.labels.read(gpu)?;
-            Ok(Some(LineSamples { labels, decks: on_decks.transpose()?, classes }))
-        })
+        });
+        let decks = has_decks.then(|| targets.line_decks(gpu).labels.read(gpu)).transpose()?;
+        Ok(Some(LineSamples { labels: labels.labels.read(gpu)?, decks, classes }))
     }
 
     /// Returns the numbers of the classes of areas and of points at each sample, from 1 in the
@@ -152,7 +140,7 @@ impl PackageLooks {
         for (class, look) in self.all() {
             if let (LayerLook::Line(line), Some((of, style))) = (look, self.places.place(class))
                 && of == layer
-                && line.is_drawn()
+                && look.is_drawn()
             {
                 classes[usize::from(style)] = Some((class, line.is_apart_from_roads));
             }
@@ -171,17 +159,18 @@ fn with_numbers_as_colors(view: &FrameView<'_>) -> PackageLooks {
         let [red, green] = number.to_le_bytes().map(|byte| f32::from(byte) / 255.0);
         let color = [red, green, 0.0];
         match look {
+            hidden if !hidden.is_drawn() => hidden,
             // A faded colour would be another number: so steep ground counts as the area on it.
-            LayerLook::Area(area) if area.is_drawn() => {
+            LayerLook::Area(_) => {
                 LayerLook::Area(AreaStyle { color, opacity: 1.0, steepest_deg: None })
             }
-            LayerLook::Point(point) if point.is_drawn() => {
+            LayerLook::Point(point) => {
                 let is_near = |most_m| pixel_m < f64::from(most_m) * FADE_FACTOR;
                 let opacity = f32::from(u8::from(point.max_pixel_m.is_none_or(is_near)));
                 let outline = point.outline.map(|_| color);
                 LayerLook::Point(PointStyle { color, outline, opacity, max_pixel_m: None, ..point })
             }
-            hidden => hidden,
+            LayerLook::Line(_) => look,
         }
     })
 }

@@ -47,17 +47,14 @@ impl Strip {
     fn outwards(self, from: LatticePoint, to: LatticePoint) -> Option<[i64; 2]> {
         let LatticeBounds { min, max } = self.tile;
         let [east, north] = self.wide;
-        if from.u == to.u && from.u == min.u {
-            Some([-east, 0])
-        } else if from.u == to.u && from.u == max.u {
-            Some([east, 0])
-        } else if from.v == to.v && from.v == min.v {
-            Some([0, -north])
-        } else if from.v == to.v && from.v == max.v {
-            Some([0, north])
-        } else {
-            None
-        }
+        let sides = [
+            (from.u, to.u, min.u, [-east, 0]),
+            (from.u, to.u, max.u, [east, 0]),
+            (from.v, to.v, min.v, [0, -north]),
+            (from.v, to.v, max.v, [0, north]),
+        ];
+        let found = sides.into_iter().find(|(from, to, side, _)| from == to && from == side);
+        found.map(|(.., by)| by)
     }
 }
 

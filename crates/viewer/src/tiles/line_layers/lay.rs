@@ -13,9 +13,9 @@ use super::{
     dashes::{DashPlaces, GroundLengths},
 };
 use crate::tiles::{
-    DashPlace, GroundLine, PlanScale, RoadKind, RoadLook, TileLines,
+    GroundLine, PlanScale, RoadKind, RoadLook, TileLines,
     relief::RoadRelief,
-    roads::{PlanLine, deck_lines, portals},
+    roads::{PlanLine, deck_lines, draped_points_m, portals},
     shares_in,
 };
 
@@ -58,76 +58,64 @@ impl TileSurface {
     /// tunnels among the lines: only the parts that are not off the ground are draped on it.
     pub(crate) fn lay_within(
         &self,
-        (lines, spans): (&[StyledLine], &[SpanRun]),
+        (lines, spans): (&[StyledLine], &[&SpanRun]),
         methods: LineMethods,
         work: &StepBudget,
     ) -> Result<TileLayer, TooMuchWork> {
-        let spans = LineSpans::new(lines, spans);
         let mut ground = Vec::new();
         let mut plan = Vec::new();
         for line in lines {
             let Some(class) = FunctionalRoadClass::new(line.style) else { continue };
             let Ok(path) = Polyline::new(divided(&line.points, self, work)?) else { continue };
-            let laid = on_ground(&path, line.id, class, self, work)?;
+            let (laid, places) = on_ground(&path, line.id, class, self, work)?;
             if methods != LineMethods::Geometry {
-                plan.extend(in_plan(&path, line.id, class, &laid.places, (self, work))?);
+                plan.extend(in_plan(&path, line.id, class, &places, (self, work))?);
             }
             if methods != LineMethods::ShadowVolumes {
-                ground.extend(laid.lines);
+                ground.extend(laid);
             }
         }
         let Self { width_margin_m, scale, .. } = *self;
-        let lines = TileLines { ground, plan, width_margin_m, scale, ..TileLines::default() };
-        let lines = spans.put_into(lines, self);
+        let laid = TileLines { ground, plan, width_margin_m, scale, ..TileLines::default() };
+        let laid = with_spans(laid, lines, spans, self);
         let relief =
             RoadRelief::new(self.id, Some(&self.surface), &self.frame, width_margin_m, work);
         let in_tile = (self.frame.tile_bounds(self.id), self.reference_m);
-        let (layer, _) = TileLayer::of_lines(&lines, &relief, in_tile, work);
+        let (layer, _) = TileLayer::of_lines(&laid, &relief, in_tile, work);
         work.check()?;
         Ok(layer)
     }
 }
 
-/// The bridges and tunnels among some lines of a tile.
-struct LineSpans {
-    runs: Vec<SpanRun>,
-    /// The style of each line.
-    styles: BTreeMap<i64, FunctionalRoadClass>,
-}
-
-impl LineSpans {
-    /// Finds the runs of these lines.
-    fn new(lines: &[StyledLine], spans: &[SpanRun]) -> Self {
-        let class = |line: &StyledLine| Some((line.id, FunctionalRoadClass::new(line.style)?));
-        let lines = lines.iter().filter(|_| !spans.is_empty());
-        let styles: BTreeMap<_, _> = lines.filter_map(class).collect();
-        let is_own = |run: &&SpanRun| styles.contains_key(&run.way_id);
-        Self { runs: spans.iter().filter(is_own).cloned().collect(), styles }
+/// Adds to lines of a tile the decks of bridges among `runs`, and makes bores of tunnels.
+fn with_spans(
+    lines: TileLines,
+    styled: &[StyledLine],
+    runs: &[&SpanRun],
+    on: &TileSurface,
+) -> TileLines {
+    if runs.is_empty() {
+        return lines;
     }
-
-    /// Adds decks of bridges to the lines of a tile, and makes bores of tunnels.
-    fn put_into(&self, lines: TileLines, on: &TileSurface) -> TileLines {
-        let Self { runs, styles } = self;
-        if runs.is_empty() {
-            return lines;
-        }
-        let kind = |run: &SpanRun| styles.get(&run.way_id).copied().map(RoadKind::plain);
-        let decks = deck_lines(runs, kind, &on.surface, (&on.frame, on.quantum_m));
-        let of = |structure| {
-            let own = runs.iter().filter(move |run| run.structure == structure);
-            own.map(|run| run.way_id).collect::<BTreeSet<i64>>()
-        };
-        let [bridges, tunnels] = [Structure::Bridge, Structure::Tunnel].map(of);
-        let portals = portals(&runs.iter().collect::<Vec<_>>(), &on.frame);
-        let bridges = bridges.into_iter().collect();
-        let mut lines = TileLines { decks, portals, bridges, ..lines };
-        let ground = lines.ground.iter_mut().map(|line| (line.way_id, &mut line.kind));
-        let plan = lines.plan.iter_mut().map(|line| (line.way_id, &mut line.kind));
-        for (_, kind) in ground.chain(plan).filter(|(way_id, _)| tunnels.contains(way_id)) {
-            kind.look = RoadLook::Bore;
-        }
-        lines
+    let class = |line: &StyledLine| Some((line.id, FunctionalRoadClass::new(line.style)?));
+    let styles: BTreeMap<i64, _> = styled.iter().filter_map(class).collect();
+    let runs = runs.iter().copied().filter(|run| styles.contains_key(&run.way_id));
+    let kind = |run: &SpanRun| styles.get(&run.way_id).copied().map(RoadKind::plain);
+    let of = |structure| {
+        let own = runs.clone().filter(move |run| run.structure == structure);
+        own.map(|run| run.way_id).collect::<BTreeSet<i64>>()
+    };
+    let [bridges, tunnels] = [Structure::Bridge, Structure::Tunnel].map(of);
+    let mut lines = TileLines {
+        decks: deck_lines(runs.clone(), kind, &on.surface, (&on.frame, on.quantum_m)),
+        portals: portals(runs.clone(), &on.frame),
+        bridges: bridges.into_iter().collect(),
+        ..lines
+    };
+    for (_, kind) in lines.kinds_mut().filter(|(way_id, _)| tunnels.contains(way_id)) {
+        kind.look = RoadLook::Bore;
     }
+    lines
 }
 
 /// The points of a line near the tile, with additional lattice points in long segments. Each
@@ -148,7 +136,7 @@ fn divided(
         let (du, dv) = ((to.u - from.u) as f64, (to.v - from.v) as f64);
         let parts = (libm::hypot(du, dv) / longest).ceil().max(1.0);
         // A segment may go all around the earth: only the part near the tile is divided.
-        let [first, last] = shares_in(from.in_steps(), [du, dv], around);
+        let [first, last] = shares_in(from.in_steps(), [du, dv], around, 1.0);
         let numbers = (first * parts).floor().max(1.0) as u64..=(last * parts).ceil() as u64;
         work.add(((last - first) * parts).max(0.0) as usize);
         work.check()?;
@@ -165,19 +153,14 @@ fn divided(
     Ok(divided)
 }
 
-/// A layer of lines on the ground, and their dash positions.
-struct LaidLineLayer {
-    lines: Vec<GroundLine>,
-    places: DashPlaces,
-}
-
+/// Returns a line on the ground, and its dash positions.
 fn on_ground(
     path: &Polyline,
     id: i64,
     class: FunctionalRoadClass,
     on: &TileSurface,
     work: &StepBudget,
-) -> Result<LaidLineLayer, TooMuchWork> {
+) -> Result<(Vec<GroundLine>, DashPlaces), TooMuchWork> {
     let frame = on.frame;
     let tile = frame.tile_lattice_bounds(on.id);
     let points_m = path.points().iter().map(|&point| frame.position_m(point)).collect();
@@ -186,14 +169,7 @@ fn on_ground(
     let mut found: Vec<(GroundLine, Vec<usize>)> = Vec::new();
     for part in corniche_drape::clip_parts(path, &tile, OwnedBorders::ALL) {
         for draped in corniche_drape::drape_within(&part.line, &on.surface, work)?.lines {
-            let Ok(positions) = corniche_drape::positions(&draped, &on.surface) else { continue };
-            let points_m: Vec<[f64; 3]> = positions
-                .into_iter()
-                .map(|[u, v, height_m]| {
-                    let [x, y] = frame.position_of_fraction_m([u, v]);
-                    [x, y, height_m]
-                })
-                .collect();
+            let Ok(points_m) = draped_points_m(&draped, &on.surface, &frame) else { continue };
             let sources = corniche_drape::source_segments(&draped);
             let segments = segments_of(&sources, &part);
             for (pair, &segment) in points_m.array_windows::<2>().zip(&segments) {
@@ -213,18 +189,14 @@ fn on_ground(
     }
     let places = lengths.places();
     let with_dashes = |(line, segments): (GroundLine, Vec<usize>)| {
-        let sources = line.sources_m.iter().zip(&segments);
-        let mut dashes: Vec<(&[[f64; 2]; 2], DashPlace)> = Vec::new();
-        for (source_m, &segment) in sources {
-            if dashes.last().is_none_or(|(last, _)| *last != source_m) {
-                dashes.push((source_m, places.at(segment, source_m[0])));
-            }
-        }
-        let dashes = dashes.into_iter().map(|(_, place)| place).collect();
-        GroundLine { dashes: Some(dashes), ..line }
+        let mut sources: Vec<_> = line.sources_m.iter().zip(segments).collect();
+        sources.dedup_by_key(|(source_m, _)| *source_m);
+        let dash = |(source_m, segment): (&[[f64; 2]; 2], usize)| places.at(segment, source_m[0]);
+        let dashes = Some(sources.into_iter().map(dash).collect());
+        GroundLine { dashes, ..line }
     };
     let lines = found.into_iter().map(with_dashes).collect();
-    Ok(LaidLineLayer { lines, places })
+    Ok((lines, places))
 }
 
 /// For each piece of a draped line, the index of its segment in the path. `sources` are segments of

@@ -65,7 +65,8 @@ fn laid_with(
         points: points_m.iter().map(place).collect(),
     };
     let lines: Vec<StyledLine> = lines_m.iter().map(line).collect();
-    on.lay_within((&lines, spans), LineMethods::Both, &StepBudget::new(FEW_STEPS))
+    let spans: Vec<&SpanRun> = spans.iter().collect();
+    on.lay_within((&lines, &spans), LineMethods::Both, &StepBudget::new(FEW_STEPS))
 }
 
 fn starts_and_rates(layer: &TileLayer) -> Vec<([f32; 2], [f32; 2])> {

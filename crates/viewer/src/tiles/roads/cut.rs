@@ -127,7 +127,7 @@ impl<'a> OffGroundRoads<'a> {
             self.work.add(1);
             let [a, b] = [pair[0], pair[1]];
             let place = |share: f64| (LinePlace { segment: number, share }, along(a, b, share));
-            let [enters, leaves] = shares_in(a, [b[0] - a[0], b[1] - a[1]], around);
+            let [enters, leaves] = shares_in(a, [b[0] - a[0], b[1] - a[1]], around, 1.0);
             if enters > leaves {
                 all.push(Stretch { from: place(0.0), to: place(1.0) });
                 continue;
@@ -259,110 +259,98 @@ fn kept(stretches: &[Stretch], points_m: &[[f64; 2]]) -> Vec<KeptRange> {
 }
 
 impl KeptRange {
-    /// The range of segments that the part touches.
-    fn segments(&self, points_m: &[[f64; 2]]) -> std::ops::RangeInclusive<usize> {
-        let last = points_m.len().saturating_sub(2);
-        self.from.map_or(0, |(at, _)| at.segment)..=self.to.map_or(last, |(at, _)| at.segment)
-    }
-
     fn length_m(&self, points_m: &[[f64; 2]]) -> f64 {
         self.pieces(points_m).map(|(_, ends)| distance(ends[0], ends[1])).sum()
     }
 
     /// The pieces of the part, each within one segment: the index of the segment, and both ends.
-    fn pieces(
-        &self,
-        points_m: &[[f64; 2]],
-    ) -> impl Iterator<Item = (usize, [[f64; 2]; 2])> + use<'_> {
-        let cut = *self;
-        let all: Vec<_> = self
-            .segments(points_m)
-            .filter_map(|number| {
-                let [mut a, mut b] = [*points_m.get(number)?, *points_m.get(number + 1)?];
-                if let Some((_, at)) = cut.from.filter(|(at, _)| at.segment == number) {
-                    a = at;
-                }
-                if let Some((_, at)) = cut.to.filter(|(at, _)| at.segment == number) {
-                    b = at;
-                }
-                Some((number, [a, b]))
-            })
-            .collect();
-        all.into_iter()
+    fn pieces(&self, points_m: &[[f64; 2]]) -> impl Iterator<Item = (usize, [[f64; 2]; 2])> {
+        let Self { from, to } = *self;
+        let last = points_m.len().saturating_sub(2);
+        let numbers = from.map_or(0, |(at, _)| at.segment)..=to.map_or(last, |(at, _)| at.segment);
+        numbers.filter_map(move |number| {
+            let [a, b] = [*points_m.get(number)?, *points_m.get(number + 1)?];
+            let cut = |end: Option<(LinePlace, [f64; 2])>, whole| match end {
+                Some((at, cut)) if at.segment == number => cut,
+                _ => whole,
+            };
+            Some((number, [cut(from, a), cut(to, b)]))
+        })
     }
 
-    /// The points and segments of this part of a line in plan, without segments that are cut to
-    /// less than a step.
-    fn walked(&self, points_m: &[[f64; 2]]) -> impl Iterator<Item = (usize, [[f64; 2]; 2])> {
-        let cut = *self;
-        self.pieces(points_m).filter(move |(number, ends)| {
-            distance(ends[0], ends[1]) > NEAR_M || !cut.is_cut_in(*number)
-        })
+    /// The segments of this part of a line in plan and the ends of its points in them, without
+    /// segments that are cut to less than a step.
+    fn walked(&self, points_m: &[[f64; 2]]) -> Vec<(usize, [[f64; 2]; 2])> {
+        let pieces = self.pieces(points_m);
+        let is_kept = |(number, ends): &(usize, [[f64; 2]; 2])| {
+            distance(ends[0], ends[1]) > NEAR_M || !self.is_cut_in(*number)
+        };
+        pieces.filter(is_kept).collect()
     }
 
     /// This part of a line on the ground; `plan` are the points of the line in plan.
     fn of_ground(&self, line: &GroundLine, plan: &[[f64; 2]]) -> Option<GroundLine> {
-        let mut points_m: Vec<[f64; 3]> = Vec::new();
-        let mut sources_m = Vec::new();
-        for (number, ends) in self.walked(plan) {
+        let walked = self.walked(plan);
+        let raised = |number: usize, at: [f64; 2]| {
             let [low, high] = [line.points_m[number], line.points_m[number + 1]];
-            let raised = |at: [f64; 2]| {
-                let share = share_of(at, [plan[number], plan[number + 1]]);
-                [at[0], at[1], low[2] + share * (high[2] - low[2])]
-            };
-            if points_m.is_empty() {
-                points_m.push(raised(ends[0]));
-            }
-            points_m.push(raised(ends[1]));
-            sources_m.push(*line.sources_m.get(number)?);
-        }
-        // A cut segment ends where the deck begins.
-        let trim = |sources: &mut [[[f64; 2]; 2]], end: usize, at: [f64; 2]| {
-            let whole = sources.first().copied();
-            for source in sources.iter_mut().take_while(|source| Some(**source) == whole) {
-                source[end] = at;
-            }
+            let share = share_of(at, [plan[number], plan[number + 1]]);
+            [at[0], at[1], low[2] + share * (high[2] - low[2])]
         };
-        if let (Some((_, at)), Some(first)) = (self.from, points_m.first_mut()) {
-            [first[0], first[1]] = at;
-            trim(&mut sources_m, 0, at);
+        let points_m = self.points(&walked, raised)?;
+        let sources_m = walked.iter().map(|(number, _)| line.sources_m.get(*number).copied());
+        let mut sources_m: Vec<[[f64; 2]; 2]> = sources_m.collect::<Option<_>>()?;
+        // A cut segment ends where the deck begins.
+        if let Some((_, at)) = self.from {
+            trim(sources_m.iter_mut(), 0, at);
         }
-        if let (Some((_, at)), Some(last)) = (self.to, points_m.last_mut()) {
-            [last[0], last[1]] = at;
-            sources_m.reverse();
-            trim(&mut sources_m, 1, at);
-            sources_m.reverse();
+        if let Some((_, at)) = self.to {
+            trim(sources_m.iter_mut().rev(), 1, at);
         }
-        let GroundLine { way_id, kind, .. } = *line;
-        let cut = GroundLine { way_id, kind, points_m, sources_m, dashes: None };
-        (cut.points_m.len() >= 2).then_some(cut)
+        Some(GroundLine { points_m, sources_m, dashes: None, ..*line })
     }
 
     /// This part of a line in plan.
     fn of_plan(&self, line: &PlanLine) -> Option<PlanLine> {
-        let mut points_m: Vec<[f64; 2]> = Vec::new();
-        let mut ground_range_m = Vec::new();
-        for (number, ends) in self.walked(&line.points_m) {
-            if points_m.is_empty() {
-                points_m.push(ends[0]);
+        let walked = self.walked(&line.points_m);
+        let points_m = self.points(&walked, |_, at| at)?;
+        let ranges_m = walked.iter().map(|(number, _)| line.ground_range_m.get(*number).copied());
+        let ground_range_m = ranges_m.collect::<Option<_>>()?;
+        Some(PlanLine { points_m, ground_range_m, dashes: None, ..*line })
+    }
+
+    /// The points of this part of a line, exactly where it is cut at its ends; `place` places a
+    /// point of a segment. `None` without points.
+    fn points<const N: usize>(
+        &self,
+        walked: &[(usize, [[f64; 2]; 2])],
+        place: impl Fn(usize, [f64; 2]) -> [f64; N],
+    ) -> Option<Vec<[f64; N]>> {
+        let (number, [first, _]) = *walked.first()?;
+        let ends = walked.iter().map(|(number, [_, end])| place(*number, *end));
+        let mut points: Vec<_> = std::iter::once(place(number, first)).chain(ends).collect();
+        let last = points.len() - 1;
+        for (end, point) in [(self.from, 0), (self.to, last)] {
+            if let Some((_, at)) = end {
+                points[point][..2].copy_from_slice(&at);
             }
-            points_m.push(ends[1]);
-            ground_range_m.push(*line.ground_range_m.get(number)?);
         }
-        if let (Some((_, at)), Some(first)) = (self.from, points_m.first_mut()) {
-            *first = at;
-        }
-        if let (Some((_, at)), Some(last)) = (self.to, points_m.last_mut()) {
-            *last = at;
-        }
-        let PlanLine { way_id, kind, .. } = *line;
-        let cut = PlanLine { way_id, kind, points_m, ground_range_m, dashes: None };
-        (cut.points_m.len() >= 2).then_some(cut)
+        Some(points)
     }
 
     /// Whether a deck begins or ends in a segment.
     fn is_cut_in(&self, number: usize) -> bool {
         [self.from, self.to].into_iter().flatten().any(|(at, _)| at.segment == number)
+    }
+}
+
+/// Moves one end of all pieces of the first segment in `sources`.
+fn trim<'a>(sources: impl Iterator<Item = &'a mut [[f64; 2]; 2]>, end: usize, at: [f64; 2]) {
+    let mut whole = None;
+    for source in sources {
+        if *whole.get_or_insert(*source) != *source {
+            return;
+        }
+        source[end] = at;
     }
 }
 

@@ -2,7 +2,7 @@
 
 use corniche_geom::GridFrame;
 use corniche_roads::Structure;
-use corniche_tileset::{SpanHeight, SpanRun, TilePayload};
+use corniche_tileset::{SpanHeight, SpanRun};
 use corniche_tin::Surface;
 
 use super::{RoadKind, flat_ends::LineEnds};
@@ -33,25 +33,14 @@ impl DeckLine {
     }
 }
 
-/// The bridges of roads among the runs of a tile, with the attributes of their ways.
-pub(crate) fn road_decks(
-    runs: &[SpanRun],
-    payload: &TilePayload,
-    surface: &Surface,
-    (frame, quantum_m): (&GridFrame, f64),
-) -> Vec<DeckLine> {
-    let kind = |run: &SpanRun| Some(RoadKind::tagged(payload, run.way_id, run.owner.road_class()?));
-    deck_lines(runs, kind, surface, (frame, quantum_m))
-}
-
 /// The bridges among runs on a tile's ground, as far as `kind` returns one.
-pub(crate) fn deck_lines(
-    runs: &[SpanRun],
+pub(crate) fn deck_lines<'a>(
+    runs: impl Iterator<Item = &'a SpanRun>,
     kind: impl Fn(&SpanRun) -> Option<RoadKind>,
     surface: &Surface,
     (frame, quantum_m): (&GridFrame, f64),
 ) -> Vec<DeckLine> {
-    let bridges = runs.iter().filter(|run| run.structure == Structure::Bridge);
+    let bridges = runs.filter(|run| run.structure == Structure::Bridge);
     let deck = |run: &SpanRun| {
         let kind = kind(run)?;
         let points_m = run.points.iter().filter_map(|point| {

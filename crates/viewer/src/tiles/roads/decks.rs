@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use corniche_geom::{Bounds, StepBudget};
+use corniche_geom::{Bounds, StepBudget, along};
 use corniche_roads::slab_thickness_m;
 
 use super::{
@@ -182,9 +182,7 @@ impl RoadList<DeckPiece> {
                 if work.check().is_err() {
                     return Self::default();
                 }
-                let at = |part: f64| {
-                    [0, 1, 2].map(|k| pair[0][k] + part / count * (pair[1][k] - pair[0][k]))
-                };
+                let at = |part: f64| along(pair[0], pair[1], part / count);
                 for part in 0..count as usize {
                     let [first, last] = [part as f64, part as f64 + 1.0];
                     let is_last = last >= count;
@@ -222,21 +220,14 @@ fn deck_ends(decks: &[DeckLine], tile: Bounds, scale: &PlanScale) -> Vec<RoadEnd
     let mut ends = Vec::new();
     for deck in decks {
         let points_m = distinct(&deck.points_m);
-        let Some(last) = points_m.len().checked_sub(2) else { continue };
-        let plan = |number: usize| [points_m[number][0], points_m[number][1]];
-        for (point, source_m) in [(0, [plan(0), plan(1)]), (last + 1, [plan(last), plan(last + 1)])]
-        {
-            if let Some(side) = TileSide::from_position(plan(point), tile) {
-                ends.push(RoadEnd {
-                    way_id: deck.way_id,
-                    kind: deck.kind,
-                    side,
-                    at_m: plan(point),
-                    height_range_m: [points_m[point][2]; 2],
-                    width_factor: scale.across(source_m) as f32,
-                });
-            }
-        }
+        let ([first, second, ..], [.., before, last]) = (&points_m[..], &points_m[..]) else {
+            continue;
+        };
+        let source = |ends: [&[f64; 3]; 2]| ends.map(|[x, y, _]| [*x, *y]);
+        let both = [(first, source([first, second])), (last, source([before, last]))];
+        ends.extend(both.into_iter().filter_map(|(point, source_m)| {
+            RoadEnd::at((deck.way_id, deck.kind), *point, source_m, (tile, scale))
+        }));
     }
     ends
 }

@@ -68,33 +68,41 @@ impl TileSide {
     }
 }
 
+impl RoadEnd {
+    /// The end of a road at a point of its segment `source_m`, if the point is on the tile's border.
+    pub(crate) fn at(
+        (way_id, kind): (i64, RoadKind),
+        [x, y, height_m]: [f64; 3],
+        source_m: [[f64; 2]; 2],
+        (tile, scale): (Bounds, &PlanScale),
+    ) -> Option<Self> {
+        Some(Self {
+            way_id,
+            kind,
+            side: TileSide::from_position([x, y], tile)?,
+            at_m: [x, y],
+            height_range_m: [height_m; 2],
+            width_factor: scale.across(source_m) as f32,
+        })
+    }
+}
+
 /// Points where lines on the ground end on the tile's border.
 pub(crate) fn ground_ends<'a>(
     lines: impl Iterator<Item = &'a GroundLine>,
     tile: Bounds,
     scale: &PlanScale,
 ) -> Vec<RoadEnd> {
-    let mut ends = Vec::new();
-    for line in lines {
+    let ends = |line: &'a GroundLine| {
         let points = [
             line.points_m.first().zip(line.sources_m.first()),
             line.points_m.last().zip(line.sources_m.last()),
         ];
-        for (point, source_m) in points.into_iter().flatten() {
-            let [x, y, height_m] = *point;
-            if let Some(side) = TileSide::from_position([x, y], tile) {
-                ends.push(RoadEnd {
-                    way_id: line.way_id,
-                    kind: line.kind,
-                    side,
-                    at_m: [x, y],
-                    height_range_m: [height_m; 2],
-                    width_factor: scale.across(*source_m) as f32,
-                });
-            }
-        }
-    }
-    ends
+        points.into_iter().flatten().filter_map(move |(point, source_m)| {
+            RoadEnd::at((line.way_id, line.kind), *point, *source_m, (tile, scale))
+        })
+    };
+    lines.flat_map(ends).collect()
 }
 
 /// Points where lines in plan cross the tile's border.
@@ -103,22 +111,21 @@ pub(crate) fn plan_ends<'a>(
     tile: Bounds,
     scale: &PlanScale,
 ) -> Vec<RoadEnd> {
-    let mut ends = Vec::new();
-    for line in lines {
-        for (pair, height_range_m) in line.points_m.windows(2).zip(&line.ground_range_m) {
-            for (side, at_m) in crossings([pair[0], pair[1]], tile) {
-                ends.push(RoadEnd {
-                    way_id: line.way_id,
-                    kind: line.kind,
-                    side,
-                    at_m,
-                    height_range_m: *height_range_m,
-                    width_factor: scale.across([pair[0], pair[1]]) as f32,
-                });
-            }
-        }
-    }
-    ends
+    let ends = |line: &'a PlanLine| {
+        let segments = line.points_m.windows(2).zip(&line.ground_range_m);
+        segments.flat_map(move |(pair, height_range_m)| {
+            let segment_m = [pair[0], pair[1]];
+            crossings(segment_m, tile).map(move |(side, at_m)| RoadEnd {
+                way_id: line.way_id,
+                kind: line.kind,
+                side,
+                at_m,
+                height_range_m: *height_range_m,
+                width_factor: scale.across(segment_m) as f32,
+            })
+        })
+    };
+    lines.flat_map(ends).collect()
 }
 
 /// Points where a segment crosses a border of the tile.

@@ -76,12 +76,9 @@ pub(crate) fn flat_ends(lines: &[LineEnds], tile: Bounds) -> Vec<[bool; 2]> {
         let height = line.height;
         [line.first, line.last].into_iter().enumerate().filter_map(move |(which, segment_m)| {
             let [from, to] = segment_m?;
-            let inside = tile.min_x < to[0]
-                && to[0] < tile.max_x
-                && tile.min_y < to[1]
-                && to[1] < tile.max_y;
             let outward = direction([from, to])?;
-            inside.then_some((to.map(f64::to_bits), End { number, which, height, outward }))
+            is_inside(tile, to)
+                .then_some((to.map(f64::to_bits), End { number, which, height, outward }))
         })
     });
     for (point, end) in ends {
@@ -97,6 +94,11 @@ pub(crate) fn flat_ends(lines: &[LineEnds], tile: Bounds) -> Vec<[bool; 2]> {
         flat[end.number][end.which] = is_highest && others().any(|other| end.goes_on_in(other));
     }
     flat
+}
+
+/// Whether a point is in a rectangle and not on its border.
+pub(crate) fn is_inside(Bounds { min_x, min_y, max_x, max_y }: Bounds, [x, y]: [f64; 2]) -> bool {
+    min_x < x && x < max_x && min_y < y && y < max_y
 }
 
 /// The end of a line at a point.

@@ -1,12 +1,12 @@
 //! The roads of a decoded tile as lines: on the ground for GEO, in plan for SV.
 
-use corniche_drape::BadLine;
+use corniche_drape::{BadLine, DrapedLine};
 use corniche_geom::{GridFrame, TooMuchWork};
 use corniche_roads::{FunctionalRoadClass, Structure};
 use corniche_tileset::{SpanHeight, SpanPoint, SpanRun, TilePayload};
 use corniche_tin::Surface;
 
-use super::{super::PlanScale, DashPlace, DeckLine, RoadKind, deck_line::road_decks};
+use super::{super::PlanScale, DashPlace, DeckLine, RoadKind, deck_line::deck_lines};
 use crate::options::Mapping;
 
 /// A road on the ground (GEO): its centre-line, draped on the tile's TIN.
@@ -113,25 +113,26 @@ impl TileLines {
         let plan = plan_lines(payload, frame);
         let lines = Self { ground, plan, width_margin_m, ..Self::default() };
         let Some(spans) = spans else { return Ok(lines) };
+        let kind =
+            |run: &SpanRun| Some(RoadKind::tagged(payload, run.way_id, run.owner.road_class()?));
         let decks = surface.map_or_else(Vec::new, |surface| {
-            road_decks(spans, payload, surface, (frame, quantum_m))
+            deck_lines(spans.iter(), kind, surface, (frame, quantum_m))
         });
         let bridges = payload.attributes.iter();
         let bridges = bridges.filter(|record| record.attributes.structure == Structure::Bridge);
         let bridges = bridges.map(|record| record.way_id).collect();
-        let of_roads: Vec<&SpanRun> =
-            spans.iter().filter(|run| run.owner.layer().is_none()).collect();
-        let lines = Self { decks, portals: portals(&of_roads, frame), bridges, ..lines };
-        Ok(lines.with_bores())
-    }
-
-    /// Replaces the looks of tunnels by those of bores.
-    pub(crate) fn with_bores(mut self) -> Self {
-        let ground = self.ground.iter_mut().map(|line| &mut line.kind);
-        for kind in ground.chain(self.plan.iter_mut().map(|line| &mut line.kind)) {
+        let of_roads = spans.iter().filter(|run| run.owner.layer().is_none());
+        let mut lines = Self { decks, portals: portals(of_roads, frame), bridges, ..lines };
+        for (_, kind) in lines.kinds_mut() {
             kind.look = kind.look.with_portals();
         }
-        self
+        Ok(lines)
+    }
+
+    /// The ways and kinds of all lines on the ground and in plan.
+    pub(crate) fn kinds_mut(&mut self) -> impl Iterator<Item = (i64, &mut RoadKind)> {
+        let ground = self.ground.iter_mut().map(|line| (line.way_id, &mut line.kind));
+        ground.chain(self.plan.iter_mut().map(|line| (line.way_id, &mut line.kind)))
     }
 }
 
@@ -139,7 +140,10 @@ impl TileLines {
 const SHORTEST_TUNNEL_M: f64 = 80.0;
 
 /// Points where tunnels emerge from the ground.
-pub(crate) fn portals(spans: &[&SpanRun], frame: &GridFrame) -> Vec<[f64; 2]> {
+pub(crate) fn portals<'a>(
+    spans: impl Iterator<Item = &'a SpanRun>,
+    frame: &GridFrame,
+) -> Vec<[f64; 2]> {
     let is_on_ground = |point: &SpanPoint| matches!(point.height, SpanHeight::Ground { .. });
     let is_long = |run: &&SpanRun| {
         let steps = run.points.windows(2).map(|pair| pair[0].at.distance_steps(pair[1].at));
@@ -149,7 +153,6 @@ pub(crate) fn portals(spans: &[&SpanRun], frame: &GridFrame) -> Vec<[f64; 2]> {
             [run.points.first(), run.points.last()].into_iter().flatten().all(is_on_ground);
         !is_whole || length_m >= SHORTEST_TUNNEL_M
     };
-    let spans = spans.iter().copied();
     let tunnels = spans.filter(|run| run.structure == Structure::Tunnel).filter(is_long);
     let on_ground = tunnels.flat_map(|run| &run.points).filter(|point| is_on_ground(point));
     on_ground.map(|point| frame.position_m(point.at)).collect()
@@ -161,18 +164,17 @@ fn ground_lines(
     surface: &Surface,
     frame: &GridFrame,
 ) -> Result<Vec<GroundLine>, BadRoad> {
-    let place = |[u, v, height_m]: [f64; 3]| {
-        let [x, y] = frame.position_of_fraction_m([u, v]);
-        [x, y, height_m]
-    };
     let mut lines = Vec::with_capacity(payload.roads_geo.len());
     for road in &payload.roads_geo {
-        let positions = corniche_drape::positions(&road.line, surface)
-            .map_err(|source| BadRoad { way_id: road.way_id, part: road.part, source })?;
+        let points_m = draped_points_m(&road.line, surface, frame).map_err(|source| BadRoad {
+            way_id: road.way_id,
+            part: road.part,
+            source,
+        })?;
         lines.push(GroundLine {
             way_id: road.way_id,
             kind: RoadKind::tagged(payload, road.way_id, road.class),
-            points_m: positions.into_iter().map(place).collect(),
+            points_m,
             sources_m: corniche_drape::source_segments(&road.line)
                 .into_iter()
                 .map(|ends| ends.map(|point| frame.position_m(point)))
@@ -181,6 +183,19 @@ fn ground_lines(
         });
     }
     Ok(lines)
+}
+
+/// The vertices of a draped line: x, y in the working CRS and true heights.
+pub(crate) fn draped_points_m(
+    line: &DrapedLine,
+    surface: &Surface,
+    frame: &GridFrame,
+) -> Result<Vec<[f64; 3]>, BadLine> {
+    let place = |[u, v, height_m]: [f64; 3]| {
+        let [x, y] = frame.position_of_fraction_m([u, v]);
+        [x, y, height_m]
+    };
+    Ok(corniche_drape::positions(line, surface)?.into_iter().map(place).collect())
 }
 
 fn plan_lines(payload: &TilePayload, frame: &GridFrame) -> Vec<PlanLine> {

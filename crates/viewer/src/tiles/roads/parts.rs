@@ -3,11 +3,12 @@
 
 use std::{borrow::Cow, collections::BTreeMap};
 
-use corniche_geom::{Bounds, DisjointSets};
+use corniche_geom::{Bounds, DisjointSets, along};
 
 use super::{
     super::{distance, shares_in},
     NearHeights, RoadKind, RoadLook,
+    flat_ends::is_inside,
 };
 
 /// The length of a part that is not completely known, working metres; larger than any other.
@@ -99,12 +100,8 @@ impl KnownNet {
     fn holds(&self, vertices_m: &[[f64; 2]]) -> bool {
         let Self { tile, margin_m, near_m } = *self;
         let inside = |grown_m: f64| {
-            move |[x, y]: &[f64; 2]| {
-                tile.min_x - grown_m < *x
-                    && *x < tile.max_x + grown_m
-                    && tile.min_y - grown_m < *y
-                    && *y < tile.max_y + grown_m
-            }
+            let grown = tile.expanded([grown_m; 2]);
+            move |at: &[f64; 2]| is_inside(grown, *at)
         };
         let beyond_one_side = vertices_m.iter().all(|at| at[0] < tile.min_x)
             || vertices_m.iter().all(|at| at[0] > tile.max_x)
@@ -125,10 +122,8 @@ impl KnownNet {
         // A completely known line ends one square before the margin; connected lines have points up
         // to two squares farther.
         let grown_m = margin_m.max(0.0) + 3.0 * near_m;
-        let around = [
-            [tile.min_x - grown_m, tile.max_x + grown_m],
-            [tile.min_y - grown_m, tile.max_y + grown_m],
-        ];
+        let Bounds { min_x, min_y, max_x, max_y } = tile.expanded([grown_m; 2]);
+        let around = [[min_x, max_x], [min_y, max_y]];
         let mut last = None;
         let mut goes_on = |[x, y]: [f64; 2]| {
             let square = [x, y].map(|value| (value / near_m).floor() as i64);
@@ -137,7 +132,7 @@ impl KnownNet {
         for pair in vertices_m.windows(2) {
             let way = [0, 1].map(|k| pair[1][k] - pair[0][k]);
             let steps = (distance(pair[0], pair[1]) / near_m).ceil().max(1.0);
-            let [first, end] = shares_in(pair[0], way, around);
+            let [first, end] = shares_in(pair[0], way, around, 1.0);
             if first > end {
                 continue;
             }
@@ -145,7 +140,7 @@ impl KnownNet {
                 (first * steps - 1.0).max(0.0) as u64..(end * steps + 2.0).min(steps) as u64;
             for step in numbers {
                 let share = step as f64 / steps;
-                if !goes_on([0, 1].map(|k| pair[0][k] + share * way[k])) {
+                if !goes_on(along(pair[0], pair[1], share)) {
                     return;
                 }
             }

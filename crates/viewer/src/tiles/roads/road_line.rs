@@ -13,12 +13,10 @@ use super::{
 
 /// A line of a road, for one of the two methods.
 pub(crate) trait RoadLine: Clone {
-    /// OSM's id of the way.
-    fn way_id(&self) -> i64;
-    /// Kind of the road.
-    fn kind(&self) -> RoadKind;
-    /// The line as a part of the network.
-    fn in_net(&self) -> NetLine;
+    /// OSM's id of the way, and the kind of the road.
+    fn road(&self) -> (i64, RoadKind);
+    /// Its vertices in plan.
+    fn vertices_m(&self) -> Vec<[f64; 2]>;
     /// The ends of the line, if it was not cut within the tile.
     fn ends(&self) -> LineEnds;
     /// The parts of the line that are not on a deck.
@@ -33,10 +31,11 @@ impl<'a, L: RoadLine> InNet<'a, L> {
         decks: &OffGroundRoads<'_>,
         margin_m: f64,
     ) -> (Vec<Self>, GroundNet) {
-        let net: Vec<NetLine> = lines.iter().map(L::in_net).collect();
+        let in_net = |line: &L| NetLine { kind: line.road().1, vertices_m: line.vertices_m() };
+        let net: Vec<NetLine> = lines.iter().map(in_net).collect();
         let known = KnownNet { margin_m, ..KnownNet::within(decks.tile) };
         let lines = lines.iter().zip(part_lengths_m(&net, known));
-        let parts_m = lines.clone().map(|(line, part_m)| (line.way_id(), part_m)).collect();
+        let parts_m = lines.clone().map(|(line, part_m)| (line.road().0, part_m)).collect();
         let on_ground: Vec<Self> = lines
             .flat_map(|(line, part_m)| {
                 line.off_decks(decks).into_iter().map(move |line| InNet { line, part_m })
@@ -57,7 +56,7 @@ impl<'a, L: RoadLine> InNet<'a, L> {
         let flat = flat_ends(&ends, decks.tile).into_iter().zip(&ends);
         let with_flat = lines.iter().zip(flat).map(|(InNet { line, part_m }, (flat, ends))| {
             // A bore ends flat where it emerges from the ground, and has its tick there.
-            let flat = if line.kind().look.is_bore() { decks.portals(ends) } else { flat };
+            let flat = if line.road().1.look.is_bore() { decks.portals(ends) } else { flat };
             (line.as_ref(), *part_m, flat)
         });
         with_flat.collect()

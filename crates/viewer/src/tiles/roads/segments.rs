@@ -13,7 +13,7 @@ use super::{
     ends::ground_ends,
     flat_ends::{LineEnds, direction},
     list::Classed,
-    parts::{InNet, NetLine},
+    parts::InNet,
     road_line::RoadLine,
 };
 
@@ -114,16 +114,12 @@ fn source_vertices(line: &GroundLine) -> Vec<[f64; 2]> {
 }
 
 impl RoadLine for GroundLine {
-    fn way_id(&self) -> i64 {
-        self.way_id
+    fn road(&self) -> (i64, RoadKind) {
+        (self.way_id, self.kind)
     }
 
-    fn kind(&self) -> RoadKind {
-        self.kind
-    }
-
-    fn in_net(&self) -> NetLine {
-        NetLine { kind: self.kind, vertices_m: source_vertices(self) }
+    fn vertices_m(&self) -> Vec<[f64; 2]> {
+        source_vertices(self)
     }
 
     /// The ends of the line, unless it was cut at the border or at a void.
@@ -159,10 +155,7 @@ impl RoadList<RoadSegment> {
         let segments = flat.flat_map(|(line, part_m, [first_flat, last_flat])| {
             let sources = source_vertices(line);
             let segments = sources.len().saturating_sub(1);
-            let dashes = match &line.dashes {
-                Some(given) => given.clone(),
-                None => dash_starts(&sources, tile),
-            };
+            let dashes = line.dashes.clone().unwrap_or_else(|| dash_starts(&sources, tile));
             LinePiece::all_of(line).map(move |piece| {
                 let [start_in_tile, end_in_tile] = piece.source_m.map(place);
                 RoadSegment {

@@ -10,7 +10,7 @@ use super::{
     ends::plan_ends,
     flat_ends::LineEnds,
     list::Classed,
-    parts::{InNet, NetLine},
+    parts::InNet,
     road_line::RoadLine,
 };
 
@@ -48,16 +48,12 @@ impl Classed for RoadVolume {
 pub type RoadVolumes = RoadList<RoadVolume>;
 
 impl RoadLine for PlanLine {
-    fn way_id(&self) -> i64 {
-        self.way_id
+    fn road(&self) -> (i64, RoadKind) {
+        (self.way_id, self.kind)
     }
 
-    fn kind(&self) -> RoadKind {
-        self.kind
-    }
-
-    fn in_net(&self) -> NetLine {
-        NetLine { kind: self.kind, vertices_m: self.points_m.clone() }
+    fn vertices_m(&self) -> Vec<[f64; 2]> {
+        self.points_m.clone()
     }
 
     /// The ends of the line. It was cut at the margin, that is, outside the tile.
@@ -97,10 +93,7 @@ impl RoadList<RoadVolume> {
         let flat = InNet::with_flat_ends(lines, decks).into_iter();
         let volumes = flat.flat_map(|(line, part_m, [first_flat, last_flat])| {
             let last = line.points_m.len().saturating_sub(2);
-            let dashes = match &line.dashes {
-                Some(given) => given.clone(),
-                None => dash_starts(&line.points_m, tile),
-            };
+            let dashes = line.dashes.clone().unwrap_or_else(|| dash_starts(&line.points_m, tile));
             let segments = line.points_m.windows(2).zip(&line.ground_range_m).zip(dashes);
             segments.enumerate().map(move |(number, ((pair, range_m), dash))| {
                 // Without ground near, the box is almost flat.

@@ -123,7 +123,7 @@ fn steep_place(tiles: &[Tile]) -> Option<DVec3> {
     let mut places: Vec<(f32, DVec3)> = Vec::new();
     for tile in tiles {
         let reference = DVec3::from_array(tile.geometry.reference_m);
-        places.extend(tile.geometry.roads.all().iter().map(|segment| {
+        places.extend(tile.geometry.roads.segments.all().iter().map(|segment| {
             let ends = [segment.start_in_tile, segment.end_in_tile];
             let [start, end] = ends.map(|[x, y]| DVec2::new(f64::from(x), f64::from(y)));
             let [first, last] = segment.shares.map(f64::from);
