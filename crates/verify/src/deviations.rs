@@ -11,7 +11,7 @@ use corniche_tileset::{Distribution, Manifest, SampleSums, VerticalRecord};
 use corniche_work::{Stage, workers};
 
 use super::{
-    checks::{CheckId, Findings},
+    checks::Findings,
     decoded_tiles::DecodedTiles,
     each_tile::VerifyRun,
     error::VerifyError,
@@ -193,27 +193,36 @@ pub(crate) fn verify(
     let mut levels: BTreeMap<u8, TrueDeviation> = BTreeMap::new();
     for (&id, truth) in truths {
         // Tiles that do not exist count too: the nodes beneath them must be near a void or an edge.
-        findings.look(CheckId::Stray, truth.stray == 0, || {
-            format!("tile {id}: {} uncovered nodes are farther away", truth.stray)
-        });
+        look!(
+            findings,
+            Stray,
+            truth.stray == 0,
+            "tile {id}: {} uncovered nodes are farther away",
+            truth.stray
+        );
         levels.entry(id.z()).or_default().merge(*truth);
     }
     for level in &manifest.levels {
         let found = levels.get(&level.level).map_or(0, |truth| truth.uncovered);
-        findings.look(CheckId::Uncovered, found == level.uncovered_nodes, || {
-            format!(
-                "level {} records {} uncovered nodes, {found} were found",
-                level.level, level.uncovered_nodes
-            )
-        });
+        look!(
+            findings,
+            Uncovered,
+            found == level.uncovered_nodes,
+            "level {} records {} uncovered nodes, {found} were found",
+            level.level,
+            level.uncovered_nodes
+        );
     }
     let mut ratios = check_errors(manifest, &stored_m, truths, findings);
     let figures = levels.into_iter().map(|(level, truth)| {
         let tightness = Distribution::from_values(ratios.remove(&level).unwrap_or_default());
         let said = manifest.levels.get(usize::from(level)).and_then(|record| record.tightness);
-        findings.look(CheckId::Recorded, agree(said, tightness), || {
-            format!("level {level} records {said:?}, found {tightness:?}")
-        });
+        look!(
+            findings,
+            Recorded,
+            agree(said, tightness),
+            "level {level} records {said:?}, found {tightness:?}"
+        );
         ErrorFigures {
             level,
             tiles: stored_m.keys().filter(|id| id.z() == level).count() as u64,
@@ -238,18 +247,23 @@ fn check_tiles(
         let Some(terrain) = tile.terrain() else { continue };
         let said = terrain.uncovered_nodes;
         let truth = truths.get(&id).copied().unwrap_or_default();
-        findings.look(CheckId::Uncovered, said == truth.uncovered, || {
-            format!("tile {id} records {said} uncovered nodes, {} were found", truth.uncovered)
-        });
+        look!(
+            findings,
+            Uncovered,
+            said == truth.uncovered,
+            "tile {id} records {said} uncovered nodes, {} were found",
+            truth.uncovered
+        );
         let [low, high] = terrain.height_range_m;
         let said = [low, high].map(f64::to_bits);
         let holds = truth.range_m.is_none_or(|range| range.map(|m| f64::from(m).to_bits()) == said);
-        findings.look(CheckId::Ranges, holds, || {
-            format!(
-                "tile {id} records {low} to {high} m, the nodes beneath have {:?}",
-                truth.range_m
-            )
-        });
+        look!(
+            findings,
+            Ranges,
+            holds,
+            "tile {id} records {low} to {high} m, the nodes beneath have {:?}",
+            truth.range_m
+        );
         stored_m.insert(id, terrain.geometric_error_m);
     }
     Ok(stored_m)
@@ -268,17 +282,22 @@ fn check_errors(
     let mut loose = 0_u64;
     for (&id, &stored_m) in stored_m {
         let truth = truths.get(&id).copied().unwrap_or_default();
-        findings.look(CheckId::Bound, stored_m >= truth.largest_m - HEIGHT_ROUNDING_M, || {
-            format!(
-                "tile {id} stores an error of {stored_m} m, but is off by {} m",
-                truth.largest_m
-            )
-        });
+        look!(
+            findings,
+            Bound,
+            stored_m >= truth.largest_m - HEIGHT_ROUNDING_M,
+            "tile {id} stores an error of {stored_m} m, but is off by {} m",
+            truth.largest_m
+        );
         if id.z() == manifest.frame.max_level() {
             let most_m = manifest.settings.max_error_m + HEIGHT_ROUNDING_M;
-            findings.look(CheckId::Finest, truth.largest_m <= most_m, || {
-                format!("tile {id} is off by {} m", truth.largest_m)
-            });
+            look!(
+                findings,
+                Finest,
+                truth.largest_m <= most_m,
+                "tile {id} is off by {} m",
+                truth.largest_m
+            );
         }
         let children_m = id
             .children()
@@ -292,9 +311,12 @@ fn check_errors(
     }
     let count = stored_m.len() as u64;
     let is_tight = loose as f64 <= (1.0 - TIGHT_SHARE) * count as f64;
-    findings.look(CheckId::Tight, is_tight, || {
-        format!("{loose} of {count} tiles store more than twice the true error")
-    });
+    look!(
+        findings,
+        Tight,
+        is_tight,
+        "{loose} of {count} tiles store more than twice the true error"
+    );
     ratios
 }
 

@@ -2,10 +2,7 @@
 
 use corniche_tileset::{FilePackage, ToolRecord};
 
-use super::{
-    checks::{CheckId, Findings},
-    error::VerifyError,
-};
+use super::{checks::Findings, error::VerifyError};
 
 /// The number of characters of a text that a finding shows.
 const SHOWN: usize = 200;
@@ -16,9 +13,14 @@ pub(crate) fn verify(package: &FilePackage, findings: &mut Findings) -> Result<(
     let wanted = fields(&ToolRecord::from_manifest(package.manifest(), tiles));
     for ((name, said), (_, wanted)) in said.into_iter().zip(wanted) {
         let shown = |text: &str| text.chars().take(SHOWN).collect::<String>();
-        findings.look(CheckId::Header, said == wanted, || {
-            format!("{name} is {}, not {}", shown(&said), shown(&wanted))
-        });
+        look!(
+            findings,
+            Header,
+            said == wanted,
+            "{name} is {}, not {}",
+            shown(&said),
+            shown(&wanted)
+        );
     }
     Ok(())
 }

@@ -3,8 +3,8 @@
 
 use corniche_geom::TileId;
 use corniche_layers::{LayerGeometry, LayerTable};
-use corniche_pieces::ExtractError;
 use corniche_pieces::{
+    ExtractError,
     layers::{
         SectionLayer,
         tile_section::{LayerTotals, TileSection},

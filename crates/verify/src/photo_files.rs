@@ -27,20 +27,9 @@ use super::{
     error::VerifyError,
     georeference,
     temporary_store::TemporaryStore,
-    verify_settings::GivenFiles,
 };
 
 pub(crate) fn verify(
-    run: &VerifyRun<'_>,
-    files: &GivenFiles<()>,
-    paths: &[PathBuf],
-    findings: &mut Findings,
-) -> Result<(), VerifyError> {
-    let compared = compare_all(run, paths, findings);
-    VerifyError::unless_changed(&files.inputs, compared)
-}
-
-fn compare_all(
     run: &VerifyRun<'_>,
     paths: &[PathBuf],
     findings: &mut Findings,
@@ -166,25 +155,30 @@ pub(crate) fn look_at(
     let Some(payload) = package.tile(id).ok().flatten() else { return findings };
     let Ok(photo) = decode_photo(&payload, id) else { return findings };
     let Some(photo) = photo else {
-        findings.look(CheckId::PhotoCover, texels.is_empty(), || {
-            format!("tile {id} has no photo, but the photos cover it")
-        });
+        look!(
+            findings,
+            PhotoCover,
+            texels.is_empty(),
+            "tile {id} has no photo, but the photos cover it"
+        );
         return findings;
     };
     if photo.levels != record.levels_on(id.z(), package.manifest().frame.max_level()) {
         return findings;
     }
     if texels.is_empty() {
-        findings.look(CheckId::PhotoCover, false, || {
-            format!("tile {id} has a photo, but no photo covers it")
-        });
+        look!(findings, PhotoCover, false, "tile {id} has a photo, but no photo covers it");
         return findings;
     }
     let side = photo.side();
     let wrong = covers(texels.rgba()).zip(covers(&photo.rgba)).filter(|(a, b)| a != b).count();
-    findings.look(CheckId::PhotoCover, wrong == 0, || {
-        format!("{wrong} of {} texels of tile {id} have a photo where there is none, or the other way round", side * side)
-    });
+    look!(
+        findings,
+        PhotoCover,
+        wrong == 0,
+        "{wrong} of {} texels of tile {id} have a photo where there is none, or the other way round",
+        side * side
+    );
     let files = Picture { side, rgba: texels.rgba() };
     let own = Picture { side, rgba: &photo.rgba };
     look_at_place(id, &files, &own, &mut findings);
@@ -265,12 +259,14 @@ fn look_at_place(id: TileId, files: &Picture<'_>, own: &Picture<'_>, findings: &
     let Some((here, _)) = found([0, 0]) else { return };
     let best = around.filter_map(found).min_by(|(a, _), (b, _)| a.total_cmp(b));
     let Some((moved, [east, south])) = best else { return };
-    findings.look(CheckId::PhotoPlace, moved >= BETTER * here - ROUNDING, || {
-        format!(
-            "the photo of tile {id} differs by {here:.1} grey levels, and by {moved:.1} when shifted by {} texels east and {} south",
-            -east, -south
-        )
-    });
+    look!(
+        findings,
+        PhotoPlace,
+        moved >= BETTER * here - ROUNDING,
+        "the photo of tile {id} differs by {here:.1} grey levels, and by {moved:.1} when shifted by {} texels east and {} south",
+        -east,
+        -south
+    );
 }
 
 /// Checks that colours differ by no more than the loss of compressing the files' texels again.
@@ -295,8 +291,11 @@ fn look_at_colours(
     for (what, found, most) in
         [("", found[0], most[0]), ("the mean of a block of ", found[1], most[1])]
     {
-        findings.look(CheckId::PhotoColours, found <= most, || {
-            format!("{what}the photo of tile {id} is off by {found:.1} grey levels, compression explains {most:.1}")
-        });
+        look!(
+            findings,
+            PhotoColours,
+            found <= most,
+            "{what}the photo of tile {id} is off by {found:.1} grey levels, compression explains {most:.1}"
+        );
     }
 }

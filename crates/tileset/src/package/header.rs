@@ -2,8 +2,10 @@
 
 use std::ops::Range;
 
-use crate::limits::{MAX_DIRECTORY_BYTES, MAX_METADATA_BYTES};
-use crate::package::error::OpenError;
+use crate::{
+    limits::{MAX_DIRECTORY_BYTES, MAX_METADATA_BYTES},
+    package::error::OpenError,
+};
 
 /// Number of bytes of the header.
 pub(crate) const HEADER_BYTES: usize = 127;

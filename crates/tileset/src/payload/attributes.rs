@@ -4,10 +4,10 @@
 use corniche_roads::{Form, Oneway, RoadAttributes, Structure};
 use serde::de::DeserializeOwned;
 
-use crate::limits::{MAX_SECTION_BYTES, MAX_TEXT_BYTES, MAX_WAYS};
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::take_room;
-use crate::payload::tile_payload::RoadRecord;
+use crate::{
+    limits::{MAX_SECTION_BYTES, MAX_TEXT_BYTES, MAX_WAYS},
+    payload::{damage::Damage, number_codes::take_room, tile_payload::RoadRecord},
+};
 
 /// The whole section, in `bincode`'s legacy layout: every list begins with its length as a u64.
 /// Lists after `texts` have one item per way.

@@ -4,9 +4,13 @@
 use corniche_roads::FunctionalRoadClass;
 use corniche_varints::zigzag;
 
-use crate::limits::{MAX_LINES, MAX_POINTS};
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::{Cursor, take_room};
+use crate::{
+    limits::{MAX_LINES, MAX_POINTS},
+    payload::{
+        damage::Damage,
+        number_codes::{Cursor, take_room},
+    },
+};
 
 /// A class, its number of lines, and their bytes.
 pub(crate) type ClassBlob<'a> = (FunctionalRoadClass, usize, &'a [u8]);

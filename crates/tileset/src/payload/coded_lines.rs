@@ -4,17 +4,21 @@ use std::collections::HashMap;
 
 use corniche_geom::{GridFrame, LatticePoint};
 
-use crate::limits::MAX_POINTS;
-use crate::payload::class_table::{self, ClassBlob, LineHead, take_points};
-use crate::payload::damage::Damage;
-use crate::payload::magnitudes::Magnitudes;
-use crate::payload::number_codes::Cursor;
-use crate::payload::points::{FAR, is_near};
 #[cfg(feature = "write")]
 use crate::payload::range_coder::BitWriter;
-use crate::payload::range_coder::{BitReader, Bits, Model};
-use crate::payload::source_grid::SourceGrid;
-use crate::payload::turned_steps::{StepCoder, length};
+use crate::{
+    limits::MAX_POINTS,
+    payload::{
+        class_table::{self, ClassBlob, LineHead, take_points},
+        damage::Damage,
+        magnitudes::Magnitudes,
+        number_codes::Cursor,
+        points::{FAR, is_near},
+        range_coder::{BitReader, Bits, Model},
+        source_grid::SourceGrid,
+        turned_steps::{StepCoder, length},
+    },
+};
 
 /// Points of the grid are within this many steps of 0: more than once around the earth.
 const REACH: i64 = 1 << 33;

@@ -26,9 +26,11 @@
 
 use std::collections::{BTreeSet, VecDeque};
 
-use crate::payload::corner_guess::{GateCorner, GridVertices};
-use crate::payload::damage::Damage;
-use crate::payload::work_limit::StepBudget;
+use crate::payload::{
+    corner_guess::{GateCorner, GridVertices},
+    damage::Damage,
+    work_limit::StepBudget,
+};
 
 /// There is no triangle to the left of the gate.
 pub(crate) const NONE: u8 = 0;

@@ -3,10 +3,14 @@
 use corniche_geom::{GridFrame, LatticePoint, TILE_NODES, TileId};
 use corniche_tin::Placement;
 
-use crate::manifest::check::is_height_quantum;
-use crate::payload::damage::{Damage, DecodeError};
-use crate::payload::envelope::{self, StoredSection};
-use crate::payload::terrain::record::Scale;
+use crate::{
+    manifest::check::is_height_quantum,
+    payload::{
+        damage::{Damage, DecodeError},
+        envelope::{self, StoredSection},
+        terrain::record::Scale,
+    },
+};
 
 /// The values that positions and heights in a payload are relative to.
 #[derive(Debug, Clone, Copy)]

@@ -3,8 +3,10 @@
 
 use corniche_geom::TILE_NODES;
 
-use crate::payload::near_corners::{MARGIN, NearCorners, NearNode, STRIDE};
-use crate::payload::work_limit::StepBudget;
+use crate::payload::{
+    near_corners::{MARGIN, NearCorners, NearNode, STRIDE},
+    work_limit::StepBudget,
+};
 
 /// Vertices of a tile's grid, sorted by row, then column.
 #[derive(Debug)]

@@ -3,13 +3,17 @@
 use corniche_geom::{GridFrame, TileId};
 use corniche_tin::Surface;
 
-use crate::payload::context::CodingContext;
-use crate::payload::damage::{Damage, DecodeError};
-use crate::payload::envelope::StoredSection;
-use crate::payload::relief::Relief;
-use crate::payload::section_kind::{GEO, SV, SectionKind, Sections, TwoKinds};
-use crate::payload::tile_payload::{GeoRoad, TilePayload, TileTerrain};
-use crate::payload::{attributes, envelope, road_tags, roads_geo, roads_sv, spans, terrain};
+use crate::payload::{
+    attributes,
+    context::CodingContext,
+    damage::{Damage, DecodeError},
+    envelope::{self, StoredSection},
+    relief::Relief,
+    road_tags, roads_geo, roads_sv,
+    section_kind::{GEO, SV, SectionKind, Sections, TwoKinds},
+    spans, terrain,
+    tile_payload::{GeoRoad, TilePayload, TileTerrain},
+};
 
 /// Decodes the wanted sections of a payload; sections that are absent or not wanted are empty or
 /// `None`.

@@ -5,10 +5,14 @@ use std::io::Read;
 use corniche_geom::TileId;
 use ruzstd::decoding::{BlockDecodingStrategy, FrameDecoder};
 
-use crate::limits::MAX_SECTION_BYTES;
-use crate::payload::damage::{Damage, DecodeError};
-use crate::payload::number_codes::Cursor;
-use crate::payload::section_kind::{SectionKind, TwoKinds};
+use crate::{
+    limits::MAX_SECTION_BYTES,
+    payload::{
+        damage::{Damage, DecodeError},
+        number_codes::Cursor,
+        section_kind::{SectionKind, TwoKinds},
+    },
+};
 
 /// The first bytes of every payload: "Corniche Tile".
 pub(crate) const MAGIC: [u8; 4] = *b"CRNT";

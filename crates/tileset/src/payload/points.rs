@@ -3,8 +3,7 @@
 use corniche_geom::LatticePoint;
 use corniche_varints::zigzag;
 
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::Cursor;
+use crate::payload::{damage::Damage, number_codes::Cursor};
 
 /// Points are within this many lattice steps of the tile's corner, so that orientation tests stay
 /// exact.

@@ -24,11 +24,13 @@ mod wavelet;
 
 use corniche_geom::{Cell, HeightGrid};
 
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::Cursor;
 #[cfg(feature = "write")]
 use crate::payload::range_coder::BitWriter;
-use crate::payload::range_coder::{BitReader, Bits};
+use crate::payload::{
+    damage::Damage,
+    number_codes::Cursor,
+    range_coder::{BitReader, Bits},
+};
 use border::BORDER_NODES;
 use coefficients::{NumberModel, code_band, code_mask, code_smooth};
 use head::ReliefHead;

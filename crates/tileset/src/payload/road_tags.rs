@@ -5,10 +5,14 @@ use std::num::{NonZeroU8, NonZeroU32};
 
 use corniche_roads::RoadAttributes;
 
-use crate::limits::MAX_TEXT_BYTES;
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::{Cursor, Planes, take_room};
-use crate::payload::tile_payload::RoadRecord;
+use crate::{
+    limits::MAX_TEXT_BYTES,
+    payload::{
+        damage::Damage,
+        number_codes::{Cursor, Planes, take_room},
+        tile_payload::RoadRecord,
+    },
+};
 
 /// Number of columns of texts.
 const TEXT_COLUMNS: usize = 4;

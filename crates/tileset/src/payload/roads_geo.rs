@@ -8,19 +8,21 @@ use corniche_geom::{GridFrame, LatticePoint};
 use corniche_roads::FunctionalRoadClass;
 use corniche_tin::Surface;
 
-use crate::limits::{MAX_LINE_VERTICES, MAX_POINTS, MAX_ROUTE_STEPS};
-use crate::payload::class_table::{ClassBlob, Heads, LineHead, LineOrder};
-use crate::payload::coded_lines::{LineCoder, for_each_class};
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::{Cursor, take_room};
-use crate::payload::points::decode_points;
-use crate::payload::range_coder::BitReader;
-use crate::payload::roads_geo::surprises::{
-    CROSSING, END, SOURCE, SurpriseCoder, Surprises, VERTEX,
+use crate::{
+    limits::{MAX_LINE_VERTICES, MAX_POINTS, MAX_ROUTE_STEPS},
+    payload::{
+        class_table::{ClassBlob, Heads, LineHead, LineOrder},
+        coded_lines::{LineCoder, for_each_class},
+        damage::Damage,
+        number_codes::{Cursor, take_room},
+        points::decode_points,
+        range_coder::BitReader,
+        roads_geo::surprises::{CROSSING, END, SOURCE, SurpriseCoder, Surprises, VERTEX},
+        route_guess::RouteGuess,
+        tile_payload::GeoRoad,
+        work_limit::StepBudget,
+    },
 };
-use crate::payload::route_guess::RouteGuess;
-use crate::payload::tile_payload::GeoRoad;
-use crate::payload::work_limit::StepBudget;
 
 /// Decodes a section; if its lines are range-coded bits, `coded_in` is the package's frame.
 pub(crate) fn decode(

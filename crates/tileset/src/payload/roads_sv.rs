@@ -8,15 +8,19 @@ use corniche_geom::{GridFrame, LatticePoint};
 use corniche_roads::FunctionalRoadClass;
 use corniche_varints::zigzag;
 
-use crate::limits::MAX_POINTS;
-use crate::payload::class_table::{ClassBlob, Heads, LineHead, LineOrder};
-use crate::payload::coded_lines::{LineCoder, for_each_class};
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::Cursor;
-use crate::payload::points::decode_points;
-use crate::payload::range_coder::BitReader;
-use crate::payload::roads_sv::ground_ranges::RangeCoder;
-use crate::payload::tile_payload::SvRoad;
+use crate::{
+    limits::MAX_POINTS,
+    payload::{
+        class_table::{ClassBlob, Heads, LineHead, LineOrder},
+        coded_lines::{LineCoder, for_each_class},
+        damage::Damage,
+        number_codes::Cursor,
+        points::decode_points,
+        range_coder::BitReader,
+        roads_sv::ground_ranges::RangeCoder,
+        tile_payload::SvRoad,
+    },
+};
 
 /// Heights stay below this many quanta, so that every whole number is exact as f64.
 const REACH_Q: f64 = (1_u64 << 53) as f64;

@@ -17,8 +17,7 @@ use corniche_drape::DrapedVertex;
 use corniche_geom::{LatticeBounds, LatticePoint, cross};
 use corniche_tin::{NO_TWIN, Surface};
 
-use crate::payload::damage::Damage;
-use crate::payload::work_limit::StepBudget;
+use crate::payload::{damage::Damage, work_limit::StepBudget};
 
 /// Follows one line, vertex by vertex: the caller first requests a guess, then passes the true
 /// vertex.

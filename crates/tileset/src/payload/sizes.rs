@@ -4,13 +4,17 @@ use corniche_geom::TileId;
 use corniche_layers::MAX_LAYERS;
 use corniche_roads::FunctionalRoadClass;
 
-use crate::layer_slot::LayerSlot;
-use crate::payload::damage::{Damage, DecodeError};
-use crate::payload::envelope::SectionSize;
-use crate::payload::number_codes::Cursor;
-use crate::payload::section_kind::{GEO, SV, SectionKind, TwoKinds};
-use crate::payload::source_grid::GRID_BYTES;
-use crate::payload::{class_table, envelope};
+use crate::{
+    layer_slot::LayerSlot,
+    payload::{
+        class_table,
+        damage::{Damage, DecodeError},
+        envelope::{self, SectionSize},
+        number_codes::Cursor,
+        section_kind::{GEO, SV, SectionKind, TwoKinds},
+        source_grid::GRID_BYTES,
+    },
+};
 
 /// Sizes of the sections of a payload, and of the classes in its road sections.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

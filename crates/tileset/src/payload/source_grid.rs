@@ -2,8 +2,7 @@
 
 use corniche_geom::{GridFrame, LatticePoint};
 
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::Cursor;
+use crate::payload::{damage::Damage, number_codes::Cursor};
 
 /// OSM stores longitudes and latitudes in whole steps; this is the number of steps per degree.
 #[cfg(feature = "write")]

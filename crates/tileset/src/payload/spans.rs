@@ -11,14 +11,18 @@ use corniche_geom::{GridFrame, LatticePoint, TileId};
 use corniche_roads::Structure;
 use corniche_varints::zigzag;
 
-use crate::limits::{MAX_LINES, MAX_SPAN_POINTS};
-use crate::payload::context::CodingContext;
-use crate::payload::damage::{Damage, DecodeError};
-use crate::payload::envelope;
-use crate::payload::number_codes::{Cursor, take_room};
-use crate::payload::points::decode_points;
-use crate::payload::section_kind::SectionKind;
-use crate::payload::terrain;
+use crate::{
+    limits::{MAX_LINES, MAX_SPAN_POINTS},
+    payload::{
+        context::CodingContext,
+        damage::{Damage, DecodeError},
+        envelope,
+        number_codes::{Cursor, take_room},
+        points::decode_points,
+        section_kind::SectionKind,
+        terrain,
+    },
+};
 
 #[cfg(feature = "write")]
 pub use encode::encode_spans;

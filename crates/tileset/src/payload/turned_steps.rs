@@ -11,8 +11,10 @@
 //!          └──────────── along
 //! ```
 
-use crate::payload::magnitudes::Magnitudes;
-use crate::payload::range_coder::{Bits, Model};
+use crate::payload::{
+    magnitudes::Magnitudes,
+    range_coder::{Bits, Model},
+};
 
 /// The number of possible counts of binary digits of a step: 0 to 32, and larger steps count as 32.
 const LENGTHS: usize = 33;

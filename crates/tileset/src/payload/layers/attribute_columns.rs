@@ -11,9 +11,10 @@ use corniche_layers::{AttributeKind, AttributeValue, MAX_NAMES};
 use corniche_varints::zigzag;
 
 use super::text_table::TextReader;
-use crate::limits::MAX_LAYER_NAMES;
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::Cursor;
+use crate::{
+    limits::MAX_LAYER_NAMES,
+    payload::{damage::Damage, number_codes::Cursor},
+};
 
 /// Whole numbers of doubles up to this size are exact.
 #[cfg(feature = "write")]

@@ -4,15 +4,21 @@ use corniche_geom::{LatticeBounds, LatticePoint};
 use corniche_layers::{LayerGeometry, OsmObject};
 use corniche_varints::zigzag;
 
-use super::attribute_columns::ColumnReader;
-use super::layer_object::{AreaPolygon, LayerCoding, LayerObject, LayerShape};
-use super::plane_points::PointReader;
-use super::ring_coder::RingCoder;
-use super::text_table::TextReader;
-use crate::limits::{MAX_LAYER_OBJECTS, MAX_LAYER_VALUES, MAX_POINTS, MAX_RINGS};
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::{Cursor, Planes};
-use crate::payload::range_coder::BitReader;
+use super::{
+    attribute_columns::ColumnReader,
+    layer_object::{AreaPolygon, LayerCoding, LayerObject, LayerShape},
+    plane_points::PointReader,
+    ring_coder::RingCoder,
+    text_table::TextReader,
+};
+use crate::{
+    limits::{MAX_LAYER_OBJECTS, MAX_LAYER_VALUES, MAX_POINTS, MAX_RINGS},
+    payload::{
+        damage::Damage,
+        number_codes::{Cursor, Planes},
+        range_coder::BitReader,
+    },
+};
 
 const OUTSIDE: Damage = Damage::Invalid("a point outside the tile");
 

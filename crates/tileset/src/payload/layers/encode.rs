@@ -4,21 +4,27 @@ use corniche_geom::{GridFrame, LatticeBounds, TileId};
 use corniche_layers::{LayerGeometry, OsmObject};
 use corniche_varints::{push_varint, to_zigzag};
 
-use super::attribute_columns::{put_column, texts_of};
-use super::decode::decode;
-use super::layer_object::{LayerCoding, LayerObject, LayerShape};
-use super::plane_points::{is_on_lattice, put_points};
-use super::ring_coder::RingCoder;
-use super::text_table::TextWriter;
-use crate::layer_slot::LayerSlot;
-use crate::limits::{
-    MAX_LAYER_NAMES, MAX_LAYER_OBJECTS, MAX_LAYER_VALUES, MAX_POINTS, MAX_RINGS, MAX_TEXT_BYTES,
+use super::{
+    attribute_columns::{put_column, texts_of},
+    decode::decode,
+    layer_object::{LayerCoding, LayerObject, LayerShape},
+    plane_points::{is_on_lattice, put_points},
+    ring_coder::RingCoder,
+    text_table::TextWriter,
 };
-use crate::payload::builder::Section;
-use crate::payload::damage::{DecodeError, EncodeError};
-use crate::payload::number_codes::{MOST_SPACING, put_planes};
-use crate::payload::range_coder::BitWriter;
-use crate::payload::section_kind::SectionKind;
+use crate::{
+    layer_slot::LayerSlot,
+    limits::{
+        MAX_LAYER_NAMES, MAX_LAYER_OBJECTS, MAX_LAYER_VALUES, MAX_POINTS, MAX_RINGS, MAX_TEXT_BYTES,
+    },
+    payload::{
+        builder::Section,
+        damage::{DecodeError, EncodeError},
+        number_codes::{MOST_SPACING, put_planes},
+        range_coder::BitWriter,
+        section_kind::SectionKind,
+    },
+};
 
 impl Section {
     /// Returns the section of a layer with these bytes, which came from [`Section::into_bytes`].

@@ -3,8 +3,10 @@
 use corniche_geom::{LatticeBounds, LatticePoint};
 use corniche_varints::zigzag;
 
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::{Cursor, Planes};
+use crate::payload::{
+    damage::Damage,
+    number_codes::{Cursor, Planes},
+};
 
 /// Points are at most this far from the lattice's origin, so that computations with them are exact.
 pub(crate) const FARTHEST: i64 = 1 << 56;

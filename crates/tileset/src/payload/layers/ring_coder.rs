@@ -9,15 +9,16 @@
 //!      ●───●───●          ring 2: i + 2 by its number, then "neighbour back", then "next"
 //! ```
 
-use std::collections::HashMap;
-use std::ops::Range;
+use std::{collections::HashMap, ops::Range};
 
 use corniche_geom::{LatticeBounds, LatticePoint};
 
-use crate::payload::damage::Damage;
-use crate::payload::magnitudes::Magnitudes;
-use crate::payload::range_coder::{Bits, Model};
-use crate::payload::turned_steps::StepCoder;
+use crate::payload::{
+    damage::Damage,
+    magnitudes::Magnitudes,
+    range_coder::{Bits, Model},
+    turned_steps::StepCoder,
+};
 
 /// How a point was found relative to the point before it in its ring.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

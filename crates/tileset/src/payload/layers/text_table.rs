@@ -1,8 +1,12 @@
 //! The different texts of a section, to which its attributes refer by number.
 
-use crate::limits::{MAX_LAYER_TEXTS, MAX_TEXT_BYTES};
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::{Cursor, take_room};
+use crate::{
+    limits::{MAX_LAYER_TEXTS, MAX_TEXT_BYTES},
+    payload::{
+        damage::Damage,
+        number_codes::{Cursor, take_room},
+    },
+};
 
 /// The texts of a section while it is read.
 pub(crate) struct TextReader<'a> {

@@ -3,8 +3,7 @@
 #[cfg(feature = "write")]
 use corniche_varints::push_varint;
 
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::Cursor;
+use crate::payload::{damage::Damage, number_codes::Cursor};
 
 /// Writes the lengths of the runs of texels with and without a photo, in turn; the first run is
 /// with a photo and may be empty.

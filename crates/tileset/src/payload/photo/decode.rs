@@ -9,9 +9,10 @@ use super::{
     coverage,
     image::{Photo, side},
 };
-use crate::limits::MAX_PHOTO_LEVELS;
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::Cursor;
+use crate::{
+    limits::MAX_PHOTO_LEVELS,
+    payload::{damage::Damage, number_codes::Cursor},
+};
 
 /// The code for colours as JPEG.
 pub(crate) const JPEG: u8 = 1;

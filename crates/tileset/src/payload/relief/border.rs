@@ -3,10 +3,8 @@
 #[cfg(feature = "write")]
 use corniche_geom::{Cell, HeightGrid};
 
-use super::coefficients::NumberModel;
-use super::wavelet::SIDE;
-use crate::payload::damage::Damage;
-use crate::payload::range_coder::Bits;
+use super::{coefficients::NumberModel, wavelet::SIDE};
+use crate::payload::{damage::Damage, range_coder::Bits};
 
 /// Number of nodes on the border of a tile.
 pub(crate) const BORDER_NODES: usize = 4 * (SIDE - 1);

@@ -4,8 +4,7 @@ use corniche_varints::zigzag;
 #[cfg(feature = "write")]
 use corniche_varints::{push_varint, to_zigzag};
 
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::Cursor;
+use crate::payload::{damage::Damage, number_codes::Cursor};
 
 /// Number of quantisation steps: one for the smooth band, then three for each division, the
 /// coarsest first.

@@ -1,7 +1,9 @@
 //! Converts coefficients to whole steps and back.
 
-use super::head::{BANDS, MOST_UNITS};
-use super::wavelet::{self, Band, LEVELS, SIDE, SMOOTH, rough_bands};
+use super::{
+    head::{BANDS, MOST_UNITS},
+    wavelet::{self, Band, LEVELS, SIDE, SMOOTH, rough_bands},
+};
 use crate::payload::damage::Damage;
 
 /// Each band with its index in the list of steps: the smooth band, then the rough bands, the

@@ -1,11 +1,15 @@
 //! Surprises, which are vertices of lines that differ from their guesses, in both forms of the
 //! section.
 
-use crate::limits::MAX_LINE_VERTICES;
-use crate::payload::damage::Damage;
-use crate::payload::magnitudes::Magnitudes;
-use crate::payload::number_codes::Cursor;
-use crate::payload::range_coder::{BitReader, Bits, Model};
+use crate::{
+    limits::MAX_LINE_VERTICES,
+    payload::{
+        damage::Damage,
+        magnitudes::Magnitudes,
+        number_codes::Cursor,
+        range_coder::{BitReader, Bits, Model},
+    },
+};
 
 /// Kinds of surprises.
 pub(crate) const END: u8 = 0;

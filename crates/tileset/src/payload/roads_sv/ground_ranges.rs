@@ -1,7 +1,9 @@
 //! Codes the height ranges of the ground along segments as range-coded bits.
 
-use crate::payload::magnitudes::{Magnitudes, half_octave};
-use crate::payload::range_coder::Bits;
+use crate::payload::{
+    magnitudes::{Magnitudes, half_octave},
+    range_coder::Bits,
+};
 
 /// Number of half-octaves of the number of the same kind at the segment before.
 const BEFORE: usize = 48;

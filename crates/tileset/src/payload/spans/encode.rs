@@ -8,12 +8,16 @@ use super::{
     FIRST_ON_GROUND, LAST_ON_GROUND, OWNER_BIT, SpanHeight, SpanPoint, SpanRun, TUNNEL, decode,
     is_height,
 };
-use crate::limits::{MAX_LINES, MAX_SPAN_POINTS, MAX_TRIANGLES};
-use crate::payload::builder::Section;
-use crate::payload::damage::{DecodeError, EncodeError};
-use crate::payload::number_codes::put_planes;
-use crate::payload::points::put_points;
-use crate::payload::section_kind::SectionKind;
+use crate::{
+    limits::{MAX_LINES, MAX_SPAN_POINTS, MAX_TRIANGLES},
+    payload::{
+        builder::Section,
+        damage::{DecodeError, EncodeError},
+        number_codes::put_planes,
+        points::put_points,
+        section_kind::SectionKind,
+    },
+};
 
 impl Section {
     /// Returns the spans section of a tile with these bytes, which came from

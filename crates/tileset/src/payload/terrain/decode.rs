@@ -2,21 +2,27 @@
 
 use corniche_tin::{Tin, TinVertex};
 
-use crate::limits::{MAX_VERTICES, max_walk_steps};
-use crate::payload::connectivity::{Edges, GateAnswer, Guesses, Guide, NAMED, NONE, walk};
-use crate::payload::corner_guess::GridVertices;
-use crate::payload::damage::Damage;
-use crate::payload::envelope::{self, StoredSection};
-use crate::payload::number_codes::Cursor;
-use crate::payload::range_coder::BitReader;
-use crate::payload::section_kind::SectionKind;
-use crate::payload::terrain::heights::code_heights;
-use crate::payload::terrain::normals::{code_normals, guess_normals};
-use crate::payload::terrain::positions::code_positions;
-use crate::payload::terrain::record::{Scale, TerrainSectionHead};
-use crate::payload::terrain::symbols::Symbols;
-use crate::payload::tile_payload::TileTerrain;
-use crate::payload::work_limit::StepBudget;
+use crate::{
+    limits::{MAX_VERTICES, max_walk_steps},
+    payload::{
+        connectivity::{Edges, GateAnswer, Guesses, Guide, NAMED, NONE, walk},
+        corner_guess::GridVertices,
+        damage::Damage,
+        envelope::{self, StoredSection},
+        number_codes::Cursor,
+        range_coder::BitReader,
+        section_kind::SectionKind,
+        terrain::{
+            heights::code_heights,
+            normals::{code_normals, guess_normals},
+            positions::code_positions,
+            record::{Scale, TerrainSectionHead},
+            symbols::Symbols,
+        },
+        tile_payload::TileTerrain,
+        work_limit::StepBudget,
+    },
+};
 
 /// Reads the fixed part of the terrain section among these sections; `None` without ground.
 pub(crate) fn record_in(

@@ -3,20 +3,26 @@
 use corniche_geom::TILE_NODES;
 use corniche_tin::TinVertex;
 
-use crate::limits::{MAX_TRIANGLES, MAX_VERTICES, max_walk_steps};
-use crate::payload::connectivity::{Edges, GUESSES, GateAnswer, Guesses, Guide, NAMED, NONE, walk};
-use crate::payload::corner_guess::{GateCorner, GridVertices};
-use crate::payload::damage::Damage;
-use crate::payload::range_coder::BitWriter;
-use crate::payload::terrain::heights::code_heights;
-use crate::payload::terrain::normals::{code_normals, guess_normals};
-use crate::payload::terrain::positions::code_positions;
-use crate::payload::terrain::record::{
-    MAX_HEIGHT_SHIFT, MAX_NORMAL_SHIFT, Scale, TerrainSectionHead, check_measures,
+use crate::{
+    limits::{MAX_TRIANGLES, MAX_VERTICES, max_walk_steps},
+    payload::{
+        connectivity::{Edges, GUESSES, GateAnswer, Guesses, Guide, NAMED, NONE, walk},
+        corner_guess::{GateCorner, GridVertices},
+        damage::Damage,
+        range_coder::BitWriter,
+        terrain::{
+            heights::code_heights,
+            normals::{code_normals, guess_normals},
+            positions::code_positions,
+            record::{
+                MAX_HEIGHT_SHIFT, MAX_NORMAL_SHIFT, Scale, TerrainSectionHead, check_measures,
+            },
+            symbols::Symbols,
+        },
+        tile_payload::TileTerrain,
+        work_limit::StepBudget,
+    },
 };
-use crate::payload::terrain::symbols::Symbols;
-use crate::payload::tile_payload::TileTerrain;
-use crate::payload::work_limit::StepBudget;
 
 /// Encodes the section; an error describes what cannot be encoded.
 pub(crate) fn encode(terrain: &TileTerrain, scale: Scale) -> Result<Vec<u8>, &'static str> {

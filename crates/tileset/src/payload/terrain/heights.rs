@@ -1,9 +1,11 @@
 //! Codes heights, each as its difference from a prediction by the vertices before it.
 
-use crate::payload::connectivity::Reached;
-use crate::payload::damage::Damage;
-use crate::payload::magnitudes::{Magnitudes, half_octave};
-use crate::payload::range_coder::Bits;
+use crate::payload::{
+    connectivity::Reached,
+    damage::Damage,
+    magnitudes::{Magnitudes, half_octave},
+    range_coder::Bits,
+};
 
 /// Numbers of contexts: half-octaves of the differences at the gate; height differences at the gate
 /// combined with its length.

@@ -2,10 +2,12 @@
 
 use corniche_tin::TinVertex;
 
-use crate::payload::connectivity::Reached;
-use crate::payload::magnitudes::{Magnitudes, half_octave};
-use crate::payload::range_coder::Bits;
-use crate::payload::terrain::record::Scale;
+use crate::payload::{
+    connectivity::Reached,
+    magnitudes::{Magnitudes, half_octave},
+    range_coder::Bits,
+    terrain::record::Scale,
+};
 
 /// Numbers of contexts: half-octaves of the differences at the gate; the difference of the guesses
 /// from those at the gate, combined with the difference east of the same vertex.

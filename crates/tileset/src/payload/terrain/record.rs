@@ -4,9 +4,10 @@ use corniche_geom::Cell;
 #[cfg(feature = "write")]
 use corniche_varints::push_varint;
 
-use crate::limits::MAX_TRIANGLES;
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::Cursor;
+use crate::{
+    limits::MAX_TRIANGLES,
+    payload::{damage::Damage, number_codes::Cursor},
+};
 use corniche_settings::MAX_MEASURE_M;
 
 /// The fixed part of the section.

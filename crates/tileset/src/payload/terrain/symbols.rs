@@ -1,10 +1,12 @@
 //! Codes the symbols of the walk as bits, in contexts in which "guess 1" takes almost no space.
 
-use crate::payload::connectivity::{GUESSES, Guesses, NAMED, NONE};
-use crate::payload::corner_guess::{GateCorner, GridVertices};
-use crate::payload::damage::Damage;
-use crate::payload::magnitudes::{Magnitudes, half_octave};
-use crate::payload::range_coder::{Bits, Model};
+use crate::payload::{
+    connectivity::{GUESSES, Guesses, NAMED, NONE},
+    corner_guess::{GateCorner, GridVertices},
+    damage::Damage,
+    magnitudes::{Magnitudes, half_octave},
+    range_coder::{Bits, Model},
+};
 
 /// The number of shapes of the quadrangle of a gate, its corner and guess 1; see [`shape`].
 const SHAPES: usize = 5;
