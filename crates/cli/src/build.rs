@@ -60,7 +60,7 @@ pub(crate) fn finish(
     listed?;
     let BuildSummary { manifest, package_bytes } = summary;
     if let Some(warning) = info::odd_heights(&manifest) {
-        messages::warning(&format!("the package was written, but has an {warning}"));
+        warning!("the package was written, but has an {warning}");
     }
     if messages::is_for_people() {
         let digits = Digits::of_notes();
@@ -71,7 +71,7 @@ pub(crate) fn finish(
             messages::write_line(&format!("\n{text}"));
         }
     } else {
-        messages::note(&format!("wrote {}", output.display()));
+        note!("wrote {}", output.display());
     }
     progress.tell_costs();
     Ok(())

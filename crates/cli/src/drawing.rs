@@ -14,7 +14,6 @@ use corniche_window::{DrawnLine, NotSaved, SaveDrawing};
 
 use crate::{
     failure::CommandFailure,
-    messages,
     output::{Existing, Output},
 };
 
@@ -23,8 +22,8 @@ const MOST: u32 = 99_999;
 
 /// The lines at the start, and where to save them.
 pub(crate) struct DrawingFile {
-    pub(crate) lines: Vec<DrawnLine>,
-    pub(crate) save: SaveDrawing,
+    pub lines: Vec<DrawnLine>,
+    pub save: SaveDrawing,
 }
 
 /// The target for saving lines.
@@ -56,10 +55,10 @@ impl DrawingFile {
             // An unwritable path is reported before anything is drawn.
             drop(Output::create(path, Existing::Replace, used)?);
             if known.others() > 0 {
-                messages::note(&format!(
+                note!(
                     "note: {path:?}: {} features are neither single lines nor areas without holes; they are kept unchanged",
                     known.others()
-                ));
+                );
             }
         }
         let lines = known
@@ -164,7 +163,7 @@ fn heights_of(
 }
 
 fn without_heights(failure: &CommandFailure) {
-    messages::note(&format!("note: lines were saved without heights: {failure}"));
+    note!("note: lines were saved without heights: {failure}");
 }
 
 fn free_name(folder: &Path) -> Result<PathBuf, CommandFailure> {

@@ -116,9 +116,7 @@ impl Plan<'_> {
             let is_closed = match watched {
                 Ok(Watched::Lost(error)) => {
                     let why = CommandFailure::from(error);
-                    messages::warning(&format!(
-                        "the window was lost; the flight continues without it: {why}"
-                    ));
+                    warning!("the window was lost; the flight continues without it: {why}");
                     Ok(false)
                 }
                 Ok(Watched::ToTheEnd) => Ok(false),
@@ -144,7 +142,7 @@ impl Plan<'_> {
 
     fn fly(&self, watcher: Option<&Watcher<'_>>) -> Result<Drawn, CommandFailure> {
         let gpu = Gpu::new()?;
-        messages::note(&format!("drawn by {}", gpu.adapter_name));
+        note!("drawn by {}", gpu.adapter_name);
         let mut runs = Vec::new();
         for lod in once_each(&self.args.drawing.lod) {
             for roads in once_each(self.methods) {
@@ -195,12 +193,12 @@ impl Plan<'_> {
         let mut run = MeasuredRun { lod, roads, frames: Vec::new() };
         let Lifted { frames, most_m } = replay.lifted();
         if frames > 0 {
-            messages::note(&format!(
+            note!(
                 "note: {}: in {frames} frames the camera was raised to stay above the ground, by up to {most_m:.1} m",
                 run.name()
-            ));
+            );
         }
-        messages::note(&format!("flying {}", run.name()));
+        note!("flying {}", run.name());
         let progress = Progress::new();
         progress.begin(Stage::Fly, Some(options.frames.into()));
         while let Some(record) = replay.next_frame()? {
@@ -216,7 +214,7 @@ impl Plan<'_> {
         }
         progress.finish();
         if let Some(doubt) = run.doubt() {
-            messages::warning(&format!("{}: {doubt}", run.name()));
+            warning!("{}: {doubt}", run.name());
         }
         Ok(run)
     }

@@ -49,10 +49,10 @@ pub(crate) fn run(args: &GrowthArgs) -> Result<(), CommandFailure> {
         several if args.json => format!("{}\n", to_line(&compare::to_document(several))),
         several if args.csv => {
             for difference in compare::differences(several) {
-                messages::warning(&format!(
+                warning!(
                     "the packages differ not only in cell and error bound: {}",
                     difference.text(several)
-                ));
+                );
             }
             let named = several.iter().map(|package| (package.name.as_str(), package.manifest));
             csv::to_csv_of_several(named)

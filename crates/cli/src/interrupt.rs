@@ -151,9 +151,9 @@ fn end() -> ! {
     thread::spawn(move || {
         let kept = locked(&KEPT).clone();
         if let Some(kept) = kept.filter(|kept| kept.exists()) {
-            messages::warning(&format!(
+            warning!(
                 "progress is saved in {kept:?}; rerun with --resume to continue, or with -O to start over"
-            ));
+            );
         }
         let reason = reason();
         messages::ended(reason.code(), Some(&reason));

@@ -4,6 +4,8 @@
 
 #[macro_use]
 mod failure;
+#[macro_use]
+mod messages;
 
 mod args;
 mod build;
@@ -26,7 +28,6 @@ mod layers;
 mod man;
 mod matching;
 mod merge;
-mod messages;
 mod names;
 mod open_files;
 mod output;

@@ -11,7 +11,6 @@ use clap_mangen::Man;
 use crate::{
     args::{Arguments, ManArgs},
     failure::CommandFailure,
-    messages,
     output::{Complete, Output, existing_of},
 };
 
@@ -32,7 +31,7 @@ pub(crate) fn run(args: &ManArgs) -> Result<(), CommandFailure> {
         .collect::<Result<_, _>>()?;
     let count = written.len();
     written.into_iter().try_for_each(Complete::place)?;
-    messages::note(&format!("wrote {count} pages to {}", folder.display()));
+    note!("wrote {count} pages to {}", folder.display());
     Ok(())
 }
 

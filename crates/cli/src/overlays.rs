@@ -58,7 +58,7 @@ pub(crate) fn tell(path: &Path, found: &VectorLines) {
 }
 
 fn note(path: &Path, what: &str) {
-    messages::note(&format!("note: {path:?}: {what}"));
+    note!("note: {path:?}: {what}");
 }
 
 /// The names of the files.

@@ -91,7 +91,7 @@ pub(crate) fn run(args: &ProfileArgs) -> Result<(), CommandFailure> {
     };
     files.write(fill_list, make_svg)?;
     for written in [&args.csv, &args.svg, &args.json].into_iter().flatten() {
-        messages::note(&format!("wrote {}", written.display()));
+        note!("wrote {}", written.display());
     }
     let told = road.map(|road| to_text_of_route(&road, args.road.query().as_ref()));
     Ok(messages::answer(&(told.unwrap_or_default() + &to_text(&found, network.is_some())))?)

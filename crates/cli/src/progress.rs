@@ -76,7 +76,7 @@ pub(crate) struct Progress {
     shared: Arc<Shared>,
     ticker: Option<JoinHandle<()>>,
     /// The list of defects, if it is requested.
-    pub(crate) defects: Option<DefectList>,
+    pub defects: Option<DefectList>,
 }
 
 struct Shared {

@@ -47,13 +47,13 @@ fn write_site(
     let files = packages.iter().map(|package| package.file.as_path());
     let used: Vec<&Path> = files.chain(args.page.as_deref()).collect();
     let size = site::write(folder, existing_of(args.overwrite), page, packages, &used)?;
-    messages::note(&format!(
+    note!(
         "{}: {} of the page, {}, {}; any web server with support for range requests can serve it",
         folder.display(),
         counted(page.len(), "file"),
         counted(packages.len(), "package"),
-        bytes(size),
-    ));
+        bytes(size)
+    );
     Ok(())
 }
 
@@ -89,14 +89,9 @@ fn serve(args: &ServeArgs, page: Vec<PageFile>, packages: &[Shown]) -> Result<()
     let address = server.address();
     let url = url(&args.address, address);
     messages::answer(&format!("{url}\n"))?;
-    messages::note(&format!(
-        "serving {}; press Ctrl-C to stop",
-        counted(packages.len(), "package")
-    ));
+    note!("serving {}; press Ctrl-C to stop", counted(packages.len(), "package"));
     if !address.ip().is_loopback() {
-        messages::note(&format!(
-            "the server listens at {address}, so other computers can read these packages"
-        ));
+        note!("the server listens at {address}, so other computers can read these packages");
     }
     // The address already accepts connections: until the server is ready, they wait in its queue.
     if args.open && !browser::open(&url) {

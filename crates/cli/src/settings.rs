@@ -28,11 +28,11 @@ use crate::{args::WorkArgs, credits, failure::CommandFailure, layers, presets};
 const PHOTO_QUALITY: u8 = 80;
 /// The work of a build: what to build, and from which inputs.
 pub(crate) struct BuildWork {
-    pub(crate) plan: PlanSettings,
-    pub(crate) resources: Resources,
+    pub plan: PlanSettings,
+    pub resources: Resources,
     /// The folder of intermediate results.
-    pub(crate) tmp: Option<PathBuf>,
-    pub(crate) force: bool,
+    pub tmp: Option<PathBuf>,
+    pub force: bool,
 }
 
 /// Fills in missing arguments from the settings file, and returns its settings of outputs.

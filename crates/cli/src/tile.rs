@@ -84,14 +84,14 @@ fn payload_at(
         }
         let Some(payload) = package.payload(id, Sections::ALL)? else { continue };
         if args.level.is_none() && level < finest {
-            messages::note(&format!(
+            note!(
                 "there is no tile of level {finest} at this position; tile {id} is the finest one"
-            ));
+            );
         }
         if !has_ground(manifest, &payload, point) {
-            messages::note(&format!(
+            note!(
                 "tile {id} has no ground at this position, which is in a void or beyond the edge of the data"
-            ));
+            );
         }
         return Ok(payload);
     }

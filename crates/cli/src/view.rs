@@ -83,7 +83,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, CommandFailure> {
     let mut code = ExitCode::Done;
     for saved in last_files {
         match saved {
-            Ok(path) => messages::note(&format!("saved {}", path.display())),
+            Ok(path) => note!("saved {}", path.display()),
             Err(error) => {
                 let lost = CommandFailure::new(ExitCode::Failed, error);
                 messages::error(&lost);

@@ -28,11 +28,11 @@ pub(crate) struct TrueDeviation {
     /// The number of nodes that the TIN covers.
     pub nodes: u64,
     /// The number of nodes with data that the TIN does not cover.
-    pub(crate) uncovered: u64,
+    pub uncovered: u64,
     /// The lowest and the highest node with data beneath the tile.
     pub range_m: Option<[f32; 2]>,
     /// The number of uncovered nodes farther than one cell of the level from any void or edge.
-    pub(crate) stray: u64,
+    pub stray: u64,
 }
 
 impl TrueDeviation {
@@ -48,9 +48,9 @@ impl TrueDeviation {
 /// The result of the measurement.
 pub(crate) struct Measured {
     /// The deviation of every tile over the data, including tiles without ground.
-    pub(crate) by_tile: BTreeMap<TileId, TrueDeviation>,
+    pub by_tile: BTreeMap<TileId, TrueDeviation>,
     /// Per level, root first: distances at samples, if the nodes are samples; otherwise empty sums.
-    pub(crate) at_samples: Vec<SampleSums>,
+    pub at_samples: Vec<SampleSums>,
 }
 
 /// Compares the TINs of all levels with the elevation files.

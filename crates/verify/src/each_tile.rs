@@ -17,10 +17,10 @@ use super::{
 
 /// A running verification.
 pub(crate) struct VerifyRun<'a> {
-    pub(crate) package: &'a FilePackage,
-    pub(crate) tiles: DecodedTiles<'a>,
-    pub(crate) threads: usize,
-    pub(crate) observer: &'a dyn BuildObserver,
+    pub package: &'a FilePackage,
+    pub tiles: DecodedTiles<'a>,
+    pub threads: usize,
+    pub observer: &'a dyn BuildObserver,
 }
 
 /// Fails if some bytes of a package could not be read. An unreadable file says nothing about the
@@ -76,9 +76,9 @@ pub(crate) fn compare_in_order<T: PartialEq, N: Display>(
 /// The findings and the counts of the sections of a tile.
 #[derive(Default)]
 pub(crate) struct OfTile {
-    pub(crate) findings: Findings,
+    pub findings: Findings,
     /// One for each kind of section that is looked at; none if the tile cannot be read.
-    pub(crate) counts: Vec<SectionOfTile>,
+    pub counts: Vec<SectionOfTile>,
 }
 
 /// The sums that a manifest records of a kind of section.

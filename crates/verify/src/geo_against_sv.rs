@@ -49,10 +49,10 @@ struct Way {
 /// A tile with its ground, and the place of both on the lattice.
 pub(crate) struct TileView<'a> {
     pub payload: &'a TilePayload,
-    pub(crate) ground: &'a TriangleSoup,
+    pub ground: &'a TriangleSoup,
     pub place: TilePlace,
     /// The distance around an SV segment that its height range covers, in lattice steps.
-    pub(crate) margin_steps: i64,
+    pub margin_steps: i64,
     pub quantum_m: f64,
 }
 

@@ -26,7 +26,7 @@ pub(crate) struct GivenInputs {
     /// The extracts, in the order in which the build read them.
     pub osm: Option<GivenFiles<Vec<PathBuf>>>,
     /// The findings about the files.
-    pub(crate) findings: Findings,
+    pub findings: Findings,
 }
 
 impl GivenInputs {

@@ -19,7 +19,7 @@ use super::{
 /// One of two compared tiles.
 pub(crate) struct ComparedTile<'a> {
     pub payload: &'a TilePayload,
-    pub(crate) ground: &'a TriangleSoup,
+    pub ground: &'a TriangleSoup,
 }
 
 /// Compares the roads of a tile with those of its parent.

@@ -19,17 +19,17 @@ use super::{
 pub(crate) struct OnTin {
     pub gaps: GapFigures,
     /// The true horizontal lengths of the lines, and their number.
-    pub(crate) lengths: RoadLengths,
+    pub lengths: RoadLengths,
     /// The positions of the vertices of each line, as a reader computes them; `None` for an invalid
     /// line.
-    pub(crate) positions: Vec<Option<Vec<[f64; 3]>>>,
+    pub positions: Vec<Option<Vec<[f64; 3]>>>,
 }
 
 /// The lengths of roads by structure, in the order of [`Structure::ALL`].
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct RoadLengths {
     /// True horizontal metres.
-    pub(crate) by_structure_m: [f64; Structure::ALL.len()],
+    pub by_structure_m: [f64; Structure::ALL.len()],
     /// The number of lines: each part of a way in a tile is one.
     pub lines: [u64; Structure::ALL.len()],
     /// The total tolerance of lengths, because vertices are rounded to the lattice.

@@ -10,7 +10,7 @@ use super::error::VerifyError;
 
 /// A store in a temporary folder, which is removed with the store.
 pub(crate) struct TemporaryStore {
-    pub(crate) store: LocalStore,
+    pub store: LocalStore,
     _folder: TempDir,
 }
 

@@ -21,7 +21,7 @@ pub(crate) struct TileSummary {
     pub height_range_m: [f64; 2],
     pub borders: Borders,
     /// The hashes of the relief's borders; `None` without a relief.
-    pub(crate) relief_borders: Option<[u64; 4]>,
+    pub relief_borders: Option<[u64; 4]>,
 }
 
 /// The contribution of a tile to the manifest's sums.

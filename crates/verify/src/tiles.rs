@@ -199,13 +199,13 @@ fn check_nesting(kept: &BTreeMap<TileId, TileSummary>, findings: &mut Findings) 
 #[derive(Default)]
 pub(crate) struct TileFindings {
     pub kept: Option<TileSummary>,
-    pub(crate) findings: Findings,
+    pub findings: Findings,
     pub gaps: GapFigures,
-    pub(crate) lengths: RoadLengths,
-    pub(crate) ways: Vec<(i64, StoredWay)>,
+    pub lengths: RoadLengths,
+    pub ways: Vec<(i64, StoredWay)>,
     pub sums: TileSums,
-    pub(crate) sv_tail_bytes: u64,
-    pub(crate) damage: Option<String>,
+    pub sv_tail_bytes: u64,
+    pub damage: Option<String>,
 }
 
 pub(crate) fn look_at(

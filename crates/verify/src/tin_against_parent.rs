@@ -12,8 +12,8 @@ use super::{
 /// A tile's ground and its geometric error.
 pub(crate) struct Level {
     pub id: TileId,
-    pub(crate) ground: Arc<TriangleSoup>,
-    pub(crate) error_m: f64,
+    pub ground: Arc<TriangleSoup>,
+    pub error_m: f64,
 }
 
 /// Compares the TINs above a finest tile: `levels` are this tile and all of its ancestors that have

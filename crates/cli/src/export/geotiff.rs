@@ -10,7 +10,6 @@ use crate::{
     args::ExportGeoTiffArgs,
     escaped::in_line,
     failure::CommandFailure,
-    messages,
     names::MAP,
     output::{existing_of, named::NamedOutput},
     packages, recorded,
@@ -44,11 +43,11 @@ pub(crate) fn run(args: &ExportGeoTiffArgs) -> Result<(), CommandFailure> {
         export_geotiff(&package, &request, path, progress)
     })?;
     if !summary.has_same_crs {
-        messages::warning(&format!(
+        warning!(
             "GeoTIFF cannot represent the whole coordinate system of the package ({}, heights: {}); programs may interpret it differently",
             package.manifest().crs,
             summary.heights
-        ));
+        );
     }
     tell(&args.file.output, &to_text(&summary, package.manifest(), size), package.manifest());
     Ok(())

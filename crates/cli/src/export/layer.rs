@@ -80,19 +80,17 @@ fn written(args: &ExportLayerArgs, summary: &LayerSummary) -> String {
 fn warn(args: &ExportLayerArgs, summary: &LayerSummary) {
     let LayerSummary { level, objects, unjoined, without_ground, .. } = summary;
     if *objects == 0 {
-        messages::warning(&format!(
+        warning!(
             "level {level} of the package has no objects of layer {} in the selected classes within the bounds; the file has no features",
             args.layer
-        ));
+        );
     }
     if *unjoined > 0 {
-        messages::warning(&format!(
+        warning!(
             "{unjoined} areas could not be merged across tile borders; each of their parts is a separate polygon"
-        ));
+        );
     }
     if *without_ground > 0 {
-        messages::warning(&format!(
-            "{without_ground} objects are where the package has no ground, and were skipped"
-        ));
+        warning!("{without_ground} objects are where the package has no ground, and were skipped");
     }
 }

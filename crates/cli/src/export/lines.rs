@@ -19,12 +19,12 @@ use crate::{
 
 /// An export of lines whose inputs are open.
 pub(crate) struct LinesExport {
-    pub(crate) format: VectorFormat,
-    pub(crate) coordinates: FeatureCoordinates,
-    pub(crate) package: FilePackage,
-    pub(crate) output: NamedOutput,
-    pub(crate) elevation: Option<RecordedElevation>,
-    pub(crate) network: Option<Network>,
+    pub format: VectorFormat,
+    pub coordinates: FeatureCoordinates,
+    pub package: FilePackage,
+    pub output: NamedOutput,
+    pub elevation: Option<RecordedElevation>,
+    pub network: Option<Network>,
 }
 
 impl LinesExport {

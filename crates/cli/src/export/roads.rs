@@ -41,9 +41,9 @@ pub(crate) fn run(args: &ExportRoadsArgs) -> Result<(), CommandFailure> {
     })?;
     if summary.features == 0 {
         let level = summary.level;
-        messages::warning(&format!(
+        warning!(
             "level {level} of the package has no roads of the selected classes within the bounds; the file has no features"
-        ));
+        );
     }
     messages::summary(&to_text(args, (coordinates, format), &summary, package.manifest(), size));
     Ok(())

@@ -15,8 +15,8 @@ const MOST_BYTES: u64 = 512 << 20;
 #[derive(Debug)]
 pub(crate) struct PageFile {
     /// Its URL path, such as `examples/fly.html`.
-    pub(crate) path: String,
-    pub(crate) bytes: Cow<'static, [u8]>,
+    pub path: String,
+    pub bytes: Cow<'static, [u8]>,
 }
 
 /// Loads the files of the page: those of a folder, or the built-in ones.

@@ -22,9 +22,9 @@ const ENCODED: &AsciiSet = &NON_ALPHANUMERIC.remove(b'-').remove(b'_').remove(b'
 pub(crate) struct Shown {
     /// Its name: the file name without the extension, with a number if several packages have the
     /// same name.
-    pub(crate) name: String,
+    pub name: String,
     /// The file.
-    pub(crate) file: PathBuf,
+    pub file: PathBuf,
 }
 
 impl Shown {

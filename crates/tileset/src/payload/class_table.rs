@@ -45,12 +45,12 @@ pub(crate) fn decode<'a>(cursor: &mut Cursor<'a>) -> Result<Vec<ClassBlob<'a>>, 
 /// The fields of a line that are stored before its points.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct LineHead {
-    pub(crate) way_id: i64,
-    pub(crate) part: u32,
+    pub way_id: i64,
+    pub part: u32,
     /// Number of points.
-    pub(crate) points: usize,
+    pub points: usize,
     /// Two flag bits, which depend on the kind of section.
-    pub(crate) flags: u8,
+    pub flags: u8,
 }
 
 /// Subtracts the points of a line from `room`, the number of points that its section may still
@@ -79,9 +79,9 @@ impl LineOrder {
 
 /// The heads of the lines of a class.
 pub(crate) struct Heads {
-    pub(crate) heads: Vec<LineHead>,
+    pub heads: Vec<LineHead>,
     /// Number of points of all lines.
-    pub(crate) points: usize,
+    pub points: usize,
 }
 
 impl Heads {

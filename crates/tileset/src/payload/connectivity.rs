@@ -42,9 +42,9 @@ pub(crate) const NAMED: u8 = GUESSES + 1;
 /// A vertex, and the gate through which the walk reached it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Reached {
-    pub(crate) vertex: u32,
+    pub vertex: u32,
     /// The vertices `[a, b, d]` of the gate; three times the vertex itself where a walk starts.
-    pub(crate) gate: [u32; 3],
+    pub gate: [u32; 3],
 }
 
 /// Directed edges that have a triangle on their left.
@@ -166,8 +166,8 @@ impl<'w> Edges<'w> {
 /// The guesses at a gate.
 pub(crate) struct Guesses<'g, 'w> {
     /// The vertices `[a, b, d]`: the gate a ► b has the corner d on its right.
-    pub(crate) gate: [u32; 3],
-    pub(crate) nodes: &'g GridVertices<'w>,
+    pub gate: [u32; 3],
+    pub nodes: &'g GridVertices<'w>,
     edges: &'g Edges<'w>,
 }
 

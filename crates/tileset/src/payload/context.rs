@@ -15,9 +15,9 @@ use crate::{
 /// The values that positions and heights in a payload are relative to.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CodingContext {
-    pub(crate) corner: LatticePoint,
-    pub(crate) placement: Placement,
-    pub(crate) scale: Scale,
+    pub corner: LatticePoint,
+    pub placement: Placement,
+    pub scale: Scale,
 }
 
 impl CodingContext {

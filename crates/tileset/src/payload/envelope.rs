@@ -27,13 +27,13 @@ pub(crate) const ZSTD: u8 = 1;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StoredSection<'a> {
     kind: u16,
-    pub(crate) compression: u8,
-    pub(crate) raw_length: u32,
-    pub(crate) checksum: u32,
+    pub compression: u8,
+    pub raw_length: u32,
+    pub checksum: u32,
     /// The stored length of the section in a complete payload.
     stored_length: usize,
     /// The stored bytes; empty if the payload was read without its last section.
-    pub(crate) bytes: &'a [u8],
+    pub bytes: &'a [u8],
 }
 
 impl StoredSection<'_> {

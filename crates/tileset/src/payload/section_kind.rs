@@ -109,9 +109,9 @@ impl SectionKind {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TwoKinds {
     /// The kind with numbers in planes.
-    pub(crate) planes: SectionKind,
+    pub planes: SectionKind,
     /// The kind with range-coded bits.
-    pub(crate) coded: SectionKind,
+    pub coded: SectionKind,
 }
 
 /// The kinds of GEO roads: centre-lines on the TIN.

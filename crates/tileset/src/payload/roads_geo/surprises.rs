@@ -146,8 +146,8 @@ mod write {
     /// A vertex that differs from its guess, or the end of the line.
     pub(crate) struct Surprise {
         /// The number of vertices between the previous surprise and this one, which are as guessed.
-        pub(crate) as_guessed: u64,
-        pub(crate) vertex: Option<DrapedVertex>,
+        pub as_guessed: u64,
+        pub vertex: Option<DrapedVertex>,
     }
 
     impl Surprise {

@@ -12,15 +12,15 @@ use corniche_settings::MAX_MEASURE_M;
 
 /// The fixed part of the section.
 pub(crate) struct TerrainSectionHead {
-    pub(crate) geometric_error_m: f64,
-    pub(crate) height_range_m: [f64; 2],
-    pub(crate) uncovered_nodes: u64,
-    pub(crate) triangles: usize,
+    pub geometric_error_m: f64,
+    pub height_range_m: [f64; 2],
+    pub uncovered_nodes: u64,
+    pub triangles: usize,
     /// All heights are multiples of 2^`height_shift` steps: a DEM in whole metres has no finer
     /// heights.
-    pub(crate) height_shift: u8,
+    pub height_shift: u8,
     /// All normals are multiples of 2^`normal_shift` steps.
-    pub(crate) normal_shift: u8,
+    pub normal_shift: u8,
 }
 
 /// The largest exponent of the common factor of heights.
@@ -75,12 +75,12 @@ impl TerrainSectionHead {
 /// The factors that turn slopes of the TIN, in height steps per node, into metres per metre.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Scale {
-    pub(crate) quantum_m: f64,
+    pub quantum_m: f64,
     /// The cell of the level.
-    pub(crate) cell: Cell,
+    pub cell: Cell,
     /// The largest number of full-resolution nodes beneath the tile; border nodes of its finest
     /// tiles count for each of these tiles.
-    pub(crate) nodes_beneath: u64,
+    pub nodes_beneath: u64,
 }
 
 /// Checks the numbers that a tile states about itself: they must be finite, so that later code need
