@@ -13,7 +13,7 @@ use corniche_viewer::tiles::{MapPackage as _, PackageSource, TileStore};
 use corniche_window::{DrawnLine, NotSaved, SaveDrawing};
 
 use crate::{
-    failure::CommandFailure,
+    failure::{CommandFailure, Result},
     output::{Existing, Output},
 };
 
@@ -41,13 +41,11 @@ impl DrawingFile {
         folder: &Path,
         used: &[&Path],
         package: Arc<PackageSource>,
-    ) -> Result<Self, CommandFailure> {
+    ) -> Result<Self> {
         let mut known = LineFile::default();
         if let Some(path) = file {
             if used.iter().any(|used| is_same_file(used, path)) {
-                return Err(unusable!(
-                    "--draw {path:?}: the command already uses this file; choose another name"
-                ));
+                refuse!("--draw {path:?}: the command already uses this file; choose another name");
             }
             if path.symlink_metadata().is_ok() {
                 known = LineFile::read(path)?;
@@ -98,7 +96,7 @@ fn save(
     lines: &[DrawnLine],
     place: &mut SaveTarget,
     package: &PackageSource,
-) -> Result<PathBuf, CommandFailure> {
+) -> Result<PathBuf> {
     // Heights may be omitted, but lines must not be lost for lack of them.
     let heights = EllipsoidHeights::from_manifest(package.manifest()).unwrap_or_else(|error| {
         without_heights(&CommandFailure::from(error));
@@ -147,7 +145,7 @@ fn heights_of(
     heights: &EllipsoidHeights,
     package: &PackageSource,
     store: &mut TileStore<'_>,
-) -> Result<Option<Vec<f64>>, CommandFailure> {
+) -> Result<Option<Vec<f64>>> {
     let coordinates = &package.manifest().coordinates;
     let mut positions_m = Vec::new();
     let mut heights_m = Vec::new();
@@ -166,7 +164,7 @@ fn without_heights(failure: &CommandFailure) {
     note!("note: lines were saved without heights: {failure}");
 }
 
-fn free_name(folder: &Path) -> Result<PathBuf, CommandFailure> {
+fn free_name(folder: &Path) -> Result<PathBuf> {
     std::fs::create_dir_all(folder).map_err(|error| unusable!("{folder:?}: {error}"))?;
     let names = (1..=MOST).map(|number| folder.join(format!("lines-{number:05}.geojson")));
     names.into_iter().find(|path| path.symlink_metadata().is_err()).ok_or_else(|| {

@@ -14,11 +14,11 @@ use corniche_viewer::{
 
 use self::picture_files::PictureFiles;
 use crate::{
-    args::RenderArgs, failure::CommandFailure, interrupt, messages, overlays, packages, presets,
-    styles, table::noted,
+    args::RenderArgs, failure::Result, interrupt, messages, overlays, packages, presets, styles,
+    table::noted,
 };
 
-pub(crate) fn run(args: &RenderArgs) -> Result<(), CommandFailure> {
+pub(crate) fn run(args: &RenderArgs) -> Result<()> {
     let used = styles::files_of_look(&args.look, &args.from);
     let style = args.look.styled(styles::style(&args.look.style)?);
     let roads = args.look.roads(&[args.roads])?[0];
@@ -26,9 +26,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), CommandFailure> {
         (false, _) => Mapping::OnTriangles,
         (true, RoadMethod::Geometry) => Mapping::Unmapped,
         (true, _) => {
-            return Err(unusable!(
-                "--unmapped applies only to roads as geometry; use it with --roads geo"
-            ));
+            refuse!("--unmapped applies only to roads as geometry; use it with --roads geo");
         }
     };
     let request = RenderRequest {

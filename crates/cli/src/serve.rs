@@ -24,11 +24,14 @@ use self::{
     shown::{LIST, Shown},
 };
 use crate::{
-    args::ServeArgs, failure::CommandFailure, interrupt, messages, output::existing_of,
+    args::ServeArgs,
+    failure::{CommandFailure, Result},
+    interrupt, messages,
+    output::existing_of,
     table::bytes,
 };
 
-pub(crate) fn run(args: &ServeArgs) -> Result<(), CommandFailure> {
+pub(crate) fn run(args: &ServeArgs) -> Result<()> {
     let page = page::load(args.page.as_deref())?;
     let packages = shown::open(&args.packages)?;
     match &args.site {
@@ -42,7 +45,7 @@ fn write_site(
     folder: &Path,
     page: &[PageFile],
     packages: &[Shown],
-) -> Result<(), CommandFailure> {
+) -> Result<()> {
     refuse_inside_page(folder, args.page.as_deref())?;
     let files = packages.iter().map(|package| package.file.as_path());
     let used: Vec<&Path> = files.chain(args.page.as_deref()).collect();
@@ -58,7 +61,7 @@ fn write_site(
 }
 
 /// Rejects a site inside the folder of the page: the next site would include it in the page.
-fn refuse_inside_page(site: &Path, page: Option<&Path>) -> Result<(), CommandFailure> {
+fn refuse_inside_page(site: &Path, page: Option<&Path>) -> Result<()> {
     let place = |path: &Path| path.canonicalize().ok();
     let parent = place(folder_of(site));
     match (parent, page.and_then(place)) {
@@ -69,7 +72,7 @@ fn refuse_inside_page(site: &Path, page: Option<&Path>) -> Result<(), CommandFai
     }
 }
 
-fn serve(args: &ServeArgs, page: Vec<PageFile>, packages: &[Shown]) -> Result<(), CommandFailure> {
+fn serve(args: &ServeArgs, page: Vec<PageFile>, packages: &[Shown]) -> Result<()> {
     let mut routes = Routes::default();
     for PageFile { path, bytes } in page {
         let content = match bytes {

@@ -12,7 +12,7 @@ use super::{
     checks::{Check, CheckId, Findings, as_json},
     deviations,
     each_tile::VerifyRun,
-    error::VerifyError,
+    error::{Result, VerifyError},
     report::VerifyReport,
     samples,
     verify_settings::VerifySettings,
@@ -27,7 +27,7 @@ pub(crate) fn open(
     manifest: &Manifest,
     checks: &mut Vec<Check>,
     observer: &dyn BuildObserver,
-) -> Result<Option<(Dem, GridPlan)>, VerifyError> {
+) -> Result<Option<(Dem, GridPlan)>> {
     let is_dem =
         |input: &&InputRecord| InputKind::Dem.is_of(input) || InputKind::DemPart.is_of(input);
     let expected: Vec<&InputRecord> = manifest.inputs.iter().filter(is_dem).collect();
@@ -158,7 +158,7 @@ pub(crate) fn verify(
     run: &VerifyRun<'_>,
     opened: &(Dem, GridPlan),
     (report, findings): (&mut VerifyReport, &mut Findings),
-) -> Result<(), VerifyError> {
+) -> Result<()> {
     let measured = deviations::measure(run, opened)?;
     let at_samples = if opened.1.nodes_are_samples() {
         measured.at_samples

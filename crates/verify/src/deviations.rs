@@ -14,7 +14,7 @@ use super::{
     checks::Findings,
     decoded_tiles::DecodedTiles,
     each_tile::VerifyRun,
-    error::VerifyError,
+    error::{Result, VerifyError},
     report::ErrorFigures,
     samples,
     triangle_soup::{HEIGHT_ROUNDING_M, TriangleSoup},
@@ -54,10 +54,7 @@ pub(crate) struct Measured {
 }
 
 /// Compares the TINs of all levels with the elevation files.
-pub(crate) fn measure(
-    run: &VerifyRun<'_>,
-    (dem, plan): &(Dem, GridPlan),
-) -> Result<Measured, VerifyError> {
+pub(crate) fn measure(run: &VerifyRun<'_>, (dem, plan): &(Dem, GridPlan)) -> Result<Measured> {
     let manifest = run.package.manifest();
     let max_level = manifest.frame.max_level();
     // All finest tiles of the data, including those without ground: a coarser level may cover their
@@ -161,11 +158,7 @@ fn is_own_sample(id: TileId, read: &DemWindow, [column, row]: [usize; 2]) -> boo
 
 /// Whether a cell of a level lacks ground because one of its corners is void or beyond the data:
 /// then every node in the cell lies within one cell of that level from a void or an edge.
-fn has_void_corner(
-    cell: NodeIndex,
-    stride: i64,
-    reader: &mut HeightReader<'_>,
-) -> Result<bool, VerifyError> {
+fn has_void_corner(cell: NodeIndex, stride: i64, reader: &mut HeightReader<'_>) -> Result<bool> {
     for (i, j) in [(0, 0), (stride, 0), (0, stride), (stride, stride)] {
         let corner = NodeIndex { i: cell.i + i, j: cell.j - j };
         let node = reader.window(NodeWindow { corner, stride: 1, columns: 1, rows: 1 })?;
@@ -187,7 +180,7 @@ pub(crate) fn verify(
     tiles: &DecodedTiles<'_>,
     truths: &BTreeMap<TileId, TrueDeviation>,
     findings: &mut Findings,
-) -> Result<Vec<ErrorFigures>, VerifyError> {
+) -> Result<Vec<ErrorFigures>> {
     let manifest = tiles.package.manifest();
     let stored_m = check_tiles(tiles, truths, findings)?;
     let mut levels: BTreeMap<u8, TrueDeviation> = BTreeMap::new();
@@ -240,7 +233,7 @@ fn check_tiles(
     tiles: &DecodedTiles<'_>,
     truths: &BTreeMap<TileId, TrueDeviation>,
     findings: &mut Findings,
-) -> Result<BTreeMap<TileId, f64>, VerifyError> {
+) -> Result<BTreeMap<TileId, f64>> {
     let mut stored_m = BTreeMap::new();
     for id in tiles.package.tile_ids()? {
         let tile = tiles.tile_at(id);

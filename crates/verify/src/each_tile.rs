@@ -12,7 +12,7 @@ use corniche_work::{Stage, workers};
 use super::{
     checks::{CheckId, Findings},
     decoded_tiles::DecodedTiles,
-    error::VerifyError,
+    error::{Result, VerifyError},
 };
 
 /// A running verification.
@@ -25,7 +25,7 @@ pub(crate) struct VerifyRun<'a> {
 
 /// Fails if some bytes of a package could not be read. An unreadable file says nothing about the
 /// package; but checks treat a tile that cannot be read as missing or damaged.
-pub(crate) fn check_readable(package: &FilePackage) -> Result<(), VerifyError> {
+pub(crate) fn check_readable(package: &FilePackage) -> Result<()> {
     package.failed_read().map_or(Ok(()), |error| Err(VerifyError::Read(error.clone())))
 }
 
@@ -34,9 +34,9 @@ impl VerifyRun<'_> {
     pub(crate) fn each_tile<T: Send>(
         &self,
         stage: Stage,
-        look: impl Fn(TileId) -> Result<T, VerifyError> + Sync,
+        look: impl Fn(TileId) -> Result<T> + Sync,
         mut take: impl FnMut(TileId, T),
-    ) -> Result<(), VerifyError> {
+    ) -> Result<()> {
         workers::side_by_side(
             (self.observer, stage),
             self.threads,
@@ -105,7 +105,7 @@ pub(crate) fn look_at_sections(
     look_at: impl Fn(TileId) -> OfTile + Sync,
     recorded: &[RecordedSums<'_>],
     findings: &mut Findings,
-) -> Result<(), VerifyError> {
+) -> Result<()> {
     let mut sums: Vec<BTreeMap<u8, SectionSums>> = vec![BTreeMap::new(); recorded.len()];
     run.each_tile(
         stage,

@@ -90,6 +90,9 @@ pub enum VerifyError {
     Interrupted,
 }
 
+/// What checks return.
+pub(crate) type Result<T, E = VerifyError> = std::result::Result<T, E>;
+
 corniche_dem::from_dem_errors!(VerifyError);
 
 corniche_work::from_interrupted!(VerifyError);

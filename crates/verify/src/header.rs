@@ -2,12 +2,12 @@
 
 use corniche_tileset::{FilePackage, ToolRecord};
 
-use super::{checks::Findings, error::VerifyError};
+use super::{checks::Findings, error::Result};
 
 /// The number of characters of a text that a finding shows.
 const SHOWN: usize = 200;
 
-pub(crate) fn verify(package: &FilePackage, findings: &mut Findings) -> Result<(), VerifyError> {
+pub(crate) fn verify(package: &FilePackage, findings: &mut Findings) -> Result<()> {
     let tiles = package.tile_ids()?.len() as u64;
     let said = fields(&package.tool_record()?);
     let wanted = fields(&ToolRecord::from_manifest(package.manifest(), tiles));

@@ -17,11 +17,11 @@ use super::{
     checks::{CheckId, Findings, as_json},
     derived_records::clip_of,
     each_tile::{OfTile, RecordedSums, VerifyRun, check_totals, look_at_sections},
-    error::VerifyError,
+    error::Result,
     osm_layers,
 };
 
-pub(crate) fn verify(run: &VerifyRun<'_>, findings: &mut Findings) -> Result<(), VerifyError> {
+pub(crate) fn verify(run: &VerifyRun<'_>, findings: &mut Findings) -> Result<()> {
     let manifest = run.package.manifest();
     check_tables(manifest, findings);
     let recorded: Vec<RecordedSums<'_>> = manifest

@@ -38,7 +38,7 @@ use super::{
     dem_inputs::{are_recorded, have_same_hashes},
     derived_records,
     each_tile::VerifyRun,
-    error::VerifyError,
+    error::{Result, VerifyError},
     georeference, osm_layers,
     osm_tile::{Laying, OsmTileFindings, look_at},
     polygon_cut,
@@ -52,7 +52,7 @@ pub(crate) fn verify(
     paths: &[PathBuf],
     polygon: Option<&RegionPolygons>,
     findings: &mut Findings,
-) -> Result<(), VerifyError> {
+) -> Result<()> {
     let manifest = run.package.manifest();
     let tables = osm_layers::tables(manifest);
     // If one of them is missing, the check `levels.derived` or `manifest.crs` is broken, and roads
@@ -131,7 +131,7 @@ pub(crate) fn check_inputs(
     inputs: &InputFiles,
     findings: &mut Findings,
     observer: &dyn BuildObserver,
-) -> Result<Vec<PathBuf>, VerifyError> {
+) -> Result<Vec<PathBuf>> {
     if !manifest.has_extract() {
         return Err(VerifyError::NoExtract);
     }
@@ -187,7 +187,7 @@ fn lay(
     fates: &mut LossFold<'_>,
     run: &VerifyRun<'_>,
     findings: &mut Findings,
-) -> Result<BTreeMap<(u8, u8), ClassSums>, VerifyError> {
+) -> Result<BTreeMap<(u8, u8), ClassSums>> {
     let layers = run.package.manifest().layers.len();
     let [first, last] = laying.data;
     let mut ids = run.package.tile_ids()?;

@@ -24,7 +24,7 @@ use super::{
     checks::{Check, CheckId, Findings},
     dem_inputs::{are_recorded, have_same_hashes},
     each_tile::VerifyRun,
-    error::VerifyError,
+    error::{Result, VerifyError},
     georeference,
     temporary_store::TemporaryStore,
 };
@@ -33,7 +33,7 @@ pub(crate) fn verify(
     run: &VerifyRun<'_>,
     paths: &[PathBuf],
     findings: &mut Findings,
-) -> Result<(), VerifyError> {
+) -> Result<()> {
     let manifest = run.package.manifest();
     let Some(record) = manifest.settings.photo else { return Ok(()) };
     // If one of them fails, the check `manifest.crs` or `manifest.grid` is broken, and photos
@@ -56,7 +56,7 @@ pub(crate) fn check_inputs(
     paths: &[PathBuf],
     given: &[InputRecord],
     findings: &mut Findings,
-) -> Result<(), VerifyError> {
+) -> Result<()> {
     if manifest.settings.photo.is_none() {
         return Err(VerifyError::NoPhotos);
     }
@@ -83,7 +83,7 @@ struct Comparison<'a> {
 
 impl Comparison<'_> {
     /// Compares the finest level, then each coarser level from the rasters of the level beneath.
-    fn compare(&self, findings: &mut Findings) -> Result<(), VerifyError> {
+    fn compare(&self, findings: &mut Findings) -> Result<()> {
         let &VerifyRun { threads, observer, .. } = self.run;
         let finest = self.data.level();
         let all = |level: u8| self.data.above(level).in_order_within(TileId::ROOT);
@@ -108,14 +108,14 @@ impl Comparison<'_> {
         Ok(())
     }
 
-    fn finest(&self, reader: &mut PhotoReader<'_>, id: TileId) -> Result<Findings, VerifyError> {
+    fn finest(&self, reader: &mut PhotoReader<'_>, id: TileId) -> Result<Findings> {
         let texels = reader.window(self.photos.texels().tile(id, PHOTO_BORDER))?;
         let raster = rasters::of_texels(&texels, self.record.levels);
         rasters::put(&self.work.store, id, &raster)?;
         Ok(look_at(self.run.package, id, self.record, &texels))
     }
 
-    fn coarse(&self, id: TileId) -> Result<Findings, VerifyError> {
+    fn coarse(&self, id: TileId) -> Result<Findings> {
         let store = &self.work.store;
         let levels = self.record.levels_on(id.z(), self.data.level());
         let border = PHOTO_BORDER << (1 - levels);

@@ -12,7 +12,7 @@ use corniche_work::Stage;
 use super::{
     checks::{CheckId, Findings, as_json},
     each_tile::VerifyRun,
-    error::VerifyError,
+    error::Result,
 };
 
 /// The largest root mean square difference between two compressed versions of the same texels, in
@@ -37,7 +37,7 @@ struct PhotoFindings {
     bytes: u64,
 }
 
-pub(crate) fn verify(run: &VerifyRun<'_>, findings: &mut Findings) -> Result<(), VerifyError> {
+pub(crate) fn verify(run: &VerifyRun<'_>, findings: &mut Findings) -> Result<()> {
     let package = run.package;
     let manifest = package.manifest();
     let Some(record) = manifest.settings.photo else {

@@ -23,7 +23,7 @@ use super::{
     checks::{CheckId, Findings},
     decoded_tiles::DecodedTiles,
     each_tile::{OfTile, RecordedSums, VerifyRun, look_at_sections},
-    error::VerifyError,
+    error::Result,
     near_index::NearIndex,
     span_order::{self, OrderedCrossing, RunPiece},
     tile_place::TilePlace,
@@ -48,7 +48,7 @@ type BorderEnd = (u8, RunOwner, i64, LatticePoint);
 /// The ends at each position: the height of a run in steps, or `None` on the ground.
 type EndsByPlace = BTreeMap<BorderEnd, Vec<(TileId, Option<i64>)>>;
 
-pub(crate) fn verify(run: &VerifyRun<'_>, findings: &mut Findings) -> Result<(), VerifyError> {
+pub(crate) fn verify(run: &VerifyRun<'_>, findings: &mut Findings) -> Result<()> {
     let manifest = run.package.manifest();
     let record = manifest.spans.as_ref();
     let is_wanted = manifest.settings.spans && manifest.has_extract();

@@ -15,7 +15,7 @@ use super::{
     decoded_tiles::DecodedTiles,
     derived_records::{CUT_M, LENGTH_SHARE},
     each_tile::VerifyRun,
-    error::VerifyError,
+    error::Result,
     geo_against_sv, relief,
     report::{GapFigures, VerifyReport},
     roads_of_parent,
@@ -26,7 +26,7 @@ use super::{
     tin_against_parent::{self, Level},
 };
 
-pub(crate) fn verify(run: &VerifyRun<'_>) -> Result<(VerifyReport, Findings), VerifyError> {
+pub(crate) fn verify(run: &VerifyRun<'_>) -> Result<(VerifyReport, Findings)> {
     let package = run.package;
     let manifest = package.manifest();
     let frame = manifest.frame;

@@ -12,7 +12,7 @@ use super::{
     checks::{Findings, as_json},
     decoded_tiles::DecodedTiles,
     each_tile::VerifyRun,
-    error::VerifyError,
+    error::Result,
     relief,
     temporary_store::TemporaryStore,
 };
@@ -29,7 +29,7 @@ pub(crate) fn verify(
     run: &VerifyRun<'_>,
     (dem, plan): &(Dem, GridPlan),
     findings: &mut Findings,
-) -> Result<(), VerifyError> {
+) -> Result<()> {
     let &VerifyRun { package, ref tiles, threads, observer } = run;
     let manifest = package.manifest();
     let work = TemporaryStore::new(observer)?;
@@ -75,7 +75,7 @@ pub(crate) fn verify(
 
 /// The message if the audit rejects heights. Other errors are no findings: they end the
 /// verification.
-fn refusal(audited: Result<(), GroundError>) -> Result<Option<String>, VerifyError> {
+fn refusal(audited: Result<(), GroundError>) -> Result<Option<String>> {
     match audited {
         Ok(()) => Ok(None),
         Err(GroundError::Dem(error @ DemError::Audit(_))) => Ok(Some(error.to_string())),
@@ -83,11 +83,7 @@ fn refusal(audited: Result<(), GroundError>) -> Result<Option<String>, VerifyErr
     }
 }
 
-fn look_at(
-    tiles: &DecodedTiles<'_>,
-    pyramid: &Pyramid<'_>,
-    id: TileId,
-) -> Result<Findings, VerifyError> {
+fn look_at(tiles: &DecodedTiles<'_>, pyramid: &Pyramid<'_>, id: TileId) -> Result<Findings> {
     let mut findings = Findings::default();
     let manifest = tiles.package.manifest();
     let tile = tiles.tile_at(id);

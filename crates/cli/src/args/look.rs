@@ -11,7 +11,7 @@ use super::{
     overlay::{self, OverlayArg},
     values::{parse_within, word_of},
 };
-use crate::failure::CommandFailure;
+use crate::failure::Result;
 
 /// The help heading of options for comparisons with published methods.
 pub(crate) const COMPARING: &str = "Comparing with the papers";
@@ -187,19 +187,17 @@ impl LookArgs {
     ///
     /// # Errors
     /// When `--cap-test` or `--geo-quads` is given and would have no effect.
-    pub(crate) fn roads(&self, given: &[Roads]) -> Result<Vec<Roads>, CommandFailure> {
+    pub(crate) fn roads(&self, given: &[Roads]) -> Result<Vec<Roads>> {
         let roads: Vec<Roads> = given.iter().map(|roads| roads.with_caps(self.caps)).collect();
         if self.cap_test.is_some() && !roads.contains(&Roads::Sv) {
-            return Err(unusable!(
+            refuse!(
                 "--cap-test applies only to shadow volumes with round caps; use it with --roads sv"
-            ));
+            );
         }
         if self.geo_quads.is_some()
             && !roads.iter().any(|roads| roads.method() == RoadMethod::Geometry)
         {
-            return Err(unusable!(
-                "--geo-quads applies only to roads as geometry; use it with --roads geo"
-            ));
+            refuse!("--geo-quads applies only to roads as geometry; use it with --roads geo");
         }
         Ok(roads)
     }

@@ -9,7 +9,7 @@ use corniche_pipeline::PartStep;
 use corniche_presets::one_of;
 
 use super::{shared::ThreadsArg, voice::json_progress};
-use crate::failure::CommandFailure;
+use crate::failure::Result;
 
 /// The steps of a build that a process can do alone.
 fn step() -> impl TypedValueParser<Value = PartStep> {
@@ -64,7 +64,7 @@ pub(crate) struct PlannedArgs {
 pub(crate) fn plan_and_stores(
     plan: Option<&PathBuf>,
     store: &[PathBuf],
-) -> Result<(PathBuf, Vec<PathBuf>), CommandFailure> {
+) -> Result<(PathBuf, Vec<PathBuf>)> {
     if let Some(plan) = plan {
         return Ok((plan.clone(), store.to_vec()));
     }

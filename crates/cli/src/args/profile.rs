@@ -8,7 +8,7 @@ use super::{
     shared::{ClassesArg, ExtractArgs, LevelArg, RecordedArgs, RoadArg, ThreadsArg},
     values::parse_position,
 };
-use crate::failure::CommandFailure;
+use crate::failure::Result;
 
 #[derive(Debug, Args)]
 #[command(
@@ -82,11 +82,7 @@ impl ProfileArgs {
     ///
     /// # Errors
     /// When --osm is given without --dem, and no road is searched.
-    pub(crate) fn refuse_idle_extract(
-        &self,
-        dem: &[PathBuf],
-        osm: &[PathBuf],
-    ) -> Result<(), CommandFailure> {
+    pub(crate) fn refuse_idle_extract(&self, dem: &[PathBuf], osm: &[PathBuf]) -> Result<()> {
         if osm.is_empty() || !dem.is_empty() || self.is_route() {
             return Ok(());
         }

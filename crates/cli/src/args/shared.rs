@@ -10,7 +10,7 @@ use corniche_remote::PackagePlace;
 use corniche_viewer::stream::StreamBudget;
 
 use super::values::{package_among, package_place};
-use crate::failure::CommandFailure;
+use crate::failure::Result;
 
 // The package to read.
 #[derive(Debug, Args)]
@@ -44,7 +44,7 @@ impl RecordedArgs {
         &self,
         others: &[PathBuf],
         usage: &str,
-    ) -> Result<(PackagePlace, [Vec<PathBuf>; 2]), CommandFailure> {
+    ) -> Result<(PackagePlace, [Vec<PathBuf>; 2])> {
         package_among(self.package.as_ref(), [&self.dem, others], usage)
     }
 }

@@ -9,7 +9,7 @@ use super::vector_files::{fill, tell};
 use crate::{
     args::ExportGeoTiffArgs,
     escaped::in_line,
-    failure::CommandFailure,
+    failure::Result,
     names::MAP,
     output::{existing_of, named::NamedOutput},
     packages, recorded,
@@ -17,12 +17,12 @@ use crate::{
     table::{bytes, noted},
 };
 
-pub(crate) fn run(args: &ExportGeoTiffArgs) -> Result<(), CommandFailure> {
+pub(crate) fn run(args: &ExportGeoTiffArgs) -> Result<()> {
     if !MAP.is_of(&args.file.output) {
-        return Err(unusable!(
+        refuse!(
             "cannot write {:?}: the output is a GeoTIFF; choose a name with the extension .tif",
             args.file.output
-        ));
+        );
     }
     let (place, [dem, _]) =
         args.from.files(&[], "corniche export geotiff PACKAGE --dem FILE...")?;

@@ -8,7 +8,7 @@ use crate::{
     args::{ExportLayerArgs, VECTOR_FORMATS, word_of},
     credits::credits_line,
     escaped::in_line,
-    failure::CommandFailure,
+    failure::Result,
     messages,
     names::format_of,
     output::{existing_of, named::NamedOutput},
@@ -16,7 +16,7 @@ use crate::{
     table::{bytes, length, noted},
 };
 
-pub(crate) fn run(args: &ExportLayerArgs) -> Result<(), CommandFailure> {
+pub(crate) fn run(args: &ExportLayerArgs) -> Result<()> {
     let format = format_of(args.format, &args.file.output, &VECTOR_FORMATS)?;
     let coordinates = coordinates(args.crs, false, format)?;
     let package = packages::open_with_datum(&args.from.package, &args.datum)?;

@@ -13,12 +13,12 @@ use super::{
 use crate::{
     args::ExportRoadsArgs,
     escaped::in_line,
-    failure::CommandFailure,
+    failure::Result,
     messages, recorded,
     table::{bytes, length, noted, up_to},
 };
 
-pub(crate) fn run(args: &ExportRoadsArgs) -> Result<(), CommandFailure> {
+pub(crate) fn run(args: &ExportRoadsArgs) -> Result<()> {
     let usage = "corniche export roads PACKAGE -o FILE --dem FILE...";
     let LinesExport { format, coordinates, package, output, elevation, network } =
         LinesExport::begin(&args.vector, args.at.level, &args.cpu, ("roads", usage))?;

@@ -9,7 +9,7 @@ use corniche_remote::PackagePlace;
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 use serde::Serialize;
 
-use crate::{documents::to_line, failure::CommandFailure, packages};
+use crate::{documents::to_line, failure::Result, packages};
 
 /// The list of packages that the page reads.
 pub(crate) const LIST: &str = "packages.json";
@@ -44,7 +44,7 @@ struct ShownEntry<'a> {
 
 /// Opens each package, so that invalid ones are reported before the server starts, and assigns
 /// names.
-pub(crate) fn open(places: &[PackagePlace]) -> Result<Vec<Shown>, CommandFailure> {
+pub(crate) fn open(places: &[PackagePlace]) -> Result<Vec<Shown>> {
     let file = |place: &PackagePlace| match place {
         PackagePlace::File(path) => {
             packages::open(place)?;

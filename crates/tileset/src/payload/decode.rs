@@ -6,7 +6,7 @@ use corniche_tin::Surface;
 use crate::payload::{
     attributes,
     context::CodingContext,
-    damage::{Damage, DecodeError},
+    damage::{Damage, DecodeError, Result},
     envelope::{self, StoredSection},
     relief::Relief,
     road_tags, roads_geo, roads_sv,
@@ -110,7 +110,7 @@ impl SectionReader<'_> {
         &self,
         kind: SectionKind,
         section: Sections,
-        decode: impl FnOnce(Vec<u8>) -> Result<T, Damage>,
+        decode: impl FnOnce(Vec<u8>) -> Result<T>,
     ) -> Result<Option<T>, DecodeError> {
         if !self.wanted.contains(section) {
             return Ok(None);
@@ -140,7 +140,7 @@ fn decode_geo(
     coded_in: Option<&GridFrame>,
     ground: Option<&TileTerrain>,
     context: &CodingContext,
-) -> Result<Vec<GeoRoad>, Damage> {
+) -> Result<Vec<GeoRoad>> {
     let Some(ground) = ground else {
         return Err(Damage::Invalid("roads in a tile without ground"));
     };

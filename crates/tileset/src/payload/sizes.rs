@@ -8,7 +8,7 @@ use crate::{
     layer_slot::LayerSlot,
     payload::{
         class_table,
-        damage::{Damage, DecodeError},
+        damage::{DecodeError, Result},
         envelope::{self, SectionSize},
         number_codes::Cursor,
         section_kind::{GEO, SV, SectionKind, TwoKinds},
@@ -82,7 +82,7 @@ impl PayloadSizes {
 /// When the bytes are not a payload of that tile, or a road section is damaged.
 pub fn payload_sizes(bytes: &[u8], id: TileId) -> Result<PayloadSizes, DecodeError> {
     let sections = envelope::open(bytes, id).map_err(|damage| damage.in_header(id))?;
-    let class_bytes = |roads: TwoKinds| -> Result<[u64; FunctionalRoadClass::COUNT], Damage> {
+    let class_bytes = |roads: TwoKinds| -> Result<[u64; FunctionalRoadClass::COUNT]> {
         let mut sizes = [0; FunctionalRoadClass::COUNT];
         if let Some((raw, is_coded)) = envelope::section_of_two(&sections, roads)? {
             let mut cursor = Cursor::new(&raw);

@@ -29,6 +29,7 @@ pub(crate) fn length(number: i64) -> usize {
 }
 
 /// The state of a coder of steps.
+#[derive(Default)]
 pub(crate) struct StepCoder {
     along: Magnitudes<LENGTHS, SLOPES>,
     across: Magnitudes<{ ALONG_LENGTHS * SLOPES }, LENGTHS>,
@@ -37,15 +38,6 @@ pub(crate) struct StepCoder {
 }
 
 impl StepCoder {
-    pub(crate) fn new() -> Self {
-        Self {
-            along: Magnitudes::new(),
-            across: Magnitudes::new(),
-            goes_back: [[Model::NEW; 4]; SLOPES],
-            is_across_south: [[[Model::NEW; 7]; 2]; SLOPES],
-        }
-    }
-
     /// Codes a step that follows the step `before`, if there was one.
     pub(crate) fn code<B: Bits>(
         &mut self,

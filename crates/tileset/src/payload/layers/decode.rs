@@ -14,7 +14,7 @@ use super::{
 use crate::{
     limits::{MAX_LAYER_OBJECTS, MAX_LAYER_VALUES, MAX_POINTS, MAX_RINGS},
     payload::{
-        damage::Damage,
+        damage::{Damage, Result},
         number_codes::{Cursor, Planes},
         range_coder::BitReader,
     },
@@ -27,15 +27,12 @@ pub(crate) fn decode(
     bytes: &[u8],
     coding: &LayerCoding,
     bounds: LatticeBounds,
-) -> Result<Vec<LayerObject>, Damage> {
+) -> Result<Vec<LayerObject>> {
     let cursor = &mut Cursor::new(bytes);
     let step = cursor.spacing("the spacing of a layer's lattice")?;
     let count = cursor.bounded(MAX_LAYER_OBJECTS, "number of objects")?;
     let values = count * coding.attributes.len();
-    if values > MAX_LAYER_VALUES {
-        let (length, limit) = (values as u64, MAX_LAYER_VALUES as u64);
-        return Err(Damage::TooLarge { what: "number of attribute values", length, limit });
-    }
+    Damage::limit("number of attribute values", values as u64, MAX_LAYER_VALUES)?;
     let [kinds, ids]: [Planes<'_>; 2] = cursor.columns(count)?;
     let mut texts = TextReader::read(cursor)?;
     let mut columns = Vec::with_capacity(coding.attributes.len());
@@ -93,7 +90,7 @@ impl<'a> ShapeReader<'a> {
         count: usize,
         step: i64,
         bounds: LatticeBounds,
-    ) -> Result<Self, Damage> {
+    ) -> Result<Self> {
         const POINTS: &str = "number of points";
         Ok(match geometry {
             LayerGeometry::Line => {
@@ -124,15 +121,16 @@ impl<'a> ShapeReader<'a> {
         })
     }
 
-    fn next(&mut self) -> Result<LayerShape, Damage> {
+    fn next(&mut self) -> Result<LayerShape> {
         match self {
             Self::Lines { lengths, points } => {
                 let length = lengths.next().unwrap_or_default() + 2;
                 let line = (0..length).map(|_| points.next());
-                let line = line.collect::<Result<Vec<LatticePoint>, Damage>>()?;
-                if line.array_windows().any(|[one, next]| one == next) {
-                    return Err(Damage::Invalid("a line with two equal points in succession"));
-                }
+                let line = line.collect::<Result<Vec<LatticePoint>>>()?;
+                Damage::invalid_if(
+                    line.array_windows().any(|[one, next]| one == next),
+                    "a line with two equal points in succession",
+                )?;
                 Ok(LayerShape::Line(line))
             }
             Self::Areas(areas) => {
@@ -147,13 +145,13 @@ impl<'a> ShapeReader<'a> {
         }
     }
 
-    fn finish(self) -> Result<(), Damage> {
+    fn finish(self) -> Result<()> {
         if let Self::Areas(areas) = self { areas.bits.finish() } else { Ok(()) }
     }
 }
 
 impl AreaReader<'_> {
-    fn polygon(&mut self) -> Result<AreaPolygon, Damage> {
+    fn polygon(&mut self) -> Result<AreaPolygon> {
         let mut rings = Vec::new();
         for _ in 0..=self.rings.next().unwrap_or_default() {
             let mut ring = Vec::new();

@@ -4,7 +4,10 @@ use corniche_varints::zigzag;
 #[cfg(feature = "write")]
 use corniche_varints::{push_varint, to_zigzag};
 
-use crate::payload::{damage::Damage, number_codes::Cursor};
+use crate::payload::{
+    damage::{Damage, Result},
+    number_codes::Cursor,
+};
 
 /// Number of quantisation steps: one for the smooth band, then three for each division, the
 /// coarsest first.
@@ -53,11 +56,9 @@ impl ReliefHead {
         out
     }
 
-    pub(crate) fn read(cursor: &mut Cursor<'_>) -> Result<Self, Damage> {
+    pub(crate) fn read(cursor: &mut Cursor<'_>) -> Result<Self> {
         let flags = cursor.byte()?;
-        if flags > 3 {
-            return Err(Damage::Invalid("the flags of the relief"));
-        }
+        Damage::invalid_if(flags > 3, "the flags of the relief")?;
         let [has_voids, has_water] = [flags & 1 == 1, flags & 2 == 2];
         let exponent = i32::try_from(zigzag(cursor.varint()?)).ok();
         let exponent = exponent

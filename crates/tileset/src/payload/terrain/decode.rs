@@ -7,7 +7,7 @@ use crate::{
     payload::{
         connectivity::{Edges, GateAnswer, Guesses, Guide, NAMED, NONE, walk},
         corner_guess::GridVertices,
-        damage::Damage,
+        damage::{Damage, Result},
         envelope::{self, StoredSection},
         number_codes::Cursor,
         range_coder::BitReader,
@@ -28,12 +28,12 @@ use crate::{
 pub(crate) fn record_in(
     sections: &[StoredSection<'_>],
     scale: Scale,
-) -> Result<Option<TerrainSectionHead>, Damage> {
+) -> Result<Option<TerrainSectionHead>> {
     let section = envelope::section(sections, SectionKind::Terrain)?;
     section.map(|section| TerrainSectionHead::read(&mut Cursor::new(&section), scale)).transpose()
 }
 
-pub(crate) fn decode(bytes: &[u8], scale: Scale) -> Result<TileTerrain, Damage> {
+pub(crate) fn decode(bytes: &[u8], scale: Scale) -> Result<TileTerrain> {
     let mut cursor = Cursor::new(bytes);
     let record = TerrainSectionHead::read(&mut cursor, scale)?;
     let mut bits = BitReader::new(cursor.take(cursor.left())?);
@@ -76,32 +76,26 @@ struct Player<'a, 'b> {
 }
 
 impl Player<'_, '_> {
-    fn vertex(&mut self) -> Result<u32, Damage> {
+    fn vertex(&mut self) -> Result<u32> {
         let number = self.symbols.number(self.bits, 0)?;
-        if number as usize > MAX_VERTICES {
-            return Err(Damage::Invalid("a named vertex"));
-        }
+        Damage::invalid_if(number as usize > MAX_VERTICES, "a named vertex")?;
         Ok(number)
     }
 }
 
 impl Guide for Player<'_, '_> {
-    fn start(&mut self, found: &Edges<'_>) -> Result<[u32; 3], Damage> {
+    fn start(&mut self, found: &Edges<'_>) -> Result<[u32; 3]> {
         let a = self.last + self.vertex()?;
-        if a as usize >= found.vertices() {
-            return Err(Damage::Invalid("a triangle's vertex"));
-        }
+        Damage::invalid_if(a as usize >= found.vertices(), "a triangle's vertex")?;
         self.last = a;
         // Each corner is above the first, which is the smallest; the sum of two limited numbers is
         // in range.
         Ok([a, a + 1 + self.vertex()?, a + 1 + self.vertex()?])
     }
 
-    fn corner(&mut self, guesses: &Guesses<'_, '_>) -> Result<GateAnswer, Damage> {
+    fn corner(&mut self, guesses: &Guesses<'_, '_>) -> Result<GateAnswer> {
         let Some(first) = guesses.first() else { return Ok(GateAnswer::Nothing) };
-        if self.bits.is_past_end() {
-            return Err(Damage::Invalid("the length of the coded bits"));
-        }
+        Damage::invalid_if(self.bits.is_past_end(), "the length of the coded bits")?;
         match self.symbols.code(self.bits, guesses, first, NONE) {
             NONE => Ok(GateAnswer::Nothing),
             1 => Ok(GateAnswer::Guessed(first.vertex)),

@@ -2,7 +2,7 @@
 
 use crate::payload::{
     connectivity::Reached,
-    damage::Damage,
+    damage::{Damage, Result},
     magnitudes::{Magnitudes, half_octave},
     range_coder::Bits,
 };
@@ -19,8 +19,8 @@ pub(crate) fn code_heights<B: Bits>(
     at: &[[u16; 2]],
     order: &[Reached],
     heights: &mut [i32],
-) -> Result<(), Damage> {
-    let mut numbers = Magnitudes::<BY_RESIDUALS, BY_GATE>::new();
+) -> Result<()> {
+    let mut numbers = Magnitudes::<BY_RESIDUALS, BY_GATE>::default();
     let mut sizes = vec![0_u32; heights.len()];
     let mut previous = 0_i32;
     for reached in order {

@@ -24,7 +24,7 @@ pub(crate) fn code_normals<B: Bits>(
     shift: u8,
     normals: &mut [[i8; 2]],
 ) {
-    let mut numbers = [(); 2].map(|()| Magnitudes::<BY_RESIDUALS, BY_GUESSES>::new());
+    let mut numbers = [(); 2].map(|()| Magnitudes::<BY_RESIDUALS, BY_GUESSES>::default());
     let mut sizes = vec![0_u16; normals.len()];
     for reached in order {
         let vertex = reached.vertex as usize;

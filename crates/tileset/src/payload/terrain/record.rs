@@ -6,7 +6,10 @@ use corniche_varints::push_varint;
 
 use crate::{
     limits::MAX_TRIANGLES,
-    payload::{damage::Damage, number_codes::Cursor},
+    payload::{
+        damage::{Damage, Result, refuse_if},
+        number_codes::Cursor,
+    },
 };
 use corniche_settings::MAX_MEASURE_M;
 
@@ -41,25 +44,18 @@ impl TerrainSectionHead {
         out
     }
 
-    pub(crate) fn read(cursor: &mut Cursor<'_>, scale: Scale) -> Result<Self, Damage> {
+    pub(crate) fn read(cursor: &mut Cursor<'_>, scale: Scale) -> Result<Self> {
         let [geometric_error_m, lowest_m, highest_m] =
             [(); 3].map(|()| cursor.array().map(f64::from_le_bytes));
         let (geometric_error_m, height_range_m) = (geometric_error_m?, [lowest_m?, highest_m?]);
         let uncovered_nodes = cursor.varint()?;
         check_measures(geometric_error_m, height_range_m, uncovered_nodes, scale)
             .map_err(Damage::Invalid)?;
-        let (triangles, limit) = (cursor.varint()?, MAX_TRIANGLES as u64);
-        if triangles > limit {
-            let what = "number of triangles";
-            return Err(Damage::TooLarge { what, length: triangles, limit });
-        }
+        let triangles = cursor.varint()?;
+        Damage::limit("number of triangles", triangles, MAX_TRIANGLES)?;
         let [height_shift, normal_shift] = cursor.array()?;
-        if height_shift > MAX_HEIGHT_SHIFT {
-            return Err(Damage::Invalid("the common factor of the heights"));
-        }
-        if normal_shift > MAX_NORMAL_SHIFT {
-            return Err(Damage::Invalid("the common factor of the normals"));
-        }
+        Damage::invalid_if(height_shift > MAX_HEIGHT_SHIFT, "the common factor of the heights")?;
+        Damage::invalid_if(normal_shift > MAX_NORMAL_SHIFT, "the common factor of the normals")?;
         let triangles = triangles as usize;
         Ok(Self {
             geometric_error_m,
@@ -91,15 +87,12 @@ pub(crate) fn check_measures(
     uncovered_nodes: u64,
     scale: Scale,
 ) -> Result<(), &'static str> {
-    if !(0.0..=MAX_MEASURE_M).contains(&geometric_error_m) {
-        return Err("the geometric error");
-    }
+    refuse_if(!(0.0..=MAX_MEASURE_M).contains(&geometric_error_m), "the geometric error")?;
     let [low, high] = height_range_m;
-    if !(low <= high && low >= -MAX_MEASURE_M && high <= MAX_MEASURE_M) {
-        return Err("the height range");
-    }
-    if uncovered_nodes > scale.nodes_beneath {
-        return Err("the number of uncovered nodes");
-    }
+    refuse_if(
+        !(low <= high && low >= -MAX_MEASURE_M && high <= MAX_MEASURE_M),
+        "the height range",
+    )?;
+    refuse_if(uncovered_nodes > scale.nodes_beneath, "the number of uncovered nodes")?;
     Ok(())
 }
