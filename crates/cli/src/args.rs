@@ -62,18 +62,18 @@ use crate::escaped::one_line;
 #[command(version, name = "corniche", max_term_width = 100)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
-    pub(crate) command: CliCommand,
+    pub command: CliCommand,
     /// The name of the command.
     #[arg(skip)]
-    pub(crate) name: String,
+    pub name: String,
     /// How the program writes its messages.
     #[command(flatten)]
-    pub(crate) voice: Voice,
+    pub voice: Voice,
     /// Exit with code 1 when stdin closes, so that the process does not outlive its parent. For
     /// programs that start this one with a pipe as its stdin. Rerun the same part or merge to
     /// resume
     #[arg(long, global = true, help_heading = "For programs")]
-    pub(crate) die_with_parent: bool,
+    pub die_with_parent: bool,
 }
 
 impl Arguments {

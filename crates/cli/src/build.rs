@@ -9,7 +9,7 @@ use corniche_spec::{BuildSettings, Leftovers};
 use crate::{
     args::BuildArgs,
     defects::DefectList,
-    failure::CommandFailure,
+    failure::Result,
     info, messages, output,
     part::make_tmp,
     progress::Progress,
@@ -18,17 +18,17 @@ use crate::{
     verdict,
 };
 
-pub(crate) fn run(mut args: Box<BuildArgs>) -> Result<(), CommandFailure> {
+pub(crate) fn run(mut args: Box<BuildArgs>) -> Result<()> {
     let written = settings::complete(&mut args.work)?;
     let Some(output) = args.output.take().or(written.package) else {
-        return Err(unusable!(
+        refuse!(
             "no output package is named; pass -o PACKAGE.pmtiles, or write package under [output] in the settings file"
-        ));
+        );
     };
     output::writable_package(&output)?;
     let defects = args.defects.take().or(written.defects);
     if defects.is_some() && args.work.inputs.osm.is_empty() {
-        return Err(unusable!("--defects lists the defects of an extract; pass one with --osm"));
+        refuse!("--defects lists the defects of an extract; pass one with --osm");
     }
     let mut others: Vec<&Path> = args.work.files().collect();
     others.push(&output);
@@ -44,7 +44,7 @@ pub(crate) fn finish(
     built: Result<BuildSummary, BuildError>,
     mut progress: Progress,
     output: &Path,
-) -> Result<(), CommandFailure> {
+) -> Result<()> {
     // The list replaces its target only if it is complete. It is also complete after a run that
     // failed because no road was kept: all roads were read, and the list has the reasons for their
     // loss.
@@ -60,7 +60,7 @@ pub(crate) fn finish(
     listed?;
     let BuildSummary { manifest, package_bytes } = summary;
     if let Some(warning) = info::odd_heights(&manifest) {
-        messages::warning(&format!("the package was written, but has an {warning}"));
+        warning!("the package was written, but has an {warning}");
     }
     if messages::is_for_people() {
         let digits = Digits::of_notes();
@@ -71,14 +71,14 @@ pub(crate) fn finish(
             messages::write_line(&format!("\n{text}"));
         }
     } else {
-        messages::note(&format!("wrote {}", output.display()));
+        note!("wrote {}", output.display());
     }
     progress.tell_costs();
     Ok(())
 }
 
 /// The settings of a build.
-fn settings(args: BuildArgs, output: PathBuf) -> Result<BuildSettings, CommandFailure> {
+fn settings(args: BuildArgs, output: PathBuf) -> Result<BuildSettings> {
     let BuildWork { plan, resources, tmp, force } = settings::build_work(args.work)?;
     Ok(BuildSettings {
         plan,

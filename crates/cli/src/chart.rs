@@ -16,19 +16,19 @@ use crate::info::rounded;
 
 /// The caption and the axes of a chart.
 pub(crate) struct Axes {
-    pub(crate) size_px: (u32, u32),
-    pub(crate) caption: String,
-    pub(crate) x: ChartAxis,
+    pub size_px: (u32, u32),
+    pub caption: String,
+    pub x: ChartAxis,
     /// The vertical axis, with ticks at round numbers or counts.
-    pub(crate) y: ChartAxis,
+    pub y: ChartAxis,
 }
 
 /// One of the two axes.
 pub(crate) struct ChartAxis {
     /// The quantity, with its unit.
-    pub(crate) description: &'static str,
-    pub(crate) range: Range<f64>,
-    pub(crate) ticks: Ticks,
+    pub description: &'static str,
+    pub range: Range<f64>,
+    pub ticks: Ticks,
 }
 
 /// The positions of an axis's numbers and lines.
@@ -48,10 +48,10 @@ pub(crate) enum Ticks {
 /// A line from point to point. Its dashes and marks distinguish it from the other curves without
 /// colours.
 pub(crate) struct Curve {
-    pub(crate) name: String,
-    pub(crate) color: RGBColor,
-    pub(crate) points: Vec<(f64, f64)>,
-    pub(crate) marks: Marks,
+    pub name: String,
+    pub color: RGBColor,
+    pub points: Vec<(f64, f64)>,
+    pub marks: Marks,
 }
 
 /// Whether the points of a curve have marks.

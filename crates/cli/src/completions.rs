@@ -4,11 +4,11 @@ use clap::CommandFactory as _;
 
 use crate::{
     args::{Arguments, CompletionsArgs},
-    failure::CommandFailure,
+    failure::Result,
     messages,
 };
 
-pub(crate) fn run(args: &CompletionsArgs) -> Result<(), CommandFailure> {
+pub(crate) fn run(args: &CompletionsArgs) -> Result<()> {
     // The generator panics if it cannot write, so it writes to memory.
     let mut script = Vec::new();
     let mut command = Arguments::command();

@@ -3,10 +3,10 @@
 
 use corniche_tileset::{Manifest, check_credit};
 
-use crate::{escaped::in_line, failure::CommandFailure};
+use crate::{escaped::in_line, failure::Result};
 
 /// Rejects attribution that cannot be shown everywhere, before any work is done.
-pub(crate) fn check(credits: &[String]) -> Result<(), CommandFailure> {
+pub(crate) fn check(credits: &[String]) -> Result<()> {
     for credit in credits {
         check_credit(credit).map_err(|error| {
             unusable!("the attribution \"{}\" cannot be used: {error}", in_line(credit))

@@ -13,7 +13,7 @@ use corniche_spec::{Defect, span_reason_words};
 use corniche_work::locked;
 
 use crate::{
-    failure::CommandFailure,
+    failure::Result,
     output::{self, Existing, Output},
 };
 
@@ -31,11 +31,7 @@ pub(crate) struct DefectList {
 
 impl DefectList {
     /// Begins a list at `target`, which must not be one of `others`.
-    pub(crate) fn create(
-        target: &Path,
-        existing: Existing,
-        others: &[&Path],
-    ) -> Result<Self, CommandFailure> {
+    pub(crate) fn create(target: &Path, existing: Existing, others: &[&Path]) -> Result<Self> {
         let mut output = Output::create(target, existing, others)?;
         let begun = output.write_all(HEADER.as_bytes()).map(|()| output);
         Ok(Self { target: target.to_path_buf(), file: Mutex::new(begun) })
@@ -55,7 +51,7 @@ impl DefectList {
     }
 
     /// Moves the complete list to its target.
-    pub(crate) fn finish(self) -> Result<(), CommandFailure> {
+    pub(crate) fn finish(self) -> Result<()> {
         let file = self.file.into_inner().unwrap_or_else(PoisonError::into_inner);
         file.map_err(|error| output::failed(&self.target, &error))?.finish()
     }

@@ -13,8 +13,7 @@ use corniche_viewer::tiles::{MapPackage as _, PackageSource, TileStore};
 use corniche_window::{DrawnLine, NotSaved, SaveDrawing};
 
 use crate::{
-    failure::CommandFailure,
-    messages,
+    failure::{CommandFailure, Result},
     output::{Existing, Output},
 };
 
@@ -23,8 +22,8 @@ const MOST: u32 = 99_999;
 
 /// The lines at the start, and where to save them.
 pub(crate) struct DrawingFile {
-    pub(crate) lines: Vec<DrawnLine>,
-    pub(crate) save: SaveDrawing,
+    pub lines: Vec<DrawnLine>,
+    pub save: SaveDrawing,
 }
 
 /// The target for saving lines.
@@ -42,13 +41,11 @@ impl DrawingFile {
         folder: &Path,
         used: &[&Path],
         package: Arc<PackageSource>,
-    ) -> Result<Self, CommandFailure> {
+    ) -> Result<Self> {
         let mut known = LineFile::default();
         if let Some(path) = file {
             if used.iter().any(|used| is_same_file(used, path)) {
-                return Err(unusable!(
-                    "--draw {path:?}: the command already uses this file; choose another name"
-                ));
+                refuse!("--draw {path:?}: the command already uses this file; choose another name");
             }
             if path.symlink_metadata().is_ok() {
                 known = LineFile::read(path)?;
@@ -56,10 +53,10 @@ impl DrawingFile {
             // An unwritable path is reported before anything is drawn.
             drop(Output::create(path, Existing::Replace, used)?);
             if known.others() > 0 {
-                messages::note(&format!(
+                note!(
                     "note: {path:?}: {} features are neither single lines nor areas without holes; they are kept unchanged",
                     known.others()
-                ));
+                );
             }
         }
         let lines = known
@@ -99,7 +96,7 @@ fn save(
     lines: &[DrawnLine],
     place: &mut SaveTarget,
     package: &PackageSource,
-) -> Result<PathBuf, CommandFailure> {
+) -> Result<PathBuf> {
     // Heights may be omitted, but lines must not be lost for lack of them.
     let heights = EllipsoidHeights::from_manifest(package.manifest()).unwrap_or_else(|error| {
         without_heights(&CommandFailure::from(error));
@@ -148,7 +145,7 @@ fn heights_of(
     heights: &EllipsoidHeights,
     package: &PackageSource,
     store: &mut TileStore<'_>,
-) -> Result<Option<Vec<f64>>, CommandFailure> {
+) -> Result<Option<Vec<f64>>> {
     let coordinates = &package.manifest().coordinates;
     let mut positions_m = Vec::new();
     let mut heights_m = Vec::new();
@@ -164,10 +161,10 @@ fn heights_of(
 }
 
 fn without_heights(failure: &CommandFailure) {
-    messages::note(&format!("note: lines were saved without heights: {failure}"));
+    note!("note: lines were saved without heights: {failure}");
 }
 
-fn free_name(folder: &Path) -> Result<PathBuf, CommandFailure> {
+fn free_name(folder: &Path) -> Result<PathBuf> {
     std::fs::create_dir_all(folder).map_err(|error| unusable!("{folder:?}: {error}"))?;
     let names = (1..=MOST).map(|number| folder.join(format!("lines-{number:05}.geojson")));
     names.into_iter().find(|path| path.symlink_metadata().is_err()).ok_or_else(|| {

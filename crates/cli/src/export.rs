@@ -11,9 +11,9 @@ mod tiles3d;
 mod vector_files;
 
 pub(crate) use self::vector_files::MEMORY_BYTES;
-use crate::{args::Export, failure::CommandFailure};
+use crate::{args::Export, failure::Result};
 
-pub(crate) fn run(what: &Export) -> Result<(), CommandFailure> {
+pub(crate) fn run(what: &Export) -> Result<()> {
     match what {
         Export::Roads(args) => roads::run(args),
         Export::Edges(args) => edges::run(args),

@@ -29,6 +29,9 @@ pub(crate) struct CommandFailure {
     error: anyhow::Error,
 }
 
+/// What commands and their parts return.
+pub(crate) type Result<T, E = CommandFailure> = std::result::Result<T, E>;
+
 impl CommandFailure {
     pub(crate) fn new(code: ExitCode, error: impl Into<anyhow::Error>) -> Self {
         Self { code, error: error.into() }
@@ -121,6 +124,11 @@ macro_rules! unusable {
     ($($message:tt)*) => {
         $crate::failure::CommandFailure::unusable(format_args!($($message)*))
     };
+}
+
+/// Returns an error for an unusable input, in words like those of `format!`.
+macro_rules! refuse {
+    ($($message:tt)*) => { return Err(unusable!($($message)*)) };
 }
 
 /// Errors with the exit codes that they cause.

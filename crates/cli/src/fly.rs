@@ -24,7 +24,7 @@ use self::{measured_run::MeasuredRun, outputs::Outputs};
 use crate::{
     args::{FlyArgs, Roads},
     exit::ExitCode,
-    failure::CommandFailure,
+    failure::{CommandFailure, Result},
     interrupt, messages, overlays, packages, presets,
     progress::Progress,
     styles,
@@ -43,7 +43,7 @@ use corniche_work::{Observer as _, Stage};
 /// Largest size of a keyframe file; a hundred thousand keyframes are smaller.
 const MAX_PATH_BYTES: u64 = 32 << 20;
 
-pub(crate) fn run(args: &FlyArgs) -> Result<(), CommandFailure> {
+pub(crate) fn run(args: &FlyArgs) -> Result<()> {
     let outputs = Outputs::create(args)?;
     let style = args.look.styled(styles::style(&args.look.style)?);
     let methods = args.look.roads(&args.drawing.roads)?;
@@ -61,7 +61,7 @@ pub(crate) fn run(args: &FlyArgs) -> Result<(), CommandFailure> {
 }
 
 /// The requested flight, or else a pass along the data.
-fn flight(args: &FlyArgs, package: &dyn BlockingPackage) -> Result<Flight, CommandFailure> {
+fn flight(args: &FlyArgs, package: &dyn BlockingPackage) -> Result<Flight> {
     let Some(path) = &args.flight.path else {
         return Ok(default_flight(package, &interrupt::is_noted)?);
     };
@@ -70,7 +70,7 @@ fn flight(args: &FlyArgs, package: &dyn BlockingPackage) -> Result<Flight, Comma
     presets::refuse_stream(path).map_err(|error| unusable(&error))?;
     let size_bytes = fs::metadata(path).map_err(|error| unusable(&error))?.len();
     if size_bytes > MAX_PATH_BYTES {
-        return Err(unusable!("flight {path:?}: the file is too large for a flight path"));
+        refuse!("flight {path:?}: the file is too large for a flight path");
     }
     let text = fs::read_to_string(path).map_err(|error| unusable(&error))?;
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
@@ -102,7 +102,7 @@ impl Plan<'_> {
     /// Flies in a separate thread, because on most systems a window must belong to the program's
     /// first thread, which is this one. Without a display the flight fails; if the window is lost
     /// during the flight, the flight continues without it.
-    fn fly_in_a_window(&self) -> Result<Drawn, CommandFailure> {
+    fn fly_in_a_window(&self) -> Result<Drawn> {
         // The channel holds one image, so the flight is at most one image ahead of the window.
         let (window, pictures) = mpsc::sync_channel(1);
         let is_gone = AtomicBool::new(false);
@@ -116,9 +116,7 @@ impl Plan<'_> {
             let is_closed = match watched {
                 Ok(Watched::Lost(error)) => {
                     let why = CommandFailure::from(error);
-                    messages::warning(&format!(
-                        "the window was lost; the flight continues without it: {why}"
-                    ));
+                    warning!("the window was lost; the flight continues without it: {why}");
                     Ok(false)
                 }
                 Ok(Watched::ToTheEnd) => Ok(false),
@@ -142,9 +140,9 @@ impl Plan<'_> {
         })
     }
 
-    fn fly(&self, watcher: Option<&Watcher<'_>>) -> Result<Drawn, CommandFailure> {
+    fn fly(&self, watcher: Option<&Watcher<'_>>) -> Result<Drawn> {
         let gpu = Gpu::new()?;
-        messages::note(&format!("drawn by {}", gpu.adapter_name));
+        note!("drawn by {}", gpu.adapter_name);
         let mut runs = Vec::new();
         for lod in once_each(&self.args.drawing.lod) {
             for roads in once_each(self.methods) {
@@ -160,7 +158,7 @@ impl Plan<'_> {
         watcher: Option<&Watcher<'_>>,
         lod: Detail,
         roads: Roads,
-    ) -> Result<MeasuredRun, CommandFailure> {
+    ) -> Result<MeasuredRun> {
         let drawing = &self.args.drawing;
         let options = ReplayOptions {
             picture: PictureOptions {
@@ -195,12 +193,12 @@ impl Plan<'_> {
         let mut run = MeasuredRun { lod, roads, frames: Vec::new() };
         let Lifted { frames, most_m } = replay.lifted();
         if frames > 0 {
-            messages::note(&format!(
+            note!(
                 "note: {}: in {frames} frames the camera was raised to stay above the ground, by up to {most_m:.1} m",
                 run.name()
-            ));
+            );
         }
-        messages::note(&format!("flying {}", run.name()));
+        note!("flying {}", run.name());
         let progress = Progress::new();
         progress.begin(Stage::Fly, Some(options.frames.into()));
         while let Some(record) = replay.next_frame()? {
@@ -216,14 +214,14 @@ impl Plan<'_> {
         }
         progress.finish();
         if let Some(doubt) = run.doubt() {
-            messages::warning(&format!("{}: {doubt}", run.name()));
+            warning!("{}: {doubt}", run.name());
         }
         Ok(run)
     }
 }
 
 /// The number of frames: `--frames`, or the number that spaces them about `--step` apart.
-fn frames(args: &FlyArgs, flight: &Flight) -> Result<u32, CommandFailure> {
+fn frames(args: &FlyArgs, flight: &Flight) -> Result<u32> {
     match args.flight.step {
         None => Ok(args.flight.frames),
         // A number too large for u32 becomes the largest u32, which the replay rejects.

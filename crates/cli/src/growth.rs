@@ -17,14 +17,14 @@ use self::compare::Compared;
 use crate::{
     args::GrowthArgs,
     documents::to_line,
-    failure::CommandFailure,
+    failure::Result,
     messages,
     output::{Output, existing_of, report_files::ReportFiles},
     packages,
     table::Digits,
 };
 
-pub(crate) fn run(args: &GrowthArgs) -> Result<(), CommandFailure> {
+pub(crate) fn run(args: &GrowthArgs) -> Result<()> {
     if args.svg.is_some() {
         chart::refuse_too_many(args.packages.len())?;
     }
@@ -32,10 +32,10 @@ pub(crate) fn run(args: &GrowthArgs) -> Result<(), CommandFailure> {
     for place in &args.packages {
         let package = packages::open(place)?;
         if package.manifest().growth.is_empty() {
-            return Err(unusable!(
+            refuse!(
                 "{:?} has no roads: it was built without --osm, or from an extract without roads; build it again with roads",
                 place.name()
-            ));
+            );
         }
         packages.push(package);
     }
@@ -49,10 +49,10 @@ pub(crate) fn run(args: &GrowthArgs) -> Result<(), CommandFailure> {
         several if args.json => format!("{}\n", to_line(&compare::to_document(several))),
         several if args.csv => {
             for difference in compare::differences(several) {
-                messages::warning(&format!(
+                warning!(
                     "the packages differ not only in cell and error bound: {}",
                     difference.text(several)
-                ));
+                );
             }
             let named = several.iter().map(|package| (package.name.as_str(), package.manifest));
             csv::to_csv_of_several(named)
@@ -66,11 +66,11 @@ fn write_files(
     args: &GrowthArgs,
     packages: &[FilePackage],
     compared: &[Compared<'_>],
-) -> Result<(), CommandFailure> {
+) -> Result<()> {
     if args.per_way.is_some() && packages.len() != 1 {
-        return Err(unusable!(
+        refuse!(
             "--per-way accepts a single package; run the command once for each, with a separate file"
-        ));
+        );
     }
     let inputs: Vec<&Path> = args.packages.iter().map(PackagePlace::name).collect();
     let list = [("--per-way", args.per_way.as_deref())];

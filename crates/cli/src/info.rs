@@ -18,7 +18,7 @@ use crate::{
     args::InfoArgs,
     documents::info::InfoDocument,
     escaped::in_line,
-    failure::CommandFailure,
+    failure::Result,
     messages, packages,
     presets::class_labels,
     table::{Digits, Table, bytes, length, wrapped},
@@ -29,7 +29,7 @@ const NAMES: usize = 13;
 /// What layers count.
 const ALL: &str = "numbers include objects outside the package's extent";
 
-pub(crate) fn run(args: &InfoArgs) -> Result<(), CommandFailure> {
+pub(crate) fn run(args: &InfoArgs) -> Result<()> {
     let package = packages::open(&args.from.package)?;
     if args.json {
         let tiles: Vec<String> = package.tile_ids()?.iter().map(ToString::to_string).collect();

@@ -23,7 +23,11 @@ use std::{
 
 use corniche_work::locked;
 
-use crate::{exit::ExitCode, failure::CommandFailure, messages};
+use crate::{
+    exit::ExitCode,
+    failure::{CommandFailure, Result},
+    messages,
+};
 
 /// The cause of an early end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,7 +57,7 @@ const ASKS_WITHIN: Duration = Duration::from_millis(500);
 const STOPS_WITHIN: Duration = Duration::from_secs(10);
 
 /// Registers the handler: from now on, signals are noted instead of ending the program at once.
-pub(crate) fn watch() -> Result<(), CommandFailure> {
+pub(crate) fn watch() -> Result<()> {
     ctrlc::set_handler(|| note(Cause::Signal))?;
     spare_from_file_limits()
 }
@@ -151,9 +155,9 @@ fn end() -> ! {
     thread::spawn(move || {
         let kept = locked(&KEPT).clone();
         if let Some(kept) = kept.filter(|kept| kept.exists()) {
-            messages::warning(&format!(
+            warning!(
                 "progress is saved in {kept:?}; rerun with --resume to continue, or with -O to start over"
-            ));
+            );
         }
         let reason = reason();
         messages::ended(reason.code(), Some(&reason));
@@ -169,7 +173,7 @@ fn end() -> ! {
 
 /// Makes a limit on file sizes (`ulimit -f`) look like a full disk: writing fails with an error
 /// instead of a signal that ends the program without a message.
-fn spare_from_file_limits() -> Result<(), CommandFailure> {
+fn spare_from_file_limits() -> Result<()> {
     #[cfg(unix)]
     {
         use std::sync::Arc;

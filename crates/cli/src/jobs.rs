@@ -4,13 +4,13 @@ use corniche_pipeline::{Job, JobSettings};
 
 use crate::{
     args::{JobsArgs, plan_and_stores},
-    failure::CommandFailure,
+    failure::{CommandFailure, Result},
     messages,
     part::read_plan,
     settings,
 };
 
-pub(crate) fn run(args: &JobsArgs) -> Result<(), CommandFailure> {
+pub(crate) fn run(args: &JobsArgs) -> Result<()> {
     if let Some(seconds) = args.least_work.filter(|&seconds| !(0.0..=1e9).contains(&seconds)) {
         let message = format!("--least-work must be between 0 and 1e9 seconds, not {seconds}");
         return Err(CommandFailure::unusable(message));
@@ -28,7 +28,7 @@ pub(crate) fn run(args: &JobsArgs) -> Result<(), CommandFailure> {
 }
 
 /// Prints one JSON object per line.
-pub(crate) fn print(jobs: &[Job]) -> Result<(), CommandFailure> {
+pub(crate) fn print(jobs: &[Job]) -> Result<()> {
     for job in jobs {
         messages::answer_document(job)?;
     }

@@ -8,13 +8,13 @@ use corniche_presets::{layer_preset, layer_preset_names, parse_layer_table};
 use crate::{
     args::LayersArgs,
     documents::to_line,
-    failure::CommandFailure,
+    failure::Result,
     messages,
     presets::{refuse, text_of},
     table::Table,
 };
 
-pub(crate) fn run(args: &LayersArgs) -> Result<(), CommandFailure> {
+pub(crate) fn run(args: &LayersArgs) -> Result<()> {
     let text = match &args.layer {
         None if args.schema => format!("{}\n", to_line(&schemars::schema_for!(LayerForm))),
         None => listed()?,
@@ -28,7 +28,7 @@ pub(crate) fn run(args: &LayersArgs) -> Result<(), CommandFailure> {
 }
 
 /// Reads the table of a layer: a built-in one by name, or a file by path.
-pub(crate) fn table(name_or_path: &str) -> Result<LayerTable, CommandFailure> {
+pub(crate) fn table(name_or_path: &str) -> Result<LayerTable> {
     let what = format!("layer {name_or_path:?} is neither built in");
     let preset = layer_preset(name_or_path);
     let text = text_of(name_or_path, preset, (&what, layer_preset_names()))?;
@@ -36,7 +36,7 @@ pub(crate) fn table(name_or_path: &str) -> Result<LayerTable, CommandFailure> {
     parse_layer_table(&text).map_err(named)
 }
 
-fn listed() -> Result<String, CommandFailure> {
+fn listed() -> Result<String> {
     let tables: Vec<LayerTable> = layer_preset_names().map(table).collect::<Result<_, _>>()?;
     Ok(described(&tables))
 }

@@ -4,6 +4,8 @@
 
 #[macro_use]
 mod failure;
+#[macro_use]
+mod messages;
 
 mod args;
 mod build;
@@ -26,7 +28,6 @@ mod layers;
 mod man;
 mod matching;
 mod merge;
-mod messages;
 mod names;
 mod open_files;
 mod output;
@@ -59,7 +60,7 @@ use corniche_remote::without_secrets;
 
 use args::{Arguments, CliCommand, LogFormat, Voice};
 use exit::ExitCode;
-use failure::CommandFailure;
+use failure::{CommandFailure, Result};
 
 fn main() -> process::ExitCode {
     if let Ok(program) = env::current_exe() {
@@ -127,7 +128,7 @@ fn refusal(error: &clap::Error) -> String {
     words.strip_prefix("error: ").unwrap_or(&words).to_owned()
 }
 
-fn run(arguments: Arguments) -> Result<ExitCode, CommandFailure> {
+fn run(arguments: Arguments) -> Result<ExitCode> {
     interrupt::watch()?;
     if arguments.die_with_parent {
         parent::watch()?;

@@ -10,12 +10,11 @@ use clap_mangen::Man;
 
 use crate::{
     args::{Arguments, ManArgs},
-    failure::CommandFailure,
-    messages,
+    failure::Result,
     output::{Complete, Output, existing_of},
 };
 
-pub(crate) fn run(args: &ManArgs) -> Result<(), CommandFailure> {
+pub(crate) fn run(args: &ManArgs) -> Result<()> {
     let folder = &args.folder;
     fs::create_dir_all(folder)
         .map_err(|error| unusable!("cannot create the folder {folder:?}: {error}"))?;
@@ -32,12 +31,12 @@ pub(crate) fn run(args: &ManArgs) -> Result<(), CommandFailure> {
         .collect::<Result<_, _>>()?;
     let count = written.len();
     written.into_iter().try_for_each(Complete::place)?;
-    messages::note(&format!("wrote {count} pages to {}", folder.display()));
+    note!("wrote {count} pages to {}", folder.display());
     Ok(())
 }
 
 /// The pages of the program, its commands and their subcommands, with their file names.
-fn pages() -> Result<Vec<(PathBuf, Vec<u8>)>, CommandFailure> {
+fn pages() -> Result<Vec<(PathBuf, Vec<u8>)>> {
     let mut program = Arguments::command().disable_help_subcommand(true);
     program.build();
     let mut commands = vec![program];

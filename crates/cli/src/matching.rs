@@ -11,7 +11,7 @@ use corniche_photo::Photos;
 
 use crate::{
     args::{MatchArgs, package_among},
-    failure::CommandFailure,
+    failure::Result,
     messages,
     output::{existing_of, report_files::ReportFiles},
     packages,
@@ -19,7 +19,7 @@ use crate::{
     table::Digits,
 };
 
-pub(crate) fn run(args: &MatchArgs) -> Result<(), CommandFailure> {
+pub(crate) fn run(args: &MatchArgs) -> Result<()> {
     let usage = "corniche match PACKAGE --photo FILE...";
     let (place, [photos]) = package_among(args.package.as_ref(), [&args.photo], usage)?;
     let package = packages::open(&place)?;

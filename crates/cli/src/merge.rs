@@ -7,14 +7,14 @@ use corniche_pipeline::{MergeSettings, is_in_object_storage};
 use crate::{
     args::{MergeArgs, plan_and_stores},
     build,
-    failure::CommandFailure,
+    failure::Result,
     messages, names, output,
     part::{make_tmp, read_plan, told},
     progress::Progress,
     settings,
 };
 
-pub(crate) fn run(args: &MergeArgs) -> Result<(), CommandFailure> {
+pub(crate) fn run(args: &MergeArgs) -> Result<()> {
     let planned = &args.planned;
     if !is_in_object_storage(&args.output) {
         output::writable(&args.output)?;

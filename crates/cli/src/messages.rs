@@ -91,6 +91,16 @@ pub(crate) fn is_detailed() -> bool {
     is_for_people() && voice().verbose > 0
 }
 
+/// Prints a note, in words like those of `format!`.
+macro_rules! note {
+    ($($words:tt)+) => { $crate::messages::note(&format!($($words)+)) };
+}
+
+/// Prints a warning, in words like those of `format!`.
+macro_rules! warning {
+    ($($words:tt)+) => { $crate::messages::warning(&format!($($words)+)) };
+}
+
 /// Prints a note of one line.
 pub(crate) fn note(text: &str) {
     summary(&line(text));

@@ -4,28 +4,28 @@ use std::path::Path;
 
 use corniche_presets::Words;
 
-use crate::failure::CommandFailure;
+use crate::failure::Result;
 
 /// Rejects names that the user does not mean as a file.
-pub(crate) fn refuse_what_is_no_file(target: &Path) -> Result<(), CommandFailure> {
+pub(crate) fn refuse_what_is_no_file(target: &Path) -> Result<()> {
     let name = target.as_os_str();
     if name == "-" {
-        return Err(unusable!(
+        refuse!(
             "cannot write to standard output (-): the output is moved to its target when it is complete; pass the name \
              of a file (./- for a file with this name)"
-        ));
+        );
     }
     if name.to_str().is_some_and(|name| name.contains("://")) {
-        return Err(unusable!(
+        refuse!(
             "cannot write {target:?}: this command does not write to URLs; pass the name of a file (corniche merge also writes \
              packages to s3://BUCKET/NAME.pmtiles)"
-        ));
+        );
     }
     Ok(())
 }
 
 /// Rejects a name of a package that does not end in .pmtiles.
-pub(crate) fn refuse_other_than_package(target: &Path) -> Result<(), CommandFailure> {
+pub(crate) fn refuse_other_than_package(target: &Path) -> Result<()> {
     if is_package_name(target) {
         return Ok(());
     }
@@ -46,7 +46,7 @@ pub(crate) fn format_of<T: Copy, const N: usize>(
     named: Option<T>,
     output: &Path,
     formats: &Words<T, N>,
-) -> Result<T, CommandFailure> {
+) -> Result<T> {
     let ending = output.extension().unwrap_or_default();
     let own = formats.iter().find(|(word, ..)| ending.eq_ignore_ascii_case(word));
     named.or(own.map(|(.., format)| *format)).ok_or_else(|| {
@@ -90,7 +90,7 @@ impl Format {
     }
 
     /// Rejects a name with another extension.
-    pub(crate) fn refuse_others(&self, path: &Path) -> Result<(), CommandFailure> {
+    pub(crate) fn refuse_others(&self, path: &Path) -> Result<()> {
         if self.is_of(path) {
             return Ok(());
         }

@@ -9,18 +9,18 @@ use corniche_viewer::tiles::{Overlays, StyledLine};
 
 use crate::{
     args::{LookArgs, OverlayArg},
-    failure::CommandFailure,
+    failure::Result,
     messages,
     names::file_name,
 };
 
 /// Reads the files and projects their lines for a package. Features outside the package and
 /// features that are not lines are reported.
-pub(crate) fn load(look: &LookArgs, manifest: &Manifest) -> Result<Arc<Overlays>, CommandFailure> {
+pub(crate) fn load(look: &LookArgs, manifest: &Manifest) -> Result<Arc<Overlays>> {
     let files = &look.overlay;
     if files.len() > LineStyle::MOST {
         let most = LineStyle::MOST;
-        return Err(unusable!("--overlay accepts at most {most} files"));
+        refuse!("--overlay accepts at most {most} files");
     }
     let (mut lines, mut first, mut points) = (Vec::new(), 0, 0);
     for (style, file) in (0..).zip(files) {
@@ -58,7 +58,7 @@ pub(crate) fn tell(path: &Path, found: &VectorLines) {
 }
 
 fn note(path: &Path, what: &str) {
-    messages::note(&format!("note: {path:?}: {what}"));
+    note!("note: {path:?}: {what}");
 }
 
 /// The names of the files.

@@ -8,14 +8,18 @@ use corniche_tileset::FilePackage;
 use corniche_viewer::tiles::PackageSource;
 use corniche_work::locked;
 
-use crate::{args::DatumArg, exit::ExitCode, failure::CommandFailure};
+use crate::{
+    args::DatumArg,
+    exit::ExitCode,
+    failure::{CommandFailure, Result},
+};
 
 /// The HTTP client, once it is needed, and the sources that it has opened: a package that is opened
 /// again reuses the cached data.
 static OPENED: Mutex<(Option<Web>, Vec<Arc<HttpSource>>)> = Mutex::new((None, Vec::new()));
 
 /// Opens a package.
-pub(crate) fn open(place: &PackagePlace) -> Result<FilePackage, CommandFailure> {
+pub(crate) fn open(place: &PackagePlace) -> Result<FilePackage> {
     let PackagePlace::Address(address) = place else {
         return Ok(corniche_spec::open_package(place.name())?);
     };
@@ -41,10 +45,7 @@ pub(crate) fn open(place: &PackagePlace) -> Result<FilePackage, CommandFailure> 
 }
 
 /// Opens a package for an export with heights; `--dem-vertical-crs` sets a missing datum.
-pub(crate) fn open_with_datum(
-    place: &PackagePlace,
-    said: &DatumArg,
-) -> Result<FilePackage, CommandFailure> {
+pub(crate) fn open_with_datum(place: &PackagePlace, said: &DatumArg) -> Result<FilePackage> {
     let package = open(place)?;
     match &said.dem_vertical_crs {
         None => Ok(package),
@@ -53,7 +54,7 @@ pub(crate) fn open_with_datum(
 }
 
 /// Opens a package to draw it.
-pub(crate) fn source(place: &PackagePlace) -> Result<PackageSource, CommandFailure> {
+pub(crate) fn source(place: &PackagePlace) -> Result<PackageSource> {
     Ok(PackageSource::of_file(open(place)?)?)
 }
 

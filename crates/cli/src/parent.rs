@@ -8,13 +8,13 @@
 use std::{io, thread};
 
 use crate::{
-    failure::CommandFailure,
+    failure::Result,
     interrupt::{self, Cause},
 };
 
 /// Starts watching stdin: when it is closed, the program ends as after a signal, with another exit
 /// code.
-pub(crate) fn watch() -> Result<(), CommandFailure> {
+pub(crate) fn watch() -> Result<()> {
     let waiting = || {
         // The input is ignored. An error counts as the end: nothing else would report the end of
         // the parent any more.

@@ -9,7 +9,7 @@ use corniche_plan::BuildPlan;
 use crate::{
     args::{PartArgs, plan_and_stores},
     exit::ExitCode,
-    failure::CommandFailure,
+    failure::{CommandFailure, Result},
     messages,
     presets::refuse_stream,
     progress::Progress,
@@ -17,7 +17,7 @@ use crate::{
     table::bytes,
 };
 
-pub(crate) fn run(args: &PartArgs) -> Result<(), CommandFailure> {
+pub(crate) fn run(args: &PartArgs) -> Result<()> {
     let planned = &args.planned;
     let (plan, stores) = plan_and_stores(planned.plan.as_ref(), &planned.store)?;
     make_tmp(planned.tmp.as_deref())?;
@@ -48,7 +48,7 @@ pub(crate) fn run(args: &PartArgs) -> Result<(), CommandFailure> {
 }
 
 /// Creates the folder of `--tmp`, so that a new machine needs no preparation.
-pub(crate) fn make_tmp(tmp: Option<&Path>) -> Result<(), CommandFailure> {
+pub(crate) fn make_tmp(tmp: Option<&Path>) -> Result<()> {
     let Some(tmp) = tmp else { return Ok(()) };
     fs::create_dir_all(tmp).map_err(|error| {
         unusable!("cannot create the folder --tmp {tmp:?}; choose another one ({error})")
@@ -68,7 +68,7 @@ pub(crate) fn told(requests: &StorageRequests) -> String {
 }
 
 /// Reads a plan from its file.
-pub(crate) fn read_plan(path: &Path) -> Result<BuildPlan, CommandFailure> {
+pub(crate) fn read_plan(path: &Path) -> Result<BuildPlan> {
     let text = refuse_stream(path)
         .and_then(|()| fs::read_to_string(path))
         .map_err(|error| unusable!("cannot read the plan {path:?}: {error}"))?;

@@ -15,7 +15,7 @@ use crate::{
     args::PlanArgs,
     documents::plan::PlanDocument,
     exit::ExitCode,
-    failure::CommandFailure,
+    failure::{CommandFailure, Result},
     info::datum_operation,
     interrupt, jobs, messages,
     output::{Output, existing_of},
@@ -23,7 +23,7 @@ use crate::{
     table::{Digits, Table, bytes},
 };
 
-pub(crate) fn run(mut args: PlanArgs) -> Result<(), CommandFailure> {
+pub(crate) fn run(mut args: PlanArgs) -> Result<()> {
     settings::complete(&mut args.work)?;
     // An unwritable target is reported before the files are read.
     let inputs: Vec<&Path> = args.work.files().collect();
@@ -61,13 +61,13 @@ fn shown(path: &str) -> Cow<'_, str> {
     if is_address { without_secrets(path) } else { Cow::Borrowed(path) }
 }
 
-fn write_plan(file: Output, plan: &BuildPlan) -> Result<(), CommandFailure> {
+fn write_plan(file: Output, plan: &BuildPlan) -> Result<()> {
     let text = plan.to_json().map_err(|error| CommandFailure::new(ExitCode::Failed, error))?;
     file.write_whole(text.as_bytes())
 }
 
 /// The subtrees of a level, one per line.
-fn subtrees(plan: &BuildPlan, level: u8) -> Result<String, CommandFailure> {
+fn subtrees(plan: &BuildPlan, level: u8) -> Result<String> {
     let finest = plan.grid.frame.max_level();
     if level > finest {
         let message = format!("--subtrees {level} does not exist: the finest level is {finest}");

@@ -15,7 +15,7 @@ use corniche_roads::{FrcTable, FunctionalRoadClass};
 use corniche_tileset::Manifest;
 use strsim::levenshtein;
 
-use crate::failure::CommandFailure;
+use crate::failure::{CommandFailure, Result};
 
 /// The largest size of a settings file; real ones are far smaller.
 const MAX_FILE_BYTES: u64 = 2 << 20;
@@ -24,7 +24,7 @@ const MAX_FILE_BYTES: u64 = 2 << 20;
 const MOST_CHANGES: usize = 2;
 
 /// Loads an FRC table: a preset by name, or a file by path.
-pub(crate) fn frc_table(name_or_path: &str) -> Result<FrcTable, CommandFailure> {
+pub(crate) fn frc_table(name_or_path: &str) -> Result<FrcTable> {
     let what = format!("--frc-table {name_or_path:?} is neither a preset");
     let text = text_of(name_or_path, frc_preset(name_or_path), (&what, frc_preset_names()))?;
     let table = parse_frc_table(&text)
@@ -40,7 +40,7 @@ pub(crate) fn text_of(
     path: &str,
     preset: Option<&'static str>,
     (what, names): (&str, impl Iterator<Item = &'static str>),
-) -> Result<Cow<'static, str>, CommandFailure> {
+) -> Result<Cow<'static, str>> {
     if let Some(text) = preset {
         return Ok(text.into());
     }
@@ -61,7 +61,7 @@ pub(crate) fn class_labels(manifest: &Manifest) -> [String; FunctionalRoadClass:
 }
 
 /// Reads a settings file.
-pub(crate) fn read_config(path: &Path) -> Result<Config, CommandFailure> {
+pub(crate) fn read_config(path: &Path) -> Result<Config> {
     let text = read_text(path)
         .map_err(|error| unusable!("cannot read the settings file {path:?}: {error}"))?;
     Config::parse(&text).map_err(|error| refuse(&format!("settings file {path:?}"), &error))

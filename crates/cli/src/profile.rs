@@ -17,7 +17,7 @@ use crate::{
     chart::ends,
     documents::{profile::ProfileDocument, to_line},
     escaped::in_line,
-    failure::CommandFailure,
+    failure::Result,
     messages,
     names::file_name,
     output::{Output, existing_of, report_files::ReportFiles},
@@ -27,7 +27,7 @@ use crate::{
     table::up_to,
 };
 
-pub(crate) fn run(args: &ProfileArgs) -> Result<(), CommandFailure> {
+pub(crate) fn run(args: &ProfileArgs) -> Result<()> {
     let usage = "corniche profile PACKAGE --way ID --dem FILE...";
     let (place, [dem, osm]) = args.recorded.files(&args.extract.osm, usage)?;
     args.refuse_idle_extract(&dem, &osm)?;
@@ -91,7 +91,7 @@ pub(crate) fn run(args: &ProfileArgs) -> Result<(), CommandFailure> {
     };
     files.write(fill_list, make_svg)?;
     for written in [&args.csv, &args.svg, &args.json].into_iter().flatten() {
-        messages::note(&format!("wrote {}", written.display()));
+        note!("wrote {}", written.display());
     }
     let told = road.map(|road| to_text_of_route(&road, args.road.query().as_ref()));
     Ok(messages::answer(&(told.unwrap_or_default() + &to_text(&found, network.is_some())))?)
@@ -192,11 +192,7 @@ fn to_text_of_route(road: &NetworkRoute, query: Option<&RoadQuery>) -> String {
 }
 
 /// The lines of a file on the package's lattice, with their numbers in the file, from 1.
-fn placed_lines(
-    path: &Path,
-    allow_ballpark: bool,
-    package: &FilePackage,
-) -> Result<Course, CommandFailure> {
+fn placed_lines(path: &Path, allow_ballpark: bool, package: &FilePackage) -> Result<Course> {
     let found = corniche_overlay::read(path, allow_ballpark)?;
     overlays::tell(path, &found);
     let placed = corniche_overlay::place(&found.lines, package.manifest())?;

@@ -27,7 +27,7 @@ use crate::{
     args::{LogFormat, Voice},
     defects::DefectList,
     documents::{progress::seconds, to_line},
-    failure::CommandFailure,
+    failure::Result,
     free_memory, interrupt, messages,
     messages::write_line,
     output::existing_of,
@@ -76,7 +76,7 @@ pub(crate) struct Progress {
     shared: Arc<Shared>,
     ticker: Option<JoinHandle<()>>,
     /// The list of defects, if it is requested.
-    pub(crate) defects: Option<DefectList>,
+    pub defects: Option<DefectList>,
 }
 
 struct Shared {
@@ -137,11 +137,7 @@ impl Progress {
 
     /// Reports a build, and lists its defects if a list is requested; the list must not be one of
     /// `others`.
-    pub(crate) fn of_build(
-        list: Option<&Path>,
-        overwrite: bool,
-        others: &[&Path],
-    ) -> Result<Self, CommandFailure> {
+    pub(crate) fn of_build(list: Option<&Path>, overwrite: bool, others: &[&Path]) -> Result<Self> {
         let create = |target| DefectList::create(target, existing_of(overwrite), others);
         let mut progress = Self::new();
         progress.defects = list.map(create).transpose()?;

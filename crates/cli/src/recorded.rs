@@ -11,7 +11,7 @@ use corniche_verify::{RecordedElevation, VerifyOsm};
 
 use crate::{
     args::{ExtractArgs, RecordedArgs, ThreadsArg},
-    failure::CommandFailure,
+    failure::Result,
     presets,
     progress::Progress,
     settings::{polygon, threads},
@@ -26,7 +26,7 @@ pub(crate) fn elevation(
     args: &RecordedArgs,
     dem: &[PathBuf],
     package: &FilePackage,
-) -> Result<Option<RecordedElevation>, CommandFailure> {
+) -> Result<Option<RecordedElevation>> {
     if dem.is_empty() {
         return Ok(None);
     }
@@ -46,7 +46,7 @@ pub(crate) fn network(
     args: &ExtractArgs,
     osm: &[PathBuf],
     (cpu, package): (&ThreadsArg, &FilePackage),
-) -> Result<Option<Network>, CommandFailure> {
+) -> Result<Option<Network>> {
     if osm.is_empty() {
         return Ok(None);
     }
@@ -63,19 +63,16 @@ pub(crate) fn network(
 }
 
 /// The named FRC table, or the preset whose name the package records.
-pub(crate) fn frc_table(
-    named: Option<&str>,
-    package: &FilePackage,
-) -> Result<FrcTable, CommandFailure> {
+pub(crate) fn frc_table(named: Option<&str>, package: &FilePackage) -> Result<FrcTable> {
     if let Some(table) = named {
         return presets::frc_table(table);
     }
     let name = &package.manifest().settings.frc_table;
     if frc_preset(name).is_none() {
-        return Err(unusable!(
+        refuse!(
             "{:?} was built with the FRC table {name:?}, which is not a preset; pass its file with --frc-table",
             package.path()
-        ));
+        );
     }
     presets::frc_table(name)
 }

@@ -14,11 +14,11 @@ use corniche_viewer::{
 
 use self::picture_files::PictureFiles;
 use crate::{
-    args::RenderArgs, failure::CommandFailure, interrupt, messages, overlays, packages, presets,
-    styles, table::noted,
+    args::RenderArgs, failure::Result, interrupt, messages, overlays, packages, presets, styles,
+    table::noted,
 };
 
-pub(crate) fn run(args: &RenderArgs) -> Result<(), CommandFailure> {
+pub(crate) fn run(args: &RenderArgs) -> Result<()> {
     let used = styles::files_of_look(&args.look, &args.from);
     let style = args.look.styled(styles::style(&args.look.style)?);
     let roads = args.look.roads(&[args.roads])?[0];
@@ -26,9 +26,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), CommandFailure> {
         (false, _) => Mapping::OnTriangles,
         (true, RoadMethod::Geometry) => Mapping::Unmapped,
         (true, _) => {
-            return Err(unusable!(
-                "--unmapped applies only to roads as geometry; use it with --roads geo"
-            ));
+            refuse!("--unmapped applies only to roads as geometry; use it with --roads geo");
         }
     };
     let request = RenderRequest {
@@ -76,10 +74,10 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), CommandFailure> {
     let is_same_crs = files.write(&rendered.picture, place.as_ref(), scale, facts)?;
     tell(args, &rendered.report);
     if !is_same_crs {
-        messages::warning(&format!(
+        warning!(
             "GeoTIFF cannot represent the whole coordinate system of the package ({}); programs may interpret it differently",
             manifest.crs
-        ));
+        );
     }
     if let Some(text) = incomplete_areas(manifest, &request.options.layers) {
         messages::note(&text);
@@ -93,33 +91,31 @@ fn tell(args: &RenderArgs, report: &RenderReport) {
         0 => String::new(),
         polygons => format!(" {polygons} polygons of areas with {} points,", report.area_points),
     };
-    messages::note(&format!(
+    note!(
         "{}: {} tiles, {} triangles, {} road segments,{areas} drawn by {}",
         args.output.display(),
         report.tiles,
         report.triangles,
         report.road_segments,
         report.adapter
-    ));
+    );
     if report.clamped_tiles > 0 {
-        messages::note(&format!(
+        note!(
             "note: in up to {} tiles roads may be drawn narrower than in the style, because a tile contains no roads \
              farther away than the package's width margin",
             report.clamped_tiles
-        ));
+        );
     }
     if report.capped_ways > 0 {
-        messages::note(&format!(
+        note!(
             "note: roads drawn {} m wide although their tags are wider: {}",
             OwnWidths::WIDEST_M,
             report.capped_ways
-        ));
+        );
     }
     let TitleFlaws { lacking, is_cut } = &report.title_flaws;
     if !lacking.is_empty() {
-        messages::warning(&format!(
-            "--title: the font of images has no {lacking}; boxes are drawn instead"
-        ));
+        warning!("--title: the font of images has no {lacking}; boxes are drawn instead");
     }
     if *is_cut {
         messages::warning("--title: the title does not fit into the image and is truncated");

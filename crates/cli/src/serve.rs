@@ -24,11 +24,14 @@ use self::{
     shown::{LIST, Shown},
 };
 use crate::{
-    args::ServeArgs, failure::CommandFailure, interrupt, messages, output::existing_of,
+    args::ServeArgs,
+    failure::{CommandFailure, Result},
+    interrupt, messages,
+    output::existing_of,
     table::bytes,
 };
 
-pub(crate) fn run(args: &ServeArgs) -> Result<(), CommandFailure> {
+pub(crate) fn run(args: &ServeArgs) -> Result<()> {
     let page = page::load(args.page.as_deref())?;
     let packages = shown::open(&args.packages, args.layers.as_deref())?;
     match &args.site {
@@ -42,23 +45,23 @@ fn write_site(
     folder: &Path,
     page: &[PageFile],
     packages: &[Shown],
-) -> Result<(), CommandFailure> {
+) -> Result<()> {
     refuse_inside_page(folder, args.page.as_deref())?;
     let files = packages.iter().map(|package| package.file.as_path());
     let used: Vec<&Path> = files.chain(args.page.as_deref()).collect();
     let size = site::write(folder, existing_of(args.overwrite), page, packages, &used)?;
-    messages::note(&format!(
+    note!(
         "{}: {} of the page, {}, {}; any web server with support for range requests can serve it",
         folder.display(),
         counted(page.len(), "file"),
         counted(packages.len(), "package"),
-        bytes(size),
-    ));
+        bytes(size)
+    );
     Ok(())
 }
 
 /// Rejects a site inside the folder of the page: the next site would include it in the page.
-fn refuse_inside_page(site: &Path, page: Option<&Path>) -> Result<(), CommandFailure> {
+fn refuse_inside_page(site: &Path, page: Option<&Path>) -> Result<()> {
     let place = |path: &Path| path.canonicalize().ok();
     let parent = place(folder_of(site));
     match (parent, page.and_then(place)) {
@@ -69,7 +72,7 @@ fn refuse_inside_page(site: &Path, page: Option<&Path>) -> Result<(), CommandFai
     }
 }
 
-fn serve(args: &ServeArgs, page: Vec<PageFile>, packages: &[Shown]) -> Result<(), CommandFailure> {
+fn serve(args: &ServeArgs, page: Vec<PageFile>, packages: &[Shown]) -> Result<()> {
     let mut routes = Routes::default();
     for PageFile { path, bytes } in page {
         let content = match bytes {
@@ -89,14 +92,9 @@ fn serve(args: &ServeArgs, page: Vec<PageFile>, packages: &[Shown]) -> Result<()
     let address = server.address();
     let url = url(&args.address, address);
     messages::answer(&format!("{url}\n"))?;
-    messages::note(&format!(
-        "serving {}; press Ctrl-C to stop",
-        counted(packages.len(), "package")
-    ));
+    note!("serving {}; press Ctrl-C to stop", counted(packages.len(), "package"));
     if !address.ip().is_loopback() {
-        messages::note(&format!(
-            "the server listens at {address}, so other computers can read these packages"
-        ));
+        note!("the server listens at {address}, so other computers can read these packages");
     }
     // The address already accepts connections: until the server is ready, they wait in its queue.
     if args.open && !browser::open(&url) {

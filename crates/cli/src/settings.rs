@@ -21,22 +21,27 @@ use corniche_spec::{
     machine::{MIN_MEMORY_BYTES, default_memory_bytes},
 };
 
-use crate::{args::WorkArgs, credits, failure::CommandFailure, layers, presets};
+use crate::{
+    args::WorkArgs,
+    credits,
+    failure::{CommandFailure, Result},
+    layers, presets,
+};
 
 /// Default JPEG quality of photos: quality 85 needs a fifth more bytes for half a decibel
 /// (docs/lab/measured.md).
 const PHOTO_QUALITY: u8 = 80;
 /// The work of a build: what to build, and from which inputs.
 pub(crate) struct BuildWork {
-    pub(crate) plan: PlanSettings,
-    pub(crate) resources: Resources,
+    pub plan: PlanSettings,
+    pub resources: Resources,
     /// The folder of intermediate results.
-    pub(crate) tmp: Option<PathBuf>,
-    pub(crate) force: bool,
+    pub tmp: Option<PathBuf>,
+    pub force: bool,
 }
 
 /// Fills in missing arguments from the settings file, and returns its settings of outputs.
-pub(crate) fn complete(args: &mut WorkArgs) -> Result<OutputFiles, CommandFailure> {
+pub(crate) fn complete(args: &mut WorkArgs) -> Result<OutputFiles> {
     let Some(path) = &args.config else { return Ok(OutputFiles::default()) };
     let folder = path.parent().unwrap_or(Path::new(""));
     let config = presets::read_config(path)?.in_folder(folder);
@@ -44,14 +49,14 @@ pub(crate) fn complete(args: &mut WorkArgs) -> Result<OutputFiles, CommandFailur
     let InputFiles { dem, terrain, .. } = &args.inputs;
     let place = format!("{path:?}");
     if dem.is_empty() && terrain.is_none() {
-        return Err(unusable!(
+        refuse!(
             "no elevation data is named; pass --dem FILE, or write dem under [inputs] in {place}"
-        ));
+        );
     }
     if !dem.is_empty() && terrain.is_some() {
-        return Err(unusable!(
+        refuse!(
             "{place} has both dem and terrain under [inputs]; only one of them can be the source of the terrain, so remove the other one"
-        ));
+        );
     }
     args.photos = mem::take(&mut args.photos).or(config.photo);
     args.terrain = mem::take(&mut args.terrain).or(config.terrain);
@@ -63,7 +68,7 @@ pub(crate) fn complete(args: &mut WorkArgs) -> Result<OutputFiles, CommandFailur
 
 /// The only place where text is converted to settings. The command line has precedence over the
 /// settings file, which has precedence over the defaults; [`complete`] has merged the first two.
-pub(crate) fn build_work(args: WorkArgs) -> Result<BuildWork, CommandFailure> {
+pub(crate) fn build_work(args: WorkArgs) -> Result<BuildWork> {
     let WorkArgs { inputs, terrain, roads, resources, .. } = args;
     // Missing settings are those of the package whose terrain is reused, if any, and otherwise the
     // defaults.
@@ -117,12 +122,12 @@ pub(crate) fn build_work(args: WorkArgs) -> Result<BuildWork, CommandFailure> {
 }
 
 /// Reads a polygon.
-pub(crate) fn polygon(path: PathBuf) -> Result<RegionPolygons, CommandFailure> {
+pub(crate) fn polygon(path: PathBuf) -> Result<RegionPolygons> {
     Ok(RegionPolygons::read(&input_name(path).map_err(CommandFailure::unusable)?)?)
 }
 
 /// The bounds in degrees; with `osm` they are read from the extract.
-fn in_degrees(bounds: BoundsChoice, osm: &[PathBuf]) -> Result<BoundsChoice, CommandFailure> {
+fn in_degrees(bounds: BoundsChoice, osm: &[PathBuf]) -> Result<BoundsChoice> {
     match bounds {
         BoundsChoice::Degrees(_) => Ok(bounds),
         BoundsChoice::Osm if !osm.is_empty() => {
@@ -142,10 +147,7 @@ macro_rules! give {
 }
 
 /// The given settings; missing ones are those of `base`.
-fn terrain_settings(
-    options: TerrainOptions,
-    base: TerrainSettings,
-) -> Result<TerrainSettings, CommandFailure> {
+fn terrain_settings(options: TerrainOptions, base: TerrainSettings) -> Result<TerrainSettings> {
     options.check().map_err(CommandFailure::unusable)?;
     let mut settings = TerrainSettings {
         allow_ballpark: options.allow_ballpark,
@@ -157,7 +159,7 @@ fn terrain_settings(
 }
 
 /// The photos of the package, and how they are stored.
-fn photo_choice(names: &[PathBuf], options: &PhotoOptions) -> Result<PhotoChoice, CommandFailure> {
+fn photo_choice(names: &[PathBuf], options: &PhotoOptions) -> Result<PhotoChoice> {
     // A settings file may have options for photos although the command line turns photos off.
     if is_photo_off(names) {
         return Ok(PhotoChoice::Off);
@@ -173,7 +175,7 @@ fn photo_choice(names: &[PathBuf], options: &PhotoOptions) -> Result<PhotoChoice
     }
     let quality = options.quality.unwrap_or(PHOTO_QUALITY);
     if !(1..=100).contains(&quality) {
-        return Err(unusable!("--photo-quality must be between 1 and 100, not {quality}"));
+        refuse!("--photo-quality must be between 1 and 100, not {quality}");
     }
     let files = corniche_spec::inputs::photo_names(names)?;
     Ok(PhotoChoice::Files(PhotoSettings { files, levels: options.levels, quality }))
@@ -183,12 +185,12 @@ fn photo_choice(names: &[PathBuf], options: &PhotoOptions) -> Result<PhotoChoice
 fn layer_tables(
     LayerOptions { tables }: &LayerOptions,
     osm: &[PathBuf],
-) -> Result<Vec<LayerTable>, CommandFailure> {
+) -> Result<Vec<LayerTable>> {
     if tables.is_empty() || is_no_layers(tables) {
         return Ok(Vec::new());
     }
     if osm.is_empty() {
-        return Err(unusable!("--layers needs an extract; pass one with --osm"));
+        refuse!("--layers needs an extract; pass one with --osm");
     }
     let tables: Vec<LayerTable> =
         tables.iter().map(|table| layers::table(table)).collect::<Result<_, _>>()?;
@@ -196,7 +198,7 @@ fn layer_tables(
     Ok(order.into_iter().map(|index| tables[index].clone()).collect())
 }
 
-fn road_settings(options: RoadOptions) -> Result<RoadSettings, CommandFailure> {
+fn road_settings(options: RoadOptions) -> Result<RoadSettings> {
     options.check().map_err(CommandFailure::unusable)?;
     let filter = match options.class_max_cell {
         _ if options.all_classes => ClassFilter::all(),
@@ -227,14 +229,14 @@ pub(crate) fn generator() -> String {
 pub(crate) fn resources(
     threads_asked: Option<NonZeroUsize>,
     memory: Option<&str>,
-) -> Result<Resources, CommandFailure> {
+) -> Result<Resources> {
     let memory_bytes = match memory {
         Some(text) => match parse_bytes(text) {
             Ok(size_bytes) if size_bytes >= MIN_MEMORY_BYTES => size_bytes,
             _ => {
-                return Err(unusable!(
+                refuse!(
                     "--memory {text:?} is not a size of at least 256M; write a size such as 512M, 800MB, 0.5G or 1T"
-                ));
+                );
             }
         },
         None => default_memory_bytes(),

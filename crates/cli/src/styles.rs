@@ -9,12 +9,12 @@ use corniche_styles::{Style, parse_style, style_preset, style_preset_names};
 
 use crate::{
     args::{LookArgs, PackageArg},
-    failure::CommandFailure,
+    failure::Result,
     presets::{read_text, refuse, text_of},
 };
 
 /// Loads a style: a built-in one by name, or a file by path.
-pub(crate) fn style(name_or_path: &str) -> Result<Style, CommandFailure> {
+pub(crate) fn style(name_or_path: &str) -> Result<Style> {
     let what = format!("--style {name_or_path:?} is neither a built-in style");
     let text = text_of(name_or_path, style_preset(name_or_path), (&what, style_preset_names()))?;
     parse(Path::new(name_or_path), &text)
@@ -31,7 +31,7 @@ pub(crate) fn files_of_look<'a>(look: &'a LookArgs, from: &'a PackageArg) -> Vec
     [from.package.name()].into_iter().chain(file_of(&look.style)).chain(overlays).collect()
 }
 
-fn parse(path: &Path, text: &str) -> Result<Style, CommandFailure> {
+fn parse(path: &Path, text: &str) -> Result<Style> {
     parse_style(text).map_err(|error| refuse(&format!("style {path:?}"), &error))
 }
 
@@ -61,7 +61,7 @@ impl StyleFile {
     /// is invalid. Such an error is returned once, and only if two consecutive checks found the
     /// same contents, because an editor may have truncated the file before writing it, or be
     /// replacing it.
-    pub(crate) fn reload_if_changed(&mut self) -> Option<Result<Style, CommandFailure>> {
+    pub(crate) fn reload_if_changed(&mut self) -> Option<Result<Style>> {
         let said = said(&self.path);
         let doubted = self.doubted.take();
         if self.told.as_ref() == Some(&said) {

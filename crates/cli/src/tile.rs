@@ -17,18 +17,18 @@ use crate::{
             normal,
         },
     },
-    failure::CommandFailure,
+    failure::{CommandFailure, Result},
     messages, packages,
     table::{Digits, Table},
 };
 
-pub(crate) fn run(args: &TileArgs) -> Result<(), CommandFailure> {
+pub(crate) fn run(args: &TileArgs) -> Result<()> {
     let package = packages::open(&args.from.package)?;
     let payload = match (args.id, args.at) {
         (Some(id), _) => package.payload(id, Sections::ALL)?.ok_or_else(|| no_tile(args, id))?,
         (None, Some(at)) => payload_at(args, &package, at)?,
         // The parser requires one of them.
-        (None, None) => return Err(unusable!("name a tile: Z/X/Y, or --at LON,LAT")),
+        (None, None) => refuse!("name a tile: Z/X/Y, or --at LON,LAT"),
     };
     let layers = TileLayers::read(&package, payload.id)?;
     if args.json {
@@ -49,7 +49,7 @@ struct TileLayers {
 }
 
 impl TileLayers {
-    fn read(package: &FilePackage, id: TileId) -> Result<Self, CommandFailure> {
+    fn read(package: &FilePackage, id: TileId) -> Result<Self> {
         let bytes = package.tile(id).map_err(CommandFailure::unusable)?.unwrap_or_default();
         let manifest = package.manifest();
         let layers = manifest.layers().map(|(slot, _)| manifest.decode_layer(&bytes, id, slot));
@@ -69,11 +69,11 @@ fn payload_at(
     args: &TileArgs,
     package: &FilePackage,
     [lon_deg, lat_deg]: [f64; 2],
-) -> Result<TilePayload, CommandFailure> {
+) -> Result<TilePayload> {
     let manifest = package.manifest();
     let finest = manifest.frame.max_level();
     if let Some(level) = args.level.filter(|&level| level > finest) {
-        return Err(unusable!("--level {level} does not exist: the finest level is {finest}"));
+        refuse!("--level {level} does not exist: the finest level is {finest}");
     }
     let levels = args.level.map_or(0..=finest, |level| level..=level);
     for level in levels.rev() {
@@ -84,14 +84,14 @@ fn payload_at(
         }
         let Some(payload) = package.payload(id, Sections::ALL)? else { continue };
         if args.level.is_none() && level < finest {
-            messages::note(&format!(
+            note!(
                 "there is no tile of level {finest} at this position; tile {id} is the finest one"
-            ));
+            );
         }
         if !has_ground(manifest, &payload, point) {
-            messages::note(&format!(
+            note!(
                 "tile {id} has no ground at this position, which is in a void or beyond the edge of the data"
-            ));
+            );
         }
         return Ok(payload);
     }
@@ -203,7 +203,7 @@ fn document<'a>(
     payload: &'a TilePayload,
     layers: TileLayers,
     coordinates: DumpCoordinates,
-) -> Result<TileDocument<'a>, CommandFailure> {
+) -> Result<TileDocument<'a>> {
     let frame = &manifest.frame;
     let id = payload.id;
     let (word, unit) = match coordinates {
@@ -264,11 +264,7 @@ fn tin(id: TileId, terrain: &TileTerrain, places: Places<'_>) -> TinDocument {
     }
 }
 
-fn geo_road(
-    road: &GeoRoad,
-    surface: &Surface,
-    places: Places<'_>,
-) -> Result<GeoRoadDocument, CommandFailure> {
+fn geo_road(road: &GeoRoad, surface: &Surface, places: Places<'_>) -> Result<GeoRoadDocument> {
     let positions = corniche_drape::positions(&road.line, surface)?;
     let place = |[u, v, height_m]: [f64; 3]| {
         places.with_height(places.manifest.frame.position_of_fraction_m([u, v]), height_m)
@@ -286,7 +282,7 @@ fn span(
     run: &SpanRun,
     surface: &Surface,
     places: Places<'_>,
-) -> Result<TileSpanDocument, CommandFailure> {
+) -> Result<TileSpanDocument> {
     let Manifest { frame, vertical, .. } = places.manifest;
     let place = |point: &SpanPoint| {
         let height_m = point.height_m(surface, vertical.quantum_m)?;

@@ -12,7 +12,7 @@ use crate::{
     documents::{to_line, verify::VerifyDocument},
     escaped::in_line,
     exit::ExitCode,
-    failure::CommandFailure,
+    failure::Result,
     info::or_dash,
     messages, packages,
     progress::Progress,
@@ -21,7 +21,7 @@ use crate::{
     table::{Digits, Table},
 };
 
-pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, CommandFailure> {
+pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode> {
     let lists = [&*args.dem, &*args.photo, &*args.osm];
     let usage = "corniche verify PACKAGE --dem FILE...";
     let (package, [dem, photo, osm]) = package_among(args.package.as_ref(), lists, usage)?;
@@ -60,11 +60,7 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, CommandFailure> {
 
 /// The extracts to read again, with the FRC table that the package names: the given one, or the
 /// preset with that name.
-fn extract(
-    args: &VerifyArgs,
-    osm: &[PathBuf],
-    package: &FilePackage,
-) -> Result<Option<VerifyOsm>, CommandFailure> {
+fn extract(args: &VerifyArgs, osm: &[PathBuf], package: &FilePackage) -> Result<Option<VerifyOsm>> {
     if osm.is_empty() {
         return Ok(None);
     }

@@ -17,7 +17,7 @@ use crate::{
     args::{OverlayArg, Roads, ViewArgs, with_overlays},
     drawing::DrawingFile,
     exit::ExitCode,
-    failure::CommandFailure,
+    failure::{CommandFailure, Result},
     interrupt, messages,
     output::{Existing, Output},
     overlays, packages, presets,
@@ -25,7 +25,7 @@ use crate::{
     view_command::command_of,
 };
 
-pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, CommandFailure> {
+pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode> {
     let chosen = &args.look.style;
     let mut styles = vec![NamedStyle { name: chosen.clone(), style: style(chosen)? }];
     for name in style_preset_names().filter(|name| name != chosen) {
@@ -35,10 +35,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, CommandFailure> {
     let used = files_of_look(&args.look, &args.from);
     let trace = args.trace.as_deref().map(|path| begin_trace(path, &used)).transpose()?;
     if args.folder.exists() && !args.folder.is_dir() {
-        return Err(unusable!(
-            "--folder {:?} is a file; pass a folder for images and flights",
-            args.folder
-        ));
+        refuse!("--folder {:?} is a file; pass a folder for images and flights", args.folder);
     }
     let package = packages::source(&args.from.package)?;
     let overlays = overlays::load(&args.look, package.manifest())?;
@@ -83,7 +80,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, CommandFailure> {
     let mut code = ExitCode::Done;
     for saved in last_files {
         match saved {
-            Ok(path) => messages::note(&format!("saved {}", path.display())),
+            Ok(path) => note!("saved {}", path.display()),
             Err(error) => {
                 let lost = CommandFailure::new(ExitCode::Failed, error);
                 messages::error(&lost);
@@ -125,7 +122,7 @@ fn software_method(args: &ViewArgs) -> Option<RoadMethod> {
 
 /// Checks the path of the trace as for any other file. The file is created when the window exists,
 /// and directly at its path, so that another program can read the trace while it is written.
-fn begin_trace(path: &Path, used: &[&Path]) -> Result<BeginTrace, CommandFailure> {
+fn begin_trace(path: &Path, used: &[&Path]) -> Result<BeginTrace> {
     drop(Output::create(path, Existing::Replace, used)?);
     if path.symlink_metadata().is_ok() {
         return Err(CommandFailure::exists(format!(

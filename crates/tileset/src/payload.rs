@@ -32,6 +32,7 @@ mod corner_guess;
 mod magnitudes;
 mod near_corners;
 mod number_codes;
+mod point_models;
 mod points;
 mod range_coder;
 mod route_guess;

@@ -31,12 +31,13 @@ pub(crate) fn of_tile(
     let sv = payload.roads_sv.iter().map(|road| (road.way_id, road.class.number()));
     let ways: BTreeSet<(i64, u8)> = geo.chain(sv).collect();
     for &(way_id, class) in &ways {
-        findings.look(CheckId::Classes, least_class.is_some_and(|least| class <= least), || {
-            format!(
-                "tile {id} has way {way_id} of class {class}, but its level shows classes up to {}",
-                or_none(least_class)
-            )
-        });
+        look!(
+            findings,
+            Classes,
+            least_class.is_some_and(|least| class <= least),
+            "tile {id} has way {way_id} of class {class}, but its level shows classes up to {}",
+            or_none(least_class)
+        );
     }
     let named: Vec<i64> = payload.attributes.iter().map(|record| record.way_id).collect();
     let mut here: Vec<i64> = ways.iter().map(|&(way_id, _)| way_id).collect();
@@ -83,15 +84,20 @@ impl FirstWays {
     ) {
         for (way_id, found) in facts {
             let &mut (first, said) = self.by_id.entry(way_id).or_insert((id, found));
-            findings.look(CheckId::Classes, said.class == found.class, || {
-                format!(
-                    "way {way_id} is of class {} in tile {id} and of class {} in tile {first}",
-                    found.class, said.class
-                )
-            });
-            findings.look(CheckId::Attributes, said.attributes == found.attributes, || {
-                format!("the attributes of way {way_id} differ between tiles {id} and {first}")
-            });
+            look!(
+                findings,
+                Classes,
+                said.class == found.class,
+                "way {way_id} is of class {} in tile {id} and of class {} in tile {first}",
+                found.class,
+                said.class
+            );
+            look!(
+                findings,
+                Attributes,
+                said.attributes == found.attributes,
+                "the attributes of way {way_id} differ between tiles {id} and {first}"
+            );
         }
     }
 }

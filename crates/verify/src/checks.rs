@@ -199,6 +199,14 @@ impl Check {
     }
 }
 
+/// Counts an object of a check in [`Findings`]; if it breaks the promise, it is described as an
+/// example, in words like those of `format!`.
+macro_rules! look {
+    ($findings:expr, $check:ident, $holds:expr, $($words:tt)+) => {
+        $findings.look($crate::CheckId::$check, $holds, || format!($($words)+))
+    };
+}
+
 /// The checks so far, each once.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Findings {

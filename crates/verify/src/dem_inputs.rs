@@ -12,10 +12,10 @@ use super::{
     checks::{Check, CheckId, Findings, as_json},
     deviations,
     each_tile::VerifyRun,
-    error::VerifyError,
+    error::{Result, VerifyError},
     report::VerifyReport,
     samples,
-    verify_settings::{GivenFiles, VerifySettings},
+    verify_settings::VerifySettings,
     vertices_against_dem,
 };
 
@@ -27,7 +27,7 @@ pub(crate) fn open(
     manifest: &Manifest,
     checks: &mut Vec<Check>,
     observer: &dyn BuildObserver,
-) -> Result<Option<(Dem, GridPlan)>, VerifyError> {
+) -> Result<Option<(Dem, GridPlan)>> {
     let is_dem =
         |input: &&InputRecord| InputKind::Dem.is_of(input) || InputKind::DemPart.is_of(input);
     let expected: Vec<&InputRecord> = manifest.inputs.iter().filter(is_dem).collect();
@@ -127,27 +127,23 @@ fn check_plan(plan: &GridPlan, manifest: &Manifest) -> Check {
             format!("{what} is recorded as {said}, but the inputs give {found}")
         });
     };
-    same("frame", as_json(&manifest.frame), as_json(&plan.frame));
-    same("crs", as_json(&manifest.crs), as_json(&plan.crs));
-    same("metres_per_unit", as_json(&manifest.metres_per_unit), as_json(&plan.metres_per_unit));
-    same("point_scale", as_json(&manifest.point_scale), as_json(&plan.point_scale));
+    macro_rules! same {
+        ($($what:ident)*) => {
+            $(same(stringify!($what), as_json(&manifest.$what), as_json(&plan.$what));)*
+        };
+    }
+    same!(frame crs metres_per_unit point_scale);
     let scale = (plan.scale.center, plan.scale.least, plan.scale.largest);
     let said = (manifest.scale.center, manifest.scale.least, manifest.scale.largest);
     same("scale", as_json(&said), as_json(&scale));
-    same("data_bounds", as_json(&manifest.data_bounds), as_json(&plan.data_bounds));
-    same("wgs84_bounds", as_json(&manifest.wgs84_bounds), as_json(&plan.wgs84_bounds));
-    same("clip", as_json(&manifest.clip), as_json(&plan.clip));
+    same!(data_bounds wgs84_bounds clip);
     same(
         "nodes_are_samples",
         as_json(&manifest.nodes_are_samples),
         as_json(&plan.nodes_are_samples()),
     );
     same("resampling", as_json(&manifest.resampling), as_json(&plan.resampling_text));
-    same(
-        "vertical.datum",
-        as_json(&vertical.datum.as_str()),
-        as_json(&manifest_texts::datum(plan)),
-    );
+    same("vertical.datum", as_json(&vertical.datum), as_json(&manifest_texts::datum(plan)));
     same("vertical.treatment", as_json(&vertical.treatment), as_json(&plan.vertical));
     if manifest_texts::has_comparable_operations(manifest) {
         let found = manifest_texts::datum_operations(&plan.datum_operations);
@@ -160,19 +156,9 @@ fn check_plan(plan: &GridPlan, manifest: &Manifest) -> Check {
 
 pub(crate) fn verify(
     run: &VerifyRun<'_>,
-    files: &GivenFiles<Option<(Dem, GridPlan)>>,
-    (report, findings): (&mut VerifyReport, &mut Findings),
-) -> Result<(), VerifyError> {
-    let Some(opened) = &files.found else { return Ok(()) };
-    let compared = compare_all(run, opened, (report, findings));
-    VerifyError::unless_changed(&files.inputs, compared)
-}
-
-fn compare_all(
-    run: &VerifyRun<'_>,
     opened: &(Dem, GridPlan),
     (report, findings): (&mut VerifyReport, &mut Findings),
-) -> Result<(), VerifyError> {
+) -> Result<()> {
     let measured = deviations::measure(run, opened)?;
     let at_samples = if opened.1.nodes_are_samples() {
         measured.at_samples

@@ -32,10 +32,12 @@ fn levels(manifest: &Manifest, findings: &mut Findings) {
         return;
     };
     let quantum_m = manifest.vertical.quantum_m;
-    findings.look(
-        CheckId::LevelRecords,
+    look!(
+        findings,
+        LevelRecords,
         quantum_m.to_bits() == levels.quantum_m().to_bits(),
-        || format!("the height quantum is {quantum_m} m, not {} m", levels.quantum_m()),
+        "the height quantum is {quantum_m} m, not {} m",
+        levels.quantum_m()
     );
     for record in &manifest.levels {
         let level = record.level;
@@ -48,17 +50,21 @@ fn levels(manifest: &Manifest, findings: &mut Findings) {
             (cell.map(f64::to_bits), lengths.map(f64::to_bits))
         };
         // The build computes them in the same way, so they are equal to the last bit.
-        findings.look(CheckId::LevelRecords, bits(said) == bits(wanted), || {
-            format!("level {level} has cell, tolerances and margin {said:?}, not {wanted:?}")
-        });
+        look!(
+            findings,
+            LevelRecords,
+            bits(said) == bits(wanted),
+            "level {level} has cell, tolerances and margin {said:?}, not {wanted:?}"
+        );
         let least = levels.least_class(level).map(corniche_roads::FunctionalRoadClass::number);
-        findings.look(CheckId::LevelRecords, record.least_class == least, || {
-            format!(
-                "level {level} shows classes up to {}, not {}",
-                or_none(record.least_class),
-                or_none(least)
-            )
-        });
+        look!(
+            findings,
+            LevelRecords,
+            record.least_class == least,
+            "level {level} shows classes up to {}, not {}",
+            or_none(record.least_class),
+            or_none(least)
+        );
     }
 }
 
@@ -98,33 +104,40 @@ pub(crate) const CUT_M: f64 = 0.002;
 pub(crate) fn verify_sums(manifest: &Manifest, findings: &mut Findings) {
     let counts = &manifest.counts;
     let samples = &counts.samples;
-    findings.look(
-        CheckId::SampleSums,
+    look!(
+        findings,
+        SampleSums,
         samples.nodes == samples.with_data + samples.filled + samples.void,
-        || format!("{} nodes, but counts of {samples:?}", samples.nodes),
+        "{} nodes, but counts of {samples:?}",
+        samples.nodes
     );
     let lost: u64 = counts.roads_lost.iter().map(|loss| loss.roads).sum();
-    findings.look(CheckId::RoadSums, counts.roads_in == counts.roads_kept + lost, || {
-        format!("{} roads read, {} kept, {lost} lost", counts.roads_in, counts.roads_kept)
-    });
+    look!(
+        findings,
+        RoadSums,
+        counts.roads_in == counts.roads_kept + lost,
+        "{} roads read, {} kept, {lost} lost",
+        counts.roads_in,
+        counts.roads_kept
+    );
     let lost_um: u64 = counts.roads_lost.iter().map(|loss| loss.length_um).sum();
-    findings.look(CheckId::RoadSums, counts.roads_in_um == counts.roads_kept_um + lost_um, || {
-        format!(
-            "{} µm read, {} µm kept, {lost_um} µm lost",
-            counts.roads_in_um, counts.roads_kept_um
-        )
-    });
+    look!(
+        findings,
+        RoadSums,
+        counts.roads_in_um == counts.roads_kept_um + lost_um,
+        "{} µm read, {} µm kept, {lost_um} µm lost",
+        counts.roads_in_um,
+        counts.roads_kept_um
+    );
     let by_class: u64 = counts.classes.iter().map(|&(count, _)| count).sum();
     let by_class_um: u64 = counts.classes.iter().map(|&(_, length_um)| length_um).sum();
-    findings.look(
-        CheckId::RoadSums,
+    look!(
+        findings,
+        RoadSums,
         by_class == counts.roads_in && by_class_um == counts.roads_in_um,
-        || {
-            format!(
-                "{by_class} roads of {by_class_um} µm by class, {} of {} µm in all",
-                counts.roads_in, counts.roads_in_um
-            )
-        },
+        "{by_class} roads of {by_class_um} µm by class, {} of {} µm in all",
+        counts.roads_in,
+        counts.roads_in_um
     );
 }
 
@@ -138,20 +151,29 @@ pub(crate) fn verify_grid(manifest: &Manifest, findings: &mut Findings) {
         frame.x_m(north_east.i),
         frame.y_m(north_east.j),
     ];
-    findings.look(CheckId::Grid, corners.map(f64::to_bits) == bounds.map(f64::to_bits), || {
-        format!("the data's rectangle is {bounds:?}, but the nodes nearest to its corners are at {corners:?}")
-    });
+    look!(
+        findings,
+        Grid,
+        corners.map(f64::to_bits) == bounds.map(f64::to_bits),
+        "the data's rectangle is {bounds:?}, but the nodes nearest to its corners are at {corners:?}"
+    );
     let wanted = GridFrame::covering(frame.origin_m(), frame.cell(), south_west, north_east);
-    findings.look(CheckId::Grid, wanted.as_ref() == Ok(frame), || {
-        format!("the grid is {frame:?}, the smallest one that covers the data is {wanted:?}")
-    });
+    look!(
+        findings,
+        Grid,
+        wanted.as_ref() == Ok(frame),
+        "the grid is {frame:?}, the smallest one that covers the data is {wanted:?}"
+    );
     let counted = |low: i64, high: i64| u64::try_from(high - low + 1).unwrap_or_default();
     let nodes =
         counted(south_west.i, north_east.i).saturating_mul(counted(south_west.j, north_east.j));
     let said = manifest.counts.samples.nodes;
-    findings.look(CheckId::SampleSums, said == nodes, || {
-        format!("{said} nodes are recorded, the data's rectangle has {nodes}")
-    });
+    look!(
+        findings,
+        SampleSums,
+        said == nodes,
+        "{said} nodes are recorded, the data's rectangle has {nodes}"
+    );
 }
 
 /// The bounds that the build was given.

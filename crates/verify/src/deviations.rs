@@ -11,10 +11,10 @@ use corniche_tileset::{Distribution, Manifest, SampleSums, VerticalRecord};
 use corniche_work::{Stage, workers};
 
 use super::{
-    checks::{CheckId, Findings},
+    checks::Findings,
     decoded_tiles::DecodedTiles,
     each_tile::VerifyRun,
-    error::VerifyError,
+    error::{Result, VerifyError},
     report::ErrorFigures,
     samples,
     triangle_soup::{HEIGHT_ROUNDING_M, TriangleSoup},
@@ -28,11 +28,11 @@ pub(crate) struct TrueDeviation {
     /// The number of nodes that the TIN covers.
     pub nodes: u64,
     /// The number of nodes with data that the TIN does not cover.
-    pub(crate) uncovered: u64,
+    pub uncovered: u64,
     /// The lowest and the highest node with data beneath the tile.
     pub range_m: Option<[f32; 2]>,
     /// The number of uncovered nodes farther than one cell of the level from any void or edge.
-    pub(crate) stray: u64,
+    pub stray: u64,
 }
 
 impl TrueDeviation {
@@ -48,16 +48,13 @@ impl TrueDeviation {
 /// The result of the measurement.
 pub(crate) struct Measured {
     /// The deviation of every tile over the data, including tiles without ground.
-    pub(crate) by_tile: BTreeMap<TileId, TrueDeviation>,
+    pub by_tile: BTreeMap<TileId, TrueDeviation>,
     /// Per level, root first: distances at samples, if the nodes are samples; otherwise empty sums.
-    pub(crate) at_samples: Vec<SampleSums>,
+    pub at_samples: Vec<SampleSums>,
 }
 
 /// Compares the TINs of all levels with the elevation files.
-pub(crate) fn measure(
-    run: &VerifyRun<'_>,
-    (dem, plan): &(Dem, GridPlan),
-) -> Result<Measured, VerifyError> {
+pub(crate) fn measure(run: &VerifyRun<'_>, (dem, plan): &(Dem, GridPlan)) -> Result<Measured> {
     let manifest = run.package.manifest();
     let max_level = manifest.frame.max_level();
     // All finest tiles of the data, including those without ground: a coarser level may cover their
@@ -161,11 +158,7 @@ fn is_own_sample(id: TileId, read: &DemWindow, [column, row]: [usize; 2]) -> boo
 
 /// Whether a cell of a level lacks ground because one of its corners is void or beyond the data:
 /// then every node in the cell lies within one cell of that level from a void or an edge.
-fn has_void_corner(
-    cell: NodeIndex,
-    stride: i64,
-    reader: &mut HeightReader<'_>,
-) -> Result<bool, VerifyError> {
+fn has_void_corner(cell: NodeIndex, stride: i64, reader: &mut HeightReader<'_>) -> Result<bool> {
     for (i, j) in [(0, 0), (stride, 0), (0, stride), (stride, stride)] {
         let corner = NodeIndex { i: cell.i + i, j: cell.j - j };
         let node = reader.window(NodeWindow { corner, stride: 1, columns: 1, rows: 1 })?;
@@ -187,33 +180,42 @@ pub(crate) fn verify(
     tiles: &DecodedTiles<'_>,
     truths: &BTreeMap<TileId, TrueDeviation>,
     findings: &mut Findings,
-) -> Result<Vec<ErrorFigures>, VerifyError> {
+) -> Result<Vec<ErrorFigures>> {
     let manifest = tiles.package.manifest();
     let stored_m = check_tiles(tiles, truths, findings)?;
     let mut levels: BTreeMap<u8, TrueDeviation> = BTreeMap::new();
     for (&id, truth) in truths {
         // Tiles that do not exist count too: the nodes beneath them must be near a void or an edge.
-        findings.look(CheckId::Stray, truth.stray == 0, || {
-            format!("tile {id}: {} uncovered nodes are farther away", truth.stray)
-        });
+        look!(
+            findings,
+            Stray,
+            truth.stray == 0,
+            "tile {id}: {} uncovered nodes are farther away",
+            truth.stray
+        );
         levels.entry(id.z()).or_default().merge(*truth);
     }
     for level in &manifest.levels {
         let found = levels.get(&level.level).map_or(0, |truth| truth.uncovered);
-        findings.look(CheckId::Uncovered, found == level.uncovered_nodes, || {
-            format!(
-                "level {} records {} uncovered nodes, {found} were found",
-                level.level, level.uncovered_nodes
-            )
-        });
+        look!(
+            findings,
+            Uncovered,
+            found == level.uncovered_nodes,
+            "level {} records {} uncovered nodes, {found} were found",
+            level.level,
+            level.uncovered_nodes
+        );
     }
     let mut ratios = check_errors(manifest, &stored_m, truths, findings);
     let figures = levels.into_iter().map(|(level, truth)| {
         let tightness = Distribution::from_values(ratios.remove(&level).unwrap_or_default());
         let said = manifest.levels.get(usize::from(level)).and_then(|record| record.tightness);
-        findings.look(CheckId::Recorded, agree(said, tightness), || {
-            format!("level {level} records {said:?}, found {tightness:?}")
-        });
+        look!(
+            findings,
+            Recorded,
+            agree(said, tightness),
+            "level {level} records {said:?}, found {tightness:?}"
+        );
         ErrorFigures {
             level,
             tiles: stored_m.keys().filter(|id| id.z() == level).count() as u64,
@@ -231,25 +233,30 @@ fn check_tiles(
     tiles: &DecodedTiles<'_>,
     truths: &BTreeMap<TileId, TrueDeviation>,
     findings: &mut Findings,
-) -> Result<BTreeMap<TileId, f64>, VerifyError> {
+) -> Result<BTreeMap<TileId, f64>> {
     let mut stored_m = BTreeMap::new();
     for id in tiles.package.tile_ids()? {
         let tile = tiles.tile_at(id);
         let Some(terrain) = tile.terrain() else { continue };
         let said = terrain.uncovered_nodes;
         let truth = truths.get(&id).copied().unwrap_or_default();
-        findings.look(CheckId::Uncovered, said == truth.uncovered, || {
-            format!("tile {id} records {said} uncovered nodes, {} were found", truth.uncovered)
-        });
+        look!(
+            findings,
+            Uncovered,
+            said == truth.uncovered,
+            "tile {id} records {said} uncovered nodes, {} were found",
+            truth.uncovered
+        );
         let [low, high] = terrain.height_range_m;
         let said = [low, high].map(f64::to_bits);
         let holds = truth.range_m.is_none_or(|range| range.map(|m| f64::from(m).to_bits()) == said);
-        findings.look(CheckId::Ranges, holds, || {
-            format!(
-                "tile {id} records {low} to {high} m, the nodes beneath have {:?}",
-                truth.range_m
-            )
-        });
+        look!(
+            findings,
+            Ranges,
+            holds,
+            "tile {id} records {low} to {high} m, the nodes beneath have {:?}",
+            truth.range_m
+        );
         stored_m.insert(id, terrain.geometric_error_m);
     }
     Ok(stored_m)
@@ -268,17 +275,22 @@ fn check_errors(
     let mut loose = 0_u64;
     for (&id, &stored_m) in stored_m {
         let truth = truths.get(&id).copied().unwrap_or_default();
-        findings.look(CheckId::Bound, stored_m >= truth.largest_m - HEIGHT_ROUNDING_M, || {
-            format!(
-                "tile {id} stores an error of {stored_m} m, but is off by {} m",
-                truth.largest_m
-            )
-        });
+        look!(
+            findings,
+            Bound,
+            stored_m >= truth.largest_m - HEIGHT_ROUNDING_M,
+            "tile {id} stores an error of {stored_m} m, but is off by {} m",
+            truth.largest_m
+        );
         if id.z() == manifest.frame.max_level() {
             let most_m = manifest.settings.max_error_m + HEIGHT_ROUNDING_M;
-            findings.look(CheckId::Finest, truth.largest_m <= most_m, || {
-                format!("tile {id} is off by {} m", truth.largest_m)
-            });
+            look!(
+                findings,
+                Finest,
+                truth.largest_m <= most_m,
+                "tile {id} is off by {} m",
+                truth.largest_m
+            );
         }
         let children_m = id
             .children()
@@ -292,9 +304,12 @@ fn check_errors(
     }
     let count = stored_m.len() as u64;
     let is_tight = loose as f64 <= (1.0 - TIGHT_SHARE) * count as f64;
-    findings.look(CheckId::Tight, is_tight, || {
-        format!("{loose} of {count} tiles store more than twice the true error")
-    });
+    look!(
+        findings,
+        Tight,
+        is_tight,
+        "{loose} of {count} tiles store more than twice the true error"
+    );
     ratios
 }
 

@@ -12,20 +12,20 @@ use corniche_work::{Stage, workers};
 use super::{
     checks::{CheckId, Findings},
     decoded_tiles::DecodedTiles,
-    error::VerifyError,
+    error::{Result, VerifyError},
 };
 
 /// A running verification.
 pub(crate) struct VerifyRun<'a> {
-    pub(crate) package: &'a FilePackage,
-    pub(crate) tiles: DecodedTiles<'a>,
-    pub(crate) threads: usize,
-    pub(crate) observer: &'a dyn BuildObserver,
+    pub package: &'a FilePackage,
+    pub tiles: DecodedTiles<'a>,
+    pub threads: usize,
+    pub observer: &'a dyn BuildObserver,
 }
 
 /// Fails if some bytes of a package could not be read. An unreadable file says nothing about the
 /// package; but checks treat a tile that cannot be read as missing or damaged.
-pub(crate) fn check_readable(package: &FilePackage) -> Result<(), VerifyError> {
+pub(crate) fn check_readable(package: &FilePackage) -> Result<()> {
     package.failed_read().map_or(Ok(()), |error| Err(VerifyError::Read(error.clone())))
 }
 
@@ -34,9 +34,9 @@ impl VerifyRun<'_> {
     pub(crate) fn each_tile<T: Send>(
         &self,
         stage: Stage,
-        look: impl Fn(TileId) -> Result<T, VerifyError> + Sync,
+        look: impl Fn(TileId) -> Result<T> + Sync,
         mut take: impl FnMut(TileId, T),
-    ) -> Result<(), VerifyError> {
+    ) -> Result<()> {
         workers::side_by_side(
             (self.observer, stage),
             self.threads,
@@ -76,9 +76,9 @@ pub(crate) fn compare_in_order<T: PartialEq, N: Display>(
 /// The findings and the counts of the sections of a tile.
 #[derive(Default)]
 pub(crate) struct OfTile {
-    pub(crate) findings: Findings,
+    pub findings: Findings,
     /// One for each kind of section that is looked at; none if the tile cannot be read.
-    pub(crate) counts: Vec<SectionOfTile>,
+    pub counts: Vec<SectionOfTile>,
 }
 
 /// The sums that a manifest records of a kind of section.
@@ -105,7 +105,7 @@ pub(crate) fn look_at_sections(
     look_at: impl Fn(TileId) -> OfTile + Sync,
     recorded: &[RecordedSums<'_>],
     findings: &mut Findings,
-) -> Result<(), VerifyError> {
+) -> Result<()> {
     let mut sums: Vec<BTreeMap<u8, SectionSums>> = vec![BTreeMap::new(); recorded.len()];
     run.each_tile(
         stage,

@@ -78,7 +78,7 @@ pub enum VerifyError {
     #[error("the ground of the package could not be compared")]
     Ground(#[source] GroundError),
     #[error("intermediate results could not be stored in the folder for temporary files")]
-    Kept(#[source] ArtifactError),
+    Kept(#[from] ArtifactError),
     #[error(transparent)]
     Setup(InputError),
     #[error(
@@ -89,6 +89,9 @@ pub enum VerifyError {
     #[error("interrupted")]
     Interrupted,
 }
+
+/// What checks return.
+pub(crate) type Result<T, E = VerifyError> = std::result::Result<T, E>;
 
 corniche_dem::from_dem_errors!(VerifyError);
 
@@ -115,12 +118,6 @@ impl From<ExtractError> for VerifyError {
             ExtractError::Artifact(error) => Self::Kept(error),
             other => Self::Extract(other),
         }
-    }
-}
-
-impl From<ArtifactError> for VerifyError {
-    fn from(error: ArtifactError) -> Self {
-        Self::Kept(error)
     }
 }
 

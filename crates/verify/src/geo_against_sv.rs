@@ -49,10 +49,10 @@ struct Way {
 /// A tile with its ground, and the place of both on the lattice.
 pub(crate) struct TileView<'a> {
     pub payload: &'a TilePayload,
-    pub(crate) ground: &'a TriangleSoup,
+    pub ground: &'a TriangleSoup,
     pub place: TilePlace,
     /// The distance around an SV segment that its height range covers, in lattice steps.
-    pub(crate) margin_steps: i64,
+    pub margin_steps: i64,
     pub quantum_m: f64,
 }
 
@@ -72,9 +72,13 @@ pub(crate) fn verify_lines(
         for &point in points.iter().take_while(|_| is_within()) {
             let at = view.place.local(point);
             let holds = sv_points.contains(&point) || sv.is_on(at, SAME_LINE_STEPS, &work);
-            findings.look(CheckId::Methods, holds, || {
-                format!("{}: the GEO line passes {point:?}, where there is no SV line", name())
-            });
+            look!(
+                findings,
+                Methods,
+                holds,
+                "{}: the GEO line passes {point:?}, where there is no SV line",
+                name()
+            );
         }
         for &segment in sv.segments.iter().take_while(|_| is_within()) {
             let lines = geo.near(segment, SAME_LINE_STEPS, &work).take_while(|_| is_within());
@@ -82,13 +86,14 @@ pub(crate) fn verify_lines(
             let bare = bare.into_iter().find(|&piece| {
                 view.ground.meets(piece.map(|point| view.place.cells(point)), &work)
             });
-            findings.look(CheckId::Methods, bare.is_none(), || {
-                format!(
-                    "{}: no GEO line on the ground beneath the SV line from {:?}",
-                    name(),
-                    segment[0]
-                )
-            });
+            look!(
+                findings,
+                Methods,
+                bare.is_none(),
+                "{}: no GEO line on the ground beneath the SV line from {:?}",
+                name(),
+                segment[0]
+            );
         }
         // Lines that were compared only in part prove nothing, and may have been reported as bare.
         if let Err(error) = work.check() {
@@ -255,9 +260,12 @@ pub(crate) fn verify_ranges(view: &TileView<'_>, findings: &mut Findings) {
         for (segment, &[low_m, high_m]) in lines {
             let ends = segment.map(|point| view.place.cells(point));
             if let Err(error) = work.check() {
-                findings.look(CheckId::SvRange, false, || {
-                    format!("tile {id}: its segments lie over so much ground that no writer can have created them: {error}")
-                });
+                look!(
+                    findings,
+                    SvRange,
+                    false,
+                    "tile {id}: its segments lie over so much ground that no writer can have created them: {error}"
+                );
                 return;
             }
             let found = view.ground.range_near(ends, margin, &work);
@@ -270,13 +278,15 @@ pub(crate) fn verify_ranges(view: &TileView<'_>, findings: &mut Findings) {
                 let highs = steps(highest_m + less_m).ceil()..=steps(highest_m + more_m).ceil();
                 lows.contains(&steps(low_m)) && highs.contains(&steps(high_m))
             });
-            findings.look(CheckId::SvRange, holds, || {
-                format!(
-                    "way {} part {} in tile {id} has a segment with ground from {low_m} to {high_m} m, but it is \
+            look!(
+                findings,
+                SvRange,
+                holds,
+                "way {} part {} in tile {id} has a segment with ground from {low_m} to {high_m} m, but it is \
                      {found:?}",
-                    road.way_id, road.part
-                )
-            });
+                road.way_id,
+                road.part
+            );
         }
     }
 }

@@ -25,16 +25,21 @@ pub(crate) fn verify(manifest: &Manifest, findings: &mut Findings) {
     let crs = match recorded(manifest) {
         Ok(crs) => crs,
         Err(error) => {
-            findings.look(CheckId::Crs, false, || format!("the WKT cannot be used: {error}"));
+            look!(findings, Crs, false, "the WKT cannot be used: {error}");
             return;
         }
     };
-    findings.look(CheckId::Crs, crs.label() == manifest.crs, || {
-        format!("the CRS is {:?}, its WKT is that of {:?}", manifest.crs, crs.label())
-    });
+    look!(
+        findings,
+        Crs,
+        crs.label() == manifest.crs,
+        "the CRS is {:?}, its WKT is that of {:?}",
+        manifest.crs,
+        crs.label()
+    );
     let looked_at = datum_operations(manifest, &crs, findings);
     if let Err(error) = looked_at.and_then(|()| positions(manifest, &crs, findings)) {
-        findings.look(CheckId::Crs, false, || format!("positions cannot be transformed: {error}"));
+        look!(findings, Crs, false, "positions cannot be transformed: {error}");
     }
 }
 
@@ -112,14 +117,21 @@ fn check_scales(manifest: &Manifest, scales: &[Option<[f64; 2]>], findings: &mut
         let is_at_pole = degrees.max_y >= POLAR_DEG || degrees.min_y <= -POLAR_DEG;
         let most = if is_at_pole { most.max(LARGEST_SCALE) } else { most };
         let holds = least <= said[0] && said.is_sorted() && said[2] <= most;
-        findings.look(CheckId::Scale, holds, || {
-            format!("axis {axis}: scales {said:?} are recorded, the data has {least} to {most}")
-        });
+        look!(
+            findings,
+            Scale,
+            holds,
+            "axis {axis}: scales {said:?} are recorded, the data has {least} to {most}"
+        );
     }
     let mean = (scale.center[0] * scale.center[1]).sqrt();
-    findings.look(CheckId::Scale, manifest.point_scale.to_bits() == mean.to_bits(), || {
-        format!("the recorded scale is {}, the one of its axes is {mean}", manifest.point_scale)
-    });
+    look!(
+        findings,
+        Scale,
+        manifest.point_scale.to_bits() == mean.to_bits(),
+        "the recorded scale is {}, the one of its axes is {mean}",
+        manifest.point_scale
+    );
 }
 
 /// The distance of an extreme between positions of [`grid`] from the values at these positions: for
@@ -166,9 +178,12 @@ fn rectangles(manifest: &Manifest, projection: &dyn Projection, findings: &mut F
             / around.max_y.abs().max(around.min_y.abs()).to_radians().cos().max(0.01),
         rim_m / METRES_PER_DEGREE,
     ];
-    findings.look(CheckId::Bounds, carried && holds(around, degrees, rim_deg), || {
-        format!("degrees {degrees:?} reach beyond those of the data's rectangle, {around:?}")
-    });
+    look!(
+        findings,
+        Bounds,
+        carried && holds(around, degrees, rim_deg),
+        "degrees {degrees:?} reach beyond those of the data's rectangle, {around:?}"
+    );
 
     let mut points = points_around(degrees);
     let carried = projection.working_from_wgs84(&mut points).is_ok();
@@ -176,9 +191,12 @@ fn rectangles(manifest: &Manifest, projection: &dyn Projection, findings: &mut F
     for at in points.into_iter().filter(|at| at[0].is_finite() && at[1].is_finite()) {
         around.include(at);
     }
-    findings.look(CheckId::Bounds, carried && holds(around, data, [rim_m; 2]), || {
-        format!("the data's rectangle {data:?} reaches beyond that of the degrees, {around:?}")
-    });
+    look!(
+        findings,
+        Bounds,
+        carried && holds(around, data, [rim_m; 2]),
+        "the data's rectangle {data:?} reaches beyond that of the degrees, {around:?}"
+    );
 }
 
 /// Whether `outer`, widened by `rim`, contains `inner`.
@@ -194,9 +212,12 @@ fn holds(outer: Bounds, inner: Bounds, rim: [f64; 2]) -> bool {
 fn table(manifest: &Manifest, projection: &dyn Projection, findings: &mut Findings) {
     let table = &manifest.coordinates;
     let (bounds, data) = (table.bounds(), manifest.data_bounds);
-    findings.look(CheckId::Coordinates, holds(bounds, data, [0.0; 2]), || {
-        format!("the table covers {bounds:?}, the data lie in {data:?}")
-    });
+    look!(
+        findings,
+        Coordinates,
+        holds(bounds, data, [0.0; 2]),
+        "the table covers {bounds:?}, the data lie in {data:?}"
+    );
     // Samples are at every second position, and the least accurate positions, halfway between them,
     // at the others.
     let last = 2 * (table.size() - 1);
@@ -213,9 +234,12 @@ fn table(manifest: &Manifest, projection: &dyn Projection, findings: &mut Findin
         if off_m.is_nan() { f64::INFINITY } else { worst_m.max(off_m) }
     });
     // A little more than the tolerance, because the build checks only the middles of meshes.
-    findings.look(CheckId::Coordinates, carried && worst_m <= 1.5 * TABLE_M, || {
-        format!("the table is off by {worst_m} m")
-    });
+    look!(
+        findings,
+        Coordinates,
+        carried && worst_m <= 1.5 * TABLE_M,
+        "the table is off by {worst_m} m"
+    );
 }
 
 /// A position in a rectangle that is divided into `of` steps along each side.

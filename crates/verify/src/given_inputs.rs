@@ -12,7 +12,7 @@ use corniche_tileset::Manifest;
 use super::{
     checks::{Check, Findings},
     dem_inputs,
-    error::VerifyError,
+    error::{Result, VerifyError},
     osm, photo_files,
     verify_settings::{GivenFiles, VerifySettings},
 };
@@ -26,7 +26,7 @@ pub(crate) struct GivenInputs {
     /// The extracts, in the order in which the build read them.
     pub osm: Option<GivenFiles<Vec<PathBuf>>>,
     /// The findings about the files.
-    pub(crate) findings: Findings,
+    pub findings: Findings,
 }
 
 impl GivenInputs {
@@ -35,7 +35,7 @@ impl GivenInputs {
         manifest: &Manifest,
         settings: &VerifySettings,
         observer: &dyn BuildObserver,
-    ) -> Result<Self, VerifyError> {
+    ) -> Result<Self> {
         let mut findings = Findings::default();
         let mut checks: Vec<Check> = Vec::new();
         let dem = (!settings.dem.is_empty()).then(|| {
@@ -66,8 +66,8 @@ impl GivenInputs {
 
 fn looked_at<T>(
     inputs: InputFiles,
-    look: impl FnOnce(&InputFiles) -> Result<T, VerifyError>,
-) -> Result<GivenFiles<T>, VerifyError> {
+    look: impl FnOnce(&InputFiles) -> Result<T>,
+) -> Result<GivenFiles<T>> {
     let found = look(&inputs);
     let found = VerifyError::unless_changed(&inputs, found)?;
     Ok(GivenFiles { inputs, found })

@@ -2,23 +2,25 @@
 
 use corniche_tileset::{FilePackage, ToolRecord};
 
-use super::{
-    checks::{CheckId, Findings},
-    error::VerifyError,
-};
+use super::{checks::Findings, error::Result};
 
 /// The number of characters of a text that a finding shows.
 const SHOWN: usize = 200;
 
-pub(crate) fn verify(package: &FilePackage, findings: &mut Findings) -> Result<(), VerifyError> {
+pub(crate) fn verify(package: &FilePackage, findings: &mut Findings) -> Result<()> {
     let tiles = package.tile_ids()?.len() as u64;
     let said = fields(&package.tool_record()?);
     let wanted = fields(&ToolRecord::from_manifest(package.manifest(), tiles));
     for ((name, said), (_, wanted)) in said.into_iter().zip(wanted) {
         let shown = |text: &str| text.chars().take(SHOWN).collect::<String>();
-        findings.look(CheckId::Header, said == wanted, || {
-            format!("{name} is {}, not {}", shown(&said), shown(&wanted))
-        });
+        look!(
+            findings,
+            Header,
+            said == wanted,
+            "{name} is {}, not {}",
+            shown(&said),
+            shown(&wanted)
+        );
     }
     Ok(())
 }

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use corniche_geom::{LatticeBounds, LatticePoint, TileId, cross};
-use corniche_layers::{ClassForm, LayerForm, LayerGeometry, LayerTable, OsmObject};
+use corniche_layers::{ClassForm, LayerForm, LayerGeometry, OsmObject};
 use corniche_pieces::layers::tile_section::SectionOfTile;
 use corniche_spec::settings_record::layer_table_record;
 use corniche_tileset::{
@@ -17,10 +17,11 @@ use super::{
     checks::{CheckId, Findings, as_json},
     derived_records::clip_of,
     each_tile::{OfTile, RecordedSums, VerifyRun, check_totals, look_at_sections},
-    error::VerifyError,
+    error::Result,
+    osm_layers,
 };
 
-pub(crate) fn verify(run: &VerifyRun<'_>, findings: &mut Findings) -> Result<(), VerifyError> {
+pub(crate) fn verify(run: &VerifyRun<'_>, findings: &mut Findings) -> Result<()> {
     let manifest = run.package.manifest();
     check_tables(manifest, findings);
     let recorded: Vec<RecordedSums<'_>> = manifest
@@ -44,8 +45,7 @@ pub(crate) fn verify(run: &VerifyRun<'_>, findings: &mut Findings) -> Result<(),
 
 /// Checks that the settings name the tables of the layers, and that each class can be reached.
 fn check_tables(manifest: &Manifest, findings: &mut Findings) {
-    let tables: Vec<LayerTable> =
-        manifest.layers.iter().filter_map(|of| LayerTable::new(of.table.clone()).ok()).collect();
+    let tables = osm_layers::tables(manifest);
     let found: Vec<_> = tables.iter().map(layer_table_record).collect();
     findings.look(CheckId::LayerTables, found == manifest.settings.layers, || {
         let [found, named] = [&found, &manifest.settings.layers].map(as_json);
@@ -137,9 +137,7 @@ impl LayerOfTile<'_> {
         }
         let is_sorted = objects.is_sorted_by_key(|of| (of.class, of.object));
         let are_areas = table.geometry == LayerGeometry::Area;
-        findings.look(CheckId::LayerOrder, are_areas || is_sorted, || {
-            format!("layer {:?} in tile {id}", table.id)
-        });
+        look!(findings, LayerOrder, are_areas || is_sorted, "layer {:?} in tile {id}", table.id);
         if are_areas {
             for beside in beside {
                 self.look_at_seam(beside, findings);

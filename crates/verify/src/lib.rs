@@ -1,8 +1,10 @@
 //! Verifies packages: checks every tile and every recorded number of a package.
 
+#[macro_use]
+mod checks;
+
 pub mod area_seams;
 mod attributes;
-mod checks;
 mod decoded_tiles;
 mod dem_inputs;
 mod derived_records;
@@ -106,15 +108,21 @@ fn look_at_all(
     georeference::verify(package.manifest(), &mut findings);
     if let Some(files) = &dem {
         given.push(Needs::Dem);
-        dem_inputs::verify(run, files, (&mut report, &mut findings))?;
+        if let Some(opened) = &files.found {
+            let compared = dem_inputs::verify(run, opened, (&mut report, &mut findings));
+            VerifyError::unless_changed(&files.inputs, compared)?;
+        }
     }
     if let Some(files) = &photo {
         given.push(Needs::Photo);
-        photo_files::verify(run, files, &settings.photo, &mut findings)?;
+        let compared = photo_files::verify(run, &settings.photo, &mut findings);
+        VerifyError::unless_changed(&files.inputs, compared)?;
     }
     if let (Some(asked), Some(files)) = (&settings.osm, &osm) {
         given.push(Needs::Osm);
-        osm::verify(run, asked, files, settings.polygon.as_ref(), &mut findings)?;
+        let polygon = settings.polygon.as_ref();
+        let compared = osm::verify(run, asked, &files.found, polygon, &mut findings);
+        VerifyError::unless_changed(&files.inputs, compared)?;
     }
     report.checks = findings.into_checks(&given);
     Ok(report)

@@ -6,8 +6,8 @@ use corniche_drape::OwnedBorders;
 use corniche_geom::LatticeBounds;
 use corniche_network::{Breaks, Chains, Network, NetworkBuilder};
 use corniche_osm::{ExtractSummary, LayerSink, Layers};
-use corniche_pieces::ExtractError;
 use corniche_pieces::{
+    ExtractError,
     layers::fixed_points::road_of_part,
     roads::{
         layer::NEAR_M,

@@ -38,32 +38,21 @@ use super::{
     dem_inputs::{are_recorded, have_same_hashes},
     derived_records,
     each_tile::VerifyRun,
-    error::VerifyError,
+    error::{Result, VerifyError},
     georeference, osm_layers,
     osm_tile::{Laying, OsmTileFindings, look_at},
     polygon_cut,
     temporary_store::TemporaryStore,
-    verify_settings::{GivenFiles, VerifyOsm},
+    verify_settings::VerifyOsm,
 };
 
 pub(crate) fn verify(
     run: &VerifyRun<'_>,
     osm: &VerifyOsm,
-    files: &GivenFiles<Vec<PathBuf>>,
-    polygon: Option<&RegionPolygons>,
-    findings: &mut Findings,
-) -> Result<(), VerifyError> {
-    let compared = compare_all(run, osm, &files.found, polygon, findings);
-    VerifyError::unless_changed(&files.inputs, compared)
-}
-
-fn compare_all(
-    run: &VerifyRun<'_>,
-    osm: &VerifyOsm,
     paths: &[PathBuf],
     polygon: Option<&RegionPolygons>,
     findings: &mut Findings,
-) -> Result<(), VerifyError> {
+) -> Result<()> {
     let manifest = run.package.manifest();
     let tables = osm_layers::tables(manifest);
     // If one of them is missing, the check `levels.derived` or `manifest.crs` is broken, and roads
@@ -142,7 +131,7 @@ pub(crate) fn check_inputs(
     inputs: &InputFiles,
     findings: &mut Findings,
     observer: &dyn BuildObserver,
-) -> Result<Vec<PathBuf>, VerifyError> {
+) -> Result<Vec<PathBuf>> {
     if !manifest.has_extract() {
         return Err(VerifyError::NoExtract);
     }
@@ -167,15 +156,21 @@ pub(crate) fn check_inputs(
     // Older packages did not record the names of classes.
     let names_of_classes = settings.class_labels.as_ref();
     let is_so_called = names_of_classes.is_none_or(|labels| osm.table.class_labels() == **labels);
-    findings.look(CheckId::OsmInputs, is_so_called, || {
-        format!(
-            "the class names of FRC table {:?} differ from the recorded ones",
-            settings.frc_table
-        )
-    });
-    findings.look(CheckId::OsmInputs, osm.table.name() == settings.frc_table, || {
-        format!("the FRC table is {:?}, {:?} is recorded", osm.table.name(), settings.frc_table)
-    });
+    look!(
+        findings,
+        OsmInputs,
+        is_so_called,
+        "the class names of FRC table {:?} differ from the recorded ones",
+        settings.frc_table
+    );
+    look!(
+        findings,
+        OsmInputs,
+        osm.table.name() == settings.frc_table,
+        "the FRC table is {:?}, {:?} is recorded",
+        osm.table.name(),
+        settings.frc_table
+    );
     let mut hashed: Vec<(&InputRecord, &PathBuf)> = given.iter().zip(&osm.paths).collect();
     let in_order = extracts().filter_map(|said| {
         let at = hashed.iter().position(|(found, _)| found.sha256 == said.sha256)?;
@@ -192,7 +187,7 @@ fn lay(
     fates: &mut LossFold<'_>,
     run: &VerifyRun<'_>,
     findings: &mut Findings,
-) -> Result<BTreeMap<(u8, u8), ClassSums>, VerifyError> {
+) -> Result<BTreeMap<(u8, u8), ClassSums>> {
     let layers = run.package.manifest().layers.len();
     let [first, last] = laying.data;
     let mut ids = run.package.tile_ids()?;
@@ -226,32 +221,27 @@ fn lay(
 /// Compares the counts and lengths of roads.
 fn check_counts(manifest: &Manifest, roads: &RoadTotals, losses: &Sums, findings: &mut Findings) {
     let said = &manifest.counts;
-    let wanted = road_counts(said.samples, roads, losses);
-    let mut same = |what: &str, said: String, found: String| {
-        findings.look(CheckId::OsmCounts, said == found, || {
-            format!("{what}: recorded {said}, in the extract {found}")
-        });
-    };
-    same("roads_in", as_json(&said.roads_in), as_json(&wanted.roads_in));
-    same("roads_kept", as_json(&said.roads_kept), as_json(&wanted.roads_kept));
-    same("defects", as_json(&said.defects), as_json(&wanted.defects));
-    same("unknown_highways", as_json(&said.unknown_highways), as_json(&wanted.unknown_highways));
-    same("blobs_passed_over", as_json(&said.blobs_passed_over), as_json(&wanted.blobs_passed_over));
-    same(
-        "tags_taken_otherwise",
-        as_json(&said.tags_taken_otherwise),
-        as_json(&wanted.tags_taken_otherwise),
-    );
-    same("highways_in", as_json(&said.highways_in), as_json(&wanted.highways_in));
-    same("highways_left_out", as_json(&said.highways_left_out), as_json(&wanted.highways_left_out));
-    same("left_out", as_json(&said.left_out), as_json(&wanted.left_out));
-    same("roads_in_um", as_json(&said.roads_in_um), as_json(&wanted.roads_in_um));
-    same("roads_kept_um", as_json(&said.roads_kept_um), as_json(&wanted.roads_kept_um));
+    let mut wanted = road_counts(said.samples, roads, losses);
     // Older packages count losses in the padding of tiles differently.
-    let is_of_before = said.roads_lost == losses.lost_by_tiles;
-    let lost = if is_of_before { &losses.lost_by_tiles } else { &wanted.roads_lost };
-    same("roads_lost", as_json(&said.roads_lost), as_json(lost));
-    same("classes", as_json(&said.classes), as_json(&wanted.classes));
+    if said.roads_lost == losses.lost_by_tiles {
+        wanted.roads_lost.clone_from(&losses.lost_by_tiles);
+    }
+    macro_rules! same {
+        ($($what:ident)*) => {$(
+            let [recorded, found] = [&said.$what, &wanted.$what].map(as_json);
+            let what = stringify!($what);
+            look!(
+                findings,
+                OsmCounts,
+                recorded == found,
+                "{what}: recorded {recorded}, in the extract {found}"
+            );
+        )*};
+    }
+    same! {
+        roads_in roads_kept defects unknown_highways blobs_passed_over tags_taken_otherwise
+        highways_in highways_left_out left_out roads_in_um roads_kept_um roads_lost classes
+    }
 }
 
 /// Compares the numbers of source points and simplified points of each level and class.
@@ -273,11 +263,13 @@ fn check_growth(
     let keys: std::collections::BTreeSet<_> = wanted.keys().chain(said.keys()).collect();
     for key in keys {
         let (said, wanted) = (said.get(key), wanted.get(key));
-        findings.look(CheckId::OsmGrowth, said == wanted, || {
-            format!(
-                "level {} class {}: {said:?} source and simplified points are recorded, {wanted:?} were found",
-                key.0, key.1
-            )
-        });
+        look!(
+            findings,
+            OsmGrowth,
+            said == wanted,
+            "level {} class {}: {said:?} source and simplified points are recorded, {wanted:?} were found",
+            key.0,
+            key.1
+        );
     }
 }

@@ -3,8 +3,8 @@
 
 use corniche_geom::TileId;
 use corniche_layers::{LayerGeometry, LayerTable};
-use corniche_pieces::ExtractError;
 use corniche_pieces::{
+    ExtractError,
     layers::{
         SectionLayer,
         tile_section::{LayerTotals, TileSection},
@@ -20,7 +20,7 @@ use serde::Serialize;
 use super::{
     checks::{CheckId, Findings, as_json},
     each_tile::{VerifyRun, compare_in_order},
-    error::VerifyError,
+    error::Result,
 };
 
 /// The tables of the package's layers.
@@ -34,7 +34,7 @@ pub(crate) fn compare_layers(
     run: &VerifyRun<'_>,
     store: &dyn Artifacts,
     findings: &mut Findings,
-) -> Result<(), VerifyError> {
+) -> Result<()> {
     let manifest = run.package.manifest();
     let frame = &manifest.frame;
     for (slot, LayerRecord { table, counts, .. }) in manifest.layers() {
@@ -71,7 +71,7 @@ pub(crate) fn compare_spans(
     run: &VerifyRun<'_>,
     (of, kept): (SpanInputs<'_>, &losses::Sums),
     findings: &mut Findings,
-) -> Result<(), VerifyError> {
+) -> Result<()> {
     let &VerifyRun { package, ref tiles, threads, observer } = run;
     let manifest = package.manifest();
     let (frame, quantum_m) = (&manifest.frame, manifest.vertical.quantum_m);
@@ -135,7 +135,7 @@ fn compare<T: PartialEq>(
         impl Fn(&T) -> String + Sync,
     >,
     findings: &mut Findings,
-) -> Result<(), VerifyError> {
+) -> Result<()> {
     let look_at = |id: TileId| {
         let mut findings = Findings::default();
         // Unreadable tiles are reported by the check of tiles.

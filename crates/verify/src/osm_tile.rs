@@ -24,20 +24,20 @@ pub(crate) struct Laying<'a> {
     pub tiles: &'a DecodedTiles<'a>,
     pub levels: &'a Levels,
     /// The first and the last of the finest tiles of the data.
-    pub(crate) data: [TileId; 2],
+    pub data: [TileId; 2],
     /// Whether the package has spans.
     pub spans: bool,
-    pub(crate) lengths: &'a TrueLengths<'a>,
+    pub lengths: &'a TrueLengths<'a>,
 }
 
 /// The findings of a worker in one tile.
 pub(crate) struct OsmTileFindings {
-    pub(crate) findings: Findings,
-    pub(crate) fates: Vec<(u32, RoadFate)>,
+    pub findings: Findings,
+    pub fates: Vec<(u32, RoadFate)>,
     /// Sums by class, for a tile with ground.
     pub classes: BTreeMap<u8, ClassSums>,
     /// The ground beneath bridges and tunnels.
-    pub(crate) ground_lines: Vec<SpanGroundLine>,
+    pub ground_lines: Vec<SpanGroundLine>,
 }
 
 pub(crate) fn look_at(laying: &Laying<'_>, id: TileId, pieces: &TilePieces) -> OsmTileFindings {

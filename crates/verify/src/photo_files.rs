@@ -24,27 +24,16 @@ use super::{
     checks::{Check, CheckId, Findings},
     dem_inputs::{are_recorded, have_same_hashes},
     each_tile::VerifyRun,
-    error::VerifyError,
+    error::{Result, VerifyError},
     georeference,
     temporary_store::TemporaryStore,
-    verify_settings::GivenFiles,
 };
 
 pub(crate) fn verify(
     run: &VerifyRun<'_>,
-    files: &GivenFiles<()>,
     paths: &[PathBuf],
     findings: &mut Findings,
-) -> Result<(), VerifyError> {
-    let compared = compare_all(run, paths, findings);
-    VerifyError::unless_changed(&files.inputs, compared)
-}
-
-fn compare_all(
-    run: &VerifyRun<'_>,
-    paths: &[PathBuf],
-    findings: &mut Findings,
-) -> Result<(), VerifyError> {
+) -> Result<()> {
     let manifest = run.package.manifest();
     let Some(record) = manifest.settings.photo else { return Ok(()) };
     // If one of them fails, the check `manifest.crs` or `manifest.grid` is broken, and photos
@@ -67,7 +56,7 @@ pub(crate) fn check_inputs(
     paths: &[PathBuf],
     given: &[InputRecord],
     findings: &mut Findings,
-) -> Result<(), VerifyError> {
+) -> Result<()> {
     if manifest.settings.photo.is_none() {
         return Err(VerifyError::NoPhotos);
     }
@@ -94,7 +83,7 @@ struct Comparison<'a> {
 
 impl Comparison<'_> {
     /// Compares the finest level, then each coarser level from the rasters of the level beneath.
-    fn compare(&self, findings: &mut Findings) -> Result<(), VerifyError> {
+    fn compare(&self, findings: &mut Findings) -> Result<()> {
         let &VerifyRun { threads, observer, .. } = self.run;
         let finest = self.data.level();
         let all = |level: u8| self.data.above(level).in_order_within(TileId::ROOT);
@@ -119,14 +108,14 @@ impl Comparison<'_> {
         Ok(())
     }
 
-    fn finest(&self, reader: &mut PhotoReader<'_>, id: TileId) -> Result<Findings, VerifyError> {
+    fn finest(&self, reader: &mut PhotoReader<'_>, id: TileId) -> Result<Findings> {
         let texels = reader.window(self.photos.texels().tile(id, PHOTO_BORDER))?;
         let raster = rasters::of_texels(&texels, self.record.levels);
         rasters::put(&self.work.store, id, &raster)?;
         Ok(look_at(self.run.package, id, self.record, &texels))
     }
 
-    fn coarse(&self, id: TileId) -> Result<Findings, VerifyError> {
+    fn coarse(&self, id: TileId) -> Result<Findings> {
         let store = &self.work.store;
         let levels = self.record.levels_on(id.z(), self.data.level());
         let border = PHOTO_BORDER << (1 - levels);
@@ -166,25 +155,30 @@ pub(crate) fn look_at(
     let Some(payload) = package.tile(id).ok().flatten() else { return findings };
     let Ok(photo) = decode_photo(&payload, id) else { return findings };
     let Some(photo) = photo else {
-        findings.look(CheckId::PhotoCover, texels.is_empty(), || {
-            format!("tile {id} has no photo, but the photos cover it")
-        });
+        look!(
+            findings,
+            PhotoCover,
+            texels.is_empty(),
+            "tile {id} has no photo, but the photos cover it"
+        );
         return findings;
     };
     if photo.levels != record.levels_on(id.z(), package.manifest().frame.max_level()) {
         return findings;
     }
     if texels.is_empty() {
-        findings.look(CheckId::PhotoCover, false, || {
-            format!("tile {id} has a photo, but no photo covers it")
-        });
+        look!(findings, PhotoCover, false, "tile {id} has a photo, but no photo covers it");
         return findings;
     }
     let side = photo.side();
     let wrong = covers(texels.rgba()).zip(covers(&photo.rgba)).filter(|(a, b)| a != b).count();
-    findings.look(CheckId::PhotoCover, wrong == 0, || {
-        format!("{wrong} of {} texels of tile {id} have a photo where there is none, or the other way round", side * side)
-    });
+    look!(
+        findings,
+        PhotoCover,
+        wrong == 0,
+        "{wrong} of {} texels of tile {id} have a photo where there is none, or the other way round",
+        side * side
+    );
     let files = Picture { side, rgba: texels.rgba() };
     let own = Picture { side, rgba: &photo.rgba };
     look_at_place(id, &files, &own, &mut findings);
@@ -265,12 +259,14 @@ fn look_at_place(id: TileId, files: &Picture<'_>, own: &Picture<'_>, findings: &
     let Some((here, _)) = found([0, 0]) else { return };
     let best = around.filter_map(found).min_by(|(a, _), (b, _)| a.total_cmp(b));
     let Some((moved, [east, south])) = best else { return };
-    findings.look(CheckId::PhotoPlace, moved >= BETTER * here - ROUNDING, || {
-        format!(
-            "the photo of tile {id} differs by {here:.1} grey levels, and by {moved:.1} when shifted by {} texels east and {} south",
-            -east, -south
-        )
-    });
+    look!(
+        findings,
+        PhotoPlace,
+        moved >= BETTER * here - ROUNDING,
+        "the photo of tile {id} differs by {here:.1} grey levels, and by {moved:.1} when shifted by {} texels east and {} south",
+        -east,
+        -south
+    );
 }
 
 /// Checks that colours differ by no more than the loss of compressing the files' texels again.
@@ -295,8 +291,11 @@ fn look_at_colours(
     for (what, found, most) in
         [("", found[0], most[0]), ("the mean of a block of ", found[1], most[1])]
     {
-        findings.look(CheckId::PhotoColours, found <= most, || {
-            format!("{what}the photo of tile {id} is off by {found:.1} grey levels, compression explains {most:.1}")
-        });
+        look!(
+            findings,
+            PhotoColours,
+            found <= most,
+            "{what}the photo of tile {id} is off by {found:.1} grey levels, compression explains {most:.1}"
+        );
     }
 }

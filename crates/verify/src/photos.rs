@@ -12,7 +12,7 @@ use corniche_work::Stage;
 use super::{
     checks::{CheckId, Findings, as_json},
     each_tile::VerifyRun,
-    error::VerifyError,
+    error::Result,
 };
 
 /// The largest root mean square difference between two compressed versions of the same texels, in
@@ -37,7 +37,7 @@ struct PhotoFindings {
     bytes: u64,
 }
 
-pub(crate) fn verify(run: &VerifyRun<'_>, findings: &mut Findings) -> Result<(), VerifyError> {
+pub(crate) fn verify(run: &VerifyRun<'_>, findings: &mut Findings) -> Result<()> {
     let package = run.package;
     let manifest = package.manifest();
     let Some(record) = manifest.settings.photo else {
@@ -63,9 +63,14 @@ pub(crate) fn verify(run: &VerifyRun<'_>, findings: &mut Findings) -> Result<(),
     let sums =
         sums.into_iter().map(|(level, [tiles, bytes])| PhotoLevelRecord { level, tiles, bytes });
     let sums: Vec<PhotoLevelRecord> = sums.collect();
-    findings.look(CheckId::PhotoSums, sums == manifest.photos, || {
-        format!("{} in the tiles, {} are recorded", as_json(&sums), as_json(&manifest.photos))
-    });
+    look!(
+        findings,
+        PhotoSums,
+        sums == manifest.photos,
+        "{} in the tiles, {} are recorded",
+        as_json(&sums),
+        as_json(&manifest.photos)
+    );
     Ok(())
 }
 
@@ -97,9 +102,13 @@ fn look_at(
     };
     drop(payload);
     let levels = record.levels_on(id.z(), package.manifest().frame.max_level());
-    findings.look(CheckId::PhotoWhole, photo.levels == levels, || {
-        format!("the photo of tile {id} has {} levels, {levels} are recorded", photo.levels)
-    });
+    look!(
+        findings,
+        PhotoWhole,
+        photo.levels == levels,
+        "the photo of tile {id} has {} levels, {levels} are recorded",
+        photo.levels
+    );
     let own = texels(&photo);
     let most = most_difference(record.quality);
     for (east, south) in [(1, 0), (0, 1)] {

@@ -4,13 +4,10 @@ use corniche_gis::RegionPolygons;
 use corniche_spec::settings_record::polygon_sha256;
 use corniche_tileset::Manifest;
 
-use super::error::VerifyError;
+use super::error::{Result, VerifyError};
 
 /// Fails if a polygon is needed and missing, or another one is given.
-pub(crate) fn check(
-    manifest: &Manifest,
-    polygon: Option<&RegionPolygons>,
-) -> Result<(), VerifyError> {
+pub(crate) fn check(manifest: &Manifest, polygon: Option<&RegionPolygons>) -> Result<()> {
     match (&manifest.settings.polygon, polygon) {
         (None, None) => Ok(()),
         (Some(recorded), None) => {

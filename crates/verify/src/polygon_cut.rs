@@ -12,7 +12,7 @@ use corniche_work::Stage;
 use super::{
     checks::{CheckId, Findings},
     each_tile::VerifyRun,
-    error::VerifyError,
+    error::Result,
     geo_against_sv::distance,
 };
 
@@ -30,7 +30,7 @@ pub(crate) fn verify(
     run: &VerifyRun<'_>,
     region: &LatticeRegion,
     findings: &mut Findings,
-) -> Result<(), VerifyError> {
+) -> Result<()> {
     let package = run.package;
     let manifest = package.manifest();
     let frame = &manifest.frame;

@@ -11,7 +11,10 @@ use corniche_tileset::FilePackage;
 use corniche_work::Stage;
 
 use super::{
-    checks::Findings, error::VerifyError, georeference, osm, temporary_store::TemporaryStore,
+    checks::Findings,
+    error::{Result, VerifyError},
+    georeference, osm,
+    temporary_store::TemporaryStore,
     verify_settings::VerifyOsm,
 };
 
@@ -25,7 +28,7 @@ pub(crate) fn read_again(
     (extract, layers): (&VerifyOsm, Layers<'_>),
     threads: usize,
     observer: &dyn BuildObserver,
-) -> Result<(), VerifyError> {
+) -> Result<()> {
     let others = OtherInputs { osm: &extract.paths, polygon: None, photo: &[] };
     let inputs = InputFiles::find(&[], others)?;
     let read = read(package, (extract, layers), (&inputs, threads), observer);
@@ -37,7 +40,7 @@ fn read(
     (extract, layers): (&VerifyOsm, Layers<'_>),
     (inputs, threads): (&InputFiles, usize),
     observer: &dyn BuildObserver,
-) -> Result<(), VerifyError> {
+) -> Result<()> {
     let manifest = package.manifest();
     let mut findings = Findings::default();
     let paths = osm::check_inputs(manifest, extract, inputs, &mut findings, observer)?;

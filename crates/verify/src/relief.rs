@@ -58,12 +58,13 @@ pub(crate) fn verify(
                 (None, None) => true,
                 _ => false,
             };
-            findings.look(CheckId::Relief, holds, || {
-                format!(
-                    "tile {id}: the relief has {found_m:?} at node {column}, {row}, the DEM {wanted_m:?}; the relief states a bound of {} m",
-                    relief.greatest_error_m()
-                )
-            });
+            look!(
+                findings,
+                Relief,
+                holds,
+                "tile {id}: the relief has {found_m:?} at node {column}, {row}, the DEM {wanted_m:?}; the relief states a bound of {} m",
+                relief.greatest_error_m()
+            );
             let found = relief.water().is_some_and(|water| water[row * TILE_NODES + column]);
             findings.look(CheckId::Relief, found == is_water(with_halo, [column, row]), || {
                 let found = if found { "water" } else { "land" };
@@ -77,11 +78,12 @@ pub(crate) fn verify(
                 wanted[axis].abs() > STEEPEST
                     || (found[axis] - wanted[axis]).abs() <= HALF_STEP + may_move[axis]
             });
-            findings.look(CheckId::Relief, holds, || {
-                format!(
-                    "tile {id}: the relief has slopes {found:?} at node {column}, {row}, the DEM {wanted:?}"
-                )
-            });
+            look!(
+                findings,
+                Relief,
+                holds,
+                "tile {id}: the relief has slopes {found:?} at node {column}, {row}, the DEM {wanted:?}"
+            );
         }
     }
 }

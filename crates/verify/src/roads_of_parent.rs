@@ -19,7 +19,7 @@ use super::{
 /// One of two compared tiles.
 pub(crate) struct ComparedTile<'a> {
     pub payload: &'a TilePayload,
-    pub(crate) ground: &'a TriangleSoup,
+    pub ground: &'a TriangleSoup,
 }
 
 /// Compares the roads of a tile with those of its parent.
@@ -56,9 +56,12 @@ pub(crate) fn verify(
                 }
                 let is_there = line.is_some_and(|line| line.is_on(at, in_other.reach, &work));
                 let [here, there] = in_other.names;
-                findings.look(CheckId::Shown, is_there, || {
-                    format!("way {way_id} of tile {here} is not in tile {there} at {point:?}")
-                });
+                look!(
+                    findings,
+                    Shown,
+                    is_there,
+                    "way {way_id} of tile {here} is not in tile {there} at {point:?}"
+                );
             }
         };
     let reach = |level: u8| {

@@ -3,7 +3,6 @@
 
 use std::collections::BTreeMap;
 
-use corniche_geom::{GridFrame, TileId};
 use corniche_roads::{FunctionalRoadClass, Structure};
 use corniche_tileset::{Manifest, TilePayload};
 use corniche_tin::Tin;
@@ -20,17 +19,17 @@ use super::{
 pub(crate) struct OnTin {
     pub gaps: GapFigures,
     /// The true horizontal lengths of the lines, and their number.
-    pub(crate) lengths: RoadLengths,
+    pub lengths: RoadLengths,
     /// The positions of the vertices of each line, as a reader computes them; `None` for an invalid
     /// line.
-    pub(crate) positions: Vec<Option<Vec<[f64; 3]>>>,
+    pub positions: Vec<Option<Vec<[f64; 3]>>>,
 }
 
 /// The lengths of roads by structure, in the order of [`Structure::ALL`].
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct RoadLengths {
     /// True horizontal metres.
-    pub(crate) by_structure_m: [f64; Structure::ALL.len()],
+    pub by_structure_m: [f64; Structure::ALL.len()],
     /// The number of lines: each part of a way in a tile is one.
     pub lines: [u64; Structure::ALL.len()],
     /// The total tolerance of lengths, because vertices are rounded to the lattice.
@@ -90,8 +89,7 @@ pub(crate) fn verify_order(payload: &TilePayload, findings: &mut Findings) {
             *wanted += 1;
             part + 1 == *wanted
         });
-        findings
-            .look(CheckId::Order, sorted && counted, || format!("{section} section of tile {id}"));
+        look!(findings, Order, sorted && counted, "{section} section of tile {id}");
     }
 }
 
@@ -127,7 +125,7 @@ pub(crate) fn verify_on_tin(
         let positions = match corniche_drape::positions(&road.line, &surface) {
             Ok(positions) => positions,
             Err(error) => {
-                findings.look(CheckId::OnTin, false, || format!("{}: {error}", name()));
+                look!(findings, OnTin, false, "{}: {error}", name());
                 found.positions.push(None);
                 continue;
             }
@@ -137,7 +135,7 @@ pub(crate) fn verify_on_tin(
             [column, row, p[2]]
         };
         for pair in positions.windows(2) {
-            if counts_for_sums(id, frame) {
+            if id.z() == frame.max_level() {
                 // The same formula as in the build: near a pole it deviates from the geodesic by
                 // more than the tolerance of the sums.
                 let ends = [pair[0], pair[1]].map(position_m);
@@ -159,10 +157,4 @@ pub(crate) fn verify_on_tin(
         found.positions.push(Some(positions));
     }
     found
-}
-
-/// Whether a tile is on the finest level, where the lengths of roads add up to those in the
-/// manifest.
-pub(crate) fn counts_for_sums(id: TileId, frame: &GridFrame) -> bool {
-    id.z() == frame.max_level()
 }

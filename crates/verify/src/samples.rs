@@ -10,7 +10,7 @@ use corniche_work::{Stage, workers};
 use super::{
     checks::{Check, CheckId, as_json},
     each_tile::VerifyRun,
-    error::VerifyError,
+    error::{Result, VerifyError},
     triangle_soup::{HEIGHT_ROUNDING_M, TriangleSoup},
 };
 
@@ -31,7 +31,7 @@ pub(crate) fn merge(sums: &mut [SampleSums], others: &[SampleSums]) {
 pub(crate) fn measure(
     run: &VerifyRun<'_>,
     (dem, plan): &(Dem, GridPlan),
-) -> Result<Vec<SampleSums>, VerifyError> {
+) -> Result<Vec<SampleSums>> {
     let manifest = run.package.manifest();
     let ranges = dem.sample_ranges(plan)?;
     let mut sums = none(manifest);

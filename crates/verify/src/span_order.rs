@@ -23,9 +23,9 @@ pub(crate) struct RunPiece {
     pub kind: SpanKind,
     /// OSM's `layer`, which orders the piece among pieces of its kind.
     pub layer: i8,
-    pub(crate) ends: [LatticePoint; 2],
+    pub ends: [LatticePoint; 2],
     /// Whether the run ends at the first and at the second end of the piece.
-    pub(crate) is_end: [bool; 2],
+    pub is_end: [bool; 2],
     pub heights_m: [f64; 2],
 }
 
@@ -33,9 +33,9 @@ pub(crate) struct RunPiece {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct OrderedCrossing {
     /// The two ways; the way with the upper layer is the first.
-    pub(crate) way_ids: [i64; 2],
+    pub way_ids: [i64; 2],
     /// The height of the first above the second, in metres.
-    pub(crate) free_m: f64,
+    pub free_m: f64,
 }
 
 /// The crossings of pieces of the same kind and of different layers. Pieces that share a point are

@@ -23,7 +23,7 @@ use super::{
     checks::{CheckId, Findings},
     decoded_tiles::DecodedTiles,
     each_tile::{OfTile, RecordedSums, VerifyRun, look_at_sections},
-    error::VerifyError,
+    error::Result,
     near_index::NearIndex,
     span_order::{self, OrderedCrossing, RunPiece},
     tile_place::TilePlace,
@@ -48,7 +48,7 @@ type BorderEnd = (u8, RunOwner, i64, LatticePoint);
 /// The ends at each position: the height of a run in steps, or `None` on the ground.
 type EndsByPlace = BTreeMap<BorderEnd, Vec<(TileId, Option<i64>)>>;
 
-pub(crate) fn verify(run: &VerifyRun<'_>, findings: &mut Findings) -> Result<(), VerifyError> {
+pub(crate) fn verify(run: &VerifyRun<'_>, findings: &mut Findings) -> Result<()> {
     let manifest = run.package.manifest();
     let record = manifest.spans.as_ref();
     let is_wanted = manifest.settings.spans && manifest.has_extract();
@@ -70,9 +70,12 @@ pub(crate) fn verify(run: &VerifyRun<'_>, findings: &mut Findings) -> Result<(),
     for ((level, _, way_id, at), of_tiles) in ends {
         let [(first, height), others @ ..] = &of_tiles[..] else { continue };
         let agree = others.iter().all(|(_, other)| other == height);
-        findings.look(CheckId::SpanSeams, agree, || {
-            format!("way {way_id} at {at:?} of level {level}: height {height:?} (in steps) in tile {first}, {others:?} in its neighbours")
-        });
+        look!(
+            findings,
+            SpanSeams,
+            agree,
+            "way {way_id} at {at:?} of level {level}: height {height:?} (in steps) in tile {first}, {others:?} in its neighbours"
+        );
     }
     Ok(())
 }
@@ -167,11 +170,12 @@ fn look_at(
         tile.look_at_ends(run, own, &mut found.findings);
         tile.look_at_side(run, own, &mut found.findings);
         if let Err(error) = work.check() {
-            found.findings.look(CheckId::SpanSide, false, || {
-                format!(
-                    "tile {id}: it has more runs over more ground than any writer can have created: {error}"
-                )
-            });
+            look!(
+                found.findings,
+                SpanSide,
+                false,
+                "tile {id}: it has more runs over more ground than any writer can have created: {error}"
+            );
             break;
         }
     }
@@ -183,9 +187,12 @@ fn look_at(
                 let reversed = reversed.into_iter().map(|crossing| (id, crossing));
                 locked(crossings).extend(reversed);
             }
-            Err(error) => found.findings.look(CheckId::SpanOrder, false, || {
-                format!("tile {id}: more of its runs lie over each other than any writer can have created: {error}")
-            }),
+            Err(error) => look!(
+                found.findings,
+                SpanOrder,
+                false,
+                "tile {id}: more of its runs lie over each other than any writer can have created: {error}"
+            ),
         }
     }
     let points = runs.iter().map(|run| run.points.len() as u64).sum();
@@ -355,9 +362,15 @@ impl Tile<'_> {
                     lines.ends.iter().flatten().copied().any(is_near)
                 }),
             };
-            findings.look(CheckId::SpanEnds, holds, || {
-                format!("a run of way {} in tile {} ends at {:?}", run.way_id, self.id, end.at)
-            });
+            look!(
+                findings,
+                SpanEnds,
+                holds,
+                "a run of way {} in tile {} ends at {:?}",
+                run.way_id,
+                self.id,
+                end.at
+            );
         }
     }
 
@@ -425,12 +438,15 @@ impl Tile<'_> {
                 }
             }
         }
-        findings.look(CheckId::SpanSide, lowest_m >= -SIDE_M, || {
-            format!(
-                "a run of way {} in tile {} is {:.3} m on the wrong side of the ground",
-                run.way_id, self.id, -lowest_m
-            )
-        });
+        look!(
+            findings,
+            SpanSide,
+            lowest_m >= -SIDE_M,
+            "a run of way {} in tile {} is {:.3} m on the wrong side of the ground",
+            run.way_id,
+            self.id,
+            -lowest_m
+        );
     }
 
     fn ground_m(&self, at: [f64; 2]) -> Option<f64> {

@@ -6,16 +6,16 @@ use corniche_spec::BuildObserver;
 use corniche_store::{LocalScratch, LocalStore, StoreError, StoredPlan, SystemDisk};
 use tempfile::TempDir;
 
-use super::error::VerifyError;
+use super::error::{Result, VerifyError};
 
 /// A store in a temporary folder, which is removed with the store.
 pub(crate) struct TemporaryStore {
-    pub(crate) store: LocalStore,
+    pub store: LocalStore,
     _folder: TempDir,
 }
 
 impl TemporaryStore {
-    pub(crate) fn new(observer: &dyn BuildObserver) -> Result<Self, VerifyError> {
+    pub(crate) fn new(observer: &dyn BuildObserver) -> Result<Self> {
         let folder = private_folder().map_err(VerifyError::Work)?;
         observer.temporary(folder.path());
         // The store is never resumed, so it belongs to no plan, and nothing has to be durable.
@@ -25,7 +25,7 @@ impl TemporaryStore {
         Ok(Self { store, _folder: folder })
     }
 
-    pub(crate) fn scratch(&self) -> Result<LocalScratch, VerifyError> {
+    pub(crate) fn scratch(&self) -> Result<LocalScratch> {
         self.store.scratch().map_err(failed)
     }
 }

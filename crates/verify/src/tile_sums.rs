@@ -8,7 +8,7 @@ use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::{Distribution, FilePackage, GrowthRow, PayloadSizes, TilePayload};
 
 use super::{
-    checks::{CheckId, Findings, as_json},
+    checks::{Findings, as_json},
     geo_against_sv::source_points,
     seams::Borders,
 };
@@ -21,7 +21,7 @@ pub(crate) struct TileSummary {
     pub height_range_m: [f64; 2],
     pub borders: Borders,
     /// The hashes of the relief's borders; `None` without a relief.
-    pub(crate) relief_borders: Option<[u64; 4]>,
+    pub relief_borders: Option<[u64; 4]>,
 }
 
 /// The contribution of a tile to the manifest's sums.
@@ -107,9 +107,14 @@ pub(crate) fn check_levels(
     let nothing = TileSums::default();
     for level in &package.manifest().levels {
         let found = ids.iter().filter(|id| id.z() == level.level).count() as u64;
-        findings.look(CheckId::LevelSums, found == level.tiles, || {
-            format!("level {} has {found} tiles, {} are recorded", level.level, level.tiles)
-        });
+        look!(
+            findings,
+            LevelSums,
+            found == level.tiles,
+            "level {} has {found} tiles, {} are recorded",
+            level.level,
+            level.tiles
+        );
         let tiles = || kept.iter().filter(|(id, _)| id.z() == level.level).map(|(_, tile)| tile);
         let triangles: u64 = tiles().map(|tile| tile.triangles).sum();
         let vertices: u64 = tiles().map(|tile| tile.vertices).sum();
@@ -124,13 +129,17 @@ pub(crate) fn check_levels(
             && largest_m.to_bits() == level.geometric_error_m.to_bits()
             // Nodes without a tile count only for the level.
             && sums.uncovered_nodes <= level.uncovered_nodes;
-        findings.look(CheckId::LevelSums, agrees, || {
-            format!(
-                "level {} has {triangles} triangles, {vertices} vertices, {} bytes of ground, {} of relief, error {largest_m} m, \
+        look!(
+            findings,
+            LevelSums,
+            agrees,
+            "level {} has {triangles} triangles, {vertices} vertices, {} bytes of ground, {} of relief, error {largest_m} m, \
                  {} uncovered nodes",
-                level.level, sums.terrain_bytes, sums.relief_bytes, sums.uncovered_nodes
-            )
-        });
+            level.level,
+            sums.terrain_bytes,
+            sums.relief_bytes,
+            sums.uncovered_nodes
+        );
     }
 }
 
@@ -157,35 +166,39 @@ pub(crate) fn check_growth(
             sv_stored_bytes: row.sv_stored_bytes,
             inner_points: found.inner_points,
         };
-        findings.look(CheckId::Growth, found == said && last < Some(key), || {
-            format!(
-                "level {} class {}: {} in the tiles, {} recorded",
-                row.level,
-                row.class,
-                as_json(&found),
-                as_json(row)
-            )
-        });
+        look!(
+            findings,
+            Growth,
+            found == said && last < Some(key),
+            "level {} class {}: {} in the tiles, {} recorded",
+            row.level,
+            row.class,
+            as_json(&found),
+            as_json(row)
+        );
         last = Some(key);
         // Points are pairs or triples of f64; the level's lines have no more points than the
         // source.
         let plain = [row.source_vertices * 16, row.simplified_vertices * 16, row.geo_vertices * 24];
         let bytes = [row.source_bytes, row.simplified_bytes, row.geo_raw_bytes];
         let thinned = row.simplified_vertices <= row.source_vertices;
-        findings.look(CheckId::Growth, plain == bytes && thinned, || {
-            format!(
-                "level {} class {}: {bytes:?} bytes are recorded, the points take {plain:?}",
-                row.level, row.class
-            )
-        });
+        look!(
+            findings,
+            Growth,
+            plain == bytes && thinned,
+            "level {} class {}: {bytes:?} bytes are recorded, the points take {plain:?}",
+            row.level,
+            row.class
+        );
     }
     // A class has no row if none of its points lies in a tile with ground.
     for ((level, class), row) in left {
-        findings.look(CheckId::Growth, row.inner_points == 0, || {
-            format!(
-                "level {level} class {class} has no row in the growth table, but {} in the tiles",
-                as_json(&row)
-            )
-        });
+        look!(
+            findings,
+            Growth,
+            row.inner_points == 0,
+            "level {level} class {class} has no row in the growth table, but {} in the tiles",
+            as_json(&row)
+        );
     }
 }

@@ -15,18 +15,18 @@ use super::{
     decoded_tiles::DecodedTiles,
     derived_records::{CUT_M, LENGTH_SHARE},
     each_tile::VerifyRun,
-    error::VerifyError,
+    error::Result,
     geo_against_sv, relief,
     report::{GapFigures, VerifyReport},
     roads_of_parent,
-    roads_on_tin::{self, RoadLengths, counts_for_sums},
+    roads_on_tin::{self, RoadLengths},
     seams,
     tile_place::TilePlace,
     tile_sums::{TileSummary, TileSums, check_growth, check_levels},
     tin_against_parent::{self, Level},
 };
 
-pub(crate) fn verify(run: &VerifyRun<'_>) -> Result<(VerifyReport, Findings), VerifyError> {
+pub(crate) fn verify(run: &VerifyRun<'_>) -> Result<(VerifyReport, Findings)> {
     let package = run.package;
     let manifest = package.manifest();
     let frame = manifest.frame;
@@ -55,7 +55,7 @@ pub(crate) fn verify(run: &VerifyRun<'_>) -> Result<(VerifyReport, Findings), Ve
                 level.edges += found.gaps.edges;
                 level.largest_m = level.largest_m.max(found.gaps.largest_m);
             }
-            if counts_for_sums(id, &frame) {
+            if id.z() == frame.max_level() {
                 finest.add(found.lengths);
             }
             ways.add(id, found.ways, &mut findings);
@@ -100,9 +100,7 @@ fn check_length(found: &RoadLengths, recorded_um: u64, findings: &mut Findings) 
     let (found_m, expected_m) = (found.length_m(), recorded_um as f64 / 1e6);
     let allowed_m = LENGTH_SHARE * expected_m.max(1.0) + found.rounding_m(expected_m);
     let holds = (found_m - expected_m).abs() <= allowed_m;
-    findings.look(CheckId::Length, holds, || {
-        format!("{found_m} m are in the tiles, {expected_m} m are recorded")
-    });
+    look!(findings, Length, holds, "{found_m} m are in the tiles, {expected_m} m are recorded");
 }
 
 /// Compares the lengths of roads on the ground, of bridges and of tunnels on the finest level with
@@ -125,9 +123,12 @@ fn check_structures(found: &RoadLengths, manifest: &Manifest, findings: &mut Fin
             + CUT_M * found.lines[number] as f64
             + found.rounding_m(recorded_m);
         let holds = (found_m - recorded_m).abs() <= allowed_m;
-        findings.look(CheckId::Structures, holds, || {
-            format!("{found_m} m of {name} are in the tiles, {recorded_m} m are recorded")
-        });
+        look!(
+            findings,
+            Structures,
+            holds,
+            "{found_m} m of {name} are in the tiles, {recorded_m} m are recorded"
+        );
     }
 }
 
@@ -142,13 +143,19 @@ fn check_seams(kept: &BTreeMap<TileId, TileSummary>, findings: &mut Findings) ->
             );
             if let (Some(own), Some(theirs)) = (tile.relief_borders, neighbour.relief_borders) {
                 let same = own[own_edge as usize] == theirs[other_edge as usize];
-                findings.look(CheckId::ReliefSeams, same, || {
-                    format!("the reliefs of tiles {id} and {other} differ on their border")
-                });
+                look!(
+                    findings,
+                    ReliefSeams,
+                    same,
+                    "the reliefs of tiles {id} and {other} differ on their border"
+                );
             }
-            findings.look(CheckId::Seams, differences.is_empty(), || {
-                format!("tiles {id} and {other} differ at border nodes {differences:?}")
-            });
+            look!(
+                findings,
+                Seams,
+                differences.is_empty(),
+                "tiles {id} and {other} differ at border nodes {differences:?}"
+            );
         }
     }
     findings.check_mut(CheckId::Seams).checked
@@ -159,9 +166,12 @@ fn check_heights(said_m: [f64; 2], kept: &BTreeMap<TileId, TileSummary>, finding
     let Some(root) = kept.get(&TileId::ROOT) else { return };
     let root_m = root.height_range_m;
     let same = said_m.iter().zip(root_m).all(|(said_m, m)| (said_m - m).abs() <= 0.0);
-    findings.look(CheckId::RootHeights, same, || {
-        format!("the height range {said_m:?} is recorded, the root tile has {root_m:?}")
-    });
+    look!(
+        findings,
+        RootHeights,
+        same,
+        "the height range {said_m:?} is recorded, the root tile has {root_m:?}"
+    );
 }
 
 fn check_nesting(kept: &BTreeMap<TileId, TileSummary>, findings: &mut Findings) {
@@ -176,9 +186,12 @@ fn check_nesting(kept: &BTreeMap<TileId, TileSummary>, findings: &mut Findings) 
         let nested = above.geometric_error_m >= tile.geometric_error_m
             && above.height_range_m[0] <= tile.height_range_m[0]
             && above.height_range_m[1] >= tile.height_range_m[1];
-        findings.look(CheckId::Nested, nested, || {
-            format!("the error or height range of tile {id} exceeds that of its parent {parent}")
-        });
+        look!(
+            findings,
+            Nested,
+            nested,
+            "the error or height range of tile {id} exceeds that of its parent {parent}"
+        );
     }
 }
 
@@ -186,13 +199,13 @@ fn check_nesting(kept: &BTreeMap<TileId, TileSummary>, findings: &mut Findings) 
 #[derive(Default)]
 pub(crate) struct TileFindings {
     pub kept: Option<TileSummary>,
-    pub(crate) findings: Findings,
+    pub findings: Findings,
     pub gaps: GapFigures,
-    pub(crate) lengths: RoadLengths,
-    pub(crate) ways: Vec<(i64, StoredWay)>,
+    pub lengths: RoadLengths,
+    pub ways: Vec<(i64, StoredWay)>,
     pub sums: TileSums,
-    pub(crate) sv_tail_bytes: u64,
-    pub(crate) damage: Option<String>,
+    pub sv_tail_bytes: u64,
+    pub damage: Option<String>,
 }
 
 pub(crate) fn look_at(
@@ -219,7 +232,7 @@ pub(crate) fn look_at(
         TileFindings { ways, sums, sv_tail_bytes: sizes.sv_tail, ..TileFindings::default() };
     let Some(terrain) = &payload.terrain else {
         let bare = payload.roads_geo.is_empty() && payload.roads_sv.is_empty();
-        findings.look(CheckId::OnTin, bare, || format!("tile {id} has roads but no ground"));
+        look!(findings, OnTin, bare, "tile {id} has roads but no ground");
         return TileFindings { findings, ..found };
     };
     let place = TilePlace::from_frame(&manifest.frame, id);
@@ -270,9 +283,12 @@ fn check_vertices(id: TileId, terrain: &TileTerrain, quantum_m: f64, findings: &
     let range_m = low_m - quantum_m / 2.0..=high_m + quantum_m / 2.0;
     for vertex in terrain.tin.vertices() {
         let height_m = f64::from(vertex.height_q) * quantum_m;
-        findings.look(CheckId::Vertices, range_m.contains(&height_m), || {
-            format!("tile {id} has a vertex at {height_m} m, its range is {low_m} to {high_m} m")
-        });
+        look!(
+            findings,
+            Vertices,
+            range_m.contains(&height_m),
+            "tile {id} has a vertex at {height_m} m, its range is {low_m} to {high_m} m"
+        );
     }
 }
 

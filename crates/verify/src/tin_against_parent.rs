@@ -5,15 +5,15 @@ use std::sync::Arc;
 use corniche_geom::{GridFrame, TILE_NODES, TileId};
 
 use super::{
-    checks::{CheckId, Findings},
+    checks::Findings,
     triangle_soup::{HEIGHT_ROUNDING_M, TriangleSoup},
 };
 
 /// A tile's ground and its geometric error.
 pub(crate) struct Level {
     pub id: TileId,
-    pub(crate) ground: Arc<TriangleSoup>,
-    pub(crate) error_m: f64,
+    pub ground: Arc<TriangleSoup>,
+    pub error_m: f64,
 }
 
 /// Compares the TINs above a finest tile: `levels` are this tile and all of its ancestors that have
@@ -42,12 +42,13 @@ pub(crate) fn verify(frame: &GridFrame, levels: &[Level], findings: &mut Finding
                     // NaN where one of the two has no ground; `f64::max` ignores NaN.
                     .map(|((above_m, below_m), _)| (above_m - below_m).abs())
                     .fold(0.0, f64::max);
-                findings.look(CheckId::Levels, worst_m <= allowed_m, || {
-                    format!(
-                        "tiles {} and {id} are {worst_m} m apart, their errors allow {allowed_m} m",
-                        child.id
-                    )
-                });
+                look!(
+                    findings,
+                    Levels,
+                    worst_m <= allowed_m,
+                    "tiles {} and {id} are {worst_m} m apart, their errors allow {allowed_m} m",
+                    child.id
+                );
             }
             Some(_) => {}
         }

@@ -3,17 +3,16 @@
 
 use corniche_dem::{Dem, DemError, GridPlan};
 use corniche_geom::{HeightGrid, TileId};
-use corniche_ground::GroundError;
-use corniche_ground::heights::pyramid::Pyramid;
+use corniche_ground::{GroundError, heights::pyramid::Pyramid};
 use corniche_tileset::TileTerrain;
 use corniche_tin::normal_shift;
 use corniche_work::Stage;
 
 use super::{
-    checks::{CheckId, Findings, as_json},
+    checks::{Findings, as_json},
     decoded_tiles::DecodedTiles,
     each_tile::VerifyRun,
-    error::VerifyError,
+    error::Result,
     relief,
     temporary_store::TemporaryStore,
 };
@@ -30,7 +29,7 @@ pub(crate) fn verify(
     run: &VerifyRun<'_>,
     (dem, plan): &(Dem, GridPlan),
     findings: &mut Findings,
-) -> Result<(), VerifyError> {
+) -> Result<()> {
     let &VerifyRun { package, ref tiles, threads, observer } = run;
     let manifest = package.manifest();
     let work = TemporaryStore::new(observer)?;
@@ -45,26 +44,38 @@ pub(crate) fn verify(
     pyramid.make(TileId::ROOT)?;
     let patches = pyramid.all_patches()?;
     let refused = refusal(pyramid.check(&patches))?;
-    findings.look(CheckId::DemCounts, refused.is_none(), || {
-        format!("heights that the settings do not allow: {}", refused.unwrap_or_default())
-    });
+    look!(
+        findings,
+        DemCounts,
+        refused.is_none(),
+        "heights that the settings do not allow: {}",
+        refused.unwrap_or_default()
+    );
     let sums = pyramid.sums(&patches);
     let (said, found) = (manifest.counts.samples, sums.samples);
-    findings.look(CheckId::DemCounts, said == found, || {
-        format!("recorded {}, found {}", as_json(&said), as_json(&found))
-    });
+    look!(
+        findings,
+        DemCounts,
+        said == found,
+        "recorded {}, found {}",
+        as_json(&said),
+        as_json(&found)
+    );
     let (said_m, found_m) = (manifest.vertical.range_m, sums.range_m.map(f64::from));
     let same_range = said_m.map(f64::to_bits) == found_m.map(f64::to_bits);
-    findings.look(CheckId::DemCounts, same_range, || {
-        format!("the height range {said_m:?} is recorded, {found_m:?} was found")
-    });
+    look!(
+        findings,
+        DemCounts,
+        same_range,
+        "the height range {said_m:?} is recorded, {found_m:?} was found"
+    );
     let look_at = |id| look_at(tiles, &pyramid, id);
     run.each_tile(Stage::CompareHeights, look_at, |_, found| findings.merge(found))
 }
 
 /// The message if the audit rejects heights. Other errors are no findings: they end the
 /// verification.
-fn refusal(audited: Result<(), GroundError>) -> Result<Option<String>, VerifyError> {
+fn refusal(audited: Result<(), GroundError>) -> Result<Option<String>> {
     match audited {
         Ok(()) => Ok(None),
         Err(GroundError::Dem(error @ DemError::Audit(_))) => Ok(Some(error.to_string())),
@@ -72,19 +83,13 @@ fn refusal(audited: Result<(), GroundError>) -> Result<Option<String>, VerifyErr
     }
 }
 
-fn look_at(
-    tiles: &DecodedTiles<'_>,
-    pyramid: &Pyramid<'_>,
-    id: TileId,
-) -> Result<Findings, VerifyError> {
+fn look_at(tiles: &DecodedTiles<'_>, pyramid: &Pyramid<'_>, id: TileId) -> Result<Findings> {
     let mut findings = Findings::default();
     let manifest = tiles.package.manifest();
     let tile = tiles.tile_at(id);
     let Some(TileTerrain { tin, normals, .. }) = tile.terrain() else { return Ok(findings) };
     let Some(heights) = pyramid.tile(id)? else {
-        findings.look(CheckId::Nodes, false, || {
-            format!("tile {id} has ground where the DEM has no height")
-        });
+        look!(findings, Nodes, false, "tile {id} has ground where the DEM has no height");
         return Ok(findings);
     };
     let cell = manifest.frame.level_cell(id.z());
@@ -107,12 +112,15 @@ fn look_at(
         let wanted = heights
             .height(at[0], at[1])
             .map(|height_m| (f64::from(height_m) / manifest.vertical.quantum_m).round());
-        findings.look(CheckId::Nodes, wanted == Some(f64::from(vertex.height_q)), || {
-            format!(
-                "tile {id} has height {} (in steps) at its node {}, {}, the DEM {wanted:?}",
-                vertex.height_q, vertex.column, vertex.row
-            )
-        });
+        look!(
+            findings,
+            Nodes,
+            wanted == Some(f64::from(vertex.height_q)),
+            "tile {id} has height {} (in steps) at its node {}, {}, the DEM {wanted:?}",
+            vertex.height_q,
+            vertex.column,
+            vertex.row
+        );
         let [east, north] = gradient(&heights, at, cell_m);
         // The upward normal of the slope, on the octahedron |x| + |y| + |z| = 1.
         let size = east.abs() + north.abs() + 1.0;
@@ -121,12 +129,14 @@ fn look_at(
             let (code, exact) = (f64::from(normal[axis]), exact[axis].clamp(-farthest, farthest));
             code % step == 0.0 && (code - exact).abs() <= 0.5 * step + COMPUTED
         });
-        findings.look(CheckId::Normals, holds, || {
-            format!(
-                "tile {id} has the normal {normal:?} at its node {}, {}, the DEM {exact:?}",
-                vertex.column, vertex.row
-            )
-        });
+        look!(
+            findings,
+            Normals,
+            holds,
+            "tile {id} has the normal {normal:?} at its node {}, {}, the DEM {exact:?}",
+            vertex.column,
+            vertex.row
+        );
     }
     Ok(findings)
 }

@@ -4,6 +4,8 @@ use corniche_dem::AuditError;
 use corniche_pieces::ExtractError;
 use corniche_spec::artifacts::ArtifactError;
 
+use crate::VerifyError;
+
 use super::*;
 
 #[test]

@@ -17,29 +17,29 @@ use super::voice::json_progress;
 #[derive(Debug, Args)]
 pub(crate) struct WorkArgs {
     #[command(flatten)]
-    pub(crate) inputs: InputFiles,
+    pub inputs: InputFiles,
     /// Attribution that must be displayed wherever the package is shown, such as that of a DEM; may
     /// be given several times
     #[arg(long, value_name = "TEXT")]
-    pub(crate) attribution: Vec<String>,
+    pub attribution: Vec<String>,
     /// Settings file, which can also name inputs and outputs. Options on the command line take
     /// precedence. Paths in the file are relative to its folder
     #[arg(long, value_name = "TOML")]
-    pub(crate) config: Option<PathBuf>,
+    pub config: Option<PathBuf>,
     /// Start even if memory or disk space is not expected to suffice, or if the grid has more than
     /// 16 nodes per DEM sample
     #[arg(long)]
-    pub(crate) force: bool,
+    pub force: bool,
     #[command(flatten)]
-    pub(crate) terrain: TerrainOptions,
+    pub terrain: TerrainOptions,
     #[command(flatten)]
-    pub(crate) roads: RoadOptions,
+    pub roads: RoadOptions,
     #[command(flatten)]
-    pub(crate) layers: LayerOptions,
+    pub layers: LayerOptions,
     #[command(flatten)]
-    pub(crate) photos: PhotoOptions,
+    pub photos: PhotoOptions,
     #[command(flatten)]
-    pub(crate) resources: ResourceOptions,
+    pub resources: ResourceOptions,
 }
 
 impl WorkArgs {
@@ -57,41 +57,41 @@ impl WorkArgs {
 pub(crate) struct BuildArgs {
     /// The package to write (.pmtiles)
     #[arg(short, long, value_name = "PACKAGE", required_unless_present = "config")]
-    pub(crate) output: Option<PathBuf>,
+    pub output: Option<PathBuf>,
     /// Overwrite the package if it exists, once the new one is complete; for a link, overwrite the
     /// file it points to
     #[arg(short = 'O', long)]
-    pub(crate) overwrite: bool,
+    pub overwrite: bool,
     /// Resume an interrupted build of the same package from its intermediate results
     #[arg(long)]
-    pub(crate) resume: bool,
+    pub resume: bool,
     /// Also list every defect of the extract and every lost road in this file (CSV), one per line;
     /// needs -O if the file exists
     #[arg(long, value_name = "CSV")]
-    pub(crate) defects: Option<PathBuf>,
+    pub defects: Option<PathBuf>,
     #[command(flatten)]
-    pub(crate) work: WorkArgs,
+    pub work: WorkArgs,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct PlanArgs {
     /// Also write the plan (JSON)
     #[arg(short, long, value_name = "PLAN.json")]
-    pub(crate) output: Option<PathBuf>,
+    pub output: Option<PathBuf>,
     /// Overwrite the plan if it exists
     #[arg(short = 'O', long, requires = "output")]
-    pub(crate) overwrite: bool,
+    pub overwrite: bool,
     /// Print the estimates as JSON, for programs
     #[arg(long)]
-    pub(crate) json: bool,
+    pub json: bool,
     /// Print only the tiles of this level that contain data, one Z/X/Y per line: the subtrees for
     /// corniche part
     #[arg(long, value_name = "LEVEL", conflicts_with = "json")]
-    pub(crate) subtrees: Option<u8>,
+    pub subtrees: Option<u8>,
     /// Print only the parts of the build for this number of processes, one JSON object per line, as
     /// corniche jobs does
     #[arg(long, value_name = "N", conflicts_with_all = ["json", "subtrees"])]
-    pub(crate) jobs: Option<NonZeroU32>,
+    pub jobs: Option<NonZeroU32>,
     #[command(flatten)]
-    pub(crate) work: WorkArgs,
+    pub work: WorkArgs,
 }

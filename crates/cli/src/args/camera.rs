@@ -59,7 +59,7 @@ pub(crate) struct FromAboveArgs {
     /// Look straight down with parallel rays, as on a map: the scale is the same everywhere, and
     /// north is up unless --heading is given
     #[arg(long, conflicts_with_all = ["height", "distance", "pitch"])]
-    pub(crate) ortho: bool,
+    pub ortho: bool,
     /// With --ortho and --look-at: ground size of a pixel, in metres [default: 5]
     #[arg(long, value_name = "METRES", requires = "ortho", requires = "look_at")]
     pixel: Option<f64>,
@@ -73,16 +73,16 @@ pub(crate) struct FromAboveArgs {
     /// With --ortho: also write the georeference next to the image: a world file (.pgw) and its
     /// coordinate system (.prj)
     #[arg(long, requires = "ortho")]
-    pub(crate) world_file: bool,
+    pub world_file: bool,
 }
 
 /// The scale and resolution of an image in print.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct PrintScale {
     /// The denominator of the scale.
-    pub(crate) denominator: u32,
+    pub denominator: u32,
     /// Pixels per inch.
-    pub(crate) dots_per_inch: f64,
+    pub dots_per_inch: f64,
 }
 
 impl PrintScale {

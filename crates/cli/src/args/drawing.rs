@@ -18,44 +18,44 @@ use super::{
 #[expect(clippy::struct_excessive_bools, reason = "switches of the command line")]
 pub(crate) struct RenderArgs {
     #[command(flatten)]
-    pub(crate) from: PackageArg,
+    pub from: PackageArg,
     /// The image to write (.png), or with --ortho a GeoTIFF with its georeference (.tif)
     #[arg(short, long, value_name = "PNG|TIF")]
-    pub(crate) output: PathBuf,
+    pub output: PathBuf,
     /// Overwrite existing files, once the new ones are complete
     #[arg(short = 'O', long)]
-    pub(crate) overwrite: bool,
+    pub overwrite: bool,
     /// How roads are drawn
     #[arg(long, value_parser = Roads::one_method(), default_value = Roads::DEFAULT.word())]
-    pub(crate) roads: Roads,
+    pub roads: Roads,
     #[command(flatten)]
-    pub(crate) look: LookArgs,
+    pub look: LookArgs,
     /// Width and height in pixels
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1600x1200", value_parser = parse_size)]
-    pub(crate) size: [u32; 2],
+    pub size: [u32; 2],
     #[command(flatten)]
-    pub(crate) camera: CameraArgs,
+    pub camera: CameraArgs,
     #[command(flatten)]
-    pub(crate) from_above: FromAboveArgs,
+    pub from_above: FromAboveArgs,
     #[command(flatten)]
-    pub(crate) ground: GroundArgs,
+    pub ground: GroundArgs,
     /// Samples per pixel along each side, averaged
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=4))]
-    pub(crate) supersampling: u32,
+    pub supersampling: u32,
     /// Draw a legend: the roads, tunnels, boundaries, areas and heights in the image, a north
     /// arrow, and a scale bar for its centre
     #[arg(long)]
-    pub(crate) legend: bool,
+    pub legend: bool,
     /// Write a title in the upper left corner of the image
     #[arg(long, value_name = "TEXT", value_parser = parse_title, allow_hyphen_values = true)]
-    pub(crate) title: Option<String>,
+    pub title: Option<String>,
     /// Draw the edges of the terrain's triangles, beneath the roads
     #[arg(long)]
-    pub(crate) wireframe: bool,
+    pub wireframe: bool,
     /// Do not drape roads on the ground: with --roads geo, draw straight lines between their
     /// points, which the ground may hide
     #[arg(long, help_heading = COMPARING, hide_short_help = true)]
-    pub(crate) unmapped: bool,
+    pub unmapped: bool,
 }
 
 /// The values of `--lod`.
@@ -68,29 +68,29 @@ pub(crate) const DETAILS: Words<Detail, 3> = [
 #[derive(Debug, Args)]
 pub(crate) struct FlyArgs {
     #[command(flatten)]
-    pub(crate) from: PackageArg,
+    pub from: PackageArg,
     /// The table to write (.csv): one line per frame, with its tiles, triangles, bytes and
     /// milliseconds
     #[arg(short, long, value_name = "CSV")]
-    pub(crate) output: PathBuf,
+    pub output: PathBuf,
     /// Overwrite existing files, once the new ones are complete
     #[arg(short = 'O', long)]
-    pub(crate) overwrite: bool,
+    pub overwrite: bool,
     /// Also draw a chart of frame times, road segments and tiles along the flight
     #[arg(long, value_name = "SVG")]
-    pub(crate) svg: Option<PathBuf>,
+    pub svg: Option<PathBuf>,
     /// Also save every frame as an image in this new folder
     #[arg(long, value_name = "FOLDER")]
-    pub(crate) png: Option<PathBuf>,
+    pub png: Option<PathBuf>,
     /// Also show every frame in a window; closing it, or Ctrl Q, ends the flight
     #[arg(long)]
-    pub(crate) window: bool,
+    pub window: bool,
     #[command(flatten)]
-    pub(crate) flight: FlightArgs,
+    pub flight: FlightArgs,
     #[command(flatten)]
-    pub(crate) drawing: DrawingArgs,
+    pub drawing: DrawingArgs,
     #[command(flatten)]
-    pub(crate) look: LookArgs,
+    pub look: LookArgs,
 }
 
 #[derive(Debug, Args)]
@@ -98,16 +98,16 @@ pub(crate) struct FlyArgs {
 pub(crate) struct FlightArgs {
     /// Flight path: keyframes in TOML, as --save-path writes them [default: a pass along the data]
     #[arg(long, value_name = "TOML")]
-    pub(crate) path: Option<PathBuf>,
+    pub path: Option<PathBuf>,
     /// Save the flight path in this file, as keyframes in TOML
     #[arg(long, value_name = "TOML")]
-    pub(crate) save_path: Option<PathBuf>,
+    pub save_path: Option<PathBuf>,
     /// Number of frames, evenly spaced along the flight
     #[arg(long, value_name = "N", default_value_t = 100)]
-    pub(crate) frames: u32,
+    pub frames: u32,
     /// Time between frames, in seconds, instead of a number of frames
     #[arg(long, value_name = "SECONDS", conflicts_with = "frames", allow_negative_numbers = true)]
-    pub(crate) step: Option<f64>,
+    pub step: Option<f64>,
 }
 
 #[derive(Debug, Args)]
@@ -116,24 +116,24 @@ pub(crate) struct DrawingArgs {
     /// How roads are drawn; with several values, separated by commas, the flight is repeated with
     /// each
     #[arg(long, value_parser = one_of(ROADS), value_delimiter = ',', default_value = Roads::DEFAULT.word())]
-    pub(crate) roads: Vec<Roads>,
+    pub roads: Vec<Roads>,
     /// How much of the ground is drawn; with several values, the flight is repeated with each
     #[arg(long, value_parser = one_of(DETAILS), value_delimiter = ',', default_value = "lod")]
-    pub(crate) lod: Vec<Detail>,
+    pub lod: Vec<Detail>,
     /// Width and height in pixels
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1600x1200", value_parser = parse_size)]
-    pub(crate) size: [u32; 2],
+    pub size: [u32; 2],
     #[command(flatten)]
-    pub(crate) ground: GroundArgs,
+    pub ground: GroundArgs,
     /// Samples per pixel along each side, averaged. The default is 1, unlike for images, so that
     /// the cost of a frame can be compared with published figures
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=4))]
-    pub(crate) supersampling: u32,
+    pub supersampling: u32,
     #[command(flatten)]
-    pub(crate) gpu: GpuArgs,
+    pub gpu: GpuArgs,
     /// Preload tiles for the camera position this many seconds ahead; 0 turns preloading off
     #[arg(long, value_name = "SECONDS", default_value_t = 1.0)]
-    pub(crate) ahead: f64,
+    pub ahead: f64,
 }
 
 #[cfg(test)]

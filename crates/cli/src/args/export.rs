@@ -51,18 +51,18 @@ pub(crate) enum Export {
 )]
 pub(crate) struct ExportRoadsArgs {
     #[command(flatten)]
-    pub(crate) vector: VectorArgs,
+    pub vector: VectorArgs,
     #[command(flatten)]
-    pub(crate) at: LevelArg,
+    pub at: LevelArg,
     /// Write one feature per piece of a way, as stored in the tiles, instead of one per way
     #[arg(long)]
-    pub(crate) pieces: bool,
+    pub pieces: bool,
     #[command(flatten)]
-    pub(crate) filter: ClassesArg,
+    pub filter: ClassesArg,
     #[command(flatten)]
-    pub(crate) within: BoundsArg,
+    pub within: BoundsArg,
     #[command(flatten)]
-    pub(crate) cpu: ThreadsArg,
+    pub cpu: ThreadsArg,
 }
 
 #[derive(Debug, Args)]
@@ -74,34 +74,34 @@ pub(crate) struct ExportRoadsArgs {
 )]
 pub(crate) struct ExportEdgesArgs {
     #[command(flatten)]
-    pub(crate) vector: VectorArgs,
+    pub vector: VectorArgs,
     #[command(flatten)]
-    pub(crate) cpu: ThreadsArg,
+    pub cpu: ThreadsArg,
 }
 
 // Options of the exports of lines with heights.
 #[derive(Debug, Args)]
 pub(crate) struct VectorArgs {
     #[command(flatten)]
-    pub(crate) from: RecordedArgs,
+    pub from: RecordedArgs,
     #[command(flatten)]
-    pub(crate) extract: ExtractArgs,
+    pub extract: ExtractArgs,
     #[command(flatten)]
-    pub(crate) file: FileArgs,
+    pub file: FileArgs,
     #[command(flatten)]
-    pub(crate) road: RoadArg,
+    pub road: RoadArg,
     /// Output format, if the file's extension does not name it
     #[arg(short, long, value_parser = one_of(VECTOR_FORMATS), value_name = "FORMAT")]
-    pub(crate) format: Option<VectorFormat>,
+    pub format: Option<VectorFormat>,
     /// CRS of the coordinates: "package", "EPSG:4979" (with heights above the WGS84 ellipsoid),
     /// "EPSG:4326", or a projected CRS such as "EPSG:2056" [default: package; GeoJSON: EPSG:4326]
     #[arg(long, value_name = "CRS", value_parser = parse_crs)]
-    pub(crate) crs: Option<FeatureCoordinates>,
+    pub crs: Option<FeatureCoordinates>,
     /// Do not convert heights to the WGS84 ellipsoid: --crs EPSG:4979 is then the same as EPSG:4326
     #[arg(long, value_parser = one_of(HEIGHTS), value_name = "as-is")]
-    pub(crate) heights: Option<FeatureCoordinates>,
+    pub heights: Option<FeatureCoordinates>,
     #[command(flatten)]
-    pub(crate) datum: DatumArg,
+    pub datum: DatumArg,
 }
 
 #[derive(Debug, Args)]
@@ -113,30 +113,30 @@ pub(crate) struct VectorArgs {
 pub(crate) struct ExportLayerArgs {
     /// The id of the layer; corniche info lists those of a package
     #[arg(value_name = "LAYER")]
-    pub(crate) layer: String,
+    pub layer: String,
     #[command(flatten)]
-    pub(crate) from: PackageArg,
+    pub from: PackageArg,
     #[command(flatten)]
-    pub(crate) file: FileArgs,
+    pub file: FileArgs,
     /// Output format, if the file's extension does not name it
     #[arg(short, long, value_parser = one_of(VECTOR_FORMATS), value_name = "FORMAT")]
-    pub(crate) format: Option<VectorFormat>,
+    pub format: Option<VectorFormat>,
     #[command(flatten)]
-    pub(crate) at: LevelArg,
+    pub at: LevelArg,
     #[command(flatten)]
-    pub(crate) within: BoundsArg,
+    pub within: BoundsArg,
     /// Classes to export, such as water,forest [default: all]
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
-    pub(crate) classes: Vec<String>,
+    pub classes: Vec<String>,
     /// Languages of additional fields with names, such as de,en
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
-    pub(crate) lang: Vec<String>,
+    pub lang: Vec<String>,
     /// CRS of the coordinates: "package", "EPSG:4979" (with heights above the WGS84 ellipsoid),
     /// "EPSG:4326", or a projected CRS such as "EPSG:2056" [default: package; GeoJSON: EPSG:4326]
     #[arg(long, value_name = "CRS", value_parser = parse_crs)]
-    pub(crate) crs: Option<FeatureCoordinates>,
+    pub crs: Option<FeatureCoordinates>,
     #[command(flatten)]
-    pub(crate) datum: DatumArg,
+    pub datum: DatumArg,
 }
 
 #[derive(Debug, Args)]
@@ -147,16 +147,16 @@ pub(crate) struct ExportLayerArgs {
 )]
 pub(crate) struct ExportMeshArgs {
     #[command(flatten)]
-    pub(crate) from: PackageArg,
+    pub from: PackageArg,
     #[command(flatten)]
-    pub(crate) file: FileArgs,
+    pub file: FileArgs,
     /// Output format, if the file's extension does not name it
     #[arg(short, long, value_parser = one_of(MODEL_FORMATS), value_name = "FORMAT")]
-    pub(crate) format: Option<MeshFormat>,
+    pub format: Option<MeshFormat>,
     #[command(flatten)]
-    pub(crate) at: LevelArg,
+    pub at: LevelArg,
     #[command(flatten)]
-    pub(crate) within: BoundsArg,
+    pub within: BoundsArg,
     /// How roads are exported: lines (centre-lines on the ground), surfaces (with their true width,
     /// cut into the terrain's triangles) or none; with surfaces, bridges are slabs if the package
     /// has spans (bridges and tunnels between two points on the ground)
@@ -167,15 +167,15 @@ pub(crate) struct ExportMeshArgs {
         value_name = "HOW",
         hide_possible_values = true
     )]
-    pub(crate) roads: ModelRoads,
+    pub roads: ModelRoads,
     /// Colours and widths of roads: road-atlas, dark, relief, photo or a style file (TOML)
     #[arg(long, value_name = "STYLE", default_value = "road-atlas")]
-    pub(crate) style: String,
+    pub style: String,
     #[command(flatten)]
-    pub(crate) filter: ClassesArg,
+    pub filter: ClassesArg,
     /// Add normal maps of the terrain, from the package's relief (only .glb) [default: on for .glb]
     #[arg(long, value_parser = one_of(ON_NONE), value_name = "on|none", hide_possible_values = true)]
-    pub(crate) relief: Option<bool>,
+    pub relief: Option<bool>,
     /// The axis that points up: y (x east, z south) or z (x east, y north) [default: z for .ply,
     /// else y]
     #[arg(
@@ -183,7 +183,7 @@ pub(crate) struct ExportMeshArgs {
         value_parser = one_of([("y", "", UpAxis::Y), ("z", "", UpAxis::Z)]),
         value_name = "AXIS"
     )]
-    pub(crate) up: Option<UpAxis>,
+    pub up: Option<UpAxis>,
 }
 
 #[derive(Debug, Args)]
@@ -197,26 +197,26 @@ pub(crate) struct ExportMeshArgs {
 )]
 pub(crate) struct ExportGeoTiffArgs {
     #[command(flatten)]
-    pub(crate) from: RecordedArgs,
+    pub from: RecordedArgs,
     #[command(flatten)]
-    pub(crate) file: FileArgs,
+    pub file: FileArgs,
     #[command(flatten)]
-    pub(crate) at: LevelArg,
+    pub at: LevelArg,
     #[command(flatten)]
-    pub(crate) within: BoundsArg,
+    pub within: BoundsArg,
     #[command(flatten)]
-    pub(crate) datum: DatumArg,
+    pub datum: DatumArg,
     #[command(flatten)]
-    pub(crate) cpu: ThreadsArg,
+    pub cpu: ThreadsArg,
 }
 
 #[derive(Debug, Args)]
 #[command(arg = json_progress(), mut_arg("bounds", |arg| arg.help("Export the whole tiles that intersect a bounding box in WGS84 degrees: coarse tiles extend far beyond it; one with west > east crosses 180°")))]
 pub(crate) struct ExportTiles3dArgs {
     #[command(flatten)]
-    pub(crate) from: PackageArg,
+    pub from: PackageArg,
     #[command(flatten)]
-    pub(crate) folder: FolderArgs,
+    pub folder: FolderArgs,
     /// How roads are exported: cut (surfaces with true widths, in the terrain's triangles), line
     /// (centre-lines above the ground), vector (vector content for CesiumJS) or none. With
     /// cut, bridges are slabs if the package has spans. Vector content is in a second tileset,
@@ -229,17 +229,17 @@ pub(crate) struct ExportTiles3dArgs {
         value_name = "HOW",
         hide_possible_values = true
     )]
-    pub(crate) roads: TileRoads,
+    pub roads: TileRoads,
     #[command(flatten)]
-    pub(crate) filter: ClassesArg,
+    pub filter: ClassesArg,
     /// Colours and widths: road-atlas, dark, relief, photo or a style file (TOML)
     #[arg(long, value_name = "STYLE", default_value = "road-atlas")]
-    pub(crate) style: String,
+    pub style: String,
     /// The finest level to write [default: the package's finest]
     #[arg(long, value_name = "Z")]
-    pub(crate) finest_level: Option<u8>,
+    pub finest_level: Option<u8>,
     #[command(flatten)]
-    pub(crate) within: BoundsArg,
+    pub within: BoundsArg,
     /// Add normal maps of the terrain, from the package's relief
     #[arg(
         long,
@@ -249,7 +249,7 @@ pub(crate) struct ExportTiles3dArgs {
         value_name = "on|none",
         hide_possible_values = true
     )]
-    pub(crate) relief: bool,
+    pub relief: bool,
     /// Add skirts below the borders of tiles, which hide gaps between levels
     #[arg(
         long,
@@ -259,7 +259,7 @@ pub(crate) struct ExportTiles3dArgs {
         value_name = "on|none",
         hide_possible_values = true
     )]
-    pub(crate) skirts: bool,
+    pub skirts: bool,
     /// Lossless compression of vertices: meshopt, or none
     #[arg(
         long,
@@ -269,14 +269,14 @@ pub(crate) struct ExportTiles3dArgs {
         value_name = "HOW",
         hide_possible_values = true
     )]
-    pub(crate) compress: bool,
+    pub compress: bool,
     /// Do not convert heights to the WGS84 ellipsoid, although 3D Tiles expects ellipsoidal heights
     #[arg(long, value_parser = one_of(HEIGHTS), value_name = "as-is")]
-    pub(crate) heights: Option<FeatureCoordinates>,
+    pub heights: Option<FeatureCoordinates>,
     #[command(flatten)]
-    pub(crate) datum: DatumArg,
+    pub datum: DatumArg,
     #[command(flatten)]
-    pub(crate) cpu: ThreadsArg,
+    pub cpu: ThreadsArg,
 }
 
 #[derive(Debug, Args)]
@@ -287,9 +287,9 @@ pub(crate) struct ExportTiles3dArgs {
 )]
 pub(crate) struct ExportQuantizedMeshArgs {
     #[command(flatten)]
-    pub(crate) from: PackageArg,
+    pub from: PackageArg,
     #[command(flatten)]
-    pub(crate) folder: FolderArgs,
+    pub folder: FolderArgs,
     /// The tiling scheme: geographic (EPSG:4326) or web-mercator (EPSG:3857)
     #[arg(
         long,
@@ -301,16 +301,16 @@ pub(crate) struct ExportQuantizedMeshArgs {
         value_name = "GRID",
         hide_possible_values = true
     )]
-    pub(crate) tiling: Tiling,
+    pub tiling: Tiling,
     /// The finest level [default: the first level whose cell size or whose error is at most the
     /// package's]
     #[arg(long, value_name = "Z", value_parser = clap::value_parser!(u8).range(0..=24))]
-    pub(crate) max_level: Option<u8>,
+    pub max_level: Option<u8>,
     /// Fail if the export would have more files than this
     #[arg(long, value_name = "N", default_value_t = 250_000)]
-    pub(crate) max_files: u64,
+    pub max_files: u64,
     #[command(flatten)]
-    pub(crate) within: BoundsArg,
+    pub within: BoundsArg,
     /// How tile availability is stored: layer (in layer.json) or tiles (as metadata in the tiles of
     /// every tenth level, which keeps layer.json small)
     #[arg(
@@ -323,7 +323,7 @@ pub(crate) struct ExportQuantizedMeshArgs {
         value_name = "WHERE",
         hide_possible_values = true
     )]
-    pub(crate) availability: Availability,
+    pub availability: Availability,
     /// Compression of files: none, or gzip for servers that then send "Content-Encoding: gzip"
     #[arg(
         long,
@@ -333,15 +333,15 @@ pub(crate) struct ExportQuantizedMeshArgs {
         value_name = "HOW",
         hide_possible_values = true
     )]
-    pub(crate) compress: bool,
+    pub compress: bool,
     /// Do not convert heights to the WGS84 ellipsoid, although quantized-mesh expects ellipsoidal
     /// heights
     #[arg(long, value_parser = one_of(HEIGHTS), value_name = "as-is")]
-    pub(crate) heights: Option<FeatureCoordinates>,
+    pub heights: Option<FeatureCoordinates>,
     #[command(flatten)]
-    pub(crate) datum: DatumArg,
+    pub datum: DatumArg,
     #[command(flatten)]
-    pub(crate) cpu: ThreadsArg,
+    pub cpu: ThreadsArg,
 }
 
 /// The values of `--roads` for 3D Tiles.

@@ -12,22 +12,22 @@ use super::values::package_place;
 pub(crate) struct GrowthArgs {
     /// The package: a file, or a URL (https://…); several packages are compared
     #[arg(value_name = "PACKAGE", required = true, value_parser = package_place(), value_hint = ValueHint::AnyPath)]
-    pub(crate) packages: Vec<PackagePlace>,
+    pub packages: Vec<PackagePlace>,
     /// Print JSON, for programs
     #[arg(long, conflicts_with = "csv")]
-    pub(crate) json: bool,
+    pub json: bool,
     /// Print CSV, for programs; with several packages, a column names the package
     #[arg(long)]
-    pub(crate) csv: bool,
+    pub csv: bool,
     /// Also draw the growth over the levels (SVG): one line per class, or per package if there are
     /// several
     #[arg(long, value_name = "FILE")]
-    pub(crate) svg: Option<PathBuf>,
+    pub svg: Option<PathBuf>,
     /// Also write one line per way (CSV): its length, and its vertices before and after clipping on
     /// each level. Only for a single package
     #[arg(long, value_name = "CSV")]
-    pub(crate) per_way: Option<PathBuf>,
+    pub per_way: Option<PathBuf>,
     /// Overwrite existing files, once the new ones are complete
     #[arg(short = 'O', long, requires = "files")]
-    pub(crate) overwrite: bool,
+    pub overwrite: bool,
 }

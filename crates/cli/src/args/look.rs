@@ -11,7 +11,7 @@ use super::{
     overlay::{self, OverlayArg},
     values::{parse_within, word_of},
 };
-use crate::failure::CommandFailure;
+use crate::failure::Result;
 
 /// The help heading of options for comparisons with published methods.
 pub(crate) const COMPARING: &str = "Comparing with the papers";
@@ -125,10 +125,10 @@ const QUADS: Words<Quads, 2> = [
 pub(crate) struct LookArgs {
     /// Colours and widths: road-atlas, dark, relief, photo or a style file (TOML)
     #[arg(long, value_name = "NAME|FILE", default_value = "road-atlas")]
-    pub(crate) style: String,
+    pub style: String,
     /// Opacity of photos, where the package has some: off, or 0 to 1 [default: from the style]
     #[arg(long, value_name = "off|SHARE", value_parser = parse_strength)]
-    pub(crate) photo: Option<f32>,
+    pub photo: Option<f32>,
     /// The layers of the package to draw, such as areas,railways; or none [default: all]
     #[arg(long, value_name = "NAMES|none")]
     layers: Option<String>,
@@ -138,11 +138,11 @@ pub(crate) struct LookArgs {
     /// After the file's name: ,color=COLOUR (#C21E8A or tomato) ,width=PIXELS ,opacity=SHARE
     /// ,dash=DASH/GAP ,pattern=dots/PX (or beads, arrows) in pixels.
     #[arg(long, value_name = "FILE[,color=…]", value_parser = overlay::parse)]
-    pub(crate) overlay: Vec<OverlayArg>,
+    pub overlay: Vec<OverlayArg>,
     /// Allow PROJ's ballpark transformations (no datum shift) for files of --overlay; their lines
     /// can then be off by 100 m or more
     #[arg(long, requires = "overlay")]
-    pub(crate) allow_ballpark: bool,
+    pub allow_ballpark: bool,
     /// The shape of the ends and bends of roads
     #[arg(long, value_parser = one_of(CAPS), default_value = "round", help_heading = COMPARING, hide_short_help = true)]
     caps: Caps,
@@ -187,19 +187,17 @@ impl LookArgs {
     ///
     /// # Errors
     /// When `--cap-test` or `--geo-quads` is given and would have no effect.
-    pub(crate) fn roads(&self, given: &[Roads]) -> Result<Vec<Roads>, CommandFailure> {
+    pub(crate) fn roads(&self, given: &[Roads]) -> Result<Vec<Roads>> {
         let roads: Vec<Roads> = given.iter().map(|roads| roads.with_caps(self.caps)).collect();
         if self.cap_test.is_some() && !roads.contains(&Roads::Sv) {
-            return Err(unusable!(
+            refuse!(
                 "--cap-test applies only to shadow volumes with round caps; use it with --roads sv"
-            ));
+            );
         }
         if self.geo_quads.is_some()
             && !roads.iter().any(|roads| roads.method() == RoadMethod::Geometry)
         {
-            return Err(unusable!(
-                "--geo-quads applies only to roads as geometry; use it with --roads geo"
-            ));
+            refuse!("--geo-quads applies only to roads as geometry; use it with --roads geo");
         }
         Ok(roads)
     }

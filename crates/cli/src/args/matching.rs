@@ -21,36 +21,36 @@ use super::{
 pub(crate) struct MatchArgs {
     /// The package: a file, or a URL (https://…)
     #[arg(required_unless_present = "photo", value_parser = package_place(), value_hint = ValueHint::AnyPath)]
-    pub(crate) package: Option<PackagePlace>,
+    pub package: Option<PackagePlace>,
     /// Photos of the ground to compare roads with, as for build --photo: any format and CRS that
     /// GDAL reads; the first is on top
     #[arg(long, value_name = "FILE", num_args = 1..)]
-    pub(crate) photo: Vec<PathBuf>,
+    pub photo: Vec<PathBuf>,
     /// Allow PROJ's ballpark transformations (no datum shift) for photos; they can then be off by
     /// 100 m or more
     #[arg(long, requires = "photo")]
-    pub(crate) allow_ballpark: bool,
+    pub allow_ballpark: bool,
     /// Compare with the slope of the ground: roads are level across. For packages with relief, from
     /// lidar with samples of a few metres
     #[arg(long)]
-    pub(crate) slope: bool,
+    pub slope: bool,
     /// How far from roads to search, metres, 1 to 500
     #[arg(long, value_name = "METRES", default_value_t = 30.0, value_parser = |text: &str| metres(text, 500.0))]
-    pub(crate) radius: f64,
+    pub radius: f64,
     /// The side of the squares for which offsets are reported, metres
     #[arg(long, value_name = "METRES", default_value_t = 2000.0, value_parser = |text: &str| metres(text, 1e6))]
-    pub(crate) region: f64,
+    pub region: f64,
     #[command(flatten)]
-    pub(crate) filter: ClassesArg,
+    pub filter: ClassesArg,
     /// Also write one line per way (CSV)
     #[arg(long, value_name = "FILE")]
-    pub(crate) csv: Option<PathBuf>,
+    pub csv: Option<PathBuf>,
     /// Also draw a map of the offsets (SVG)
     #[arg(long, value_name = "FILE")]
-    pub(crate) svg: Option<PathBuf>,
+    pub svg: Option<PathBuf>,
     /// Overwrite existing files, once the new ones are complete
     #[arg(short = 'O', long, requires = "written")]
-    pub(crate) overwrite: bool,
+    pub overwrite: bool,
 }
 
 /// Parses a number of metres from 1 to `most`.

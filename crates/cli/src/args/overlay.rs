@@ -11,14 +11,14 @@ use super::values::parse_within;
 /// `,pattern=NAME/PX` in any order.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct OverlayArg {
-    pub(crate) path: PathBuf,
+    pub path: PathBuf,
     /// The colour of the lines, if given.
-    pub(crate) color: Option<Rgb>,
+    pub color: Option<Rgb>,
     width_px: Option<f32>,
     opacity: Option<f32>,
     dash: Option<Dash>,
     /// The text of the command line.
-    pub(crate) text: String,
+    pub text: String,
 }
 
 /// Whether a name of an entry is one of a style. Any other name is a part of the file's name.

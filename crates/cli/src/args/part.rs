@@ -9,7 +9,7 @@ use corniche_pipeline::PartStep;
 use corniche_presets::one_of;
 
 use super::{shared::ThreadsArg, voice::json_progress};
-use crate::failure::CommandFailure;
+use crate::failure::Result;
 
 /// The steps of a build that a process can do alone.
 fn step() -> impl TypedValueParser<Value = PartStep> {
@@ -39,21 +39,21 @@ fn step() -> impl TypedValueParser<Value = PartStep> {
 pub(crate) struct PlannedArgs {
     /// The plan, created with corniche plan -o
     #[arg(value_name = "PLAN.json")]
-    pub(crate) plan: Option<PathBuf>,
+    pub plan: Option<PathBuf>,
     /// Folders of parts, or prefixes in object storage (`s3://BUCKET/PREFIX`). All are read; only
     /// the first is written
     #[arg(long, value_name = "FOLDER", num_args = 1.., required = true)]
-    pub(crate) store: Vec<PathBuf>,
+    pub store: Vec<PathBuf>,
     /// With object storage: folder for parts and packages before they are uploaded [default: the
     /// system's temporary folder]
     #[arg(long, value_name = "FOLDER")]
-    pub(crate) tmp: Option<PathBuf>,
+    pub tmp: Option<PathBuf>,
     #[command(flatten)]
-    pub(crate) cpu: ThreadsArg,
+    pub cpu: ThreadsArg,
     /// Memory limit, at least 256M, such as 512M or 4G (M is 2^20 bytes, MB is 10^6) [default: half
     /// of the machine's memory, at most 4G]
     #[arg(long, value_name = "BYTES")]
-    pub(crate) memory: Option<String>,
+    pub memory: Option<String>,
 }
 
 /// The plan and the stores. `--store` consumes all words that follow it, including a plan, which
@@ -64,7 +64,7 @@ pub(crate) struct PlannedArgs {
 pub(crate) fn plan_and_stores(
     plan: Option<&PathBuf>,
     store: &[PathBuf],
-) -> Result<(PathBuf, Vec<PathBuf>), CommandFailure> {
+) -> Result<(PathBuf, Vec<PathBuf>)> {
     if let Some(plan) = plan {
         return Ok((plan.clone(), store.to_vec()));
     }
@@ -89,16 +89,16 @@ pub(crate) fn plan_and_stores(
 pub(crate) struct PartArgs {
     /// The step to run
     #[arg(long, value_parser = step(), value_name = "STEP")]
-    pub(crate) step: PartStep,
+    pub step: PartStep,
     /// For the steps heights and tiles: only this tile and its descendants [default: 0/0/0, all]
     #[arg(long, value_name = "Z/X/Y")]
-    pub(crate) subtree: Option<TileId>,
+    pub subtree: Option<TileId>,
     /// For the steps ways and nodes: only chunk I of N of the extract; N is the same for all
     /// chunks, at most 256 [default: 1/1, all]
     #[arg(long, value_name = "I/N")]
-    pub(crate) share: Option<Share>,
+    pub share: Option<Share>,
     #[command(flatten)]
-    pub(crate) planned: PlannedArgs,
+    pub planned: PlannedArgs,
 }
 
 #[derive(Debug, Args)]
@@ -106,18 +106,18 @@ pub(crate) struct PartArgs {
 pub(crate) struct JobsArgs {
     /// The plan, created with corniche plan -o
     #[arg(value_name = "PLAN.json", required_unless_present = "store")]
-    pub(crate) plan: Option<PathBuf>,
+    pub plan: Option<PathBuf>,
     /// Number of processes that will run at once
     #[arg(long, value_name = "N")]
-    pub(crate) slots: NonZeroU32,
+    pub slots: NonZeroU32,
     /// Stores of parts. Once they contain the roads, the parts of the step tiles are also sized by
     /// the roads of each tile
     #[arg(long, value_name = "STORE", num_args = 1..)]
-    pub(crate) store: Vec<PathBuf>,
+    pub store: Vec<PathBuf>,
     /// Smallest size of a part, in estimated seconds on one core, unless a smaller one is
     /// unavoidable [default: 20 times the start-up time of a part]
     #[arg(long, value_name = "SECONDS")]
-    pub(crate) least_work: Option<f64>,
+    pub least_work: Option<f64>,
 }
 
 #[derive(Debug, Args)]
@@ -125,15 +125,15 @@ pub(crate) struct JobsArgs {
 pub(crate) struct MergeArgs {
     /// The package to write (.pmtiles): a file, or an object (`s3://BUCKET/NAME.pmtiles`)
     #[arg(short, long, value_name = "PACKAGE")]
-    pub(crate) output: PathBuf,
+    pub output: PathBuf,
     /// Overwrite the package if it exists, once the new one is complete; for a link, overwrite the
     /// file it points to
     #[arg(short = 'O', long)]
-    pub(crate) overwrite: bool,
+    pub overwrite: bool,
     /// Also list every defect of the extract and every lost road in this file (CSV), one per line;
     /// needs -O if the file exists
     #[arg(long, value_name = "CSV")]
-    pub(crate) defects: Option<PathBuf>,
+    pub defects: Option<PathBuf>,
     #[command(flatten)]
-    pub(crate) planned: PlannedArgs,
+    pub planned: PlannedArgs,
 }

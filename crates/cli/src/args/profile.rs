@@ -8,7 +8,7 @@ use super::{
     shared::{ClassesArg, ExtractArgs, LevelArg, RecordedArgs, RoadArg, ThreadsArg},
     values::parse_position,
 };
-use crate::failure::CommandFailure;
+use crate::failure::Result;
 
 #[derive(Debug, Args)]
 #[command(
@@ -24,18 +24,18 @@ use crate::failure::CommandFailure;
 )]
 pub(crate) struct ProfileArgs {
     #[command(flatten)]
-    pub(crate) recorded: RecordedArgs,
+    pub recorded: RecordedArgs,
     #[command(flatten)]
-    pub(crate) extract: ExtractArgs,
+    pub extract: ExtractArgs,
     /// Follow these ways, by their OSM ids, in this order; each is turned so that it continues
     /// where the previous one ends
     #[arg(long, value_name = "ID", value_delimiter = ',', allow_negative_numbers = true)]
-    pub(crate) way: Vec<i64>,
+    pub way: Vec<i64>,
     /// Follow the lines of a file (GeoJSON, GPX, GeoPackage, Shapefile …), one after the other
     #[arg(long, value_name = "FILE", conflicts_with = "way")]
-    pub(crate) line: Option<PathBuf>,
+    pub line: Option<PathBuf>,
     #[command(flatten)]
-    pub(crate) road: RoadArg,
+    pub road: RoadArg,
     /// Follow the shortest way along roads from this longitude and latitude; with --ref or --name,
     /// along that road
     #[arg(long, value_name = "LON,LAT", requires = "to", conflicts_with_all = ["way", "line"], allow_hyphen_values = true, value_parser = parse_position)]
@@ -44,27 +44,27 @@ pub(crate) struct ProfileArgs {
     #[arg(long, value_name = "LON,LAT", requires = "from", allow_hyphen_values = true, value_parser = parse_position)]
     to: Option<[f64; 2]>,
     #[command(flatten)]
-    pub(crate) filter: ClassesArg,
+    pub filter: ClassesArg,
     /// Allow PROJ's ballpark transformations (no datum shift) for the file of --line; its lines can
     /// then be off by 100 m or more
     #[arg(long, requires = "line")]
-    pub(crate) allow_ballpark: bool,
+    pub allow_ballpark: bool,
     #[command(flatten)]
-    pub(crate) at: LevelArg,
+    pub at: LevelArg,
     #[command(flatten)]
-    pub(crate) cpu: ThreadsArg,
+    pub cpu: ThreadsArg,
     /// Also write one line per vertex (CSV)
     #[arg(long, value_name = "FILE")]
-    pub(crate) csv: Option<PathBuf>,
+    pub csv: Option<PathBuf>,
     /// Also write the whole profile for programs (JSON)
     #[arg(long, value_name = "FILE")]
-    pub(crate) json: Option<PathBuf>,
+    pub json: Option<PathBuf>,
     /// Also draw height and grade over distance (SVG)
     #[arg(long, value_name = "FILE")]
-    pub(crate) svg: Option<PathBuf>,
+    pub svg: Option<PathBuf>,
     /// Overwrite existing files, once the new ones are complete
     #[arg(short = 'O', long, requires = "drawn")]
-    pub(crate) overwrite: bool,
+    pub overwrite: bool,
 }
 
 impl ProfileArgs {
@@ -82,11 +82,7 @@ impl ProfileArgs {
     ///
     /// # Errors
     /// When --osm is given without --dem, and no road is searched.
-    pub(crate) fn refuse_idle_extract(
-        &self,
-        dem: &[PathBuf],
-        osm: &[PathBuf],
-    ) -> Result<(), CommandFailure> {
+    pub(crate) fn refuse_idle_extract(&self, dem: &[PathBuf], osm: &[PathBuf]) -> Result<()> {
         if osm.is_empty() || !dem.is_empty() || self.is_route() {
             return Ok(());
         }

@@ -28,10 +28,10 @@ fn checks() -> String {
 #[derive(Debug, Args)]
 pub(crate) struct InfoArgs {
     #[command(flatten)]
-    pub(crate) from: PackageArg,
+    pub from: PackageArg,
     /// Print JSON, for programs
     #[arg(long)]
-    pub(crate) json: bool,
+    pub json: bool,
 }
 
 #[derive(Debug, Args)]
@@ -39,31 +39,31 @@ pub(crate) struct InfoArgs {
 pub(crate) struct VerifyArgs {
     /// The package: a file, or a URL (https://…)
     #[arg(required_unless_present_any = ["dem", "photo", "osm"], value_parser = package_place(), value_hint = ValueHint::AnyPath)]
-    pub(crate) package: Option<PackagePlace>,
+    pub package: Option<PackagePlace>,
     /// The DEM the package was built from (same files, same order): checks the stored errors
     /// against the true ones
     #[arg(long, value_name = "FILE", num_args = 1..)]
-    pub(crate) dem: Vec<PathBuf>,
+    pub dem: Vec<PathBuf>,
     /// The photos the package was built from, in the same order: reads them again and checks the
     /// photo of every tile
     #[arg(long, value_name = "FILE", num_args = 1..)]
-    pub(crate) photo: Vec<PathBuf>,
+    pub photo: Vec<PathBuf>,
     /// The extracts the package was built from: reads them again and checks roads, attributes and
     /// counts
     #[arg(long, value_name = "FILE", num_args = 1..)]
-    pub(crate) osm: Vec<PathBuf>,
+    pub osm: Vec<PathBuf>,
     /// With --dem or --osm: the polygon that the package was clipped to
     #[arg(long, value_name = "FILE")]
-    pub(crate) polygon: Option<PathBuf>,
+    pub polygon: Option<PathBuf>,
     /// With --osm: the FRC table (functional road classes) the package was built with [default: the
     /// preset of the recorded name]
     #[arg(long, value_name = "NAME|FILE", requires = "osm")]
-    pub(crate) frc_table: Option<String>,
+    pub frc_table: Option<String>,
     #[command(flatten)]
-    pub(crate) cpu: ThreadsArg,
+    pub cpu: ThreadsArg,
     /// Print JSON, for programs
     #[arg(long)]
-    pub(crate) json: bool,
+    pub json: bool,
 }
 
 /// The coordinates in a dump.
@@ -79,21 +79,21 @@ pub(crate) enum DumpCoordinates {
 #[derive(Debug, Args)]
 pub(crate) struct TileArgs {
     #[command(flatten)]
-    pub(crate) from: PackageArg,
+    pub from: PackageArg,
     /// The tile: level, column from the west, row from the north
     #[arg(value_name = "Z/X/Y", required_unless_present = "at")]
-    pub(crate) id: Option<TileId>,
+    pub id: Option<TileId>,
     /// The finest tile at this longitude and latitude (degrees, WGS84), instead of Z/X/Y
     #[arg(long, value_name = "LON,LAT", value_parser = parse_position, allow_hyphen_values = true, conflicts_with = "id")]
-    pub(crate) at: Option<[f64; 2]>,
+    pub at: Option<[f64; 2]>,
     /// With --at: the tile of this level
     #[arg(long, value_name = "Z", requires = "at", conflicts_with = "id")]
-    pub(crate) level: Option<u8>,
+    pub level: Option<u8>,
     /// Print everything in the tile as JSON, for programs: terrain with normals, roads and
     /// attributes, in working metres
     #[arg(long)]
-    pub(crate) json: bool,
+    pub json: bool,
     /// The coordinates x and y in the JSON: working metres, or the package's CRS
     #[arg(long, value_enum, default_value_t, requires = "json")]
-    pub(crate) coordinates: DumpCoordinates,
+    pub coordinates: DumpCoordinates,
 }

@@ -12,14 +12,14 @@ use corniche_tileset::Manifest;
 use corniche_viewer::stream::StreamBudget;
 
 use super::values::{package_among, package_place};
-use crate::{failure::CommandFailure, presets};
+use crate::{failure::Result, presets};
 
 // The package to read.
 #[derive(Debug, Args)]
 pub(crate) struct PackageArg {
     /// The package: a file, or a URL (https://…)
     #[arg(value_parser = package_place(), value_hint = ValueHint::AnyPath)]
-    pub(crate) package: PackagePlace,
+    pub package: PackagePlace,
 }
 
 // The package to read, with the DEM that it was built from.
@@ -33,7 +33,7 @@ pub(crate) struct RecordedArgs {
     dem: Vec<PathBuf>,
     /// With --dem: the polygon that the package was clipped to
     #[arg(long, value_name = "FILE", requires = "dem")]
-    pub(crate) polygon: Option<PathBuf>,
+    pub polygon: Option<PathBuf>,
 }
 
 impl RecordedArgs {
@@ -46,7 +46,7 @@ impl RecordedArgs {
         &self,
         others: &[PathBuf],
         usage: &str,
-    ) -> Result<(PackagePlace, [Vec<PathBuf>; 2]), CommandFailure> {
+    ) -> Result<(PackagePlace, [Vec<PathBuf>; 2])> {
         package_among(self.package.as_ref(), [&self.dem, others], usage)
     }
 }
@@ -57,11 +57,11 @@ pub(crate) struct ExtractArgs {
     /// With --dem: the extracts the package was built from: grades are computed from junction to
     /// junction, and bridges and tunnels get their own heights
     #[arg(long, value_name = "FILE", num_args = 1..)]
-    pub(crate) osm: Vec<PathBuf>,
+    pub osm: Vec<PathBuf>,
     /// With --osm: the FRC table (functional road classes) the package was built with [default: the
     /// preset of the recorded name]
     #[arg(long, value_name = "NAME|FILE", requires = "osm")]
-    pub(crate) frc_table: Option<String>,
+    pub frc_table: Option<String>,
 }
 
 // The file that an export writes.
@@ -69,11 +69,11 @@ pub(crate) struct ExtractArgs {
 pub(crate) struct FileArgs {
     /// The file to write; its extension selects the format: .gpkg, .fgb, .geojson or .csv
     #[arg(short, long, value_name = "FILE")]
-    pub(crate) output: PathBuf,
+    pub output: PathBuf,
     /// Overwrite the file if it exists, once the new one is complete; for a link, overwrite the
     /// file it points to
     #[arg(short = 'O', long)]
-    pub(crate) overwrite: bool,
+    pub overwrite: bool,
 }
 
 // The folder that an export writes.
@@ -81,10 +81,10 @@ pub(crate) struct FileArgs {
 pub(crate) struct FolderArgs {
     /// The folder to write: tileset.json and its content files
     #[arg(short, long, value_name = "FOLDER")]
-    pub(crate) output: PathBuf,
+    pub output: PathBuf,
     /// Overwrite an earlier export in the folder, once the new one is complete
     #[arg(short = 'O', long)]
-    pub(crate) overwrite: bool,
+    pub overwrite: bool,
 }
 
 // A level of a package.
@@ -92,7 +92,7 @@ pub(crate) struct FolderArgs {
 pub(crate) struct LevelArg {
     /// The level to use [default: the finest]
     #[arg(long, value_name = "Z")]
-    pub(crate) level: Option<u8>,
+    pub level: Option<u8>,
 }
 
 // A region of a package.
@@ -100,7 +100,7 @@ pub(crate) struct LevelArg {
 pub(crate) struct BoundsArg {
     /// Clip roads to a bounding box in WGS84 degrees; one with west > east crosses 180°
     #[arg(long, value_name = "W,S,E,N", allow_hyphen_values = true, value_parser = parse_bounds)]
-    pub(crate) bounds: Option<DegreeBounds>,
+    pub bounds: Option<DegreeBounds>,
 }
 
 // The vertical CRS of a package that does not record one.
@@ -109,7 +109,7 @@ pub(crate) struct DatumArg {
     /// Vertical CRS of a package that does not record one, for the conversion of heights to the
     /// ellipsoid
     #[arg(long, value_name = "EPSG:N")]
-    pub(crate) dem_vertical_crs: Option<String>,
+    pub dem_vertical_crs: Option<String>,
 }
 
 // A selection of road classes.
@@ -125,10 +125,7 @@ impl ClassesArg {
     ///
     /// # Errors
     /// When the package has no class of a name.
-    pub(crate) fn of_package(
-        &self,
-        manifest: &Manifest,
-    ) -> Result<Vec<FunctionalRoadClass>, CommandFailure> {
+    pub(crate) fn of_package(&self, manifest: &Manifest) -> Result<Vec<FunctionalRoadClass>> {
         let classes = self.classes.classes(&presets::class_labels(manifest));
         classes.map_err(|error| presets::refuse("--classes", &error))
     }
@@ -159,7 +156,7 @@ impl RoadArg {
 pub(crate) struct ThreadsArg {
     /// Number of worker threads [default: one per processor]
     #[arg(long, value_name = "N")]
-    pub(crate) threads: Option<NonZeroUsize>,
+    pub threads: Option<NonZeroUsize>,
 }
 
 // The use of the GPU when drawing frame by frame.

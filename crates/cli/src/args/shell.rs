@@ -12,7 +12,7 @@ use clap_complete::Shell;
 pub(crate) struct CompletionsArgs {
     /// The shell
     #[arg(value_enum)]
-    pub(crate) shell: Shell,
+    pub shell: Shell,
 }
 
 #[derive(Debug, Args)]
@@ -23,10 +23,10 @@ pub(crate) struct LayersArgs {
     /// The name of a built-in layer, whose table is printed, or the file of a table, which is
     /// checked; without it, the built-in layers are listed
     #[arg(value_name = "NAME|FILE")]
-    pub(crate) layer: Option<String>,
+    pub layer: Option<String>,
     /// Print the JSON schema of tables, for editors
     #[arg(long, conflicts_with = "layer")]
-    pub(crate) schema: bool,
+    pub schema: bool,
 }
 
 #[derive(Debug, Args)]
@@ -36,8 +36,8 @@ pub(crate) struct LayersArgs {
 pub(crate) struct ManArgs {
     /// The folder to write the pages to; it is created if it does not exist
     #[arg(value_name = "FOLDER")]
-    pub(crate) folder: PathBuf,
+    pub folder: PathBuf,
     /// Overwrite existing pages
     #[arg(short = 'O', long)]
-    pub(crate) overwrite: bool,
+    pub overwrite: bool,
 }

@@ -11,7 +11,10 @@ use clap::{builder::TypedValueParser, error::ErrorKind};
 use corniche_presets::Words;
 use corniche_remote::PackagePlace;
 
-use crate::{failure::CommandFailure, names::is_package_name};
+use crate::{
+    failure::{CommandFailure, Result},
+    names::is_package_name,
+};
 
 /// The word of a value.
 pub(crate) fn word_of<T: PartialEq, const N: usize>(
@@ -50,7 +53,7 @@ impl TypedValueParser for PlaceParser {
 ///
 /// # Errors
 /// When it is an invalid URL.
-fn place_of(file: PathBuf) -> Result<PackagePlace, CommandFailure> {
+fn place_of(file: PathBuf) -> Result<PackagePlace> {
     PackagePlace::parse(file.into()).map_err(CommandFailure::unusable)
 }
 
@@ -69,7 +72,7 @@ pub(crate) fn package_among<const N: usize>(
     named: Option<&PackagePlace>,
     lists: [&[PathBuf]; N],
     usage: &str,
-) -> Result<(PackagePlace, [Vec<PathBuf>; N]), CommandFailure> {
+) -> Result<(PackagePlace, [Vec<PathBuf>; N])> {
     if let Some(package) = named {
         return Ok((package.clone(), lists.map(<[PathBuf]>::to_vec)));
     }

@@ -20,39 +20,39 @@ const MOTIONS: Words<bool, 2> =
 #[derive(Debug, Args)]
 pub(crate) struct ViewArgs {
     #[command(flatten)]
-    pub(crate) from: PackageArg,
+    pub from: PackageArg,
     /// How roads are drawn at first [default: sv; geo without a GPU, because sv is slow there]
     #[arg(long, value_parser = Roads::one_method())]
-    pub(crate) roads: Option<Roads>,
+    pub roads: Option<Roads>,
     #[command(flatten)]
-    pub(crate) look: LookArgs,
+    pub look: LookArgs,
     /// Initial width and height of the window, in pixels. The default is smaller than for images,
     /// so that it fits on a screen
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1280x800", value_parser = parse_size)]
-    pub(crate) size: [u32; 2],
+    pub size: [u32; 2],
     #[command(flatten)]
-    pub(crate) camera: CameraArgs,
+    pub camera: CameraArgs,
     #[command(flatten)]
-    pub(crate) ground: GroundArgs,
+    pub ground: GroundArgs,
     /// Samples per pixel along each side, averaged [default: 2; 1 without a GPU, because more is
     /// too slow for navigation]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4))]
-    pub(crate) supersampling: Option<u32>,
+    pub supersampling: Option<u32>,
     #[command(flatten)]
-    pub(crate) gpu: GpuArgs,
+    pub gpu: GpuArgs,
     /// How camera movements end
     #[arg(long, value_parser = one_of(MOTIONS), default_value = "soft", action = ArgAction::Set)]
-    pub(crate) motion: bool,
+    pub motion: bool,
     /// Lines to edit with the mouse (key L): a GeoJSON file, created if it does not exist. They are
     /// saved with Ctrl S and at the end [default: a new file in --folder]
     #[arg(long, value_name = "GEOJSON")]
-    pub(crate) draw: Option<PathBuf>,
+    pub draw: Option<PathBuf>,
     /// Folder for images (key P) and recorded flights (key C), which are numbered; no file is
     /// overwritten
     #[arg(long, value_name = "FOLDER", default_value = ".")]
-    pub(crate) folder: PathBuf,
+    pub folder: PathBuf,
     /// Diagnostics: write one line per frame to a new file, with the cursor, the ground under it,
     /// the camera and the tiles
     #[arg(long, value_name = "CSV")]
-    pub(crate) trace: Option<PathBuf>,
+    pub trace: Option<PathBuf>,
 }

@@ -21,16 +21,16 @@ pub(crate) struct Voice {
     /// Print only errors and warnings on standard error. Standard output stays the same, except
     /// that verify prints only broken checks and the verdict
     #[arg(short, long, global = true, conflicts_with = "verbose")]
-    pub(crate) quiet: bool,
+    pub quiet: bool,
     /// Also print what is done and with which settings; -vv: each step, and messages of libraries
     #[arg(short, long, global = true, action = ArgAction::Count)]
-    pub(crate) verbose: u8,
+    pub verbose: u8,
     /// Format of messages on standard error
     #[arg(long, global = true, value_enum, value_name = "FORMAT", default_value_t)]
-    pub(crate) log_format: LogFormat,
+    pub log_format: LogFormat,
     // Progress, warnings and the end of the run are records.
     #[arg(skip)]
-    pub(crate) json_progress: bool,
+    pub json_progress: bool,
 }
 
 impl Voice {

@@ -1,6 +1,7 @@
 //! The JSON document of `corniche growth`.
 
 use corniche_tileset::GrowthRow;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 #[cfg(test)]
@@ -13,86 +14,82 @@ use crate::documents::info_schema::RowDocument;
 pub(crate) struct GrowthDocument {
     /// One row per level and class.
     #[cfg_attr(test, schemars(with = "Vec<RowDocument>"))]
-    pub(crate) rows: Vec<GrowthRow>,
+    pub rows: Vec<GrowthRow>,
     /// One entry per level.
-    pub(crate) levels: Vec<LevelGrowthDocument>,
+    pub levels: Vec<LevelGrowthDocument>,
     /// All levels, compared with one copy of the source.
-    pub(crate) all_levels: WholeGrowthDocument,
+    pub all_levels: WholeGrowthDocument,
     /// Growth of the size of the road data that Vaaraniemi, Treib & Westermann 2011 report (section
     /// 7, "about"), as a factor.
-    pub(crate) paper: f64,
+    pub paper: f64,
     /// The layers, which are stored in plan and do not grow; omitted if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub(crate) layers: Vec<LayerBytesDocument>,
+    pub layers: Vec<LayerBytesDocument>,
 }
 
 /// The bytes of a layer.
-#[derive(Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Serialize, JsonSchema)]
 pub(crate) struct LayerBytesDocument {
     /// The id of the layer.
-    pub(crate) layer: String,
+    pub layer: String,
     /// Stored bytes of its sections on all levels.
-    pub(crate) stored_bytes: u64,
+    pub stored_bytes: u64,
 }
 
 /// The cost of one level, all classes. Ratios with a denominator of 0 are null.
-#[derive(Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Serialize, JsonSchema)]
 pub(crate) struct LevelGrowthDocument {
     /// Level.
-    pub(crate) level: u8,
+    pub level: u8,
     /// Points of the source lines in tiles with ground.
-    pub(crate) source_vertices: u64,
+    pub source_vertices: u64,
     /// Points of the level's simplified lines in tiles with ground.
-    pub(crate) simplified_vertices: u64,
+    pub simplified_vertices: u64,
     /// Vertices of the clipped lines.
-    pub(crate) geo_vertices: u64,
+    pub geo_vertices: u64,
     /// Points of the plan lines for shadow volumes.
-    pub(crate) sv_vertices: u64,
+    pub sv_vertices: u64,
     /// Bytes of the clipped lines as plain f64 triples.
-    pub(crate) geo_raw_bytes: u64,
+    pub geo_raw_bytes: u64,
     /// Bytes of the clipped lines as stored.
-    pub(crate) geo_stored_bytes: u64,
+    pub geo_stored_bytes: u64,
     /// Bytes of the plan lines as stored.
-    pub(crate) sv_stored_bytes: u64,
+    pub sv_stored_bytes: u64,
     /// The growth factors.
     #[serde(flatten)]
-    pub(crate) factors: Factors,
+    pub factors: Factors,
 }
 
 /// The growth factors of a row, or of a sum of rows. Ratios with a denominator of 0 are null.
-#[derive(Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Serialize, JsonSchema)]
 pub(crate) struct Factors {
     /// Clipped vertices over simplified ones.
-    pub(crate) growth_over_simplified: Option<f64>,
+    pub growth_over_simplified: Option<f64>,
     /// Clipped vertices over those of the source.
-    pub(crate) growth_over_source: Option<f64>,
+    pub growth_over_source: Option<f64>,
     /// Clipped bytes, raw, over those of the simplified lines.
-    pub(crate) raw_bytes_over_simplified: Option<f64>,
+    pub raw_bytes_over_simplified: Option<f64>,
     /// Clipped bytes, stored, over those of the simplified lines.
-    pub(crate) stored_bytes_over_simplified: Option<f64>,
+    pub stored_bytes_over_simplified: Option<f64>,
     /// Clipped bytes, raw, over those of the source.
-    pub(crate) raw_bytes_over_source: Option<f64>,
+    pub raw_bytes_over_source: Option<f64>,
     /// Clipped bytes, stored, over those of the source.
-    pub(crate) stored_bytes_over_source: Option<f64>,
+    pub stored_bytes_over_source: Option<f64>,
 }
 
 /// The cost of all levels together. Ratios with a denominator of 0 are null.
-#[derive(Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Serialize, JsonSchema)]
 pub(crate) struct WholeGrowthDocument {
     /// Points of the source lines, once.
-    pub(crate) source_vertices: u64,
+    pub source_vertices: u64,
     /// Vertices of the clipped lines of all levels.
-    pub(crate) geo_vertices: u64,
+    pub geo_vertices: u64,
     /// Clipped vertices over those of the source.
-    pub(crate) growth_over_source: Option<f64>,
+    pub growth_over_source: Option<f64>,
     /// Clipped bytes, raw, over those of the source.
-    pub(crate) raw_bytes_over_source: Option<f64>,
+    pub raw_bytes_over_source: Option<f64>,
     /// Clipped bytes, stored, over those of the source.
-    pub(crate) stored_bytes_over_source: Option<f64>,
+    pub stored_bytes_over_source: Option<f64>,
 }
 
 /// A comparison of several packages.
@@ -100,10 +97,10 @@ pub(crate) struct WholeGrowthDocument {
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct ComparisonDocument {
     /// The packages, in the order of the command line.
-    pub(crate) packages: Vec<ComparedDocument>,
+    pub packages: Vec<ComparedDocument>,
     /// Settings and inputs that differ, apart from cell and error bound. If there are any,
     /// differences in growth may also result from them.
-    pub(crate) differences: Vec<DifferenceDocument>,
+    pub differences: Vec<DifferenceDocument>,
 }
 
 /// One of the compared packages.
@@ -111,32 +108,30 @@ pub(crate) struct ComparisonDocument {
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct ComparedDocument {
     /// Path of the package, as given.
-    pub(crate) package: String,
+    pub package: String,
     /// Cell size of the finest level, east and north, working metres.
-    pub(crate) cell_m: [f64; 2],
+    pub cell_m: [f64; 2],
     /// The package's `--max-error`, metres.
-    pub(crate) max_error_m: f64,
+    pub max_error_m: f64,
     /// The document that `corniche growth --json` prints for this package alone.
-    pub(crate) growth: GrowthDocument,
+    pub growth: GrowthDocument,
 }
 
 /// A setting or input in which packages differ.
-#[derive(Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Serialize, JsonSchema)]
 pub(crate) struct DifferenceDocument {
     /// Name of the setting or input, such as "extract", "classes by level", "voids filled" or
     /// "polygon".
-    pub(crate) what: String,
+    pub what: String,
     /// The values, at least two.
-    pub(crate) values: Vec<DifferentValueDocument>,
+    pub values: Vec<DifferentValueDocument>,
 }
 
 /// A value, and the packages that have it.
-#[derive(Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Serialize, JsonSchema)]
 pub(crate) struct DifferentValueDocument {
     /// Paths of the packages that have it.
-    pub(crate) packages: Vec<String>,
+    pub packages: Vec<String>,
     /// The value as text.
-    pub(crate) value: String,
+    pub value: String,
 }

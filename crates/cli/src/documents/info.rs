@@ -15,9 +15,9 @@ use super::{layers::LayerDocument, spans::SpansDocument};
 #[derive(Serialize)]
 pub(crate) struct InfoDocument<'a> {
     #[serde(serialize_with = "ManifestDocument::serialize")]
-    pub(crate) manifest: &'a Manifest,
+    pub manifest: &'a Manifest,
     /// Ids of all tiles, "z/x/y".
-    pub(crate) tiles: Vec<String>,
+    pub tiles: Vec<String>,
 }
 
 /// The manifest of a package. The schema, which is among the tests, documents its fields.

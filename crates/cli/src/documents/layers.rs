@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use corniche_geom::LatticePoint;
 use corniche_layers::{AttributeValue, LayerForm};
 use corniche_tileset::{LayerObject, LayerRecord, LayerShape, Manifest, SectionLevelRecord};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 #[cfg(test)]
@@ -31,8 +32,7 @@ pub(crate) struct LayerDocument {
 }
 
 /// The objects of one class.
-#[derive(Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Serialize, JsonSchema)]
 struct LayerClassDocument {
     /// The id of the class.
     class: String,
@@ -46,8 +46,7 @@ struct LayerClassDocument {
 }
 
 /// The objects that were lost for one reason.
-#[derive(Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Serialize, JsonSchema)]
 struct LayerLossDocument {
     /// The reason.
     reason: String,
@@ -56,8 +55,7 @@ struct LayerLossDocument {
 }
 
 /// The values of an attribute that could not be read.
-#[derive(Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Serialize, JsonSchema)]
 struct UnreadValuesDocument {
     /// The key of the tag.
     key: String,
@@ -95,8 +93,7 @@ fn class_id(table: &LayerForm, class: u8) -> String {
 }
 
 /// The objects of a layer in a tile.
-#[derive(Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Serialize, JsonSchema)]
 pub(crate) struct TileLayerDocument {
     /// The id of the layer.
     layer: String,
@@ -105,8 +102,7 @@ pub(crate) struct TileLayerDocument {
 }
 
 /// An object of a layer, or its part in a tile.
-#[derive(Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Serialize, JsonSchema)]
 struct TileObjectDocument {
     /// The type of the OSM object: "node", "way" or "relation".
     object: &'static str,
@@ -122,9 +118,8 @@ struct TileObjectDocument {
 }
 
 /// The value of an attribute.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 #[serde(untagged)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
 enum ValueDocument {
     /// A text.
     Text(String),
@@ -137,9 +132,8 @@ enum ValueDocument {
 }
 
 /// The positions of an object, x and y.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
 enum ShapeDocument {
     /// Positions of a line. Segments are not clipped: each touches the tile or the margin of its
     /// level's width, and its ends may be outside.

@@ -11,8 +11,8 @@ use crate::documents::record_schemas::EstimateDocument;
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct PlanDocument {
     /// Hash of the plan: equal plans produce equal packages.
-    pub(crate) plan_sha256: String,
+    pub plan_sha256: String,
     /// The estimates.
     #[cfg_attr(test, schemars(with = "EstimateDocument"))]
-    pub(crate) estimate: BuildEstimate,
+    pub estimate: BuildEstimate,
 }

@@ -1,11 +1,11 @@
 //! The JSON document of `corniche profile`.
 
 use corniche_export::{ProfileGrades, ProfilePoint, RoadProfile};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Heights and grades along OSM ways, or along lines of a file.
-#[derive(Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Serialize, JsonSchema)]
 pub(crate) struct ProfileDocument<'a> {
     /// Title: the names of the roads, or of a file.
     title: &'a str,
@@ -41,8 +41,7 @@ pub(crate) struct ProfileDocument<'a> {
 }
 
 /// Ascents and descents.
-#[derive(Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Serialize, JsonSchema)]
 struct GradesDocument {
     /// Sum of all ascents, metres.
     ascent_m: f64,
@@ -53,8 +52,7 @@ struct GradesDocument {
 }
 
 /// A stretch along one OSM way, or along one line of a file.
-#[derive(Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Serialize, JsonSchema)]
 struct LegDocument<'a> {
     /// OSM id of the way; with `--line` the number of the line in the file, from 1.
     way_id: i64,
@@ -71,16 +69,14 @@ struct LegDocument<'a> {
 }
 
 /// A part without gaps.
-#[derive(Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Serialize, JsonSchema)]
 struct PartDocument {
     /// The vertices of the part.
     points: Vec<PointDocument>,
 }
 
 /// A vertex.
-#[derive(Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Serialize, JsonSchema)]
 struct PointDocument {
     /// OSM id of the way of the vertex; where two ways meet, the id of the first. With `--line` the
     /// number of the line in the file, from 1.

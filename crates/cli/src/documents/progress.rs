@@ -2,13 +2,13 @@
 
 use std::time::Duration;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::exit::ExitCode;
 
 /// A line on standard error.
-#[derive(Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Serialize, JsonSchema)]
 #[serde(untagged)]
 pub(crate) enum ProgressRecord<'a> {
     /// The progress of a stage.
@@ -33,91 +33,87 @@ pub(crate) enum ProgressRecord<'a> {
 }
 
 /// The progress of a stage.
-#[derive(Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Serialize, JsonSchema)]
 pub(crate) struct StageRecord<'a> {
     /// Id of the stage, which never changes.
-    pub(crate) stage: &'a str,
+    pub stage: &'a str,
     /// Name of the stage for people.
-    pub(crate) title: &'a str,
+    pub title: &'a str,
     /// "begin", "running" or "end".
-    pub(crate) state: &'a str,
+    pub state: &'a str,
     /// What `done`, `already` and `total` count: "bytes", "blocks", "objects", "ways",
     /// "windows", "tiles", "chains", "pieces" or "frames".
-    pub(crate) unit: &'a str,
+    pub unit: &'a str,
     /// Units done so far, including those of an earlier run.
-    pub(crate) done: u64,
+    pub done: u64,
     /// Units done by an earlier run.
-    pub(crate) already: u64,
+    pub already: u64,
     /// Total number of units; null if it is unknown.
-    pub(crate) total: Option<u64>,
+    pub total: Option<u64>,
     /// Seconds since the stage began.
-    pub(crate) seconds: f64,
+    pub seconds: f64,
     /// CPU time of all threads since the stage began; null if the system does not report it.
-    pub(crate) cpu_seconds: Option<f64>,
+    pub cpu_seconds: Option<f64>,
     /// Units per second over the last three quarters of the stage's time; null before anything was
     /// done.
-    pub(crate) per_second: Option<f64>,
+    pub per_second: Option<f64>,
     /// Estimated seconds until the stage ends; null if unknown.
-    pub(crate) seconds_left: Option<f64>,
+    pub seconds_left: Option<f64>,
     /// Bytes that the program requested to read since the stage began; null if the system does not
     /// report them.
-    pub(crate) read_bytes: Option<u64>,
+    pub read_bytes: Option<u64>,
     /// Bytes that the program requested to write since the stage began; null if the system does not
     /// report them.
-    pub(crate) written_bytes: Option<u64>,
+    pub written_bytes: Option<u64>,
 }
 
 /// Time and resources of a run or stage. Values that the system does not report are null.
-#[derive(Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Serialize, JsonSchema)]
 pub(crate) struct CostRecord {
     /// Wall-clock time.
-    pub(crate) seconds: f64,
+    pub seconds: f64,
     /// CPU time of all threads, user and system.
-    pub(crate) cpu_seconds: Option<f64>,
+    pub cpu_seconds: Option<f64>,
     /// CPU time divided by wall-clock time, for stages of 0.2 s or more.
-    pub(crate) cores_busy: Option<f64>,
+    pub cores_busy: Option<f64>,
     /// Peak resident memory since the program began.
-    pub(crate) peak_memory_bytes: Option<u64>,
+    pub peak_memory_bytes: Option<u64>,
     /// Bytes that the program requested to read.
-    pub(crate) read_bytes: Option<u64>,
+    pub read_bytes: Option<u64>,
     /// Bytes that the program requested to write.
-    pub(crate) written_bytes: Option<u64>,
+    pub written_bytes: Option<u64>,
 }
 
 /// Time and resources of a stage.
-#[derive(Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Serialize, JsonSchema)]
 pub(crate) struct StageCostRecord<'a> {
     /// Id of the stage, which never changes.
-    pub(crate) stage: &'a str,
+    pub stage: &'a str,
     /// Name of the stage for people.
-    pub(crate) title: &'a str,
+    pub title: &'a str,
     /// Units done, including those of an earlier run.
-    pub(crate) done: u64,
+    pub done: u64,
     /// Units done by an earlier run.
-    pub(crate) already: u64,
+    pub already: u64,
     /// Units per second in this run; null if it did nothing.
-    pub(crate) per_second: Option<f64>,
+    pub per_second: Option<f64>,
     /// Time and resources.
     #[serde(flatten)]
-    pub(crate) cost: CostRecord,
+    pub cost: CostRecord,
 }
 
 /// The result of a run.
-#[derive(Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Serialize, JsonSchema)]
 pub(crate) struct EndRecord {
     /// "done", "failed", "unusable", "exists" or "interrupted".
-    #[cfg_attr(test, schemars(with = "String"))]
-    pub(crate) result: ExitCode,
+    #[schemars(with = "String")]
+    pub result: ExitCode,
     /// The program's exit code: 0 to 4, in this order.
-    pub(crate) exit_code: u8,
+    pub exit_code: u8,
     /// Error message; null after success, and for `verify` when a promise is broken.
-    pub(crate) error: Option<String>,
+    pub error: Option<String>,
     /// Seconds since the program began.
-    pub(crate) seconds: f64,
+    pub seconds: f64,
 }
 
 /// A time in seconds, rounded for programs.

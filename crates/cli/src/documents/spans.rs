@@ -4,6 +4,7 @@ use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::{
     LayerSlot, Manifest, SectionLevelRecord, SpanHeight, SpanPoint, SpanRun, SpansRecord,
 };
+use schemars::JsonSchema;
 use serde::Serialize;
 
 #[cfg(test)]
@@ -38,8 +39,7 @@ pub(crate) struct SpansDocument {
 }
 
 /// Crossings of bridges and tunnels with what is above or below them.
-#[derive(Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Serialize, JsonSchema)]
 struct CrossingsDocument {
     /// What is above: "roads" or "railways".
     upper: String,
@@ -50,8 +50,7 @@ struct CrossingsDocument {
 }
 
 /// A reason to inspect bridges or tunnels.
-#[derive(Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Serialize, JsonSchema)]
 struct ReasonDocument {
     /// Name of the reason.
     reason: String,
@@ -81,8 +80,7 @@ impl From<SpansRecord> for SpansDocument {
 }
 
 /// A stretch of a bridge above the ground of the tile's level, or of a tunnel below it.
-#[derive(Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Serialize, JsonSchema)]
 pub(crate) struct TileSpanDocument {
     /// OSM id of the way.
     way_id: i64,

@@ -2,6 +2,7 @@
 
 use corniche_roads::Oneway;
 use corniche_tileset::RoadRecord;
+use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 
 use super::{layers::TileLayerDocument, spans::TileSpanDocument};
@@ -27,96 +28,91 @@ impl<Item: Serialize> Serialize for StreamedList<'_, Item> {
 }
 
 /// A decoded tile.
-#[derive(Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Serialize, JsonSchema)]
 pub(crate) struct TileDocument<'a> {
     /// Id of the tile, "z/x/y": level, column from the west, row from the north.
-    pub(crate) id: String,
+    pub id: String,
     /// CRS of the package.
-    pub(crate) crs: String,
+    pub crs: String,
     /// The coordinates x and y: "working" metres, or coordinates of the package's "crs".
-    pub(crate) coordinates: &'static str,
+    pub coordinates: &'static str,
     /// Working metres per unit of the CRS's coordinates, east and north.
-    pub(crate) metres_per_unit: [f64; 2],
+    pub metres_per_unit: [f64; 2],
     /// Smallest x and y, largest x and y.
-    pub(crate) bounds: [f64; 4],
+    pub bounds: [f64; 4],
     /// Cell size of the level, east and north, working metres.
-    pub(crate) cell_m: [f64; 2],
+    pub cell_m: [f64; 2],
     /// Meshing tolerance of the level, at the nodes of the level's own grid.
-    pub(crate) max_error_m: Option<f64>,
+    pub max_error_m: Option<f64>,
     /// Error of this tile at the nodes of the finest level; null if the tile has no ground.
-    pub(crate) geometric_error_m: Option<f64>,
+    pub geometric_error_m: Option<f64>,
     /// Heights of the lowest and the highest node of the finest level within the tile; null if the
     /// tile has no ground.
-    pub(crate) height_range_m: Option<[f64; 2]>,
+    pub height_range_m: Option<[f64; 2]>,
     /// Number of nodes of the finest level within the tile that have a height but no triangle; null
     /// if the tile has no ground.
-    pub(crate) uncovered_nodes: Option<u64>,
+    pub uncovered_nodes: Option<u64>,
     /// The terrain.
-    pub(crate) tin: TinDocument,
+    pub tin: TinDocument,
     /// Roads as geometry on the triangles (GEO).
-    pub(crate) roads_geo: Vec<GeoRoadDocument>,
+    pub roads_geo: Vec<GeoRoadDocument>,
     /// Roads as plan lines for shadow volumes (SV).
-    #[cfg_attr(test, schemars(with = "Vec<SvRoadDocument>"))]
-    pub(crate) roads_sv: StreamedList<'a, SvRoadDocument>,
+    #[schemars(with = "Vec<SvRoadDocument>")]
+    pub roads_sv: StreamedList<'a, SvRoadDocument>,
     /// Attributes of each OSM way in the tile, sorted by id.
-    #[cfg_attr(test, schemars(with = "Vec<WayDocument>"))]
-    pub(crate) attributes: StreamedList<'a, WayDocument>,
+    #[schemars(with = "Vec<WayDocument>")]
+    pub attributes: StreamedList<'a, WayDocument>,
     /// The objects of layers in or near the tile; layers without any are omitted.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub(crate) layers: Vec<TileLayerDocument>,
+    pub layers: Vec<TileLayerDocument>,
     /// Stretches of bridges above the ground, and of tunnels below it; omitted if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub(crate) spans: Vec<TileSpanDocument>,
+    pub spans: Vec<TileSpanDocument>,
 }
 
 /// The triangles of the terrain (TIN).
-#[derive(Default, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Default, Serialize, JsonSchema)]
 pub(crate) struct TinDocument {
     /// Position (x, y and height in metres) of each vertex.
-    pub(crate) vertices: Vec<[f64; 3]>,
+    pub vertices: Vec<[f64; 3]>,
     /// Unit normal of the DEM at each vertex, in working axes: east, north, up. Stored in steps of
     /// 1/127.
-    pub(crate) normals: Vec<[f64; 3]>,
+    pub normals: Vec<[f64; 3]>,
     /// Indices of the three vertices of each triangle, counter-clockwise from above in working
     /// metres.
-    pub(crate) triangles: Vec<[u32; 3]>,
+    pub triangles: Vec<[u32; 3]>,
 }
 
 /// A piece of a road on the triangles.
-#[derive(Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Serialize, JsonSchema)]
 pub(crate) struct GeoRoadDocument {
     /// OSM id of the way.
-    pub(crate) way_id: i64,
+    pub way_id: i64,
     /// Index of this piece along the OSM way within the tile, from 0.
-    pub(crate) part: u32,
+    pub part: u32,
     /// Functional road class (FRC).
-    pub(crate) frc: u8,
+    pub frc: u8,
     /// Position (x, y and height in metres) of each point.
-    pub(crate) line: Vec<[f64; 3]>,
+    pub line: Vec<[f64; 3]>,
 }
 
 /// A piece of a road in plan.
-#[derive(Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Serialize, JsonSchema)]
 pub(crate) struct SvRoadDocument {
     /// OSM id of the way.
-    pub(crate) way_id: i64,
+    pub way_id: i64,
     /// Index of this piece along the OSM way within the tile, from 0.
-    pub(crate) part: u32,
+    pub part: u32,
     /// Functional road class (FRC).
-    pub(crate) frc: u8,
+    pub frc: u8,
     /// Position (x and y) of each point.
-    pub(crate) line: Vec<[f64; 2]>,
+    pub line: Vec<[f64; 2]>,
     /// Lowest and highest ground near each segment.
-    pub(crate) ground_range_m: Vec<[f64; 2]>,
+    pub ground_range_m: Vec<[f64; 2]>,
 }
 
 /// The attributes of an OSM way. Invalid values of tags are null.
-#[derive(Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Serialize, JsonSchema)]
 pub(crate) struct WayDocument {
     /// OSM id of the way.
     way_id: i64,

@@ -2,6 +2,7 @@
 
 use corniche_tileset::SampleErrorRecord;
 use corniche_verify::{ErrorFigures, GapFigures, VerifyReport};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 #[cfg(test)]
@@ -31,8 +32,7 @@ pub(crate) struct VerifyDocument {
 }
 
 /// The result of a check.
-#[derive(Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Serialize, JsonSchema)]
 struct CheckDocument {
     /// Id of the check, which never changes.
     id: &'static str,

@@ -13,18 +13,18 @@ use super::{
 use crate::{
     args::ExportEdgesArgs,
     escaped::in_line,
-    failure::CommandFailure,
+    failure::Result,
     messages, recorded,
     table::{bytes, length, noted, up_to},
 };
 
-pub(crate) fn run(args: &ExportEdgesArgs) -> Result<(), CommandFailure> {
+pub(crate) fn run(args: &ExportEdgesArgs) -> Result<()> {
     let usage = "corniche export edges PACKAGE -o FILE --dem FILE... --osm FILE...";
     let LinesExport { format, coordinates, package, output, elevation, network } =
         LinesExport::begin(&args.vector, None, &args.cpu, ("edges", usage))?;
     // The package may be among the values of these options.
     let (Some(elevation), Some(network)) = (elevation, network) else {
-        return Err(unusable!("an elevation file and an extract are required: {usage}"));
+        refuse!("an elevation file and an extract are required: {usage}");
     };
     let request = FeatureRequest {
         format,

@@ -9,8 +9,7 @@ use super::vector_files::{fill, tell};
 use crate::{
     args::ExportGeoTiffArgs,
     escaped::in_line,
-    failure::CommandFailure,
-    messages,
+    failure::Result,
     names::MAP,
     output::{existing_of, named::NamedOutput},
     packages, recorded,
@@ -18,12 +17,12 @@ use crate::{
     table::{bytes, noted},
 };
 
-pub(crate) fn run(args: &ExportGeoTiffArgs) -> Result<(), CommandFailure> {
+pub(crate) fn run(args: &ExportGeoTiffArgs) -> Result<()> {
     if !MAP.is_of(&args.file.output) {
-        return Err(unusable!(
+        refuse!(
             "cannot write {:?}: the output is a GeoTIFF; choose a name with the extension .tif",
             args.file.output
-        ));
+        );
     }
     let (place, [dem, _]) =
         args.from.files(&[], "corniche export geotiff PACKAGE --dem FILE...")?;
@@ -44,11 +43,11 @@ pub(crate) fn run(args: &ExportGeoTiffArgs) -> Result<(), CommandFailure> {
         export_geotiff(&package, &request, path, progress)
     })?;
     if !summary.has_same_crs {
-        messages::warning(&format!(
+        warning!(
             "GeoTIFF cannot represent the whole coordinate system of the package ({}, heights: {}); programs may interpret it differently",
             package.manifest().crs,
             summary.heights
-        ));
+        );
     }
     tell(&args.file.output, &to_text(&summary, package.manifest(), size), package.manifest());
     Ok(())

@@ -8,7 +8,7 @@ use crate::{
     args::{ExportLayerArgs, VECTOR_FORMATS, word_of},
     credits::credits_line,
     escaped::in_line,
-    failure::CommandFailure,
+    failure::Result,
     messages,
     names::format_of,
     output::{existing_of, named::NamedOutput},
@@ -16,7 +16,7 @@ use crate::{
     table::{bytes, length, noted},
 };
 
-pub(crate) fn run(args: &ExportLayerArgs) -> Result<(), CommandFailure> {
+pub(crate) fn run(args: &ExportLayerArgs) -> Result<()> {
     let format = format_of(args.format, &args.file.output, &VECTOR_FORMATS)?;
     let coordinates = coordinates(args.crs, false, format)?;
     let package = packages::open_with_datum(&args.from.package, &args.datum)?;
@@ -80,19 +80,17 @@ fn written(args: &ExportLayerArgs, summary: &LayerSummary) -> String {
 fn warn(args: &ExportLayerArgs, summary: &LayerSummary) {
     let LayerSummary { level, objects, unjoined, without_ground, .. } = summary;
     if *objects == 0 {
-        messages::warning(&format!(
+        warning!(
             "level {level} of the package has no objects of layer {} in the selected classes within the bounds; the file has no features",
             args.layer
-        ));
+        );
     }
     if *unjoined > 0 {
-        messages::warning(&format!(
+        warning!(
             "{unjoined} areas could not be merged across tile borders; each of their parts is a separate polygon"
-        ));
+        );
     }
     if *without_ground > 0 {
-        messages::warning(&format!(
-            "{without_ground} objects are where the package has no ground, and were skipped"
-        ));
+        warning!("{without_ground} objects are where the package has no ground, and were skipped");
     }
 }

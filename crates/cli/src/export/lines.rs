@@ -11,7 +11,7 @@ use corniche_verify::RecordedElevation;
 use super::vector_files::coordinates;
 use crate::{
     args::{ThreadsArg, VECTOR_FORMATS, VectorArgs, word_of},
-    failure::CommandFailure,
+    failure::Result,
     names::format_of,
     output::{existing_of, named::NamedOutput},
     packages, recorded,
@@ -19,12 +19,12 @@ use crate::{
 
 /// An export of lines whose inputs are open.
 pub(crate) struct LinesExport {
-    pub(crate) format: VectorFormat,
-    pub(crate) coordinates: FeatureCoordinates,
-    pub(crate) package: FilePackage,
-    pub(crate) output: NamedOutput,
-    pub(crate) elevation: Option<RecordedElevation>,
-    pub(crate) network: Option<Network>,
+    pub format: VectorFormat,
+    pub coordinates: FeatureCoordinates,
+    pub package: FilePackage,
+    pub output: NamedOutput,
+    pub elevation: Option<RecordedElevation>,
+    pub network: Option<Network>,
 }
 
 impl LinesExport {
@@ -36,7 +36,7 @@ impl LinesExport {
         level: Option<u8>,
         cpu: &ThreadsArg,
         (layer, usage): (&str, &str),
-    ) -> Result<Self, CommandFailure> {
+    ) -> Result<Self> {
         let VectorArgs { from, extract, .. } = vector;
         let format = format_of(vector.format, &vector.file.output, &VECTOR_FORMATS)?;
         let coordinates = coordinates(vector.crs, vector.heights.is_some(), format)?;

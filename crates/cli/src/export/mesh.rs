@@ -9,7 +9,7 @@ use super::vector_files::tell;
 use crate::{
     args::{ExportMeshArgs, MODEL_FORMATS, word_of},
     escaped::in_line,
-    failure::CommandFailure,
+    failure::{CommandFailure, Result},
     names::{file_name, format_of},
     output::{Output, existing_of, named::NamedOutput},
     packages,
@@ -18,13 +18,13 @@ use crate::{
     table::{bytes, noted},
 };
 
-pub(crate) fn run(args: &ExportMeshArgs) -> Result<(), CommandFailure> {
+pub(crate) fn run(args: &ExportMeshArgs) -> Result<()> {
     let format = format_of(args.format, &args.file.output, &MODEL_FORMATS)?;
     let ending = word_of(&MODEL_FORMATS, &format);
     if args.relief == Some(true) && format != MeshFormat::Glb {
-        return Err(unusable!(
+        refuse!(
             "--relief on: .{ending} does not support normal maps; write a .glb, or omit the option"
-        ));
+        );
     }
     let style = styles::style(&args.style)?;
     let package = packages::open(&args.from.package)?;

@@ -12,7 +12,7 @@ use super::vector_files::{fill_folder, tell};
 use crate::{
     args::ExportQuantizedMeshArgs,
     escaped::in_line,
-    failure::CommandFailure,
+    failure::Result,
     messages, packages,
     progress::Progress,
     settings,
@@ -22,7 +22,7 @@ use crate::{
 /// Half the block size of most file systems.
 const HALF_BLOCK_BYTES: u64 = 2048;
 
-pub(crate) fn run(args: &ExportQuantizedMeshArgs) -> Result<(), CommandFailure> {
+pub(crate) fn run(args: &ExportQuantizedMeshArgs) -> Result<()> {
     let package = packages::open_with_datum(&args.from.package, &args.datum)?;
     let request = QuantizedMeshRequest {
         tiling: args.tiling,
@@ -34,7 +34,7 @@ pub(crate) fn run(args: &ExportQuantizedMeshArgs) -> Result<(), CommandFailure> 
         gzip: args.compress,
         threads: settings::threads(args.cpu.threads),
     };
-    let export = |folder: &Path, progress: &Progress| -> Result<_, CommandFailure> {
+    let export = |folder: &Path, progress: &Progress| -> Result<_> {
         let plan = QuantizedMeshPlan::new(&package, &request)?;
         messages::note(&plan_text(&plan));
         refuse_full_disk(&plan, folder)?;
@@ -59,7 +59,7 @@ fn plan_text(plan: &QuantizedMeshPlan) -> String {
 
 /// Rejects an export that does not fit on the disk, as far as this is known. On average a file
 /// occupies half a block more than its bytes.
-fn refuse_full_disk(plan: &QuantizedMeshPlan, folder: &Path) -> Result<(), CommandFailure> {
+fn refuse_full_disk(plan: &QuantizedMeshPlan, folder: &Path) -> Result<()> {
     let needed = plan.bytes.saturating_add(plan.files() * HALF_BLOCK_BYTES);
     // If the file system reports nothing, writing detects a full disk.
     match FileSystem::containing(folder) {

@@ -13,12 +13,12 @@ use super::{
 use crate::{
     args::ExportRoadsArgs,
     escaped::in_line,
-    failure::CommandFailure,
+    failure::Result,
     messages, recorded,
     table::{bytes, length, noted, up_to},
 };
 
-pub(crate) fn run(args: &ExportRoadsArgs) -> Result<(), CommandFailure> {
+pub(crate) fn run(args: &ExportRoadsArgs) -> Result<()> {
     let usage = "corniche export roads PACKAGE -o FILE --dem FILE...";
     let LinesExport { format, coordinates, package, output, elevation, network } =
         LinesExport::begin(&args.vector, args.at.level, &args.cpu, ("roads", usage))?;
@@ -41,9 +41,9 @@ pub(crate) fn run(args: &ExportRoadsArgs) -> Result<(), CommandFailure> {
     })?;
     if summary.features == 0 {
         let level = summary.level;
-        messages::warning(&format!(
+        warning!(
             "level {level} of the package has no roads of the selected classes within the bounds; the file has no features"
-        ));
+        );
     }
     messages::summary(&to_text(args, (coordinates, format), &summary, package.manifest(), size));
     Ok(())

@@ -10,14 +10,14 @@ use super::vector_files::{fill_folder, tell};
 use crate::{
     args::ExportTiles3dArgs,
     escaped::in_line,
-    failure::CommandFailure,
+    failure::Result,
     packages,
     progress::Progress,
     settings, styles,
     table::{bytes, noted},
 };
 
-pub(crate) fn run(args: &ExportTiles3dArgs) -> Result<(), CommandFailure> {
+pub(crate) fn run(args: &ExportTiles3dArgs) -> Result<()> {
     let style = styles::style(&args.style)?;
     let package = packages::open_with_datum(&args.from.package, &args.datum)?;
     let request = Tiles3dRequest {

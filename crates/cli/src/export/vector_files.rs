@@ -11,7 +11,7 @@ use crate::{
     args::{FileArgs, FolderArgs, PackageArg},
     credits::credits_line,
     escaped::in_line,
-    failure::CommandFailure,
+    failure::{CommandFailure, Result},
     messages,
     output::{existing_of, folder::FolderOutput, named::NamedOutput},
     progress::Progress,
@@ -28,7 +28,7 @@ pub(crate) fn fill<T, E: Into<CommandFailure>>(
     output: NamedOutput,
     elevation: Option<&RecordedElevation>,
     export: impl FnOnce(&Path, &Progress) -> Result<T, E>,
-) -> Result<(T, u64), CommandFailure> {
+) -> Result<(T, u64)> {
     let exported = Progress::show_during(|progress| export(&output.path(), progress));
     // A changed file may be the cause of any other error.
     elevation.map_or(Ok(()), RecordedElevation::check_unchanged)?;
@@ -49,7 +49,7 @@ pub(crate) fn fill_folder<T, E: Into<CommandFailure>>(
     package: &PackageArg,
     what: &str,
     export: impl FnOnce(&Path, &Progress) -> Result<T, E>,
-) -> Result<(T, u64), CommandFailure> {
+) -> Result<(T, u64)> {
     let used = [package.package.name()];
     let output = FolderOutput::create(&args.output, existing_of(args.overwrite), &used)?;
     let exported = Progress::show_during(|progress| export(output.path(), progress));
@@ -63,7 +63,7 @@ pub(crate) fn coordinates(
     crs: Option<FeatureCoordinates>,
     keeps_heights: bool,
     format: VectorFormat,
-) -> Result<FeatureCoordinates, CommandFailure> {
+) -> Result<FeatureCoordinates> {
     let unasked = match format {
         VectorFormat::GeoJson => FeatureCoordinates::Wgs84WithPackageHeights,
         _ => FeatureCoordinates::Package,

@@ -6,9 +6,9 @@ use crate::args::{DETAILS, Roads, word_of};
 
 /// One flight with one method and one choice of tiles.
 pub(crate) struct MeasuredRun {
-    pub(crate) lod: Detail,
-    pub(crate) roads: Roads,
-    pub(crate) frames: Vec<FrameRecord>,
+    pub lod: Detail,
+    pub roads: Roads,
+    pub frames: Vec<FrameRecord>,
 }
 
 impl MeasuredRun {

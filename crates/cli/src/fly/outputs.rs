@@ -10,7 +10,7 @@ use corniche_viewer::{
 use super::{chart, list, measured_run::MeasuredRun, pictures::Pictures};
 use crate::{
     args::FlyArgs,
-    failure::CommandFailure,
+    failure::Result,
     names::CHART,
     output::{Complete, Existing, Output, existing_of},
     styles,
@@ -27,7 +27,7 @@ pub(crate) struct Outputs {
 impl Outputs {
     /// Begins the requested files. None of them may be an input of the command, and no two may be
     /// the same.
-    pub(crate) fn create(args: &FlyArgs) -> Result<Self, CommandFailure> {
+    pub(crate) fn create(args: &FlyArgs) -> Result<Self> {
         let existing = existing_of(args.overwrite);
         let mut used: Vec<&Path> = vec![args.from.package.name()];
         used.extend(args.flight.path.as_deref());
@@ -43,11 +43,7 @@ impl Outputs {
     }
 
     /// Adds the last frame, if images are requested.
-    pub(crate) fn add_picture(
-        &self,
-        name: &str,
-        replay: &Replay<'_>,
-    ) -> Result<(), CommandFailure> {
+    pub(crate) fn add_picture(&self, name: &str, replay: &Replay<'_>) -> Result<()> {
         self.pictures.as_ref().map_or(Ok(()), |pictures| pictures.add(name, replay))
     }
 
@@ -62,7 +58,7 @@ impl Outputs {
         working: WorkingCrs<'_>,
         runs: &[MeasuredRun],
         adapter: &str,
-    ) -> Result<(), CommandFailure> {
+    ) -> Result<()> {
         let Self { csv, svg, save_path, pictures } = self;
         let mut written = Vec::new();
         if let Some(svg) = svg {
@@ -84,7 +80,7 @@ fn create<'a>(
     path: Option<&'a Path>,
     existing: Existing,
     used: &mut Vec<&'a Path>,
-) -> Result<Option<Output>, CommandFailure> {
+) -> Result<Option<Output>> {
     let Some(path) = path else { return Ok(None) };
     let output = Output::create(path, existing, used)?;
     used.push(path);

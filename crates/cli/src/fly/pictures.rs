@@ -6,7 +6,7 @@ use corniche_store::{Claim, UnfinishedFolder};
 use corniche_viewer::Replay;
 
 use crate::{
-    failure::CommandFailure,
+    failure::{CommandFailure, Result},
     interrupt, names,
     output::{self, png},
 };
@@ -17,7 +17,7 @@ pub(crate) struct Pictures {
 }
 
 impl Pictures {
-    pub(crate) fn create(target: &Path, used: &[&Path]) -> Result<Self, CommandFailure> {
+    pub(crate) fn create(target: &Path, used: &[&Path]) -> Result<Self> {
         let unusable = |reason: &dyn std::fmt::Display| {
             unusable!("cannot write images to {target:?}: {reason}")
         };
@@ -40,12 +40,12 @@ impl Pictures {
         Ok(Self { folder })
     }
 
-    pub(crate) fn add(&self, name: &str, replay: &Replay<'_>) -> Result<(), CommandFailure> {
+    pub(crate) fn add(&self, name: &str, replay: &Replay<'_>) -> Result<()> {
         let path = self.folder.path().join(name);
         fs::write(&path, png(&replay.picture()?)?).map_err(|error| output::failed(&path, &error))
     }
 
-    pub(crate) fn finish(self) -> Result<(), CommandFailure> {
+    pub(crate) fn finish(self) -> Result<()> {
         let (folder, target) = (self.folder.path(), self.folder.claim().target());
         // An early end would leave half of them there.
         interrupt::spare(&[folder]);

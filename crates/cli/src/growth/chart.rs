@@ -8,7 +8,7 @@ use super::{compare::Compared, factors::of_level};
 use crate::{
     chart::{Axes, ChartAxis, Curve, MOST_SHAPES, Marks, Ticks, draw, ends},
     escaped::{in_line, shortened},
-    failure::CommandFailure,
+    failure::Result,
 };
 
 /// One colour per class, as on a road atlas: from red for motorways to grey for tracks.
@@ -89,7 +89,7 @@ const PACKAGES_ASIDE: f64 = 0.15;
 const LONGEST_NAME: usize = 24;
 
 /// Rejects more packages than a chart can distinguish.
-pub(crate) fn refuse_too_many(packages: usize) -> Result<(), CommandFailure> {
+pub(crate) fn refuse_too_many(packages: usize) -> Result<()> {
     if packages <= MOST_SHAPES {
         return Ok(());
     }

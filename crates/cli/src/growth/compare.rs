@@ -24,10 +24,10 @@ use crate::{
 /// A package in a comparison.
 pub(crate) struct Compared<'a> {
     /// A letter for tables and charts.
-    pub(crate) label: String,
+    pub label: String,
     /// Its path as given, or its URL.
-    pub(crate) name: String,
-    pub(crate) manifest: &'a Manifest,
+    pub name: String,
+    pub manifest: &'a Manifest,
 }
 
 impl<'a> Compared<'a> {
@@ -56,9 +56,9 @@ fn letters(index: usize) -> String {
 /// result from it.
 #[derive(Debug, PartialEq)]
 pub(crate) struct PackageDifference {
-    pub(crate) what: &'static str,
+    pub what: &'static str,
     /// Each value, with the indices of the packages that have it.
-    pub(crate) values: Vec<(Vec<usize>, String)>,
+    pub values: Vec<(Vec<usize>, String)>,
 }
 
 /// A property of a package: its name, and its value as text.

@@ -9,7 +9,7 @@ use corniche_tileset::{FilePackage, Manifest};
 
 use crate::{
     export::MEMORY_BYTES,
-    failure::CommandFailure,
+    failure::Result,
     output::{Complete, Output, failed},
     progress::Progress,
     table::Digits,
@@ -22,7 +22,7 @@ pub(crate) fn fill(
     package: &FilePackage,
     path: &Path,
     mut output: Output,
-) -> Result<(Complete, String), CommandFailure> {
+) -> Result<(Complete, String)> {
     let manifest = package.manifest();
     let cannot = |error: std::io::Error| failed(path, &error);
     output.write_all(headings(manifest).as_bytes()).map_err(cannot)?;
@@ -107,18 +107,18 @@ impl Sums {
     }
 
     /// Checks that the vertices of the lines add up to those of the growth table.
-    fn fit(&self, manifest: &Manifest, package: &Path) -> Result<(), CommandFailure> {
+    fn fit(&self, manifest: &Manifest, package: &Path) -> Result<()> {
         for row in &manifest.growth {
             let sums = self.geo.get(usize::from(row.level));
             let found = sums.and_then(|sums| sums.get(usize::from(row.class))).copied();
             if found != Some(row.geo_vertices) {
-                return Err(unusable!(
+                refuse!(
                     "{package:?}: FRC {} has {} vertices on level {} in the growth table, but {} in the tiles; run corniche verify for details",
                     row.class,
                     row.geo_vertices,
                     row.level,
                     found.unwrap_or_default()
-                ));
+                );
             }
         }
         Ok(())

@@ -20,7 +20,7 @@ use corniche_store::{
 };
 
 use super::{Existing, exists, failed, leftovers, not_begun, unusable};
-use crate::{failure::CommandFailure, interrupt};
+use crate::{failure::Result, interrupt};
 
 /// The marker file of an exported folder.
 pub(crate) const MARKER: &str = "corniche-export.txt";
@@ -41,11 +41,7 @@ pub(crate) struct FolderOutput {
 impl FolderOutput {
     /// Creates the folder. An unwritable target is reported here, before any work is done. `used`
     /// are files of the command, which an overwritten folder must not contain.
-    pub(crate) fn create(
-        named: &Path,
-        existing: Existing,
-        used: &[&Path],
-    ) -> Result<Self, CommandFailure> {
+    pub(crate) fn create(named: &Path, existing: Existing, used: &[&Path]) -> Result<Self> {
         let unusable = |reason: &dyn std::fmt::Display| unusable(named, reason);
         // Links are followed, and a name that ends in a slash or in ".." is resolved to one that
         // has siblings.
@@ -106,7 +102,7 @@ impl FolderOutput {
 
     /// Adds the marker, syncs all files to disk and moves the folder to its target; returns its
     /// size in bytes.
-    pub(crate) fn place(self, what: &str) -> Result<u64, CommandFailure> {
+    pub(crate) fn place(self, what: &str) -> Result<u64> {
         let (folder, claim) = (self.folder.path(), self.folder.claim());
         let target = claim.target();
         let not_written = |error: io::Error| failed(target, &error);

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use crate::{messages, names::file_name};
+use crate::names::file_name;
 
 /// The suffixes of names that older versions used.
 const ENDINGS: [&str; 2] = ["unfinished.files", "replaced"];
@@ -13,9 +13,9 @@ pub(crate) fn tell(target: &Path) {
     let name = file_name(target);
     for left in ENDINGS.map(|end| target.with_file_name(format!(".{name}.{end}"))) {
         if left.symlink_metadata().is_ok() {
-            messages::warning(&format!(
+            warning!(
                 "{left:?} may be a leftover of an older version; not deleted, since this is not certain. Check and delete it yourself"
-            ));
+            );
         }
     }
 }

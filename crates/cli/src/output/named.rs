@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use corniche_store::UnfinishedFolder;
 
 use super::{Existing, claim, leftovers, not_begun, not_placed};
-use crate::failure::CommandFailure;
+use crate::failure::Result;
 
 /// A file that a library writes at [`NamedOutput::path`].
 #[derive(Debug)]
@@ -29,7 +29,7 @@ impl NamedOutput {
         existing: Existing,
         name: String,
         others: &[&Path],
-    ) -> Result<Self, CommandFailure> {
+    ) -> Result<Self> {
         let claim = claim(named, existing, others)?;
         leftovers::tell(claim.target());
         let folder = claim.begin_folder().map_err(|error| not_begun(named, &error))?;
@@ -42,7 +42,7 @@ impl NamedOutput {
     }
 
     /// Syncs the file to disk and moves it to its target; returns its size in bytes.
-    pub(crate) fn place(self) -> Result<u64, CommandFailure> {
+    pub(crate) fn place(self) -> Result<u64> {
         let target = self.folder.claim().target().to_path_buf();
         let placed = self.folder.place_file(&self.name, self.existing);
         placed.map_err(|error| not_placed(&target, &error))

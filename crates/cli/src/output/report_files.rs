@@ -3,7 +3,10 @@
 use std::path::Path;
 
 use super::{Complete, Existing, Output};
-use crate::{failure::CommandFailure, names::CHART};
+use crate::{
+    failure::{CommandFailure, Result},
+    names::CHART,
+};
 
 /// The requested files, begun but not written.
 pub(crate) struct ReportFiles<const LISTS: usize> {
@@ -21,7 +24,7 @@ impl<const LISTS: usize> ReportFiles<LISTS> {
         lists: [(&str, Option<&'a Path>); LISTS],
         inputs: &[&'a Path],
         existing: Existing,
-    ) -> Result<Self, CommandFailure> {
+    ) -> Result<Self> {
         let named = [("--svg", svg)].into_iter().chain(lists);
         for (number, (option, place)) in named.clone().enumerate() {
             let mut before = named.clone().take(number);
@@ -50,9 +53,9 @@ impl<const LISTS: usize> ReportFiles<LISTS> {
     /// there are none. `make_svg` draws the chart; `fill_list` writes the table with an index.
     pub(crate) fn write(
         self,
-        mut fill_list: impl FnMut(usize, Output) -> Result<Complete, CommandFailure>,
-        make_svg: impl FnOnce() -> Result<String, CommandFailure>,
-    ) -> Result<(), CommandFailure> {
+        mut fill_list: impl FnMut(usize, Output) -> Result<Complete>,
+        make_svg: impl FnOnce() -> Result<String>,
+    ) -> Result<()> {
         let mut written = Vec::new();
         for (number, list) in self.lists.into_iter().enumerate() {
             written.extend(list.map(|output| fill_list(number, output)).transpose()?);

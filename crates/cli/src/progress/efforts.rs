@@ -5,7 +5,7 @@ const PARTS: f64 = 16.0;
 
 /// Runs of equal steps, one after the other: the number of steps, and the effort of each.
 #[derive(Debug, Clone)]
-pub(crate) struct Efforts(pub(crate) Vec<(u64, f64)>);
+pub(crate) struct Efforts(pub Vec<(u64, f64)>);
 
 impl Efforts {
     /// The effort of the first `done` steps of `total`. If the total is smaller than expected,

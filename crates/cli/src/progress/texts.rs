@@ -13,18 +13,18 @@ use crate::{
 /// The state of a stage at one moment.
 #[derive(Debug, Clone)]
 pub(crate) struct StageReading {
-    pub(crate) stage: Stage,
+    pub stage: Stage,
     /// Units done so far, including those of an earlier run.
-    pub(crate) done: u64,
+    pub done: u64,
     /// Units done by an earlier run.
-    pub(crate) already: u64,
-    pub(crate) total: Option<u64>,
+    pub already: u64,
+    pub total: Option<u64>,
     /// Time since the stage began.
-    pub(crate) elapsed: Duration,
-    pub(crate) per_second: Option<f64>,
-    pub(crate) left: Option<Duration>,
+    pub elapsed: Duration,
+    pub per_second: Option<f64>,
+    pub left: Option<Duration>,
     /// Resources used since the stage began.
-    pub(crate) used: Usage,
+    pub used: Usage,
 }
 
 impl StageReading {

@@ -7,13 +7,13 @@ use std::{fs, time::Duration};
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct Usage {
     /// CPU time of all threads on all cores, including the kernel's work for them.
-    pub(crate) cpu: Option<Duration>,
+    pub cpu: Option<Duration>,
     /// Peak resident memory so far.
-    pub(crate) peak_memory_bytes: Option<u64>,
+    pub peak_memory_bytes: Option<u64>,
     /// Bytes that the process requested to read and to write, whether or not a disk was involved.
     /// Memory-mapped files and network connections are not included.
-    pub(crate) read_bytes: Option<u64>,
-    pub(crate) written_bytes: Option<u64>,
+    pub read_bytes: Option<u64>,
+    pub written_bytes: Option<u64>,
 }
 
 /// Clock ticks per second in `/proc/PID/stat`: `USER_HZ`, which is 100 on every machine of Rust's

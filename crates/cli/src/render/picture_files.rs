@@ -9,7 +9,7 @@ use image::RgbaImage;
 
 use crate::{
     args::{PrintScale, RenderArgs},
-    failure::CommandFailure,
+    failure::{CommandFailure, Result},
     names::{MAP, PICTURE},
     output::{Complete, Output, existing_of, named::NamedOutput, png},
 };
@@ -36,7 +36,7 @@ enum Files {
 impl PictureFiles {
     /// Claims the files. Unwritable targets are reported here, before anything is drawn. The
     /// command itself uses the files `used`.
-    pub(crate) fn create(args: &RenderArgs, used: &[&Path]) -> Result<Self, CommandFailure> {
+    pub(crate) fn create(args: &RenderArgs, used: &[&Path]) -> Result<Self> {
         let (target, existing) = (args.output.as_path(), existing_of(args.overwrite));
         let from_above = &args.from_above;
         if MAP.is_of(target) {
@@ -65,7 +65,7 @@ impl PictureFiles {
         place: Option<&PlaceOfPicture>,
         scale: Option<PrintScale>,
         facts: PictureFacts,
-    ) -> Result<bool, CommandFailure> {
+    ) -> Result<bool> {
         let target = self.target;
         match (self.files, place) {
             (Files::Map(file), Some(place)) => {
@@ -97,25 +97,21 @@ impl PictureFiles {
     }
 }
 
-fn refuse_map(
-    target: &Path,
-    is_from_above: bool,
-    has_world_file: bool,
-) -> Result<(), CommandFailure> {
+fn refuse_map(target: &Path, is_from_above: bool, has_world_file: bool) -> Result<()> {
     if !is_from_above {
         return Err(no_place(target));
     }
     if has_world_file {
-        return Err(unusable!(
+        refuse!(
             "{target:?}: a GeoTIFF contains its georeference, and --world-file applies only to .png images; omit --world-file"
-        ));
+        );
     }
     Ok(())
 }
 
 /// Rejects a leftover world file of an earlier image, which would give this image a wrong
 /// georeference.
-fn refuse_other_place(target: &Path) -> Result<(), CommandFailure> {
+fn refuse_other_place(target: &Path) -> Result<()> {
     let beside = target.with_extension("pgw");
     if !beside.exists() {
         return Ok(());

@@ -3,7 +3,11 @@
 use std::{borrow::Cow, fs, path::Path};
 
 use super::page_files::page_files;
-use crate::{exit::ExitCode, failure::CommandFailure, table::bytes};
+use crate::{
+    exit::ExitCode,
+    failure::{CommandFailure, Result},
+    table::bytes,
+};
 
 /// The built-in files: URL paths and bytes. The build script writes this list.
 const BUILT_IN: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/page.rs"));
@@ -15,12 +19,12 @@ const MOST_BYTES: u64 = 512 << 20;
 #[derive(Debug)]
 pub(crate) struct PageFile {
     /// Its URL path, such as `examples/fly.html`.
-    pub(crate) path: String,
-    pub(crate) bytes: Cow<'static, [u8]>,
+    pub path: String,
+    pub bytes: Cow<'static, [u8]>,
 }
 
 /// Loads the files of the page: those of a folder, or the built-in ones.
-pub(crate) fn load(folder: Option<&Path>) -> Result<Vec<PageFile>, CommandFailure> {
+pub(crate) fn load(folder: Option<&Path>) -> Result<Vec<PageFile>> {
     folder.map_or_else(|| Ok(built_in()), read)
 }
 
@@ -34,7 +38,7 @@ fn built_in() -> Vec<PageFile> {
 
 /// Reads all files once, so that they are of one version, and files that are added to the folder
 /// later are not served.
-fn read(folder: &Path) -> Result<Vec<PageFile>, CommandFailure> {
+fn read(folder: &Path) -> Result<Vec<PageFile>> {
     let unusable = |reason: &dyn std::fmt::Display| {
         unusable!(
             "--page {folder:?}: {reason}; pass the folder that scripts/web creates, target/web/site"

@@ -10,7 +10,7 @@ use corniche_viewer::{DrawError, ShownLayers};
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 use serde::Serialize;
 
-use crate::{documents::to_line, failure::CommandFailure, packages};
+use crate::{documents::to_line, failure::Result, packages};
 
 /// The list of packages that the page reads.
 pub(crate) const LIST: &str = "packages.json";
@@ -23,11 +23,11 @@ const ENCODED: &AsciiSet = &NON_ALPHANUMERIC.remove(b'-').remove(b'_').remove(b'
 pub(crate) struct Shown {
     /// Its name: the file name without the extension, with a number if several packages have the
     /// same name.
-    pub(crate) name: String,
+    pub name: String,
     /// The file.
-    pub(crate) file: PathBuf,
+    pub file: PathBuf,
     /// The layers that the page shows at first, as they were passed.
-    pub(crate) layers: Option<String>,
+    pub layers: Option<String>,
 }
 
 impl Shown {
@@ -50,10 +50,7 @@ struct ShownEntry<'a> {
 
 /// Opens each package, so that invalid ones are reported before the server starts, and assigns
 /// names. Each package must have the layers that are shown at first.
-pub(crate) fn open(
-    places: &[PackagePlace],
-    layers: Option<&str>,
-) -> Result<Vec<Shown>, CommandFailure> {
+pub(crate) fn open(places: &[PackagePlace], layers: Option<&str>) -> Result<Vec<Shown>> {
     let wanted = layers.map_or(ShownLayers::ALL, ShownLayers::from_list);
     let file = |place: &PackagePlace| match place {
         PackagePlace::File(path) => {

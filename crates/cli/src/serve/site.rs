@@ -11,7 +11,7 @@ use super::{
     shown::{LIST, Shown, list},
 };
 use crate::{
-    failure::CommandFailure,
+    failure::{CommandFailure, Result},
     interrupt, names,
     output::{Existing, failed, folder::FolderOutput},
 };
@@ -27,7 +27,7 @@ pub(crate) fn write(
     page: &[PageFile],
     packages: &[Shown],
     used: &[&Path],
-) -> Result<u64, CommandFailure> {
+) -> Result<u64> {
     names::refuse_what_is_no_file(target)?;
     let output = FolderOutput::create(target, existing, used)?;
     let not_written = |error: io::Error| failed(target, &error);
@@ -45,7 +45,7 @@ pub(crate) fn write(
 }
 
 /// Copies a package; `target` is the name of the folder.
-fn copy(file: &Path, place: &Path, target: &Path) -> Result<(), CommandFailure> {
+fn copy(file: &Path, place: &Path, target: &Path) -> Result<()> {
     let unread = |error: io::Error| CommandFailure::from(error).about(file);
     let from = File::open(file).map_err(unread)?;
     let version = |from: &File| {

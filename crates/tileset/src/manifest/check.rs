@@ -9,14 +9,18 @@ use corniche_layers::{LayerTable, stacked_layers};
 use corniche_roads::FrcTable;
 use corniche_settings::{MAX_MEASURE_M, MAX_NODATA};
 
-use crate::limits::MAX_PHOTO_LEVELS;
-use crate::manifest::contents::{Manifest, SpansRecord};
-use crate::manifest::counts::{GrowthRow, ManifestCounts};
-use crate::manifest::credits::MOST_CREDITS_BYTES;
-use crate::manifest::layers::LayerRecord;
-use crate::manifest::levels::{Distribution, LevelRecord, SampleErrorRecord, SectionLevelRecord};
-use crate::manifest::sv_tails::{LEAST_TAIL_BYTES, MOST_TAILS, SvTail};
-use crate::tile_order::pmtiles_order;
+use crate::{
+    limits::MAX_PHOTO_LEVELS,
+    manifest::{
+        contents::{Manifest, SpansRecord},
+        counts::{GrowthRow, ManifestCounts},
+        credits::MOST_CREDITS_BYTES,
+        layers::LayerRecord,
+        levels::{Distribution, LevelRecord, SampleErrorRecord, SectionLevelRecord},
+        sv_tails::{LEAST_TAIL_BYTES, MOST_TAILS, SvTail},
+    },
+    tile_order::pmtiles_order,
+};
 
 /// The largest margin around a tile that its roads reach: a number of cells of the level, plus a
 /// number of metres. Writers take eight cells, or 40 true metres at a scale of at most 1000 where

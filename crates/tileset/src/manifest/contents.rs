@@ -7,12 +7,16 @@ use corniche_geom::{
 use corniche_settings::SettingsRecord;
 use serde::{Deserialize, Serialize};
 
-use crate::layer_slot::LayerSlot;
-use crate::manifest::counts::{GrowthRow, ManifestCounts};
-use crate::manifest::inputs::{InputKind, InputRecord};
-use crate::manifest::layers::LayerRecord;
-use crate::manifest::levels::{LevelRecord, SectionLevelRecord};
-use crate::manifest::sv_tails::SvTail;
+use crate::{
+    layer_slot::LayerSlot,
+    manifest::{
+        counts::{GrowthRow, ManifestCounts},
+        inputs::{InputKind, InputRecord},
+        layers::LayerRecord,
+        levels::{LevelRecord, SectionLevelRecord},
+        sv_tails::SvTail,
+    },
+};
 
 /// The table of contents of a package: its JSON metadata.
 ///

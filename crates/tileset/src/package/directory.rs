@@ -11,17 +11,17 @@ use crate::limits::{MAX_DIRECTORY_BYTES, MAX_DIRECTORY_ENTRIES, MIN_PAYLOAD_BYTE
 /// from `first` on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct DirectoryEntry {
-    pub(crate) first: u64,
-    pub(crate) run: u32,
+    pub first: u64,
+    pub run: u32,
     /// Offset relative to the start of the data, or of the leaf directories.
-    pub(crate) offset: u64,
-    pub(crate) length: u32,
+    pub offset: u64,
+    pub length: u32,
 }
 
 /// Entries in ascending order of their tiles.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Directory {
-    pub(crate) entries: Vec<DirectoryEntry>,
+    pub entries: Vec<DirectoryEntry>,
 }
 
 impl Directory {

@@ -2,9 +2,10 @@
 
 use corniche_geom::TileId;
 
-use crate::DecodeError;
-use crate::package::metadata::FORMAT_VERSION;
-use crate::package::source::SourceError;
+use crate::{
+    DecodeError,
+    package::{metadata::FORMAT_VERSION, source::SourceError},
+};
 
 /// Why a package could not be opened or listed.
 #[derive(Debug, thiserror::Error)]

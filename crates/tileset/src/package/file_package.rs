@@ -7,11 +7,15 @@ use std::{
 
 use corniche_geom::TileId;
 
-use crate::package::error::{OpenError, ReadError};
-use crate::package::reader::Package;
-use crate::package::source::{AnySource, BlockingSource, ByteSource as _, FileSource, SourceError};
-use crate::package::tool_record::ToolRecord;
-use crate::{Manifest, Sections, TilePayload};
+use crate::{
+    Manifest, Sections, TilePayload,
+    package::{
+        error::{OpenError, ReadError},
+        reader::Package,
+        source::{AnySource, BlockingSource, ByteSource as _, FileSource, SourceError},
+        tool_record::ToolRecord,
+    },
+};
 
 /// A package on disk, or from a source that threads can wait for: the same as [`Package`], without
 /// `async`.

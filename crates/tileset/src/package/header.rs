@@ -2,8 +2,10 @@
 
 use std::ops::Range;
 
-use crate::limits::{MAX_DIRECTORY_BYTES, MAX_METADATA_BYTES};
-use crate::package::error::OpenError;
+use crate::{
+    limits::{MAX_DIRECTORY_BYTES, MAX_METADATA_BYTES},
+    package::error::OpenError,
+};
 
 /// Number of bytes of the header.
 pub(crate) const HEADER_BYTES: usize = 127;
@@ -13,8 +15,8 @@ pub(crate) const INITIAL_BYTES: usize = 16_384;
 /// A range of bytes of the file: offset and length.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct ByteSpan {
-    pub(crate) offset: u64,
-    pub(crate) length: u64,
+    pub offset: u64,
+    pub length: u64,
 }
 
 /// The ranges of a file that identify a package: header, root directory, manifest and leaf
@@ -46,12 +48,12 @@ pub(crate) fn bytes_at<const N: usize>(header: &[u8; HEADER_BYTES], from: usize)
 /// Source: PMTiles version 3 specification, section 3.
 #[derive(Debug, Clone)]
 pub(crate) struct PackageHeader {
-    pub(crate) root: ByteSpan,
-    pub(crate) metadata: ByteSpan,
-    pub(crate) leaves: ByteSpan,
-    pub(crate) data: ByteSpan,
+    pub root: ByteSpan,
+    pub metadata: ByteSpan,
+    pub leaves: ByteSpan,
+    pub data: ByteSpan,
     /// Number of tiles; 0 if the writer did not know it.
-    pub(crate) tiles: u64,
+    pub tiles: u64,
 }
 
 impl PackageHeader {

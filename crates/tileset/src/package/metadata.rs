@@ -13,13 +13,13 @@ pub const FORMAT_VERSION: u32 = 2;
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Metadata<M> {
     #[serde(default)]
-    pub(crate) name: String,
+    pub name: String,
     #[serde(default)]
-    pub(crate) description: String,
+    pub description: String,
     /// All attribution texts in one line, as the PMTiles specification requires.
     #[serde(default)]
-    pub(crate) attribution: String,
-    pub(crate) corniche: M,
+    pub attribution: String,
+    pub corniche: M,
 }
 
 impl<'a> Metadata<&'a Manifest> {

@@ -9,19 +9,21 @@ use std::{
 use corniche_geom::TileId;
 use serde::{Deserialize, de::IgnoredAny};
 
-use crate::package::directory::{self, Directory, DirectoryEntry};
-use crate::package::error::{OpenError, ReadError};
-use crate::package::header::{ByteSpan, HEADER_BYTES, INITIAL_BYTES, PackageHeader};
-use crate::package::metadata::{FORMAT_VERSION, Metadata};
-use crate::package::source::{ByteSource, SourceError};
-use crate::package::tool_record::ToolRecord;
-use crate::tile_order::{pmtiles_order, tile_of_order};
 use crate::{
     Manifest, Sections, TilePayload,
     limits::{
         MAX_DIRECTORY_BYTES, MAX_DIRECTORY_DEPTH, MAX_KEPT_ENTRIES, MAX_METADATA_BYTES,
         MAX_PAYLOAD_BYTES, MAX_TILES,
     },
+    package::{
+        directory::{self, Directory, DirectoryEntry},
+        error::{OpenError, ReadError},
+        header::{ByteSpan, HEADER_BYTES, INITIAL_BYTES, PackageHeader},
+        metadata::{FORMAT_VERSION, Metadata},
+        source::{ByteSource, SourceError},
+        tool_record::ToolRecord,
+    },
+    tile_order::{pmtiles_order, tile_of_order},
 };
 
 /// Leaf directories that were read before, by offset, and the number of their entries.

@@ -3,10 +3,14 @@
 use corniche_geom::{Bounds, Seam};
 use serde::de::IgnoredAny;
 
-use crate::Manifest;
-use crate::package::error::OpenError;
-use crate::package::header::{HEADER_BYTES, bytes_at};
-use crate::package::metadata::Metadata;
+use crate::{
+    Manifest,
+    package::{
+        error::OpenError,
+        header::{HEADER_BYTES, bytes_at},
+        metadata::Metadata,
+    },
+};
 
 /// The number of steps per degree in the header.
 const STEPS_PER_DEGREE: f64 = 1e7;

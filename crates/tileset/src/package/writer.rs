@@ -9,13 +9,15 @@ use std::{
 use corniche_geom::TileId;
 use pmtiles::{Compression, PmTilesStreamWriter, PmTilesWriter, PmtError, TileCoord, TileType};
 
-use crate::package::close_up::CloseUp;
-use crate::package::metadata::{FORMAT_VERSION, Metadata};
-use crate::package::tool_record::header_bounds;
-use crate::tile_order::pmtiles_order;
 use crate::{
     Manifest,
     limits::{MAX_METADATA_BYTES, MAX_PAYLOAD_BYTES, MIN_PAYLOAD_BYTES},
+    package::{
+        close_up::CloseUp,
+        metadata::{FORMAT_VERSION, Metadata},
+        tool_record::header_bounds,
+    },
+    tile_order::pmtiles_order,
 };
 
 /// Why a package could not be written.

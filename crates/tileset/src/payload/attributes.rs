@@ -4,10 +4,14 @@
 use corniche_roads::{Form, Oneway, RoadAttributes, Structure};
 use serde::de::DeserializeOwned;
 
-use crate::limits::{MAX_SECTION_BYTES, MAX_TEXT_BYTES, MAX_WAYS};
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::take_room;
-use crate::payload::tile_payload::RoadRecord;
+use crate::{
+    limits::{MAX_SECTION_BYTES, MAX_TEXT_BYTES, MAX_WAYS},
+    payload::{
+        damage::{Damage, Result},
+        number_codes::take_room,
+        tile_payload::RoadRecord,
+    },
+};
 
 /// The whole section, in `bincode`'s legacy layout: every list begins with its length as a u64.
 /// Lists after `texts` have one item per way.
@@ -29,7 +33,7 @@ struct AttributesTable {
 }
 
 /// Decodes the section's bytes into lists, and checks that their lengths and indices match.
-fn decode_record(bytes: &[u8]) -> Result<AttributesTable, Damage> {
+fn decode_record(bytes: &[u8]) -> Result<AttributesTable> {
     let mut rest = bytes;
     let record = AttributesTable {
         texts: list(&mut rest, 3 * MAX_WAYS)?,
@@ -42,9 +46,7 @@ fn decode_record(bytes: &[u8]) -> Result<AttributesTable, Damage> {
         references: list(&mut rest, MAX_WAYS)?,
         surfaces: list(&mut rest, MAX_WAYS)?,
     };
-    if !rest.is_empty() {
-        return Err(Damage::Invalid("bytes left over at the end"));
-    }
+    Damage::invalid_if(!rest.is_empty(), "bytes left over at the end")?;
     let count = record.way_id_steps.len();
     let lengths = [
         record.forms.len(),
@@ -55,13 +57,11 @@ fn decode_record(bytes: &[u8]) -> Result<AttributesTable, Damage> {
         record.references.len(),
         record.surfaces.len(),
     ];
-    if lengths != [count; 7] {
-        return Err(Damage::Invalid("lists of different lengths"));
-    }
+    Damage::invalid_if(lengths != [count; 7], "lists of different lengths")?;
     Ok(record)
 }
 
-pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<RoadRecord>, Damage> {
+pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<RoadRecord>> {
     let record = decode_record(bytes)?;
     let count = record.way_id_steps.len();
     // A long text that every way uses is copied for each way. The limit prevents a small section
@@ -80,9 +80,7 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<RoadRecord>, Damage> {
     let mut roads = Vec::with_capacity(count);
     for k in 0..count {
         let step = record.way_id_steps[k];
-        if k > 0 && step <= 0 {
-            return Err(Damage::Invalid("ways are not sorted"));
-        }
+        Damage::invalid_if(k > 0 && step <= 0, "ways are not sorted")?;
         way_id = way_id.checked_add(step).ok_or(Damage::Invalid("a way id"))?;
         let attributes = RoadAttributes {
             form: *Form::ALL.get(usize::from(record.forms[k])).ok_or(known.clone())?,
@@ -103,13 +101,10 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<RoadRecord>, Damage> {
 
 /// Takes one list of the record from the front of the bytes. Its length is checked before its items
 /// are read.
-fn list<T: DeserializeOwned>(bytes: &mut &[u8], limit: usize) -> Result<Vec<T>, Damage> {
+fn list<T: DeserializeOwned>(bytes: &mut &[u8], limit: usize) -> Result<Vec<T>> {
     let length = bytes.first_chunk().map(|&length| u64::from_le_bytes(length));
     let length = length.ok_or(Damage::TooShort)?;
-    if length > limit as u64 {
-        let what = "ways of a section";
-        return Err(Damage::TooLarge { what, length, limit: limit as u64 });
-    }
+    Damage::limit("ways of a section", length, limit)?;
     let config = bincode::config::legacy().with_limit::<MAX_SECTION_BYTES>();
     let (list, taken) = bincode::serde::decode_from_slice(bytes, config)
         .map_err(|_| Damage::Invalid("the records of the section"))?;
@@ -120,15 +115,17 @@ fn list<T: DeserializeOwned>(bytes: &mut &[u8], limit: usize) -> Result<Vec<T>, 
 /// Encodes the section; an error describes what cannot be encoded.
 #[cfg(feature = "write")]
 pub(crate) fn encode(roads: &[RoadRecord]) -> Result<Vec<u8>, &'static str> {
-    if !roads.is_sorted_by(|a, b| a.way_id < b.way_id) {
-        return Err("ways that are not sorted by id, or occur twice");
-    }
-    if roads.len() > MAX_WAYS {
-        return Err("more than a million ways");
-    }
-    if roads.iter().map(|road| road.attributes.text_bytes()).sum::<usize>() > MAX_TEXT_BYTES {
-        return Err("more than 64 MiB of texts");
-    }
+    use crate::payload::damage::refuse_if;
+
+    refuse_if(
+        !roads.is_sorted_by(|a, b| a.way_id < b.way_id),
+        "ways that are not sorted by id, or occur twice",
+    )?;
+    refuse_if(roads.len() > MAX_WAYS, "more than a million ways")?;
+    refuse_if(
+        roads.iter().map(|road| road.attributes.text_bytes()).sum::<usize>() > MAX_TEXT_BYTES,
+        "more than 64 MiB of texts",
+    )?;
     let mut texts: Vec<&str> = roads
         .iter()
         .flat_map(|road| {

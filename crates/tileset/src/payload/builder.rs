@@ -3,11 +3,15 @@
 use corniche_geom::TileId;
 use corniche_roads::FunctionalRoadClass;
 
-use crate::limits::MAX_SECTION_BYTES;
-use crate::payload::damage::EncodeError;
-use crate::payload::envelope::{self, MAGIC, STORED, SectionSize, StoredSection, VERSION, ZSTD};
-use crate::payload::section_kind::SectionKind;
-use crate::payload::sizes::PayloadSizes;
+use crate::{
+    limits::MAX_SECTION_BYTES,
+    payload::{
+        damage::EncodeError,
+        envelope::{self, MAGIC, STORED, SectionSize, StoredSection, VERSION, ZSTD},
+        section_kind::SectionKind,
+        sizes::PayloadSizes,
+    },
+};
 
 /// Number of bytes before the section table.
 const HEADER_BYTES: usize = 16;

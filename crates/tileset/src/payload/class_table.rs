@@ -4,33 +4,29 @@
 use corniche_roads::FunctionalRoadClass;
 use corniche_varints::zigzag;
 
-use crate::limits::{MAX_LINES, MAX_POINTS};
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::{Cursor, take_room};
+use crate::{
+    limits::{MAX_LINES, MAX_POINTS},
+    payload::{
+        damage::{Damage, Result},
+        number_codes::{Cursor, take_room},
+    },
+};
 
 /// A class, its number of lines, and their bytes.
 pub(crate) type ClassBlob<'a> = (FunctionalRoadClass, usize, &'a [u8]);
 
 /// Reads the table: the lines of each class that has any, in the order of classes.
-pub(crate) fn decode<'a>(cursor: &mut Cursor<'a>) -> Result<Vec<ClassBlob<'a>>, Damage> {
+pub(crate) fn decode<'a>(cursor: &mut Cursor<'a>) -> Result<Vec<ClassBlob<'a>>> {
     let mut counts = Vec::with_capacity(FunctionalRoadClass::COUNT);
     let mut all_lines = 0;
     for class in FunctionalRoadClass::all() {
         let lines = u32::from_le_bytes(cursor.array()?) as usize;
         let length = u32::from_le_bytes(cursor.array()?) as usize;
-        if (lines == 0) != (length == 0) {
-            return Err(Damage::Invalid("the table of classes"));
-        }
+        Damage::invalid_if((lines == 0) != (length == 0), "the table of classes")?;
         all_lines += lines;
         counts.push((class, lines, length));
     }
-    if all_lines > MAX_LINES {
-        return Err(Damage::TooLarge {
-            what: "lines of a section",
-            length: all_lines as u64,
-            limit: MAX_LINES as u64,
-        });
-    }
+    Damage::limit("lines of a section", all_lines as u64, MAX_LINES)?;
     counts.retain(|&(_, lines, _)| lines > 0);
     counts
         .into_iter()
@@ -41,17 +37,17 @@ pub(crate) fn decode<'a>(cursor: &mut Cursor<'a>) -> Result<Vec<ClassBlob<'a>>, 
 /// The fields of a line that are stored before its points.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct LineHead {
-    pub(crate) way_id: i64,
-    pub(crate) part: u32,
+    pub way_id: i64,
+    pub part: u32,
     /// Number of points.
-    pub(crate) points: usize,
+    pub points: usize,
     /// Two flag bits, which depend on the kind of section.
-    pub(crate) flags: u8,
+    pub flags: u8,
 }
 
 /// Subtracts the points of a line from `room`, the number of points that its section may still
 /// have.
-pub(crate) fn take_points(room: &mut usize, points: usize) -> Result<(), Damage> {
+pub(crate) fn take_points(room: &mut usize, points: usize) -> Result<()> {
     take_room(room, points, MAX_POINTS, "points of a section")
 }
 
@@ -63,11 +59,9 @@ pub(crate) struct LineOrder {
 
 impl LineOrder {
     /// Fails if `next` does not follow the line before it in the sort order.
-    pub(crate) fn check(&mut self, next: &LineHead) -> Result<(), Damage> {
+    pub(crate) fn check(&mut self, next: &LineHead) -> Result<()> {
         let next = Some((next.way_id, next.part));
-        if next <= self.last {
-            return Err(Damage::Invalid("lines are not sorted"));
-        }
+        Damage::invalid_if(next <= self.last, "lines are not sorted")?;
         self.last = next;
         Ok(())
     }
@@ -75,19 +69,15 @@ impl LineOrder {
 
 /// The heads of the lines of a class.
 pub(crate) struct Heads {
-    pub(crate) heads: Vec<LineHead>,
+    pub heads: Vec<LineHead>,
     /// Number of points of all lines.
-    pub(crate) points: usize,
+    pub points: usize,
 }
 
 impl Heads {
     /// Reads the heads: all way ids as differences, then parts, then numbers of points with flags.
     /// The points are subtracted from `room`, the number that the section may still have.
-    pub(crate) fn decode(
-        cursor: &mut Cursor<'_>,
-        lines: usize,
-        room: &mut usize,
-    ) -> Result<Self, Damage> {
+    pub(crate) fn decode(cursor: &mut Cursor<'_>, lines: usize, room: &mut usize) -> Result<Self> {
         // Each line takes at least three bytes, so a wrong count in the table cannot allocate more
         // than the section allows.
         if lines > cursor.left() / 3 {
@@ -128,7 +118,7 @@ mod write {
     use corniche_varints::{push_varint, to_zigzag};
 
     use super::{FunctionalRoadClass, LineHead, MAX_LINES, MAX_POINTS};
-    use crate::payload::source_grid::SourceGrid;
+    use crate::payload::{damage::refuse_if, source_grid::SourceGrid};
 
     /// Writes the grid of a coded section, the table, and the lines of each class with `put`; also
     /// returns the number of bytes of each class.
@@ -138,12 +128,11 @@ mod write {
         key: impl Fn(&R) -> (FunctionalRoadClass, i64, u32),
         mut put: impl FnMut(&[R], &mut Vec<u8>) -> Result<(), &'static str>,
     ) -> Result<(Vec<u8>, [u64; FunctionalRoadClass::COUNT]), &'static str> {
-        if !roads.is_sorted_by(|a, b| key(a) < key(b)) {
-            return Err("lines that are not sorted by class, way id and part, or occur twice");
-        }
-        if roads.len() > MAX_LINES {
-            return Err("more than a million lines");
-        }
+        refuse_if(
+            !roads.is_sorted_by(|a, b| key(a) < key(b)),
+            "lines that are not sorted by class, way id and part, or occur twice",
+        )?;
+        refuse_if(roads.len() > MAX_LINES, "more than a million lines")?;
         let mut table = grid.map_or_else(Vec::new, |grid| grid.to_bytes().to_vec());
         let mut body = Vec::new();
         let mut class_bytes = [0; FunctionalRoadClass::COUNT];

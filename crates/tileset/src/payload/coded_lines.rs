@@ -4,17 +4,22 @@ use std::collections::HashMap;
 
 use corniche_geom::{GridFrame, LatticePoint};
 
-use crate::limits::MAX_POINTS;
-use crate::payload::class_table::{self, ClassBlob, LineHead, take_points};
-use crate::payload::damage::Damage;
-use crate::payload::magnitudes::Magnitudes;
-use crate::payload::number_codes::Cursor;
-use crate::payload::points::{FAR, is_near};
 #[cfg(feature = "write")]
 use crate::payload::range_coder::BitWriter;
-use crate::payload::range_coder::{BitReader, Bits, Model};
-use crate::payload::source_grid::SourceGrid;
-use crate::payload::turned_steps::{StepCoder, length};
+use crate::{
+    limits::MAX_POINTS,
+    payload::{
+        class_table::{self, ClassBlob, LineHead, take_points},
+        damage::{Damage, Result},
+        magnitudes::Magnitudes,
+        number_codes::Cursor,
+        point_models::PointModels,
+        points::{FAR, is_near},
+        range_coder::{BitReader, Bits, Model},
+        source_grid::SourceGrid,
+        turned_steps::length,
+    },
+};
 
 /// Points of the grid are within this many steps of 0: more than once around the earth.
 const REACH: i64 = 1 << 33;
@@ -25,8 +30,8 @@ pub(crate) fn for_each_class<'f>(
     bytes: &[u8],
     coded_in: Option<&'f GridFrame>,
     corner: LatticePoint,
-    mut take: impl FnMut(ClassBlob<'_>, Option<LineCoder<'f>>) -> Result<(), Damage>,
-) -> Result<(), Damage> {
+    mut take: impl FnMut(ClassBlob<'_>, Option<LineCoder<'f>>) -> Result<()>,
+) -> Result<()> {
     let mut cursor = Cursor::new(bytes);
     let grid = coded_in.map(|frame| SourceGrid::read(&mut cursor, frame)).transpose()?;
     for of_class in class_table::decode(&mut cursor)? {
@@ -43,12 +48,7 @@ pub(crate) struct LineCoder<'f> {
     parts: Magnitudes<1, 1>,
     counts: Magnitudes<1, 1>,
     flags: [Model; 2],
-    starts: [Magnitudes<1, 1>; 2],
-    steps: StepCoder,
-    is_off_grid: Model,
-    off_grid: [Magnitudes<1, 1>; 2],
-    is_known: [[Model; 2]; 3],
-    steps_back: Magnitudes<1, 1>,
+    models: PointModels,
     /// The different points so far, on the grid and on the lattice: roads meet at some of them.
     known: Vec<([i64; 2], LatticePoint)>,
     /// The index of each point in this list; only used by a writer.
@@ -61,24 +61,17 @@ pub(crate) struct LineCoder<'f> {
     before: Option<[i64; 2]>,
 }
 
-const UNKNOWN: Damage = Damage::Invalid("a reference to a point that does not exist");
-
 impl<'f> LineCoder<'f> {
     /// Creates the coder for the lines of one class, in a tile with this south-western corner.
     pub(crate) fn new(grid: SourceGrid<'f>, corner: LatticePoint) -> Self {
         Self {
             grid,
             corner,
-            way_ids: Magnitudes::new(),
-            parts: Magnitudes::new(),
-            counts: Magnitudes::new(),
+            way_ids: Magnitudes::default(),
+            parts: Magnitudes::default(),
+            counts: Magnitudes::default(),
             flags: [Model::NEW; 2],
-            starts: [Magnitudes::new(), Magnitudes::new()],
-            steps: StepCoder::new(),
-            is_off_grid: Model::NEW,
-            off_grid: [Magnitudes::new(), Magnitudes::new()],
-            is_known: [[Model::NEW; 2]; 3],
-            steps_back: Magnitudes::new(),
+            models: PointModels::default(),
             known: Vec::new(),
             known_at: HashMap::new(),
             was_known: false,
@@ -89,11 +82,7 @@ impl<'f> LineCoder<'f> {
     }
 
     /// Codes the head of the next line. A reader's head is ignored.
-    pub(crate) fn code_head<B: Bits>(
-        &mut self,
-        bits: &mut B,
-        head: LineHead,
-    ) -> Result<LineHead, Damage> {
+    pub(crate) fn code_head<B: Bits>(&mut self, bits: &mut B, head: LineHead) -> Result<LineHead> {
         let step = head.way_id.wrapping_sub(self.way_id);
         let way_id = self.way_id.wrapping_add(self.way_ids.code(bits, [0; 2], step));
         self.way_id = way_id;
@@ -103,9 +92,7 @@ impl<'f> LineCoder<'f> {
             |bits: &mut B, model, flag| bits.bit(model, u32::from(head.flags & flag != 0)) as u8;
         let [lead_in, lead_out] = &mut self.flags;
         let flags = flag(bits, lead_in, 1) | flag(bits, lead_out, 2) << 1;
-        if points > MAX_POINTS {
-            return Err(Damage::Invalid("number of points"));
-        }
+        Damage::invalid_if(points > MAX_POINTS, "number of points")?;
         self.before = None;
         self.was_known = false;
         Ok(LineHead { way_id, part, points, flags })
@@ -118,21 +105,18 @@ impl<'f> LineCoder<'f> {
         number: usize,
         head: &LineHead,
         asked: Option<LatticePoint>,
-    ) -> Result<LatticePoint, Damage> {
+    ) -> Result<LatticePoint> {
         let place = match number {
             0 => 0,
             _ if number + 1 < head.points => 1,
             _ => 2,
         };
         let asked_known = asked.and_then(|point| self.known_at.get(&point).copied());
-        let model = &mut self.is_known[place][usize::from(self.was_known)];
-        self.was_known = bits.bit(model, u32::from(asked_known.is_some())) == 1;
-        if self.was_known {
-            let newest = self.known.len() as u64;
-            let back = asked_known.map_or(0, |at| newest - 1 - at as u64);
-            let back = self.steps_back.code_magnitude(bits, [0; 2], back);
-            let at = newest.checked_sub(back + 1).ok_or(UNKNOWN)? as usize;
-            let (to, point) = *self.known.get(at).ok_or(UNKNOWN)?;
+        let context = (place, self.was_known);
+        let known = self.models.code_known(bits, context, asked_known, self.known.len())?;
+        self.was_known = known.is_some();
+        if let Some(at) = known {
+            let (to, point) = self.known[at];
             self.before = Some([to[0] - self.at[0], to[1] - self.at[1]])
                 .filter(|&step| number > 0 && step != [0; 2]);
             self.at = to;
@@ -151,17 +135,13 @@ impl<'f> LineCoder<'f> {
         bits: &mut B,
         is_first: bool,
         asked: Option<LatticePoint>,
-    ) -> Result<LatticePoint, Damage> {
+    ) -> Result<LatticePoint> {
         let nearest = asked.map_or([0; 2], |point| self.grid.nearest(point));
         let step = [0, 1].map(|axis| nearest[axis].wrapping_sub(self.at[axis]));
-        let step = if is_first {
-            let [east, north] = &mut self.starts;
-            [east.code(bits, [0; 2], step[0]), north.code(bits, [0; 2], step[1])]
-        } else {
-            let step = self.steps.code(bits, self.before, step);
+        let step = self.models.code_step(bits, is_first, self.before, step);
+        if !is_first {
             self.before = Some(step).filter(|&step| step != [0; 2]);
-            step
-        };
+        }
         let to = [0, 1].map(|axis| self.at[axis] + step[axis]);
         if to.iter().any(|at| at.abs() > REACH) {
             return Err(FAR);
@@ -171,8 +151,8 @@ impl<'f> LineCoder<'f> {
         let off = asked.map_or([0; 2], |point| {
             [point.u.wrapping_sub(on_grid.u), point.v.wrapping_sub(on_grid.v)]
         });
-        let off = if bits.bit(&mut self.is_off_grid, u32::from(off != [0; 2])) == 1 {
-            let [east, north] = &mut self.off_grid;
+        let off = if bits.bit(&mut self.models.is_beside, u32::from(off != [0; 2])) == 1 {
+            let [east, north] = &mut self.models.beside;
             [east.code(bits, [0; 2], off[0]), north.code(bits, [0; 2], off[1])]
         } else {
             [0; 2]
@@ -188,8 +168,8 @@ impl<'f> LineCoder<'f> {
         bits: &mut BitReader<'_>,
         room: &mut usize,
         points: &mut Vec<LatticePoint>,
-        mut after_each: impl FnMut(&mut Self, &mut BitReader<'_>, usize) -> Result<(), Damage>,
-    ) -> Result<LineHead, Damage> {
+        mut after_each: impl FnMut(&mut Self, &mut BitReader<'_>, usize) -> Result<()>,
+    ) -> Result<LineHead> {
         let head = self.code_head(bits, LineHead::default())?;
         take_points(room, head.points)?;
         bits.check_end()?;
@@ -197,9 +177,7 @@ impl<'f> LineCoder<'f> {
         for number in 0..head.points {
             bits.check_end()?;
             let point = self.code_point(bits, number, &head, None)?;
-            if points.last() == Some(&point) {
-                return Err(Damage::Invalid("a segment of zero length"));
-            }
+            Damage::invalid_if(points.last() == Some(&point), "a segment of zero length")?;
             points.push(point);
             after_each(self, bits, number)?;
         }

@@ -26,9 +26,11 @@
 
 use std::collections::{BTreeSet, VecDeque};
 
-use crate::payload::corner_guess::{GateCorner, GridVertices};
-use crate::payload::damage::Damage;
-use crate::payload::work_limit::StepBudget;
+use crate::payload::{
+    corner_guess::{GateCorner, GridVertices},
+    damage::{Damage, Result},
+    work_limit::StepBudget,
+};
 
 /// There is no triangle to the left of the gate.
 pub(crate) const NONE: u8 = 0;
@@ -40,9 +42,9 @@ pub(crate) const NAMED: u8 = GUESSES + 1;
 /// A vertex, and the gate through which the walk reached it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Reached {
-    pub(crate) vertex: u32,
+    pub vertex: u32,
     /// The vertices `[a, b, d]` of the gate; three times the vertex itself where a walk starts.
-    pub(crate) gate: [u32; 3],
+    pub gate: [u32; 3],
 }
 
 /// Directed edges that have a triangle on their left.
@@ -142,11 +144,12 @@ impl<'w> Edges<'w> {
     }
 
     /// Adds a triangle; fails if an edge already has a triangle on this side.
-    pub(crate) fn add(&mut self, [a, b, c]: [u32; 3]) -> Result<(), Damage> {
+    pub(crate) fn add(&mut self, [a, b, c]: [u32; 3]) -> Result<()> {
         for [from, to] in [[a, b], [b, c], [c, a]] {
-            if from == to || self.has(from, to) {
-                return Err(Damage::Invalid("two triangles on the same side of an edge"));
-            }
+            Damage::invalid_if(
+                from == to || self.has(from, to),
+                "two triangles on the same side of an edge",
+            )?;
             self.add_edge(from, to);
         }
         Ok(())
@@ -164,8 +167,8 @@ impl<'w> Edges<'w> {
 /// The guesses at a gate.
 pub(crate) struct Guesses<'g, 'w> {
     /// The vertices `[a, b, d]`: the gate a ► b has the corner d on its right.
-    pub(crate) gate: [u32; 3],
-    pub(crate) nodes: &'g GridVertices<'w>,
+    pub gate: [u32; 3],
+    pub nodes: &'g GridVertices<'w>,
     edges: &'g Edges<'w>,
 }
 
@@ -199,9 +202,9 @@ pub(crate) enum GateAnswer {
 /// from the symbols.
 pub(crate) trait Guide {
     /// A triangle to start from that has not been found yet.
-    fn start(&mut self, found: &Edges<'_>) -> Result<[u32; 3], Damage>;
+    fn start(&mut self, found: &Edges<'_>) -> Result<[u32; 3]>;
     /// The answer at a gate.
-    fn corner(&mut self, guesses: &Guesses<'_, '_>) -> Result<GateAnswer, Damage>;
+    fn corner(&mut self, guesses: &Guesses<'_, '_>) -> Result<GateAnswer>;
 }
 
 /// Walks until `count` triangles are found; returns them, and the vertices in the order of the
@@ -210,7 +213,7 @@ pub(crate) fn walk(
     nodes: &GridVertices<'_>,
     count: usize,
     guide: &mut impl Guide,
-) -> Result<(Vec<[u32; 3]>, Vec<Reached>), Damage> {
+) -> Result<(Vec<[u32; 3]>, Vec<Reached>)> {
     let work = nodes.work();
     let mut edges = Edges::new(nodes.len(), count, work);
     let mut triangles = Vec::with_capacity(count);
@@ -259,7 +262,7 @@ pub(crate) fn walk(
     Ok((triangles, order))
 }
 
-fn check_vertex(vertex: u32, nodes: &GridVertices<'_>) -> Result<(), Damage> {
+fn check_vertex(vertex: u32, nodes: &GridVertices<'_>) -> Result<()> {
     if (vertex as usize) < nodes.len() {
         Ok(())
     } else {

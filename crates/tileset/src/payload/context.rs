@@ -3,17 +3,21 @@
 use corniche_geom::{GridFrame, LatticePoint, TILE_NODES, TileId};
 use corniche_tin::Placement;
 
-use crate::manifest::check::is_height_quantum;
-use crate::payload::damage::{Damage, DecodeError};
-use crate::payload::envelope::{self, StoredSection};
-use crate::payload::terrain::record::Scale;
+use crate::{
+    manifest::check::is_height_quantum,
+    payload::{
+        damage::{Damage, DecodeError, Result},
+        envelope::{self, StoredSection},
+        terrain::record::Scale,
+    },
+};
 
 /// The values that positions and heights in a payload are relative to.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CodingContext {
-    pub(crate) corner: LatticePoint,
-    pub(crate) placement: Placement,
-    pub(crate) scale: Scale,
+    pub corner: LatticePoint,
+    pub placement: Placement,
+    pub scale: Scale,
 }
 
 impl CodingContext {
@@ -29,13 +33,11 @@ impl CodingContext {
         Ok((context, envelope::open_read(bytes, id).map_err(failed)?))
     }
 
-    pub(crate) fn new(id: TileId, frame: &GridFrame, quantum_m: f64) -> Result<Self, Damage> {
+    pub(crate) fn new(id: TileId, frame: &GridFrame, quantum_m: f64) -> Result<Self> {
         if id.z() > frame.max_level() {
             return Err(Damage::Level { level: id.z(), finest: frame.max_level() });
         }
-        if !is_height_quantum(quantum_m) {
-            return Err(Damage::Invalid("the height quantum"));
-        }
+        Damage::invalid_if(!is_height_quantum(quantum_m), "the height quantum")?;
         let placement = Placement::of_tile(frame, id, quantum_m);
         Ok(Self {
             corner: placement.corner,

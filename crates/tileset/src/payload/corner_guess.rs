@@ -3,8 +3,10 @@
 
 use corniche_geom::TILE_NODES;
 
-use crate::payload::near_corners::{MARGIN, NearCorners, NearNode, STRIDE};
-use crate::payload::work_limit::StepBudget;
+use crate::payload::{
+    near_corners::{MARGIN, NearCorners, NearNode, STRIDE},
+    work_limit::StepBudget,
+};
 
 /// Vertices of a tile's grid, sorted by row, then column.
 #[derive(Debug)]
@@ -90,13 +92,13 @@ const NO_VERTEX: u32 = u32::MAX;
 /// The best corner of a gate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct GateCorner {
-    pub(crate) vertex: u32,
+    pub vertex: u32,
     /// Whether another vertex sees the gate under the same angle, which means that it is on the
     /// same circle.
-    pub(crate) is_tied: bool,
+    pub is_tied: bool,
     /// The cotangent of the angle is dot / cross; cross is positive.
-    pub(crate) dot: i64,
-    pub(crate) cross: i64,
+    pub dot: i64,
+    pub cross: i64,
 }
 
 impl<'w> GridVertices<'w> {

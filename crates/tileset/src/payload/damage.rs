@@ -71,7 +71,26 @@ pub enum Damage {
     },
 }
 
+/// Refuses what cannot be encoded, or was not encoded by a writer.
+pub(crate) fn refuse_if(is_so: bool, what: &'static str) -> Result<(), &'static str> {
+    if is_so { Err(what) } else { Ok(()) }
+}
+
+/// What decoders return.
+pub(crate) type Result<T, E = Damage> = std::result::Result<T, E>;
+
 impl Damage {
+    /// Rejects invalid bytes.
+    pub(crate) fn invalid_if(is_so: bool, what: &'static str) -> Result<()> {
+        if is_so { Err(Self::Invalid(what)) } else { Ok(()) }
+    }
+
+    /// Rejects more than readers accept.
+    pub(crate) fn limit(what: &'static str, length: u64, limit: usize) -> Result<()> {
+        let limit = limit as u64;
+        if length > limit { Err(Self::TooLarge { what, length, limit }) } else { Ok(()) }
+    }
+
     /// Returns the error for damage in the header of a payload.
     pub(crate) fn in_header(self, tile: TileId) -> DecodeError {
         DecodeError { tile, part: "header".into(), damage: self }

@@ -3,13 +3,17 @@
 use corniche_geom::{GridFrame, TileId};
 use corniche_tin::Surface;
 
-use crate::payload::context::CodingContext;
-use crate::payload::damage::{Damage, DecodeError};
-use crate::payload::envelope::StoredSection;
-use crate::payload::relief::Relief;
-use crate::payload::section_kind::{GEO, SV, SectionKind, Sections, TwoKinds};
-use crate::payload::tile_payload::{GeoRoad, TilePayload, TileTerrain};
-use crate::payload::{attributes, envelope, road_tags, roads_geo, roads_sv, spans, terrain};
+use crate::payload::{
+    attributes,
+    context::CodingContext,
+    damage::{Damage, DecodeError, Result},
+    envelope::{self, StoredSection},
+    relief::Relief,
+    road_tags, roads_geo, roads_sv,
+    section_kind::{GEO, SV, SectionKind, Sections, TwoKinds},
+    spans, terrain,
+    tile_payload::{GeoRoad, TilePayload, TileTerrain},
+};
 
 /// Decodes the wanted sections of a payload; sections that are absent or not wanted are empty or
 /// `None`.
@@ -106,7 +110,7 @@ impl SectionReader<'_> {
         &self,
         kind: SectionKind,
         section: Sections,
-        decode: impl FnOnce(Vec<u8>) -> Result<T, Damage>,
+        decode: impl FnOnce(Vec<u8>) -> Result<T>,
     ) -> Result<Option<T>, DecodeError> {
         if !self.wanted.contains(section) {
             return Ok(None);
@@ -136,7 +140,7 @@ fn decode_geo(
     coded_in: Option<&GridFrame>,
     ground: Option<&TileTerrain>,
     context: &CodingContext,
-) -> Result<Vec<GeoRoad>, Damage> {
+) -> Result<Vec<GeoRoad>> {
     let Some(ground) = ground else {
         return Err(Damage::Invalid("roads in a tile without ground"));
     };

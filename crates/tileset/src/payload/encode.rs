@@ -4,14 +4,20 @@ use corniche_geom::{GridFrame, LatticePoint};
 use corniche_roads::FunctionalRoadClass;
 use corniche_tin::Surface;
 
-use crate::manifest::Manifest;
-use crate::payload::builder::{EncodedTile, PayloadBuilder, Section};
-use crate::payload::context::CodingContext;
-use crate::payload::damage::EncodeError;
-use crate::payload::section_kind::{GEO, SV, SectionKind, TwoKinds};
-use crate::payload::source_grid::SourceGrid;
-use crate::payload::tile_payload::TilePayload;
-use crate::payload::{attributes, envelope, road_tags, roads_geo, roads_sv, terrain};
+use crate::{
+    manifest::Manifest,
+    payload::{
+        attributes,
+        builder::{EncodedTile, PayloadBuilder, Section},
+        context::CodingContext,
+        damage::EncodeError,
+        envelope, road_tags, roads_geo, roads_sv,
+        section_kind::{GEO, SV, SectionKind, TwoKinds},
+        source_grid::SourceGrid,
+        terrain,
+        tile_payload::TilePayload,
+    },
+};
 
 /// The grid and the height step to which positions and heights refer; the package's manifest
 /// records them.

@@ -5,10 +5,14 @@ use std::io::Read;
 use corniche_geom::TileId;
 use ruzstd::decoding::{BlockDecodingStrategy, FrameDecoder};
 
-use crate::limits::MAX_SECTION_BYTES;
-use crate::payload::damage::{Damage, DecodeError};
-use crate::payload::number_codes::Cursor;
-use crate::payload::section_kind::{SectionKind, TwoKinds};
+use crate::{
+    limits::MAX_SECTION_BYTES,
+    payload::{
+        damage::{Damage, DecodeError, Result},
+        number_codes::Cursor,
+        section_kind::{SectionKind, TwoKinds},
+    },
+};
 
 /// The first bytes of every payload: "Corniche Tile".
 pub(crate) const MAGIC: [u8; 4] = *b"CRNT";
@@ -23,13 +27,13 @@ pub(crate) const ZSTD: u8 = 1;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StoredSection<'a> {
     kind: u16,
-    pub(crate) compression: u8,
-    pub(crate) raw_length: u32,
-    pub(crate) checksum: u32,
+    pub compression: u8,
+    pub raw_length: u32,
+    pub checksum: u32,
     /// The stored length of the section in a complete payload.
     stored_length: usize,
     /// The stored bytes; empty if the payload was read without its last section.
-    pub(crate) bytes: &'a [u8],
+    pub bytes: &'a [u8],
 }
 
 impl StoredSection<'_> {
@@ -46,13 +50,13 @@ impl StoredSection<'_> {
 
 /// Splits a complete payload into sections. Their content is not inspected yet; they are contiguous
 /// up to the payload's last byte, so that each byte is covered by one checksum.
-pub(crate) fn open(bytes: &[u8], id: TileId) -> Result<Vec<StoredSection<'_>>, Damage> {
+pub(crate) fn open(bytes: &[u8], id: TileId) -> Result<Vec<StoredSection<'_>>> {
     let sections = open_read(bytes, id)?;
     if sections.iter().all(StoredSection::is_read) { Ok(sections) } else { Err(Damage::TooShort) }
 }
 
 /// Splits a payload that may have been read without the SV roads at its end.
-pub(crate) fn open_read(bytes: &[u8], id: TileId) -> Result<Vec<StoredSection<'_>>, Damage> {
+pub(crate) fn open_read(bytes: &[u8], id: TileId) -> Result<Vec<StoredSection<'_>>> {
     let mut cursor = Cursor::new(bytes);
     if cursor.array::<4>()? != MAGIC {
         return Err(Damage::Magic);
@@ -72,9 +76,7 @@ pub(crate) fn open_read(bytes: &[u8], id: TileId) -> Result<Vec<StoredSection<'_
             [(); 4].map(|()| cursor.array().map(u32::from_le_bytes));
         let (offset, stored_length) = (offset? as usize, length? as usize);
         let stored = offset.checked_add(stored_length).and_then(|end| bytes.get(offset..end));
-        if reserved != 0 {
-            return Err(Damage::Invalid("a reserved byte of the section table is not 0"));
-        }
+        Damage::invalid_if(reserved != 0, "a reserved byte of the section table is not 0")?;
         let section = StoredSection {
             kind,
             compression,
@@ -97,18 +99,15 @@ pub(crate) fn open_read(bytes: &[u8], id: TileId) -> Result<Vec<StoredSection<'_
     }
     let mut end = bytes.len() - cursor.left();
     for [from, to] in ends {
-        if from != end {
-            return Err(Damage::Invalid("sections are not contiguous"));
-        }
+        Damage::invalid_if(from != end, "sections are not contiguous")?;
         end = to;
     }
-    if end != bytes.len() {
-        return Err(Damage::Invalid("bytes after the last section"));
-    }
+    Damage::invalid_if(end != bytes.len(), "bytes after the last section")?;
     for (number, section) in sections.iter().enumerate() {
-        if sections[..number].iter().any(|before| before.kind == section.kind) {
-            return Err(Damage::Invalid("two sections of one kind"));
-        }
+        Damage::invalid_if(
+            sections[..number].iter().any(|before| before.kind == section.kind),
+            "two sections of one kind",
+        )?;
     }
     // This check comes after the checksum, so its error means a payload in the position of another
     // tile, not a flipped bit.
@@ -122,19 +121,13 @@ pub(crate) fn open_read(bytes: &[u8], id: TileId) -> Result<Vec<StoredSection<'_
 pub(crate) fn section(
     sections: &[StoredSection<'_>],
     kind: SectionKind,
-) -> Result<Option<Vec<u8>>, Damage> {
+) -> Result<Option<Vec<u8>>> {
     let Some(section) = find(sections, kind) else { return Ok(None) };
     if !section.is_read() {
         return Err(Damage::TooShort);
     }
     let raw_length = section.raw_length as usize;
-    if raw_length > MAX_SECTION_BYTES {
-        return Err(Damage::TooLarge {
-            what: "length of a section",
-            length: raw_length as u64,
-            limit: MAX_SECTION_BYTES as u64,
-        });
-    }
+    Damage::limit("length of a section", raw_length as u64, MAX_SECTION_BYTES)?;
     if crc32fast::hash(section.bytes) != section.checksum {
         return Err(Damage::Checksum);
     }
@@ -153,7 +146,7 @@ pub(crate) fn read_part<T>(
     bytes: &[u8],
     tile: TileId,
     kind: SectionKind,
-    read: impl FnOnce(&[StoredSection<'_>]) -> Result<T, Damage>,
+    read: impl FnOnce(&[StoredSection<'_>]) -> Result<T>,
 ) -> Result<T, DecodeError> {
     let sections = open_read(bytes, tile).map_err(|damage| damage.in_header(tile))?;
     read(&sections).map_err(kind.damaged(tile))
@@ -164,7 +157,7 @@ pub(crate) fn read_part<T>(
 pub(crate) fn section_of_two(
     sections: &[StoredSection<'_>],
     kinds: TwoKinds,
-) -> Result<Option<(Vec<u8>, bool)>, Damage> {
+) -> Result<Option<(Vec<u8>, bool)>> {
     match (section(sections, kinds.planes)?, section(sections, kinds.coded)?) {
         (Some(_), Some(_)) => Err(Damage::Invalid("two sections for the same objects")),
         (Some(planes), None) => Ok(Some((planes, false))),
@@ -197,14 +190,14 @@ pub(crate) fn sv_tail_bytes(sections: &[StoredSection<'_>]) -> u64 {
 }
 
 /// Checks sections of kinds that this version does not know, as far as possible.
-pub(crate) fn check_unknown(sections: &[StoredSection<'_>]) -> Result<(), Damage> {
+pub(crate) fn check_unknown(sections: &[StoredSection<'_>]) -> Result<()> {
     let unknown = |section: &&StoredSection<'_>| section.known_kind().is_none();
     let intact = |section: &StoredSection<'_>| crc32fast::hash(section.bytes) == section.checksum;
     if sections.iter().filter(unknown).all(intact) { Ok(()) } else { Err(Damage::Checksum) }
 }
 
 /// Decompresses exactly one zstd frame, whose content must have exactly `length` bytes.
-fn decompress(mut bytes: &[u8], length: usize) -> Result<Vec<u8>, Damage> {
+fn decompress(mut bytes: &[u8], length: usize) -> Result<Vec<u8>> {
     let failed = |error: &dyn std::fmt::Display| Damage::Decompress { reason: error.to_string() };
     let mut decoder = FrameDecoder::new();
     // A window never needs to be larger than the content; zstd's own smallest window is 1 KiB.
@@ -218,19 +211,16 @@ fn decompress(mut bytes: &[u8], length: usize) -> Result<Vec<u8>, Damage> {
             .decode_blocks(&mut bytes, BlockDecodingStrategy::UptoBytes(1 << 20))
             .map_err(|error| failed(&error))?;
         written += decoder.read(&mut out[written..]).map_err(|error| failed(&error))?;
-        if decoder.can_collect() > 0 {
-            return Err(Damage::Invalid("a section is longer than its table entry says"));
-        }
+        Damage::invalid_if(
+            decoder.can_collect() > 0,
+            "a section is longer than its table entry says",
+        )?;
         if decoder.is_finished() {
             break;
         }
     }
-    if !bytes.is_empty() {
-        return Err(Damage::Invalid("bytes after the compressed section"));
-    }
-    if written != length {
-        return Err(Damage::Invalid("a section is shorter than its table entry says"));
-    }
+    Damage::invalid_if(!bytes.is_empty(), "bytes after the compressed section")?;
+    Damage::invalid_if(written != length, "a section is shorter than its table entry says")?;
     Ok(out)
 }
 

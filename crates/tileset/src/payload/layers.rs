@@ -20,10 +20,10 @@ mod text_table;
 
 use corniche_geom::{GridFrame, TileId};
 
-use crate::layer_slot::LayerSlot;
-use crate::payload::damage::DecodeError;
-use crate::payload::envelope;
-use crate::payload::section_kind::SectionKind;
+use crate::{
+    layer_slot::LayerSlot,
+    payload::{damage::DecodeError, envelope, section_kind::SectionKind},
+};
 
 use decode::decode;
 #[cfg(feature = "write")]

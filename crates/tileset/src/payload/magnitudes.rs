@@ -16,15 +16,17 @@ pub(crate) struct Magnitudes<const FIRST: usize, const SECOND: usize> {
     digits: [[Model; 1 << MODELLED_DIGITS]; LENGTHS],
 }
 
-impl<const FIRST: usize, const SECOND: usize> Magnitudes<FIRST, SECOND> {
-    pub(crate) fn new() -> Self {
+impl<const FIRST: usize, const SECOND: usize> Default for Magnitudes<FIRST, SECOND> {
+    fn default() -> Self {
         Self {
             by_first: vec![[Model::NEW; LENGTHS]; FIRST],
             by_second: vec![[Model::NEW; LENGTHS]; SECOND],
             digits: [[Model::NEW; 1 << MODELLED_DIGITS]; LENGTHS],
         }
     }
+}
 
+impl<const FIRST: usize, const SECOND: usize> Magnitudes<FIRST, SECOND> {
     /// Codes a number with a magnitude below 2^32; a context beyond the last counts as the last.
     pub(crate) fn code<B: Bits>(&mut self, bits: &mut B, contexts: [usize; 2], number: i64) -> i64 {
         let magnitude = self.code_magnitude(bits, contexts, number.unsigned_abs()) as i64;

@@ -13,13 +13,13 @@ fn numbers_come_back() {
         .collect();
     let context = |k: usize| [k % 5, k % 7];
     let mut writer = BitWriter::new(Vec::new());
-    let mut magnitudes = Magnitudes::<4, 6>::new();
+    let mut magnitudes = Magnitudes::<4, 6>::default();
     for (k, &number) in numbers.iter().enumerate() {
         magnitudes.code(&mut writer, context(k), number);
     }
     let bytes = writer.finish();
     let mut reader = BitReader::new(&bytes);
-    let mut magnitudes = Magnitudes::<4, 6>::new();
+    let mut magnitudes = Magnitudes::<4, 6>::default();
     for (k, &number) in numbers.iter().enumerate() {
         assert_eq!(magnitudes.code(&mut reader, context(k), 0), number);
     }

@@ -2,7 +2,7 @@
 
 use corniche_varints::{BadVarint, varint};
 
-use crate::payload::damage::Damage;
+use crate::payload::damage::{Damage, Result};
 
 /// Writes the number of bytes that the largest value needs, then the lowest byte of all values,
 /// then their second bytes, and so on: high bytes are nearly all equal and take almost no space
@@ -39,13 +39,11 @@ impl<'a> Planes<'a> {
 
     /// The sum of the numbers with `each` added to every number; fails if it is larger than `most`,
     /// before memory is allocated for it.
-    pub(crate) fn total(self, each: u64, most: usize, what: &'static str) -> Result<usize, Damage> {
+    pub(crate) fn total(self, each: u64, most: usize, what: &'static str) -> Result<usize> {
         let mut sum = 0_u64;
         for number in self.iter() {
             sum = sum.saturating_add(number).saturating_add(each);
-            if sum > most as u64 {
-                return Err(Damage::TooLarge { what, length: sum, limit: most as u64 });
-            }
+            Damage::limit(what, sum, most)?;
         }
         Ok(sum as usize)
     }
@@ -70,23 +68,23 @@ impl<'a> Cursor<'a> {
         Self { bytes }
     }
 
-    pub(crate) fn take(&mut self, length: usize) -> Result<&'a [u8], Damage> {
+    pub(crate) fn take(&mut self, length: usize) -> Result<&'a [u8]> {
         let (head, rest) = self.bytes.split_at_checked(length).ok_or(Damage::TooShort)?;
         self.bytes = rest;
         Ok(head)
     }
 
-    pub(crate) fn array<const N: usize>(&mut self) -> Result<[u8; N], Damage> {
+    pub(crate) fn array<const N: usize>(&mut self) -> Result<[u8; N]> {
         let (head, rest) = self.bytes.split_first_chunk().ok_or(Damage::TooShort)?;
         self.bytes = rest;
         Ok(*head)
     }
 
-    pub(crate) fn byte(&mut self) -> Result<u8, Damage> {
+    pub(crate) fn byte(&mut self) -> Result<u8> {
         self.array().map(|[byte]| byte)
     }
 
-    pub(crate) fn varint(&mut self) -> Result<u64, Damage> {
+    pub(crate) fn varint(&mut self) -> Result<u64> {
         varint(&mut self.bytes).map_err(|bad| match bad {
             BadVarint::Cut => Damage::TooShort,
             BadVarint::TooLarge => Damage::Invalid("a varint of more than 64 bits"),
@@ -94,31 +92,26 @@ impl<'a> Cursor<'a> {
     }
 
     /// Takes a varint that is at most `limit`; `what` names it in the error.
-    pub(crate) fn bounded(&mut self, limit: usize, what: &'static str) -> Result<usize, Damage> {
+    pub(crate) fn bounded(&mut self, limit: usize, what: &'static str) -> Result<usize> {
         let value = self.varint()?;
         usize::try_from(value).ok().filter(|&value| value <= limit).ok_or(Damage::Invalid(what))
     }
 
     /// Takes the spacing of a section's lattice of points; `what` names it in the error.
-    pub(crate) fn spacing(&mut self, what: &'static str) -> Result<i64, Damage> {
+    pub(crate) fn spacing(&mut self, what: &'static str) -> Result<i64> {
         let step = i64::try_from(self.varint()?).ok();
         step.filter(|step| (1..=MOST_SPACING).contains(step)).ok_or(Damage::Invalid(what))
     }
 
     /// Takes the planes that [`put_planes`] wrote for `count` values. The caller limits `count`.
-    pub(crate) fn planes(&mut self, count: usize) -> Result<Planes<'a>, Damage> {
+    pub(crate) fn planes(&mut self, count: usize) -> Result<Planes<'a>> {
         let planes = self.byte()?;
-        if planes > 8 {
-            return Err(Damage::Invalid("more than eight byte planes"));
-        }
+        Damage::invalid_if(planes > 8, "more than eight byte planes")?;
         Ok(Planes { bytes: self.take(count * usize::from(planes))?, count })
     }
 
     /// Takes several planes, one after another.
-    pub(crate) fn columns<const N: usize>(
-        &mut self,
-        count: usize,
-    ) -> Result<[Planes<'a>; N], Damage> {
+    pub(crate) fn columns<const N: usize>(&mut self, count: usize) -> Result<[Planes<'a>; N]> {
         let mut columns = [Planes { bytes: &[], count }; N];
         for column in &mut columns {
             *column = self.planes(count)?;
@@ -136,7 +129,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Fails if bytes remain.
-    pub(crate) fn finish(&self) -> Result<(), Damage> {
+    pub(crate) fn finish(&self) -> Result<()> {
         if self.is_empty() { Ok(()) } else { Err(Damage::Invalid("bytes left over at the end")) }
     }
 }
@@ -148,7 +141,7 @@ pub(crate) fn take_room(
     taken: usize,
     most: usize,
     what: &'static str,
-) -> Result<(), Damage> {
+) -> Result<()> {
     let limit = most as u64;
     let too_large = Damage::TooLarge { what, length: limit + 1, limit };
     *room = room.checked_sub(taken).ok_or(too_large)?;

@@ -4,14 +4,18 @@ use corniche_geom::TileId;
 use corniche_layers::LinePlacement;
 use corniche_tin::{Surface, Tin};
 
-use crate::layer_slot::LayerSlot;
-use crate::manifest::Manifest;
-use crate::payload::damage::{Damage, DecodeError};
-use crate::payload::decode::decode;
-use crate::payload::layers::{LayerCoding, LayerObject, decode_layer};
-use crate::payload::section_kind::{SectionKind, Sections};
-use crate::payload::spans::{SpanRun, decode_spans};
-use crate::payload::tile_payload::TilePayload;
+use crate::{
+    layer_slot::LayerSlot,
+    manifest::Manifest,
+    payload::{
+        damage::{Damage, DecodeError},
+        decode::decode,
+        layers::{LayerCoding, LayerObject, decode_layer},
+        section_kind::{SectionKind, Sections},
+        spans::{SpanRun, decode_spans},
+        tile_payload::TilePayload,
+    },
+};
 
 impl Manifest {
     /// Reads the wanted sections of a tile's payload, as [`decode`] does.

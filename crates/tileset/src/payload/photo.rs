@@ -10,9 +10,7 @@ mod image;
 
 use corniche_geom::TileId;
 
-use crate::payload::damage::DecodeError;
-use crate::payload::envelope;
-use crate::payload::section_kind::SectionKind;
+use crate::payload::{damage::DecodeError, envelope, section_kind::SectionKind};
 
 #[cfg(feature = "write")]
 pub use encode::{encode_photo, photo_section};

@@ -3,8 +3,10 @@
 use corniche_geom::LatticePoint;
 use corniche_varints::zigzag;
 
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::Cursor;
+use crate::payload::{
+    damage::{Damage, Result},
+    number_codes::Cursor,
+};
 
 /// Points are within this many lattice steps of the tile's corner, so that orientation tests stay
 /// exact.
@@ -23,7 +25,7 @@ pub(crate) fn decode_points(
     cursor: &mut Cursor<'_>,
     lines: impl ExactSizeIterator<Item = usize> + Clone,
     corner: LatticePoint,
-) -> Result<Vec<LatticePoint>, Damage> {
+) -> Result<Vec<LatticePoint>> {
     const STILL: Damage = Damage::Invalid("a segment of zero length");
     let count = lines.clone().sum();
     let [east, north] = cursor.columns(count)?;
@@ -58,11 +60,12 @@ pub(crate) fn put_points(
 ) -> Result<(), &'static str> {
     use corniche_varints::to_zigzag;
 
-    use crate::payload::number_codes::put_planes;
+    use crate::payload::{damage::refuse_if, number_codes::put_planes};
 
-    if !points.iter().all(|&point| is_near(point, corner)) {
-        return Err("a point far away from the tile");
-    }
+    refuse_if(
+        !points.iter().all(|&point| is_near(point, corner)),
+        "a point far away from the tile",
+    )?;
     let steps = |of: fn(&LatticePoint) -> i64| -> Vec<u64> {
         let before = std::iter::once(&corner).chain(points);
         points.iter().zip(before).map(|(point, before)| to_zigzag(of(point) - of(before))).collect()

@@ -4,7 +4,7 @@
 //! a byte that is held back). Each probability is the mean of two estimates that adapt at different
 //! speeds.
 
-use crate::payload::damage::Damage;
+use crate::payload::damage::{Damage, Result};
 
 /// The common interface of both directions of coding, so that the code which defines the order of
 /// bits is written once. A writer takes `bit` and returns it; a reader ignores it and returns the
@@ -188,12 +188,12 @@ impl<'a> BitReader<'a> {
     }
 
     /// Fails if more bytes were read than there are: beyond the end come any number of zeros.
-    pub(crate) fn check_end(&self) -> Result<(), Damage> {
+    pub(crate) fn check_end(&self) -> Result<()> {
         if self.is_past_end() { Err(Damage::TooShort) } else { Ok(()) }
     }
 
     /// Fails unless all bytes, and no more, were read.
-    pub(crate) fn finish(&self) -> Result<(), Damage> {
+    pub(crate) fn finish(&self) -> Result<()> {
         if self.is_exact() { Ok(()) } else { Err(Damage::Invalid("the length of the coded bits")) }
     }
 

@@ -24,11 +24,13 @@ mod wavelet;
 
 use corniche_geom::{Cell, HeightGrid};
 
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::Cursor;
 #[cfg(feature = "write")]
 use crate::payload::range_coder::BitWriter;
-use crate::payload::range_coder::{BitReader, Bits};
+use crate::payload::{
+    damage::{Damage, Result},
+    number_codes::Cursor,
+    range_coder::{BitReader, Bits},
+};
 use border::BORDER_NODES;
 use coefficients::{NumberModel, code_band, code_mask, code_smooth};
 use head::ReliefHead;
@@ -171,15 +173,13 @@ impl Relief {
 
     /// Decodes the bytes of [`Relief::coded`]. Memory and time do not depend on the content of the
     /// bytes.
-    pub(crate) fn decode(bytes: &[u8]) -> Result<Self, Damage> {
+    pub(crate) fn decode(bytes: &[u8]) -> Result<Self> {
         let mut cursor = Cursor::new(bytes);
         let head = ReliefHead::read(&mut cursor)?;
         let mut reader = BitReader::new(&bytes[bytes.len() - cursor.left()..]);
         let mut parts = Parts::new();
         let units = parts.code(&mut reader, &head)?;
-        if !reader.is_exact() {
-            return Err(Damage::Invalid("the length of the relief"));
-        }
+        Damage::invalid_if(!reader.is_exact(), "the length of the relief")?;
         Ok(Self::assemble(bytes.to_vec(), &head, &units, parts))
     }
 
@@ -223,7 +223,7 @@ impl Parts {
     }
 
     /// Codes all values, in either direction, and returns the heights in units.
-    fn code<B: Bits>(&mut self, bits: &mut B, head: &ReliefHead) -> Result<Vec<i64>, Damage> {
+    fn code<B: Bits>(&mut self, bits: &mut B, head: &ReliefHead) -> Result<Vec<i64>> {
         if head.has_voids {
             code_mask(bits, &mut self.mask);
         }

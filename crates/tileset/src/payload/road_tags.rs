@@ -5,10 +5,14 @@ use std::num::{NonZeroU8, NonZeroU32};
 
 use corniche_roads::RoadAttributes;
 
-use crate::limits::MAX_TEXT_BYTES;
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::{Cursor, Planes, take_room};
-use crate::payload::tile_payload::RoadRecord;
+use crate::{
+    limits::MAX_TEXT_BYTES,
+    payload::{
+        damage::{Damage, Result},
+        number_codes::{Cursor, Planes, take_room},
+        tile_payload::RoadRecord,
+    },
+};
 
 /// Number of columns of texts.
 const TEXT_COLUMNS: usize = 4;
@@ -27,7 +31,7 @@ fn texts_mut(attributes: &mut RoadAttributes) -> [&mut String; TEXT_COLUMNS] {
 }
 
 /// Adds the tags in the section's bytes to the ways of the tile.
-pub(crate) fn decode(bytes: &[u8], roads: &mut [RoadRecord]) -> Result<(), Damage> {
+pub(crate) fn decode(bytes: &[u8], roads: &mut [RoadRecord]) -> Result<()> {
     let cursor = &mut Cursor::new(bytes);
     let known = known_texts(cursor, roads.len())?;
     let text_columns: Vec<Planes<'_>> =
@@ -55,7 +59,7 @@ pub(crate) fn decode(bytes: &[u8], roads: &mut [RoadRecord]) -> Result<(), Damag
 }
 
 /// Reads the texts that the columns refer to: sorted, each once, none empty.
-fn known_texts<'a>(cursor: &mut Cursor<'a>, ways: usize) -> Result<Vec<&'a str>, Damage> {
+fn known_texts<'a>(cursor: &mut Cursor<'a>, ways: usize) -> Result<Vec<&'a str>> {
     let count = cursor.bounded(TEXT_COLUMNS * ways, "number of texts")?;
     // A text takes at least its length and one byte.
     if count > cursor.left() / 2 {
@@ -66,9 +70,10 @@ fn known_texts<'a>(cursor: &mut Cursor<'a>, ways: usize) -> Result<Vec<&'a str>,
         let length = cursor.bounded(cursor.left(), "length of a text")?;
         let text = str::from_utf8(cursor.take(length)?)
             .map_err(|_| Damage::Invalid("a text that is not UTF-8"))?;
-        if texts.last().copied().unwrap_or_default() >= text {
-            return Err(Damage::Invalid("texts are not sorted"));
-        }
+        Damage::invalid_if(
+            texts.last().copied().unwrap_or_default() >= text,
+            "texts are not sorted",
+        )?;
         texts.push(text);
     }
     Ok(texts)

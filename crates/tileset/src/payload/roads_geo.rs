@@ -8,19 +8,21 @@ use corniche_geom::{GridFrame, LatticePoint};
 use corniche_roads::FunctionalRoadClass;
 use corniche_tin::Surface;
 
-use crate::limits::{MAX_LINE_VERTICES, MAX_POINTS, MAX_ROUTE_STEPS};
-use crate::payload::class_table::{ClassBlob, Heads, LineHead, LineOrder};
-use crate::payload::coded_lines::{LineCoder, for_each_class};
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::{Cursor, take_room};
-use crate::payload::points::decode_points;
-use crate::payload::range_coder::BitReader;
-use crate::payload::roads_geo::surprises::{
-    CROSSING, END, SOURCE, SurpriseCoder, Surprises, VERTEX,
+use crate::{
+    limits::{MAX_LINE_VERTICES, MAX_POINTS, MAX_ROUTE_STEPS},
+    payload::{
+        class_table::{ClassBlob, Heads, LineHead, LineOrder},
+        coded_lines::{LineCoder, for_each_class},
+        damage::{Damage, Result},
+        number_codes::{Cursor, take_room},
+        points::decode_points,
+        range_coder::BitReader,
+        roads_geo::surprises::{CROSSING, END, SOURCE, SurpriseCoder, Surprises, VERTEX},
+        route_guess::RouteGuess,
+        tile_payload::GeoRoad,
+        work_limit::StepBudget,
+    },
 };
-use crate::payload::route_guess::RouteGuess;
-use crate::payload::tile_payload::GeoRoad;
-use crate::payload::work_limit::StepBudget;
 
 /// Decodes a section; if its lines are range-coded bits, `coded_in` is the package's frame.
 pub(crate) fn decode(
@@ -28,7 +30,7 @@ pub(crate) fn decode(
     coded_in: Option<&GridFrame>,
     corner: LatticePoint,
     surface: &Surface,
-) -> Result<Vec<GeoRoad>, Damage> {
+) -> Result<Vec<GeoRoad>> {
     let mut section = Section {
         surface,
         work: StepBudget::new(MAX_ROUTE_STEPS),
@@ -55,11 +57,7 @@ struct Section<'s> {
 
 impl Section<'_> {
     /// Adds the lines of a class.
-    fn add(
-        &mut self,
-        (class, lines, blob): ClassBlob<'_>,
-        corner: LatticePoint,
-    ) -> Result<(), Damage> {
+    fn add(&mut self, (class, lines, blob): ClassBlob<'_>, corner: LatticePoint) -> Result<()> {
         let mut blob = Cursor::new(blob);
         let heads = Heads::decode(&mut blob, lines, &mut self.points)?;
         let points = decode_points(&mut blob, heads.point_counts(), corner)?;
@@ -77,9 +75,9 @@ impl Section<'_> {
         &mut self,
         (class, lines, blob): ClassBlob<'_>,
         mut coder: LineCoder<'_>,
-    ) -> Result<(), Damage> {
+    ) -> Result<()> {
         let mut bits = BitReader::new(blob);
-        let mut surprises = SurpriseCoder::new();
+        let mut surprises = SurpriseCoder::default();
         let mut points = Vec::new();
         let mut order = LineOrder::default();
         for _ in 0..lines {
@@ -98,12 +96,13 @@ impl Section<'_> {
         head: LineHead,
         points: &[LatticePoint],
         surprises: &mut impl Surprises,
-    ) -> Result<(), Damage> {
+    ) -> Result<()> {
         // Flags of the number of points: 1 is lead-in, 2 is lead-out.
         let leads = [head.flags & 1 != 0, head.flags & 2 != 0];
-        if points.len() < leads.iter().filter(|&&lead| lead).count() {
-            return Err(Damage::Invalid("a line without points"));
-        }
+        Damage::invalid_if(
+            points.len() < leads.iter().filter(|&&lead| lead).count(),
+            "a line without points",
+        )?;
         let route = RouteGuess::new(self.surface, points, leads, &self.work);
         let vertices = decode_line(surprises, route, &mut self.vertices)?;
         let line = DrapedLine {
@@ -120,7 +119,7 @@ fn decode_line(
     surprises: &mut impl Surprises,
     mut route: RouteGuess<'_>,
     room: &mut usize,
-) -> Result<Vec<DrapedVertex>, Damage> {
+) -> Result<Vec<DrapedVertex>> {
     let mut left = surprises.count()?;
     let mut until = gap(surprises, left)?;
     let mut vertices = Vec::new();
@@ -139,23 +138,24 @@ fn decode_line(
         vertices.push(vertex);
         route.go(vertex)?;
     }
-    if left > 0 || route.next_source().is_some() || vertices.len() < 2 {
-        return Err(Damage::Invalid("a line that ends before all its points are used"));
-    }
+    Damage::invalid_if(
+        left > 0 || route.next_source().is_some() || vertices.len() < 2,
+        "a line that ends before all its points are used",
+    )?;
     // Lines are many and short, so spare capacity of their vectors would double the memory.
     vertices.shrink_to_fit();
     Ok(vertices)
 }
 
 /// The number of vertices that are as guessed before the next surprise, if any is left.
-fn gap(surprises: &mut impl Surprises, left: usize) -> Result<usize, Damage> {
+fn gap(surprises: &mut impl Surprises, left: usize) -> Result<usize> {
     if left > 0 { surprises.gap() } else { Ok(0) }
 }
 
 fn decode_surprise(
     surprises: &mut impl Surprises,
     route: &RouteGuess<'_>,
-) -> Result<Option<DrapedVertex>, Damage> {
+) -> Result<Option<DrapedVertex>> {
     let surface = route.surface();
     let last_vertex =
         surface.points().len().checked_sub(1).ok_or(Damage::Invalid("a road without ground"))?;
@@ -167,9 +167,10 @@ fn decode_surprise(
         SOURCE => {
             let triangle = index(last_triangle, "a triangle under a road")?;
             let point = route.next_source().ok_or(Damage::Invalid("too many source points"))?;
-            if !surface.triangle_holds(triangle, point) {
-                return Err(Damage::Invalid("a source point outside its triangle"));
-            }
+            Damage::invalid_if(
+                !surface.triangle_holds(triangle, point),
+                "a source point outside its triangle",
+            )?;
             Some(DrapedVertex::Source { point, triangle })
         }
         CROSSING => {
@@ -177,9 +178,7 @@ fn decode_surprise(
                 index(last_vertex, "an edge under a road")?,
                 index(last_vertex, "an edge under a road")?,
             );
-            if a >= b {
-                return Err(Damage::Invalid("an edge under a road"));
-            }
+            Damage::invalid_if(a >= b, "an edge under a road")?;
             Some(DrapedVertex::Crossing { a, b })
         }
         VERTEX => {
@@ -203,6 +202,7 @@ mod write {
     };
     use crate::payload::{
         class_table,
+        damage::refuse_if,
         points::put_points,
         range_coder::BitWriter,
         roads_geo::surprises::{Surprise, put_surprises},
@@ -219,9 +219,10 @@ mod write {
         corner: LatticePoint,
         surface: &Surface,
     ) -> Result<(Vec<u8>, [u64; FunctionalRoadClass::COUNT]), &'static str> {
-        if roads.iter().map(|road| road.line.vertices.len()).sum::<usize>() > MAX_LINE_VERTICES {
-            return Err(MANY_VERTICES);
-        }
+        refuse_if(
+            roads.iter().map(|road| road.line.vertices.len()).sum::<usize>() > MAX_LINE_VERTICES,
+            MANY_VERTICES,
+        )?;
         // The limit is that of a reader, because a reader takes the same steps.
         let work = StepBudget::new(MAX_ROUTE_STEPS);
         let mut all_points = 0;
@@ -233,9 +234,7 @@ mod write {
                 let lines = of_class.iter().map(|road| RoadColumns::new(road, surface, &work));
                 let lines = lines.collect::<Result<Vec<_>, _>>()?;
                 all_points += lines.iter().map(|line| line.points.len()).sum::<usize>();
-                if all_points > MAX_POINTS {
-                    return Err("more than four million points");
-                }
+                refuse_if(all_points > MAX_POINTS, "more than four million points")?;
                 match grid {
                     Some(grid) => put_coded(out, &lines, LineCoder::new(grid, corner)),
                     None => put(out, &lines, corner),
@@ -254,9 +253,10 @@ mod write {
     impl RoadColumns {
         fn new(road: &GeoRoad, surface: &Surface, work: &StepBudget) -> Result<Self, &'static str> {
             let points: Vec<LatticePoint> = points_of(&road.line).collect();
-            if points.windows(2).any(|pair| pair[0] == pair[1]) {
-                return Err("a segment of zero length");
-            }
+            refuse_if(
+                points.windows(2).any(|pair| pair[0] == pair[1]),
+                "a segment of zero length",
+            )?;
             let leads = [road.line.lead_in.is_some(), road.line.lead_out.is_some()];
             let head = LineHead {
                 way_id: road.way_id,
@@ -292,7 +292,7 @@ mod write {
         mut coder: LineCoder<'_>,
     ) -> Result<(), &'static str> {
         let mut bits = BitWriter::new(Vec::new());
-        let mut surprises = SurpriseCoder::new();
+        let mut surprises = SurpriseCoder::default();
         for line in lines {
             coder.write_line(&mut bits, line.head, &line.points, |_, _, _| ())?;
             surprises.write(&mut bits, line.head.flags, &line.surprises);
@@ -316,9 +316,7 @@ mod write {
     ) -> Result<Vec<Surprise>, &'static str> {
         let surface = route.surface();
         let (vertex_count, triangle_count) = (surface.points().len(), surface.triangles().len());
-        if line.vertices.len() < 2 {
-            return Err("a line of fewer than two vertices");
-        }
+        refuse_if(line.vertices.len() < 2, "a line of fewer than two vertices")?;
         let mut surprises = Vec::new();
         let mut as_guessed = 0;
         for vertex in line.vertices.iter().copied().map(Some).chain([None]) {
@@ -330,9 +328,7 @@ mod write {
                 Some(DrapedVertex::Vertex { vertex }) => (vertex as usize) < vertex_count,
                 None => true,
             };
-            if !fits {
-                return Err("a line that is not on the tile's TIN");
-            }
+            refuse_if(!fits, "a line that is not on the tile's TIN")?;
             if route.guess().map_err(too_much)? == vertex {
                 as_guessed += 1;
             } else {

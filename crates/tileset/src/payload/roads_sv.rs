@@ -8,15 +8,19 @@ use corniche_geom::{GridFrame, LatticePoint};
 use corniche_roads::FunctionalRoadClass;
 use corniche_varints::zigzag;
 
-use crate::limits::MAX_POINTS;
-use crate::payload::class_table::{ClassBlob, Heads, LineHead, LineOrder};
-use crate::payload::coded_lines::{LineCoder, for_each_class};
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::Cursor;
-use crate::payload::points::decode_points;
-use crate::payload::range_coder::BitReader;
-use crate::payload::roads_sv::ground_ranges::RangeCoder;
-use crate::payload::tile_payload::SvRoad;
+use crate::{
+    limits::MAX_POINTS,
+    payload::{
+        class_table::{ClassBlob, Heads, LineHead, LineOrder},
+        coded_lines::{LineCoder, for_each_class},
+        damage::{Damage, Result},
+        number_codes::Cursor,
+        points::decode_points,
+        range_coder::BitReader,
+        roads_sv::ground_ranges::RangeCoder,
+        tile_payload::SvRoad,
+    },
+};
 
 /// Heights stay below this many quanta, so that every whole number is exact as f64.
 const REACH_Q: f64 = (1_u64 << 53) as f64;
@@ -27,7 +31,7 @@ pub(crate) fn decode(
     coded_in: Option<&GridFrame>,
     corner: LatticePoint,
     quantum_m: f64,
-) -> Result<Vec<SvRoad>, Damage> {
+) -> Result<Vec<SvRoad>> {
     let mut section = Section { quantum_m, points: MAX_POINTS, roads: Vec::new() };
     for_each_class(bytes, coded_in, corner, |of_class, coder| match coder {
         Some(coder) => section.add_coded(of_class, coder),
@@ -46,11 +50,7 @@ struct Section {
 
 impl Section {
     /// Adds the lines of a class.
-    fn add(
-        &mut self,
-        (class, lines, blob): ClassBlob<'_>,
-        corner: LatticePoint,
-    ) -> Result<(), Damage> {
+    fn add(&mut self, (class, lines, blob): ClassBlob<'_>, corner: LatticePoint) -> Result<()> {
         let mut blob = Cursor::new(blob);
         let heads = Heads::decode(&mut blob, lines, &mut self.points)?;
         heads.heads.iter().try_for_each(check_head)?;
@@ -79,10 +79,10 @@ impl Section {
         &mut self,
         (class, lines, blob): ClassBlob<'_>,
         mut coder: LineCoder<'_>,
-    ) -> Result<(), Damage> {
+    ) -> Result<()> {
         let mut bits = BitReader::new(blob);
         let mut order = LineOrder::default();
-        let mut range_coder = RangeCoder::new();
+        let mut range_coder = RangeCoder::default();
         let (mut points, mut ranges_m) = (Vec::new(), Vec::new());
         let quantum_m = self.quantum_m;
         for _ in 0..lines {
@@ -116,17 +116,15 @@ impl Section {
 }
 
 /// Converts a ground range to metres.
-fn range_m(low_q: i64, span: u64, quantum_m: f64) -> Result<[f64; 2], Damage> {
+fn range_m(low_q: i64, span: u64, quantum_m: f64) -> Result<[f64; 2]> {
     let high_q = low_q.checked_add_unsigned(span).filter(|&high| (high as f64) < REACH_Q);
     let high_q = high_q.filter(|_| low_q as f64 > -REACH_Q);
     let high_q = high_q.ok_or(Damage::Invalid("a height range"))?;
     Ok([low_q as f64 * quantum_m, high_q as f64 * quantum_m])
 }
 
-fn check_head(head: &LineHead) -> Result<(), Damage> {
-    if head.points < 2 || head.flags != 0 {
-        return Err(Damage::Invalid("a line of fewer than two points"));
-    }
+fn check_head(head: &LineHead) -> Result<()> {
+    Damage::invalid_if(head.points < 2 || head.flags != 0, "a line of fewer than two points")?;
     Ok(())
 }
 
@@ -140,8 +138,8 @@ mod write {
 
     use super::{LatticePoint, LineCoder, LineHead, MAX_POINTS, REACH_Q, RangeCoder, SvRoad};
     use crate::payload::{
-        class_table, number_codes::put_planes, points::put_points, range_coder::BitWriter,
-        source_grid::SourceGrid,
+        class_table, damage::refuse_if, number_codes::put_planes, points::put_points,
+        range_coder::BitWriter, source_grid::SourceGrid,
     };
 
     /// Encodes the section: returns its bytes and the number of bytes of each class, or a
@@ -152,9 +150,10 @@ mod write {
         corner: LatticePoint,
         quantum_m: f64,
     ) -> Result<(Vec<u8>, [u64; FunctionalRoadClass::COUNT]), &'static str> {
-        if roads.iter().map(|road| road.line.points.len()).sum::<usize>() > MAX_POINTS {
-            return Err("more than four million points");
-        }
+        refuse_if(
+            roads.iter().map(|road| road.line.points.len()).sum::<usize>() > MAX_POINTS,
+            "more than four million points",
+        )?;
         class_table::encode(
             roads,
             grid,
@@ -197,7 +196,7 @@ mod write {
         quantum_m: f64,
     ) -> Result<(), &'static str> {
         let mut bits = BitWriter::new(Vec::new());
-        let mut range_coder = RangeCoder::new();
+        let mut range_coder = RangeCoder::default();
         for road in roads {
             let line = &road.line;
             let ranges = line.ground_range_m.iter().map(|&range_m| range_q(range_m, quantum_m));
@@ -209,21 +208,21 @@ mod write {
                     is_exact &= range_coder.code(bits, coder.last_length(), range) == range;
                 }
             })?;
-            if !is_exact {
-                return Err("a height too far from the height before it");
-            }
+            refuse_if(!is_exact, "a height too far from the height before it")?;
         }
         out.extend(bits.finish());
         Ok(())
     }
 
     fn head_of(SvRoad { way_id, part, line, .. }: &SvRoad) -> Result<LineHead, &'static str> {
-        if line.points.len() < 2 || line.points.windows(2).any(|pair| pair[0] == pair[1]) {
-            return Err("a line of zero length");
-        }
-        if line.ground_range_m.len() != line.points.len() - 1 {
-            return Err("a number of ground ranges that is not the number of segments");
-        }
+        refuse_if(
+            line.points.len() < 2 || line.points.windows(2).any(|pair| pair[0] == pair[1]),
+            "a line of zero length",
+        )?;
+        refuse_if(
+            line.ground_range_m.len() != line.points.len() - 1,
+            "a number of ground ranges that is not the number of segments",
+        )?;
         Ok(LineHead { way_id: *way_id, part: *part, points: line.points.len(), flags: 0 })
     }
 
@@ -231,9 +230,10 @@ mod write {
     /// minus the lowest. A quantum is a power of two, so dividing by it is exact.
     fn range_q([low_m, high_m]: [f64; 2], quantum_m: f64) -> Result<(i64, u64), &'static str> {
         let (low, high) = ((low_m / quantum_m).floor(), (high_m / quantum_m).ceil());
-        if !(low.abs() < REACH_Q && high.abs() < REACH_Q && low <= high) {
-            return Err("an invalid ground range");
-        }
+        refuse_if(
+            !(low.abs() < REACH_Q && high.abs() < REACH_Q && low <= high),
+            "an invalid ground range",
+        )?;
         Ok((low as i64, (high as i64 - low as i64) as u64))
     }
 }

@@ -17,8 +17,7 @@ use corniche_drape::DrapedVertex;
 use corniche_geom::{LatticeBounds, LatticePoint, cross};
 use corniche_tin::{NO_TWIN, Surface};
 
-use crate::payload::damage::Damage;
-use crate::payload::work_limit::StepBudget;
+use crate::payload::{damage::Result, work_limit::StepBudget};
 
 /// Follows one line, vertex by vertex: the caller first requests a guess, then passes the true
 /// vertex.
@@ -73,7 +72,7 @@ impl<'a> RouteGuess<'a> {
 
     /// Guesses the next vertex from the points; `None` if the line ends according to them. Fails if
     /// that takes more work than is allowed.
-    pub(crate) fn guess(&self) -> Result<Option<DrapedVertex>, Damage> {
+    pub(crate) fn guess(&self) -> Result<Option<DrapedVertex>> {
         let vertex = self.best_guess();
         self.work.check()?;
         Ok(vertex)
@@ -101,7 +100,7 @@ impl<'a> RouteGuess<'a> {
 
     /// Moves on to `vertex`, whatever the guess was. Indices must be within the TIN. Fails if that
     /// takes more work than is allowed.
-    pub(crate) fn go(&mut self, vertex: DrapedVertex) -> Result<(), Damage> {
+    pub(crate) fn go(&mut self, vertex: DrapedVertex) -> Result<()> {
         self.place = match vertex {
             DrapedVertex::Source { triangle, .. } => {
                 self.next += 1;

@@ -5,10 +5,12 @@ use std::{borrow::Cow, ops::BitOr};
 use corniche_geom::TileId;
 use serde::{Deserialize, Serialize};
 
-use crate::layer_slot::LayerSlot;
 #[cfg(feature = "write")]
 use crate::payload::damage::EncodeError;
-use crate::payload::damage::{Damage, DecodeError};
+use crate::{
+    layer_slot::LayerSlot,
+    payload::damage::{Damage, DecodeError},
+};
 
 /// Declares the kinds, so that the list of all kinds is complete.
 macro_rules! kinds {
@@ -107,9 +109,9 @@ impl SectionKind {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TwoKinds {
     /// The kind with numbers in planes.
-    pub(crate) planes: SectionKind,
+    pub planes: SectionKind,
     /// The kind with range-coded bits.
-    pub(crate) coded: SectionKind,
+    pub coded: SectionKind,
 }
 
 /// The kinds of GEO roads: centre-lines on the TIN.

@@ -4,13 +4,17 @@ use corniche_geom::TileId;
 use corniche_layers::MAX_LAYERS;
 use corniche_roads::FunctionalRoadClass;
 
-use crate::layer_slot::LayerSlot;
-use crate::payload::damage::{Damage, DecodeError};
-use crate::payload::envelope::SectionSize;
-use crate::payload::number_codes::Cursor;
-use crate::payload::section_kind::{GEO, SV, SectionKind, TwoKinds};
-use crate::payload::source_grid::GRID_BYTES;
-use crate::payload::{class_table, envelope};
+use crate::{
+    layer_slot::LayerSlot,
+    payload::{
+        class_table,
+        damage::{DecodeError, Result},
+        envelope::{self, SectionSize},
+        number_codes::Cursor,
+        section_kind::{GEO, SV, SectionKind, TwoKinds},
+        source_grid::GRID_BYTES,
+    },
+};
 
 /// Sizes of the sections of a payload, and of the classes in its road sections.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -78,7 +82,7 @@ impl PayloadSizes {
 /// When the bytes are not a payload of that tile, or a road section is damaged.
 pub fn payload_sizes(bytes: &[u8], id: TileId) -> Result<PayloadSizes, DecodeError> {
     let sections = envelope::open(bytes, id).map_err(|damage| damage.in_header(id))?;
-    let class_bytes = |roads: TwoKinds| -> Result<[u64; FunctionalRoadClass::COUNT], Damage> {
+    let class_bytes = |roads: TwoKinds| -> Result<[u64; FunctionalRoadClass::COUNT]> {
         let mut sizes = [0; FunctionalRoadClass::COUNT];
         if let Some((raw, is_coded)) = envelope::section_of_two(&sections, roads)? {
             let mut cursor = Cursor::new(&raw);

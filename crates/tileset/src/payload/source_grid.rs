@@ -2,8 +2,10 @@
 
 use corniche_geom::{GridFrame, LatticePoint};
 
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::Cursor;
+use crate::payload::{
+    damage::{Damage, Result},
+    number_codes::Cursor,
+};
 
 /// OSM stores longitudes and latitudes in whole steps; this is the number of steps per degree.
 #[cfg(feature = "write")]
@@ -26,7 +28,7 @@ pub(crate) const GRID_BYTES: usize = 16;
 
 impl<'f> SourceGrid<'f> {
     /// Reads the steps of the grid at the beginning of a section.
-    pub(crate) fn read(cursor: &mut Cursor<'_>, frame: &'f GridFrame) -> Result<Self, Damage> {
+    pub(crate) fn read(cursor: &mut Cursor<'_>, frame: &'f GridFrame) -> Result<Self> {
         let step_m = [f64::from_le_bytes(cursor.array()?), f64::from_le_bytes(cursor.array()?)];
         // No comparison is true for NaN.
         if step_m.iter().all(|&step_m| step_m > 0.0 && step_m.is_finite()) {

@@ -11,14 +11,18 @@ use corniche_geom::{GridFrame, LatticePoint, TileId};
 use corniche_roads::Structure;
 use corniche_varints::zigzag;
 
-use crate::limits::{MAX_LINES, MAX_SPAN_POINTS};
-use crate::payload::context::CodingContext;
-use crate::payload::damage::{Damage, DecodeError};
-use crate::payload::envelope;
-use crate::payload::number_codes::{Cursor, take_room};
-use crate::payload::points::decode_points;
-use crate::payload::section_kind::SectionKind;
-use crate::payload::terrain;
+use crate::{
+    limits::{MAX_LINES, MAX_SPAN_POINTS},
+    payload::{
+        context::CodingContext,
+        damage::{Damage, DecodeError, Result},
+        envelope,
+        number_codes::{Cursor, take_room},
+        points::decode_points,
+        section_kind::SectionKind,
+        terrain,
+    },
+};
 
 #[cfg(feature = "write")]
 pub use encode::encode_spans;
@@ -61,11 +65,7 @@ pub fn decode_spans(
 }
 
 /// Decodes the section's bytes, in a tile with this number of triangles.
-pub(crate) fn decode(
-    bytes: &[u8],
-    corner: LatticePoint,
-    triangles: usize,
-) -> Result<Vec<SpanRun>, Damage> {
+pub(crate) fn decode(bytes: &[u8], corner: LatticePoint, triangles: usize) -> Result<Vec<SpanRun>> {
     let cursor = &mut Cursor::new(bytes);
     let count = cursor.bounded(MAX_LINES, "number of runs")?;
     let [codes, ways, lengths] = cursor.columns(count)?;
@@ -95,16 +95,17 @@ pub(crate) fn decode(
             structure: if code & TUNNEL == 0 { Structure::Bridge } else { Structure::Tunnel },
             points: heights.lift(of_run, code)?,
         };
-        if runs.last().is_some_and(|last| last.key() > run.key()) {
-            return Err(Damage::Invalid("runs are not sorted"));
-        }
+        Damage::invalid_if(
+            runs.last().is_some_and(|last| last.key() > run.key()),
+            "runs are not sorted",
+        )?;
         runs.push(run);
     }
     Ok(runs)
 }
 
 /// Returns the owner in a run's first number.
-fn owner(code: u64) -> Result<RunOwner, Damage> {
+fn owner(code: u64) -> Result<RunOwner> {
     RunOwner::from_number(code >> OWNER_BIT).ok_or(Damage::Invalid("the owner of a run"))
 }
 
@@ -120,7 +121,7 @@ struct Heights<S, N> {
 
 impl<S: Iterator<Item = u64>, N: Iterator<Item = u64>> Heights<S, N> {
     /// Adds heights to the points of a run.
-    fn lift(&mut self, points: &[LatticePoint], code: u64) -> Result<Vec<SpanPoint>, Damage> {
+    fn lift(&mut self, points: &[LatticePoint], code: u64) -> Result<Vec<SpanPoint>> {
         let is_last = iter::repeat_n(false, points.len().saturating_sub(1)).chain([true]);
         let is_first = iter::once(true).chain(iter::repeat(false));
         let lifted = points.iter().zip(is_first.zip(is_last)).map(|(&at, (is_first, is_last))| {
@@ -132,14 +133,14 @@ impl<S: Iterator<Item = u64>, N: Iterator<Item = u64>> Heights<S, N> {
         lifted.collect()
     }
 
-    fn height(&mut self) -> Result<SpanHeight, Damage> {
+    fn height(&mut self) -> Result<SpanHeight> {
         let by = zigzag(self.steps.next().unwrap_or_default());
         let height = self.last.checked_add(by).filter(|&steps| is_height(steps));
         self.last = height.ok_or(Damage::Invalid("a height"))?;
         Ok(SpanHeight::Steps(self.last))
     }
 
-    fn triangle(&mut self) -> Result<SpanHeight, Damage> {
+    fn triangle(&mut self) -> Result<SpanHeight> {
         let named = u32::try_from(self.named.next().unwrap_or_default()).ok();
         let triangle = named.filter(|&named| (named as usize) < self.triangles);
         let triangle = triangle.ok_or(Damage::Invalid("a triangle under a run"))?;

@@ -2,11 +2,10 @@
 
 use corniche_geom::{GridFrame, TileId};
 
-use crate::payload::context::CodingContext;
-use crate::payload::damage::DecodeError;
-use crate::payload::section_kind::SectionKind;
-use crate::payload::terrain;
-use crate::payload::tile_payload::TerrainSummary;
+use crate::payload::{
+    context::CodingContext, damage::DecodeError, section_kind::SectionKind, terrain,
+    tile_payload::TerrainSummary,
+};
 
 /// Reads the summary of the ground of a tile; `None` without ground. The triangles are not decoded:
 /// this function is for tiles that are inspected to find the tiles to draw.

@@ -11,8 +11,10 @@
 //!          └──────────── along
 //! ```
 
-use crate::payload::magnitudes::Magnitudes;
-use crate::payload::range_coder::{Bits, Model};
+use crate::payload::{
+    magnitudes::Magnitudes,
+    range_coder::{Bits, Model},
+};
 
 /// The number of possible counts of binary digits of a step: 0 to 32, and larger steps count as 32.
 const LENGTHS: usize = 33;
@@ -27,6 +29,7 @@ pub(crate) fn length(number: i64) -> usize {
 }
 
 /// The state of a coder of steps.
+#[derive(Default)]
 pub(crate) struct StepCoder {
     along: Magnitudes<LENGTHS, SLOPES>,
     across: Magnitudes<{ ALONG_LENGTHS * SLOPES }, LENGTHS>,
@@ -35,15 +38,6 @@ pub(crate) struct StepCoder {
 }
 
 impl StepCoder {
-    pub(crate) fn new() -> Self {
-        Self {
-            along: Magnitudes::new(),
-            across: Magnitudes::new(),
-            goes_back: [[Model::NEW; 4]; SLOPES],
-            is_across_south: [[[Model::NEW; 7]; 2]; SLOPES],
-        }
-    }
-
     /// Codes a step that follows the step `before`, if there was one.
     pub(crate) fn code<B: Bits>(
         &mut self,

@@ -129,16 +129,10 @@ def _build(given: argparse.Namespace, plan_options: list[str]) -> int:
                 plan,
                 given.store,
                 given.output,
-                overwrite=given.overwrite,
-                defects=given.defects,
-                corniche=given.corniche,
-                slots=given.slots,
-                least_work=given.least_work,
-                threads=given.threads,
                 memory_bytes=given.memory,
-                tmp=given.tmp,
                 estimate=estimate,
                 progress=progress,
+                **{name: getattr(given, name) for name in ("overwrite", "defects", "corniche", "slots", "least_work", "threads", "tmp")},
             )
     if given.report:
         Path(given.report).write_text(json.dumps(summary.to_json(), indent=1) + "\n", encoding="utf-8")

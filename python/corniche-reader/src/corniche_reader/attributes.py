@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from .codes import Cursor
-from .errors import PayloadError
 
 FORMS = ("ordinary", "dual_carriageway", "link", "roundabout")
 STRUCTURES = ("ground", "bridge", "tunnel")
@@ -72,7 +72,7 @@ def read_attributes(data: bytes, what: str, tags: bytes | None, tags_what: str) 
                 )
             )
     except (ValueError, IndexError) as cause:
-        raise PayloadError(f"{what}: {cause}") from cause
+        raise cursor.error(str(cause)) from cause
     return found
 
 
@@ -81,20 +81,20 @@ def _read_tags(data: bytes, ways: int, what: str) -> list[dict[str, Any]]:
     cursor = Cursor(data, what)
     count = cursor.varint()
     if count > len(data):
-        raise PayloadError(f"{what}: more texts than the section has bytes")
+        raise cursor.error("more texts than the section has bytes")
     contents = [cursor.take(cursor.varint()) for _ in range(count)]
-    if not all(contents) or any(one >= other for one, other in zip(contents, contents[1:], strict=False)):
-        raise PayloadError(f"{what}: texts are empty or not sorted")
+    if not all(contents) or any(one >= other for one, other in pairwise(contents)):
+        raise cursor.error("texts are empty or not sorted")
     columns = [cursor.planes(ways) for _ in range(6)]
     cursor.end()
     try:
         texts = [None, *(content.decode() for content in contents)]
         named = [[texts[index] for index in column] for column in columns[:4]]
     except (ValueError, IndexError) as cause:
-        raise PayloadError(f"{what}: {cause}") from cause
+        raise cursor.error(str(cause)) from cause
     lanes, widths = columns[4:]
     if max(lanes, default=0) > 255 or max(widths, default=0) >= 1 << 32:
-        raise PayloadError(f"{what}: lanes or a width beyond their limits")
+        raise cursor.error("lanes or a width beyond their limits")
     numbers = [one or None for one in lanes], [one / 1000 if one else None for one in widths]
     return [dict(zip(TAGS, of_way, strict=True)) for of_way in zip(*named, *numbers, strict=True)]
 
@@ -106,5 +106,5 @@ def _words(cursor: Cursor, width: int) -> list[int]:
 def _length(cursor: Cursor) -> int:
     length = cursor.word(8)
     if length > len(cursor.data):
-        raise PayloadError(f"{cursor.what}: a list is longer than the section")
+        raise cursor.error("a list is longer than the section")
     return length

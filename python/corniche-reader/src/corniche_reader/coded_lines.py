@@ -67,13 +67,13 @@ class _Class:
             flags = self.bits.bit(self.flags[0]) | self.bits.bit(self.flags[1]) << 1
             left -= size
             if left < 0:
-                raise PayloadError(f"{self.bits.what}: too many points")
+                raise self.bits.error("too many points")
             if last is not None and (way, part) <= last:
-                raise PayloadError(f"{self.bits.what}: lines are not sorted")
+                raise self.bits.error("lines are not sorted")
             last = way, part
             points = list(self._points(size))
             if any(a == b for a, b in pairwise(points)):
-                raise PayloadError(f"{self.bits.what}: a segment of length 0")
+                raise self.bits.error("a segment of length 0")
             yield Line(way, part, flags, points), self._surprises(flags)
 
     def _points(self, size: int) -> Iterator[Point]:
@@ -85,13 +85,13 @@ class _Class:
             if was:
                 back = self.back.unsigned()
                 if back >= len(self.new):
-                    raise PayloadError(f"{self.bits.what}: a reference to a point that does not exist")
+                    raise self.bits.error("a reference to a point that does not exist")
                 self.at, point = self.new[-1 - back]
             else:
                 step = tuple(kind.read() for kind in self.starts) if i == 0 else self.steps.read(before)
                 self.at = last[0] + step[0], last[1] + step[1]
                 if max(map(abs, self.at)) > 1 << 33:
-                    raise PayloadError(f"{self.bits.what}: a point is too far away")
+                    raise self.bits.error("a point is too far away")
                 u, v = self.grid.snap(self.at[0] * self.step_m[0], self.at[1] * self.step_m[1])
                 if self.bits.bit(self.off):
                     u, v = u + self.beside[0].read(), v + self.beside[1].read()
@@ -104,7 +104,7 @@ class _Class:
         count = self.counts.unsigned(flags)
         self.surprises += count
         if self.surprises > MOST:
-            raise PayloadError(f"{self.bits.what}: too many surprises")
+            raise self.bits.error("too many surprises")
         found = []
         for _ in range(count):
             gap = self.gaps.unsigned()

@@ -43,6 +43,10 @@ class _Whole:
     def __init__(self, data: bytes, what: str, at: int) -> None:
         self.data, self.what, self.at = data, what, at
 
+    def error(self, text: str) -> PayloadError:
+        """The error that something is wrong with the bytes."""
+        return PayloadError(f"{self.what}: {text}")
+
     def end(self) -> None:
         """Rejects bytes that were not read."""
         if self.at != len(self.data):
@@ -81,13 +85,13 @@ class Cursor(_Whole):
                 if value >> 64:
                     break
                 return value
-        raise PayloadError(f"{self.what}: a number has more than 64 bits")
+        raise self.error("a number has more than 64 bits")
 
     def planes(self, count: int) -> list[int]:
         """Numbers stored as planes of bytes, the lowest byte first."""
         width = self.byte()
         if width > 8:
-            raise PayloadError(f"{self.what}: planes of {width} bytes")
+            raise self.error(f"planes of {width} bytes")
         values = np.zeros(count, np.uint64)
         for plane in range(width):
             values |= np.frombuffer(self.take(count), np.uint8).astype(np.uint64) << np.uint64(8 * plane)
@@ -112,7 +116,7 @@ class Bits(_Whole):
             bit = 1
         while self.range < 1 << 24:
             if self.at >= len(self.data):
-                raise PayloadError(f"{self.what}: its bits end too early")
+                raise self.error("its bits end too early")
             self.range <<= 8
             self.code = self.code << 8 | self.data[self.at]
             self.at += 1

@@ -6,13 +6,14 @@ import math
 import struct
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .codes import Bits, Cursor, unzigzag
-from .errors import ContainerError, PayloadError
+from .errors import ContainerError
 from .grid import Grid, TileName
 from .height import Ground
 from .laying import cut, lay
@@ -102,7 +103,7 @@ def read_layer(data: bytes, table: LayerTable, ground: Ground | None, grid: Grid
     cursor = Cursor(data, what)
     spacing, count = cursor.varint(), cursor.varint()
     if not 1 <= spacing <= MOST_SPACING or count > MOST_OBJECTS or count * len(table.attributes) > MOST_VALUES:
-        raise PayloadError(f"{what}: too many objects, or an invalid lattice")
+        raise cursor.error("too many objects, or an invalid lattice")
     kinds, ids = cursor.planes(count), cursor.planes(count)
     texts = _texts(cursor)
     columns = [_COLUMNS[kind](cursor, count, texts) for kind in table.attributes.values()]
@@ -114,7 +115,7 @@ def read_layer(data: bytes, table: LayerTable, ground: Ground | None, grid: Grid
     for kind, step, shape, *values in zip(kinds, ids, shapes, *columns, strict=True):
         number = (number + unzigzag(step) + (1 << 63)) % (1 << 64) - (1 << 63)
         if kind >> 2 >= len(table.classes) or kind & 3 > 2:
-            raise PayloadError(f"{what}: a class or a type of object that does not exist")
+            raise cursor.error("a class or a type of object that does not exist")
         attributes = {key: value for key, value in zip(table.attributes, values, strict=True) if value is not None}
         points = None if is_area else _working(shape, grid)
         polygons = [[_working(ring, grid) for ring in polygon] for polygon in shape] if is_area else None
@@ -153,27 +154,27 @@ def _working(points: list[Point], grid: Grid) -> Array:
 def _texts(cursor: Cursor) -> list[str]:
     count = cursor.varint()
     if count > MOST_TEXTS:
-        raise PayloadError(f"{cursor.what}: too many texts")
+        raise cursor.error("too many texts")
     try:
         return [cursor.take(length).decode() for length in cursor.planes(count)]
     except ValueError as cause:
-        raise PayloadError(f"{cursor.what}: {cause}") from cause
+        raise cursor.error(str(cause)) from cause
 
 
-def _text(texts: list[str], number: int, what: str) -> str:
+def _text(texts: list[str], number: int, cursor: Cursor) -> str:
     if number >= len(texts):
-        raise PayloadError(f"{what}: text {number} does not exist")
+        raise cursor.error(f"text {number} does not exist")
     return texts[number]
 
 
 def _text_column(cursor: Cursor, count: int, texts: list[str]) -> list[Value | None]:
-    return [_text(texts, head - 1, cursor.what) if head else None for head in cursor.planes(count)]
+    return [_text(texts, head - 1, cursor) if head else None for head in cursor.planes(count)]
 
 
 def _yes_no_column(cursor: Cursor, count: int, _: list[str]) -> list[Value | None]:
     heads = cursor.planes(count)
     if max(heads, default=0) > 2:
-        raise PayloadError(f"{cursor.what}: neither yes nor no")
+        raise cursor.error("neither yes nor no")
     return [(None, False, True)[head] for head in heads]
 
 
@@ -187,7 +188,7 @@ def _number_column(cursor: Cursor, count: int, _: list[str]) -> list[Value | Non
             code = next(codes)
             number = float(unzigzag(code)) if head == 1 else struct.unpack("<d", code.to_bytes(8, "little"))[0]
             if head > 2 or not math.isfinite(number):
-                raise PayloadError(f"{cursor.what}: an invalid number")
+                raise cursor.error("an invalid number")
         found.append(number)
     return found
 
@@ -196,15 +197,15 @@ def _names_column(cursor: Cursor, count: int, texts: list[str]) -> list[Value | 
     heads = cursor.planes(count)
     total = sum(heads)
     if total > MOST_NAMES or max(heads, default=0) > MOST_NAMES_OF_OBJECT:
-        raise PayloadError(f"{cursor.what}: too many names")
+        raise cursor.error("too many names")
     pairs: Iterator[tuple[int, int]] = iter(zip(cursor.planes(total), cursor.planes(total), strict=True))
     found: list[Value | None] = []
     for head in heads:
         numbers = [next(pairs) for _ in range(head)]
-        names = [(_text(texts, language, cursor.what), _text(texts, name, cursor.what)) for language, name in numbers]
+        names = [(_text(texts, language, cursor), _text(texts, name, cursor)) for language, name in numbers]
         languages = [language.encode() for language, _ in names]
-        if any(one >= other for one, other in zip(languages, languages[1:], strict=False)):
-            raise PayloadError(f"{cursor.what}: languages are not sorted")
+        if any(one >= other for one, other in pairwise(languages)):
+            raise cursor.error("languages are not sorted")
         found.append(dict(names) if names else None)
     return found
 
@@ -220,10 +221,10 @@ def _lines(cursor: Cursor, count: int, spacing: int, corners: tuple[Point, Point
     cursor.end()
     lines = [[(u * spacing, v * spacing) for u, v in line] for line in coarse]
     for line in lines:
-        if any(max(abs(u), abs(v)) > FARTHEST for u, v in line) or any(one == other for one, other in zip(line, line[1:], strict=False)):
-            raise PayloadError(f"{cursor.what}: a point too far away, or a line with two equal points in succession")
+        if any(max(abs(u), abs(v)) > FARTHEST for u, v in line) or any(one == other for one, other in pairwise(line)):
+            raise cursor.error("a point too far away, or a line with two equal points in succession")
     if geometry == "point" and any(not (low_u <= u <= high_u and low_v <= v <= high_v) for ((u, v),) in lines):
-        raise PayloadError(f"{cursor.what}: a point outside the tile")
+        raise cursor.error("a point outside the tile")
     return lines
 
 
@@ -245,4 +246,4 @@ def _areas(cursor: Cursor, count: int, spacing: int, corners: tuple[Point, Point
 
 def _limit(cursor: Cursor, counts: list[int], most: int) -> None:
     if sum(counts) > most:
-        raise PayloadError(f"{cursor.what}: too many polygons, rings or points")
+        raise cursor.error("too many polygons, rings or points")

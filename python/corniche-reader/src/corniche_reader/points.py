@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from .codes import Cursor, unzigzag
-from .errors import PayloadError
 from .mesh import Point
 
 #: The largest number of points of all lines of a section (section 11 of the format).
@@ -14,7 +13,7 @@ def lattice_points(cursor: Cursor, sizes: list[int], corner: Point) -> list[list
     """The points of lines with the given numbers of points; the very first point is relative to the tile's corner."""
     total = sum(sizes)
     if total > MOST_POINTS:
-        raise PayloadError(f"{cursor.what}: too many points")
+        raise cursor.error("too many points")
     du, dv = cursor.planes(total), cursor.planes(total)
     (u, v), at, lines = corner, 0, []
     for size in sizes:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from .codes import Bits, Numbers, models
-from .errors import PayloadError
 from .mesh import Point
 from .steps import Steps
 
@@ -37,7 +36,7 @@ class Rings:
             known = self._neighbour_of(known) or self._known(known, i == 0)
             point = self._new(before, i == 0) if known is None else self.points[known[0]]
             if not all(low <= part <= high for low, part, high in zip(self.low, point, self.high, strict=True)):
-                raise PayloadError(f"{self.bits.what}: a point outside the tile")
+                raise self.bits.error("a point outside the tile")
             to = self._coarse(point)
             before = (to[0] - self.at[0], to[1] - self.at[1]) if i else (0, 0)
             self.at = to
@@ -68,7 +67,7 @@ class Rings:
             return None
         number = len(self.points) - 1 - self.back.unsigned()
         if number < 0:
-            raise PayloadError(f"{self.bits.what}: a reference to a point that does not exist")
+            raise self.bits.error("a reference to a point that does not exist")
         return number, 0
 
     def _new(self, before: Point, is_first: bool) -> Point:

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from .coded_lines import Line, Surprise, coded_lines
 from .codes import Cursor, unzigzag
-from .errors import PayloadError
 from .grid import Grid, TileName
 from .height import Ground, Vertex
 from .mesh import Point, orient
@@ -42,9 +41,9 @@ def read_roads(data: bytes, is_coded: bool, ground: Ground, grid: Grid, tile: Ti
     whole = Cursor(data, what)
     step_m = struct.unpack("<2d", whole.take(16)) if is_coded else (0.0, 0.0)
     if is_coded and not all(0 < step < math.inf for step in step_m):
-        raise PayloadError(f"{what}: the lattice steps of the grid are beyond their limits")
+        raise whole.error("the lattice steps of the grid are beyond their limits")
     counts = [(whole.word(4), whole.word(4)) for _ in range(9)]
-    follower = _Follower(ground, what)
+    follower = _Follower(ground, whole)
     roads = []
     for number, (lines, size) in enumerate(counts):
         content = whole.take(size)
@@ -69,7 +68,7 @@ def read_roads(data: bytes, is_coded: bool, ground: Ground, grid: Grid, tile: Ti
 
 def _lines(cursor: Cursor, count: int, corner: Point) -> list[Line]:
     if count > len(cursor.data):
-        raise PayloadError(f"{cursor.what}: more lines than the section has bytes")
+        raise cursor.error("more lines than the section has bytes")
     way, lines = 0, []
     for _ in range(count):
         way += unzigzag(cursor.varint())
@@ -93,7 +92,7 @@ def _surprises(cursor: Cursor) -> list[Surprise]:
     for _ in range(cursor.varint()):
         gap, kind = cursor.varint(), cursor.byte()
         if kind > TIN_VERTEX:
-            raise PayloadError(f"{cursor.what}: a surprise of the unknown kind {kind}")
+            raise cursor.error(f"a surprise of the unknown kind {kind}")
         found.append((gap, (kind, *(cursor.varint() for _ in range((0, 1, 2, 1)[kind])))))
     return found
 
@@ -101,8 +100,8 @@ def _surprises(cursor: Cursor) -> list[Surprise]:
 class _Follower:
     """Follows lines over the TIN, and computes the positions of their vertices in f64 as the format specifies."""
 
-    def __init__(self, ground: Ground, what: str) -> None:
-        self.ground, self.mesh, self.what = ground, ground.mesh, what
+    def __init__(self, ground: Ground, cursor: Cursor) -> None:
+        self.ground, self.mesh, self.error = ground, ground.mesh, cursor.error
 
     def follow(self, line: Line, surprises: list[Surprise]) -> list[tuple[int, Vertex]]:
         """The kind and the position [u, v, z] of each vertex."""
@@ -122,24 +121,24 @@ class _Follower:
             if vertex[0] == 0:
                 break
             if any(n >= self._count(vertex[0]) for n in vertex[1:]) or len(found) > 1 << 22:
-                raise PayloadError(f"{self.what}: way {line.way_id} refers to a vertex, edge or triangle that the TIN does not have")
+                raise self.error(f"way {line.way_id} refers to a vertex, edge or triangle that the TIN does not have")
             if vertex[0] == SOURCE:
                 if used >= last:
-                    raise PayloadError(f"{self.what}: way {line.way_id} has more vertices than points")
+                    raise self.error(f"way {line.way_id} has more vertices than points")
                 found.append((SOURCE, self.ground.source(points[used], vertex[1])))
                 used += 1
             elif vertex[0] == CROSSING:
                 if not 0 < used < len(points):
-                    raise PayloadError(f"{self.what}: way {line.way_id} crosses an edge outside its segments")
+                    raise self.error(f"way {line.way_id} crosses an edge outside its segments")
                 a, b, p, q = *vertex[1:], points[used - 1], points[used]
                 if orient(p, q, self.mesh.points[a]) == orient(p, q, self.mesh.points[b]):
-                    raise PayloadError(f"{self.what}: way {line.way_id} does not cross the edge that it names")
+                    raise self.error(f"way {line.way_id} does not cross the edge that it names")
                 found.append((CROSSING, self.ground.crossing(a, b, p, q)))
             else:
                 found.append((TIN_VERTEX, self.ground.vertex(vertex[1])))
             here = vertex
         if used != last or gap >= 0:
-            raise PayloadError(f"{self.what}: way {line.way_id} ends before its last point or surprise")
+            raise self.error(f"way {line.way_id} ends before its last point or surprise")
         return found
 
     def _count(self, kind: int) -> int:
@@ -150,11 +149,11 @@ class _Follower:
             return END
         if here is None:
             if used:
-                raise PayloadError(f"{self.what}: a line with a lead-in does not begin with a surprise")
+                raise self.error("a line with a lead-in does not begin with a surprise")
             triangle = self.mesh.locate(points[0])
             return END if triangle is None else (SOURCE, triangle)
         if used == 0:
-            raise PayloadError(f"{self.what}: a line has a vertex before its first point")
+            raise self.error("a line has a vertex before its first point")
         guess = self._from(points[used - 1], points[used], here)
         return END if guess[0] == SOURCE and used >= last else guess
 

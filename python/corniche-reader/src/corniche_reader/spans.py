@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .codes import Cursor, unzigzag
-from .errors import PayloadError
 from .grid import Grid, TileName
 from .height import Ground
 from .layers import LayerTable
@@ -46,7 +45,7 @@ def read_spans(data: bytes, ground: Ground, grid: Grid, tile: TileName, layers: 
     cursor = Cursor(data, what)
     count = cursor.varint()
     if count > MOST_RUNS:
-        raise PayloadError(f"{what}: too many runs")
+        raise cursor.error("too many runs")
     codes, ways, sizes = (cursor.planes(count) for _ in range(3))
     corner = grid.lattice_of_node(tile, 0, 0)
     lines = lattice_points(cursor, [size + 2 for size in sizes], corner)
@@ -62,21 +61,21 @@ def read_spans(data: bytes, ground: Ground, grid: Grid, tile: TileName, layers: 
         way = (way + unzigzag(way_step) + (1 << 63)) % (1 << 64) - (1 << 63)
         owner = owners.get(code >> 3)
         if owner is None or before > (code >> 3, way):
-            raise PayloadError(f"{what}: a class or a layer with spans does not exist, or runs are not sorted")
+            raise cursor.error("a class or a layer with spans does not exist, or runs are not sorted")
         before = (code >> 3, way)
         vertices = np.empty((len(points), 3))
         for i, point in enumerate(points):
             if i and point == points[i - 1] or max(abs(point[0] - corner[0]), abs(point[1] - corner[1])) > FARTHEST_STEPS:
-                raise PayloadError(f"{what}: a run repeats a point, or has one that is too far away")
+                raise cursor.error("a run repeats a point, or has one that is too far away")
             if i == 0 and first or i == len(points) - 1 and last:
                 triangle = next(named)
                 if triangle >= len(ground.mesh.triangles):
-                    raise PayloadError(f"{what}: triangle {triangle} does not exist")
+                    raise cursor.error(f"triangle {triangle} does not exist")
                 vertices[i, 2] = ground.height_in(triangle, point)
             else:
                 height += unzigzag(next(steps))
                 if not -MOST_HEIGHT <= height < MOST_HEIGHT:
-                    raise PayloadError(f"{what}: a height is beyond 32 bits")
+                    raise cursor.error("a height is beyond 32 bits")
                 vertices[i, 2] = float(height) * grid.quantum_m
             vertices[i, :2] = grid.working(*point)
         spans.append(Span(way, *owner, "tunnel" if code & 4 else "bridge", vertices, (first, last)))

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .codes import Bits, Cursor, Numbers, half_octave, round_half_away
-from .errors import PayloadError
 from .grid import Grid, TileName
 from .walk import Walk, positions, walk
 
@@ -59,7 +58,7 @@ def read_terrain(data: bytes, grid: Grid, tile: TileName) -> Terrain:
     uncovered, count = cursor.varint(), cursor.varint()
     height_shift, normal_shift = cursor.byte(), cursor.byte()
     if not all(map(math.isfinite, (error_m, low_m, high_m))) or height_shift > 31 or normal_shift > 7 or count > 2 * 256**2:
-        raise PayloadError(f"{what}: numbers before the bits are beyond their limits")
+        raise cursor.error("numbers before the bits are beyond their limits")
     bits = Bits(data[cursor.at :], what)
     vertices = positions(bits)
     found = walk(bits, vertices, count)
@@ -96,7 +95,7 @@ def _heights(bits: Bits, points: Sequence[Sequence[int]], found: Walk) -> list[i
         before = heights[v] = guess + number
         magnitudes[v] = abs(number)
         if not -(1 << 31) <= before < 1 << 31:
-            raise PayloadError(f"{bits.what}: a height is beyond 32 bits")
+            raise bits.error("a height is beyond 32 bits")
     return heights
 
 

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .codes import Bits, Numbers, half_octave, models
-from .errors import PayloadError
 
 SIDE = 257
 CLASSES = [1, 2, 3, 4, 5, 6, 7, 8, 10, 13, 17, 23, 31]
@@ -174,7 +173,7 @@ class _Walker:
     def _name(self) -> int:
         number = self.named.read()
         if number < 0:
-            raise PayloadError(f"{self.bits.what}: a vertex number is negative")
+            raise self.bits.error("a vertex number is negative")
         return number
 
     def _reach(self, vertex: int, gate: tuple[int, int, int] | None) -> None:
@@ -184,9 +183,9 @@ class _Walker:
 
     def _add(self, a: int, b: int, c: int, d: int | None) -> None:
         if max(a, b, c) >= self.total:
-            raise PayloadError(f"{self.bits.what}: a triangle has a vertex that does not exist")
+            raise self.bits.error("a triangle has a vertex that does not exist")
         if len({a, b, c}) < 3 or self._cross(a, b, c) <= 0 or self.edges & {(a, b), (b, c), (c, a)}:
-            raise PayloadError(f"{self.bits.what}: a triangle is degenerate, clockwise or overlaps another")
+            raise self.bits.error("a triangle is degenerate, clockwise or overlaps another")
         self.edges |= {(a, b), (b, c), (c, a)}
         self.out.triangles.append((a, b, c))
         for vertex in (a, b, c):
@@ -215,7 +214,7 @@ class _Walker:
             return self._name()
         found = self.guesses.find(a, b, symbol)
         if len(found) < symbol:
-            raise PayloadError(f"{self.bits.what}: guess {symbol} at a gate does not exist")
+            raise self.bits.error(f"guess {symbol} at a gate does not exist")
         return found[symbol - 1][1]
 
     def _symbol(self, a: int, b: int, c: int, d: int, tied: int) -> int:

@@ -11,9 +11,13 @@ use corniche_layers::{AttributeKind, AttributeValue, MAX_NAMES};
 use corniche_varints::zigzag;
 
 use super::text_table::TextReader;
-use crate::limits::MAX_LAYER_NAMES;
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::Cursor;
+use crate::{
+    limits::MAX_LAYER_NAMES,
+    payload::{
+        damage::{Damage, Result},
+        number_codes::Cursor,
+    },
+};
 
 /// Whole numbers of doubles up to this size are exact.
 #[cfg(feature = "write")]
@@ -32,11 +36,7 @@ type Numbers<'a> = Box<dyn Iterator<Item = u64> + 'a>;
 
 impl<'a> ColumnReader<'a> {
     /// Reads the columns of an attribute of `count` objects.
-    pub(crate) fn read(
-        cursor: &mut Cursor<'a>,
-        kind: AttributeKind,
-        count: usize,
-    ) -> Result<Self, Damage> {
+    pub(crate) fn read(cursor: &mut Cursor<'a>, kind: AttributeKind, count: usize) -> Result<Self> {
         let heads = cursor.planes(count)?;
         let mut parts: [Numbers<'a>; 2] =
             [Box::new(std::iter::empty()), Box::new(std::iter::empty())];
@@ -55,10 +55,7 @@ impl<'a> ColumnReader<'a> {
     }
 
     /// Returns the value of the next object.
-    pub(crate) fn next(
-        &mut self,
-        texts: &mut TextReader<'_>,
-    ) -> Result<Option<AttributeValue>, Damage> {
+    pub(crate) fn next(&mut self, texts: &mut TextReader<'_>) -> Result<Option<AttributeValue>> {
         let head = self.heads.next().unwrap_or_default();
         let [first, second] = &mut self.parts;
         let Some(less) = head.checked_sub(1) else { return Ok(None) };

@@ -4,15 +4,21 @@ use corniche_geom::{LatticeBounds, LatticePoint};
 use corniche_layers::{LayerGeometry, OsmObject};
 use corniche_varints::zigzag;
 
-use super::attribute_columns::ColumnReader;
-use super::layer_object::{AreaPolygon, LayerCoding, LayerObject, LayerShape};
-use super::plane_points::PointReader;
-use super::ring_coder::RingCoder;
-use super::text_table::TextReader;
-use crate::limits::{MAX_LAYER_OBJECTS, MAX_LAYER_VALUES, MAX_POINTS, MAX_RINGS};
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::{Cursor, Planes};
-use crate::payload::range_coder::BitReader;
+use super::{
+    attribute_columns::ColumnReader,
+    layer_object::{AreaPolygon, LayerCoding, LayerObject, LayerShape},
+    plane_points::PointReader,
+    ring_coder::RingCoder,
+    text_table::TextReader,
+};
+use crate::{
+    limits::{MAX_LAYER_OBJECTS, MAX_LAYER_VALUES, MAX_POINTS, MAX_RINGS},
+    payload::{
+        damage::{Damage, Result},
+        number_codes::{Cursor, Planes},
+        range_coder::BitReader,
+    },
+};
 
 const OUTSIDE: Damage = Damage::Invalid("a point outside the tile");
 
@@ -21,15 +27,12 @@ pub(crate) fn decode(
     bytes: &[u8],
     coding: &LayerCoding,
     bounds: LatticeBounds,
-) -> Result<Vec<LayerObject>, Damage> {
+) -> Result<Vec<LayerObject>> {
     let cursor = &mut Cursor::new(bytes);
     let step = cursor.spacing("the spacing of a layer's lattice")?;
     let count = cursor.bounded(MAX_LAYER_OBJECTS, "number of objects")?;
     let values = count * coding.attributes.len();
-    if values > MAX_LAYER_VALUES {
-        let (length, limit) = (values as u64, MAX_LAYER_VALUES as u64);
-        return Err(Damage::TooLarge { what: "number of attribute values", length, limit });
-    }
+    Damage::limit("number of attribute values", values as u64, MAX_LAYER_VALUES)?;
     let [kinds, ids]: [Planes<'_>; 2] = cursor.columns(count)?;
     let mut texts = TextReader::read(cursor)?;
     let mut columns = Vec::with_capacity(coding.attributes.len());
@@ -87,7 +90,7 @@ impl<'a> ShapeReader<'a> {
         count: usize,
         step: i64,
         bounds: LatticeBounds,
-    ) -> Result<Self, Damage> {
+    ) -> Result<Self> {
         const POINTS: &str = "number of points";
         Ok(match geometry {
             LayerGeometry::Line => {
@@ -118,15 +121,16 @@ impl<'a> ShapeReader<'a> {
         })
     }
 
-    fn next(&mut self) -> Result<LayerShape, Damage> {
+    fn next(&mut self) -> Result<LayerShape> {
         match self {
             Self::Lines { lengths, points } => {
                 let length = lengths.next().unwrap_or_default() + 2;
                 let line = (0..length).map(|_| points.next());
-                let line = line.collect::<Result<Vec<LatticePoint>, Damage>>()?;
-                if line.array_windows().any(|[one, next]| one == next) {
-                    return Err(Damage::Invalid("a line with two equal points in succession"));
-                }
+                let line = line.collect::<Result<Vec<LatticePoint>>>()?;
+                Damage::invalid_if(
+                    line.array_windows().any(|[one, next]| one == next),
+                    "a line with two equal points in succession",
+                )?;
                 Ok(LayerShape::Line(line))
             }
             Self::Areas(areas) => {
@@ -141,13 +145,13 @@ impl<'a> ShapeReader<'a> {
         }
     }
 
-    fn finish(self) -> Result<(), Damage> {
+    fn finish(self) -> Result<()> {
         if let Self::Areas(areas) = self { areas.bits.finish() } else { Ok(()) }
     }
 }
 
 impl AreaReader<'_> {
-    fn polygon(&mut self) -> Result<AreaPolygon, Damage> {
+    fn polygon(&mut self) -> Result<AreaPolygon> {
         let mut rings = Vec::new();
         for _ in 0..=self.rings.next().unwrap_or_default() {
             let mut ring = Vec::new();

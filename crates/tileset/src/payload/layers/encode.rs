@@ -4,21 +4,27 @@ use corniche_geom::{GridFrame, LatticeBounds, TileId};
 use corniche_layers::{LayerGeometry, OsmObject};
 use corniche_varints::{push_varint, to_zigzag};
 
-use super::attribute_columns::{put_column, texts_of};
-use super::decode::decode;
-use super::layer_object::{LayerCoding, LayerObject, LayerShape};
-use super::plane_points::{is_on_lattice, put_points};
-use super::ring_coder::RingCoder;
-use super::text_table::TextWriter;
-use crate::layer_slot::LayerSlot;
-use crate::limits::{
-    MAX_LAYER_NAMES, MAX_LAYER_OBJECTS, MAX_LAYER_VALUES, MAX_POINTS, MAX_RINGS, MAX_TEXT_BYTES,
+use super::{
+    attribute_columns::{put_column, texts_of},
+    decode::decode,
+    layer_object::{LayerCoding, LayerObject, LayerShape},
+    plane_points::{is_on_lattice, put_points},
+    ring_coder::RingCoder,
+    text_table::TextWriter,
 };
-use crate::payload::builder::Section;
-use crate::payload::damage::{DecodeError, EncodeError};
-use crate::payload::number_codes::{MOST_SPACING, put_planes};
-use crate::payload::range_coder::BitWriter;
-use crate::payload::section_kind::SectionKind;
+use crate::{
+    layer_slot::LayerSlot,
+    limits::{
+        MAX_LAYER_NAMES, MAX_LAYER_OBJECTS, MAX_LAYER_VALUES, MAX_POINTS, MAX_RINGS, MAX_TEXT_BYTES,
+    },
+    payload::{
+        builder::Section,
+        damage::{DecodeError, EncodeError, refuse_if},
+        number_codes::{MOST_SPACING, put_planes},
+        range_coder::BitWriter,
+        section_kind::SectionKind,
+    },
+};
 
 impl Section {
     /// Returns the section of a layer with these bytes, which came from [`Section::into_bytes`].
@@ -76,28 +82,24 @@ fn encode(
     bounds: LatticeBounds,
 ) -> Result<Vec<u8>, &'static str> {
     const TOO_MANY: &str = "more objects, points or texts than readers accept";
-    if !(1..=MOST_SPACING).contains(&step) {
-        return Err("a lattice with a spacing of 0");
-    }
+    refuse_if(!(1..=MOST_SPACING).contains(&step), "a lattice with a spacing of 0")?;
     objects.iter().try_for_each(|object| check(object, coding, step, bounds))?;
     let values = || objects.iter().flat_map(|object| &object.values).flatten();
     let texts = || values().flat_map(texts_of);
     let rings = || objects.iter().flat_map(|object| object.shape.rings());
     let points = || objects.iter().flat_map(|object| object.shape.points());
     // Languages are texts, too, so that this is at least the number of names.
-    if objects.len() > MAX_LAYER_OBJECTS
-        || objects.len() * coding.attributes.len() > MAX_LAYER_VALUES
-        || texts().count() > MAX_LAYER_NAMES
-        || texts().map(str::len).sum::<usize>() > MAX_TEXT_BYTES
-        || rings().count() > MAX_RINGS
-        || points().count() > MAX_POINTS
-    {
-        return Err(TOO_MANY);
-    }
+    refuse_if(
+        objects.len() > MAX_LAYER_OBJECTS
+            || objects.len() * coding.attributes.len() > MAX_LAYER_VALUES
+            || texts().count() > MAX_LAYER_NAMES
+            || texts().map(str::len).sum::<usize>() > MAX_TEXT_BYTES
+            || rings().count() > MAX_RINGS
+            || points().count() > MAX_POINTS,
+        TOO_MANY,
+    )?;
     let texts = TextWriter::new(texts().collect());
-    if !texts.is_small() {
-        return Err(TOO_MANY);
-    }
+    refuse_if(!texts.is_small(), TOO_MANY)?;
     let mut out = Vec::new();
     push_varint(&mut out, step.cast_unsigned());
     push_varint(&mut out, objects.len() as u64);
@@ -132,9 +134,10 @@ fn check(
             .iter()
             .zip(&coding.attributes)
             .all(|(value, &kind)| value.as_ref().is_none_or(|value| value.is_of(kind)));
-    if usize::from(*class) >= coding.classes || !are_of_kind {
-        return Err("an object that does not fit the layer's table");
-    }
+    refuse_if(
+        usize::from(*class) >= coding.classes || !are_of_kind,
+        "an object that does not fit the layer's table",
+    )?;
     let is_on_lattice = || shape.points().all(|point| is_on_lattice(point, step));
     let is_inside = || shape.points().all(|&point| bounds.contains(point));
     match (coding.geometry, shape) {
@@ -208,9 +211,10 @@ fn put_areas(
                 counts[2].push(ring.len() as u64 - 3);
                 for &point in ring {
                     // A step of 2^32 or more has no code; writers choose coarser lattices.
-                    if coder.code_point(&mut bits, Some(point)) != Ok(point) {
-                        return Err("a point too far from the previous one");
-                    }
+                    refuse_if(
+                        coder.code_point(&mut bits, Some(point)) != Ok(point),
+                        "a point too far from the previous one",
+                    )?;
                 }
                 coder.end_ring();
             }

@@ -3,8 +3,10 @@
 use corniche_geom::{LatticeBounds, LatticePoint};
 use corniche_varints::zigzag;
 
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::{Cursor, Planes};
+use crate::payload::{
+    damage::{Damage, Result},
+    number_codes::{Cursor, Planes},
+};
 
 /// Points are at most this far from the lattice's origin, so that computations with them are exact.
 pub(crate) const FARTHEST: i64 = 1 << 56;
@@ -22,7 +24,7 @@ impl<'a> PointReader<'a> {
         count: usize,
         step: i64,
         bounds: LatticeBounds,
-    ) -> Result<Self, Damage> {
+    ) -> Result<Self> {
         let columns: [Planes<'a>; 2] = cursor.columns(count)?;
         let mut corner = corner(bounds, step).into_iter();
         let axes = columns.map(|column| Coordinates {
@@ -33,7 +35,7 @@ impl<'a> PointReader<'a> {
         Ok(Self { axes })
     }
 
-    pub(crate) fn next(&mut self) -> Result<LatticePoint, Damage> {
+    pub(crate) fn next(&mut self) -> Result<LatticePoint> {
         let [east, north] = &mut self.axes;
         Ok(LatticePoint::new(east.next()?, north.next()?))
     }
@@ -52,7 +54,7 @@ struct Coordinates<'a> {
 }
 
 impl Coordinates<'_> {
-    fn next(&mut self) -> Result<i64, Damage> {
+    fn next(&mut self) -> Result<i64> {
         let by = zigzag(self.steps.next().unwrap_or_default());
         let last = self.last.checked_add(by);
         let place = last.and_then(|last| last.checked_mul(self.step));

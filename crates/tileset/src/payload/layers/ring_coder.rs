@@ -9,15 +9,16 @@
 //!      ●───●───●          ring 2: i + 2 by its number, then "neighbour back", then "next"
 //! ```
 
-use std::collections::HashMap;
-use std::ops::Range;
+use std::{collections::HashMap, ops::Range};
 
 use corniche_geom::{LatticeBounds, LatticePoint};
 
-use crate::payload::damage::Damage;
-use crate::payload::magnitudes::Magnitudes;
-use crate::payload::range_coder::{Bits, Model};
-use crate::payload::turned_steps::StepCoder;
+use crate::payload::{
+    damage::{Damage, Result},
+    magnitudes::Magnitudes,
+    point_models::PointModels,
+    range_coder::{Bits, Model},
+};
 
 /// How a point was found relative to the point before it in its ring.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,12 +47,7 @@ pub(crate) struct RingCoder {
     goes_on: Model,
     is_next: Model,
     is_previous: Model,
-    is_known: [[Model; 2]; 3],
-    numbers_back: Magnitudes<1, 1>,
-    starts: [Magnitudes<1, 1>; 2],
-    steps: StepCoder,
-    is_beside: Model,
-    beside: [Magnitudes<1, 1>; 2],
+    models: PointModels,
     points: Vec<LatticePoint>,
     /// The number of each point's ring.
     ring_of: Vec<u32>,
@@ -75,12 +71,7 @@ impl RingCoder {
             goes_on: Model::NEW,
             is_next: Model::NEW,
             is_previous: Model::NEW,
-            is_known: [[Model::NEW; 2]; 3],
-            numbers_back: Magnitudes::new(),
-            starts: [Magnitudes::new(), Magnitudes::new()],
-            steps: StepCoder::new(),
-            is_beside: Model::NEW,
-            beside: [Magnitudes::new(), Magnitudes::new()],
+            models: PointModels::default(),
             points: Vec::new(),
             ring_of: Vec::new(),
             rings: Vec::new(),
@@ -104,7 +95,7 @@ impl RingCoder {
         &mut self,
         bits: &mut B,
         asked: Option<LatticePoint>,
-    ) -> Result<LatticePoint, Damage> {
+    ) -> Result<LatticePoint> {
         let is_first = self.rings.last().map_or(0, |ring| ring.end) == self.points.len();
         let point = match self.code_beside(bits, asked) {
             Some(point) => point,
@@ -170,20 +161,16 @@ impl RingCoder {
         bits: &mut B,
         is_first: bool,
         asked: Option<LatticePoint>,
-    ) -> Result<LatticePoint, Damage> {
-        const UNKNOWN: Damage = Damage::Invalid("a reference to a point that does not exist");
+    ) -> Result<LatticePoint> {
         let asked_known = asked.and_then(|point| self.first_at.get(&point).copied());
         let context = match self.followed {
             Followed::None => 0,
             Followed::From(_) => 1,
             Followed::Along(..) => 2,
         };
-        let model = &mut self.is_known[context][usize::from(is_first)];
-        if bits.bit(model, u32::from(asked_known.is_some())) == 1 {
-            let newest = self.points.len() as u64;
-            let back = asked_known.map_or(0, |at| newest - 1 - at as u64);
-            let back = self.numbers_back.code_magnitude(bits, [0; 2], back);
-            let number = newest.checked_sub(back + 1).ok_or(UNKNOWN)? as usize;
+        let context = (context, is_first);
+        let known = self.models.code_known(bits, context, asked_known, self.points.len())?;
+        if let Some(number) = known {
             self.followed = Followed::From(number);
             return Ok(self.points[number]);
         }
@@ -196,18 +183,13 @@ impl RingCoder {
         bits: &mut B,
         is_first: bool,
         asked: Option<LatticePoint>,
-    ) -> Result<LatticePoint, Damage> {
+    ) -> Result<LatticePoint> {
         let parts = asked.map_or([0; 2], |point| [point.u, point.v]);
         let step = [0, 1].map(|axis| parts[axis].div_euclid(self.step) - self.at[axis]);
-        let step = if is_first {
-            let [east, north] = &mut self.starts;
-            [east.code(bits, [0; 2], step[0]), north.code(bits, [0; 2], step[1])]
-        } else {
-            self.steps.code(bits, self.before, step)
-        };
+        let step = self.models.code_step(bits, is_first, self.before, step);
         let left = parts.map(|part| part.rem_euclid(self.step));
-        let left = if bits.bit(&mut self.is_beside, u32::from(left != [0; 2])) == 1 {
-            let [east, north] = &mut self.beside;
+        let left = if bits.bit(&mut self.models.is_beside, u32::from(left != [0; 2])) == 1 {
+            let [east, north] = &mut self.models.beside;
             let mut code = |beside: &mut Magnitudes<1, 1>, left: i64| {
                 beside.code_magnitude(bits, [0; 2], left.unsigned_abs()) as i64
             };

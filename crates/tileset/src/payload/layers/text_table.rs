@@ -1,8 +1,12 @@
 //! The different texts of a section, to which its attributes refer by number.
 
-use crate::limits::{MAX_LAYER_TEXTS, MAX_TEXT_BYTES};
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::{Cursor, take_room};
+use crate::{
+    limits::{MAX_LAYER_TEXTS, MAX_TEXT_BYTES},
+    payload::{
+        damage::{Damage, Result},
+        number_codes::{Cursor, take_room},
+    },
+};
 
 /// The texts of a section while it is read.
 pub(crate) struct TextReader<'a> {
@@ -13,7 +17,7 @@ pub(crate) struct TextReader<'a> {
 
 impl<'a> TextReader<'a> {
     /// Reads the table: how many texts, the bytes of each, then the texts.
-    pub(crate) fn read(cursor: &mut Cursor<'a>) -> Result<Self, Damage> {
+    pub(crate) fn read(cursor: &mut Cursor<'a>) -> Result<Self> {
         let count = cursor.bounded(MAX_LAYER_TEXTS, "number of texts")?;
         let lengths = cursor.planes(count)?;
         let total = lengths.total(0, cursor.left(), "bytes of all texts")?;
@@ -27,7 +31,7 @@ impl<'a> TextReader<'a> {
     }
 
     /// Returns a copy of the text with this number.
-    pub(crate) fn copy(&mut self, number: u64) -> Result<String, Damage> {
+    pub(crate) fn copy(&mut self, number: u64) -> Result<String> {
         let text = usize::try_from(number).ok().and_then(|number| self.texts.get(number));
         let text = text.ok_or(Damage::Invalid("the number of a text"))?;
         take_room(&mut self.room, text.len(), MAX_TEXT_BYTES, "bytes of all texts")?;

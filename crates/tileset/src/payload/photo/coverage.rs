@@ -3,8 +3,10 @@
 #[cfg(feature = "write")]
 use corniche_varints::push_varint;
 
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::Cursor;
+use crate::payload::{
+    damage::{Damage, Result},
+    number_codes::Cursor,
+};
 
 /// Writes the lengths of the runs of texels with and without a photo, in turn; the first run is
 /// with a photo and may be empty.
@@ -27,14 +29,12 @@ pub(crate) fn decode(
     cursor: &mut Cursor<'_>,
     count: usize,
     mut run: impl FnMut(bool, std::ops::Range<usize>),
-) -> Result<(), Damage> {
+) -> Result<()> {
     let (mut has_photo, mut at) = (true, 0);
     while at < count {
         let length = cursor.bounded(count - at, "a run of texels beyond the last")?;
         // Only the first run may be empty, so that there are at most as many runs as texels.
-        if length == 0 && !(has_photo && at == 0) {
-            return Err(Damage::Invalid("an empty run of texels"));
-        }
+        Damage::invalid_if(length == 0 && !(has_photo && at == 0), "an empty run of texels")?;
         run(has_photo, at..at + length);
         at += length;
         has_photo = !has_photo;

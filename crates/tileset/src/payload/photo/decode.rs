@@ -9,9 +9,13 @@ use super::{
     coverage,
     image::{Photo, side},
 };
-use crate::limits::MAX_PHOTO_LEVELS;
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::Cursor;
+use crate::{
+    limits::MAX_PHOTO_LEVELS,
+    payload::{
+        damage::{Damage, Result},
+        number_codes::Cursor,
+    },
+};
 
 /// The code for colours as JPEG.
 pub(crate) const JPEG: u8 = 1;
@@ -20,19 +24,11 @@ pub(crate) const JPEG: u8 = 1;
 const END_OF_IMAGE: [u8; 2] = [0xff, 0xd9];
 
 /// Decodes the photo from a section's bytes.
-pub(crate) fn decode(bytes: &[u8]) -> Result<Photo, Damage> {
+pub(crate) fn decode(bytes: &[u8]) -> Result<Photo> {
     let mut cursor = Cursor::new(bytes);
-    if cursor.byte()? != JPEG {
-        return Err(Damage::Invalid("an unknown coding of colours"));
-    }
+    Damage::invalid_if(cursor.byte()? != JPEG, "an unknown coding of colours")?;
     let levels = cursor.byte()?;
-    if levels > MAX_PHOTO_LEVELS {
-        return Err(Damage::TooLarge {
-            what: "levels of a photo",
-            length: u64::from(levels),
-            limit: u64::from(MAX_PHOTO_LEVELS),
-        });
-    }
+    Damage::limit("levels of a photo", levels.into(), MAX_PHOTO_LEVELS.into())?;
     let count = side(levels) * side(levels);
     let mut without = Vec::new();
     coverage::decode(&mut cursor, count, |has_photo, run| {
@@ -48,7 +44,7 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Photo, Damage> {
 }
 
 /// Decodes a JPEG of three colours and of known size.
-fn colours(jpeg: &[u8], side: usize) -> Result<Vec<u8>, Damage> {
+fn colours(jpeg: &[u8], side: usize) -> Result<Vec<u8>> {
     const NOT_FITTING: Damage = Damage::Invalid("an image of another size or kind");
     // A JPEG may have a scan for each colour, and the decoder does not notice a truncated scan.
     if !jpeg.ends_with(&END_OF_IMAGE) {

@@ -8,11 +8,15 @@ use super::{
     decode::{self, JPEG},
     image::Photo,
 };
-use crate::limits::MAX_PHOTO_LEVELS;
-use crate::payload::builder::Section;
-use crate::payload::damage::{DecodeError, EncodeError};
-use crate::payload::envelope;
-use crate::payload::section_kind::SectionKind;
+use crate::{
+    limits::MAX_PHOTO_LEVELS,
+    payload::{
+        builder::Section,
+        damage::{DecodeError, EncodeError},
+        envelope,
+        section_kind::SectionKind,
+    },
+};
 
 /// The side of JPEG's blocks in texels.
 const BLOCK: usize = 8;

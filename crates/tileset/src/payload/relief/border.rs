@@ -3,10 +3,11 @@
 #[cfg(feature = "write")]
 use corniche_geom::{Cell, HeightGrid};
 
-use super::coefficients::NumberModel;
-use super::wavelet::SIDE;
-use crate::payload::damage::Damage;
-use crate::payload::range_coder::Bits;
+use super::{coefficients::NumberModel, wavelet::SIDE};
+use crate::payload::{
+    damage::{Damage, Result},
+    range_coder::Bits,
+};
 
 /// Number of nodes on the border of a tile.
 pub(crate) const BORDER_NODES: usize = 4 * (SIDE - 1);
@@ -61,7 +62,7 @@ pub(crate) fn code<B: Bits>(
     units: &[i64],
     mask: &[bool],
     factors: [i64; 2],
-) -> Result<(), Damage> {
+) -> Result<()> {
     let mut numbers = [const { NumberModel::new() }; 2];
     let mut around = [[0; 2]; 2];
     for ([column, row], slopes) in nodes().zip(border) {
@@ -79,9 +80,7 @@ pub(crate) fn code<B: Bits>(
             let difference = numbers[axis].code(bits, 3 * before + 2 * earlier, given);
             around[axis] = [difference.abs().min(MOST_STEPS), before];
             let steps = expected + difference;
-            if steps.abs() >= MOST_STEPS {
-                return Err(Damage::Invalid("a slope of the relief"));
-            }
+            Damage::invalid_if(steps.abs() >= MOST_STEPS, "a slope of the relief")?;
             found[axis] = steps as i32;
         }
         *slopes = Some(found);

@@ -3,6 +3,7 @@
 use corniche_geom::HeightGrid;
 
 use super::wavelet::SIDE;
+use crate::payload::damage::refuse_if;
 
 /// Heights have fewer units than this.
 const MOST_UNITS: f64 = (1_u64 << 38) as f64;
@@ -20,16 +21,12 @@ pub(crate) fn whole_units(
             let height_m = with_halo.height(column, row);
             // The unit is a power of two, so the division is exact.
             let height = height_m.map_or(0.0, |height_m| (f64::from(height_m) / unit_m).round());
-            if height.abs() >= MOST_UNITS {
-                return Err("heights of 2^38 units or more");
-            }
+            refuse_if(height.abs() >= MOST_UNITS, "heights of 2^38 units or more")?;
             mask.push(height_m.is_some());
             units.push(height as i64);
         }
     }
-    if !mask.contains(&true) {
-        return Err("a tile without any height");
-    }
+    refuse_if(!mask.contains(&true), "a tile without any height")?;
     if mask.contains(&false) {
         fill(&mut units, &mask);
     }

@@ -4,8 +4,10 @@ use corniche_varints::zigzag;
 #[cfg(feature = "write")]
 use corniche_varints::{push_varint, to_zigzag};
 
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::Cursor;
+use crate::payload::{
+    damage::{Damage, Result},
+    number_codes::Cursor,
+};
 
 /// Number of quantisation steps: one for the smooth band, then three for each division, the
 /// coarsest first.
@@ -23,18 +25,18 @@ pub(crate) const MOST_UNITS: u64 = 1 << 40;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct ReliefHead {
     /// Whether a mask follows: some nodes have no height.
-    pub(crate) has_voids: bool,
+    pub has_voids: bool,
     /// Whether a second mask follows: some nodes are water.
-    pub(crate) has_water: bool,
+    pub has_water: bool,
     /// A unit is 2 to this power, in metres.
-    pub(crate) exponent: i32,
+    pub exponent: i32,
     /// Slope factors east and north: 256ths of slope per unit of the difference between the nodes
     /// on both sides; in 65 536ths.
-    pub(crate) slope_factors: [i64; 2],
+    pub slope_factors: [i64; 2],
     /// Quantisation steps in units.
-    pub(crate) steps: [i64; BANDS],
+    pub steps: [i64; BANDS],
     /// Largest error of a height in units.
-    pub(crate) greatest_error: u64,
+    pub greatest_error: u64,
 }
 
 /// The length of a unit in metres.
@@ -54,11 +56,9 @@ impl ReliefHead {
         out
     }
 
-    pub(crate) fn read(cursor: &mut Cursor<'_>) -> Result<Self, Damage> {
+    pub(crate) fn read(cursor: &mut Cursor<'_>) -> Result<Self> {
         let flags = cursor.byte()?;
-        if flags > 3 {
-            return Err(Damage::Invalid("the flags of the relief"));
-        }
+        Damage::invalid_if(flags > 3, "the flags of the relief")?;
         let [has_voids, has_water] = [flags & 1 == 1, flags & 2 == 2];
         let exponent = i32::try_from(zigzag(cursor.varint()?)).ok();
         let exponent = exponent

@@ -1,8 +1,10 @@
 //! Converts coefficients to whole steps and back.
 
-use super::head::{BANDS, MOST_UNITS};
-use super::wavelet::{self, Band, LEVELS, SIDE, SMOOTH, rough_bands};
-use crate::payload::damage::Damage;
+use super::{
+    head::{BANDS, MOST_UNITS},
+    wavelet::{self, Band, LEVELS, SIDE, SMOOTH, rough_bands},
+};
+use crate::payload::damage::{Damage, Result};
 
 /// Each band with its index in the list of steps: the smooth band, then the rough bands, the
 /// coarsest first.
@@ -35,7 +37,7 @@ pub(crate) fn quantise(square: &mut [i64], steps: &[i64; BANDS]) {
 }
 
 /// Converts whole steps to coefficients, and coefficients to heights in units.
-pub(crate) fn reconstruct(square: &mut [i64], steps: &[i64; BANDS]) -> Result<(), Damage> {
+pub(crate) fn reconstruct(square: &mut [i64], steps: &[i64; BANDS]) -> Result<()> {
     /// Five inverse divisions multiply values by at most 2^13.
     const MOST: u64 = MOST_UNITS << 5;
     let mut is_small = true;

@@ -25,10 +25,10 @@ pub(crate) const SIDES: [usize; LEVELS + 1] = {
 /// A rectangle of coefficients in the transformed square.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Band {
-    pub(crate) left: usize,
-    pub(crate) top: usize,
-    pub(crate) columns: usize,
-    pub(crate) rows: usize,
+    pub left: usize,
+    pub top: usize,
+    pub columns: usize,
+    pub rows: usize,
 }
 
 /// The smooth part that remains after all divisions.

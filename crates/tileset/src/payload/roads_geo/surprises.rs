@@ -1,11 +1,15 @@
 //! Surprises, which are vertices of lines that differ from their guesses, in both forms of the
 //! section.
 
-use crate::limits::MAX_LINE_VERTICES;
-use crate::payload::damage::Damage;
-use crate::payload::magnitudes::Magnitudes;
-use crate::payload::number_codes::Cursor;
-use crate::payload::range_coder::{BitReader, Bits, Model};
+use crate::{
+    limits::MAX_LINE_VERTICES,
+    payload::{
+        damage::{Damage, Result},
+        magnitudes::Magnitudes,
+        number_codes::Cursor,
+        range_coder::{BitReader, Bits, Model},
+    },
+};
 
 /// Kinds of surprises.
 pub(crate) const END: u8 = 0;
@@ -19,33 +23,34 @@ const GAP: Damage = Damage::Invalid("position of a surprise");
 /// The surprises of a line while they are read: their number; then for each surprise a gap, a kind
 /// and indices.
 pub(crate) trait Surprises {
-    fn count(&mut self) -> Result<usize, Damage>;
+    fn count(&mut self) -> Result<usize>;
     /// Reads the number of vertices that are as guessed before the next surprise.
-    fn gap(&mut self) -> Result<usize, Damage>;
-    fn kind(&mut self) -> Result<u8, Damage>;
+    fn gap(&mut self) -> Result<usize>;
+    fn kind(&mut self) -> Result<u8>;
     /// Reads a number of at most `last`; `what` names it in errors.
-    fn index(&mut self, last: usize, what: &'static str) -> Result<u32, Damage>;
+    fn index(&mut self, last: usize, what: &'static str) -> Result<u32>;
 }
 
 impl Surprises for Cursor<'_> {
-    fn count(&mut self) -> Result<usize, Damage> {
+    fn count(&mut self) -> Result<usize> {
         self.bounded(MAX_LINE_VERTICES, "number of surprises")
     }
 
-    fn gap(&mut self) -> Result<usize, Damage> {
+    fn gap(&mut self) -> Result<usize> {
         self.bounded(MAX_LINE_VERTICES, "position of a surprise")
     }
 
-    fn kind(&mut self) -> Result<u8, Damage> {
+    fn kind(&mut self) -> Result<u8> {
         self.byte()
     }
 
-    fn index(&mut self, last: usize, what: &'static str) -> Result<u32, Damage> {
+    fn index(&mut self, last: usize, what: &'static str) -> Result<u32> {
         self.bounded(last, what).map(|index| index as u32)
     }
 }
 
 /// The state of a coder of the surprises of a class.
+#[derive(Default)]
 pub(crate) struct SurpriseCoder {
     /// The numbers of surprises, by the flags of the line: a line with a lead-in always has one.
     counts: Magnitudes<4, 1>,
@@ -55,15 +60,6 @@ pub(crate) struct SurpriseCoder {
 }
 
 impl SurpriseCoder {
-    pub(crate) fn new() -> Self {
-        Self {
-            counts: Magnitudes::new(),
-            gaps: Magnitudes::new(),
-            kinds: [Model::NEW; 4],
-            indices: Magnitudes::new(),
-        }
-    }
-
     fn code_count<B: Bits>(&mut self, bits: &mut B, flags: u8, count: u64) -> u64 {
         self.counts.code_magnitude(bits, [usize::from(flags), 0], count)
     }
@@ -100,28 +96,28 @@ pub(crate) struct CodedSurprises<'c, 'b> {
 }
 
 impl CodedSurprises<'_, '_> {
-    fn check(&self, number: u64, last: usize, damage: Damage) -> Result<usize, Damage> {
+    fn check(&self, number: u64, last: usize, damage: Damage) -> Result<usize> {
         self.bits.check_end()?;
         usize::try_from(number).ok().filter(|&number| number <= last).ok_or(damage)
     }
 }
 
 impl Surprises for CodedSurprises<'_, '_> {
-    fn count(&mut self) -> Result<usize, Damage> {
+    fn count(&mut self) -> Result<usize> {
         let count = self.coder.code_count(self.bits, self.flags, 0);
         self.check(count, MAX_LINE_VERTICES, COUNT)
     }
 
-    fn gap(&mut self) -> Result<usize, Damage> {
+    fn gap(&mut self) -> Result<usize> {
         let gap = self.coder.code_gap(self.bits, 0);
         self.check(gap, MAX_LINE_VERTICES, GAP)
     }
 
-    fn kind(&mut self) -> Result<u8, Damage> {
+    fn kind(&mut self) -> Result<u8> {
         Ok(self.coder.code_kind(self.bits, 0))
     }
 
-    fn index(&mut self, last: usize, what: &'static str) -> Result<u32, Damage> {
+    fn index(&mut self, last: usize, what: &'static str) -> Result<u32> {
         let index = self.coder.code_index(self.bits, 0);
         self.check(index, last, Damage::Invalid(what)).map(|index| index as u32)
     }
@@ -142,8 +138,8 @@ mod write {
     /// A vertex that differs from its guess, or the end of the line.
     pub(crate) struct Surprise {
         /// The number of vertices between the previous surprise and this one, which are as guessed.
-        pub(crate) as_guessed: u64,
-        pub(crate) vertex: Option<DrapedVertex>,
+        pub as_guessed: u64,
+        pub vertex: Option<DrapedVertex>,
     }
 
     impl Surprise {

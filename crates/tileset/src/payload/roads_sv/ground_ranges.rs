@@ -1,7 +1,9 @@
 //! Codes the height ranges of the ground along segments as range-coded bits.
 
-use crate::payload::magnitudes::{Magnitudes, half_octave};
-use crate::payload::range_coder::Bits;
+use crate::payload::{
+    magnitudes::{Magnitudes, half_octave},
+    range_coder::Bits,
+};
 
 /// Number of half-octaves of the number of the same kind at the segment before.
 const BEFORE: usize = 48;
@@ -9,6 +11,7 @@ const BEFORE: usize = 48;
 const LENGTHS: usize = 33;
 
 /// The state of a coder of the ground ranges of a class.
+#[derive(Default)]
 pub(crate) struct RangeCoder {
     lows: Magnitudes<BEFORE, LENGTHS>,
     spans: Magnitudes<BEFORE, LENGTHS>,
@@ -18,10 +21,6 @@ pub(crate) struct RangeCoder {
 }
 
 impl RangeCoder {
-    pub(crate) fn new() -> Self {
-        Self { lows: Magnitudes::new(), spans: Magnitudes::new(), low_q: 0, low_step: 0, span: 0 }
-    }
-
     /// Codes the lowest ground of the next segment, and the highest minus the lowest, in height
     /// steps; `length` is the number of binary digits of the segment's length. A reader's numbers
     /// are ignored; if a writer's numbers have no code, the returned numbers differ from them.

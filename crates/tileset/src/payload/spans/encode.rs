@@ -8,12 +8,16 @@ use super::{
     FIRST_ON_GROUND, LAST_ON_GROUND, OWNER_BIT, SpanHeight, SpanPoint, SpanRun, TUNNEL, decode,
     is_height,
 };
-use crate::limits::{MAX_LINES, MAX_SPAN_POINTS, MAX_TRIANGLES};
-use crate::payload::builder::Section;
-use crate::payload::damage::{DecodeError, EncodeError};
-use crate::payload::number_codes::put_planes;
-use crate::payload::points::put_points;
-use crate::payload::section_kind::SectionKind;
+use crate::{
+    limits::{MAX_LINES, MAX_SPAN_POINTS, MAX_TRIANGLES},
+    payload::{
+        builder::Section,
+        damage::{DecodeError, EncodeError, refuse_if},
+        number_codes::put_planes,
+        points::put_points,
+        section_kind::SectionKind,
+    },
+};
 
 impl Section {
     /// Returns the spans section of a tile with these bytes, which came from
@@ -105,31 +109,29 @@ fn is_on_ground(point: &SpanPoint) -> bool {
 
 fn check(runs: &[SpanRun]) -> Result<(), &'static str> {
     let points = || runs.iter().flat_map(|run| &run.points);
-    if runs.iter().any(|run| run.structure == Structure::Ground) {
-        return Err("a run that is neither a bridge nor a tunnel");
-    }
-    if runs.iter().any(|run| run.points.len() < 2) {
-        return Err("a run of fewer than two points");
-    }
-    if runs.iter().any(|run| run.points.array_windows().any(|[a, b]| a.at == b.at)) {
-        return Err("a run with two equal points in succession");
-    }
+    refuse_if(
+        runs.iter().any(|run| run.structure == Structure::Ground),
+        "a run that is neither a bridge nor a tunnel",
+    )?;
+    refuse_if(runs.iter().any(|run| run.points.len() < 2), "a run of fewer than two points")?;
+    refuse_if(
+        runs.iter().any(|run| run.points.array_windows().any(|[a, b]| a.at == b.at)),
+        "a run with two equal points in succession",
+    )?;
     let inner = |run: &SpanRun| run.points[1..run.points.len() - 1].iter().any(is_on_ground);
-    if runs.iter().any(inner) {
-        return Err("a point on the ground between the ends of its run");
-    }
-    if !runs.is_sorted_by_key(SpanRun::key) {
-        return Err("runs that are not sorted by owner and way id");
-    }
+    refuse_if(runs.iter().any(inner), "a point on the ground between the ends of its run")?;
+    refuse_if(
+        !runs.is_sorted_by_key(SpanRun::key),
+        "runs that are not sorted by owner and way id",
+    )?;
     let is_known = |point: &SpanPoint| match point.height {
         SpanHeight::Steps(steps) => is_height(steps),
         SpanHeight::Ground { triangle } => (triangle as usize) < MAX_TRIANGLES,
     };
-    if !points().all(is_known) {
-        return Err("an impossible height");
-    }
-    if runs.len() > MAX_LINES || points().count() > MAX_SPAN_POINTS {
-        return Err("more spans than readers accept");
-    }
+    refuse_if(!points().all(is_known), "an impossible height")?;
+    refuse_if(
+        runs.len() > MAX_LINES || points().count() > MAX_SPAN_POINTS,
+        "more spans than readers accept",
+    )?;
     Ok(())
 }

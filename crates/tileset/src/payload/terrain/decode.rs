@@ -2,32 +2,38 @@
 
 use corniche_tin::{Tin, TinVertex};
 
-use crate::limits::{MAX_VERTICES, max_walk_steps};
-use crate::payload::connectivity::{Edges, GateAnswer, Guesses, Guide, NAMED, NONE, walk};
-use crate::payload::corner_guess::GridVertices;
-use crate::payload::damage::Damage;
-use crate::payload::envelope::{self, StoredSection};
-use crate::payload::number_codes::Cursor;
-use crate::payload::range_coder::BitReader;
-use crate::payload::section_kind::SectionKind;
-use crate::payload::terrain::heights::code_heights;
-use crate::payload::terrain::normals::{code_normals, guess_normals};
-use crate::payload::terrain::positions::code_positions;
-use crate::payload::terrain::record::{Scale, TerrainSectionHead};
-use crate::payload::terrain::symbols::Symbols;
-use crate::payload::tile_payload::TileTerrain;
-use crate::payload::work_limit::StepBudget;
+use crate::{
+    limits::{MAX_VERTICES, max_walk_steps},
+    payload::{
+        connectivity::{Edges, GateAnswer, Guesses, Guide, NAMED, NONE, walk},
+        corner_guess::GridVertices,
+        damage::{Damage, Result},
+        envelope::{self, StoredSection},
+        number_codes::Cursor,
+        range_coder::BitReader,
+        section_kind::SectionKind,
+        terrain::{
+            heights::code_heights,
+            normals::{code_normals, guess_normals},
+            positions::code_positions,
+            record::{Scale, TerrainSectionHead},
+            symbols::Symbols,
+        },
+        tile_payload::TileTerrain,
+        work_limit::StepBudget,
+    },
+};
 
 /// Reads the fixed part of the terrain section among these sections; `None` without ground.
 pub(crate) fn record_in(
     sections: &[StoredSection<'_>],
     scale: Scale,
-) -> Result<Option<TerrainSectionHead>, Damage> {
+) -> Result<Option<TerrainSectionHead>> {
     let section = envelope::section(sections, SectionKind::Terrain)?;
     section.map(|section| TerrainSectionHead::read(&mut Cursor::new(&section), scale)).transpose()
 }
 
-pub(crate) fn decode(bytes: &[u8], scale: Scale) -> Result<TileTerrain, Damage> {
+pub(crate) fn decode(bytes: &[u8], scale: Scale) -> Result<TileTerrain> {
     let mut cursor = Cursor::new(bytes);
     let record = TerrainSectionHead::read(&mut cursor, scale)?;
     let mut bits = BitReader::new(cursor.take(cursor.left())?);
@@ -70,32 +76,26 @@ struct Player<'a, 'b> {
 }
 
 impl Player<'_, '_> {
-    fn vertex(&mut self) -> Result<u32, Damage> {
+    fn vertex(&mut self) -> Result<u32> {
         let number = self.symbols.number(self.bits, 0)?;
-        if number as usize > MAX_VERTICES {
-            return Err(Damage::Invalid("a named vertex"));
-        }
+        Damage::invalid_if(number as usize > MAX_VERTICES, "a named vertex")?;
         Ok(number)
     }
 }
 
 impl Guide for Player<'_, '_> {
-    fn start(&mut self, found: &Edges<'_>) -> Result<[u32; 3], Damage> {
+    fn start(&mut self, found: &Edges<'_>) -> Result<[u32; 3]> {
         let a = self.last + self.vertex()?;
-        if a as usize >= found.vertices() {
-            return Err(Damage::Invalid("a triangle's vertex"));
-        }
+        Damage::invalid_if(a as usize >= found.vertices(), "a triangle's vertex")?;
         self.last = a;
         // Each corner is above the first, which is the smallest; the sum of two limited numbers is
         // in range.
         Ok([a, a + 1 + self.vertex()?, a + 1 + self.vertex()?])
     }
 
-    fn corner(&mut self, guesses: &Guesses<'_, '_>) -> Result<GateAnswer, Damage> {
+    fn corner(&mut self, guesses: &Guesses<'_, '_>) -> Result<GateAnswer> {
         let Some(first) = guesses.first() else { return Ok(GateAnswer::Nothing) };
-        if self.bits.is_past_end() {
-            return Err(Damage::Invalid("the length of the coded bits"));
-        }
+        Damage::invalid_if(self.bits.is_past_end(), "the length of the coded bits")?;
         match self.symbols.code(self.bits, guesses, first, NONE) {
             NONE => Ok(GateAnswer::Nothing),
             1 => Ok(GateAnswer::Guessed(first.vertex)),

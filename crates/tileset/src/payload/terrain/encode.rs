@@ -3,30 +3,38 @@
 use corniche_geom::TILE_NODES;
 use corniche_tin::TinVertex;
 
-use crate::limits::{MAX_TRIANGLES, MAX_VERTICES, max_walk_steps};
-use crate::payload::connectivity::{Edges, GUESSES, GateAnswer, Guesses, Guide, NAMED, NONE, walk};
-use crate::payload::corner_guess::{GateCorner, GridVertices};
-use crate::payload::damage::Damage;
-use crate::payload::range_coder::BitWriter;
-use crate::payload::terrain::heights::code_heights;
-use crate::payload::terrain::normals::{code_normals, guess_normals};
-use crate::payload::terrain::positions::code_positions;
-use crate::payload::terrain::record::{
-    MAX_HEIGHT_SHIFT, MAX_NORMAL_SHIFT, Scale, TerrainSectionHead, check_measures,
+use crate::{
+    limits::{MAX_TRIANGLES, MAX_VERTICES, max_walk_steps},
+    payload::{
+        connectivity::{Edges, GUESSES, GateAnswer, Guesses, Guide, NAMED, NONE, walk},
+        corner_guess::{GateCorner, GridVertices},
+        damage::{Damage, Result, refuse_if},
+        range_coder::BitWriter,
+        terrain::{
+            heights::code_heights,
+            normals::{code_normals, guess_normals},
+            positions::code_positions,
+            record::{
+                MAX_HEIGHT_SHIFT, MAX_NORMAL_SHIFT, Scale, TerrainSectionHead, check_measures,
+            },
+            symbols::Symbols,
+        },
+        tile_payload::TileTerrain,
+        work_limit::StepBudget,
+    },
 };
-use crate::payload::terrain::symbols::Symbols;
-use crate::payload::tile_payload::TileTerrain;
-use crate::payload::work_limit::StepBudget;
 
 /// Encodes the section; an error describes what cannot be encoded.
 pub(crate) fn encode(terrain: &TileTerrain, scale: Scale) -> Result<Vec<u8>, &'static str> {
     let vertices = terrain.tin.vertices();
-    if vertices.len() != terrain.normals.len() {
-        return Err("a number of normals that is not the number of vertices");
-    }
-    if vertices.iter().any(|v| usize::from(v.row.max(v.column)) >= TILE_NODES) {
-        return Err("vertices outside the tile's grid");
-    }
+    refuse_if(
+        vertices.len() != terrain.normals.len(),
+        "a number of normals that is not the number of vertices",
+    )?;
+    refuse_if(
+        vertices.iter().any(|v| usize::from(v.row.max(v.column)) >= TILE_NODES),
+        "vertices outside the tile's grid",
+    )?;
     let triangles = terrain.tin.triangles();
     check_measures(
         terrain.geometric_error_m,
@@ -34,9 +42,10 @@ pub(crate) fn encode(terrain: &TileTerrain, scale: Scale) -> Result<Vec<u8>, &'s
         terrain.uncovered_nodes,
         scale,
     )?;
-    if vertices.len() > MAX_VERTICES || triangles.len() > MAX_TRIANGLES {
-        return Err("more triangles than a tile has cells for");
-    }
+    refuse_if(
+        vertices.len() > MAX_VERTICES || triangles.len() > MAX_TRIANGLES,
+        "more triangles than a tile has cells for",
+    )?;
     let (height_shift, normal_shift) = common_factors(vertices, &terrain.normals);
     let record = TerrainSectionHead {
         geometric_error_m: terrain.geometric_error_m,
@@ -54,9 +63,7 @@ pub(crate) fn encode(terrain: &TileTerrain, scale: Scale) -> Result<Vec<u8>, &'s
     let at = code_positions(&mut bits, || {
         nodes_of_vertices.next_if_eq(&node.next().unwrap_or(0)).is_some()
     });
-    if at.len() != vertices.len() {
-        return Err("vertices that are not sorted");
-    }
+    refuse_if(at.len() != vertices.len(), "vertices that are not sorted")?;
 
     // The limit is that of a reader: the writer takes at least as many steps as a reader.
     let work = StepBudget::new(max_walk_steps(vertices.len(), triangles.len()));
@@ -165,7 +172,7 @@ impl<'a> TerrainRecorder<'a> {
 }
 
 impl Guide for TerrainRecorder<'_> {
-    fn start(&mut self, found: &Edges<'_>) -> Result<[u32; 3], Damage> {
+    fn start(&mut self, found: &Edges<'_>) -> Result<[u32; 3]> {
         let rest = &self.triangles[self.next..];
         let skip = rest.iter().position(|&[a, b, _]| !found.has(a, b));
         self.next += skip.ok_or(Damage::Invalid("number of triangles"))?;
@@ -179,7 +186,7 @@ impl Guide for TerrainRecorder<'_> {
         Ok([a, b, c])
     }
 
-    fn corner(&mut self, guesses: &Guesses<'_, '_>) -> Result<GateAnswer, Damage> {
+    fn corner(&mut self, guesses: &Guesses<'_, '_>) -> Result<GateAnswer> {
         let [a, b, _] = guesses.gate;
         let corner = self.corners.corner_between(a, b);
         let Some(first) = guesses.first() else {

@@ -1,9 +1,11 @@
 //! Codes heights, each as its difference from a prediction by the vertices before it.
 
-use crate::payload::connectivity::Reached;
-use crate::payload::damage::Damage;
-use crate::payload::magnitudes::{Magnitudes, half_octave};
-use crate::payload::range_coder::Bits;
+use crate::payload::{
+    connectivity::Reached,
+    damage::{Damage, Result},
+    magnitudes::{Magnitudes, half_octave},
+    range_coder::Bits,
+};
 
 /// Numbers of contexts: half-octaves of the differences at the gate; height differences at the gate
 /// combined with its length.
@@ -17,8 +19,8 @@ pub(crate) fn code_heights<B: Bits>(
     at: &[[u16; 2]],
     order: &[Reached],
     heights: &mut [i32],
-) -> Result<(), Damage> {
-    let mut numbers = Magnitudes::<BY_RESIDUALS, BY_GATE>::new();
+) -> Result<()> {
+    let mut numbers = Magnitudes::<BY_RESIDUALS, BY_GATE>::default();
     let mut sizes = vec![0_u32; heights.len()];
     let mut previous = 0_i32;
     for reached in order {

@@ -2,10 +2,12 @@
 
 use corniche_tin::TinVertex;
 
-use crate::payload::connectivity::Reached;
-use crate::payload::magnitudes::{Magnitudes, half_octave};
-use crate::payload::range_coder::Bits;
-use crate::payload::terrain::record::Scale;
+use crate::payload::{
+    connectivity::Reached,
+    magnitudes::{Magnitudes, half_octave},
+    range_coder::Bits,
+    terrain::record::Scale,
+};
 
 /// Numbers of contexts: half-octaves of the differences at the gate; the difference of the guesses
 /// from those at the gate, combined with the difference east of the same vertex.
@@ -22,7 +24,7 @@ pub(crate) fn code_normals<B: Bits>(
     shift: u8,
     normals: &mut [[i8; 2]],
 ) {
-    let mut numbers = [(); 2].map(|()| Magnitudes::<BY_RESIDUALS, BY_GUESSES>::new());
+    let mut numbers = [(); 2].map(|()| Magnitudes::<BY_RESIDUALS, BY_GUESSES>::default());
     let mut sizes = vec![0_u16; normals.len()];
     for reached in order {
         let vertex = reached.vertex as usize;

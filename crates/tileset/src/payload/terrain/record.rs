@@ -4,22 +4,26 @@ use corniche_geom::Cell;
 #[cfg(feature = "write")]
 use corniche_varints::push_varint;
 
-use crate::limits::MAX_TRIANGLES;
-use crate::payload::damage::Damage;
-use crate::payload::number_codes::Cursor;
+use crate::{
+    limits::MAX_TRIANGLES,
+    payload::{
+        damage::{Damage, Result, refuse_if},
+        number_codes::Cursor,
+    },
+};
 use corniche_settings::MAX_MEASURE_M;
 
 /// The fixed part of the section.
 pub(crate) struct TerrainSectionHead {
-    pub(crate) geometric_error_m: f64,
-    pub(crate) height_range_m: [f64; 2],
-    pub(crate) uncovered_nodes: u64,
-    pub(crate) triangles: usize,
+    pub geometric_error_m: f64,
+    pub height_range_m: [f64; 2],
+    pub uncovered_nodes: u64,
+    pub triangles: usize,
     /// All heights are multiples of 2^`height_shift` steps: a DEM in whole metres has no finer
     /// heights.
-    pub(crate) height_shift: u8,
+    pub height_shift: u8,
     /// All normals are multiples of 2^`normal_shift` steps.
-    pub(crate) normal_shift: u8,
+    pub normal_shift: u8,
 }
 
 /// The largest exponent of the common factor of heights.
@@ -40,25 +44,18 @@ impl TerrainSectionHead {
         out
     }
 
-    pub(crate) fn read(cursor: &mut Cursor<'_>, scale: Scale) -> Result<Self, Damage> {
+    pub(crate) fn read(cursor: &mut Cursor<'_>, scale: Scale) -> Result<Self> {
         let [geometric_error_m, lowest_m, highest_m] =
             [(); 3].map(|()| cursor.array().map(f64::from_le_bytes));
         let (geometric_error_m, height_range_m) = (geometric_error_m?, [lowest_m?, highest_m?]);
         let uncovered_nodes = cursor.varint()?;
         check_measures(geometric_error_m, height_range_m, uncovered_nodes, scale)
             .map_err(Damage::Invalid)?;
-        let (triangles, limit) = (cursor.varint()?, MAX_TRIANGLES as u64);
-        if triangles > limit {
-            let what = "number of triangles";
-            return Err(Damage::TooLarge { what, length: triangles, limit });
-        }
+        let triangles = cursor.varint()?;
+        Damage::limit("number of triangles", triangles, MAX_TRIANGLES)?;
         let [height_shift, normal_shift] = cursor.array()?;
-        if height_shift > MAX_HEIGHT_SHIFT {
-            return Err(Damage::Invalid("the common factor of the heights"));
-        }
-        if normal_shift > MAX_NORMAL_SHIFT {
-            return Err(Damage::Invalid("the common factor of the normals"));
-        }
+        Damage::invalid_if(height_shift > MAX_HEIGHT_SHIFT, "the common factor of the heights")?;
+        Damage::invalid_if(normal_shift > MAX_NORMAL_SHIFT, "the common factor of the normals")?;
         let triangles = triangles as usize;
         Ok(Self {
             geometric_error_m,
@@ -74,12 +71,12 @@ impl TerrainSectionHead {
 /// The factors that turn slopes of the TIN, in height steps per node, into metres per metre.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Scale {
-    pub(crate) quantum_m: f64,
+    pub quantum_m: f64,
     /// The cell of the level.
-    pub(crate) cell: Cell,
+    pub cell: Cell,
     /// The largest number of full-resolution nodes beneath the tile; border nodes of its finest
     /// tiles count for each of these tiles.
-    pub(crate) nodes_beneath: u64,
+    pub nodes_beneath: u64,
 }
 
 /// Checks the numbers that a tile states about itself: they must be finite, so that later code need
@@ -90,15 +87,12 @@ pub(crate) fn check_measures(
     uncovered_nodes: u64,
     scale: Scale,
 ) -> Result<(), &'static str> {
-    if !(0.0..=MAX_MEASURE_M).contains(&geometric_error_m) {
-        return Err("the geometric error");
-    }
+    refuse_if(!(0.0..=MAX_MEASURE_M).contains(&geometric_error_m), "the geometric error")?;
     let [low, high] = height_range_m;
-    if !(low <= high && low >= -MAX_MEASURE_M && high <= MAX_MEASURE_M) {
-        return Err("the height range");
-    }
-    if uncovered_nodes > scale.nodes_beneath {
-        return Err("the number of uncovered nodes");
-    }
+    refuse_if(
+        !(low <= high && low >= -MAX_MEASURE_M && high <= MAX_MEASURE_M),
+        "the height range",
+    )?;
+    refuse_if(uncovered_nodes > scale.nodes_beneath, "the number of uncovered nodes")?;
     Ok(())
 }

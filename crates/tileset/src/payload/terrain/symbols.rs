@@ -1,10 +1,12 @@
 //! Codes the symbols of the walk as bits, in contexts in which "guess 1" takes almost no space.
 
-use crate::payload::connectivity::{GUESSES, Guesses, NAMED, NONE};
-use crate::payload::corner_guess::{GateCorner, GridVertices};
-use crate::payload::damage::Damage;
-use crate::payload::magnitudes::{Magnitudes, half_octave};
-use crate::payload::range_coder::{Bits, Model};
+use crate::payload::{
+    connectivity::{GUESSES, Guesses, NAMED, NONE},
+    corner_guess::{GateCorner, GridVertices},
+    damage::{Damage, Result},
+    magnitudes::{Magnitudes, half_octave},
+    range_coder::{Bits, Model},
+};
 
 /// The number of shapes of the quadrangle of a gate, its corner and guess 1; see [`shape`].
 const SHAPES: usize = 5;
@@ -14,6 +16,7 @@ const LENGTHS: usize = 6;
 const HISTORIES: usize = 16;
 
 /// The state of a coder of the symbols, and of named vertices.
+#[derive(Default)]
 pub(crate) struct Symbols {
     is_first: [[[Model; LENGTHS]; 2]; SHAPES],
     is_first_here: [[[Model; HISTORIES]; 2]; SHAPES],
@@ -44,14 +47,7 @@ fn shape(nodes: &GridVertices<'_>, gate: [u32; 3], first: GateCorner) -> usize {
 
 impl Symbols {
     pub(crate) fn new(vertices: usize) -> Self {
-        Self {
-            is_first: [[[Model::NEW; LENGTHS]; 2]; SHAPES],
-            is_first_here: [[[Model::NEW; HISTORIES]; 2]; SHAPES],
-            is_none: [[Model::NEW; HISTORIES]; SHAPES],
-            is_next: [[Model::NEW; GUESSES as usize]; 2],
-            met: vec![0; vertices],
-            numbers: Magnitudes::new(),
-        }
+        Self { met: vec![0; vertices], ..Self::default() }
     }
 
     /// Codes the symbol at a gate for which there is a guess 1.
@@ -93,7 +89,7 @@ impl Symbols {
     }
 
     /// Codes a number of the kind that names vertices; fails for numbers that no vertex can have.
-    pub(crate) fn number<B: Bits>(&mut self, bits: &mut B, number: u32) -> Result<u32, Damage> {
+    pub(crate) fn number<B: Bits>(&mut self, bits: &mut B, number: u32) -> Result<u32> {
         let number = self.numbers.code(bits, [0, 0], i64::from(number));
         u32::try_from(number).map_err(|_| Damage::Invalid("a named vertex"))
     }
