@@ -4,7 +4,7 @@ use corniche_areas::inside_point;
 use corniche_geom::LatticePoint;
 use corniche_store::take_record;
 
-use super::{layer_point::LayerPoint, summary::PointSummary};
+use super::layer_point::{LayerPoint, PointSummary};
 use crate::{
     AreaLoss, ExtractDefect,
     areas::{AreaSummary, LayerArea, hand_out_areas},
