@@ -310,11 +310,8 @@ impl FileAudit {
 
     /// The number of samples that have one of the lowest or highest values.
     fn count_of(&self, height_m: f64) -> u64 {
-        let entries = self.lowest.entries.iter().chain(&self.highest.entries);
-        entries
-            .into_iter()
-            .find(|entry| entry.height_m - height_m == 0.0)
-            .map_or(0, |entry| entry.count)
+        let mut entries = self.lowest.entries.iter().chain(&self.highest.entries);
+        entries.find(|entry| entry.height_m - height_m == 0.0).map_or(0, |entry| entry.count)
     }
 
     /// The lowest and the highest sample.
@@ -397,10 +394,8 @@ impl Audit {
     /// # Errors
     /// [`AuditError::Sentinel`] or [`AuditError::OutOfRange`].
     pub fn check(&self, dem: &Dem, is_range_given: bool) -> Result<(), AuditError> {
-        if !is_range_given && let Some(error) = self.sentinel_error(dem) {
-            return Err(error);
-        }
-        if !is_range_given && let Some(error) = self.nothing_error(dem) {
+        let nothing = || self.sentinel_error(dem).or_else(|| self.nothing_error(dem));
+        if !is_range_given && let Some(error) = nothing() {
             return Err(error);
         }
         let outside = dem.sources.iter().zip(&self.files).find(|(_, file)| file.outside > 0);
@@ -412,15 +407,14 @@ impl Audit {
             [_, Some(high)] => high,
             _ => return Ok(()),
         };
-        Err(AuditError::OutOfRange {
-            path: source.path.clone(),
-            count: file.outside,
-            samples: file.samples,
-            height_m: worst.height_m,
-            stored: source.values.stored_text(worst.stored),
-            low_m,
-            high_m,
-        })
+        Err(out_of_range(source, worst, [file.outside, file.samples], self.range_m))
+    }
+
+    /// The audit of all files together.
+    fn of_all_files(&self) -> FileAudit {
+        let mut all = FileAudit::default();
+        self.files.iter().for_each(|file| all.merge(file));
+        all
     }
 
     /// The step between heights that the files can distinguish, in metres: if all samples are
@@ -473,25 +467,17 @@ impl Audit {
 
     /// The error if all samples of all files have the same value, which is lower than any dry land.
     fn nothing_error(&self, dem: &Dem) -> Option<AuditError> {
-        let mut all = FileAudit::default();
-        self.files.iter().for_each(|file| all.merge(file));
+        let all = self.of_all_files();
         let [only] = all.lowest.entries.as_slice() else { return None };
         let source = dem.sources.first()?;
-        (only.height_m < LOWEST_LAND_M).then(|| AuditError::OutOfRange {
-            path: source.path.clone(),
-            count: only.count,
-            samples: all.samples,
-            height_m: only.height_m,
-            stored: source.values.stored_text(only.stored),
-            low_m: LOWEST_LAND_M,
-            high_m: self.range_m[1],
-        })
+        let range_m = [LOWEST_LAND_M, self.range_m[1]];
+        (only.height_m < LOWEST_LAND_M)
+            .then(|| out_of_range(source, only, [only.count, all.samples], range_m))
     }
 
     fn sentinel_error(&self, dem: &Dem) -> Option<AuditError> {
         let files = || dem.sources.iter().zip(&self.files);
-        let mut all = FileAudit::default();
-        self.files.iter().for_each(|file| all.merge(file));
+        let all = self.of_all_files();
         // First searches a value that is isolated within its own file; then one that is isolated
         // only among the values of all files.
         let own = self.files.iter().find_map(FileAudit::sentinel);
@@ -523,6 +509,23 @@ impl Audit {
             low_m: low_m.floor(),
             high_m: high_m.ceil(),
         })
+    }
+}
+
+fn out_of_range(
+    source: &Source,
+    one: &ExtremeHeight,
+    [count, samples]: [u64; 2],
+    [low_m, high_m]: [f64; 2],
+) -> AuditError {
+    AuditError::OutOfRange {
+        path: source.path.clone(),
+        count,
+        samples,
+        height_m: one.height_m,
+        stored: source.values.stored_text(one.stored),
+        low_m,
+        high_m,
     }
 }
 

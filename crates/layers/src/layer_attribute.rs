@@ -1,10 +1,13 @@
 //! Attributes that a layer keeps of its objects: what tables ask for, and the values of an object.
 
-use corniche_roads::is_yes;
+use corniche_roads::{is_yes, tag};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::{TagUnit, titles::is_plain_text};
+use crate::{
+    TagUnit,
+    titles::{is_language_tag, is_plain_text},
+};
 
 /// What a layer keeps of a tag.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -69,7 +72,7 @@ impl AttributeKind {
         tags: &[(&str, &str)],
         mut on_unread: impl FnMut(),
     ) -> Option<AttributeValue> {
-        let tagged = tags.iter().find(|(own, _)| *own == key).map(|&(_, value)| value);
+        let tagged = tag(tags, key);
         let mut text = |value: &str| {
             let value = value.trim();
             if is_plain_text(value, MAX_TAG_CHARS) {
@@ -87,7 +90,8 @@ impl AttributeKind {
                 for (own, value) in tags {
                     let language = own.strip_prefix(key).and_then(|rest| match rest {
                         "" => Some(rest),
-                        _ => rest.strip_prefix(':').filter(|language| is_language(language)),
+                        // Longer words are other suffixes, such as that of `name:left`.
+                        _ => rest.strip_prefix(':').filter(|rest| is_language_tag(rest, 3)),
                     });
                     let Some(language) = language else { continue };
                     if let Some(name) = text(value) {
@@ -146,18 +150,6 @@ impl AttributeValue {
             }
         }
     }
-}
-
-/// Whether what follows a key and a colon is a language (`de`, `zh-Hant`, `be-tarask`), not a date
-/// range or another suffix such as `name:left`'s, which are longer words.
-fn is_language(text: &str) -> bool {
-    let mut parts = text.split('-');
-    let primary = parts.next().unwrap_or_default();
-    (2..=3).contains(&primary.len())
-        && primary.bytes().all(|byte| byte.is_ascii_lowercase())
-        && parts.all(|part| {
-            (1..=8).contains(&part.len()) && part.bytes().all(|byte| byte.is_ascii_alphanumeric())
-        })
 }
 
 #[cfg(test)]

@@ -51,13 +51,19 @@ pub(crate) fn wrong(problem: impl Into<String>) -> LayerTableError {
 }
 
 /// Puts a step in front of the path of an error.
-pub(crate) trait ErrorPath {
+pub(crate) trait ErrorPath: Sized {
     /// Puts the step in front.
     fn within(self, step: TableStep) -> Self;
+
     /// Puts a key in front.
-    fn at(self, key: &str) -> Self;
+    fn at(self, key: &str) -> Self {
+        self.within(TableStep::Key(key.to_owned()))
+    }
+
     /// Puts the number of an entry in front.
-    fn nth(self, index: usize) -> Self;
+    fn nth(self, index: usize) -> Self {
+        self.within(TableStep::Index(index))
+    }
 }
 
 impl<T> ErrorPath for Result<T, LayerTableError> {
@@ -66,13 +72,5 @@ impl<T> ErrorPath for Result<T, LayerTableError> {
             error.path.0.insert(0, step);
             error
         })
-    }
-
-    fn at(self, key: &str) -> Self {
-        self.within(TableStep::Key(key.to_owned()))
-    }
-
-    fn nth(self, index: usize) -> Self {
-        self.within(TableStep::Index(index))
     }
 }

@@ -2,6 +2,7 @@
 
 use std::{collections::BTreeMap, fmt};
 
+use corniche_roads::tag;
 use schemars::JsonSchema;
 use serde::{
     Deserialize, Deserializer, Serialize,
@@ -44,9 +45,8 @@ impl TagRule {
     /// the first value counts.
     #[must_use]
     pub fn is_met(&self, tags: &[(&str, &str)]) -> bool {
-        let value = |key: &str| tags.iter().find(|(own, _)| *own == key).map(|&(_, value)| value);
         self.alternatives().iter().any(|conditions| {
-            conditions.iter().all(|(key, condition)| condition.is_met(value(key)))
+            conditions.iter().all(|(key, condition)| condition.is_met(tag(tags, key)))
         })
     }
 }

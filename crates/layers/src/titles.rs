@@ -69,7 +69,7 @@ impl Titles {
             Self::English(title) => check_title(title),
             Self::ByLanguage(titles) if (1..=MAX_LANGUAGES).contains(&titles.len()) => {
                 titles.iter().try_for_each(|(language, title)| {
-                    if is_language(language) {
+                    if language.len() <= 20 && is_language_tag(language, 8) {
                         return check_title(title);
                     }
                     Err(format!("{language:?} is not a language tag such as \"de\" or \"pt-BR\""))
@@ -83,15 +83,14 @@ impl Titles {
     }
 }
 
-/// Whether a text has the form of a language tag: letters, then parts of letters and digits, joined
-/// by hyphens (BCP 47), at most 20 characters.
-fn is_language(text: &str) -> bool {
+/// Whether a text has the form of a language tag (`de`, `zh-Hant`, `be-tarask`; BCP 47): at most
+/// `longest` letters, then parts of letters and digits, joined by hyphens.
+pub(crate) fn is_language_tag(text: &str, longest: usize) -> bool {
     let is_part = |part: &str| {
         (1..=8).contains(&part.len()) && part.bytes().all(|byte| byte.is_ascii_alphanumeric())
     };
     let language = text.split('-').next().unwrap_or_default();
-    text.len() <= 20
-        && language.len() >= 2
+    (2..=longest).contains(&language.len())
         && language.bytes().all(|byte| byte.is_ascii_lowercase())
         && text.split('-').all(is_part)
 }

@@ -10,8 +10,6 @@ mod hand_out_areas;
 mod layer_area;
 mod make_areas;
 mod over_seam;
-mod summary;
 
 pub(crate) use hand_out_areas::hand_out_areas;
-pub use layer_area::LayerArea;
-pub use summary::{AreaSummary, KeptAreas};
+pub use layer_area::{AreaSummary, KeptAreas, LayerArea};

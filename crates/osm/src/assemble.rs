@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use corniche_geom::{LatticePoint, OnSeamedMap, Polyline, Seam, line_length_m, split_at_seam};
-use corniche_roads::{FunctionalRoadClass, MetNodes, Railway, Road, RoadAttributes};
+use corniche_roads::{FunctionalRoadClass, MetNodes, Railway, Road, RoadAttributes, Structure};
 
 use crate::{
     ExtractDefect, LeftOutReason, ReadOsmError, location,
@@ -70,18 +70,15 @@ pub(crate) fn assemble(
             WayKind::LeftOut(LeftOutWay { reason, highway, carrier, railway }) => {
                 let length_um = length_um(stops.iter().map(|stop| stop.location));
                 let mut roads = Vec::new();
-                if let Some((structure, layer)) = carrier.filter(|_| has_line) {
-                    let of_tags = RoadAttributes { structure, layer, ..RoadAttributes::default() };
-                    let attributes = RoadAttributes { highway: highway.clone(), ..of_tags };
-                    let what = What::carrier(way_id, attributes, &node_ids);
+                if let Some(carrier) = carrier.filter(|_| has_line) {
+                    let what = What::carrier(way_id, carrier, highway.clone(), &node_ids);
                     roads = assemble_way(what, stops, &mut points, placing).roads;
                 }
                 let left_out = Some((reason, highway, length_um));
                 AssembledWay { roads, railway, left_out, ..AssembledWay::default() }
             }
             WayKind::Railway(Track { kind, structure, layer }) => {
-                let attributes = RoadAttributes { structure, layer, ..RoadAttributes::default() };
-                let what = What::carrier(way_id, attributes, &node_ids);
+                let what = What::carrier(way_id, (structure, layer), String::new(), &node_ids);
                 let roads = assemble_way(what, stops, &mut points, placing).roads;
                 AssembledWay { roads, railway: Some(kind), ..AssembledWay::default() }
             }
@@ -254,7 +251,13 @@ fn assemble_way(
 
 impl<'a> What<'a> {
     /// Creates the properties of a way that is no road here.
-    fn carrier(way_id: i64, attributes: RoadAttributes, node_ids: &'a [i64]) -> Self {
+    fn carrier(
+        way_id: i64,
+        (structure, layer): (Structure, i8),
+        highway: String,
+        node_ids: &'a [i64],
+    ) -> Self {
+        let attributes = RoadAttributes { structure, layer, highway, ..RoadAttributes::default() };
         Self { way_id, class: FunctionalRoadClass::LEAST, attributes, node_ids, is_carrier: true }
     }
 

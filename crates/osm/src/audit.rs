@@ -360,9 +360,7 @@ impl Audit {
         {
             return Ok(self.spend_on_numbers(value)?);
         }
-        if let Some(error) = value.numbers()?.find_map(Result::err) {
-            return Err(error.to_owned());
-        }
+        value.numbers()?.try_for_each(|number| number.map(drop))?;
         Ok(self.spend_on_numbers(value)?)
     }
 

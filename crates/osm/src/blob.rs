@@ -86,9 +86,8 @@ pub(crate) fn unpack(blob: &[u8], limit_bytes: u64) -> Result<Vec<u8>, BlobRefus
         Err(BlobRefusal::Damaged(reason))
     };
     let limit = limit_bytes.cast_signed();
-    match promised {
-        Some(promised) if !(0..limit).contains(&promised) => return too_large(promised),
-        _ => {}
+    if let Some(promised) = promised.filter(|promised| !(0..limit).contains(promised)) {
+        return too_large(promised);
     }
     let block = match method {
         1 if data.len() as u64 >= limit_bytes => return too_large(data.len() as i64),

@@ -159,8 +159,13 @@ impl<'a> AuditedBlock<'a> {
     ) -> ControlFlow<()> {
         let mut dense = self.dense().iter();
         for group in &self.groups {
-            for nodes in parts(group, 2).zip(&mut dense).map(|(_, nodes)| nodes) {
-                self.try_each_dense(nodes, &mut find, &mut take)?;
+            for (_, nodes) in parts(group, 2).zip(&mut dense) {
+                let mut node_at = self.node_at(nodes);
+                for (index, &id) in nodes.ids.iter().enumerate() {
+                    if let Some(found) = find(id) {
+                        take(found, node_at(index))?;
+                    }
+                }
             }
             for node in parts(group, 1).map(|node| self.node(node)) {
                 if let Some(found) = find(node.id) {
@@ -171,26 +176,19 @@ impl<'a> AuditedBlock<'a> {
         ControlFlow::Continue(())
     }
 
-    /// Reads coordinates and versions up to the last node found, and none if no node is found.
-    fn try_each_dense<T>(
-        &self,
-        nodes: &DenseNodes<'_>,
-        mut find: impl FnMut(i64) -> Option<T>,
-        take: &mut impl FnMut(T, BlockNode) -> ControlFlow<()>,
-    ) -> ControlFlow<()> {
+    /// Returns a function for the nodes of a dense list, whose indices must ascend. It reads
+    /// coordinates and versions up to the last node requested.
+    fn node_at(&self, nodes: &DenseNodes<'_>) -> impl FnMut(usize) -> BlockNode {
         let [mut lats, mut lons] = nodes.places.each_ref().map(PackedField::sums);
         let mut versions = nodes.versions.numbers();
         let mut passed = 0;
-        for (index, &id) in nodes.ids.iter().enumerate() {
-            let Some(found) = find(id) else { continue };
+        move |index| {
             let skipped = index - passed;
             passed = index + 1;
-            let [lat, lon] =
-                [&mut lats, &mut lons].map(|sums| sums.nth(skipped).unwrap_or_default());
+            let place = [&mut lats, &mut lons].map(|sums| sums.nth(skipped).unwrap_or_default());
             let version = versions.nth(skipped).map_or(0, to_version);
-            take(found, self.placed(id, [lat, lon], version))?;
+            self.placed(nodes.ids[index], place, version)
         }
-        ControlFlow::Continue(())
     }
 
     /// Passes the nodes with a key that `is_wanted` accepts to `take`, with the numbers of the
@@ -206,10 +204,8 @@ impl<'a> AuditedBlock<'a> {
         let mut pairs: Vec<[usize; 2]> = Vec::new();
         for nodes in self.dense().iter().filter(|nodes| !nodes.tags.is_empty()) {
             let mut texts = nodes.tags.numbers().map(|number| number as usize);
-            let [mut lats, mut lons] = nodes.places.each_ref().map(PackedField::sums);
-            let mut versions = nodes.versions.numbers();
-            let mut passed = 0;
-            for (index, &id) in nodes.ids.iter().enumerate() {
+            let mut node_at = self.node_at(nodes);
+            for index in 0..nodes.ids.len() {
                 pairs.clear();
                 loop {
                     match texts.next().ok_or(INCOMPLETE_TAGS)? {
@@ -217,15 +213,9 @@ impl<'a> AuditedBlock<'a> {
                         key => pairs.push([key, texts.next().ok_or(INCOMPLETE_TAGS)?]),
                     }
                 }
-                if !pairs.iter().any(|&[key, _]| is_wanted(key)) {
-                    continue;
+                if pairs.iter().any(|&[key, _]| is_wanted(key)) {
+                    take(node_at(index), &pairs)?;
                 }
-                let skipped = index - passed;
-                passed = index + 1;
-                let [lat, lon] =
-                    [&mut lats, &mut lons].map(|sums| sums.nth(skipped).unwrap_or_default());
-                let version = versions.nth(skipped).map_or(0, to_version);
-                take(self.placed(id, [lat, lon], version), &pairs)?;
             }
         }
         for node in self.groups.iter().flat_map(|group| parts(group, 1)) {
@@ -295,9 +285,9 @@ impl<'b, 'a> BlockWay<'b, 'a> {
         self.keys.numbers().map(|number| number as usize)
     }
 
-    /// Returns the numbers of the way's values, in the order of the keys.
-    pub(crate) fn values(&self) -> impl Iterator<Item = usize> {
-        self.values.numbers().map(|number| number as usize)
+    /// Returns the numbers of the way's keys and values, tag by tag.
+    pub(crate) fn pairs(&self) -> impl Iterator<Item = [usize; 2]> {
+        self.keys().zip(self.values.numbers()).map(|(key, value)| [key, value as usize])
     }
 
     /// Returns the ids of the way's nodes.

@@ -119,7 +119,7 @@ proptest! {
         let texts = block.texts();
         let text = |index: usize| str::from_utf8(texts[index]).unwrap();
         let ways: Vec<_> = block.ways().map(|way| {
-            let tags = way.keys().zip(way.values()).map(|(key, value)| (text(key), text(value)));
+            let tags = way.pairs().map(|[key, value]| (text(key), text(value)));
             (way.id, way.refs().collect::<Vec<_>>(), tags.collect::<Vec<_>>())
         }).collect();
         let of_decoder = decoded.groups().flat_map(|group| group.ways().collect::<Vec<_>>());

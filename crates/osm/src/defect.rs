@@ -3,7 +3,7 @@
 use corniche_layers::OsmObject;
 use serde::{Deserialize, Serialize};
 
-use crate::{area_loss::AreaLoss, line_loss::LineLoss};
+use crate::losses::{AreaLoss, LineLoss};
 
 /// Invalid input in an extract that does not stop the reading: it is reported with the object's id,
 /// and the reading continues.
@@ -254,20 +254,7 @@ impl ExtractDefect {
             | Self::SelfCrossing { crossings: count, .. }
             | Self::MissingWays { ways: count, .. }
             | Self::MendedOutline { segments: count, .. } => Some(count),
-            Self::UnknownHighway { .. }
-            | Self::TagTakenOtherwise { .. }
-            | Self::Area { .. }
-            | Self::DuplicateWay { .. }
-            | Self::DamagedText { .. }
-            | Self::LongText { .. }
-            | Self::NoLine { .. }
-            | Self::ToAndFro { .. }
-            | Self::ConflictingWay { .. }
-            | Self::ConflictingNode { .. }
-            | Self::OpenCoastline { .. }
-            | Self::UnreadValue { .. }
-            | Self::LostLine { .. }
-            | Self::LostArea { .. } => None,
+            _ => None,
         }
     }
 

@@ -145,7 +145,7 @@ impl<R: Read + Seek> Extracts<R> {
 }
 
 /// The order in which the blobs of an extract can be read.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct BlobOrder {
     /// The number of blobs at the start that seem to contain nodes alone.
     pub(crate) nodes: usize,
@@ -156,10 +156,6 @@ pub(crate) struct BlobOrder {
 impl BlobOrder {
     /// The order of an extract in which any object may be anywhere.
     pub(crate) const NONE: Self = Self { nodes: 0, relations: 0 };
-
-    pub(crate) fn is_none(self) -> bool {
-        self.nodes == 0 && self.relations == 0
-    }
 }
 
 /// Returns the first number of a range that `is_such` accepts, if it accepts all later ones;

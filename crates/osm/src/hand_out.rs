@@ -7,7 +7,7 @@ use corniche_store::Sorted;
 use rayon::prelude::*;
 
 use crate::{
-    ExtractDefect, ExtractSummary, ReadOsmError,
+    ExtractDefect, ExtractSummary, LeftOut, ReadOsmError,
     assemble::{AssembledWay, PlainWay, assemble},
     deferred::Deferred,
     failed::Failed,
@@ -65,23 +65,26 @@ pub(crate) fn hand_out_roads(
     sink.begin();
     defects.tell(on_defect)?;
     let take = |assembled: AssembledWay, sink: &mut dyn LayerSink<Road, ExtractSummary>| {
-        if let Some((reason, highway, length_um)) = assembled.left_out {
+        let AssembledWay { roads, railway, defects, left_out } = assembled;
+        let is_road = left_out.is_none() && railway.is_none();
+        if let Some((reason, highway, length_um)) = left_out {
             let own = summary.left_out_ways.entry((reason, highway)).or_default();
             own.ways += 1;
             own.length_um += length_um;
-            assembled.roads.into_iter().for_each(|road| sink.take_carrier(road, assembled.railway));
+        }
+        if !is_road {
+            for road in roads {
+                sink.take_carrier(road, railway);
+            }
             return;
         }
-        if assembled.railway.is_some() {
-            let tracks = assembled.roads.into_iter();
-            tracks.for_each(|road| sink.take_carrier(road, assembled.railway));
-            return;
+        summary.roads += roads.len() as u64;
+        let LeftOut { without_line, .. } = &mut summary.left_out;
+        *(if roads.is_empty() { without_line } else { &mut summary.road_ways }) += 1;
+        defects.into_iter().for_each(&mut *on_defect);
+        for road in roads {
+            sink.take(road);
         }
-        let roads = assembled.roads.len() as u64;
-        summary.roads += roads;
-        *(if roads > 0 { &mut summary.road_ways } else { &mut summary.left_out.without_line }) += 1;
-        assembled.defects.into_iter().for_each(&mut *on_defect);
-        assembled.roads.into_iter().for_each(|road| sink.take(road));
     };
     hand_out(reading, (&mut ways, ways_count), &mut stops, sink, take)?;
     sink.end(summary);

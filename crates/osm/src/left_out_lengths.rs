@@ -14,7 +14,7 @@ use crate::{
     assemble::length_um,
     failed::Failed,
     id_index::IdIndex,
-    nodes::{NodeIds, NodePlaces},
+    nodes::NodePlaces,
     reading::ExtractReading,
     records::SoughtId,
     spool::{Spool, damaged},
@@ -57,14 +57,14 @@ impl<'a> LeftOutNodes<'a> {
 pub(crate) fn left_out_lengths(
     reading: &ExtractReading<'_>,
     ways: Spool<'_>,
-    ids: &NodeIds,
+    ids: &[i64],
     places: &NodePlaces,
 ) -> Result<Lengths, Failed> {
     const WAYS_PER_TASK: usize = 256;
     const BATCH_BYTES: usize = 1 << 20;
     let mut ways = ways.read();
     let mut lengths = Lengths::new();
-    let index = IdIndex::new(ids.ids());
+    let index = IdIndex::new(ids);
     let (mut bytes, mut own): (Vec<u8>, Vec<Range<usize>>) = Default::default();
     loop {
         reading.check_stop()?;

@@ -85,15 +85,13 @@ mod text;
 mod way_bytes;
 mod way_facts;
 
-mod area_loss;
 mod defect;
 mod error;
 mod failed;
 mod kept_error;
-mod line_loss;
+mod losses;
 mod summary;
 
-pub use area_loss::AreaLoss;
 pub use areas::{AreaSummary, KeptAreas, LayerArea};
 pub use defect::ExtractDefect;
 pub use error::ReadOsmError;
@@ -101,8 +99,8 @@ pub use header_bounds::header_bounds_deg;
 pub use kept_error::KeptError;
 pub use layer_sink::LayerSink;
 pub use layers::{LayerReceiver, Layers};
-pub use line_loss::LineLoss;
 pub use lines::{LayerLine, LineSummary};
+pub use losses::{AreaLoss, LineLoss};
 pub use points::{LayerPoint, PointSummary};
 pub use read_extract::{read_extract, read_extract_from};
 pub use read_request::{OnProgress, ReadRequest, RingArea, ToLattice};

@@ -9,9 +9,6 @@
 mod hand_out_lines;
 mod layer_line;
 mod line_objects;
-mod make_lines;
-mod summary;
 
 pub(crate) use hand_out_lines::hand_out_lines;
-pub use layer_line::LayerLine;
-pub use summary::LineSummary;
+pub use layer_line::{LayerLine, LineSummary};

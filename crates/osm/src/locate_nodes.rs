@@ -17,8 +17,9 @@ use crate::{
     failed::Failed,
     id_range::IdRange,
     left_out_lengths::{LeftOutNodes, Lengths, left_out_lengths},
+    location::MISSING,
     looked::NodeBlob,
-    nodes::{FoundNode, NodeIds, NodePlaces, Precedence},
+    nodes::{FoundNode, NodePlaces, Precedence, listed_nodes},
     reading::{ExtractReading, ReadingStep},
     records::{Located, Mention, SoughtId, Stop, WayUse},
     spool::{Spool, damaged},
@@ -85,7 +86,7 @@ pub(crate) trait NodeSource {
     fn read(
         &mut self,
         reading: &ExtractReading<'_>,
-        ids: &NodeIds,
+        ids: &[i64],
         share: &ShareOfNodes,
         places: &mut NodePlaces,
     ) -> Result<(), Failed>;
@@ -127,7 +128,7 @@ pub(crate) fn locate_nodes<'a>(
     let mut located = Ahead::new(located);
     let mut done = 0;
     while let Some(chunk) = Chunk::gather(reading, &mut asking, all - done)? {
-        let mut places = NodePlaces::new(chunk.ids.ids().len(), reading.precedence());
+        let mut places = NodePlaces::new(chunk.ids.len(), reading.precedence());
         let own = chunk.named_count;
         is_read = true;
         source.read(reading, &chunk.ids, &ShareOfNodes { before: done, own, all }, &mut places)?;
@@ -141,9 +142,10 @@ pub(crate) fn locate_nodes<'a>(
             let is_needed = |&number: &usize| asked.named[number].is_needed();
             let needed = (0..asked.named.len()).filter(is_needed);
             nodes.needed += needed.clone().count() as u64;
-            nodes.missing += needed.filter(|&number| places.is_missing(number)).count() as u64;
+            nodes.missing +=
+                needed.filter(|&number| places.location(number) == MISSING).count() as u64;
             for number in places.conflicts().filter(is_needed) {
-                let node_id = chunk.ids.ids()[number];
+                let node_id = chunk.ids[number];
                 on_defect(layer, ExtractDefect::ConflictingNode { node_id });
             }
             asked.answer(reading, places, &mut nodes.stops)?;
@@ -156,12 +158,12 @@ pub(crate) fn locate_nodes<'a>(
     if !is_read {
         // Blobs that contain nodes are checked and counted even if no way needs a node.
         let share = ShareOfNodes { before: 0, own: 0, all: 0 };
-        let (ids, mut none) = (NodeIds::new(Vec::new()), NodePlaces::new(0, reading.precedence()));
-        source.read(reading, &ids, &share, &mut none)?;
+        let mut none = NodePlaces::new(0, reading.precedence());
+        source.read(reading, &[], &share, &mut none)?;
         // Ways without nodes count, too.
         for (nodes, left_out) in nodes.iter_mut().zip(&mut left_out) {
             if let Some(ways) = left_out.take() {
-                nodes.lengths = left_out_lengths(reading, ways, &ids, &none)?;
+                nodes.lengths = left_out_lengths(reading, ways, &[], &none)?;
             }
         }
     }
@@ -201,11 +203,11 @@ pub(crate) fn read_places<R: Read + Seek>(
     reading: &ExtractReading<'_>,
     file: &mut Extracts<R>,
     node_blobs: &[NodeBlob],
-    ids: &NodeIds,
+    ids: &[i64],
     on_bytes: &dyn Fn(u64, u64),
     take: &mut dyn FnMut(FoundNode),
 ) -> Result<u64, Failed> {
-    let (Some(&least), Some(&most)) = (ids.ids().first(), ids.ids().last()) else { return Ok(0) };
+    let (Some(&least), Some(&most)) = (ids.first(), ids.last()) else { return Ok(0) };
     let own = IdRange { least, most };
     let numbers: Vec<usize> =
         node_blobs.iter().filter(|blob| blob.ids.meets(own)).map(|blob| blob.number).collect();
@@ -215,7 +217,7 @@ pub(crate) fn read_places<R: Read + Seek>(
         Ok(())
     };
     let scan = |block: Vec<u8>, most_bytes| {
-        Ok(ids.scan(&AuditedBlock::new(&block), most_bytes).ok_or(TOO_MUCH_FOUND)?)
+        Ok(listed_nodes(ids, &AuditedBlock::new(&block), most_bytes).ok_or(TOO_MUCH_FOUND)?)
     };
     file.for_each_block(reading, &numbers, &|bytes| on_bytes(bytes, all_bytes), scan, take)?;
     Ok(all_bytes)
@@ -257,7 +259,7 @@ impl Named {
 
 /// Some of the referenced nodes, with neighbouring ids.
 struct Chunk<'a> {
-    ids: NodeIds,
+    ids: Vec<i64>,
     layers: Vec<RequestedNodes<'a>>,
     /// The number of references to its nodes.
     named_count: u64,
@@ -311,7 +313,7 @@ impl<'a> Chunk<'a> {
             ids.push(id);
         }
         let is_any = !ids.is_empty();
-        Ok(is_any.then(|| Self { ids: NodeIds::new(ids), layers, named_count: count }))
+        Ok(is_any.then_some(Self { ids, layers, named_count: count }))
     }
 
     /// Applies the positions that ways give for nodes of the chunk, in the order of the file, to
@@ -325,12 +327,12 @@ impl<'a> Chunk<'a> {
         let mut by_layer: Vec<Option<NodePlaces>> = self.layers.iter().map(|_| None).collect();
         let mut count = 0;
         while let Some(next) = located.peek()? {
-            if self.ids.ids().last().is_some_and(|&last| next.node_id > last) {
+            if self.ids.last().is_some_and(|&last| next.node_id > last) {
                 break;
             }
             // The node may be missing: a duplicate that was skipped referenced it.
-            if let (Some(number), Some(own)) =
-                (self.ids.number(next.node_id), by_layer.get_mut(usize::from(next.layer)))
+            if let (Ok(number), Some(own)) =
+                (self.ids.binary_search(&next.node_id), by_layer.get_mut(usize::from(next.layer)))
             {
                 own.get_or_insert_with(|| places.clone()).set(number, next.location, 0);
             }

@@ -8,12 +8,6 @@ use crate::{
     search::IdSearch,
 };
 
-/// Node ids in ascending order. The number of a node is its index here.
-#[derive(Debug)]
-pub(crate) struct NodeIds {
-    ids: Vec<i64>,
-}
-
 /// Positions by node number. They are separate from the ids, so that several threads can look up
 /// ids while one thread writes positions.
 #[derive(Debug, Clone)]
@@ -37,42 +31,25 @@ pub(crate) enum Precedence {
 /// A node that was found: its number, its position, and its version or 0.
 pub(crate) type FoundNode = (usize, Location, i32);
 
-impl NodeIds {
-    /// Creates the list from `ids`, which ascend without duplicates.
-    pub(crate) fn new(ids: Vec<i64>) -> Self {
-        Self { ids }
-    }
-
-    /// Returns the listed nodes of a block, by number, with their positions; `None` if they take
-    /// more than `most_bytes`.
-    pub(crate) fn scan(&self, block: &AuditedBlock<'_>, most_bytes: u64) -> Option<Vec<FoundNode>> {
-        let mut found = Vec::new();
-        let mut search = self.search();
-        let end = block.try_each_node(
-            |id| search.find(id),
-            |number, node| {
-                let location = location_from_nano(node.lon_nano_deg, node.lat_nano_deg);
-                found.push((number, location, node.version));
-                let is_too_much = size_of_val(found.as_slice()) as u64 > most_bytes;
-                if is_too_much { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-            },
-        );
-        end.is_continue().then_some(found)
-    }
-
-    /// Returns the number of a node.
-    pub(crate) fn number(&self, id: i64) -> Option<usize> {
-        self.ids.binary_search(&id).ok()
-    }
-
-    pub(crate) fn ids(&self) -> &[i64] {
-        &self.ids
-    }
-
-    /// Returns a search for the numbers of nodes whose ids mostly ascend.
-    pub(crate) fn search(&self) -> IdSearch<'_> {
-        IdSearch::new(&self.ids)
-    }
+/// Returns the nodes of a block that `ids` lists in ascending order, with their positions. The
+/// number of a node is its index in the list. `None` if they take more than `most_bytes`.
+pub(crate) fn listed_nodes(
+    ids: &[i64],
+    block: &AuditedBlock<'_>,
+    most_bytes: u64,
+) -> Option<Vec<FoundNode>> {
+    let mut found = Vec::new();
+    let mut search = IdSearch::new(ids);
+    let end = block.try_each_node(
+        |id| search.find(id),
+        |number, node| {
+            let location = location_from_nano(node.lon_nano_deg, node.lat_nano_deg);
+            found.push((number, location, node.version));
+            let is_too_much = size_of_val(found.as_slice()) as u64 > most_bytes;
+            if is_too_much { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        },
+    );
+    end.is_continue().then_some(found)
 }
 
 impl NodePlaces {
@@ -129,11 +106,6 @@ impl NodePlaces {
 
     pub(crate) fn location(&self, number: usize) -> Location {
         self.locations[number]
-    }
-
-    /// Whether a node has no position.
-    pub(crate) fn is_missing(&self, number: usize) -> bool {
-        self.locations[number] == MISSING
     }
 
     /// Returns the numbers of nodes with several positions.

@@ -12,7 +12,7 @@ use crate::{
     failed::Failed,
     locate_nodes::{NodeSource, ShareOfNodes, read_places, tell_nodes},
     looked::{BlockSurvey, LookedAt},
-    nodes::{FoundNode, NodeIds, NodePlaces},
+    nodes::{FoundNode, NodePlaces, listed_nodes},
     outlines::found_nodes::FoundNodes,
     reading::ExtractReading,
 };
@@ -36,7 +36,7 @@ impl<R: Read + Seek> NodesLast<'_, '_, R> {
     fn read_first(
         &mut self,
         reading: &ExtractReading<'_>,
-        ids: &NodeIds,
+        ids: &[i64],
         on_bytes: &dyn Fn(u64),
         take: &mut dyn FnMut(FoundNode),
     ) -> Result<(), Failed> {
@@ -44,7 +44,7 @@ impl<R: Read + Seek> NodesLast<'_, '_, R> {
         let points = self.points.scanned();
         let scan = |block: Vec<u8>, most_bytes| {
             let block = AuditedBlock::new(&block);
-            let found = ids.scan(&block, most_bytes).ok_or(TOO_MUCH_FOUND)?;
+            let found = listed_nodes(ids, &block, most_bytes).ok_or(TOO_MUCH_FOUND)?;
             let points = points.scan(&block, most_bytes)?;
             Ok((BlockSurvey::scan(&block), block.has_others_than_nodes(), found, points))
         };
@@ -70,7 +70,7 @@ impl<R: Read + Seek> NodeSource for NodesLast<'_, '_, R> {
     fn read(
         &mut self,
         reading: &ExtractReading<'_>,
-        ids: &NodeIds,
+        ids: &[i64],
         share: &ShareOfNodes,
         places: &mut NodePlaces,
     ) -> Result<(), Failed> {

@@ -10,7 +10,7 @@ use crate::{
     left_out_lengths::LeftOutNodes,
     locate_nodes::NodeQuestions,
     reading::ExtractReading,
-    records::{Mention, WayRecord, WayUse},
+    records::{Mention, Origin, WayRecord, WayUse},
     spool::{Spool, SpoolReader},
     versions::{known_version, two_versions},
     way_bytes::{is_carrier, is_left_out, is_railway, take_node_ids},
@@ -76,17 +76,21 @@ pub(crate) fn number_nodes<'a>(
         // Without several extracts, nothing is counted per way.
         let kind = way.take_apart(&mut node_ids)?;
         if !way.facts.is_empty() {
-            if let Some(newest) = newest.as_mut().filter(|newest| newest.way.way_id == way.way_id) {
-                let is_told = !is_railway(kind);
-                if newest.is_instead_of(&way, &mut |defect| {
-                    if is_told {
-                        on_defect(defect);
+            if let Some(newest) = newest.as_mut().filter(|newest| newest.way_id == way.way_id) {
+                // A record of the way from another extract does not count; that it differs is
+                // reported once.
+                if way.origin.file != newest.origin.file {
+                    let differs =
+                        (way.origin.version, &way.bytes) != (newest.origin.version, &newest.bytes);
+                    let is_new = differs && !std::mem::replace(&mut newest.is_told, true);
+                    if is_new && !is_railway(kind) {
+                        on_defect(ExtractDefect::ConflictingWay { way_id: way.way_id });
                     }
-                }) {
                     continue;
                 }
             } else {
-                newest = Some(Newest::from_way(&way));
+                let &WayRecord { way_id, origin, ref bytes, .. } = &way;
+                newest = Some(Newest { way_id, origin, bytes: bytes.clone(), is_told: false });
             }
             let facts = WayFacts::of_bytes(&way.facts)?;
             add_summary(summary, facts.counts);
@@ -136,33 +140,10 @@ pub(crate) fn number_nodes<'a>(
 
 /// The newest version of a way that is in several extracts; the way's records begin with it.
 struct Newest {
-    way: WayRecord,
+    way_id: i64,
+    origin: Origin,
+    bytes: Box<[u8]>,
     is_told: bool,
-}
-
-impl Newest {
-    fn from_way(way: &WayRecord) -> Self {
-        let &WayRecord { way_id, origin, ref bytes, .. } = way;
-        let way = WayRecord { way_id, origin, bytes: bytes.clone(), facts: Box::default() };
-        Self { way, is_told: false }
-    }
-
-    /// Whether another record of the way is from another extract, and therefore does not count.
-    /// Reports once if it differs.
-    fn is_instead_of(
-        &mut self,
-        other: &WayRecord,
-        on_defect: &mut dyn FnMut(ExtractDefect),
-    ) -> bool {
-        let Self { way, is_told } = self;
-        let is_of_other = other.origin.file != way.origin.file;
-        let differs = (other.origin.version, &other.bytes) != (way.origin.version, &way.bytes);
-        if is_of_other && differs && !*is_told {
-            *is_told = true;
-            on_defect(ExtractDefect::ConflictingWay { way_id: way.way_id });
-        }
-        is_of_other
-    }
 }
 
 impl WayRecord {

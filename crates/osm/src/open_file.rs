@@ -2,7 +2,7 @@
 
 use std::{
     fs::{self, File},
-    io::{self, Read, Seek, SeekFrom},
+    io::{self, Read, Seek},
     path::Path,
 };
 
@@ -11,18 +11,18 @@ use corniche_objects::{ObjectAddress, ObjectError, ObjectReader, Storage, Storag
 use crate::ReadOsmError;
 
 /// An open extract: a file, or an object of which only the requested ranges are fetched.
-#[derive(Debug)]
-pub(crate) enum Extract {
-    File(File),
-    Object(Box<ObjectReader>),
-}
+pub(crate) type Extract = Box<dyn ExtractSource>;
+
+/// What can be read in any order.
+pub(crate) trait ExtractSource: Read + Seek {}
+
+impl<T: Read + Seek> ExtractSource for T {}
 
 /// Opens an extract: a file, or `/vsis3/BUCKET/NAME`, which is GDAL's name for an object.
 pub(crate) fn open_file(path: &Path) -> Result<Extract, ReadOsmError> {
     let not_open = |source| ReadOsmError::Open { path: path.to_path_buf(), source };
     if let Some(name) = path.to_str().filter(|name| name.starts_with("/vsi") && !path.exists()) {
-        let object = open_object(name).map_err(not_open)?;
-        return Ok(Extract::Object(Box::new(object)));
+        return Ok(Box::new(open_object(name).map_err(not_open)?));
     }
     // Opening a pipe would block until something is written to it.
     let kind = fs::metadata(path).map_err(not_open)?.file_type();
@@ -30,7 +30,7 @@ pub(crate) fn open_file(path: &Path) -> Result<Extract, ReadOsmError> {
         let found = if kind.is_dir() { "a folder" } else { "a pipe or a device" };
         return Err(ReadOsmError::NotAFile { path: path.to_path_buf(), found });
     }
-    Ok(Extract::File(File::open(path).map_err(not_open)?))
+    Ok(Box::new(File::open(path).map_err(not_open)?))
 }
 
 fn open_object(name: &str) -> io::Result<ObjectReader> {
@@ -47,22 +47,4 @@ fn open_object(name: &str) -> io::Result<ObjectReader> {
         ObjectReader::open(storage.bucket(&bucket)?, &key, None)
     };
     open().map_err(|error: ObjectError| error.into())
-}
-
-impl Read for Extract {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        match self {
-            Self::File(file) => file.read(buffer),
-            Self::Object(object) => object.read(buffer),
-        }
-    }
-}
-
-impl Seek for Extract {
-    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        match self {
-            Self::File(file) => file.seek(to),
-            Self::Object(object) => object.seek(to),
-        }
-    }
 }

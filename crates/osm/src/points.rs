@@ -9,8 +9,6 @@
 mod hand_out_points;
 mod isolation;
 mod layer_point;
-mod summary;
 
 pub(crate) use hand_out_points::hand_out_points;
-pub use layer_point::LayerPoint;
-pub use summary::PointSummary;
+pub use layer_point::{LayerPoint, PointSummary};

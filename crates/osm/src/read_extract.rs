@@ -179,15 +179,13 @@ fn read_all<R: Read + Seek>(
         layers: wanted.count(),
     };
     let order = file.seemingly_sorted(!wanted.outlines.is_empty());
-    let in_order = if order.is_none() {
-        None
-    } else {
-        LayerObjects::read(&reading, &mut file, order, &wanted)?
-    };
-    let found = match in_order {
-        Some(found) => Some(found),
-        None => LayerObjects::read(&reading, &mut file, BlobOrder::NONE, &wanted)?,
-    };
+    let mut found = None;
+    if order != BlobOrder::NONE {
+        found = LayerObjects::read(&reading, &mut file, order, &wanted)?;
+    }
+    if found.is_none() {
+        found = LayerObjects::read(&reading, &mut file, BlobOrder::NONE, &wanted)?;
+    }
     // If nothing is assumed to be sorted, nothing can be out of order.
     let Some(LayerObjects { outlines, roads }) = found else { return Ok(()) };
     for ((table, receiver), found) in layers.layers.into_iter().zip(outlines) {

@@ -99,7 +99,7 @@ pub struct LeftOut {
 
 corniche_roads::listed! {
     /// The reason why a table skips a way.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
     pub enum LeftOutReason {
         /// Its class is off.
         ClassOff = LossReason::ClassOff.text(),

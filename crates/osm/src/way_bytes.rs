@@ -4,17 +4,12 @@
 //!  │ how many nodes │ their ids, as differences │ class form structure layer oneway lanes │ width │ texts │
 //! ```
 //! The texts are name, ref, surface, highway, maxspeed, `sac_scale`, tracktype.
-//! A skipped way has a mark in place of the class, then the reason and its `highway` value:
+//! A skipped way has a mark in place of the class, then its `highway` value and a record of the
+//! rest. A railway has another mark:
 //!
 //! ```text
-//!  │ how many nodes │ their ids, as differences │ 255 reason │ highway value │ structure layer railway │
-//! ```
-//! Its structure and its kind of railway are counted from 1; 0 means that the way carries nothing,
-//! and that it is no railway. A railway has another
-//! mark:
-//!
-//! ```text
-//!  │ how many nodes │ their ids, as differences │ 254 kind │ structure layer │
+//!  │ how many nodes │ their ids, as differences │ 255 │ highway value │ (reason, carrier, railway) │
+//!  │ how many nodes │ their ids, as differences │ 254 │ [`Track`] │
 //! ```
 //! Counts and lengths are varints, differences zigzag varints; the width is a varint of
 //! millimetres, 0 for none; the six others are a byte each.
@@ -22,6 +17,8 @@
 use std::io;
 
 use corniche_roads::{FunctionalRoadClass, Railway, RoadAttributes, Structure};
+use corniche_store::{append_record, take_record};
+use serde::{Deserialize, Serialize};
 
 use crate::{
     LeftOutReason,
@@ -35,8 +32,7 @@ pub(crate) fn way_bytes(
     class: FunctionalRoadClass,
     attributes: &RoadAttributes,
 ) -> Box<[u8]> {
-    let mut bytes = Vec::with_capacity(2 * node_ids.len() + attributes.text_bytes() + 32);
-    push_node_ids(&mut bytes, node_ids);
+    let mut bytes = with_node_ids(node_ids, attributes.text_bytes() + 32);
     bytes.push(class.number());
     attributes.push_to(&mut bytes);
     bytes.into()
@@ -56,7 +52,7 @@ pub(crate) enum WayKind {
 }
 
 /// A railway: bridges and tunnels cross it, and it has some itself.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Track {
     pub(crate) kind: Railway,
     pub(crate) structure: Structure,
@@ -79,30 +75,24 @@ pub(crate) struct LeftOutWay<T> {
 /// Writes the nodes of a skipped way, and the reason.
 pub(crate) fn left_out_bytes(node_ids: &[i64], way: LeftOutWay<&str>) -> Box<[u8]> {
     let LeftOutWay { reason, highway, carrier, railway } = way;
-    let mut bytes = Vec::with_capacity(2 * node_ids.len() + highway.len() + 16);
-    push_node_ids(&mut bytes, node_ids);
-    bytes.extend([LEFT_OUT, reason as u8]);
+    let mut bytes = with_node_ids(node_ids, highway.len() + 16);
+    bytes.push(LEFT_OUT);
     push_bytes(&mut bytes, highway.as_bytes());
-    let (structure, layer) =
-        carrier.map_or((0, 0), |(structure, layer)| (structure as u8 + 1, layer));
-    let railway = railway.map_or(0, |kind| kind as u8 + 1);
-    bytes.extend([structure, layer.cast_unsigned(), railway]);
+    append_record(&mut bytes, (reason, carrier, railway));
     bytes.into()
 }
 
 /// Writes the nodes and properties of a railway.
 pub(crate) fn railway_bytes(node_ids: &[i64], track: Track) -> Box<[u8]> {
-    let Track { kind, structure, layer } = track;
-    let mut bytes = Vec::with_capacity(2 * node_ids.len() + 16);
-    push_node_ids(&mut bytes, node_ids);
-    bytes.extend([RAILWAY, kind as u8, structure as u8 + 1, layer.cast_unsigned()]);
+    let mut bytes = with_node_ids(node_ids, 16);
+    bytes.push(RAILWAY);
+    append_record(&mut bytes, track);
     bytes.into()
 }
 
 /// Writes the nodes of a way and its structure, which is all that layers need.
 pub(crate) fn node_bytes(node_ids: &[i64], structure: Structure) -> Box<[u8]> {
-    let mut bytes = Vec::with_capacity(2 * node_ids.len() + 16);
-    push_node_ids(&mut bytes, node_ids);
+    let mut bytes = with_node_ids(node_ids, 16);
     bytes.push(structure as u8);
     bytes.into()
 }
@@ -112,13 +102,16 @@ pub(crate) fn structure_of_layer_way(bytes: &[u8]) -> Option<Structure> {
     Structure::ALL.get(usize::from(*bytes.last()?)).copied()
 }
 
-fn push_node_ids(bytes: &mut Vec<u8>, node_ids: &[i64]) {
-    push_varint(bytes, node_ids.len() as u64);
+/// Writes node ids, with room for about `more_bytes`.
+fn with_node_ids(node_ids: &[i64], more_bytes: usize) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(2 * node_ids.len() + more_bytes);
+    push_varint(&mut bytes, node_ids.len() as u64);
     let mut last = 0_i64;
     for &id in node_ids {
-        push_signed(bytes, id.wrapping_sub(last));
+        push_signed(&mut bytes, id.wrapping_sub(last));
         last = id;
     }
+    bytes
 }
 
 /// Whether the bytes after the nodes belong to a skipped way.
@@ -155,10 +148,8 @@ pub(crate) fn take_way(bytes: &mut &[u8]) -> Option<WayKind> {
         return Some(WayKind::LeftOut(LeftOutWay { reason, highway, carrier, railway }));
     }
     if is_railway(bytes) {
-        let [_, kind, structure, layer] = take_array(bytes)?;
-        let kind = *Railway::ALL.get(usize::from(kind))?;
-        let structure = structure_of_code(structure)?;
-        return Some(WayKind::Railway(Track { kind, structure, layer: layer.cast_signed() }));
+        let [_] = take_array(bytes)?;
+        return take_record(bytes).map(WayKind::Railway);
     }
     let [class] = take_array(bytes)?;
     let attributes = RoadAttributes::take_from(bytes)?;
@@ -167,33 +158,18 @@ pub(crate) fn take_way(bytes: &mut &[u8]) -> Option<WayKind> {
 
 /// Takes the bytes of a skipped way after its nodes.
 pub(crate) fn take_left_out<'b>(bytes: &mut &'b [u8]) -> Option<LeftOutWay<&'b str>> {
-    let [_, reason] = take_array(bytes)?;
-    let reason = *LeftOutReason::ALL.get(usize::from(reason))?;
+    let [_] = take_array(bytes)?;
     let highway = take_text(bytes)?;
-    let [structure, layer, railway] = take_array(bytes)?;
-    let railway = match railway {
-        0 => None,
-        code => Some(*Railway::ALL.get(usize::from(code) - 1)?),
-    };
-    let carrier = match structure {
-        0 => None,
-        code => Some((structure_of_code(code)?, layer.cast_signed())),
-    };
+    let (reason, carrier, railway) = take_record(bytes)?;
     Some(LeftOutWay { reason, highway, carrier, railway })
-}
-
-/// Returns a structure that is counted from 1; `None` if there is no such structure.
-fn structure_of_code(code: u8) -> Option<Structure> {
-    Structure::ALL.get(usize::from(code.checked_sub(1)?)).copied()
 }
 
 /// Whether the bytes after the nodes belong to a way that is no road here, but may carry or cross
 /// bridges and tunnels.
-pub(crate) fn is_carrier(after_nodes: &[u8]) -> bool {
-    matches!(
-        after_nodes,
-        [LEFT_OUT, .., structure, _, _] | [RAILWAY, _, structure, _] if *structure > 0
-    )
+pub(crate) fn is_carrier(mut after_nodes: &[u8]) -> bool {
+    is_railway(after_nodes)
+        || is_left_out(after_nodes)
+            && take_left_out(&mut after_nodes).is_some_and(|way| way.carrier.is_some())
 }
 
 #[cfg(test)]

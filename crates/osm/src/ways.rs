@@ -3,8 +3,8 @@
 use std::{borrow::Cow, cell::OnceCell, collections::BTreeMap};
 
 use corniche_roads::{
-    Classified, FrcTable, FunctionalRoadClass, NotARoad, Railway, RoadAttributes, attributes,
-    is_area, structure_and_layer, tags_taken_otherwise,
+    Classified, FrcTable, NotARoad, Railway, attributes, is_area, structure_and_layer, tag,
+    tags_taken_otherwise,
 };
 
 use crate::{
@@ -77,6 +77,11 @@ impl<'a> WayJudge<'a> {
         let text = self.texts.get(index)?;
         Some(self.read.get(index)?.get_or_init(|| Text::new(text)))
     }
+
+    /// Returns the tags of a way.
+    fn texts_of(&self, way: &BlockWay<'_, '_>) -> impl Iterator<Item = [&Text<'a>; 2]> {
+        way.pairs().filter_map(|[key, value]| Some([self.text(key)?, self.text(value)?]))
+    }
 }
 
 /// The memory counted for each way, besides its nodes and texts, bytes.
@@ -125,8 +130,7 @@ impl BlockWays {
         // Space for the tags of nearly every way.
         let mut tags: Vec<(&str, &str)> = Vec::with_capacity(16);
         let (mut is_damaged, mut is_cut) = (false, false);
-        for (key, value) in way.keys().zip(way.values()) {
-            let (Some(key), Some(value)) = (judge.text(key), judge.text(value)) else { continue };
+        for [key, value] in judge.texts_of(way) {
             for text in [key, value] {
                 is_damaged |= matches!(text.text, Cow::Owned(_));
                 is_cut |= text.is_cut;
@@ -146,10 +150,9 @@ impl BlockWays {
     /// Stores a way that is a railway without a `highway` tag. It is not counted, and has no
     /// defects but those of layers with railways.
     fn look_at_railway(&mut self, way: &BlockWay<'_, '_>, judge: &WayJudge<'_>) {
-        let texts = way.keys().zip(way.values());
-        let texts = texts.filter_map(|(key, value)| Some((judge.text(key)?, judge.text(value)?)));
+        let texts = judge.texts_of(way);
         let tags: Vec<(&str, &str)> =
-            texts.map(|(key, value)| (&*key.text, &*value.text)).collect();
+            texts.map(|[key, value]| (&*key.text, &*value.text)).collect();
         if let Some(kind) = Railway::from_tags(&tags) {
             let (structure, layer) = structure_and_layer(&tags);
             self.keep(way, 0, |ids| railway_bytes(ids, Track { kind, structure, layer }));
@@ -165,15 +168,20 @@ impl BlockWays {
 
     fn judge(&mut self, way: &BlockWay<'_, '_>, tags: &[(&str, &str)], table: &FrcTable) {
         let way_id = way.id;
-        let highway =
-            tags.iter().find(|(key, _)| *key == "highway").map_or("", |&(_, value)| value);
+        let highway = tag(tags, "highway").unwrap_or_default();
         self.summary.highway_ways += 1;
         let left_out = &mut self.summary.left_out;
         let classified = table.classify(tags);
         match classified {
             Classified::Road(class) => {
-                self.take(way, class, &attributes(tags));
-                self.count_tags_taken_otherwise(way_id, tags);
+                let attributes = attributes(tags);
+                let text_bytes = attributes.text_bytes();
+                self.keep(way, text_bytes, |ids| way_bytes(ids, class, &attributes));
+                for (key, value) in tags_taken_otherwise(tags) {
+                    let tag = format!("{key}={value}");
+                    *self.summary.tags_taken_otherwise.entry(tag.clone()).or_default() += 1;
+                    self.push_defect(ExtractDefect::TagTakenOtherwise { way_id, tag });
+                }
             }
             Classified::NotShown(_) => {
                 left_out.class_off += 1;
@@ -212,23 +220,6 @@ impl BlockWays {
                 self.summary.highways.insert(highway.to_owned(), HighwayCount { class, ways: 1 }),
             ),
         }
-    }
-
-    fn count_tags_taken_otherwise(&mut self, way_id: i64, tags: &[(&str, &str)]) {
-        for (key, value) in tags_taken_otherwise(tags) {
-            let tag = format!("{key}={value}");
-            *self.summary.tags_taken_otherwise.entry(tag.clone()).or_default() += 1;
-            self.push_defect(ExtractDefect::TagTakenOtherwise { way_id, tag });
-        }
-    }
-
-    fn take(
-        &mut self,
-        way: &BlockWay<'_, '_>,
-        class: FunctionalRoadClass,
-        attributes: &RoadAttributes,
-    ) {
-        self.keep(way, attributes.text_bytes(), |ids| way_bytes(ids, class, attributes));
     }
 
     /// Stores a way that is not a road here: for its length, and, if it is a road of another class

@@ -102,11 +102,10 @@ const BESIDE_BRIDGES: [&str; 2] = ["boardwalk", "low_water_crossing"];
 const BESIDE_TUNNELS: [&str; 2] = ["culvert", "building_passage"];
 
 fn structure(bridge: &str, tunnel: &str, layer: i8) -> Structure {
-    let is_bridge =
-        !matches!(bridge, "" | "no" | "false" | "0") && !BESIDE_BRIDGES.contains(&bridge);
-    let is_tunnel =
-        !matches!(tunnel, "" | "no" | "false" | "0") && !BESIDE_TUNNELS.contains(&tunnel);
-    match (is_bridge, is_tunnel) {
+    let is = |tagged: &str, beside: [&str; 2]| {
+        !["", "no", "false", "0"].contains(&tagged) && !beside.contains(&tagged)
+    };
+    match (is(bridge, BESIDE_BRIDGES), is(tunnel, BESIDE_TUNNELS)) {
         (false, false) => Structure::Ground,
         (true, true) if layer < 0 => Structure::Tunnel,
         (true, _) => Structure::Bridge,

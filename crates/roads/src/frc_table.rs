@@ -252,7 +252,8 @@ pub fn is_area(tags: &[(&str, &str)]) -> bool {
 }
 
 /// Returns the value of the first tag with this key.
-pub(crate) fn tag<'t>(tags: &[(&'t str, &'t str)], key: &str) -> Option<&'t str> {
+#[must_use]
+pub fn tag<'t>(tags: &[(&'t str, &'t str)], key: &str) -> Option<&'t str> {
     tags.iter().find(|(k, _)| *k == key).map(|&(_, value)| value)
 }
 

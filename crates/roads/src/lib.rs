@@ -26,7 +26,7 @@ mod slab_thickness;
 pub use attribute_parts::AttributeParts;
 pub use attributes::{attributes, structure_and_layer, tags_taken_otherwise};
 pub use class_filter::{ClassFilter, ClassFilterError};
-pub use frc_table::{Classified, FrcTable, FrcTableError, NotARoad, is_area, is_yes};
+pub use frc_table::{Classified, FrcTable, FrcTableError, NotARoad, is_area, is_yes, tag};
 pub use grade_limit::grade_limit;
 pub use loss_reason::LossReason;
 pub use quantities::number_and_unit;

@@ -2,30 +2,24 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Which levels of a package have relief sections.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum ReliefLevels {
-    /// No level, as in packages of the first versions.
-    #[default]
-    Off,
-    /// The finest level only.
-    Finest,
-    /// All levels.
-    Full,
+corniche_roads::listed! {
+    /// Which levels of a package have relief sections.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum ReliefLevels {
+        /// No level, as in packages of the first versions.
+        #[default]
+        Off = "off",
+        /// The finest level only.
+        Finest = "finest",
+        /// All levels.
+        Full = "full",
+    }
+    /// Its name on the command line.
+    pub fn name() -> &'static str;
 }
 
 impl ReliefLevels {
-    /// Its name on the command line.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Off => "off",
-            Self::Finest => "finest",
-            Self::Full => "full",
-        }
-    }
-
     /// Whether tiles of a level have a relief section.
     #[must_use]
     pub fn has(self, level: u8, finest_level: u8) -> bool {

@@ -1,8 +1,8 @@
 //! Mosaics: files of one grid as one raster of samples, with its rectangles, and its spacing and
 //! phase without the rounding of the program that wrote the files.
 
-use corniche_geom::{GeoTransform, Seam};
-use corniche_gis::Crs;
+use corniche_geom::{Bounds, GeoTransform, Seam};
+use corniche_gis::{Crs, CrsOperation, GridCrs};
 
 use crate::OpenDemError;
 use crate::files::source::Source;
@@ -44,15 +44,17 @@ impl SampleRect {
     }
 
     pub(crate) fn intersection(&self, other: &Self) -> Self {
-        let low = |axis: usize| self.min[axis].max(other.min[axis]);
-        let high = |axis: usize| self.max[axis].min(other.max[axis]);
-        Self { min: [low(0), low(1)], max: [high(0), high(1)] }
+        Self {
+            min: [0, 1].map(|axis| self.min[axis].max(other.min[axis])),
+            max: [0, 1].map(|axis| self.max[axis].min(other.max[axis])),
+        }
     }
 
     pub(crate) fn union(&self, other: &Self) -> Self {
-        let low = |axis: usize| self.min[axis].min(other.min[axis]);
-        let high = |axis: usize| self.max[axis].max(other.max[axis]);
-        Self { min: [low(0), low(1)], max: [high(0), high(1)] }
+        Self {
+            min: [0, 1].map(|axis| self.min[axis].min(other.min[axis])),
+            max: [0, 1].map(|axis| self.max[axis].max(other.max[axis])),
+        }
     }
 }
 
@@ -169,6 +171,11 @@ impl Mosaic {
     /// The seam of the CRS around the middle; `None` if x never repeats.
     pub(crate) fn seam(&self) -> Option<Seam> {
         self.crs.turn.map(|turn| Seam::new(self.middle()[0], turn))
+    }
+
+    /// The operation from working metres to the mosaic's CRS, around its seam.
+    pub(crate) fn crs_from_working(&self, working: &GridCrs, area_deg: Bounds) -> CrsOperation {
+        CrsOperation::out_of_working(working, &self.crs, Some(area_deg)).around(self.seam())
     }
 
     /// The samples that a position can refer to. A grid all around the earth repeats, so its

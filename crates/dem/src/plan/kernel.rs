@@ -162,8 +162,7 @@ impl Kernel {
 }
 
 fn bilinear(samples: &SampleRectangle<'_>, at: [f64; 2]) -> f64 {
-    let ([column, row], [t, s]) =
-        ([at[0], at[1]].map(|x| split(x).0), [at[0], at[1]].map(|x| split(x).1));
+    let [(column, t), (row, s)] = at.map(split);
     // A sample of weight 0 must not be used: it may be void or outside.
     let along = |row: i64| {
         let from = samples.height_m(column, row);

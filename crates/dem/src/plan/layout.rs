@@ -30,7 +30,6 @@ pub(crate) fn layout(
     dem: &Dem,
     options: &PlanOptions,
     working: GridCrs,
-    into_working: &dyn Fn(&GridCrs) -> Vec<CrsOperation>,
 ) -> Result<Layout, GridError> {
     let first = &dem.mosaics[0];
     let every = i64::from(options.cell_every.unwrap_or(1));
@@ -50,8 +49,7 @@ pub(crate) fn layout(
     if options.cell_every.is_some() {
         return Err(not_samples(first, options, &working));
     }
-    let cell = asked_or_square(dem, options, &working, into_working)?;
-    let cell = cell.fitted();
+    let cell = asked_or_square(dem, options, &working)?.fitted();
     if is_own {
         // A cell that is equal to the DEM's own, given as a number.
         let of_samples = Layout::of_samples(first, working.clone(), 1);
@@ -82,18 +80,13 @@ fn not_samples(first: &Mosaic, options: &PlanOptions, working: &GridCrs) -> Grid
 
 /// The requested cell, else a square whose side is the shorter spacing of the first mosaic's
 /// samples.
-fn asked_or_square(
-    dem: &Dem,
-    options: &PlanOptions,
-    working: &GridCrs,
-    into_working: &dyn Fn(&GridCrs) -> Vec<CrsOperation>,
-) -> Result<Cell, GridError> {
+fn asked_or_square(dem: &Dem, options: &PlanOptions, working: &GridCrs) -> Result<Cell, GridError> {
     let first = &dem.mosaics[0];
     let cell = if let Some(cell) = options.cell {
         cell
     } else {
-        let operations = into_working(working);
-        let spacing_m = spacing_m(first, working, &operations[0])?
+        let operation = CrsOperation::into_working(&first.crs, working, Some(dem.wgs84_bounds));
+        let spacing_m = spacing_m(first, working, &operation)?
             .ok_or_else(|| GridError::OutsideCrs { crs: working.crs.label.clone() })?;
         let shorter_m = spacing_m[0].min(spacing_m[1]);
         let is_turned = first.crs.is_same(&working.crs);

@@ -51,7 +51,7 @@ impl NodePositions {
     ) -> Result<Self, CrsError> {
         let scale = samples_per_node.min(1.0);
         let mut positions = Self {
-            crs_from_working: crs_from_working.around(mosaic.seam()),
+            crs_from_working,
             crs_from_sample: mosaic.crs_from_sample,
             step: 1,
             tolerance: PLAN_TOLERANCE * scale,

@@ -1,7 +1,7 @@
 //! Plans the grid of a package from a DEM and the user's options.
 
 use corniche_geom::{ClipRecord, GridFrame, NodeIndex};
-use corniche_gis::{CrsError, CrsOperation, DemProjection, GridCrs, libraries};
+use corniche_gis::{CrsError, CrsOperation, DemProjection, libraries};
 
 use crate::mosaics::mosaic::Mosaic;
 use crate::plan::clip::{self, RequestedArea};
@@ -54,15 +54,12 @@ impl Dem {
         }
         let working =
             working_crs::choose(self, options.crs.as_deref(), options.scale_latitude_deg)?;
-        let into_working = |working: &GridCrs| -> Vec<CrsOperation> {
-            let of = |mosaic: &Mosaic| {
-                CrsOperation::into_working(&mosaic.crs, working, Some(self.wgs84_bounds))
-            };
-            self.mosaics.iter().map(of).collect()
-        };
-        let layout = layout::layout(self, options, working, &into_working)?;
+        let layout = layout::layout(self, options, working)?;
         let scale = working_crs::scale(&layout.working, self)?;
-        let operations = into_working(&layout.working);
+        let into_working = |mosaic: &Mosaic| {
+            CrsOperation::into_working(&mosaic.crs, &layout.working, Some(self.wgs84_bounds))
+        };
+        let operations: Vec<CrsOperation> = self.mosaics.iter().map(into_working).collect();
         let steps: Vec<Option<[[f64; 2]; 2]>> = self
             .mosaics
             .iter()
@@ -214,7 +211,7 @@ fn method(
     if most > MAX_SAMPLES_PER_NODE {
         return Err(GridError::Downsampling { cell, samples: most, limit: MAX_SAMPLES_PER_NODE });
     }
-    let back = CrsOperation::out_of_working(&layout.working, &mosaic.crs, Some(dem.wgs84_bounds));
+    let back = mosaic.crs_from_working(&layout.working, dem.wgs84_bounds);
     let least = samples_per_node[0].min(samples_per_node[1]);
     let positions = NodePositions::new(mosaic, back, frame, nodes, least)?;
     Ok(Method::Resampled(Box::new(positions), Kernel::new(samples_per_node)))

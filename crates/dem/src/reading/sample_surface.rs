@@ -48,10 +48,7 @@ impl Dem {
     /// The surface of the DEM's samples, for lines in the working metres of a plan.
     #[must_use]
     pub fn sample_surface<'a>(&'a self, plan: &GridPlan) -> SampleSurface<'a> {
-        let operation = |mosaic: &Mosaic| {
-            CrsOperation::out_of_working(&plan.working, &mosaic.crs, Some(self.wgs84_bounds))
-                .around(mosaic.seam())
-        };
+        let operation = |mosaic: &Mosaic| mosaic.crs_from_working(&plan.working, self.wgs84_bounds);
         SampleSurface {
             dem: self,
             crs_from_working: self.mosaics.iter().map(operation).collect(),

@@ -1,7 +1,7 @@
 //! The DEM's own samples: all of them, and those that nodes use.
 
 use corniche_geom::{GridFrame, LatticeBounds, NodeIndex, NodeWindow};
-use corniche_gis::{CrsError, CrsOperation};
+use corniche_gis::CrsError;
 
 use crate::mosaics::mosaic::{Mosaic, SampleRect};
 use crate::plan::clip::needed_samples;
@@ -179,8 +179,8 @@ impl HeightReader<'_> {
         let (dem, plan) = (self.dem, self.plan);
         let mosaic = &dem.mosaics[mosaic];
         let mut at = positions_m.to_vec();
-        CrsOperation::out_of_working(&plan.working, &mosaic.crs, Some(dem.wgs84_bounds))
-            .around(mosaic.seam())
+        mosaic
+            .crs_from_working(&plan.working, dem.wgs84_bounds)
             .apply_to_pixels(&mosaic.crs_from_sample, &mut at)?;
         let mut is_open = vec![true; at.len()];
         self.look(mosaic, &at, &mut is_open)?;

@@ -6,7 +6,7 @@ use gdal::spatial_ref::SpatialRef;
 
 use crate::crs::horizontal::Crs;
 use crate::crs::vertical::VerticalCrs;
-use crate::crs::wkt::{child, children, keyword, wkt2};
+use crate::crs::wkt::{bound_system, children, keyword, wkt2};
 use crate::{CrsError, library_error};
 
 /// A horizontal system, and the vertical one that is named with it.
@@ -54,10 +54,7 @@ pub(crate) fn parts_of(reference: &SpatialRef) -> Result<Option<CrsParts>, CrsEr
 /// Whether a part of a compound system is the horizontal one.
 fn is_horizontal(wkt: &str) -> bool {
     if keyword(wkt) == "BOUNDCRS" {
-        let bound = child(wkt, &["SOURCECRS"]).map(|source| children(&source));
-        return bound
-            .and_then(|inner| inner.into_iter().next())
-            .is_some_and(|wkt| is_horizontal(&wkt));
+        return bound_system(wkt).is_some_and(|inner| is_horizontal(&inner));
     }
     ["PROJ", "GEOG", "GEOD"].iter().any(|word| keyword(wkt).starts_with(word))
 }

@@ -8,7 +8,7 @@ use gdal::errors::GdalError;
 use gdal::spatial_ref::{AxisMappingStrategy, SpatialRef};
 
 use crate::crs::cylindrical;
-use crate::crs::wkt::{child, children, keyword, wkt2};
+use crate::crs::wkt::{bound_system, children, keyword, wkt2};
 use crate::{CrsError, library_error};
 
 /// A horizontal coordinate system, stored as text: PROJ's objects belong to one thread.
@@ -139,7 +139,7 @@ impl Crs {
     /// of a polar system run south or north: their signs are 1.
     #[must_use]
     pub fn signs(&self) -> [f64; 2] {
-        let bound = child(&self.wkt, &["SOURCECRS"]).and_then(|source| children(&source).pop());
+        let bound = bound_system(&self.wkt);
         let axes: Vec<String> = children(bound.as_deref().unwrap_or(&self.wkt))
             .into_iter()
             .filter(|part| keyword(part) == "AXIS")

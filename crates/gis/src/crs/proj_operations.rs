@@ -4,7 +4,7 @@
 #![expect(unsafe_code, reason = "PROJ's list of operations has no wrapper in the gdal crate")]
 
 use std::ffi::{CStr, CString, c_char, c_double, c_int, c_void};
-use std::ptr::{NonNull, null, null_mut};
+use std::ptr::{null, null_mut};
 
 /// The selection of operations to list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,7 +46,7 @@ pub(crate) fn operations(
         let Some(context) = Owned::new(proj_context_create(), free_context) else {
             return Vec::new();
         };
-        let context = context.pointer();
+        let context = context.object;
         let _ = proj_log_level(context, SILENT);
         let systems =
             [&from, &to].map(|text| Owned::new(proj_create(context, text.as_ptr()), free));
@@ -55,7 +55,7 @@ pub(crate) fn operations(
         let Some(factory) = Owned::new(factory, proj_operation_factory_context_destroy) else {
             return Vec::new();
         };
-        let asked = factory.pointer();
+        let asked = factory.object;
         proj_operation_factory_context_set_spatial_criterion(context, asked, PARTLY_INSIDE);
         let grids = match listed {
             ListedOperations::Known => WITH_ANY_GRID,
@@ -70,12 +70,12 @@ pub(crate) fn operations(
                 context, asked, west, south, east, north,
             );
         }
-        let list = proj_create_operations(context, from.pointer(), to.pointer(), asked);
+        let list = proj_create_operations(context, from.object, to.object, asked);
         let Some(list) = Owned::new(list, proj_list_destroy) else { return Vec::new() };
-        let one = |index| Owned::new(proj_list_get(context, list.pointer(), index), free);
-        (0..proj_list_get_count(list.pointer()))
+        let one = |index| Owned::new(proj_list_get(context, list.object, index), free);
+        (0..proj_list_get_count(list.object))
             .filter_map(one)
-            .map(|operation| described(context, operation.pointer()))
+            .map(|operation| described(context, operation.object))
             .collect()
     }
 }
@@ -84,7 +84,7 @@ pub(crate) fn operations(
 ///
 /// # Safety
 /// Both must be live objects, and the operation must belong to the context.
-unsafe fn described(context: *mut Context, operation: *mut Object) -> ProjOperation {
+unsafe fn described(context: Handle, operation: Handle) -> ProjOperation {
     let mut area = [0.0; 4];
     let [west, south, east, north] = &mut area;
     let mut missing_grids = Vec::new();
@@ -130,7 +130,7 @@ unsafe fn described(context: *mut Context, operation: *mut Object) -> ProjOperat
 ///
 /// # Safety
 /// As [`described`].
-unsafe fn changes_of_datum(context: *mut Context, operation: *mut Object) -> Vec<String> {
+unsafe fn changes_of_datum(context: Handle, operation: Handle) -> Vec<String> {
     // SAFETY: as in `described`; each step is a new object, freed after use.
     unsafe {
         match proj_get_type(operation) {
@@ -139,7 +139,7 @@ unsafe fn changes_of_datum(context: *mut Context, operation: *mut Object) -> Vec
                 .filter_map(|at| {
                     Owned::new(proj_concatoperation_get_step(context, operation, at), free)
                 })
-                .flat_map(|step| changes_of_datum(context, step.pointer()))
+                .flat_map(|step| changes_of_datum(context, step.object))
                 .collect(),
             _ => vec![text(proj_get_name(operation))],
         }
@@ -159,42 +159,36 @@ unsafe fn text(of_proj: *const c_char) -> String {
 }
 
 /// An object of PROJ that is freed when dropped.
-struct Owned<T> {
-    object: NonNull<T>,
-    free: unsafe extern "C" fn(*mut T),
+struct Owned {
+    object: Handle,
+    free: unsafe extern "C" fn(Handle),
 }
 
-impl<T> Owned<T> {
-    fn new(object: *mut T, free: unsafe extern "C" fn(*mut T)) -> Option<Self> {
-        NonNull::new(object).map(|object| Self { object, free })
-    }
-
-    fn pointer(&self) -> *mut T {
-        self.object.as_ptr()
+impl Owned {
+    fn new(object: Handle, free: unsafe extern "C" fn(Handle)) -> Option<Self> {
+        (!object.is_null()).then_some(Self { object, free })
     }
 }
 
-impl<T> Drop for Owned<T> {
+impl Drop for Owned {
     fn drop(&mut self) {
         // SAFETY: the object is live, and this is its only owner.
-        unsafe { (self.free)(self.pointer()) }
+        unsafe { (self.free)(self.object) }
     }
 }
 
-unsafe extern "C" fn free(object: *mut Object) {
+unsafe extern "C" fn free(object: Handle) {
     // SAFETY: called by the owner, once. The returned pointer is null.
     unsafe { proj_destroy(object) };
 }
 
-unsafe extern "C" fn free_context(context: *mut Context) {
+unsafe extern "C" fn free_context(context: Handle) {
     // SAFETY: as in `free`.
     unsafe { proj_context_destroy(context) };
 }
 
-type Context = c_void;
-type Object = c_void;
-type Factory = c_void;
-type List = c_void;
+/// A context, an object, a factory or a list of PROJ.
+type Handle = *mut c_void;
 
 /// `PJ_LOG_NONE`.
 const SILENT: c_int = 0;
@@ -213,70 +207,56 @@ const CONCATENATED: c_int = 23;
 
 // PROJ, the same library that GDAL uses; all of these functions exist since PROJ 7.
 unsafe extern "C" {
-    fn proj_context_create() -> *mut Context;
-    fn proj_context_destroy(context: *mut Context) -> *mut Context;
-    fn proj_context_is_network_enabled(context: *mut Context) -> c_int;
-    fn proj_log_level(context: *mut Context, level: c_int) -> c_int;
-    fn proj_create(context: *mut Context, definition: *const c_char) -> *mut Object;
-    fn proj_destroy(object: *mut Object) -> *mut Object;
-    fn proj_get_type(object: *const Object) -> c_int;
-    fn proj_get_name(object: *const Object) -> *const c_char;
+    fn proj_context_create() -> Handle;
+    fn proj_context_destroy(context: Handle) -> Handle;
+    fn proj_context_is_network_enabled(context: Handle) -> c_int;
+    fn proj_log_level(context: Handle, level: c_int) -> c_int;
+    fn proj_create(context: Handle, definition: *const c_char) -> Handle;
+    fn proj_destroy(object: Handle) -> Handle;
+    fn proj_get_type(object: Handle) -> c_int;
+    fn proj_get_name(object: Handle) -> *const c_char;
     fn proj_get_area_of_use(
-        context: *mut Context,
-        object: *const Object,
+        context: Handle,
+        object: Handle,
         west: *mut c_double,
         south: *mut c_double,
         east: *mut c_double,
         north: *mut c_double,
         name: *mut *const c_char,
     ) -> c_int;
-    fn proj_create_operation_factory_context(
-        context: *mut Context,
-        authority: *const c_char,
-    ) -> *mut Factory;
-    fn proj_operation_factory_context_destroy(factory: *mut Factory);
+    fn proj_create_operation_factory_context(context: Handle, authority: *const c_char) -> Handle;
+    fn proj_operation_factory_context_destroy(factory: Handle);
     fn proj_operation_factory_context_set_spatial_criterion(
-        context: *mut Context,
-        factory: *mut Factory,
+        context: Handle,
+        factory: Handle,
         criterion: c_int,
     );
     fn proj_operation_factory_context_set_grid_availability_use(
-        context: *mut Context,
-        factory: *mut Factory,
+        context: Handle,
+        factory: Handle,
         grids: c_int,
     );
     fn proj_operation_factory_context_set_area_of_interest(
-        context: *mut Context,
-        factory: *mut Factory,
+        context: Handle,
+        factory: Handle,
         west: c_double,
         south: c_double,
         east: c_double,
         north: c_double,
     );
-    fn proj_create_operations(
-        context: *mut Context,
-        from: *const Object,
-        to: *const Object,
-        factory: *const Factory,
-    ) -> *mut List;
-    fn proj_list_get_count(list: *const List) -> c_int;
-    fn proj_list_get(context: *mut Context, list: *const List, index: c_int) -> *mut Object;
-    fn proj_list_destroy(list: *mut List);
-    fn proj_concatoperation_get_step_count(context: *mut Context, of: *const Object) -> c_int;
-    fn proj_concatoperation_get_step(
-        context: *mut Context,
-        of: *const Object,
-        index: c_int,
-    ) -> *mut Object;
-    fn proj_coordoperation_get_accuracy(context: *mut Context, of: *const Object) -> c_double;
-    fn proj_coordoperation_has_ballpark_transformation(
-        context: *mut Context,
-        of: *const Object,
-    ) -> c_int;
-    fn proj_coordoperation_get_grid_used_count(context: *mut Context, of: *const Object) -> c_int;
+    fn proj_create_operations(context: Handle, from: Handle, to: Handle, factory: Handle)
+    -> Handle;
+    fn proj_list_get_count(list: Handle) -> c_int;
+    fn proj_list_get(context: Handle, list: Handle, index: c_int) -> Handle;
+    fn proj_list_destroy(list: Handle);
+    fn proj_concatoperation_get_step_count(context: Handle, of: Handle) -> c_int;
+    fn proj_concatoperation_get_step(context: Handle, of: Handle, index: c_int) -> Handle;
+    fn proj_coordoperation_get_accuracy(context: Handle, of: Handle) -> c_double;
+    fn proj_coordoperation_has_ballpark_transformation(context: Handle, of: Handle) -> c_int;
+    fn proj_coordoperation_get_grid_used_count(context: Handle, of: Handle) -> c_int;
     fn proj_coordoperation_get_grid_used(
-        context: *mut Context,
-        of: *const Object,
+        context: Handle,
+        of: Handle,
         index: c_int,
         short_name: *mut *const c_char,
         full_name: *mut *const c_char,

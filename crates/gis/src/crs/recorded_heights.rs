@@ -59,9 +59,7 @@ impl RecordedHeights {
     ) -> Result<Option<Self>, CrsError> {
         library_error::quiet();
         let is_meant = |found: &VerticalCrs| found.label() == datum;
-        let from = |text: &str| VerticalCrs::from_text("the package's", text).ok();
-        let of_code = |code: u16| from(&format!("EPSG:{code}"));
-        let given = named.iter().filter_map(|text| from(text));
+        let given = named.iter().filter_map(|text| known(text));
         let ellipsoidal = ELLIPSOIDAL.into_iter().filter_map(of_code);
         let vertical = VERTICAL.into_iter().flatten().filter_map(of_code);
         let Some(vertical) = given.chain(ellipsoidal).chain(vertical).find(is_meant) else {
@@ -146,12 +144,19 @@ impl RecordedHeights {
     }
 }
 
+fn known(text: &str) -> Option<VerticalCrs> {
+    VerticalCrs::from_text("the package's", text).ok()
+}
+
+fn of_code(code: u16) -> Option<VerticalCrs> {
+    known(&format!("EPSG:{code}"))
+}
+
 /// The registered system of the same datum in metres upwards, for one in feet or downwards: formats
 /// that name systems by codes, such as `GeoTIFF`, cannot express one without a code. `None` if the
 /// system itself is in metres upwards, or there is no other.
 fn registered_in_metres(vertical: &VerticalCrs) -> Option<String> {
     let datum = vertical.datum.as_ref().filter(|_| !vertical.is_plain())?;
-    let of_code = |code: u16| VerticalCrs::from_text("the package's", &format!("EPSG:{code}")).ok();
     let is_meant = |found: &VerticalCrs| found.is_plain() && found.datum.as_ref() == Some(datum);
     let found = VERTICAL.into_iter().flatten().filter_map(of_code).find(is_meant)?;
     Some(found.wkt.to_string())

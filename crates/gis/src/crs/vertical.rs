@@ -6,7 +6,9 @@ use std::sync::Arc;
 use gdal::spatial_ref::SpatialRef;
 
 use crate::crs::horizontal::Crs;
-use crate::crs::wkt::{child, children, keyword, length_unit_m, quoted, wkt2};
+use crate::crs::wkt::{
+    bound_system, child, children, keyword, length_unit_m, points_to, quoted, wkt2,
+};
 use crate::{CrsError, LibraryError, library_error};
 
 /// A vertical CRS, or the third axis of a three-dimensional one, stored as text: PROJ's objects
@@ -45,12 +47,7 @@ impl VerticalCrs {
     /// A `VERTCRS`, or a `BOUNDCRS` that binds one to a geoid grid.
     fn gravity_related(wkt: &str) -> Result<Option<Self>, CrsError> {
         let is_bound = keyword(wkt) == "BOUNDCRS";
-        let inner = if is_bound {
-            let source = child(wkt, &["SOURCECRS"]).map(|source| children(&source));
-            source.unwrap_or_default().into_iter().next().unwrap_or_default()
-        } else {
-            wkt.to_owned()
-        };
+        let inner = if is_bound { bound_system(wkt).unwrap_or_default() } else { wkt.to_owned() };
         if !["VERTCRS", "VERTICALCRS"].contains(&keyword(&inner)) {
             return Ok(None);
         }
@@ -71,7 +68,7 @@ impl VerticalCrs {
             unit_m: height_unit_m(&inner, &axis, &name)?,
             name,
             datum,
-            is_down: children(&axis).first().is_some_and(|way| way == "down"),
+            is_down: points_to(&axis, &["down"]),
             wkt: wkt.into(),
             is_ellipsoidal: false,
         }))
@@ -82,9 +79,7 @@ impl VerticalCrs {
         let axes: Vec<String> =
             children(wkt).into_iter().filter(|part| keyword(part) == "AXIS").collect();
         // A geocentric system has three axes, too, and the third one points to the pole.
-        let Some(up) = axes.get(2).filter(|axis| {
-            children(axis).first().is_some_and(|way| ["up", "down"].contains(&way.as_str()))
-        }) else {
+        let Some(up) = axes.get(2).filter(|axis| points_to(axis, &["up", "down"])) else {
             return Ok(None);
         };
         // Heights are measured from the ellipsoid, regardless of the projection.
@@ -103,7 +98,7 @@ impl VerticalCrs {
             unit_m: height_unit_m(wkt, up, &name)?,
             datum: is_named(datum).then(|| above(datum)),
             name,
-            is_down: children(up).first().is_some_and(|way| way == "down"),
+            is_down: points_to(up, &["down"]),
             wkt: wkt.into(),
             is_ellipsoidal: true,
         }))

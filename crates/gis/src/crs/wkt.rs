@@ -56,6 +56,16 @@ pub(crate) fn child(wkt: &str, keywords: &[&str]) -> Option<String> {
     children(wkt).into_iter().find(|part| part.contains('[') && keywords.contains(&keyword(part)))
 }
 
+/// The system inside a bound one, which `BOUNDCRS` binds to another by a transformation.
+pub(crate) fn bound_system(wkt: &str) -> Option<String> {
+    children(&child(wkt, &["SOURCECRS"])?).into_iter().next()
+}
+
+/// Whether the axis points this way.
+pub(crate) fn points_to(axis: &str, ways: &[&str]) -> bool {
+    children(axis).first().is_some_and(|way| ways.contains(&way.as_str()))
+}
+
 /// The definition as WKT2; the object stays on this thread.
 pub(crate) fn wkt2(reference: &SpatialRef) -> Result<String, GdalError> {
     const FORMAT: &str = "OSR_WKT_FORMAT";

@@ -2,7 +2,10 @@
 
 use corniche_store::{Sorter, take_record};
 
-use super::{layer_area::LayerArea, make_areas::make_areas, summary::AreaSummary};
+use super::{
+    layer_area::{AreaSummary, LayerArea},
+    make_areas::make_areas,
+};
 use crate::{
     AreaLoss, ExtractDefect,
     failed::Failed,
@@ -10,7 +13,7 @@ use crate::{
     outlines::{
         found::OutlineObjects,
         located_ways::LocatedWays,
-        records::{MemberRecord, OutlineLine, OutlineWayRecord},
+        records::{MemberRecord, OutlinePoints, OutlineWayRecord},
     },
     reading::ExtractReading,
     spool::SpoolReader,
@@ -66,8 +69,8 @@ fn hand_parts<'a>(
         reading.check_stop_at(count)?;
         count += 1;
         let line = match located.find(way_id)? {
-            Some(way) => OutlineLine::from_locations(way.places.clone()),
-            None => OutlineLine::NoWay,
+            Some(way) => OutlinePoints::from_locations(&way.places),
+            None => Err(AreaLoss::MissingWays),
         };
         parts.push(OutlineWayRecord { object_number, member, line })?;
     }

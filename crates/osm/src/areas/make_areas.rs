@@ -8,7 +8,10 @@ use corniche_layers::OsmObject;
 use corniche_store::{Sorted, take_record};
 use rayon::prelude::*;
 
-use super::{layer_area::LayerArea, over_seam, summary::AreaSummary};
+use super::{
+    layer_area::{AreaSummary, LayerArea},
+    over_seam,
+};
 use crate::{
     AreaLoss, ExtractDefect,
     ahead::Ahead,
@@ -121,18 +124,15 @@ fn make(
     let mut defects = Vec::new();
     let lines =
         if known.is_coastline { coastlines(object.id(), parts, placing) } else { Ok(Vec::new()) };
-    let (coastlines, failed) = match lines {
-        Ok(lines) => (lines, None),
-        Err(loss) => (Vec::new(), Some(loss)),
-    };
-    let area = match (known.class, failed) {
+    let area = match (known.class, &lines) {
         (Some(class), _) => try_making((object, class), parts, placing, &mut defects).map(Some),
-        (None, Some(loss)) => Err(loss),
-        (None, None) => Ok(None),
+        (None, &Err(loss)) => Err(loss),
+        (None, Ok(_)) => Ok(None),
     };
     if let Err(loss) = area {
         defects.push(ExtractDefect::LostArea { object, loss });
     }
+    let coastlines = lines.unwrap_or_default();
     MadeArea { area, values: known.values, coastlines, defects }
 }
 

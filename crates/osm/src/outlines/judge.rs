@@ -73,12 +73,7 @@ impl<'a> OutlineJudge<'a> {
         if !self.wanted.has_spans() {
             return Structure::Ground;
         }
-        let texts = way.keys().zip(way.values());
-        let texts: Vec<_> =
-            texts.map(|pair| <[usize; 2]>::from(pair).map(|at| self.text(at))).collect();
-        let tags: Vec<(&str, &str)> =
-            texts.iter().map(|[key, value]| (&*key.text, &*value.text)).collect();
-        structure_and_layer(&tags).0
+        structure_and_layer(&self.tags(way.pairs()).plain()).0
     }
 
     /// Returns the text with this number. The block was checked: every tag is in its table.
@@ -88,10 +83,7 @@ impl<'a> OutlineJudge<'a> {
 
     /// Returns the tags of an object, which are given by the numbers of their texts.
     fn tags(&self, pairs: impl Iterator<Item = [usize; 2]>) -> Tags<'a> {
-        let texts = pairs.map(|pair| pair.map(|index| self.text(index))).collect();
-        let mut tags = Tags { texts, class: None };
-        tags.class = self.wanted.classify(&tags.plain());
-        tags
+        Tags(pairs.map(|pair| pair.map(|index| self.text(index))).collect())
     }
 }
 
@@ -105,11 +97,13 @@ impl OfBlock {
         if !judge.wanted.has_ways() || !judge.is_any_key(way.keys()) {
             return false;
         }
-        let tags = judge.tags(way.keys().zip(way.values()).map(|(key, value)| [key, value]));
+        let tags = judge.tags(way.pairs());
         let wanted = judge.wanted;
         // Closed ways may be lines, such as hedges around a field, but the tags of the table are
         // tags of areas.
-        let mut class = tags.class.filter(|_| wanted.has_open_ways() || !tags.is("area", "no"));
+        let mut class = wanted
+            .classify(&tags.plain())
+            .filter(|_| wanted.has_open_ways() || !tags.is("area", "no"));
         let is_open = || way.refs().count() < LEAST_REFS || way.refs().next() != way.refs().last();
         if class.is_some() && !wanted.has_open_ways() && is_open() {
             self.open_ways.push(way.id);
@@ -156,7 +150,8 @@ impl OfBlock {
         }
         let tags = judge.tags(pairs);
         let kind = tags.value("type").unwrap_or_default();
-        let Some(class) = tags.class.filter(|_| judge.wanted.is_relation_type(kind)) else {
+        let class = judge.wanted.classify(&tags.plain());
+        let Some(class) = class.filter(|_| judge.wanted.is_relation_type(kind)) else {
             return;
         };
         let role = |role: i32| {
@@ -185,11 +180,12 @@ impl OfBlock {
         judge: &OutlineJudge<'_>,
     ) {
         let tags = judge.tags(pairs.iter().copied());
-        if tags.class.is_none() {
+        let class = judge.wanted.classify(&tags.plain());
+        if class.is_none() {
             return;
         }
         let what = (OsmObject::Node(node.id), node.version);
-        self.push(what, (tags.class, false), (&tags, judge.wanted), Box::default());
+        self.push(what, (class, false), (&tags, judge.wanted), Box::default());
         if let Some(object) = self.objects.last_mut() {
             object.at = Some(location_from_nano(node.lon_nano_deg, node.lat_nano_deg));
         }
@@ -259,19 +255,15 @@ impl WantedWays<'_> {
 }
 
 /// The tags of an object that has one of the keys.
-struct Tags<'a> {
-    texts: Vec<[Text<'a>; 2]>,
-    /// The number of the object's class.
-    class: Option<u8>,
-}
+struct Tags<'a>(Vec<[Text<'a>; 2]>);
 
 impl Tags<'_> {
     fn plain(&self) -> Vec<(&str, &str)> {
-        self.texts.iter().map(|[key, value]| (&*key.text, &*value.text)).collect()
+        self.0.iter().map(|[key, value]| (&*key.text, &*value.text)).collect()
     }
 
     fn value(&self, key: &str) -> Option<&str> {
-        self.texts.iter().find(|[own, _]| own.text == key).map(|[_, value]| &*value.text)
+        self.0.iter().find(|[own, _]| own.text == key).map(|[_, value]| &*value.text)
     }
 
     fn is(&self, key: &str, value: &str) -> bool {

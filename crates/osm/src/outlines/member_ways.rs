@@ -51,14 +51,10 @@ impl Iterator for MemberWays<'_> {
 
     fn next(&mut self) -> Option<Self::Item> {
         loop {
-            let way = match self.ways.next()? {
-                Ok(way) => way,
-                Err(error) => return Some(Err(error)),
-            };
-            match self.is_member(way.way_id) {
-                Ok(true) => return Some(Ok(way)),
-                Ok(false) => {}
-                Err(error) => return Some(Err(error)),
+            let way = self.ways.next()?;
+            let member = way.and_then(|way| Ok(self.is_member(way.way_id)?.then_some(way)));
+            if let Some(found) = member.transpose() {
+                return Some(found);
             }
         }
     }

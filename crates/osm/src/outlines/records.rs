@@ -54,30 +54,22 @@ pub(crate) struct MemberRecord {
 pub(crate) struct OutlineWayRecord {
     pub(crate) object_number: u64,
     pub(crate) member: Member,
-    pub(crate) line: OutlineLine,
+    /// The positions of the way, or the reason why there is no area or line with it.
+    pub(crate) line: Result<OutlinePoints, AreaLoss>,
 }
 
-/// The positions of a way of an outline, or why they are unknown.
+/// The positions of a way of an outline in units of 1e-7 degrees.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub(crate) enum OutlineLine {
-    /// The way is missing from the file.
-    NoWay,
-    /// Some of its nodes are missing from the file.
-    NoNodes,
-    /// Some of its nodes are not on Earth.
-    OutOfRange,
-    /// The positions in units of 1e-7 degrees.
-    Points(#[serde(with = "differences")] Box<[Location]>),
-}
+pub(crate) struct OutlinePoints(#[serde(with = "differences")] pub(crate) Box<[Location]>);
 
-impl OutlineLine {
-    pub(crate) fn from_locations(locations: Vec<Location>) -> Self {
+impl OutlinePoints {
+    pub(crate) fn from_locations(locations: &[Location]) -> Result<Self, AreaLoss> {
         if locations.contains(&location::MISSING) {
-            Self::NoNodes
+            Err(AreaLoss::MissingNodes)
         } else if locations.contains(&location::OUT_OF_RANGE) {
-            Self::OutOfRange
+            Err(AreaLoss::OutOfRange)
         } else {
-            Self::Points(locations.into())
+            Ok(Self(locations.into()))
         }
     }
 }
@@ -85,12 +77,7 @@ impl OutlineLine {
 impl OutlineWayRecord {
     /// Returns the positions of its nodes, or the reason why there is no area or line with it.
     pub(crate) fn points(&self) -> Result<&[Location], AreaLoss> {
-        match &self.line {
-            OutlineLine::NoWay => Err(AreaLoss::MissingWays),
-            OutlineLine::NoNodes => Err(AreaLoss::MissingNodes),
-            OutlineLine::OutOfRange => Err(AreaLoss::OutOfRange),
-            OutlineLine::Points(points) => Ok(points),
-        }
+        self.line.as_ref().map(|points| &*points.0).map_err(|&loss| loss)
     }
 }
 

@@ -40,10 +40,10 @@ fn records_come_back() {
     comes_back(&MemberRecord { member: member(-5), object_number: 300 });
     let points = Box::new([[i32::MIN + 1, i32::MAX - 1], [0, 0], [1_800_000_000, -900_000_000]]);
     for line in [
-        OutlineLine::NoWay,
-        OutlineLine::NoNodes,
-        OutlineLine::OutOfRange,
-        OutlineLine::Points(points),
+        Err(AreaLoss::MissingWays),
+        Err(AreaLoss::MissingNodes),
+        Err(AreaLoss::OutOfRange),
+        Ok(OutlinePoints(points)),
     ] {
         comes_back(&OutlineWayRecord { object_number: 9, member: member(10), line });
     }
@@ -52,10 +52,8 @@ fn records_come_back() {
 #[test]
 fn lines_with_unknown_places_say_so() {
     let [near, missing, far] = [[1, 2], location::MISSING, location::OUT_OF_RANGE];
-    assert_eq!(OutlineLine::from_locations(vec![near, missing, far]), OutlineLine::NoNodes);
-    assert_eq!(OutlineLine::from_locations(vec![near, far]), OutlineLine::OutOfRange);
-    assert_eq!(
-        OutlineLine::from_locations(vec![near, near]),
-        OutlineLine::Points(Box::new([near, near]))
-    );
+    let line = OutlinePoints::from_locations;
+    assert_eq!(line(&[near, missing, far]), Err(AreaLoss::MissingNodes));
+    assert_eq!(line(&[near, far]), Err(AreaLoss::OutOfRange));
+    assert_eq!(line(&[near, near]), Ok(OutlinePoints(Box::new([near, near]))));
 }

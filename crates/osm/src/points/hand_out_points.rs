@@ -5,7 +5,10 @@ use corniche_geom::LatticePoint;
 use corniche_layers::LayerTable;
 use corniche_store::take_record;
 
-use super::{isolation::NodeIsolations, layer_point::LayerPoint, summary::PointSummary};
+use super::{
+    isolation::NodeIsolations,
+    layer_point::{LayerPoint, PointSummary},
+};
 use crate::{
     AreaLoss, ExtractDefect,
     areas::{AreaSummary, LayerArea, hand_out_areas},

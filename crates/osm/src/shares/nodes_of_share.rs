@@ -17,7 +17,7 @@ use crate::{
     kept_error::KeptError,
     locate_nodes::{bytes_per_node, read_places},
     looked::NodeBlob,
-    nodes::{FoundNode, NodeIds, NodePlaces},
+    nodes::{FoundNode, NodePlaces},
     open_file::Extract,
     read_request::ReadRequest,
     reading::{ExtractReading, ReadingStep},
@@ -130,7 +130,6 @@ fn keep_places(
         }
         let mut places = NodePlaces::new(ids.len(), reading.precedence());
         let mut is_seen = vec![false; ids.len()];
-        let ids = NodeIds::new(ids);
         // An unsorted file is read again for each chunk; the progress is complete when the last
         // chunk begins.
         let on_bytes =
@@ -140,14 +139,13 @@ fn keep_places(
             places.set(number, location, version);
         };
         done_bytes += read_places(reading, file, own, &ids, &on_bytes, take)?;
-        for (number, &node_id) in
-            ids.ids().iter().enumerate().filter(|&(number, _)| is_seen[number])
-        {
-            let (location, is_conflicting) =
-                (places.location(number), places.is_conflicting(number));
-            let version = places.version(number);
-            let record = PlaceRecord { node_id, location, is_conflicting, version };
-            blocks.push(&record)?;
+        for (number, &node_id) in ids.iter().enumerate().filter(|&(number, _)| is_seen[number]) {
+            blocks.push(&PlaceRecord {
+                node_id,
+                location: places.location(number),
+                is_conflicting: places.is_conflicting(number),
+                version: places.version(number),
+            })?;
         }
     }
 }

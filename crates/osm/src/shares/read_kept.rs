@@ -20,11 +20,12 @@ use crate::{
     layer_sink::LayerSink,
     locate_nodes::{NodeSource, ShareOfNodes, locate_nodes},
     looked::{append_versions, check_held},
-    nodes::{NodeIds, NodePlaces},
+    nodes::NodePlaces,
     number_nodes::number_nodes,
     read_request::ReadRequest,
     reading::{ExtractReading, LayerCount, ReadingStep},
     records::{Located, WayRecord},
+    search::IdSearch,
     share::Share,
     versions::Versions,
     ways::add_summary,
@@ -127,12 +128,12 @@ impl NodeSource for KeptNodes<'_> {
     fn read(
         &mut self,
         reading: &ExtractReading<'_>,
-        ids: &NodeIds,
+        ids: &[i64],
         share: &ShareOfNodes,
         places: &mut NodePlaces,
     ) -> Result<(), Failed> {
-        let Some(&last) = ids.ids().last() else { return Ok(()) };
-        let mut search = ids.search();
+        let Some(&last) = ids.last() else { return Ok(()) };
+        let mut search = IdSearch::new(ids);
         let mut count = 0;
         while let Some(&place) = self.places.peek()? {
             if place.node_id > last {
