@@ -135,15 +135,7 @@ impl CameraKey {
     /// Whether the key has a meaning in fly mode only.
     #[must_use]
     pub fn is_for_flying(self) -> bool {
-        matches!(
-            self,
-            Self::Ahead
-                | Self::Back
-                | Self::StrafeLeft
-                | Self::StrafeRight
-                | Self::Rise
-                | Self::Sink
-        )
+        self >= Self::Ahead
     }
 }
 

@@ -20,7 +20,7 @@ use corniche_viewer::camera::Camera;
 use glam::{DVec2, DVec3};
 
 use self::{
-    document::{Document, DocumentLine, DrawnPoint, LineOfFile},
+    document::{Document, DocumentLine, DrawnPoint},
     laid::LaidLines,
     tool::Tool,
 };
@@ -121,7 +121,7 @@ impl LineDrawing {
         for line in lines {
             let points: Option<Vec<DrawnPoint>> = line.points_deg.iter().map(point).collect();
             match points {
-                Some(points) => placed.push(LineOfFile::new(line.feature, line.is_area, points)),
+                Some(points) => placed.push(DocumentLine::new(line.feature, line.is_area, points)),
                 None => unplaced.push(line.clone()),
             }
         }

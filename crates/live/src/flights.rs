@@ -78,7 +78,7 @@ impl FlightRecorder {
 pub struct Flights {
     recorder: Option<FlightRecorder>,
     /// The flight, and the time at which it began.
-    playing: Option<(Flight, f64)>,
+    pub(crate) playing: Option<(Flight, f64)>,
 }
 
 impl Flights {
@@ -102,15 +102,6 @@ impl Flights {
         if let Some(recorder) = &mut self.recorder {
             recorder.note(now_s, pose);
         }
-    }
-
-    /// Plays a flight from now on.
-    pub(crate) fn play(&mut self, flight: Flight, now_s: f64) {
-        self.playing = Some((flight, now_s));
-    }
-
-    pub(crate) fn stop_playing(&mut self) {
-        self.playing = None;
     }
 
     /// Whether a flight is being played.

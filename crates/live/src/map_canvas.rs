@@ -256,7 +256,7 @@ impl MapCanvas {
         let (first, _) = parts.first()?;
         let size_px = first.size_px;
         let part = |(picture, columns): (&Picture, _)| (picture.begin_read(&self.gpu), columns);
-        Some(PixelReading::new(parts.into_iter().map(part).collect(), size_px))
+        Some(PixelReading { parts: parts.into_iter().map(part).collect(), size_px })
     }
 
     /// Whether the GPU times of the last frame are still pending.
@@ -285,18 +285,13 @@ impl MapCanvas {
 
 /// Pixels being read back from the GPU, of one image or of several side by side.
 pub struct PixelReading {
-    parts: Vec<(ReadBack, Range<u32>)>,
+    /// Readings of one size, each with its range of columns.
+    pub parts: Vec<(ReadBack, Range<u32>)>,
     /// Width and height, pixels.
     pub size_px: [u32; 2],
 }
 
 impl PixelReading {
-    /// Creates the reading from readings of one size, each with its range of columns.
-    #[must_use]
-    pub fn new(parts: Vec<(ReadBack, Range<u32>)>, size_px: [u32; 2]) -> Self {
-        Self { parts, size_px }
-    }
-
     /// Whether all pixels have arrived; never waits.
     ///
     /// # Errors

@@ -200,7 +200,7 @@ impl Session {
 
     /// Gives control to the user: a flight that is being played ends.
     pub fn take_over(&mut self) {
-        self.flights.stop_playing();
+        self.flights.playing = None;
         self.placed = None;
     }
 

@@ -100,7 +100,7 @@ impl Session {
         let manifest = self.manifest();
         let flight =
             Flight::of_record(&record, WorkingCrs::from_manifest(manifest), &manifest.coordinates);
-        self.flights.play(flight.map_err(|error| error.to_string())?, now_s);
+        self.flights.playing = Some((flight.map_err(|error| error.to_string())?, now_s));
         Ok(())
     }
 

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// The view of a map: at a place, from a distance in a direction, or straight from above with
 /// parallel rays.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ViewRecord {
     /// Longitude, degrees.
@@ -13,10 +13,10 @@ pub struct ViewRecord {
     /// Latitude, degrees.
     pub lat: f64,
     /// True height of the place, metres; `None` for that of the ground.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub height: Option<f64>,
     /// True metres from the eye to the place; `None` from above.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub distance: Option<f64>,
     /// Clockwise from north, degrees.
     #[serde(default)]
@@ -28,7 +28,7 @@ pub struct ViewRecord {
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub above: bool,
     /// True metres per pixel; only from above.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub pixel_m: Option<f64>,
 }
 
@@ -50,19 +50,16 @@ impl ViewRecord {
                     distance: Some(distance_m),
                     heading: orientation.heading_deg,
                     pitch: orientation.pitch_deg,
-                    above: false,
-                    pixel_m: None,
+                    ..Self::default()
                 })
             }
             CameraRequest::FromAbove { lon_deg, lat_deg, pixel_m, heading_deg } => Some(Self {
                 lon: lon_deg,
                 lat: lat_deg,
-                height: None,
-                distance: None,
                 heading: heading_deg,
-                pitch: 0.0,
                 above: true,
                 pixel_m: Some(pixel_m),
+                ..Self::default()
             }),
             _ => None,
         }

@@ -147,12 +147,12 @@ impl Canvas {
         let texture = self.gpu().texture("image of the window", self.format, size_px, 1, usage);
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         self.paint(primitives, screen, &view);
-        let all = vec![(ReadBack::begin(self.gpu(), &texture), 0..size_px[0])];
+        let parts = vec![(ReadBack::begin(self.gpu(), &texture), 0..size_px[0])];
         let has_blue_first = matches!(
             self.format,
             wgpu::TextureFormat::Bgra8Unorm | wgpu::TextureFormat::Bgra8UnormSrgb
         );
-        Snapshot { pixels: PixelReading::new(all, size_px), has_blue_first }
+        Snapshot { pixels: PixelReading { parts, size_px }, has_blue_first }
     }
 }
 

@@ -157,7 +157,8 @@ fn a_split_picture_has_both_sides() {
     let gpu = canvas.gpu();
     let [red, blue] = [wgpu::Color::RED, wgpu::Color::BLUE].map(|color| plain(gpu, color));
     let [red, blue] = [red, blue].map(|picture| picture.begin_read(gpu));
-    let both = PixelReading::new(vec![(red, 0..16), (blue, 16..SIZE_PX[0])], SIZE_PX);
+    let parts = vec![(red, 0..16), (blue, 16..SIZE_PX[0])];
+    let both = PixelReading { parts, size_px: SIZE_PX };
     let both = Snapshot { pixels: both, has_blue_first: false }.into_image(gpu).unwrap();
     for (x, y, pixel) in both.enumerate_pixels() {
         let expected = if x < 16 { [255, 0, 0, 255] } else { [0, 0, 255, 255] };

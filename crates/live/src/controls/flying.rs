@@ -16,37 +16,21 @@ const SPEED_RANGE: [f64; 2] = [1.0 / 64.0, 64.0];
 /// The state of fly mode.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Flying {
-    held: BTreeSet<CameraKey>,
-    is_fast: bool,
+    pub(crate) held: BTreeSet<CameraKey>,
+    pub(crate) is_fast: bool,
     /// The sum of the wheel's notches.
     notches: f64,
 }
 
 impl Flying {
-    pub(crate) fn press(&mut self, key: CameraKey) {
-        self.held.insert(key);
-    }
-
-    pub(crate) fn release(&mut self, key: CameraKey) {
-        self.held.remove(&key);
-    }
-
     pub(crate) fn let_go(&mut self) {
         self.held.clear();
         self.is_fast = false;
     }
 
-    pub(crate) fn set_fast(&mut self, is_fast: bool) {
-        self.is_fast = is_fast;
-    }
-
     pub(crate) fn turn_wheel(&mut self, notches: f64) {
         let most = libm::log(SPEED_RANGE[1]) / libm::log(SPEED_PER_NOTCH);
         self.notches = (self.notches + notches).clamp(-most, most);
-    }
-
-    pub(crate) fn is_moving(&self) -> bool {
-        !self.held.is_empty()
     }
 
     /// The speed along an axis. It grows with the height above the ground, which the view's focus

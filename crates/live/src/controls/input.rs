@@ -22,7 +22,7 @@ pub struct Modifiers {
     pub control: bool,
 }
 
-/// A key that moves the camera.
+/// A key that moves the camera; the keys of fly mode come last.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum CameraKey {
     /// Arrow to the left.

@@ -121,22 +121,12 @@ const TRAVEL_S: f64 = 0.8;
 /// The way from one view to another: to the first view, or to a requested place.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Travel {
-    from: CameraView,
-    to: CameraView,
-    begun_s: f64,
+    pub(crate) from: CameraView,
+    pub(crate) to: CameraView,
+    pub(crate) begun_s: f64,
 }
 
 impl Travel {
-    /// Begins at the view `from`.
-    pub(crate) fn begin(from: CameraView, to: CameraView, now_s: f64) -> Self {
-        Self { from, to, begun_s: now_s }
-    }
-
-    /// Raises the ground at the end of the way by `by_m`, in world metres.
-    pub(crate) fn raise_end(&mut self, by_m: f64) {
-        self.to.eye_in_world.z += by_m;
-    }
-
     /// The view at a time, and whether the way has ended.
     pub(crate) fn view(&self, now_s: f64, is_gradual: bool) -> (CameraView, bool) {
         let t = if is_gradual { ((now_s - self.begun_s) / TRAVEL_S).clamp(0.0, 1.0) } else { 1.0 };

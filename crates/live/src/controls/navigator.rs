@@ -133,7 +133,7 @@ impl Navigator {
         self.pending.pivot = None;
         self.sighted = None;
         if let Some(travel) = &mut self.travel {
-            travel.raise_end(ground.base_height() * (factor - 1.0));
+            travel.to.eye_in_world.z += ground.base_height() * (factor - 1.0);
         }
     }
 
@@ -141,7 +141,7 @@ impl Navigator {
     #[must_use]
     pub fn is_moving(&self) -> bool {
         self.travel.is_some()
-            || self.flying.is_moving()
+            || !self.flying.held.is_empty()
             || self.glide_m_per_s != DVec3::ZERO
             || self.pending.is_some()
     }
@@ -177,7 +177,7 @@ impl Navigator {
                 self.zoom(levels, at_px, ground);
             }
             Input::Key { key, is_down, modifiers } => self.key(key, is_down, modifiers, ground),
-            Input::Modify { modifiers } => self.flying.set_fast(modifiers.shift),
+            Input::Modify { modifiers } => self.flying.is_fast = modifiers.shift,
             Input::LetGo => {
                 self.gesture = None;
                 self.fingers = None;
@@ -215,7 +215,7 @@ impl Navigator {
                 self.travel = None;
             }
         }
-        if self.flying.is_moving() {
+        if !self.flying.held.is_empty() {
             self.seen.view.eye_in_world = self.flying.moved(&self.seen.view, dt_s);
         }
         if self.glide_m_per_s != DVec3::ZERO {
@@ -277,7 +277,7 @@ impl Navigator {
             self.seen.view = self.seen.view.in_perspective();
         }
         self.placed = Some(view);
-        self.travel = Some(Travel::begin(self.seen.view, view, now_s));
+        self.travel = Some(Travel { from: self.seen.view, to: view, begun_s: now_s });
     }
 
     fn toggle_above(&mut self, ground: &dyn KnownGround) {
@@ -408,7 +408,7 @@ impl Navigator {
         ground: &dyn KnownGround,
     ) {
         if !is_down {
-            self.flying.release(key);
+            self.flying.held.remove(&key);
             return;
         }
         let step_px = PAN_STEP_POINTS * self.pixels_per_point;
@@ -430,7 +430,7 @@ impl Navigator {
             CameraKey::Down => turn(&mut self.pending, 0.0, -1.0),
             CameraKey::ZoomIn => self.zoom(levels, self.seen.middle_px(), ground),
             CameraKey::ZoomOut => self.zoom(-levels, self.seen.middle_px(), ground),
-            _ if self.mode == Mode::Fly => self.flying.press(key),
+            _ if self.mode == Mode::Fly => drop(self.flying.held.insert(key)),
             _ => {}
         }
     }

@@ -37,6 +37,11 @@ pub(crate) struct DocumentLine {
 }
 
 impl DocumentLine {
+    /// A line without an id, of a `feature` of the file or of none.
+    pub(crate) fn new(feature: Option<usize>, is_area: bool, points: Vec<DrawnPoint>) -> Self {
+        Self { id: 0, feature, is_area, points }
+    }
+
     /// Whether the line has enough points to be saved: an area of two points is saved as a line.
     fn is_whole(&self) -> bool {
         self.points.len() >= 2
@@ -58,33 +63,13 @@ pub(crate) struct Document {
     saved: Lines,
 }
 
-/// A line of a file, before the document has given it an id.
-#[derive(Debug, Clone)]
-pub(crate) struct LineOfFile {
-    feature: Option<usize>,
-    is_area: bool,
-    points: Vec<DrawnPoint>,
-}
-
-impl LineOfFile {
-    /// The line of a `feature` of the file, or of none.
-    pub(crate) const fn new(
-        feature: Option<usize>,
-        is_area: bool,
-        points: Vec<DrawnPoint>,
-    ) -> Self {
-        Self { feature, is_area, points }
-    }
-}
-
 impl Document {
-    /// Creates the document of saved lines: the feature of the file, whether the line is an area,
-    /// and its points.
-    pub(crate) fn from_lines(lines: Vec<LineOfFile>) -> Self {
+    /// Creates the document of saved lines, and gives them ids.
+    pub(crate) fn from_lines(lines: Vec<DocumentLine>) -> Self {
         let mut document = Self::default();
-        for LineOfFile { feature, is_area, points } in lines {
+        for line in lines {
             let id = document.take_id();
-            document.lines.push(Arc::new(DocumentLine { id, feature, is_area, points }));
+            document.lines.push(Arc::new(DocumentLine { id, ..line }));
         }
         document.saved.clone_from(&document.lines);
         document
@@ -126,7 +111,7 @@ impl Document {
     /// Starts a line and returns its id.
     pub(crate) fn begin(&mut self, first: DrawnPoint) -> u64 {
         let id = self.take_id();
-        let line = DocumentLine { id, feature: None, is_area: false, points: vec![first] };
+        let line = DocumentLine { id, ..DocumentLine::new(None, false, vec![first]) };
         self.change(|lines| lines.push(Arc::new(line)));
         id
     }
@@ -158,12 +143,8 @@ impl Document {
     /// Removes a point from a line; a line without points is removed.
     pub(crate) fn remove_point(&mut self, id: u64, place: usize) {
         self.change(|lines| {
-            for line in lines.iter_mut().filter(|line| line.id == id) {
-                let mut points = line.points.clone();
-                if place < points.len() {
-                    points.remove(place);
-                }
-                *line = Arc::new(DocumentLine { points, ..DocumentLine::clone(line) });
+            for line in lines.iter_mut().filter(|line| line.id == id && place < line.points.len()) {
+                Arc::make_mut(line).points.remove(place);
             }
             lines.retain(|line| !line.points.is_empty());
         });
@@ -178,11 +159,6 @@ impl Document {
                 line.points.pop();
             }
         });
-    }
-
-    /// Replaces the points of a line.
-    pub(crate) fn replace_points(&mut self, id: u64, points: Vec<DrawnPoint>) {
-        self.change_line(id, |line| line.points = points);
     }
 
     /// Removes a line.
@@ -211,16 +187,16 @@ impl Document {
         self.next_id
     }
 
-    fn change_points(&mut self, id: u64, change: impl FnOnce(&mut Vec<DrawnPoint>)) {
+    /// Changes the points of a line.
+    pub(crate) fn change_points(&mut self, id: u64, change: impl FnOnce(&mut Vec<DrawnPoint>)) {
         self.change_line(id, |line| change(&mut line.points));
     }
 
     fn change_line(&mut self, id: u64, change: impl FnOnce(&mut DocumentLine)) {
         self.change(|lines| {
             if let Some(line) = lines.iter_mut().find(|line| line.id == id) {
-                let mut changed = DocumentLine::clone(line);
-                change(&mut changed);
-                *line = Arc::new(changed);
+                // The list of changes has the line, too, so this makes another one.
+                change(Arc::make_mut(line));
             }
         });
     }

@@ -17,7 +17,7 @@ fn places(document: &Document) -> Vec<Vec<f64>> {
 #[test]
 fn points_are_added_moved_and_removed() {
     let mut document =
-        Document::from_lines(vec![LineOfFile::new(Some(3), false, vec![point(1.0), point(2.0)])]);
+        Document::from_lines(vec![DocumentLine::new(Some(3), false, vec![point(1.0), point(2.0)])]);
     assert!(!document.is_changed(), "what was loaded is saved");
     let id = document.begin(point(5.0));
     document.insert(id, 1, point(6.0));
@@ -57,7 +57,7 @@ fn what_was_taken_back_is_not_to_be_saved() {
 #[test]
 fn a_drag_is_taken_back_at_once() {
     let mut document =
-        Document::from_lines(vec![LineOfFile::new(None, false, vec![point(1.0), point(2.0)])]);
+        Document::from_lines(vec![DocumentLine::new(None, false, vec![point(1.0), point(2.0)])]);
     let id = document.lines[0].id;
     document.shift(id, 0, point(3.0));
     document.shift_on(id, 0, point(4.0));
@@ -73,8 +73,8 @@ fn a_drag_is_taken_back_at_once() {
 #[test]
 fn lines_that_are_not_changed_stay_the_same_ones() {
     let mut document = Document::from_lines(vec![
-        LineOfFile::new(None, false, vec![point(1.0)]),
-        LineOfFile::new(None, false, vec![point(2.0), point(3.0)]),
+        DocumentLine::new(None, false, vec![point(1.0)]),
+        DocumentLine::new(None, false, vec![point(2.0), point(3.0)]),
     ]);
     let first = Arc::clone(&document.lines[0]);
     let id = document.lines[1].id;
@@ -114,7 +114,7 @@ proptest! {
 #[test]
 fn a_closed_line_becomes_an_area_without_its_point_twice() {
     let closed = vec![point(1.0), point(2.0), point(3.0), point(1.0)];
-    let mut document = Document::from_lines(vec![LineOfFile::new(None, false, closed)]);
+    let mut document = Document::from_lines(vec![DocumentLine::new(None, false, closed)]);
     let id = document.lines[0].id;
     document.turn(id);
     assert_eq!(places(&document), [vec![1.0, 2.0, 3.0]]);

@@ -4,7 +4,7 @@ use corniche_testing::package::written;
 use corniche_viewer::tiles::{MapPackage as _, PackageSource, TileSource as _};
 
 use super::*;
-use crate::drawing::document::{DrawnPoint, LineOfFile};
+use crate::drawing::document::{DocumentLine, DrawnPoint};
 
 fn source(folder: &std::path::Path) -> PackageSource {
     let path = folder.join("small.pmtiles");
@@ -29,8 +29,8 @@ fn an_edit_lays_that_line_alone() {
         point([bounds.min_x + x * bounds.width(), bounds.min_y + y * bounds.height()])
     };
     let mut document = Document::from_lines(vec![
-        LineOfFile::new(None, false, vec![at(0.1, 0.1), at(0.9, 0.9)]),
-        LineOfFile::new(None, false, vec![at(0.1, 0.9), at(0.9, 0.1)]),
+        DocumentLine::new(None, false, vec![at(0.1, 0.1), at(0.9, 0.9)]),
+        DocumentLine::new(None, false, vec![at(0.1, 0.9), at(0.9, 0.1)]),
     ]);
     let mut laid = LaidLines::default();
     let first = laid.update(&document, tiles.iter(), manifest);
@@ -68,9 +68,9 @@ fn an_area_has_an_outline_that_is_closed_and_volumes_inside() {
     };
     let square = |from: f64, to: f64| vec![at(from, from), at(to, from), at(to, to), at(from, to)];
     let mut document = Document::from_lines(vec![
-        LineOfFile::new(None, true, square(0.2, 0.5)),
-        LineOfFile::new(None, true, square(0.4, 0.8)),
-        LineOfFile::new(None, false, square(0.1, 0.3)),
+        DocumentLine::new(None, true, square(0.2, 0.5)),
+        DocumentLine::new(None, true, square(0.4, 0.8)),
+        DocumentLine::new(None, false, square(0.1, 0.3)),
     ]);
     let mut laid = LaidLines::default();
     let [(_, outlines, areas)] = &laid.update(&document, tiles.iter(), manifest).changed[..] else {
@@ -110,7 +110,7 @@ fn a_tile_inside_an_area_is_filled() {
         point([bounds.min_x + x * bounds.width(), bounds.min_y + y * bounds.height()])
     };
     let around = vec![at(-0.5, -0.5), at(1.5, -0.5), at(1.5, 1.5), at(-0.5, 1.5)];
-    let document = Document::from_lines(vec![LineOfFile::new(None, true, around)]);
+    let document = Document::from_lines(vec![DocumentLine::new(None, true, around)]);
     let mut laid = LaidLines::default();
     let relaid = laid.update(&document, tiles.iter(), manifest);
     let with_ground = tiles.iter().filter(|tile| tile.summary.is_some()).count();
@@ -141,8 +141,8 @@ fn lines_that_take_too_much_work_are_told() {
     // The line goes from west to east and back, each time elsewhere, so that it is not simplified.
     let across = |k: u32| at(f64::from(k % 2), f64::from(k * 7919 % 10_000) / 1e4);
     let mut document = Document::from_lines(vec![
-        LineOfFile::new(None, false, (0..10_000).map(across).collect()),
-        LineOfFile::new(None, false, vec![at(0.1, 0.9), at(0.9, 0.1)]),
+        DocumentLine::new(None, false, (0..10_000).map(across).collect()),
+        DocumentLine::new(None, false, vec![at(0.1, 0.9), at(0.9, 0.1)]),
     ]);
     let long = document.lines[0].id;
     let mut laid = LaidLines::default();

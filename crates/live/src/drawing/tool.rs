@@ -177,7 +177,7 @@ impl Tool {
     ) -> Result<(), Unchanged> {
         let line = self.picked_line(document)?;
         let (id, points) = (line.id, smoothed(line, place)?);
-        document.replace_points(id, points);
+        document.change_points(id, |known| *known = points);
         self.picked = None;
         Ok(())
     }

@@ -115,40 +115,38 @@ fn happening(content: &WindowContent<'_>, is_narrow: bool) -> Vec<StatusItem> {
 /// The ground under the cursor, the camera, the drawing method of roads and the time it takes.
 fn positions(settings: &MapSettings, content: &WindowContent<'_>) -> Vec<StatusItem> {
     let mut items = Vec::new();
+    let mut say = |rank, text: String| items.push(StatusItem::new(rank, text));
     match &content.cursor {
         Some(point) => {
             let [x, y, height_m] = point.at_m;
-            items.push(StatusItem::new(1, formatting::position(point.lon_lat_deg)));
-            items.push(StatusItem::new(7, formatting::coordinates(content.crs, [x, y])));
-            items.push(StatusItem::new(3, format!("ground {height_m:.1} m")));
+            say(1, formatting::position(point.lon_lat_deg));
+            say(7, formatting::coordinates(content.crs, [x, y]));
+            say(3, format!("ground {height_m:.1} m"));
         }
-        None => items.push(StatusItem::new(1, "no ground under the cursor")),
+        None => say(1, "no ground under the cursor".to_owned()),
     }
     let orientation = content.pose.orientation;
-    items.push(StatusItem::new(4, format!("eye {}", formatting::length(content.pose.eye_m[2]))));
-    items.push(StatusItem::new(
-        5,
-        format!("heading {}", formatting::heading(orientation.heading_deg)),
-    ));
-    items.push(StatusItem::new(6, format!("pitch {:.0}°", orientation.pitch_deg)));
+    say(4, format!("eye {}", formatting::length(content.pose.eye_m[2])));
+    say(5, format!("heading {}", formatting::heading(orientation.heading_deg)));
+    say(6, format!("pitch {:.0}°", orientation.pitch_deg));
     let roads = match settings.compare {
         Compare::Off => format!("roads {}", formatting::method(settings.roads.method)),
         Compare::Split | Compare::Difference => "roads GEO and SV".to_owned(),
     };
     let by = if content.is_software { ", drawn by the processor" } else { "" };
-    items.push(StatusItem::new(3, format!("{roads}{by}")));
+    say(3, format!("{roads}{by}"));
     for (method, times) in content.passes {
         let PassTimes { terrain_ms, areas_ms, roads_ms, decks_ms, composite_ms } = *times;
         let areas = if areas_ms > 0.0 { format!(" areas {areas_ms:.1},") } else { String::new() };
         let bridges =
             if decks_ms > 0.0 { format!(" bridges {decks_ms:.1},") } else { String::new() };
         let method = formatting::method(*method);
-        items.push(StatusItem::new(
+        say(
             8,
             format!(
                 "{method}: terrain {terrain_ms:.1},{areas} roads {roads_ms:.1},{bridges} composite {composite_ms:.1} ms"
             ),
-        ));
+        );
     }
     items
 }
