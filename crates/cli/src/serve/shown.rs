@@ -10,7 +10,11 @@ use corniche_viewer::{DrawError, ShownLayers};
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 use serde::Serialize;
 
-use crate::{documents::to_line, failure::Result, packages};
+use crate::{
+    documents::to_line,
+    failure::{CommandFailure, Result},
+    packages,
+};
 
 /// The list of packages that the page reads.
 pub(crate) const LIST: &str = "packages.json";
