@@ -7,7 +7,7 @@ use corniche_roads::FrcTableError;
 use corniche_spec::inputs::InputError;
 
 /// Version of a plan's JSON; other versions are rejected.
-pub const PLAN_VERSION: u32 = 10;
+pub const PLAN_VERSION: u32 = 11;
 
 /// Why a text is not a plan, or a plan cannot be used here.
 #[derive(Debug, thiserror::Error)]

@@ -1,5 +1,5 @@
-// The page of the viewer: ?src=ADDRESS names the package, &layers=NAMES the layers that are shown at
-// first. Without an address, the page offers the packages next to it, and accepts a file.
+// The page of the viewer: ?src=ADDRESS names the package, &layers=NAMES the layers that are shown
+// at first. Without an address, the page offers the packages next to it, and accepts a file.
 import { packages } from "./packages.js";
 
 const map = document.getElementById("map");

@@ -22,14 +22,14 @@ fn plans_of_other_versions_and_other_programs_are_refused_by_name() {
     let program = concat!("corniche ", env!("CARGO_PKG_VERSION"));
     let cases = [
         (
-            "\"plan_version\": 10",
             "\"plan_version\": 11",
-            "has version 11, but this program reads version 10",
+            "\"plan_version\": 12",
+            "has version 12, but this program reads version 11",
         ),
         (
-            "\"plan_version\": 10",
+            "\"plan_version\": 11",
             "\"plan_version\": 7",
-            "has version 7, but this program reads version 10",
+            "has version 7, but this program reads version 11",
         ),
         (program, "corniche 99.0.0", "created by corniche 99.0.0"),
         ("\"libraries\": \"GDAL ", "\"libraries\": \"GDAL 9.9, not ", "GDAL 9.9"),

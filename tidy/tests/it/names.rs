@@ -84,6 +84,8 @@ fn names_of_public_types_are_unique() {
     for declaration in types {
         by_name.entry(&declaration.name).or_default().push(declaration);
     }
+    // A crate may have its own short form of the standard library's type, as `std::io` does.
+    by_name.remove("Result");
     let twice: Vec<_> = by_name.into_values().filter(|all| all.len() > 1).flatten().collect();
     assert!(twice.is_empty(), "say in the name what it is in particular:\n{}", places(twice));
 }

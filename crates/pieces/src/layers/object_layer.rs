@@ -51,6 +51,8 @@ type PartOrder = (u8, OsmObject, LatticePoint, u64);
 
 /// The order of a tile's parts on bridges and in tunnels: by way and position.
 type SpanOrder = (i64, LatticePoint, u64);
+/// A part on a bridge or in a tunnel: its tile, its order there, and its bytes.
+type EncodedSpan = (TileId, SpanOrder, Vec<u8>);
 
 /// An object that has been split.
 pub(crate) struct SplitObject {
@@ -59,7 +61,7 @@ pub(crate) struct SplitObject {
     measure: ObjectMeasure,
     parts: Result<Vec<(TileId, PartOrder, Vec<u8>)>, OutlineError>,
     /// The parts on bridges and in tunnels.
-    spans: Vec<(TileId, SpanOrder, Vec<u8>)>,
+    spans: Vec<EncodedSpan>,
 }
 
 impl SplitObject {
@@ -83,7 +85,7 @@ impl SplitObject {
     }
 
     /// Returns the same object with its parts on bridges and in tunnels.
-    pub(crate) fn with_spans(self, spans: Vec<(TileId, SpanOrder, Vec<u8>)>) -> Self {
+    pub(crate) fn with_spans(self, spans: Vec<EncodedSpan>) -> Self {
         Self { spans, ..self }
     }
 }

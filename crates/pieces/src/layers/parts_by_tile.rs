@@ -17,7 +17,7 @@ impl<K: Ord + Send + Serialize + DeserializeOwned> PartKey for K {}
 
 /// Sorts parts by tile, and within a tile by their keys; parts that do not fit in memory go to
 /// scratch space.
-pub(crate) struct PartsByTile<'a, K: PartKey>(Sorter<'a, ObjectPart<K>>);
+pub(crate) struct PartsByTile<'a, K: PartKey>(Sorter<'a, EncodedPart<K>>);
 
 impl<'a, K: PartKey> PartsByTile<'a, K> {
     /// Creates the sorter; `memory_bytes` is all the memory for the extract.
@@ -27,12 +27,12 @@ impl<'a, K: PartKey> PartsByTile<'a, K> {
     }
 
     pub(crate) fn push(&mut self, id: TileId, key: K, bytes: Vec<u8>) -> Result<(), ExtractError> {
-        let part = ObjectPart { tile: pmtiles_order(id), key, bytes };
+        let part = EncodedPart { tile: pmtiles_order(id), key, bytes };
         Ok(self.0.push(part)?)
     }
 
     /// All parts, sorted.
-    pub(crate) fn sorted(self) -> Result<Sorted<'a, ObjectPart<K>>, ExtractError> {
+    pub(crate) fn sorted(self) -> Result<Sorted<'a, EncodedPart<K>>, ExtractError> {
         Ok(self.0.finish()?)
     }
 
@@ -54,14 +54,14 @@ impl<'a, K: PartKey> PartsByTile<'a, K> {
 
 /// An encoded part of an object.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct ObjectPart<K> {
+pub(crate) struct EncodedPart<K> {
     /// The tile's position in the order of the package.
     tile: u64,
     pub key: K,
     pub bytes: Vec<u8>,
 }
 
-impl<K: PartKey> SortRecord for ObjectPart<K> {
+impl<K: PartKey> SortRecord for EncodedPart<K> {
     fn encode(&self, bytes: &mut Vec<u8>) {
         let Self { tile, key, bytes: own } = self;
         append_record(bytes, (tile, key, own.len() as u64));

@@ -21,7 +21,7 @@ use crate::{
     ExtractError,
     layers::{
         blocks::{ListBlockWriter, for_each_block},
-        parts_by_tile::{ObjectPart, PartsByTile},
+        parts_by_tile::{EncodedPart, PartsByTile},
     },
 };
 
@@ -230,7 +230,7 @@ impl<'a> NearRoadsWriter<'a> {
             || artifacts::damaged(ArtifactKind::SpanRoads.item(0), &"its content is invalid");
         for part in others.sorted()? {
             observer.check()?;
-            let ObjectPart { key: place, bytes, .. } = part?;
+            let EncodedPart { key: place, bytes, .. } = part?;
             let other: NearRoad = take_record(&mut &bytes[..]).ok_or_else(damaged)?;
             while let Some((_, road)) = of_spans.next_if(|(own, _)| *own < place) {
                 put(road)?;

@@ -51,9 +51,9 @@ pub(crate) struct OpenStores<'a> {
 }
 
 impl<'a> Stores<'a> {
-    /// Checks to which plans the stores with these folders or addresses belong, and changes nothing.
-    /// All are read, and the first is written; it need not exist yet if it `may_be_new`. A part to
-    /// upload is first written in `tmp`; `None`: the system's temporary folder.
+    /// Checks to which plans the stores with these folders or addresses belong, and changes
+    /// nothing. All are read, and the first is written; it need not exist yet if it `may_be_new`. A
+    /// part to upload is first written in `tmp`; `None`: the system's temporary folder.
     pub(crate) fn look(
         names: &[PathBuf],
         tmp: Option<&Path>,

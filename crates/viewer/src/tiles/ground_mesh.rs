@@ -67,8 +67,8 @@ impl GroundMesh {
         let mut mesh = Self::of_surface(vertices, tin.triangles().iter().flatten().copied());
         mesh.hang_where(tin, |from, to| on_border(tin, from, to));
         mesh.skirt_indices = mesh.indices.len();
-        // Edges of the ground inside the tile belong to one triangle only: the neighbouring triangle
-        // would have the same edge in the other direction.
+        // Edges of the ground inside the tile belong to one triangle only: the neighbouring
+        // triangle would have the same edge in the other direction.
         let mut all: Vec<(u32, u32)> = tin.triangles().iter().flat_map(sides).collect();
         all.sort_unstable();
         mesh.hang_where(tin, |from, to| {

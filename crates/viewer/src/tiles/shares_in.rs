@@ -1,8 +1,8 @@
 //! The part of a segment or ray inside an axis-aligned box, so that only that part is processed.
 
-/// The shares of the way, from 0 to `most`, between which a segment or ray may be in a box, given by
-/// the lowest and highest coordinate along each axis. The second share is below the first if it is
-/// outside.
+/// The shares of the way, from 0 to `most`, between which a segment or ray may be in a box, given
+/// by the lowest and highest coordinate along each axis. The second share is below the first if it
+/// is outside.
 pub(crate) fn shares_in<const N: usize>(
     from: [f64; N],
     way: [f64; N],

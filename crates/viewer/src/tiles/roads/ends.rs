@@ -69,7 +69,8 @@ impl TileSide {
 }
 
 impl RoadEnd {
-    /// The end of a road at a point of its segment `source_m`, if the point is on the tile's border.
+    /// The end of a road at a point of its segment `source_m`, if the point is on the tile's
+    /// border.
     pub(crate) fn at(
         (way_id, kind): (i64, RoadKind),
         [x, y, height_m]: [f64; 3],
