@@ -22,17 +22,19 @@ var K=t=>t.trim()===""||!Number.isFinite(Number(t))?void 0:Number(t),be=t=>!/^(o
 :host([hidden]) { display: none; }
 *, ::before, ::after { box-sizing: border-box; }
 [hidden] { display: none !important; }
-.root { position: absolute; inset: 0; container: map / size; background: var(--ground); }
+.root, .cross, .over, .opening-text, .hint, .failed, .still { position: absolute; inset: 0; }
+.cross, .over, .opening-text, .hint { pointer-events: none; }
+.root { container: map / size; background: var(--ground); }
 canvas { display: block; inline-size: 100%; block-size: 100%; touch-action: none; outline: none; -webkit-user-select: none; user-select: none; -webkit-touch-callout: none; cursor: grab; }
 .cooperative canvas { touch-action: pan-x pan-y; }
 .cooperative :is(dt, dd).greedy, .root:not(.cooperative) :is(dt, dd).cooperative { display: none; }
 canvas:active { cursor: grabbing; }
 canvas:focus-visible { outline: 3px solid var(--accent); outline-offset: -3px; }
-.cross { position: absolute; inset: 0; margin: auto; inline-size: 22px; block-size: 22px; pointer-events: none; display: none; fill: none; stroke: var(--accent); stroke-width: 2; filter: drop-shadow(0 0 1px #fff); }
+.cross { margin: auto; inline-size: 22px; block-size: 22px; display: none; fill: none; stroke: var(--accent); stroke-width: 2; filter: drop-shadow(0 0 1px #fff); }
 canvas:focus-visible ~ .cross { display: block; }
 
 .over {
-  position: absolute; inset: 0; padding: 0.625rem; display: grid; gap: 0.5rem; pointer-events: none;
+  padding: 0.625rem; display: grid; gap: 0.5rem;
   grid-template: "stack middle panel" minmax(0, 1fr) "bar bar bar" auto / auto minmax(0, 1fr) auto;
 }
 .over > *, .middle > *, .bar > * { pointer-events: auto; }
@@ -73,10 +75,10 @@ details[open] > summary::after { rotate: 225deg; translate: 0 2px; }
 summary:focus-visible { outline-offset: -3px; }
 .inside { display: grid; gap: 0.6rem; padding: 0 0.9rem 0.8rem; }
 .legend { list-style: none; margin: 0; padding: 0; }
-.check { display: flex; align-items: center; gap: 0.55rem; min-block-size: var(--row); cursor: pointer; }
+.check, .named-class { display: flex; align-items: center; gap: 0.55rem; min-block-size: var(--row); }
+.check { cursor: pointer; }
 input[type="checkbox"] { inline-size: 1.05rem; block-size: 1.05rem; margin: 0; accent-color: var(--accent); flex: none; }
 .swatch { inline-size: 1.5rem; block-size: 0.45rem; border-radius: 3px; flex: none; box-shadow: 0 0 0 1px light-dark(rgb(0 0 0 / 45%), rgb(255 255 255 / 45%)); }
-.named-class { display: flex; align-items: center; gap: 0.55rem; min-block-size: var(--row); }
 .legend .legend { margin-inline-start: 1.6rem; }
 .point-swatch { border-radius: 50%; inline-size: 0.6rem; block-size: 0.6rem; }
 .line-swatch { inline-size: 1.5rem; border-block-start: 2px dashed currentColor; flex: none; }
@@ -130,8 +132,9 @@ dd { margin: 0; overflow-wrap: anywhere; }
 .progress div { block-size: 100%; inline-size: 0; background: var(--accent); transition: inline-size 0.2s; }
 .progress.opening div { inline-size: 30%; animation: opening 1.4s ease-in-out infinite alternate; }
 @keyframes opening { to { margin-inline-start: 70%; } }
-.opening-text { position: absolute; inset: 0; display: grid; place-items: center; pointer-events: none; color: var(--quiet); }
-.hint { position: absolute; inset: 0; display: grid; place-items: center; padding: 1rem; pointer-events: none; opacity: 0; transition: opacity 0.25s; background: rgb(0 0 0 / 30%); }
+.opening-text, .hint, .failed { display: grid; place-items: center; }
+.opening-text { color: var(--quiet); }
+.hint { padding: 1rem; opacity: 0; transition: opacity 0.25s; background: rgb(0 0 0 / 30%); }
 .hint.shown { opacity: 1; }
 .hint .card { padding: 0.6rem 1rem; font-size: 1rem; text-align: center; text-wrap: balance; }
 .hint .card:empty { display: none; }
@@ -152,14 +155,14 @@ dialog dl { overflow: auto; padding: 0.2rem 0.9rem 1rem; grid-template-columns: 
 dialog dl:focus-visible { outline: 2px solid var(--accent); outline-offset: -3px; }
 dialog dt { color: inherit; font-weight: 600; }
 
-.failed { position: absolute; inset: 0; display: grid; place-items: center; padding: 1rem; overflow: auto; background: var(--ground); }
+.failed { padding: 1rem; overflow: auto; background: var(--ground); }
 .failure { position: relative; padding: 1.1rem 1.3rem 1.3rem; max-inline-size: 30rem; overflow-wrap: anywhere; }
 .failure h2 { display: flex; gap: 0.6rem; align-items: center; font-size: 1.125rem; }
 .failure h2 svg { color: var(--alarm); inline-size: 1.5rem; block-size: 1.5rem; }
 .failure p { margin: 0.6rem 0 0; }
 .failure .address { color: var(--quiet); font-size: 0.8125rem; }
 .failure button { margin-block-start: 1rem; }
-.still { position: absolute; inset: 0; inline-size: 100%; block-size: 100%; object-fit: cover; }
+.still { inline-size: 100%; block-size: 100%; object-fit: cover; }
 .still-credit { position: absolute; inset-block-end: 0.625rem; inset-inline-end: 0.625rem; margin: 0; }
 .still[hidden] + .still-credit { display: none; }
 .failed:has(.still:not([hidden])) { align-items: end; padding-block-end: 2.6rem; }

@@ -1,1 +1,1 @@
-async function e(){const t=new URL("packages.json",import.meta.url),a=await fetch(t).catch(()=>null);return a?.ok?(await a.json().catch(()=>[])).map(({name:n,src:s})=>({name:n,src:new URL(s,t).href})):[]}export{e as packages};
+async function e(){const t=new URL("packages.json",import.meta.url),a=await fetch(t).catch(()=>null);return a?.ok?(await a.json().catch(()=>[])).map(({src:n,...s})=>({...s,src:new URL(n,t).href})):[]}export{e as packages};

@@ -193,7 +193,7 @@ fn read_all<R: Read + Seek>(
             LayerReceiver::Areas(sink) => hand_out_areas(&reading, found, sink, on_defect)?,
             LayerReceiver::Lines(sink) => hand_out_lines(&reading, found, sink, on_defect)?,
             LayerReceiver::Points(sink) => {
-                hand_out_points(&reading, table, found, sink, on_defect)?
+                hand_out_points(&reading, table, found, sink, on_defect)?;
             }
         }
     }
