@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::{OutlineWay, assemble, surrounded};
+use crate::{OutlineError, OutlineWay, assemble, surrounded};
 
 fn ring(corners: &[[i64; 2]], step: i64) -> Vec<LatticePoint> {
     corners.iter().map(|&[u, v]| LatticePoint::new(u * step, v * step)).collect()
@@ -114,7 +114,10 @@ proptest! {
         triangle in prop::array::uniform3([-60_i64..60, -60_i64..60]),
         step in prop::sample::select(vec![1_i64, 8]),
     ) {
-        let whole = surrounded(&[&ring(&corners, step)], step).unwrap();
+        // Rounding the crossings of a sliver need not end; such outlines are reported as lost.
+        let whole = surrounded(&[&ring(&corners, step)], step);
+        prop_assume!(!matches!(whole, Err(OutlineError::TooIntricate)));
+        let whole = whole.unwrap();
         let mut triangle = ring(&triangle, step);
         if corniche_geom::cross(triangle[0], triangle[1], triangle[2]) < 0 {
             triangle.reverse();

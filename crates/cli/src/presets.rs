@@ -53,6 +53,13 @@ pub(crate) fn text_of(
     })
 }
 
+/// The built-in FRC table of a package; `None` if it was built with another one.
+pub(crate) fn recorded_table(manifest: &Manifest) -> Option<FrcTable> {
+    let settings = &manifest.settings;
+    let text = frc_preset(&settings.frc_table).filter(|_| settings.recorded_labels().is_none());
+    text.and_then(|text| parse_frc_table(text).ok())
+}
+
 /// The labels of the road classes of a package: the recorded ones, or those of the table with the
 /// recorded name.
 pub(crate) fn class_labels(manifest: &Manifest) -> [String; FunctionalRoadClass::COUNT] {

@@ -208,7 +208,7 @@ fn road_settings(options: RoadOptions) -> Result<RoadSettings> {
     let table = presets::frc_table(options.frc_table.as_deref().unwrap_or("default"))?;
     let table = match &options.classes {
         Some(classes) => {
-            let classes = classes.classes(&table.class_labels());
+            let classes = classes.classes(Some(&table), &table.class_labels());
             let classes = classes.map_err(|error| presets::refuse("--classes", &error))?;
             let numbers: Vec<u8> = classes.into_iter().map(FunctionalRoadClass::number).collect();
             table.with_classes(&numbers).map_err(|error| presets::refuse("--classes", &error))?

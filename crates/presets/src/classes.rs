@@ -1,6 +1,6 @@
 //! Lists of functional road classes, as text and as a setting.
 
-use corniche_roads::FunctionalRoadClass;
+use corniche_roads::{FrcTable, FunctionalRoadClass};
 use serde::{Deserialize, Deserializer};
 
 /// Road classes by number (`0-4,7`) and by name (`motorway`); at least one.
@@ -12,7 +12,7 @@ pub struct Classes(Vec<ClassEntry>);
 enum ClassEntry {
     /// The first and the last number of a range.
     Range(u8, u8),
-    /// A value of `highway`, as in the labels of classes.
+    /// A value of `highway`, or a name in a label.
     Name(String),
 }
 
@@ -45,12 +45,14 @@ impl Classes {
         })
     }
 
-    /// The classes, ascending, of a table with these [labels](crate::class_labels).
+    /// The classes, ascending. Names are values of `highway` in the table, if it is known, or names
+    /// in the [labels](crate::class_labels) of the classes.
     ///
     /// # Errors
-    /// When no label contains a name.
+    /// When no class has a name.
     pub fn classes(
         &self,
+        table: Option<&FrcTable>,
         labels: &[String; FunctionalRoadClass::COUNT],
     ) -> Result<Vec<FunctionalRoadClass>, UnknownClass> {
         let mut classes = Vec::new();
@@ -60,11 +62,15 @@ impl Classes {
                 ClassEntry::Name(name) => {
                     let called = name.replace('_', " ");
                     let has_name = |label: &String| label.split(", ").any(|own| own == called);
-                    let number = labels.iter().position(has_name).ok_or_else(|| UnknownClass {
+                    let of_label = || labels.iter().position(has_name).map(|number| number as u8);
+                    let mut values = table.into_iter().flat_map(FrcTable::values);
+                    let of_table = values.find(|(value, _)| *value == name).and_then(|of| of.1);
+                    let number = of_table.map(FunctionalRoadClass::number).or_else(of_label);
+                    let number = number.ok_or_else(|| UnknownClass {
                         name: name.clone(),
                         labels: labels.to_vec(),
                     })?;
-                    (number as u8, number as u8)
+                    (number, number)
                 }
             };
             classes.extend((first..=last).filter_map(FunctionalRoadClass::new));

@@ -86,7 +86,7 @@ fn built_in_layers_look_as_their_styles_say() {
         ("photo", [0xA9, 0xC9, 0xDD], [0xFF, 0xA8, 0xF0]),
     ] {
         let style = parse_style(crate::style_preset(name).unwrap()).unwrap();
-        let LayerLook::Area(area) = style.layer_look(&areas, 0) else { panic!() };
+        let LayerLook::Area(area) = style.layer_look(&areas, 2) else { panic!() };
         assert_eq!((crate::to_bytes(area.color), area.steepest_deg), (sea, Some(35.0)), "{name}");
         for class in 0..7 {
             let LayerLook::Line(line) = style.layer_look(&boundaries, class) else { panic!() };
@@ -96,11 +96,35 @@ fn built_in_layers_look_as_their_styles_say() {
         let looks = (0..railways.classes.len()).map(|class| style.layer_look(&railways, class));
         assert!(looks.clone().all(|look| look.is_drawn()), "{name}");
         // A table and a style that fit each other.
-        for layer in [&areas, &boundaries, &railways] {
+        for layer in corniche_config::LAYERS.iter().map(|(name, _)| built_in_layer(name)) {
             let named = style.layers.layers[&layer.id].keys();
             let has = |id: &String| layer.classes.iter().any(|class| class.id == *id);
             let mut unknown = named.filter(|id| !id.is_empty() && !has(id));
             assert_eq!(unknown.next(), None, "{name} {}", layer.id);
+        }
+    }
+}
+
+/// A style that gives a layer another colour also gives one to its classes with an own colour,
+/// which it would otherwise inherit.
+#[test]
+fn no_class_keeps_the_colour_of_another_style() {
+    let colors = |name: &str| -> BTreeMap<(String, String), Option<[f32; 3]>> {
+        let style = parse_style(crate::style_preset(name).unwrap()).unwrap();
+        let layers = style.layers.layers.into_iter().flat_map(|(id, classes)| {
+            classes.into_iter().map(move |(class, look)| ((id.clone(), class), look.color))
+        });
+        layers.collect()
+    };
+    let atlas = colors("road-atlas");
+    for name in ["dark", "photo"] {
+        let own = colors(name);
+        for (key, color) in &atlas {
+            let layer = (key.0.clone(), String::new());
+            let is_recoloured = own[&layer] != atlas[&layer];
+            if is_recoloured && color.is_some() {
+                assert_ne!(own[key], *color, "{name} {key:?}");
+            }
         }
     }
 }

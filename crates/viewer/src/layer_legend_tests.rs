@@ -21,7 +21,7 @@ fn labels(layer: &LayerLegend) -> Vec<&str> {
 fn layers_are_listed_from_the_highest_with_the_classes_that_are_there() {
     let walls = own("walls", LayerGeometry::Line, 3);
     let manifest = package(vec![
-        (built_in("areas"), vec![3, 1]),
+        (built_in("areas"), vec![5, 3]),
         (walls, vec![2, 0]),
         (built_in("boundaries"), vec![7, 2]),
     ]);

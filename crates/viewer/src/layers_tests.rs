@@ -92,8 +92,8 @@ fn only_shown_layers_are_drawn_and_read() {
     // The style for photos draws water alone.
     let photo = corniche_styles::parse_style(corniche_styles::style_preset("photo").unwrap());
     let looks = PackageLooks::new(&manifest, &photo.unwrap(), &ShownLayers::ALL);
-    assert!(looks.area(class(0, 1)).is_some() && looks.area(class(0, 3)).is_none());
-    assert_eq!(looks.point(class(0, 1)), None, "an area is no point");
+    assert!(looks.area(class(0, 3)).is_some() && looks.area(class(0, 5)).is_none());
+    assert_eq!(looks.point(class(0, 3)), None, "an area is no point");
     assert_eq!(looks.look(class(9, 0)), None);
 }
 

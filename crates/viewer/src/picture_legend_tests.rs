@@ -59,7 +59,7 @@ fn looks(style: &Style) -> PackageLooks {
 }
 
 fn seen() -> ShownTiles {
-    let layers = [class(2, 0), class(1, 0), class(1, 7), class(0, 0), class(0, 1), class(0, 3)];
+    let layers = [class(2, 0), class(1, 0), class(1, 7), class(0, 2), class(0, 3), class(0, 5)];
     ShownTiles {
         roads: classes(&[3, 0]),
         tunnels: classes(&[3]),

@@ -12,7 +12,8 @@ function show(src, title, layers) {
   chooser.hidden = true;
   map.hidden = false;
   document.title = `${title} – Corniche`;
-  if (layers != null) map.setAttribute("layers", layers);
+  if (layers == null) map.removeAttribute("layers");
+  else map.setAttribute("layers", layers);
   map.src = src;
 }
 

@@ -114,7 +114,7 @@ fn levels_and_classes_can_be_chosen_and_areas_that_are_not_there_are_told() {
     };
     refused(
         export(&package, &["--classes", "pond"]),
-        "has no class \"pond\"; its classes are sea, water, glacier",
+        "has no class \"pond\"; its classes are pier, breakwater, sea, water, glacier",
     );
     refused(export(&package, &["--level", "9"]), "has no level 9");
     refused(

@@ -1,4 +1,4 @@
-//! The numbers of objects of each class of the built-in layers are those that osmium finds in real
+//! The numbers of objects of each class of the built-in layers but ferries are those that osmium finds in real
 //! extracts; where they differ, for reasons that the build reports.
 //!
 //! Classes are decided here again, by functions.
@@ -97,6 +97,7 @@ fn building(tags: &Tags<'_>) -> Option<&'static str> {
     Some(match *tags.get("building")? {
         "no" => return None,
         "ruins" | "collapsed" => "ruin",
+        _ if tags.get("ruins").is_some_and(|ruins| *ruins != "no") => "ruin",
         "roof" | "carport" | "greenhouse" => "roof",
         _ => "building",
     })
@@ -124,7 +125,9 @@ fn waterway(tags: &Tags<'_>) -> Option<&'static str> {
 fn landform(tags: &Tags<'_>) -> Option<&'static str> {
     let is = |key: &str, values: &[&str]| has(tags, key, values);
     Some(match () {
-        () if is("waterway", &["dam", "weir"]) || is("man_made", &["dyke"]) => "dam",
+        () if is("waterway", &["dam", "weir"]) => "dam",
+        () if is("man_made", &["dyke"]) => "dyke",
+        () if is("man_made", &["pier", "breakwater", "groyne"]) => "pier",
         () if is("natural", &["cliff"]) => "cliff",
         () if is("natural", &["ridge", "arete"]) => "ridge",
         () if is("man_made", &["embankment"]) || is("natural", &["earth_bank"]) => "embankment",
@@ -142,9 +145,8 @@ fn place(tags: &Tags<'_>) -> Option<&'static str> {
         "village" => "village",
         "hamlet" => "hamlet",
         "suburb" | "quarter" | "borough" | "neighbourhood" => "quarter",
-        "island" | "islet" => "island",
         "locality" => "locality",
-        "farm" | "isolated_dwelling" | "allotments" | "square" => "farm",
+        "farm" | "isolated_dwelling" => "farm",
         _ => return None,
     })
 }

@@ -309,7 +309,7 @@ fn the_version_tells_what_a_report_should_name() {
     let lines: Vec<&str> = long.lines().collect();
     assert!(lines[0].starts_with("corniche ") && lines.len() == 5, "{long}");
     assert!(lines[1].starts_with("GDAL ") && lines[1].contains("PROJ "), "{long}");
-    assert_eq!(lines[2], "formats: package 2, plan 10, store 1");
+    assert_eq!(lines[2], "formats: package 2, plan 11, store 1");
     assert_eq!(lines[3], "inputs: all of the manual");
     assert!(lines[4].starts_with("wgpu backends: ") && lines[4].contains("vulkan"), "{long}");
     assert_eq!(corniche(["-V"]).out, format!("{}\n", lines[0]));

@@ -126,7 +126,8 @@ impl ClassesArg {
     /// # Errors
     /// When the package has no class of a name.
     pub(crate) fn of_package(&self, manifest: &Manifest) -> Result<Vec<FunctionalRoadClass>> {
-        let classes = self.classes.classes(&presets::class_labels(manifest));
+        let table = presets::recorded_table(manifest);
+        let classes = self.classes.classes(table.as_ref(), &presets::class_labels(manifest));
         classes.map_err(|error| presets::refuse("--classes", &error))
     }
 }

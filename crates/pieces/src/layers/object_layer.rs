@@ -15,7 +15,7 @@ use corniche_work::Stage;
 use super::{
     SectionLayer,
     layer_writer::{LayerContext, LayerEncoder, TileSplitting},
-    parts_by_tile::PartsByTile,
+    parts_by_tile::{PartsByTile, joined_parts},
     plan_splitting::PlanSplitting,
     span_pieces,
     tile_section::{LayerTotals, ObjectMeasure, TileSection},
@@ -171,7 +171,7 @@ impl<S: ObjectSplitting> LayerEncoder for ObjectLayer<'_, S> {
         let (plan, store) = (self.splitting.plan(), self.store);
         let (slot, layer) = (self.slot, SectionLayer::Extract(self.slot));
         self.parts.for_each_tile(told.observer, |tile, parts| {
-            let objects = parts.iter().map(|bytes| take_record(&mut &bytes[..]));
+            let objects = parts.into_iter().map(|bytes| take_record(&mut &bytes[..]));
             let objects: Vec<LayerObject> = objects.collect::<Option<_>>().ok_or_else(|| {
                 let key = layer.section_key(tile);
                 damaged(key, &"the record read back is not an object of a layer")
@@ -184,7 +184,7 @@ impl<S: ObjectSplitting> LayerEncoder for ObjectLayer<'_, S> {
         })?;
         if let Some(spans) = self.spans {
             spans.for_each_tile(told.observer, |tile, pieces| {
-                Ok(store.put(span_pieces::key(slot, tile), &pieces.concat())?)
+                Ok(store.put(span_pieces::key(slot, tile), &joined_parts(pieces))?)
             })?;
         }
         totals.put(layer, store)?;

@@ -40,16 +40,25 @@ impl<'a, K: PartKey> PartsByTile<'a, K> {
     pub(crate) fn for_each_tile(
         self,
         observer: &dyn BuildObserver,
-        mut put: impl FnMut(u64, &[Vec<u8>]) -> Result<(), ExtractError>,
+        mut put: impl FnMut(u64, Vec<Vec<u8>>) -> Result<(), ExtractError>,
     ) -> Result<(), ExtractError> {
         let mut tiles = Groups::from_sorted(self.sorted()?);
         while let Some(parts) = tiles.next_by(|part| part.tile)? {
             observer.check()?;
             let tile = parts[0].tile;
-            put(tile, &parts.into_iter().map(|part| part.bytes).collect::<Vec<_>>())?;
+            put(tile, parts.into_iter().map(|part| part.bytes).collect())?;
         }
         Ok(())
     }
+}
+
+/// Joins parts, each of which is dropped once it is copied.
+pub(crate) fn joined_parts(parts: Vec<Vec<u8>>) -> Vec<u8> {
+    let join = |mut all: Vec<u8>, part: Vec<u8>| {
+        all.extend(part);
+        all
+    };
+    parts.into_iter().reduce(join).unwrap_or_default()
 }
 
 /// An encoded part of an object.

@@ -56,6 +56,9 @@ pub(crate) fn lines_of(
     draped: &Drape,
     (surface, lengths): (&Surface, &TrueLengths<'_>),
 ) -> Vec<SpanGroundLine> {
+    if draped.lines.is_empty() {
+        return Vec::new();
+    }
     let starts_um = starts_um(run.from_um, &run.segments_um);
     let points = part.line.points();
     let line_of = |(line, &begun): (&DrapedLine, &usize)| {

@@ -19,7 +19,7 @@ use crate::{
     layers::{
         blocks::ListBlockWriter,
         layer_writer::{LayerContext, LayerEncoder, SplitOf, TileSplitting},
-        parts_by_tile::PartsByTile,
+        parts_by_tile::{PartsByTile, joined_parts},
     },
 };
 
@@ -123,7 +123,7 @@ impl<'a> LayerEncoder for RoadLayer<'a> {
     ) -> Result<Self::Done, ExtractError> {
         self.lengths.finish()?;
         self.pieces.for_each_tile(told.observer, |tile, pieces| {
-            Ok(self.store.put(ArtifactKind::RoadPieces.item(tile), &pieces.concat())?)
+            Ok(self.store.put(ArtifactKind::RoadPieces.item(tile), &joined_parts(pieces))?)
         })?;
         if let Some(near_spans) = self.near_spans {
             let reach = self.splitting.levels.steps_of_true(NEAR_M);

@@ -220,9 +220,9 @@ fn a_worker_that_derives_another_grid_says_so() {
 #[test]
 fn what_is_no_plan_is_refused() {
     let text = BuildPlan::make(&settings()).unwrap().to_json().unwrap();
-    let later = text.replace("\"plan_version\": 10", "\"plan_version\": 11");
+    let later = text.replace("\"plan_version\": 11", "\"plan_version\": 12");
     let error = BuildPlan::from_json(&later).unwrap_err().to_string();
-    assert!(error.contains("version 11") && error.contains("version 10"), "{error}");
+    assert!(error.contains("version 12") && error.contains("version 11"), "{error}");
     for bad in ["", "{}", "[7]", &text[..text.len() / 2], "\"plan\""] {
         let error = BuildPlan::from_json(bad).unwrap_err().to_string();
         assert!(error.contains("corniche plan -o"), "{bad}: {error}");

@@ -199,7 +199,8 @@ pub(crate) mod system {
     }
 
     pub(crate) fn open(path: &Path, mode: OpenMode) -> io::Result<File> {
-        Ok(rustix::fs::open(path, flags_of(mode), PERMISSIONS)?.into())
+        let open = || rustix::fs::open(path, flags_of(mode), PERMISSIONS);
+        Ok(rustix::io::retry_on_intr(open)?.into())
     }
 
     /// Fails unless a file belongs to this user and has one name: a second name may belong to a
@@ -261,7 +262,8 @@ pub(crate) mod system {
             path: &Path,
             mode: OpenMode,
         ) -> io::Result<File> {
-            let opened = openat(&self.0, name, flags_of(mode), PERMISSIONS).map(File::from);
+            let open = || openat(&self.0, name, flags_of(mode), PERMISSIONS);
+            let opened = rustix::io::retry_on_intr(open).map(File::from);
             checked(opened.map_err(io::Error::from), path, mode)
         }
 
