@@ -1,5 +1,5 @@
-//! The numbers of objects of each class of the built-in layers but ferries are those that osmium finds in real
-//! extracts; where they differ, for reasons that the build reports.
+//! The numbers of objects of each class of the built-in layers but ferries are those that osmium
+//! finds in real extracts; where they differ, for reasons that the build reports.
 //!
 //! Classes are decided here again, by functions.
 
